@@ -6,20 +6,14 @@ use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
 /// The crates that a dialect outside of this checkout is built with, and where they lie.
-const CRATES: [(&str, &str); 3] = [
-    ("post-plugin", "plugins/api"),
-    ("post-iso", "plugins/iso"),
-    ("post-kit", "plugins/kit"),
-];
+const CRATES: [(&str, &str); 3] =
+    [("post-plugin", "plugins/api"), ("post-iso", "plugins/iso"), ("post-kit", "plugins/kit")];
 
 fn main() -> io::Result<()> {
     let root = env::var("CARGO_MANIFEST_DIR").map_err(io::Error::other)?;
     let out = env::var("OUT_DIR").map_err(io::Error::other)?;
     let (root, out) = (Path::new(&root), Path::new(&out));
-    println!(
-        "cargo::rustc-env=POST_SOURCES={:016x}",
-        hash_of_sources(root)?
-    );
+    println!("cargo::rustc-env=POST_SOURCES={:016x}", hash_of_sources(root)?);
     fs::write(out.join("machines.rs"), machines(&root.join("machines"))?)?;
     fs::write(out.join("sources.rs"), sources(root)?)
 }
@@ -35,10 +29,7 @@ fn hash_of_sources(root: &Path) -> io::Result<u64> {
         }
         let mut crates = files_in(&room)?;
         crates.push(room);
-        for sources in crates
-            .iter()
-            .flat_map(|one| [one.join("src"), one.join("page")])
-        {
+        for sources in crates.iter().flat_map(|one| [one.join("src"), one.join("page")]) {
             if sources.is_dir() {
                 paths.extend(files_below(&sources)?);
             }

@@ -68,19 +68,13 @@ pub fn parse_chain(text: &str) -> Result<Vec<Link>, SyntaxFault> {
         let span = pair.as_span().start()..pair.as_span().end();
         let rule = pair.as_rule();
         let mut parts = pair.into_inner();
-        let name = parts
-            .next()
-            .map(|name| name.as_str().to_owned())
-            .unwrap_or_default();
+        let name = parts.next().map(|name| name.as_str().to_owned()).unwrap_or_default();
         let kind = match rule {
             Rule::workpiece => LinkKind::Workpiece,
             Rule::bed => LinkKind::Bed,
             Rule::tool => LinkKind::Tool,
             Rule::spindle => LinkKind::Spindle { name },
-            Rule::axis => LinkKind::Axis {
-                name,
-                primed: parts.next().is_some(),
-            },
+            Rule::axis => LinkKind::Axis { name, primed: parts.next().is_some() },
             _ => continue,
         };
         links.push(Link { kind, span });
@@ -109,21 +103,16 @@ fn check_ends(text: &str, links: &[Link]) -> Result<(), SyntaxFault> {
             return fault(at..at, &format!("{what} is missing"));
         }
         if let Some(second) = found.next() {
-            return fault(
-                second.span.clone(),
-                &format!("{what} stands here a second time"),
-            );
+            return fault(second.span.clone(), &format!("{what} stands here a second time"));
         }
     }
     match links {
-        [first, ..] if first.kind != LinkKind::Workpiece => fault(
-            first.span.clone(),
-            "a structural code begins with `w`, the workpiece",
-        ),
-        [.., last] if last.kind != LinkKind::Tool => fault(
-            last.span.clone(),
-            "a structural code ends with `t`, the tool",
-        ),
+        [first, ..] if first.kind != LinkKind::Workpiece => {
+            fault(first.span.clone(), "a structural code begins with `w`, the workpiece")
+        }
+        [.., last] if last.kind != LinkKind::Tool => {
+            fault(last.span.clone(), "a structural code ends with `t`, the tool")
+        }
         _ => Ok(()),
     }
 }

@@ -111,19 +111,13 @@ fn short(text: &[u8], at: usize) -> Option<Decimal> {
     }
     let value = mantissa as i64 as f64 / POWERS[decimals];
     let sign = u64::from(negative) << 63;
-    Some(Decimal {
-        value: f64::from_bits(value.to_bits() | sign),
-        point,
-        end: at + begin + length,
-    })
+    Some(Decimal { value: f64::from_bits(value.to_bits() | sign), point, end: at + begin + length })
 }
 
 /// The number at the start of `text`, of any length, and its length.
 fn general(text: &[u8]) -> Option<(f64, usize)> {
     let mantissa = mantissa(text)?;
-    let exponent = text
-        .get(mantissa.end)
-        .is_some_and(|&byte| is_exponent(byte));
+    let exponent = text.get(mantissa.end).is_some_and(|&byte| is_exponent(byte));
     match mantissa.exact(text) {
         Some(value) if !exponent => Some((value, mantissa.end)),
         _ => long(text, mantissa.end),
@@ -152,12 +146,7 @@ fn mantissa(text: &[u8]) -> Option<Mantissa> {
         decimals = Some(end - point - 1);
         count += end - point - 1;
     }
-    (count > 0).then_some(Mantissa {
-        digits: value,
-        count,
-        decimals,
-        end,
-    })
+    (count > 0).then_some(Mantissa { digits: value, count, decimals, end })
 }
 
 impl Mantissa {
@@ -204,24 +193,18 @@ fn digits(text: &[u8], mut at: usize, mut mantissa: u64) -> (u64, usize) {
         let eight = u64::from_le_bytes(bytes.try_into().expect("eight bytes")) ^ ZEROS;
         let others = others(eight);
         if others == 0 {
-            mantissa = mantissa
-                .wrapping_mul(100_000_000)
-                .wrapping_add(value(eight));
+            mantissa = mantissa.wrapping_mul(100_000_000).wrapping_add(value(eight));
             at += 8;
             continue;
         }
         let count = others.trailing_zeros() / 8;
         // As many zeros come in front.
         let eight = eight << 8 << (56 - 8 * count);
-        let mantissa = mantissa
-            .wrapping_mul(SHIFTS[count as usize])
-            .wrapping_add(value(eight));
+        let mantissa = mantissa.wrapping_mul(SHIFTS[count as usize]).wrapping_add(value(eight));
         return (mantissa, at + count as usize);
     }
     while let Some(digit @ b'0'..=b'9') = text.get(at) {
-        mantissa = mantissa
-            .wrapping_mul(10)
-            .wrapping_add(u64::from(digit - b'0'));
+        mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
         at += 1;
     }
     (mantissa, at)
@@ -292,15 +275,10 @@ mod tests {
         ] {
             assert_like_std(text);
         }
-        for text in [
-            "", ".", "-", "+.", "e5", "1e", "1e+", "1e400", "--1", "inf", "nan", ":", "/",
-        ] {
+        for text in ["", ".", "-", "+.", "e5", "1e", "1e+", "1e400", "--1", "inf", "nan", ":", "/"]
+        {
             assert_eq!(number(text.as_bytes(), 0), None, "{text}");
-            assert_eq!(
-                number(format!("{text}, 12345678, 12345678").as_bytes(), 0),
-                None,
-                "{text}"
-            );
+            assert_eq!(number(format!("{text}, 12345678, 12345678").as_bytes(), 0), None, "{text}");
         }
     }
 
@@ -310,11 +288,7 @@ mod tests {
             for text in ["7", "12.5", "1234567", "1.2345678"] {
                 let mut line = text.as_bytes().to_vec();
                 line.extend([byte; 17]);
-                assert_eq!(
-                    number(&line, 0),
-                    Some((text.parse().unwrap(), text.len())),
-                    "{byte}"
-                );
+                assert_eq!(number(&line, 0), Some((text.parse().unwrap(), text.len())), "{byte}");
             }
         }
     }

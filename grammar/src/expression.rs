@@ -28,9 +28,8 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
 });
 
 /// The functions that an expression may call.
-pub const FUNCTIONS: [&str; 11] = [
-    "sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "abs", "min", "max",
-];
+pub const FUNCTIONS: [&str; 11] =
+    ["sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "abs", "min", "max"];
 
 /// A number, written as a formula of named numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,9 +122,7 @@ pub fn parse_expression(text: &str) -> Result<Expression, SyntaxFault> {
         };
         unreadable(text, at)
     })?;
-    let sum = pairs
-        .next()
-        .and_then(|expression| expression.into_inner().next());
+    let sum = pairs.next().and_then(|expression| expression.into_inner().next());
     build(text, sum.expect("an expression holds a sum"))
 }
 
@@ -192,9 +189,8 @@ fn call(text: &str, pair: Pair<'_, Rule>) -> Result<Expression, SyntaxFault> {
     let mut parts = pair.into_inner();
     let name = parts.next().expect("a call has a name");
     let name_span = name.as_span().start()..name.as_span().end();
-    let arguments: Vec<Expression> = parts
-        .map(|part| build(text, part))
-        .collect::<Result<_, _>>()?;
+    let arguments: Vec<Expression> =
+        parts.map(|part| build(text, part)).collect::<Result<_, _>>()?;
     let Some(function) = Function::named(name.as_str()) else {
         let message = format!("there is no function `{}`", name.as_str());
         return Err(SyntaxFault::new(text, name_span, message)
@@ -206,17 +202,10 @@ fn call(text: &str, pair: Pair<'_, Rule>) -> Result<Expression, SyntaxFault> {
         _ => (arguments.len() == 1, "one argument"),
     };
     if !fits {
-        let message = format!(
-            "{} takes {wanted}, {} given",
-            name.as_str(),
-            arguments.len()
-        );
+        let message = format!("{} takes {wanted}, {} given", name.as_str(), arguments.len());
         return Err(SyntaxFault::new(text, span, message));
     }
-    Ok(Expression {
-        span,
-        term: Term::Call(function, arguments),
-    })
+    Ok(Expression { span, term: Term::Call(function, arguments) })
 }
 
 impl Function {
@@ -296,9 +285,9 @@ impl Expression {
                 left.collect_references(references);
                 right.collect_references(references);
             }
-            Term::Call(_, arguments) => arguments
-                .iter()
-                .for_each(|argument| argument.collect_references(references)),
+            Term::Call(_, arguments) => {
+                arguments.iter().for_each(|argument| argument.collect_references(references))
+            }
         }
     }
 
@@ -314,10 +303,7 @@ impl Expression {
     }
 
     fn fault(&self, message: String) -> EvaluationFault {
-        EvaluationFault {
-            span: self.span.clone(),
-            message,
-        }
+        EvaluationFault { span: self.span.clone(), message }
     }
 }
 

@@ -22,13 +22,7 @@ pub struct SyntaxFault {
 
 impl SyntaxFault {
     pub(crate) fn new(text: &str, span: Range<usize>, message: impl Into<String>) -> Self {
-        Self {
-            line: 1,
-            text: text.to_owned(),
-            span,
-            message: message.into(),
-            help: None,
-        }
+        Self { line: 1, text: text.to_owned(), span, message: message.into(), help: None }
     }
 
     pub(crate) fn help(mut self, help: impl Into<String>) -> Self {

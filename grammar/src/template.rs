@@ -19,10 +19,7 @@ pub struct Template {
 #[derive(Clone, Debug, PartialEq)]
 enum Piece {
     Text(String),
-    Value {
-        text: String,
-        expression: Expression,
-    },
+    Value { text: String, expression: Expression },
 }
 
 /// Why a record does not fill a template.
@@ -46,10 +43,7 @@ impl fmt::Display for FillFault {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Missing { number } => {
-                write!(
-                    formatter,
-                    "the record has no number {number}, which the rule asks for"
-                )
+                write!(formatter, "the record has no number {number}, which the rule asks for")
             }
             Self::Value { text, why } => write!(formatter, "{{{text}}} {why}"),
         }
@@ -104,19 +98,14 @@ impl Template {
     /// A number that is missing, and a value that is not whole or below zero.
     pub fn fill(&self, numbers: &[f64]) -> Result<String, FillFault> {
         if self.numbers() > numbers.len() {
-            return Err(FillFault::Missing {
-                number: numbers.len() + 1,
-            });
+            return Err(FillFault::Missing { number: numbers.len() + 1 });
         }
         let mut line = String::new();
         for piece in &self.pieces {
             match piece {
                 Piece::Text(text) => line.push_str(text),
                 Piece::Value { text, expression } => {
-                    let fault = |why: String| FillFault::Value {
-                        text: text.clone(),
-                        why,
-                    };
+                    let fault = |why: String| FillFault::Value { text: text.clone(), why };
                     let value = expression
                         .evaluate(&|name| numbers.get(place(name)?).copied())
                         .map_err(|lack| fault(format!("has no value: {}", lack.message)))?;
@@ -139,12 +128,9 @@ impl Template {
 fn value(text: &str) -> Result<Piece, String> {
     let text = text.trim();
     let alone = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    let expression = if alone {
-        parse_expression(&format!("n{text}"))
-    } else {
-        parse_expression(text)
-    }
-    .map_err(|fault| format!("{{{text}}}: {}", fault.message))?;
+    let expression =
+        if alone { parse_expression(&format!("n{text}")) } else { parse_expression(text) }
+            .map_err(|fault| format!("{{{text}}}: {}", fault.message))?;
     let names = expression.names();
     if names.is_empty() {
         return Err(format!(
@@ -156,20 +142,13 @@ fn value(text: &str) -> Result<Piece, String> {
             "{{{text}}}: {name} is no number of the record: n is the first behind the slash, n2 the second"
         ));
     }
-    Ok(Piece::Value {
-        text: text.to_owned(),
-        expression,
-    })
+    Ok(Piece::Value { text: text.to_owned(), expression })
 }
 
 /// Which number of the record a name stands for, counted from 0: `n` and `n1` the first.
 fn place(name: &str) -> Option<usize> {
     match name.strip_prefix('n')? {
         "" => Some(0),
-        number => number
-            .parse::<usize>()
-            .ok()?
-            .checked_sub(1)
-            .filter(|place| *place < 100),
+        number => number.parse::<usize>().ok()?.checked_sub(1).filter(|place| *place < 100),
     }
 }

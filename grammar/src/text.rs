@@ -74,10 +74,7 @@ mod tests {
 
     #[test]
     fn escapes_keep_what_they_are_told_to_keep() {
-        assert_eq!(
-            escaped("a\tb\u{1B}[31m\n", &['\t']),
-            "a\tb\\u{1b}[31m\\u{a}"
-        );
+        assert_eq!(escaped("a\tb\u{1B}[31m\n", &['\t']), "a\tb\\u{1b}[31m\\u{a}");
         assert!(matches!(escaped("°", &[]), Cow::Borrowed("°")));
         assert_eq!(as_remark("a\u{2028}M30\u{1B}".to_owned()), "a M30 ");
     }

@@ -17,9 +17,9 @@ fn main() -> io::Result<()> {
             inside = header == "dependencies]";
         }
         let dependency = match header {
-            Some(header) => header
-                .strip_prefix("dependencies.")
-                .and_then(|header| header.strip_suffix(']')),
+            Some(header) => {
+                header.strip_prefix("dependencies.").and_then(|header| header.strip_suffix(']'))
+            }
             None if inside => line.split([' ', '=', '.']).next(),
             None => None,
         };

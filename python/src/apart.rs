@@ -50,10 +50,7 @@ pub fn apart<T: Send>(
 fn broken(panic: &(dyn Any + Send)) -> Diagnostic {
     let text = panic.downcast_ref::<&str>().copied();
     let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
-    let message = format!(
-        "post itself is at fault: {}",
-        text.unwrap_or("no reason given")
-    );
+    let message = format!("post itself is at fault: {}", text.unwrap_or("no reason given"));
     Diagnostic::error("internal", message)
         .help("report it with the file and the machine that it came with")
 }

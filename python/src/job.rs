@@ -60,11 +60,7 @@ impl Job {
         predict: bool,
         most_megabytes: u64,
     ) -> PyResult<()> {
-        let told = ReportTold {
-            verify,
-            predict,
-            most_megabytes,
-        };
+        let told = ReportTold { verify, predict, most_megabytes };
         apart(py, || self.made.report(&page, told))
     }
 

@@ -45,15 +45,7 @@ impl Machine {
         machines: Vec<PathBuf>,
         plugins: Vec<PathBuf>,
     ) -> PyResult<Self> {
-        let told = MachineTold {
-            name,
-            set,
-            mount,
-            turn,
-            tool_length,
-            machines,
-            plugins,
-        };
+        let told = MachineTold { name, set, mount, turn, tool_length, machines, plugins };
         let loaded = apart(py, || LoadedMachine::load(told))?;
         Ok(Self { loaded })
     }
@@ -67,16 +59,8 @@ impl Machine {
     /// Its axes, from the workpiece to the tool.
     fn axes(&self) -> Vec<AxisTold> {
         let axes = self.loaded.kinematics().axes().into_iter();
-        axes.map(|axis| {
-            (
-                axis.name,
-                axis.rotary,
-                axis.carries_part,
-                axis.unit,
-                axis.travel,
-            )
-        })
-        .collect()
+        axes.map(|axis| (axis.name, axis.rotary, axis.carries_part, axis.unit, axis.travel))
+            .collect()
     }
 
     /// The tool has a leading edge.
@@ -124,10 +108,7 @@ impl Machine {
         let kinematics = self.loaded.kinematics();
         let Solutions { width, q, counts } =
             apart(py, || kinematics.inverse(&wanted, near, within_travel))?;
-        let q = shaped(Array3::from_shape_vec(
-            (points, width, kinematics.count()),
-            q,
-        ))?;
+        let q = shaped(Array3::from_shape_vec((points, width, kinematics.count()), q))?;
         Ok((q.into_pyarray(py), Array1::from(counts).into_pyarray(py)))
     }
 
@@ -174,9 +155,8 @@ impl Machine {
     ) -> PyResult<(Bound<'py, PyArray3<f64>>, Rows<'py>)> {
         let (moves, places) = (q0.shape()[0], shares.shape()[0]);
         let (from, to, shares) = (q0.as_slice()?, q1.as_slice()?, shares.as_slice()?);
-        let Deviations { tip, axis } = apart(py, || {
-            Ok(self.loaded.kinematics().deviation([from, to], shares))
-        })?;
+        let Deviations { tip, axis } =
+            apart(py, || Ok(self.loaded.kinematics().deviation([from, to], shares)))?;
         let tip = shaped(Array3::from_shape_vec((moves, places, 3), tip))?;
         let axis = shaped(Array2::from_shape_vec((moves, places), axis))?;
         Ok((tip.into_pyarray(py), axis.into_pyarray(py)))

@@ -56,10 +56,7 @@ impl Study {
     ) -> PyResult<T> {
         apart(py, || {
             // What a job that panicked left undone is done again.
-            let mut jobs = self
-                .jobs
-                .lock()
-                .unwrap_or_else(std::sync::PoisonError::into_inner);
+            let mut jobs = self.jobs.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
             job(&mut jobs)
         })
     }
@@ -75,9 +72,7 @@ impl Study {
         journal: Option<PathBuf>,
     ) -> PyResult<Self> {
         let jobs = apart(py, || StudyJobs::new(lines, &flags, journal.as_deref()))?;
-        Ok(Self {
-            jobs: Mutex::new(jobs),
-        })
+        Ok(Self { jobs: Mutex::new(jobs) })
     }
 
     /// How many jobs there are.
@@ -111,9 +106,8 @@ impl Study {
         told: Option<Py<PyAny>>,
     ) -> PyResult<()> {
         let mut looks = Looks { told, fault: None };
-        let done = self.with(py, |jobs| {
-            jobs.run(threads, &mut |done, refused| looks.look(done, refused))
-        });
+        let done =
+            self.with(py, |jobs| jobs.run(threads, &mut |done, refused| looks.look(done, refused)));
         looks.heard()?;
         done.map(drop)
     }
@@ -178,10 +172,7 @@ pub fn run_part(
     machines: &str,
     threads: Option<NonZeroUsize>,
 ) -> PyResult<Vec<String>> {
-    let mut looks = Looks {
-        told: None,
-        fault: None,
-    };
+    let mut looks = Looks { told: None, fault: None };
     let outcomes = apart(py, || {
         let part = StudyPart::new(lines, &flags, files, machines)?;
         part.run(threads, &mut |done, refused| looks.look(done, refused))

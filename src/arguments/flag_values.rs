@@ -119,10 +119,7 @@ pub fn point(text: &str) -> Result<[f64; 3], String> {
         .map(|number| finite(number.trim()))
         .collect::<Result<Vec<f64>, String>>()?;
     numbers.try_into().map_err(|numbers: Vec<f64>| {
-        format!(
-            "three numbers are needed, X,Y,Z; there are {}",
-            numbers.len()
-        )
+        format!("three numbers are needed, X,Y,Z; there are {}", numbers.len())
     })
 }
 
@@ -149,9 +146,7 @@ pub fn feed(text: &str) -> Result<f64, String> {
     if (least..=most).contains(&feed) {
         Ok(feed)
     } else {
-        Err(format!(
-            "{feed:e} is no feed: the largest is {most:e} mm/min"
-        ))
+        Err(format!("{feed:e} is no feed: the largest is {most:e} mm/min"))
     }
 }
 

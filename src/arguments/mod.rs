@@ -36,13 +36,7 @@ pub struct ReadingArguments {
     pub units: Option<Units>,
 
     /// MSYS of NX: `keep` takes points and axes as written, `apply` takes them into its frame.
-    #[arg(
-        long,
-        value_enum,
-        default_value_t,
-        value_name = "WHAT",
-        help_heading = "Reading"
-    )]
+    #[arg(long, value_enum, default_value_t, value_name = "WHAT", help_heading = "Reading")]
     pub msys: Msys,
 
     /// What to do with words that have no effect: refuse the file for any (`error`), for those that post does not know

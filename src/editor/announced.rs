@@ -28,11 +28,7 @@ pub fn capabilities() -> ServerCapabilities {
         definition_provider: Some(true.into()),
         references_provider: Some(true.into()),
         rename_provider: Some(
-            RenameOptions {
-                prepare_provider: Some(true),
-                ..RenameOptions::default()
-            }
-            .into(),
+            RenameOptions { prepare_provider: Some(true), ..RenameOptions::default() }.into(),
         ),
         code_action_provider: Some(
             CodeActionOptions {

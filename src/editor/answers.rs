@@ -46,10 +46,7 @@ pub fn hover(document: &Document, at: Position, library: &Library, shown: &Shown
             let map = document.path().and_then(|path| document.map.of(&path));
             let column = byte - of.lines.span(&of.text, line).start;
             let (program, map) = (program.as_deref(), map.as_deref());
-            (
-                nc::hover::text(of, line, column, program, map, machine)?,
-                None,
-            )
+            (nc::hover::text(of, line, column, program, map, machine)?, None)
         }
     };
     Some(Hover {
@@ -83,9 +80,7 @@ pub fn definition(document: &Document, at: Position, library: &Library) -> Vec<L
             Some(name) => places(of, &name.name, library, Some(true)),
             None => parent(of, byte, library).into_iter().collect(),
         },
-        Some(Kind::Nc) => came_from(document, of.lines.line_of(byte))
-            .into_iter()
-            .collect(),
+        Some(Kind::Nc) => came_from(document, of.lines.line_of(byte)).into_iter().collect(),
         _ => Vec::new(),
     }
 }
@@ -99,10 +94,7 @@ fn parent(of: &Snapshot, byte: usize, library: &Library) -> Option<Location> {
     }
     let parent = parameters::layers(of, library).into_iter().nth(1)?;
     let path = PathBuf::from(&parent.name);
-    path.is_file().then(|| Location {
-        uri: uri::of(&path),
-        range: LspRange::default(),
-    })
+    path.is_file().then(|| Location { uri: uri::of(&path), range: LspRange::default() })
 }
 
 /// The line of the CL file that a line of a program, counted from 0, came from.
@@ -111,10 +103,7 @@ fn came_from(document: &Document, line: usize) -> Option<Location> {
     let cl_line = map.line(line as u64 + 1)?.cl_line?;
     let line = u32::try_from(cl_line.checked_sub(1)?).ok()?;
     let start = Position::new(line, 0);
-    Some(Location {
-        uri: uri::of(map.cl.as_deref()?),
-        range: LspRange::new(start, start),
-    })
+    Some(Location { uri: uri::of(map.cl.as_deref()?), range: LspRange::new(start, start) })
 }
 
 /// Where the parameter at a place is used, and if asked for defined.
@@ -146,10 +135,7 @@ fn places(of: &Snapshot, name: &str, library: &Library, defines: Option<bool>) -
         let lines = Lines::of(text);
         for one in parameters::occurrences(text) {
             if one.name == name && defines.is_none_or(|defines| defines == one.defines) {
-                places.push(Location {
-                    uri: uri.clone(),
-                    range: lines.range(text, one.span),
-                });
+                places.push(Location { uri: uri.clone(), range: lines.range(text, one.span) });
             }
         }
     }
@@ -204,19 +190,13 @@ pub fn rename(
         let text = &member.source.text;
         let all = parameters::occurrences(text);
         if all.iter().any(|one| one.defines && one.name == new) {
-            return Err(format!(
-                "{} has a parameter {new} already",
-                member.source.name
-            ));
+            return Err(format!("{} has a parameter {new} already", member.source.name));
         }
         let lines = Lines::of(text);
         let edits: Vec<TextEdit> = all
             .into_iter()
             .filter(|one| one.name == name)
-            .map(|one| TextEdit {
-                range: lines.range(text, one.span),
-                new_text: new.to_owned(),
-            })
+            .map(|one| TextEdit { range: lines.range(text, one.span), new_text: new.to_owned() })
             .collect();
         if edits.is_empty() {
             continue;
@@ -243,10 +223,7 @@ pub fn actions(document: &Document, part: LspRange, library: &Library) -> Vec<Co
     let fixes = fixes::fixes(of, &(start..end), library).into_iter();
     fixes
         .map(|fix| {
-            let edit = TextEdit {
-                range: of.lines.range(&of.text, fix.span),
-                new_text: fix.text,
-            };
+            let edit = TextEdit { range: of.lines.range(&of.text, fix.span), new_text: fix.text };
             let changes = [(of.uri.clone(), vec![edit])];
             CodeActionResponse::CodeAction(CodeAction {
                 title: fix.title,

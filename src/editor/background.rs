@@ -106,10 +106,7 @@ impl Slow {
     pub fn begin(&self, version: i32) -> Token {
         let mut known = self.lock();
         known.token.give_up();
-        *known = Known {
-            version: Some(version),
-            ..Known::default()
-        };
+        *known = Known { version: Some(version), ..Known::default() };
         known.token.clone()
     }
 
@@ -185,9 +182,7 @@ pub struct Outlet {
 impl Outlet {
     /// Through `send`.
     pub fn new(send: impl Fn(Message) + Send + Sync + 'static) -> Self {
-        Self {
-            send: Arc::new(send),
-        }
+        Self { send: Arc::new(send) }
     }
 
     /// Sends a message; an editor that is gone hears nothing.
@@ -201,9 +196,6 @@ impl Outlet {
             version: Some(of.version),
             diagnostics,
         };
-        self.send(Notification::new(
-            "textDocument/publishDiagnostics".to_owned(),
-            params,
-        ));
+        self.send(Notification::new("textDocument/publishDiagnostics".to_owned(), params));
     }
 }

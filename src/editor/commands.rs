@@ -53,9 +53,7 @@ pub fn run(name: &str, file: &Path, token: &Token) -> Result<Option<Value>, Stri
         }
     };
     let text = |thread: Option<thread::JoinHandle<String>>| {
-        thread
-            .and_then(|thread| thread.join().ok())
-            .unwrap_or_default()
+        thread.and_then(|thread| thread.join().ok()).unwrap_or_default()
     };
     Ok(Some(json!({
         "command": name,

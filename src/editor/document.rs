@@ -49,15 +49,7 @@ pub struct Document {
 }
 
 /// Languages whose headers end like Heidenhain's programs.
-const OF_C: &[&str] = &[
-    "c",
-    "cpp",
-    "objc",
-    "objcpp",
-    "objective-c",
-    "objective-cpp",
-    "cuda-cpp",
-];
+const OF_C: &[&str] = &["c", "cpp", "objc", "objcpp", "objective-c", "objective-cpp", "cuda-cpp"];
 
 impl Document {
     /// As it is opened.
@@ -68,13 +60,7 @@ impl Document {
         };
         let lines = Lines::of(&text);
         Self {
-            now: Arc::new(Snapshot {
-                uri,
-                name,
-                version,
-                text,
-                lines,
-            }),
+            now: Arc::new(Snapshot { uri, name, version, text, lines }),
             language,
             slow: Arc::default(),
             map: Arc::default(),

@@ -64,9 +64,7 @@ pub fn serve(options: Options) -> Result<(), Failure> {
     let served = server::run(&connection, options);
     // The writing thread ends when nothing can be sent any more.
     drop(connection);
-    transport
-        .end()
-        .map_err(|fault| failed(&fault.to_string()))?;
+    transport.end().map_err(|fault| failed(&fault.to_string()))?;
     served.map_err(|fault| failed(&fault))
 }
 

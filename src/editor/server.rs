@@ -30,22 +30,15 @@ use super::{Options, announced, answers, cl, commands, uri};
 /// # Errors
 /// What comes in is no protocol.
 pub fn run(connection: &Connection, options: Options) -> Result<(), String> {
-    let (id, params) = connection
-        .initialize_start()
-        .map_err(|fault| fault.to_string())?;
+    let (id, params) = connection.initialize_start().map_err(|fault| fault.to_string())?;
     let about = json!({
         "capabilities": announced::capabilities(),
         "serverInfo": { "name": "post", "version": env!("CARGO_PKG_VERSION") },
     });
-    connection
-        .initialize_finish(id, about)
-        .map_err(|fault| fault.to_string())?;
+    connection.initialize_finish(id, about).map_err(|fault| fault.to_string())?;
     let sender = connection.sender.clone();
     let outlet = Outlet::new(move |message| drop(sender.send(message)));
-    let started = Shown {
-        machine: options.machine,
-        tool_length: options.tool_length,
-    };
+    let started = Shown { machine: options.machine, tool_length: options.tool_length };
     let mut server = Server {
         shown: started.clone(),
         started,
@@ -101,10 +94,7 @@ struct Refused {
 
 impl Refused {
     fn params(message: impl ToString) -> Self {
-        Self {
-            code: ErrorCode::InvalidParams,
-            message: message.to_string(),
-        }
+        Self { code: ErrorCode::InvalidParams, message: message.to_string() }
     }
 }
 
@@ -120,15 +110,13 @@ impl Server {
         if let Some(machine) = settings.get("machine") {
             let machine = machine.as_str().map(str::trim);
             let machine = machine.filter(|machine| !machine.is_empty());
-            self.shown.machine = machine
-                .map(str::to_owned)
-                .or_else(|| self.started.machine.clone());
+            self.shown.machine =
+                machine.map(str::to_owned).or_else(|| self.started.machine.clone());
         }
         if let Some(length) = settings.get("toolLength") {
             let length = length.as_f64();
-            self.shown.tool_length = length
-                .filter(|length| (0.0..=1e6).contains(length))
-                .or(self.started.tool_length);
+            self.shown.tool_length =
+                length.filter(|length| (0.0..=1e6).contains(length)).or(self.started.tool_length);
         }
     }
 
@@ -147,8 +135,7 @@ impl Server {
             // It is answered later.
             Ok(None) => {}
             Err(Refused { code, message }) => {
-                self.outlet
-                    .send(Response::new_err(id, code as i32, message));
+                self.outlet.send(Response::new_err(id, code as i32, message));
             }
         }
     }
@@ -171,12 +158,7 @@ impl Server {
             "textDocument/hover" => {
                 let place = params::<HoverParams>(value)?.text_document_position_params;
                 let document = self.document(&place.text_document.uri)?;
-                json!(answers::hover(
-                    document,
-                    place.position,
-                    library,
-                    &self.shown
-                ))
+                json!(answers::hover(document, place.position, library, &self.shown))
             }
             "textDocument/inlayHint" => {
                 let asked: InlayHintParams = params(value)?;
@@ -269,21 +251,16 @@ impl Server {
     ) {
         let token = Token::default();
         self.pending.retain(|pending| !pending.token.is_done());
-        self.pending.push(Pending {
-            id: id.clone(),
-            uri: uri.clone(),
-            token: token.clone(),
-        });
+        self.pending.push(Pending { id: id.clone(), uri: uri.clone(), token: token.clone() });
         let (id, outlet) = (id.clone(), self.outlet.clone());
         thread::spawn(move || {
             let answer = catch_unwind(AssertUnwindSafe(|| work(&token)));
             let result = match answer {
                 Ok(Ok(Some(value))) if !token.is_given_up() => Ok(value),
                 Ok(Err(message)) => Err(refusal(ErrorCode::InternalError, message)),
-                Err(_) => Err(refusal(
-                    ErrorCode::InternalError,
-                    "this is a fault of post".to_owned(),
-                )),
+                Err(_) => {
+                    Err(refusal(ErrorCode::InternalError, "this is a fault of post".to_owned()))
+                }
                 _ if token.is_cancelled() => {
                     Err(refusal(ErrorCode::RequestCanceled, "cancelled".to_owned()))
                 }
@@ -293,10 +270,7 @@ impl Server {
                 )),
             };
             token.done();
-            outlet.send(Response {
-                id,
-                response_result: result,
-            });
+            outlet.send(Response { id, response_result: result });
         });
     }
 
@@ -312,10 +286,7 @@ impl Server {
         let named = arguments.first().and_then(|uri| uri.as_str());
         let uri = Uri(named.unwrap_or_default().to_owned());
         let document = self.document(&uri)?;
-        let Some(path) = document
-            .path()
-            .filter(|_| document.kind() == Some(Kind::Machine))
-        else {
+        let Some(path) = document.path().filter(|_| document.kind() == Some(Kind::Machine)) else {
             return Err(Refused::params(format!("{} is no machine file", uri.0)));
         };
         if fs::read_to_string(&path).ok().as_ref() != Some(&document.now.text) {
@@ -436,11 +407,7 @@ impl Server {
 }
 
 fn refusal(code: ErrorCode, message: String) -> ResponseError {
-    ResponseError {
-        code: code as i32,
-        message,
-        data: None,
-    }
+    ResponseError { code: code as i32, message, data: None }
 }
 
 /// Says in a line how a command ended: an editor need not know what to do with the answer.

@@ -89,8 +89,7 @@ impl Work {
         let Some(read) = cl::findings(&self.of, words, &self.token) else {
             return;
         };
-        self.slow
-            .fast(&self.of, findings::told(&read, &self.of), &self.to);
+        self.slow.fast(&self.of, findings::told(&read, &self.of), &self.to);
         if !self.token.rested() {
             return;
         }
@@ -105,10 +104,8 @@ impl Work {
             Some(Err(faults)) => self.tell(&faults, Keep::Nothing),
             Some(Ok((posted, found))) => {
                 // Lines that cannot be read were told.
-                let more: Vec<Diagnostic> = found
-                    .into_iter()
-                    .filter(|finding| !read.contains(finding))
-                    .collect();
+                let more: Vec<Diagnostic> =
+                    found.into_iter().filter(|finding| !read.contains(finding)).collect();
                 self.tell(&more, Keep::Posted(posted));
             }
         }

@@ -70,11 +70,7 @@ impl Transport {
     /// # Errors
     /// Reading or writing failed.
     pub fn end(self) -> io::Result<()> {
-        let read = self
-            .fault
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .take();
+        let read = self.fault.lock().unwrap_or_else(PoisonError::into_inner).take();
         if let Some(error) = read {
             return Err(error);
         }
@@ -96,10 +92,7 @@ fn read(input: &mut impl BufRead) -> io::Result<Option<Message>> {
     let mut length = None;
     loop {
         let mut line = Vec::new();
-        let count = input
-            .by_ref()
-            .take(MOST_HEADER)
-            .read_until(b'\n', &mut line)?;
+        let count = input.by_ref().take(MOST_HEADER).read_until(b'\n', &mut line)?;
         if count == 0 {
             return Ok(None);
         }

@@ -72,10 +72,7 @@ impl AtomicFile {
     }
 
     fn new(file: Temporary, target: Target) -> Self {
-        Self {
-            file: BufWriter::with_capacity(1 << 16, file),
-            target,
-        }
+        Self { file: BufWriter::with_capacity(1 << 16, file), target }
     }
 
     /// It goes to standard output, where nothing else may stand then.
@@ -119,9 +116,7 @@ impl AtomicFile {
         let mut names = Vec::new();
         for Self { file, target } in texts {
             let fault = |error| FileFault::write_named(&target.name, error);
-            let file = file
-                .into_inner()
-                .map_err(|error| fault(error.into_error()))?;
+            let file = file.into_inner().map_err(|error| fault(error.into_error()))?;
             match target.place {
                 Place::Standard => streams.push((file, None, target.name)),
                 Place::Stream(path) => streams.push((file, Some(path), target.name)),
@@ -167,10 +162,7 @@ impl Output for NullSink {
 
 /// Files take their names.
 fn name_all(mut files: Vec<(Temporary, PathBuf)>, names: &[String]) -> Result<(), FileFault> {
-    let mut folders: Vec<PathBuf> = files
-        .iter()
-        .map(|(_, path)| folder(path).to_owned())
-        .collect();
+    let mut folders: Vec<PathBuf> = files.iter().map(|(_, path)| folder(path).to_owned()).collect();
     folders.sort();
     folders.dedup();
     // Of two runs that write the same files, one has both. Not every system can open or lock a folder.
@@ -190,20 +182,11 @@ fn name_all(mut files: Vec<(Temporary, PathBuf)>, names: &[String]) -> Result<()
         // A new name is safe once its folder is on the disk.
         let _ = folder.sync_all();
     }
-    named.map_err(
-        |Unnamed {
-             index,
-             error,
-             stuck,
-         }| FileFault::Named {
-            name: names[index].clone(),
-            error,
-            stuck: stuck
-                .into_iter()
-                .map(|(index, old)| (names[index].clone(), old))
-                .collect(),
-        },
-    )
+    named.map_err(|Unnamed { index, error, stuck }| FileFault::Named {
+        name: names[index].clone(),
+        error,
+        stuck: stuck.into_iter().map(|(index, old)| (names[index].clone(), old)).collect(),
+    })
 }
 
 /// Waits until no other run gives names in a folder, but not for ever: whoever else holds it may have other reasons.

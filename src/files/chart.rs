@@ -68,12 +68,7 @@ pub enum Marker {
 }
 
 const fn look(grey: &'static str, width: f64, dash: &'static str, marker: Option<Marker>) -> Look {
-    Look {
-        grey,
-        width,
-        dash,
-        marker,
-    }
+    Look { grey, width, dash, marker }
 }
 
 /// Looks that can be told apart, the plainest first.
@@ -102,17 +97,11 @@ pub const DASHED: Look = look("#000000", 1.4, "9 4", None);
 
 impl Series {
     pub fn line(name: impl Into<String>, points: Vec<[f64; 2]>, look: Look) -> Self {
-        Self {
-            name: name.into(),
-            draw: Draw::Line(points, look),
-        }
+        Self { name: name.into(), draw: Draw::Line(points, look) }
     }
 
     pub fn dots(name: impl Into<String>, points: Vec<[f64; 2]>, marker: Marker) -> Self {
-        Self {
-            name: name.into(),
-            draw: Draw::Dots(points, marker),
-        }
+        Self { name: name.into(), draw: Draw::Dots(points, marker) }
     }
 
     /// All corners that must be seen.
@@ -151,17 +140,10 @@ impl Chart {
         let corners: Vec<[f64; 2]> = self.series.iter().flat_map(Series::corners).collect();
         let x = Scale::new(corners.iter().map(|corner| corner[0]), 10.0, false);
         let ups = corners.iter().map(|corner| corner[1]);
-        let y = if self.logarithmic {
-            Scale::decades(ups)
-        } else {
-            Scale::new(ups, 8.0, true)
-        };
+        let y = if self.logarithmic { Scale::decades(ups) } else { Scale::new(ups, 8.0, true) };
         let mut svg = svg::open(WIDTH, self.height());
         titles(&mut svg, &self.title, &self.note);
-        let area = Area {
-            top: TOP,
-            height: HEIGHT,
-        };
+        let area = Area { top: TOP, height: HEIGHT };
         area.plot(&mut svg, [&x, &y], &self.series, true);
         let middle = LEFT + width() / 2.0;
         label(&mut svg, [middle, TOP + HEIGHT + 38.0], "middle", &self.x);

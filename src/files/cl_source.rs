@@ -29,10 +29,7 @@ pub struct HeldText {
 impl HeldText {
     /// From its start.
     pub fn open(&self) -> impl Read + use<> {
-        HeldReader {
-            text: self.clone(),
-            at: 0,
-        }
+        HeldReader { text: self.clone(), at: 0 }
     }
 }
 
@@ -55,12 +52,8 @@ impl Read for HeldReader {
 impl ClSource {
     /// Of an argument; what is no file is read to its end if `again` says that it will be read more than once.
     pub fn new(argument: &PathArg, again: bool) -> Result<Self, FileFault> {
-        let mut source = Self {
-            argument: argument.clone(),
-            copy: None,
-            held: None,
-            name: String::new(),
-        };
+        let mut source =
+            Self { argument: argument.clone(), copy: None, held: None, name: String::new() };
         if !again {
             return Ok(source);
         }
@@ -97,15 +90,8 @@ impl ClSource {
         };
         let mut copy = BufWriter::new(Temporary::private(&folder).map_err(fault)?);
         let made = make(&mut |text| copy.write_all(text).map_err(fault))?;
-        let copy = copy
-            .into_inner()
-            .map_err(|error| fault(error.into_error()))?;
-        let source = Self {
-            argument: PathArg::Standard,
-            copy: Some(copy),
-            held: None,
-            name,
-        };
+        let copy = copy.into_inner().map_err(|error| fault(error.into_error()))?;
+        let source = Self { argument: PathArg::Standard, copy: Some(copy), held: None, name };
         Ok((source, made))
     }
 
@@ -140,11 +126,7 @@ impl ClSource {
         };
         let name = self.name.clone();
         match copy.reopen() {
-            Ok(bytes) => Ok(ClInput {
-                name,
-                bytes: Box::new(bytes),
-                length: None,
-            }),
+            Ok(bytes) => Ok(ClInput { name, bytes: Box::new(bytes), length: None }),
             Err(error) => Err(FileFault::Read { name, error }),
         }
     }

@@ -102,10 +102,7 @@ pub enum FileFault {
 impl FileFault {
     /// What could not be read at `path`.
     pub fn read(path: &Path, error: io::Error) -> Self {
-        Self::Read {
-            name: path.display().to_string(),
-            error,
-        }
+        Self::Read { name: path.display().to_string(), error }
     }
 
     /// What could not be written to `target`: most often its folder is missing.
@@ -116,18 +113,12 @@ impl FileFault {
         if folder(path).is_dir() {
             return Self::write_named(&named.display().to_string(), error);
         }
-        Self::NoFolder {
-            path: named.to_owned(),
-            folder: folder(named).to_owned(),
-        }
+        Self::NoFolder { path: named.to_owned(), folder: folder(named).to_owned() }
     }
 
     /// What could not be written at the place called `name`, as the system says it.
     pub fn write_named(name: &str, error: io::Error) -> Self {
-        Self::Write {
-            name: name.to_owned(),
-            error,
-        }
+        Self::Write { name: name.to_owned(), error }
     }
 
     /// The stable name for programs to read.
@@ -168,19 +159,12 @@ impl fmt::Display for FileFault {
             Self::ReadFolder(path) => {
                 write!(formatter, "{} is a folder, not a CL file", path.display())
             }
-            Self::NoFolder { path, folder } => write!(
-                formatter,
-                "{}: there is no folder {}",
-                path.display(),
-                folder.display()
-            ),
+            Self::NoFolder { path, folder } => {
+                write!(formatter, "{}: there is no folder {}", path.display(), folder.display())
+            }
             Self::WriteFolder(path) => write!(formatter, "{} is a folder", path.display()),
             Self::WriteDisk(path) => write!(formatter, "{} is a whole disk", path.display()),
-            Self::NoWaiting {
-                name,
-                folder,
-                error,
-            } => write!(
+            Self::NoWaiting { name, folder, error } => write!(
                 formatter,
                 "{name} gets a text only once it is whole, and until then it cannot be kept in {}: {error}",
                 folder.display()
@@ -193,22 +177,14 @@ impl fmt::Display for FileFault {
                 write!(formatter, ", which {name} is")
             }
             Self::PrintedOverRead(read) => {
-                write!(
-                    formatter,
-                    "standard output goes to {read}, which the run reads"
-                )
+                write!(formatter, "standard output goes to {read}, which the run reads")
             }
             Self::OverAppended { role, name } => write!(
                 formatter,
                 "the {} would overwrite {name}, which standard output is added to",
                 role.what
             ),
-            Self::OverWritten {
-                role,
-                name,
-                other,
-                other_name,
-            } => {
+            Self::OverWritten { role, name, other, other_name } => {
                 if name == "standard output" && name == other_name {
                     let (other, this) = (other.what, role.what);
                     return write!(formatter, "{other} and {this} cannot both go to {name}");

@@ -45,10 +45,8 @@ pub use temporary::{delete_on_signals, delete_temporary_files};
 
 /// Writes texts whole: all of them, or none. Standard output is taken if one of them went there.
 pub fn write(texts: &[(Role, &PathArg, &str)]) -> Result<bool, FileFault> {
-    let targets: Vec<(Role, &PathArg)> = texts
-        .iter()
-        .map(|(role, target, _)| (*role, *target))
-        .collect();
+    let targets: Vec<(Role, &PathArg)> =
+        texts.iter().map(|(role, target, _)| (*role, *target)).collect();
     let mut files = AtomicFile::create(&targets)?;
     for (file, (_, _, text)) in files.iter_mut().zip(texts) {
         file.write_bytes(text.as_bytes())?;
@@ -70,9 +68,8 @@ pub fn write_bytes(role: Role, target: &PathArg, bytes: &[u8]) -> Result<(), Fil
 /// Refuses targets that are files which the run reads, or one another, or that cannot be written to.
 pub fn check_targets(targets: &[(Role, &PathArg)]) -> Result<(), FileFault> {
     let targets = targets.iter();
-    let targets: Vec<Target> = targets
-        .map(|(role, named)| Target::find(*role, named))
-        .collect::<Result<_, _>>()?;
+    let targets: Vec<Target> =
+        targets.map(|(role, named)| Target::find(*role, named)).collect::<Result<_, _>>()?;
     refuse_losses(&targets.iter().collect::<Vec<_>>())
 }
 

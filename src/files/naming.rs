@@ -39,17 +39,10 @@ pub fn name_all(texts: &mut [(Temporary, PathBuf)]) -> Result<(), Unnamed> {
             .and_then(|()| if last { Ok(None) } else { second_name(target) })
             .and_then(|old| text.persist(&mut signals, target).map(|()| old));
         match done {
-            Ok(old) => named.push(Named {
-                target: target.clone(),
-                old,
-            }),
+            Ok(old) => named.push(Named { target: target.clone(), old }),
             Err(error) => {
                 let stuck = put_back(named);
-                return Err(Unnamed {
-                    index,
-                    error,
-                    stuck,
-                });
+                return Err(Unnamed { index, error, stuck });
             }
         }
     }

@@ -33,11 +33,7 @@ impl<'a> OwnFolder<'a> {
         if !names.contains(&mark.0) {
             names.push(mark.0);
         }
-        let own = Self {
-            folder,
-            role,
-            names,
-        };
+        let own = Self { folder, role, names };
         own.refuse_strangers(mark)?;
         Ok(own)
     }
@@ -71,8 +67,7 @@ impl<'a> OwnFolder<'a> {
     }
 
     fn path(&self, name: &str) -> PathArg {
-        self.folder
-            .map(|folder: &Path| -> PathBuf { folder.join(name) })
+        self.folder.map(|folder: &Path| -> PathBuf { folder.join(name) })
     }
 
     /// Puts files to `texts`, which take their names together; the folder is made if it is not there.

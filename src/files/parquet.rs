@@ -99,10 +99,7 @@ pub fn bytes(rows: usize, columns: &[Column<'_>]) -> Vec<u8> {
         let chunks = columns.iter().map(|column| {
             let page = column.values.page(group.clone());
             let head = page_header(page.len(), group.len());
-            let chunk = Chunk {
-                offset: file.len(),
-                bytes: head.len() + page.len(),
-            };
+            let chunk = Chunk { offset: file.len(), bytes: head.len() + page.len() };
             file.extend(head);
             file.extend(page);
             chunk
@@ -298,19 +295,14 @@ mod tests {
             told.text(4, "ab");
             told.list(10, Thrift::INT32, 20);
         });
-        let wanted = [
-            0x15, 0x01, 0x26, 0xD8, 0x04, 0x18, 2, b'a', b'b', 0x69, 0xF5, 20, 0,
-        ];
+        let wanted = [0x15, 0x01, 0x26, 0xD8, 0x04, 0x18, 2, b'a', b'b', 0x69, 0xF5, 20, 0];
         assert_eq!(told.bytes, wanted);
     }
 
     #[test]
     fn a_file_is_marked_at_both_ends_and_tells_where_its_footer_is() {
         let rows: Vec<Option<f64>> = (0..GROUP + 1).map(|row| Some(row as f64)).collect();
-        let column = Column {
-            name: "x",
-            values: Values::Numbers(&rows),
-        };
+        let column = Column { name: "x", values: Values::Numbers(&rows) };
         let file = bytes(rows.len(), &[column]);
         assert!(file.starts_with(MAGIC) && file.ends_with(MAGIC));
         let end = file.len() - 8;

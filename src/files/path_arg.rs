@@ -50,10 +50,9 @@ impl PathArg {
     pub fn map(&self, change: impl Fn(&Path) -> PathBuf) -> Self {
         match self {
             Self::Standard => Self::Standard,
-            Self::Path { named, absolute } => Self::Path {
-                named: change(named),
-                absolute: change(absolute),
-            },
+            Self::Path { named, absolute } => {
+                Self::Path { named: change(named), absolute: change(absolute) }
+            }
         }
     }
 }

@@ -44,13 +44,9 @@ impl PlanView {
         let long = |axis: usize| (ends[axis][1] - ends[axis][0]).max(1e-3);
         let planes = [[0, 1], [0, 2], [1, 2]];
         let area = |[across, up]: [usize; 2]| long(across) * long(up);
-        let plane = planes.into_iter().fold([0, 1], |best, plane| {
-            if area(plane) > 1.5 * area(best) {
-                plane
-            } else {
-                best
-            }
-        });
+        let plane = planes
+            .into_iter()
+            .fold([0, 1], |best, plane| if area(plane) > 1.5 * area(best) { plane } else { best });
         let [across, up] = plane;
         let inner = size.map(|size| size - 2.0 * room);
         Self {
@@ -128,9 +124,6 @@ impl PlanView {
 
     /// The middle of the rectangle, px.
     fn centre(&self) -> [f64; 2] {
-        [
-            self.corner[0] + self.size[0] / 2.0,
-            self.corner[1] + self.size[1] / 2.0,
-        ]
+        [self.corner[0] + self.size[0] / 2.0, self.corner[1] + self.size[1] / 2.0]
     }
 }

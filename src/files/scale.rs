@@ -28,44 +28,27 @@ impl Scale {
         let step = step((high - low) / count);
         if up {
             // A curve does not run along the frame.
-            low = if low < 0.0 {
-                libm::floor(low / step - 0.1) * step
-            } else {
-                0.0
-            };
+            low = if low < 0.0 { libm::floor(low / step - 0.1) * step } else { 0.0 };
             high = libm::ceil(high / step + 0.1) * step;
         }
-        Self {
-            low,
-            high,
-            step: Some(step),
-        }
+        Self { low, high, step: Some(step) }
     }
 
     /// From one value to a larger one, neither of which need be a tick, about `count` ticks.
     pub fn over([low, high]: [f64; 2], count: f64) -> Self {
-        Self {
-            low,
-            high,
-            step: Some(step((high - low) / count)),
-        }
+        Self { low, high, step: Some(step((high - low) / count)) }
     }
 
     /// A logarithmic axis from a power of ten to another, at most six of them.
     pub fn decades(values: impl Iterator<Item = f64>) -> Self {
         let (least, most) = values
             .filter(|value| value.is_finite() && *value > 0.0)
-            .fold(
-                (f64::INFINITY, f64::MIN_POSITIVE),
-                |(least, most), value| (least.min(value), most.max(value)),
-            );
+            .fold((f64::INFINITY, f64::MIN_POSITIVE), |(least, most), value| {
+                (least.min(value), most.max(value))
+            });
         let high = libm::ceil(libm::log10(most));
         let low = libm::floor(libm::log10(least)).clamp(high - 6.0, high - 1.0);
-        Self {
-            low: libm::exp10(low),
-            high: libm::exp10(high),
-            step: None,
-        }
+        Self { low: libm::exp10(low), high: libm::exp10(high), step: None }
     }
 
     /// Where a value stands: 0 at the low end, 1 at the high one.
@@ -118,10 +101,7 @@ fn raised(number: usize) -> String {
 pub fn step(least: f64) -> f64 {
     let power = libm::pow(10.0, libm::floor(libm::log10(least)));
     let steps = [1.0, 2.0, 5.0, 10.0].map(|step| step * power);
-    steps
-        .into_iter()
-        .find(|step| *step >= least * (1.0 - 1e-9))
-        .unwrap_or(10.0 * power)
+    steps.into_iter().find(|step| *step >= least * (1.0 - 1e-9)).unwrap_or(10.0 * power)
 }
 
 #[cfg(test)]

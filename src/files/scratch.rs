@@ -20,10 +20,7 @@ impl Scratch {
     /// There is no place for it.
     pub fn new(name: &'static str) -> Result<Self, FileFault> {
         let text = Temporary::private(&std::env::temp_dir()).map_err(|error| fault(name, error))?;
-        Ok(Self {
-            name,
-            text: BufWriter::new(text),
-        })
+        Ok(Self { name, text: BufWriter::new(text) })
     }
 
     /// All that was written, to be read from its start.

@@ -60,7 +60,5 @@ pub fn is_terminal() -> bool {
 
 /// The path is another name of it. Once it is kept apart, the system takes such a name for what libraries print to.
 pub fn is_named(path: &Path) -> bool {
-    ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"]
-        .iter()
-        .any(|name| path == Path::new(name))
+    ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|name| path == Path::new(name))
 }

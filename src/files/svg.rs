@@ -11,20 +11,14 @@ pub fn open(width: f64, height: f64) -> String {
         svg,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" font-family=\"sans-serif\" font-size=\"13\">"
     );
-    let _ = writeln!(
-        svg,
-        "<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>"
-    );
+    let _ = writeln!(svg, "<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>");
     svg
 }
 
 /// A line of text; the anchor is `start`, `middle` or `end`.
 pub fn label(svg: &mut String, [x, y]: [f64; 2], anchor: &str, text: &str) {
     let text = safe(text);
-    let _ = writeln!(
-        svg,
-        "<text x=\"{x:.2}\" y=\"{y:.2}\" text-anchor=\"{anchor}\">{text}</text>"
-    );
+    let _ = writeln!(svg, "<text x=\"{x:.2}\" y=\"{y:.2}\" text-anchor=\"{anchor}\">{text}</text>");
 }
 
 /// A line of text that runs upwards about its middle.

@@ -18,40 +18,22 @@ pub struct Role {
 
 impl Role {
     /// An NC program.
-    pub const PROGRAM: Self = Self {
-        what: "program",
-        remedy: "name another file with -o",
-    };
+    pub const PROGRAM: Self = Self { what: "program", remedy: "name another file with -o" };
 
     /// A CL file that is written.
-    pub const CL: Self = Self {
-        what: "CL file",
-        remedy: "name another file with --cl",
-    };
+    pub const CL: Self = Self { what: "CL file", remedy: "name another file with --cl" };
 
     /// What was found, as JSON beside an NC program.
-    pub const SUMMARY: Self = Self {
-        what: "summary",
-        remedy: "name another file with --summary",
-    };
+    pub const SUMMARY: Self = Self { what: "summary", remedy: "name another file with --summary" };
 
     /// What a run came to, as a page to look at.
-    pub const REPORT: Self = Self {
-        what: "report",
-        remedy: "name another file with --report",
-    };
+    pub const REPORT: Self = Self { what: "report", remedy: "name another file with --report" };
 
     /// What is printed, as JSON.
-    pub const JSON: Self = Self {
-        what: "JSON",
-        remedy: "name another file with --json",
-    };
+    pub const JSON: Self = Self { what: "JSON", remedy: "name another file with --json" };
 
     /// A picture, as SVG.
-    pub const PICTURE: Self = Self {
-        what: "picture",
-        remedy: "name another file with --svg",
-    };
+    pub const PICTURE: Self = Self { what: "picture", remedy: "name another file with --svg" };
 }
 
 /// What a text becomes at the end.
@@ -87,10 +69,9 @@ impl Target {
         let place = place(role, named)?;
         Ok(Self {
             role,
-            name: named.path().map_or_else(
-                || "standard output".to_owned(),
-                |path| path.display().to_string(),
-            ),
+            name: named
+                .path()
+                .map_or_else(|| "standard output".to_owned(), |path| path.display().to_string()),
             replaces: matches!(&place, Place::File(path) if path.exists()),
             place,
         })
@@ -115,11 +96,7 @@ pub fn refuse_losses(targets: &[&Target]) -> Result<(), FileFault> {
     for (index, target) in targets.iter().enumerate() {
         let id = target.id();
         if let Some(read) = id.as_ref().and_then(read_files::what) {
-            return Err(FileFault::OverRead {
-                role: target.role,
-                name: target.name.clone(),
-                read,
-            });
+            return Err(FileFault::OverRead { role: target.role, name: target.name.clone(), read });
         }
         if target.place == Place::Stream(PathBuf::from("/dev/null")) {
             // Nothing is lost where nothing is kept.
@@ -155,10 +132,7 @@ fn place(role: Role, named: &PathArg) -> Result<Place, FileFault> {
             // `-o FILE >> FILE`: replaced or added to? A program behind another one would be run as its end.
             let by_name = path.starts_with("/dev") || path.starts_with("/proc");
             if found.is_file() && found.len() > 0 && !by_name {
-                return Err(FileFault::OverAppended {
-                    role,
-                    name: shown.display().to_string(),
-                });
+                return Err(FileFault::OverAppended { role, name: shown.display().to_string() });
             }
             Ok(Place::Standard)
         }

@@ -143,12 +143,8 @@ pub fn delete_on_signals() {
     let _ = flag::register(SIGXFSZ, Arc::default());
     // A command that shall outlast its terminal (`nohup`) stays deaf to what it was told to ignore.
     let ignored = ignored();
-    let ending = [
-        SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU,
-    ];
-    let heard = ending
-        .iter()
-        .filter(|signal| ignored >> (**signal - 1) & 1 == 0);
+    let ending = [SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU];
+    let heard = ending.iter().filter(|signal| ignored >> (**signal - 1) & 1 == 0);
     // Without a thread for it a signal ends the command as ever.
     let Ok(mut signals) = Signals::new(heard) else {
         return;
@@ -159,9 +155,7 @@ pub fn delete_on_signals() {
             post_host::leave_at_once(128 + signal as u8);
         }
     };
-    let _ = std::thread::Builder::new()
-        .name("signals".to_owned())
-        .spawn(waiting);
+    let _ = std::thread::Builder::new().name("signals".to_owned()).spawn(waiting);
 }
 
 /// The signals that whoever started the command has told it to ignore, a bit each from that of signal 1 up; none where the
@@ -170,8 +164,7 @@ pub fn delete_on_signals() {
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
-        .unwrap_or(0)
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
 /// Other systems end the command without asking; what it leaves lies in the folder of the target.

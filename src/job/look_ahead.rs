@@ -29,11 +29,7 @@ pub fn look_ahead(
     let mut ahead = LookedAhead::default();
     let planes = super::ahead(arguments, source, &plain, &dialect)?;
     let input = source.open()?;
-    let job = Job {
-        ahead: planes,
-        lines,
-        ..super::posting(arguments, &input.name)
-    };
+    let job = Job { ahead: planes, lines, ..super::posting(arguments, &input.name) };
     let mut sink = NullSink;
     let mut post = Post::new(&plain, job, &mut dialect, &mut model, &mut sink)
         .map_err(|finding: Box<Diagnostic>| *finding)?;

@@ -21,10 +21,7 @@ pub fn load(name: &str, named: &[PathBuf], settings: &[Setting]) -> Result<Machi
     let source = source(name, named, &read)?;
     let machine = examine(source, named, settings, &read)?.machine?;
     let heads = machine.heads.iter().map(|head| &head.machine);
-    for solid in std::iter::once(&machine)
-        .chain(heads)
-        .flat_map(|machine| &machine.solids)
-    {
+    for solid in std::iter::once(&machine).chain(heads).flat_map(|machine| &machine.solids) {
         read_files::note("the solid", &solid.file);
     }
     Ok(machine)
@@ -53,9 +50,7 @@ pub fn examine(
     read: ReadText<'_>,
 ) -> Result<Reading, Failure> {
     let near = near(&source.name, named)?;
-    Ok(description::examine(source, settings, &mut |parent| {
-        extended(parent, &near, read)
-    }))
+    Ok(description::examine(source, settings, &mut |parent| extended(parent, &near, read)))
 }
 
 /// The text of the machine that the file `child` extends by the name `parent`.
@@ -140,9 +135,7 @@ fn is_file(name: &str) -> bool {
 /// The regular file `name`: as seen from here, or, as a file that is extended is named, from the one that extends it.
 fn located(name: &str, folders: &[PathBuf]) -> Option<PathBuf> {
     let beside = folders.iter().map(|folder| folder.join(name));
-    std::iter::once(name.into())
-        .chain(beside)
-        .find(|path| path.is_file())
+    std::iter::once(name.into()).chain(beside).find(|path| path.is_file())
 }
 
 fn find(name: &str, folders: &[PathBuf]) -> Result<Source, Missing> {
@@ -160,10 +153,7 @@ fn find_reading(name: &str, folders: &[PathBuf], read: ReadText<'_>) -> Result<S
         }
     }
     if let Some((name, text)) = BUILT_IN.iter().find(|(known, _)| *known == name) {
-        return Ok(Source {
-            name: format!("{name}.toml (built in)"),
-            text: (*text).to_owned(),
-        });
+        return Ok(Source { name: format!("{name}.toml (built in)"), text: (*text).to_owned() });
     }
     let known = names(folders);
     let meant = nearest(name, known.iter().map(|(name, _)| name.as_str()));
@@ -196,10 +186,7 @@ fn check_extended(name: &str, folders: &[PathBuf]) -> Result<(), String> {
 
 /// Reads a machine file from the disk.
 pub fn read(path: &Path) -> Result<Source, Missing> {
-    let fault = |why: String| Missing {
-        message: format!("{}: {why}", path.display()),
-        help: None,
-    };
+    let fault = |why: String| Missing { message: format!("{}: {why}", path.display()), help: None };
     let bytes = read_bounded(path).map_err(|error| fault(error.to_string()))?;
     if bytes.len() > MOST_BYTES {
         let why = format!("longer than {MOST_BYTES} bytes, which no machine file is");
@@ -208,10 +195,7 @@ pub fn read(path: &Path) -> Result<Source, Missing> {
     read_files::note("the machine file", path);
     let text = String::from_utf8(bytes)
         .map_err(|_| fault("a machine file is UTF-8 text, this is not".to_owned()))?;
-    Ok(Source {
-        name: path.display().to_string(),
-        text,
-    })
+    Ok(Source { name: path.display().to_string(), text })
 }
 
 /// The bytes of a file, up to one more than a machine file may have.
@@ -239,11 +223,7 @@ pub struct Listed {
 pub fn list(named: &[PathBuf]) -> Result<Vec<Listed>, Failure> {
     let listed = names(&folders(named)?).into_iter().map(|(name, path)| {
         let machine = load(&name, named, &[]);
-        Listed {
-            name,
-            path,
-            machine,
-        }
+        Listed { name, path, machine }
     });
     Ok(listed.collect())
 }

@@ -20,9 +20,7 @@ pub fn schema() -> Value {
 /// The table of a plugin's options.
 fn options(plugin: &Linked) -> Value {
     let keys = plugin.options().iter();
-    let keys: Map<String, Value> = keys
-        .map(|spec| (spec.key.to_owned(), option(spec)))
-        .collect();
+    let keys: Map<String, Value> = keys.map(|spec| (spec.key.to_owned(), option(spec))).collect();
     json!({
         "description": format!("The options of `{}`.", plugin.name()),
         "type": "object",

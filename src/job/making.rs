@@ -165,12 +165,7 @@ impl<'a> Ready<'a> {
             true => Some(compensate::compensate(&program, ahead, source)?),
             false => None,
         };
-        Ok(Self {
-            program,
-            plan_rounds: rounds,
-            unplanned,
-            compensation,
-        })
+        Ok(Self { program, plan_rounds: rounds, unplanned, compensation })
     }
 
     /// What the user should know of the plan.
@@ -211,10 +206,7 @@ impl<'a> Ready<'a> {
         };
         let program = OneProgram { machine, ..program };
         let mut moved = Moved::new(moves);
-        let beside = Beside {
-            shift: Some(&mut moved),
-            ..beside
-        };
+        let beside = Beside { shift: Some(&mut moved), ..beside };
         program.write(ahead, source, file, beside)
     }
 }

@@ -82,18 +82,10 @@ pub fn try_opening(machine: &Machine, finder: &Finder, length: f64) -> Result<()
         (Ok((dialect, _)), Ok((model, _))) => (dialect, model),
         (dialect, model) => {
             let faults = [dialect.err(), model.err()];
-            return Err(faults
-                .into_iter()
-                .flatten()
-                .flatten()
-                .collect::<Vec<_>>()
-                .into());
+            return Err(faults.into_iter().flatten().flatten().collect::<Vec<_>>().into());
         }
     };
-    let job = Job {
-        tool_length: Some(length),
-        ..Job::default()
-    };
+    let job = Job { tool_length: Some(length), ..Job::default() };
     match Post::new(machine, job, &mut dialect, &mut model, &mut NullSink) {
         Ok(_) => Ok(()),
         Err(finding) => Err((*finding).into()),
@@ -142,11 +134,7 @@ pub fn ahead(
             // The program is not made then, and says why.
             Err(ReadError::Syntax(_)) => {}
             Err(ReadError::Io(error)) => {
-                return Err(FileFault::Read {
-                    name: input.name,
-                    error,
-                }
-                .into());
+                return Err(FileFault::Read { name: input.name, error }.into());
             }
         }
     }
@@ -173,10 +161,7 @@ pub fn read(input: ClInput, post: &mut Post<'_>) -> Result<(), FileFault> {
             }
             Err(ReadError::Syntax(fault)) => post.unreadable(&fault),
             Err(ReadError::Io(error)) => {
-                return Err(FileFault::Read {
-                    name: input.name,
-                    error,
-                });
+                return Err(FileFault::Read { name: input.name, error });
             }
         }
         progress.record(|| reader.bytes_read());

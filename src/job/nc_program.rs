@@ -38,11 +38,8 @@ pub struct NcControl {
 impl NcControl {
     /// As the flags say.
     pub fn new(arguments: &ProgramArguments) -> Result<Self, Failure> {
-        let machine = machine_files::load(
-            &arguments.machine,
-            &arguments.machines,
-            &arguments.settings(),
-        )?;
+        let machine =
+            machine_files::load(&arguments.machine, &arguments.machines, &arguments.settings())?;
         let finder = plugin_finder::finder(&arguments.plugins)?;
         unused_options::warn(&machine, &finder);
         let mut offsets = match &arguments.offsets {
@@ -56,22 +53,13 @@ impl NcControl {
             fed_rapids: fed_rapids(&machine, spoken.rapids_pass),
             machine,
             offsets,
-            limits: Limits {
-                blocks: arguments.most_blocks,
-                ..Limits::default()
-            },
+            limits: Limits { blocks: arguments.most_blocks, ..Limits::default() },
         })
     }
 
     /// The program in `file`, which messages call `name`, from where it stands.
     pub fn run(&self, name: &str, file: File) -> Result<Interpreter<File>, Failure> {
-        let Self {
-            machine,
-            lexicon,
-            offsets,
-            limits,
-            ..
-        } = self;
+        let Self { machine, lexicon, offsets, limits, .. } = self;
         Interpreter::new(machine, lexicon, offsets, *limits, name, file)
             .map_err(|fault| Failure::from(*fault))
     }
@@ -117,9 +105,7 @@ fn fed_rapids(machine: &Machine, passes: bool) -> Option<bool> {
 /// What the dialect of a machine tells.
 pub fn spoken(finder: &Finder, machine: &Machine) -> Result<Spoken, Failure> {
     let (mut dialect, _) = plugin_finder::dialect(finder, machine, "READ", None)?;
-    let words = dialect
-        .vocabulary()
-        .map_err(|fault| Diagnostic::error("plugin", fault))?;
+    let words = dialect.vocabulary().map_err(|fault| Diagnostic::error("plugin", fault))?;
     if words.is_empty() {
         let message = format!(
             "dialect {} tells no vocabulary, so that its programs cannot be read back",
@@ -141,10 +127,7 @@ pub fn offsets(source: &PathArg, machine: &Machine) -> Result<Offsets, Failure> 
     let (name, file) = open(source)?;
     let mut text = String::new();
     let read = file.take(MOST_OFFSETS + 1).read_to_string(&mut text);
-    read.map_err(|error| FileFault::Read {
-        name: name.clone(),
-        error,
-    })?;
+    read.map_err(|error| FileFault::Read { name: name.clone(), error })?;
     Ok(Offsets::parse(&text, &name, machine)?)
 }
 
@@ -155,9 +138,7 @@ pub fn not_both_standard(
 ) -> Result<(), Box<Diagnostic>> {
     if program.path().is_none() && against.is_some_and(|file| file.path().is_none()) {
         let message = "program and CL file cannot both be standard input";
-        return Err(Diagnostic::error("input", message)
-            .help("name one of them")
-            .boxed());
+        return Err(Diagnostic::error("input", message).help("name one of them").boxed());
     }
     Ok(())
 }
@@ -198,10 +179,7 @@ pub fn again(name: &str, file: &File) -> Result<File, FileFault> {
         again.seek(SeekFrom::Start(0))?;
         Ok(again)
     };
-    again().map_err(|error| FileFault::Read {
-        name: name.to_owned(),
-        error,
-    })
+    again().map_err(|error| FileFault::Read { name: name.to_owned(), error })
 }
 
 /// The open file `name` from its beginning, to be read beside another reader that is not done yet: its place in the file is
@@ -215,10 +193,7 @@ pub fn reopened(name: &str, file: &File) -> Result<File, FileFault> {
         from.seek(SeekFrom::Start(at))?;
         copy
     };
-    copied().map_err(|error| FileFault::Read {
-        name: name.to_owned(),
-        error,
-    })
+    copied().map_err(|error| FileFault::Read { name: name.to_owned(), error })
 }
 
 /// What `input` gives, in a file without a name.

@@ -56,9 +56,7 @@ pub fn write<P: Program>(
             Ok(Some(item)) => {
                 let state = course.state();
                 smooths |= state.is_some_and(|state| leaves_the_path(state.corners));
-                let compensated = state
-                    .map(|state| state.length)
-                    .filter(|length| *length != 0.0);
+                let compensated = state.map(|state| state.length).filter(|length| *length != 0.0);
                 let tool = Tool {
                     register: state
                         .and_then(|state| state.length_register)
@@ -75,9 +73,7 @@ pub fn write<P: Program>(
                 let message = format!(
                     "{MOST_REFUSED} blocks were refused; the rest of the program is not read"
                 );
-                written
-                    .faults
-                    .push(Diagnostic::error("nc-refused", message));
+                written.faults.push(Diagnostic::error("nc-refused", message));
                 break;
             }
         }

@@ -57,25 +57,15 @@ impl OneProgram<'_> {
         file: &mut dyn Output,
         beside: Beside<'_, '_, '_>,
     ) -> Result<(Option<Report>, Vec<Diagnostic>), Failure> {
-        let Self {
-            arguments,
-            machine,
-            finder,
-            target,
-            lines,
-            trust_model,
-            plans,
-            tightening,
-        } = self;
+        let Self { arguments, machine, finder, target, lines, trust_model, plans, tightening } =
+            self;
         let cl_file = arguments.input();
         let program = super::program_name(cl_file, Some(target));
         // Of a part of the file other tools and extents are known than of the whole.
         let part_ahead = match &lines {
             Some(lines) if machine.program.looks_ahead => {
                 let lines = Some(lines.clone());
-                Some(super::look_ahead(
-                    arguments, machine, finder, source, lines,
-                )?)
+                Some(super::look_ahead(arguments, machine, finder, source, lines)?)
             }
             _ => None,
         };

@@ -75,10 +75,7 @@ fn outcome(
     source: &mut ClSource,
 ) -> Result<Option<Outcome>, Failure> {
     let mut text = Scratch::new("a program that is tried")?;
-    let tried = OneProgram {
-        plans,
-        ..program.clone()
-    };
+    let tried = OneProgram { plans, ..program.clone() };
     let (report, _) = tried.write(ahead, source, &mut text, Beside::default())?;
     if report.is_none() {
         return Ok(None);
@@ -102,15 +99,6 @@ fn outcome(
     let (tip, axis) = (&found.contour.tip_mm, &found.contour.axis_deg);
     Ok(Some(Outcome {
         cycle: found.time.cycle_s,
-        off: [
-            tip.largest,
-            tip.p99,
-            tip.p95,
-            tip.rms,
-            axis.largest,
-            axis.p99,
-            axis.p95,
-            axis.rms,
-        ],
+        off: [tip.largest, tip.p99, tip.p95, tip.rms, axis.largest, axis.p99, axis.p95, axis.rms],
     }))
 }

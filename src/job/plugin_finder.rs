@@ -80,9 +80,7 @@ pub fn text(finder: &Finder, machine: &Machine, key: &str) -> Option<String> {
 
 fn given_value<'m>(machine: &'m Machine, key: &str) -> Option<&'m OptionValue> {
     let mut given = machine.control.options.iter();
-    given
-        .find(|given| given.key == key)
-        .map(|given| &given.value)
+    given.find(|given| given.key == key).map(|given| &given.value)
 }
 
 /// Opens the dialect of a machine for the program `program`, made from the CL file `cl_file`.
@@ -131,9 +129,7 @@ pub fn dialect_knowing(
                     wrapped: axis.range.is_some(),
                     depth: axis_words::is_depth(machine, place),
                     carries_part: axis.carries_part,
-                    travel: axis
-                        .travel
-                        .map(|travel| travel.map(|end| axis.reading(end))),
+                    travel: axis.travel.map(|travel| travel.map(|end| axis.reading(end))),
                 }
             })
             .collect(),
@@ -182,16 +178,10 @@ pub fn model(
 ) -> Result<(OpenedModel, PluginUse), Vec<Diagnostic>> {
     let accuracy = &machine.accuracy;
     let fault = |fault: PluginFault| {
-        vec![diagnostic(
-            &fault,
-            &accuracy.options,
-            accuracy.model_place.clone(),
-        )]
+        vec![diagnostic(&fault, &accuracy.options, accuracy.model_place.clone())]
     };
     let plugin = finder.find(&accuracy.model).map_err(fault)?;
-    let opened = plugin
-        .error_model(&given(&accuracy.options))
-        .map_err(fault)?;
+    let opened = plugin.error_model(&given(&accuracy.options)).map_err(fault)?;
     Ok((opened, used(&plugin)))
 }
 
@@ -276,11 +266,7 @@ pub fn diagnostic(
         (None, help) => help,
         (Some(meant), help) => format!("did you mean `{meant}`? {help}"),
     };
-    if help.is_empty() {
-        diagnostic
-    } else {
-        diagnostic.help(help)
-    }
+    if help.is_empty() { diagnostic } else { diagnostic.help(help) }
 }
 
 /// What was misspelt, most likely.

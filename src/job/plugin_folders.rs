@@ -54,10 +54,7 @@ fn fault_of(source: &str, folder: &Path) -> Option<Diagnostic> {
     if source == VARIABLE && folder.is_relative() {
         let help = "name the folder from the root: else it is another one wherever post is run";
         return Some(
-            fault(format!(
-                "{told}: a folder in this variable must not be relative"
-            ))
-            .help(help),
+            fault(format!("{told}: a folder in this variable must not be relative")).help(help),
         );
     }
     let error = fs::read_dir(folder).err()?;

@@ -78,9 +78,7 @@ fn lengths_in_the_offset(words: &[VocabularyWord]) -> bool {
         let mut words = words.iter();
         words.any(|other| other.word == word.word && other.meaning == meaning)
     };
-    let mut changes = words
-        .iter()
-        .filter(|word| word.meaning == Meaning::ToolChange);
+    let mut changes = words.iter().filter(|word| word.meaning == Meaning::ToolChange);
     changes.any(|change| means(change, Meaning::Stop))
 }
 
@@ -99,10 +97,7 @@ pub fn as_counted(machine: &Machine, words: &[VocabularyWord], offsets: &Offsets
 /// Which register a length is compensated by.
 fn registers(words: &[VocabularyWord]) -> Registers {
     let has = |letter: &str, meaning: Meaning| has_letter(words, letter, meaning);
-    match (
-        has("H", Meaning::LengthRegister),
-        has("D", Meaning::LengthOn),
-    ) {
+    match (has("H", Meaning::LengthRegister), has("D", Meaning::LengthOn)) {
         (true, _) => Registers::OfTool,
         (false, true) => Registers::Edges,
         (false, false) => Registers::None,
@@ -117,9 +112,7 @@ fn has_letter(words: &[VocabularyWord], letter: &str, meaning: Meaning) -> bool 
 /// The work offset that posting writes where the CL file names none: the dialect's option, as the machine file has it or as
 /// it is by default. None where lines of the machine file name one, its words of CL files may, or the operator chooses it.
 fn work_offset(finder: &Finder, machine: &Machine, words: &[VocabularyWord]) -> Option<String> {
-    let offsets = words
-        .iter()
-        .filter(|word| word.meaning == Meaning::WorkOffset);
+    let offsets = words.iter().filter(|word| word.meaning == Meaning::WorkOffset);
     let offsets: Vec<&str> = offsets.map(|word| word.word.as_ref()).collect();
     let mut lines = machine.program.own_words();
     if !machine.word_rules.is_empty() || lines.any(|word| offsets.contains(&word.as_str())) {
@@ -151,10 +144,7 @@ pub fn course_settings(arguments: &JobArguments, machine: &Machine, file: &str) 
 
 /// What stands in the control's tables as posting counts: `--tool-length`, else the machine file, else the CL file.
 pub fn offsets(arguments: &JobArguments, machine: &Machine, tools: &[ClTool]) -> Offsets {
-    let mut offsets = Offsets {
-        length: arguments.tool_length,
-        ..Offsets::default()
-    };
+    let mut offsets = Offsets { length: arguments.tool_length, ..Offsets::default() };
     if arguments.tool_length.is_some() {
         return offsets;
     }
@@ -165,10 +155,7 @@ pub fn offsets(arguments: &JobArguments, machine: &Machine, tools: &[ClTool]) ->
         offsets.lengths.push((register, *length));
     }
     for tool in tools {
-        let told = machine
-            .tools
-            .iter()
-            .any(|(number, _)| *number == tool.number);
+        let told = machine.tools.iter().any(|(number, _)| *number == tool.number);
         if let (Some(length), false) = (tool.length, told) {
             offsets.tools.push((tool.number, length));
             offsets.lengths.push((tool.register, length));
@@ -197,9 +184,7 @@ pub fn verify<R: Read + Seek>(
     input: R,
     listen: &mut dyn FnMut(&BlockReport),
 ) -> Result<Held, Failure> {
-    let Reading {
-        arguments, machine, ..
-    } = reading;
+    let Reading { arguments, machine, .. } = reading;
     // What the tools are called and how long they are stands anywhere in the CL file.
     let first = source.open()?;
     let cl_name = first.name.clone();
@@ -243,12 +228,7 @@ pub fn hold<C: Course, R: Read + Seek>(
     listen: &mut dyn FnMut(&BlockReport),
 ) -> Result<Held, Failure> {
     let machine = reading.machine;
-    let Against {
-        course,
-        name: cl_name,
-        tools,
-        cut_path,
-    } = against;
+    let Against { course, name: cl_name, tools, cut_path } = against;
     let spoken = nc_program::spoken(reading.finder, machine)?;
     let in_the_offset = lengths_in_the_offset(&spoken.words);
     let lexicon = Lexicon::new(&spoken.words);
@@ -271,16 +251,10 @@ pub fn hold<C: Course, R: Read + Seek>(
             true => Registers::None,
             false => registers(&spoken.words),
         },
-        work_offsets: reading
-            .offsets
-            .as_ref()
-            .is_some_and(|offsets| !offsets.work.is_empty()),
+        work_offsets: reading.offsets.as_ref().is_some_and(|offsets| !offsets.work.is_empty()),
         // What stands in the control's tables is one thing, how long the tools are another.
         lengths: (!in_the_offset).then(|| match reading.arguments.tool_length {
-            Some(length) => Offsets {
-                length: Some(length),
-                ..Offsets::default()
-            },
+            Some(length) => Offsets { length: Some(length), ..Offsets::default() },
             None => offsets.clone(),
         }),
         radius_registers: has_letter(&spoken.words, "D", Meaning::RadiusRegister),
@@ -299,20 +273,14 @@ pub fn hold<C: Course, R: Read + Seek>(
         feed_place: feed_place(machine, spoken.feed_decimals),
         linear_rapids: machine.rapid(spoken.rapids_pass) == Rapid::Linear,
         least_minutes: spoken.most_inverse_time.map_or(0.0, |most| 1.0 / most),
-        tool_registers: tools
-            .iter()
-            .map(|tool| (tool.number, tool.register))
-            .collect(),
+        tool_registers: tools.iter().map(|tool| (tool.number, tool.register)).collect(),
         ..standard
     };
     let mut verifier = Verifier::new(machine, rules, course);
     if let Some(cut_path) = cut_path {
         verifier = verifier.near(cut_path);
     }
-    let unreadable = |error| FileFault::Read {
-        name: name.to_owned(),
-        error,
-    };
+    let unreadable = |error| FileFault::Read { name: name.to_owned(), error };
     let (watched, length) = Watched::new(&mut input).map_err(unreadable)?;
     let position = watched.position();
     let mut program = Interpreter::new(
@@ -385,17 +353,11 @@ pub fn hold<C: Course, R: Read + Seek>(
     }
     let texts = lines_of(&mut input, &found.faults).map_err(unreadable)?;
     for fault in &found.faults {
-        let text = fault
-            .nc_line
-            .and_then(|line| texts.iter().find(|(known, _)| *known == line));
+        let text = fault.nc_line.and_then(|line| texts.iter().find(|(known, _)| *known == line));
         let text = text.map_or("", |(_, text)| text.as_str());
         findings.push(fault.diagnostic(name, text, &cl_name));
     }
-    Ok(Held {
-        found,
-        findings,
-        blocks,
-    })
+    Ok(Held { found, findings, blocks })
 }
 
 /// So many blocks that cannot be read are told.

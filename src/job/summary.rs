@@ -77,15 +77,9 @@ fn rows(
 ) -> Vec<[String; 2]> {
     let mut rows = Vec::new();
     let mut row = |name: &str, value: String| rows.push([name.to_owned(), value]);
-    row(
-        "machine",
-        format!("{}, the {} keeps the tip", report.machine, report.tcp),
-    );
+    row("machine", format!("{}, the {} keeps the tip", report.machine, report.tcp));
     for (plugin, kind) in report.plugins.iter().zip(["dialect", "error model"]) {
-        row(
-            kind,
-            format!("{} {} ({})", plugin.name, plugin.version, origin(plugin)),
-        );
+        row(kind, format!("{} {} ({})", plugin.name, plugin.version, origin(plugin)));
     }
     row("records read", report.records.to_string());
     row("moves", report.moves.to_string());
@@ -188,11 +182,7 @@ fn rows(
             "changes of solution off the part",
         ),
         (report.rewinds, "rewind", "rewinds"),
-        (
-            report.points_eased,
-            "point eased close to a pole",
-            "points eased close to a pole",
-        ),
+        (report.points_eased, "point eased close to a pole", "points eased close to a pole"),
     ] {
         if count > 0 {
             choices.push(counted(count, one, several));
@@ -209,10 +199,8 @@ fn rows(
             clock(report.cutting_time_s),
             match report.blocks_limited {
                 0 => String::new(),
-                count if report.plan.is_some() => format!(
-                    "; {} slower than the CL file asks",
-                    counted(count, "block", "blocks")
-                ),
+                count if report.plan.is_some() =>
+                    format!("; {} slower than the CL file asks", counted(count, "block", "blocks")),
                 count => slowed(count, report.blocks_capped),
             }
         ),
@@ -232,11 +220,8 @@ fn rows(
         );
     }
     if !report.ignored_words.is_empty() {
-        let words: Vec<String> = report
-            .ignored_words
-            .iter()
-            .map(|(word, count)| format!("{word} {count}"))
-            .collect();
+        let words: Vec<String> =
+            report.ignored_words.iter().map(|(word, count)| format!("{word} {count}")).collect();
         row("words ignored", words.join(", "));
     }
     row(

@@ -36,30 +36,21 @@ fn unknown(table: &UnusedOptions, keys: &[&str]) -> Vec<Diagnostic> {
     let unknown = options.filter(|option| !keys.contains(&option.key.as_str()));
     unknown
         .map(|option| {
-            let UnusedOptions {
-                section, plugin, ..
-            } = table;
-            let message = format!(
-                "[{section}.{plugin}]: {plugin} has no option `{}`",
-                option.key
-            );
-            Diagnostic::warning("plugin", message)
-                .at(option.place.clone())
-                .help(meant(&option.key, "it has", keys))
+            let UnusedOptions { section, plugin, .. } = table;
+            let message = format!("[{section}.{plugin}]: {plugin} has no option `{}`", option.key);
+            Diagnostic::warning("plugin", message).at(option.place.clone()).help(meant(
+                &option.key,
+                "it has",
+                keys,
+            ))
         })
         .collect()
 }
 
 /// The plugin of a table is not there.
 fn no_plugin(table: &UnusedOptions, is_model: bool) -> Diagnostic {
-    let UnusedOptions {
-        section, plugin, ..
-    } = table;
-    let what = if is_model {
-        "an error model"
-    } else {
-        "a dialect"
-    };
+    let UnusedOptions { section, plugin, .. } = table;
+    let what = if is_model { "an error model" } else { "a dialect" };
     let message =
         format!("[{section}.{plugin}] has options for {what} that is not here: they do nothing");
     let first = table.options.first();

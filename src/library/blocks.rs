@@ -5,20 +5,11 @@ use post_posting::program::{Command, HoleMark, Pace};
 use post_posting::{Block, Flow, MotionKind, Observer, Reason};
 
 /// What [`Blocks::kind`] counts.
-pub const KINDS: [&str; 7] = [
-    "position",
-    "reference",
-    "rapid",
-    "linear",
-    "arc",
-    "spline",
-    "hole",
-];
+pub const KINDS: [&str; 7] = ["position", "reference", "rapid", "linear", "arc", "spline", "hole"];
 
 /// What [`Blocks::reason`] counts.
-pub const REASONS: [&str; 9] = [
-    "point", "eased", "put_in", "leave", "stage", "rewind", "feed", "above", "at_once",
-];
+pub const REASONS: [&str; 9] =
+    ["point", "eased", "put_in", "leave", "stage", "rewind", "feed", "above", "at_once"];
 
 /// A row of each block; mm, degrees, s, part frame.
 #[derive(Clone, Debug, Default)]
@@ -87,10 +78,7 @@ impl<'m> BlockColumns<'m> {
     pub(super) fn new(machine: &'m Machine) -> Self {
         let heads = machine.heads.iter().map(|head| &head.machine);
         let mut axes: Vec<String> = Vec::new();
-        for axis in std::iter::once(machine)
-            .chain(heads)
-            .flat_map(|one| &one.axes)
-        {
+        for axis in std::iter::once(machine).chain(heads).flat_map(|one| &one.axes) {
             if !axes.contains(&axis.name) {
                 axes.push(axis.name.clone());
             }
@@ -101,10 +89,7 @@ impl<'m> BlockColumns<'m> {
             places: Vec::new(),
             time: 0.0,
             hole: false,
-            blocks: Blocks {
-                axes,
-                ..Blocks::default()
-            },
+            blocks: Blocks { axes, ..Blocks::default() },
         };
         columns.equip(machine);
         columns
@@ -156,9 +141,7 @@ impl<'m> BlockColumns<'m> {
         blocks.axis.extend_from_slice(block.axis.as_slice());
         blocks.way.push(block.way);
         blocks.tip_deviation.push(block.deviation.tip);
-        blocks
-            .axis_deviation
-            .push(block.deviation.axis.to_degrees());
+        blocks.axis_deviation.push(block.deviation.axis.to_degrees());
         blocks.off_part.push(block.loose);
         let moves = block.time.feed.is_some() && minutes > 0.0;
         blocks.feed.push(match moves {

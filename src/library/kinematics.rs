@@ -132,9 +132,7 @@ impl Kinematics {
             rotary: axis.joint.rotary,
             carries_part: axis.carries_part,
             unit: axis.unit_name(),
-            travel: axis
-                .travel
-                .map(|travel| travel.map(|end| told(axis.reading(end)))),
+            travel: axis.travel.map(|travel| travel.map(|end| told(axis.reading(end)))),
         })
         .collect()
     }

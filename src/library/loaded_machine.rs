@@ -36,9 +36,8 @@ impl MachineTold {
     /// What is set over the machine file, in the order of the command.
     pub fn settings(&self) -> Vec<Setting> {
         let set = self.set.iter();
-        let mut settings: Vec<Setting> = set
-            .map(|(key, value)| Setting::Written(format!("{key}={value}")))
-            .collect();
+        let mut settings: Vec<Setting> =
+            set.map(|(key, value)| Setting::Written(format!("{key}={value}"))).collect();
         settings.extend(self.mount.map(Setting::Mount));
         settings.extend(self.turn.map(Setting::Turn));
         settings
@@ -62,11 +61,7 @@ impl LoadedMachine {
         let load = || machine_files::load(&told.name, &told.machines, &told.settings());
         let (machine, _) = quietly(load)?;
         let kinematics = Kinematics::new(&machine, told.tool_length.unwrap_or(0.0))?;
-        Ok(Self {
-            told,
-            machine,
-            kinematics,
-        })
+        Ok(Self { told, machine, kinematics })
     }
 
     /// What it was loaded by.

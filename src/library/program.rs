@@ -152,26 +152,11 @@ impl JobLine {
         job::say_what_is_left(arguments, &machine, &finder);
         let mut source = ClSource::new(arguments.input(), true)?;
         let ahead = match machine.program.looks_ahead {
-            true => Some(job::look_ahead(
-                arguments,
-                &machine,
-                &finder,
-                &mut source,
-                None,
-            )?),
+            true => Some(job::look_ahead(arguments, &machine, &finder, &mut source, None)?),
             false => None,
         };
         let target = making::target(arguments, self.output.as_ref(), &machine, &finder)?;
-        Ok(Bench {
-            part: Part {
-                lines: None,
-                target,
-                machine,
-            },
-            finder,
-            source,
-            ahead,
-        })
+        Ok(Bench { part: Part { lines: None, target, machine }, finder, source, ahead })
     }
 
     /// Makes it; `observer` sees its blocks.
@@ -180,12 +165,7 @@ impl JobLine {
         bench: &mut Bench,
         observer: Option<&mut dyn Observer>,
     ) -> Result<Came, Failure> {
-        let Bench {
-            part,
-            finder,
-            source,
-            ahead,
-        } = bench;
+        let Bench { part, finder, source, ahead } = bench;
         let program = OneProgram {
             arguments: &self.job,
             machine: &part.machine,
@@ -199,10 +179,7 @@ impl JobLine {
         let ready = Ready::new(program, &self.making, ahead.as_ref(), source, false)?;
         let mut findings: Vec<Diagnostic> = ready.warning().into_iter().collect();
         let mut text = Text::default();
-        let beside = Beside {
-            observer,
-            ..Beside::default()
-        };
+        let beside = Beside { observer, ..Beside::default() };
         let (report, found) = ready.write(ahead.as_ref(), source, &mut text, beside)?;
         for finding in found {
             if !findings.contains(&finding) {
@@ -214,14 +191,7 @@ impl JobLine {
         };
         let moved = ready.is_moved();
         let (plan_rounds, compensation) = ready.found();
-        Ok(Came {
-            text: text.0,
-            report,
-            findings,
-            moved,
-            plan_rounds,
-            compensation,
-        })
+        Ok(Came { text: text.0, report, findings, moved, plan_rounds, compensation })
     }
 }
 
@@ -263,15 +233,7 @@ impl MadeProgram {
         });
         let ((line, part, came, summary, blocks), mut findings) = made?;
         findings.extend(came.findings);
-        Ok(Self {
-            line,
-            part,
-            text: came.text,
-            summary,
-            findings,
-            moved: came.moved,
-            blocks,
-        })
+        Ok(Self { line, part, text: came.text, summary, findings, moved: came.moved, blocks })
     }
 
     /// Its text.
@@ -282,8 +244,7 @@ impl MadeProgram {
     /// What messages call it: where it is, or would be, written.
     pub fn name(&self) -> String {
         let path = self.part.target.path();
-        path.map(|path| path.display().to_string())
-            .unwrap_or_default()
+        path.map(|path| path.display().to_string()).unwrap_or_default()
     }
 
     /// Its summary, the bytes that `--summary` writes.
@@ -330,9 +291,7 @@ impl MadeProgram {
     ) -> Result<read_back::Held, Failure> {
         let how = (self.moved, self.is_planned());
         let text = (self.name(), Cursor::new(text));
-        let held = self
-            .part
-            .read_back(&self.line.job, finder, how, source, text)?;
+        let held = self.part.read_back(&self.line.job, finder, how, source, text)?;
         match held.is_wrong() {
             true => Err(held.findings.into()),
             false => Ok(held),

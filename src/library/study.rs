@@ -15,10 +15,7 @@ pub use crate::job::batch::{Column, Table as StudyTable, Values};
 /// Jobs that are done, and of them those that are not written; whoever is told answers whether to go on.
 pub type Progressed<'p> = &'p mut dyn FnMut(usize, usize) -> bool;
 
-const RESULTS: Role = Role {
-    what: "table of results",
-    remedy: "name another file",
-};
+const RESULTS: Role = Role { what: "table of results", remedy: "name another file" };
 
 /// What the flags of `post batch` say that are no grid.
 #[derive(Debug, Parser)]
@@ -60,12 +57,7 @@ impl StudyJobs {
             let journal = journal.as_ref()?;
             batch::known(&study, job, &inputs, journal)
         });
-        Ok(Self {
-            outcomes: outcomes.collect(),
-            study,
-            inputs,
-            journal,
-        })
+        Ok(Self { outcomes: outcomes.collect(), study, inputs, journal })
     }
 
     /// How many jobs there are.
@@ -103,17 +95,13 @@ impl StudyJobs {
     ) -> Result<bool, Refused> {
         let open = self.open();
         let journal = self.journal.as_ref();
-        let outcomes = batch::run(
-            &self.study,
-            &self.inputs,
-            &open,
-            threads,
-            journal,
-            &mut |done| match progressed(done.jobs, done.refused) {
-                true => Ok(()),
-                false => Err(Stop),
-            },
-        );
+        let outcomes =
+            batch::run(&self.study, &self.inputs, &open, threads, journal, &mut |done| {
+                match progressed(done.jobs, done.refused) {
+                    true => Ok(()),
+                    false => Err(Stop),
+                }
+            });
         let Some(outcomes) = outcomes.map_err(refused)? else {
             return Ok(false);
         };
@@ -148,9 +136,7 @@ impl StudyJobs {
 
     fn keep(&mut self, number: usize, outcome: Outcome) -> Result<(), Refused> {
         if let Some(journal) = &self.journal {
-            journal
-                .add(&outcome)
-                .map_err(|fault| refused(fault.into()))?;
+            journal.add(&outcome).map_err(|fault| refused(fault.into()))?;
         }
         if let Some(place) = self.outcomes.get_mut(number) {
             *place = Some(outcome);
@@ -161,9 +147,8 @@ impl StudyJobs {
     /// The rows of the jobs that are done.
     pub fn table(&self) -> StudyTable {
         let outcomes = self.outcomes.iter().enumerate();
-        let (numbers, outcomes): (Vec<usize>, Vec<Outcome>) = outcomes
-            .filter_map(|(number, outcome)| Some((number, outcome.clone()?)))
-            .unzip();
+        let (numbers, outcomes): (Vec<usize>, Vec<Outcome>) =
+            outcomes.filter_map(|(number, outcome)| Some((number, outcome.clone()?))).unzip();
         StudyTable::new(&self.study, &numbers, &outcomes)
     }
 

@@ -24,11 +24,7 @@ pub struct Code {
 }
 
 const fn code(name: &'static str, meaning: &'static str, remedy: &'static str) -> Code {
-    Code {
-        name,
-        meaning,
-        remedy,
-    }
+    Code { name, meaning, remedy }
 }
 
 /// All codes. One that two parts say, each in its own sense, is in both groups.
@@ -133,11 +129,7 @@ pub const CODES: &[CodeGroup] = &[
                 "The point of the tool that is guided is described impossibly.",
                 "Lengths from 0 up, mm.",
             ),
-            code(
-                "machine-corner",
-                "`corner` is no angle from 0 to 180 degrees.",
-                "10 is usual.",
-            ),
+            code("machine-corner", "`corner` is no angle from 0 to 180 degrees.", "10 is usual."),
             code(
                 "machine-depth",
                 "The axis that the control's length compensation acts along would take a longer tool into the part.",
@@ -258,11 +250,7 @@ pub const CODES: &[CodeGroup] = &[
                 "A text holds a line end or a sign that cannot be seen.",
                 "Several lines are a list of texts.",
             ),
-            code(
-                "machine-tolerance",
-                "A tolerance is not above zero.",
-                "mm and degrees.",
-            ),
+            code("machine-tolerance", "A tolerance is not above zero.", "mm and degrees."),
             code(
                 "machine-tools",
                 "`[tools]` has a length below zero or no tool number.",
@@ -365,11 +353,7 @@ pub const CODES: &[CodeGroup] = &[
                 "The axes of `MSYS` are no frame.",
                 "Without `--msys apply` it is not needed.",
             ),
-            code(
-                "no-feed",
-                "A move has no feed.",
-                "`--feed 800` gives one, mm/min.",
-            ),
+            code("no-feed", "A move has no feed.", "`--feed 800` gives one, mm/min."),
             code(
                 "refused-word",
                 "A word changes where or whether metal is cut, and post does not know how.",
@@ -501,11 +485,7 @@ pub const CODES: &[CodeGroup] = &[
                 "The error model cannot answer; in a study, that the file has no cut.",
                 "Another `[accuracy] model`.",
             ),
-            code(
-                "more",
-                "More warnings than are told one by one.",
-                "Put right those above first.",
-            ),
+            code("more", "More warnings than are told one by one.", "Put right those above first."),
             code(
                 "out-of-reach",
                 "The machine cannot point the tool this way, or cannot bring the tip there.",
@@ -567,11 +547,7 @@ pub const CODES: &[CodeGroup] = &[
                 "Compensation lacks its bound or the servos.",
                 "`[accuracy] servo_compensation` and `[servo.X]`.",
             ),
-            code(
-                "curve",
-                "A curve file cannot be read.",
-                "`post plan --help` lists its keys.",
-            ),
+            code("curve", "A curve file cannot be read.", "`post plan --help` lists its keys."),
             code(
                 "infeasible",
                 "No feed keeps the limits at one place of the curve.",
@@ -633,11 +609,7 @@ pub const CODES: &[CodeGroup] = &[
                 "A Klartext word that is not run: what the machine does then is not followed.",
                 "Take it out for the check, or check that part at the machine.",
             ),
-            code(
-                "nc-cycle",
-                "A cycle is not known here or incomplete.",
-                "Moves in its place.",
-            ),
+            code("nc-cycle", "A cycle is not known here or incomplete.", "Moves in its place."),
             code(
                 "nc-dwell",
                 "A wait says no time that is known.",
@@ -648,11 +620,7 @@ pub const CODES: &[CodeGroup] = &[
                 "An expression cannot be evaluated, or means another thing on each control.",
                 "Write the number.",
             ),
-            code(
-                "nc-feed",
-                "A feed is missing or no feed.",
-                "F in the block, or before it.",
-            ),
+            code("nc-feed", "A feed is missing or no feed.", "F in the block, or before it."),
             code(
                 "nc-file",
                 "The program cannot be read again from its beginning.",
@@ -673,11 +641,7 @@ pub const CODES: &[CodeGroup] = &[
                 "A tool's length is not known, or acts along another axis.",
                 "`--tool-length`, `[tools]` or `--offsets`.",
             ),
-            code(
-                "nc-limit",
-                "More blocks, loops or holes than are run.",
-                "`--most-blocks`.",
-            ),
+            code("nc-limit", "More blocks, loops or holes than are run.", "`--most-blocks`."),
             code(
                 "nc-machine",
                 "Machine coordinates are used in a way that is not settled.",
@@ -698,11 +662,7 @@ pub const CODES: &[CodeGroup] = &[
                 "A tilted plane is begun, turned to or left in a way that is not run.",
                 "Turn the axes to the plane first; end one before the next.",
             ),
-            code(
-                "nc-probe",
-                "A probing move ends where it touches.",
-                "Take it out for the check.",
-            ),
+            code("nc-probe", "A probing move ends where it touches.", "Take it out for the check."),
             code(
                 "nc-reach",
                 "The axes cannot bring the tip where the program wants it.",
@@ -733,11 +693,7 @@ pub const CODES: &[CodeGroup] = &[
                 "A subprogram is called that does not stand in this file.",
                 "Put it behind the program.",
             ),
-            code(
-                "nc-thread",
-                "A thread says no pitch.",
-                "F or K as the control has it.",
-            ),
+            code("nc-thread", "A thread says no pitch.", "F or K as the control has it."),
             code(
                 "nc-tool",
                 "A tool call is not one that is known here.",
@@ -773,11 +729,7 @@ pub const CODES: &[CodeGroup] = &[
                 "The file of offsets cannot be read.",
                 "`post read --help` shows its form.",
             ),
-            code(
-                "read",
-                "Reading the CL file broke off.",
-                "The message has the system's reason.",
-            ),
+            code("read", "Reading the CL file broke off.", "The message has the system's reason."),
             code(
                 "turned-part",
                 "The part sits turned on the machine, and a CL file of the motions would be turned once more when it is posted.",
@@ -824,11 +776,7 @@ pub const CODES: &[CodeGroup] = &[
                 "A cut has no feed, or is faster or slower than the CL file asks for.",
                 "`--planned` for programs whose feed was planned.",
             ),
-            code(
-                "hole",
-                "A hole is of another kind, depth or way in.",
-                "Look at both lines.",
-            ),
+            code("hole", "A hole is of another kind, depth or way in.", "Look at both lines."),
             code(
                 "length",
                 "Length compensation is in force with another length than the tool's.",
@@ -849,11 +797,7 @@ pub const CODES: &[CodeGroup] = &[
                 "A rapid comes nearer to what is cut than the CL file allows, or ends in it; leaves the way of the CL file's; leads where neither the CL file nor the machine file sends the axis; or is made at feed.",
                 "Look at the way at the machine before it runs. `[control] retract`, `change` and `park` name places of the machine, `rapid = \"linear\"` lets rapids be feed moves as fast as the axes go.",
             ),
-            code(
-                "register",
-                "Another length or radius register, or none.",
-                "Look at both lines.",
-            ),
+            code("register", "Another length or radius register, or none.", "Look at both lines."),
             code(
                 "smoothing",
                 "The control may leave the path by more than the tolerance and than `[program.smoothing]`.",
@@ -917,16 +861,8 @@ pub const CODES: &[CodeGroup] = &[
                 "A block cannot be run by the axes.",
                 "Tool lengths and work offsets may be others: `--tool-length`, `--offsets`, `--mount`.",
             ),
-            code(
-                "no-motion",
-                "The program moves nothing.",
-                "Is it the right file?",
-            ),
-            code(
-                "period",
-                "The period of set-points cannot be.",
-                "`--period`, seconds.",
-            ),
+            code("no-motion", "The program moves nothing.", "Is it the right file?"),
+            code("period", "The period of set-points cannot be.", "`--period`, seconds."),
             code(
                 "servo",
                 "The equations of a servo are out of all proportion.",

@@ -19,16 +19,8 @@ pub fn findings(findings: &[Diagnostic]) {
         return;
     }
     let mut stderr = std::io::stderr().lock();
-    let renderer = if stderr.is_terminal() {
-        Renderer::styled()
-    } else {
-        Renderer::plain()
-    };
-    let of = |severity| {
-        findings
-            .iter()
-            .filter(move |finding| finding.severity == severity)
-    };
+    let renderer = if stderr.is_terminal() { Renderer::styled() } else { Renderer::plain() };
+    let of = |severity| findings.iter().filter(move |finding| finding.severity == severity);
     for severity in [Severity::Warning, Severity::Error] {
         for finding in of(severity).take(MOST_TOLD) {
             // A closed standard error leaves nobody to tell.
@@ -107,16 +99,11 @@ mod tests {
     fn what_a_terminal_would_obey_is_written_as_an_escape() {
         let text = "PPRINT \u{1B}[31mred\u{202E} end";
         let place = Place::new("a\u{1B}b.cls", 3, text, 7..15);
-        let finding = Diagnostic::error("x", "say \u{9B}1m\nit")
-            .help("\u{7}")
-            .at(Some(place));
+        let finding = Diagnostic::error("x", "say \u{9B}1m\nit").help("\u{7}").at(Some(place));
         let shown = render(&finding, &Renderer::plain());
         assert!(!shown.contains(|letter: char| letter != '\n' && letter.is_control()));
         assert!(shown.contains("\\u{1b}[31mred"), "{shown}");
         // As many marks as the escaped text has letters.
-        assert!(
-            shown.contains(&"^".repeat("\\u{1b}[31mred".len() - 1)),
-            "{shown}"
-        );
+        assert!(shown.contains(&"^".repeat("\\u{1b}[31mred".len() - 1)), "{shown}");
     }
 }

@@ -45,7 +45,5 @@ pub fn is_gathering() -> bool {
 
 /// At the end of the process, where a plugin that has ended it is named, the thread's own values are gone.
 fn asked(ask: impl FnOnce(&mut Option<Vec<Diagnostic>>) -> bool) -> bool {
-    GATHERED
-        .try_with(|gathered| ask(&mut gathered.borrow_mut()))
-        .unwrap_or(false)
+    GATHERED.try_with(|gathered| ask(&mut gathered.borrow_mut())).unwrap_or(false)
 }

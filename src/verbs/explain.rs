@@ -47,14 +47,8 @@ fn tell(group: &CodeGroup, codes: &[&Code], text: &mut String) {
     }
     text.push_str(&format!("{} ({})\n", group.title, group.verbs));
     for code in codes {
-        let Code {
-            name,
-            meaning,
-            remedy,
-        } = code;
-        text.push_str(&format!(
-            "\n{name}\n    {meaning}\n    What helps: {remedy}\n"
-        ));
+        let Code { name, meaning, remedy } = code;
+        text.push_str(&format!("\n{name}\n    {meaning}\n    What helps: {remedy}\n"));
     }
 }
 

@@ -35,11 +35,7 @@ pub fn run(arguments: &MachinesArguments) -> Result<(), Failure> {
         return Ok(());
     }
     let mut rows = vec![["name", "axes", "dialect", "from", "class"].map(str::to_owned)];
-    rows.extend(
-        machine_files::list(&arguments.machines)?
-            .into_iter()
-            .map(row),
-    );
+    rows.extend(machine_files::list(&arguments.machines)?.into_iter().map(row));
     terminal::print(&terminal::table(&rows, rows[0].len()));
     Ok(())
 }

@@ -73,43 +73,27 @@ pub fn run(arguments: &WordsArguments) -> Result<(), Failure> {
     let mut text = String::new();
     line(
         &mut text,
-        &format!(
-            "{:<26} {:>9}  {:<10} {}",
-            "word", "times", "becomes", "first on line"
-        ),
+        &format!("{:<26} {:>9}  {:<10} {}", "word", "times", "becomes", "first on line"),
     );
     for (word, (count, first, usage)) in rows {
         if arguments.unknown_only && !matches!(usage, Usage::Unknown | Usage::Refused) {
             continue;
         }
         let becomes = usage.name();
-        line(
-            &mut text,
-            &format!("{word:<26} {count:>9}  {becomes:<10} {first}"),
-        );
+        line(&mut text, &format!("{word:<26} {count:>9}  {becomes:<10} {first}"));
     }
     print(&text);
-    if faults.is_empty() {
-        Ok(())
-    } else {
-        Err(faults.into())
-    }
+    if faults.is_empty() { Ok(()) } else { Err(faults.into()) }
 }
 
 /// Prints every word that is known, with its spellings.
 fn print_all() {
     let mut text = String::new();
-    line(
-        &mut text,
-        &format!("{:<32} {:<10} {}", "word", "becomes", "meaning"),
-    );
+    line(&mut text, &format!("{:<32} {:<10} {}", "word", "becomes", "meaning"));
     for word in MajorWord::all() {
         let spellings = word.spellings.join(" = ");
         let becomes = word.usage.name();
-        line(
-            &mut text,
-            &format!("{spellings:<32} {becomes:<10} {}", word.meaning),
-        );
+        line(&mut text, &format!("{spellings:<32} {becomes:<10} {}", word.meaning));
     }
     print(&text);
 }

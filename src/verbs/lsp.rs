@@ -37,17 +37,6 @@ pub struct LspArguments {
 
 /// Serves.
 pub fn run(arguments: LspArguments) -> Result<(), Failure> {
-    let LspArguments {
-        machine,
-        tool_length,
-        machines,
-        plugins,
-        stdio: _,
-    } = arguments;
-    editor::serve(Options {
-        machine,
-        tool_length,
-        machines,
-        plugins,
-    })
+    let LspArguments { machine, tool_length, machines, plugins, stdio: _ } = arguments;
+    editor::serve(Options { machine, tool_length, machines, plugins })
 }

@@ -11,10 +11,7 @@ use crate::files::{FileFault, PathArg, Role};
 use crate::{files, terminal};
 
 /// What a page is to the files of a run.
-const PAGE: Role = Role {
-    what: "manual page",
-    remedy: "name another folder",
-};
+const PAGE: Role = Role { what: "manual page", remedy: "name another folder" };
 
 /// Writes the manual pages into a folder: post.1 and one for each verb, post-check.1, …
 #[derive(Debug, Args)]
@@ -38,14 +35,11 @@ pub fn run(arguments: &ManArguments, mut command: Command) -> Result<(), Failure
         let name = page.get_filename();
         let target = PathArg::from(arguments.folder.join(&name));
         let mut text = Vec::new();
-        page.render(&mut text)
-            .map_err(|error| FileFault::write_named(&name, error))?;
+        page.render(&mut text).map_err(|error| FileFault::write_named(&name, error))?;
         texts.push((target, String::from_utf8_lossy(&text).into_owned()));
     }
-    let written: Vec<_> = texts
-        .iter()
-        .map(|(target, text)| (PAGE, target, text.as_str()))
-        .collect();
+    let written: Vec<_> =
+        texts.iter().map(|(target, text)| (PAGE, target, text.as_str())).collect();
     files::write(&written)?;
     terminal::print(&format!("{} manual pages\n", written.len()));
     Ok(())

@@ -153,9 +153,8 @@ impl CommandLine {
 /// Runs another command line with a report, and opens that.
 fn view(arguments: &ViewArguments) -> Result<(), Failure> {
     let view = View::new(arguments)?;
-    let done = CommandLine::try_parse_from(&view.line)
-        .map_err(Failure::Usage)
-        .and_then(CommandLine::run);
+    let done =
+        CommandLine::try_parse_from(&view.line).map_err(Failure::Usage).and_then(CommandLine::run);
     // A program that is not as it should be is worth a look too.
     let shown = view.show();
     done.and(shown)
@@ -167,10 +166,8 @@ pub fn misspelt() -> Option<clap::Error> {
     let first = std::env::args_os().nth(1)?;
     let first = first.to_str()?;
     let mut command = CommandLine::command();
-    let verbs: Vec<String> = command
-        .get_subcommands()
-        .map(|verb| verb.get_name().to_owned())
-        .collect();
+    let verbs: Vec<String> =
+        command.get_subcommands().map(|verb| verb.get_name().to_owned()).collect();
     if verbs.iter().any(|verb| verb == first) || Path::new(first).exists() {
         return None;
     }
@@ -192,13 +189,7 @@ mod tests {
         let entries = fs::read_dir(folder).unwrap();
         entries
             .map(|entry| entry.unwrap().path())
-            .flat_map(|path| {
-                if path.is_dir() {
-                    sources(&path)
-                } else {
-                    vec![path]
-                }
-            })
+            .flat_map(|path| if path.is_dir() { sources(&path) } else { vec![path] })
             .collect()
     }
 

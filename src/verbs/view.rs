@@ -56,9 +56,7 @@ impl View {
     /// There is no place for the report.
     pub fn new(arguments: &ViewArguments) -> Result<Self, Failure> {
         let waiting = std::env::temp_dir();
-        let folder = tempfile::Builder::new()
-            .prefix("post-view-")
-            .tempdir_in(&waiting);
+        let folder = tempfile::Builder::new().prefix("post-view-").tempdir_in(&waiting);
         let folder = folder.map_err(|error| FileFault::NoWaiting {
             name: "the report".to_owned(),
             folder: waiting,
@@ -85,11 +83,7 @@ impl View {
         }
         line.push("--report".into());
         line.push(report.clone().into());
-        Ok(Self {
-            line,
-            report,
-            opens: !arguments.no_open,
-        })
+        Ok(Self { line, report, opens: !arguments.no_open })
     }
 
     /// Names the report, and opens it; there is none where the run was refused.

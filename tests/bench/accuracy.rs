@@ -106,11 +106,8 @@ fn placements(case: &Case) -> Result<(), Box<dyn Error>> {
         let (mut bisected, mut into) = (0, 0);
         for placement in ["bisect", "even", "fewest"] {
             for reduce in [false, true] {
-                let mut settings: Vec<String> = case
-                    .settings
-                    .iter()
-                    .map(|text| (*text).to_owned())
-                    .collect();
+                let mut settings: Vec<String> =
+                    case.settings.iter().map(|text| (*text).to_owned()).collect();
                 settings.push(format!("accuracy.tolerance={tolerance}"));
                 settings.push(format!("accuracy.placement={placement:?}"));
                 settings.push(format!("accuracy.reduce={reduce}"));
@@ -124,9 +121,7 @@ fn placements(case: &Case) -> Result<(), Box<dyn Error>> {
                 let report = match last {
                     Some(Ok(report)) => report,
                     Some(Err(fault)) => {
-                        say(&format!(
-                            "{tolerance:>9} {placement:<10} {reduce:<6}  {fault:.90}"
-                        ));
+                        say(&format!("{tolerance:>9} {placement:<10} {reduce:<6}  {fault:.90}"));
                         continue;
                     }
                     None => continue,
@@ -189,11 +184,7 @@ impl Observer for Blocks {
 
 /// What the certificate of a block of the program costs, and the inverse solution of its end, on average.
 fn certification(case: &Case) -> Result<(), Box<dyn Error>> {
-    let settings: Vec<String> = case
-        .settings
-        .iter()
-        .map(|text| (*text).to_owned())
-        .collect();
+    let settings: Vec<String> = case.settings.iter().map(|text| (*text).to_owned()).collect();
     let machine = job::machine(case.machine, &settings)?;
     let mut blocks = Blocks {
         nodes: Vec::new(),
@@ -202,20 +193,12 @@ fn certification(case: &Case) -> Result<(), Box<dyn Error>> {
         model: Plugin::linked(post_stock::plugin("sampled").ok_or("no such plugin")?)?
             .error_model(&[])?,
     };
-    job::watched(
-        &case.path,
-        case.machine,
-        &settings,
-        case.job(),
-        Some(&mut blocks),
-    )?;
+    job::watched(&case.path, case.machine, &settings, case.job(), Some(&mut blocks))?;
     let Some(placer) = blocks.placer else {
         return Ok(());
     };
-    let tolerances = Tolerances {
-        tip: machine.accuracy.tolerance,
-        axis: machine.accuracy.axis_tolerance,
-    };
+    let tolerances =
+        Tolerances { tip: machine.accuracy.tolerance, axis: machine.accuracy.axis_tolerance };
     let nodes = &blocks.nodes;
     let block = |index: usize| Move {
         placer: &placer,

@@ -127,11 +127,7 @@ pub fn write_file(out: &mut impl Write, count: u64) -> io::Result<()> {
         match index {
             0 => {
                 writeln!(out, "RAPID")?;
-                writeln!(
-                    out,
-                    "GOTO/{x:.4},{y:.4},{:.4},{i:.6},{j:.6},{k:.6}",
-                    z + 50.0
-                )?;
+                writeln!(out, "GOTO/{x:.4},{y:.4},{:.4},{i:.6},{j:.6},{k:.6}", z + 50.0)?;
                 writeln!(out, "FEDRAT/MMPM,1500.0000")?;
             }
             1 => writeln!(out, "FEDRAT/MMPM,3000.0000")?,
@@ -141,11 +137,7 @@ pub fn write_file(out: &mut impl Write, count: u64) -> io::Result<()> {
     }
     writeln!(out, "RAPID")?;
     let [x, y, z, i, j, k] = point(count.saturating_sub(1));
-    writeln!(
-        out,
-        "GOTO/{x:.4},{y:.4},{:.4},{i:.6},{j:.6},{k:.6}",
-        z + 50.0
-    )?;
+    writeln!(out, "GOTO/{x:.4},{y:.4},{:.4},{i:.6},{j:.6},{k:.6}", z + 50.0)?;
     writeln!(out, "SPINDL/OFF")?;
     writeln!(out, "COOLNT/OFF")?;
     writeln!(out, "END-OF-PATH")
@@ -156,11 +148,7 @@ pub fn point(index: u64) -> [f64; 6] {
     let row = index / ROW;
     let along = (index % ROW) as f64 / (ROW - 1) as f64;
     let across = (row % ROWS) as f64 / (ROWS - 1) as f64;
-    let u = if row.is_multiple_of(2) {
-        along
-    } else {
-        1.0 - along
-    };
+    let u = if row.is_multiple_of(2) { along } else { 1.0 - along };
     let (x, y) = (120.0 * u - 60.0, 80.0 * across - 40.0);
     let (sx, cx) = libm::sincos(x / 25.0);
     let (sy, cy) = libm::sincos(y / 30.0);
@@ -168,12 +156,5 @@ pub fn point(index: u64) -> [f64; 6] {
     // The normal of the surface, leaned forward along X.
     let normal = [-6.0 / 25.0 * cx * cy - 0.364, 6.0 / 30.0 * sx * sy, 1.0];
     let length = libm::sqrt(normal.iter().map(|n| n * n).sum());
-    [
-        x,
-        y,
-        z,
-        normal[0] / length,
-        normal[1] / length,
-        normal[2] / length,
-    ]
+    [x, y, z, normal[0] / length, normal[1] / length, normal[2] / length]
 }

@@ -28,23 +28,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let poses: Vec<Pose> = (0..POINTS)
         .map(|index| {
             let [x, y, z, i, j, k] = generate::point(index);
-            Pose {
-                tip: Vector3::new(x, y, z),
-                axis: Vector3::new(i, j, k),
-                ..Pose::default()
-            }
+            Pose { tip: Vector3::new(x, y, z), axis: Vector3::new(i, j, k), ..Pose::default() }
         })
         .collect();
     say("ns a point       place and trace: one  batch");
     for name in ["ac-trunnion", "head-head", "nutating-head"] {
         let machine = job::machine(name, &[])?;
-        let solver = machine
-            .solver(100.0)
-            .map_err(|lack| format!("{name}: {lack:?}"))?;
-        let format = Format {
-            words: vec![3; machine.axes.len()],
-            ..Format::default()
-        };
+        let solver = machine.solver(100.0).map_err(|lack| format!("{name}: {lack:?}"))?;
+        let format = Format { words: vec![3; machine.axes.len()], ..Format::default() };
         let mut words = Words::new(&machine, &format);
         words.set_zero(&solver).ok_or("no zero")?;
         let printed: Vec<Joints> = poses

@@ -51,10 +51,8 @@ const RUNS: usize = 3;
 const GOAL: f64 = 1000.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let set_points = std::env::args()
-        .skip(1)
-        .find_map(|argument| argument.parse().ok())
-        .unwrap_or(SET_POINTS);
+    let set_points =
+        std::env::args().skip(1).find_map(|argument| argument.parse().ok()).unwrap_or(SET_POINTS);
     let folder = tempfile::tempdir()?;
     // An S takes 17.7 s, a point of the wave 1.2 ms.
     let pieces = set_points.div_ceil(17_700);
@@ -62,11 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let cases = [
         ("S, the control keeps the tip", "control", Part::S(pieces)),
         ("S, the post keeps the tip", "post", Part::S(pieces)),
-        (
-            "wave, the control keeps the tip",
-            "control",
-            Part::Wave(points),
-        ),
+        ("wave, the control keeps the tip", "control", Part::Wave(points)),
     ];
     for (name, tcp, part) in cases {
         let whole = program(folder.path(), "whole", tcp, part)?;
@@ -74,10 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut best: Option<Costs> = None;
         for _ in 0..RUNS {
             let costs = staged(&whole, tcp)?;
-            if best
-                .as_ref()
-                .is_none_or(|best| costs.total() < best.total())
-            {
+            if best.as_ref().is_none_or(|best| costs.total() < best.total()) {
                 best = Some(costs);
             }
         }
@@ -93,9 +84,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             took.as_secs_f64()
         ));
     }
-    say(&format!(
-        "at least {GOAL} times real time is asked of all stages together"
-    ));
+    say(&format!("at least {GOAL} times real time is asked of all stages together"));
     Ok(())
 }
 
@@ -190,16 +179,10 @@ impl Costs {
 fn staged(path: &Path, tcp: &str) -> Result<Costs, Box<dyn Error>> {
     let machine = job::machine(MACHINE, &[format!("control.tcp=\"{tcp}\"")])?;
     let lexicon = lexicon(&machine)?;
-    let offsets = Offsets {
-        length: Some(LENGTH.parse()?),
-        ..Offsets::default()
-    };
+    let offsets = Offsets { length: Some(LENGTH.parse()?), ..Offsets::default() };
     let text = |fault: Box<post_machine::diagnostic::Diagnostic>| format!("{fault:?}");
     let file = BufReader::new(File::open(path)?);
-    let limits = Limits {
-        blocks: u64::MAX,
-        ..Limits::default()
-    };
+    let limits = Limits { blocks: u64::MAX, ..Limits::default() };
     let mut program =
         Interpreter::new(&machine, &lexicon, &offsets, limits, "program", file).map_err(text)?;
     let mut tasks = Tasks::new(&machine);
@@ -207,10 +190,7 @@ fn staged(path: &Path, tcp: &str) -> Result<Costs, Box<dyn Error>> {
     let period = machine.motion.period;
     let mut servos = Servos::new(&machine, period).map_err(text)?;
     let mut contour = Contour::new();
-    let mut costs = Costs {
-        period,
-        ..Costs::default()
-    };
+    let mut costs = Costs { period, ..Costs::default() };
     let (mut done, mut planned, mut times) = (Vec::new(), Vec::new(), Vec::new());
     let mut points: Option<SetPoints> = None;
     let mut actual = Vec::new();
@@ -224,9 +204,9 @@ fn staged(path: &Path, tcp: &str) -> Result<Costs, Box<dyn Error>> {
         };
         let filled = match &mut points {
             None => Filled::Wants,
-            Some(points) => planner
-                .fill(points, BATCH, &mut times)
-                .map_err(|fault| format!("{fault:?}"))?,
+            Some(points) => {
+                planner.fill(points, BATCH, &mut times).map_err(|fault| format!("{fault:?}"))?
+            }
         };
         times.clear();
         lap(1, &mut costs);
@@ -262,9 +242,7 @@ fn staged(path: &Path, tcp: &str) -> Result<Costs, Box<dyn Error>> {
                         servos.settle(&first.from.joints);
                     }
                     contour.ahead(&planned.task);
-                    planner
-                        .push(planned.task)
-                        .map_err(|fault| format!("{fault:?}"))?;
+                    planner.push(planned.task).map_err(|fault| format!("{fault:?}"))?;
                 }
                 if ended {
                     planner.end();

@@ -45,10 +45,8 @@ const SETTINGS: [&str; 2] = ["control.dialect=\"linuxcnc\"", "control.tcp=\"post
 const GOAL: f64 = 20.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let blocks = std::env::args()
-        .skip(1)
-        .find_map(|argument| argument.parse().ok())
-        .unwrap_or(BLOCKS);
+    let blocks =
+        std::env::args().skip(1).find_map(|argument| argument.parse().ok()).unwrap_or(BLOCKS);
     let folder = tempfile::tempdir()?;
     let whole = Pair::new(folder.path(), "whole", blocks)?;
     let tenth = Pair::new(folder.path(), "tenth", blocks / 10)?;
@@ -62,10 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut time = |name: &'static str, run: &mut dyn FnMut() -> Result<(), Box<dyn Error>>| {
         let (start, busy) = (Instant::now(), processor());
         run()?;
-        let took = Times {
-            clock: start.elapsed(),
-            processor: processor().saturating_sub(busy),
-        };
+        let took = Times { clock: start.elapsed(), processor: processor().saturating_sub(busy) };
         match rows.iter_mut().find(|(known, _)| *known == name) {
             Some((_, times)) => times.push(took),
             None => rows.push((name, vec![took])),
@@ -87,10 +82,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .iter()
         .map(|(name, times)| {
             let clock = median(times.iter().map(|times| times.clock));
-            (
-                *name,
-                [clock, median(times.iter().map(|times| times.processor))],
-            )
+            (*name, [clock, median(times.iter().map(|times| times.processor))])
         })
         .collect();
     let floor = medians.iter().find(|(name, _)| *name == "rs274 -g");
@@ -98,10 +90,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "\n{:<14} {:>9}  {:>11} {:>9}  {:>11}",
         "", "by clock", "times rs274", "processor", "times rs274"
     ));
-    say(&format!(
-        "{:<14} {:>9}  {:>11} {:>9}",
-        "", "blocks/s", "", "blocks/s"
-    ));
+    say(&format!("{:<14} {:>9}  {:>11} {:>9}", "", "blocks/s", "", "blocks/s"));
     for (name, seconds) in &medians {
         let columns = [0, 1].map(|column| {
             let times = floor.map_or_else(
@@ -113,27 +102,18 @@ fn main() -> Result<(), Box<dyn Error>> {
         say(&format!("{name:<14} {}", columns.join(" ")));
     }
     match floor {
-        Some(_) => say(&format!(
-            "at least {GOAL} times rs274 is asked of `motions`"
-        )),
+        Some(_) => say(&format!("at least {GOAL} times rs274 is asked of `motions`")),
         None => say(
             "rs274 of LinuxCNC is not installed, or does not read the program: nothing to compare with",
         ),
     }
     say("\npeak of the memory, kB       a tenth       all");
     for (name, run) in [
-        (
-            "post read",
-            Pair::read as fn(&Pair) -> Result<u64, Box<dyn Error>>,
-        ),
+        ("post read", Pair::read as fn(&Pair) -> Result<u64, Box<dyn Error>>),
         ("post verify", Pair::verify),
         ("post diff", Pair::diff),
     ] {
-        say(&format!(
-            "{name:<24} {:>11} {:>9}",
-            run(&tenth)?,
-            run(&whole)?
-        ));
+        say(&format!("{name:<24} {:>11} {:>9}", run(&tenth)?, run(&whole)?));
     }
     Ok(())
 }
@@ -153,12 +133,7 @@ impl Pair {
         let mut file = BufWriter::new(File::create(&pair.cl)?);
         generate::write_file(&mut file, points)?;
         file.flush()?;
-        let post = post(&[])
-            .arg(&pair.cl)
-            .arg("-q")
-            .arg("-o")
-            .arg(&pair.program)
-            .status()?;
+        let post = post(&[]).arg(&pair.cl).arg("-q").arg("-o").arg(&pair.program).status()?;
         match post.success() {
             true => Ok(pair),
             false => Err(format!("post: {post}").into()),
@@ -170,12 +145,7 @@ impl Pair {
     }
 
     fn verify(&self) -> Result<u64, Box<dyn Error>> {
-        peak::of(
-            post(&["verify"])
-                .arg(&self.program)
-                .arg("--against")
-                .arg(&self.cl),
-        )
+        peak::of(post(&["verify"]).arg(&self.program).arg("--against").arg(&self.cl))
     }
 
     fn diff(&self) -> Result<u64, Box<dyn Error>> {
@@ -186,9 +156,7 @@ impl Pair {
 /// The command, with the machine.
 fn post(verb: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_post"));
-    command
-        .args(verb)
-        .args(["--machine", MACHINE, "--tool-length", LENGTH]);
+    command.args(verb).args(["--machine", MACHINE, "--tool-length", LENGTH]);
     for setting in SETTINGS {
         command.args(["--set", setting]);
     }
@@ -215,10 +183,7 @@ fn read(program: &Path, lexicon: &Lexicon) -> Result<(), Box<dyn Error>> {
     let mut reader = NcReader::new(File::open(program)?, lexicon.syntax().clone());
     let mut block = NcBlock::default();
     let mut items = 0;
-    while reader
-        .next_block(&mut block)
-        .map_err(|fault| format!("{fault:?}"))?
-    {
+    while reader.next_block(&mut block).map_err(|fault| format!("{fault:?}"))? {
         items += block.items.len();
     }
     std::hint::black_box(items);
@@ -228,20 +193,14 @@ fn read(program: &Path, lexicon: &Lexicon) -> Result<(), Box<dyn Error>> {
 /// Blocks and what they do.
 fn interpret(program: &Path, lexicon: &Lexicon) -> Result<(), Box<dyn Error>> {
     let machine = job::machine(MACHINE, &SETTINGS.map(str::to_owned))?;
-    let offsets = Offsets {
-        length: Some(LENGTH.parse()?),
-        ..Offsets::default()
-    };
+    let offsets = Offsets { length: Some(LENGTH.parse()?), ..Offsets::default() };
     let file = File::open(program)?;
     let name = "whole.ngc";
     let mut program = Interpreter::new(&machine, lexicon, &offsets, Limits::default(), name, file)
         .map_err(|fault| format!("{fault:?}"))?;
     let mut done: Vec<Done> = Vec::new();
     let mut count = 0;
-    while program
-        .next(&mut done)
-        .map_err(|fault| format!("{fault:?}"))?
-    {
+    while program.next(&mut done).map_err(|fault| format!("{fault:?}"))? {
         count += done.len();
         done.clear();
     }
@@ -258,10 +217,7 @@ fn vocabulary() -> Result<Vec<VocabularyWord>, Box<dyn Error>> {
         depth: name == "Z",
         ..ProgramWord::default()
     });
-    let setup = ProgramSetup {
-        words: words.to_vec(),
-        ..ProgramSetup::default()
-    };
+    let setup = ProgramSetup { words: words.to_vec(), ..ProgramSetup::default() };
     let mut dialect = Plugin::linked(plugin)?.dialect(&setup)?;
     Ok(dialect.vocabulary()?)
 }
@@ -282,11 +238,7 @@ struct Times {
 fn processor() -> Duration {
     // Fields 14 to 17 of proc(5), in hundredths of a second; the name in field 2 may hold blanks.
     let text = fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    let fields = text
-        .rsplit(')')
-        .next()
-        .unwrap_or_default()
-        .split_whitespace();
+    let fields = text.rsplit(')').next().unwrap_or_default().split_whitespace();
     let ticks: u64 = fields.skip(11).take(4).flat_map(str::parse::<u64>).sum();
     Duration::from_millis(10 * ticks)
 }

@@ -52,10 +52,8 @@ const CASES: [(&str, &str); 4] = [
 const NOWHERE: &str = "/dev/null";
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let points = std::env::args()
-        .skip(1)
-        .find_map(|argument| argument.parse().ok())
-        .unwrap_or(POINTS);
+    let points =
+        std::env::args().skip(1).find_map(|argument| argument.parse().ok()).unwrap_or(POINTS);
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("wave.cls");
     let program = folder.path().join("wave.nc");
@@ -100,14 +98,8 @@ fn agree(path: &Path, folder: &Path) -> Result<(), Box<dyn Error>> {
 }
 
 fn job(path: &Path, machine: &str, tcp: &str) -> Result<(), Box<dyn Error>> {
-    let settings = [
-        format!("control.tcp={tcp:?}"),
-        "control.dialect=\"fanuc\"".to_owned(),
-    ];
-    let job = Job {
-        tool_length: Some(100.0),
-        ..Job::default()
-    };
+    let settings = [format!("control.tcp={tcp:?}"), "control.dialect=\"fanuc\"".to_owned()];
+    let job = Job { tool_length: Some(100.0), ..Job::default() };
     job::run(path, machine, &settings, job).map(drop)
 }
 
@@ -120,11 +112,7 @@ fn command(path: &Path, machine: &str, tcp: &str, program: &Path) -> Result<(), 
         .arg("--output")
         .arg(program)
         .status()?;
-    if status.success() {
-        Ok(())
-    } else {
-        Err(format!("post on {machine}: {status}").into())
-    }
+    if status.success() { Ok(()) } else { Err(format!("post on {machine}: {status}").into()) }
 }
 
 fn say(line: &str) {
@@ -140,11 +128,7 @@ struct Table {
 
 impl Table {
     fn new(title: &'static str, points: u64) -> Self {
-        Self {
-            title,
-            points,
-            rows: Vec::new(),
-        }
+        Self { title, points, rows: Vec::new() }
     }
 
     /// Runs something once.
@@ -164,15 +148,9 @@ impl Table {
     }
 
     fn tell(&mut self) {
-        let medians: Vec<f64> = self
-            .rows
-            .iter_mut()
-            .map(|(_, times)| median(times).as_secs_f64())
-            .collect();
-        say(&format!(
-            "\n{:<32} ns a point   blocks/s  times plain  times masked",
-            self.title
-        ));
+        let medians: Vec<f64> =
+            self.rows.iter_mut().map(|(_, times)| median(times).as_secs_f64()).collect();
+        say(&format!("\n{:<32} ns a point   blocks/s  times plain  times masked", self.title));
         for ((name, _), seconds) in self.rows.iter().zip(&medians) {
             say(&format!(
                 "{name:<32} {:>10.1} {:>10.0} {:>12.2} {:>13.2}",

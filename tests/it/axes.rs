@@ -38,13 +38,7 @@ struct Setup {
 
 /// `machine` with a tool of 100 mm.
 fn on(machine: &'static str) -> Setup {
-    Setup {
-        machine,
-        file: None,
-        set: Vec::new(),
-        length: 100.0,
-        ending: "ncl",
-    }
+    Setup { machine, file: None, set: Vec::new(), length: 100.0, ending: "ncl" }
 }
 
 impl Setup {
@@ -253,26 +247,15 @@ fn turning_cuts_from(axis: V) -> String {
 fn clamps_hold_axes_that_are_not_indexed() {
     let sample = crate::common::sample("wedge.ncl");
     let wedge = |with: &[&str]| {
-        let mut all = vec![
-            "-q",
-            "-m",
-            "ac-trunnion",
-            "--tool-length",
-            "100",
-            "-o",
-            "-",
-            "--verify",
-        ];
+        let mut all =
+            vec!["-q", "-m", "ac-trunnion", "--tool-length", "100", "-o", "-", "--verify"];
         all.extend(with);
         all.push(sample.to_str().unwrap());
         let done = crate::common::post(&all);
         assert_eq!(done.code, 0, "{}", done.err);
         done.out
     };
-    let own = wedge(&[
-        "--set",
-        "control.fanuc.clamps=[\"A M20 M21\", \"C M10 M11\"]",
-    ]);
+    let own = wedge(&["--set", "control.fanuc.clamps=[\"A M20 M21\", \"C M10 M11\"]"]);
     let keys = wedge(&[
         "--set",
         "axis.A.clamp=\"M20\"",

@@ -43,9 +43,7 @@ fn grid(folder: &Path, output: &str, more: &[&str]) -> Run {
 fn rows(folder: &Path, output: &str) -> Vec<Value> {
     let text = fs::read_to_string(folder.join(output)).unwrap();
     let lines = text.lines();
-    lines
-        .map(|line| serde_json::from_str(line).unwrap())
-        .collect()
+    lines.map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
 /// A folder with lines of jobs in `jobs.jsonl`.
@@ -58,17 +56,10 @@ fn listed(lines: &[&str]) -> TempDir {
 #[test]
 fn every_job_of_the_grid_is_a_row_as_the_command_would_make_it() {
     let folder = tempfile::tempdir().unwrap();
-    let done = grid(
-        folder.path(),
-        "r.jsonl",
-        &["--verify", "--predict", "--jobs", "2"],
-    );
+    let done = grid(folder.path(), "r.jsonl", &["--verify", "--predict", "--jobs", "2"]);
     let rows = rows(folder.path(), "r.jsonl");
     assert_eq!(rows.len(), 24);
-    assert_contains(
-        &done.out,
-        &["24 jobs: 16 written, 8 refused", "out-of-reach 4"],
-    );
+    assert_contains(&done.out, &["24 jobs: 16 written, 8 refused", "out-of-reach 4"]);
     let mut written = 0;
     for (number, row) in rows.iter().enumerate() {
         assert_eq!(row["job"], number);
@@ -114,22 +105,10 @@ fn every_job_of_the_grid_is_a_row_as_the_command_would_make_it() {
             ("cycle_time_s", &summary["time_s"]),
             ("blocks", &summary["blocks"]),
             ("tip_deviation_mm", &summary["tip_deviation_mm"]["value"]),
-            (
-                "axis_deviation_deg",
-                &summary["axis_deviation_deg"]["value"],
-            ),
-            (
-                "predicted_cycle_time_s",
-                &summary["prediction"]["time"]["cycle_s"],
-            ),
-            (
-                "contour_error_mm",
-                &summary["prediction"]["contour"]["tip_mm"]["largest"],
-            ),
-            (
-                "verified_tip_deviation_mm",
-                &summary["verification"]["tip"]["value"],
-            ),
+            ("axis_deviation_deg", &summary["axis_deviation_deg"]["value"]),
+            ("predicted_cycle_time_s", &summary["prediction"]["time"]["cycle_s"]),
+            ("contour_error_mm", &summary["prediction"]["contour"]["tip_mm"]["largest"]),
+            ("verified_tip_deviation_mm", &summary["verification"]["tip"]["value"]),
         ];
         for (column, value) in same {
             assert_eq!(row[column], *value, "{column}");
@@ -216,11 +195,7 @@ fn a_second_run_does_no_job_and_a_change_of_anything_does_its_jobs() {
     assert!(!go(&["--verify"]).0, "an option");
     fs::write(&file, GOOD.replace("20,0,10", "21,0,10")).unwrap();
     assert!(!go(&[]).0, "the CL file");
-    fs::write(
-        &parent,
-        "extends = \"ac-trunnion\"\n[accuracy]\nplacement = \"even\"\n",
-    )
-    .unwrap();
+    fs::write(&parent, "extends = \"ac-trunnion\"\n[accuracy]\nplacement = \"even\"\n").unwrap();
     assert!(!go(&[]).0, "what the machine extends");
     let (known, _) = go(&[]);
     assert!(known);
@@ -296,12 +271,7 @@ fn what_cannot_be_done_at_all_is_a_row_too() {
     let rows = rows(folder.path(), "r.jsonl");
     let told: Vec<(&str, &str)> = rows
         .iter()
-        .map(|row| {
-            (
-                row["state"].as_str().unwrap(),
-                row["codes"].as_str().unwrap(),
-            )
-        })
+        .map(|row| (row["state"].as_str().unwrap(), row["codes"].as_str().unwrap()))
         .collect();
     assert_eq!(told[0], ("refused", "input"));
     assert_eq!(told[1], ("refused", "machine"));
@@ -318,19 +288,12 @@ fn what_cannot_be_done_at_all_is_a_row_too() {
 fn a_plugin_that_refuses_is_a_row() {
     let folder = tempfile::tempdir().unwrap();
     let library = crate::plugins::built("faulty");
-    let name = format!(
-        "{}post_faulty{}",
-        std::env::consts::DLL_PREFIX,
-        std::env::consts::DLL_SUFFIX
-    );
+    let name =
+        format!("{}post_faulty{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     fs::copy(library, folder.path().join(name)).unwrap();
     let more = ["-m", "ac-trunnion", "--tool-length", "0", "--set"];
     let mut more = more.to_vec();
-    more.extend([
-        "accuracy.model=sampled,faulty",
-        "--set",
-        "accuracy.faulty.fault=none-of-them",
-    ]);
+    more.extend(["accuracy.model=sampled,faulty", "--set", "accuracy.faulty.fault=none-of-them"]);
     more.extend(["--plugins", folder.path().to_str().unwrap()]);
     batch(folder.path(), "r.jsonl", &more);
     let rows = rows(folder.path(), "r.jsonl");
@@ -353,43 +316,15 @@ fn slips_are_told_before_any_work() {
         (
             &["jobs.jsonl", "-o", "r.csv"],
             1,
-            &[
-                "jobs.jsonl, line 1",
-                "mont",
-                "line 3",
-                "line 4",
-                "tool_length",
-            ],
+            &["jobs.jsonl, line 1", "mont", "line 3", "line 4", "tool_length"],
         ),
+        (&["a.cls", "-o", "r.csv"], 1, &["no machine is named for a.cls"]),
+        (&["a.cls", "-m", "vmc", "-o", "r.xls"], 1, &[".parquet, .csv or .jsonl"]),
+        (&["a.cls", "-m", "vmc", "-o", "r.csv", "--shard", "3/2"], 2, &["is no part"]),
+        (&["a.cls", "-m", "vmc", "-o", "r.csv", "--turn", "0:90:-1"], 2, &["range"]),
+        (&["a.cls", "-m", "vmc", "-o", "r.csv", "--turn", "north"], 1, &["turn: `north`"]),
         (
-            &["a.cls", "-o", "r.csv"],
-            1,
-            &["no machine is named for a.cls"],
-        ),
-        (
-            &["a.cls", "-m", "vmc", "-o", "r.xls"],
-            1,
-            &[".parquet, .csv or .jsonl"],
-        ),
-        (
-            &["a.cls", "-m", "vmc", "-o", "r.csv", "--shard", "3/2"],
-            2,
-            &["is no part"],
-        ),
-        (
-            &["a.cls", "-m", "vmc", "-o", "r.csv", "--turn", "0:90:-1"],
-            2,
-            &["range"],
-        ),
-        (
-            &["a.cls", "-m", "vmc", "-o", "r.csv", "--turn", "north"],
-            1,
-            &["turn: `north`"],
-        ),
-        (
-            &[
-                "a.cls", "-m", "vmc", "-o", "r.csv", "--svg", "m.svg", "--x", "file", "--y", "sate",
-            ],
+            &["a.cls", "-m", "vmc", "-o", "r.csv", "--svg", "m.svg", "--x", "file", "--y", "sate"],
             1,
             &["there is no column sate", "state"],
         ),
@@ -404,9 +339,7 @@ fn slips_are_told_before_any_work() {
             &["jobs.jsonl", "this is no journal of post batch"],
         ),
         (
-            &[
-                "a.cls", "-m", "vmc", "-o", "r.csv", "--set", "Lm=1", "--set", "Lm=2",
-            ],
+            &["a.cls", "-m", "vmc", "-o", "r.csv", "--set", "Lm=1", "--set", "Lm=2"],
             1,
             &["--set has Lm twice", "--set Lm=200,250"],
         ),
@@ -422,47 +355,23 @@ fn slips_are_told_before_any_work() {
 fn the_map_shows_every_cell_once() {
     let folder = tempfile::tempdir().unwrap();
     let svg = folder.path().join("map.svg");
-    let more = [
-        "--svg",
-        svg.to_str().unwrap(),
-        "--x",
-        "tool_length_mm",
-        "--y",
-    ];
-    grid(
-        folder.path(),
-        "r.csv",
-        &[&more[..], &["accuracy.placement"]].concat(),
-    );
+    let more = ["--svg", svg.to_str().unwrap(), "--x", "tool_length_mm", "--y"];
+    grid(folder.path(), "r.csv", &[&more[..], &["accuracy.placement"]].concat());
     let picture = fs::read_to_string(&svg).unwrap();
     // Four cells of six maps, and the white ground.
     assert_eq!(picture.matches("<rect ").count(), 24 + 1);
     // Eight of them are refused, each two lines; two ticks to each side of each map.
     assert_eq!(picture.matches("<line ").count(), 8 * 2 + 6 * 4);
-    assert_contains(
-        &picture,
-        &["blade.cls on vmc", "tool_length_mm", "cycle_time_s"],
-    );
+    assert_contains(&picture, &["blade.cls on vmc", "tool_length_mm", "cycle_time_s"]);
 }
 
 #[test]
 fn a_table_can_go_to_standard_output() {
     let file = sample("blade.cls");
-    let words = [
-        "batch",
-        "-m",
-        "ac-trunnion",
-        "--tool-length",
-        "0,1",
-        "-o",
-        "-",
-    ];
+    let words = ["batch", "-m", "ac-trunnion", "--tool-length", "0,1", "-o", "-"];
     let done = post(&[&words[..], &[file.to_str().unwrap()]].concat());
     assert_eq!(done.code, 0, "{}", done.err);
     assert_eq!(done.out.lines().count(), 3);
-    assert!(
-        done.out
-            .starts_with("job,file,machine,tool_length_mm,state,")
-    );
+    assert!(done.out.starts_with("job,file,machine,tool_length_mm,state,"));
     assert_contains(&done.err, &["2 jobs: 2 written"]);
 }

@@ -17,11 +17,7 @@ const SECONDS: &str = "20";
 fn bounded(arguments: &[&str], input: &[u8]) -> Run {
     let mut shell = command_as("sh");
     shell
-        .args([
-            "-c",
-            r#"ulimit -v "$1" && ulimit -t "$2" && shift 2 && exec "$@""#,
-            "sh",
-        ])
+        .args(["-c", r#"ulimit -v "$1" && ulimit -t "$2" && shift 2 && exec "$@""#, "sh"])
         .args([SPACE, SECONDS, env!("CARGO_BIN_EXE_post")])
         .args(arguments);
     run(&mut shell, input)
@@ -47,38 +43,22 @@ fn refused(run: &Run, parts: &[&str]) {
     for part in parts {
         assert!(run.err.contains(part), "`{part}` is not in:\n{}", run.err);
     }
-    assert!(
-        run.err.len() < 60_000,
-        "{} bytes of messages",
-        run.err.len()
-    );
+    assert!(run.err.len() < 60_000, "{} bytes of messages", run.err.len());
 }
 
 #[test]
 fn curves_without_end_are_refused() {
     let spline = |knots: &str, points: &str| {
-        file(&format!(
-            "NURBS/\nKNOT/{knots}\n{points}CNTRL/1,1,1\nGOTO/1,1,1"
-        ))
+        file(&format!("NURBS/\nKNOT/{knots}\n{points}CNTRL/1,1,1\nGOTO/1,1,1"))
     };
     for (text, parts) in [
         (
             spline("1", "CNTRL/1e12,0,0\nCNTRL/0,1e12,0\n"),
-            [
-                "error[coordinate]",
-                "1.000e12 mm",
-                "1e7 mm",
-                "CNTRL/1e12,0,0",
-            ],
+            ["error[coordinate]", "1.000e12 mm", "1e7 mm", "CNTRL/1e12,0,0"],
         ),
         (
             spline("1e-300,1", "CNTRL/10,0,0\nCNTRL/0,10,0\nCNTRL/2,1,1\n"),
-            [
-                "error[spline]",
-                "countless chords",
-                "1000000 are possible",
-                "GOTO/1,1,1",
-            ],
+            ["error[spline]", "countless chords", "1000000 are possible", "GOTO/1,1,1"],
         ),
         (
             file("CIRCLE/1e11,0,0,0,0,1,1e11\nGOTO/0,0,50"),
@@ -86,12 +66,7 @@ fn curves_without_end_are_refused() {
         ),
         (
             file("GOTO/0,10,0\nCIRCLE/0,0,0,0,0,1,10,TIMES,4000000000\nGOTO/10,0,-10"),
-            [
-                "error[arc]",
-                "chords to stay within",
-                "1000000 are possible",
-                "GOTO/10,0,-10",
-            ],
+            ["error[arc]", "chords to stay within", "1000000 are possible", "GOTO/10,0,-10"],
         ),
         (
             file("CYCLE/DEEP,FEDTO,100,MMPM,200,RAPTO,3,STEP,1e-300\nGOTO/1,1,1"),
@@ -106,58 +81,22 @@ fn curves_without_end_are_refused() {
 #[test]
 fn numbers_that_no_machine_has_are_refused_with_their_limit() {
     for (lines, parts) in [
-        (
-            "LOADTL/2,LENGTH,1e300",
-            ["error[tool]", "1e300 mm", "1e7 mm"],
-        ),
+        ("LOADTL/2,LENGTH,1e300", ["error[tool]", "1e300 mm", "1e7 mm"]),
         ("CUTTER/1e300", ["error[cutter]", "1e300", "1e7 mm"]),
         ("DELAY/1e300", ["error[dwell]", "1e300 s", "86400 s"]),
         ("DELAY/-1", ["error[dwell]", "-1 s", "86400 s"]),
         ("DELAY/1e300,REV", ["error[dwell]", "e298 s", "86400 s"]),
-        (
-            "SPINDL/RPM,1e300,CLW",
-            ["error[spindle-speed]", "rpm", "SPINDL/RPM,1e300"],
-        ),
-        (
-            "FEDRAT/MMPM,1e300",
-            ["error[feed]", "1e300 mm/min", "1000000 mm/min"],
-        ),
-        (
-            "FEDRAT/MMPR,1e6",
-            ["error[feed]", "mm a revolution", "10000"],
-        ),
-        (
-            "FEDRAT/INVERS,1e300",
-            ["error[feed]", "moves a minute", "1e9"],
-        ),
-        (
-            "GOTO/1e308,0,0",
-            ["error[coordinate]", "1.000e308 mm", "1e7 mm"],
-        ),
-        (
-            "GODLTA/1e308",
-            ["error[coordinate]", "1.000e308 mm", "1e7 mm"],
-        ),
-        (
-            "FROM/0,-1e9,0",
-            ["error[coordinate]", "1.000e9 mm", "1e7 mm"],
-        ),
-        (
-            "GOTO/1,2,3,1e308,1e308,1",
-            ["error[axis]", "no length", "direction"],
-        ),
-        (
-            "TLAXIS/1e308,1e308,1",
-            ["error[axis]", "tool axis", "TLAXIS"],
-        ),
-        (
-            "ROTABL/AAXIS,1e300",
-            ["error[rotabl]", "hundred turns", "ROTABL"],
-        ),
-        (
-            "MSYS/0,0,0,1e308,0,0,0,1e308,0",
-            ["error[msys]", "unit vectors", "MSYS"],
-        ),
+        ("SPINDL/RPM,1e300,CLW", ["error[spindle-speed]", "rpm", "SPINDL/RPM,1e300"]),
+        ("FEDRAT/MMPM,1e300", ["error[feed]", "1e300 mm/min", "1000000 mm/min"]),
+        ("FEDRAT/MMPR,1e6", ["error[feed]", "mm a revolution", "10000"]),
+        ("FEDRAT/INVERS,1e300", ["error[feed]", "moves a minute", "1e9"]),
+        ("GOTO/1e308,0,0", ["error[coordinate]", "1.000e308 mm", "1e7 mm"]),
+        ("GODLTA/1e308", ["error[coordinate]", "1.000e308 mm", "1e7 mm"]),
+        ("FROM/0,-1e9,0", ["error[coordinate]", "1.000e9 mm", "1e7 mm"]),
+        ("GOTO/1,2,3,1e308,1e308,1", ["error[axis]", "no length", "direction"]),
+        ("TLAXIS/1e308,1e308,1", ["error[axis]", "tool axis", "TLAXIS"]),
+        ("ROTABL/AAXIS,1e300", ["error[rotabl]", "hundred turns", "ROTABL"]),
+        ("MSYS/0,0,0,1e308,0,0,0,1e308,0", ["error[msys]", "unit vectors", "MSYS"]),
         (
             "CYCLE/DRILL,FEDTO,5,MMPM,100,RAPTO,3,DWELL,1e300\nGOTO/1,1,1",
             ["error[cycle]", "dwell of 1e300 s", "86400 s"],
@@ -191,10 +130,7 @@ fn flags_have_the_limits_of_the_file() {
 fn words_and_findings_are_counted_to_an_end() {
     let letters = |number: usize| -> String {
         let digits = number.to_string();
-        digits
-            .bytes()
-            .map(|digit| char::from(digit - b'0' + b'A'))
-            .collect()
+        digits.bytes().map(|digit| char::from(digit - b'0' + b'A')).collect()
     };
     let mut words = String::new();
     for number in 0..200_000 {
@@ -224,10 +160,7 @@ fn words_and_findings_are_counted_to_an_end() {
     assert!(run.err.len() < 100_000);
 
     let long = "X".repeat(900_000);
-    refused(
-        &posted("vmc", &file(&long)),
-        &["a word of 900000 characters", "64"],
-    );
+    refused(&posted("vmc", &file(&long)), &["a word of 900000 characters", "64"]);
     let run = posted("vmc", &file(&format!("FEDRAT/{long}")));
     refused(&run, &["error[syntax]", "…"]);
     let run = posted("vmc", &file(&format!("INSERT M8 {long}")));
@@ -255,12 +188,7 @@ fn what_a_machine_file_holds_has_an_end() {
     let vmc = "extends = \"vmc\"\n";
     let mut chained = format!("{vmc}[parameters]\np0 = 1\np1 = 1\n");
     for number in 2..900 {
-        let _ = writeln!(
-            chained,
-            "p{number} = \"(p{} + p{}) / 2\"",
-            number - 1,
-            number - 2
-        );
+        let _ = writeln!(chained, "p{number} = \"(p{} + p{}) / 2\"", number - 1, number - 2);
     }
     let run = on(&chained);
     assert_eq!(run.code, 0, "{}", run.err);
@@ -270,61 +198,21 @@ fn what_a_machine_file_holds_has_an_end() {
         format!("{vmc}[{table}]\n{entries}")
     };
     for (text, part) in [
-        (
-            entries("parameters", &|n| format!("p{n} = 1"), 1_001),
-            "[parameters] has 1001 entries",
-        ),
-        (
-            entries("tools", &|n| format!("{n} = 1"), 50_000),
-            "[tools] has 50000 entries",
-        ),
-        (
-            entries("cl.words", &|n| format!("W{n} = \"M1\""), 40_000),
-            "[cl.words] has 40000",
-        ),
-        (
-            entries("control.fanuc", &|n| format!("o{n} = 1"), 60_000),
-            "60000 options; at most 200",
-        ),
-        (
-            entries("head", &|n| format!("h{n} = {{}}"), 33),
-            "33 heads; at most 32",
-        ),
-        (
-            entries("axis", &|n| format!("A{n}.cyclic = true"), 20_000),
-            "axis.A1",
-        ),
-        (
-            format!("{vmc}chain = \"[w {} t]\"\n", "A1' ".repeat(100_000)),
-            "1024 bytes",
-        ),
-        (
-            format!("{vmc}name = \"{}\"\n", "x".repeat(2_000_000)),
-            "1048576 bytes",
-        ),
-        (
-            format!(
-                "{vmc}parameters.a = {}1{}\n",
-                "[".repeat(9_999),
-                "]".repeat(9_999)
-            ),
-            "recursion",
-        ),
-        (
-            format!("{vmc}axis.X.travel = [-1e308, 1e308]\n"),
-            "none is larger than 1e12",
-        ),
-        (
-            format!("{vmc}spindle.max_speed = 1e300\n"),
-            "none is larger than 1e12",
-        ),
+        (entries("parameters", &|n| format!("p{n} = 1"), 1_001), "[parameters] has 1001 entries"),
+        (entries("tools", &|n| format!("{n} = 1"), 50_000), "[tools] has 50000 entries"),
+        (entries("cl.words", &|n| format!("W{n} = \"M1\""), 40_000), "[cl.words] has 40000"),
+        (entries("control.fanuc", &|n| format!("o{n} = 1"), 60_000), "60000 options; at most 200"),
+        (entries("head", &|n| format!("h{n} = {{}}"), 33), "33 heads; at most 32"),
+        (entries("axis", &|n| format!("A{n}.cyclic = true"), 20_000), "axis.A1"),
+        (format!("{vmc}chain = \"[w {} t]\"\n", "A1' ".repeat(100_000)), "1024 bytes"),
+        (format!("{vmc}name = \"{}\"\n", "x".repeat(2_000_000)), "1048576 bytes"),
+        (format!("{vmc}parameters.a = {}1{}\n", "[".repeat(9_999), "]".repeat(9_999)), "recursion"),
+        (format!("{vmc}axis.X.travel = [-1e308, 1e308]\n"), "none is larger than 1e12"),
+        (format!("{vmc}spindle.max_speed = 1e300\n"), "none is larger than 1e12"),
     ] {
         refused(&on(&text), &[part, "error"]);
     }
-    refused(
-        &posted("/dev/zero", &file("")),
-        &["/dev/zero", "1048576 bytes"],
-    );
+    refused(&posted("/dev/zero", &file("")), &["/dev/zero", "1048576 bytes"]);
 }
 
 #[test]
@@ -336,9 +224,7 @@ fn what_is_extended_is_a_machine_file_and_nothing_else_is_shown() {
     fs::write(at("latin.toml"), b"name = \"SECRET\xFF\"\n").unwrap();
     std::os::unix::fs::symlink("/etc/passwd", at("link.toml")).unwrap();
     fs::create_dir(at("folder.toml")).unwrap();
-    let made = std::process::Command::new("mkfifo")
-        .arg(at("pipe.toml"))
-        .status();
+    let made = std::process::Command::new("mkfifo").arg(at("pipe.toml")).status();
     assert!(made.unwrap().success());
     std::os::unix::fs::symlink("/dev/zero", at("zero.toml")).unwrap();
     for (name, part) in [
@@ -374,17 +260,11 @@ fn no_text_of_a_machine_file_becomes_a_second_line() {
         "parameters.\"a\\u202E\" = 1",
     ] {
         let run = on(&format!("extends = \"vmc\"\n{text}\n"));
-        refused(
-            &run,
-            &["error[machine-text]", "this text holds U+", "mine.toml:"],
-        );
+        refused(&run, &["error[machine-text]", "this text holds U+", "mine.toml:"]);
         assert!(!run.err.contains('\u{1B}') && !run.err.contains('\u{202E}'));
     }
     let set = ["-q", "-m", "vmc", "--set", "name=a\nM30", "-o", "-", "-"];
-    refused(
-        &bounded(&set, file("").as_bytes()),
-        &["error[setting]", "--set name=a\\u{a}M30"],
-    );
+    refused(&bounded(&set, file("").as_bytes()), &["error[setting]", "--set name=a\\u{a}M30"]);
 }
 
 #[test]
@@ -394,32 +274,13 @@ fn texts_of_a_cl_file_stay_in_their_line() {
     assert_eq!(run.code, 0, "{}", run.err);
     let odd = |letter: char| letter != '\n' && post_grammar::text::is_unprintable(letter);
     assert!(!run.out.contains(odd), "{}", run.out);
-    assert!(
-        run.out.contains("(A M30)") && run.out.contains("(B M31)"),
-        "{}",
-        run.out
-    );
+    assert!(run.out.contains("(A M30)") && run.out.contains("(B M31)"), "{}", run.out);
     for line in run.out.lines() {
-        assert!(
-            !line.starts_with("M31") && !line.starts_with("M32"),
-            "{line}"
-        );
+        assert!(!line.starts_with("M31") && !line.starts_with("M32"), "{line}");
     }
-    let with = [
-        "-q",
-        "-m",
-        "vmc",
-        "--set",
-        "control.insert=literal",
-        "-o",
-        "-",
-        "-",
-    ];
+    let with = ["-q", "-m", "vmc", "--set", "control.insert=literal", "-o", "-", "-"];
     let text = file("INSERT G4 X1\u{2028}M30");
-    refused(
-        &bounded(&with, text.as_bytes()),
-        &["error[insert]", "U+2028", "G4 X1\\u{2028}M30"],
-    );
+    refused(&bounded(&with, text.as_bytes()), &["error[insert]", "U+2028", "G4 X1\\u{2028}M30"]);
 }
 
 #[test]
@@ -431,19 +292,13 @@ fn what_a_terminal_would_obey_is_escaped_wherever_it_comes_from() {
     let path = path.to_str().unwrap();
     let program = program.to_str().unwrap();
     let mut runs = vec![
-        bounded(
-            &["-m", "vmc", "--tool-length", "9", path, "-o", program],
-            b"",
-        ),
+        bounded(&["-m", "vmc", "--tool-length", "9", path, "-o", program], b""),
         bounded(&["-m", "no\u{1B}such", path], b""),
         bounded(&["words", "no\u{1B}such"], b""),
         bounded(&["--no\u{1B}such", path], b""),
     ];
     fs::write(path, file("GOTO/1,1,1")).unwrap();
-    runs.push(bounded(
-        &["-m", "vmc", "--tool-length", "9", path, "-o", program],
-        b"",
-    ));
+    runs.push(bounded(&["-m", "vmc", "--tool-length", "9", path, "-o", program], b""));
     assert_eq!(runs[4].code, 0, "{}", runs[4].err);
     for run in &runs {
         let odd = |letter: char| letter != '\n' && letter.is_control();
@@ -451,10 +306,7 @@ fn what_a_terminal_would_obey_is_escaped_wherever_it_comes_from() {
         assert!(!run.out.contains(odd), "{:?}", run.out);
     }
     // The program is named after its file, in one line.
-    let without = bounded(
-        &["-q", "-m", "vmc", "--tool-length", "9", "-o", "-", path],
-        b"",
-    );
+    let without = bounded(&["-q", "-m", "vmc", "--tool-length", "9", "-o", "-", path], b"");
     assert_eq!(without.code, 0, "{}", without.err);
     assert!(!without.out.contains('\u{1B}') && !without.out.lines().any(|line| line == "M30.CLS"));
     assert!(Path::new(program).exists());

@@ -36,15 +36,12 @@ fn ahead_of_the_change(machine: &str, more: &str) -> Vec<String> {
     fs::write(folder.path().join("part.cls"), LEANING).unwrap();
     let job = ["-m", "m.toml", "--tool-length", "100"];
     let mut post = command();
-    post.current_dir(folder.path())
-        .args(["-q", "-o", "part.nc", "part.cls"]);
+    post.current_dir(folder.path()).args(["-q", "-o", "part.nc", "part.cls"]);
     let made = run(post.args(job), b"");
     assert_eq!(made.code, 0, "{}", made.err);
     let program = fs::read_to_string(folder.path().join("part.nc")).unwrap();
     let mut verify = command();
-    verify
-        .current_dir(folder.path())
-        .args(["verify", "part.nc", "--against", "part.cls"]);
+    verify.current_dir(folder.path()).args(["verify", "part.nc", "--against", "part.cls"]);
     let verified = run(verify.args(job), b"");
     assert_eq!(verified.code, 0, "{program}\n{}", verified.err);
     let (ahead, _) = program.split_once("T2 M6\n").expect(&program);
@@ -61,10 +58,7 @@ fn a_head_returns_to_zero_and_a_table_stays() {
     let down = usual.iter().position(|block| block.starts_with("G0 Z"));
     assert!(up.is_some() && (down.is_none() || up < down), "{usual:#?}");
     // What the file says counts.
-    assert_eq!(
-        head("[control]\npark = { A = 30 }")[0],
-        "G53 G0 A30.000 C0.000"
-    );
+    assert_eq!(head("[control]\npark = { A = 30 }")[0], "G53 G0 A30.000 C0.000");
     assert_eq!(head("[control]\nchange = { C = 90 }")[0], "G53 G0 C90.000");
     assert_eq!(head("[control]\nchange = {}")[0], "M5");
     // Where it cannot stand at 0 nothing is known.

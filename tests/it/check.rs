@@ -33,22 +33,10 @@ fn close(value: &Value, wanted: f64, within: f64) {
 fn the_reach_is_what_the_travels_say() {
     let cap = |tilt: f64| (1.0 - libm::cos(tilt.to_radians())) / 2.0;
     for (machine, class, tilt) in [
-        (
-            "ac-trunnion",
-            "five-axis, table-table: C on A; orthogonal",
-            120.0,
-        ),
+        ("ac-trunnion", "five-axis, table-table: C on A; orthogonal", 120.0),
         ("dmu50", "five-axis, table-table: C on B; orthogonal", 110.0),
-        (
-            "head-head",
-            "five-axis, head-head: C carries A; orthogonal",
-            110.0,
-        ),
-        (
-            "head-head-360",
-            "five-axis, head-head: C carries A; orthogonal",
-            180.0,
-        ),
+        ("head-head", "five-axis, head-head: C carries A; orthogonal", 110.0),
+        ("head-head-360", "five-axis, head-head: C carries A; orthogonal", 180.0),
         (
             "nutating-head",
             "five-axis, head-table: head B, table C; nutating, 45° between C and B, 45° between B and tool",
@@ -97,11 +85,7 @@ fn two_solutions_where_both_signs_of_the_tilt_are_inside() {
 fn a_nutating_head_reaches_a_right_angle_from_45_degrees_alone() {
     for (rotary, most, tilt) in [
         ("[0, 1, 1]", 180.0, 90.0),
-        (
-            "[0, 1, 1.1]",
-            180.0,
-            2.0 * libm::atan(1.0 / 1.1).to_degrees(),
-        ),
+        ("[0, 1, 1.1]", 180.0, 2.0 * libm::atan(1.0 / 1.1).to_degrees()),
         ("[0, 1.1, 1]", 180.0, 2.0 * libm::atan(1.1).to_degrees()),
         ("[0, 1, 1]", 90.0, 60.0),
     ] {
@@ -117,11 +101,7 @@ fn an_axis_across_shuts_out_the_upright_tool() {
     let (check, run) = check(&["head-head", "--set", "tool.axis=[0.3, 0, 1]"]);
     assert!(run.err.contains("cannot stand upright"), "{}", run.err);
     assert_eq!(check["reach"]["tilt_in_all_azimuths_deg"], Value::Null);
-    close(
-        &check["poles"]["at"][0]["missed_by_deg"],
-        libm::atan(0.3).to_degrees(),
-        1e-6,
-    );
+    close(&check["poles"]["at"][0]["missed_by_deg"], libm::atan(0.3).to_degrees(), 1e-6);
 }
 
 /// Where C leans by e against the plane across A, a cone of e about C is out of reach: A cannot turn the tool into it.
@@ -138,17 +118,9 @@ fn a_measured_table_has_a_small_hole_at_its_pole() {
 #[test]
 fn what_looks_wrong_is_told() {
     let (_, run) = check(&["ac-trunnion", "--mount", "0,0,500"]);
-    assert!(
-        run.err.contains("part origin is out of travel: Z"),
-        "{}",
-        run.err
-    );
+    assert!(run.err.contains("part origin is out of travel: Z"), "{}", run.err);
     let (check, run) = check(&["ac-trunnion", "--set", "axis.A.travel=[40, 60]"]);
-    assert!(
-        run.err.contains("A cannot stand at the drawing's zero"),
-        "{}",
-        run.err
-    );
+    assert!(run.err.contains("A cannot stand at the drawing's zero"), "{}", run.err);
     assert_eq!(check["reach"]["ways_upright"], 0);
 }
 
@@ -171,11 +143,7 @@ fn signs(check: &Value) -> BTreeMap<String, (String, String)> {
         .map(|row| {
             let text = |key: &str| row[key].as_str().unwrap().to_owned();
             let by = row["by"].as_f64().unwrap();
-            let key = format!(
-                "{} {}{by:.0}",
-                text("axis"),
-                if by > 0.0 { "+" } else { "" }
-            );
+            let key = format!("{} {}{by:.0}", text("axis"), if by > 0.0 { "+" } else { "" });
             (key, (text("tool"), text("seen")))
         })
         .collect()
@@ -205,26 +173,11 @@ fn the_sign_table_of_a_table_and_of_a_head() {
         "from +Z to +Y",
         "the table turns counter-clockwise seen from +X, its +Y side to +Z",
     );
-    sign(
-        &table,
-        "A +30",
-        "30° towards -Y",
-        "its +Y side 30° towards -Z",
-    );
-    sign(
-        &table,
-        "X +100",
-        "moves 100 mm to +X",
-        "the head moves to +X",
-    );
+    sign(&table, "A +30", "30° towards -Y", "its +Y side 30° towards -Z");
+    sign(&table, "X +100", "moves 100 mm to +X", "the head moves to +X");
     let (check_head, _) = check(&["head-head"]);
     let head = signs(&check_head);
-    sign(
-        &head,
-        "C +90",
-        "from +X to +Y",
-        "the head turns counter-clockwise seen from +Z",
-    );
+    sign(&head, "C +90", "from +X to +Y", "the head turns counter-clockwise seen from +Z");
     sign(
         &head,
         "A +90",
@@ -237,12 +190,7 @@ fn the_sign_table_of_a_table_and_of_a_head() {
     sign(&vmc, "Y -100", "to -Y", "the table moves to +Y");
     sign(&vmc, "Z +100", "to +Z", "the head moves to +Z");
     let (check_nutating, _) = check(&["nutating-head"]);
-    sign(
-        &signs(&check_nutating),
-        "B +180",
-        "from +Z to +Y",
-        "the tip swings to -Y",
-    );
+    sign(&signs(&check_nutating), "B +180", "from +Z to +Y", "the tip swings to -Y");
 }
 
 /// A machine as LinuxCNC's users have it: the laws of `shared/data/README.md` give the tool axis as
@@ -267,32 +215,12 @@ fn the_sign_table_agrees_with_the_laws_of_linuxcnc() {
     let (a, b, c) = (("A", "[1, 0, 0]"), ("B", "[0, 1, 0]"), ("C", "[0, 0, 1]"));
     // Rz(-90) takes X to -Y, Rx(-90) takes Z to +Y, Ry(-90) takes Z to -X.
     let xyzac = machine("[w C' A' b X Y Z t]", &["A", "C"], [a, c]);
-    sign(
-        &xyzac,
-        "C +90",
-        "from +X to -Y",
-        "the table turns counter-clockwise seen from +Z",
-    );
-    sign(
-        &xyzac,
-        "A +90",
-        "from +Z to +Y",
-        "the table turns counter-clockwise seen from +X",
-    );
+    sign(&xyzac, "C +90", "from +X to -Y", "the table turns counter-clockwise seen from +Z");
+    sign(&xyzac, "A +90", "from +Z to +Y", "the table turns counter-clockwise seen from +X");
     let xyzbc = machine("[w C' B' b X Y Z t]", &["B", "C"], [b, c]);
-    sign(
-        &xyzbc,
-        "B +90",
-        "from +Z to -X",
-        "the table turns counter-clockwise seen from +Y",
-    );
+    sign(&xyzbc, "B +90", "from +Z to -X", "the table turns counter-clockwise seen from +Y");
     let head = machine("[w b X Y Z C B t]", &["B"], [b, c]);
-    sign(
-        &head,
-        "C +90",
-        "from +X to +Y",
-        "the head turns counter-clockwise seen from +Z",
-    );
+    sign(&head, "C +90", "from +X to +Y", "the head turns counter-clockwise seen from +Z");
     sign(
         &head,
         "B +90",
@@ -305,18 +233,10 @@ fn the_sign_table_agrees_with_the_laws_of_linuxcnc() {
 #[test]
 fn readings_are_those_of_the_control() {
     let (drawn, _) = check(&["ac-trunnion"]);
-    let (shifted, _) = check(&[
-        "ac-trunnion",
-        "--set",
-        "axis.A.zero=10",
-        "--set",
-        "axis.A.travel=[-110, 40]",
-    ]);
-    let shown = |check: &Value| {
-        check["typical"]["ways"][0]["readings"][1]["value"]
-            .as_f64()
-            .unwrap()
-    };
+    let (shifted, _) =
+        check(&["ac-trunnion", "--set", "axis.A.zero=10", "--set", "axis.A.travel=[-110, 40]"]);
+    let shown =
+        |check: &Value| check["typical"]["ways"][0]["readings"][1]["value"].as_f64().unwrap();
     close(&Value::from(shown(&shifted)), shown(&drawn) + 10.0, 1e-9);
     let tilt = |check: &Value| check["reach"]["tilt_in_all_azimuths_deg"].as_f64().unwrap();
     close(&Value::from(tilt(&shifted)), tilt(&drawn), 1e-6);
@@ -330,19 +250,9 @@ fn the_eye_sees_the_table_where_it_rests() {
     let table = signs(&leaning);
     let eye = "the table turns clockwise seen from (0.000, 0.643, 0.766)";
     // At 40° of tilt C sweeps the tool axis around a cone: from azimuth -90° to 0°.
-    sign(
-        &table,
-        "C +90",
-        "from (0.000, -0.643, 0.766) to (0.643, 0.000, 0.766)",
-        eye,
-    );
+    sign(&table, "C +90", "from (0.000, -0.643, 0.766) to (0.643, 0.000, 0.766)", eye);
     // A has 20° of room.
-    sign(
-        &table,
-        "A +20",
-        "from (0.000, -0.643, 0.766) 20° towards",
-        "clockwise seen from +X",
-    );
+    sign(&table, "A +20", "from (0.000, -0.643, 0.766) 20° towards", "clockwise seen from +X");
 }
 
 #[test]
@@ -456,10 +366,7 @@ fn a_measured_head_is_compared() {
         "150",
     ]);
     let shares = compared["tip_shares"].as_array().unwrap();
-    let named: Vec<&str> = shares
-        .iter()
-        .map(|share| share["of"].as_str().unwrap())
-        .collect();
+    let named: Vec<&str> = shares.iter().map(|share| share["of"].as_str().unwrap()).collect();
     for of in [
         "direction of A",
         "position of A",
@@ -492,10 +399,7 @@ impl Measured {
         let x = Vector3::x();
         let y = Vector3::new(-60e-6, 1.0, 0.0).normalize();
         let z = Vector3::new(80e-6, 40e-6, 1.0).normalize();
-        Self {
-            length,
-            linear: Matrix3::from_columns(&[x, y, z]),
-        }
+        Self { length, linear: Matrix3::from_columns(&[x, y, z]) }
     }
 
     fn turn(direction: Vector3<f64>, point: Vector3<f64>, degrees: f64) -> Isometry3<f64> {
@@ -511,11 +415,7 @@ impl Measured {
         // A word counts from where the tip stands on the part origin.
         let zero = self.linear.try_inverse().unwrap() * -tip;
         let moved = tip + self.linear * (zero + Vector3::new(x, y, z));
-        let c = Self::turn(
-            Vector3::new(-45e-6, -30e-6, 1.0),
-            Vector3::new(0.018, -0.012, 0.0),
-            c,
-        );
+        let c = Self::turn(Vector3::new(-45e-6, -30e-6, 1.0), Vector3::new(0.018, -0.012, 0.0), c);
         let a = Self::turn(
             Vector3::new(1.0, -70e-6, -50e-6),
             Vector3::new(0.0, 0.032, 50.004 - 0.015),
@@ -547,9 +447,8 @@ fn words(program: &str) -> Vec<[f64; 5]> {
         }
         let mut moved = false;
         for word in line.split_whitespace() {
-            if let Some(index) = ["X", "Y", "Z", "A", "C"]
-                .iter()
-                .position(|name| word.starts_with(name))
+            if let Some(index) =
+                ["X", "Y", "Z", "A", "C"].iter().position(|name| word.starts_with(name))
             {
                 now[index] = Some(word[1..].parse().unwrap());
                 moved = true;
@@ -627,14 +526,8 @@ fn posting_with_the_measured_file_takes_the_errors_out() {
     let tolerance = 0.005;
     let drawn = stray(&program("ac-trunnion"), LENGTH);
     let measured = stray(&program(MEASURED), LENGTH);
-    assert!(
-        drawn > 0.03,
-        "the drawing's program is off by {drawn} mm alone"
-    );
-    assert!(
-        drawn < predicted + tolerance,
-        "{drawn} mm, {predicted} mm were predicted"
-    );
+    assert!(drawn > 0.03, "the drawing's program is off by {drawn} mm alone");
+    assert!(drawn < predicted + tolerance, "{drawn} mm, {predicted} mm were predicted");
     assert!(measured < tolerance + 1e-6, "{measured} mm are left");
 }
 
@@ -651,10 +544,7 @@ fn the_picture_is_drawn_in_numbers_and_labelled() {
         assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"));
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
         for label in ["tilt from +Z", "degrees", ">90°<", "0° +X", "90° +Y"] {
-            assert!(
-                svg.contains(label),
-                "{label} is not in the picture of {machine}"
-            );
+            assert!(svg.contains(label), "{label} is not in the picture of {machine}");
         }
     }
 }
@@ -735,13 +625,7 @@ fn the_commissioning_program_moves_one_axis_at_a_time() {
         let wanted = if machine == "nutating-head" { 18 } else { 20 };
         assert_eq!(moves, wanted, "{machine}:\n{}", run.out);
         readings_are_those_in_force(&blocks, &names);
-        let head: String = run
-            .out
-            .lines()
-            .take(30)
-            .collect::<Vec<_>>()
-            .join(" ")
-            .to_uppercase();
+        let head: String = run.out.lines().take(30).collect::<Vec<_>>().join(" ").to_uppercase();
         assert!(head.contains("WITHOUT A PART"), "{head}");
         assert!(head.contains("FEED OVERRIDE"), "{head}");
     }
@@ -777,9 +661,7 @@ fn readings_are_those_in_force(blocks: &[(String, BTreeMap<String, f64>)], names
 fn the_commissioning_program_has_its_dialects_ending() {
     let folder = tempfile::tempdir().unwrap();
     let run = common::run(
-        common::command()
-            .current_dir(folder.path())
-            .args(["check", "dmu50", "--commission"]),
+        common::command().current_dir(folder.path()).args(["check", "dmu50", "--commission"]),
         b"",
     );
     assert_eq!(run.code, 0, "{}", run.err);
@@ -811,13 +693,7 @@ fn an_indexed_table_is_let_go_and_clamped() {
 
 // Under review.
 
-const REVIEWED: &[&str] = &[
-    "ac-trunnion",
-    "head-head",
-    "nutating-head",
-    "disc-cutter",
-    "vmc",
-];
+const REVIEWED: &[&str] = &["ac-trunnion", "head-head", "nutating-head", "disc-cutter", "vmc"];
 
 const COMMISSIONED: &[(&str, &str)] = &[
     ("ac-trunnion", "commission_fanuc"),
@@ -837,24 +713,14 @@ fn the_checks_are_those_that_were_reviewed() {
             let run = post(&["check", machine]);
             assert_eq!(run.code, 0, "{}", run.err);
             // Rounding errors of the round trip are no matter of review.
-            let lines = run
-                .out
-                .lines()
-                .map(|line| match line.split_once(": tip off") {
-                    Some((head, _)) => head,
-                    None => line,
-                });
+            let lines = run.out.lines().map(|line| match line.split_once(": tip off") {
+                Some((head, _)) => head,
+                None => line,
+            });
             let text: Vec<&str> = lines.collect();
             insta::assert_snapshot!(*machine, format!("{}{}", run.err, text.join("\n")));
         }
-        let run = post(&[
-            "check",
-            MEASURED,
-            "--nominal",
-            "ac-trunnion",
-            "--tool-length",
-            "100",
-        ]);
+        let run = post(&["check", MEASURED, "--nominal", "ac-trunnion", "--tool-length", "100"]);
         insta::assert_snapshot!("measured_nominal", run.out);
         for (machine, name) in COMMISSIONED {
             let run = post(&["check", machine, "--commission", "-o", "-"]);
@@ -883,11 +749,7 @@ fn a_head_that_the_program_swaps_in_is_checked_too() {
     fs::write(&path, text).unwrap();
     let path = path.to_str().unwrap();
     let (first, run) = check(&[path]);
-    assert!(
-        run.out.contains("further heads, see --head: long"),
-        "{}",
-        run.out
-    );
+    assert!(run.out.contains("further heads, see --head: long"), "{}", run.out);
     let (long, _) = check(&[path, "--head", "long"]);
     close(&first["class"]["distances"][1]["value"], 250.0, 1e-9);
     close(&long["class"]["distances"][1]["value"], 400.0, 1e-9);

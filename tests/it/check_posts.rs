@@ -55,9 +55,7 @@ fn variants() -> Vec<(String, Vec<String>)> {
         // Within the tolerance of the tool axis, and beyond it, where no control's length lies along it any more.
         changes.push(vec!["tool.axis=[0.0005, 0, 1]".to_owned()]);
         changes.push(
-            ["tool.axis=[0.02, 0, 1]", "tool.length_axis=\"none\""]
-                .map(str::to_owned)
-                .into(),
+            ["tool.axis=[0.02, 0, 1]", "tool.length_axis=\"none\""].map(str::to_owned).into(),
         );
         let axes = file.get("axis").and_then(toml::Value::as_table);
         for (axis, table) in axes.into_iter().flatten() {
@@ -126,16 +124,8 @@ fn an_upright_program_is_posted_where_the_check_says_so() {
             // A turned table moved the part elsewhere; what the check says of that is tested by other means.
             continue;
         }
-        let more = [
-            "--tool-length",
-            LENGTH,
-            "--mount",
-            &placed,
-            "-q",
-            "-o",
-            "-",
-            part.to_str().unwrap(),
-        ];
+        let more =
+            ["--tool-length", LENGTH, "--mount", &placed, "-q", "-o", "-", part.to_str().unwrap()];
         let run = with(&["-m", &machine], &settings, &more);
         let named = format!("{machine} {settings:?} at {placed}");
         match (upright, run.code) {
@@ -145,10 +135,8 @@ fn an_upright_program_is_posted_where_the_check_says_so() {
             {
                 refused += 1;
             }
-            _ => faults.push(format!(
-                "{named}: upright {upright}, posted {}:\n{}",
-                run.code, run.err
-            )),
+            _ => faults
+                .push(format!("{named}: upright {upright}, posted {}:\n{}", run.code, run.err)),
         }
     }
     println!(
@@ -169,27 +157,12 @@ fn the_check_refuses_plugins_and_options_as_posting_does() {
     let folder_text = folder.path().to_str().unwrap();
     let cases: &[(&[&str], &[&str], &str)] = &[
         (&["control.fanuc.nonsense=1"], &[], "option `nonsense`"),
-        (
-            &["control.fanuc.program_number=\"often\""],
-            &[],
-            "option `program_number`",
-        ),
+        (&["control.fanuc.program_number=\"often\""], &[], "option `program_number`"),
         (&["control.dialect=\"nosuch\""], &[], "no such plugin"),
         (&["accuracy.model=\"nosuch\""], &[], "no such plugin"),
         (&["accuracy.sampled.nonsense=1"], &[], "option `nonsense`"),
-        (
-            &[
-                "control.dialect=\"heidenhain\"",
-                "control.feed=\"inverse-time\"",
-            ],
-            &[],
-            "inverse time",
-        ),
-        (
-            &["control.dialect=\"broken\""],
-            &["--plugins", folder_text],
-            "broken",
-        ),
+        (&["control.dialect=\"heidenhain\"", "control.feed=\"inverse-time\""], &[], "inverse time"),
+        (&["control.dialect=\"broken\""], &["--plugins", folder_text], "broken"),
         (&[], &["--plugins", "no/such/folder"], "no such folder"),
     ];
     for (settings, more, expected) in cases {
@@ -218,17 +191,11 @@ fn an_arm_is_checked_and_posted() {
     let checked = post(&["check", ARM, "--tool-length", LENGTH]);
     assert_eq!(checked.code, 0, "{}", checked.err);
     assert!(checked.out.contains("numerically"), "{}", checked.out);
-    assert!(
-        checked.out.contains("warnings          none"),
-        "{}",
-        checked.out
-    );
+    assert!(checked.out.contains("warnings          none"), "{}", checked.out);
     let folder = tempfile::tempdir().unwrap();
     let part = folder.path().join("part.cls");
-    let tilted = UPRIGHT.replace(
-        "GOTO/2,1,0\n",
-        "GOTO/2,1,0\nGOTO/12,9,-3,0.2,0.1,0.97\nGOTO/30,9,-3,0,0,1\n",
-    );
+    let tilted = UPRIGHT
+        .replace("GOTO/2,1,0\n", "GOTO/2,1,0\nGOTO/12,9,-3,0.2,0.1,0.97\nGOTO/30,9,-3,0,0,1\n");
     fs::write(&part, tilted).unwrap();
     let json = folder.path().join("s.json");
     let run = post(&[
@@ -249,10 +216,7 @@ fn an_arm_is_checked_and_posted() {
     assert!(tip > 0.0 && tip <= 0.1, "{tip}");
     // Without a place for its axes nothing leads the tool off the part: refused by both, in the same words.
     let text = fs::read_to_string(root().join(ARM)).unwrap();
-    let bare: Vec<&str> = text
-        .lines()
-        .filter(|line| !line.starts_with("park"))
-        .collect();
+    let bare: Vec<&str> = text.lines().filter(|line| !line.starts_with("park")).collect();
     let machine = folder.path().join("bare.toml");
     fs::write(&machine, bare.join("\n")).unwrap();
     let machine = machine.to_str().unwrap();

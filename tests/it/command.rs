@@ -16,20 +16,15 @@ const PLATE: &str = "tests/samples/plate.ncl";
 
 #[test]
 fn the_program_stands_beside_the_file_with_the_ending_of_the_dialect() {
-    for (machine, program) in [
-        ("ac-trunnion", "part.nc"),
-        ("dmu50", "part.h"),
-        ("disc-cutter", "part.ngc"),
-    ] {
+    for (machine, program) in
+        [("ac-trunnion", "part.nc"), ("dmu50", "part.h"), ("disc-cutter", "part.ngc")]
+    {
         let folder = with_file("part.cls", GOOD);
         let done = post_in(folder.path(), &["-m", machine, "part.cls"]);
         assert_eq!(done.code, 0, "{}", done.err);
         assert_eq!(names(folder.path()), ["part.cls", program]);
         assert_contains(&done.out, &[program, "from part.cls", "tip deviation"]);
-        assert_eq!(
-            fs::read_to_string(folder.path().join("part.cls")).unwrap(),
-            GOOD
-        );
+        assert_eq!(fs::read_to_string(folder.path().join("part.cls")).unwrap(), GOOD);
     }
 }
 
@@ -37,10 +32,7 @@ fn the_program_stands_beside_the_file_with_the_ending_of_the_dialect() {
 fn the_program_goes_where_it_is_told() {
     let folder = with_file("part.cls", GOOD);
     fs::create_dir(folder.path().join("nc")).unwrap();
-    let done = post_in(
-        folder.path(),
-        &["-m", "ac-trunnion", "part.cls", "-o", "nc/side.tap"],
-    );
+    let done = post_in(folder.path(), &["-m", "ac-trunnion", "part.cls", "-o", "nc/side.tap"]);
     assert_eq!(done.code, 0, "{}", done.err);
     assert_eq!(names(folder.path()), ["nc", "part.cls"]);
     assert_eq!(names(&folder.path().join("nc")), ["side.tap"]);
@@ -57,10 +49,7 @@ fn a_program_on_standard_output_is_alone_there() {
     assert_contains(&file.err, &["standard output", "tip deviation"]);
     let length = ["--tool-length", "0"];
     let quiet = post(&[&["-q", "-m", "ac-trunnion", BLADE, "-o", "-"], &length[..]].concat());
-    assert_eq!(
-        (quiet.code, quiet.out, quiet.err.as_str()),
-        (0, file.out, "")
-    );
+    assert_eq!((quiet.code, quiet.out, quiet.err.as_str()), (0, file.out, ""));
 }
 
 #[test]
@@ -145,25 +134,13 @@ fn a_machine_is_found_by_name_by_path_and_in_folders() {
     let own = folder.path().join("own");
     fs::create_dir(&own).unwrap();
     let text = fs::read_to_string(root().join("machines/ac-trunnion.toml")).unwrap();
-    fs::write(
-        own.join("ac-trunnion.toml"),
-        text.replace("AC trunnion", "mine"),
-    )
-    .unwrap();
+    fs::write(own.join("ac-trunnion.toml"), text.replace("AC trunnion", "mine")).unwrap();
     let own = own.to_str().unwrap();
     let arguments = ["-q", "-m", "ac-trunnion", blade, "-o", "-"];
-    let named = post_in(
-        folder.path(),
-        &[&arguments[..], &["--machines", own]].concat(),
-    );
+    let named = post_in(folder.path(), &[&arguments[..], &["--machines", own]].concat());
     assert_contains(&named.out, &["(MINE, FOR THE PART AT X0 Y0 Z0 ALONE)"]);
-    let environment = run(
-        command()
-            .current_dir(folder.path())
-            .args(arguments)
-            .env("POST_MACHINES", own),
-        b"",
-    );
+    let environment =
+        run(command().current_dir(folder.path()).args(arguments).env("POST_MACHINES", own), b"");
     assert_eq!(environment, named);
 }
 
@@ -187,10 +164,7 @@ fn an_unknown_machine_is_refused_with_those_that_there_are() {
     assert_contains(&done.err, &["no/such.toml"]);
     let listed = post(&["machines"]);
     assert_eq!(listed.code, 0);
-    assert_contains(
-        &listed.out,
-        &["ac-trunnion", "dmu50", "vmc", "head-head-360"],
-    );
+    assert_contains(&listed.out, &["ac-trunnion", "dmu50", "vmc", "head-head-360"]);
 }
 
 #[test]
@@ -269,10 +243,8 @@ fn the_file_that_is_read_is_never_overwritten() {
 
 #[test]
 fn what_cannot_be_opened_is_named() {
-    for (input, parts) in [
-        ("no/such.cls", &["no/such.cls"][..]),
-        ("tests", &["tests is a folder"]),
-    ] {
+    for (input, parts) in [("no/such.cls", &["no/such.cls"][..]), ("tests", &["tests is a folder"])]
+    {
         let done = post(&["-m", "vmc", input, "-o", "-"]);
         assert_eq!((done.code, done.out.as_str()), (1, ""));
         assert_contains(&done.err, parts);
@@ -320,15 +292,9 @@ fn what_is_no_file_is_written_to_and_not_replaced() {
     let made = std::process::Command::new("mkfifo").arg(&pipe).status();
     assert!(made.unwrap().success());
     // Somebody reads from the pipe, so that opening it does not wait.
-    let mut reader = std::process::Command::new("cat")
-        .arg(&pipe)
-        .stdout(Stdio::null())
-        .spawn()
-        .unwrap();
-    let done = post_in(
-        folder.path(),
-        &["-q", "-m", "ac-trunnion", "part.cls", "-o", "pipe"],
-    );
+    let mut reader =
+        std::process::Command::new("cat").arg(&pipe).stdout(Stdio::null()).spawn().unwrap();
+    let done = post_in(folder.path(), &["-q", "-m", "ac-trunnion", "part.cls", "-o", "pipe"]);
     let kind = fs::metadata(&pipe).unwrap().file_type();
     let _ = reader.kill();
     let _ = reader.wait();

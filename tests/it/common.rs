@@ -17,11 +17,7 @@ pub struct Case {
 }
 
 const fn case(machine: &'static str, sample: &'static str, with: &'static [&'static str]) -> Case {
-    Case {
-        machine,
-        sample,
-        with,
-    }
+    Case { machine, sample, with }
 }
 
 const LENGTH: &[&str] = &["--tool-length", "120"];
@@ -45,11 +41,7 @@ pub const CASES: &[Case] = &[
     case("dmu50", "blade.cls", &["--tcp", "post"]),
     case("dmu50", "facets.apt", &[]),
     case("dmu50", "knife.ncl", &[]),
-    case(
-        "dmu50",
-        "plate.ncl",
-        &["--tcp", "post", "--mount", "0,0,40"],
-    ),
+    case("dmu50", "plate.ncl", &["--tcp", "post", "--mount", "0,0,40"]),
     case("head-head", "blade.cls", LENGTH),
     case("head-head", "facets.apt", LENGTH),
     case("head-head", "knife.ncl", LENGTH),
@@ -59,18 +51,10 @@ pub const CASES: &[Case] = &[
     case("head-head-360", "knife.ncl", LENGTH),
     case("head-head-360", "plate.ncl", LENGTH),
     case("nutating-head", "blade.cls", &[]),
-    case(
-        "nutating-head",
-        "blade.cls",
-        &["--tcp", "post", "--tool-length", "120"],
-    ),
+    case("nutating-head", "blade.cls", &["--tcp", "post", "--tool-length", "120"]),
     case("nutating-head", "facets.apt", &[]),
     case("nutating-head", "knife.ncl", &[]),
-    case(
-        "nutating-head",
-        "plate.ncl",
-        &["--tcp", "post", "--tool-length", "120"],
-    ),
+    case("nutating-head", "plate.ncl", &["--tcp", "post", "--tool-length", "120"]),
     case("vmc", "lever.apt", &[]),
     case("vmc", "link.aptsource", &["--units", "mm"]),
     case("vmc", "plate.ncl", &[]),
@@ -133,10 +117,7 @@ pub fn command() -> Command {
 /// Another program that runs the command, as [`command`] does.
 pub fn command_as(program: &str) -> Command {
     let mut command = Command::new(program);
-    command
-        .current_dir(root())
-        .env_remove("POST_MACHINES")
-        .env_remove("POST_PLUGINS");
+    command.current_dir(root()).env_remove("POST_MACHINES").env_remove("POST_PLUGINS");
     command
 }
 
@@ -161,14 +142,8 @@ pub fn run(command: &mut Command, input: &[u8]) -> Run {
     let output = child.wait_with_output().unwrap();
     feeder.join().unwrap();
     let err = String::from_utf8(output.stderr).unwrap();
-    let Some(code) = output.status.code() else {
-        panic!("{}: {err}", output.status)
-    };
-    Run {
-        code,
-        out: String::from_utf8(output.stdout).unwrap(),
-        err,
-    }
+    let Some(code) = output.status.code() else { panic!("{}: {err}", output.status) };
+    Run { code, out: String::from_utf8(output.stdout).unwrap(), err }
 }
 
 /// A small good file.
@@ -204,9 +179,8 @@ pub fn assert_contains(text: &str, parts: &[&str]) {
 /// Names of what lies in a folder.
 pub fn names(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).unwrap();
-    let mut names: Vec<String> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
 }

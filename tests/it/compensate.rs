@@ -26,19 +26,13 @@ const DIGIT: f64 = 0.001;
 fn folder(machine: &str) -> TempDir {
     let folder = common::with_file("mill.toml", machine);
     for sample in ["s-piece.cls", "blade.cls", "flange.ncl", "facets.apt"] {
-        fs::copy(
-            root().join("tests/samples").join(sample),
-            folder.path().join(sample),
-        )
-        .unwrap();
+        fs::copy(root().join("tests/samples").join(sample), folder.path().join(sample)).unwrap();
     }
     folder
 }
 
 fn trunnion(bound: f64) -> TempDir {
-    folder(&format!(
-        "extends = \"ac-trunnion\"\n[accuracy]\nservo_compensation = {bound}\n"
-    ))
+    folder(&format!("extends = \"ac-trunnion\"\n[accuracy]\nservo_compensation = {bound}\n"))
 }
 
 /// A mill of three axes, and a circle of one and a half turns by points, between rapids and holes.
@@ -79,15 +73,7 @@ fn run(folder: &TempDir, more: &[&str]) -> Run {
 fn both(folder: &TempDir, file: &str, more: &[&str]) -> (String, String, Value) {
     let plain = run(folder, &[&[file, "-q", "-o", "plain.nc"], more].concat());
     assert_eq!(plain.code, 0, "{}", plain.err);
-    let arguments = [
-        file,
-        "-q",
-        "-o",
-        "part.nc",
-        "--compensate-servo",
-        "--summary",
-        "found.json",
-    ];
+    let arguments = [file, "-q", "-o", "part.nc", "--compensate-servo", "--summary", "found.json"];
     let moved = run(folder, &[&arguments, more].concat());
     assert_eq!(moved.code, 0, "{}", moved.err);
     let text = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
@@ -100,9 +86,7 @@ fn both(folder: &TempDir, file: &str, more: &[&str]) -> (String, String, Value) 
 }
 
 fn number(found: &Value, path: &str) -> f64 {
-    let value = found
-        .pointer(path)
-        .unwrap_or_else(|| panic!("{path} of {found}"));
+    let value = found.pointer(path).unwrap_or_else(|| panic!("{path} of {found}"));
     value.as_f64().unwrap()
 }
 
@@ -234,15 +218,10 @@ fn rapids_holes_and_commands_are_what_they_were() {
         let (plain, moved, found) = both(&folder, "circle.cls", &[]);
         assert_eq!(found["kept"], true, "{dialect}: {found}");
         assert_eq!(plain.lines().count(), moved.lines().count(), "{dialect}");
-        let named = |line: &str| {
-            ["PLAIN", "PART"]
-                .iter()
-                .any(|name| line.to_uppercase().contains(name))
-        };
+        let named =
+            |line: &str| ["PLAIN", "PART"].iter().any(|name| line.to_uppercase().contains(name));
         let lines = plain.lines().zip(moved.lines());
-        let other: Vec<_> = lines
-            .filter(|(one, two)| one != two && !named(one))
-            .collect();
+        let other: Vec<_> = lines.filter(|(one, two)| one != two && !named(one)).collect();
         for (one, two) in &other {
             for line in [one, two] {
                 let others = ["G0 ", "FMAX", "G8", "CYC", "M99", "MCALL", "M3"].iter();
@@ -253,11 +232,7 @@ fn rapids_holes_and_commands_are_what_they_were() {
             }
         }
         // The end of the way down is a point of the cut too.
-        assert!(
-            other.len() > 300 && other.len() <= 361,
-            "{dialect}: {}",
-            other.len()
-        );
+        assert!(other.len() > 300 && other.len() <= 361, "{dialect}: {}", other.len());
     }
 }
 
@@ -265,11 +240,9 @@ fn rapids_holes_and_commands_are_what_they_were() {
 /// prediction of the same run; and the program is verified within tolerance and bound.
 #[test]
 fn the_figures_are_those_of_predict_and_verify_takes_the_moves_for_what_they_are() {
-    for (sample, tcp) in [
-        ("s-piece.cls", "control"),
-        ("s-piece.cls", "post"),
-        ("blade.cls", "post"),
-    ] {
+    for (sample, tcp) in
+        [("s-piece.cls", "control"), ("s-piece.cls", "post"), ("blade.cls", "post")]
+    {
         let folder = trunnion(0.003);
         let more = ["--tcp", tcp, "--predict=prediction.json", "--verify"];
         let (_, _, found) = both(&folder, sample, &more);
@@ -290,24 +263,16 @@ fn the_figures_are_those_of_predict_and_verify_takes_the_moves_for_what_they_are
             let told = read_json(&folder.path().join("p.json"));
             let tip = &told["contour"]["tip_mm"];
             for (figure, of) in [("rms", "rms_mm"), ("largest", "largest_mm")] {
-                let [one, two] = [
-                    number(tip, &format!("/{figure}")),
-                    number(&found, &format!("/{key}/{of}")),
-                ];
-                assert!(
-                    (one - two).abs() < 1e-9,
-                    "{sample} {tcp} {key}: {one} {two}"
-                );
+                let [one, two] =
+                    [number(tip, &format!("/{figure}")), number(&found, &format!("/{key}/{of}"))];
+                assert!((one - two).abs() < 1e-9, "{sample} {tcp} {key}: {one} {two}");
             }
             assert_eq!(tip["nc_line"], found[key]["nc_line"]);
             let following = number(&told["contour"], "/parts/0/tip_mm/rms");
             assert!((following - number(&found, &format!("/{key}/following_rms_mm"))).abs() < 1e-9);
         }
         let told = read_json(&folder.path().join("prediction.json"));
-        let [rms, after] = [
-            number(&told, "/contour/tip_mm/rms"),
-            number(&found, "/after/rms_mm"),
-        ];
+        let [rms, after] = [number(&told, "/contour/tip_mm/rms"), number(&found, "/after/rms_mm")];
         assert!((rms - after).abs() < 1e-9, "{rms} {after}");
         assert!(after < number(&found, "/before/rms_mm"));
         // Alone, verify counts a move like any other deviation, and --tolerance says what is meant.
@@ -327,52 +292,29 @@ fn where_it_does_not_help_nothing_is_moved() {
     for (sample, tcp) in [("flange.ncl", "post"), ("facets.apt", "post")] {
         let folder = trunnion(0.003);
         let (plain, moved, found) = both(&folder, sample, &["--tcp", tcp]);
-        assert_eq!(
-            (&found["kept"], &found["points_moved"]),
-            (&false.into(), &0.into()),
-            "{found}"
-        );
+        assert_eq!((&found["kept"], &found["points_moved"]), (&false.into(), &0.into()), "{found}");
         assert_eq!(found["before"], found["after"]);
         assert!(plain == moved, "{sample}");
-        let told = run(
-            &folder,
-            &[sample, "-o", "part.nc", "--compensate-servo", "--tcp", tcp],
-        );
-        assert_contains(
-            &told.out,
-            &["no move of points by 0.003000 mm or less makes it better"],
-        );
+        let told = run(&folder, &[sample, "-o", "part.nc", "--compensate-servo", "--tcp", tcp]);
+        assert_contains(&told.out, &["no move of points by 0.003000 mm or less makes it better"]);
     }
 }
 
 #[test]
 fn it_is_refused_with_what_is_missing() {
     let refused = |folder: &TempDir, parts: &[&str]| {
-        let run = run(
-            folder,
-            &["circle.cls", "-o", "part.nc", "--compensate-servo"],
-        );
+        let run = run(folder, &["circle.cls", "-o", "part.nc", "--compensate-servo"]);
         assert_eq!((run.code, run.out.as_str()), (1, ""));
         assert_contains(&run.err, parts);
         assert!(!folder.path().join("part.nc").exists());
     };
     refused(
         &mill("fanuc", STIFF, ""),
-        &[
-            "error[compensate-servo]",
-            "[accuracy] servo_compensation = 0.003, in mm",
-        ],
+        &["error[compensate-servo]", "[accuracy] servo_compensation = 0.003, in mm"],
     );
     let none = folder(&format!("extends = \"vmc\"\n{BOUND}"));
     fs::write(none.path().join("circle.cls"), circle()).unwrap();
-    refused(
-        &none,
-        &[
-            "error[compensate-servo]",
-            "describes no servo",
-            "[servo.X] for each axis",
-        ],
-    );
+    refused(&none, &["error[compensate-servo]", "describes no servo", "[servo.X] for each axis"]);
     refused(
         &mill("fanuc", STIFF, "[accuracy]\nservo_compensation = -0.003\n"),
         &["servo_compensation", "mill.toml:"],
@@ -417,20 +359,12 @@ fn each_of_several_programs_has_its_own_figures() {
         "--compensate-servo",
         "--predict=p.json",
     ];
-    let split = run(
-        &folder,
-        &[&arguments[..], &["--summary", "found.json", "--verify"]].concat(),
-    );
+    let split = run(&folder, &[&arguments[..], &["--summary", "found.json", "--verify"]].concat());
     assert_eq!(split.code, 0, "{}", split.err);
     let [found, told] = ["found.json", "p.json"].map(|name| read_json(&folder.path().join(name)));
-    let kept: Vec<&Value> = (0..2)
-        .map(|place| &found[place]["servo_compensation"]["kept"])
-        .collect();
-    assert_eq!(
-        kept,
-        [&Value::Bool(true), &Value::Bool(false)],
-        "the second has holes alone"
-    );
+    let kept: Vec<&Value> =
+        (0..2).map(|place| &found[place]["servo_compensation"]["kept"]).collect();
+    assert_eq!(kept, [&Value::Bool(true), &Value::Bool(false)], "the second has holes alone");
     for place in 0..2 {
         let after = number(&found[place], "/servo_compensation/after/rms_mm");
         let rms = number(&told[place], "/contour/tip_mm/rms");

@@ -38,10 +38,7 @@ fn cuts(program: &Path, machine: &str) -> Vec<Cut> {
         let at =
             |place: usize| Vector3::from_fn(|row, _| fields[place + row].parse::<f64>().unwrap());
         if fields[kind] == "feed" {
-            cuts.push(Cut {
-                tip: at(tip),
-                axis: at(axis),
-            });
+            cuts.push(Cut { tip: at(tip), axis: at(axis) });
         }
     }
     cuts
@@ -73,20 +70,10 @@ fn the_boat_goes_to_another_trunnion_and_comes_back_as_itself() {
     let folder = tempfile::tempdir().unwrap();
     let there = folder.path().join("there.ngc");
     let back = folder.path().join("back.ngc");
-    for (program, from, to, target) in [
-        (&boat, "xyzac-trt", "xyzbc-trt", &there),
-        (&there, "xyzbc-trt", "xyzac-trt", &back),
-    ] {
-        done(&[
-            "convert",
-            text(program),
-            "--from",
-            from,
-            "--to",
-            to,
-            "-o",
-            text(target),
-        ]);
+    for (program, from, to, target) in
+        [(&boat, "xyzac-trt", "xyzbc-trt", &there), (&there, "xyzbc-trt", "xyzac-trt", &back)]
+    {
+        done(&["convert", text(program), "--from", from, "--to", to, "-o", text(target)]);
     }
     let own = cuts(&boat, "xyzac-trt");
     assert_eq!(own.len(), 1739);
@@ -119,13 +106,7 @@ fn posted(folder: &TempDir, machine: &str, tcp: &str, file: &str) -> PathBuf {
 #[test]
 fn five_axis_programs_go_from_machine_to_machine_with_and_without_tool_centre_point_control() {
     let folder = tempfile::tempdir().unwrap();
-    let machines = [
-        "ac-trunnion",
-        "dmu50",
-        "head-head",
-        "head-table-ba",
-        "bc-trunnion",
-    ];
+    let machines = ["ac-trunnion", "dmu50", "head-head", "head-table-ba", "bc-trunnion"];
     for from in machines {
         for tcp in ["control", "post"] {
             let program = posted(&folder, from, tcp, "blade.cls");
@@ -178,28 +159,14 @@ fn holes_arcs_and_compensation_come_over_as_such() {
         text(&target),
     ]);
     let cl = fs::read_to_string(cl).unwrap();
-    for record in [
-        "LOADTL/",
-        "LENGTH,100",
-        "CYCLE/",
-        "SPINDL/RPM,",
-        "COOLNT/",
-        "FEDRAT/MMPM,",
-        "FINI",
-    ] {
+    for record in
+        ["LOADTL/", "LENGTH,100", "CYCLE/", "SPINDL/RPM,", "COOLNT/", "FEDRAT/MMPM,", "FINI"]
+    {
         assert!(cl.contains(record), "{record} is missing in\n{cl}");
     }
     // The CL file of a program is that which `read` writes.
-    let read = done(&[
-        "read",
-        text(&program),
-        "--machine",
-        "vmc",
-        "--tool-length",
-        "100",
-        "--cl",
-        "-",
-    ]);
+    let read =
+        done(&["read", text(&program), "--machine", "vmc", "--tool-length", "100", "--cl", "-"]);
     let points = |cl: &str| cl.lines().filter(|line| line.starts_with("GOTO/")).count();
     assert_eq!(points(&read.out), points(&cl));
 }
@@ -239,12 +206,7 @@ fn a_program_that_leaves_the_travel_is_not_read_as_good() {
     let arguments = ["read", text(&program), "-m", "vmc", "--tool-length", "80"];
     let run = run(command().args(arguments), b"");
     assert_eq!(run.code, 1, "{}", run.out);
-    assert!(
-        run.err
-            .contains("error[over-travel]: X would be at 900.000 mm"),
-        "{}",
-        run.err
-    );
+    assert!(run.err.contains("error[over-travel]: X would be at 900.000 mm"), "{}", run.err);
 }
 
 #[test]
@@ -306,8 +268,5 @@ fn an_edge_becomes_no_register() {
     let converted = ["convert", text(&siemens), "-o", text(&fanuc)];
     done(&[&converted[..], &from, &length].concat());
     let program = fs::read_to_string(&fanuc).unwrap();
-    assert!(
-        program.contains("H1") && program.contains("H2"),
-        "{program}"
-    );
+    assert!(program.contains("H1") && program.contains("H2"), "{program}");
 }

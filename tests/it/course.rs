@@ -53,15 +53,10 @@ enum Beat {
 
 fn files() -> Vec<PathBuf> {
     let mut files = Vec::new();
-    for folder in [shared("data/cl"), Some(repository().join("tests/samples"))]
-        .into_iter()
-        .flatten()
+    for folder in
+        [shared("data/cl"), Some(repository().join("tests/samples"))].into_iter().flatten()
     {
-        files.extend(
-            fs::read_dir(folder)
-                .unwrap()
-                .map(|entry| entry.unwrap().path()),
-        );
+        files.extend(fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()));
     }
     files.sort();
     files
@@ -127,8 +122,7 @@ fn posted_step(line: u64, step: Step, beats: &mut Vec<Beat>) {
         }
         Step::Spline(step) => {
             let mut points = Vec::new();
-            step.spline
-                .flatten(0.0005, &mut |point, _| points.push(point));
+            step.spline.flatten(0.0005, &mut |point, _| points.push(point));
             points.pop();
             beats.push(Beat::Through(points));
             beats.push(to(&step.end));
@@ -142,10 +136,9 @@ fn posted_step(line: u64, step: Step, beats: &mut Vec<Beat>) {
             // Between holes: up, then aside, then down, by the rapids of what `Expand` makes of the step.
             let stands = beats.iter().rev().find_map(|beat| match beat {
                 Beat::To { tip, .. } => Some(Some(*tip)),
-                Beat::Said(said) => LEAVES
-                    .iter()
-                    .any(|word| said.starts_with(word))
-                    .then_some(None),
+                Beat::Said(said) => {
+                    LEAVES.iter().any(|word| said.starts_with(word)).then_some(None)
+                }
                 Beat::Through(_) => None,
             });
             if let Some(tip) = stands.flatten() {
@@ -306,10 +299,7 @@ fn heard(told: Told) -> Option<String> {
         Told::Spindle(Turns::Clockwise(rpm)) => format!("spindle {rpm:.6} left false"),
         Told::Spindle(Turns::CounterClockwise(rpm)) => format!("spindle {rpm:.6} left true"),
         Told::Coolant(coolants) => {
-            format!(
-                "coolant {:?}",
-                [coolants.flood, coolants.mist, coolants.other]
-            )
+            format!("coolant {:?}", [coolants.flood, coolants.mist, coolants.other])
         }
         Told::Compensation { side, register } => format!("compensation {side} {register:?}"),
         Told::Operation(name) => format!("operation {name}"),
@@ -333,19 +323,9 @@ fn difference(ours: &[Beat], theirs: &[Beat]) -> Option<String> {
         // A way of no length is none: between holes, above them.
         let mut kept: Vec<Beat> = Vec::new();
         for beat in beats {
-            if let (
-                Beat::To { tip, axis, .. },
-                Some(Beat::To {
-                    tip: last,
-                    axis: before,
-                    ..
-                }),
-            ) = (
-                beat,
-                kept.iter()
-                    .rev()
-                    .find(|beat| matches!(beat, Beat::To { .. })),
-            ) && (tip - last).norm() < SAME
+            if let (Beat::To { tip, axis, .. }, Some(Beat::To { tip: last, axis: before, .. })) =
+                (beat, kept.iter().rev().find(|beat| matches!(beat, Beat::To { .. })))
+                && (tip - last).norm() < SAME
                 && (axis - before).norm() < SAME
                 && !matches!(kept.last(), Some(Beat::Through(_)))
             {
@@ -374,22 +354,8 @@ fn difference(ours: &[Beat], theirs: &[Beat]) -> Option<String> {
 fn same(ours: &Beat, theirs: &Beat) -> bool {
     match (ours, theirs) {
         (
-            Beat::To {
-                line,
-                rapid,
-                feed,
-                tip,
-                axis,
-                edge,
-            },
-            Beat::To {
-                line: l,
-                rapid: r,
-                feed: f,
-                tip: t,
-                axis: a,
-                edge: e,
-            },
+            Beat::To { line, rapid, feed, tip, axis, edge },
+            Beat::To { line: l, rapid: r, feed: f, tip: t, axis: a, edge: e },
         ) => {
             let feeds = match (feed, f) {
                 (Some(feed), Some(f)) => (feed - f).abs() <= 1e-9 * feed.abs(),
@@ -403,10 +369,9 @@ fn same(ours: &Beat, theirs: &Beat) -> bool {
                 && (axis - a).norm() < 1e-12
                 && (edge - e).norm() < 1e-12
         }
-        (Beat::Through(points), Beat::Through(others)) if points.len() == others.len() => points
-            .iter()
-            .zip(others)
-            .all(|(a, b)| (a - b).norm() < SAME),
+        (Beat::Through(points), Beat::Through(others)) if points.len() == others.len() => {
+            points.iter().zip(others).all(|(a, b)| (a - b).norm() < SAME)
+        }
         // A spline at places of its own: each of theirs lies on our chords.
         (Beat::Through(points), Beat::Through(others)) => others.iter().all(|other| {
             points.windows(2).any(|pair| {
@@ -426,10 +391,7 @@ fn two_readings_of_every_file_agree() {
     // One of the files goes in pecks and says none.
     let allowed = vec!["DEEP".to_owned()];
     let hows = [
-        How {
-            allowed: allowed.clone(),
-            ..How::default()
-        },
+        How { allowed: allowed.clone(), ..How::default() },
         How {
             units: Some(Units::Inch),
             apply_msys: true,
@@ -439,13 +401,7 @@ fn two_readings_of_every_file_agree() {
             allowed: allowed.clone(),
             ..How::default()
         },
-        How {
-            turn: 0.3,
-            apply_msys: true,
-            from_cutter: true,
-            allowed,
-            ..How::default()
-        },
+        How { turn: 0.3, apply_msys: true, from_cutter: true, allowed, ..How::default() },
     ];
     let mut compared = 0;
     let mut differences = Vec::new();
@@ -553,13 +509,7 @@ const FIGURES: [Figures; 18] = [
         0,
         Some([-255.000, 0.000, 240.000, 66.000, 0.000, 240.000]),
     ),
-    (
-        "nx_HumMan_ust_a.cls",
-        546,
-        0,
-        0,
-        Some([0.000, -69.511, -177.500, 803.215, 251.125, 8.593]),
-    ),
+    ("nx_HumMan_ust_a.cls", 546, 0, 0, Some([0.000, -69.511, -177.500, 803.215, 251.125, 8.593])),
     (
         "nx_HumMan_ust_a2.cls",
         20057,
@@ -567,13 +517,7 @@ const FIGURES: [Figures; 18] = [
         0,
         Some([0.000, -19.106, -177.500, 784.000, 253.984, 11.884]),
     ),
-    (
-        "own_ncl_form.as",
-        6,
-        0,
-        0,
-        Some([4.000, 0.500, 1.194, 4.375, 0.589, 3.000]),
-    ),
+    ("own_ncl_form.as", 6, 0, 0, Some([4.000, 0.500, 1.194, 4.375, 0.589, 3.000])),
     ("swcam_aamorim_Interface-glue.clt", 2036, 30, 0, None),
     (
         "swcam_aamorim_Teste-Metrologia.apt",
@@ -615,12 +559,7 @@ fn counts_and_extents_are_those_of_the_files() {
         let mut drills = false;
         while let Some(item) = course.next().unwrap() {
             match item {
-                Item::Piece(Piece {
-                    hole: false,
-                    curve,
-                    to,
-                    ..
-                }) => {
+                Item::Piece(Piece { hole: false, curve, to, .. }) => {
                     found_arcs += u64::from(matches!(curve, Curve::Arc { .. }));
                     let spline = matches!(curve, Curve::Spline(_));
                     found_splines += u64::from(spline);
@@ -633,32 +572,19 @@ fn counts_and_extents_are_those_of_the_files() {
                     ends += 1;
                     reach(at.to.tip);
                 }
-                Item::Told {
-                    told: Told::CycleEnd,
-                    ..
-                } => {
+                Item::Told { told: Told::CycleEnd, .. } => {
                     ends += 1;
                     drills = true;
                 }
                 _ => {}
             }
         }
-        assert_eq!(
-            [ends, found_arcs, found_splines],
-            [points, arcs, splines],
-            "{name}"
-        );
+        assert_eq!([ends, found_arcs, found_splines], [points, arcs, splines], "{name}");
         let Some(wanted) = extents else { continue };
         // Of a hole the course has the levels above its point, and the bottom.
         for place in (0..3).filter(|_| !drills) {
-            assert!(
-                (least[place] - wanted[place]).abs() < 6e-4,
-                "{name} {least:?}"
-            );
-            assert!(
-                (most[place] - wanted[3 + place]).abs() < 6e-4,
-                "{name} {most:?}"
-            );
+            assert!((least[place] - wanted[place]).abs() < 6e-4, "{name} {least:?}");
+            assert!((most[place] - wanted[3 + place]).abs() < 6e-4, "{name} {most:?}");
         }
     }
 }
@@ -676,11 +602,7 @@ fn written_anew(text: &[u8], how: &How) -> String {
     loop {
         match course.next() {
             Ok(Some(item)) => {
-                if let Item::Told {
-                    told: Told::ToolChange { number, .. },
-                    ..
-                } = &item
-                {
+                if let Item::Told { told: Told::ToolChange { number, .. }, .. } = &item {
                     let known = tools.iter().find(|known| Some(known.number) == *number);
                     tool = known.map_or(Tool::default(), |known| Tool {
                         register: Some(known.register),
@@ -702,10 +624,7 @@ fn what_is_written_from_a_course_reads_back_as_it() {
     // One of the files goes in pecks and says none.
     let allowed = vec!["DEEP".to_owned()];
     let hows = [
-        How {
-            allowed: allowed.clone(),
-            ..How::default()
-        },
+        How { allowed: allowed.clone(), ..How::default() },
         How {
             units: Some(Units::Inch),
             apply_msys: true,
@@ -738,21 +657,9 @@ fn what_is_written_from_a_course_reads_back_as_it() {
 /// Lines are others in another file.
 fn without_line(beat: Beat) -> Beat {
     match beat {
-        Beat::To {
-            rapid,
-            feed,
-            tip,
-            axis,
-            edge,
-            ..
-        } => Beat::To {
-            line: 0,
-            rapid,
-            feed,
-            tip,
-            axis,
-            edge,
-        },
+        Beat::To { rapid, feed, tip, axis, edge, .. } => {
+            Beat::To { line: 0, rapid, feed, tip, axis, edge }
+        }
         other => other,
     }
 }
@@ -772,17 +679,8 @@ fn a_curve_from_where_the_tool_was_only_said_to_stand_is_cut_from_its_start() {
         fs::write(&file, text).unwrap();
         let file = file.to_str().unwrap();
         for machine in ["vmc", "ac-trunnion"] {
-            let arguments = [
-                "-q",
-                "-m",
-                machine,
-                "--tool-length",
-                "50",
-                "--verify",
-                file,
-                "-o",
-                "-",
-            ];
+            let arguments =
+                ["-q", "-m", machine, "--tool-length", "50", "--verify", file, "-o", "-"];
             let run = crate::common::post(&arguments);
             assert_eq!(run.code, 0, "{machine} {curve}\n{}", run.err);
         }

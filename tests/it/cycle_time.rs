@@ -44,15 +44,7 @@ fn cap(beside: &[f64], feed: f64) -> String {
 /// Posts a file by a rule, verified: the program, and the predicted cycle time, s.
 fn posted(folder: &Path, rule: &str, machine: &str, file: &str, more: &[&str]) -> (String, f64) {
     let rule = format!("solution.rule={rule}");
-    let mut arguments = vec![
-        "-q",
-        "-m",
-        machine,
-        "-o",
-        "part.nc",
-        "--verify",
-        "--predict=p.json",
-    ];
+    let mut arguments = vec!["-q", "-m", machine, "-o", "part.nc", "--verify", "--predict=p.json"];
     arguments.extend(["--set", &rule, file]);
     arguments.extend(more);
     let run = post_in(folder, &arguments);
@@ -81,10 +73,7 @@ fn rows_over_a_pole_are_predicted_to_be_faster() {
             }
         }
         println!("{machine}: {gained:.3?}");
-        assert!(
-            gained.iter().all(|gained| *gained > -0.01),
-            "{machine}: {gained:?}"
-        );
+        assert!(gained.iter().all(|gained| *gained > -0.01), "{machine}: {gained:?}");
         assert!(gained.iter().sum::<f64>() > 1.0, "{machine}: {gained:?}");
     }
 }
@@ -98,14 +87,7 @@ fn rapids_are_predicted_to_be_faster() {
     let folder = tempfile::tempdir().unwrap();
     let time = |rule: &str| {
         let file = wedge.to_str().unwrap();
-        posted(
-            folder.path(),
-            rule,
-            "ac-trunnion",
-            file,
-            &["--tool-length", "100"],
-        )
-        .1
+        posted(folder.path(), rule, "ac-trunnion", file, &["--tool-length", "100"]).1
     };
     let (by_time, by_cycle_time) = (time("time"), time("cycle-time"));
     assert!(by_cycle_time < by_time - 0.3, "{by_time} {by_cycle_time}");
@@ -131,25 +113,13 @@ fn it_is_the_same_program_every_time() {
     let (first, _) = posted(folder.path(), "cycle-time", "ac-trunnion", "cap.cls", TIP);
     let (second, _) = posted(folder.path(), "cycle-time", "ac-trunnion", "cap.cls", TIP);
     assert!(first == second);
-    let mut arguments = vec![
-        "-q",
-        "-m",
-        "ac-trunnion",
-        "--set",
-        "solution.rule=cycle-time",
-    ];
+    let mut arguments = vec!["-q", "-m", "ac-trunnion", "--set", "solution.rule=cycle-time"];
     arguments.extend(TIP);
     let text = fs::read_to_string(folder.path().join("cap.cls")).unwrap();
     let piped = common::post_text(&arguments, &text);
     assert_eq!(piped.code, 0, "{}", piped.err);
     // All but its number and name.
-    let lines = |program: &str| {
-        program
-            .lines()
-            .skip(2)
-            .map(str::to_owned)
-            .collect::<Vec<_>>()
-    };
+    let lines = |program: &str| program.lines().skip(2).map(str::to_owned).collect::<Vec<_>>();
     assert_eq!(lines(&piped.out), lines(&first));
 }
 
@@ -160,10 +130,7 @@ fn a_machine_without_accelerations_is_refused() {
     let folder = common::with_file("mill.toml", &unknown);
     fs::write(folder.path().join("cap.cls"), cap(&[0.0], 2000.0)).unwrap();
     let rule = "solution.rule=cycle-time";
-    let run = post_in(
-        folder.path(),
-        &["-m", "mill.toml", "--set", rule, "-o", "-", "cap.cls"],
-    );
+    let run = post_in(folder.path(), &["-m", "mill.toml", "--set", rule, "-o", "-", "cap.cls"]);
     assert_eq!((run.code, run.out.as_str()), (1, ""));
     assert_contains(&run.err, &["no max_accel of Y, X, Z", "rule = \"time\""]);
 }

@@ -19,12 +19,7 @@ const JOBS: &[(&str, &str, &str, &[&str])] = &[
     // Arcs in all planes, a helix, cycles of many kinds, tools, stops.
     ("three-axis", "vmc", "flange.ncl", &[]),
     // A tool axis that stays over an operation: the control's plane where it has one.
-    (
-        "planes",
-        "ac-trunnion",
-        "wedge.ncl",
-        &["--set", "control.planes=true"],
-    ),
+    ("planes", "ac-trunnion", "wedge.ncl", &["--set", "control.planes=true"]),
     // The same with plain index axes.
     ("index", "ac-trunnion", "wedge.ncl", &[]),
     ("tcp", "ac-trunnion", "facets.apt", &["--tcp", "control"]),
@@ -39,12 +34,7 @@ pub fn samples() -> impl Iterator<Item = &'static str> {
 /// What the machine file of a control must name, since its maker's default is beyond doubt nowhere.
 pub fn named(dialect: &str) -> &'static [&'static str] {
     match dialect {
-        "grbl" => &[
-            "--set",
-            "control.grbl.hal=true",
-            "--set",
-            "control.retract={Z=0}",
-        ],
+        "grbl" => &["--set", "control.grbl.hal=true", "--set", "control.retract={Z=0}"],
         "hurco" => &["--set", "control.hurco.tcp_on=[\"G69\", \"M128\"]"],
         "siemens" => &["--set", "control.siemens.swivel=true"],
         "okuma" => &[
@@ -110,12 +100,7 @@ fn the_programs_are_those_that_were_read() {
                 let with = [LENGTH, with, &["--verify"]].concat();
                 let linked = post(&dialect, machine, &sample(file), &with);
                 let from = ["--plugins", libraries().to_str().unwrap()];
-                let opened = post(
-                    &dialect,
-                    machine,
-                    &sample(file),
-                    &[&with[..], &from].concat(),
-                );
+                let opened = post(&dialect, machine, &sample(file), &[&with[..], &from].concat());
                 assert_eq!(linked.out, opened.out, "{dialect} {job}");
                 insta::assert_snapshot!(
                     format!("{job}_{dialect}"),
@@ -174,9 +159,7 @@ fn every_file_is_posted_in_every_dialect_and_does_what_it_asks_for() {
                 all.extend(["--set", &top]);
             }
             let done = post(&dialect, machine, &data.join(file), &all);
-            let refused = REFUSED
-                .iter()
-                .find(|(name, of, _)| *name == dialect && *of == file);
+            let refused = REFUSED.iter().find(|(name, of, _)| *name == dialect && *of == file);
             match (done.code, refused) {
                 (0, None) => posted += 1,
                 (1, None) if found_what_is_known(file, &done) => posted += 1,

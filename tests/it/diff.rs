@@ -19,11 +19,7 @@ impl Bench {
         let folder = tempfile::tempdir().unwrap();
         let posted = post(machine, file, with);
         assert_eq!(posted.code, 0, "{}", posted.err);
-        Self {
-            folder,
-            machine,
-            program: posted.out,
-        }
+        Self { folder, machine, program: posted.out }
     }
 
     fn write(&self, name: &str, text: &str) -> PathBuf {
@@ -100,10 +96,7 @@ fn what_makes_no_difference_is_none() {
         .collect();
     let (code, found, text) = bench.against(&(plain.join("\n") + "\n"), &[]);
     assert_eq!((code, &found["same"]), (0, &Value::Bool(true)), "{text}");
-    assert!(
-        text.ends_with("Both programs make the machine do the same.\n"),
-        "{text}"
-    );
+    assert!(text.ends_with("Both programs make the machine do the same.\n"), "{text}");
     assert_eq!(different(&found), [] as [usize; 0]);
 }
 
@@ -130,34 +123,18 @@ fn a_change_is_told_with_its_place_and_nothing_else() {
     assert_eq!(different(&found), [1], "{text}");
     let state = &found["operations"][1]["states"][0];
     assert_eq!(state["what"], "spindle");
-    assert_eq!(
-        state["values"],
-        serde_json::json!(["clockwise 2500", "clockwise 2400"])
-    );
+    assert_eq!(state["values"], serde_json::json!(["clockwise 2500", "clockwise 2400"]));
     let (_, found, text) = bench.against(&swap("P200", "P500"), &[]);
     assert_eq!(different(&found), [1], "{text}");
     let event = &found["operations"][1]["events"][0];
-    assert_eq!(
-        event["events"],
-        serde_json::json!(["a wait of 0.2 s", "a wait of 0.5 s"])
-    );
+    assert_eq!(event["events"], serde_json::json!(["a wait of 0.2 s", "a wait of 0.5 s"]));
     let (_, found, text) = bench.against(&swap("M1\n", ""), &[]);
     assert_eq!(different(&found), [0], "{text}");
     let (_, found, text) = bench.against(&swap("M8\n", ""), &[]);
-    assert_eq!(
-        found["operations"][0]["states"][0]["what"], "coolant",
-        "{text}"
-    );
+    assert_eq!(found["operations"][0]["states"][0]["what"], "coolant", "{text}");
     let (_, found, text) = bench.against(&swap("G2 X20.000 Y-10.000 I-10.000 J0.000\n", ""), &[]);
     assert_eq!(different(&found), [0], "{text}");
-    assert_eq!(
-        found["operations"][0]["other_ways"]
-            .as_array()
-            .unwrap()
-            .len(),
-        1,
-        "{text}"
-    );
+    assert_eq!(found["operations"][0]["other_ways"].as_array().unwrap().len(), 1, "{text}");
     let again = "G2 X20.000 Y-10.000 I-10.000 J0.000\n";
     let loops = format!("{again}G3 X30.000 Y0.000 I0.000 J10.000\n{again}");
     let (_, found, text) = bench.against(&swap(again, &loops), &[]);
@@ -189,21 +166,11 @@ fn who_keeps_the_tip_and_where_blocks_end_make_no_difference_to_the_part() {
         let tip = &operation["tip"];
         assert!(tip["value"].as_f64().unwrap() < 0.5, "{text}");
     }
-    let rough = post(
-        "ac-trunnion",
-        "blade.cls",
-        &["--tcp", "post", "--set", "accuracy.tolerance=0.05"],
-    );
+    let rough =
+        post("ac-trunnion", "blade.cls", &["--tcp", "post", "--set", "accuracy.tolerance=0.05"]);
     let (code, found, text) = bench.against(
         &rough.out,
-        &[
-            "--tolerance",
-            "0.06",
-            "--axis-tolerance",
-            "0.2",
-            "--feed-tolerance",
-            "0.5",
-        ],
+        &["--tolerance", "0.06", "--axis-tolerance", "0.2", "--feed-tolerance", "0.5"],
     );
     assert_eq!((code, different(&found)), (0, vec![]), "{text}");
 }
@@ -239,14 +206,8 @@ fn one_part_in_every_dialect_is_one_motion() {
 fn a_refused_program_is_no_difference() {
     let bench = Bench::new("vmc", "flange.ncl", &[]);
     let old = bench.write("old.nc", &bench.program);
-    let new = bench.write(
-        "new.nc",
-        &bench.program.replace("G54\n", "G54\nG65 P9000\n"),
-    );
-    let run = run(
-        command().args(["diff", "-m", "vmc"]).args([&old, &new]),
-        b"",
-    );
+    let new = bench.write("new.nc", &bench.program.replace("G54\n", "G54\nG65 P9000\n"));
+    let run = run(command().args(["diff", "-m", "vmc"]).args([&old, &new]), b"");
     assert_eq!((run.code, run.out.as_str()), (1, ""), "{}", run.err);
     assert!(run.err.contains("new.nc"), "{}", run.err);
 }
@@ -256,10 +217,7 @@ fn standard_input_is_one_of_them() {
     let bench = Bench::new("vmc", "flange.ncl", &[]);
     let old = bench.write("old.nc", &bench.program);
     let run = run(
-        command()
-            .args(["diff", "-m", "vmc", "--tool-length", "100"])
-            .arg(&old)
-            .arg("-"),
+        command().args(["diff", "-m", "vmc", "--tool-length", "100"]).arg(&old).arg("-"),
         bench.program.as_bytes(),
     );
     assert_eq!(run.code, 0, "{}{}", run.err, run.out);

@@ -25,8 +25,7 @@ fn contents(folder: &Path) -> Vec<(String, String)> {
     let read = |name: &String| {
         let path = folder.join(name);
         let link = fs::read_link(&path).map(|to| format!("-> {}", to.display()));
-        link.or_else(|_| fs::read_to_string(&path))
-            .unwrap_or_default()
+        link.or_else(|_| fs::read_to_string(&path)).unwrap_or_default()
     };
     let names = names(folder);
     let read: Vec<String> = names.iter().map(read).collect();
@@ -40,12 +39,7 @@ pub const JOB: &[&str] = &["-q", "-m", "ours.toml", "--tool-length", "0", "part.
 pub fn refused(folder: &Path, arguments: &[&str], parts: &[&str]) {
     let before = contents(folder);
     let done = post_in(folder, arguments);
-    assert_eq!(
-        (done.code, done.out.as_str()),
-        (1, ""),
-        "{arguments:?}\n{}",
-        done.err
-    );
+    assert_eq!((done.code, done.out.as_str()), (1, ""), "{arguments:?}\n{}", done.err);
     assert_contains(&done.err, parts);
     assert_contains(&done.err, &["1 error; nothing was written"]);
     assert_eq!(contents(folder), before, "{arguments:?}");
@@ -56,10 +50,7 @@ fn no_file_that_is_read_is_written_to() {
     let folder = workshop();
     for (target, what) in [
         ("ours.toml", "the machine file ours.toml"),
-        (
-            "./ours.toml",
-            "the machine file ours.toml, which ./ours.toml is",
-        ),
+        ("./ours.toml", "the machine file ours.toml, which ./ours.toml is"),
         ("parent.toml", "the machine file parent.toml"),
         ("part.cls", "the CL file part.cls"),
     ] {
@@ -73,26 +64,11 @@ fn no_file_that_is_read_is_written_to() {
     }
     let check = &["check", "ours.toml"][..];
     for (arguments, told) in [
-        (
-            &["--svg", "parent.toml"][..],
-            "the picture would overwrite the machine file parent.toml",
-        ),
-        (
-            &["--json", "ours.toml"],
-            "the JSON would overwrite the machine file ours.toml",
-        ),
-        (
-            &["--commission", "-o", "parent.toml"],
-            "the program would overwrite the machine file",
-        ),
-        (
-            &["--svg", "x", "--json", "./x"],
-            "the JSON would overwrite the picture x, which ./x is",
-        ),
-        (
-            &["--nominal", "parent.toml", "--json", "parent.toml"],
-            "the JSON would overwrite",
-        ),
+        (&["--svg", "parent.toml"][..], "the picture would overwrite the machine file parent.toml"),
+        (&["--json", "ours.toml"], "the JSON would overwrite the machine file ours.toml"),
+        (&["--commission", "-o", "parent.toml"], "the program would overwrite the machine file"),
+        (&["--svg", "x", "--json", "./x"], "the JSON would overwrite the picture x, which ./x is"),
+        (&["--nominal", "parent.toml", "--json", "parent.toml"], "the JSON would overwrite"),
     ] {
         refused(folder.path(), &[check, arguments].concat(), &[told]);
     }
@@ -108,29 +84,15 @@ fn no_name_of_a_file_that_is_read_is_written_to() {
     symlink("link", at("link-of-link")).unwrap();
     fs::hard_link(at("part.cls"), at("hard")).unwrap();
     symlink(".", at("here")).unwrap();
-    for target in [
-        "link",
-        "link-of-link",
-        "hard",
-        "here/ours.toml",
-        "here/hard",
-    ] {
+    for target in ["link", "link-of-link", "hard", "here/ours.toml", "here/hard"] {
         for option in ["-o", "--summary"] {
             let told = format!(", which {target} is");
-            refused(
-                folder.path(),
-                &[JOB, &[option, target]].concat(),
-                &["would overwrite", &told],
-            );
+            refused(folder.path(), &[JOB, &[option, target]].concat(), &["would overwrite", &told]);
         }
     }
     // The default target of `part.cls` is `part.nc`.
     symlink("part.cls", at("part.nc")).unwrap();
-    refused(
-        folder.path(),
-        JOB,
-        &["would overwrite the CL file part.cls, which part.nc is"],
-    );
+    refused(folder.path(), JOB, &["would overwrite the CL file part.cls, which part.nc is"]);
 }
 
 #[cfg(unix)]
@@ -152,92 +114,58 @@ fn what_a_shell_reads_or_writes_is_known_too() {
     // `post part.cls -o - >> part.cls`
     let appended = fs::OpenOptions::new().append(true).open(&cl).unwrap();
     let mut post = command();
-    post.current_dir(folder.path())
-        .args(JOB)
-        .args(["-o", "-"])
-        .stdout(appended);
+    post.current_dir(folder.path()).args(JOB).args(["-o", "-"]).stdout(appended);
     let done = post.stdin(Stdio::null()).output().unwrap();
     assert_eq!(done.status.code(), Some(1));
     assert_eq!(fs::read_to_string(&cl).unwrap(), GOOD);
     // `post part.cls >> part.cls`: what is printed for people would spoil it as well.
     for (arguments, read) in [
-        (
-            &["-m", "ours.toml", "part.cls", "-o", "x.nc"][..],
-            "part.cls",
-        ),
+        (&["-m", "ours.toml", "part.cls", "-o", "x.nc"][..], "part.cls"),
         (JOB, "ours.toml"),
         (&["check", "ours.toml"], "parent.toml"),
         (&["words", "part.cls"], "part.cls"),
-        (
-            &["machines", "--print", "ours", "--machines", "."],
-            "ours.toml",
-        ),
+        (&["machines", "--print", "ours", "--machines", "."], "ours.toml"),
         (&["place", "-m", "ours.toml", "part.cls"], "part.cls"),
     ] {
         let before = contents(folder.path());
         let mut appended = fs::OpenOptions::new();
         let appended = appended.append(true).open(folder.path().join(read));
         let mut post = command();
-        post.current_dir(folder.path())
-            .args(arguments)
-            .stdout(appended.unwrap());
+        post.current_dir(folder.path()).args(arguments).stdout(appended.unwrap());
         let done = post.stdin(Stdio::null()).output().unwrap();
         let err = String::from_utf8(done.stderr).unwrap();
         assert_eq!(done.status.code(), Some(1), "{arguments:?}: {err}");
-        assert_contains(
-            &err,
-            &["standard output goes to the ", "which the run reads"],
-        );
+        assert_contains(&err, &["standard output goes to the ", "which the run reads"]);
         assert_eq!(contents(folder.path()), before, "{arguments:?}");
     }
     // `post part.cls -o out.nc > out.nc`: a file that was replaced would not be the one that the shell opened.
     for option in ["out.nc", "/dev/stdout"] {
         let out = fs::File::create(folder.path().join("out.nc")).unwrap();
         let mut post = command();
-        post.current_dir(folder.path())
-            .args(&JOB[1..])
-            .args(["-o", option])
-            .stdout(out);
+        post.current_dir(folder.path()).args(&JOB[1..]).args(["-o", option]).stdout(out);
         let done = post.stdin(Stdio::null()).output().unwrap();
         let err = String::from_utf8(done.stderr).unwrap();
         assert_eq!(done.status.code(), Some(0), "{err}");
         assert_contains(&err, &["tip deviation"]);
         let program = fs::read_to_string(folder.path().join("out.nc")).unwrap();
-        assert!(
-            program.starts_with("%\n") && program.ends_with("M30\n%\n"),
-            "{program}"
-        );
+        assert!(program.starts_with("%\n") && program.ends_with("M30\n%\n"), "{program}");
     }
     // `post part.cls -o out.nc >> out.nc`: a program behind another one would be run as its end.
-    let out = fs::OpenOptions::new()
-        .append(true)
-        .open(folder.path().join("out.nc"));
+    let out = fs::OpenOptions::new().append(true).open(folder.path().join("out.nc"));
     let before = contents(folder.path());
     let mut post = command();
-    post.current_dir(folder.path())
-        .args(JOB)
-        .args(["-o", "out.nc"])
-        .stdout(out.unwrap());
+    post.current_dir(folder.path()).args(JOB).args(["-o", "out.nc"]).stdout(out.unwrap());
     let done = post.stdin(Stdio::null()).output().unwrap();
     let err = String::from_utf8(done.stderr).unwrap();
     assert_eq!(done.status.code(), Some(1), "{err}");
-    assert_contains(
-        &err,
-        &["overwrite out.nc, which standard output is added to"],
-    );
+    assert_contains(&err, &["overwrite out.nc, which standard output is added to"]);
     assert_eq!(contents(folder.path()), before);
-    let done = post_in(
-        folder.path(),
-        &[JOB, &["-o", "/dev/null", "--summary", "/dev/null"]].concat(),
-    );
+    let done =
+        post_in(folder.path(), &[JOB, &["-o", "/dev/null", "--summary", "/dev/null"]].concat());
     assert_eq!((done.code, done.err.as_str()), (0, ""));
     for summary in ["-", "/dev/stdout"] {
         let told = ["standard output", "name another file with --summary"];
-        refused(
-            folder.path(),
-            &[JOB, &["-o", "-", "--summary", summary]].concat(),
-            &told,
-        );
+        refused(folder.path(), &[JOB, &["-o", "-", "--summary", summary]].concat(), &told);
     }
 }
 
@@ -304,17 +232,9 @@ fn program_and_summary_take_their_names_together_or_not_at_all() {
         &["/dev/full: No space left on device"],
     );
     // `--summary - > /dev/full`
-    let full = || {
-        fs::OpenOptions::new()
-            .write(true)
-            .open("/dev/full")
-            .unwrap()
-    };
+    let full = || fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
     let mut post = command();
-    post.current_dir(folder.path())
-        .args(JOB)
-        .args(["-o", "p.nc", "--summary", "-"])
-        .stdout(full());
+    post.current_dir(folder.path()).args(JOB).args(["-o", "p.nc", "--summary", "-"]).stdout(full());
     let done = post.output().unwrap();
     let err = String::from_utf8(done.stderr).unwrap();
     assert_eq!(done.status.code(), Some(1), "{err}");
@@ -323,19 +243,13 @@ fn program_and_summary_take_their_names_together_or_not_at_all() {
     assert_eq!(text, "the one before");
     // What is told to people is no part of it: the program is written, and that is said.
     let mut post = command();
-    post.current_dir(folder.path())
-        .args(&JOB[1..])
-        .args(["-o", "p.nc"])
-        .stdout(full());
+    post.current_dir(folder.path()).args(&JOB[1..]).args(["-o", "p.nc"]).stdout(full());
     let done = post.output().unwrap();
     let err = String::from_utf8(done.stderr).unwrap();
     assert_eq!(done.status.code(), Some(1), "{err}");
     assert_contains(
         &err,
-        &[
-            "standard output: No space left on device",
-            "1 error; p.nc is written",
-        ],
+        &["standard output: No space left on device", "1 error; p.nc is written"],
     );
     let text = fs::read_to_string(folder.path().join("p.nc")).unwrap();
     assert!(text.ends_with("M30\n%\n"), "{text}");
@@ -344,16 +258,8 @@ fn program_and_summary_take_their_names_together_or_not_at_all() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_table_that_cannot_be_printed_is_a_fault() {
-    for arguments in [
-        &["words"][..],
-        &["machines"],
-        &["schema"],
-        &["check", "vmc"],
-    ] {
-        let full = fs::OpenOptions::new()
-            .write(true)
-            .open("/dev/full")
-            .unwrap();
+    for arguments in [&["words"][..], &["machines"], &["schema"], &["check", "vmc"]] {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
         let done = command().args(arguments).stdout(full).output().unwrap();
         let err = String::from_utf8(done.stderr).unwrap();
         assert_eq!(done.status.code(), Some(1), "{arguments:?}\n{err}");
@@ -374,17 +280,12 @@ fn a_disk_that_is_full_half_way_leaves_the_program_of_before() {
     fs::write(folder.path().join("part.nc"), "the one before").unwrap();
     let script = "ulimit -f 64; exec \"$0\" -q -m vmc --tool-length 0 part.cls";
     let mut shell = std::process::Command::new("bash");
-    shell
-        .args(["-c", script, env!("CARGO_BIN_EXE_post")])
-        .current_dir(folder.path());
+    shell.args(["-c", script, env!("CARGO_BIN_EXE_post")]).current_dir(folder.path());
     let done = run(&mut shell, b"");
     assert_eq!(done.code, 1, "{}", done.err);
     assert_contains(
         &done.err,
-        &[
-            "part.nc: File too large",
-            "nothing was written; part.nc is as it was",
-        ],
+        &["part.nc: File too large", "nothing was written; part.nc is as it was"],
     );
     assert_eq!(names(folder.path()), ["part.cls", "part.nc"]);
     let kept = fs::read_to_string(folder.path().join("part.nc")).unwrap();
@@ -418,22 +319,10 @@ fn a_link_is_followed_and_stays() {
     }
     // In a circle, or into a folder that is missing.
     symlink("round", at("round")).unwrap();
-    refused(
-        folder.path(),
-        &[JOB, &["-o", "round"]].concat(),
-        &["round: Too many levels"],
-    );
+    refused(folder.path(), &[JOB, &["-o", "round"]].concat(), &["round: Too many levels"]);
     symlink("no/such", at("lost")).unwrap();
-    refused(
-        folder.path(),
-        &[JOB, &["-o", "lost"]].concat(),
-        &["lost: No such file"],
-    );
-    refused(
-        folder.path(),
-        &[JOB, &["-o", "new/"]].concat(),
-        &["there is no folder new/"],
-    );
+    refused(folder.path(), &[JOB, &["-o", "lost"]].concat(), &["lost: No such file"]);
+    refused(folder.path(), &[JOB, &["-o", "new/"]].concat(), &["there is no folder new/"]);
 }
 
 /// A plugin that changes the folder that the command works in, as it is opened.
@@ -526,10 +415,6 @@ fn a_study_takes_no_file_of_another_for_its_own() {
         let into = ["study", "part.cls", "-m", "ac-trunnion", "-o", "part.cls"];
         refused(folder.path(), &into, &["part.cls is no folder"]);
         let told = format!("the study would overwrite ./{name}, which is of no study");
-        refused(
-            folder.path(),
-            &arguments,
-            &[&told, "name another folder with -o"],
-        );
+        refused(folder.path(), &arguments, &[&told, "name another folder with -o"]);
     }
 }

@@ -53,19 +53,8 @@ fn tool(folder: &Path, words: &[&str]) -> String {
 fn is_good(folder: &Path, name: &str, libraries: &str) {
     let library = format!("{libraries}/{DLL_PREFIX}post_{name}{DLL_SUFFIX}");
     let tested = in_folder(folder, &["plugin", "test", &library, "--events", "20000"]);
-    assert_eq!(
-        (tested.code, tested.err.as_str()),
-        (0, ""),
-        "{}",
-        tested.out
-    );
-    let arguments = [
-        "--plugins",
-        libraries,
-        "--machine",
-        "machine.toml",
-        "sample.cls",
-    ];
+    assert_eq!((tested.code, tested.err.as_str()), (0, ""), "{}", tested.out);
+    let arguments = ["--plugins", libraries, "--machine", "machine.toml", "sample.cls"];
     let posted = in_folder(folder, &arguments);
     assert_eq!((posted.code, posted.err.as_str()), (0, ""), "{name}");
     let program = fs::read_to_string(folder.join("sample.nc")).unwrap();
@@ -153,10 +142,7 @@ fn a_name_that_cannot_be_is_refused_and_nothing_is_replaced() {
         }
     }
     assert_eq!(fs::read_dir(parent.path()).unwrap().count(), 2);
-    assert_eq!(
-        fs::read_dir(parent.path().join("there")).unwrap().count(),
-        0
-    );
+    assert_eq!(fs::read_dir(parent.path().join("there")).unwrap().count(), 0);
     let file = fs::read_to_string(parent.path().join("a_file")).unwrap();
     assert_eq!(file, "mine\n");
     assert_eq!(post(&["plugin", "new", "mine"]).code, 2);

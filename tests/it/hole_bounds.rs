@@ -22,11 +22,7 @@ fn holes(seed: u64, inch: bool) -> (String, Vec<Vector3<f64>>) {
     let unit = if inch { INCH } else { 1.0 };
     let printed = |mm: f64| format!("{:.6}", mm / unit);
     let told = |text: &str| text.parse::<f64>().unwrap() * unit;
-    let (units, per_minute) = if inch {
-        ("INCHES", "IPM")
-    } else {
-        ("MM", "MMPM")
-    };
+    let (units, per_minute) = if inch { ("INCHES", "IPM") } else { ("MM", "MMPM") };
     let mut text = format!(
         "UNITS/{units}\nLOADTL/1\nSPINDL/RPM,1000,CLW\nRAPID\nGOTO/0,0,{}\n",
         printed(60.0)
@@ -73,8 +69,7 @@ fn json(path: &Path) -> Value {
 /// Ends of motions at feed, mm, as `post read` tells them of the printed words.
 fn ends(folder: &Path, job: &[&str]) -> Vec<Vector3<f64>> {
     let mut read = command();
-    read.current_dir(folder)
-        .args(["read", "p.nc", "--csv", "-"]);
+    read.current_dir(folder).args(["read", "p.nc", "--csv", "-"]);
     let done = run(read.args(job), b"");
     assert_eq!(done.code, 0, "{}", done.err);
     let mut lines = done.out.lines();
@@ -107,15 +102,12 @@ fn share(dialect: &str, units: &str, (cl, bottoms): &(String, Vec<Vector3<f64>>)
     let placed = ["--mount", "0,0,60", "--set", &units];
     let job = [&job[..], &placed, &named].concat();
     let mut post = command();
-    post.current_dir(folder)
-        .args(["-q", "p.cls", "-o", "p.nc", "--summary", "made.json"]);
+    post.current_dir(folder).args(["-q", "p.cls", "-o", "p.nc", "--summary", "made.json"]);
     let made = run(post.args(&job), b"");
     assert_eq!(made.code, 0, "{dialect}: {}\n{cl}", made.err);
     let certified = value(&json(&folder.join("made.json")), "/tip_deviation_mm/value");
     let mut verify = command();
-    verify
-        .current_dir(folder)
-        .args(["verify", "p.nc", "--against", "p.cls"]);
+    verify.current_dir(folder).args(["verify", "p.nc", "--against", "p.cls"]);
     let held = run(verify.args(&job), b"");
     assert_eq!(held.code, 0, "{dialect}: {}\n{cl}", held.err);
     let ends = ends(folder, &job);

@@ -44,16 +44,9 @@ fn rows(done: &Run) -> Vec<Row> {
             .map(|name| (*name).to_owned())
             .zip(line.split(',').map(str::to_owned))
             .collect();
-        let mut row = Row {
-            feed: false,
-            tip: Vector3::zeros(),
-            fields,
-        };
+        let mut row = Row { feed: false, tip: Vector3::zeros(), fields };
         row.tip = Vector3::from(["tip_x", "tip_y", "tip_z"].map(|name| row.number(name)));
-        row.feed = row
-            .fields
-            .iter()
-            .any(|(name, kind)| name == "kind" && kind != "rapid");
+        row.feed = row.fields.iter().any(|(name, kind)| name == "kind" && kind != "rapid");
         row
     });
     rows.collect()
@@ -71,10 +64,8 @@ fn bottoms(text: &str) -> Vec<Vector3<f64>> {
                 depth = place.map(|place| words[place + 1].parse::<f64>().unwrap());
             }
             "GOTO" => {
-                let numbers: Vec<f64> = words[1..]
-                    .iter()
-                    .filter_map(|word| word.parse().ok())
-                    .collect();
+                let numbers: Vec<f64> =
+                    words[1..].iter().filter_map(|word| word.parse().ok()).collect();
                 let axis = match numbers[..] {
                     [_, _, _, i, j, k] => Vector3::new(i, j, k),
                     _ => Vector3::z(),
@@ -95,11 +86,7 @@ fn holes_of_our_programs_end_where_the_cl_file_says() {
     let mut seen = 0;
     for (machine, file, with) in [
         ("vmc", "flange.ncl", &[][..]),
-        (
-            "ac-trunnion",
-            "wedge.ncl",
-            &["--set", "control.planes=true"],
-        ),
+        ("ac-trunnion", "wedge.ncl", &["--set", "control.planes=true"]),
         ("ac-trunnion", "wedge.ncl", &[]),
     ] {
         let expected = bottoms(&fs::read_to_string(sample(file)).unwrap());
@@ -129,9 +116,7 @@ fn holes_of_our_programs_end_where_the_cl_file_says() {
             let cuts: Vec<Row> = rows(&done).into_iter().filter(|row| row.feed).collect();
             let mut at = 0;
             for bottom in &expected {
-                let met = cuts[at..]
-                    .iter()
-                    .position(|cut| (cut.tip - bottom).norm() < 2e-3);
+                let met = cuts[at..].iter().position(|cut| (cut.tip - bottom).norm() < 2e-3);
                 let Some(met) = met else {
                     panic!("{dialect} {file}: no hole ends at {bottom:?}");
                 };
@@ -172,11 +157,8 @@ fn planes_are_turned_to_as_the_table_of_the_control_has_it() {
         ("[-90, 10]", "SEQ+", None),
     ] {
         let travel = format!("axis.A.travel={travel}");
-        let done = conversational(
-            "ac-trunnion",
-            &["--tool-length", "100", "--set", &travel],
-            &body(pick),
-        );
+        let done =
+            conversational("ac-trunnion", &["--tool-length", "100", "--set", &travel], &body(pick));
         let Some(expected) = expected else {
             assert_eq!(done.code, 1, "{travel} {pick}: {}", done.out);
             assert!(done.err.contains("travel"), "{}", done.err);
@@ -187,10 +169,7 @@ fn planes_are_turned_to_as_the_table_of_the_control_has_it() {
         let last = rows.last().unwrap();
         let stands = ["A", "C"].map(|name| last.number(name));
         assert!(
-            stands
-                .iter()
-                .zip(expected)
-                .all(|(at, to)| (at - to).abs() < 1e-6),
+            stands.iter().zip(expected).all(|(at, to)| (at - to).abs() < 1e-6),
             "{travel} {pick}: {stands:?}"
         );
         // 50 mm along the normal, which lies between X and Z.
@@ -233,34 +212,14 @@ fn conversational_curves_are_as_long_as_they_are_on_paper() {
     use std::f64::consts::PI;
     let head = "TOOL CALL 1 Z S100\nL X+10 Y+0 Z+5 R0 FMAX\n";
     for (block, end, length) in [
-        (
-            "CC X+0 Y+0\nC X+0 Y+10 DR+ F100",
-            [0.0, 10.0, 5.0],
-            5.0 * PI,
-        ),
-        (
-            "CC X+0 Y+0\nC X+0 Y+10 DR- F100",
-            [0.0, 10.0, 5.0],
-            15.0 * PI,
-        ),
-        (
-            "CC X+0 Y+0\nC X+10 Y+0 DR- F100",
-            [10.0, 0.0, 5.0],
-            20.0 * PI,
-        ),
+        ("CC X+0 Y+0\nC X+0 Y+10 DR+ F100", [0.0, 10.0, 5.0], 5.0 * PI),
+        ("CC X+0 Y+0\nC X+0 Y+10 DR- F100", [0.0, 10.0, 5.0], 15.0 * PI),
+        ("CC X+0 Y+0\nC X+10 Y+0 DR- F100", [10.0, 0.0, 5.0], 20.0 * PI),
         ("CR X+0 Y+10 R+10 DR+ F100", [0.0, 10.0, 5.0], 5.0 * PI),
         ("CR X+0 Y+10 R-10 DR- F100", [0.0, 10.0, 5.0], 15.0 * PI),
         ("CC X+0 Y+0\nCP PA+90 DR+ F100", [0.0, 10.0, 5.0], 5.0 * PI),
-        (
-            "CC X+0 Y+0\nCP IPA+720 IZ-4 DR+ F100",
-            [10.0, 0.0, 1.0],
-            libm::hypot(40.0 * PI, 4.0),
-        ),
-        (
-            "CC IX-10 IY+0\nLP PR+20 PA+90 F100",
-            [0.0, 20.0, 5.0],
-            500.0_f64.sqrt(),
-        ),
+        ("CC X+0 Y+0\nCP IPA+720 IZ-4 DR+ F100", [10.0, 0.0, 1.0], libm::hypot(40.0 * PI, 4.0)),
+        ("CC IX-10 IY+0\nLP PR+20 PA+90 F100", [0.0, 20.0, 5.0], 500.0_f64.sqrt()),
         // Straight up in Y, then on without a corner: half a turn of radius 5.
         ("L Y+20 F100\nCT X+20 Y+20", [20.0, 20.0, 5.0], 5.0 * PI),
         ("L IY+20 F100", [10.0, 20.0, 5.0], 20.0),
@@ -270,11 +229,7 @@ fn conversational_curves_are_as_long_as_they_are_on_paper() {
         let rows = rows(&done);
         let tip = rows.last().unwrap().tip;
         assert!((tip - Vector3::from(end)).norm() < 1e-6, "{block}: {tip:?}");
-        assert!(
-            (way(&rows) - length).abs() < 1e-3,
-            "{block}: {} instead of {length}",
-            way(&rows)
-        );
+        assert!((way(&rows) - length).abs() < 1e-3, "{block}: {} instead of {length}", way(&rows));
     }
 }
 
@@ -301,17 +256,9 @@ fn conversational_programs_call_jump_and_drill() {
     let done = conversational("vmc", &[], body);
     assert_eq!(done.code, 0, "{}", done.err);
     let rows = rows(&done);
-    let drilled: Vec<f64> = rows
-        .iter()
-        .filter(|row| row.feed)
-        .map(|row| row.tip.x)
-        .collect();
+    let drilled: Vec<f64> = rows.iter().filter(|row| row.feed).map(|row| row.tip.x).collect();
     assert_eq!(drilled, [1.0, 3.0, 4.0, 6.0, 8.0, 9.0, 10.0]);
-    assert!(
-        rows.iter()
-            .filter(|row| row.feed)
-            .all(|row| row.tip.z == -5.0)
-    );
+    assert!(rows.iter().filter(|row| row.feed).all(|row| row.tip.z == -5.0));
     assert_eq!(rows.last().unwrap().tip, Vector3::new(11.0, 0.0, 10.0));
 }
 
@@ -320,41 +267,21 @@ fn what_is_not_known_is_refused_by_its_line() {
     for (machine, dialect, program, wanted) in [
         ("vmc", "fanuc", "O1\nG0 X#5021\nM30\n", "#5021"),
         ("vmc", "fanuc", "O1\nM98 P8000\nM30\n", "O8000"),
-        (
-            "vmc",
-            "fanuc",
-            "O1\nN1 G0 X0\nGOTO 1\nM30\n",
-            "blocks were read",
-        ),
+        ("vmc", "fanuc", "O1\nN1 G0 X0\nGOTO 1\nM30\n", "blocks were read"),
         ("vmc", "fanuc", "O1\nG10 L2 P1 X0 Y0 Z0\nM30\n", "G10"),
         ("vmc", "siemens", "L100\nM30\n", "L100"),
         ("vmc", "siemens", "MYSUB\nM30\n", "MYSUB"),
         ("vmc", "siemens", "R1=$AA_IM[X]\nM30\n", "$AA_IM"),
         ("vmc", "siemens", "POCKET3(1,2,3)\nM30\n", "POCKET3"),
-        (
-            "vmc",
-            "heidenhain",
-            "0 BEGIN PGM A MM\n1 CALL PGM OTHER.H\n2 END PGM A MM\n",
-            "OTHER",
-        ),
-        (
-            "vmc",
-            "heidenhain",
-            "0 BEGIN PGM A MM\n1 FC DR- R10\n2 END PGM A MM\n",
-            "FC",
-        ),
+        ("vmc", "heidenhain", "0 BEGIN PGM A MM\n1 CALL PGM OTHER.H\n2 END PGM A MM\n", "OTHER"),
+        ("vmc", "heidenhain", "0 BEGIN PGM A MM\n1 FC DR- R10\n2 END PGM A MM\n", "FC"),
         (
             "vmc",
             "heidenhain",
             "0 BEGIN PGM A MM\n1 CYCL DEF 8.0 MIRROR IMAGE\n2 CYCL DEF 8.1 X\n3 END PGM A MM\n",
             "mirror",
         ),
-        (
-            "vmc",
-            "heidenhain",
-            "0 BEGIN PGM A MM\n1 L X+Q108 FMAX\n2 END PGM A MM\n",
-            "Q108",
-        ),
+        ("vmc", "heidenhain", "0 BEGIN PGM A MM\n1 L X+Q108 FMAX\n2 END PGM A MM\n", "Q108"),
     ] {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("program.nc");

@@ -88,10 +88,7 @@ fn others_have_no_program_for_a_tool_that_lies_down_unless_the_machine_file_answ
         // Whether the length is known or not: the control has one.
         for length in [&LONG[..], &[]] {
             let said = refused(&lying(dialect, ""), &cut("0,1,0"), length);
-            assert!(
-                said.contains("lies along Y where the rotary axes show 0"),
-                "{said}"
-            );
+            assert!(said.contains("lies along Y where the rotary axes show 0"), "{said}");
             assert!(said.contains("[tool] length_axis = \"Y\""), "{said}");
         }
         let (made, text) = good(&lying(dialect, "length_axis = \"Y\""), &cut("0,1,0"), &LONG);
@@ -99,10 +96,7 @@ fn others_have_no_program_for_a_tool_that_lies_down_unless_the_machine_file_answ
         assert!(!made.err.contains("length-axis"), "{}", made.err);
     }
     let wrong = refused_key("length_axis = \"Q\"");
-    assert!(
-        wrong.contains("the machine has no linear axis Q"),
-        "{wrong}"
-    );
+    assert!(wrong.contains("the machine has no linear axis Q"), "{wrong}");
 }
 
 fn refused_key(more: &str) -> String {
@@ -131,27 +125,14 @@ fn a_tool_that_leans_is_measured_in_the_spindle() {
     refused(&machine(""), &cut("0.6,0,0.8"), &LONG);
     let none = machine("length_axis = \"none\"");
     let (made, _) = good(&none, &cut("0.6,0,0.8"), &LONG);
-    assert!(
-        made.err
-            .contains("warning[length-axis]: the control must have 0"),
-        "{}",
-        made.err
-    );
+    assert!(made.err.contains("warning[length-axis]: the control must have 0"), "{}", made.err);
     // One work offset is measured with one tool.
     let two = cut("0.6,0,0.8").replace("END\n", "LOADTL/2\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/20,10,50\nFEDRAT/600,MMPM\nGOTO/20,20,15\nEND\n");
     let said = refused(&format!("{none}[tools]\n1 = 100\n2 = 120\n"), &two, &[]);
-    assert!(
-        said.contains("a tool of 120 mm, and one of 100 mm before"),
-        "{said}"
-    );
+    assert!(said.contains("a tool of 120 mm, and one of 100 mm before"), "{said}");
     let own = two.replace("LOADTL/2\n", "SET/OFSETL,2\nLOADTL/2\n");
     let folder = tempfile::tempdir().unwrap();
-    let (made, ..) = both(
-        folder.path(),
-        &format!("{none}[tools]\n1 = 100\n2 = 120\n"),
-        &own,
-        &[],
-    );
+    let (made, ..) = both(folder.path(), &format!("{none}[tools]\n1 = 100\n2 = 120\n"), &own, &[]);
     assert_eq!(made.code, 0, "{}", made.err);
 }
 
@@ -172,17 +153,9 @@ fn a_head_whose_tool_lies_across_the_compensated_axis_answers_for_it_or_is_refus
     let side = "[head.SIDE]\nword = \"M63\"\noffset = 2\n[head.SIDE.tool]\ngauge = [180, 0, 1050]\naxis = [-1, 0, 0]\n";
     let said = refused(&format!("{HEADS}{side}"), &swapped("SIDE"), &[]);
     assert!(said.contains("the tool of head SIDE lies along"), "{said}");
-    good(
-        &format!("{HEADS}{side}length_axis = \"none\"\n"),
-        &swapped("SIDE"),
-        &[],
-    );
+    good(&format!("{HEADS}{side}length_axis = \"none\"\n"), &swapped("SIDE"), &[]);
     let (made, text) = good(HEADS, &swapped("ANGLE"), &[]);
-    assert!(
-        made.err.contains("the words count with 200 mm of it"),
-        "{}",
-        made.err
-    );
+    assert!(made.err.contains("the words count with 200 mm of it"), "{}", made.err);
     assert!(text.contains("M62"), "{text}");
     // Who sets the machine up is told what to enter.
     let folder = tempfile::tempdir().unwrap();
@@ -197,10 +170,7 @@ fn a_head_whose_tool_lies_across_the_compensated_axis_answers_for_it_or_is_refus
     // The control has one length of a tool.
     let same = swapped("ANGLE").replace("LOADTL/2\n", "");
     let said = refused(HEADS, &same, &[]);
-    assert!(
-        said.contains("the length of tool 1 with one head"),
-        "{said}"
-    );
+    assert!(said.contains("the length of tool 1 with one head"), "{said}");
 }
 
 /// The stop at which the operator swaps it is none that the CL file asks for.
@@ -214,10 +184,7 @@ fn a_head_that_the_operator_swaps_is_read_back() {
 /// Its words have the whole tool in them, and G43 shifts none of them.
 #[test]
 fn an_arm_is_read_back_from_its_first_position_on() {
-    let arm = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/tests/chains/six-axis-arm.toml"
-    );
+    let arm = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/chains/six-axis-arm.toml");
     let machine = format!("extends = {arm:?}\n");
     let cl = cut("0,0,1").replace(",10,50,", ",10,40,");
     good(&machine, &cl, &LONG);
@@ -230,14 +197,7 @@ const TWO: &str = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,15000,CLW\nRAPID\nGOTO/20,10,5
 
 #[test]
 fn a_tool_of_its_own_program_begins_with_its_own_speed() {
-    for dialect in [
-        "fanuc",
-        "siemens",
-        "heidenhain",
-        "haas",
-        "linuxcnc",
-        "mazak",
-    ] {
+    for dialect in ["fanuc", "siemens", "heidenhain", "haas", "linuxcnc", "mazak"] {
         let folder = tempfile::tempdir().unwrap();
         let machine = format!(
             "extends = \"vmc\"\n[workpiece]\nmount = [0, 0, -100]\n[control]\ndialect = \"{dialect}\"\n"
@@ -303,15 +263,12 @@ fn the_length_stands_before_another_axis_brings_the_tool_in() {
     for dialect in ["fanuc", "haas", "mazak", "mitsubishi", "linuxcnc"] {
         let machine = format!("extends = \"mill-turn\"\n[control]\ndialect = \"{dialect}\"\n");
         let (_, text) = good(&machine, cl, &["--tool-length", "120"]);
-        let mut blocks = text
-            .lines()
-            .skip_while(|block| !block.contains("G43") && !block.contains("G234"));
+        let mut blocks =
+            text.lines().skip_while(|block| !block.contains("G43") && !block.contains("G234"));
         // Where the length comes on X goes from 60 to 50 mm below the end of its travel.
         let first = blocks.find(|block| !linear(block).is_empty()).expect(&text);
         assert_eq!(linear(first), ['X', 'Y', 'Z'], "{text}");
-        let x = first
-            .split_whitespace()
-            .find_map(|word| word.strip_prefix('X'));
+        let x = first.split_whitespace().find_map(|word| word.strip_prefix('X'));
         assert_eq!(x.and_then(|x| x.parse().ok()), Some(610.0), "{text}");
         // Then X alone, outside, and in along the tool.
         let mut words = blocks.map(linear).filter(|words| !words.is_empty());
@@ -325,11 +282,9 @@ fn the_length_stands_before_another_axis_brings_the_tool_in() {
 fn a_tilted_plane_comes_near_by_its_own_z() {
     let cl = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nMULTAX/ON\nRAPID\nGOTO/150,5,40,1,0,0\nRAPID\nGOTO/82,5,40\n\
               FEDRAT/200,MMPM\nGOTO/75,5,40\nGOTO/75,20,40\nRAPID\nGOTO/150,20,40\nFINI\n";
-    for (dialect, plane) in [
-        ("fanuc", "G53.1"),
-        ("mazak", "G53.1"),
-        ("heidenhain", "PLANE SPATIAL"),
-    ] {
+    for (dialect, plane) in
+        [("fanuc", "G53.1"), ("mazak", "G53.1"), ("heidenhain", "PLANE SPATIAL")]
+    {
         let machine =
             format!("extends = \"mill-turn\"\n[control]\ndialect = \"{dialect}\"\nplanes = true\n");
         let (_, text) = good(&machine, cl, &["--tool-length", "120"]);
@@ -355,10 +310,7 @@ fn lying_trunnion(dialect: &str, more: &str) -> String {
 fn a_control_that_keeps_the_tip_is_not_told_another_axis_of_the_length() {
     for dialect in ["siemens", "heidenhain"] {
         let said = refused(&lying_trunnion(dialect, ""), &cut("0,1,0"), &LONG);
-        assert!(
-            said.contains("lies across Z where the rotary axes show 0"),
-            "{said}"
-        );
+        assert!(said.contains("lies across Z where the rotary axes show 0"), "{said}");
         let answered = lying_trunnion(dialect, "length_axis = \"Y\"");
         good(&answered, &cut("0,1,0"), &LONG);
     }
@@ -368,11 +320,7 @@ fn a_control_that_keeps_the_tip_is_not_told_another_axis_of_the_length() {
     // Drawn along X, shown along Z.
     let mill_turn =
         "extends = \"mill-turn\"\n[workpiece]\nmount = [100, 0, 0]\n[control]\ndialect = ";
-    let (_, tnc) = good(
-        &format!("{mill_turn}\"heidenhain\"\n"),
-        &cut("0,0,1"),
-        &LONG,
-    );
+    let (_, tnc) = good(&format!("{mill_turn}\"heidenhain\"\n"), &cut("0,0,1"), &LONG);
     assert!(tnc.contains("TOOL CALL 1 Z S3000"), "{tnc}");
     good(&format!("{mill_turn}\"siemens\"\n"), &cut("0,0,1"), &LONG);
 }
@@ -382,23 +330,13 @@ fn a_control_that_keeps_the_tip_is_not_told_another_axis_of_the_length() {
 fn a_right_angle_head_under_tool_centre_point_control_is_answered_for_or_refused() {
     let kept = "[control]\ntcp = \"control\"\n";
     let said = refused(&format!("{HEADS}{kept}"), &swapped("ANGLE"), &[]);
-    assert!(
-        said.contains("the tool of head ANGLE lies otherwise than that of"),
-        "{said}"
-    );
+    assert!(said.contains("the tool of head ANGLE lies otherwise than that of"), "{said}");
     let side = |more: &str| {
         format!(
             "{HEADS}[head.SIDE]\nword = \"M63\"\noffset = 2\n[head.SIDE.tool]\ngauge = [180, 0, 1050]\naxis = [-1, 0, 0]\n{more}\n{kept}"
         )
     };
-    for dialect in [
-        "fanuc",
-        "haas",
-        "mazak",
-        "mitsubishi",
-        "siemens",
-        "heidenhain",
-    ] {
+    for dialect in ["fanuc", "haas", "mazak", "mitsubishi", "siemens", "heidenhain"] {
         let machine =
             |more: &str| side(more).replace(kept, &format!("{kept}dialect = \"{dialect}\"\n"));
         let said = refused(&machine(""), &swapped("SIDE"), &[]);
@@ -423,26 +361,16 @@ fn a_tool_begins_with_its_own_speed_though_that_stands_behind_its_first_position
         let (made, text) = good(&machine, LATE, &named);
         assert!(!made.err.contains("no SPINDL"), "{}", made.err);
         assert_eq!(text.matches("15000").count(), 1, "{dialect}:\n{text}");
-        let speed = text
-            .find("S800")
-            .or_else(|| text.find("S+800"))
-            .expect(&text);
+        let speed = text.find("S800").or_else(|| text.find("S+800")).expect(&text);
         // The coolant flows again with it, and the spindle turns before the tool goes down.
         let coolant = text.rfind("M8").expect(&text);
         let down = text.rfind("15.").expect(&text);
         assert!(speed < down && coolant < down, "{dialect}:\n{text}");
         // A tool without a speed of its own turns as the one before, and that is told.
         let (made, text) = good(&machine, &LATE.replace("SPINDL/RPM,800,CLW\n", ""), &named);
-        assert!(
-            made.err.contains("no SPINDL since the tool change"),
-            "{}",
-            made.err
-        );
+        assert!(made.err.contains("no SPINDL since the tool change"), "{}", made.err);
         let again = text.rfind("15000").expect(&text);
-        assert!(
-            again < text.rfind("15.").expect(&text),
-            "{dialect}:\n{text}"
-        );
+        assert!(again < text.rfind("15.").expect(&text), "{dialect}:\n{text}");
     }
 }
 
@@ -454,22 +382,14 @@ fn a_spindle_that_waits_turns_before_whatever_cuts() {
         "{}CYCLE/DRILL,10,MMPM,100,2\nGOTO/-20,10,15\nCYCLE/OFF\nRAPID\nGOTO/-20,10,50\nEND\nFINI\n",
         &LATE[..tail]
     );
-    let (_, text) = good(
-        "extends = \"vmc\"\n[workpiece]\nmount = [0, 0, -100]\n",
-        &drilled,
-        &LONG,
-    );
+    let (_, text) = good("extends = \"vmc\"\n[workpiece]\nmount = [0, 0, -100]\n", &drilled, &LONG);
     let again = text.rfind("S15000 M3").expect(&text);
     assert!(again < text.find("G81").expect(&text), "{text}");
     let round = format!(
         "{}FEDRAT/600,MMPM\nCIRCLE/0,10,50,0,0,1,20\nGOTO/20,10,50\nEND\nFINI\n",
         &LATE[..tail]
     );
-    let (_, text) = good(
-        "extends = \"vmc\"\n[workpiece]\nmount = [0, 0, -100]\n",
-        &round,
-        &LONG,
-    );
+    let (_, text) = good("extends = \"vmc\"\n[workpiece]\nmount = [0, 0, -100]\n", &round, &LONG);
     let again = text.rfind("S15000 M3").expect(&text);
     assert!(again < text.find("G3 ").expect(&text), "{text}");
 }

@@ -22,12 +22,7 @@ pub struct Row {
 }
 
 const fn row(machine: &'static str, ending: &'static str, length: f64, code: &'static str) -> Row {
-    Row {
-        machine,
-        ending,
-        length,
-        code,
-    }
+    Row { machine, ending, length, code }
 }
 
 pub const LIBRARY: &[Row] = &[
@@ -112,10 +107,9 @@ fn faults(row: &Row) -> Vec<String> {
     let mut faults = read_back(row, &points(&text), &run.out);
     let summary = summary.unwrap();
     let model = Model::new(row.machine, None);
-    for (key, limit) in [
-        ("tip_deviation_mm", model.tolerance),
-        ("axis_deviation_deg", model.axis_tolerance),
-    ] {
+    for (key, limit) in
+        [("tip_deviation_mm", model.tolerance), ("axis_deviation_deg", model.axis_tolerance)]
+    {
         let value = summary[key]["value"].as_f64().unwrap();
         if value > limit {
             faults.push(format!("{key} is {value}"));
@@ -133,34 +127,19 @@ fn read_back(row: &Row, points: &[Point], program: &str) -> Vec<String> {
             heads.push(point.head.clone());
         }
     }
-    let models: Vec<Model> = heads
-        .iter()
-        .map(|head| Model::new(row.machine, head.as_deref()))
-        .collect();
-    let names: Vec<&str> = models[0]
-        .axes
-        .iter()
-        .map(|axis| axis.name.as_str())
-        .collect();
+    let models: Vec<Model> =
+        heads.iter().map(|head| Model::new(row.machine, head.as_deref())).collect();
+    let names: Vec<&str> = models[0].axes.iter().map(|axis| axis.name.as_str()).collect();
     let table = table(row.machine);
     let swap: Vec<String> = heads
         .iter()
         .flatten()
-        .filter_map(|head| {
-            Some(
-                table["head"][head.as_str()]
-                    .get("word")?
-                    .as_str()?
-                    .to_owned(),
-            )
-        })
+        .filter_map(|head| Some(table["head"][head.as_str()].get("word")?.as_str()?.to_owned()))
         .collect();
     let blocks = blocks(program, &names, &swap);
     let mut faults = Vec::new();
-    let poses: Vec<_> = blocks
-        .iter()
-        .map(|block| models[block.swaps].pose(&block.words, row.length))
-        .collect();
+    let poses: Vec<_> =
+        blocks.iter().map(|block| models[block.swaps].pose(&block.words, row.length)).collect();
     let mut next = 0;
     for point in points {
         let model = &models[heads.iter().position(|head| *head == point.head).unwrap()];
@@ -187,18 +166,10 @@ fn read_back(row: &Row, points: &[Point], program: &str) -> Vec<String> {
         let over = models[block.swaps].over_travel(&block.words, row.length);
         faults.extend(over.map(|over| format!("line {}: {over}", block.line)));
     }
-    for (place, axis) in models[0]
-        .axes
-        .iter()
-        .enumerate()
-        .filter(|(_, axis)| axis.indexed)
-    {
+    for (place, axis) in models[0].axes.iter().enumerate().filter(|(_, axis)| axis.indexed) {
         for pair in blocks.windows(2) {
             if !pair[1].rapid && pair[0].words[place] != pair[1].words[place] {
-                faults.push(format!(
-                    "line {}: {} moves in a cut",
-                    pair[1].line, axis.name
-                ));
+                faults.push(format!("line {}: {} moves in a cut", pair[1].line, axis.name));
             }
         }
         for block in &blocks {
@@ -209,10 +180,7 @@ fn read_back(row: &Row, points: &[Point], program: &str) -> Vec<String> {
                 (None, None) => true,
             };
             if !stands {
-                faults.push(format!(
-                    "line {}: {} cannot stand at {value}",
-                    block.line, axis.name
-                ));
+                faults.push(format!("line {}: {} cannot stand at {value}", block.line, axis.name));
             }
         }
     }
@@ -230,10 +198,8 @@ fn read_back(row: &Row, points: &[Point], program: &str) -> Vec<String> {
 /// The leading edge must point along one of the pieces that meet in a CL point, or between them.
 fn edge_faults(points: &[Point], poses: &[post_testruns::read_back::Pose]) -> Vec<String> {
     let mut faults = Vec::new();
-    let cuts: Vec<&[Point]> = points
-        .chunk_by(|_, point| !point.rapid)
-        .filter(|cut| cut.len() > 2)
-        .collect();
+    let cuts: Vec<&[Point]> =
+        points.chunk_by(|_, point| !point.rapid).filter(|cut| cut.len() > 2).collect();
     for cut in cuts {
         // The first piece is the plunge.
         for three in cut[1..].windows(3) {
@@ -250,10 +216,7 @@ fn edge_faults(points: &[Point], poses: &[post_testruns::read_back::Pose]) -> Ve
                 .map(|pose| angle(pose.edge, come) + angle(pose.edge, go) - bend);
             let off = there.fold(f64::INFINITY, f64::min);
             if off > 1.0 {
-                faults.push(format!(
-                    "CL line {}: the edge is off by {off}°",
-                    three[1].line
-                ));
+                faults.push(format!("CL line {}: the edge is off by {off}°", three[1].line));
             }
         }
     }
@@ -310,10 +273,7 @@ fn every_machine_says_where_its_numbers_come_from() {
     for row in LIBRARY {
         let path = root().join(format!("machines/{}.toml", row.machine));
         let text = fs::read_to_string(path).unwrap();
-        let head: Vec<&str> = text
-            .lines()
-            .take_while(|line| line.starts_with('#'))
-            .collect();
+        let head: Vec<&str> = text.lines().take_while(|line| line.starts_with('#')).collect();
         let head = head.join(" ");
         assert!(
             head.contains("example") || head.contains("Where the numbers come from"),
@@ -330,32 +290,12 @@ fn every_machine_says_where_its_numbers_come_from() {
 
 /// A table of poses that LinuxCNC computed, the machine of the library that it must be, parameters, and the
 /// tool's length.
-type Poses = (
-    &'static str,
-    &'static str,
-    &'static [(&'static str, f64)],
-    f64,
-);
+type Poses = (&'static str, &'static str, &'static [(&'static str, f64)], f64);
 
 const LINUXCNC: &[Poses] = &[
-    (
-        "ik_xyzac_plain",
-        "xyzac-trt",
-        &[("y_offset", 0.0), ("z_offset", 0.0)],
-        0.0,
-    ),
-    (
-        "ik_xyzac_offsets",
-        "xyzac-trt",
-        &[("x_rot", 3.0), ("y_rot", -4.0), ("z_rot", 5.0)],
-        75.0,
-    ),
-    (
-        "ik_xyzbc_plain",
-        "xyzbc-trt",
-        &[("x_offset", 0.0), ("z_offset", 0.0)],
-        0.0,
-    ),
+    ("ik_xyzac_plain", "xyzac-trt", &[("y_offset", 0.0), ("z_offset", 0.0)], 0.0),
+    ("ik_xyzac_offsets", "xyzac-trt", &[("x_rot", 3.0), ("y_rot", -4.0), ("z_rot", 5.0)], 75.0),
+    ("ik_xyzbc_plain", "xyzbc-trt", &[("x_offset", 0.0), ("z_offset", 0.0)], 0.0),
     ("ik_5axiskins_headhead", "linuxcnc-5axis", &[], 0.0),
 ];
 
@@ -372,21 +312,14 @@ fn the_machines_of_linuxcnc_are_its_own() {
         }
         let model = Model::from_table(table, None);
         let text = fs::read_to_string(data.join(format!("{file}.csv"))).unwrap();
-        let order = if machine.starts_with("xyzac") {
-            "XYZAC"
-        } else {
-            "XYZBC"
-        };
+        let order = if machine.starts_with("xyzac") { "XYZAC" } else { "XYZBC" };
         let mut count = 0;
         for line in text.lines() {
             let numbers: Vec<f64> = line.split(',').filter_map(|n| n.parse().ok()).collect();
             if numbers.len() != 18 {
                 continue;
             }
-            let places = model
-                .axes
-                .iter()
-                .map(|axis| order.find(&axis.name).unwrap());
+            let places = model.axes.iter().map(|axis| order.find(&axis.name).unwrap());
             let values: Vec<f64> = places.map(|place| numbers[9 + place]).collect();
             // The module's pose has the tool's length in its Z.
             let tip = V::new(numbers[0], numbers[1], numbers[2] - length);
@@ -402,17 +335,8 @@ fn the_machines_of_linuxcnc_are_its_own() {
 #[test]
 fn the_pocket_nc_is_its_own() {
     let model = Model::new("pocketnc", None);
-    let place = |name| {
-        model
-            .axes
-            .iter()
-            .position(|axis| axis.name == name)
-            .unwrap()
-    };
-    for (a, b, x, y, z) in [
-        (30.0, -50.0, 10.0, -20.0, 5.0),
-        (120.0, 200.0, -30.0, 15.0, -40.0),
-    ] {
+    let place = |name| model.axes.iter().position(|axis| axis.name == name).unwrap();
+    for (a, b, x, y, z) in [(30.0, -50.0, 10.0, -20.0, 5.0), (120.0, 200.0, -30.0, 15.0, -40.0)] {
         let mut values = vec![0.0; 5];
         for (name, value) in [("A", a), ("B", b), ("X", x), ("Y", y), ("Z", z)] {
             values[place(name)] = value;

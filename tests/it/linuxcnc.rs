@@ -93,10 +93,7 @@ fn table(
 ) -> Stand {
     let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), -c);
     let carriage = joints - Vector3::z() * length;
-    (
-        turn * (offset + tilt * (carriage - offset)),
-        turn * tilt * Vector3::z(),
-    )
+    (turn * (offset + tilt * (carriage - offset)), turn * tilt * Vector3::z())
 }
 
 const MACHINES: [Machine; 3] = [
@@ -170,19 +167,11 @@ struct Begin {
 impl Begin {
     /// At a place where nothing stands at zero.
     fn aside(machine: &Machine) -> Self {
-        Self {
-            start: format!("Z=-5,{}=-30,C=90", machine.tilting),
-            ..Self::at("")
-        }
+        Self { start: format!("Z=-5,{}=-30,C=90", machine.tilting), ..Self::at("") }
     }
 
     fn at(start: &str) -> Self {
-        Self {
-            start: start.to_owned(),
-            tcp_on: false,
-            moved: Vector3::zeros(),
-            left: Vec::new(),
-        }
+        Self { start: start.to_owned(), tcp_on: false, moved: Vector3::zeros(), left: Vec::new() }
     }
 }
 
@@ -232,13 +221,7 @@ fn joints(machine: &Machine, program: &Path, begin: &Begin) -> Option<Result<Vec
         linuxcnc.args(["--max-feed", &format!("{axis}={ROTARY}")]);
     }
     if begin.tcp_on {
-        linuxcnc.args([
-            "--before",
-            "T1 M6",
-            "--before",
-            "G43 H1",
-            "--tcp-on-at-start",
-        ]);
+        linuxcnc.args(["--before", "T1 M6", "--before", "G43 H1", "--tcp-on-at-start"]);
     }
     for left in &begin.left {
         linuxcnc.args(["--before", left]);
@@ -290,10 +273,8 @@ fn rapid_paths(text: &str) -> Vec<Vec<[Vector3<f64>; 2]>> {
         } else if line.starts_with("RAPID") {
             rapid = true;
         } else if let Some(numbers) = line.strip_prefix("GOTO/") {
-            let numbers: Vec<f64> = numbers
-                .split(',')
-                .map(|it| it.trim().parse().unwrap())
-                .collect();
+            let numbers: Vec<f64> =
+                numbers.split(',').map(|it| it.trim().parse().unwrap()).collect();
             let tip = Vector3::new(numbers[0], numbers[1], numbers[2]);
             if std::mem::take(&mut rapid) {
                 paths.last_mut().unwrap().push([last.unwrap_or(tip), tip]);
@@ -330,9 +311,7 @@ fn judge(machine: &Machine, rows: &[Row], rapids_hold: bool) -> Vec<String> {
     let mut start = 0;
     while start < rows.len() {
         let feed = rows[start].feed;
-        let end = (start..rows.len())
-            .find(|at| rows[*at].feed != feed)
-            .unwrap_or(rows.len());
+        let end = (start..rows.len()).find(|at| rows[*at].feed != feed).unwrap_or(rows.len());
         let segment = &rows[start..end];
         // At a stop it stands where the cut has ended.
         let cut_end = start.checked_sub(1).map(|at| rows[at]);
@@ -353,11 +332,8 @@ fn judge(machine: &Machine, rows: &[Row], rapids_hold: bool) -> Vec<String> {
             let [tilt, c] = row.rotary.map(f64::to_radians);
             let stands = |row: &Row| {
                 // The tool is there also while its length is not in force.
-                let lengths = if row.length == 0.0 {
-                    &TOOLS[..]
-                } else {
-                    std::slice::from_ref(&row.length)
-                };
+                let lengths =
+                    if row.length == 0.0 { &TOOLS[..] } else { std::slice::from_ref(&row.length) };
                 lengths
                     .iter()
                     .map(|length| (machine.law)(row.linear, tilt, c, *length))
@@ -403,11 +379,7 @@ fn judge(machine: &Machine, rows: &[Row], rapids_hold: bool) -> Vec<String> {
         if way_a_minute > LINEAR * allowed || turn_a_minute > ROTARY * allowed {
             wrong.push(format!(
                 "{way_a_minute:.0} mm/min, {turn_a_minute:.0}°/min {} at X {:.3} Y {:.3} Z {:.3}",
-                if to.feed {
-                    "in feed"
-                } else {
-                    "between the cuts"
-                },
+                if to.feed { "in feed" } else { "between the cuts" },
                 to.linear.x,
                 to.linear.y,
                 to.linear.z
@@ -446,11 +418,7 @@ fn two_tools_on(machine: &Machine) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("fast.toml"), fast(machine)).unwrap();
     fs::write(folder.path().join("two.cls"), TWO_TOOLS).unwrap();
-    for (tcp, rapid) in [
-        ("control", "rapid"),
-        ("control", "linear"),
-        ("post", "rapid"),
-    ] {
+    for (tcp, rapid) in [("control", "rapid"), ("control", "linear"), ("post", "rapid")] {
         let rapids = format!("control.rapid={rapid:?}");
         let done = run(
             command().current_dir(folder.path()).args([
@@ -473,16 +441,9 @@ fn two_tools_on(machine: &Machine) {
         let told = summary["fast_rapids"]["count"].as_u64().unwrap();
         assert!(told == 0 || rapid == "rapid");
         // How rapids are written has nothing to do with the start.
-        let starts: &[bool] = if rapid == "rapid" {
-            &[false, true]
-        } else {
-            &[false]
-        };
+        let starts: &[bool] = if rapid == "rapid" { &[false, true] } else { &[false] };
         for &tcp_on in starts {
-            let begin = Begin {
-                tcp_on,
-                ..Begin::aside(machine)
-            };
+            let begin = Begin { tcp_on, ..Begin::aside(machine) };
             let program = folder.path().join("two.ngc");
             let good = run_until_good(machine, &program, &begin, |rows| {
                 if rows.iter().filter(|row| row.feed).count() <= 500 {
@@ -490,11 +451,7 @@ fn two_tools_on(machine: &Machine) {
                 }
                 // What the summary does not name holds in rapids as in feeds.
                 let wrong = judge(machine, rows, told == 0);
-                let start = if tcp_on {
-                    "TCP still on"
-                } else {
-                    "a cold start"
-                };
+                let start = if tcp_on { "TCP still on" } else { "a cold start" };
                 match wrong.is_empty() {
                     true => Ok(()),
                     false => Err(format!(

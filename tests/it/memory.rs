@@ -61,13 +61,8 @@ fn memory_does_not_grow_with_the_report() {
     let folder = tempfile::tempdir().unwrap();
     let page = folder.path().join("report.html");
     let flag = OsStr::new("--report");
-    let [small, large] = [100_000, 300_000].map(|points| {
-        peak(&[
-            wave(folder.path(), points).as_os_str(),
-            flag,
-            page.as_os_str(),
-        ])
-    });
+    let [small, large] = [100_000, 300_000]
+        .map(|points| peak(&[wave(folder.path(), points).as_os_str(), flag, page.as_os_str()]));
     assert!(
         large < small + small / 10 + 1024,
         "{small} kB for 100,000 points, {large} kB for 300,000"

@@ -21,13 +21,7 @@ fn a_message_says_where_what_how_much_and_what_helps() {
         (
             "ac-trunnion",
             "GOTO/0,0,10,0,0.7071068,-0.7071068",
-            &[
-                "over-travel",
-                "A would be",
-                "135.000°",
-                "-120.000°",
-                "help: ",
-            ],
+            &["over-travel", "A would be", "135.000°", "-120.000°", "help: "],
         ),
         (
             "vmc",
@@ -41,12 +35,7 @@ fn a_message_says_where_what_how_much_and_what_helps() {
     ] {
         let with = ["-m", machine, "--spindle", "3000"];
         let done = post_text(&with, &format!("{head}{line}\nFINI\n"));
-        assert_eq!(
-            (done.code, done.out.as_str()),
-            (1, ""),
-            "{line}\n{}",
-            done.err
-        );
+        assert_eq!((done.code, done.out.as_str()), (1, ""), "{line}\n{}", done.err);
         assert_contains(&done.err, parts);
         assert_contains(&done.err, &["standard input:5", line, "1 error"]);
     }
@@ -54,15 +43,9 @@ fn a_message_says_where_what_how_much_and_what_helps() {
 
 #[test]
 fn a_cut_without_a_feed_is_refused() {
-    let done = post_text(
-        &["-m", "vmc"],
-        "UNITS/MM\nLOADTL/1\nGOTO/0,0,50\nGOTO/0,0,10\n",
-    );
+    let done = post_text(&["-m", "vmc"], "UNITS/MM\nLOADTL/1\nGOTO/0,0,50\nGOTO/0,0,10\n");
     assert_eq!((done.code, done.out.as_str()), (1, ""));
-    assert_contains(
-        &done.err,
-        &["no-feed", "standard input:4", "GOTO/0,0,10", "FEDRAT"],
-    );
+    assert_contains(&done.err, &["no-feed", "standard input:4", "GOTO/0,0,10", "FEDRAT"]);
 }
 
 #[test]
@@ -70,13 +53,9 @@ fn several_faults_are_told_in_one_run() {
     let text = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nGOTO/0,0,50\nGOTO/0,0,10\nFEDRAT/100,MMPM\nGOTO/1,2,x\nGOTO/900,0,10\nGOTO/950,0,10\nGOTO/0,0,10,0,0,-1\nCIRCLE/1,2\nFINI\n";
     let done = post_text(&["-m", "ac-trunnion"], text);
     assert_eq!((done.code, done.out.as_str()), (1, ""));
-    for (line, code) in [
-        (5, "no-feed"),
-        (7, "syntax"),
-        (8, "over-travel"),
-        (10, "over-travel"),
-        (11, "syntax"),
-    ] {
+    for (line, code) in
+        [(5, "no-feed"), (7, "syntax"), (8, "over-travel"), (10, "over-travel"), (11, "syntax")]
+    {
         let at = format!("standard input:{line}:");
         let told = done
             .err
@@ -119,19 +98,13 @@ fn words_lists_what_becomes_of_each_word() {
     assert_eq!((listed.code, listed.err.as_str()), (0, ""));
     let row = |word: &str| -> Vec<String> {
         let line = listed.out.lines().find(|line| line.starts_with(word));
-        line.unwrap()
-            .split_whitespace()
-            .map(str::to_owned)
-            .collect()
+        line.unwrap().split_whitespace().map(str::to_owned).collect()
     };
     assert_eq!(row("GOTO"), ["GOTO", "3", "used", "8"]);
     assert_eq!(row("WIGGLE"), ["WIGGLE", "1", "unknown", "4"]);
     assert_eq!(row("PAINT"), ["PAINT", "1", "ignored", "5"]);
     assert_eq!(row("TRACUT"), ["TRACUT", "1", "refused", "6"]);
-    let unknown = run(
-        command().args(["words", "--unknown-only", "-"]),
-        text.as_bytes(),
-    );
+    let unknown = run(command().args(["words", "--unknown-only", "-"]), text.as_bytes());
     assert_eq!(unknown.out.lines().count(), 3, "{}", unknown.out);
 }
 
@@ -143,11 +116,7 @@ fn words_without_a_file_lists_those_that_are_known() {
     assert_eq!(listed.out.lines().count(), 1 + words.len());
     assert_contains(
         &listed.out,
-        &[
-            "LOADTL = LOAD = TURRET = TOOLNO",
-            "FEDRAT",
-            "refused    repeats moves",
-        ],
+        &["LOADTL = LOAD = TURRET = TOOLNO", "FEDRAT", "refused    repeats moves"],
     );
 }
 

@@ -44,16 +44,10 @@ struct Job {
 fn machine(name: &str, settings: &[Setting]) -> Machine {
     let find = |name: &str| {
         let path = root().join("machines").join(format!("{name}.toml"));
-        fs::read_to_string(&path).map(|text| Source {
-            name: name.to_owned(),
-            text,
-        })
+        fs::read_to_string(&path).map(|text| Source { name: name.to_owned(), text })
     };
     let source = find(name).unwrap();
-    load(source, settings, &mut |name| {
-        find(name).map_err(|error| error.to_string())
-    })
-    .unwrap()
+    load(source, settings, &mut |name| find(name).map_err(|error| error.to_string())).unwrap()
 }
 
 fn registers(words: &[VocabularyWord]) -> Registers {
@@ -61,10 +55,7 @@ fn registers(words: &[VocabularyWord]) -> Registers {
         let mut words = words.iter();
         words.any(|word| word.meaning == meaning && word.word == letter)
     };
-    match (
-        has("H", Meaning::LengthRegister),
-        has("D", Meaning::LengthOn),
-    ) {
+    match (has("H", Meaning::LengthRegister), has("D", Meaning::LengthOn)) {
         (true, _) => Registers::OfTool,
         (false, true) => Registers::Edges,
         (false, false) => Registers::None,
@@ -75,17 +66,8 @@ impl Job {
     fn new(dialect: &str, name: &str, file: &str, tcp: &str) -> Option<Self> {
         let length = 100.0;
         let path = sample(file);
-        let mut arguments = vec![
-            "-q",
-            "-m",
-            name,
-            "--dialect",
-            dialect,
-            "--tool-length",
-            "100",
-            "-o",
-            "-",
-        ];
+        let mut arguments =
+            vec!["-q", "-m", name, "--dialect", dialect, "--tool-length", "100", "-o", "-"];
         let mut settings = vec![Setting::Dialect(dialect.to_owned())];
         if !tcp.is_empty() {
             arguments.extend(["--tcp", tcp]);
@@ -144,11 +126,7 @@ impl Job {
                 && piece.kind != MotionKind::Rapid
             {
                 // A chord of a tenth of a millimetre strays from no arc of these by a hundredth of the tolerance.
-                let step = if piece.curve == Curve::Straight {
-                    0.5
-                } else {
-                    0.1
-                };
+                let step = if piece.curve == Curve::Straight { 0.5 } else { 0.1 };
                 let count = (2.0 + piece.length() / step).min(20_000.0) as u32;
                 asked.extend((0..=count).map(|step| {
                     let pose = piece.at(f64::from(step) / f64::from(count), 0.0);
@@ -182,17 +160,11 @@ impl Job {
     /// What the program of these lines does, and what is wrong with it, with its line.
     fn run(&self, lines: &[String], length: f64) -> (Vec<Done>, Vec<(Option<u64>, String)>) {
         let text = lines.join("\n") + "\n";
-        let offsets = Offsets {
-            length: Some(length),
-            ..Offsets::default()
-        };
+        let offsets = Offsets { length: Some(length), ..Offsets::default() };
         let (near, _) = CutPath::of(&mut self.course(), self.machine.control_point.along);
         let rules = Rules {
             registers: self.registers,
-            lengths: Some(Offsets {
-                length: Some(self.length),
-                ..Offsets::default()
-            }),
+            lengths: Some(Offsets { length: Some(self.length), ..Offsets::default() }),
             own: true,
             ..Rules::of(&self.machine)
         };
@@ -201,10 +173,7 @@ impl Job {
             &self.machine,
             &self.lexicon,
             &offsets,
-            Limits {
-                blocks: 100_000,
-                ..Limits::default()
-            },
+            Limits { blocks: 100_000, ..Limits::default() },
             "mutant.nc",
             Cursor::new(text.into_bytes()),
         );
@@ -238,10 +207,7 @@ impl Job {
         }
         let found = verifier.finish(&mut |_| {});
         faults.extend(found.faults.into_iter().map(|fault| {
-            let text = format!(
-                "{}: {} (CL line {:?})",
-                fault.code, fault.message, fault.cl_line
-            );
+            let text = format!("{}: {} (CL line {:?})", fault.code, fault.message, fault.cl_line);
             (fault.nc_line, text)
         }));
         (all, faults)
@@ -284,9 +250,7 @@ const KINDS: &[&str] = &[
 const MALFORMED: &[&str] = &["second feed", "malformed"];
 
 /// Words of lines that lead off the part in positions of the machine.
-const RETRACTS: &[&str] = &[
-    "G53", "G28", "G30", "SUPA", "M91", "M140", "VPSLZ", "G16 H0",
-];
+const RETRACTS: &[&str] = &["G53", "G28", "G30", "SUPA", "M91", "M140", "VPSLZ", "G16 H0"];
 
 /// Words of cycles that peck.
 const PECKS: &[&str] = &["G83", "G73", "Q202", "CYCLE83"];
@@ -350,9 +314,8 @@ fn change_digit_in(
         return None;
     }
     let (line, from, to) = places[random.pick(places.len())];
-    let digits: Vec<usize> = (from..to)
-        .filter(|at| lines[line].as_bytes()[*at].is_ascii_digit())
-        .collect();
+    let digits: Vec<usize> =
+        (from..to).filter(|at| lines[line].as_bytes()[*at].is_ascii_digit()).collect();
     let at = digits[random.pick(digits.len())];
     let old = lines[line].as_bytes()[at] - b'0';
     let new = (old + 1 + random.pick(9) as u8) % 10;
@@ -438,11 +401,7 @@ fn mutate(kind: &str, random: &mut Rng, lines: &mut Vec<String>, length: &mut f6
         "tool" => change_digit(random, lines, "T"),
         "coolant" => replace_word(random, lines, &[("M8", "M9"), ("M7", "M9"), ("M9", "M8")]),
         "spindle" => replace_word(random, lines, &[("M3", "M4"), ("M5", "M3"), ("M3", "M5")]),
-        "rapid" => replace_word(
-            random,
-            lines,
-            &[("G0", "G1"), ("G1", "G0"), (" FMAX", " F500")],
-        ),
+        "rapid" => replace_word(random, lines, &[("G0", "G1"), ("G1", "G0"), (" FMAX", " F500")]),
         "second feed" => {
             let places = numbers(lines, "F");
             let (line, from, to) = *places.get(random.pick(places.len().max(1)))?;
@@ -483,9 +442,7 @@ fn mutate(kind: &str, random: &mut Rng, lines: &mut Vec<String>, length: &mut f6
                 lines[line] = lines[line].replacen(" FMAX", &format!(" F{feed}"), 1);
                 return Some(());
             }
-            lines[line] = lines[line]
-                .replacen("G00 ", "G01 ", 1)
-                .replacen("G0 ", "G1 ", 1);
+            lines[line] = lines[line].replacen("G00 ", "G01 ", 1).replacen("G0 ", "G1 ", 1);
             lines[line].push_str(&format!(" F{feed}."));
             // Those behind it stay as they are.
             if let Some(next) = lines.get_mut(line + 1)
@@ -514,12 +471,7 @@ fn mutate(kind: &str, random: &mut Rng, lines: &mut Vec<String>, length: &mut f6
         "plane word" => replace_word(
             random,
             lines,
-            &[
-                ("G17", "G18"),
-                ("G18", "G19"),
-                ("G19", "G17"),
-                ("G18", "G17"),
-            ],
+            &[("G17", "G18"), ("G18", "G19"), ("G19", "G17"), ("G18", "G17")],
         ),
         "mode" => replace_word(
             random,
@@ -587,10 +539,7 @@ fn dense(motions: &[&Motion], rapids: Option<&Chain>) -> Vec<At> {
         let turn = (0..8)
             .map(|joint| (motion.to.joints[joint] - motion.from.joints[joint]).abs())
             .fold(0.0, f64::max);
-        let bent = !matches!(
-            motion.way,
-            post_readback::Way::Axes | post_readback::Way::Tip
-        );
+        let bent = !matches!(motion.way, post_readback::Way::Axes | post_readback::Way::Tip);
         // A whole circle ends where it begins: of 60 mm its chords stray by a hundredth of a tolerance then.
         let count = 2.0 + way / 0.5 + if bent { 1500.0 } else { 0.0 } + turn.min(10.0) * 10.0;
         let count = (count as u32).min(2000);
@@ -599,9 +548,7 @@ fn dense(motions: &[&Motion], rapids: Option<&Chain>) -> Vec<At> {
             let ends = [&motion.from, &motion.to];
             let joints = rapids.and_then(|chain| {
                 let solver = &motion.state.solver;
-                let joints = motion
-                    .way
-                    .joints_at(solver, ends, share, &motion.from.joints);
+                let joints = motion.way.joints_at(solver, ends, share, &motion.from.joints);
                 Some((chain, joints.ok()?))
             });
             let pose = match joints {
@@ -627,14 +574,9 @@ fn drawn_back(job: &Job, done: &[Done]) -> Vec<f64> {
     for done in done {
         match done {
             Done::Motion(motion) => last = Some(motion),
-            Done::Told {
-                told: Told::ToolChange { .. } | Told::End,
-                ..
-            } => {
+            Done::Told { told: Told::ToolChange { .. } | Told::End, .. } => {
                 if let Some(last) = last {
-                    let away = axes
-                        .iter()
-                        .map(|(place, away)| away * last.to.joints[*place]);
+                    let away = axes.iter().map(|(place, away)| away * last.to.joints[*place]);
                     stands.extend(away);
                 }
             }
@@ -692,11 +634,8 @@ fn off(point: &At, way: &[At], tolerances: [f64; 2]) -> f64 {
         let ((a, axis_a), (b, axis_b)) = (ends[0], ends[1]);
         let line = b - a;
         let square = line.norm_squared();
-        let share = if square > 0.0 {
-            ((point.0 - a).dot(&line) / square).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
+        let share =
+            if square > 0.0 { ((point.0 - a).dot(&line) / square).clamp(0.0, 1.0) } else { 0.0 };
         let tip = (point.0 - a - line * share).norm() / tolerances[0];
         if tip >= best {
             continue;
@@ -720,17 +659,13 @@ fn apart(one: &[At], other: &[At], tolerances: [f64; 2]) -> f64 {
         }
     }
     let side = |from: &[At], to: &[At]| {
-        from.iter()
-            .map(|point| off(point, to, tolerances))
-            .fold(0.0, f64::max)
+        from.iter().map(|point| off(point, to, tolerances)).fold(0.0, f64::max)
     };
     side(one, other).max(side(other, one))
 }
 
 fn length(way: &[At]) -> f64 {
-    way.windows(2)
-        .map(|ends| (ends[1].0 - ends[0].0).norm())
-        .sum()
+    way.windows(2).map(|ends| (ends[1].0 - ends[0].0).norm()).sum()
 }
 
 /// What holds in a cut, as text.
@@ -779,11 +714,7 @@ fn difference(job: &Job, kind: &str, one: &[Done], other: &[Done]) -> Difference
     let (whole, new_whole) = (one, other);
     let one: Vec<&Done> = one.iter().filter(counts).collect();
     let other: Vec<&Done> = other.iter().filter(counts).collect();
-    let before = one
-        .iter()
-        .zip(&other)
-        .take_while(|(a, b)| same_step(a, b))
-        .count();
+    let before = one.iter().zip(&other).take_while(|(a, b)| same_step(a, b)).count();
     let behind = one[before..]
         .iter()
         .rev()
@@ -803,10 +734,9 @@ fn difference(job: &Job, kind: &str, one: &[Done], other: &[Done]) -> Difference
     let told = |done: &[&Done]| -> Vec<String> {
         let told = done.iter().filter_map(|done| match done {
             // Hundredths of a second are rounded.
-            Done::Told {
-                told: Told::Dwell { time, .. },
-                ..
-            } => Some(format!("dwell {:.0}", time * 50.0)),
+            Done::Told { told: Told::Dwell { time, .. }, .. } => {
+                Some(format!("dwell {:.0}", time * 50.0))
+            }
             Done::Told { told, .. } => Some(format!("{told:?}")),
             _ => None,
         });
@@ -827,9 +757,7 @@ fn difference(job: &Job, kind: &str, one: &[Done], other: &[Done]) -> Difference
     // comes out once more for each. Larger ones may break it.
     let most = |motions: &[&Motion]| strokes(motions).into_iter().fold(0.0, f64::max);
     let holes = |motions: &[&Motion]| {
-        let mut cuts = motions
-            .iter()
-            .filter(|motion| motion.kind != MotionKind::Rapid);
+        let mut cuts = motions.iter().filter(|motion| motion.kind != MotionKind::Rapid);
         strokes(motions).len() > 1 && cuts.all(|motion| motion.hole)
     };
     if kind == "peck" && holes(&other) && most(&other) <= most(&one) + tolerances[0] {
@@ -923,15 +851,11 @@ fn study(jobs: &[Job], each: u64, own: u64) -> Tally {
                 *row.entry((differs, caught)).or_default() += 1;
                 if differs == Difference::Rapids && !caught {
                     let changed = job.lines.iter().zip(&lines).find(|(old, new)| old != new);
-                    tally
-                        .let_pass
-                        .push(format!("{}: {kind}: {changed:?} {length}", job.name));
+                    tally.let_pass.push(format!("{}: {kind}: {changed:?} {length}", job.name));
                 }
                 if differs == Difference::Cut && !caught {
                     let changed = job.lines.iter().zip(&lines).find(|(old, new)| old != new);
-                    tally
-                        .missed
-                        .push(format!("{}: {kind}: {changed:?} {length}", job.name));
+                    tally.missed.push(format!("{}: {kind}: {changed:?} {length}", job.name));
                 }
             }
         }
@@ -1000,9 +924,7 @@ const JOBS: &[(&str, &str, &str)] = &[
 ];
 
 fn jobs(dialects: &[&str], rows: &[(&str, &str, &str)]) -> Vec<Job> {
-    let rows = dialects
-        .iter()
-        .flat_map(|dialect| rows.iter().map(move |row| (*dialect, *row)));
+    let rows = dialects.iter().flat_map(|dialect| rows.iter().map(move |row| (*dialect, *row)));
     rows.filter_map(|(dialect, (machine, file, tcp))| Job::new(dialect, machine, file, tcp))
         .collect()
 }
@@ -1013,12 +935,7 @@ fn what_differs_is_caught() {
     let jobs = jobs(&["fanuc", "heidenhain"], &JOBS[..3]);
     let tally = study(&jobs, 1, 1);
     println!("{}", table(&tally));
-    assert!(
-        tally.missed.is_empty(),
-        "{}\n{}",
-        table(&tally),
-        tally.missed.join("\n")
-    );
+    assert!(tally.missed.is_empty(), "{}\n{}", table(&tally), tally.missed.join("\n"));
 }
 
 /// An arc that turns the other way, or about another centre, is told where it stands, not on the block behind it.
@@ -1038,19 +955,11 @@ fn a_wrong_arc_is_told_on_its_own_block() {
             words[code] = turned.to_owned();
             lines[place] = words.join(" ");
             let (_, faults) = job.run(&lines, job.length);
-            let off: Vec<_> = faults
-                .iter()
-                .filter(|(_, told)| told.starts_with("deviation"))
-                .collect();
+            let off: Vec<_> =
+                faults.iter().filter(|(_, told)| told.starts_with("deviation")).collect();
             let first = off.first().and_then(|(line, _)| *line);
             let own = place as u64 + 1;
-            assert_eq!(
-                first,
-                Some(own),
-                "{}: {}\n{faults:#?}",
-                job.name,
-                lines[place]
-            );
+            assert_eq!(first, Some(own), "{}: {}\n{faults:#?}", job.name, lines[place]);
             looked += 1;
         }
     }
@@ -1078,12 +987,8 @@ fn thousands_of_changes() {
     // order of two that both lead to the first point of a tool is not looked at.
     let worse = |caught: bool| -> u64 {
         let rows = tally.by.values();
-        rows.filter_map(|row| row.get(&(Difference::Rapids, caught)))
-            .sum()
+        rows.filter_map(|row| row.get(&(Difference::Rapids, caught))).sum()
     };
     let [found, passed] = [true, false].map(worse);
-    assert!(
-        passed * 20 <= found + passed,
-        "{passed} pass, {found} are found"
-    );
+    assert!(passed * 20 <= found + passed, "{passed} pass, {found} are found");
 }

@@ -30,10 +30,7 @@ fn a_misspelt_machine_is_named_with_the_one_that_is_near() {
         ("dmu-50", "dmu50"),
         ("xyzac", "xyzac-trt"),
     ] {
-        let parts = [
-            format!("there is no machine {slip}"),
-            format!("did you mean {meant}?"),
-        ];
+        let parts = [format!("there is no machine {slip}"), format!("did you mean {meant}?")];
         let parts = parts.each_ref().map(String::as_str);
         refused(&posted(&["-m", slip], ""), &parts);
         refused(&run(command().args(["check", slip]), b""), &parts);
@@ -46,19 +43,12 @@ fn a_misspelt_machine_is_named_with_the_one_that_is_near() {
     let path = folder.path().join("mine.toml");
     std::fs::write(&path, mine).unwrap();
     let path = path.to_str().unwrap();
-    refused(
-        &posted(&["-m", path], ""),
-        &["there is no machine vmcc", "did you mean vmc?"],
-    );
+    refused(&posted(&["-m", path], ""), &["there is no machine vmcc", "did you mean vmc?"]);
 }
 
 #[test]
 fn all_misspelt_keys_of_a_machine_file_are_told_at_once() {
-    let slips = [
-        "accuracy.tolerence=0.1",
-        "axis.X.travle=[0, 1]",
-        "workpiece.mont=[0, 0, 0]",
-    ];
+    let slips = ["accuracy.tolerence=0.1", "axis.X.travle=[0, 1]", "workpiece.mont=[0, 0, 0]"];
     let sets = slips.iter().flat_map(|slip| ["--set", slip]);
     let all: Vec<&str> = ["-m", "ac-trunnion"].into_iter().chain(sets).collect();
     refused(
@@ -78,10 +68,7 @@ fn all_misspelt_keys_of_a_machine_file_are_told_at_once() {
     refused(&posted(&two, ""), &["`tolerence`", "2 errors"]);
     let value = ["-m", "vmc", "--set", "accuracy.placement=fewset"];
     let value = posted(&value, "");
-    refused(
-        &value,
-        &["there is no value `fewset` here", "did you mean `fewest`?"],
-    );
+    refused(&value, &["there is no value `fewset` here", "did you mean `fewest`?"]);
 }
 
 #[test]
@@ -92,10 +79,7 @@ fn misspelt_parameters_and_axes_are_told_with_those_that_there_are() {
     );
     let formula = ["-m", "disc-cutter", "--set", "axis.X.max_feed='2*topp'"];
     let formula = posted(&formula, "");
-    refused(
-        &formula,
-        &["did you mean `top`? the parameters are Lm, top"],
-    );
+    refused(&formula, &["did you mean `top`? the parameters are Lm, top"]);
     // What follows from a number that has no value is not told too.
     refused(&formula, &["1 error;"]);
     refused(
@@ -202,11 +186,7 @@ fn the_file_of_a_machine_is_printed_and_posts_under_another_name() {
 
 #[test]
 fn a_misspelt_verb_is_told_and_no_file_is_looked_for() {
-    for (slip, meant) in [
-        ("chek", "check"),
-        ("plases", "place"),
-        ("machnes", "machines"),
-    ] {
+    for (slip, meant) in [("chek", "check"), ("plases", "place"), ("machnes", "machines")] {
         let done = run(command().args([slip, "vmc"]), b"");
         assert_eq!(done.code, 2, "{}", done.err);
         let told = format!("a similar verb exists: '{meant}'");
@@ -239,21 +219,15 @@ fn a_refused_tool_is_not_missed_too() {
     let done = posted(&["-m", "vmc", "--tool-from-cutter"], "");
     refused(&done, &["leave --tool-from-cutter out", "1 error;"]);
     let far = "UNITS/MM\nLOADTL/3,LENGTH,1e300\nSPINDL/RPM,3000,CLW\nFEDRAT/100,MMPM\nGOTO/0,0,10\nFINI\n";
-    let done = run(
-        command().args(["-q", "-m", "vmc", "-o", "-", "-"]),
-        far.as_bytes(),
-    );
+    let done = run(command().args(["-q", "-m", "vmc", "-o", "-", "-"]), far.as_bytes());
     refused(&done, &["a tool of 1e300 mm", "1 error;"]);
 }
 
 /// Nothing else would judge them: no plugin is opened for them.
 #[test]
 fn options_of_plugins_that_are_not_used_are_looked_at_too() {
-    let sets = [
-        "control.fanucc.decimals=4",
-        "control.heidenhain.perset=3",
-        "accuracy.harmonic.ordre=3",
-    ];
+    let sets =
+        ["control.fanucc.decimals=4", "control.heidenhain.perset=3", "accuracy.harmonic.ordre=3"];
     let sets = sets.iter().flat_map(|set| ["--set", set]);
     let all: Vec<&str> = ["-m", "vmc"].into_iter().chain(sets).collect();
     let done = posted(&all, "");

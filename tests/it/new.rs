@@ -27,10 +27,7 @@ fn folder() -> TempDir {
 }
 
 fn post_in(folder: &Path, arguments: &[&str], answers: &str) -> Run {
-    run(
-        command().current_dir(folder).args(arguments),
-        answers.as_bytes(),
-    )
+    run(command().current_dir(folder).args(arguments), answers.as_bytes())
 }
 
 /// A small job that every class can make: the tool upright.
@@ -40,46 +37,23 @@ const JOB: &str = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/0,0,50\n
 fn every_class_passes_the_check_and_makes_a_program() {
     let help = post_in(folder().path(), &["new", "--help"], "").out;
     for class in CLASSES {
-        assert!(
-            help.contains(&format!("{class}:")),
-            "{class} is not in:\n{help}"
-        );
+        assert!(help.contains(&format!("{class}:")), "{class} is not in:\n{help}");
         let folder = folder();
         let new = post_in(folder.path(), &["new", "mill", "--class", class], "");
         assert_eq!((new.code, new.err.as_str()), (0, ""), "{class}");
         let check = post_in(folder.path(), &["check", "mill.toml"], "");
         assert_eq!((check.code, check.err.as_str()), (0, ""), "{class}");
-        assert!(
-            check.out.contains("warnings          none"),
-            "{}",
-            check.out
-        );
+        assert!(check.out.contains("warnings          none"), "{}", check.out);
         let kind = class.replace("four-axis-a", "rotary table A");
         let kind = kind.replace("four-axis-b", "rotary table B");
-        let kind = kind
-            .replace("nutating-head", "nutating")
-            .replace("table-table-nutating", "nutating");
-        let kind = ["-ac", "-bc", "-ba"]
-            .iter()
-            .fold(kind, |kind, end| kind.replace(end, ""));
-        assert!(
-            check.out.contains(&kind),
-            "{kind} is not in:\n{}",
-            check.out
-        );
+        let kind =
+            kind.replace("nutating-head", "nutating").replace("table-table-nutating", "nutating");
+        let kind = ["-ac", "-bc", "-ba"].iter().fold(kind, |kind, end| kind.replace(end, ""));
+        assert!(check.out.contains(&kind), "{kind} is not in:\n{}", check.out);
         fs::write(folder.path().join("part.cls"), JOB).unwrap();
         let posted = post_in(
             folder.path(),
-            &[
-                "-q",
-                "-m",
-                "mill.toml",
-                "--tool-length",
-                "80",
-                "part.cls",
-                "-o",
-                "-",
-            ],
+            &["-q", "-m", "mill.toml", "--tool-length", "80", "part.cls", "-o", "-"],
             "",
         );
         assert_eq!(posted.code, 0, "{class}: {}", posted.err);
@@ -141,11 +115,7 @@ fn flags_say_everything() {
     ] {
         assert!(text.contains(line), "{line} is not in:\n{text}");
     }
-    let check = post_in(
-        folder.path(),
-        &["check", "mill.toml", "--json", "c.json"],
-        "",
-    );
+    let check = post_in(folder.path(), &["check", "mill.toml", "--json", "c.json"], "");
     assert_eq!(check.code, 0, "{}", check.err);
     let check = read_json(&folder.path().join("c.json"));
     assert_eq!(check["machine"], "My \"mill\"");
@@ -213,83 +183,37 @@ fn a_file_that_is_there_stays() {
     assert_eq!(refused.code, 1);
     assert!(refused.err.contains("--force"), "{}", refused.err);
     assert_eq!(fs::read_to_string(&path).unwrap(), "mine");
-    let forced = post_in(
-        folder.path(),
-        &["new", "mill.toml", "--class", "three-axis", "--force"],
-        "",
-    );
+    let forced =
+        post_in(folder.path(), &["new", "mill.toml", "--class", "three-axis", "--force"], "");
     assert_eq!(forced.code, 0, "{}", forced.err);
-    assert!(
-        fs::read_to_string(&path)
-            .unwrap()
-            .contains("[w Y' X' b Z (S) t]")
-    );
+    assert!(fs::read_to_string(&path).unwrap().contains("[w Y' X' b Z (S) t]"));
 }
 
 #[test]
 fn what_cannot_be_is_refused() {
     let folder = folder();
     for (arguments, code, message) in [
+        (vec!["--class", "three-axis", "--travel", "A=-10:10"], 1, "has no such axis"),
+        (vec!["--class", "three-axis", "--travel", "X=10:-10"], 2, "the first must be the smaller"),
+        (vec!["--class", "three-axis", "--travel", "X=10"], 2, "is no travel"),
+        (vec!["--class", "table-table-ac", "--max-feed", "C=0"], 2, "not above zero"),
         (
-            vec!["--class", "three-axis", "--travel", "A=-10:10"],
-            1,
-            "has no such axis",
-        ),
-        (
-            vec!["--class", "three-axis", "--travel", "X=10:-10"],
-            2,
-            "the first must be the smaller",
-        ),
-        (
-            vec!["--class", "three-axis", "--travel", "X=10"],
-            2,
-            "is no travel",
-        ),
-        (
-            vec!["--class", "table-table-ac", "--max-feed", "C=0"],
-            2,
-            "not above zero",
-        ),
-        (
-            vec![
-                "--class",
-                "table-table-ac",
-                "--travel",
-                "C=0:90",
-                "--cyclic",
-                "C",
-            ],
+            vec!["--class", "table-table-ac", "--travel", "C=0:90", "--cyclic", "C"],
             1,
             "which of the two",
         ),
-        (
-            vec!["--class", "three-axis", "--dialect", "a\"b"],
-            2,
-            "letters and digits",
-        ),
+        (vec!["--class", "three-axis", "--dialect", "a\"b"], 2, "letters and digits"),
         (vec!["--class", "hexapod"], 2, "possible values"),
     ] {
         let mut all = vec!["new", "mill"];
         all.extend(&arguments);
         let refused = post_in(folder.path(), &all, "");
         assert_eq!(refused.code, code, "{arguments:?}: {}", refused.err);
-        assert!(
-            refused.err.contains(message),
-            "{arguments:?}: {}",
-            refused.err
-        );
+        assert!(refused.err.contains(message), "{arguments:?}: {}", refused.err);
     }
-    let nowhere = post_in(
-        folder.path(),
-        &["new", "no/such/mill", "--class", "three-axis"],
-        "",
-    );
+    let nowhere = post_in(folder.path(), &["new", "no/such/mill", "--class", "three-axis"], "");
     assert_eq!(nowhere.code, 1);
-    assert!(
-        nowhere.err.contains("there is no folder"),
-        "{}",
-        nowhere.err
-    );
+    assert!(nowhere.err.contains("there is no folder"), "{}", nowhere.err);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
@@ -297,11 +221,7 @@ fn what_cannot_be_is_refused() {
 /// taken, it changes the file.
 #[test]
 fn flags_are_used_or_refused_in_every_class() {
-    for (flag, value) in [
-        ("--pivot", "312.5"),
-        ("--tilt", "-35.25"),
-        ("--tcp", "control"),
-    ] {
+    for (flag, value) in [("--pivot", "312.5"), ("--tilt", "-35.25"), ("--tcp", "control")] {
         let mut taken = Vec::new();
         let mut refusals = Vec::new();
         for class in CLASSES {
@@ -338,32 +258,15 @@ fn flags_are_used_or_refused_in_every_class() {
     }
     let folder = folder();
     // Two ways to say one thing.
-    let both = [
-        "new",
-        "mill",
-        "--class",
-        "head-head-ac",
-        "--pivot",
-        "1",
-        "--point",
-        "A=0,0,9",
-    ];
+    let both = ["new", "mill", "--class", "head-head-ac", "--pivot", "1", "--point", "A=0,0,9"];
     let run = post_in(folder.path(), &both, "");
     assert_eq!(run.code, 1);
     let said = "--pivot and --point A both say where the line of A runs";
     assert!(run.err.contains(said), "{}", run.err);
     // Asked for on a terminal the class is known only later.
-    let run = post_in(
-        folder.path(),
-        &["new", "mill", "--pivot", "1"],
-        "three-axis\n",
-    );
+    let run = post_in(folder.path(), &["new", "mill", "--pivot", "1"], "three-axis\n");
     assert_eq!(run.code, 1);
-    assert!(
-        run.err.contains("--pivot: three-axis has no swivel head"),
-        "{}",
-        run.err
-    );
+    assert!(run.err.contains("--pivot: three-axis has no swivel head"), "{}", run.err);
 }
 
 /// What the check would refuse is not written: each dialect gets what it must be told of its control.
@@ -373,28 +276,12 @@ fn every_dialect_passes_the_check() {
         for class in ["three-axis", "table-table-ac"] {
             for units in ["mm", "inch"] {
                 let folder = folder();
-                let new = [
-                    "new",
-                    "mill",
-                    "--class",
-                    class,
-                    "--dialect",
-                    &dialect,
-                    "--units",
-                    units,
-                ];
+                let new =
+                    ["new", "mill", "--class", class, "--dialect", &dialect, "--units", units];
                 let new = post_in(folder.path(), &new, "");
-                assert_eq!(
-                    (new.code, new.err.as_str()),
-                    (0, ""),
-                    "{dialect} {class} {units}"
-                );
+                assert_eq!((new.code, new.err.as_str()), (0, ""), "{dialect} {class} {units}");
                 let check = post_in(folder.path(), &["check", "mill.toml"], "");
-                assert_eq!(
-                    (check.code, check.err.as_str()),
-                    (0, ""),
-                    "{dialect} {class} {units}"
-                );
+                assert_eq!((check.code, check.err.as_str()), (0, ""), "{dialect} {class} {units}");
             }
         }
     }

@@ -26,15 +26,8 @@ fn every_sample_comes_in_the_promised_order() {
         if name.contains(".refused.") {
             continue;
         }
-        let arguments = [
-            "--machine",
-            machine,
-            path.to_str().unwrap(),
-            "-o",
-            "-",
-            "--tool-length",
-            "100",
-        ];
+        let arguments =
+            ["--machine", machine, path.to_str().unwrap(), "-o", "-", "--tool-length", "100"];
         let run = post(&[&arguments[..], &watched].concat());
         // Some need another length: what is looked for is the order alone.
         assert!(!run.err.contains("dialect `watch`"), "{name}: {}", run.err);

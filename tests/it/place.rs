@@ -150,17 +150,11 @@ fn a_part_that_is_too_large_is_told_by_how_much_and_a_turn_is_found() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("part.cls");
         fs::write(&file, plate([200.0, 300.0])).unwrap();
-        let done = run(
-            command().args(vmc).args([&mount, "-o", "-"]).arg(&file),
-            b"",
-        );
+        let done = run(command().args(vmc).args([&mount, "-o", "-"]).arg(&file), b"");
         assert_eq!(done.code, 1, "{mount}");
         assert!(done.err.contains("passed by"), "{}", done.err);
     }
-    let turned = place_text(
-        &[&vmc[..], &["--search-turn"]].concat(),
-        &plate([200.0, 300.0]),
-    );
+    let turned = place_text(&[&vmc[..], &["--search-turn"]].concat(), &plate([200.0, 300.0]));
     assert_eq!(turned.code, 0, "{}", turned.err);
     let words = printed(&turned.out);
     let turn = told(&words, "--turn").unwrap()[0];
@@ -213,21 +207,10 @@ fn least_time_is_no_more_than_where_the_part_sits() {
         assert!(after <= before, "{machine}: {after} {before}");
     }
     // Where the part sits well it stays.
-    let base = [
-        "place",
-        "-m",
-        "vmc",
-        "tests/samples/plate.ncl",
-        "--tool-length",
-        "80",
-    ];
+    let base = ["place", "-m", "vmc", "tests/samples/plate.ncl", "--tool-length", "80"];
     let stays = post(&base);
     assert!(stays.out.contains("--mount 0,0,0"), "{}", stays.out);
-    assert!(
-        stays
-            .out
-            .contains("time is the same wherever the part sits")
-    );
+    assert!(stays.out.contains("time is the same wherever the part sits"));
 }
 
 #[test]
@@ -246,13 +229,7 @@ fn a_turn_of_the_part_turns_the_axes_less() {
     fs::write(&file, text).unwrap();
     let file = file.to_str().unwrap();
     let base = ["-m", "ab-trunnion", file, "--tool-length", "100"];
-    let found = post(
-        &[
-            &["place", "--least", "rotary", "--search-turn=45"][..],
-            &base,
-        ]
-        .concat(),
-    );
+    let found = post(&[&["place", "--least", "rotary", "--search-turn=45"][..], &base].concat());
     assert_eq!(found.code, 0, "{}", found.err);
     let turns = |words: &[String]| {
         let summary = obeyed(words).1;
@@ -267,14 +244,8 @@ fn a_turn_of_the_part_turns_the_axes_less() {
 
 #[test]
 fn what_no_mount_helps_is_refused_and_why() {
-    let refused = post(&[
-        "place",
-        "-m",
-        "dmu50",
-        "tests/machines/dmu50.refused.ncl",
-        "--tool-length",
-        "100",
-    ]);
+    let refused =
+        post(&["place", "-m", "dmu50", "tests/machines/dmu50.refused.ncl", "--tool-length", "100"]);
     assert_eq!(refused.code, 1);
     for said in ["B would be", "no mount helps", "--search-turn"] {
         assert!(refused.err.contains(said), "{said}: {}", refused.err);
@@ -285,16 +256,9 @@ fn what_no_mount_helps_is_refused_and_why() {
     assert_eq!(lacks.code, 1);
     assert!(lacks.err.contains("error[tool-length]"), "{}", lacks.err);
     // The file is read several times.
-    let piped = run(
-        command().args(["place", "-m", "vmc", "-"]),
-        plate([1.0, 1.0]).as_bytes(),
-    );
+    let piped = run(command().args(["place", "-m", "vmc", "-"]), plate([1.0, 1.0]).as_bytes());
     assert_eq!(piped.code, 1);
-    assert!(
-        piped.err.contains("goes over the CL file several times"),
-        "{}",
-        piped.err
-    );
+    assert!(piped.err.contains("goes over the CL file several times"), "{}", piped.err);
     // A margin that nothing leaves is told with the one that something does.
     let margin = place_text(
         &["-m", "vmc", "--tool-length", "100", "--margin", "60"],
@@ -316,23 +280,10 @@ fn an_index_move_of_the_file_and_a_turned_part_do_not_go_together() {
     let file = folder.path().join("part.cls");
     fs::write(&file, text).unwrap();
     let with = |turn: &str| {
-        let arguments = [
-            "-m",
-            "hmc-b-pallet",
-            "--tool-length",
-            "100",
-            "-o",
-            "-",
-            "--turn",
-            turn,
-        ];
+        let arguments = ["-m", "hmc-b-pallet", "--tool-length", "100", "-o", "-", "--turn", turn];
         run(command().args(arguments).arg(&file), b"")
     };
-    assert!(
-        with("90").err.contains("angles of this index move"),
-        "{}",
-        with("90").err
-    );
+    assert!(with("90").err.contains("angles of this index move"), "{}", with("90").err);
     assert!(!with("0").err.contains("angles of this index move"));
 }
 
@@ -340,15 +291,8 @@ fn an_index_move_of_the_file_and_a_turned_part_do_not_go_together() {
 fn the_picture_has_a_bar_for_each_axis() {
     let folder = tempfile::tempdir().unwrap();
     let picture = folder.path().join("travel.svg");
-    let arguments = [
-        "place",
-        "-m",
-        "dmu50",
-        "tests/samples/blade.cls",
-        "--tool-length",
-        "80",
-        "--svg",
-    ];
+    let arguments =
+        ["place", "-m", "dmu50", "tests/samples/blade.cls", "--tool-length", "80", "--svg"];
     let found = post(&[&arguments[..], &[picture.to_str().unwrap()]].concat());
     assert_eq!(found.code, 0, "{}", found.err);
     let svg = fs::read_to_string(&picture).unwrap();
@@ -370,16 +314,7 @@ fn a_real_file_is_placed() {
     let file = data.join("creo5x_4r19415_finition.ncl");
     let file = file.to_str().unwrap();
     for machine in ["ac-trunnion", "dmu50"] {
-        let base = [
-            "place",
-            "-m",
-            machine,
-            "--units",
-            "mm",
-            "--tool-length",
-            "0",
-            file,
-        ];
+        let base = ["place", "-m", machine, "--units", "mm", "--tool-length", "0", file];
         let far = ["--mount", "250,160,-90", "--runs", "12", "--margin", "5"];
         let found = post(&[&base[..], &far].concat());
         assert_eq!(found.code, 0, "{machine}:\n{}", found.err);
@@ -428,20 +363,9 @@ fn a_turn_back_to_none_is_printed() {
     assert_eq!(found.code, 0, "{}", found.err);
     let words = printed(&found.out);
     assert_eq!(told(&words, "--turn"), Some(vec![0.0]), "{}", found.out);
-    assert_eq!(
-        words[words.len() - 2..],
-        ["--", "-wide.cls"],
-        "{}",
-        found.out
-    );
+    assert_eq!(words[words.len() - 2..], ["--", "-wide.cls"], "{}", found.out);
     let mut again = common::command();
-    let again = run(
-        again
-            .current_dir(&folder)
-            .args(["-q", "-o", "x.nc"])
-            .args(&words),
-        b"",
-    );
+    let again = run(again.current_dir(&folder).args(["-q", "-o", "x.nc"]).args(&words), b"");
     assert_eq!(again.code, 0, "{}", again.err);
 }
 
@@ -452,11 +376,7 @@ fn a_chain_whose_rotary_axes_place_the_tip_is_not_searched() {
     let away = [&with[..], &["--mount", "5000,0,0"]].concat();
     let far = place_text(&away, &plate([20.0, 20.0]));
     assert_eq!(far.code, 1);
-    for said in [
-        "error[out-of-reach]",
-        "no mount is searched for SCARA",
-        "--mount X,Y,Z",
-    ] {
+    for said in ["error[out-of-reach]", "no mount is searched for SCARA", "--mount X,Y,Z"] {
         assert!(far.err.contains(said), "{said}: {}", far.err);
     }
     let near = place_text(&with, &plate([20.0, 20.0]));
@@ -483,10 +403,8 @@ fn a_mount_that_a_message_names_brings_the_axis_inside() {
             let axis = rest.split(' ').next().unwrap();
             let next = at(mount);
             let over = format!("]: {axis} would be");
-            let said = next
-                .err
-                .lines()
-                .any(|line| line.starts_with("error") && line.contains(&over));
+            let said =
+                next.err.lines().any(|line| line.starts_with("error") && line.contains(&over));
             assert!(!said, "{} at {mount}: {}", row.machine, next.err);
             named += 1;
         }

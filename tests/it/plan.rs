@@ -12,12 +12,7 @@ use crate::common::{self, Run, assert_contains, names, post, read_json, with_fil
 fn planned(curve: &Path, with: &[&str]) -> (Run, Value) {
     let folder = tempfile::tempdir().unwrap();
     let target = folder.path().join("plan.json");
-    let mut arguments = vec![
-        "plan",
-        curve.to_str().unwrap(),
-        "-o",
-        target.to_str().unwrap(),
-    ];
+    let mut arguments = vec!["plan", curve.to_str().unwrap(), "-o", target.to_str().unwrap()];
     arguments.extend(with);
     let run = post(&arguments);
     assert_eq!(run.code, 0, "{}", run.err);
@@ -63,24 +58,12 @@ fn the_butterfly_keeps_the_papers_limits_with_and_without_its_contour_error() {
     for found in [&kept, &free] {
         check_kept(found);
         assert!((number(&found["length_mm"]) - 382.859_558).abs() < 1e-3);
-        assert!(
-            number(&found["spline_slower"]) < 1e-3,
-            "{}",
-            found["spline_slower"]
-        );
+        assert!(number(&found["spline_slower"]) < 1e-3, "{}", found["spline_slower"]);
     }
     let error = |found: &Value| number(&limit(found, "contour error")["largest"]);
-    assert!(
-        (number(&free["seconds"]) - 10.81).abs() < 0.02,
-        "{}",
-        free["seconds"]
-    );
+    assert!((number(&free["seconds"]) - 10.81).abs() < 0.02, "{}", free["seconds"]);
     assert!((error(&free) - 42.4).abs() < 0.3, "{}", error(&free));
-    assert!(
-        (number(&kept["seconds"]) - 11.9).abs() < 0.02,
-        "{}",
-        kept["seconds"]
-    );
+    assert!((number(&kept["seconds"]) - 11.9).abs() < 0.02, "{}", kept["seconds"]);
     assert!((error(&kept) - 20.0).abs() < 0.05, "{}", error(&kept));
 }
 
@@ -91,19 +74,11 @@ fn the_published_five_axis_path_is_read_as_it_stands() {
         return;
     };
     let (run, fast) = planned(&dual, &["--chord-error", "off", "--samples", "2000"]);
-    assert!(
-        (number(&fast["seconds"]) - 7.126).abs() < 0.01,
-        "{}",
-        fast["seconds"]
-    );
+    assert!((number(&fast["seconds"]) - 7.126).abs() < 0.01, "{}", fast["seconds"]);
     assert_eq!(fast["axes"], json!(["X", "Y", "Z", "A", "C"]));
     assert_contains(&run.out, &["not kept by this solver"]);
     let (_, slow) = planned(&dual, &["--solver", "jerk", "--samples", "2000"]);
-    assert!(
-        (number(&slow["seconds"]) - 8.075).abs() < 0.01,
-        "{}",
-        slow["seconds"]
-    );
+    assert!((number(&slow["seconds"]) - 8.075).abs() < 0.01, "{}", slow["seconds"]);
     assert_eq!(limit(&slow, "jerk of C")["kept"], true);
     for found in [&fast, &slow] {
         check_kept(found);
@@ -118,19 +93,11 @@ fn basis(knots: &[f64], index: usize, degree: usize, at: f64) -> f64 {
         return if inside { 1.0 } else { 0.0 };
     }
     let share = |low: f64, high: f64| {
-        if high > low {
-            (at - low) / (high - low)
-        } else {
-            0.0
-        }
+        if high > low { (at - low) / (high - low) } else { 0.0 }
     };
     let left = share(knots[index], knots[index + degree]);
     let width = knots[index + degree + 1] - knots[index + 1];
-    let right = if width > 0.0 {
-        (knots[index + degree + 1] - at) / width
-    } else {
-        0.0
-    };
+    let right = if width > 0.0 { (knots[index + degree + 1] - at) / width } else { 0.0 };
     left * basis(knots, index, degree - 1, at) + right * basis(knots, index + 1, degree - 1, at)
 }
 
@@ -156,8 +123,7 @@ fn the_feed_spline_is_what_its_coefficients_say_and_keeps_the_limits() {
         assert_eq!(knots.len(), coefficients.len() + 3);
         let q = |at: f64| -> f64 {
             let each = coefficients.iter().enumerate();
-            each.map(|(index, value)| value * basis(&knots, index, 2, at))
-                .sum()
+            each.map(|(index, value)| value * basis(&knots, index, 2, at)).sum()
         };
         let jerk = solver == "jerk";
         let [first, last] = match jerk {
@@ -170,10 +136,7 @@ fn the_feed_spline_is_what_its_coefficients_say_and_keeps_the_limits() {
             if at > first && at < last {
                 // 100 mm a unit of the parameter.
                 let feed = 6000.0 * q(at).sqrt();
-                assert!(
-                    (feed - number(&row["feed_mm_min"])).abs() < 1e-3,
-                    "{solver} {at}: {feed}"
-                );
+                assert!((feed - number(&row["feed_mm_min"])).abs() < 1e-3, "{solver} {at}: {feed}");
             }
         }
         // Y goes 80 mm a unit: a dense check of velocity, acceleration and jerk by differences of the coefficients' q.
@@ -185,10 +148,7 @@ fn the_feed_spline_is_what_its_coefficients_say_and_keeps_the_limits() {
             }
             let (here, slope) = (q(at), (q(at + h) - q(at - h)) / (2.0 * h));
             assert!(100.0 * here.sqrt() <= 90.0 * (1.0 + 1e-9), "{solver} {at}");
-            assert!(
-                (80.0 * 0.5 * slope).abs() <= 400.0 * (1.0 + 1e-5),
-                "{solver} {at}"
-            );
+            assert!((80.0 * 0.5 * slope).abs() <= 400.0 * (1.0 + 1e-5), "{solver} {at}");
             if jerk {
                 let bend = (q(at + h) - 2.0 * here + q(at - h)) / (h * h);
                 let value = 80.0 * 0.5 * bend * here.sqrt();
@@ -199,11 +159,7 @@ fn the_feed_spline_is_what_its_coefficients_say_and_keeps_the_limits() {
     // Constant acceleration of 500 mm/s² along the line to 90 mm/s and back: 100 mm.
     let (_, found) = planned(&folder.path().join("line.json"), &[]);
     let seconds = 0.18 + 100.0 / 90.0;
-    assert!(
-        (number(&found["seconds"]) / seconds - 1.0).abs() < 1e-3,
-        "{}",
-        found["seconds"]
-    );
+    assert!((number(&found["seconds"]) / seconds - 1.0).abs() < 1e-3, "{}", found["seconds"]);
 }
 
 /// Along a line every limit is monotone: both solvers agree in every feed. On a curve the largest Σ f² is told.
@@ -214,37 +170,22 @@ fn solvers_are_held_against_one_another() {
         "limits": { "tip": { "v": 90 }, "XY": { "v": 100, "a": 400 } }
     });
     let folder = with_file("line.json", &line.to_string());
-    let (run, found) = planned(
-        &folder.path().join("line.json"),
-        &["--solver", "interior", "--samples", "300"],
-    );
+    let (run, found) =
+        planned(&folder.path().join("line.json"), &["--solver", "interior", "--samples", "300"]);
     assert_eq!(found["monotone"], true);
     assert_contains(
         &run.out,
         &["Every limit is monotone, and both agree in every feed within 1e-6"],
     );
-    let (run, found) = planned(
-        &curve("wings.json"),
-        &["--solver", "lp", "--samples", "1500"],
-    );
+    let (run, found) = planned(&curve("wings.json"), &["--solver", "lp", "--samples", "1500"]);
     assert_eq!(found["monotone"], false);
     assert_contains(
         &run.out,
-        &[
-            "lp (clarabel)",
-            "interior",
-            "reach",
-            "Not every limit is monotone",
-        ],
+        &["lp (clarabel)", "interior", "reach", "Not every limit is monotone"],
     );
     let solvers = found["solvers"].as_array().unwrap();
     let sum = |place: usize| number(&solvers[place]["sum_of_squared_feeds"]);
-    assert!(
-        (sum(0) / sum(1) - 1.0).abs() < 1e-6,
-        "{} {}",
-        sum(0),
-        sum(1)
-    );
+    assert!((sum(0) / sum(1) - 1.0).abs() < 1e-6, "{} {}", sum(0), sum(1));
     assert!(sum(2) <= sum(1) * (1.0 + 1e-9));
     for place in [0, 1] {
         let gap = number(&solvers[place]["proven_gap"]);
@@ -259,27 +200,15 @@ fn our_curves_keep_their_contour_error_in_the_formula_and_the_simulation_is_told
         assert!(number(&limit(&free, "contour error")["largest"]) > 40.0);
         let (run, kept) = planned(&curve(name), &["--simulate"]);
         check_kept(&kept);
-        assert!(
-            (number(&kept["length_mm"]) - length).abs() < 0.5,
-            "{}",
-            kept["length_mm"]
-        );
+        assert!((number(&kept["length_mm"]) - length).abs() < 0.5, "{}", kept["length_mm"]);
         assert!(number(&limit(&kept, "contour error")["largest"]) > 19.9);
         let simulated = &kept["simulated"];
-        let (real, formula) = (
-            number(&simulated["largest"]),
-            number(&simulated["formula_largest"]),
-        );
-        assert!(
-            real > 0.9 * formula && real < 1.5 * formula,
-            "{name}: {real} {formula}"
-        );
+        let (real, formula) =
+            (number(&simulated["largest"]), number(&simulated["formula_largest"]));
+        assert!(real > 0.9 * formula && real < 1.5 * formula, "{name}: {real} {formula}");
         assert_contains(
             &run.out,
-            &[
-                "above the formula at",
-                "the formula is one of the steady state",
-            ],
+            &["above the formula at", "the formula is one of the steady state"],
         );
     }
 }
@@ -338,17 +267,7 @@ fn pictures_and_plan_lie_in_their_folder_and_the_table_has_all_columns() {
     let head: Vec<&str> = lines.next().unwrap().split(',').collect();
     assert_eq!(
         head[..9],
-        [
-            "parameter",
-            "way_mm",
-            "time_s",
-            "tip_x",
-            "tip_y",
-            "tip_z",
-            "feed_mm_min",
-            "X",
-            "Y"
-        ]
+        ["parameter", "way_mm", "time_s", "tip_x", "tip_y", "tip_z", "feed_mm_min", "X", "Y"]
     );
     assert!(lines.all(|line| line.split(',').count() == head.len()));
     assert!(table.lines().count() > 2000);
@@ -357,51 +276,16 @@ fn pictures_and_plan_lie_in_their_folder_and_the_table_has_all_columns() {
 #[test]
 fn what_is_wrong_with_a_curve_file_is_told_with_its_line() {
     let good = "{\n \"degree\": 1,\n \"knots\": [0, 0, 1, 1],\n \"control_points_mm\": [[0, 0], [60, 80]],\n \"limits\": {\n  \"XY\": {\"v\": 100, \"a\": 400}\n }\n}\n";
-    assert_eq!(
-        post_curve(good, &[]).code,
-        0,
-        "{}",
-        post_curve(good, &[]).err
-    );
+    assert_eq!(post_curve(good, &[]).code, 0, "{}", post_curve(good, &[]).err);
     for (old, new, line, parts) in [
         ("\"degree\"", "\"degre\"", 2, &["unknown field `degre`"][..]),
-        (
-            "[0, 0, 1, 1]",
-            "[0, 0, 1]",
-            3,
-            &["there are 3 knots", "need 4"],
-        ),
-        (
-            "[0, 0, 1, 1]",
-            "[0, 1, 0, 1]",
-            3,
-            &["knot 2 does not follow", "never fall"],
-        ),
-        (
-            "[60, 80]",
-            "[60, 8e9]",
-            4,
-            &["8000000000", "the unit is mm"],
-        ),
-        (
-            "[60, 80]",
-            "[60, 80, 1]",
-            4,
-            &["a point of 3 coordinates", "all of them two"],
-        ),
+        ("[0, 0, 1, 1]", "[0, 0, 1]", 3, &["there are 3 knots", "need 4"]),
+        ("[0, 0, 1, 1]", "[0, 1, 0, 1]", 3, &["knot 2 does not follow", "never fall"]),
+        ("[60, 80]", "[60, 8e9]", 4, &["8000000000", "the unit is mm"]),
+        ("[60, 80]", "[60, 80, 1]", 4, &["a point of 3 coordinates", "all of them two"]),
         ("\"v\": 100", "\"v\": -1", 6, &["v is -1", "above zero"]),
-        (
-            "\"v\": 100",
-            "\"v\": 100, \"q\": 1",
-            6,
-            &["q is no limit", "v, a and j"],
-        ),
-        (
-            "\"XY\"",
-            "\"XQ\"",
-            6,
-            &["limits of XQ are not known", "axes by their names"],
-        ),
+        ("\"v\": 100", "\"v\": 100, \"q\": 1", 6, &["q is no limit", "v, a and j"]),
+        ("\"XY\"", "\"XQ\"", 6, &["limits of XQ are not known", "axes by their names"]),
         (
             "{\"v\": 100, \"a\": 400}",
             "{\"v\": 100, \"unit\": \"deg\"}",
@@ -412,23 +296,12 @@ fn what_is_wrong_with_a_curve_file_is_told_with_its_line() {
     ] {
         assert!(good.contains(old), "{old}");
         let done = post_curve(&good.replace(old, new), &[]);
-        assert_eq!(
-            (done.code, done.out.as_str()),
-            (1, ""),
-            "{new}\n{}",
-            done.err
-        );
+        assert_eq!((done.code, done.out.as_str()), (1, ""), "{new}\n{}", done.err);
         assert_contains(&done.err, parts);
-        assert_contains(
-            &done.err,
-            &[&format!("standard input:{line}"), "help: "][..1],
-        );
+        assert_contains(&done.err, &[&format!("standard input:{line}"), "help: "][..1]);
     }
     for (with, parts) in [
-        (
-            &["--contour-error", "0.02"][..],
-            &["has a servo", "--contour-error off"][..],
-        ),
+        (&["--contour-error", "0.02"][..], &["has a servo", "--contour-error off"][..]),
         (&["--solver", "jerk"], &["no jerk is limited", "help: "]),
         (&["--simulate"], &["no servo to simulate", "help: "]),
         (
@@ -441,18 +314,10 @@ fn what_is_wrong_with_a_curve_file_is_told_with_its_line() {
                 "--start-feed",
             ],
         ),
-        (
-            &["--end-feed", "8000"],
-            &["the end is too fast", "--end-feed"],
-        ),
+        (&["--end-feed", "8000"], &["the end is too fast", "--end-feed"]),
     ] {
         let done = post_curve(good, with);
-        assert_eq!(
-            (done.code, done.out.as_str()),
-            (1, ""),
-            "{with:?}\n{}",
-            done.err
-        );
+        assert_eq!((done.code, done.out.as_str()), (1, ""), "{with:?}\n{}", done.err);
         assert_contains(&done.err, parts);
     }
     let free = good.replace("{\"v\": 100, \"a\": 400}", "{}");

@@ -31,16 +31,8 @@ fn run(folder: &TempDir, file: &str, more: &[&str]) -> Run {
 /// The largest contour error of a program, µm, by the set-points that `post predict` writes: those of cuts, a quarter of a
 /// second away from rapids.
 fn strays(folder: &TempDir, program: &str) -> f64 {
-    let arguments = [
-        "predict",
-        program,
-        "-m",
-        "./mill.toml",
-        "--tool-length",
-        "80",
-        "--csv",
-        "points.csv",
-    ];
+    let arguments =
+        ["predict", program, "-m", "./mill.toml", "--tool-length", "80", "--csv", "points.csv"];
     let predicted = post_in(folder.path(), &arguments);
     assert_eq!(predicted.code, 0, "{}", predicted.err);
     let text = fs::read_to_string(folder.path().join("points.csv")).unwrap();
@@ -54,17 +46,11 @@ fn strays(folder: &TempDir, program: &str) -> f64 {
             [time, cuts, error].map(|column| cells[column].parse().unwrap())
         })
         .collect();
-    let rests: Vec<f64> = rows
-        .iter()
-        .filter(|row| row[1] == 0.0)
-        .map(|row| row[0])
-        .collect();
+    let rests: Vec<f64> = rows.iter().filter(|row| row[1] == 0.0).map(|row| row[0]).collect();
     let far = |time: f64| {
         let next = rests.partition_point(|rest| *rest < time);
         let near = rests[next.saturating_sub(1)..].iter().take(2);
-        near.fold(f64::INFINITY, |least: f64, rest| {
-            least.min((rest - time).abs())
-        }) > 0.25
+        near.fold(f64::INFINITY, |least: f64, rest| least.min((rest - time).abs())) > 0.25
     };
     let cuts = rows.iter().filter(|row| row[1] == 1.0 && far(row[0]));
     let errors: Vec<f64> = cuts.map(|row| 1e3 * row[2]).collect();
@@ -84,29 +70,14 @@ fn servos_that_lag_stray_within_the_limit_once_the_feed_is_planned_in_rounds() {
         let folder = soft();
         let plain = run(&folder, file, &["-q", "-o", "plain.nc"]);
         assert_eq!(plain.code, 0, "{}", plain.err);
-        let arguments = [
-            "-o",
-            "part.nc",
-            "--plan",
-            "--plan-rounds",
-            "8",
-            "--summary",
-            "found.json",
-        ];
+        let arguments =
+            ["-o", "part.nc", "--plan", "--plan-rounds", "8", "--summary", "found.json"];
         let planned = run(&folder, file, &arguments);
         assert_eq!(planned.code, 0, "{}", planned.err);
-        assert!(
-            !planned.err.contains("warning[plan-rounds]"),
-            "{}",
-            planned.err
-        );
+        assert!(!planned.err.contains("warning[plan-rounds]"), "{}", planned.err);
         assert_contains(
             &planned.out,
-            &[
-                "contour limit    0.02000 mm, kept",
-                "  unplanned",
-                "; written",
-            ],
+            &["contour limit    0.02000 mm, kept", "  unplanned", "; written"],
         );
         let found = read_json(&folder.path().join("found.json"))["plan_rounds"].clone();
         assert_eq!(found["kept"], true);
@@ -127,19 +98,9 @@ fn servos_that_lag_stray_within_the_limit_once_the_feed_is_planned_in_rounds() {
 /// A limit at which the formula alone is not enough: what the control's corners do to stiff servos.
 #[test]
 fn a_round_is_gentler_where_the_one_before_was_too_fast_and_nowhere_else() {
-    let folder = with_file(
-        "mill.toml",
-        "extends = \"ac-trunnion\"\n[plan]\ncontour_error = 0.005\n",
-    );
-    let arguments = [
-        "-o",
-        "part.nc",
-        "--plan",
-        "--plan-rounds",
-        "8",
-        "--summary",
-        "found.json",
-    ];
+    let folder =
+        with_file("mill.toml", "extends = \"ac-trunnion\"\n[plan]\ncontour_error = 0.005\n");
+    let arguments = ["-o", "part.nc", "--plan", "--plan-rounds", "8", "--summary", "found.json"];
     let planned = run(&folder, "blade.cls", &arguments);
     assert_eq!(planned.code, 0, "{}", planned.err);
     let found = read_json(&folder.path().join("found.json"))["plan_rounds"].clone();
@@ -152,21 +113,11 @@ fn a_round_is_gentler_where_the_one_before_was_too_fast_and_nowhere_else() {
     // The same again: nothing depends on time or threads.
     let first = fs::read_to_string(folder.path().join("part.nc")).unwrap();
     run(&folder, "blade.cls", &arguments);
-    assert_eq!(
-        fs::read_to_string(folder.path().join("part.nc")).unwrap(),
-        first
-    );
+    assert_eq!(fs::read_to_string(folder.path().join("part.nc")).unwrap(), first);
     // One round is the plan itself, and says that it is not enough.
-    let once = run(
-        &folder,
-        "blade.cls",
-        &["-o", "once.nc", "--plan", "--plan-rounds", "1"],
-    );
+    let once = run(&folder, "blade.cls", &["-o", "once.nc", "--plan", "--plan-rounds", "1"]);
     assert_eq!(once.code, 0, "{}", once.err);
-    assert_contains(
-        &once.err,
-        &["warning[plan-rounds]", "after 1 round the", "0.005 mm"],
-    );
+    assert_contains(&once.err, &["warning[plan-rounds]", "after 1 round the", "0.005 mm"]);
     let plan = run(&folder, "blade.cls", &["-q", "-o", "plan.nc", "--plan"]);
     assert_eq!(plan.code, 0, "{}", plan.err);
     let text = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
@@ -180,21 +131,11 @@ fn what_cannot_be_planned_in_rounds_is_refused_by_its_reason() {
     let arguments = ["-o", "part.nc", "--plan", "--plan-rounds", "3"];
     let refused = run(&folder, "blade.cls", &arguments);
     assert_eq!(refused.code, 1);
-    assert_contains(
-        &refused.err,
-        &["error[plan-rounds]", "[plan] contour_error = 0.01"],
-    );
-    let refused = run(
-        &folder,
-        "blade.cls",
-        &["-o", "part.nc", "--plan-rounds", "3"],
-    );
+    assert_contains(&refused.err, &["error[plan-rounds]", "[plan] contour_error = 0.01"]);
+    let refused = run(&folder, "blade.cls", &["-o", "part.nc", "--plan-rounds", "3"]);
     assert_eq!(refused.code, 2);
     assert_contains(&refused.err, &["--plan"]);
-    let folder = with_file(
-        "mill.toml",
-        "extends = \"vmc\"\n[plan]\ncontour_error = 0.01\n",
-    );
+    let folder = with_file("mill.toml", "extends = \"vmc\"\n[plan]\ncontour_error = 0.01\n");
     let refused = run(&folder, "flange.ncl", &arguments);
     assert_eq!(refused.code, 1);
     assert_contains(&refused.err, &["error[plan-rounds]", "describes no servo"]);

@@ -41,10 +41,7 @@ fn assert_whole(map: &Path, summary: &Path) -> Vec<Value> {
             assert_eq!(number(&pair[0], to), number(&pair[1], from), "{pair:?}");
         }
         let same = |name: &str| pair[0][name] == pair[1][name];
-        assert!(
-            !(same("cl_line") && same("limit") && same("axis")),
-            "{pair:?}"
-        );
+        assert!(!(same("cl_line") && same("limit") && same("axis")), "{pair:?}");
         assert!(number(&pair[1], "cl_line") >= number(&pair[0], "cl_line"));
     }
     let planned = number(&plan, "planned_s");
@@ -217,12 +214,7 @@ fn each_program_of_a_split_has_a_map_and_a_folder_of_its_own() {
     assert!(count > 1 && !folder.path().join("map.json").exists());
     for number in 1..=count {
         assert!(folder.path().join(format!("map-{number}.json")).exists());
-        assert!(
-            folder
-                .path()
-                .join(format!("plan-{number}/feed.svg"))
-                .exists()
-        );
+        assert!(folder.path().join(format!("plan-{number}/feed.svg")).exists());
     }
 }
 

@@ -16,9 +16,7 @@ const JOB: [&str; 6] = ["-m", "vmc", "--tool-length", "100", "--mount", "0,0,-10
 fn post(folder: &Path, more: &[&str]) -> (Run, String) {
     fs::write(folder.join("zigzag.cls"), ZIGZAG).unwrap();
     let mut post = command();
-    post.current_dir(folder)
-        .args(["-q", "zigzag.cls", "-o", "zigzag.nc"])
-        .args(JOB);
+    post.current_dir(folder).args(["-q", "zigzag.cls", "-o", "zigzag.nc"]).args(JOB);
     let done = run(post.args(more), b"");
     assert_eq!(done.code, 0, "{}", done.err);
     let text = fs::read_to_string(folder.join("zigzag.nc")).unwrap();

@@ -23,12 +23,7 @@ fn stock() -> Vec<String> {
 /// Settings that make the models work that no machine file names.
 const MODELS: [&[&str]; 3] = [
     &["--set", "accuracy.model=\"harmonic\""],
-    &[
-        "--set",
-        "accuracy.model=\"harmonic\"",
-        "--set",
-        "accuracy.harmonic.order=3",
-    ],
+    &["--set", "accuracy.model=\"harmonic\"", "--set", "accuracy.harmonic.order=3"],
     &["--set", "accuracy.model=\"parabolic\""],
 ];
 
@@ -56,10 +51,7 @@ pub fn built(name: &str) -> PathBuf {
             return entry.path();
         }
     }
-    panic!(
-        "{plain} is not beside {}: does crate-type have cdylib?",
-        this.display()
-    )
+    panic!("{plain} is not beside {}: does crate-type have cdylib?", this.display())
 }
 
 /// A folder that holds the stock libraries and nothing else.
@@ -87,15 +79,8 @@ fn both_forms_write_the_same_bytes() {
         let (linked, linked_summary) = case.post(model);
         let from = ["--plugins", folder.to_str().unwrap()];
         let (opened, opened_summary) = case.post(&[model, &from].concat());
-        assert!(
-            linked.out == opened.out,
-            "{}: the programs differ",
-            case.name()
-        );
-        assert_eq!(
-            without_plugins(&linked_summary),
-            without_plugins(&opened_summary)
-        );
+        assert!(linked.out == opened.out, "{}: the programs differ", case.name());
+        assert_eq!(without_plugins(&linked_summary), without_plugins(&opened_summary));
         for plugin in linked_summary["plugins"].as_array().unwrap() {
             assert!(plugin["path"].is_null() && plugin["hash"].is_null());
         }
@@ -107,32 +92,15 @@ fn both_forms_write_the_same_bytes() {
             let hash = plugin["hash"].as_str().unwrap();
             assert_eq!(hash.len(), 64);
             assert!(hash.bytes().all(|byte| byte.is_ascii_hexdigit()));
-            assert_eq!(
-                hashes.entry(name.to_owned()).or_insert(hash.to_owned()),
-                hash
-            );
+            assert_eq!(hashes.entry(name.to_owned()).or_insert(hash.to_owned()), hash);
             // The summary for people names them too.
-            assert!(
-                opened.err.contains(&path) && opened.err.contains(hash),
-                "{}",
-                opened.err
-            );
+            assert!(opened.err.contains(&path) && opened.err.contains(hash), "{}", opened.err);
         }
     }
     // The other dialects are held to this in `dialects`.
     let opened: Vec<&str> = hashes.keys().map(String::as_str).collect();
-    let wanted = [
-        "fanuc",
-        "harmonic",
-        "heidenhain",
-        "linuxcnc",
-        "parabolic",
-        "sampled",
-    ];
-    assert!(
-        wanted.iter().all(|name| opened.contains(name)),
-        "{opened:?}"
-    );
+    let wanted = ["fanuc", "harmonic", "heidenhain", "linuxcnc", "parabolic", "sampled"];
+    assert!(wanted.iter().all(|name| opened.contains(name)), "{opened:?}");
 }
 
 fn without_plugins(summary: &Value) -> Value {
@@ -144,16 +112,9 @@ fn without_plugins(summary: &Value) -> Value {
 #[test]
 fn the_environment_names_folders_too() {
     let arguments = ["-m", "ac-trunnion", "tests/samples/blade.cls", "-o", "-"];
-    let from_environment = run(
-        command().args(arguments).env("POST_PLUGINS", libraries()),
-        b"",
-    );
+    let from_environment = run(command().args(arguments).env("POST_PLUGINS", libraries()), b"");
     assert_eq!(from_environment.code, 0, "{}", from_environment.err);
-    assert!(
-        from_environment
-            .err
-            .contains(&libraries().display().to_string())
-    );
+    assert!(from_environment.err.contains(&libraries().display().to_string()));
     assert!(!from_environment.err.contains("built in"));
 }
 
@@ -163,17 +124,9 @@ fn no_library_is_opened_unasked() {
     let folder = tempfile::tempdir().unwrap();
     let file = format!("{DLL_PREFIX}post_fanuc{DLL_SUFFIX}");
     fs::copy(built("fanuc"), folder.path().join(&file)).unwrap();
-    fs::copy(
-        common::root().join(sample("blade.cls")),
-        folder.path().join("blade.cls"),
-    )
-    .unwrap();
-    let done: Run = run(
-        command()
-            .current_dir(folder.path())
-            .args(["-m", "ac-trunnion", "blade.cls"]),
-        b"",
-    );
+    fs::copy(common::root().join(sample("blade.cls")), folder.path().join("blade.cls")).unwrap();
+    let done: Run =
+        run(command().current_dir(folder.path()).args(["-m", "ac-trunnion", "blade.cls"]), b"");
     assert_eq!(done.code, 0, "{}", done.err);
     assert!(!done.out.contains(DLL_SUFFIX), "{}", done.out);
     assert!(done.out.contains("built in"));
@@ -191,9 +144,7 @@ fn a_folder_that_is_not_there_is_refused() {
 #[test]
 fn a_broken_library_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let broken = folder
-        .path()
-        .join(format!("{DLL_PREFIX}post_fanuc{DLL_SUFFIX}"));
+    let broken = folder.path().join(format!("{DLL_PREFIX}post_fanuc{DLL_SUFFIX}"));
     fs::write(&broken, b"this is no library").unwrap();
     let path = sample("blade.cls");
     let done = common::post(&[
@@ -207,11 +158,7 @@ fn a_broken_library_is_refused() {
     ]);
     assert_eq!((done.code, done.out.as_str()), (1, ""));
     assert!(done.err.contains("error[plugin]"), "{}", done.err);
-    assert!(
-        done.err.contains(&broken.display().to_string()),
-        "{}",
-        done.err
-    );
+    assert!(done.err.contains(&broken.display().to_string()), "{}", done.err);
 }
 
 /// A library that was cut off on its way here would kill the process that maps it.
@@ -219,9 +166,7 @@ fn a_broken_library_is_refused() {
 fn a_library_that_is_cut_off_is_refused() {
     let whole = fs::read(libraries().join(format!("{DLL_PREFIX}post_fanuc{DLL_SUFFIX}"))).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let cut_off = folder
-        .path()
-        .join(format!("{DLL_PREFIX}post_fanuc{DLL_SUFFIX}"));
+    let cut_off = folder.path().join(format!("{DLL_PREFIX}post_fanuc{DLL_SUFFIX}"));
     for length in [0, 100, 5000, whole.len() / 2, whole.len() - 2000] {
         fs::write(&cut_off, &whole[..length]).unwrap();
         let done = common::post(&["plugin", "test", cut_off.to_str().unwrap()]);
@@ -246,11 +191,7 @@ fn the_kit_finds_nothing_wrong_with_the_stock_plugins() {
         };
         let opened = test(file.to_str().unwrap());
         assert_eq!((opened.code, opened.err.as_str()), (0, ""), "{name}");
-        assert!(
-            opened.out.contains("Nothing is wrong in "),
-            "{}",
-            opened.out
-        );
+        assert!(opened.out.contains("Nothing is wrong in "), "{}", opened.out);
         let linked = test(&name);
         // What was measured apart.
         let cases = |out: &str| {
@@ -265,19 +206,13 @@ fn the_kit_finds_nothing_wrong_with_the_stock_plugins() {
     let third = common::post(&["plugin", "test", "harmonic", "--option", "order=3"]);
     assert_eq!(third.code, 0, "{}", third.err);
     // Ends and three places between them.
-    assert!(
-        third.out.contains("parabola             5 "),
-        "{}",
-        third.out
-    );
+    assert!(third.out.contains("parabola             5 "), "{}", third.out);
 }
 
 #[test]
 fn the_kit_says_what_is_wrong_with_a_model() {
     let folder = tempfile::tempdir().unwrap();
-    let file = folder
-        .path()
-        .join(format!("{DLL_PREFIX}post_faulty{DLL_SUFFIX}"));
+    let file = folder.path().join(format!("{DLL_PREFIX}post_faulty{DLL_SUFFIX}"));
     fs::copy(built("faulty"), &file).unwrap();
     let file = file.to_str().unwrap();
     for (fault, message) in [
@@ -285,10 +220,7 @@ fn the_kit_says_what_is_wrong_with_a_model() {
             "shrinks",
             "parabola: it says 16.0000 µm for the tip, the deviation reaches 20.0000 µm at t = 0.5",
         ),
-        (
-            "remembers",
-            "`value` must read nothing but the curve's terms",
-        ),
+        ("remembers", "`value` must read nothing but the curve's terms"),
         (
             "panics",
             "not a number: it does not refuse in words: error model `faulty`: the plugin panicked",
@@ -309,27 +241,15 @@ fn the_kit_says_what_is_wrong_with_a_model() {
 #[test]
 fn the_kit_refuses_what_is_no_plugin() {
     for (arguments, message) in [
-        (
-            ["--option", "order=9", "harmonic"],
-            "9 is not between 1 and 8",
-        ),
-        (
-            ["--option", "orders=2", "harmonic"],
-            "option `orders`: not known",
-        ),
+        (["--option", "order=9", "harmonic"], "9 is not between 1 and 8"),
+        (["--option", "orders=2", "harmonic"], "option `orders`: not known"),
         (["--plugins", "tests", "cubic"], "there is no such plugin"),
-        (
-            ["--plugins", "tests", "tests/it/plugins.rs"],
-            "the file of a plugin is called",
-        ),
+        (["--plugins", "tests", "tests/it/plugins.rs"], "the file of a plugin is called"),
     ] {
         let done = common::post(&[&["plugin", "test"], arguments.as_slice()].concat());
         assert_eq!((done.code, done.out.as_str()), (1, ""));
         assert!(done.err.contains("error[plugin]"), "{}", done.err);
         assert!(done.err.contains(message), "{}", done.err);
     }
-    assert_eq!(
-        common::post(&["plugin", "test", "harmonic", "--option", "order"]).code,
-        2
-    );
+    assert_eq!(common::post(&["plugin", "test", "harmonic", "--option", "order"]).code, 2);
 }

@@ -146,16 +146,11 @@ fn axis<'v>(found: &'v Value, name: &str) -> &'v Value {
 
 #[track_caller]
 fn number(value: &Value) -> f64 {
-    value
-        .as_f64()
-        .unwrap_or_else(|| panic!("{value} is no number"))
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
 #[track_caller]
 fn close(value: &Value, wanted: f64, within: f64) {
     let value = number(value);
-    assert!(
-        (value - wanted).abs() <= within,
-        "{value} is not {wanted} ± {within}"
-    );
+    assert!((value - wanted).abs() <= within, "{value} is not {wanted} ± {within}");
 }

@@ -11,22 +11,8 @@ use tempfile::TempDir;
 use crate::common::{Run, assert_contains, post, post_in, read_json, with_file};
 
 /// The PID servos of Chen, Ren, Sun (2016), Table 1: kp, ki, kd, ka·kt·rg, J, B.
-const PID_X: [f64; 6] = [
-    10.0,
-    50.0,
-    0.3,
-    6.5723 * 0.4769 * 1.5915,
-    7.0028e-3,
-    0.023569,
-];
-const PID_Y: [f64; 6] = [
-    12.344,
-    61.718,
-    0.367,
-    6.2274 * 0.4769 * 1.5915,
-    8.1904e-3,
-    0.043009,
-];
+const PID_X: [f64; 6] = [10.0, 50.0, 0.3, 6.5723 * 0.4769 * 1.5915, 7.0028e-3, 0.023569];
+const PID_Y: [f64; 6] = [12.344, 61.718, 0.367, 6.2274 * 0.4769 * 1.5915, 8.1904e-3, 0.043009];
 
 fn pid([kp, ki, kd, gain, inertia, damping]: [f64; 6]) -> String {
     format!(
@@ -38,10 +24,8 @@ fn pid([kp, ki, kd, gain, inertia, damping]: [f64; 6]) -> String {
 fn response([kp, ki, kd, gain, inertia, damping]: [f64; 6], omega: f64) -> [f64; 2] {
     let square = omega * omega;
     let above = [gain * (ki - kd * square), gain * kp * omega];
-    let below = [
-        gain * ki - (damping + gain * kd) * square,
-        gain * kp * omega - inertia * square * omega,
-    ];
+    let below =
+        [gain * ki - (damping + gain * kd) * square, gain * kp * omega - inertia * square * omega];
     let size = |[real, imaginary]: [f64; 2]| libm::hypot(real, imaginary);
     let angle = |[real, imaginary]: [f64; 2]| libm::atan2(imaginary, real);
     [size(above) / size(below), angle(above) - angle(below)]
@@ -80,14 +64,7 @@ struct Row {
 fn predict(folder: &TempDir, program: &str, more: &[&str]) -> (Value, Vec<Row>, Run) {
     let folder = folder.path();
     fs::write(folder.join("part.ngc"), program).unwrap();
-    let job = [
-        "predict",
-        "part.ngc",
-        "-m",
-        "./mill.toml",
-        "--tool-length",
-        "0",
-    ];
+    let job = ["predict", "part.ngc", "-m", "./mill.toml", "--tool-length", "0"];
     let files = ["--summary", "found.json", "--csv", "points.csv"];
     let run = post_in(folder, &[&job[..], &files, more].concat());
     assert_eq!(run.code, 0, "{}", run.err);
@@ -100,12 +77,7 @@ fn predict(folder: &TempDir, program: &str, more: &[&str]) -> (Value, Vec<Row>, 
         let fields: Vec<&str> = line.split(',').collect();
         let [time, x, y, x_actual, y_actual, error] =
             places.map(|place| fields[place].parse().unwrap());
-        Row {
-            time,
-            commanded: [x, y],
-            actual: [x_actual, y_actual],
-            error,
-        }
+        Row { time, commanded: [x, y], actual: [x_actual, y_actual], error }
     });
     (read_json(&folder.join("found.json")), rows.collect(), run)
 }
@@ -113,10 +85,7 @@ fn predict(folder: &TempDir, program: &str, more: &[&str]) -> (Value, Vec<Row>, 
 #[track_caller]
 fn close(found: &Value, path: &str, wanted: f64, within: f64) {
     let value = found.pointer(path).unwrap().as_f64().unwrap();
-    assert!(
-        (value - wanted).abs() <= within,
-        "{path}: {value} is not {wanted}"
-    );
+    assert!((value - wanted).abs() <= within, "{path}: {value} is not {wanted}");
 }
 
 const HEAD: &str = "G21 G90 G94 G61.1\nG0 X0 Y0 Z0\n";
@@ -136,13 +105,7 @@ fn times_that_are_worked_out_by_hand() {
         // Half a minute, whatever the way; the ramps take 2 ms more.
         ("G93 G1 X60 F2\n", 30.002, 0.0, 0.0, 30.0),
         // 0.5 mm a turn at 1000 turns a minute.
-        (
-            "S1000 M3\nG95 G1 X50 F0.5\n",
-            6.0 + 0.5 / 60.0,
-            0.0,
-            0.0,
-            6.0,
-        ),
+        ("S1000 M3\nG95 G1 X50 F0.5\n", 6.0 + 0.5 / 60.0, 0.0, 0.0, 6.0),
         // A rapid at the 1000 mm/s of the axis: 500 mm are just too short for it.
         ("G0 X500\n", 0.0, 2.0 * 0.5_f64.sqrt(), 0.0, 0.0),
         // A dwell between two cuts of 50 mm at 50 mm/s.
@@ -187,11 +150,7 @@ fn a_ramp_is_followed_by_its_velocity_over_the_gain() {
             // Across the direction (0.6, 0.8).
             let across = (0.6 * lags[1] - 0.8 * lags[0]).abs();
             close(&found, "/contour/tip_mm/largest", across, 2e-3);
-            assert!(
-                (middle.error - across).abs() < 2e-3,
-                "{} {across}",
-                middle.error
-            );
+            assert!((middle.error - across).abs() < 2e-3, "{} {across}", middle.error);
         }
     }
 }
@@ -208,15 +167,8 @@ fn on_circle(servos: [[f64; 6]; 2], radius: f64, omega: f64, turns: usize) -> Ve
     let (_, rows, _) = predict(&folder, &program, &[]);
     let whole = rows.last().unwrap().time;
     // The slowest pole is at -6.1 1/s.
-    let steady = rows
-        .iter()
-        .filter(|row| row.time > 2.5 && row.time < whole - 0.3);
-    let off = steady.map(|row| {
-        [
-            libm::hypot(row.actual[0], row.actual[1]) - radius,
-            row.error,
-        ]
-    });
+    let steady = rows.iter().filter(|row| row.time > 2.5 && row.time < whole - 0.3);
+    let off = steady.map(|row| [libm::hypot(row.actual[0], row.actual[1]) - radius, row.error]);
     let off: Vec<_> = off.collect();
     assert!(off.len() > 500);
     off
@@ -234,21 +186,12 @@ fn a_circle_is_too_large_by_the_gain_of_the_servo() {
         (113.2, 1.0, 80, 1.0000),
     ] {
         let [of_formula, _] = response(PID_X, omega);
-        assert!(
-            (of_formula - gain).abs() < 1e-4,
-            "{of_formula} at {omega} rad/s"
-        );
+        assert!((of_formula - gain).abs() < 1e-4, "{of_formula} at {omega} rad/s");
         for [off, error] in on_circle([PID_X, PID_X], radius, omega, turns) {
             let chords = 1.0 - libm::pow(omega * 0.001, 2.0) / 12.0;
             let wanted = radius * (of_formula * chords - 1.0);
-            assert!(
-                (off - wanted).abs() < 2e-4,
-                "{omega} rad/s: {off} is not {wanted}"
-            );
-            assert!(
-                (error - wanted.abs()).abs() < 2e-4,
-                "{omega} rad/s: {error} is not {wanted}"
-            );
+            assert!((off - wanted).abs() < 2e-4, "{omega} rad/s: {off} is not {wanted}");
+            assert!((error - wanted.abs()).abs() < 2e-4, "{omega} rad/s: {error} is not {wanted}");
         }
     }
 }
@@ -264,10 +207,7 @@ fn axes_that_are_not_matched_make_an_oval_of_a_circle() {
     let largest = off.iter().map(|[_, error]| *error).fold(0.0, f64::max);
     assert!((largest - 0.0324).abs() < 5e-5, "{largest}");
     let bound = worse + 4.0 * (x[1] - y[1]).abs();
-    assert!(
-        largest <= bound && bound < largest * 1.06,
-        "{largest} {bound}"
-    );
+    assert!(largest <= bound && bound < largest * 1.06, "{largest} {bound}");
 }
 
 /// A program in which nothing moves is told of: it may be the wrong file.
@@ -288,11 +228,7 @@ fn programs_of_others_end_in_bounded_time() {
     let began = std::time::Instant::now();
     for (program, machine, seconds) in [
         ("linuxcnc_boat-xyzac.ngc", "xyzac-trt", Some(574.0)),
-        (
-            "linuxcnc_xyzac_switchkins_test_3.ngc",
-            "xyzac-trt",
-            Some(3.6),
-        ),
+        ("linuxcnc_xyzac_switchkins_test_3.ngc", "xyzac-trt", Some(3.6)),
         ("siemens_ElMoe_keychain.mpf", "ac-trunnion-840d", None),
         ("nxpost_mori_nmv5000_out.txt", "umc-750", None),
         ("nxpost_dmu70evo_840d_in.ptp", "ac-trunnion-840d", None),
@@ -303,13 +239,7 @@ fn programs_of_others_end_in_bounded_time() {
         let path = path.to_str().unwrap();
         let folder = tempfile::tempdir().unwrap();
         let found = folder.path().join("found.json");
-        let more = [
-            "--tool-length",
-            "100",
-            "-q",
-            "--summary",
-            found.to_str().unwrap(),
-        ];
+        let more = ["--tool-length", "100", "-q", "--summary", found.to_str().unwrap()];
         let run = post(&[&["predict", path, "-m", machine], &more[..]].concat());
         match seconds {
             Some(seconds) => {

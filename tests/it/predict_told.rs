@@ -7,14 +7,7 @@ use serde_json::Value;
 
 use crate::common::{assert_contains, names, post, post_text, read_json, root};
 
-const FIVE: &[&str] = &[
-    "-m",
-    "ac-trunnion",
-    "--tcp",
-    "control",
-    "--tool-length",
-    "100",
-];
+const FIVE: &[&str] = &["-m", "ac-trunnion", "--tcp", "control", "--tool-length", "100"];
 const S_PIECE: &str = "tests/samples/s-piece.cls";
 const PLATE: &str = "tests/samples/plate.ncl";
 
@@ -70,18 +63,12 @@ fn every_key_of_the_summary_is_explained_and_the_table_says_the_same() {
     // The parts of the time are all of it, by limit and by kind.
     let cycle = number("/time/cycle_s");
     let kinds = ["cutting_s", "rapid_s", "waiting_s"].map(|key| number(&format!("/time/{key}")));
-    assert!(
-        (kinds.iter().sum::<f64>() - cycle).abs() < 1e-6,
-        "{kinds:?} {cycle}"
-    );
+    assert!((kinds.iter().sum::<f64>() - cycle).abs() < 1e-6, "{kinds:?} {cycle}");
     let limits = found["time"]["limits"].as_array().unwrap();
     let of = |key: &str| -> f64 { limits.iter().map(|row| row[key].as_f64().unwrap()).sum() };
     assert!((of("seconds") - cycle).abs() < 1e-6 && (of("share") - 1.0).abs() < 1e-9);
     let operations = found["time"]["operations"].as_array().unwrap();
-    let cutting: f64 = operations
-        .iter()
-        .map(|row| row["cutting_s"].as_f64().unwrap())
-        .sum();
+    let cutting: f64 = operations.iter().map(|row| row["cutting_s"].as_f64().unwrap()).sum();
     assert!((cutting - kinds[0]).abs() < 1e-6);
     // A set-point a period, from beginning to end.
     let set_points = number("/set_points") * number("/period_s");
@@ -117,24 +104,11 @@ fn posting_predicts_what_predicting_the_program_does() {
     let (folder, program) = posted(S_PIECE, FIVE);
     let [alone, while_posting, summary] =
         ["alone.json", "posting.json", "summary.json"].map(|name| folder.path().join(name));
-    let more = [
-        "-q",
-        "--against",
-        S_PIECE,
-        "--summary",
-        alone.to_str().unwrap(),
-    ];
+    let more = ["-q", "--against", S_PIECE, "--summary", alone.to_str().unwrap()];
     let run = post(&[&["predict", &program], FIVE, &more].concat());
     assert_eq!((run.code, run.out.as_str()), (0, ""), "{}", run.err);
     let flag = format!("--predict={}", while_posting.display());
-    let more = [
-        S_PIECE,
-        "-o",
-        &program,
-        &flag,
-        "--summary",
-        summary.to_str().unwrap(),
-    ];
+    let more = [S_PIECE, "-o", &program, &flag, "--summary", summary.to_str().unwrap()];
     let run = post(&[FIVE, &more].concat());
     assert_eq!(run.code, 0, "{}", run.err);
     assert_contains(&run.out, &["tip deviation", "cycle time", "contour error"]);
@@ -167,10 +141,7 @@ fn of_several_programs_each_is_predicted() {
     for found in programs {
         assert!(found["time"]["cutting_s"].as_f64().unwrap() > 1.0);
         // Each is held against its own part of the CL file.
-        assert!(
-            found["contour"]["tip_mm"]["largest"].as_f64().unwrap() < 0.005,
-            "{found}"
-        );
+        assert!(found["contour"]["tip_mm"]["largest"].as_f64().unwrap() < 0.005, "{found}");
     }
 }
 
@@ -238,9 +209,7 @@ fn set_points_are_rows_of_one_period() {
     let head: Vec<&str> = rows.next().unwrap().split(',').collect();
     assert_eq!(
         head[..10],
-        [
-            "time", "line", "cl_line", "cuts", "X", "Y", "Z", "X_actual", "Y_actual", "Z_actual"
-        ]
+        ["time", "line", "cl_line", "cuts", "X", "Y", "Z", "X_actual", "Y_actual", "Z_actual"]
     );
     let mut count = 0_u64;
     for row in rows {
@@ -277,40 +246,22 @@ fn pictures_have_axes_with_units_and_nothing_old_stays_beside_them() {
     for (name, parts) in [
         ("axis-errors.svg", ["time, s", ">X, µm<", ">C, 0.001°<"]),
         ("feed.svg", ["time, s", "mm/min", "programmed"]),
-        (
-            "contour.svg",
-            ["way of the tip in cuts, mm", "tip, µm", "tool axis, 0.001°"],
-        ),
-        (
-            "contour-vectors.svg",
-            ["µm of error", "commanded path", ">X, mm<"],
-        ),
+        ("contour.svg", ["way of the tip in cuts, mm", "tip, µm", "tool axis, 0.001°"]),
+        ("contour-vectors.svg", ["µm of error", "commanded path", ">X, mm<"]),
         ("path.svg", ["and more", "ring: the largest", ">Y, mm<"]),
         ("spectrum.svg", ["frequency, Hz", ">Z, µm<", ">A, 0.001°<"]),
     ] {
         let picture = text(&pictures.join(name));
         assert_contains(&picture, &parts);
         assert!(picture.starts_with("<svg") && picture.ends_with("</svg>\n"));
-        assert!(
-            !picture.contains("NaN") && !picture.contains("inf"),
-            "{name}"
-        );
+        assert!(!picture.contains("NaN") && !picture.contains("inf"), "{name}");
         // They do not grow with the program: 35,000 set-points would take megabytes.
         assert!(picture.len() < 400_000, "{name}: {} bytes", picture.len());
     }
     // A machine without servos has no errors of axes to show.
     let (_folder, program) = plate();
-    let run = post(&[
-        "predict",
-        &program,
-        "-q",
-        "-m",
-        "vmc",
-        "--tool-length",
-        "80",
-        "--pictures",
-        shown,
-    ]);
+    let run =
+        post(&["predict", &program, "-q", "-m", "vmc", "--tool-length", "80", "--pictures", shown]);
     assert_eq!(run.code, 0, "{}", run.err);
     let left = names(&pictures);
     assert!(!left.contains(&"axis-errors.svg".to_owned()), "{left:?}");
@@ -326,10 +277,7 @@ fn a_folder_with_pictures_of_others_is_left_alone() {
     let shown = pictures.to_str().unwrap();
     let run = post(&["predict", &program, "-m", "vmc", "--pictures", shown]);
     assert_eq!(run.code, 1);
-    assert_contains(
-        &run.err,
-        &["the prediction would overwrite", "feed.svg", "--pictures"],
-    );
+    assert_contains(&run.err, &["the prediction would overwrite", "feed.svg", "--pictures"]);
     assert_eq!(text(&pictures.join("feed.svg")), "mine");
     let run = post(&["predict", &program, "-m", "vmc", "--pictures", "-"]);
     assert_eq!(run.code, 1);
@@ -360,14 +308,7 @@ fn a_cl_file_with_faults_is_refused_before_the_program_is_gone_along() {
     let (folder, program) = plate();
     let file = folder.path().join("part.cls");
     fs::write(&file, "UNITS/MM\nGOTO/1,2\nFINI\n").unwrap();
-    let run = post(&[
-        "predict",
-        &program,
-        "-m",
-        "vmc",
-        "--against",
-        file.to_str().unwrap(),
-    ]);
+    let run = post(&["predict", &program, "-m", "vmc", "--against", file.to_str().unwrap()]);
     assert_eq!((run.code, run.out.as_str()), (1, ""));
     assert_contains(&run.err, &["part.cls:2"]);
 }
@@ -376,14 +317,8 @@ fn a_cl_file_with_faults_is_refused_before_the_program_is_gone_along() {
 fn both_from_standard_input_is_refused_and_an_unknown_flag_is_a_wrong_command_line() {
     let run = post(&["predict", "-", "-m", "vmc", "--against", "-"]);
     assert_eq!(run.code, 1);
-    assert_contains(
-        &run.err,
-        &["program and CL file cannot both be standard input"],
-    );
-    assert_eq!(
-        post(&["predict", "x.nc", "-m", "vmc", "--period", "0"]).code,
-        2
-    );
+    assert_contains(&run.err, &["program and CL file cannot both be standard input"]);
+    assert_eq!(post(&["predict", "x.nc", "-m", "vmc", "--period", "0"]).code, 2);
 }
 
 #[test]
@@ -400,10 +335,7 @@ fn a_program_that_swaps_heads_is_refused_at_that_line() {
         "--predict",
     ]);
     assert_eq!((run.code, run.out.as_str()), (1, ""), "{}", run.err);
-    assert_contains(
-        &run.err,
-        &["error[head]", "is swapped in: other axes move from here on"],
-    );
+    assert_contains(&run.err, &["error[head]", "is swapped in: other axes move from here on"]);
 }
 
 #[test]
@@ -413,18 +345,10 @@ fn a_program_that_does_not_move_takes_no_time() {
     fs::write(&program, "G21 G90\nM30\n").unwrap();
     let run = post(&["predict", program.to_str().unwrap(), "-m", "vmc"]);
     assert_eq!(run.code, 0);
-    assert_contains(
-        &run.err,
-        &[
-            "warning[no-motion]: nothing moves in this program",
-            "still.nc",
-        ],
-    );
+    assert_contains(&run.err, &["warning[no-motion]: nothing moves in this program", "still.nc"]);
     assert_contains(&run.out, &["cycle time       0.0 s"]);
     // And posting may come from a pipe.
-    let run = post_text(
-        &["-q", "-m", "vmc", "--predict", "--tool-length", "80"],
-        crate::common::GOOD,
-    );
+    let run =
+        post_text(&["-q", "-m", "vmc", "--predict", "--tool-length", "80"], crate::common::GOOD);
     assert_eq!(run.code, 1, "the tool cannot be tilted there");
 }

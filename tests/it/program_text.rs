@@ -67,10 +67,7 @@ fn a_header_lists_the_tools_of_a_file_and_of_standard_input() {
         let tools = format!("({name})\n(T1 MILL10 D10.0)\n(T2 MILL6 D6.0)\n");
         assert!(program.contains(&tools), "{program}");
         assert_eq!(program.matches("\nM1\n").count(), 1, "{program}");
-        assert!(
-            program.contains("T1 M6\nT2\n") && program.contains("T2 M6\nS5000"),
-            "{program}"
-        );
+        assert!(program.contains("T1 M6\nT2\n") && program.contains("T2 M6\nS5000"), "{program}");
     }
 }
 
@@ -108,38 +105,15 @@ fn operations_and_tools_become_programs_of_their_own() {
     let summary: serde_json::Value = serde_json::from_str(&read("a.json")).unwrap();
     assert_eq!(summary.as_array().unwrap().len(), 3);
 
-    good(post(
-        folder.path(),
-        TEXT,
-        &["part.cls", "-o", "b.nc", "--split", "tools"],
-        "",
-    ));
+    good(post(folder.path(), TEXT, &["part.cls", "-o", "b.nc", "--split", "tools"], ""));
     let [first, second] = ["b-1.nc", "b-2.nc"].map(read);
-    assert!(
-        first.contains("(T1 MILL10") && !first.contains("T2"),
-        "{first}"
-    );
-    assert!(
-        second.contains("(T2 MILL6") && !second.contains("T1 "),
-        "{second}"
-    );
-    assert!(
-        second.contains("FINISH") && second.contains("CHAMFER"),
-        "{second}"
-    );
+    assert!(first.contains("(T1 MILL10") && !first.contains("T2"), "{first}");
+    assert!(second.contains("(T2 MILL6") && !second.contains("T1 "), "{second}");
+    assert!(second.contains("FINISH") && second.contains("CHAMFER"), "{second}");
     assert!(!folder.path().join("b-3.nc").exists());
 
-    let none = post(
-        folder.path(),
-        machine,
-        &["-o", "-", "part.cls", "--split", "tools"],
-        "",
-    );
-    assert!(
-        none.code == 1 && none.err.contains("standard output takes one"),
-        "{}",
-        none.err
-    );
+    let none = post(folder.path(), machine, &["-o", "-", "part.cls", "--split", "tools"], "");
+    assert!(none.code == 1 && none.err.contains("standard output takes one"), "{}", none.err);
 }
 
 /// The sheet is written with the program, or not at all.
@@ -150,12 +124,7 @@ fn a_setup_sheet_says_what_is_to_be_set_up() {
     let cl = CL.replace("MILL6", "MILL<6>");
     fs::write(folder.path().join("part.cls"), &cl).unwrap();
     for sheet in ["sheet.md", "sheet.html"] {
-        good(post(
-            folder.path(),
-            TEXT,
-            &["part.cls", "--setup-sheet", sheet],
-            "",
-        ));
+        good(post(folder.path(), TEXT, &["part.cls", "--setup-sheet", sheet], ""));
     }
     let markdown = read("sheet.md");
     for part in [
@@ -168,17 +137,9 @@ fn a_setup_sheet_says_what_is_to_be_set_up() {
     }
     assert!(read("sheet.html").contains("<td>MILL&lt;6&gt;</td>"));
 
-    fs::write(
-        folder.path().join("bad.cls"),
-        CL.replace("GOTO/20,0,14", "GOTO/20000,0,14"),
-    )
-    .unwrap();
-    let bad = post(
-        folder.path(),
-        TEXT,
-        &["bad.cls", "--setup-sheet", "bad.md"],
-        "",
-    );
+    fs::write(folder.path().join("bad.cls"), CL.replace("GOTO/20,0,14", "GOTO/20000,0,14"))
+        .unwrap();
+    let bad = post(folder.path(), TEXT, &["bad.cls", "--setup-sheet", "bad.md"], "");
     assert_eq!(bad.code, 1, "{}", bad.err);
     assert!(!folder.path().join("bad.md").exists() && !folder.path().join("bad.eia").exists());
 }
@@ -190,12 +151,7 @@ fn a_template_with_a_slip_shows_its_place() {
     let machine = "extends = \"vmc\"\n[program]\nfooter = [\"(END)\", \"({{ program.nmae }})\"]\n";
     let done = post(folder.path(), machine, &["-o", "-", "-"], CL);
     assert_eq!(done.code, 1);
-    for part in [
-        "error[program-text]",
-        "mine.toml:3",
-        "program.nmae",
-        "undefined",
-    ] {
+    for part in ["error[program-text]", "mine.toml:3", "program.nmae", "undefined"] {
         assert!(done.err.contains(part), "{part}\n{}", done.err);
     }
     assert_eq!(done.out, "");

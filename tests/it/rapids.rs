@@ -10,26 +10,14 @@ fn both(machine: &str, sample: &str, rapid: &[&str]) -> (String, Run) {
     let program = folder.path().join("part.ngc");
     let sample = format!("tests/machines/{sample}");
     let set = "control.dialect=linuxcnc";
-    let job = [
-        "-m",
-        machine,
-        "--set",
-        set,
-        "--set",
-        "control.tcp=control",
-        "--tool-length",
-        "80",
-    ];
+    let job = ["-m", machine, "--set", set, "--set", "control.tcp=control", "--tool-length", "80"];
     let mut post = command();
     post.args(["-q", &sample]).args(job).args(rapid);
     let made = run(post.arg("-o").arg(&program), b"");
     assert_eq!(made.code, 0, "{}", made.err);
     let text = fs::read_to_string(&program).unwrap();
     let mut verify = command();
-    verify
-        .arg("verify")
-        .arg(&program)
-        .args(["--against", &sample]);
+    verify.arg("verify").arg(&program).args(["--against", &sample]);
     (text, run(verify.args(job).args(rapid), b""))
 }
 
@@ -45,9 +33,7 @@ fn turning(text: &str) -> Vec<&str> {
                 _ => {}
             }
         }
-        let turns = block
-            .split_whitespace()
-            .any(|word| word.starts_with(['A', 'B', 'C']));
+        let turns = block.split_whitespace().any(|word| word.starts_with(['A', 'B', 'C']));
         if tcp && rapid && turns {
             found.push(block);
         }
@@ -124,9 +110,7 @@ fn a_fed_rapid_at_half_speed_is_found() {
 /// A block from its first word of an axis on.
 fn words_of_axes(block: &str) -> &str {
     let axis = |(_, word): &(usize, &str)| word.starts_with(['X', 'Y', 'Z', 'A', 'B', 'C']);
-    let mut words = block
-        .match_indices(' ')
-        .map(|(at, _)| (at + 1, &block[at + 1..]));
+    let mut words = block.match_indices(' ').map(|(at, _)| (at + 1, &block[at + 1..]));
     let whole = (0, block);
     match axis(&whole) {
         true => block,

@@ -19,11 +19,7 @@ fn posted(machine: &str, with: &[&str], text: &str) -> (Run, Value) {
     all.extend(with);
     all.push("-");
     let done = run(command().args(all), text.as_bytes());
-    let summary = if summary.is_file() {
-        read_json(&summary)
-    } else {
-        Value::Null
-    };
+    let summary = if summary.is_file() { read_json(&summary) } else { Value::Null };
     (done, summary)
 }
 
@@ -71,87 +67,41 @@ fn several_cutters_are_several_tools() {
     }
     let numbered = on_vmc(&["--tool-from-cutter"], &text);
     told(&numbered, 0, &[]);
-    let changes: Vec<&str> = numbered
-        .out
-        .split_whitespace()
-        .filter(|word| word.starts_with('T'))
-        .collect();
+    let changes: Vec<&str> =
+        numbered.out.split_whitespace().filter(|word| word.starts_with('T')).collect();
     // The first cutter comes back as the first tool.
     assert_eq!(changes, ["T1", "T2", "T1", "T3"], "{}", numbered.out);
     let one = on_vmc(&["--tool", "1", "--allow", "CUTTER"], &text);
-    told(
-        &one,
-        0,
-        &["CUTTER, met 3 times, is cut with the tool before"],
-    );
+    told(&one, 0, &["CUTTER, met 3 times, is cut with the tool before"]);
     // The same number for two cutters is a slip of the CAM system, most likely.
     let twice =
         format!("{HEAD}CUTTER/10\nLOADTL/1\nSPINDL/3000,CLW\n{CUT}CUTTER/6\nLOADTL/1\n{CUT}{TAIL}");
-    told(
-        &on_vmc(&[], &twice),
-        1,
-        &[
-            "error[cutter]",
-            "input:12",
-            "tool 1 is still in the spindle",
-        ],
-    );
-    told(
-        &on_vmc(
-            &[],
-            &twice.replace("CUTTER/6\nLOADTL/1", "CUTTER/6\nLOADTL/2"),
-        ),
-        0,
-        &[],
-    );
+    told(&on_vmc(&[], &twice), 1, &["error[cutter]", "input:12", "tool 1 is still in the spindle"]);
+    told(&on_vmc(&[], &twice.replace("CUTTER/6\nLOADTL/1", "CUTTER/6\nLOADTL/2")), 0, &[]);
     // A file that loads its tools numbers them itself.
     let loads = text.replace("CUTTER/4\n", "CUTTER/4\nLOADTL/7\n");
-    told(
-        &on_vmc(&["--tool-from-cutter"], &loads),
-        1,
-        &["error[tool]", "loads its tools itself"],
-    );
+    told(&on_vmc(&["--tool-from-cutter"], &loads), 1, &["error[tool]", "loads its tools itself"]);
 }
 
 #[test]
 fn a_cut_with_a_spindle_that_stands_is_refused() {
     let text = format!("{HEAD}LOADTL/1\n{CUT}LOADTL/2\n{CUT}{TAIL}");
-    told(
-        &on_vmc(&[], &text),
-        1,
-        &[
-            "error[spindle]",
-            "input:6",
-            "--spindle RPM",
-            "--spindle off",
-        ],
-    );
+    told(&on_vmc(&[], &text), 1, &["error[spindle]", "input:6", "--spindle RPM", "--spindle off"]);
     let turning = on_vmc(&["--spindle", "6000"], &text);
     told(&turning, 0, &[]);
     let found = lines(&turning.out, &["S6000", " M6"]).len();
     assert_eq!(found, 4, "{}", turning.out);
     let standing = on_vmc(&["--spindle", "off"], &text);
     told(&standing, 0, &[]);
-    assert!(
-        lines(&standing.out, &["M3"])
-            .iter()
-            .all(|line| line.contains("M30"))
-    );
+    assert!(lines(&standing.out, &["M3"]).iter().all(|line| line.contains("M30")));
     // A tool for which the file has a speed keeps it, the others get theirs.
     let half = text.replace("LOADTL/2\n", "LOADTL/2\nSPINDL/800,CLW\n");
     let half = on_vmc(&["--spindle", "6000"], &half);
-    let speeds = [
-        lines(&half.out, &["S6000"]).len(),
-        lines(&half.out, &["S800"]).len(),
-    ];
+    let speeds = [lines(&half.out, &["S6000"]).len(), lines(&half.out, &["S800"]).len()];
     assert_eq!(speeds, [1, 1], "{}", half.out);
     // Switched off, and cut on.
     let off = format!("{HEAD}LOADTL/1\nSPINDL/800,CLW\n{CUT}SPINDL/OFF\nGOTO/5,0,10\n{TAIL}");
-    told(
-        &on_vmc(&[], &off),
-        1,
-        &["error[spindle]", "input:9", "switched the spindle off"],
-    );
+    told(&on_vmc(&[], &off), 1, &["error[spindle]", "input:9", "switched the spindle off"]);
     // A knife turns nothing.
     let text = fs::read_to_string("tests/machines/ultrasonic-knife.ncl").unwrap();
     let knife = posted("ultrasonic-knife", &["--tool-length", "50"], &text).0;
@@ -162,12 +112,7 @@ fn a_cut_with_a_spindle_that_stands_is_refused() {
 #[test]
 fn speeds_outside_the_range_of_the_spindle_are_refused() {
     let text = |speed: &str| format!("{HEAD}LOADTL/1\nSPINDL/{speed},CLW\n{CUT}{TAIL}");
-    let with = [
-        "--set",
-        "spindle.min_speed=60",
-        "--set",
-        "spindle.max_speed=12000",
-    ];
+    let with = ["--set", "spindle.min_speed=60", "--set", "spindle.max_speed=12000"];
     told(&on_vmc(&with, &text("12000")), 0, &[]);
     told(&on_vmc(&with, &text("60")), 0, &[]);
     told(
@@ -182,11 +127,7 @@ fn speeds_outside_the_range_of_the_spindle_are_refused() {
     );
     // A surface speed is a speed too: 400 m/min on 6 mm.
     let surface = text("SMM,400").replace("LOADTL", "CUTTER/6\nLOADTL");
-    told(
-        &on_vmc(&with, &surface),
-        1,
-        &["error[spindle-speed]", "21220"],
-    );
+    told(&on_vmc(&with, &surface), 1, &["error[spindle-speed]", "21220"]);
     let told_one = [&with[..], &["--spindle", "20000"]].concat();
     told(
         &on_vmc(&told_one, &text("800").replace("SPINDL/800,CLW\n", "")),
@@ -197,32 +138,12 @@ fn speeds_outside_the_range_of_the_spindle_are_refused() {
     let text_of_heads = fs::read_to_string("tests/machines/head-change.ncl").unwrap();
     let slow = ["--set", "head.ANGLE.spindle.max_speed=4000"];
     let done = posted("head-change", &[&LONG[..], &slow].concat(), &text_of_heads).0;
-    told(
-        &done,
-        1,
-        &["error[spindle-speed]", "input:19", "6000 rpm", "4000 rpm"],
-    );
-    for (set, why) in [
-        ("spindle.min_speed=-1", "-1 rpm"),
-        ("spindle.max_speed=0", "0 rpm"),
-    ] {
-        told(
-            &on_vmc(&["--set", set], &text("800")),
-            1,
-            &["error[machine-spindle]", why],
-        );
+    told(&done, 1, &["error[spindle-speed]", "input:19", "6000 rpm", "4000 rpm"]);
+    for (set, why) in [("spindle.min_speed=-1", "-1 rpm"), ("spindle.max_speed=0", "0 rpm")] {
+        told(&on_vmc(&["--set", set], &text("800")), 1, &["error[machine-spindle]", why]);
     }
-    let crossed = [
-        "--set",
-        "spindle.min_speed=100",
-        "--set",
-        "spindle.max_speed=50",
-    ];
-    told(
-        &on_vmc(&crossed, &text("80")),
-        1,
-        &["lies above the largest"],
-    );
+    let crossed = ["--set", "spindle.min_speed=100", "--set", "spindle.max_speed=50"];
+    told(&on_vmc(&crossed, &text("80")), 1, &["lies above the largest"]);
 }
 
 #[test]
@@ -248,29 +169,12 @@ fn the_length_that_travel_was_checked_with_is_told() {
         ("gantry", "control"),
     ] {
         let (done, summary) = posted(machine, &["--tcp", tcp], &text);
-        told(
-            &done,
-            0,
-            &["warning[tool-length]", "tool 3", "0 mm", "--tool-length"],
-        );
-        assert_eq!(
-            summary["tools"],
-            json!([tool(3, 0.0, "unknown")]),
-            "{machine}"
-        );
+        told(&done, 0, &["warning[tool-length]", "tool 3", "0 mm", "--tool-length"]);
+        assert_eq!(summary["tools"], json!([tool(3, 0.0, "unknown")]), "{machine}");
     }
     // Where the head turns and the post keeps the tip there is no program without it.
     let (done, _) = posted("head-head", &["--tcp", "post"], &text);
-    told(
-        &done,
-        1,
-        &[
-            "error[tool-length]",
-            "input:5",
-            "whose head turns",
-            "--tool-length",
-        ],
-    );
+    told(&done, 1, &["error[tool-length]", "input:5", "whose head turns", "--tool-length"]);
     let (done, _) = posted("head-head", &["--tcp", "post", "--tool-length", "0"], &text);
     told(&done, 0, &[]);
 }
@@ -287,17 +191,9 @@ fn a_file_that_was_cut_off_is_refused() {
         (format!("{body}GOTO/1,2,3"), 1, "ends within this line"),
         (format!("{body}GOTO/1,2,3."), 1, "ends within this line"),
         (format!("{body}GOTO/1,2,3,\n"), 1, "ends in a comma"),
-        (
-            format!("{body}GOTO/1,2,3,$\n"),
-            1,
-            "the file ends where this record should go on",
-        ),
+        (format!("{body}GOTO/1,2,3,$\n"), 1, "the file ends where this record should go on"),
         (format!("{creo}GOTO/1,2,3\n"), 1, "has no FINI, with which"),
-        (
-            format!("{body}OPFEATSTART/Hole1\n"),
-            1,
-            "has no FINI, with which",
-        ),
+        (format!("{body}OPFEATSTART/Hole1\n"), 1, "has no FINI, with which"),
         (format!("{nx}END-OF-PATH\n"), 0, ""),
         (format!("{nx}GOTO/1,2,3\n"), 1, "within the operation ROUGH"),
         (format!("{nx}END-OF-PATH"), 1, "ends within this line"),

@@ -70,10 +70,8 @@ fn cl_points(text: &str, scale: f64, apply_msys: bool) -> Vec<Pose> {
         let Some((word, numbers)) = line.split_once('/') else {
             continue;
         };
-        let numbers: Vec<f64> = numbers
-            .split(',')
-            .filter_map(|number| number.trim().parse().ok())
-            .collect();
+        let numbers: Vec<f64> =
+            numbers.split(',').filter_map(|number| number.trim().parse().ok()).collect();
         let at = |from: usize| V::new(numbers[from], numbers[from + 1], numbers[from + 2]);
         match word.trim() {
             "TOOL PATH" => axis = V::z(),
@@ -119,10 +117,7 @@ fn nc_blocks(program: &str, letters: &str) -> Vec<Block> {
         {
             continue;
         }
-        if code
-            .trim_start_matches(|c: char| c.is_ascii_digit())
-            .starts_with(" L ")
-        {
+        if code.trim_start_matches(|c: char| c.is_ascii_digit()).starts_with(" L ") {
             rapid = code.contains("FMAX");
         }
         let mut moved = false;
@@ -170,48 +165,33 @@ type Forward = fn(words: [f64; 6], mount: V, tool: f64) -> Pose;
 fn ac_trunnion([x, y, z, a, _, c]: [f64; 6], mount: V, _: f64) -> Pose {
     let (a, c) = (turn(X, a), turn(Z, c));
     let pivot = V::new(0.0, 0.012, 50.004);
-    Pose {
-        tip: c * about(pivot, a, V::new(x, y, z) + mount) - mount,
-        axis: c * a * V::z(),
-    }
+    Pose { tip: c * about(pivot, a, V::new(x, y, z) + mount) - mount, axis: c * a * V::z() }
 }
 
 fn dmu50([x, y, z, _, b, c]: [f64; 6], mount: V, _: f64) -> Pose {
     let (b, c) = (turn(Y, b), turn(Z, c));
     let pivot = V::new(0.0, 0.0, -50.0);
-    Pose {
-        tip: c * about(pivot, b, V::new(x, y, z) + mount) - mount,
-        axis: c * b * V::z(),
-    }
+    Pose { tip: c * about(pivot, b, V::new(x, y, z) + mount) - mount, axis: c * b * V::z() }
 }
 
 fn head_head([x, y, z, a, _, c]: [f64; 6], _: V, tool: f64) -> Pose {
     let (a, c) = (turn(X, a), turn(Z, c));
     let swing = V::new(0.0, 0.0, 250.0 + tool);
-    Pose {
-        tip: V::new(x, y, z) + swing - c * a * swing,
-        axis: c * a * V::z(),
-    }
+    Pose { tip: V::new(x, y, z) + swing - c * a * swing, axis: c * a * V::z() }
 }
 
 fn nutating_head([x, y, z, _, b, c]: [f64; 6], mount: V, tool: f64) -> Pose {
     let (b, c) = (turn([0.0, 1.0, 1.0], b), turn(Z, c));
     // From the point where the B axis meets the spindle axis down to the tip.
     let swing = V::new(0.0, 0.0, 680.0 - 500.0 + tool);
-    Pose {
-        tip: c * (V::new(x, y, z) + mount + swing - b * swing) - mount,
-        axis: c * b * V::z(),
-    }
+    Pose { tip: c * (V::new(x, y, z) + mount + swing - b * swing) - mount, axis: c * b * V::z() }
 }
 
 fn disc_cutter([x, y, z, a, b, c]: [f64; 6], mount: V, tool: f64) -> Pose {
     let (a, b, c) = (turn(X, a), turn(Y, b), turn(Z, c));
     let swing = V::new(0.0, 0.0, 312.0 + tool);
     let tip = V::new(x, y, z) + mount + swing - c * a * swing;
-    Pose {
-        tip: about(V::new(0.0, 0.0, -500.0), b, tip) - mount,
-        axis: b * c * a * V::z(),
-    }
+    Pose { tip: about(V::new(0.0, 0.0, -500.0), b, tip) - mount, axis: b * c * a * V::z() }
 }
 
 /// Degrees between two unit vectors.

@@ -60,11 +60,7 @@ fn integers(bytes: &[u8], rows: usize, at: &mut usize) -> Vec<i64> {
     let value = |row: usize| {
         let plane = |plane: usize| (bytes[start + plane * rows + row] as i64) << (8 * plane);
         let folded: i64 = (0..planes).map(plane).sum();
-        let difference = if folded % 2 == 0 {
-            folded / 2
-        } else {
-            -(folded + 1) / 2
-        };
+        let difference = if folded % 2 == 0 { folded / 2 } else { -(folded + 1) / 2 };
         let slopes = [0, difference, slope + difference];
         slope = slopes[2];
         last = match form % 16 {
@@ -123,11 +119,7 @@ impl Page {
             }
             assert_eq!(at, chunk.len(), "{table}");
         }
-        assert_eq!(
-            values.len() as u64,
-            meta["rows"].as_u64().unwrap(),
-            "{table}.{wanted}"
-        );
+        assert_eq!(values.len() as u64, meta["rows"].as_u64().unwrap(), "{table}.{wanted}");
         values
     }
 
@@ -240,16 +232,8 @@ fn texts_come_back_letter_for_letter() {
     ] {
         let (folder, page) = posted(file, machine, &[]);
         let page = Page::read(&page);
-        assert_eq!(
-            page.text("nc"),
-            fs::read(folder.path().join("part.nc")).unwrap(),
-            "{file}"
-        );
-        assert_eq!(
-            page.text("cl"),
-            fs::read(sample_file(file)).unwrap(),
-            "{file}"
-        );
+        assert_eq!(page.text("nc"), fs::read(folder.path().join("part.nc")).unwrap(), "{file}");
+        assert_eq!(page.text("cl"), fs::read(sample_file(file)).unwrap(), "{file}");
     }
 }
 
@@ -299,10 +283,7 @@ fn rows_are_the_blocks_of_the_program() {
                 continue;
             }
             let packed = page.column("blocks", &name)[row];
-            assert!(
-                (packed - value.as_f64().unwrap()).abs() < 6e-5,
-                "{name} of {row}"
-            );
+            assert!((packed - value.as_f64().unwrap()).abs() < 6e-5, "{name} of {row}");
         }
     }
 }
@@ -325,26 +306,15 @@ fn hostile_texts_stay_texts() {
     let text = format!("PPRINT/{hostile}\n{text}");
     let file = folder.path().join("part.cls");
     fs::write(&file, &text).unwrap();
-    let job = [
-        "part.cls",
-        "-m",
-        "ac-trunnion",
-        "--tool-length",
-        "100",
-        "-q",
-        "--report",
-        "part.html",
-    ];
+    let job =
+        ["part.cls", "-m", "ac-trunnion", "--tool-length", "100", "-q", "--report", "part.html"];
     let done = post_in(folder.path(), &job);
     assert_eq!(done.code, 0, "{}", done.err);
     let page = Page::read(&folder.path().join("part.html"));
     assert_eq!(page.text("cl"), text.as_bytes());
     assert!(!page.html.contains("onerror=alert"));
     let count = |what: &str| page.html.matches(what).count();
-    assert_eq!(
-        count("<script type") + count("<script>"),
-        count("</script>")
-    );
+    assert_eq!(count("<script type") + count("<script>"), count("</script>"));
     assert_contains(&page.html, &["default-src 'none'; script-src 'sha256-"]);
 }
 
@@ -354,16 +324,7 @@ fn texts_go_first_above_the_largest_size() {
     let mut text = Vec::new();
     generate::write_file(&mut text, 350_000).unwrap();
     fs::write(folder.path().join("wave.cls"), text).unwrap();
-    let job = [
-        "wave.cls",
-        "-m",
-        "ac-trunnion",
-        "--tcp",
-        "control",
-        "-q",
-        "--report",
-        "wave.html",
-    ];
+    let job = ["wave.cls", "-m", "ac-trunnion", "--tcp", "control", "-q", "--report", "wave.html"];
     let whole = post_in(folder.path(), &job);
     assert_eq!(whole.code, 0, "{}", whole.err);
     let page = folder.path().join("wave.html");
@@ -396,27 +357,9 @@ fn every_job_has_its_report() {
     let length = ["--tool-length", "100"];
     let ours = ["-m", "ac-trunnion"];
     for (job, arguments, code, kind, series) in [
-        (
-            "verify",
-            vec!["part.nc", "--against", &cl, "-q"],
-            0,
-            "good",
-            false,
-        ),
-        (
-            "verify",
-            vec!["other.nc", "--against", &cl, "-q"],
-            1,
-            "bad",
-            false,
-        ),
-        (
-            "predict",
-            vec!["part.nc", "--against", &cl, "-q"],
-            0,
-            "",
-            true,
-        ),
+        ("verify", vec!["part.nc", "--against", &cl, "-q"], 0, "good", false),
+        ("verify", vec!["other.nc", "--against", &cl, "-q"], 1, "bad", false),
+        ("predict", vec!["part.nc", "--against", &cl, "-q"], 0, "", true),
         ("diff", vec!["part.nc", "other.nc"], 1, "warn", false),
     ] {
         let more = [&length[..], &ours[..], &["--report", "r.html"]].concat();
@@ -430,11 +373,7 @@ fn every_job_has_its_report() {
             assert_eq!(page.meta["verdict"]["kind"], kind, "{line:?}");
         }
         assert_eq!(page.parts.contains_key("series"), series, "{job}");
-        let shown = folder.path().join(if job == "diff" {
-            arguments[1]
-        } else {
-            arguments[0]
-        });
+        let shown = folder.path().join(if job == "diff" { arguments[1] } else { arguments[0] });
         assert_eq!(page.text("nc"), fs::read(shown).unwrap());
         // A row of each motion, whose times go on.
         let ends = page.column("blocks", "t1");
@@ -443,10 +382,7 @@ fn every_job_has_its_report() {
         if job == "verify" && code == 0 {
             let tip = &page.meta["maxima"][0];
             let row = tip["row"].as_u64().unwrap() as usize;
-            assert_eq!(
-                page.column("blocks", "nc")[row] as u64,
-                tip["nc"].as_u64().unwrap()
-            );
+            assert_eq!(page.column("blocks", "nc")[row] as u64, tip["nc"].as_u64().unwrap());
             let worst = page.column("blocks", "deviation")[row];
             assert!((worst - tip["value"].as_f64().unwrap()).abs() < 1e-4);
         }
@@ -479,10 +415,7 @@ fn every_job_has_its_report() {
     assert_eq!(done.code, 0, "{}", done.err);
     let page = Page::read(&folder.path().join("c.html"));
     assert_eq!(page.meta["job"], "convert");
-    assert_eq!(
-        page.text("nc"),
-        fs::read(folder.path().join("c.h")).unwrap()
-    );
+    assert_eq!(page.text("nc"), fs::read(folder.path().join("c.h")).unwrap());
 }
 
 #[test]
@@ -508,18 +441,7 @@ fn nothing_is_written_of_a_refused_run_and_no_file_is_lost() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     let over = post_in(
         folder.path(),
-        &[
-            &cl,
-            "-m",
-            "ac-trunnion",
-            "--tool-length",
-            "100",
-            "-q",
-            "-o",
-            "p.nc",
-            "--report",
-            &cl,
-        ],
+        &[&cl, "-m", "ac-trunnion", "--tool-length", "100", "-q", "-o", "p.nc", "--report", &cl],
     );
     assert_eq!(over.code, 1);
     assert_contains(&over.err, &["name another file with --report"]);
@@ -536,9 +458,7 @@ fn view_names_a_report_of_any_job() {
         let mut command = command();
         let job = ["view", "--no-open"];
         command.args([&job, line].concat());
-        command
-            .env("TMPDIR", folder.path())
-            .current_dir(folder.path());
+        command.env("TMPDIR", folder.path()).current_dir(folder.path());
         run(&mut command, b"")
     };
     let done = viewed(&[&cl, "-m", "ac-trunnion", "--tool-length", "100", "-q"]);
@@ -554,9 +474,7 @@ fn view_names_a_report_of_any_job() {
 /// Names of the columns of a table.
 fn names(page: &Page, table: &str) -> BTreeSet<String> {
     let columns = page.table(table)["columns"].as_array().unwrap().iter();
-    columns
-        .map(|column| column["name"].as_str().unwrap().to_owned())
-        .collect()
+    columns.map(|column| column["name"].as_str().unwrap().to_owned()).collect()
 }
 
 #[test]
@@ -588,18 +506,12 @@ fn what_is_predicted_stands_beside_the_blocks() {
     // Line by line it is the same; approach and retract are no blocks of the path.
     let [here, there] = [&made, &alone].map(|page| page.column("blocks", "nc"));
     for name in told.iter().filter(|name| !name.starts_with('t')) {
-        let known: BTreeMap<u64, f64> = there
-            .iter()
-            .map(|line| *line as u64)
-            .zip(alone.column("blocks", name))
-            .collect();
+        let known: BTreeMap<u64, f64> =
+            there.iter().map(|line| *line as u64).zip(alone.column("blocks", name)).collect();
         let mut seen = 0;
         for (line, value) in here.iter().zip(made.column("predicted", name)) {
             if let Some(known) = known.get(&(*line as u64)).filter(|_| value > 0.0) {
-                assert!(
-                    (known - value).abs() < 1e-9,
-                    "{name} line {line}: {value} {known}"
-                );
+                assert!((known - value).abs() < 1e-9, "{name} line {line}: {value} {known}");
                 seen += 1;
             }
         }
@@ -611,10 +523,7 @@ fn what_is_predicted_stands_beside_the_blocks() {
     let summary: Value = serde_json::from_str(&summary).unwrap();
     let cycle = summary["time"]["cycle_s"].as_f64().unwrap();
     let last = *ends.last().unwrap();
-    assert!(
-        last <= cycle + 0.1 && last > 0.8 * cycle,
-        "{last} of {cycle}"
-    );
+    assert!(last <= cycle + 0.1 && last > 0.8 * cycle, "{last} of {cycle}");
 }
 
 #[test]

@@ -37,12 +37,7 @@ fn made(machine: &str, file: &Path, more: &[&str]) -> Made {
     let Run { code, err, .. } = post(&arguments);
     assert_eq!(code, 0, "{machine}, {}:\n{err}", file.display());
     let summary = read_json(&summary);
-    Made {
-        folder,
-        page,
-        nc,
-        summary,
-    }
+    Made { folder, page, nc, summary }
 }
 
 /// A cut of a blade on a trunnion machine: five axes, a tool, rapids.
@@ -60,11 +55,9 @@ fn the_worst_block_is_the_summarys() {
     let Some(mut browser) = Browser::start() else {
         return;
     };
-    for (machine, name) in [
-        ("ac-trunnion", "blade.cls"),
-        ("dmu50", "facets.apt"),
-        ("head-head", "blade.cls"),
-    ] {
+    for (machine, name) in
+        [("ac-trunnion", "blade.cls"), ("dmu50", "facets.apt"), ("head-head", "blade.cls")]
+    {
         let made = made(machine, &sample(name), &["--tool-length", "120"]);
         browser.open(&made.page);
         browser.press("Home");
@@ -74,10 +67,7 @@ fn the_worst_block_is_the_summarys() {
         assert_eq!(cl, worst["line"], "{machine} {name}");
         let value = from_maxima["value"].as_f64().unwrap();
         let told = worst["value"].as_f64().unwrap();
-        assert!(
-            value >= told - 1e-9 && value < told + 1e-4,
-            "{value} against {told}"
-        );
+        assert!(value >= told - 1e-9 && value < told + 1e-4, "{value} against {told}");
         // Of all blocks none deviates more than the one that the page goes to.
         browser.press("x");
         let row = state(&mut browser, "row");
@@ -146,11 +136,7 @@ fn a_click_selects_a_block_within_eight_pixels() {
         ));
         let apart = apart.as_f64().unwrap();
         assert!(apart <= 8.0, "row {row}: {apart} pixels");
-        assert_ne!(
-            state(&mut browser, "row"),
-            0,
-            "row {row}: nothing was selected"
-        );
+        assert_ne!(state(&mut browser, "row"), 0, "row {row}: nothing was selected");
     }
     browser.ask("P.select(3)");
     // Far from the path nothing is selected.
@@ -164,15 +150,10 @@ fn a_click_selects_a_block_within_eight_pixels() {
 fn machine(name: &str) -> Machine {
     let find = |name: &str| {
         let text = fs::read_to_string(root().join("machines").join(format!("{name}.toml")));
-        text.map(|text| Source {
-            name: name.to_owned(),
-            text,
-        })
+        text.map(|text| Source { name: name.to_owned(), text })
     };
-    load(find(name).unwrap(), &[], &mut |name| {
-        find(name).map_err(|error| error.to_string())
-    })
-    .unwrap()
+    load(find(name).unwrap(), &[], &mut |name| find(name).map_err(|error| error.to_string()))
+        .unwrap()
 }
 
 /// The page's product from the workpiece to the tool against the command's, at the axis values of every block.
@@ -184,11 +165,7 @@ fn the_chain_is_the_commands_for_every_machine() {
     let (mut places, mut swapped) = (0, 0);
     for row in LIBRARY {
         let file = Path::new("tests/machines").join(format!("{}.{}", row.machine, row.ending));
-        let made = made(
-            row.machine,
-            &file,
-            &["--tool-length", &row.length.to_string()],
-        );
+        let made = made(row.machine, &file, &["--tool-length", &row.length.to_string()]);
         browser.open(&made.page);
         let asked = browser.ask(
             "(() => { const { machine, head_rows } = P.m.meta; const out = [];
@@ -217,12 +194,7 @@ fn the_chain_is_the_commands_for_every_machine() {
             for at in 0..3 {
                 // Axes or tip are derived by the page: together they are what the command has told.
                 let told = (number(&place["told"][at]) - pose.tip[at]).abs();
-                assert!(
-                    told < 2e-4,
-                    "{} block {}: {told} mm",
-                    row.machine,
-                    index + 1
-                );
+                assert!(told < 2e-4, "{} block {}: {told} mm", row.machine, index + 1);
                 let tip = (number(&place["tip"][at]) - pose.tip[at]).abs();
                 assert!(tip < 1e-6, "{} block {}: {tip} mm", row.machine, index + 1);
                 let axis = (number(&place["axis"][at]) - pose.axis[at]).abs();
@@ -337,10 +309,7 @@ fn hostile_texts_stay_text() {
     let made = made("vmc", &file, &["--tool-length", "0"]);
     browser.open(&made.page);
     assert_eq!(lines(&mut browser, "cl"), text.lines().collect::<Vec<_>>());
-    assert_eq!(
-        browser.ask("document.querySelectorAll('img, b b, iframe, object').length"),
-        0
-    );
+    assert_eq!(browser.ask("document.querySelectorAll('img, b b, iframe, object').length"), 0);
     assert_eq!(browser.ask("document.querySelectorAll('script').length"), 1);
     let shown = browser.ask("P.by('cl').textContent");
     assert!(shown.as_str().unwrap().contains(hostile), "{shown}");
@@ -377,23 +346,11 @@ const KEYS: &[(&str, &str, &str)] = &[
         "P.state.row === mark.row",
     ),
     ("P.set({ colour: 0 })", "c", "P.state.colour === 1"),
-    (
-        "P.set({ colour: 0 })",
-        "C",
-        "P.state.colour === P.colour.modes.length - 1",
-    ),
+    ("P.set({ colour: 0 })", "C", "P.state.colour === P.colour.modes.length - 1"),
     ("P.set({ machine: false })", "m", "P.state.machine === true"),
-    (
-        "P.set({ frame: 'part' })",
-        "f",
-        "P.state.frame === 'machine'",
-    ),
+    ("P.set({ frame: 'part' })", "f", "P.state.frame === 'machine'"),
     ("P.set({ playing: false })", " ", "P.state.playing === true"),
-    (
-        "P.set({ playing: false, speed: 10 })",
-        "<",
-        "P.state.speed === 5",
-    ),
+    ("P.set({ playing: false, speed: 10 })", "<", "P.state.speed === 5"),
     ("P.set({ speed: 10 })", ">", "P.state.speed === 25"),
     ("P.set({ by: 'time' })", "b", "P.state.by === 'block'"),
     (
@@ -411,75 +368,27 @@ const KEYS: &[(&str, &str, &str)] = &[
     ("", "3", "P.by('nc').contains(document.activeElement)"),
     ("", "4", "P.by('cl').contains(document.activeElement)"),
     ("", "5", "P.by('charts').contains(document.activeElement)"),
-    (
-        "",
-        "6",
-        "P.by('spread').contains(document.activeElement) && P.by('spread').clientHeight > 0",
-    ),
-    (
-        "",
-        "7",
-        "P.by('table').contains(document.activeElement) && P.by('table').clientHeight > 0",
-    ),
+    ("", "6", "P.by('spread').contains(document.activeElement) && P.by('spread').clientHeight > 0"),
+    ("", "7", "P.by('table').contains(document.activeElement) && P.by('table').clientHeight > 0"),
     ("P.set({ chart: 0 })", "q", "P.state.chart === 1"),
-    (
-        "P.select(40)",
-        "[",
-        "String(P.state.brush) === '40,' + (P.m.rows - 1)",
-    ),
-    (
-        "P.set({ brush: null }); P.select(40)",
-        "]",
-        "String(P.state.brush) === '0,40'",
-    ),
+    ("P.select(40)", "[", "String(P.state.brush) === '40,' + (P.m.rows - 1)"),
+    ("P.set({ brush: null }); P.select(40)", "]", "String(P.state.brush) === '0,40'"),
     ("P.set({ scale: 100 })", "d", "P.state.scale === 1000"),
     ("P.set({ scale: 100 })", "D", "P.state.scale === 10"),
-    (
-        "P.path.look(0)",
-        "v",
-        "P.camera.looked === 1 && P.camera.tilt > 1.5",
-    ),
-    (
-        "window.before = P.camera.span",
-        "+",
-        "P.camera.span < before",
-    ),
-    (
-        "window.before = P.camera.span",
-        "-",
-        "P.camera.span > before",
-    ),
-    (
-        "P.path.look(0); window.before = P.camera.tilt",
-        "i",
-        "P.camera.tilt > before",
-    ),
-    (
-        "window.before = P.camera.tilt",
-        "k",
-        "P.camera.tilt < before",
-    ),
-    (
-        "window.before = P.camera.turn",
-        "j",
-        "P.camera.turn > before",
-    ),
-    (
-        "window.before = P.camera.turn",
-        "l",
-        "P.camera.turn < before",
-    ),
+    ("P.path.look(0)", "v", "P.camera.looked === 1 && P.camera.tilt > 1.5"),
+    ("window.before = P.camera.span", "+", "P.camera.span < before"),
+    ("window.before = P.camera.span", "-", "P.camera.span > before"),
+    ("P.path.look(0); window.before = P.camera.tilt", "i", "P.camera.tilt > before"),
+    ("window.before = P.camera.tilt", "k", "P.camera.tilt < before"),
+    ("window.before = P.camera.turn", "j", "P.camera.turn > before"),
+    ("window.before = P.camera.turn", "l", "P.camera.turn < before"),
     ("P.camera.span = 7", "0", "P.camera.span !== 7"),
     (
         "delete document.documentElement.dataset.theme",
         "t",
         "document.documentElement.dataset.theme === 'light'",
     ),
-    (
-        "P.set({ brush: [3, 5] })",
-        "Escape",
-        "P.state.brush === null",
-    ),
+    ("P.set({ brush: [3, 5] })", "Escape", "P.state.brush === null"),
     ("", "?", "P.by('help').open"),
 ];
 
@@ -493,17 +402,11 @@ fn every_key_does_what_the_help_says() {
     let told: Vec<String> =
         serde_json::from_value(browser.ask("P.keys.list.flatMap(({ keys }) => keys)")).unwrap();
     for key in &told {
-        assert!(
-            KEYS.iter().any(|(_, known, _)| known == key),
-            "no test presses {key:?}"
-        );
+        assert!(KEYS.iter().any(|(_, known, _)| known == key), "no test presses {key:?}");
     }
     let settle = "P.set({ playing: false, brush: null }); delete P.by('views').dataset.solo; if (document.activeElement) document.activeElement.blur();";
     for (before, key, after) in KEYS {
-        assert!(
-            told.iter().any(|known| known == key),
-            "the help does not tell {key:?}"
-        );
+        assert!(told.iter().any(|known| known == key), "the help does not tell {key:?}");
         browser.ask(&format!("{settle} {before}; 0"));
         let held = !before.is_empty() && browser.ask(after) == true;
         assert!(!held, "{key:?} has nothing to do");
@@ -529,32 +432,15 @@ fn a_view_stands_alone_when_it_is_asked_for_again() {
     };
     let made = blade();
     browser.open(&made.page);
-    for (at, name) in ["verdict", "path", "nc", "cl", "charts", "spread", "table"]
-        .iter()
-        .enumerate()
+    for (at, name) in
+        ["verdict", "path", "nc", "cl", "charts", "spread", "table"].iter().enumerate()
     {
         let key = (at + 1).to_string();
-        for (solo, seen) in [
-            (Value::Null, true),
-            (json!(name), false),
-            (Value::Null, true),
-        ] {
+        for (solo, seen) in [(Value::Null, true), (json!(name), false), (Value::Null, true)] {
             browser.press(&key);
-            assert_eq!(
-                browser.ask("P.by('views').dataset.solo || null"),
-                solo,
-                "{name}"
-            );
-            let other = if *name == "verdict" {
-                "path"
-            } else {
-                "verdict"
-            };
-            assert_eq!(
-                browser.ask(&format!("P.by('{other}').clientHeight > 0")),
-                seen,
-                "{name}"
-            );
+            assert_eq!(browser.ask("P.by('views').dataset.solo || null"), solo, "{name}");
+            let other = if *name == "verdict" { "path" } else { "verdict" };
+            assert_eq!(browser.ask(&format!("P.by('{other}').clientHeight > 0")), seen, "{name}");
         }
     }
     browser.assert_quiet();
@@ -576,16 +462,10 @@ fn what_is_looked_for_is_found_and_told_when_it_is_not() {
     }
     let at =
         browser.ask("Number(P.by('nc').querySelector('[aria-selected=true] .at').textContent)");
-    let found = program
-        .lines()
-        .nth(at.as_u64().unwrap() as usize - 1)
-        .unwrap();
+    let found = program.lines().nth(at.as_u64().unwrap() as usize - 1).unwrap();
     assert!(found.contains("M5"), "line {at}: {found}");
     browser.ask("P.texts.find(P.texts.panes.nc, 'no such words', false, P.by('nc').querySelector('output'))");
-    assert_eq!(
-        browser.ask("P.by('nc').querySelector('output').textContent"),
-        "not found"
-    );
+    assert_eq!(browser.ask("P.by('nc').querySelector('output').textContent"), "not found");
     browser.assert_quiet();
 }
 
@@ -604,17 +484,10 @@ fn the_same_page_looks_the_same() {
         pictures.push(browser.picture());
         browser.press("c");
         browser.frames();
-        assert_ne!(
-            pictures.last(),
-            Some(&browser.picture()),
-            "the colour changes nothing"
-        );
+        assert_ne!(pictures.last(), Some(&browser.picture()), "the colour changes nothing");
         browser.assert_quiet();
     }
-    assert!(
-        pictures[0] == pictures[1],
-        "two runs differ in their pixels"
-    );
+    assert!(pictures[0] == pictures[1], "two runs differ in their pixels");
 }
 
 #[test]
@@ -640,10 +513,7 @@ fn a_lost_context_comes_back() {
 #[test]
 fn less_is_drawn_where_less_can_be() {
     let made = blade();
-    for (gone, kind) in [
-        ("['webgl2']", json!("Canvas2D")),
-        ("['webgl2', '2d']", Value::Null),
-    ] {
+    for (gone, kind) in [("['webgl2']", json!("Canvas2D")), ("['webgl2', '2d']", Value::Null)] {
         let Some(mut browser) = Browser::start() else {
             return;
         };
@@ -653,15 +523,9 @@ fn less_is_drawn_where_less_can_be() {
              HTMLCanvasElement.prototype.getContext = function (kind, ...more) {{
                return this.closest('.stage') && !this.classList.contains('over') && {gone}.includes(kind) ? null : given.call(this, kind, ...more); }};"
         );
-        browser.send(
-            "Page.addScriptToEvaluateOnNewDocument",
-            &json!({"source": source}),
-        );
+        browser.send("Page.addScriptToEvaluateOnNewDocument", &json!({"source": source}));
         browser.open(&made.page);
-        assert_eq!(
-            browser.ask("P.path.renderer ? P.path.renderer.kind : null"),
-            kind
-        );
+        assert_eq!(browser.ask("P.path.renderer ? P.path.renderer.kind : null"), kind);
         assert_eq!(browser.ask("P.path.notice.hidden"), false);
         if kind.is_null() {
             assert_eq!(browser.ask("P.by('views').dataset.lower"), "table");
@@ -703,10 +567,7 @@ fn the_lightness_of_the_scale_rises_or_falls_alone() {
                     "dark {dark} eyes {eye} at {at}: {pair:?}"
                 );
             }
-            assert!(
-                (scale[191] - scale[0]).abs() > 0.15,
-                "dark {dark} eyes {eye}"
-            );
+            assert!((scale[191] - scale[0]).abs() > 0.15, "dark {dark} eyes {eye}");
         }
     }
 }
@@ -720,9 +581,8 @@ fn text_is_readable_and_everything_has_a_name() {
     let made = blade();
     browser.open(&made.page);
     for theme in ["light", "dark"] {
-        browser.ask(&format!(
-            "document.documentElement.dataset.theme = '{theme}'; P.views.repaint()"
-        ));
+        browser
+            .ask(&format!("document.documentElement.dataset.theme = '{theme}'; P.views.repaint()"));
         let pairs = browser.ask(
             "(() => { const linear = v => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
                const luma = name => { const c = P.colour.of(name).rgb.map(linear); return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; };
@@ -750,11 +610,8 @@ fn a_moving_frame_is_small() {
     let Some(mut browser) = Browser::start() else {
         return;
     };
-    let made = made(
-        "ac-trunnion",
-        &sample("s-piece.cls"),
-        &["--tcp", "control", "--tool-length", "0"],
-    );
+    let made =
+        made("ac-trunnion", &sample("s-piece.cls"), &["--tcp", "control", "--tool-length", "0"]);
     browser.open(&made.page);
     browser.press("m");
     browser.ask("P.path.draw(true)");
@@ -783,10 +640,7 @@ fn the_page_is_small_and_its_files_too() {
         if !name.ends_with(".js") {
             continue;
         }
-        assert!(
-            order.lines().any(|line| line == name),
-            "{name} is not in order.txt"
-        );
+        assert!(order.lines().any(|line| line == name), "{name} is not in order.txt");
         let text = fs::read_to_string(&path).unwrap();
         assert!(text.lines().count() < 400, "{name} is long");
         for word in [
@@ -845,11 +699,7 @@ fn the_accessibility_tree_names_everything() {
     let Some(mut browser) = Browser::start() else {
         return;
     };
-    let made = made(
-        "ac-trunnion",
-        &sample("blade.cls"),
-        &["--tool-length", "0", "--predict"],
-    );
+    let made = made("ac-trunnion", &sample("blade.cls"), &["--tool-length", "0", "--predict"]);
     browser.open(&made.page);
     browser.press("ArrowRight");
     browser.press("7");
@@ -898,8 +748,7 @@ fn the_accessibility_tree_names_everything() {
         let live = node["properties"].as_array();
         node["role"]["value"] == "status"
             && live.is_some_and(|all| {
-                all.iter()
-                    .any(|one| one["name"] == "live" && one["value"]["value"] == "polite")
+                all.iter().any(|one| one["name"] == "live" && one["value"]["value"] == "polite")
             })
     });
     let told = told.expect("a region tells the selection");
@@ -920,18 +769,11 @@ fn what_is_predicted_is_drawn_over_time() {
     let Some(mut browser) = Browser::start() else {
         return;
     };
-    let made = made(
-        "ac-trunnion",
-        &sample("blade.cls"),
-        &["--tool-length", "0", "--predict"],
-    );
+    let made = made("ac-trunnion", &sample("blade.cls"), &["--tool-length", "0", "--predict"]);
     browser.open(&made.page);
     let titles = browser.ask("P.charts.groups.map(({ title }) => title)");
     for title in ["Velocities", "Accelerations", "Prediction"] {
-        assert!(
-            titles.as_array().unwrap().contains(&json!(title)),
-            "{titles}"
-        );
+        assert!(titles.as_array().unwrap().contains(&json!(title)), "{titles}");
     }
     browser.ask("P.set({ chart: P.charts.groups.findIndex(({ title }) => title === 'Prediction') }); P.charts.range(0, 1)");
     browser.frames();
@@ -949,11 +791,7 @@ fn what_is_predicted_is_drawn_over_time() {
     assert!(largest.as_f64().unwrap() > 0.0);
     // A click on the peak goes to the block that has it.
     browser.ask("(() => { const { series } = P.m.report.tables; const values = series.columns.get('contour').values; const at = values.indexOf(P.largest(values)); P.charts.click(P.charts.x_of(series.columns.get('t').values[at])); })()");
-    assert_eq!(
-        browser.ask("P.m.column('contour')[P.state.row]"),
-        largest,
-        "the block of the peak"
-    );
+    assert_eq!(browser.ask("P.m.column('contour')[P.state.row]"), largest, "the block of the peak");
     browser.press("b");
     browser.frames();
     browser.assert_quiet();

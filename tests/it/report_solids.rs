@@ -39,12 +39,8 @@ fn plate(n: usize) -> Vec<u8> {
                 let (x, y) = (i as f32 / n as f32, j as f32 / n as f32);
                 [x * 400.0 - 200.0, y * 400.0 - 200.0, x * y * 40.0 - 80.0]
             };
-            let [a, b, c, d] = [
-                corner(i, j),
-                corner(i + 1, j),
-                corner(i + 1, j + 1),
-                corner(i, j + 1),
-            ];
+            let [a, b, c, d] =
+                [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
             for triangle in [[a, b, c], [a, c, d]] {
                 file.extend([0; 12]);
                 for value in triangle.iter().flatten() {
@@ -134,10 +130,7 @@ fn shapes_stand_where_the_chain_brings_them() {
     // A large plate became small, and keeps its corners.
     let bed = faces(&mut browser, 2);
     assert!((1_000..=2_850).contains(&bed.len()), "{}", bed.len());
-    let least = bed
-        .iter()
-        .map(|corner| corner[0].as_f64().unwrap())
-        .fold(0.0, f64::min);
+    let least = bed.iter().map(|corner| corner[0].as_f64().unwrap()).fold(0.0, f64::min);
     assert_eq!(least, -200.0);
     // What a frame draws stays small.
     browser.press("m");
@@ -153,11 +146,7 @@ fn shapes_stand_where_the_chain_brings_them() {
     // A table goes the other way than the tool as seen from the part: by -A about X through 0.012, 50.004.
     let (sine, cosine) = libm::sincos(-moved["a"].as_f64().unwrap().to_radians());
     let (y, z) = (20.0 - 0.012, -30.0 - 50.004);
-    let wanted = [
-        70.0,
-        y * cosine - z * sine + 0.012,
-        y * sine + z * cosine + 50.004,
-    ];
+    let wanted = [70.0, y * cosine - z * sine + 0.012, y * sine + z * cosine + 50.004];
     for (at, wanted) in wanted.iter().enumerate() {
         let got = moved["cradle"][at].as_f64().unwrap();
         assert!((got - wanted).abs() < 1e-9, "{got} {wanted}");
@@ -172,17 +161,13 @@ fn a_shape_that_cannot_be_shown_costs_no_program() {
     let done = post_in(folder.path(), &["check", "shaped.toml"]);
     assert_eq!(done.code, 1, "{}", done.err);
     assert!(
-        done.err
-            .contains("error[machine-solid]: `cad` is no name of an STL file"),
+        done.err.contains("error[machine-solid]: `cad` is no name of an STL file"),
         "{}",
         done.err
     );
     fs::create_dir(folder.path().join("cad/folder.stl")).unwrap();
-    fs::write(
-        folder.path().join("shaped.toml"),
-        text.replace("\"cad\"", "\"cad/folder.stl\""),
-    )
-    .unwrap();
+    fs::write(folder.path().join("shaped.toml"), text.replace("\"cad\"", "\"cad/folder.stl\""))
+        .unwrap();
     let done = post_in(folder.path(), &["check", "shaped.toml"]);
     assert_eq!(done.code, 0, "{}", done.err);
     for told in [done.err, reported(folder.path(), "shaped.toml", "part")] {
@@ -192,10 +177,7 @@ fn a_shape_that_cannot_be_shown_costs_no_program() {
             told.contains("cad/cut.stl is not shown: it is no STL file: it has 500 bytes"),
             "{told}"
         );
-        assert!(
-            told.contains("folder.stl is not shown: it is no regular file"),
-            "{told}"
-        );
+        assert!(told.contains("folder.stl is not shown: it is no regular file"), "{told}");
     }
     let Some(mut browser) = Browser::start() else {
         return;
@@ -206,11 +188,7 @@ fn a_shape_that_cannot_be_shown_costs_no_program() {
     let warnings = browser.ask("P.m.meta.warnings.map(({ code, cl, nc }) => [code, cl, nc])");
     assert_eq!(
         warnings,
-        json!([
-            ["solid", null, null],
-            ["solid", null, null],
-            ["solid", null, null]
-        ])
+        json!([["solid", null, null], ["solid", null, null], ["solid", null, null]])
     );
     browser.assert_quiet();
 }
@@ -223,21 +201,12 @@ fn who_extends_a_machine_has_its_shapes() {
     fs::write(folder.path().join("other/mine.toml"), text).unwrap();
     let err = reported(folder.path(), "other/mine.toml", "part");
     assert_eq!(err.matches("warning[solid]").count(), 1, "{err}");
-    assert!(
-        err.contains("none.stl is not shown: there is no such file"),
-        "{err}"
-    );
-    let done = post_in(
-        folder.path(),
-        &["check", "other/mine.toml", "--json", "check.json"],
-    );
+    assert!(err.contains("none.stl is not shown: there is no such file"), "{err}");
+    let done = post_in(folder.path(), &["check", "other/mine.toml", "--json", "check.json"]);
     assert_eq!(done.code, 0, "{}", done.err);
     let check: Value =
         serde_json::from_slice(&fs::read(folder.path().join("check.json")).unwrap()).unwrap();
-    assert!(
-        check["warnings"][0].as_str().unwrap().contains("none.stl"),
-        "{check}"
-    );
+    assert!(check["warnings"][0].as_str().unwrap().contains("none.stl"), "{check}");
     let Some(mut browser) = Browser::start() else {
         return;
     };
@@ -245,12 +214,7 @@ fn who_extends_a_machine_has_its_shapes() {
     assert_eq!(browser.ask("P.m.meta.machine.solid"), json!([1]));
     // No folder of the user's stands in the page.
     let told = browser.ask("P.m.meta.warnings[0].text");
-    assert!(
-        told.as_str()
-            .unwrap()
-            .starts_with("the solid none.stl is not shown"),
-        "{told}"
-    );
+    assert!(told.as_str().unwrap().starts_with("the solid none.stl is not shown"), "{told}");
     browser.assert_quiet();
 }
 

@@ -25,12 +25,7 @@ fn posted(folder: &Path, arguments: &[&str]) {
 
 #[test]
 fn a_new_file_has_what_the_umask_leaves() {
-    for (mask, wanted) in [
-        ("000", 0o666),
-        ("022", 0o644),
-        ("027", 0o640),
-        ("077", 0o600),
-    ] {
+    for (mask, wanted) in [("000", 0o666), ("022", 0o644), ("027", 0o640), ("077", 0o600)] {
         let folder = workshop();
         let script = format!("umask {mask}; exec \"$@\"");
         let mut shell = std::process::Command::new("sh");
@@ -51,12 +46,7 @@ fn a_new_file_has_what_the_umask_leaves() {
 fn a_file_that_is_replaced_keeps_its_rights_but_no_setuid() {
     let folder = workshop();
     let target = folder.path().join("p.nc");
-    for (before, after) in [
-        (0o640, 0o640),
-        (0o600, 0o600),
-        (0o4755, 0o755),
-        (0o6771, 0o771),
-    ] {
+    for (before, after) in [(0o640, 0o640), (0o600, 0o600), (0o4755, 0o755), (0o6771, 0o771)] {
         fs::write(&target, "old").unwrap();
         set_mode(&target, before);
         posted(folder.path(), &["-o", "p.nc"]);
@@ -110,11 +100,7 @@ fn a_file_whose_owner_cannot_be_kept_is_not_replaced() {
         ],
     );
     assert_eq!(fs::read_to_string(&target).unwrap(), "old");
-    assert!(
-        names(folder.path())
-            .iter()
-            .all(|name| !name.ends_with("tmp"))
-    );
+    assert!(names(folder.path()).iter().all(|name| !name.ends_with("tmp")));
 }
 
 #[test]

@@ -23,25 +23,14 @@ fn posted(arguments: &[&str]) -> (String, Value) {
 #[test]
 fn a_parameter_of_the_machine_is_set_for_one_job() {
     let as_filed = posted(&["-m", "disc-cutter", KNIFE]);
-    assert_eq!(
-        posted(&["-m", "disc-cutter", KNIFE, "--set", "Lm=312"]),
-        as_filed
-    );
+    assert_eq!(posted(&["-m", "disc-cutter", KNIFE, "--set", "Lm=312"]), as_filed);
     let shorter = posted(&["-m", "disc-cutter", KNIFE, "--set", "Lm=250"]);
     assert_ne!(shorter.0, as_filed.0);
     // The shorter swing strays less and needs fewer points.
     let added = |job: &(String, Value)| job.1["points_added"].as_u64().unwrap();
     assert!(added(&shorter) < added(&as_filed));
     // An expression of parameters follows: a head of 250 mm with a tool of 62 mm is the head of 312 mm.
-    let tool = posted(&[
-        "-m",
-        "disc-cutter",
-        KNIFE,
-        "--set",
-        "Lm=250",
-        "--tool-length",
-        "62",
-    ]);
+    let tool = posted(&["-m", "disc-cutter", KNIFE, "--set", "Lm=250", "--tool-length", "62"]);
     assert_eq!(tool.0, as_filed.0);
     let refused = post(&["-m", "disc-cutter", KNIFE, "-o", "-", "--set", "Ln=250"]);
     assert_eq!(refused.code, 1);

@@ -19,12 +19,7 @@ fn every_shell_has_its_completions() {
         "{script}\nCOMP_WORDS=(post ver)\nCOMP_CWORD=1\n_post post ver post\necho \"${{COMPREPLY[@]}}\"\n"
     );
     let answer = run(&mut Command::new("bash"), asked.as_bytes());
-    assert_eq!(
-        (answer.code, answer.out.as_str()),
-        (0, "verify\n"),
-        "{}",
-        answer.err
-    );
+    assert_eq!((answer.code, answer.out.as_str()), (0, "verify\n"), "{}", answer.err);
 }
 
 #[test]
@@ -53,9 +48,7 @@ fn every_verb_has_a_page_and_the_same_one_each_time() {
     }
     assert_eq!(pages, names(&folders[1]));
     for page in pages {
-        let [one, two] = folders
-            .each_ref()
-            .map(|folder| fs::read(folder.join(&page)).unwrap());
+        let [one, two] = folders.each_ref().map(|folder| fs::read(folder.join(&page)).unwrap());
         assert!(one == two, "{page}");
     }
 }

@@ -40,13 +40,9 @@ fn interrupted(
     let mut stdin = child.stdin.take().unwrap();
     stdin.write_all(BEGUN.as_bytes()).unwrap();
     stdin.flush().unwrap();
-    until("the temporary files are there", || {
-        names(folder).len() == files
-    });
+    until("the temporary files are there", || names(folder).len() == files);
     for signal in signals {
-        let kill = Command::new("kill")
-            .args([*signal, &child.id().to_string()])
-            .status();
+        let kill = Command::new("kill").args([*signal, &child.id().to_string()]).status();
         assert!(kill.unwrap().success());
     }
     let code = child.wait().unwrap().code();
@@ -56,23 +52,11 @@ fn interrupted(
 
 #[test]
 fn an_interrupted_command_leaves_no_temporary_file() {
-    for (signal, code) in [
-        ("-INT", 130),
-        ("-QUIT", 131),
-        ("-USR1", 138),
-        ("-ALRM", 142),
-        ("-TERM", 143),
-    ] {
+    for (signal, code) in
+        [("-INT", 130), ("-QUIT", 131), ("-USR1", 138), ("-ALRM", 142), ("-TERM", 143)]
+    {
         let folder = tempfile::tempdir().unwrap();
-        let to_file = &[
-            "-m",
-            "ac-trunnion",
-            "-",
-            "-o",
-            "part.nc",
-            "--summary",
-            "s.json",
-        ];
+        let to_file = &["-m", "ac-trunnion", "-", "-o", "part.nc", "--summary", "s.json"];
         let found = interrupted(command(), folder.path(), to_file, 2, &[signal]);
         assert_eq!((found, names(folder.path())), (Some(code), Vec::new()));
         let to_stream = &["-m", "ac-trunnion", "-", "-o", "-"];

@@ -38,12 +38,8 @@ fn head(case: &Case, summary: &Value) -> String {
             deviation["line"]
         )
     };
-    let mut head = format!(
-        "post --machine {} {} {}\n",
-        case.machine,
-        case.sample,
-        case.with.join(" ")
-    );
+    let mut head =
+        format!("post --machine {} {} {}\n", case.machine, case.sample, case.with.join(" "));
     writeln!(
         head,
         "{} records, {} moves, {} blocks, {} points added; tip {}; axis {}; rapid {}; {:.1} s",

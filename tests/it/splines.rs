@@ -117,10 +117,7 @@ fn wrong(text: &str) -> Vec<(String, String)> {
             let told = format!("{line} becomes {new:?}");
             wrong.push((told, changed.join("\n") + "\n"));
         };
-        for word in line
-            .split(' ')
-            .filter(|word| word.starts_with(['X', 'Y', 'K', 'R']))
-        {
+        for word in line.split(' ').filter(|word| word.starts_with(['X', 'Y', 'K', 'R'])) {
             let number: f64 = word[1..].parse().unwrap();
             // Knots count from 0 to 1000.
             let by = if word.starts_with('K') { 200.0 } else { 1.0 };

@@ -36,11 +36,7 @@ fn hostile(fault: &str) -> tempfile::TempDir {
 fn post_with(fault: &str, arguments: &[&str]) -> (Run, tempfile::TempDir) {
     let plugins = hostile(fault);
     let folder = tempfile::tempdir().unwrap();
-    fs::copy(
-        root().join(sample("blade.cls")),
-        folder.path().join("blade.cls"),
-    )
-    .unwrap();
+    fs::copy(root().join(sample("blade.cls")), folder.path().join("blade.cls")).unwrap();
     fs::write(folder.path().join("part.nc"), "as it was\n").unwrap();
     let done = run(
         command()
@@ -57,32 +53,14 @@ fn post_with(fault: &str, arguments: &[&str]) -> (Run, tempfile::TempDir) {
 
 #[test]
 fn a_plugin_that_ends_the_command_is_named_and_nothing_is_written() {
-    for fault in [
-        "EXIT_LOAD",
-        "EXIT_OPEN",
-        "EXIT",
-        "QUICK_EXIT",
-        "EXIT_THREAD",
-    ] {
+    for fault in ["EXIT_LOAD", "EXIT_OPEN", "EXIT", "QUICK_EXIT", "EXIT_THREAD"] {
         let (done, folder) = post_with(fault, &["-o", "part.nc", "--summary", "part.json"]);
         assert_eq!(done.code, 1, "{fault}: {}", done.err);
-        assert!(
-            done.err.contains("error[plugin]: plugin `hostile` ("),
-            "{fault}: {}",
-            done.err
-        );
-        assert!(
-            done.err.contains("in the middle of its work"),
-            "{fault}: {}",
-            done.err
-        );
+        assert!(done.err.contains("error[plugin]: plugin `hostile` ("), "{fault}: {}", done.err);
+        assert!(done.err.contains("in the middle of its work"), "{fault}: {}", done.err);
         // One that ends it as it is opened does so before anybody asks what stands at the targets.
         let last = done.err.lines().last().unwrap();
-        assert!(
-            last.starts_with("1 error; nothing was written"),
-            "{fault}: {}",
-            done.err
-        );
+        assert!(last.starts_with("1 error; nothing was written"), "{fault}: {}", done.err);
         assert_eq!(names(folder.path()), ["blade.cls", "part.nc"], "{fault}");
         let part = fs::read_to_string(folder.path().join("part.nc")).unwrap();
         assert_eq!(part, "as it was\n", "{fault}");
@@ -93,14 +71,7 @@ fn a_plugin_that_ends_the_command_is_named_and_nothing_is_written() {
 fn what_a_plugin_left_to_be_run_at_the_end_changes_no_exit_code() {
     let (done, _) = post_with(
         "LATE_EXIT",
-        &[
-            "-o",
-            "part.nc",
-            "--unknown",
-            "error",
-            "--set",
-            "control.hostile.x=1",
-        ],
+        &["-o", "part.nc", "--unknown", "error", "--set", "control.hostile.x=1"],
     );
     assert_eq!(done.code, 1, "{}", done.err);
     let (done, folder) = post_with("LATE_EXIT", &["-o", "part.nc"]);
@@ -148,34 +119,13 @@ fn a_folder_that_is_not_what_it_should_be_is_refused() {
     symlink("nowhere", at("dangling")).unwrap();
     symlink(at("round"), at("round")).unwrap();
     for (entry, message) in [
-        (
-            at("missing").display().to_string(),
-            "missing: no such folder",
-        ),
-        (
-            at("dangling").display().to_string(),
-            "dangling: no such folder",
-        ),
-        (
-            at("file").display().to_string(),
-            "file: it cannot be read: Not a directory",
-        ),
-        (
-            at("round").display().to_string(),
-            "round: it cannot be read: ",
-        ),
-        (
-            format!(":{}", at("good").display()),
-            "POST_PLUGINS has an empty entry",
-        ),
-        (
-            format!("{}:", at("good").display()),
-            "POST_PLUGINS has an empty entry",
-        ),
-        (
-            "tests".to_owned(),
-            "POST_PLUGINS tests: a folder in this variable must not be relative",
-        ),
+        (at("missing").display().to_string(), "missing: no such folder"),
+        (at("dangling").display().to_string(), "dangling: no such folder"),
+        (at("file").display().to_string(), "file: it cannot be read: Not a directory"),
+        (at("round").display().to_string(), "round: it cannot be read: "),
+        (format!(":{}", at("good").display()), "POST_PLUGINS has an empty entry"),
+        (format!("{}:", at("good").display()), "POST_PLUGINS has an empty entry"),
+        ("tests".to_owned(), "POST_PLUGINS tests: a folder in this variable must not be relative"),
     ] {
         let done = post_from(entry.as_ref());
         assert_eq!((done.code, done.out.as_str()), (1, ""), "{entry}");
@@ -191,21 +141,13 @@ fn a_link_that_leads_nowhere_is_not_replaced_by_the_stock_plugin() {
     symlink("nowhere", library(folder.path(), "fanuc")).unwrap();
     let done = post_from(folder.path().as_os_str());
     assert_eq!((done.code, done.out.as_str()), (1, ""));
-    assert!(
-        done.err.contains("it cannot be opened: No such file"),
-        "{}",
-        done.err
-    );
+    assert!(done.err.contains("it cannot be opened: No such file"), "{}", done.err);
 }
 
 #[test]
 fn a_folder_that_everybody_may_write_to_is_told() {
     let folder = tempfile::tempdir().unwrap();
-    assert!(
-        !post_from(folder.path().as_os_str())
-            .err
-            .contains("everybody")
-    );
+    assert!(!post_from(folder.path().as_os_str()).err.contains("everybody"));
     fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o777)).unwrap();
     let done = post_from(folder.path().as_os_str());
     assert_eq!(done.code, 0, "{}", done.err);
@@ -229,31 +171,14 @@ fn plugins_are_listed_with_what_they_are_and_where_they_are_from() {
     let more = post(&["plugin", "list", "--plugins", path]);
     assert_eq!(more.code, 0, "{}", more.err);
     let row = |name: &str| {
-        let rows: Vec<&str> = more
-            .out
-            .lines()
-            .filter(|line| line.starts_with(name))
-            .collect();
+        let rows: Vec<&str> = more.out.lines().filter(|line| line.starts_with(name)).collect();
         rows
     };
-    assert!(
-        row("hostile ")[0].contains("dialect      1.0 "),
-        "{}",
-        more.out
-    );
-    let [broken, hidden] = row("fanuc ")[..] else {
-        panic!("{}", more.out)
-    };
+    assert!(row("hostile ")[0].contains("dialect      1.0 "), "{}", more.out);
+    let [broken, hidden] = row("fanuc ")[..] else { panic!("{}", more.out) };
     assert!(broken.contains("broken") && hidden.contains("built in"));
-    assert!(
-        more.out
-            .contains("not used: another of this name comes first")
-    );
-    assert!(
-        more.err.contains("warning[plugin]: plugin `fanuc` ("),
-        "{}",
-        more.err
-    );
+    assert!(more.out.contains("not used: another of this name comes first"));
+    assert!(more.err.contains("warning[plugin]: plugin `fanuc` ("), "{}", more.err);
 }
 
 #[test]
@@ -271,18 +196,10 @@ fn a_plugin_shows_its_options_and_what_it_writes() {
         assert!(shown.out.contains(part), "{part}\n{}", shown.out);
     }
     let model = post(&["plugin", "show", "sampled"]);
-    assert!(
-        model.out.contains("Options, [accuracy.sampled]:\n"),
-        "{}",
-        model.out
-    );
+    assert!(model.out.contains("Options, [accuracy.sampled]:\n"), "{}", model.out);
     let slip = post(&["plugin", "show", "fanuk"]);
     assert_eq!((slip.code, slip.out.as_str()), (1, ""));
-    assert!(
-        slip.err.contains("did you mean `fanuc`? there are fanuc, "),
-        "{}",
-        slip.err
-    );
+    assert!(slip.err.contains("did you mean `fanuc`? there are fanuc, "), "{}", slip.err);
 }
 
 #[test]
@@ -317,11 +234,7 @@ fn another_dialect_for_one_run() {
     assert!(!own.err.contains("--dialect"), "{}", own.err);
     let slip = post_as(&["--dialect", "hiedenhain"]);
     assert_eq!(slip.code, 1);
-    assert!(
-        slip.err.contains("did you mean `heidenhain`? "),
-        "{}",
-        slip.err
-    );
+    assert!(slip.err.contains("did you mean `heidenhain`? "), "{}", slip.err);
     let check = post(&["check", "ac-trunnion", "--dialect", "heidenhain"]);
     assert_eq!(check.code, 0, "{}", check.err);
 }

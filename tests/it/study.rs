@@ -54,10 +54,7 @@ impl Study {
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
         let mut names: Vec<String> = names.filter(|name| name.ends_with(".svg")).collect();
         names.sort();
-        names
-            .into_iter()
-            .map(|name| (name.clone(), self.read(&name)))
-            .collect()
+        names.into_iter().map(|name| (name.clone(), self.read(&name))).collect()
     }
 }
 
@@ -81,29 +78,17 @@ fn number(line: &Line, name: &str) -> f64 {
 }
 
 fn largest(lines: &[Line], name: &str) -> f64 {
-    lines
-        .iter()
-        .map(|line| number(line, name))
-        .fold(0.0, f64::max)
+    lines.iter().map(|line| number(line, name)).fold(0.0, f64::max)
 }
 
 fn close(value: f64, wanted: f64, within: f64) {
     assert!((value - wanted).abs() <= within, "{value} is not {wanted}");
 }
 
-const IMPELLER: [&str; 4] = [
-    "tests/papers/impeller.cls",
-    "--machine",
-    "tests/papers/impeller.toml",
-    "--exact",
-];
+const IMPELLER: [&str; 4] =
+    ["tests/papers/impeller.cls", "--machine", "tests/papers/impeller.toml", "--exact"];
 
-const MOVE: [&str; 4] = [
-    "tests/papers/disc-move.cls",
-    "--machine",
-    "disc-cutter",
-    "--exact",
-];
+const MOVE: [&str; 4] = ["tests/papers/disc-move.cls", "--machine", "disc-cutter", "--exact"];
 
 /// Table 3.2 of the harmonic paper: 4.62 µm ("exceeds 4.5"), after compensation 0.26 µm ("does not exceed 0.5"),
 /// which is 5.6 % of the peak; a parabola leaves 0.12 %.
@@ -148,12 +133,7 @@ fn the_move_of_the_parabolic_paper_over_its_swing_length() {
     close(number(&moves[0], "harmonic_r2"), 0.9862, 0.00005);
     assert!(number(&moves[0], "parabolic_r2") > 0.999_999);
     let sweep = study.table("sweep.csv");
-    let wanted = [
-        (100.0, 5.508),
-        (200.0, 11.016),
-        (300.0, 16.523),
-        (400.0, 22.031),
-    ];
+    let wanted = [(100.0, 5.508), (200.0, 11.016), (300.0, 16.523), (400.0, 22.031)];
     assert_eq!(sweep.len(), wanted.len());
     for (line, (length, peak)) in sweep.iter().zip(wanted) {
         assert_eq!(number(line, "Lm"), length);
@@ -166,12 +146,7 @@ fn the_move_of_the_parabolic_paper_over_its_swing_length() {
 /// parabolic paper). One bisection leaves a quarter of each: 4.29 µm, where the paper tells 2.27.
 #[test]
 fn the_blade_of_the_parabolic_paper() {
-    let study = study(&[
-        "tests/samples/disc-blade.cls",
-        "--machine",
-        "disc-cutter",
-        "--exact",
-    ]);
+    let study = study(&["tests/samples/disc-blade.cls", "--machine", "disc-cutter", "--exact"]);
     let summary = study.table("summary.csv");
     let spread = |name: &str| summary.iter().find(|line| line["what"] == name).unwrap();
     let before = spread("uncompensated");
@@ -199,10 +174,8 @@ fn the_blade_in_three_quarters_of_the_blocks() {
     let study = study(&["tests/samples/disc-blade.cls", "-m", "disc-cutter"]);
     let blocks = study.table("blocks.csv");
     let of = |way: &str, reduce: &str| {
-        let line = blocks
-            .iter()
-            .find(|line| line["way"] == way && line["reduce"] == reduce)
-            .unwrap();
+        let line =
+            blocks.iter().find(|line| line["way"] == way && line["reduce"] == reduce).unwrap();
         assert!(number(line, "certified_um") <= 5.0, "{line:?}");
         number(line, "blocks")
     };
@@ -215,26 +188,16 @@ fn the_blade_in_three_quarters_of_the_blocks() {
 fn a_folder_holds_one_study() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().to_str().unwrap();
-    let common = [
-        "study",
-        "tests/papers/disc-move.cls",
-        "-m",
-        "disc-cutter",
-        "-o",
-        path,
-    ];
+    let common = ["study", "tests/papers/disc-move.cls", "-m", "disc-cutter", "-o", path];
     let mut swept = common.to_vec();
     swept.extend(["--sweep", "Lm=100:200:100"]);
     assert_eq!(post(&swept).code, 0);
     assert!(folder.path().join("sweep.csv").exists());
     fs::write(folder.path().join("notes.txt"), "kept").unwrap();
     assert_eq!(post(&common).code, 0);
-    for (name, there) in [
-        ("sweep.csv", false),
-        ("sweep.svg", false),
-        ("moves.csv", true),
-        ("notes.txt", true),
-    ] {
+    for (name, there) in
+        [("sweep.csv", false), ("sweep.svg", false), ("moves.csv", true), ("notes.txt", true)]
+    {
         assert_eq!(folder.path().join(name).exists(), there, "{name}");
     }
 }
@@ -281,11 +244,7 @@ fn a_blade_on_a_trunnion() {
     let distribution = &study.table("summary.csv")[0];
     let sum: f64 = moves.iter().map(|one| number(one, "peak_um")).sum();
     close(number(distribution, "mean_um"), sum / 80.0, 1e-5);
-    close(
-        number(distribution, "max_um"),
-        largest(&moves, "peak_um"),
-        1e-5,
-    );
+    close(number(distribution, "max_um"), largest(&moves, "peak_um"), 1e-5);
 }
 
 /// A small parser: tags are balanced, attributes quoted, nothing is unnamed, and only grey is used.
@@ -312,21 +271,12 @@ fn pictures_are_well_formed_and_grey() {
     for (name, text) in &pictures {
         well_formed(name, text);
         assert!(!text.contains("NaN") && !text.contains("inf"), "{name}");
-        assert!(
-            !text.contains("-0.00\"") && !text.contains(">-0<"),
-            "{name}"
-        );
+        assert!(!text.contains("-0.00\"") && !text.contains(">-0<"), "{name}");
         for color in text.split('#').skip(1) {
             let color = &color[..6];
-            assert!(
-                color[..2] == color[2..4] && color[..2] == color[4..],
-                "{name}: #{color}"
-            );
+            assert!(color[..2] == color[2..4] && color[..2] == color[4..], "{name}: #{color}");
         }
-        assert!(
-            text.contains("µm") || text.contains(" mm"),
-            "{name} names no unit"
-        );
+        assert!(text.contains("µm") || text.contains(" mm"), "{name} names no unit");
     }
 }
 
@@ -334,10 +284,7 @@ fn well_formed(name: &str, text: &str) {
     let mut open: Vec<&str> = Vec::new();
     for tag in text.split('<').skip(1) {
         let (inside, after) = tag.split_once('>').expect(name);
-        assert!(
-            inside.matches('"').count().is_multiple_of(2),
-            "{name}: {tag}"
-        );
+        assert!(inside.matches('"').count().is_multiple_of(2), "{name}: {tag}");
         assert!(!after.contains('&') || after.contains(';'), "{name}: {tag}");
         if let Some(closed) = inside.strip_prefix('/') {
             assert_eq!(open.pop(), Some(closed), "{name}");
@@ -353,12 +300,8 @@ fn what_is_printed_and_drawn() {
     let mut arguments = MOVE.to_vec();
     arguments.extend(["--sweep", "Lm=100:400:100"]);
     let study = study(&arguments);
-    let printed: Vec<&str> = study
-        .run
-        .out
-        .lines()
-        .filter(|line| !line.starts_with("in "))
-        .collect();
+    let printed: Vec<&str> =
+        study.run.out.lines().filter(|line| !line.starts_with("in ")).collect();
     insta::with_settings!({ snapshot_path => "../snapshots/study" }, {
         insta::assert_snapshot!("printed", printed.join("\n"));
         insta::assert_snapshot!("picture", study.read("sweep.svg"));

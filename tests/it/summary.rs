@@ -35,25 +35,9 @@ fn the_summary_holds_what_is_documented_and_agrees_with_the_program() {
 fn every_key_is_in_the_book() {
     let folder = tempfile::tempdir().unwrap();
     let (program, json) = (folder.path().join("p.nc"), folder.path().join("s.json"));
-    let mut arguments = vec![
-        "-m",
-        "ac-trunnion",
-        BLADE,
-        "--tool-length",
-        "80",
-        "--verify",
-    ];
-    arguments.extend([
-        "--set",
-        "accuracy.servo_compensation=0.003",
-        "--compensate-servo",
-    ]);
-    arguments.extend([
-        "-o",
-        program.to_str().unwrap(),
-        "--summary",
-        json.to_str().unwrap(),
-    ]);
+    let mut arguments = vec!["-m", "ac-trunnion", BLADE, "--tool-length", "80", "--verify"];
+    arguments.extend(["--set", "accuracy.servo_compensation=0.003", "--compensate-servo"]);
+    arguments.extend(["-o", program.to_str().unwrap(), "--summary", json.to_str().unwrap()]);
     let done = post(&arguments);
     assert_eq!(done.code, 0, "{}", done.err);
     let mut summary = read_json(&json);
@@ -85,12 +69,7 @@ fn keys_of(value: &Value, keys: &mut Vec<String>) {
 }
 
 fn check_summary(summary: &Value, program: &str, machine: &str) {
-    let keys: Vec<&str> = summary
-        .as_object()
-        .unwrap()
-        .keys()
-        .map(String::as_str)
-        .collect();
+    let keys: Vec<&str> = summary.as_object().unwrap().keys().map(String::as_str).collect();
     for key in [
         "machine",
         "dialect",
@@ -124,10 +103,7 @@ fn check_summary(summary: &Value, program: &str, machine: &str) {
     let number = |key: &str| summary[key].as_f64().unwrap();
     let source = fs::read_to_string(root().join(BLADE)).unwrap();
     assert_eq!(count("records"), source.lines().count() as u64);
-    let points = source
-        .lines()
-        .filter(|line| line.starts_with("GOTO"))
-        .count() as u64;
+    let points = source.lines().filter(|line| line.starts_with("GOTO")).count() as u64;
     assert_eq!(count("moves"), points);
     // A head that leans is drawn back along the tool at the end.
     assert!(count("blocks") <= count("moves") + count("points_added") + 1);
@@ -151,10 +127,7 @@ fn check_summary(summary: &Value, program: &str, machine: &str) {
             "{machine}: {key} in `{block}`"
         );
         let line = deviation["line"].as_u64().unwrap();
-        let line = source
-            .lines()
-            .nth(usize::try_from(line).unwrap() - 1)
-            .unwrap();
+        let line = source.lines().nth(usize::try_from(line).unwrap() - 1).unwrap();
         assert!(line.starts_with("GOTO"), "{machine}: {key} at `{line}`");
     }
     for axis in summary["axes"].as_array().unwrap() {
@@ -166,10 +139,7 @@ fn check_summary(summary: &Value, program: &str, machine: &str) {
     }
     let (time, cutting) = (number("time_s"), number("cutting_time_s"));
     // 290 mm at 1500 mm/min.
-    assert!(
-        time > cutting && (10.0..20.0).contains(&cutting),
-        "{time} {cutting}"
-    );
+    assert!(time > cutting && (10.0..20.0).contains(&cutting), "{time} {cutting}");
     assert_eq!(summary["warnings"], Value::Array(Vec::new()));
     let ignored: Vec<(String, u64)> =
         serde_json::from_value(summary["ignored_words"].clone()).unwrap();
@@ -185,10 +155,7 @@ fn the_numbers_of_a_small_job_are_those_worked_out_by_hand() {
         "line.cls",
         "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/0,0,60\nFEDRAT/100,MMPM\nGOTO/0,0,10\nGOTO/30,40,10\nFINI\n",
     );
-    let done = post_in(
-        folder.path(),
-        &["-m", "vmc", "line.cls", "--summary", "line.json"],
-    );
+    let done = post_in(folder.path(), &["-m", "vmc", "line.cls", "--summary", "line.json"]);
     assert_eq!(done.code, 0, "{}", done.err);
     let summary = read_json(&folder.path().join("line.json"));
     assert_eq!(summary["records"], 9);
@@ -203,11 +170,7 @@ fn the_numbers_of_a_small_job_are_those_worked_out_by_hand() {
         .iter()
         .map(|axis| {
             let name = axis["name"].as_str().unwrap().to_owned();
-            (
-                name,
-                axis["min"].as_f64().unwrap(),
-                axis["max"].as_f64().unwrap(),
-            )
+            (name, axis["min"].as_f64().unwrap(), axis["max"].as_f64().unwrap())
         })
         .collect();
     // The gauge line stands 600 mm over the table.
@@ -233,30 +196,15 @@ fn no_progress_and_no_colour_in_a_pipe() {
 /// Who is held by the control's largest F by time is not held by its axes.
 #[test]
 fn the_summary_says_what_slows_blocks_down() {
-    let slow = [
-        "-m",
-        "ac-trunnion",
-        "--tcp",
-        "post",
-        "--tool-length",
-        "100",
-        "-o",
-    ];
+    let slow = ["-m", "ac-trunnion", "--tcp", "post", "--tool-length", "100", "-o"];
     let folder = tempfile::tempdir().unwrap();
     let program = folder.path().join("slow.nc");
     let mut all = slow.to_vec();
     let source = crate::common::sample("blade.cls");
-    all.extend([
-        program.to_str().unwrap(),
-        "--set",
-        "control.fanuc.most_inverse_time=60",
-    ]);
+    all.extend([program.to_str().unwrap(), "--set", "control.fanuc.most_inverse_time=60"]);
     all.push(source.to_str().unwrap());
     let done = crate::common::post(&all);
     assert_eq!(done.code, 0, "{}", done.err);
     let told = format!("{}{}", done.out, done.err);
-    assert!(
-        told.contains("by the largest F under inverse time"),
-        "{told}"
-    );
+    assert!(told.contains("by the largest F under inverse time"), "{told}");
 }

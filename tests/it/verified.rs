@@ -58,16 +58,7 @@ fn plate() -> (tempfile::TempDir, String) {
     let folder = tempfile::tempdir().unwrap();
     let program = folder.path().join("plate.nc");
     let program = program.to_str().unwrap().to_owned();
-    let run = post(&[
-        "-q",
-        "-m",
-        "vmc",
-        "--tool-length",
-        "80",
-        "-o",
-        &program,
-        PLATE,
-    ]);
+    let run = post(&["-q", "-m", "vmc", "--tool-length", "80", "-o", &program, PLATE]);
     assert_eq!(run.code, 0, "{}", run.err);
     (folder, program)
 }
@@ -83,11 +74,7 @@ fn the_verb_tells_what_it_finds_and_where() {
     let length = ["--tool-length", "80"];
     let good = verify(&program, &length);
     assert_eq!((good.code, good.err.as_str()), (0, ""), "{}", good.out);
-    assert!(
-        good.out.contains("10 cuts, 36 rapids, 4 holes"),
-        "{}",
-        good.out
-    );
+    assert!(good.out.contains("10 cuts, 36 rapids, 4 holes"), "{}", good.out);
     assert!(good.out.contains("faults           none"), "{}", good.out);
     let text = fs::read_to_string(&program).unwrap();
     let bad = folder.path().join("bad.nc");
@@ -120,12 +107,7 @@ fn coolants_of_ones_own_need_not_be_compared() {
     assert_eq!(found.code, 1);
     assert!(found.err.contains("error[coolant]"), "{}", found.err);
     let ignored = verify(own_name, &[&length[..], &["--ignore", "coolant"]].concat());
-    assert_eq!(
-        (ignored.code, ignored.err.as_str()),
-        (0, ""),
-        "{}",
-        ignored.out
-    );
+    assert_eq!((ignored.code, ignored.err.as_str()), (0, ""), "{}", ignored.out);
 }
 
 #[test]
@@ -150,14 +132,8 @@ fn the_map_leads_from_the_program_to_the_cl_file() {
     let first = fs::read_to_string(&map).unwrap();
     let rows: Vec<Value> = serde_json::from_str(&first).unwrap();
     let row = |line: u64| rows.iter().find(|row| row["nc_line"] == line).unwrap();
-    assert_eq!(
-        (&row(20)["cl_line"], &row(20)["kind"]),
-        (&24.into(), &"cut".into())
-    );
-    assert_eq!(
-        (&row(42)["cl_line"], &row(42)["kind"]),
-        (&53.into(), &"hole".into())
-    );
+    assert_eq!((&row(20)["cl_line"], &row(20)["kind"]), (&24.into(), &"cut".into()));
+    assert_eq!((&row(42)["cl_line"], &row(42)["kind"]), (&53.into(), &"hole".into()));
     assert_eq!(verify(&program, &length).code, 0);
     assert_eq!(fs::read_to_string(&map).unwrap(), first);
 }
@@ -191,13 +167,8 @@ fn a_wrong_length_in_the_tables_shows_where_the_head_turns() {
     let program = program.to_str().unwrap();
     let blade = "tests/samples/blade.cls";
     let machine = ["-m", "head-head"];
-    let posted = post(
-        &[
-            &["-q", "--tool-length", "100", "-o", program, blade],
-            &machine[..],
-        ]
-        .concat(),
-    );
+    let posted =
+        post(&[&["-q", "--tool-length", "100", "-o", program, blade], &machine[..]].concat());
     assert_eq!(posted.code, 0, "{}", posted.err);
     let offsets = folder.path().join("offsets.toml");
     let verify = |length: &str| {
@@ -210,11 +181,8 @@ fn a_wrong_length_in_the_tables_shows_where_the_head_turns() {
         .unwrap();
         let offsets = offsets.to_str().unwrap();
         post(
-            &[
-                &["verify", program, "--against", blade, "--offsets", offsets],
-                &machine[..],
-            ]
-            .concat(),
+            &[&["verify", program, "--against", blade, "--offsets", offsets], &machine[..]]
+                .concat(),
         )
     };
     let good = verify("100.0");

@@ -28,10 +28,7 @@ struct Second {
 fn second(dialect: &str) -> Second {
     let path = root().join(format!("tests/vocabularies/{dialect}.txt"));
     let text = fs::read_to_string(&path).unwrap();
-    let mut second = Second {
-        words: Words::new(),
-        apart: BTreeMap::new(),
-    };
+    let mut second = Second { words: Words::new(), apart: BTreeMap::new() };
     for line in text.lines().filter(|line| !line.is_empty()) {
         if line.starts_with("# ") || line == "#" {
             continue;
@@ -43,10 +40,7 @@ fn second(dialect: &str) -> Second {
             }
             continue;
         }
-        let mut columns = line
-            .split("  ")
-            .map(str::trim)
-            .filter(|column| !column.is_empty());
+        let mut columns = line.split("  ").map(str::trim).filter(|column| !column.is_empty());
         let (Some(word), Some(meaning), Some(_)) = (columns.next(), columns.next(), columns.next())
         else {
             panic!("{dialect}: `{line}` is no word with its meaning and source");
@@ -61,11 +55,7 @@ fn second(dialect: &str) -> Second {
             }
             continue;
         }
-        let fresh = second
-            .words
-            .entry(word.to_owned())
-            .or_default()
-            .insert(known);
+        let fresh = second.words.entry(word.to_owned()).or_default().insert(known);
         assert!(fresh, "{dialect}: `{word}` means {meaning} twice");
     }
     second
@@ -73,9 +63,7 @@ fn second(dialect: &str) -> Second {
 
 /// The meaning of this name, as C has it.
 fn meaning_called(name: &str) -> Option<&'static str> {
-    let mut all = (0..1000)
-        .filter_map(Meaning::from_number)
-        .map(Meaning::name);
+    let mut all = (0..1000).filter_map(Meaning::from_number).map(Meaning::name);
     all.find(|known| *known == name)
 }
 
@@ -111,10 +99,7 @@ fn of_dialect<T>(dialect: &str, told: impl FnOnce(&mut OpenedDialect) -> T) -> T
     };
     let setup = ProgramSetup {
         words: ["X", "Y", "Z", "A", "C"].map(word).to_vec(),
-        options: options
-            .iter()
-            .map(|(key, value)| ((*key).to_owned(), value.clone()))
-            .collect(),
+        options: options.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect(),
         tcp: dialect != "grbl",
         ..ProgramSetup::default()
     };
@@ -207,12 +192,7 @@ fn programs() -> Vec<(String, String, String)> {
     let mut take = |folder: &str, dialect: &dyn Fn(&str) -> String| {
         for entry in fs::read_dir(root().join(folder)).unwrap() {
             let path = entry.unwrap().path();
-            let Some(name) = path
-                .file_name()
-                .unwrap()
-                .to_str()
-                .unwrap()
-                .strip_suffix(".snap")
+            let Some(name) = path.file_name().unwrap().to_str().unwrap().strip_suffix(".snap")
             else {
                 continue;
             };
@@ -232,9 +212,7 @@ fn programs() -> Vec<(String, String, String)> {
             programs.push((dialect(name), name.to_owned(), lines.join("\n") + "\n"));
         }
     };
-    take("tests/snapshots/dialects", &|name| {
-        name.split_once('_').unwrap().1.to_owned()
-    });
+    take("tests/snapshots/dialects", &|name| name.split_once('_').unwrap().1.to_owned());
     take("tests/snapshots", &|name| {
         let cases = crate::common::CASES.iter();
         let case = cases.into_iter().find(|case| case.name() == name).unwrap();
@@ -259,9 +237,8 @@ fn dialect_of(machine: &str) -> String {
 }
 
 /// Addresses of axes, and those that belong to the word beside them: of cycles, waits, calls and planes.
-const BESIDE: &[&str] = &[
-    "A", "B", "C", "E", "L", "P", "Q", "U", "V", "W", "X", "Y", "Z", "R", "I", "J", "K",
-];
+const BESIDE: &[&str] =
+    &["A", "B", "C", "E", "L", "P", "Q", "U", "V", "W", "X", "Y", "Z", "R", "I", "J", "K"];
 
 /// Words of conversational blocks that belong to the one that opens them.
 const BESIDE_OPENER: &[&str] = &[
@@ -297,18 +274,13 @@ fn every_word_of_every_program_is_in_the_vocabulary_of_its_dialect() {
     let mut read = 0;
     for (dialect, name, text) in programs() {
         let words = vocabulary(&dialect);
-        let known: BTreeSet<&str> = words
-            .iter()
-            .filter_map(|word| word.word.split(' ').next())
-            .collect();
+        let known: BTreeSet<&str> =
+            words.iter().filter_map(|word| word.word.split(' ').next()).collect();
         let whole: BTreeSet<&str> = words.iter().map(|word| &*word.word).collect();
         let syntax = Lexicon::new(&words).syntax().clone();
         let mut reader = NcReader::new(Cursor::new(text), syntax);
         let mut block = NcBlock::default();
-        while reader
-            .next_block(&mut block)
-            .unwrap_or_else(|fault| panic!("{name}: {fault:?}"))
-        {
+        while reader.next_block(&mut block).unwrap_or_else(|fault| panic!("{name}: {fault:?}")) {
             read += 1;
             for (place, item) in block.items.iter().enumerate() {
                 let number = match block.items.get(place + 1) {

@@ -65,31 +65,11 @@ fn a_word_that_changes_the_cut_is_refused_unless_it_is_allowed() {
         let text = file(&format!("{line}\n{line}"));
         let refused = posted(&[], &text);
         let allow = format!("--allow {word}");
-        told(
-            &refused,
-            1,
-            &["error[refused-word]", word, "<stdin>", &allow, "[cl.words]"][..2],
-        );
-        told(
-            &refused,
-            1,
-            &[
-                &allow,
-                "[cl.words]",
-                "input:4",
-                "one more like it, on line 5",
-            ],
-        );
+        told(&refused, 1, &["error[refused-word]", word, "<stdin>", &allow, "[cl.words]"][..2]);
+        told(&refused, 1, &[&allow, "[cl.words]", "input:4", "one more like it, on line 5"]);
         assert_eq!(refused.out, "", "{line}");
         let allowed = posted(&["--allow", word], &text);
-        told(
-            &allowed,
-            0,
-            &[
-                "warning[allowed-word]",
-                &format!("{word}, met twice, is left out"),
-            ],
-        );
+        told(&allowed, 0, &["warning[allowed-word]", &format!("{word}, met twice, is left out")]);
         assert_eq!(allowed.out, plain, "{line}");
     }
 }
@@ -107,16 +87,9 @@ fn a_word_that_moves_the_tool_is_refused_whatever_is_allowed() {
         "DNTCUT",
         "TLLFT,GOLFT/L1,PAST,L2",
     ] {
-        let word: String = line
-            .chars()
-            .take_while(char::is_ascii_alphanumeric)
-            .collect();
+        let word: String = line.chars().take_while(char::is_ascii_alphanumeric).collect();
         let run = posted(&["--allow", &word, "--unknown", "warn"], &file(line));
-        told(
-            &run,
-            1,
-            &["error[refused-word]", &word, "cannot be left out"],
-        );
+        told(&run, 1, &["error[refused-word]", &word, "cannot be left out"]);
         assert_eq!(run.out, "", "{line}");
     }
 }
@@ -128,11 +101,7 @@ fn a_file_that_is_none_of_ours_is_named() {
     let nci = "1050\n0 0 8. 25. 1 2024\n1053\n(MACHINE)\n1011\n0. 0. 0.\n0\n0 1. 2. 3. -2. 0\n";
     for (text, kind) in [(program, "an NC program"), (nci, "Mastercam's NCI")] {
         let run = posted(&[], text);
-        told(
-            &run,
-            1,
-            &[&format!("this is {kind}, no cutter-location file"), "CLSF"],
-        );
+        told(&run, 1, &[&format!("this is {kind}, no cutter-location file"), "CLSF"]);
         assert_eq!(run.err.matches("error[").count(), 1, "{}", run.err);
     }
 }
@@ -140,11 +109,7 @@ fn a_file_that_is_none_of_ours_is_named() {
 #[test]
 fn words_that_a_program_can_do_without_are_left_out_with_a_warning() {
     for line in ["BREAK/1", "CHECK/XAXIS,0,100", "SLOWDN/ON"] {
-        told(
-            &posted(&[], &file(line)),
-            0,
-            &["warning[unknown-word]", "left out"],
-        );
+        told(&posted(&[], &file(line)), 0, &["warning[unknown-word]", "left out"]);
     }
 }
 
@@ -153,17 +118,9 @@ fn words_that_a_program_can_do_without_are_left_out_with_a_warning() {
 fn a_word_that_nobody_knows_can_be_allowed_too() {
     let text = file("FROBN/1");
     let strict = ["--unknown", "known"];
-    told(
-        &posted(&strict, &text),
-        1,
-        &["error[unknown-word]", "FROBN", "--allow"],
-    );
+    told(&posted(&strict, &text), 1, &["error[unknown-word]", "FROBN", "--allow"]);
     let allowed = posted(&[&strict[..], &["--allow", "frobn"]].concat(), &text);
-    told(
-        &allowed,
-        0,
-        &["FROBN, met once, is left out, as --allow says"],
-    );
+    told(&allowed, 0, &["FROBN, met once, is left out, as --allow says"]);
 }
 
 #[test]
@@ -238,37 +195,20 @@ fn an_insert_with_a_code_is_no_remark() {
         told(
             &posted(&[], &text),
             1,
-            &[
-                "error[insert]",
-                code,
-                "control.insert=literal",
-                "--allow INSERT",
-            ],
+            &["error[insert]", code, "control.insert=literal", "--allow INSERT"],
         );
         let line = posted(&["--set", "control.insert=literal"], &text);
         told(&line, 0, &[]);
-        assert!(
-            line.out.lines().any(|line| line.ends_with(code)),
-            "{}",
-            line.out
-        );
+        assert!(line.out.lines().any(|line| line.ends_with(code)), "{}", line.out);
         let remark = posted(&["--allow", "INSERT"], &text);
         told(&remark, 0, &["INSERT, met once, is written as a remark"]);
     }
     // What SolidWorks CAM writes describes tools and stock.
-    for remark in [
-        "14MM CRB 4FL 32 LOC",
-        "Stock Size X85. Y38. Z48.",
-        "STOP  change fixture",
-    ] {
+    for remark in ["14MM CRB 4FL 32 LOC", "Stock Size X85. Y38. Z48.", "STOP  change fixture"] {
         let done = posted(&[], &file(&format!("INSERT/{remark}")));
         assert_eq!((done.code, done.err.as_str()), (0, ""), "{remark}");
     }
-    told(
-        &posted(&[], &file("INSERT/M8 TAP")),
-        0,
-        &["warning[insert]", "holds a G or M word"],
-    );
+    told(&posted(&[], &file("INSERT/M8 TAP")), 0, &["warning[insert]", "holds a G or M word"]);
 }
 
 /// Behind a cycle that is refused, nothing is said of the points that it would act at; what is found often is told once.
@@ -319,12 +259,7 @@ fn one_fault_is_told_once() {
     assert_eq!(done.err.matches("warning[").count(), 1, "{}", done.err);
     let warnings = crate::common::read_json(&json)["warnings"].clone();
     assert_eq!(warnings.as_array().unwrap().len(), 1);
-    assert!(
-        warnings[0]
-            .as_str()
-            .unwrap()
-            .ends_with("39 more like it, the last on line 85")
-    );
+    assert!(warnings[0].as_str().unwrap().ends_with("39 more like it, the last on line 85"));
 }
 
 #[test]

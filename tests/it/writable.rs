@@ -31,10 +31,9 @@ fn renamed(name: &str) -> tempfile::TempDir {
 
 #[test]
 fn an_axis_that_the_control_cannot_name_is_refused_where_it_is_described() {
-    for (name, why) in [
-        ("Y1", "it would read Y1450. as Y at 1450."),
-        ("Q", "Q means something else to it"),
-    ] {
+    for (name, why) in
+        [("Y1", "it would read Y1450. as Y at 1450."), ("Q", "Q means something else to it")]
+    {
         let folder = renamed(name);
         let machine = folder.path().join("renamed.toml");
         let machine = machine.to_str().unwrap();
@@ -107,20 +106,11 @@ fn the_option_for_compensation_on_the_tools_centre_is_named() {
     let cl = format!("$$-> CUTCOM_GEOMETRY_TYPE / OUTPUT_ON_CENTER\n{COMPENSATED}");
     let run = text(&["-m", "vmc"], &cl);
     assert_eq!((run.code, run.out.as_str()), (1, ""));
-    assert!(
-        run.err.contains("compensation_on_centre = \"wear\""),
-        "{}",
-        run.err
-    );
+    assert!(run.err.contains("compensation_on_centre = \"wear\""), "{}", run.err);
     let arguments = ["-m", "vmc", "--set", "control.compensation_on_centre=wear"];
     let run = text(&arguments, &cl);
     assert!(run.out.contains("G41 D4"), "{}", run.err);
-    assert!(
-        run.err
-            .contains("register 4 must hold the tool's wear alone"),
-        "{}",
-        run.err
-    );
+    assert!(run.err.contains("register 4 must hold the tool's wear alone"), "{}", run.err);
 }
 
 /// A remark of 300 letters, of `post` or of the CAM system.
@@ -135,12 +125,7 @@ fn long_remarks_are_as_many_lines_as_the_control_needs() {
         for line in run.out.lines() {
             assert!(line.len() <= most, "{dialect}: {} characters", line.len());
         }
-        assert_eq!(
-            run.out.matches("CLAMPS").count(),
-            10,
-            "{dialect}\n{}",
-            run.out
-        );
+        assert_eq!(run.out.matches("CLAMPS").count(), 10, "{dialect}\n{}", run.out);
     }
 }
 
@@ -159,12 +144,7 @@ fn the_name_of_a_program_is_as_long_as_the_control_shows() {
         "-",
         path.to_str().unwrap(),
     ]);
-    assert!(
-        run.out
-            .starts_with("0 BEGIN PGM A_NAME_OF_MUCH_MORE_THAN MM\n"),
-        "{}",
-        run.out
-    );
+    assert!(run.out.starts_with("0 BEGIN PGM A_NAME_OF_MUCH_MORE_THAN MM\n"), "{}", run.out);
     assert!(run.out.ends_with(" END PGM A_NAME_OF_MUCH_MORE_THAN MM\n"));
 }
 
@@ -178,11 +158,7 @@ fn lines_of_the_users_own_are_numbered_and_may_be_several() {
             "extends = \"vmc\"\n[control]\ninsert = \"literal\"\n[control.fanuc]\nblock_numbers = \"all\"\nretract = {retract}\n"
         )
     };
-    let cl = MOVES.replacen(
-        "GOTO/1",
-        "INSERT M77\nINSERT (AS IT IS)\nINSERT N5 M78\nGOTO/1",
-        1,
-    );
+    let cl = MOVES.replacen("GOTO/1", "INSERT M77\nINSERT (AS IT IS)\nINSERT N5 M78\nGOTO/1", 1);
     let machines = ["-m", machine.to_str().unwrap(), "--machines", "machines"];
     fs::write(&machine, options("[\"G91 G28 Z0.\", \"G91 G28 Y0.\"]")).unwrap();
     let run = text(&machines, &cl);
@@ -197,28 +173,14 @@ fn lines_of_the_users_own_are_numbered_and_may_be_several() {
         assert!(numbered(words), "{words}\n{}", run.out);
     }
     for line in ["(AS IT IS)", "N5 M78"] {
-        assert!(
-            run.out.lines().any(|found| found == line),
-            "{line}\n{}",
-            run.out
-        );
+        assert!(run.out.lines().any(|found| found == line), "{line}\n{}", run.out);
     }
     // Lines are lines; other options take one text.
     fs::write(&machine, options("[\"G91 G28 Z0.\", 7]")).unwrap();
     let run = text(&machines, &cl);
-    assert!(
-        run.err
-            .contains("a flag, a number, a text or an array of lines"),
-        "{}",
-        run.err
-    );
+    assert!(run.err.contains("a flag, a number, a text or an array of lines"), "{}", run.err);
     let offset = options("\"\"").replace("retract = \"\"", "work_offset = [\"G54\", \"G55\"]");
     fs::write(&machine, offset).unwrap();
     let run = text(&machines, &cl);
-    assert!(
-        run.err
-            .contains("option `work_offset`: must be one line of text"),
-        "{}",
-        run.err
-    );
+    assert!(run.err.contains("option `work_offset`: must be one line of text"), "{}", run.err);
 }

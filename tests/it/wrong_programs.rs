@@ -92,11 +92,7 @@ struct Posted {
 impl Posted {
     fn new(cl: &str, dialect: &'static str) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let posted = Self {
-            folder,
-            dialect,
-            text: String::new(),
-        };
+        let posted = Self { folder, dialect, text: String::new() };
         fs::write(posted.path("part.cls"), cl).unwrap();
         let (cl, nc) = (posted.path("part.cls"), posted.path("part.nc"));
         let job = ["-m", "vmc", "--tool-length", "100", "--dialect", dialect];
@@ -113,14 +109,7 @@ impl Posted {
     fn verify(&self, text: &str, more: &[&str]) -> crate::common::Run {
         let (cl, nc) = (self.path("part.cls"), self.path("changed.nc"));
         fs::write(&nc, text).unwrap();
-        let job = [
-            "-m",
-            "vmc",
-            "--tool-length",
-            "100",
-            "--dialect",
-            self.dialect,
-        ];
+        let job = ["-m", "vmc", "--tool-length", "100", "--dialect", self.dialect];
         post(&[&["verify", "-q", &nc, "--against", &cl][..], &job, more].concat())
     }
 
@@ -151,13 +140,7 @@ fn the_spindle_stands_behind_a_rigid_tap() {
     let again = rest.replacen("S600 M3\n", "", 1);
     assert_ne!(again, rest);
     let changed = fanuc.verify(&format!("{tap}M29 S600\n{again}"), &[]);
-    assert!(
-        changed
-            .err
-            .contains("error[spindle]: the spindle stands in a cut"),
-        "{}",
-        changed.err
-    );
+    assert!(changed.err.contains("error[spindle]: the spindle stands in a cut"), "{}", changed.err);
     // By a chuck that gives way the control turns it again itself.
     let floating = again.replace("M3 S600", "");
     let changed = fanuc.verify(&format!("{tap}{floating}"), &[]);
@@ -228,13 +211,7 @@ fn the_work_offset_is_that_of_the_machine_file() {
         ("fanuc", "G54\n", "G55\n", "G55", "G54"),
         ("haas", "G54\n", "G154 P5\n", "G154 P5", "G54"),
         ("siemens", "G54\n", "G500\n", "G500", "G54"),
-        (
-            "heidenhain",
-            "Q339=+1 ",
-            "Q339=+2 ",
-            "CYCL DEF 247 Q339=2",
-            "CYCL DEF 247 Q339=1",
-        ),
+        ("heidenhain", "Q339=+1 ", "Q339=+2 ", "CYCL DEF 247 Q339=2", "CYCL DEF 247 Q339=1"),
     ];
     for (dialect, from, to, name, meant) in changes {
         let posted = Posted::new(CONTOUR, dialect);
@@ -244,28 +221,17 @@ fn the_work_offset_is_that_of_the_machine_file() {
         assert_eq!(ignored.code, 0, "{dialect}: {}", ignored.err);
     }
     let fanuc = Posted::new(CONTOUR, "fanuc");
-    fanuc.told(
-        ("G54\n", ""),
-        "error[work-offset]: cuts in no work offset that the program names",
-    );
-    let of_option = fanuc.verify(
-        &fanuc.text.replace("G54\n", "G55\n"),
-        &["--set", "control.fanuc.work_offset=G55"],
-    );
+    fanuc.told(("G54\n", ""), "error[work-offset]: cuts in no work offset that the program names");
+    let of_option = fanuc
+        .verify(&fanuc.text.replace("G54\n", "G55\n"), &["--set", "control.fanuc.work_offset=G55"]);
     assert_eq!(of_option.code, 0, "{}", of_option.err);
 }
 
 /// A CL file that names its work offsets is kept to, by all names that a control has for them.
 #[test]
 fn the_work_offset_that_the_cl_file_names_is_kept_to() {
-    let named = CONTOUR.replace(
-        "RAPID\nGOTO/-20,-20,60",
-        "SET/OFSETL,2\nRAPID\nGOTO/-20,-20,60",
-    );
-    for (dialect, from, to) in [
-        ("fanuc", "G55\n", "G54.1 P2\n"),
-        ("siemens", "G55\n", "G500\n"),
-    ] {
+    let named = CONTOUR.replace("RAPID\nGOTO/-20,-20,60", "SET/OFSETL,2\nRAPID\nGOTO/-20,-20,60");
+    for (dialect, from, to) in [("fanuc", "G55\n", "G54.1 P2\n"), ("siemens", "G55\n", "G500\n")] {
         let posted = Posted::new(&named, dialect);
         posted.told((from, to), "error[work-offset]: cuts in");
     }
@@ -296,11 +262,7 @@ fn a_spindle_that_is_reversed_at_another_speed_is_right() {
     let burst = fanuc.text.replace("S7500 M3", "S30000 M3\nS7500 M3");
     assert_ne!(burst, fanuc.text);
     let changed = fanuc.verify(&burst, &[]);
-    assert!(
-        changed.err.contains("at 30000/min with this tool"),
-        "{}",
-        changed.err
-    );
+    assert!(changed.err.contains("at 30000/min with this tool"), "{}", changed.err);
 }
 
 /// A slot, then holes behind it.
@@ -347,10 +309,8 @@ fn no_rapid_goes_across_to_a_hole_lower_than_the_cl_file() {
 #[test]
 fn the_place_at_the_start_is_not_known() {
     let unsaid = "error[missing]: the program cuts before it says where X, Y stands";
-    for (dialect, first) in [
-        ("fanuc", "G0 X0.000 Y0.000\nG43"),
-        ("haas", "G0 X0.000 Y0.000\nG43"),
-    ] {
+    for (dialect, first) in [("fanuc", "G0 X0.000 Y0.000\nG43"), ("haas", "G0 X0.000 Y0.000\nG43")]
+    {
         let slot = Posted::new(SLOT, dialect);
         slot.told((first, "G43"), unsaid);
     }
@@ -381,14 +341,7 @@ FINI
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let (cl_file, nc) = (path("part.cls"), path("part.nc"));
     fs::write(&cl_file, cl).unwrap();
-    let job = [
-        "-m",
-        "ac-trunnion",
-        "--tool-length",
-        "100",
-        "--set",
-        "control.tcp=control",
-    ];
+    let job = ["-m", "ac-trunnion", "--tool-length", "100", "--set", "control.tcp=control"];
     let run = post(&[&["-q", "-o", &nc, &cl_file][..], &job].concat());
     assert_eq!(run.code, 0, "{}", run.err);
     let text = fs::read_to_string(&nc).unwrap();
@@ -401,17 +354,9 @@ FINI
     let lines: Vec<&str> = text.lines().collect();
     let first_cut = lines.iter().position(|line| line.contains("G1 ")).unwrap();
     let mut dives = lines.clone();
-    dives.splice(
-        first_cut..first_cut,
-        ["X-8. Y-8. Z-30. C270.", "X0. Y0. Z30. C0."],
-    );
+    dives.splice(first_cut..first_cut, ["X-8. Y-8. Z-30. C270.", "X0. Y0. Z30. C0."]);
     let wrong = verify(&(dives.join("\n") + "\n"));
-    assert!(
-        wrong.err.contains("error[rapid]"),
-        "{}\n{}",
-        wrong.err,
-        dives.join("\n")
-    );
+    assert!(wrong.err.contains("error[rapid]"), "{}\n{}", wrong.err, dives.join("\n"));
 }
 
 /// Right ones that were refused: a plan that comes to rest at the end of a cut by ways shorter than a rounding, and a first
@@ -430,13 +375,7 @@ fn a_plan_that_comes_to_rest_and_a_first_retract_are_right() {
             "60",
             "tests/it/wrong_programs/planned.cls",
         ][..],
-        &[
-            "-m",
-            "head-head",
-            "--tool-length",
-            "100",
-            "tests/it/wrong_programs/heads.cls",
-        ],
+        &["-m", "head-head", "--tool-length", "100", "tests/it/wrong_programs/heads.cls"],
     ] {
         let run = post(&[&["-q", "--verify", "-o", nc][..], job].concat());
         assert_eq!(run.code, 0, "{job:?}: {}", run.err);

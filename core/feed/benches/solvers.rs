@@ -52,11 +52,7 @@ fn main() {
         "program x"
     ));
     for axes in [3, 5] {
-        for collocation in [
-            Collocation::Start,
-            Collocation::Ends,
-            Collocation::Throughout,
-        ] {
+        for collocation in [Collocation::Start, Collocation::Ends, Collocation::Throughout] {
             for count in counts(most) {
                 compare(axes, collocation, count, count <= oracle);
             }
@@ -64,10 +60,7 @@ fn main() {
     }
     say("what waits in a stream: samples at most, whatever the path is long");
     for lookahead in [256, 1024, 4096] {
-        for count in [100_000, 1_000_000]
-            .into_iter()
-            .filter(|&count| count <= most)
-        {
+        for count in [100_000, 1_000_000].into_iter().filter(|&count| count <= most) {
             waiting(lookahead, count);
         }
     }
@@ -99,9 +92,7 @@ fn waiting(lookahead: usize, count: usize) {
         black_box(pushed.is_ok());
         most = most.max(stream.waiting());
     }
-    say(&format!(
-        "look-ahead {lookahead:>5}, {count:>8} samples: {most:>6} wait"
-    ));
+    say(&format!("look-ahead {lookahead:>5}, {count:>8} samples: {most:>6} wait"));
 }
 
 /// Plans with jerk limits: time, rounds and how much longer they take than without.
@@ -109,9 +100,7 @@ fn with_jerk(axes: usize, count: usize) {
     let mut random = Rng::new(7);
     let samples = random::samples(&mut random, axes, count, 0.1 * count as f64);
     let limits = Limits::new(&mut random, axes, Collocation::Throughout);
-    let jerk = AxisJerk {
-        limits: vec![20_000.0; axes],
-    };
+    let jerk = AxisJerk { limits: vec![20_000.0; axes] };
     let mut all: Vec<&dyn Limit> = limits.all().to_vec();
     all.push(&jerk);
     let Ok(problem) = Problem::new(&samples, &all, Ends::default()) else {
@@ -130,24 +119,14 @@ fn with_jerk(axes: usize, count: usize) {
     let batches: Vec<_> = (0..count - 1)
         .step_by(BATCH)
         .map(|first| (first, (first + BATCH).min(count - 1)))
-        .map(|(first, last)| {
-            (
-                random::part(&samples, first, last),
-                problem.part(first, last),
-            )
-        })
+        .map(|(first, last)| (random::part(&samples, first, last), problem.part(first, last)))
         .collect();
     let begin = Instant::now();
     let mut stream = jerk::Stream::new(300, jerk::Settings::default());
     let (mut seconds, mut waiting) = (0.0, 0);
     let mut take = |passed: jerk::Passed<'_>| seconds += passed.piece.duration(passed.step);
     for (samples, problem) in &batches {
-        let batch = jerk::Batch {
-            samples,
-            limits: &all,
-            problem,
-            corner: false,
-        };
+        let batch = jerk::Batch { samples, limits: &all, problem, corner: false };
         black_box(stream.push(batch, &mut take).is_ok());
         waiting = waiting.max(stream.waiting());
     }
@@ -166,9 +145,7 @@ fn with_jerk(axes: usize, count: usize) {
 
 fn setting(name: &str, default: usize) -> usize {
     let value = std::env::var(name).ok();
-    value
-        .and_then(|value| value.parse().ok())
-        .unwrap_or(default)
+    value.and_then(|value| value.parse().ok()).unwrap_or(default)
 }
 
 fn compare(axes: usize, collocation: Collocation, count: usize, ask_oracle: bool) {
@@ -198,35 +175,18 @@ fn compare(axes: usize, collocation: Collocation, count: usize, ask_oracle: bool
     let flowing = seconds(count, || {
         streamed.clear();
         for batch in &batches {
-            black_box(
-                stream
-                    .push(batch, &mut |sample| streamed.push(sample.q))
-                    .is_ok(),
-            );
+            black_box(stream.push(batch, &mut |sample| streamed.push(sample.q)).is_ok());
         }
-        black_box(
-            stream
-                .finish(0.0, &mut |sample| streamed.push(sample.q))
-                .is_ok(),
-        );
+        black_box(stream.finish(0.0, &mut |sample| streamed.push(sample.q)).is_ok());
     });
-    assert!(
-        streamed == plan || !stream.all_certain(),
-        "the stream has the plan of the whole"
-    );
+    assert!(streamed == plan || !stream.all_certain(), "the stream has the plan of the whole");
     let weights = vec![1.0; count];
     let begin = Instant::now();
     let best = linear_program::solve(&problem, &weights);
     let own = begin.elapsed().as_secs_f64();
     let begin = Instant::now();
-    let oracle = ask_oracle
-        .then(|| oracle::solve(&problem, &weights).ok())
-        .flatten();
-    let general = if ask_oracle {
-        begin.elapsed().as_secs_f64()
-    } else {
-        f64::NAN
-    };
+    let oracle = ask_oracle.then(|| oracle::solve(&problem, &weights).ok()).flatten();
+    let general = if ask_oracle { begin.elapsed().as_secs_f64() } else { f64::NAN };
     let rate = |seconds: f64| format!("{:.3e}", count as f64 / seconds);
     say(&format!(
         "{axes:>4} {:<10} {count:>8} {:>10} {:>10} {:>10} {:>12.6} {:>12} {:>12} {:>8.0} {:>9.1}",

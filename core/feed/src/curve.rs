@@ -51,10 +51,9 @@ impl fmt::Display for CurveFault {
                 "there are not as many knots as control points, degree and one together",
             ),
             Self::Order { knot } => write!(f, "knot {knot} does not follow the one before"),
-            Self::Weight { point } => write!(
-                f,
-                "the weight of control point {point} is missing or not positive"
-            ),
+            Self::Weight { point } => {
+                write!(f, "the weight of control point {point} is missing or not positive")
+            }
             Self::Point { point } => write!(f, "control point {point} is not finite"),
         }
     }
@@ -110,12 +109,7 @@ impl<const D: usize> Curve<D> {
                 return Err(CurveFault::Weight { point });
             }
         }
-        Ok(Self {
-            degree,
-            knots,
-            points,
-            weights,
-        })
+        Ok(Self { degree, knots, points, weights })
     }
 
     /// First and last value of the parameter.
@@ -128,10 +122,7 @@ impl<const D: usize> Curve<D> {
     pub fn breaks(&self) -> impl Iterator<Item = f64> + '_ {
         let inner = &self.knots[self.degree..=self.points.len()];
         let mut before = None;
-        inner
-            .iter()
-            .copied()
-            .filter(move |&knot| before.replace(knot) != Some(knot))
+        inner.iter().copied().filter(move |&knot| before.replace(knot) != Some(knot))
     }
 
     /// Value and derivatives at `parameter`, which is moved into the range. At a knot they are those behind it.
@@ -266,10 +257,7 @@ mod tests {
                 assert!((got[0] - want).abs() < 1e-11, "{t}: {got:?} {want}");
             }
         }
-        assert_eq!(
-            curve.breaks().collect::<Vec<_>>(),
-            [0.0, 0.1, 0.4, 0.9, 1.0]
-        );
+        assert_eq!(curve.breaks().collect::<Vec<_>>(), [0.0, 0.1, 0.4, 0.9, 1.0]);
     }
 
     #[test]
@@ -286,13 +274,7 @@ mod tests {
         let order = Some(CurveFault::Order { knot: 2 });
         assert_eq!(new(1, &[0.0, 1.0, 0.5, 1.0], &[]), order);
         assert_eq!(new(1, &[0.0, 0.5, 0.5, 1.0], &[]), order);
-        assert_eq!(
-            new(1, &knots, &[1.0]),
-            Some(CurveFault::Weight { point: 1 })
-        );
-        assert_eq!(
-            new(1, &knots, &[1.0, 0.0]),
-            Some(CurveFault::Weight { point: 1 })
-        );
+        assert_eq!(new(1, &knots, &[1.0]), Some(CurveFault::Weight { point: 1 }));
+        assert_eq!(new(1, &knots, &[1.0, 0.0]), Some(CurveFault::Weight { point: 1 }));
     }
 }

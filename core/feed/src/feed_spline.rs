@@ -26,30 +26,20 @@ impl FeedSpline {
     /// If there are fewer than two samples, or not one `q` for each.
     #[must_use]
     pub fn rounded(parameters: &[f64], q: &[f64]) -> Self {
-        assert!(
-            parameters.len() == q.len() && q.len() > 1,
-            "a q for each of two samples or more"
-        );
+        assert!(parameters.len() == q.len() && q.len() > 1, "a q for each of two samples or more");
         let last = q.len() - 1;
-        let mut spline = Self {
-            knots: vec![parameters[0]],
-            pieces: Vec::with_capacity(2 * q.len()),
-        };
+        let mut spline =
+            Self { knots: vec![parameters[0]], pieces: Vec::with_capacity(2 * q.len()) };
         let mut at = q[0];
         for sample in 1..last {
-            let [before, here, next] = [
-                parameters[sample - 1],
-                parameters[sample],
-                parameters[sample + 1],
-            ];
+            let [before, here, next] =
+                [parameters[sample - 1], parameters[sample], parameters[sample + 1]];
             let half = 0.5 * (here - before).min(next - here);
             let side = |step: f64, other: f64| q[sample] + (other - q[sample]) * half / step;
             let left = side(here - before, q[sample - 1]);
             let right = side(next - here, q[sample + 1]);
             spline.line(here - half, &mut at, left);
-            spline
-                .pieces
-                .push(Piece::Quadratic([left, q[sample], right]));
+            spline.pieces.push(Piece::Quadratic([left, q[sample], right]));
             spline.knots.push(here + half);
             at = right;
         }
@@ -79,10 +69,7 @@ impl FeedSpline {
     #[must_use]
     pub fn of_law(parameters: &[f64], law: &Law) -> Self {
         assert_eq!(parameters.len(), law.pieces.len() + 1, "samples of the law");
-        Self {
-            knots: parameters.to_vec(),
-            pieces: law.pieces.clone(),
-        }
+        Self { knots: parameters.to_vec(), pieces: law.pieces.clone() }
     }
 
     /// The piece that a parameter lies on; the first and the last go on beyond their ends.
@@ -236,10 +223,7 @@ mod tests {
             Piece::Quadratic([0.0, 2.0, 4.0]),
             Piece::Quadratic([2.0, 3.0, 2.5]),
         ] {
-            let spline = FeedSpline {
-                knots: vec![1.0, 3.0],
-                pieces: vec![piece],
-            };
+            let spline = FeedSpline { knots: vec![1.0, 3.0], pieces: vec![piece] };
             let parts = [[0.0, 0.25], [0.25, 0.5], [0.5, 1.0]];
             let sum: f64 = parts.map(|part| spline.time_within(0, part)).iter().sum();
             let whole = spline.duration();
@@ -256,10 +240,7 @@ mod tests {
         let (q1, slope) = (6.0, 4.0 / 3.0 * 6.0 / 2.0);
         let spline = FeedSpline {
             knots: vec![0.0, 2.0, 3.0],
-            pieces: vec![
-                Piece::Leave(q1),
-                Piece::Quadratic([q1, q1 + 0.5 * slope, 9.0]),
-            ],
+            pieces: vec![Piece::Leave(q1), Piece::Quadratic([q1, q1 + 0.5 * slope, 9.0])],
         };
         let (knots, points) = spline.b_spline();
         let points = points.into_iter().map(|q| [q]).collect();
@@ -275,11 +256,7 @@ mod tests {
     fn a_line_from_rest_has_its_time_exactly() {
         // Constant acceleration of 50 over 100: 2 s to speed 100, and down again.
         let mut spline = FeedSpline::rounded(&[0.0, 50.0, 100.0], &[0.0, 5000.0, 10_000.0]);
-        assert!(
-            (spline.duration() - 2.0).abs() < 1e-12,
-            "{}",
-            spline.duration()
-        );
+        assert!((spline.duration() - 2.0).abs() < 1e-12, "{}", spline.duration());
         spline.slow(0.5);
         assert!((spline.duration() - 4.0).abs() < 1e-12);
     }

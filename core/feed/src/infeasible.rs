@@ -133,10 +133,9 @@ impl fmt::Display for Infeasible {
                 f,
                 "behind sample {sample} there are fewer than four intervals to the next stop"
             ),
-            Self::NoProgress { sample } => write!(
-                f,
-                "behind sample {sample} no plan with jerk limits was found"
-            ),
+            Self::NoProgress { sample } => {
+                write!(f, "behind sample {sample} no plan with jerk limits was found")
+            }
             Self::NotANumber { sample, .. } => {
                 write!(f, "a limit at sample {sample} is not finite, or negative")
             }

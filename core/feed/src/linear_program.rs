@@ -47,10 +47,7 @@ impl Optimum {
 /// If there is not one weight a sample, or one is negative.
 pub fn solve(problem: &Problem, weights: &[f64]) -> Result<Optimum, Infeasible> {
     assert_eq!(weights.len(), problem.upper.len(), "a weight a sample");
-    assert!(
-        weights.iter().all(|&weight| weight >= 0.0),
-        "no weight is negative"
-    );
+    assert!(weights.iter().all(|&weight| weight >= 0.0), "no weight is negative");
     problem.check()?;
     let mut reach = Reach::default();
     let mut plan = Vec::new();
@@ -59,33 +56,15 @@ pub fn solve(problem: &Problem, weights: &[f64]) -> Result<Optimum, Infeasible> 
     let scaled = Scaled::new(problem, weights, low, high);
     let start = scaled.start(&plan);
     let solution = scaled.program.minimise(&start, TOLERANCE);
-    let mut q: Vec<f64> = solution
-        .x
-        .iter()
-        .zip(&scaled.scale)
-        .map(|(x, scale)| x * scale)
-        .collect();
+    let mut q: Vec<f64> =
+        solution.x.iter().zip(&scaled.scale).map(|(x, scale)| x * scale).collect();
     reach.settle(problem, &mut q);
-    let value = |q: &[f64]| {
-        q.iter()
-            .zip(weights)
-            .map(|(q, weight)| q * weight)
-            .sum::<f64>()
-    };
+    let value = |q: &[f64]| q.iter().zip(weights).map(|(q, weight)| q * weight).sum::<f64>();
     // Where the iteration stopped short of what reachability analysis has, the better one is the answer.
     let (objective, fallback) = (value(&q), value(&plan));
-    let (q, objective) = if fallback > objective {
-        (plan, fallback)
-    } else {
-        (q, objective)
-    };
+    let (q, objective) = if fallback > objective { (plan, fallback) } else { (q, objective) };
     let bound = scaled.constant - scaled.unit * scaled.program.bound(&solution.multipliers);
-    Ok(Optimum {
-        q,
-        objective,
-        bound: bound.max(objective),
-        iterations: solution.iterations,
-    })
+    Ok(Optimum { q, objective, bound: bound.max(objective), iterations: solution.iterations })
 }
 
 /// The program in unknowns `q / scale`, with rows and weights of the order of 1.
@@ -108,15 +87,8 @@ impl Scaled {
         (low[last], high[last]) = (problem.ends.end, problem.ends.end);
         // What has no room, or none but by rounding, is fixed.
         let fixed = |sample: usize| high[sample] - low[sample] <= 1e-11 * high[sample];
-        let scale: Vec<f64> = (0..count)
-            .map(|sample| {
-                if high[sample] > 0.0 {
-                    high[sample]
-                } else {
-                    1.0
-                }
-            })
-            .collect();
+        let scale: Vec<f64> =
+            (0..count).map(|sample| if high[sample] > 0.0 { high[sample] } else { 1.0 }).collect();
         let weighed = |sample: usize| weights[sample] * scale[sample];
         let free = (0..count).filter(|&sample| !fixed(sample));
         let unit = free.map(weighed).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
@@ -134,12 +106,8 @@ impl Scaled {
             if still {
                 constant += weights[sample] * high[sample];
             }
-            program
-                .weights
-                .push(if still { 0.0 } else { weighed(sample) / unit });
-            program
-                .lower
-                .push(if still { high[sample] } else { low[sample] } / scale[sample]);
+            program.weights.push(if still { 0.0 } else { weighed(sample) / unit });
+            program.lower.push(if still { high[sample] } else { low[sample] } / scale[sample]);
             program.upper.push(high[sample] / scale[sample]);
         }
         program.offsets.push(0);
@@ -161,20 +129,14 @@ impl Scaled {
                 }
                 let most = |side: f64| (1.0 - side * shift) / size;
                 for side in [1.0, -1.0] {
-                    program.rows.push(Inequality {
-                        a: a.map(|a| side * a / size),
-                        most: most(side),
-                    });
+                    program
+                        .rows
+                        .push(Inequality { a: a.map(|a| side * a / size), most: most(side) });
                 }
             }
             program.offsets.push(program.rows.len());
         }
-        Self {
-            program,
-            scale,
-            unit,
-            constant,
-        }
+        Self { program, scale, unit, constant }
     }
 
     /// Half as fast as reachability analysis is, which is well inside where the path is at rest at both ends.

@@ -66,8 +66,7 @@ impl Problem {
         let count = samples.len();
         self.ends = ends;
         self.steps.clear();
-        self.steps
-            .extend(samples.parameter.windows(2).map(|pair| pair[1] - pair[0]));
+        self.steps.extend(samples.parameter.windows(2).map(|pair| pair[1] - pair[0]));
         self.upper.clear();
         self.upper.resize(count, f64::INFINITY);
         self.causes.clear();
@@ -78,14 +77,10 @@ impl Problem {
             self.names.push(limit.name().to_owned());
             let limit_index = index as u16;
             let axes = limit.rows(samples);
-            self.sources.extend(axes.into_iter().map(|axis| Source {
-                limit: limit_index,
-                axis,
-            }));
+            self.sources.extend(axes.into_iter().map(|axis| Source { limit: limit_index, axis }));
         }
         self.rows.clear();
-        self.rows
-            .resize(self.sources.len() * count.saturating_sub(1), Row::default());
+        self.rows.resize(self.sources.len() * count.saturating_sub(1), Row::default());
         let mut first = 0;
         for (index, limit) in limits.iter().enumerate() {
             let rows = self.sources[first..]
@@ -112,10 +107,7 @@ impl Problem {
     /// called `row`, behind all rows.
     #[must_use]
     pub fn from_rows(steps: Vec<f64>, upper: Vec<f64>, stride: usize, rows: Vec<Row>) -> Self {
-        let row = Source {
-            limit: 1,
-            axis: None,
-        };
+        let row = Source { limit: 1, axis: None };
         Self {
             names: vec!["bound".to_owned(), "row".to_owned()],
             causes: vec![Source::default(); upper.len()],
@@ -179,10 +171,7 @@ impl Problem {
     /// The name of where a bound or row comes from, as reports print it.
     #[must_use]
     pub fn name(&self, source: Source) -> String {
-        let name = self
-            .names
-            .get(usize::from(source.limit))
-            .map_or("limit", String::as_str);
+        let name = self.names.get(usize::from(source.limit)).map_or("limit", String::as_str);
         match source.axis {
             Some(axis) => format!("{name} of axis {axis}"),
             None => name.to_owned(),
@@ -197,25 +186,13 @@ impl Problem {
             None => String::new(),
         };
         match *fault {
-            Infeasible::TooFastStart {
-                sample,
-                source,
-                needed,
-                allowed,
-                braking,
-            } => format!(
+            Infeasible::TooFastStart { sample, source, needed, allowed, braking } => format!(
                 "the start is too fast: at sample {sample} the squared parameter speed is still {needed:.6} after the \
                  hardest braking{}, and {} allows {allowed:.6}",
                 by(braking),
                 self.name(source)
             ),
-            Infeasible::OutOfReach {
-                sample,
-                source,
-                needed,
-                allowed,
-                accelerating,
-            } => format!(
+            Infeasible::OutOfReach { sample, source, needed, allowed, accelerating } => format!(
                 "the end is too fast: at sample {sample} the squared parameter speed would have to be {needed:.6} \
                  already{}, and {} allows {allowed:.6}",
                 by(accelerating),
@@ -350,11 +327,8 @@ impl Usage {
     pub(crate) fn raise(&mut self, share: f64, sample: usize, source: Source) {
         // What is not a number breaks every limit.
         if share > self.share || share.is_nan() {
-            *self = Self {
-                share: if share.is_nan() { f64::INFINITY } else { share },
-                sample,
-                source,
-            };
+            *self =
+                Self { share: if share.is_nan() { f64::INFINITY } else { share }, sample, source };
         }
     }
 }

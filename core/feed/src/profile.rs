@@ -6,9 +6,7 @@
 /// Infinite where both speeds are 0.
 pub fn times<'a>(steps: &'a [f64], q: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
     let pairs = q.windows(2);
-    pairs
-        .zip(steps)
-        .map(|(pair, step)| 2.0 * step / (pair[0].sqrt() + pair[1].sqrt()))
+    pairs.zip(steps).map(|(pair, step)| 2.0 * step / (pair[0].sqrt() + pair[1].sqrt()))
 }
 
 /// Time of the whole plan, s.

@@ -24,10 +24,7 @@ pub struct Answer {
 
 impl Answer {
     /// Of a drive that is where it is commanded.
-    pub const EXACT: Self = Self {
-        real: 1.0,
-        imaginary: 0.0,
-    };
+    pub const EXACT: Self = Self { real: 1.0, imaginary: 0.0 };
 
     /// `|G|`.
     #[must_use]

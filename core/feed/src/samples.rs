@@ -77,10 +77,7 @@ impl Samples {
     #[must_use]
     pub fn is_whole(&self) -> bool {
         let count = self.len();
-        let axes = self
-            .axes
-            .iter()
-            .flat_map(|axis| [&axis.first, &axis.second, &axis.third]);
+        let axes = self.axes.iter().flat_map(|axis| [&axis.first, &axis.second, &axis.third]);
         self.tip.iter().all(|all| all.len() == count)
             && self.curvature.len() == count
             && axes.into_iter().all(|all| all.len() == count)
@@ -158,11 +155,7 @@ impl Samples {
 #[must_use]
 pub fn curvature(first: [f64; 3], second: [f64; 3]) -> f64 {
     let speed = norm(first);
-    if is_still(speed) {
-        0.0
-    } else {
-        norm(cross(first, second)) / (speed * speed * speed)
-    }
+    if is_still(speed) { 0.0 } else { norm(cross(first, second)) / (speed * speed * speed) }
 }
 
 /// Whether `|P'|` says that the tip stands still.
@@ -175,11 +168,7 @@ pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 pub(crate) fn norm(a: [f64; 3]) -> f64 {

@@ -44,10 +44,7 @@ impl Table<'_> {
         // What is not a number must not get lost in a comparison.
         if bound < self.upper[sample] || bound.is_nan() {
             self.upper[sample] = bound;
-            self.causes[sample] = Source {
-                limit: self.limit,
-                axis,
-            };
+            self.causes[sample] = Source { limit: self.limit, axis };
         }
     }
 

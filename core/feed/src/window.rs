@@ -28,10 +28,7 @@ impl Joint {
     }
 
     fn named(&self, source: Source) -> Source {
-        Source {
-            limit: self.limit(source.limit),
-            ..source
-        }
+        Source { limit: self.limit(source.limit), ..source }
     }
 }
 

@@ -82,20 +82,14 @@ pub fn depth(machine: &Machine) -> Option<usize> {
         let joint = &machine.axes[*place].joint;
         libm::fabs(joint.direction.dot(&machine.tool_axis))
     };
-    (0..machine.axes.len())
-        .filter(|place| !machine.axes[*place].joint.rotary)
-        .max_by(|a, b| {
-            let main = |place: &usize| {
-                let axis = &machine.axes[*place];
-                axis.second.is_none() && axis.indexed.is_none()
-            };
-            let nearer = along(a) - along(b);
-            if libm::fabs(nearer) < 1e-6 {
-                main(a).cmp(&main(b))
-            } else {
-                nearer.total_cmp(&0.0)
-            }
-        })
+    (0..machine.axes.len()).filter(|place| !machine.axes[*place].joint.rotary).max_by(|a, b| {
+        let main = |place: &usize| {
+            let axis = &machine.axes[*place];
+            axis.second.is_none() && axis.indexed.is_none()
+        };
+        let nearer = along(a) - along(b);
+        if libm::fabs(nearer) < 1e-6 { main(a).cmp(&main(b)) } else { nearer.total_cmp(&0.0) }
+    })
 }
 
 /// The coordinate of the part frame that a linear word means where the control keeps the tip.
@@ -119,18 +113,11 @@ impl Words {
     /// Words of a machine as a dialect's `format` prints them.
     pub fn new(machine: &Machine, format: &Format) -> Self {
         let length = unit_length(machine.control.units);
-        let words = order(machine)
-            .into_iter()
-            .zip(&format.words)
-            .enumerate()
-            .map(|(place, (joint, decimals))| {
+        let words = order(machine).into_iter().zip(&format.words).enumerate().map(
+            |(place, (joint, decimals))| {
                 let axis = &machine.axes[joint];
                 let scale = (0..*decimals).fold(1.0, |scale, _| scale * 10.0);
-                let unit = if axis.joint.rotary {
-                    1f64.to_radians()
-                } else {
-                    length
-                };
+                let unit = if axis.joint.rotary { 1f64.to_radians() } else { length };
                 Word {
                     place,
                     joint,
@@ -142,7 +129,8 @@ impl Words {
                     scale,
                     per_scale: 1.0 / scale,
                 }
-            });
+            },
+        );
         let (rotary, linear): (Vec<Word>, Vec<Word>) =
             words.partition(|word| machine.axes[word.joint].joint.rotary);
         let name = |word: &Word| machine.axes[word.joint].name.as_str();
@@ -164,10 +152,7 @@ impl Words {
             words.any(|word| word.coordinate == wanted)
         };
         let whole = self.linear.len() == 3 && (0..3).all(coordinate);
-        whole.then(|| Self {
-            plane: Some(plane),
-            ..self.clone()
-        })
+        whole.then(|| Self { plane: Some(plane), ..self.clone() })
     }
 
     /// Number of words.
@@ -299,18 +284,12 @@ impl Words {
 
     /// The largest error of the tip that rounding the linear words can make, mm.
     pub fn rounding(&self) -> f64 {
-        self.linear
-            .iter()
-            .map(|word| 0.5 * word.unit / word.scale)
-            .sum()
+        self.linear.iter().map(|word| 0.5 * word.unit / word.scale).sum()
     }
 
     /// The largest error of the tool axis that rounding the rotary words can make, radians.
     pub fn axis_rounding(&self) -> f64 {
-        self.rotary
-            .iter()
-            .map(|word| 0.5 * word.unit / word.scale)
-            .sum()
+        self.rotary.iter().map(|word| 0.5 * word.unit / word.scale).sum()
     }
 }
 

@@ -45,20 +45,12 @@ impl TiltedPlane {
         });
         let exact = Matrix3::from_columns(&[x, z.cross(&x), z]);
         let Some(order) = format.plane_angles.order() else {
-            return Self {
-                origin,
-                axes: exact,
-                angles: [0.0; 3],
-            };
+            return Self { origin, axes: exact, angles: [0.0; 3] };
         };
         let scale = (0..format.plane_decimals).fold(1.0, |scale, _| scale * 10.0);
         let angles =
             angles(order, &exact).map(|angle| libm::rint(angle.to_degrees() * scale) / scale + 0.0);
-        Self {
-            origin,
-            axes: rotation(order, angles.map(f64::to_radians)),
-            angles,
-        }
+        Self { origin, axes: rotation(order, angles.map(f64::to_radians)), angles }
     }
 
     /// A point of the part frame in the plane's, mm.
@@ -122,11 +114,7 @@ pub fn angles([i, j, k]: [usize; 3], frame: &Matrix3<f64>) -> [f64; 3] {
     if cosine < POLE {
         return [libm::atan2(sign * at(k, j), at(j, j)), second, 0.0];
     }
-    [
-        libm::atan2(-sign * at(j, k), at(k, k)),
-        second,
-        libm::atan2(-sign * at(i, j), at(i, i)),
-    ]
+    [libm::atan2(-sign * at(j, k), at(k, k)), second, libm::atan2(-sign * at(i, j), at(i, i))]
 }
 
 /// 1 if the second axis follows the first in the order X, Y, Z, X, else -1.

@@ -5,9 +5,7 @@ use std::f64::consts::TAU;
 /// Cosine and minus sine of the turns that the transform of `count` values takes, half as many.
 pub fn turns(count: usize) -> Vec<[f64; 2]> {
     let angle = |place: usize| TAU * place as f64 / count as f64;
-    (0..count / 2)
-        .map(|place| [libm::cos(angle(place)), -libm::sin(angle(place))])
-        .collect()
+    (0..count / 2).map(|place| [libm::cos(angle(place)), -libm::sin(angle(place))]).collect()
 }
 
 /// The transform in place, by halves (J. W. Cooley, J. W. Tukey, 1965): each value becomes the sum of all `x[k]`, real and
@@ -50,12 +48,7 @@ mod tests {
         let count = 16;
         let turns = turns(count);
         let signal: Vec<[f64; 2]> = (0..count)
-            .map(|place| {
-                [
-                    libm::sin(0.7 * place as f64 * place as f64),
-                    0.1 * place as f64,
-                ]
-            })
+            .map(|place| [libm::sin(0.7 * place as f64 * place as f64), 0.1 * place as f64])
             .collect();
         let mut fast = signal.clone();
         transform(&mut fast, &turns);

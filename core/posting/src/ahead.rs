@@ -46,18 +46,14 @@ pub struct AheadPass {
 impl AheadPass {
     /// For a file that is to be read so, on this machine.
     pub fn new(machine: &Machine, reading: Reading) -> Self {
-        Self {
-            interpreter: Interpreter::new(reading.on(machine)),
-            still: StillAxes::default(),
-        }
+        Self { interpreter: Interpreter::new(reading.on(machine)), still: StillAxes::default() }
     }
 
     /// Takes a record.
     #[inline]
     pub fn record(&mut self, record: &Record<'_>) {
         let still = &mut self.still;
-        self.interpreter
-            .record(record, &mut |step| still.step(record.line, &step));
+        self.interpreter.record(record, &mut |step| still.step(record.line, &step));
         if self.interpreter.has_findings() {
             // They are told when the program is made.
             self.interpreter.take_findings();
@@ -66,9 +62,7 @@ impl AheadPass {
 
     /// The file has ended.
     pub fn finish(self) -> Ahead {
-        Ahead {
-            still: self.still.finish(),
-        }
+        Ahead { still: self.still.finish() }
     }
 }
 
@@ -126,11 +120,7 @@ impl StillAxes {
     fn turn(&mut self, line: u64, motion: &Motion, cuts: bool) {
         self.turns |= cuts && self.present.is_some();
         self.stretch_ends();
-        let still = Still {
-            first: line,
-            last: line,
-            axis: motion.axis,
-        };
+        let still = Still { first: line, last: line, axis: motion.axis };
         self.present = Some((still, cuts));
     }
 
@@ -186,10 +176,7 @@ mod tests {
             );
         }
         let found = axes.finish();
-        found
-            .iter()
-            .map(|still| (still.first, still.last))
-            .collect()
+        found.iter().map(|still| (still.first, still.last)).collect()
     }
 
     #[test]

@@ -82,21 +82,13 @@ pub(crate) struct Keeps {
 
 impl Keeps {
     pub(crate) fn new(machine: &Machine, writes: Capabilities) -> Self {
-        Self {
-            arcs: machine.control.arcs,
-            writes,
-            tcp: machine.control.tcp == Tcp::Control,
-        }
+        Self { arcs: machine.control.arcs, writes, tcp: machine.control.tcp == Tcp::Control }
     }
 
     /// Arcs about that axis of the words (0 is X), which end off the plane of their start or not, in a tilted plane or
     /// not.
     pub(crate) fn about(&self, axis: usize, helix: bool, in_plane: bool) -> bool {
-        let planes = [
-            Capabilities::ARC_YZ,
-            Capabilities::ARC_ZX,
-            Capabilities::ARC_XY,
-        ];
+        let planes = [Capabilities::ARC_YZ, Capabilities::ARC_ZX, Capabilities::ARC_XY];
         let helix = match helix {
             true => Capabilities::HELIX,
             false => Capabilities::NONE,

@@ -117,10 +117,7 @@ fn without_numbers(sentence: &str) -> String {
 impl Findings {
     /// None yet, of a CL file by that name.
     pub(crate) fn new(file: &str) -> Self {
-        Self {
-            file: file.to_owned(),
-            inner: RefCell::default(),
-        }
+        Self { file: file.to_owned(), inner: RefCell::default() }
     }
 
     /// Name of the CL file, as in messages.
@@ -287,20 +284,12 @@ mod tests {
     #[test]
     fn sentences_that_differ_in_numbers_are_of_one_kind() {
         for (one, other, same) in [
-            (
-                "the ends lie 0.0012 mm apart",
-                "the ends lie 12 mm apart",
-                true,
-            ),
+            ("the ends lie 0.0012 mm apart", "the ends lie 12 mm apart", true),
             ("A would be -3.5°", "A would be 140°", true),
             ("A would be 1°", "C would be 1°", false),
             ("5 numbers are given", "1 number is given", false),
         ] {
-            assert_eq!(
-                without_numbers(one) == without_numbers(other),
-                same,
-                "{one}"
-            );
+            assert_eq!(without_numbers(one) == without_numbers(other), same, "{one}");
         }
     }
 }

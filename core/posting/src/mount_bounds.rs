@@ -62,10 +62,7 @@ impl<'m> MountBounds<'m> {
         };
         self.head = &head.machine;
         self.last = None;
-        let known = self
-            .rooms
-            .iter()
-            .position(|(machine, _)| std::ptr::eq(*machine, self.head));
+        let known = self.rooms.iter().position(|(machine, _)| std::ptr::eq(*machine, self.head));
         self.at = known.unwrap_or(self.rooms.len());
         if let (None, Ok(room)) = (known, Room::new(self.head)) {
             self.rooms.push((self.head, room));
@@ -99,19 +96,10 @@ impl Observer for MountBounds<'_> {
         for next in blocks {
             match next {
                 Flow::Point(block) => self.block(block),
-                Flow::Command {
-                    command: Command::Head(name),
-                    ..
-                } => self.swap(name),
-                Flow::Command {
-                    line,
-                    command: Command::Curve(curve),
-                } => {
+                Flow::Command { command: Command::Head(name), .. } => self.swap(name),
+                Flow::Command { line, command: Command::Curve(curve) } => {
                     if let Some((_, room)) = self.rooms.get_mut(self.at) {
-                        curve
-                            .between
-                            .iter()
-                            .for_each(|joints| room.take(joints, *line));
+                        curve.between.iter().for_each(|joints| room.take(joints, *line));
                     }
                 }
                 Flow::Command { .. } => {}

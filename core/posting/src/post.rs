@@ -207,9 +207,7 @@ impl<'a> Post<'a> {
             configured: Vec::new(),
             blocks: Blocks::new(machine, writes, &format, model, job.trust_model),
             made: Vec::new(),
-            plan: job
-                .plans
-                .then(|| Plan::new(machine, &format, job.tightening)),
+            plan: job.plans.then(|| Plan::new(machine, &format, job.tightening)),
             planned: Vec::new(),
             observers: Observers::default(),
             emit: Emit::new(machine, &job.facts, dialect, output),
@@ -260,13 +258,9 @@ impl<'a> Post<'a> {
         self.last_line = record.line;
         let (stages, steps) = (&self.stages, &mut self.steps);
         let waiting = steps.first().map(|(line, _)| *line);
-        self.findings.read(record, || {
-            [waiting, stages.settled_line()].into_iter().flatten().min()
-        });
+        self.findings.read(record, || [waiting, stages.settled_line()].into_iter().flatten().min());
         match &mut self.window {
-            None => self
-                .interpreter
-                .record(record, &mut |step| steps.push((record.line, step))),
+            None => self.interpreter.record(record, &mut |step| steps.push((record.line, step))),
             Some(window) => self.interpreter.record(record, &mut |step| {
                 window.step(record.line, step, steps);
             }),
@@ -361,9 +355,7 @@ impl<'a> Post<'a> {
                     name: axis.name.clone(),
                     min: tidy(axis.reading(extremes.least[index].min(between.least(index)))),
                     max: tidy(axis.reading(extremes.most[index].max(between.most(index)))),
-                    travel: axis
-                        .travel
-                        .map(|travel| travel.map(|end| tidy(axis.reading(end)))),
+                    travel: axis.travel.map(|travel| travel.map(|end| tidy(axis.reading(end)))),
                     way: tidy((extremes.travel[index] + between.beside(index)) / axis.unit()),
                 }
             })
@@ -386,10 +378,7 @@ impl<'a> Post<'a> {
             points_dropped: counts.points_dropped,
             model_overruled: stages.blocks.overruled(),
             tip_deviation_mm: tip,
-            axis_deviation_deg: Deviation {
-                value: axis.value.to_degrees(),
-                ..axis
-            },
+            axis_deviation_deg: Deviation { value: axis.value.to_degrees(), ..axis },
             rapid_deviation_mm: rapid,
             control_point: machine.control_point,
             tolerance_mm: machine.accuracy.tolerance,

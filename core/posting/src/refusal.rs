@@ -221,20 +221,14 @@ fn mount_inside(machine: &Machine, over: &OverTravel) -> Option<String> {
     let by = (over.value - over.limit).signum() * (libm::ceil(by(axis, over) * 1e3) / 1e3);
     let mount = machine.mount - axis.joint.direction * by;
     let [x, y, z] = [mount.x, mount.y, mount.z].map(|value| libm::rint(value * 1e3) / 1e3 + 0.0);
-    Some(format!(
-        "--mount {x},{y},{z} brings {} to this limit",
-        axis.name
-    ))
+    Some(format!("--mount {x},{y},{z} brings {} to this limit", axis.name))
 }
 
 /// An index axis that has no position there, inside its travel.
 fn no_position(machine: &Machine, over: OverTravel) -> bool {
     let axis = &machine.axes[over.joint];
     passed(axis.travel, over.value, 0.0).is_none()
-        && axis
-            .indexed
-            .as_ref()
-            .is_some_and(|indexed| indexed.positions != Positions::Any)
+        && axis.indexed.as_ref().is_some_and(|indexed| indexed.positions != Positions::Any)
 }
 
 /// Inside its travel, on the side of zero that the machine file forbids.
@@ -318,11 +312,7 @@ pub(crate) fn no_way(
     };
     Diagnostic::error(
         "jump",
-        format!(
-            "this cut cannot go on from {}: {}",
-            rotary(from),
-            reasons.join("; ")
-        ),
+        format!("this cut cannot go on from {}: {}", rotary(from), reasons.join("; ")),
     )
     .help(help)
 }

@@ -47,13 +47,7 @@ pub(crate) struct Shift<'a> {
 
 impl<'a> Shift<'a> {
     pub fn new(by: &'a mut dyn PathShift, bound: f64) -> Self {
-        Self {
-            by,
-            bound,
-            begins: true,
-            hole: false,
-            offset: false,
-        }
+        Self { by, bound, begins: true, hole: false, offset: false }
     }
 
     /// Moves the points of a batch.

@@ -24,10 +24,7 @@ impl SourceBuffer {
 
     fn forget(&mut self, before: u64) {
         let count = self.lines.partition_point(|(line, _)| *line < before);
-        let from = self
-            .lines
-            .get(count)
-            .map_or(self.text.len(), |(_, start)| *start);
+        let from = self.lines.get(count).map_or(self.text.len(), |(_, start)| *start);
         self.lines.drain(..count);
         self.text.drain(..from);
         for (_, start) in &mut self.lines {
@@ -37,20 +34,10 @@ impl SourceBuffer {
 
     /// The text of the record on `line`.
     pub(crate) fn text(&self, line: u64) -> Option<String> {
-        let place = self
-            .lines
-            .binary_search_by_key(&line, |(line, _)| *line)
-            .ok()?;
+        let place = self.lines.binary_search_by_key(&line, |(line, _)| *line).ok()?;
         let start = self.lines[place].1;
-        let end = self
-            .lines
-            .get(place + 1)
-            .map_or(self.text.len(), |(_, next)| *next);
-        Some(
-            String::from_utf8_lossy(&self.text[start..end])
-                .trim_end()
-                .to_owned(),
-        )
+        let end = self.lines.get(place + 1).map_or(self.text.len(), |(_, next)| *next);
+        Some(String::from_utf8_lossy(&self.text[start..end]).trim_end().to_owned())
     }
 }
 

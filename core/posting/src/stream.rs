@@ -27,13 +27,7 @@ impl<P> Flow<P> {
     /// It says where the moves of a hole stand.
     #[inline]
     pub(crate) fn marks_hole(&self) -> bool {
-        matches!(
-            self,
-            Self::Command {
-                command: Command::Hole(_),
-                ..
-            }
-        )
+        matches!(self, Self::Command { command: Command::Hole(_), .. })
     }
 }
 

@@ -63,9 +63,7 @@ impl Tightening {
     /// Whether any place lies on a line.
     #[must_use]
     pub fn concerns(&self, line: u64) -> bool {
-        self.rounds
-            .iter()
-            .any(|places| !on(places, line).is_empty())
+        self.rounds.iter().any(|places| !on(places, line).is_empty())
     }
 
     /// The share of the limit that may be used where the tip stands at `tip` (mm, part frame) and carries out a line of
@@ -89,9 +87,7 @@ impl Tightening {
         self.rounds
             .iter()
             .map(|places| {
-                let near = on(places, line)
-                    .iter()
-                    .filter(|place| place.reaches(from, to));
+                let near = on(places, line).iter().filter(|place| place.reaches(from, to));
                 near.fold(1.0, |least: f64, place| least.min(f64::from(place.share)))
             })
             .product()
@@ -109,11 +105,8 @@ fn on(places: &[TightPlace], line: u64) -> &[TightPlace] {
 fn distance(point: &Vector3<f64>, from: &Vector3<f64>, to: &Vector3<f64>) -> f64 {
     let way = to - from;
     let length = way.norm_squared();
-    let share = if length > 0.0 {
-        ((point - from).dot(&way) / length).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
+    let share =
+        if length > 0.0 { ((point - from).dot(&way) / length).clamp(0.0, 1.0) } else { 0.0 };
     (point - from - way * share).norm()
 }
 
@@ -122,12 +115,7 @@ mod tests {
     use super::*;
 
     fn place(line: u64, x: f32, share: f32) -> TightPlace {
-        TightPlace {
-            line,
-            tip: [x, 0.0, 0.0],
-            reach: 1.0,
-            share,
-        }
+        TightPlace { line, tip: [x, 0.0, 0.0], reach: 1.0, share }
     }
 
     fn at(x: f64) -> Vector3<f64> {
@@ -139,11 +127,7 @@ mod tests {
         let mut tightening = Tightening::default();
         assert!(tightening.is_empty());
         assert_eq!(tightening.share(7, &at(0.0)), 1.0);
-        tightening.push(vec![
-            place(9, 5.0, 0.25),
-            place(7, 0.0, 0.5),
-            place(7, 1.5, 0.75),
-        ]);
+        tightening.push(vec![place(9, 5.0, 0.25), place(7, 0.0, 0.5), place(7, 1.5, 0.75)]);
         assert_eq!(tightening.share(7, &at(-0.5)), 0.5);
         assert_eq!(tightening.share(7, &at(1.0)), 0.5);
         assert_eq!(tightening.share(7, &at(2.0)), 0.75);

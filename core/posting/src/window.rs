@@ -21,13 +21,7 @@ pub(crate) struct Window {
 
 impl Window {
     pub(crate) fn new(lines: Range<u64>) -> Self {
-        Self {
-            lines,
-            state: Vec::new(),
-            before_tool: Vec::new(),
-            plane: None,
-            entered: false,
-        }
+        Self { lines, state: Vec::new(), before_tool: Vec::new(), plane: None, entered: false }
     }
 
     /// Takes a step and gives what of it, and of the state before it, is part of the program.
@@ -131,12 +125,7 @@ mod tests {
     fn a_part_begins_in_the_state_that_the_lines_before_it_set() {
         let mut window = Window::new(10..20);
         let mut steps = Vec::new();
-        let tool = |number| {
-            Command::Tool(Tool {
-                number,
-                ..Tool::default()
-            })
-        };
+        let tool = |number| Command::Tool(Tool { number, ..Tool::default() });
         for (line, command) in [
             (1, Command::Coolant(Coolant::Mist)),
             (2, tool(1)),
@@ -167,27 +156,13 @@ mod tests {
     /// The spindle of the tool before waits until the tool cuts without a speed of its own.
     #[test]
     fn a_tool_begins_with_its_own_speed() {
-        let tool = || {
-            Command::Tool(Tool {
-                number: 2,
-                ..Tool::default()
-            })
-        };
-        let turning = |rpm| {
-            Command::Spindle(Spindle::On {
-                rpm,
-                sense: SpindleSense::Clockwise,
-            })
-        };
+        let tool = || Command::Tool(Tool { number: 2, ..Tool::default() });
+        let turning = |rpm| Command::Spindle(Spindle::On { rpm, sense: SpindleSense::Clockwise });
         let made = |said: &[Command]| {
             let mut window = Window::new(10..20);
             let mut steps = Vec::new();
             window.step(1, Step::Command(turning(15_000.0)), &mut steps);
-            window.step(
-                2,
-                Step::Command(Command::Coolant(Coolant::Mist)),
-                &mut steps,
-            );
+            window.step(2, Step::Command(Command::Coolant(Coolant::Mist)), &mut steps);
             let motion = Motion {
                 tip: Vector3::zeros(),
                 axis: Vector3::z(),
@@ -212,17 +187,9 @@ mod tests {
         );
         assert_eq!(
             made(&[tool(), Command::Preselect(3)]),
-            [
-                tool(),
-                Command::Preselect(3),
-                turning(15_000.0),
-                mist.clone()
-            ]
+            [tool(), Command::Preselect(3), turning(15_000.0), mist.clone()]
         );
         // No tool came: what turned goes on turning.
-        assert_eq!(
-            made(&[Command::Stop]),
-            [turning(15_000.0), mist, Command::Stop]
-        );
+        assert_eq!(made(&[Command::Stop]), [turning(15_000.0), mist, Command::Stop]);
     }
 }

@@ -47,9 +47,7 @@ pub(crate) fn comes_from_anywhere(machine: &Machine, motion: &Motion) -> bool {
     let mut axes = machine.axes.iter().zip(joints);
     let stands = axes.all(|(axis, (from, to))| !axis.joint.rotary || from == to);
     let linear = machine.axes.iter().filter(|axis| !axis.joint.rotary);
-    let slowest = linear
-        .map(|axis| axis.max_feed)
-        .fold(f64::INFINITY, f64::min);
+    let slowest = linear.map(|axis| axis.max_feed).fold(f64::INFINITY, f64::min);
     stands && motion.feed >= slowest * (1.0 - SLOW)
 }
 
@@ -69,13 +67,7 @@ pub struct FedRapids<P> {
 impl<P> FedRapids<P> {
     /// A program all of whose rapids are written as such.
     pub fn none(program: P) -> Self {
-        Self {
-            program,
-            machine: None,
-            kept: false,
-            turns: false,
-            left: None,
-        }
+        Self { program, machine: None, kept: false, turns: false, left: None }
     }
 
     /// A program of a machine whose rapids may stand at feed, with `kept` where its control keeps the tip alone; `turns`

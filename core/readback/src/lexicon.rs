@@ -84,9 +84,7 @@ impl Lexicon {
         } else if !has("(") && (has(";") || has("SUPA")) {
             Language::Names
         } else if has("O")
-            && words
-                .iter()
-                .any(|word| word.meaning == Meaning::Subprogram && word.word == "O")
+            && words.iter().any(|word| word.meaning == Meaning::Subprogram && word.word == "O")
             || has("G38.2")
         {
             Language::Rs274
@@ -99,9 +97,7 @@ impl Lexicon {
             m: vec![0; CODES / 10],
             senses: vec![Sense::Unknown],
             syntax: syntax(words, language),
-            all_axes: words
-                .iter()
-                .any(|word| word.meaning == Meaning::FeedPerMinuteAllAxes),
+            all_axes: words.iter().any(|word| word.meaning == Meaning::FeedPerMinuteAllAxes),
             path_modes: words.iter().any(|word| word.word == "G64"),
             changes_by_word: words.iter().any(|word| word.meaning == Meaning::ToolChange),
             ..Self::default()
@@ -180,10 +176,7 @@ impl Lexicon {
     /// What a letter beside G and ten times a number means, if the dialect says so: P of `G4 P`, of `G2 P`.
     pub(crate) fn letter_beside(&self, code: u16, letter: u8) -> Option<Meaning> {
         let wanted = |choice: &&Choice| choice.code == code && choice.beside == [(letter, None)];
-        self.choices
-            .iter()
-            .find(wanted)
-            .map(|choice| choice.meaning)
+        self.choices.iter().find(wanted).map(|choice| choice.meaning)
     }
 
     /// The sense of M and a number.
@@ -196,10 +189,7 @@ impl Lexicon {
     /// What a letter in front of a value means, where it is no axis.
     #[inline]
     pub(crate) fn letter(&self, letter: u8) -> Option<Meaning> {
-        self.letters
-            .get(usize::from(letter.wrapping_sub(b'A')))
-            .copied()
-            .flatten()
+        self.letters.get(usize::from(letter.wrapping_sub(b'A'))).copied().flatten()
     }
 
     /// What a name means.
@@ -209,17 +199,12 @@ impl Lexicon {
 
     /// What a name with nothing between its parentheses means.
     pub(crate) fn empty_call(&self, name: &str) -> Sense {
-        self.empty
-            .get(name)
-            .map_or_else(|| self.name(name), |meaning| Sense::Means(*meaning))
+        self.empty.get(name).map_or_else(|| self.name(name), |meaning| Sense::Means(*meaning))
     }
 
     /// A word of the dialect.
     fn add(&mut self, word: &str, meaning: Meaning) {
-        if matches!(
-            meaning,
-            Meaning::Remark | Meaning::RemarkOpen | Meaning::RemarkClose
-        ) {
+        if matches!(meaning, Meaning::Remark | Meaning::RemarkOpen | Meaning::RemarkClose) {
             return;
         }
         if let [letter @ b'A'..=b'Z'] | [letter @ b'A'..=b'Z', b'='] = word.as_bytes() {
@@ -248,17 +233,12 @@ impl Lexicon {
         let Some((letter, code)) = code(first) else {
             // `MCALL CYCLE81` is known by the name of its cycle.
             let name = word.strip_prefix("MCALL ").unwrap_or(word);
-            self.names
-                .insert(name.trim_end_matches('=').to_owned(), sense);
+            self.names.insert(name.trim_end_matches('=').to_owned(), sense);
             return;
         };
         let beside: Vec<(u8, Option<f64>)> = parts.filter_map(beside).collect();
         let place = self.place(sense);
-        let table = if letter == b'G' {
-            &mut self.g
-        } else {
-            &mut self.m
-        };
+        let table = if letter == b'G' { &mut self.g } else { &mut self.m };
         let at = if letter == b'G' { code } else { code / 10 };
         // What other words stand beside takes the plain word's place only where that has no sense.
         if let Some(entry) = table.get_mut(usize::from(at))
@@ -267,11 +247,7 @@ impl Lexicon {
             *entry = place;
         }
         if let (b'G', Sense::Means(meaning), false) = (letter, sense, beside.is_empty()) {
-            self.choices.push(Choice {
-                code,
-                beside,
-                meaning,
-            });
+            self.choices.push(Choice { code, beside, meaning });
         }
     }
 

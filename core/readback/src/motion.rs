@@ -71,8 +71,7 @@ impl Motion {
     /// Tip and tool axis at `t` from 0 to 1 of the motion's own parameter (time, at constant feed), as the control and the
     /// chain make them.
     pub fn at(&self, t: f64) -> Pose {
-        self.way
-            .at(self.state.solver.chain(), [&self.from, &self.to], t)
+        self.way.at(self.state.solver.chain(), [&self.from, &self.to], t)
     }
 
     /// Some rotary axis turns on the way.
@@ -127,13 +126,9 @@ impl Motion {
                     let chord = from.tip + (to.tip - from.tip) * share;
                     worst.0 = worst.0.max((pose.tip - chord).norm());
                 }
-                worst.1 = worst
-                    .1
-                    .max((pose.axis - between(from.axis, to.axis, share)).norm());
+                worst.1 = worst.1.max((pose.axis - between(from.axis, to.axis, share)).norm());
                 if pose.edge != Vector3::zeros() {
-                    worst.1 = worst
-                        .1
-                        .max((pose.edge - between(from.edge, to.edge, share)).norm());
+                    worst.1 = worst.1.max((pose.edge - between(from.edge, to.edge, share)).norm());
                 }
             }
             from = to;
@@ -147,11 +142,8 @@ impl Motion {
         let axes = chain.joints();
         let turn = |place: usize| libm::fabs(self.to.joints[place] - self.from.joints[place]);
         let ends = [&self.from.joints, &self.to.joints].map(|joints| {
-            let mut trace = Trace {
-                joints: *joints,
-                turns: chain.turns(joints),
-                ..Trace::default()
-            };
+            let mut trace =
+                Trace { joints: *joints, turns: chain.turns(joints), ..Trace::default() };
             chain.trace(&mut trace);
             trace
         });

@@ -170,9 +170,9 @@ impl Tasks {
             Corner::Blend { .. } if motion.hole || motion.kind == MotionKind::Thread => {
                 Corner::Path
             }
-            Corner::Blend { tolerance } => Corner::Blend {
-                tolerance: tolerance.or(self.tolerance),
-            },
+            Corner::Blend { tolerance } => {
+                Corner::Blend { tolerance: tolerance.or(self.tolerance) }
+            }
             corner => corner,
         }
     }

@@ -1,8 +1,5 @@
 //! What packing costs: nanoseconds a row and bytes a row, for rows like those of a five-axis program, and for its text.
-#![allow(
-    clippy::print_stdout,
-    reason = "a benchmark prints what it has measured"
-)]
+#![allow(clippy::print_stdout, reason = "a benchmark prints what it has measured")]
 
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -52,11 +49,7 @@ fn noise(row: usize) -> f64 {
 /// A wave of period 2 and height 1, smooth enough: parabolas.
 fn sine(x: f64) -> f64 {
     let x = x.rem_euclid(2.0);
-    if x < 1.0 {
-        4.0 * x * (1.0 - x)
-    } else {
-        -4.0 * (x - 1.0) * (2.0 - x)
-    }
+    if x < 1.0 { 4.0 * x * (1.0 - x) } else { -4.0 * (x - 1.0) * (2.0 - x) }
 }
 
 fn main() {

@@ -31,10 +31,7 @@ impl Deflate {
     fn new(level: i32) -> Self {
         // Raw: no header, no checksum (a negative window).
         let flags = create_comp_flags_from_zip_params(level, -15, 0);
-        Self {
-            compressor: Box::new(CompressorOxide::new(flags)),
-            packed: Vec::new(),
-        }
+        Self { compressor: Box::new(CompressorOxide::new(flags)), packed: Vec::new() }
     }
 
     /// Adds a piece, in a block of its own.

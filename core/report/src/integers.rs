@@ -136,9 +136,9 @@ pub fn decode(bytes: &[u8], rows: usize, at: &mut usize) -> Option<Vec<i64>> {
     *at += planes * rows;
     let (mut last, mut slope) = (0i64, 0i64);
     let values = (0..rows).map(|row| {
-        let folded = (0..planes).rev().fold(0u64, |folded, plane| {
-            folded << 8 | u64::from(places[plane * rows + row])
-        });
+        let folded = (0..planes)
+            .rev()
+            .fold(0u64, |folded, plane| folded << 8 | u64::from(places[plane * rows + row]));
         let difference = (folded >> 1) as i64 ^ -((folded & 1) as i64);
         let multiple = match order & !STEPS {
             0 => difference,
@@ -163,19 +163,10 @@ mod tests {
 
     #[test]
     fn columns_come_back() {
-        let wild: Vec<i64> = (0..1000i64)
-            .map(|i| (i * i * 7919) % 100_003 - 50_000)
-            .collect();
+        let wild: Vec<i64> = (0..1000i64).map(|i| (i * i * 7919) % 100_003 - 50_000).collect();
         let far = vec![1 << 50, -(1 << 50), 0, 3, -1, 255, 256, -256, -257];
         let even: Vec<i64> = (0..500).map(|i| 10 * i + 10).collect();
-        for values in [
-            wild,
-            far,
-            even.clone(),
-            vec![7; 100],
-            vec![0; 9],
-            Vec::new(),
-        ] {
+        for values in [wild, far, even.clone(), vec![7; 100], vec![0; 9], Vec::new()] {
             let mut bytes = Vec::new();
             encode(&values, &mut bytes);
             let mut at = 0;

@@ -5,20 +5,16 @@
 //! A part of the build script, and of the crate for its tests.
 
 /// Words after which a slash begins a pattern and divides nothing.
-const BEFORE_PATTERNS: [&str; 10] = [
-    "return", "typeof", "case", "in", "of", "delete", "void", "throw", "new", "else",
-];
+const BEFORE_PATTERNS: [&str; 10] =
+    ["return", "typeof", "case", "in", "of", "delete", "void", "throw", "new", "else"];
 
 /// A script squeezed.
 ///
 /// # Panics
 /// A string, a template, a pattern or a comment does not end.
 pub fn script(text: &str) -> String {
-    let mut script = Script {
-        rest: text,
-        out: String::with_capacity(text.len()),
-        token: String::new(),
-    };
+    let mut script =
+        Script { rest: text, out: String::with_capacity(text.len()), token: String::new() };
     script.statements(false);
     script.out
 }
@@ -152,11 +148,7 @@ impl Script<'_> {
     fn ends(&self, is_end: impl Fn(char, bool) -> bool) -> usize {
         let (mut escaped, mut in_class) = (false, false);
         for (at, letter) in self.rest.char_indices().skip(1) {
-            assert!(
-                letter != '\n',
-                "a string or pattern of a script ends: {}",
-                self.rest
-            );
+            assert!(letter != '\n', "a string or pattern of a script ends: {}", self.rest);
             match letter {
                 _ if escaped => escaped = false,
                 '\\' => escaped = true,
@@ -234,18 +226,12 @@ mod tests {
     #[test]
     fn what_is_for_readers_goes() {
         for (text, squeezed) in [
-            (
-                "// one\n\nconst a = 1; // two\n  let b;\n",
-                "let a=1;let b;\n",
-            ),
+            ("// one\n\nconst a = 1; // two\n  let b;\n", "let a=1;let b;\n"),
             ("a = b /* no\n line */ + c", "a=b\n+c"),
             ("a - -b + +c; a-- - b", "a- -b+ +c;a-- -b"),
             ("return a\n  (b)", "return a\n(b)"),
             ("in of instanceof x", "in of instanceof x"),
-            (
-                "f(\n  a,\n  [\n1\n]\n)\n{\n  b;\n  c;\n}\nd",
-                "f(a,[1])\n{b;c}\nd",
-            ),
+            ("f(\n  a,\n  [\n1\n]\n)\n{\n  b;\n  c;\n}\nd", "f(a,[1])\n{b;c}\nd"),
             ("5 .toFixed ( 2 )", "5 .toFixed(2)"),
         ] {
             assert_eq!(script(text).trim_end(), squeezed.trim_end(), "{text}");
@@ -264,10 +250,7 @@ mod tests {
         ] {
             assert_eq!(script(text), text);
         }
-        assert_eq!(
-            script("a / b / c; (d) / 'e / f'"),
-            "a / b / c;(d) / 'e / f'"
-        );
+        assert_eq!(script("a / b / c; (d) / 'e / f'"), "a / b / c;(d) / 'e / f'");
         assert_eq!(script("`${ a  +  b } c  d`"), "`${a+b} c  d`");
     }
 

@@ -25,12 +25,7 @@ pub struct Column {
 impl Column {
     /// A column.
     pub fn new(name: impl Into<String>, unit: &'static str, decimals: u8) -> Self {
-        Self {
-            name: name.into(),
-            unit,
-            decimals,
-            from: None,
-        }
+        Self { name: name.into(), unit, decimals, from: None }
     }
 
     /// The same, told against what the page derives.
@@ -185,11 +180,8 @@ mod tests {
 
     #[test]
     fn rows_come_back_in_their_chunks() {
-        let columns = vec![
-            Column::new("a", "mm", 3),
-            Column::new("b", "", 0),
-            Column::new("c", "deg", 5),
-        ];
+        let columns =
+            vec![Column::new("a", "mm", 3), Column::new("b", "", 0), Column::new("c", "deg", 5)];
         let mut table = TableWriter::new("t", columns, Vec::new());
         let row = |place: usize| {
             let t = place as f64;
@@ -212,9 +204,8 @@ mod tests {
         for chunk in chunks {
             let rows = u32::from_le_bytes(chunk[..4].try_into().unwrap()) as usize;
             let mut at = 4;
-            let read: Vec<Vec<i64>> = (0..3)
-                .map(|_| integers::decode(&chunk, rows, &mut at).unwrap())
-                .collect();
+            let read: Vec<Vec<i64>> =
+                (0..3).map(|_| integers::decode(&chunk, rows, &mut at).unwrap()).collect();
             assert_eq!(at, chunk.len());
             for index in 0..rows {
                 for ((column, value), scale) in read.iter().zip(row(place)).zip([1e3, 1.0, 1e5]) {

@@ -161,10 +161,7 @@ fn number(text: &[u8]) -> Option<Number> {
     if minus && value == 0 {
         return None;
     }
-    Some(Number {
-        digits: if minus { -value } else { value },
-        decimals: behind.len() as u8,
-    })
+    Some(Number { digits: if minus { -value } else { value }, decimals: behind.len() as u8 })
 }
 
 /// The columns of the numbers of a template.
@@ -325,11 +322,7 @@ fn write(text: &mut Vec<u8>, digits: i64, form: u8, own: Option<u8>) {
 fn word(bytes: &[u8], at: &mut usize) -> Option<usize> {
     let four = bytes.get(*at..*at + 4)?;
     *at += 4;
-    Some(
-        four.iter()
-            .rev()
-            .fold(0, |word, byte| word << 8 | usize::from(*byte)),
-    )
+    Some(four.iter().rev().fold(0, |word, byte| word << 8 | usize::from(*byte)))
 }
 
 #[cfg(test)]

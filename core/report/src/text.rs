@@ -70,11 +70,7 @@ impl<W: Write> TextWriter<W> {
             }
             self.flush()?;
         }
-        let meta = TextMeta {
-            name: self.name,
-            lines: self.lines,
-            bytes: self.bytes,
-        };
+        let meta = TextMeta { name: self.name, lines: self.lines, bytes: self.bytes };
         Ok((meta, self.out))
     }
 

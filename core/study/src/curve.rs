@@ -20,10 +20,7 @@ pub struct Peak {
 
 /// The largest value of `curve` over 0 to 1: densely sampled, then refined about the largest sample (golden section).
 pub fn peak(curve: impl Fn(f64) -> f64) -> Peak {
-    let mut best = Peak {
-        size: curve(0.0),
-        at: 0.0,
-    };
+    let mut best = Peak { size: curve(0.0), at: 0.0 };
     let see = |best: &mut Peak, at: f64| {
         let size = curve(at);
         if size > best.size {
@@ -61,10 +58,7 @@ pub fn explained(curve: impl Fn(f64) -> f64, fit: impl Fn(f64) -> f64) -> Option
     let values: Vec<f64> = places().map(&curve).collect();
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let squares = |about: &dyn Fn(f64) -> f64| -> f64 {
-        let away = values
-            .iter()
-            .zip(places())
-            .map(|(value, t)| value - about(t));
+        let away = values.iter().zip(places()).map(|(value, t)| value - about(t));
         away.map(|away| away * away).sum()
     };
     let total = squares(&|_| mean);

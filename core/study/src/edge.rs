@@ -18,9 +18,7 @@ pub struct Rim {
 impl Rim {
     /// The rim of a tool whose axis is `axis` with all axes at zero, machine frame.
     pub fn new(chain: &Chain, axis: Vector3<f64>) -> Self {
-        Self {
-            chains: across(axis).map(|edge| chain.clone().with_edge(Some(edge))),
-        }
+        Self { chains: across(axis).map(|edge| chain.clone().with_edge(Some(edge))) }
     }
 
     /// How far a point of the rim strays at most from its chord, per mm of radius, while the axes go linearly
@@ -55,11 +53,8 @@ impl Rim {
 
     /// How the two directions stray from the straight line between their ends at a share of the move.
     fn bows(&self, from: &Joints, to: &Joints) -> impl Fn(f64) -> [Vector3<f64>; 2] {
-        let edges = |joints: &Joints| {
-            self.chains
-                .each_ref()
-                .map(|chain| chain.forward(joints).edge)
-        };
+        let edges =
+            |joints: &Joints| self.chains.each_ref().map(|chain| chain.forward(joints).edge);
         let (first, last) = (edges(from), edges(to));
         let (from, to) = (*from, *to);
         move |t| {
@@ -84,11 +79,7 @@ mod tests {
     use post_machine::kinematics::Joint;
 
     fn head() -> Chain {
-        let turn = |direction| Joint {
-            rotary: true,
-            direction,
-            point: Vector3::zeros(),
-        };
+        let turn = |direction| Joint { rotary: true, direction, point: Vector3::zeros() };
         Chain::new(
             vec![turn(Vector3::z()), turn(Vector3::x())],
             Vector3::zeros(),

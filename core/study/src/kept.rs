@@ -47,11 +47,7 @@ pub struct Keeper {
 impl Keeper {
     /// Keeps the moves with these numbers.
     pub fn new(wanted: Range<usize>) -> Self {
-        Self {
-            wanted,
-            kept: Vec::new(),
-            peaks: Vec::new(),
-        }
+        Self { wanted, kept: Vec::new(), peaks: Vec::new() }
     }
 }
 
@@ -180,8 +176,6 @@ impl Stretch {
             let t = f64::from(step) / f64::from(pieces);
             (from * (1.0 - t) + to * t, strays(block, t))
         });
-        Self {
-            samples: samples.collect(),
-        }
+        Self { samples: samples.collect() }
     }
 }

@@ -59,16 +59,9 @@ pub(super) fn split(
 
 /// Every piece of a move as a move of its own.
 pub(super) fn each<'m>(cut: &Move<'m>, pieces: &[Piece], mut look: impl FnMut(&Move<'_>, &Piece)) {
-    let mut from = Node {
-        t: 0.0,
-        ..*cut.from
-    };
+    let mut from = Node { t: 0.0, ..*cut.from };
     for piece in pieces {
-        let block = Move {
-            from: &from,
-            to: &piece.to,
-            ..*cut
-        };
+        let block = Move { from: &from, to: &piece.to, ..*cut };
         look(&block, piece);
         from = piece.to;
     }

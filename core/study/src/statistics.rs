@@ -27,10 +27,7 @@ impl Distribution {
         };
         let count = values.len();
         let mean = values.iter().sum::<f64>() / count as f64;
-        let squares: f64 = values
-            .iter()
-            .map(|value| (value - mean) * (value - mean))
-            .sum();
+        let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
         let rank = |percent: u8| {
             let place = f64::from(percent) / 100.0 * (count - 1) as f64;
             let below = place as usize;
@@ -68,10 +65,7 @@ mod tests {
     fn the_distribution_of_eight_values() {
         let mut values = [9.0, 2.0, 4.0, 5.0, 4.0, 4.0, 5.0, 7.0];
         let told = Distribution::of(&mut values);
-        assert_eq!(
-            (told.count, told.mean, told.deviation, told.max),
-            (8, 5.0, 2.0, 9.0)
-        );
+        assert_eq!((told.count, told.mean, told.deviation, told.max), (8, 5.0, 2.0, 9.0));
         // Ranks 3.5, 6.3, 6.65 and 6.93 of 2 4 4 4 5 5 7 9.
         let wanted = [4.5, 7.6, 8.3, 8.86];
         for (percentile, wanted) in told.percentiles.iter().zip(wanted) {

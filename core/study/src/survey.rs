@@ -80,10 +80,7 @@ impl<'a> Survey<'a> {
             placements: Self::PLACEMENTS
                 .map(|placement| Linearise::new(&placing(&machine.accuracy, placement), false)),
             compensate: Linearise::new(&compensating(&machine.accuracy), true),
-            rotary: axes
-                .filter(|(_, axis)| axis.joint.rotary)
-                .map(|(joint, _)| joint)
-                .collect(),
+            rotary: axes.filter(|(_, axis)| axis.joint.rotary).map(|(joint, _)| joint).collect(),
             tool: (machine.tool_axis, machine.control_point.radius),
             rows: Vec::new(),
             pieces: Default::default(),
@@ -98,10 +95,7 @@ impl<'a> Survey<'a> {
         let curve = cut.fit(model)?;
         let value = |t: f64| Vector3::from(model.value(&curve, t).tip);
         let modelled = Modelled {
-            peak: Peak {
-                size: curve.tip_peak,
-                at: curve.tip_at,
-            },
+            peak: Peak { size: curve.tip_peak, at: curve.tip_at },
             residual: peak(|t| (strays(cut, t) - value(t)).norm()).size,
             explained: explained(|t| strays(cut, t).norm(), |t| value(t).norm()),
             compensated: None,
@@ -115,10 +109,7 @@ impl<'a> Survey<'a> {
         if compensated.is_none() {
             pieces.truncate(before);
         }
-        Ok(Modelled {
-            compensated,
-            ..modelled
-        })
+        Ok(Modelled { compensated, ..modelled })
     }
 }
 
@@ -163,19 +154,10 @@ impl Observer for Survey<'_> {
 
 /// Points on the exact solution, and no CL point left out.
 pub(super) fn placing(accuracy: &Accuracy, placement: Placement) -> Accuracy {
-    Accuracy {
-        method: Method::Linearise,
-        placement,
-        reduce: false,
-        ..accuracy.clone()
-    }
+    Accuracy { method: Method::Linearise, placement, reduce: false, ..accuracy.clone() }
 }
 
 /// Points on the straight line of the axes, moved by minus the model's curve.
 pub(super) fn compensating(accuracy: &Accuracy) -> Accuracy {
-    Accuracy {
-        method: Method::Compensate,
-        reduce: false,
-        ..accuracy.clone()
-    }
+    Accuracy { method: Method::Compensate, reduce: false, ..accuracy.clone() }
 }

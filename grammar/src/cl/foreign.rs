@@ -33,9 +33,7 @@ pub(super) fn kind(head: &[u8]) -> Option<&'static str> {
 
 /// A word, then a slash: no line of a program.
 fn is_record(line: &str) -> bool {
-    let end = line
-        .find(|letter: char| !letter.is_ascii_alphabetic())
-        .unwrap_or(line.len());
+    let end = line.find(|letter: char| !letter.is_ascii_alphabetic()).unwrap_or(line.len());
     end > 1 && line[end..].trim_start().starts_with('/') || line.starts_with("$$")
 }
 
@@ -48,9 +46,7 @@ fn is_nci(lines: &[&str]) -> bool {
     lines.len() >= 4
         && pairs.into_iter().all(|pair| {
             is_code(pair[0])
-                && (pair[1]
-                    .split_whitespace()
-                    .all(|number| number_of(number).is_some())
+                && (pair[1].split_whitespace().all(|number| number_of(number).is_some())
                     || pair[1].starts_with('('))
         })
 }
@@ -70,9 +66,7 @@ fn is_block(line: &str) -> bool {
         }
     }
     let mut heidenhain = code.split_whitespace();
-    if heidenhain
-        .next()
-        .is_some_and(|number| number.bytes().all(|byte| byte.is_ascii_digit()))
+    if heidenhain.next().is_some_and(|number| number.bytes().all(|byte| byte.is_ascii_digit()))
         && heidenhain
             .next()
             .is_some_and(|word| matches!(word, "L" | "TOOL" | "CYCL" | "BEGIN" | "BLK"))
@@ -105,23 +99,14 @@ mod tests {
     #[test]
     fn programs_are_told_from_cl_files() {
         for (head, expected) in [
-            (
-                "%\nO0001 (PART)\nN10 G21 G90\nN20 T1 M6\nN30 G0 X1. Y2.\n",
-                Some("an NC program"),
-            ),
-            (
-                "0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S1000\n2 L X+10 R0 FMAX\n",
-                Some("an NC program"),
-            ),
+            ("%\nO0001 (PART)\nN10 G21 G90\nN20 T1 M6\nN30 G0 X1. Y2.\n", Some("an NC program")),
+            ("0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S1000\n2 L X+10 R0 FMAX\n", Some("an NC program")),
             ("N10 G54\nN20 G0 X0\nN30 M30\n", Some("an NC program")),
             (
                 "1050\n0 0 8. 25. 1 2024\n1053\n(MACHINE)\n1011\n0. 0. 0.\n1016\n1 2 3\n",
                 Some("Mastercam's NCI"),
             ),
-            (
-                "PARTNO x\nGOTO/1,2,3\nN10 G0 X1\nN20 G1 X2\nN30 M30\n",
-                None,
-            ),
+            ("PARTNO x\nGOTO/1,2,3\nN10 G0 X1\nN20 G1 X2\nN30 M30\n", None),
             ("$$ CLF\nRAPID\n", None),
             ("RAPID\nSTOP\n", None),
             ("", None),

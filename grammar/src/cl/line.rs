@@ -112,29 +112,18 @@ pub fn parse_record(text: &str) -> Result<Statement, SyntaxFault> {
         };
         unreadable(text, at)
     })?;
-    let inner = pairs
-        .next()
-        .and_then(|line| line.into_inner().next())
-        .expect("a line has content");
+    let inner = pairs.next().and_then(|line| line.into_inner().next()).expect("a line has content");
     match inner.as_rule() {
         Rule::comment => Ok(Statement::Remark(trimmed(inner))),
         Rule::tool_path => {
             let mut parts = inner.into_inner().map(trimmed);
-            Ok(Statement::ToolPath {
-                name: parts.next().unwrap_or_default(),
-                tool: parts.next(),
-            })
+            Ok(Statement::ToolPath { name: parts.next().unwrap_or_default(), tool: parts.next() })
         }
         Rule::free_text => Ok(free_text(inner)),
         Rule::directive => {
             let remark = text.trim_start();
-            let remark = remark
-                .strip_prefix("$$")
-                .unwrap_or_else(|| &remark["REMARK".len()..]);
-            let statement = inner
-                .into_inner()
-                .next()
-                .expect("a directive holds a statement");
+            let remark = remark.strip_prefix("$$").unwrap_or_else(|| &remark["REMARK".len()..]);
+            let statement = inner.into_inner().next().expect("a directive holds a statement");
             let read = line(text, statement).and_then(|line| statements::directive(&line));
             Ok(read.unwrap_or_else(|_| Statement::Remark(remark.trim().to_owned())))
         }
@@ -191,11 +180,7 @@ fn unreadable(text: &str, at: usize) -> SyntaxFault {
         return SyntaxFault::new(text, at..at + next, "a record begins with a word")
             .help("a line that goes on with the record before it must follow a `$`");
     }
-    SyntaxFault::new(
-        text,
-        at..at + next,
-        "a `/` or the end of the line must follow the word",
-    )
+    SyntaxFault::new(text, at..at + next, "a `/` or the end of the line must follow the word")
 }
 
 fn trimmed(pair: Pair<'_, Rule>) -> String {
@@ -319,11 +304,7 @@ mod tests {
             assert_eq!(is_free_text(line.as_bytes()), free, "{line}");
             // In a free text, a comment is text.
             let statement = parse_record(&format!("{line} $$ x")).unwrap();
-            assert_eq!(
-                format!("{statement:?}").contains("$$ x"),
-                free,
-                "{line}: {statement:?}"
-            );
+            assert_eq!(format!("{statement:?}").contains("$$ x"), free, "{line}: {statement:?}");
         }
     }
 }

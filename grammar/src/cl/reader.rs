@@ -117,11 +117,7 @@ impl<R: Read> Reader<R> {
             if whole && let Some(statement) = scan::record(text) {
                 self.consume(&physical, 1);
                 self.parted = false;
-                return Ok(Some(Record {
-                    line,
-                    raw: &self.buffer[raw],
-                    statement,
-                }));
+                return Ok(Some(Record { line, raw: &self.buffer[raw], statement }));
             }
             if let Some(raw) = self.logical(physical)? {
                 let raw = &self.buffer[raw];
@@ -131,11 +127,7 @@ impl<R: Read> Reader<R> {
                         parse_record(&decode(raw)).map_err(|fault| SyntaxFault { line, ..fault })?
                     }
                 };
-                return Ok(Some(Record {
-                    line,
-                    raw,
-                    statement,
-                }));
+                return Ok(Some(Record { line, raw, statement }));
             }
         }
         Ok(None)
@@ -188,11 +180,7 @@ impl<R: Read> Reader<R> {
         let (start, line) = (self.start, self.line);
         self.start += next;
         self.line += 1;
-        Record {
-            line,
-            raw: &self.buffer[start..start + plain.end],
-            statement: plain.statement(),
-        }
+        Record { line, raw: &self.buffer[start..start + plain.end], statement: plain.statement() }
     }
 
     /// Consumes the logical line that begins with `first`, and gives its place in the buffer; `None` if it is blank.
@@ -207,11 +195,7 @@ impl<R: Read> Reader<R> {
         let text = &self.pending()[begin..first.end.max(begin)];
         // Old DOS systems end a text file with 0x1A.
         let blank = matches!(text.trim_ascii(), b"" | b"\x1A");
-        let mut continued = if is_free_text(text) {
-            None
-        } else {
-            continued(text)
-        };
+        let mut continued = if is_free_text(text) { None } else { continued(text) };
         let mut end = match continued {
             Some(body) => begin + body,
             None => first.end,
@@ -288,22 +272,14 @@ impl<R: Read> Reader<R> {
                 if pending[end] == b'\n' || end + 1 < pending.len() || self.ended {
                     overlong |= end > LONGEST;
                     let next = end + 1 + usize::from(pair);
-                    return Ok(Some(Physical {
-                        end,
-                        next,
-                        overlong,
-                    }));
+                    return Ok(Some(Physical { end, next, overlong }));
                 }
                 searched = end;
             } else {
                 searched = pending.len();
                 overlong |= searched > LONGEST;
                 if self.ended {
-                    let line = Physical {
-                        end: searched,
-                        next: searched,
-                        overlong,
-                    };
+                    let line = Physical { end: searched, next: searched, overlong };
                     return Ok((searched > from).then_some(line));
                 }
                 if searched > LONGEST {

@@ -370,11 +370,9 @@ impl LoadTool {
     /// Autodesk's stock APT posts.
     pub fn of_autodesk(&self) -> Option<(u32, f64)> {
         match *self.rest.as_slice() {
-            [
-                Argument::Number(0.0),
-                Argument::Number(length),
-                Argument::Number(register),
-            ] => Some((whole(register)?, length)),
+            [Argument::Number(0.0), Argument::Number(length), Argument::Number(register)] => {
+                Some((whole(register)?, length))
+            }
             _ => None,
         }
     }

@@ -24,10 +24,7 @@ pub(super) struct Plain {
 impl Plain {
     pub fn statement(&self) -> Statement {
         let [x, y, z, i, j, k] = self.values;
-        Statement::Goto {
-            point: [x, y, z],
-            axis: self.has_axis.then_some([i, j, k]),
-        }
+        Statement::Goto { point: [x, y, z], axis: self.has_axis.then_some([i, j, k]) }
     }
 }
 
@@ -61,11 +58,7 @@ pub(super) fn plain_goto(text: &[u8]) -> Option<Plain> {
     }
     at = skip_blanks(text, at);
     let ends = matches!(text.get(at), None | Some(b'\n' | b'\r'));
-    (ends && (count == 3 || count == 6)).then_some(Plain {
-        values,
-        has_axis: count == 6,
-        end: at,
-    })
+    (ends && (count == 3 || count == 6)).then_some(Plain { values, has_axis: count == 6, end: at })
 }
 
 /// Where the slash behind `GOTO` stands, with blanks before or behind the word.
@@ -88,11 +81,7 @@ pub(super) fn joined(raw: &[u8]) -> Option<Statement> {
 pub(super) fn record(raw: &[u8]) -> Option<Statement> {
     let text = std::str::from_utf8(raw).ok()?;
     let plain = is_plain(raw);
-    if !plain
-        && !raw
-            .iter()
-            .all(|&byte| CLASSES[usize::from(byte)] & TEXT != 0)
-    {
+    if !plain && !raw.iter().all(|&byte| CLASSES[usize::from(byte)] & TEXT != 0) {
         return None;
     }
     let at = skip_blanks(raw, 0);
@@ -168,12 +157,7 @@ fn items(text: &str, mut at: usize) -> Option<Vec<Item<'_>>> {
         if ends(bytes, at) {
             return Some(items);
         }
-        let mut item = Item {
-            text: "",
-            start: at,
-            value: None,
-            comma_missing: false,
-        };
+        let mut item = Item { text: "", start: at, value: None, comma_missing: false };
         if bytes[at] == b',' {
             if due {
                 items.push(item);
@@ -253,9 +237,7 @@ const CLASSES: [u8; 256] = {
 
 /// How many bytes at the start are of a class.
 fn run(text: &[u8], class: u8) -> usize {
-    let end = text
-        .iter()
-        .position(|&byte| CLASSES[usize::from(byte)] & class == 0);
+    let end = text.iter().position(|&byte| CLASSES[usize::from(byte)] & class == 0);
     end.unwrap_or(text.len())
 }
 
@@ -334,13 +316,8 @@ mod tests {
             plain(b"GOTO/1,2,3,4,5,6\r\nGOTO/1"),
             Some(([1.0, 2.0, 3.0, 4.0, 5.0, 6.0], true, 16))
         );
-        for line in [
-            "goto/1,2,3",
-            "GOTO/1,2,3 $$ x",
-            "GOTO/1,2\n,3",
-            "GOTOX/1,2,3",
-            "GODLTA/1,2,3",
-        ] {
+        for line in ["goto/1,2,3", "GOTO/1,2,3 $$ x", "GOTO/1,2\n,3", "GOTOX/1,2,3", "GODLTA/1,2,3"]
+        {
             assert_eq!(plain_goto(line.as_bytes()), None, "{line}");
         }
     }
@@ -370,11 +347,7 @@ mod tests {
                     Some(scanned) => {
                         let expected = parse_record(&read.text()).unwrap();
                         assert_eq!(told(&scanned), told(&expected), "{}", read.text());
-                        *(if word == "GOTO" {
-                            &mut points
-                        } else {
-                            &mut others
-                        }) += 1;
+                        *(if word == "GOTO" { &mut points } else { &mut others }) += 1;
                     }
                     None => *left.entry(word).or_insert(0) += 1,
                 }
@@ -382,10 +355,7 @@ mod tests {
         }
         assert!(points >= 67_916 && others >= 8_000, "{points}, {others}");
         // Directives and operations' names.
-        assert!(
-            !left.contains_key("GOTO") && left.values().sum::<i32>() < 40,
-            "{left:?}"
-        );
+        assert!(!left.contains_key("GOTO") && left.values().sum::<i32>() < 40, "{left:?}");
     }
 
     const NUMBER: &str = "[+-]?([0-9]{1,4}|[0-9]{1,4}\\.[0-9]{0,10}|\\.[0-9]{1,18}|[0-9]{10,24}\\.?|[0-9]\\.[0-9]{1,6}[eE][+-]?[0-9]{1,3})";
@@ -452,9 +422,8 @@ mod tests {
     fn points_are_taken_whatever_blanks_and_numbers() {
         let (rounds, mut rng) = randomised(2048, 4);
         for _ in rounds {
-            let numbers = rng.some([1, 8], |rng| {
-                rng.text(BLANKS) + &rng.text(NUMBER) + &rng.text(BLANKS)
-            });
+            let numbers =
+                rng.some([1, 8], |rng| rng.text(BLANKS) + &rng.text(NUMBER) + &rng.text(BLANKS));
             let [before, between] = [(); 2].map(|()| rng.text(BLANKS));
             let tail = rng.text("(|,| ,| \\$\\$ x|x|,A)");
             let line = format!("{before}GOTO{between}/{}{tail}", numbers.join(","));

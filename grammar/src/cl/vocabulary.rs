@@ -174,17 +174,10 @@ impl Statement {
 
     /// How it may carry a path that nobody here knows; none if it carries none, or its meaning is known.
     pub fn unknown_path(&self) -> Option<UnknownPath> {
-        let Self::Other {
-            word,
-            arguments,
-            directive: false,
-        } = self
-        else {
+        let Self::Other { word, arguments, directive: false } = self else {
             return None;
         };
-        let numbers = arguments
-            .iter()
-            .filter(|argument| matches!(argument, Argument::Number(_)));
+        let numbers = arguments.iter().filter(|argument| matches!(argument, Argument::Number(_)));
         match MajorWord::find(word) {
             Some(row) if row.moves => Some(UnknownPath::Word),
             None if numbers.count() >= POINT => Some(UnknownPath::Numbers),
@@ -283,9 +276,7 @@ fn feature(word: &'static str, text: String) -> Statement {
 
 /// A text as Autodesk's posts write it, `'..'`, without the marks.
 fn unquoted(text: String) -> String {
-    let inside = text
-        .strip_prefix('\'')
-        .and_then(|text| text.strip_suffix('\''));
+    let inside = text.strip_prefix('\'').and_then(|text| text.strip_suffix('\''));
     match inside {
         Some(inside) if !inside.contains('\'') => inside.to_owned(),
         _ => text,

@@ -47,10 +47,7 @@ pub(super) fn gives_parameter(line: &[u8]) -> bool {
     let [b'Q' | b'q', digits @ ..] = line.trim_ascii_start() else {
         return false;
     };
-    let count = digits
-        .iter()
-        .take_while(|byte| byte.is_ascii_digit())
-        .count();
+    let count = digits.iter().take_while(|byte| byte.is_ascii_digit()).count();
     count > 0 && digits[count..].trim_ascii_start().starts_with(b"=")
 }
 
@@ -86,9 +83,7 @@ impl Builder<'_> {
                 return Ok(());
             }
             Rule::structure => {
-                let heading = self
-                    .written(&pair)
-                    .trim_start_matches(['*', '-', ' ', '\t']);
+                let heading = self.written(&pair).trim_start_matches(['*', '-', ' ', '\t']);
                 block.remarks.push(heading.trim_end().to_owned());
                 return Ok(());
             }
@@ -101,16 +96,9 @@ impl Builder<'_> {
             Rule::call_label => {
                 let mut parts = pair.into_inner();
                 let target = self.label(due(&mut parts)?)?;
-                let repeat = parts
-                    .next()
-                    .map(|value| self.expression_of(value))
-                    .transpose()?;
+                let repeat = parts.next().map(|value| self.expression_of(value)).transpose()?;
                 let arguments = Vec::new();
-                NcItem::Flow(Box::new(NcFlow::Call {
-                    target,
-                    repeat,
-                    arguments,
-                }))
+                NcItem::Flow(Box::new(NcFlow::Call { target, repeat, arguments }))
             }
             Rule::call_program => {
                 let name = self.written(&only(pair)).to_owned();
@@ -119,10 +107,7 @@ impl Builder<'_> {
             Rule::function_number => self.function_number(pair)?,
             Rule::formula => {
                 let mut parts = pair.into_inner();
-                assign(
-                    due(&mut parts)?.as_str(),
-                    self.expression(due(&mut parts)?)?,
-                )
+                assign(due(&mut parts)?.as_str(), self.expression(due(&mut parts)?)?)
             }
             Rule::parameter | Rule::named => self.named(pair)?,
             Rule::keyword | Rule::sided | Rule::radius | Rule::name => {
@@ -142,11 +127,7 @@ impl Builder<'_> {
 
     /// `BEGIN PGM NAME MM`
     fn program_end(&self, pair: Pair<'_, Rule>, block: &mut NcBlock) -> Answer<()> {
-        let keyword = if pair.as_str().starts_with("BEGIN") {
-            "BEGIN PGM"
-        } else {
-            "END PGM"
-        };
+        let keyword = if pair.as_str().starts_with("BEGIN") { "BEGIN PGM" } else { "END PGM" };
         block.items.push(NcItem::Name(keyword.into()));
         for part in pair.into_inner() {
             block.items.push(match part.as_rule() {
@@ -343,25 +324,20 @@ fn two_sided(sign: &str, left: NcExpression, right: NcExpression) -> (u64, NcExp
         "*" => (3, B::Multiply),
         "DIV" => (4, B::Divide),
         other => {
-            let function = NcExpression::Function {
-                name: other.to_owned(),
-                arguments: vec![left, right],
-            };
+            let function =
+                NcExpression::Function { name: other.to_owned(), arguments: vec![left, right] };
             return (if other == "LEN" { 8 } else { 13 }, function);
         }
     };
-    (
-        own,
-        NcExpression::Binary(operator, Box::new(left), Box::new(right)),
-    )
+    (own, NcExpression::Binary(operator, Box::new(left), Box::new(right)))
 }
 
 /// A function that does not belong to its number is not guessed at.
 fn check_number(told: Option<u64>, own: u64) -> Answer<()> {
     match told {
-        Some(told) if told != own => Err(Unreadable::new(format!(
-            "FN {told} is not this function: that is FN {own}"
-        ))),
+        Some(told) if told != own => {
+            Err(Unreadable::new(format!("FN {told} is not this function: that is FN {own}")))
+        }
         _ => Ok(()),
     }
 }
@@ -370,10 +346,7 @@ fn prefixed(prefix: &str, operand: NcExpression) -> NcExpression {
     match prefix {
         "+" => operand,
         "-" => NcExpression::Unary(UnaryOperator::Minus, Box::new(operand)),
-        name => NcExpression::Function {
-            name: name.to_owned(),
-            arguments: vec![operand],
-        },
+        name => NcExpression::Function { name: name.to_owned(), arguments: vec![operand] },
     }
 }
 

@@ -16,11 +16,7 @@ pub(super) struct Unreadable {
 
 impl Unreadable {
     pub(super) fn new(message: impl Into<String>) -> Self {
-        Self {
-            span: None,
-            message: message.into(),
-            help: None,
-        }
+        Self { span: None, message: message.into(), help: None }
     }
 
     /// The place, if none is known yet.
@@ -66,8 +62,5 @@ fn excerpt(text: &str, span: Range<usize>) -> (Cow<'_, str>, Range<usize>) {
     if to < text.len() {
         shown.push('…');
     }
-    (
-        Cow::Owned(shown),
-        lead + span.start - from..lead + end - from,
-    )
+    (Cow::Owned(shown), lead + span.start - from..lead + end - from)
 }

@@ -89,17 +89,11 @@ impl<R: Read + Seek> Lines<R> {
     }
 
     pub(super) fn mark(&self) -> NcMark {
-        NcMark {
-            offset: self.base + self.start as u64,
-            line: self.line,
-        }
+        NcMark { offset: self.base + self.start as u64, line: self.line }
     }
 
     pub(super) fn go_to(&mut self, mark: NcMark) -> io::Result<()> {
-        let within = mark
-            .offset
-            .checked_sub(self.base)
-            .and_then(|at| usize::try_from(at).ok());
+        let within = mark.offset.checked_sub(self.base).and_then(|at| usize::try_from(at).ok());
         match within {
             Some(at) if at <= self.end => self.start = at,
             _ => {
@@ -185,20 +179,12 @@ impl<R: Read + Seek> Lines<R> {
                 None => pending.len(),
             };
             if end > LONGEST {
-                return Ok(Some(Physical {
-                    end: SHOWN,
-                    next: end,
-                    overlong: true,
-                }));
+                return Ok(Some(Physical { end: SHOWN, next: end, overlong: true }));
             }
             let next = line_end(&pending[end..], self.ended);
             match next {
                 Some(length) if end + length > 0 => {
-                    return Ok(Some(Physical {
-                        end,
-                        next: end + length,
-                        overlong: false,
-                    }));
+                    return Ok(Some(Physical { end, next: end + length, overlong: false }));
                 }
                 Some(_) => return Ok(None),
                 None => searched = end,

@@ -8,10 +8,7 @@ const LONGEST: usize = 40;
 
 /// A number without a sign, `.5`, `10.`, `1EX-3`.
 pub(super) fn number(text: &str) -> Result<NcNumber, Unreadable> {
-    Ok(NcNumber {
-        value: value(text)?,
-        point: text.contains('.'),
-    })
+    Ok(NcNumber { value: value(text)?, point: text.contains('.') })
 }
 
 /// Its value.
@@ -23,9 +20,7 @@ pub(super) fn value(text: &str) -> Result<f64, Unreadable> {
     };
     match parsed {
         Ok(value) if value.is_finite() => Ok(value),
-        _ => Err(Unreadable::new(format!(
-            "{text} is beyond any number a control can hold"
-        ))),
+        _ => Err(Unreadable::new(format!("{text} is beyond any number a control can hold"))),
     }
 }
 
@@ -38,10 +33,7 @@ pub(super) fn whole(text: &str) -> Result<u64, Unreadable> {
 
 fn check(text: &str) -> Result<(), Unreadable> {
     if text.len() > LONGEST {
-        let message = format!(
-            "a number of {} characters, at most {LONGEST} are read",
-            text.len()
-        );
+        let message = format!("a number of {} characters, at most {LONGEST} are read", text.len());
         return Err(Unreadable::new(message));
     }
     Ok(())

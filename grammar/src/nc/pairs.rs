@@ -9,9 +9,7 @@ use super::fault::Unreadable;
 pub(super) fn due<'t, R: RuleType>(
     parts: &mut impl Iterator<Item = Pair<'t, R>>,
 ) -> Result<Pair<'t, R>, Unreadable> {
-    parts
-        .next()
-        .ok_or_else(|| Unreadable::new("something is missing here"))
+    parts.next().ok_or_else(|| Unreadable::new("something is missing here"))
 }
 
 /// The one thing that a rule holds; itself where it holds nothing.

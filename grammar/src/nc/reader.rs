@@ -141,9 +141,7 @@ impl<R: Read + Seek> NcReader<R> {
             self.behind_percent = false;
             if let Some(name) = named {
                 self.lines.consume(&physical)?;
-                block
-                    .items
-                    .push(NcItem::Flow(Box::new(NcFlow::Label(name))));
+                block.items.push(NcItem::Flow(Box::new(NcFlow::Label(name))));
                 return Ok(true);
             }
             self.logical(&physical, block)?;
@@ -172,9 +170,7 @@ impl<R: Read + Seek> NcReader<R> {
         let line = self.lines.line();
         self.scratch.text.clear();
         self.scratch.code.clear();
-        let mut taken = self
-            .scratch
-            .add(self.lines.text(first), &self.syntax, block);
+        let mut taken = self.scratch.add(self.lines.text(first), &self.syntax, block);
         let mut overlong = first.overlong;
         self.lines.consume(first)?;
         if self.syntax.notation == Notation::Conversational {
@@ -182,9 +178,7 @@ impl<R: Read + Seek> NcReader<R> {
                 let Some(next) = self.lines.physical()? else {
                     break;
                 };
-                let more = self
-                    .scratch
-                    .add(self.lines.text(&next), &self.syntax, block);
+                let more = self.scratch.add(self.lines.text(&next), &self.syntax, block);
                 taken = taken.and(more);
                 overlong = next.overlong || self.scratch.text.len() > LONGEST;
                 self.lines.consume(&next)?;
@@ -195,12 +189,10 @@ impl<R: Read + Seek> NcReader<R> {
         }
         let Scratch { text, code } = &self.scratch;
         let read =
-            taken
-                .and_then(|()| check_depth(code))
-                .and_then(|()| match self.syntax.notation {
-                    Notation::Words => words::parse(code, text, self.syntax.hash_variables, block),
-                    Notation::Conversational => conversational::parse(code, text, block),
-                });
+            taken.and_then(|()| check_depth(code)).and_then(|()| match self.syntax.notation {
+                Notation::Words => words::parse(code, text, self.syntax.hash_variables, block),
+                Notation::Conversational => conversational::parse(code, text, block),
+            });
         read.map_err(|fault| fault.fault(text, line).into())
     }
 
@@ -357,10 +349,7 @@ impl Scratch {
 /// # Errors
 /// What cannot be read in it.
 pub fn parse_block(line: &str, syntax: &NcSyntax) -> Result<NcBlock, SyntaxFault> {
-    let mut block = NcBlock {
-        line: 1,
-        ..NcBlock::default()
-    };
+    let mut block = NcBlock { line: 1, ..NcBlock::default() };
     let read = Scratch::default().read(line.as_bytes(), syntax, &mut block);
     read.map_err(|fault| fault.fault(line, 1))?;
     Ok(block)
@@ -376,8 +365,7 @@ fn decode(raw: &[u8]) -> Cow<'_, str> {
 
 /// Neither word nor remark; old systems pad with NUL, and end a file with 0x1A.
 fn is_blank(line: &[u8]) -> bool {
-    line.iter()
-        .all(|byte| matches!(byte, b' ' | b'\t' | 0 | 0x1A))
+    line.iter().all(|byte| matches!(byte, b' ' | b'\t' | 0 | 0x1A))
 }
 
 fn is_percent(line: &[u8]) -> bool {
@@ -390,15 +378,9 @@ fn begins_program(line: &[u8], notation: Notation) -> bool {
     match notation {
         Notation::Words => line == b"%" || line.starts_with(b"%_N_"),
         Notation::Conversational => {
-            let behind = line
-                .trim_ascii_start()
-                .iter()
-                .skip_while(|byte| byte.is_ascii_digit());
+            let behind = line.trim_ascii_start().iter().skip_while(|byte| byte.is_ascii_digit());
             let behind: Vec<u8> = behind.copied().take(16).collect();
-            behind
-                .trim_ascii()
-                .to_ascii_uppercase()
-                .starts_with(b"BEGIN PGM")
+            behind.trim_ascii().to_ascii_uppercase().starts_with(b"BEGIN PGM")
         }
     }
 }

@@ -53,10 +53,8 @@ pub(super) fn take_out(
             continue;
         }
         if next.is_control() && next != '\t' {
-            let fault = Unreadable::new(format!(
-                "byte {:#04x} belongs to no program",
-                u32::from(next)
-            ));
+            let fault =
+                Unreadable::new(format!("byte {:#04x} belongs to no program", u32::from(next)));
             return Err(fault.at(offset + at..offset + at + length));
         }
         code.push(next.to_ascii_uppercase());
@@ -68,9 +66,7 @@ pub(super) fn take_out(
 /// How long the mark is that begins a remark here, if one does.
 fn begins_line_remark(rest: &str, syntax: &NcSyntax) -> Option<usize> {
     let mut marks = syntax.line_remarks.iter();
-    marks
-        .find(|mark| !mark.is_empty() && rest.starts_with(mark.as_str()))
-        .map(String::len)
+    marks.find(|mark| !mark.is_empty() && rest.starts_with(mark.as_str())).map(String::len)
 }
 
 fn keep(remark: &str, remarks: &mut Vec<String>) {

@@ -108,11 +108,7 @@ fn conversational(text: &[u8], block: &mut NcBlock) -> Option<usize> {
             }
             let (number, end) = value(text, at + 2)?;
             at = end;
-            NcItem::Word(NcWord {
-                letter: next,
-                incremental: true,
-                value: NcValue::Number(number),
-            })
+            NcItem::Word(NcWord { letter: next, incremental: true, value: NcValue::Number(number) })
         } else if let Some(name) = vector(first, next) {
             let (number, end) = value(text, at + 2)?;
             at = end;
@@ -132,18 +128,11 @@ fn conversational(text: &[u8], block: &mut NcBlock) -> Option<usize> {
 }
 
 fn word(letter: u8, number: NcNumber) -> NcItem {
-    NcItem::Word(NcWord {
-        letter,
-        incremental: false,
-        value: NcValue::Number(number),
-    })
+    NcItem::Word(NcWord { letter, incremental: false, value: NcValue::Number(number) })
 }
 
 fn named(name: &'static str, number: NcNumber) -> NcItem {
-    NcItem::Named {
-        name: Cow::Borrowed(name),
-        value: NcValue::Number(number),
-    }
+    NcItem::Named { name: Cow::Borrowed(name), value: NcValue::Number(number) }
 }
 
 /// The number at `at`, and where it ends.
@@ -152,10 +141,7 @@ fn value(text: &[u8], at: usize) -> Option<(NcNumber, usize)> {
     // A `+` says nothing; what stands behind it has no sign.
     let plus = usize::from(text.get(at) == Some(&b'+') && text.get(at + 1) != Some(&b'-'));
     let found = decimal(text, at + plus)?;
-    let number = NcNumber {
-        value: found.value,
-        point: found.point,
-    };
+    let number = NcNumber { value: found.value, point: found.point };
     Some((number, found.end))
 }
 
@@ -203,9 +189,7 @@ fn keyword(text: &[u8]) -> Option<(&'static str, usize)> {
         [b'C', ..] => ("C", 1),
         _ => return None,
     };
-    let ends = text
-        .get(length)
-        .is_some_and(|&next| is_blank(next) || is_end(next));
+    let ends = text.get(length).is_some_and(|&next| is_blank(next) || is_end(next));
     ends.then_some((name, length))
 }
 

@@ -129,20 +129,13 @@ impl<'t> Line<'t> {
                 let behind = if conversational {
                     Some(line)
                 } else {
-                    line.after(b"N").or(if syntax.hash_variables {
-                        None
-                    } else {
-                        line.after(b":")
-                    })
+                    line.after(b"N").or(if syntax.hash_variables { None } else { line.after(b":") })
                 };
-                behind
-                    .and_then(Line::whole)
-                    .is_some_and(|(found, _)| found == *number)
+                behind.and_then(Line::whole).is_some_and(|(found, _)| found == *number)
             }
-            NcTarget::Label(name) if conversational => line
-                .after_number(b"")
-                .after(b"LBL")
-                .is_some_and(|line| line.is_label(name)),
+            NcTarget::Label(name) if conversational => {
+                line.after_number(b"").after(b"LBL").is_some_and(|line| line.is_label(name))
+            }
             NcTarget::Label(name) => line
                 .after_number(b"N")
                 .after(name.as_bytes())
@@ -166,8 +159,7 @@ impl<'t> Line<'t> {
     /// What stands behind `prefix`, in capitals, and blanks.
     fn after(self, prefix: &[u8]) -> Option<Self> {
         let (head, rest) = self.0.split_at_checked(prefix.len())?;
-        head.eq_ignore_ascii_case(prefix)
-            .then(|| Line(rest.trim_ascii_start()))
+        head.eq_ignore_ascii_case(prefix).then(|| Line(rest.trim_ascii_start()))
     }
 
     fn after_skip(self) -> Self {
@@ -185,11 +177,7 @@ impl<'t> Line<'t> {
 
     /// A whole number, and what stands behind it.
     fn whole(self) -> Option<(u64, Self)> {
-        let digits = self
-            .0
-            .iter()
-            .take_while(|byte| byte.is_ascii_digit())
-            .count();
+        let digits = self.0.iter().take_while(|byte| byte.is_ascii_digit()).count();
         let number = std::str::from_utf8(&self.0[..digits]).ok()?.parse().ok()?;
         let rest = &self.0[digits..];
         (rest.first() != Some(&b'.')).then(|| (number, Line(rest.trim_ascii_start())))
@@ -209,10 +197,7 @@ impl<'t> Line<'t> {
 
     /// `O1000`, and no `o` word of LinuxCNC.
     fn is_program(self, name: &str) -> bool {
-        if let Some(number) = name
-            .strip_prefix('O')
-            .and_then(|name| name.parse::<u64>().ok())
-        {
+        if let Some(number) = name.strip_prefix('O').and_then(|name| name.parse::<u64>().ok()) {
             let found = self.after(b"O").or(self.after(b":")).and_then(Line::whole);
             return found.is_some_and(|(found, rest)| found == number && !rest.is_o_word());
         }
@@ -243,9 +228,7 @@ impl<'t> Line<'t> {
         if let Some(line) = self.after(b"PROC") {
             let behind = line.after(name.as_bytes());
             return behind.is_some_and(|rest| {
-                rest.0
-                    .first()
-                    .is_none_or(|byte| !byte.is_ascii_alphanumeric() && *byte != b'_')
+                rest.0.first().is_none_or(|byte| !byte.is_ascii_alphanumeric() && *byte != b'_')
             });
         }
         let Some(line) = self.after(b"O") else {

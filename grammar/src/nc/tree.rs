@@ -42,12 +42,7 @@ pub(super) struct Tree {
 
 impl Tree {
     pub(super) fn new(rules: Rules) -> Self {
-        Self {
-            rules,
-            operands: Vec::new(),
-            operators: Vec::new(),
-            count: 0,
-        }
+        Self { rules, operands: Vec::new(), operators: Vec::new(), count: 0 }
     }
 
     /// The next operand; `signed` where a sign stands in front of it.
@@ -88,11 +83,9 @@ impl Tree {
 
     /// The last operator takes its two operands.
     fn join(&mut self) -> Result<(), Unreadable> {
-        let (Some(operator), Some(right), Some(left)) = (
-            self.operators.pop(),
-            self.operands.pop(),
-            self.operands.pop(),
-        ) else {
+        let (Some(operator), Some(right), Some(left)) =
+            (self.operators.pop(), self.operands.pop(), self.operands.pop())
+        else {
             return Err(Unreadable::new("an operator lacks a value"));
         };
         self.allow(operator, left.1, right.1)?;
@@ -112,8 +105,7 @@ impl Tree {
         let doubtful = if operator == BinaryOperator::Power {
             left == Made::Signed
         } else if is_comparison(operator) {
-            both.iter()
-                .any(|made| matches!(made, Made::Comparison | Made::Logic(_)))
+            both.iter().any(|made| matches!(made, Made::Comparison | Made::Logic(_)))
         } else if is_logic(operator) && self.rules == Rules::Hash {
             both.iter().any(|made| match made {
                 Made::Arithmetic => true,

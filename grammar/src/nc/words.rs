@@ -20,11 +20,7 @@ type Answer<T> = Result<T, Unreadable>;
 
 /// Reads the block `code`, in capitals and without remarks; `original` is the same as it was written.
 pub(super) fn parse(code: &str, original: &str, hash: bool, block: &mut NcBlock) -> Answer<()> {
-    let rule = if hash {
-        Rule::hash_block
-    } else {
-        Rule::name_block
-    };
+    let rule = if hash { Rule::hash_block } else { Rule::name_block };
     let pairs = Grammar::parse(rule, code).map_err(|error| {
         let at = match error.location {
             InputLocation::Pos(at) => at,
@@ -46,10 +42,9 @@ fn unreadable(code: &str, at: usize, hash: bool) -> Unreadable {
     let before = code[..at].trim_end().chars().next_back();
     let (message, help) = match next {
         None => ("the block ends where a value is due".to_owned(), None),
-        Some('%') => (
-            "`%` stands alone in a line".to_owned(),
-            Some("it begins and ends a program"),
-        ),
+        Some('%') => {
+            ("`%` stands alone in a line".to_owned(), Some("it begins and ends a program"))
+        }
         Some('(') if hash => ("this `(` is not closed".to_owned(), None),
         Some(')') => ("this `)` closes nothing".to_owned(), None),
         Some(']') => ("this `]` closes nothing".to_owned(), None),
@@ -122,11 +117,7 @@ impl Builder<'_> {
             NcValue::Approached(Approach::Incremental, value) => (true, *value),
             value => (false, value),
         };
-        Ok(NcItem::Word(NcWord {
-            letter: first.as_str().as_bytes()[0],
-            incremental,
-            value,
-        }))
+        Ok(NcItem::Word(NcWord { letter: first.as_str().as_bytes()[0], incremental, value }))
     }
 
     fn named(&self, pair: Pair<'_, Rule>) -> Answer<NcItem> {
@@ -156,9 +147,9 @@ impl Builder<'_> {
     fn define(&self, pair: Pair<'_, Rule>, block: &mut NcBlock) -> Answer<()> {
         for part in pair.into_inner() {
             match part.as_rule() {
-                Rule::r#type => block
-                    .items
-                    .push(NcItem::Name(format!("DEF {}", part.as_str()).into())),
+                Rule::r#type => {
+                    block.items.push(NcItem::Name(format!("DEF {}", part.as_str()).into()))
+                }
                 Rule::definition => {
                     let mut parts = part.into_inner().peekable();
                     let name = due(&mut parts)?.as_str().to_owned();
@@ -247,9 +238,7 @@ impl Builder<'_> {
             Rule::hash_function | Rule::function => {
                 let mut parts = pair.into_inner();
                 let name = due(&mut parts)?.as_str().to_owned();
-                let arguments = parts
-                    .map(|part| self.argument(part))
-                    .collect::<Answer<_>>()?;
+                let arguments = parts.map(|part| self.argument(part)).collect::<Answer<_>>()?;
                 NcExpression::Function { name, arguments }
             }
             Rule::indexed => {
@@ -304,10 +293,7 @@ impl Builder<'_> {
         }
         let mut variable = variable.ok_or_else(|| Unreadable::new("a variable is due"))?;
         for _ in 1..hashes {
-            variable = NcExpression::Indexed {
-                name: "#".to_owned(),
-                index: Box::new(variable),
-            };
+            variable = NcExpression::Indexed { name: "#".to_owned(), index: Box::new(variable) };
         }
         Ok(variable)
     }
@@ -361,17 +347,11 @@ impl Builder<'_> {
             Rule::goto => self.goto_parts(parts, None)?,
             Rule::r#if => {
                 due(&mut parts)?;
-                NcFlow::If {
-                    name: None,
-                    condition: self.expression(due(&mut parts)?)?,
-                }
+                NcFlow::If { name: None, condition: self.expression(due(&mut parts)?)? }
             }
             Rule::r#while => {
                 due(&mut parts)?;
-                NcFlow::While {
-                    name: None,
-                    condition: self.expression(due(&mut parts)?)?,
-                }
+                NcFlow::While { name: None, condition: self.expression(due(&mut parts)?)? }
             }
             Rule::r#for => {
                 due(&mut parts)?;
@@ -450,11 +430,7 @@ impl Builder<'_> {
             Rule::text => self.text(target).to_ascii_uppercase(),
             _ => target.as_str().to_owned(),
         };
-        Ok(NcFlow::Goto {
-            target: NcExpression::Text(target),
-            direction,
-            condition,
-        })
+        Ok(NcFlow::Goto { target: NcExpression::Text(target), direction, condition })
     }
 
     fn repeat_from(&self, mut parts: Pairs<'_, Rule>) -> Answer<NcFlow> {
@@ -468,11 +444,7 @@ impl Builder<'_> {
                 _ => times = Some(self.expression(part)?),
             }
         }
-        Ok(NcFlow::RepeatFrom {
-            label,
-            until,
-            times,
-        })
+        Ok(NcFlow::RepeatFrom { label, until, times })
     }
 
     /// LinuxCNC's `o` words.
@@ -490,27 +462,19 @@ impl Builder<'_> {
         let missing = || Unreadable::new("a value in brackets is missing behind this word");
         let flow = match word.as_str() {
             "SUB" => NcFlow::SubBegin(name),
-            "CALL" => NcFlow::Call {
-                target: name,
-                repeat: None,
-                arguments: values.by_ref().collect(),
-            },
-            "IF" => NcFlow::If {
-                name: Some(name),
-                condition: values.next().ok_or_else(missing)?,
-            },
-            "ELSEIF" => NcFlow::ElseIf {
-                name: Some(name),
-                condition: values.next().ok_or_else(missing)?,
-            },
-            "WHILE" => NcFlow::While {
-                name: Some(name),
-                condition: values.next().ok_or_else(missing)?,
-            },
-            "REPEAT" => NcFlow::Repeat {
-                name: Some(name),
-                times: values.next().ok_or_else(missing)?,
-            },
+            "CALL" => {
+                NcFlow::Call { target: name, repeat: None, arguments: values.by_ref().collect() }
+            }
+            "IF" => NcFlow::If { name: Some(name), condition: values.next().ok_or_else(missing)? },
+            "ELSEIF" => {
+                NcFlow::ElseIf { name: Some(name), condition: values.next().ok_or_else(missing)? }
+            }
+            "WHILE" => {
+                NcFlow::While { name: Some(name), condition: values.next().ok_or_else(missing)? }
+            }
+            "REPEAT" => {
+                NcFlow::Repeat { name: Some(name), times: values.next().ok_or_else(missing)? }
+            }
             "ELSE" => NcFlow::Else(Some(name)),
             "ENDIF" => NcFlow::EndIf(Some(name)),
             "ENDWHILE" => NcFlow::EndWhile(Some(name)),
@@ -536,11 +500,7 @@ const MOST_HASHES: usize = 8;
 fn angled(pair: Pair<'_, Rule>) -> String {
     let name = only(pair);
     let mut text = String::from("<");
-    text.extend(
-        name.as_str()
-            .chars()
-            .filter(|each| !matches!(each, ' ' | '\t')),
-    );
+    text.extend(name.as_str().chars().filter(|each| !matches!(each, ' ' | '\t')));
     text.push('>');
     text
 }

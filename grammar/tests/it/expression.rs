@@ -15,9 +15,7 @@ fn name(name: &str) -> Option<f64> {
 
 fn value(text: &str) -> f64 {
     let expression = parse_expression(text).unwrap_or_else(|fault| panic!("{text}: {fault}"));
-    expression
-        .evaluate(&name)
-        .unwrap_or_else(|fault| panic!("{text}: {fault}"))
+    expression.evaluate(&name).unwrap_or_else(|fault| panic!("{text}: {fault}"))
 }
 
 #[test]
@@ -58,10 +56,7 @@ fn values() {
         ("pi", std::f64::consts::PI),
     ] {
         let found = value(text);
-        assert!(
-            (found - expected).abs() <= 1e-14 * expected.abs(),
-            "{text} = {found}"
-        );
+        assert!((found - expected).abs() <= 1e-14 * expected.abs(), "{text} = {found}");
     }
     assert_eq!(value("cos(90)").to_bits(), 0.0_f64.to_bits());
 }
@@ -93,25 +88,11 @@ fn texts_that_are_no_expression() {
         ("1e999", 0, "1e999", "this number is too large"),
         ("1 + sinh(2)", 4, "sinh", "there is no function `sinh`"),
         ("sqrt()", 0, "sqrt()", "sqrt takes one argument, 0 given"),
-        (
-            "2 * atan2(1)",
-            4,
-            "atan2(1)",
-            "atan2 takes two arguments, y and x, 1 given",
-        ),
-        (
-            "min()",
-            0,
-            "min()",
-            "min takes at least one argument, 0 given",
-        ),
+        ("2 * atan2(1)", 4, "atan2(1)", "atan2 takes two arguments, y and x, 1 given"),
+        ("min()", 0, "min()", "min takes at least one argument, 0 given"),
     ] {
         let fault = parse_expression(text).expect_err(text);
-        let found = (
-            fault.span.start,
-            &text[fault.span.clone()],
-            fault.message.as_str(),
-        );
+        let found = (fault.span.start, &text[fault.span.clone()], fault.message.as_str());
         assert_eq!(found, (at, marked, message), "{text}");
     }
 }
@@ -120,20 +101,10 @@ fn texts_that_are_no_expression() {
 fn depth_and_length_are_bounded() {
     let nested = |depth: usize| format!("{}1{}", "(".repeat(depth), ")".repeat(depth));
     assert_eq!(value(&nested(64)), 1.0);
-    assert!(
-        parse_expression(&nested(65))
-            .unwrap_err()
-            .message
-            .contains("parentheses")
-    );
+    assert!(parse_expression(&nested(65)).unwrap_err().message.contains("parentheses"));
     assert_eq!(value(&"1^".repeat(2047)[..4093]), 1.0);
     assert_eq!(value(&"1+".repeat(2047)[..4093]), 2047.0);
-    assert!(
-        parse_expression(&"1+".repeat(3000))
-            .unwrap_err()
-            .message
-            .contains("bytes")
-    );
+    assert!(parse_expression(&"1+".repeat(3000)).unwrap_err().message.contains("bytes"));
 }
 
 #[test]
@@ -149,15 +120,8 @@ fn expressions_without_a_value() {
         ("1e300 * 1e300", "1e300 * 1e300", "this has no finite value"),
         ("huge", "huge", "this has no finite value"),
     ] {
-        let fault = parse_expression(text)
-            .unwrap()
-            .evaluate(&name)
-            .expect_err(text);
-        assert_eq!(
-            (&text[fault.span], fault.message.as_str()),
-            (marked, message),
-            "{text}"
-        );
+        let fault = parse_expression(text).unwrap().evaluate(&name).expect_err(text);
+        assert_eq!((&text[fault.span], fault.message.as_str()), (marked, message), "{text}");
     }
 }
 

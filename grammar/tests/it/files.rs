@@ -33,9 +33,8 @@ fn count(path: &Path) -> BTreeMap<String, usize> {
     let mut counts = BTreeMap::new();
     let mut reader = Reader::new(File::open(path).expect("the file opens"));
     let mut last = 0;
-    while let Some(record) = reader
-        .next_record()
-        .unwrap_or_else(|fault| panic!("{}: {fault}", path.display()))
+    while let Some(record) =
+        reader.next_record().unwrap_or_else(|fault| panic!("{}: {fault}", path.display()))
     {
         assert!(record.line > last);
         last = record.line;
@@ -48,10 +47,7 @@ fn count(path: &Path) -> BTreeMap<String, usize> {
         };
         *counts.entry(word.to_owned()).or_default() += 1;
     }
-    assert_eq!(
-        reader.bytes_read(),
-        fs::metadata(path).expect("the file is there").len()
-    );
+    assert_eq!(reader.bytes_read(), fs::metadata(path).expect("the file is there").len());
     counts
 }
 
@@ -63,12 +59,7 @@ fn every_file_reads_with_the_counts_that_are_known() {
     for (name, records, three, six, circles) in COUNTS {
         let counts = count(&folder.join(name));
         let of = |word: &str| counts.get(word).copied().unwrap_or(0);
-        let found = (
-            counts.values().sum::<usize>(),
-            of("GOTO 3"),
-            of("GOTO 6"),
-            of("CIRCLE"),
-        );
+        let found = (counts.values().sum::<usize>(), of("GOTO 3"), of("GOTO 6"), of("CIRCLE"));
         assert_eq!(found, (records, three, six, circles), "{name}: {counts:?}");
         for word in counts.keys().filter(|word| !word.starts_with("GOTO ")) {
             assert!(MajorWord::find(word).is_some(), "{name}: {word}");
@@ -94,11 +85,7 @@ fn words_that_are_counted_in_the_description() {
         ("swcam_aamorim_Interface-glue.clt", "TLAXIS", 4),
         ("own_ncl_form.as", "RAPID", 3),
     ] {
-        assert_eq!(
-            count(&folder.join(name)).get(word),
-            Some(&expected),
-            "{name}: {word}"
-        );
+        assert_eq!(count(&folder.join(name)).get(word), Some(&expected), "{name}: {word}");
     }
 }
 

@@ -12,12 +12,7 @@ struct Trickle<'a> {
 
 impl Read for Trickle<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let size = self
-            .sizes
-            .next()
-            .unwrap_or(1)
-            .min(buffer.len())
-            .min(self.bytes.len());
+        let size = self.sizes.next().unwrap_or(1).min(buffer.len()).min(self.bytes.len());
         let (now, later) = self.bytes.split_at(size);
         buffer[..size].copy_from_slice(now);
         self.bytes = later;
@@ -66,16 +61,8 @@ fn lines(text: impl AsRef<[u8]>) -> Vec<(u64, String)> {
 
 fn expect(text: impl AsRef<[u8]>, expected: &[(u64, &str)]) {
     let found = lines(&text);
-    let found: Vec<(u64, &str)> = found
-        .iter()
-        .map(|(line, text)| (*line, text.as_str()))
-        .collect();
-    assert_eq!(
-        found,
-        expected,
-        "{:?}",
-        String::from_utf8_lossy(text.as_ref())
-    );
+    let found: Vec<(u64, &str)> = found.iter().map(|(line, text)| (*line, text.as_str())).collect();
+    assert_eq!(found, expected, "{:?}", String::from_utf8_lossy(text.as_ref()));
 }
 
 #[test]
@@ -95,14 +82,8 @@ fn line_ends() {
 
 #[test]
 fn a_dollar_continues() {
-    expect(
-        "GOTO / 1, 2,  $\n  3\nFINI",
-        &[(1, "GOTO / 1, 2, 3"), (3, "FINI")],
-    );
-    expect(
-        "GOTO/1,$ \r\n2,$\r\n3\r\nFINI",
-        &[(1, "GOTO/1, 2, 3"), (4, "FINI")],
-    );
+    expect("GOTO / 1, 2,  $\n  3\nFINI", &[(1, "GOTO / 1, 2, 3"), (3, "FINI")]);
+    expect("GOTO/1,$ \r\n2,$\r\n3\r\nFINI", &[(1, "GOTO/1, 2, 3"), (4, "FINI")]);
     expect(
         "CYCLE / DEEP, DEPTH, 3.5, CLEAR,$\n 1.0\n",
         &[(1, "CYCLE / DEEP, DEPTH, 3.5, CLEAR, 1.0")],
@@ -113,43 +94,22 @@ fn a_dollar_continues() {
         "$$-> CSYS / 1, 0, 0, 0, $\n 0, 1, 0, 0, $\n 0, 0, 1, 0\n",
         &[(1, "$$-> CSYS / 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0")],
     );
-    expect(
-        "GOTO/1,2,3 $\n",
-        &[(1, "! the file ends where this record should go on")],
-    );
-    expect(
-        "GOTO/1,2,3 $",
-        &[(1, "! the file ends where this record should go on")],
-    );
+    expect("GOTO/1,2,3 $\n", &[(1, "! the file ends where this record should go on")]);
+    expect("GOTO/1,2,3 $", &[(1, "! the file ends where this record should go on")]);
     // A blank line is the last piece of a record.
-    expect(
-        "GOTO/1,2,3 $\n\nRAPID\n",
-        &[(1, "GOTO/1,2,3 "), (3, "RAPID")],
-    );
+    expect("GOTO/1,2,3 $\n\nRAPID\n", &[(1, "GOTO/1,2,3 "), (3, "RAPID")]);
 }
 
 #[test]
 fn a_comment_does_not_continue() {
-    expect(
-        "RAPID $$ costs 5 $\nFINI\n",
-        &[(1, "RAPID $$ costs 5 $"), (2, "FINI")],
-    );
-    expect(
-        "GOTO/1,2,3 $$\nFINI\n",
-        &[(1, "GOTO/1,2,3 $$"), (2, "FINI")],
-    );
-    expect(
-        "$$ costs 5 $\nRAPID\n",
-        &[(1, "$$ costs 5 $"), (2, "RAPID")],
-    );
+    expect("RAPID $$ costs 5 $\nFINI\n", &[(1, "RAPID $$ costs 5 $"), (2, "FINI")]);
+    expect("GOTO/1,2,3 $$\nFINI\n", &[(1, "GOTO/1,2,3 $$"), (2, "FINI")]);
+    expect("$$ costs 5 $\nRAPID\n", &[(1, "$$ costs 5 $"), (2, "RAPID")]);
     expect(
         "PPRINT costs 5 $\nINSERT/A $\nRAPID\n",
         &[(1, "PPRINT costs 5 $"), (2, "INSERT/A $"), (3, "RAPID")],
     );
-    expect(
-        "TOOL PATH/A$,TOOL,B$\nRAPID\n",
-        &[(1, "TOOL PATH/A$,TOOL,B$"), (2, "RAPID")],
-    );
+    expect("TOOL PATH/A$,TOOL,B$\nRAPID\n", &[(1, "TOOL PATH/A$,TOOL,B$"), (2, "RAPID")]);
 }
 
 #[test]
@@ -195,10 +155,7 @@ fn a_record_may_be_long_but_not_endless() {
         &[(1, "RAPID"), (2, message), (3, "FINI")],
     );
     expect(format!("PPRINT {}", "x".repeat(5_000_000)), &[(1, message)]);
-    expect(
-        format!("GOTO/1,2,{}3\nFINI\n", " ".repeat(2_000_000)),
-        &[(1, message), (2, "FINI")],
-    );
+    expect(format!("GOTO/1,2,{}3\nFINI\n", " ".repeat(2_000_000)), &[(1, message), (2, "FINI")]);
     // Of a record that is too long because it goes on and on, the rest are records of their own.
     let continued = lines(format!("KNOT/{}1\nFINI\n", "1,$\n".repeat(300_000)));
     assert_eq!(continued[0], (1, message.to_owned()));
@@ -208,15 +165,8 @@ fn a_record_may_be_long_but_not_endless() {
 #[test]
 fn a_long_record_takes_time_in_proportion() {
     for filler in [" ", ",", ", ", "1,", "1 ", "$$", "A,", ",TOOL", "/", "é"] {
-        for head in [
-            "NOSUCH/",
-            "TOOL PATH/",
-            "$$-> X/",
-            "REMARK -> ",
-            "CYCLE/DRILL,",
-            "KNOT/",
-            "",
-        ] {
+        for head in ["NOSUCH/", "TOOL PATH/", "$$-> X/", "REMARK -> ", "CYCLE/DRILL,", "KNOT/", ""]
+        {
             let text = format!("{head}{}", filler.repeat(100_000 / filler.len()));
             all(text.as_bytes());
         }
@@ -234,9 +184,7 @@ fn a_failing_input_is_passed_on() {
     let input = Cursor::new("RAPID\nFINI").chain(Failing);
     let mut reader = Reader::new(input);
     assert!(matches!(reader.next_record(), Ok(Some(_))));
-    let error = reader
-        .next_record()
-        .expect_err("FINI may not be all of the line");
+    let error = reader.next_record().expect_err("FINI may not be all of the line");
     assert!(matches!(&error, ReadError::Io(error) if error.to_string() == "the disk is gone"));
 }
 
@@ -251,10 +199,7 @@ fn chunks_of_points_do_not_matter() {
             "(( ?GOTO/|GOTO / |GOTO/|GOTO/|GOTO/|RAPID|\\$\\$ |FEDRAT/)(-?[0-9]{1,3}(\\.[0-9]{0,11})?,?){0,7}( ?\\$| \\$\\$ x|x|)(\n|\n|\r\n|\r|\n\n)){0,11}",
         );
         let sizes = rng.some([1, 6], |rng| 1 + rng.pick(199));
-        let trickle = Trickle {
-            bytes: text.as_bytes(),
-            sizes: sizes.into_iter().cycle(),
-        };
+        let trickle = Trickle { bytes: text.as_bytes(), sizes: sizes.into_iter().cycle() };
         assert_eq!(all(trickle), all(text.as_bytes()), "{text:?}");
     }
 }
@@ -264,10 +209,7 @@ fn chunks_do_not_matter() {
     let (rounds, mut rng) = randomised(256, 2);
     for _ in rounds {
         let sizes = rng.some([1, 6], |rng| 1 + rng.pick(39));
-        let trickle = Trickle {
-            bytes: SAMPLE.as_bytes(),
-            sizes: sizes.into_iter().cycle(),
-        };
+        let trickle = Trickle { bytes: SAMPLE.as_bytes(), sizes: sizes.into_iter().cycle() };
         assert_eq!(all(trickle), all(SAMPLE.as_bytes()));
     }
 }
@@ -278,10 +220,7 @@ fn random_bytes_are_read_or_refused() {
     for _ in rounds {
         let bytes = rng.bytes(400);
         let sizes = rng.some([1, 4], |rng| 1 + rng.pick(39));
-        let trickle = Trickle {
-            bytes: &bytes,
-            sizes: sizes.into_iter().cycle(),
-        };
+        let trickle = Trickle { bytes: &bytes, sizes: sizes.into_iter().cycle() };
         assert_eq!(all(trickle), all(bytes.as_slice()), "{bytes:?}");
     }
 }

@@ -21,11 +21,7 @@ fn word(text: &str) -> Argument {
 }
 
 fn other(word: &str, arguments: &[Argument], directive: bool) -> Statement {
-    Statement::Other {
-        word: word.to_owned().into(),
-        arguments: arguments.to_vec(),
-        directive,
-    }
+    Statement::Other { word: word.to_owned().into(), arguments: arguments.to_vec(), directive }
 }
 
 #[test]
@@ -42,38 +38,17 @@ fn moves() {
             "GOTO/ 1 , -.5 ,\t3",
         ],
     );
-    same(
-        Statement::Goto {
-            point,
-            axis: Some([0.0, 0.6, 0.8]),
-        },
-        &["GOTO/1,-.5,3,0,.6,.8"],
-    );
+    same(Statement::Goto { point, axis: Some([0.0, 0.6, 0.8]) }, &["GOTO/1,-.5,3,0,.6,.8"]);
     same(Statement::From { point, axis: None }, &["FROM/1,-.5,3"]);
-    same(
-        Statement::From {
-            point,
-            axis: Some([0.0, 0.0, 1.0]),
-        },
-        &["FROM/1,-.5,3,0,0,1"],
-    );
+    same(Statement::From { point, axis: Some([0.0, 0.0, 1.0]) }, &["FROM/1,-.5,3,0,0,1"]);
     same(Statement::Gohome(None), &["GOHOME", "GOHOME/", "gohome /"]);
     same(Statement::Gohome(Some((point, None))), &["GOHOME/1,-.5,3"]);
     same(Statement::Godlta(Delta::AlongAxis(-2.0)), &["GODLTA/-2"]);
     same(Statement::Godlta(Delta::Step(point)), &["GODLTA/1,-.5,3"]);
-    same(
-        Statement::Rapid,
-        &["RAPID", "RAPID ", "RAPID/", "RAPID/ ", "RAPID $$ up"],
-    );
-    same(
-        Statement::ToolAxis([0.0, -1.0, 0.0]),
-        &["TLAXIS/ 0.000000,-1.000000,0.000000 "],
-    );
+    same(Statement::Rapid, &["RAPID", "RAPID ", "RAPID/", "RAPID/ ", "RAPID $$ up"]);
+    same(Statement::ToolAxis([0.0, -1.0, 0.0]), &["TLAXIS/ 0.000000,-1.000000,0.000000 "]);
     same(other("TLAXIS", &[word("SAME")], false), &["TLAXIS/SAME"]);
-    same(
-        Statement::Multax(true),
-        &["MULTAX", "MULTAX/ON", "MULTAX / ON"],
-    );
+    same(Statement::Multax(true), &["MULTAX", "MULTAX/ON", "MULTAX / ON"]);
     same(Statement::Multax(false), &["MULTAX/OFF"]);
 }
 
@@ -86,56 +61,23 @@ fn arcs_and_splines() {
         sense: None,
         turns: None,
     };
+    same(Statement::Circle(arc.clone()), &["CIRCLE / 1, 2, 3, 0, 0, -1, 56.25"]);
+    let nx = Circle { sense: Some(Sense::Clockwise), ..arc.clone() };
+    same(Statement::Circle(nx.clone()), &["CIRCLE/1,2,3,0,0,-1,56.25,0.06,0.5,125.0,1.0"]);
     same(
-        Statement::Circle(arc.clone()),
-        &["CIRCLE / 1, 2, 3, 0, 0, -1, 56.25"],
-    );
-    let nx = Circle {
-        sense: Some(Sense::Clockwise),
-        ..arc.clone()
-    };
-    same(
-        Statement::Circle(nx.clone()),
-        &["CIRCLE/1,2,3,0,0,-1,56.25,0.06,0.5,125.0,1.0"],
-    );
-    same(
-        Statement::Circle(Circle {
-            turns: Some(2),
-            ..nx
-        }),
+        Statement::Circle(Circle { turns: Some(2), ..nx }),
         &["CIRCLE/1,2,3,0,0,-1,56.25,0.06,0.5,125.0,1.0,TIMES,2"],
     );
     same(
-        Statement::Circle(Circle {
-            sense: Some(Sense::CounterClockwise),
-            ..arc.clone()
-        }),
-        &[
-            "CIRCLE/ 1,2,3,0,0,-1,56.25,COUNTERCLOCKWISE ",
-            "CIRCLE/1,2,3,0,0,-1,56.25,CCLW",
-        ],
+        Statement::Circle(Circle { sense: Some(Sense::CounterClockwise), ..arc.clone() }),
+        &["CIRCLE/ 1,2,3,0,0,-1,56.25,COUNTERCLOCKWISE ", "CIRCLE/1,2,3,0,0,-1,56.25,CCLW"],
     );
-    same(
-        Statement::Circle(Circle {
-            radius: None,
-            ..arc
-        }),
-        &["CIRCLE/1,2,3,0,0,-1."],
-    );
+    same(Statement::Circle(Circle { radius: None, ..arc }), &["CIRCLE/1,2,3,0,0,-1."]);
     same(Statement::Nurbs, &["NURBS/", "NURBS"]);
     same(Statement::Knot(vec![0.25, 1.0]), &["KNOT/0.25,1.0000000"]);
+    same(Statement::Control { point: [1.0, 2.0, 3.0], axis: None }, &["CNTRL/1,2,3"]);
     same(
-        Statement::Control {
-            point: [1.0, 2.0, 3.0],
-            axis: None,
-        },
-        &["CNTRL/1,2,3"],
-    );
-    same(
-        Statement::Control {
-            point: [1.0, 2.0, 3.0],
-            axis: Some([0.0, 0.0, 1.0]),
-        },
+        Statement::Control { point: [1.0, 2.0, 3.0], axis: Some([0.0, 0.0, 1.0]) },
         &["CNTRL/1,2,3,0,0,1"],
     );
 }
@@ -146,32 +88,16 @@ fn feeds() {
     same(feed(Some(20.0), None), &["FEDRAT/   20.0000"]);
     same(
         feed(Some(400.0), Some(FeedUnit::MillimetresPerMinute)),
-        &[
-            "FEDRAT / 400.000000,  MMPM",
-            "FEDRAT/ MMPM,400",
-            "fedrat/mmpm,400.",
-        ],
+        &["FEDRAT / 400.000000,  MMPM", "FEDRAT/ MMPM,400", "fedrat/mmpm,400."],
     );
     same(
         feed(Some(50.0), Some(FeedUnit::InchesPerMinute)),
         &["FEDRAT/IPM,50", "FEDRAT/IPM,50,MAXIPM,100"],
     );
-    same(
-        feed(Some(0.1), Some(FeedUnit::MillimetresPerRevolution)),
-        &["FEDRAT/MMPR,.1"],
-    );
-    same(
-        feed(Some(0.1), Some(FeedUnit::InchesPerRevolution)),
-        &["FEDRAT/.1,IPR"],
-    );
-    same(
-        feed(Some(0.1), Some(FeedUnit::PerRevolution)),
-        &["FEDRAT/.1,PERREV", "FEDRAT/FPR,.1"],
-    );
-    same(
-        feed(Some(5.0), Some(FeedUnit::PerMinute)),
-        &["FEDRAT/5,PERMIN", "FEDRAT/FPM,5"],
-    );
+    same(feed(Some(0.1), Some(FeedUnit::MillimetresPerRevolution)), &["FEDRAT/MMPR,.1"]);
+    same(feed(Some(0.1), Some(FeedUnit::InchesPerRevolution)), &["FEDRAT/.1,IPR"]);
+    same(feed(Some(0.1), Some(FeedUnit::PerRevolution)), &["FEDRAT/.1,PERREV", "FEDRAT/FPR,.1"]);
+    same(feed(Some(5.0), Some(FeedUnit::PerMinute)), &["FEDRAT/5,PERMIN", "FEDRAT/FPM,5"]);
     same(
         feed(Some(5.0), Some(FeedUnit::InverseTime)),
         &["FEDRAT/5,INVERS", "FEDRAT/INVERSE,5", "FEDRAT/FRN,5"],
@@ -181,14 +107,8 @@ fn feeds() {
 
 #[test]
 fn spindle_and_coolant() {
-    let on = |speed, unit, sense| {
-        Statement::Spindle(Spindle::On {
-            speed,
-            unit,
-            sense,
-            most: None,
-        })
-    };
+    let on =
+        |speed, unit, sense| Statement::Spindle(Spindle::On { speed, unit, sense, most: None });
     let clockwise = Some(Sense::Clockwise);
     same(
         on(Some(9000.0), SpindleUnit::Rpm, clockwise),
@@ -202,24 +122,14 @@ fn spindle_and_coolant() {
     );
     same(on(Some(9000.0), SpindleUnit::Rpm, None), &["SPINDL/9000"]);
     same(
-        on(
-            Some(120.0),
-            SpindleUnit::SurfaceInch,
-            Some(Sense::CounterClockwise),
-        ),
+        on(Some(120.0), SpindleUnit::SurfaceInch, Some(Sense::CounterClockwise)),
         &["SPINDL/SFM,120,CCLW"],
     );
-    same(
-        on(Some(120.0), SpindleUnit::SurfaceMetric, None),
-        &["SPINDL/SMM,120"],
-    );
+    same(on(Some(120.0), SpindleUnit::SurfaceMetric, None), &["SPINDL/SMM,120"]);
     same(on(None, SpindleUnit::Rpm, None), &["SPINDL/ON"]);
     same(on(None, SpindleUnit::Rpm, clockwise), &["SPINDL/CLW"]);
     same(Statement::Spindle(Spindle::Off), &["SPINDL/OFF"]);
-    same(
-        Statement::Spindle(Spindle::Orient),
-        &["SPINDL/ORIENT", "SPINDL/LOCK"],
-    );
+    same(Statement::Spindle(Spindle::Orient), &["SPINDL/ORIENT", "SPINDL/LOCK"]);
     for (text, coolant) in [
         ("OFF", Coolant::Off),
         ("ON", Coolant::On),
@@ -231,10 +141,7 @@ fn spindle_and_coolant() {
     ] {
         same(Statement::Coolant(coolant), &[&format!("COOLNT/{text}")]);
     }
-    same(
-        other("COOLNT", &[word("TAPKUL")], false),
-        &["COOLNT/TAPKUL"],
-    );
+    same(other("COOLNT", &[word("TAPKUL")], false), &["COOLNT/TAPKUL"]);
 }
 
 #[test]
@@ -250,41 +157,18 @@ fn tools() {
     };
     assert!(matches!(
         read("TOOLNO/2.0"),
-        Statement::LoadTool(LoadTool {
-            number: 2,
-            described: true,
-            ..
-        })
+        Statement::LoadTool(LoadTool { number: 2, described: true, .. })
     ));
-    same(
-        tool(2, None, None, &[]),
-        &["LOADTL / 2", "LOADTL/         2", "LOAD/TOOL,2", "TURRET/2"],
-    );
+    same(tool(2, None, None, &[]), &["LOADTL / 2", "LOADTL/         2", "LOAD/TOOL,2", "TURRET/2"]);
     same(
         tool(2, Some(3), None, &[]),
-        &[
-            "LOAD/TOOL,2,ADJUST,3 ",
-            "LOADTL/2,OSETNO,3",
-            "LOADTL/2,OFSTNO,3",
-        ],
+        &["LOAD/TOOL,2,ADJUST,3 ", "LOADTL/2,OSETNO,3", "LOADTL/2,OFSTNO,3"],
     );
-    same(
-        tool(2, Some(3), Some(80.5), &[]),
-        &["LOADTL/2,LENGTH,80.5,OSETNO,3"],
-    );
-    same(
-        tool(2, None, None, &[word("MANUAL"), number(7.0)]),
-        &["LOADTL/2,MANUAL,7"],
-    );
-    same(
-        other("LOAD", &[word("WIRE"), number(1.0)], false),
-        &["LOAD/WIRE,1"],
-    );
+    same(tool(2, Some(3), Some(80.5), &[]), &["LOADTL/2,LENGTH,80.5,OSETNO,3"]);
+    same(tool(2, None, None, &[word("MANUAL"), number(7.0)]), &["LOADTL/2,MANUAL,7"]);
+    same(other("LOAD", &[word("WIRE"), number(1.0)], false), &["LOAD/WIRE,1"]);
     same(Statement::SelectTool(13), &["SELECT/TOOL,13", "SELCTL/13"]);
-    same(
-        other("SELECT", &[word("HEAD"), number(1.0)], false),
-        &["SELECT/HEAD,1"],
-    );
+    same(other("SELECT", &[word("HEAD"), number(1.0)], false), &["SELECT/HEAD,1"]);
     same(
         Statement::ToolData {
             kinds: vec!["DRILL".to_owned(), "MILL".to_owned()],
@@ -298,33 +182,19 @@ fn tools() {
     );
     same(
         Statement::Cutter(vec![3.0]),
-        &[
-            "$$-> CUTTER / 3.000000",
-            "REMARK -> CUTTER / 3.0",
-            "CUTTER/3",
-        ],
+        &["$$-> CUTTER / 3.000000", "REMARK -> CUTTER / 3.0", "CUTTER/3"],
     );
 }
 
 #[test]
 fn units_and_frames() {
-    same(
-        Statement::Units(Units::Millimetre),
-        &["UNITS/ MM ", "UNITS / MM", "UNIT/MM"],
-    );
-    same(
-        Statement::Units(Units::Inch),
-        &["UNITS/INCH", "UNITS / INCHES", "UNIT/IN"],
-    );
+    same(Statement::Units(Units::Millimetre), &["UNITS/ MM ", "UNITS / MM", "UNIT/MM"]);
+    same(Statement::Units(Units::Inch), &["UNITS/INCH", "UNITS / INCHES", "UNIT/IN"]);
     same(Statement::Units(Units::Centimetre), &["UNITS/CM"]);
     same(Statement::Units(Units::Metre), &["UNITS/M"]);
     same(Statement::Units(Units::Foot), &["UNITS/FEET", "UNITS/FT"]);
     same(
-        Statement::Msys {
-            origin: [1.0, 2.0, 3.0],
-            x: [0.0, 1.0, 0.0],
-            y: [1.0, 0.0, 0.0],
-        },
+        Statement::Msys { origin: [1.0, 2.0, 3.0], x: [0.0, 1.0, 0.0], y: [1.0, 0.0, 0.0] },
         &["MSYS/1.0000,2.0000,3.0000,0.0000000,1.0000000,0.0000000,1.0000000,0.0000000,0.0000000"],
     );
     same(
@@ -339,23 +209,11 @@ fn units_and_frames() {
 
 #[test]
 fn cycles() {
-    let kinds = |kinds: &[&str]| {
-        kinds
-            .iter()
-            .map(|kind| (*kind).to_owned())
-            .collect::<Vec<_>>()
-    };
+    let kinds = |kinds: &[&str]| kinds.iter().map(|kind| (*kind).to_owned()).collect::<Vec<_>>();
     let define = |cycle| Statement::Cycle(Cycle::Define(Box::new(cycle)));
-    let feed = |value| {
-        Some(FeedRate {
-            value: Some(value),
-            unit: Some(FeedUnit::MillimetresPerMinute),
-        })
-    };
-    same(
-        Statement::Cycle(Cycle::Off),
-        &["CYCLE/OFF", "CYCLE / OFF", "CYCLE/NOMORE"],
-    );
+    let feed =
+        |value| Some(FeedRate { value: Some(value), unit: Some(FeedUnit::MillimetresPerMinute) });
+    same(Statement::Cycle(Cycle::Off), &["CYCLE/OFF", "CYCLE / OFF", "CYCLE/NOMORE"]);
     same(Statement::Cycle(Cycle::On), &["CYCLE/ ON ", "CYCLE/INIT"]);
     same(
         define(CycleDefinition {
@@ -472,10 +330,7 @@ fn cycles() {
             kinds: kinds(&["TAP"]),
             depth: Some(10.0),
             clearance: Some(2.0),
-            feed: Some(FeedRate {
-                value: Some(30.0),
-                unit: Some(FeedUnit::InchesPerMinute),
-            }),
+            feed: Some(FeedRate { value: Some(30.0), unit: Some(FeedUnit::InchesPerMinute) }),
             bare: vec![10.0, 2.0],
             bare_before_feed: 1,
             ..CycleDefinition::default()
@@ -513,17 +368,8 @@ fn cycles() {
 
 #[test]
 fn cutter_compensation() {
-    let cutcom = |side, plane, register| {
-        Statement::Cutcom(Cutcom {
-            side,
-            plane,
-            register,
-        })
-    };
-    same(
-        cutcom(Some(Side::Left), Some(2), None),
-        &["CUTCOM/LEFT,XYPLAN"],
-    );
+    let cutcom = |side, plane, register| Statement::Cutcom(Cutcom { side, plane, register });
+    same(cutcom(Some(Side::Left), Some(2), None), &["CUTCOM/LEFT,XYPLAN"]);
     same(
         cutcom(Some(Side::Right), Some(0), Some(5)),
         &["CUTCOM/RIGHT,YZPLAN,5", "CUTCOM/RIGHT,OSETNO,5,YZPLAN"],
@@ -531,38 +377,20 @@ fn cutter_compensation() {
     same(cutcom(Some(Side::Left), None, None), &["CUTCOM/ LEFT "]);
     same(cutcom(None, None, None), &["CUTCOM/ ON "]);
     same(cutcom(Some(Side::Off), None, None), &["CUTCOM/OFF"]);
-    same(
-        other("CUTCOM", &[word("LENGTH"), number(3.0)], false),
-        &["CUTCOM/LENGTH,3"],
-    );
+    same(other("CUTCOM", &[word("LENGTH"), number(3.0)], false), &["CUTCOM/LENGTH,3"]);
 }
 
 #[test]
 fn index_moves() {
-    let degrees = Rotate {
-        axis: None,
-        angle: 90.0,
-        radians: false,
-        incremental: false,
-        sense: None,
-    };
-    let table = Rotate {
-        axis: Some('A'),
-        ..degrees.clone()
-    };
+    let degrees =
+        Rotate { axis: None, angle: 90.0, radians: false, incremental: false, sense: None };
+    let table = Rotate { axis: Some('A'), ..degrees.clone() };
     same(
         Statement::Rotate(table.clone()),
-        &[
-            "ROTABL/AAXIS,90.0",
-            "ROTATE/AAXIS,ABSOL,90",
-            "ROTATE/TABLE,AAXIS,ATANGL,90",
-        ],
+        &["ROTABL/AAXIS,90.0", "ROTATE/AAXIS,ABSOL,90", "ROTATE/TABLE,AAXIS,ATANGL,90"],
     );
     same(
-        Statement::Rotate(Rotate {
-            sense: Some(Sense::Clockwise),
-            ..degrees.clone()
-        }),
+        Statement::Rotate(Rotate { sense: Some(Sense::Clockwise), ..degrees.clone() }),
         &["ROTABL/ATANGL,90,CLW"],
     );
     same(
@@ -583,38 +411,23 @@ fn index_moves() {
         }),
         &["ROTABL/ 0.250000,AAXIS,TABLE,CCLW "],
     );
-    same(
-        other("ROTABL", &[word("ORIGIN"), number(1.0)], false),
-        &["ROTABL/ORIGIN,1"],
-    );
+    same(other("ROTABL", &[word("ORIGIN"), number(1.0)], false), &["ROTABL/ORIGIN,1"]);
 }
 
 #[test]
 fn program() {
-    same(
-        Statement::Delay(Delay::Seconds(2.5)),
-        &["DELAY/2.5", "DWELL/2.5"],
-    );
+    same(Statement::Delay(Delay::Seconds(2.5)), &["DELAY/2.5", "DWELL/2.5"]);
     same(Statement::Delay(Delay::Revolutions(3.0)), &["DELAY/3,REV"]);
     same(Statement::Stop, &["STOP", "STOP/"]);
     same(Statement::OptionalStop, &["OPSTOP", "OPSTOP/"]);
     same(Statement::EndOfPath, &["END-OF-PATH"]);
     same(Statement::Fini, &["FINI", "FINI ", "END", "END /"]);
     same(
-        Statement::ToolPath {
-            name: "11_PAZ".to_owned(),
-            tool: Some("FACE_MILL".to_owned()),
-        },
-        &[
-            "TOOL PATH/11_PAZ,TOOL,FACE_MILL",
-            "tool  path / 11_PAZ , TOOL , FACE_MILL",
-        ],
+        Statement::ToolPath { name: "11_PAZ".to_owned(), tool: Some("FACE_MILL".to_owned()) },
+        &["TOOL PATH/11_PAZ,TOOL,FACE_MILL", "tool  path / 11_PAZ , TOOL , FACE_MILL"],
     );
     same(
-        Statement::ToolPath {
-            name: "a, b $$ c".to_owned(),
-            tool: None,
-        },
+        Statement::ToolPath { name: "a, b $$ c".to_owned(), tool: None },
         &["TOOL PATH/a, b $$ c"],
     );
 }
@@ -630,20 +443,11 @@ fn free_texts() {
         Statement::Print("a / b, $$ c $".to_owned()),
         &["PPRINT a / b, $$ c $", "PPRINT/a / b, $$ c $"],
     );
-    same(
-        Statement::Insert("STOP  change fixture".to_owned()),
-        &["INSERT/STOP  change fixture"],
-    );
-    same(
-        Statement::Insert("\"'()[]{}#%&ü".to_owned()),
-        &["INSERT \"'()[]{}#%&ü"],
-    );
+    same(Statement::Insert("STOP  change fixture".to_owned()), &["INSERT/STOP  change fixture"]);
+    same(Statement::Insert("\"'()[]{}#%&ü".to_owned()), &["INSERT \"'()[]{}#%&ü"]);
     same(
         Statement::Remark("MACHID=MACHIN / UNCX01, 1".to_owned()),
-        &[
-            "REMARK MACHID=MACHIN / UNCX01, 1",
-            "REMARK/MACHID=MACHIN / UNCX01, 1",
-        ],
+        &["REMARK MACHID=MACHIN / UNCX01, 1", "REMARK/MACHID=MACHIN / UNCX01, 1"],
     );
     same(
         Statement::Remark("centerline data".to_owned()),
@@ -655,11 +459,7 @@ fn free_texts() {
     );
     same(Statement::Remark(String::new()), &["$$", "REMARK"]);
     same(
-        other(
-            "OPFEATSTART",
-            &[word("Drill1-Hole Group1 [Drill], $$")],
-            false,
-        ),
+        other("OPFEATSTART", &[word("Drill1-Hole Group1 [Drill], $$")], false),
         &["OPFEATSTART/Drill1-Hole Group1 [Drill], $$"],
     );
 }
@@ -668,85 +468,46 @@ fn free_texts() {
 fn directives() {
     same(
         other("FEATNO", &[number(32.0)], true),
-        &[
-            "$$-> FEATNO / 32",
-            "REMARK -> FEATNO / 32",
-            "remark->FEATNO/32",
-        ],
+        &["$$-> FEATNO / 32", "REMARK -> FEATNO / 32", "remark->FEATNO/32"],
     );
     same(other("END", &[], true), &["$$-> END / ", "REMARK -> END /"]);
-    same(
-        other("FEDRAT", &[number(1.0), number(2.0)], true),
-        &["$$-> FEDRAT / 1, 2"],
-    );
-    same(
-        other("CUTTER", &[word("DISPLY"), number(1.0)], true),
-        &["$$-> CUTTER / DISPLY, 1"],
-    );
+    same(other("FEDRAT", &[number(1.0), number(2.0)], true), &["$$-> FEDRAT / 1, 2"]);
+    same(other("CUTTER", &[word("DISPLY"), number(1.0)], true), &["$$-> CUTTER / DISPLY, 1"]);
     // What cannot be read is a remark.
-    same(
-        Statement::Remark("-> CUTTER / 1, thick".to_owned()),
-        &["$$-> CUTTER / 1, thick"],
-    );
+    same(Statement::Remark("-> CUTTER / 1, thick".to_owned()), &["$$-> CUTTER / 1, thick"]);
     same(
         Statement::Remark("-> CSYS / 1, 2".to_owned()),
         &["$$-> CSYS / 1, 2", "REMARK -> CSYS / 1, 2"],
     );
-    same(
-        Statement::Remark("-> 5 (!)".to_owned()),
-        &["$$-> 5 (!)", "REMARK -> 5 (!)"],
-    );
+    same(Statement::Remark("-> 5 (!)".to_owned()), &["$$-> 5 (!)", "REMARK -> 5 (!)"]);
 }
 
 #[test]
 fn words_without_a_statement() {
-    same(
-        other("PPWORD", &[word("3DCOMP"), number(3155.0)], false),
-        &["PPWORD/3DCOMP,3155"],
-    );
-    same(
-        other("PAINT", &[word("TOOL"), word("NOMORE")], false),
-        &["PAINT/TOOL,NOMORE"],
-    );
+    same(other("PPWORD", &[word("3DCOMP"), number(3155.0)], false), &["PPWORD/3DCOMP,3155"]);
+    same(other("PAINT", &[word("TOOL"), word("NOMORE")], false), &["PAINT/TOOL,NOMORE"]);
     same(
         other("MACHIN", &[word("UNCX01"), number(1.0)], false),
         &["MACHIN / UNCX01, 1", "machin/ UNCX01 1"],
     );
-    same(
-        other("CSI_SET_FLUTE_LENGTH", &[number(54.0)], false),
-        &["CSI_SET_FLUTE_LENGTH/54."],
-    );
+    same(other("CSI_SET_FLUTE_LENGTH", &[number(54.0)], false), &["CSI_SET_FLUTE_LENGTH/54."]);
     same(
         other("MOVE_ATTRIB", &[word("LEADIN"), word("END_ATTRIB")], false),
         &["MOVE_ATTRIB/ LEADIN,END_ATTRIB "],
     );
     same(
-        other(
-            "NOSUCH",
-            &[word("a=b/c"), word(""), word("1x"), number(1.0)],
-            false,
-        ),
+        other("NOSUCH", &[word("a=b/c"), word(""), word("1x"), number(1.0)], false),
         &["NOSUCH/a=b/c,,1x,1"],
     );
-    same(
-        other("NOSUCH", &[], false),
-        &["NOSUCH", "NOSUCH/", "NOSUCH $$ x"],
-    );
-    same(
-        other("NOSUCH", &[word("A"), number(2.0)], false),
-        &["NOSUCH A 2", "NOSUCH A,2"],
-    );
+    same(other("NOSUCH", &[], false), &["NOSUCH", "NOSUCH/", "NOSUCH $$ x"]);
+    same(other("NOSUCH", &[word("A"), number(2.0)], false), &["NOSUCH A 2", "NOSUCH A,2"]);
 }
 
 #[test]
 fn each_word_has_one_row_and_each_statement_the_name_of_its_row() {
     let words = MajorWord::all();
     assert!(words.is_sorted_by_key(|word| word.name()));
-    let mut spellings: Vec<&str> = words
-        .iter()
-        .flat_map(|word| word.spellings)
-        .copied()
-        .collect();
+    let mut spellings: Vec<&str> = words.iter().flat_map(|word| word.spellings).copied().collect();
     spellings.sort_unstable();
     assert!(spellings.windows(2).all(|pair| pair[0] != pair[1]));
     for word in words {
@@ -758,21 +519,12 @@ fn each_word_has_one_row_and_each_statement_the_name_of_its_row() {
         if word.example.is_empty() {
             // Without a statement of its own, the record comes as it stands.
             let kept = read(&format!("{}/1,A", word.name()));
-            assert_eq!(
-                kept,
-                other(word.name(), &[number(1.0), self::word("A")], false)
-            );
+            assert_eq!(kept, other(word.name(), &[number(1.0), self::word("A")], false));
             assert_eq!(kept.usage(), word.usage);
-            assert!(
-                !matches!(word.usage, Usage::Used | Usage::Passed),
-                "{word:?}"
-            );
+            assert!(!matches!(word.usage, Usage::Used | Usage::Passed), "{word:?}");
         } else {
             let statement = read(word.example);
-            assert_eq!(
-                (statement.word(), statement.usage()),
-                (word.name(), word.usage)
-            );
+            assert_eq!((statement.word(), statement.usage()), (word.name(), word.usage));
         }
     }
     assert!(MajorWord::find("NOSUCH").is_none());
@@ -789,10 +541,7 @@ fn forms_of_autodesk_and_catia() {
             radius: 10.0,
             degrees: 45.5,
         }),
-        &[
-            "MOVARC/1,2,3,0,0,-1,10,ANGLE,45.5",
-            "movarc / 1., 2., 3., 0, 0, -1, 10, angle, 45.5",
-        ],
+        &["MOVARC/1,2,3,0,0,-1,10,ANGLE,45.5", "movarc / 1., 2., 3., 0, 0, -1, 10, angle, 45.5"],
     );
     for wrong in [
         "MOVARC/1,2,3,0,0,-1,10",
@@ -807,10 +556,7 @@ fn forms_of_autodesk_and_catia() {
     }
     same(Statement::Milling, &["MODE/MILL", "MODE / mill"]);
     assert_eq!(read("MODE/TURN").usage(), Usage::Refused);
-    same(
-        Statement::SetOut([0.0, 1.0, 0.0]),
-        &["INDIRV/0,1,0", "INDIRV/ 0.,1.,0."],
-    );
+    same(Statement::SetOut([0.0, 1.0, 0.0]), &["INDIRV/0,1,0", "INDIRV/ 0.,1.,0."]);
     assert_eq!(read("INDIRV/V1").usage(), Usage::Refused);
     same(Statement::PartSurface(None), &["AUTOPS", "AUTOPS/"]);
     same(
@@ -825,18 +571,12 @@ fn forms_of_autodesk_and_catia() {
         Statement::ToolName("T1 End Mill".to_owned()),
         &["TPRINT/T1 End Mill", "TPRINT T1 End Mill"],
     );
-    same(
-        Statement::PartName("1001".to_owned()),
-        &["PARTNO/'1001'", "PARTNO 1001"],
-    );
+    same(Statement::PartName("1001".to_owned()), &["PARTNO/'1001'", "PARTNO 1001"]);
     same(Statement::Print("it's so".to_owned()), &["PPRINT it's so"]);
     let Statement::LoadTool(tool) = read("LOADTL/4, 0, 60.5, 14") else {
         panic!();
     };
-    assert_eq!(
-        (tool.number, tool.of_autodesk(), tool.of_catia()),
-        (4, Some((14, 60.5)), None)
-    );
+    assert_eq!((tool.number, tool.of_autodesk(), tool.of_catia()), (4, Some((14, 60.5)), None));
     let Statement::LoadTool(tool) = read("LOADTL/4,5,6") else {
         panic!();
     };
@@ -853,12 +593,7 @@ fn forms_of_autodesk_and_catia() {
         panic!();
     };
     assert_eq!(
-        (
-            cycle.step,
-            cycle.bare.as_slice(),
-            cycle.bare_before_feed,
-            cycle.rapid_to
-        ),
+        (cycle.step, cycle.bare.as_slice(), cycle.bare_before_feed, cycle.rapid_to),
         (Some(4.0), &[12.0, 15.0][..], 1, Some(12.0))
     );
 }
@@ -917,10 +652,8 @@ fn the_classic_words_are_judged() {
         let becomes = |word: &&str| MajorWord::find(word).map(|row| row.usage) == Some(usage);
         words.split_whitespace().filter(becomes).collect()
     };
-    let missing: Vec<&str> = words
-        .split_whitespace()
-        .filter(|word| MajorWord::find(word).is_none())
-        .collect();
+    let missing: Vec<&str> =
+        words.split_whitespace().filter(|word| MajorWord::find(word).is_none()).collect();
     assert_eq!(missing, [""; 0]);
     assert_eq!(of(Usage::Unknown), ["CHECK", "BREAK", "SLOWDN"]);
     let without_effect = [
@@ -934,17 +667,10 @@ fn the_classic_words_are_judged() {
 #[test]
 fn the_book_lists_the_words_of_the_table() {
     let page = include_str!("../../../docs/src/nc-programmer/cl-files.md");
-    for usage in [
-        Usage::Used,
-        Usage::Passed,
-        Usage::Ignored,
-        Usage::Refused,
-        Usage::Unknown,
-    ] {
+    for usage in [Usage::Used, Usage::Passed, Usage::Ignored, Usage::Refused, Usage::Unknown] {
         let spellings = MajorWord::all().iter().filter(|word| word.usage == usage);
-        let listed: Vec<String> = spellings
-            .map(|word| format!("`{}`", word.spellings.join("` = `")))
-            .collect();
+        let listed: Vec<String> =
+            spellings.map(|word| format!("`{}`", word.spellings.join("` = `"))).collect();
         let row = format!("| {} | {} |", usage.name(), listed.join(", "));
         assert!(page.contains(&row), "the page lacks this line:\n{row}");
     }
@@ -960,66 +686,30 @@ fn refused(text: &str) -> (String, String) {
 #[test]
 fn faults_say_where_and_what() {
     for (text, marked, message) in [
-        (
-            "GOTO/1,2,3,4",
-            "1,2,3,4",
-            "GOTO takes 3, 6 or 9 numbers, 4 are given",
-        ),
+        ("GOTO/1,2,3,4", "1,2,3,4", "GOTO takes 3, 6 or 9 numbers, 4 are given"),
         ("GOTO/1", "1", "GOTO takes 3, 6 or 9 numbers, 1 is given"),
         ("GOTO/", "", "GOTO needs numbers"),
         ("GOTO", "", "GOTO needs numbers"),
         ("GOTO/1,2,x3", "x3", "a number is expected, not `x3`"),
-        (
-            "GOTO/1,,3",
-            "",
-            "a number is expected, nothing stands between the commas",
-        ),
-        (
-            "GOTO/1,2,1e400",
-            "1e400",
-            "1e400 is beyond any number a program can hold",
-        ),
+        ("GOTO/1,,3", "", "a number is expected, nothing stands between the commas"),
+        ("GOTO/1,2,1e400", "1e400", "1e400 is beyond any number a program can hold"),
         ("GOTO/1,2,inf", "inf", "a number is expected, not `inf`"),
         ("GOTO/1,2,NaN", "NaN", "a number is expected, not `NaN`"),
         ("GOTO/1,2,0x10", "0x10", "a number is expected, not `0x10`"),
         ("GOTO/1,2 3", "", "a comma is missing here"),
-        (
-            "GOTO 1,2,3",
-            " ",
-            "a `/` must stand between GOTO and what follows it",
-        ),
-        (
-            "GOTO(1,2,3)",
-            "(",
-            "a `/` or the end of the line must follow the word",
-        ),
-        (
-            "A=POINT/1,2,3",
-            "=",
-            "a `/` or the end of the line must follow the word",
-        ),
+        ("GOTO 1,2,3", " ", "a `/` must stand between GOTO and what follows it"),
+        ("GOTO(1,2,3)", "(", "a `/` or the end of the line must follow the word"),
+        ("A=POINT/1,2,3", "=", "a `/` or the end of the line must follow the word"),
         (",,,", ",", "a record begins with a word"),
         (" 12.5, 3", "1", "a record begins with a word"),
         ("/", "/", "a record begins with a word"),
         ("é", "é", "a record begins with a word"),
         ("GO\u{0}TO", "\u{0}", "byte 0x00 is not text"),
-        (
-            "GODLTA/1,2",
-            "1,2",
-            "GODLTA takes 1 or 3 numbers, 2 are given",
-        ),
+        ("GODLTA/1,2", "1,2", "GODLTA takes 1 or 3 numbers, 2 are given"),
         ("FEDRAT/MMPM", "", "FEDRAT needs a number"),
         ("FEDRAT", "", "FEDRAT needs a number"),
-        (
-            "FEDRAT/DPM,5",
-            "DPM",
-            "a feed is one number and one unit, not `DPM`",
-        ),
-        (
-            "FEDRAT/1,2",
-            "2",
-            "a feed is one number and one unit, not `2`",
-        ),
+        ("FEDRAT/DPM,5", "DPM", "a feed is one number and one unit, not `DPM`"),
+        ("FEDRAT/1,2", "2", "a feed is one number and one unit, not `2`"),
         ("SPINDL", "", "SPINDL needs a speed or a word"),
         ("SPINDL/RPM", "", "SPINDL needs a number with its unit"),
         (
@@ -1031,62 +721,26 @@ fn faults_say_where_and_what() {
         ("LOADTL/-1", "-1", "-1 is no whole number from 0 up"),
         ("LOADTL/1.5", "1.5", "1.5 is no whole number from 0 up"),
         ("LOAD/TOOL", "", "a number must follow LOAD"),
-        (
-            "LOADTL/1,ADJUST,ON",
-            "ON",
-            "a number must follow ADJUST, not `ON`",
-        ),
-        (
-            "SELECT/TOOL,1,2",
-            "2",
-            "one tool number is expected, not `2`",
-        ),
+        ("LOADTL/1,ADJUST,ON", "ON", "a number must follow ADJUST, not `ON`"),
+        ("SELECT/TOOL,1,2", "2", "one tool number is expected, not `2`"),
         ("TLDATA/1", "", "TLDATA needs the kind of tool"),
         ("UNITS/", "", "UNITS takes one word"),
-        (
-            "UNITS/FURLONG",
-            "FURLONG",
-            "a unit of length is expected, not `FURLONG`",
-        ),
+        ("UNITS/FURLONG", "FURLONG", "a unit of length is expected, not `FURLONG`"),
         ("MULTAX/MAYBE", "MAYBE", "MULTAX is on or off"),
         ("MSYS/1,2,3", "1,2,3", "MSYS takes 9 numbers, 3 are given"),
         ("CSYS/1,2,3", "1,2,3", "CSYS takes 12 numbers, 3 are given"),
-        (
-            "CIRCLE/1,2,3,4,5",
-            "1,2,3,4,5",
-            "CIRCLE takes 6, 7 or 11 numbers, 5 are given",
-        ),
-        (
-            "CIRCLE/1,2,3,4,5,CLW",
-            "1,2,3,4,5",
-            "CIRCLE takes 6, 7 or 11 numbers, 5 are given",
-        ),
+        ("CIRCLE/1,2,3,4,5", "1,2,3,4,5", "CIRCLE takes 6, 7 or 11 numbers, 5 are given"),
+        ("CIRCLE/1,2,3,4,5,CLW", "1,2,3,4,5", "CIRCLE takes 6, 7 or 11 numbers, 5 are given"),
         ("CIRCLE/CLW", "CLW", "CIRCLE needs numbers"),
         ("CIRCLE/0,0,0,0,0,1,TIMES", "", "a number must follow TIMES"),
-        (
-            "CIRCLE/0,0,0,0,0,1,5,UP",
-            "UP",
-            "a sense or TIMES is expected, not `UP`",
-        ),
+        ("CIRCLE/0,0,0,0,0,1,5,UP", "UP", "a sense or TIMES is expected, not `UP`"),
         ("NURBS/3", "3", "nothing is expected behind NURBS"),
         ("KNOT/", "", "KNOT needs numbers"),
-        (
-            "CYCLE/DRILL,FEDTO,RAPTO,3",
-            "RAPTO",
-            "a number must follow FEDTO, not `RAPTO`",
-        ),
+        ("CYCLE/DRILL,FEDTO,RAPTO,3", "RAPTO", "a number must follow FEDTO, not `RAPTO`"),
         ("CYCLE/5", "5", "CYCLE needs the kind of cycle"),
-        (
-            "CYCLE/DRILL,,5",
-            "",
-            "a word or a number is expected, nothing stands between the commas",
-        ),
+        ("CYCLE/DRILL,,5", "", "a word or a number is expected, nothing stands between the commas"),
         ("CUTCOM/5", "5", "CUTCOM needs a side"),
-        (
-            "CUTCOM/LEFT,UVPLAN",
-            "UVPLAN",
-            "a plane or a register is expected, not `UVPLAN`",
-        ),
+        ("CUTCOM/LEFT,UVPLAN", "UVPLAN", "a plane or a register is expected, not `UVPLAN`"),
         ("ROTABL/AAXIS", "", "ROTABL needs an angle"),
         (
             "ROTABL/90,CLW",
@@ -1100,23 +754,11 @@ fn faults_say_where_and_what() {
         ),
         ("TLAXIS/0,1", "0,1", "TLAXIS takes 3 numbers, 2 are given"),
         ("DELAY/ON", "ON", "a number must follow DELAY, not `ON`"),
-        (
-            "DELAY/2,HOURS",
-            "HOURS",
-            "REV or nothing is expected, not `HOURS`",
-        ),
+        ("DELAY/2,HOURS", "HOURS", "REV or nothing is expected, not `HOURS`"),
         ("STOP/5", "5", "nothing is expected behind STOP"),
-        (
-            "NOSUCH/1e400",
-            "1e400",
-            "1e400 is beyond any number a program can hold",
-        ),
+        ("NOSUCH/1e400", "1e400", "1e400 is beyond any number a program can hold"),
     ] {
-        assert_eq!(
-            refused(text),
-            (marked.to_owned(), message.to_owned()),
-            "{text}"
-        );
+        assert_eq!(refused(text), (marked.to_owned(), message.to_owned()), "{text}");
     }
     let fault = parse_record("GOTO/1,2").unwrap_err();
     assert_eq!(

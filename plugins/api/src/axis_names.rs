@@ -14,10 +14,7 @@ pub struct AxisNames {
 
 impl AxisNames {
     /// X Y Z, the axes that slide beside them and the three that turn: the letters of ISO 841 that every control has.
-    pub const ISO: AxisNames = AxisNames {
-        letters: "XYZABCUVW",
-        numbered: false,
-    };
+    pub const ISO: AxisNames = AxisNames { letters: "XYZABCUVW", numbered: false };
 
     /// Can the control write every axis of the program?
     ///
@@ -56,17 +53,9 @@ mod tests {
     use crate::setup::AxisWord;
 
     fn check(names: AxisNames, axes: &[&str]) -> Result<(), String> {
-        let words: Vec<AxisWord<'_>> = axes
-            .iter()
-            .map(|name| AxisWord {
-                name,
-                ..AxisWord::default()
-            })
-            .collect();
-        names.check(&Setup {
-            words: &words,
-            ..Setup::default()
-        })
+        let words: Vec<AxisWord<'_>> =
+            axes.iter().map(|name| AxisWord { name, ..AxisWord::default() }).collect();
+        names.check(&Setup { words: &words, ..Setup::default() })
     }
 
     #[test]
@@ -77,15 +66,9 @@ mod tests {
             "axis X1: this control has the axes X Y Z A B C U V W alone, and it would read X1450. as X at 1450.: \
              rename the axis, in the chain too"
         );
-        let numbered = AxisNames {
-            numbered: true,
-            ..AxisNames::ISO
-        };
+        let numbered = AxisNames { numbered: true, ..AxisNames::ISO };
         assert_eq!(check(numbered, &["X", "X1"]), Ok(()));
         let refused = check(numbered, &["Q1"]).unwrap_err();
-        assert!(
-            refused.contains("Q1 means something else to it"),
-            "{refused}"
-        );
+        assert!(refused.contains("Q1 means something else to it"), "{refused}");
     }
 }

@@ -26,11 +26,7 @@ impl NumberStyle {
     }
 
     const fn look(self) -> Look {
-        Look {
-            plus: self.plus,
-            trim: self.trim,
-            point: self.point,
-        }
+        Look { plus: self.plus, trim: self.trim, point: self.point }
     }
 }
 
@@ -53,13 +49,7 @@ impl Block {
     /// Blocks with numbers: `prefix` and `first`, then `step` more each. Past `limit` they begin anew
     /// at `step`.
     pub fn numbered(prefix: &'static str, first: u32, step: u32, limit: u32) -> Self {
-        Block {
-            words: String::new(),
-            prefix,
-            number: first,
-            step,
-            limit,
-        }
+        Block { words: String::new(), prefix, number: first, step, limit }
     }
 
     /// Adds a word as it is.
@@ -232,10 +222,7 @@ impl Axes {
             behind: "",
             last: Modal::default(),
         });
-        Axes {
-            axes: axes.collect(),
-            style,
-        }
+        Axes { axes: axes.collect(), style }
     }
 
     /// Words of wrapped axes say that the control takes the shorter way, and the place from 0 to below 360, whatever the
@@ -280,10 +267,7 @@ impl Axes {
 
     /// Names of all words along the spindle (a quill beside the main axis).
     pub fn depths(&self) -> impl Iterator<Item = &str> {
-        self.axes
-            .iter()
-            .filter(|axis| axis.group == Group::Depth)
-            .map(|axis| axis.name.as_str())
+        self.axes.iter().filter(|axis| axis.group == Group::Depth).map(|axis| axis.name.as_str())
     }
 
     /// The word of this place is a linear one, and not that of the depth.
@@ -322,18 +306,12 @@ impl Axes {
 
     /// A move to `words` has something to write.
     pub fn moved(&self, words: &[f64]) -> bool {
-        self.axes
-            .iter()
-            .zip(words)
-            .any(|(axis, word)| !axis.last.is(*word))
+        self.axes.iter().zip(words).any(|(axis, word)| !axis.last.is(*word))
     }
 
     /// A move to `words` has something to write in this group.
     pub fn moved_group(&self, words: &[f64], group: Group) -> bool {
-        self.axes
-            .iter()
-            .zip(words)
-            .any(|(axis, word)| axis.group == group && !axis.last.is(*word))
+        self.axes.iter().zip(words).any(|(axis, word)| axis.group == group && !axis.last.is(*word))
     }
 
     /// Adds all words that have changed.
@@ -369,10 +347,8 @@ impl Axis {
     /// Its words say the place within a turn, behind one of `ways`.
     fn within_turn(&mut self, ways: [&str; 3], close: &'static str) {
         let name = self.name.trim_end_matches('=');
-        self.modulo = Some(Box::new(Modulo {
-            ways: ways.map(|way| format!("{name}{way}")),
-            at: None,
-        }));
+        self.modulo =
+            Some(Box::new(Modulo { ways: ways.map(|way| format!("{name}{way}")), at: None }));
         self.behind = close;
     }
 

@@ -33,12 +33,7 @@ impl fmt::Display for Feed {
 impl Feed {
     pub(crate) const CODES: Codes = Codes {
         name: "FEED",
-        codes: &[
-            ("NONE", 0),
-            ("PER_MINUTE", 1),
-            ("INVERSE_TIME", 2),
-            ("PER_REVOLUTION", 3),
-        ],
+        codes: &[("NONE", 0), ("PER_MINUTE", 1), ("INVERSE_TIME", 2), ("PER_REVOLUTION", 3)],
     };
 }
 
@@ -140,10 +135,7 @@ impl Spindle {
 
 impl Field<'_> for Spindle {
     const SHAPE: Shape = Shape::Numbers(2);
-    const SAMPLE: Self = Spindle::On {
-        rpm: 3000.0,
-        sense: SpindleSense::Clockwise,
-    };
+    const SAMPLE: Self = Spindle::On { rpm: 3000.0, sense: SpindleSense::Clockwise };
 
     fn put(self, to: &mut Flat) {
         to.numbers(&match self {
@@ -242,10 +234,8 @@ pub enum Compensation {
 }
 
 impl Compensation {
-    pub(crate) const CODES: Codes = Codes {
-        name: "COMPENSATE",
-        codes: &[("OFF", 0), ("LEFT", 1), ("RIGHT", 2)],
-    };
+    pub(crate) const CODES: Codes =
+        Codes { name: "COMPENSATE", codes: &[("OFF", 0), ("LEFT", 1), ("RIGHT", 2)] };
 }
 
 impl Field<'_> for Compensation {

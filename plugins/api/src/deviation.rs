@@ -29,10 +29,7 @@ impl Deviation {
     /// The inverse of [`Deviation::to_terms`]; numbers that are missing are zero.
     pub fn from_terms(terms: &[f64]) -> Deviation {
         let term = |index: usize| terms.get(index).copied().unwrap_or(0.0);
-        Deviation {
-            tip: [0, 1, 2].map(term),
-            axis: [3, 4, 5].map(term),
-        }
+        Deviation { tip: [0, 1, 2].map(term), axis: [3, 4, 5].map(term) }
     }
 
     /// No number in it is infinite or none at all.
@@ -46,10 +43,7 @@ impl Add for Deviation {
 
     fn add(self, other: Deviation) -> Deviation {
         let sum = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| a[i] + b[i]);
-        Deviation {
-            tip: sum(self.tip, other.tip),
-            axis: sum(self.axis, other.axis),
-        }
+        Deviation { tip: sum(self.tip, other.tip), axis: sum(self.axis, other.axis) }
     }
 }
 
@@ -87,13 +81,7 @@ impl Curve {
         }
         let (tip_peak, tip_at) = peak(pieces, |t| length(&value(t).tip));
         let (axis_peak, axis_at) = peak(pieces, |t| length(&value(t).axis));
-        Curve {
-            tip_peak,
-            tip_at,
-            axis_peak,
-            axis_at,
-            terms,
-        }
+        Curve { tip_peak, tip_at, axis_peak, axis_at, terms }
     }
 
     /// The `index`th deviation that the curve keeps.
@@ -116,9 +104,7 @@ pub fn ask(
     answers.resize(places.len(), Deviation::default());
     deviation(places, answers);
     match places.iter().zip(answers).find(|(_, it)| !it.is_finite()) {
-        Some((t, _)) => Err(format!(
-            "the deviation at {t} of the move is not a finite number"
-        )),
+        Some((t, _)) => Err(format!("the deviation at {t} of the move is not a finite number")),
         None => Ok(()),
     }
 }
@@ -168,11 +154,7 @@ fn climb(mut from: f64, mut to: f64, size: impl Fn(f64) -> f64) -> (f64, f64) {
             at_right = size(right);
         }
     }
-    if at_left >= at_right {
-        (at_left, left)
-    } else {
-        (at_right, right)
-    }
+    if at_left >= at_right { (at_left, left) } else { (at_right, right) }
 }
 
 #[cfg(test)]
@@ -183,9 +165,7 @@ mod tests {
     fn the_peak_is_the_largest_of_several() {
         // t·(1-t)·(t-0.3)²·(1+t): two peaks, at a hundred thousand places looked at one by one.
         let shape = |t: f64| t * (1.0 - t) * (t - 0.3) * (t - 0.3) * (1.0 + t);
-        let best = (0..=100_000)
-            .map(|step| shape(f64::from(step) / 100_000.0))
-            .fold(0.0, f64::max);
+        let best = (0..=100_000).map(|step| shape(f64::from(step) / 100_000.0)).fold(0.0, f64::max);
         for pieces in [4, 8, 16, 33] {
             let (size, at) = peak(pieces, shape);
             assert!((size / best - 1.0).abs() < 1e-6, "{pieces}: {size}");
@@ -206,10 +186,8 @@ mod tests {
 
     #[test]
     fn a_curve_keeps_what_it_is_given() {
-        let kept = [1.0, 2.0].map(|x| Deviation {
-            tip: [x, 0.0, -x],
-            axis: [0.0, 4.0 * x, 3.0 * x],
-        });
+        let kept =
+            [1.0, 2.0].map(|x| Deviation { tip: [x, 0.0, -x], axis: [0.0, 4.0 * x, 3.0 * x] });
         let curve = Curve::of(&kept, 4, |t| kept[0].lerp(kept[1], t));
         assert_eq!((curve.kept(0), curve.kept(1)), (kept[0], kept[1]));
         assert_eq!(curve.kept(2), Deviation::default());
@@ -220,15 +198,8 @@ mod tests {
     #[test]
     fn what_is_no_number_is_refused() {
         let mut answers = Vec::new();
-        let refused = ask(
-            &mut |_, out| out[1].axis[2] = f64::INFINITY,
-            &[0.0, 0.5],
-            &mut answers,
-        );
-        assert_eq!(
-            refused.unwrap_err(),
-            "the deviation at 0.5 of the move is not a finite number"
-        );
+        let refused = ask(&mut |_, out| out[1].axis[2] = f64::INFINITY, &[0.0, 0.5], &mut answers);
+        assert_eq!(refused.unwrap_err(), "the deviation at 0.5 of the move is not a finite number");
         ask(&mut |ts, out| out[0].tip[0] = ts[0], &[0.25], &mut answers).unwrap();
         assert_eq!(answers[0].to_terms(), [0.25, 0.0, 0.0, 0.0, 0.0, 0.0]);
     }

@@ -46,25 +46,18 @@ impl Drilling {
     /// None of another event.
     pub fn of(event: &Event<'_>) -> Option<Self> {
         match *event {
-            Event::Cycle {
-                cycle,
-                feed,
-                depth,
-                clearance,
-                retract,
-                step,
-                dwell,
-                pitch,
-            } => Some(Drilling {
-                cycle,
-                feed,
-                depth,
-                clearance,
-                retract,
-                step: step.unwrap_or(depth),
-                dwell: dwell.unwrap_or(0.0),
-                pitch,
-            }),
+            Event::Cycle { cycle, feed, depth, clearance, retract, step, dwell, pitch } => {
+                Some(Drilling {
+                    cycle,
+                    feed,
+                    depth,
+                    clearance,
+                    retract,
+                    step: step.unwrap_or(depth),
+                    dwell: dwell.unwrap_or(0.0),
+                    pitch,
+                })
+            }
             _ => None,
         }
     }

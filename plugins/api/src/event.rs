@@ -483,12 +483,7 @@ events! { <'a>
 impl<'a> Event<'a> {
     /// A first position of which only the words are known.
     pub const fn position(words: &'a [f64], feed: Option<Feed>) -> Self {
-        Event::Position {
-            tool: None,
-            feed,
-            plane_first: true,
-            words,
-        }
+        Event::Position { tool: None, feed, plane_first: true, words }
     }
 
     /// A rapid of which only the words are known.

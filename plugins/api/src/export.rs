@@ -65,23 +65,13 @@ impl Linked {
     /// For the export line of a dialect.
     #[doc(hidden)]
     pub const fn dialect<D: Dialect>(exported: &'static Exported, name: &'static str) -> Self {
-        Linked {
-            exported,
-            name,
-            options: D::options,
-            open: Some(open_linked::<D>),
-        }
+        Linked { exported, name, options: D::options, open: Some(open_linked::<D>) }
     }
 
     /// For the export line of an error model.
     #[doc(hidden)]
     pub const fn model<M: ErrorModel>(exported: &'static Exported, name: &'static str) -> Self {
-        Linked {
-            exported,
-            name,
-            options: M::options,
-            open: None,
-        }
+        Linked { exported, name, options: M::options, open: None }
     }
 
     /// What the library of this plugin would export.
@@ -122,8 +112,7 @@ impl<D: Dialect> LinkedDialect for Context<D> {
     }
 
     fn vocabulary(&mut self) -> Result<Vec<VocabularyWord>, String> {
-        self.run(|dialect| Ok(dialect.vocabulary()))
-            .ok_or_else(|| self.error.clone())
+        self.run(|dialect| Ok(dialect.vocabulary())).ok_or_else(|| self.error.clone())
     }
 
     fn write(
@@ -248,10 +237,7 @@ macro_rules! export_plugin {
     ($name:ident, $type:ty, $kind:ident) => {
         const _: () = assert!(
             $crate::export::names_crate(stringify!($name), option_env!("CARGO_CRATE_NAME")),
-            concat!(
-                "the crate of this plugin must be called post_",
-                stringify!($name)
-            ),
+            concat!("the crate of this plugin must be called post_", stringify!($name)),
         );
 
         #[allow(unsafe_code)]
@@ -281,11 +267,7 @@ pub const fn names_crate(name: &str, krate: Option<&str>) -> bool {
     }
     let mut index = 0;
     while index < krate.len() {
-        let wanted = if index < prefix.len() {
-            prefix[index]
-        } else {
-            name[index - prefix.len()]
-        };
+        let wanted = if index < prefix.len() { prefix[index] } else { name[index - prefix.len()] };
         if krate[index] != wanted {
             return false;
         }
@@ -325,11 +307,7 @@ fn guarded<R>(call: impl FnOnce() -> Result<R, String>) -> Result<R, String> {
     let outcome = catch_unwind(AssertUnwindSafe(call));
     INSIDE.set(INSIDE.get() - 1);
     outcome.unwrap_or_else(|payload| {
-        Err(format!(
-            "the plugin panicked: {}{}",
-            message(payload),
-            PLACE.take()
-        ))
+        Err(format!("the plugin panicked: {}{}", message(payload), PLACE.take()))
     })
 }
 
@@ -356,12 +334,7 @@ struct Context<T> {
 
 impl<T> Context<T> {
     fn new(value: T) -> Self {
-        Context {
-            value,
-            error: String::new(),
-            text: String::new(),
-            broken: false,
-        }
+        Context { value, error: String::new(), text: String::new(), broken: false }
     }
 
     /// Runs `call` on the value, keeping the message if it fails.

@@ -43,11 +43,7 @@ pub(crate) struct Reader<'a> {
 impl<'a> Reader<'a> {
     #[inline]
     pub(crate) fn new(numbers: &'a [f64], texts: [&'a str; MAX_TEXTS]) -> Self {
-        Self {
-            numbers,
-            texts,
-            text: 0,
-        }
+        Self { numbers, texts, text: 0 }
     }
 
     #[inline]
@@ -68,10 +64,7 @@ impl<'a> Reader<'a> {
     #[inline]
     fn list(&mut self) -> Result<&'a [f64], NotKnown> {
         let count = whole(self.next().unwrap_or(0.0)).ok_or(NotKnown)?;
-        let (list, rest) = self
-            .numbers
-            .split_at_checked(count as usize)
-            .ok_or(NotKnown)?;
+        let (list, rest) = self.numbers.split_at_checked(count as usize).ok_or(NotKnown)?;
         self.numbers = rest;
         Ok(list)
     }
@@ -109,10 +102,7 @@ pub(crate) trait Field<'a>: Copy {
 #[inline]
 fn finite(numbers: &[f64], what: &str) -> Result<(), String> {
     // Without a branch: the compiler makes vectors of it.
-    if numbers
-        .iter()
-        .fold(true, |all, number| all & number.is_finite())
-    {
+    if numbers.iter().fold(true, |all, number| all & number.is_finite()) {
         return Ok(());
     }
     match numbers.iter().find(|number| !number.is_finite()) {
@@ -250,11 +240,7 @@ impl<'a> Field<'a> for &'a [f64] {
     #[inline]
     fn check(self, promise: &Promise) -> Result<(), String> {
         if self.len() != promise.words {
-            return Err(format!(
-                "{} axis words instead of {}",
-                self.len(),
-                promise.words
-            ));
+            return Err(format!("{} axis words instead of {}", self.len(), promise.words));
         }
         finite(self, "an axis word")
     }
@@ -292,18 +278,12 @@ pub struct ToolPose {
 
 impl Field<'_> for Option<ToolPose> {
     const SHAPE: Shape = Shape::Numbers(6);
-    const SAMPLE: Self = Some(ToolPose {
-        tip: [1.0, 2.0, 3.0],
-        axis: [0.0, 0.6, 0.8],
-    });
+    const SAMPLE: Self = Some(ToolPose { tip: [1.0, 2.0, 3.0], axis: [0.0, 0.6, 0.8] });
 
     #[inline]
     fn put(self, to: &mut Flat) {
         let [x, y, z, i, j, k] = match self {
-            Some(ToolPose {
-                tip: [x, y, z],
-                axis: [i, j, k],
-            }) => [x, y, z, i, j, k],
+            Some(ToolPose { tip: [x, y, z], axis: [i, j, k] }) => [x, y, z, i, j, k],
             None => [f64::NAN; 6],
         };
         to.numbers(&[x, y, z, i, j, k]);
@@ -312,10 +292,7 @@ impl Field<'_> for Option<ToolPose> {
     #[inline]
     fn get(from: &mut Reader<'_>) -> Result<Self, NotKnown> {
         let numbers = from.some().filter(|[x, ..]: &[f64; 6]| !x.is_nan());
-        Ok(numbers.map(|[x, y, z, i, j, k]| ToolPose {
-            tip: [x, y, z],
-            axis: [i, j, k],
-        }))
+        Ok(numbers.map(|[x, y, z, i, j, k]| ToolPose { tip: [x, y, z], axis: [i, j, k] }))
     }
 
     #[inline]

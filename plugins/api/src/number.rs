@@ -225,11 +225,7 @@ pub fn quantise(value: f64, decimals: u8) -> f64 {
         // Both are exact, and a division rounds once.
         Some(count) if count < 1 << 53 => {
             let size = count as f64 / POWERS[usize::from(decimals)] as f64;
-            if value < 0.0 && count != 0 {
-                -size
-            } else {
-                size
-            }
+            if value < 0.0 && count != 0 { -size } else { size }
         }
         _ => {
             let mut text = String::new();
@@ -303,9 +299,7 @@ mod tests {
     fn eight_digits_are_those_of_std() {
         for count in (0..100_000_000_u64).step_by(997).chain([99_999_999]) {
             assert_eq!(
-                (eight_digits(count) | 0x3030_3030_3030_3030)
-                    .to_le_bytes()
-                    .as_slice(),
+                (eight_digits(count) | 0x3030_3030_3030_3030).to_le_bytes().as_slice(),
                 format!("{count:08}").as_bytes()
             );
         }
@@ -392,11 +386,8 @@ mod tests {
         ] {
             for decimals in 0..=9 {
                 for look in 0..8 {
-                    let look = Look {
-                        plus: look & 1 != 0,
-                        trim: look & 2 != 0,
-                        point: look & 4 != 0,
-                    };
+                    let look =
+                        Look { plus: look & 1 != 0, trim: look & 2 != 0, point: look & 4 != 0 };
                     let mut wanted = std(value, decimals);
                     if look.trim && wanted.contains('.') {
                         wanted.truncate(wanted.trim_end_matches('0').trim_end_matches('.').len());

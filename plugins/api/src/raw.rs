@@ -385,10 +385,7 @@ pub struct PostModel {
 impl PostText {
     /// `text` as it crosses the border. The caller keeps it alive for the call.
     pub const fn new(text: &str) -> Self {
-        PostText {
-            ptr: text.as_ptr(),
-            len: text.len(),
-        }
+        PostText { ptr: text.as_ptr(), len: text.len() }
     }
 
     /// No text.
@@ -438,13 +435,7 @@ impl PostValue {
             Value::Number(number) => (OPTION_NUMBER, 0, *number, PostText::EMPTY),
             Value::Text(text) => (OPTION_TEXT, 0, 0.0, PostText::new(text)),
         };
-        PostValue {
-            kind,
-            reserved: 0,
-            integer,
-            number,
-            text,
-        }
+        PostValue { kind, reserved: 0, integer, number, text }
     }
 
     /// The value, if it is one.
@@ -466,10 +457,7 @@ impl PostValue {
 impl PostPair {
     /// A key with its value, as it crosses the border.
     pub const fn new(key: &str, value: &Value<'_>) -> Self {
-        PostPair {
-            key: PostText::new(key),
-            value: PostValue::new(value),
-        }
+        PostPair { key: PostText::new(key), value: PostValue::new(value) }
     }
 }
 

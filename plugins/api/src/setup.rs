@@ -77,22 +77,14 @@ impl<'a> Setup<'a> {
     pub fn kinematics(&self) -> Kinematics {
         let count = |carries_part: bool| {
             let words = self.words.iter();
-            words
-                .filter(|word| word.rotary && word.carries_part == carries_part)
-                .count()
+            words.filter(|word| word.rotary && word.carries_part == carries_part).count()
         };
-        Kinematics {
-            table: count(true),
-            head: count(false),
-        }
+        Kinematics { table: count(true), head: count(false) }
     }
 
     /// An option's value. Every declared option has one.
     pub fn option(&self, key: &str) -> Option<Value<'a>> {
-        self.options
-            .iter()
-            .find(|(name, _)| *name == key)
-            .map(|(_, value)| *value)
+        self.options.iter().find(|(name, _)| *name == key).map(|(_, value)| *value)
     }
 
     /// A flag that was declared.
@@ -201,12 +193,7 @@ pub struct OptionSpec {
 impl OptionSpec {
     /// `true` or `false`.
     pub const fn flag(key: &'static str, default: bool, help: &'static str) -> Self {
-        OptionSpec {
-            key,
-            kind: OptionKind::Flag,
-            default: Value::Flag(default),
-            help,
-        }
+        OptionSpec { key, kind: OptionKind::Flag, default: Value::Flag(default), help }
     }
 
     /// A whole number from `min` to `max`.
@@ -241,22 +228,12 @@ impl OptionSpec {
 
     /// Lines of the program.
     pub const fn lines(key: &'static str, default: &'static str, help: &'static str) -> Self {
-        OptionSpec {
-            key,
-            kind: OptionKind::Lines,
-            default: Value::Text(default),
-            help,
-        }
+        OptionSpec { key, kind: OptionKind::Lines, default: Value::Text(default), help }
     }
 
     /// Any text, of one line.
     pub const fn text(key: &'static str, default: &'static str, help: &'static str) -> Self {
-        OptionSpec {
-            key,
-            kind: OptionKind::Text,
-            default: Value::Text(default),
-            help,
-        }
+        OptionSpec { key, kind: OptionKind::Text, default: Value::Text(default), help }
     }
 }
 

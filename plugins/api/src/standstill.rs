@@ -71,15 +71,9 @@ mod tests {
     use super::*;
     use crate::{Coolant, Feed, Spindle};
 
-    const CUT: Event<'static> = Event::Linear {
-        tool: None,
-        feed: Feed::PerMinute(100.0),
-        words: &[],
-    };
-    const RAPID: Event<'static> = Event::Rapid {
-        tool: None,
-        words: &[],
-    };
+    const CUT: Event<'static> =
+        Event::Linear { tool: None, feed: Feed::PerMinute(100.0), words: &[] };
+    const RAPID: Event<'static> = Event::Rapid { tool: None, words: &[] };
 
     /// What is switched on ahead of each event behind the stop.
     fn behind<const N: usize>(before: Event<'_>, events: [Event<'_>; N]) -> [[bool; 2]; N] {
@@ -102,11 +96,7 @@ mod tests {
             name: "",
         };
         assert_eq!(behind(RAPID, [change, RAPID, CUT]), [off; 3]);
-        let reversed = [
-            Event::Spindle(Spindle::Off),
-            Event::Coolant(Coolant::Off),
-            CUT,
-        ];
+        let reversed = [Event::Spindle(Spindle::Off), Event::Coolant(Coolant::Off), CUT];
         assert_eq!(behind(RAPID, reversed), [off; 3]);
     }
 

@@ -17,10 +17,7 @@ pub struct VocabularyWord {
 impl VocabularyWord {
     /// One for the table of a dialect: `VocabularyWord::new("G0", Meaning::Rapid)`.
     pub const fn new(word: &'static str, meaning: Meaning) -> Self {
-        VocabularyWord {
-            word: Cow::Borrowed(word),
-            meaning,
-        }
+        VocabularyWord { word: Cow::Borrowed(word), meaning }
     }
 }
 

@@ -27,29 +27,14 @@ impl Control for Fanuc {
         feed_all_axes: true,
         tcp: Tcp::Length("G43.4"),
         vector: "G43.5",
-        plane: Plane::Euler {
-            on: "G68.2",
-            turn: "G53.1",
-            off: "G69",
-        },
+        plane: Plane::Euler { on: "G68.2", turn: "G53.1", off: "G69" },
         cycles_in_plane: true,
         rigid: Rigid::Ahead("M29"),
-        splines: Splines::Knots {
-            code: "G6.2",
-            begin: "G5 P10000",
-            end: "G5 P0",
-        },
+        splines: Splines::Knots { code: "G6.2", begin: "G5 P10000", end: "G5 P0" },
         smoothing: SMOOTHING,
-        surface: Some(SurfaceSpeed {
-            codes: ["G96", "G97"],
-            most: "G92 S",
-        }),
+        surface: Some(SurfaceSpeed { codes: ["G96", "G97"], most: "G92 S" }),
         probe: "G31",
-        subprogram: Subprogram {
-            number: "M98 P{}",
-            name: "",
-            times: " L",
-        },
+        subprogram: Subprogram { number: "M98 P{}", name: "", times: " L" },
         words: &[
             words::RETURNS,
             words::SHIFTS,

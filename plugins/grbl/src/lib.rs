@@ -22,31 +22,16 @@ impl Control for Grbl {
         // Its buffer has 80 characters, and the line's end is one of them.
         remark_length: 78,
         line_length: Some(78),
-        codes: Codes {
-            feed: ["G94", "G93", ""],
-            compensation: ["G40", "", ""],
-            ..Codes::ISO
-        },
-        offset: Offset {
-            word: offset_of_six,
-            at_start: true,
-            ..Table::ISO.offset
-        },
+        codes: Codes { feed: ["G94", "G93", ""], compensation: ["G40", "", ""], ..Codes::ISO },
+        offset: Offset { word: offset_of_six, at_start: true, ..Table::ISO.offset },
         // A sender's G43.1 or G92 may be left over.
         safe: "G17 G40 G49 G80 G90 G94",
         cancel: "G92.1",
         // The length is in the work offset: the operator sets it after each change.
-        length: Length {
-            on: "",
-            off: "",
-            ..Table::ISO.length
-        },
+        length: Length { on: "", off: "", ..Table::ISO.length },
         relies: RELIES,
         leave: &[Leave::Retract],
-        stops: Stops {
-            spindle: false,
-            coolant: false,
-        },
+        stops: Stops { spindle: false, coolant: false },
         dwell: Dwell::Seconds("P", 3),
         // The operator changes the tool.
         change: "M0",
@@ -70,10 +55,7 @@ impl Control for Grbl {
                 "axis {}: GRBL 1.1 has the axes X Y Z alone; the option `hal` is for grblHAL, which may have more",
                 word.name
             )),
-            _ => Ok(Grbl {
-                hal,
-                retracts: !setup.text("retract").is_empty(),
-            }),
+            _ => Ok(Grbl { hal, retracts: !setup.text("retract").is_empty() }),
         }
     }
 

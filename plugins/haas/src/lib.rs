@@ -23,20 +23,13 @@ impl Control for Haas {
         relies: RELIES,
         tcp: Tcp::Length("G234"),
         tcp_at_rapid: true,
-        plane: Plane::Turned {
-            on: "G254",
-            off: "G255",
-        },
+        plane: Plane::Turned { on: "G254", off: "G255" },
         cycles: CYCLES,
         cycles_in_plane: true,
         smoothing: SMOOTHING,
         smoothing_anywhere: true,
         probe: "G31",
-        subprogram: Subprogram {
-            number: "M98 P{}",
-            name: "",
-            times: " L",
-        },
+        subprogram: Subprogram { number: "M98 P{}", name: "", times: " L" },
         words: &[words::SHIFTS, words::STOPS, words::SUBPROGRAM_END, OWN],
         ..Table::ISO
     };

@@ -69,9 +69,7 @@ impl ErrorModel for Harmonic {
         let weight = |j: usize, t: f64| 2.0 / pieces * libm::sin(j as f64 * PI * t);
         Ok(Harmonic {
             order,
-            weights: (1..=order)
-                .map(|j| inner.clone().map(|t| weight(j, t)).collect())
-                .collect(),
+            weights: (1..=order).map(|j| inner.clone().map(|t| weight(j, t)).collect()).collect(),
             places: [0.0, 1.0].into_iter().chain(inner).collect(),
             answers: Vec::new(),
         })
@@ -98,9 +96,7 @@ impl ErrorModel for Harmonic {
         }
         let kept = &kept[..self.order + 2];
         let pieces = PIECES * self.order as u32;
-        Ok(Curve::of(kept, pieces, |t| {
-            waves(|i| kept[i], self.order, t)
-        }))
+        Ok(Curve::of(kept, pieces, |t| waves(|i| kept[i], self.order, t)))
     }
 
     fn value(&self, curve: &Curve, t: f64) -> Deviation {

@@ -1,9 +1,6 @@
 use super::*;
 
-const TOLERANCE: Tolerance = Tolerance {
-    tip: 0.005,
-    axis: 0.05,
-};
+const TOLERANCE: Tolerance = Tolerance { tip: 0.005, axis: 0.05 };
 
 /// Li 2024, table 3.1: deviations at 23 even places of a move. The last printed 0 breaks the second
 /// difference of -0.0163 that all others keep.
@@ -29,10 +26,7 @@ fn fit(order: i64, samples: i64, shape: impl Fn(f64) -> Deviation) -> (Harmonic,
 }
 
 fn tip(x: f64) -> Deviation {
-    Deviation {
-        tip: [x, 0.0, 0.0],
-        axis: [0.0; 3],
-    }
+    Deviation { tip: [x, 0.0, 0.0], axis: [0.0; 3] }
 }
 
 /// The largest number in what the curve leaves of `shape`.
@@ -40,9 +34,7 @@ fn rest(model: &Harmonic, curve: &Curve, shape: impl Fn(f64) -> Deviation) -> f6
     let off = |step: u32| {
         let t = f64::from(step) / 1000.0;
         let off = model.value(curve, t) - shape(t);
-        off.to_terms()
-            .into_iter()
-            .fold(0.0, |a: f64, b| a.max(b.abs()))
+        off.to_terms().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()))
     };
     (0..=1000).map(off).fold(0.0, f64::max)
 }
@@ -61,14 +53,8 @@ fn explained(model: &Harmonic, curve: &Curve) -> f64 {
 
 #[test]
 fn the_first_order_asks_for_ends_and_middle_and_meets_half_a_wave() {
-    let start = Deviation {
-        tip: [4e-4, -3e-4, 0.0],
-        axis: [0.0, 2e-4, 1e-4],
-    };
-    let amplitude = Deviation {
-        tip: [0.002, 0.003, -0.006],
-        axis: [0.01, 0.0, -0.02],
-    };
+    let start = Deviation { tip: [4e-4, -3e-4, 0.0], axis: [0.0, 2e-4, 1e-4] };
+    let amplitude = Deviation { tip: [0.002, 0.003, -0.006], axis: [0.01, 0.0, -0.02] };
     let shape = |t: f64| start.lerp(start * -2.0, t) + amplitude * libm::sin(PI * t);
     let (model, curve, asked) = fit(1, 0, shape);
     assert_eq!(asked, 3);
@@ -90,21 +76,12 @@ fn higher_orders_meet_sums_of_waves() {
     for order in 1..=8 {
         let shape = |t: f64| {
             let waves = amplitudes[..order].iter().zip(1..);
-            let sum = waves
-                .map(|(a, j)| a * libm::sin(f64::from(j) * PI * t))
-                .sum();
+            let sum = waves.map(|(a, j)| a * libm::sin(f64::from(j) * PI * t)).sum();
             tip(sum) + tip(0.1).lerp(tip(-0.2), t)
         };
         for samples in [0, order as i64, 20] {
             let (model, curve, asked) = fit(order as i64, samples, shape);
-            assert_eq!(
-                asked,
-                2 + if samples == 0 {
-                    order
-                } else {
-                    samples as usize
-                }
-            );
+            assert_eq!(asked, 2 + if samples == 0 { order } else { samples as usize });
             assert!(rest(&model, &curve, shape) < 1e-14, "{order} {samples}");
             let longest = (0..=100_000)
                 .map(|step| shape(f64::from(step) / 100_000.0).tip[0].abs())
@@ -159,10 +136,7 @@ fn what_cannot_be_told_is_refused() {
     );
     let mut model = open(2, 0).unwrap();
     let refused = model.fit(&TOLERANCE, &mut |_, out| out[1].tip[1] = f64::NEG_INFINITY);
-    assert_eq!(
-        refused.unwrap_err(),
-        "the deviation at 1 of the move is not a finite number"
-    );
+    assert_eq!(refused.unwrap_err(), "the deviation at 1 of the move is not a finite number");
     // The refused move leaves nothing behind.
     let curve = model.fit(&TOLERANCE, &mut |_, _| ()).unwrap();
     assert_eq!((curve.tip_peak, curve.axis_peak), (0.0, 0.0));

@@ -8,10 +8,7 @@ impl Heidenhain {
     /// What ends the coolant that is on; that of all, if it has no end of its own or nobody knows.
     pub(crate) fn end_coolant(&mut self, out: &mut String) {
         let flowing = self.flowing.take();
-        let own = self
-            .coolant_ends
-            .iter()
-            .find(|(coolant, _)| Some(*coolant) == flowing);
+        let own = self.coolant_ends.iter().find(|(coolant, _)| Some(*coolant) == flowing);
         let own = own.map_or("", |(_, codes)| codes);
         for code in own.split_whitespace() {
             self.block.line(code, out);

@@ -10,18 +10,8 @@ const ANGLE: u8 = 5;
 impl Heidenhain {
     /// By its centre (`CC` and `C`, a helix as `CC` and `CP`), or by its radius (`CR`).
     pub(crate) fn arc(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
-        let (
-            &Event::Arc {
-                feed,
-                centre,
-                normal,
-                turn,
-                radius,
-                words,
-                ..
-            },
-            Some([x, y, z]),
-        ) = (event, self.linear)
+        let (&Event::Arc { feed, centre, normal, turn, radius, words, .. }, Some([x, y, z])) =
+            (event, self.linear)
         else {
             return Err(event.refusal());
         };
@@ -35,16 +25,11 @@ impl Heidenhain {
         let place = 1 << x | 1 << y;
         // A helix has a centre alone.
         let radius = radius.filter(|_| rise == 0.0);
-        let trim = NumberStyle {
-            trim: true,
-            ..SIGNED
-        };
+        let trim = NumberStyle { trim: true, ..SIGNED };
         if radius.is_none() {
             self.block.word("CC");
             self.block.number("X", centre[0], self.decimals, SIGNED);
-            self.block
-                .number("Y", centre[1], self.decimals, SIGNED)
-                .end(out);
+            self.block.number("Y", centre[1], self.decimals, SIGNED).end(out);
         }
         match radius {
             None if rise != 0.0 || turn.abs() > 360.0 => {
@@ -82,8 +67,7 @@ impl Heidenhain {
         }
         self.block.word("L");
         // Both words, whatever was written before; what is known of the depth stays true at the end of the hole.
-        self.axes
-            .write_machine(&mut self.block, 1 << x | 1 << y, words);
+        self.axes.write_machine(&mut self.block, 1 << x | 1 << y, words);
         if self.radius.set("R0") {
             self.block.word("R0");
         }
@@ -103,18 +87,11 @@ impl Heidenhain {
             self.block.end(out);
             return;
         };
-        let trim = NumberStyle {
-            trim: true,
-            ..NumberStyle::default()
-        };
-        self.block
-            .number("T", self.datum.length(tolerance), 5, trim)
-            .end(out);
+        let trim = NumberStyle { trim: true, ..NumberStyle::default() };
+        self.block.number("T", self.datum.length(tolerance), 5, trim).end(out);
         // Roughing is for speed, finishing for the path.
         let mode = u8::from(tolerance >= 0.05);
-        self.block
-            .word("CYCL DEF 32.2")
-            .word(&format!("HSC-MODE:{mode}"));
+        self.block.word("CYCL DEF 32.2").word(&format!("HSC-MODE:{mode}"));
         if let Some(axis) = axis {
             self.block.number("TA", axis, 4, trim);
         }

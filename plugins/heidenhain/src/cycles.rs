@@ -54,9 +54,7 @@ impl Cycles {
         // Of the depth 0 the control would leave the hole out, and of one above the surface cut upwards.
         let (drilling, raised) = drilling.below_its_point();
         let top = top + raised;
-        let Drilling {
-            dwell, clearance, ..
-        } = drilling;
+        let Drilling { dwell, clearance, .. } = drilling;
         let down = || {
             let feed = drilling.feed_per_minute(rpm).ok_or(NO_SPEED)?;
             Ok::<f64, &str>(feed * self.feeds)
@@ -122,10 +120,7 @@ impl Cycles {
                 let pitch = drilling.thread(rpm).ok_or(NO_SPEED)?;
                 let pitch = if cycle == Cycle::Tap { pitch } else { -pitch };
                 let pitch = (239, pitch, "THREAD PITCH");
-                (
-                    (207, "RIGID TAPPING", "GEW.-BOHREN GS"),
-                    vec![clear, depth, pitch, surface, away],
-                )
+                ((207, "RIGID TAPPING", "GEW.-BOHREN GS"), vec![clear, depth, pitch, surface, away])
             }
             Cycle::BoreBack => {
                 return Err("back boring needs more than the CL file tells".to_owned());
@@ -139,11 +134,7 @@ impl Cycles {
 
 /// A definition whose parameters go on behind tildes, without numbers of their own.
 pub(crate) fn block(header: &str, parameters: &[(u32, f64, &str)]) -> String {
-    let style = NumberStyle {
-        plus: true,
-        trim: true,
-        point: false,
-    };
+    let style = NumberStyle { plus: true, trim: true, point: false };
     let mut text = header.to_owned();
     for (number, value, label) in parameters {
         text.push_str(&format!(" ~\n    Q{number}="));

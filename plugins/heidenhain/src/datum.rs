@@ -39,15 +39,8 @@ impl Datum {
 impl Heidenhain {
     /// A row of the preset table; the second block goes on with the first and has no number.
     pub(crate) fn preset_row(&mut self, row: i64, out: &mut String) {
-        let name = if self.german {
-            "BEZUGSPUNKT SETZEN"
-        } else {
-            "DATUM SETTING"
-        };
-        let words = block(
-            &format!("CYCL DEF 247 {name}"),
-            &[(339, row as f64, "DATUM NUMBER")],
-        );
+        let name = if self.german { "BEZUGSPUNKT SETZEN" } else { "DATUM SETTING" };
+        let words = block(&format!("CYCL DEF 247 {name}"), &[(339, row as f64, "DATUM NUMBER")]);
         self.block.line(&words, out);
     }
 
@@ -68,11 +61,7 @@ impl Heidenhain {
             self.block.end(out);
             return;
         }
-        let name = if self.german {
-            "NULLPUNKT"
-        } else {
-            "DATUM SHIFT"
-        };
+        let name = if self.german { "NULLPUNKT" } else { "DATUM SHIFT" };
         self.block.line(&format!("CYCL DEF 7.0 {name}"), out);
         for (axis, (place, length)) in axes.into_iter().zip((1..).zip(origin)) {
             self.block.word(&format!("CYCL DEF 7.{place}"));
@@ -86,14 +75,9 @@ impl Heidenhain {
             self.shift(origin, out);
             self.datum.shifted = true;
         }
-        let style = NumberStyle {
-            trim: true,
-            ..SIGNED
-        };
+        let style = NumberStyle { trim: true, ..SIGNED };
         self.block.word("PLANE SPATIAL");
-        self.block
-            .number("SPA", a, 4, style)
-            .number("SPB", b, 4, style);
+        self.block.number("SPA", a, 4, style).number("SPB", b, 4, style);
         self.block.number("SPC", c, 4, style);
         self.block.line(&self.datum.positioning, out);
         self.tilted = true;

@@ -72,46 +72,33 @@ impl Heidenhain {
                 self.axes.forget();
                 self.rapid_group(words, Group::Rotary, out)?;
             }
-            Event::Position {
-                words,
-                feed,
-                plane_first,
-                ..
-            } => self.approach(words, feed, plane_first, out)?,
+            Event::Position { words, feed, plane_first, .. } => {
+                self.approach(words, feed, plane_first, out)?
+            }
             Event::Retract { axes, words } => self.leave(axes, words, out),
             Event::Park { axes, words } => self.in_machine_coordinates(axes, words, out),
             Event::Rapid { words, tool } => self.go(words, tool, None, None, out)?,
             Event::Linear { words, tool, feed } => self.go(words, tool, None, Some(feed), out)?,
-            Event::Surface {
-                words,
-                tool,
-                feed,
-                normal,
-            } => self.go(words, tool, Some(normal), Some(feed), out)?,
+            Event::Surface { words, tool, feed, normal } => {
+                self.go(words, tool, Some(normal), Some(feed), out)?
+            }
             Event::Arc { .. } => self.arc(event, out)?,
             Event::Cycle { .. } => self.drilling = Drilling::of(event),
             Event::CyclePoint { words, .. } => self.drill(words, out)?,
             Event::CycleOff => self.drilling = None,
             Event::Plane { origin, angles, .. } => self.tilt(origin, angles, out),
             Event::PlaneOff => self.upright(out),
-            Event::Smoothing {
-                tolerance,
-                axis_tolerance,
-            } => self.smooth(Some(tolerance), axis_tolerance, out),
+            Event::Smoothing { tolerance, axis_tolerance } => {
+                self.smooth(Some(tolerance), axis_tolerance, out)
+            }
             Event::SmoothingOff => self.smooth(None, None, out),
             Event::WorkOffset { number, .. } => self.preset(number, out),
             Event::Operation { name } => self.structure(name, out),
             Event::OperationEnd => {}
-            Event::Subprogram {
-                number,
-                times,
-                name,
-            } => self.subprogram(number, times, name, out),
+            Event::Subprogram { number, times, name } => self.subprogram(number, times, name, out),
             Event::Units(_) => {
-                return Err(
-                    "the units of this control stand in the first line: a program has one"
-                        .to_owned(),
-                );
+                return Err("the units of this control stand in the first line: a program has one"
+                    .to_owned());
             }
             Event::Dwell { seconds } => {
                 let [name, word] = match self.german {
@@ -120,9 +107,7 @@ impl Heidenhain {
                 };
                 self.block.line(&format!("CYCL DEF 9.0 {name}"), out);
                 self.block.word("CYCL DEF 9.1").word(word);
-                self.block
-                    .number("", seconds, 3, NumberStyle::default())
-                    .end(out);
+                self.block.number("", seconds, 3, NumberStyle::default()).end(out);
             }
             Event::Stop => self.halt("M0", out),
             Event::OptionalStop => self.halt("M1", out),

@@ -93,8 +93,7 @@ impl Heidenhain {
 
     pub(crate) fn frame(&mut self, word: &str, out: &mut String) {
         let units = if self.inch { "INCH" } else { "MM" };
-        self.block
-            .line(&format!("{word} PGM {} {units}", self.program), out);
+        self.block.line(&format!("{word} PGM {} {units}", self.program), out);
     }
 
     pub(crate) fn comment(&mut self, text: &str, out: &mut String) {
@@ -168,10 +167,7 @@ pub(crate) fn stock(setup: &Setup<'_>) -> String {
         text.push_str(words);
         for (axis, length) in ["X", "Y", "Z"].into_iter().zip(corner) {
             text.push_str(&format!(" {axis}"));
-            let style = NumberStyle {
-                plus: true,
-                ..NumberStyle::default()
-            };
+            let style = NumberStyle { plus: true, ..NumberStyle::default() };
             style.write(&mut text, length * scale, 3);
         }
         text.push('\n');

@@ -24,11 +24,7 @@ use crate::datum::Datum;
 use crate::frame::{program_name, stock};
 use crate::options::OPTIONS;
 
-const SIGNED: NumberStyle = NumberStyle {
-    plus: true,
-    point: false,
-    trim: false,
-};
+const SIGNED: NumberStyle = NumberStyle { plus: true, point: false, trim: false };
 
 struct Heidenhain {
     block: Block,
@@ -168,9 +164,7 @@ impl Dialect for Heidenhain {
             tool_names: setup.flag("tool_names"),
             names: setup.ahead.map_or(Vec::new(), |ahead| {
                 let tools = ahead.tools.iter();
-                tools
-                    .map(|tool| (tool.number, tool.name.to_owned()))
-                    .collect()
+                tools.map(|tool| (tool.number, tool.name.to_owned())).collect()
             }),
             linear: places(setup),
             decimals: decimals as u8,

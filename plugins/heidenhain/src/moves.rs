@@ -72,9 +72,7 @@ impl Heidenhain {
                     .to_owned(),
             );
         }
-        let vector = tool
-            .filter(|_| self.vectors && kept)
-            .map(|tool| unit(tool.axis));
+        let vector = tool.filter(|_| self.vectors && kept).map(|tool| unit(tool.axis));
         let before = std::mem::replace(&mut self.vector, vector);
         if vector.is_none() && before.is_some() {
             // Where the vectors have brought the rotary axes is not known.
@@ -98,10 +96,7 @@ impl Heidenhain {
         } else {
             self.axes.write(&mut self.block, words);
         }
-        let vectors = [
-            (["NX", "NY", "NZ"], normal.map(unit)),
-            (["TX", "TY", "TZ"], vector),
-        ];
+        let vectors = [(["NX", "NY", "NZ"], normal.map(unit)), (["TX", "TY", "TZ"], vector)];
         for (addresses, parts) in vectors {
             for (address, part) in addresses.into_iter().zip(parts.into_iter().flatten()) {
                 self.block.number(address, part / VECTOR, 7, crate::SIGNED);
@@ -140,8 +135,7 @@ impl Heidenhain {
                     false => (feed, self.feed_decimals),
                 };
                 if self.feed.set(value) {
-                    self.block
-                        .number("F", value, decimals, NumberStyle::default());
+                    self.block.number("F", value, decimals, NumberStyle::default());
                 }
             }
             Some(other) => {

@@ -11,12 +11,7 @@ const fn choice(
     default: &'static str,
     help: &'static str,
 ) -> OptionSpec {
-    OptionSpec {
-        key,
-        kind: OptionKind::Choice(choices),
-        default: Value::Text(default),
-        help,
-    }
+    OptionSpec { key, kind: OptionKind::Choice(choices), default: Value::Text(default), help }
 }
 
 pub(crate) const OPTIONS: &[OptionSpec] = &[
@@ -59,18 +54,8 @@ pub(crate) const OPTIONS: &[OptionSpec] = &[
         false,
         "LN with TX TY TZ in the place of rotary words under TCP: the control finds their values by itself.",
     ),
-    choice(
-        "control",
-        &["TNC640", "iTNC530", "TNC7"],
-        "TNC640",
-        "iTNC530: cycles without Q395.",
-    ),
-    choice(
-        "language",
-        &["English", "German"],
-        "English",
-        "Dialogue language: names of cycles.",
-    ),
+    choice("control", &["TNC640", "iTNC530", "TNC7"], "TNC640", "iTNC530: cycles without Q395."),
+    choice("language", &["English", "German"], "English", "Dialogue language: names of cycles."),
     choice(
         "tapping",
         &["rigid", "floating"],
@@ -117,11 +102,7 @@ pub(crate) const OPTIONS: &[OptionSpec] = &[
         "BLK FORM at the start: where the tool goes, for the control's graphics.",
     ),
     OptionSpec::text("coolant_mist", "", "M codes of mist."),
-    OptionSpec::text(
-        "coolant_through",
-        "",
-        "M codes of coolant through the tool.",
-    ),
+    OptionSpec::text("coolant_through", "", "M codes of coolant through the tool."),
     OptionSpec::text("coolant_air", "", "M codes of air."),
     OptionSpec::text("coolant_mist_off", "", END),
     OptionSpec::text("coolant_through_off", "", END),

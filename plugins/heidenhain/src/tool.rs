@@ -79,9 +79,7 @@ impl Heidenhain {
                 self.own(&self.tcp_off.clone(), out);
             }
             self.block.word("TOOL CALL");
-            self.block
-                .number("S", rpm, 0, NumberStyle::default())
-                .end(out);
+            self.block.number("S", rpm, 0, NumberStyle::default()).end(out);
             // Some tool is in the spindle.
             (self.called, self.stays) = (true, false);
             if tcp {
@@ -153,11 +151,7 @@ fn with_speed(lines: &str, speed: f64) -> Result<String, String> {
         }
         None => {}
     }
-    let oversize = |word: &String| {
-        ["F", "DL", "DR"]
-            .iter()
-            .any(|address| begins(word, address))
-    };
+    let oversize = |word: &String| ["F", "DL", "DR"].iter().any(|address| begins(word, address));
     let place = words.iter().skip(3).position(oversize);
     let remark = words.iter().position(|word| word.starts_with(';'));
     let ends = remark.unwrap_or(words.len());
@@ -186,11 +180,7 @@ pub(crate) fn tool_call(number: u32, name: &str, names: bool) -> Result<String, 
         letter if letter.is_ascii_alphanumeric() || "#$%&.,-_".contains(letter) => letter,
         _ => '_',
     };
-    let plain: String = ascii(name)
-        .to_ascii_uppercase()
-        .chars()
-        .map(allowed)
-        .collect();
+    let plain: String = ascii(name).to_ascii_uppercase().chars().map(allowed).collect();
     if plain.len() > 32 {
         return Err(format!(
             "the tool's name `{name}` is longer than the 32 characters that this control has: shorten it, or leave out \

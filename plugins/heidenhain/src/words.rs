@@ -9,21 +9,12 @@ impl Heidenhain {
     pub(crate) fn declared(&self) -> Capabilities {
         use Capabilities as C;
         let some = |yes: bool, set: Capabilities| if yes { set } else { C::NONE };
-        let arcs = C::ARC_XY
-            .and(C::HELIX)
-            .and(C::HELIX_BY_TURN)
-            .and(C::ARC_RADIUS)
-            .and(C::CYCLE_IN_PLANE);
+        let arcs =
+            C::ARC_XY.and(C::HELIX).and(C::HELIX_BY_TURN).and(C::ARC_RADIUS).and(C::CYCLE_IN_PLANE);
         let drills = C::CYCLE_DRILL.and(C::CYCLE_DEEP).and(C::CYCLE_BREAK_CHIP);
-        let others = C::CYCLE_REAM
-            .and(C::CYCLE_BORE)
-            .and(C::CYCLE_TAP)
-            .and(C::CYCLE_TAP_LEFT);
+        let others = C::CYCLE_REAM.and(C::CYCLE_BORE).and(C::CYCLE_TAP).and(C::CYCLE_TAP_LEFT);
         let cycles = self.linear.is_some();
-        let commands = C::SMOOTHING
-            .and(C::OPERATION)
-            .and(C::WORK_OFFSET)
-            .and(C::SUBPROGRAM);
+        let commands = C::SMOOTHING.and(C::OPERATION).and(C::WORK_OFFSET).and(C::SUBPROGRAM);
         C::TCP_STILL
             | C::TOOL_TABLE
             | C::LENGTH_ALONG_DEPTH
@@ -46,18 +37,13 @@ pub(crate) fn vocabulary<'a>(
     coolant: impl IntoIterator<Item = (&'a str, Meaning)>,
 ) -> Vec<VocabularyWord> {
     let first = |text: &str| text.lines().next().unwrap_or_default().trim().to_owned();
-    let mut words: Vec<VocabularyWord> = WORDS
-        .iter()
-        .map(|(text, meaning)| VocabularyWord::new(text, *meaning))
-        .collect();
+    let mut words: Vec<VocabularyWord> =
+        WORDS.iter().map(|(text, meaning)| VocabularyWord::new(text, *meaning)).collect();
     let own = [(tcp_on, M::TcpOn), (tcp_off, M::TcpOff)];
     for (text, meaning) in own.into_iter().chain(coolant) {
         let word = first(text);
         if !word.is_empty() && !words.iter().any(|known| known.word == word) {
-            words.push(VocabularyWord {
-                word: word.into(),
-                meaning,
-            });
+            words.push(VocabularyWord { word: word.into(), meaning });
         }
     }
     words

@@ -7,11 +7,7 @@ struct Writer;
 
 impl Control for Writer {
     const TABLE: &'static Table = &Table {
-        options: &[
-            options::BLOCK_NUMBERS,
-            options::BLOCK_STEP,
-            options::decimals(3),
-        ],
+        options: &[options::BLOCK_NUMBERS, options::BLOCK_STEP, options::decimals(3)],
         // In the place of G43: G234 H1 X Y Z.
         tcp: Tcp::Length("G234"),
         dwell: Dwell::Seconds("P", 3),

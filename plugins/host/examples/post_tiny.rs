@@ -85,9 +85,7 @@ impl Dialect for Writer {
             }
             Event::Comment { text } => self.line(&remark(text), out),
             Event::Literal { text } | Event::Word { text } => self.line(text, out),
-            Event::ToolChange {
-                number, register, ..
-            } => {
+            Event::ToolChange { number, register, .. } => {
                 self.register = register;
                 self.line(&format!("T{number} M6"), out);
             }
@@ -119,8 +117,7 @@ impl Dialect for Writer {
             Event::Linear { words, feed, .. } => self.go("G1", words, Some(feed), out)?,
             Event::Dwell { seconds } => {
                 self.block.word("G4");
-                self.block
-                    .number("P", seconds * 1000.0, 0, NumberStyle::default());
+                self.block.number("P", seconds * 1000.0, 0, NumberStyle::default());
                 self.block.end(out);
             }
             Event::Stop => self.line("M0", out),

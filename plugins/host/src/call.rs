@@ -36,9 +36,7 @@ pub(crate) fn at_work() -> Option<&'static LoadedLibrary> {
 impl Caller {
     /// For calls into `library`: the working folder will stay what it is now.
     pub(crate) fn new(library: Option<&'static LoadedLibrary>) -> Self {
-        Caller {
-            stranger: library.map(|library| (library, WorkingFolder::now())),
-        }
+        Caller { stranger: library.map(|library| (library, WorkingFolder::now())) }
     }
 
     /// Runs `call`, which is nothing but a call into the library. What the processor does with numbers is restored

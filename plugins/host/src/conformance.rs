@@ -112,18 +112,12 @@ pub fn test_long(
         Kind::ErrorModel => model::test(plugin, options)?,
         Kind::Dialect => dialect::test(plugin, options, events)?,
     };
-    Ok(Report {
-        kind: plugin.kind(),
-        cases,
-    })
+    Ok(Report { kind: plugin.kind(), cases })
 }
 
 impl Case {
     fn named(name: &'static str) -> Case {
-        Case {
-            name,
-            ..Case::default()
-        }
+        Case { name, ..Case::default() }
     }
 
     /// How it ended.

@@ -87,10 +87,8 @@ pub struct ProgramTool {
 impl ProgramSetup {
     /// Hands it to `take` as a dialect sees it, with `options` completed.
     fn with<R>(&self, options: &[(String, GivenValue)], take: impl FnOnce(&Setup<'_>) -> R) -> R {
-        let options: Vec<(&str, Value<'_>)> = options
-            .iter()
-            .map(|(key, value)| (key.as_str(), value.as_value()))
-            .collect();
+        let options: Vec<(&str, Value<'_>)> =
+            options.iter().map(|(key, value)| (key.as_str(), value.as_value())).collect();
         let words: Vec<AxisWord<'_>> = self
             .words
             .iter()
@@ -183,9 +181,8 @@ impl Plugin {
             .map_err(|fault| self.fault(Reason::Option(Box::new(fault))))?;
         let refused = |message| self.fault(Reason::Refused { message });
         let nonsense = |message| self.fault(Reason::Nonsense { message });
-        let linked = self
-            .linked
-            .and_then(|linked| setup.with(&options, |setup| linked.open(setup)));
+        let linked =
+            self.linked.and_then(|linked| setup.with(&options, |setup| linked.open(setup)));
         let (way, format, capabilities) = match linked {
             Some(opened) => {
                 let mut dialect = opened.map_err(|message| refused(reason_of(message)))?;
@@ -201,12 +198,7 @@ impl Plugin {
             }
         };
         check_format(&format, words).map_err(nonsense)?;
-        Ok(OpenedDialect {
-            plugin: self.name.clone(),
-            way,
-            format,
-            capabilities,
-        })
+        Ok(OpenedDialect { plugin: self.name.clone(), way, format, capabilities })
     }
 }
 
@@ -224,20 +216,11 @@ fn check_format(format: &Format, words: usize) -> Result<(), String> {
         Some(format.feed_per_revolution),
         Some(format.plane_decimals),
     ];
-    let decimals = format
-        .words
-        .iter()
-        .copied()
-        .chain(feeds.into_iter().flatten());
+    let decimals = format.words.iter().copied().chain(feeds.into_iter().flatten());
     if let Some(count) = decimals.max().filter(|count| *count > 9) {
-        return Err(format!(
-            "its format asks for {count} decimals, at most 9 are possible"
-        ));
+        return Err(format!("its format asks for {count} decimals, at most 9 are possible"));
     }
-    if let Some(most) = format
-        .most_inverse_time
-        .filter(|most| most.is_nan() || *most <= 0.0)
-    {
+    if let Some(most) = format.most_inverse_time.filter(|most| most.is_nan() || *most <= 0.0) {
         return Err(format!("its largest inverse-time feed is {most}"));
     }
     let extension = &format.extension;
@@ -286,10 +269,7 @@ impl Library {
             return Err(self.last_error());
         }
         let decimals_of = raw.words.get(..raw.words_len as usize).ok_or_else(|| {
-            format!(
-                "its format has {} axis words, the program has {words}",
-                raw.words_len
-            )
+            format!("its format has {} axis words, the program has {words}", raw.words_len)
         })?;
         // More than a byte holds is more than is allowed.
         let decimals = |count: u32| u8::try_from(count).unwrap_or(u8::MAX);
@@ -318,8 +298,7 @@ impl Library {
         };
         let asked = vocabulary::taken(|host, emit| {
             // SAFETY: the context is open, and `emit` takes `host`.
-            self.caller
-                .call(|| unsafe { vocabulary(self.ctx, host, emit) })
+            self.caller.call(|| unsafe { vocabulary(self.ctx, host, emit) })
         });
         match asked {
             (0, words) => words,
@@ -494,11 +473,7 @@ impl fmt::Debug for OpenedDialect {
 /// No reason is no sentence.
 fn reason_of(message: String) -> String {
     let message = sentence(&message);
-    if message.is_empty() {
-        "it gives no reason".to_owned()
-    } else {
-        message
-    }
+    if message.is_empty() { "it gives no reason".to_owned() } else { message }
 }
 
 /// The text of each event is whole lines that a control can read, and a move's numbers are numbers. What does not
@@ -538,10 +513,7 @@ fn is_sound(text: &[u8]) -> bool {
     // Bit operations without a branch: the compiler makes vectors of them.
     let odd = |byte: u8| (byte < b' ') & (byte != b'\n') | (byte >= 0x7f);
     let suspect = |byte: u8| odd(byte) | (byte | 32 == b'n');
-    if !text
-        .iter()
-        .fold(false, |found, byte| found | suspect(*byte))
-    {
+    if !text.iter().fold(false, |found, byte| found | suspect(*byte)) {
         // Both words have an N.
         return true;
     }
@@ -550,16 +522,10 @@ fn is_sound(text: &[u8]) -> bool {
     };
     let second = text.get(1..).unwrap_or(&[]);
     let third = text.get(2..).unwrap_or(&[]);
-    let no_number = text
-        .iter()
-        .zip(second)
-        .zip(third)
-        .fold(false, |found, ((a, b), c)| {
-            found | word(*a, *b, *c, b"nan") | word(*a, *b, *c, b"inf")
-        });
-    !text
-        .iter()
-        .fold(no_number, |found, byte| found | odd(*byte))
+    let no_number = text.iter().zip(second).zip(third).fold(false, |found, ((a, b), c)| {
+        found | word(*a, *b, *c, b"nan") | word(*a, *b, *c, b"inf")
+    });
+    !text.iter().fold(no_number, |found, byte| found | odd(*byte))
 }
 
 /// The text of one event is whole lines that a control can read, and a move's numbers are numbers.
@@ -582,10 +548,7 @@ fn check_text(text: &str, event: &Event<'_>) -> Result<(), String> {
         }
     }
     if event.moves() && has_no_number(text.as_bytes()) {
-        return Err(format!(
-            "it wrote something that is no number: {}",
-            quoted(text.trim())
-        ));
+        return Err(format!("it wrote something that is no number: {}", quoted(text.trim())));
     }
     Ok(())
 }

@@ -176,12 +176,7 @@ impl fmt::Display for PluginFault {
                 f,
                 "it was built against other structs (layout {found:016x}, here {wanted:016x})"
             ),
-            Reason::Size {
-                of,
-                found,
-                wanted,
-                most,
-            } => {
+            Reason::Size { of, found, wanted, most } => {
                 let (limit, what) = match found < wanted {
                     true => (wanted, "it must have at least"),
                     false => (most, "it can have at most"),

@@ -48,9 +48,7 @@ impl Finder {
                         return Err(PluginFault {
                             plugin: wanted,
                             path: Some(path),
-                            reason: Reason::Open {
-                                message: error.to_string(),
-                            },
+                            reason: Reason::Open { message: error.to_string() },
                         });
                     }
                 }
@@ -60,12 +58,7 @@ impl Finder {
         linked.cloned().ok_or_else(|| {
             let linked = self.linked.iter().map(|plugin| plugin.name().to_owned());
             let mut known: Vec<String> = linked.collect();
-            for (name, _) in self
-                .folders
-                .iter()
-                .flat_map(|folder| names(folder))
-                .flatten()
-            {
+            for (name, _) in self.folders.iter().flat_map(|folder| names(folder)).flatten() {
                 if !known.contains(&name) {
                     known.push(name);
                 }
@@ -81,9 +74,7 @@ impl Finder {
     /// A folder holds what should be the library of the plugin `name`; nothing of it is opened.
     pub fn has_library(&self, name: &str) -> bool {
         let file = file_name(&name.replace('-', "_"));
-        self.folders
-            .iter()
-            .any(|folder| folder.join(&file).exists())
+        self.folders.iter().any(|folder| folder.join(&file).exists())
     }
 
     /// All plugins, by the names of their files alone: none is opened. In the order in which they are looked for.

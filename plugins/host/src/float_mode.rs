@@ -32,10 +32,7 @@ impl FloatMode {
             asm!("stmxcsr [{}]", in(reg) &raw mut sse, options(nostack, preserves_flags));
             asm!("fnstcw [{}]", in(reg) &raw mut x87, options(nostack, preserves_flags));
         }
-        Self {
-            sse: sse & !Self::STICKY,
-            x87,
-        }
+        Self { sse: sse & !Self::STICKY, x87 }
     }
 
     /// Puts it in force again.
@@ -100,10 +97,7 @@ mod tests {
         let usual = FloatMode::now();
         let third = || black_box(1.0) / black_box(3.0_f64);
         let nearest = third();
-        let upward = FloatMode {
-            sse: usual.sse | 0x4000,
-            x87: usual.x87 | 0x0800,
-        };
+        let upward = FloatMode { sse: usual.sse | 0x4000, x87: usual.x87 | 0x0800 };
         upward.restore();
         assert_eq!(FloatMode::now(), upward);
         let above = third();

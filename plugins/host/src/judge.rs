@@ -47,25 +47,13 @@ pub(crate) unsafe fn judge(
         return Err(Reason::NotAPlugin);
     }
     let (abi, kind, size, table_size, layout) = unsafe {
-        (
-            (*plugin).abi,
-            (*plugin).kind,
-            (*plugin).size,
-            (*plugin).table_size,
-            (*plugin).layout,
-        )
+        ((*plugin).abi, (*plugin).kind, (*plugin).size, (*plugin).table_size, (*plugin).layout)
     };
     if abi != raw::ABI {
-        return Err(Reason::OtherContract {
-            found: abi,
-            wanted: raw::ABI,
-        });
+        return Err(Reason::OtherContract { found: abi, wanted: raw::ABI });
     }
     if layout != raw::LAYOUT {
-        return Err(Reason::OtherLayout {
-            found: layout,
-            wanted: raw::LAYOUT,
-        });
+        return Err(Reason::OtherLayout { found: layout, wanted: raw::LAYOUT });
     }
     check_size("PostPlugin", size, LEAST)?;
     // SAFETY: as long as stated; of zeros all fields are valid.
@@ -103,10 +91,7 @@ pub(crate) unsafe fn judge(
     let name = unsafe { name("name", plugin.name) }?;
     let version = unsafe { self::name("version", plugin.version) }?;
     if !is_name(name) {
-        return Err(nonsense(format!(
-            "`{}` cannot be the name of a plugin",
-            quoted(name)
-        )));
+        return Err(nonsense(format!("`{}` cannot be the name of a plugin", quoted(name))));
     }
     let about = unsafe { text(plugin.about, MOST_SENTENCE) };
     let about = about.map_err(|lack| nonsense(format!("its description {lack}")))?;
@@ -132,9 +117,7 @@ unsafe fn own<T>(given: *const T, size: u32) -> T {
     let there = size_of::<T>().min(size as usize);
     // SAFETY: as many bytes as both have; the caller vouches for the zeros behind them.
     unsafe {
-        given
-            .cast::<u8>()
-            .copy_to_nonoverlapping(own.as_mut_ptr().cast(), there);
+        given.cast::<u8>().copy_to_nonoverlapping(own.as_mut_ptr().cast(), there);
         own.assume_init()
     }
 }
@@ -158,12 +141,7 @@ fn check_size(of: &'static str, found: u32, wanted: usize) -> Result<(), Reason>
     if (wanted..=most).contains(&found) {
         return Ok(());
     }
-    Err(Reason::Size {
-        of,
-        found,
-        wanted,
-        most,
-    })
+    Err(Reason::Size { of, found, wanted, most })
 }
 
 fn present<F>(what: &'static str, function: Option<F>) -> Result<(), Reason> {
@@ -218,23 +196,16 @@ unsafe fn declared(plugin: &PostPlugin, caller: &Caller) -> Result<&'static [Opt
     // SAFETY: `emit` takes the vector.
     caller.call(|| unsafe { describe(host, emit) });
     if specs.len() > MOST_OPTIONS {
-        return Err(nonsense(format!(
-            "it declares more than {MOST_OPTIONS} options"
-        )));
+        return Err(nonsense(format!("it declares more than {MOST_OPTIONS} options")));
     }
     let mut good: Vec<OptionSpec> = Vec::with_capacity(specs.len());
     for spec in specs {
         let spec = spec.map_err(|lack| nonsense(format!("an option it declares {lack}")))?;
         if good.iter().any(|other| other.key == spec.key) {
-            return Err(nonsense(format!(
-                "it declares the option `{}` twice",
-                spec.key
-            )));
+            return Err(nonsense(format!("it declares the option `{}` twice", spec.key)));
         }
         check(&spec, &GivenValue::from(spec.default)).map_err(|fault| {
-            nonsense(format!(
-                "the default of an option it declares does not fit: {fault}"
-            ))
+            nonsense(format!("the default of an option it declares does not fit: {fault}"))
         })?;
         good.push(spec);
     }
@@ -273,14 +244,10 @@ unsafe fn keep(option: &PostOption) -> Result<OptionSpec, String> {
     let of = |what: &str, lack: String| format!("has {what} that {lack} (`{key}`)");
     let kind = match option.kind {
         raw::OPTION_FLAG => OptionKind::Flag,
-        raw::OPTION_INTEGER => OptionKind::Integer {
-            min: option.min as i64,
-            max: option.max as i64,
-        },
-        raw::OPTION_NUMBER => OptionKind::Number {
-            min: option.min,
-            max: option.max,
-        },
+        raw::OPTION_INTEGER => {
+            OptionKind::Integer { min: option.min as i64, max: option.max as i64 }
+        }
+        raw::OPTION_NUMBER => OptionKind::Number { min: option.min, max: option.max },
         raw::OPTION_TEXT => OptionKind::Text,
         raw::OPTION_LINES => OptionKind::Lines,
         raw::OPTION_CHOICE => {

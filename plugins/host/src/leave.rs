@@ -63,10 +63,7 @@ pub fn leave_at_once(code: u8) -> ! {
 }
 
 pub(crate) fn library_opened(library: &'static LoadedLibrary) {
-    OPENED
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner)
-        .push(library);
+    OPENED.lock().unwrap_or_else(PoisonError::into_inner).push(library);
 }
 
 fn opened() -> Vec<&'static LoadedLibrary> {
@@ -80,25 +77,17 @@ fn culprit() -> Option<PluginFault> {
     let fault = |library: &LoadedLibrary, message: &str| PluginFault {
         plugin: library.name.clone(),
         path: Some(library.path.clone()),
-        reason: Reason::Nonsense {
-            message: message.to_owned(),
-        },
+        reason: Reason::Nonsense { message: message.to_owned() },
     };
     if let Some(library) = at_work() {
-        return Some(fault(
-            library,
-            "it ended the command in the middle of its work",
-        ));
+        return Some(fault(library, "it ended the command in the middle of its work"));
     }
     let message = "the command was ended in the middle of its work, by a thread of this plugin";
     match opened().as_slice() {
         [] => None,
         [library] => Some(fault(library, message)),
         several => {
-            let names: Vec<&str> = several
-                .iter()
-                .map(|library| library.name.as_str())
-                .collect();
+            let names: Vec<&str> = several.iter().map(|library| library.name.as_str()).collect();
             Some(PluginFault {
                 plugin: names.join("`, `"),
                 path: None,

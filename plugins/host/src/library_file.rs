@@ -36,12 +36,7 @@ impl Stamp {
         #[cfg(unix)]
         let identity = {
             use std::os::unix::fs::MetadataExt as _;
-            [
-                data.dev().into(),
-                data.ino().into(),
-                data.ctime().into(),
-                data.ctime_nsec().into(),
-            ]
+            [data.dev().into(), data.ino().into(), data.ctime().into(), data.ctime_nsec().into()]
         };
         Stamp {
             length: data.len(),
@@ -100,10 +95,7 @@ fn judge(bytes: &[u8], symbol: &str) -> Result<bool, String> {
     let broken = |error: object::Error| format!("it is no library: {error}");
     let file = object::File::parse(bytes).map_err(broken)?;
     if file.format() != NATIVE {
-        return Err(format!(
-            "it is built for another system ({:?})",
-            file.format()
-        ));
+        return Err(format!("it is built for another system ({:?})", file.format()));
     }
     if let Some(here) = architecture()
         && file.architecture() != here
@@ -115,9 +107,7 @@ fn judge(bytes: &[u8], symbol: &str) -> Result<bool, String> {
     }
     let cut_off = file.segments().any(|segment| {
         let (start, size) = segment.file_range();
-        start
-            .checked_add(size)
-            .is_none_or(|end| end > bytes.len() as u64)
+        start.checked_add(size).is_none_or(|end| end > bytes.len() as u64)
     });
     if cut_off {
         return Err("it is cut off: its headers promise more than the file holds".to_owned());

@@ -45,10 +45,8 @@ impl Plugin {
         };
         let options = check_options(self.options(), options)
             .map_err(|fault| self.fault(Reason::Option(Box::new(fault))))?;
-        let pairs: Vec<PostPair> = options
-            .iter()
-            .map(|(key, value)| PostPair::new(key, &value.as_value()))
-            .collect();
+        let pairs: Vec<PostPair> =
+            options.iter().map(|(key, value)| PostPair::new(key, &value.as_value())).collect();
         let caller = self.caller();
         let mut ctx = std::ptr::null_mut();
         let refusal = message(|sink| {
@@ -60,13 +58,7 @@ impl Plugin {
         if ctx.is_null() {
             return Err(self.fault(Reason::Refused { message: refusal }));
         }
-        Ok(OpenedModel {
-            plugin: self.name.clone(),
-            caller,
-            table,
-            ctx,
-            fault: RefCell::new(None),
-        })
+        Ok(OpenedModel { plugin: self.name.clone(), caller, table, ctx, fault: RefCell::new(None) })
     }
 }
 
@@ -110,10 +102,9 @@ impl OpenedModel {
     pub(crate) fn check(&self, curve: &Curve) -> Result<(), String> {
         let peaks = [curve.tip_peak, curve.axis_peak];
         if !peaks.iter().all(|peak| peak.is_finite() && *peak >= 0.0) {
-            return Err(self.say(&format!(
-                "its peaks are {} and {}",
-                curve.tip_peak, curve.axis_peak
-            )));
+            return Err(
+                self.say(&format!("its peaks are {} and {}", curve.tip_peak, curve.axis_peak))
+            );
         }
         let places = [curve.tip_at, curve.axis_at];
         if !places.iter().all(|at| (0.0..=1.0).contains(at)) {
@@ -137,12 +128,7 @@ impl OpenedModel {
         if let Some(fault) = self.fault.take() {
             return Err(fault);
         }
-        let mut bridge = Bridge {
-            deviation,
-            mode: FloatMode::now(),
-            panic: None,
-            fault: None,
-        };
+        let mut bridge = Bridge { deviation, mode: FloatMode::now(), panic: None, fault: None };
         let mut curve = Curve {
             tip_peak: f64::NAN,
             tip_at: f64::NAN,

@@ -131,10 +131,9 @@ pub(crate) fn check(spec: &OptionSpec, value: &GivenValue) -> Result<GivenValue,
         (OptionKind::Integer { .. }, _) => fault("must be a whole number".to_owned(), &[]),
         (OptionKind::Number { .. }, _) => fault("must be a number".to_owned(), &[]),
         (OptionKind::Text, _) => fault("must be text, in quotes".to_owned(), &[]),
-        (OptionKind::Lines, _) => fault(
-            "must be text, in quotes, or an array of such lines".to_owned(),
-            &[],
-        ),
+        (OptionKind::Lines, _) => {
+            fault("must be text, in quotes, or an array of such lines".to_owned(), &[])
+        }
         (OptionKind::Choice(choices), _) => fault("must be text, in quotes".to_owned(), choices),
     }
 }
@@ -215,41 +214,23 @@ mod tests {
             fault("step", GivenValue::Integer(0)).to_string(),
             "option `step`: 0 is not between 1 and 100"
         );
-        assert_eq!(
-            fault("step", GivenValue::Number(2.0)).message,
-            "must be a whole number"
-        );
+        assert_eq!(fault("step", GivenValue::Number(2.0)).message, "must be a whole number");
         assert_eq!(
             fault("ratio", GivenValue::Number(f64::NAN)).message,
             "NaN is not between 0 and 1"
         );
         let text = |text: &str| GivenValue::Text(text.to_owned());
-        assert_eq!(
-            fault("note", text("A\nB")).message,
-            "must be one line of text"
-        );
-        assert_eq!(
-            fault("note", text("A\u{2028}B")).message,
-            "must be one line of text"
-        );
-        assert_eq!(
-            fault("block", text("G0\rX")).message,
-            "holds a character that no line has"
-        );
+        assert_eq!(fault("note", text("A\nB")).message, "must be one line of text");
+        assert_eq!(fault("note", text("A\u{2028}B")).message, "must be one line of text");
+        assert_eq!(fault("block", text("G0\rX")).message, "holds a character that no line has");
         let lines = [("block".to_owned(), text("G91 G28 Z0.\nG90"))];
-        assert_eq!(
-            check_options(SPECS, &lines).unwrap()[4].1,
-            text("G91 G28 Z0.\nG90")
-        );
+        assert_eq!(check_options(SPECS, &lines).unwrap()[4].1, text("G91 G28 Z0.\nG90"));
         let choice = fault("way", GivenValue::Text("round".to_owned()));
         assert_eq!(choice.allowed, ["long", "short"]);
         let twice = [
             ("step".to_owned(), GivenValue::Integer(1)),
             ("step".to_owned(), GivenValue::Integer(2)),
         ];
-        assert_eq!(
-            check_options(SPECS, &twice).unwrap_err().message,
-            "given twice"
-        );
+        assert_eq!(check_options(SPECS, &twice).unwrap_err().message, "given twice");
     }
 }

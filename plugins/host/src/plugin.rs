@@ -60,10 +60,7 @@ impl Plugin {
             path: None,
             reason,
         })?;
-        Ok(Plugin {
-            linked: Some(linked),
-            ..described.into()
-        })
+        Ok(Plugin { linked: Some(linked), ..described.into() })
     }
 
     /// Opens `…/libpost_<name>.so` (`.dylib`, `post_<name>.dll`), which must export `post_plugin_<name>`.
@@ -81,9 +78,7 @@ impl Plugin {
             reason,
         };
         let Some(name) = name else {
-            return Err(fault(Reason::FileName {
-                pattern: file_name("<name>"),
-            }));
+            return Err(fault(Reason::FileName { pattern: file_name("<name>") }));
         };
         open_library(name, path).map_err(fault)
     }
@@ -131,41 +126,19 @@ impl Plugin {
     }
 
     pub(crate) fn fault(&self, reason: Reason) -> PluginFault {
-        PluginFault {
-            plugin: self.name.clone(),
-            path: self.path().map(Path::to_owned),
-            reason,
-        }
+        PluginFault { plugin: self.name.clone(), path: self.path().map(Path::to_owned), reason }
     }
 
     pub(crate) fn other_kind(&self, wanted: Kind) -> PluginFault {
-        self.fault(Reason::OtherKind {
-            wanted: wanted.name(),
-            found: self.kind().name(),
-        })
+        self.fault(Reason::OtherKind { wanted: wanted.name(), found: self.kind().name() })
     }
 }
 
 impl From<Described> for Plugin {
     /// As if it were linked in.
     fn from(described: Described) -> Self {
-        let Described {
-            name,
-            version,
-            about,
-            table,
-            options,
-        } = described;
-        Plugin {
-            name,
-            version,
-            about,
-            table,
-            linked: None,
-            library: None,
-            hash: None,
-            options,
-        }
+        let Described { name, version, about, table, options } = described;
+        Plugin { name, version, about, table, linked: None, library: None, hash: None, options }
     }
 }
 
@@ -175,20 +148,14 @@ fn open_library(name: &str, path: &Path) -> Result<Plugin, Reason> {
     let symbol = format!("post_plugin_{name}");
     let file = LibraryFile::look(path, &symbol).map_err(|message| match message {
         Some(message) => system(message),
-        None => Reason::NoSymbol {
-            symbol: symbol.clone(),
-        },
+        None => Reason::NoSymbol { symbol: symbol.clone() },
     })?;
     let earlier = opened().get(&file.path).cloned();
     if earlier.is_some_and(|earlier| earlier != file.hash) {
-        return Err(system(
-            "it is open already, and its file was changed since".to_owned(),
-        ));
+        return Err(system("it is open already, and its file was changed since".to_owned()));
     }
-    let loaded: &'static LoadedLibrary = Box::leak(Box::new(LoadedLibrary {
-        name: name.to_owned(),
-        path: path.to_owned(),
-    }));
+    let loaded: &'static LoadedLibrary =
+        Box::leak(Box::new(LoadedLibrary { name: name.to_owned(), path: path.to_owned() }));
     library_opened(loaded);
     let caller = Caller::new(Some(loaded));
     // SAFETY: the library's initialisers run; the user named this file as one to be run.
@@ -205,9 +172,7 @@ fn open_library(name: &str, path: &Path) -> Result<Plugin, Reason> {
     };
     opened().insert(file.path.clone(), file.hash.clone());
     if !file.is_unchanged() {
-        return Err(system(
-            "its file was changed while it was opened".to_owned(),
-        ));
+        return Err(system("its file was changed while it was opened".to_owned()));
     }
     if exported.is_null() || !exported.is_aligned() {
         return Err(Reason::NotAPlugin);
@@ -216,19 +181,13 @@ fn open_library(name: &str, path: &Path) -> Result<Plugin, Reason> {
     // author's promise, made by the magic number.
     let described = unsafe { judge(exported, &caller) }?;
     if described.name != name {
-        return Err(Reason::Nonsense {
-            message: format!("it calls itself `{}`", described.name),
-        });
+        return Err(Reason::Nonsense { message: format!("it calls itself `{}`", described.name) });
     }
     // SAFETY: judged above.
     if let Some(loaded) = unsafe { (*exported).loaded } {
         caller.call(|| unsafe { loaded() });
     }
-    Ok(Plugin {
-        library: Some(loaded),
-        hash: Some(file.hash),
-        ..described.into()
-    })
+    Ok(Plugin { library: Some(loaded), hash: Some(file.hash), ..described.into() })
 }
 
 impl Kind {

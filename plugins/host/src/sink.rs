@@ -33,15 +33,8 @@ pub(crate) fn with_sink<R>(
     most: usize,
     call: impl FnOnce(&PostSink) -> R,
 ) -> Result<R, String> {
-    let mut taken = Taken {
-        bytes: out,
-        most,
-        fault: None,
-    };
-    let sink = PostSink {
-        ctx: (&raw mut taken).cast(),
-        write: Some(append),
-    };
+    let mut taken = Taken { bytes: out, most, fault: None };
+    let sink = PostSink { ctx: (&raw mut taken).cast(), write: Some(append) };
     let result = call(&sink);
     taken.fault.map_or(Ok(result), Err)
 }
@@ -65,9 +58,7 @@ unsafe extern "C" fn append(ctx: *mut c_void, ptr: *const u8, len: usize) {
         return;
     }
     if ptr.is_null() {
-        taken.fault = Some(format!(
-            "it handed over {len} bytes of text at a null pointer"
-        ));
+        taken.fault = Some(format!("it handed over {len} bytes of text at a null pointer"));
         return;
     }
     if len > MOST_TEXT {
@@ -79,9 +70,6 @@ unsafe extern "C" fn append(ctx: *mut c_void, ptr: *const u8, len: usize) {
     let bytes = unsafe { post_plugin::raw::slice(ptr, len.min(room)) };
     taken.bytes.extend_from_slice(bytes);
     if len > room {
-        taken.fault = Some(format!(
-            "it wrote more than {} bytes in one call",
-            taken.most
-        ));
+        taken.fault = Some(format!("it wrote more than {} bytes in one call", taken.most));
     }
 }

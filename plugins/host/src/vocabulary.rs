@@ -38,10 +38,9 @@ unsafe extern "C" fn take(host: *mut c_void, meaning: u32, word: *const u8, len:
     };
     match Meaning::from_number(meaning) {
         // One more than is allowed is enough to refuse it.
-        Some(meaning) if words.len() <= MOST_WORDS => words.push(VocabularyWord {
-            word: Cow::Owned(word.to_owned()),
-            meaning,
-        }),
+        Some(meaning) if words.len() <= MOST_WORDS => {
+            words.push(VocabularyWord { word: Cow::Owned(word.to_owned()), meaning })
+        }
         Some(_) => {}
         None => {
             *told = Err(format!(
@@ -109,17 +108,11 @@ mod tests {
             ("G0\nG1", "no line can hold"),
             ("G\u{202e}0", "no line can hold"),
         ] {
-            let fault = judge(vec![VocabularyWord {
-                word: word.into(),
-                meaning: Meaning::Rapid,
-            }]);
+            let fault = judge(vec![VocabularyWord { word: word.into(), meaning: Meaning::Rapid }]);
             let fault = fault.unwrap_err();
             assert!(fault.contains(part), "{fault}");
         }
-        let long = VocabularyWord {
-            word: "G".repeat(201).into(),
-            meaning: Meaning::Rapid,
-        };
+        let long = VocabularyWord { word: "G".repeat(201).into(), meaning: Meaning::Rapid };
         assert!(judge(vec![long]).is_err_and(|fault| fault.contains("201 bytes")));
         let many = (0..1001).map(|index| VocabularyWord {
             word: format!("G{index}").into(),

@@ -20,28 +20,18 @@ impl Control for Hurco {
         relies: RELIES,
         feed_all_axes: true,
         // Whether M128 alone keeps the tip, or G8.2 and G43.4 behind it, is not settled: the machine file names it.
-        tcp: Tcp::Blocks {
-            on: "",
-            off: "M129",
-            length_first: false,
-        },
+        tcp: Tcp::Blocks { on: "", off: "M129", length_first: false },
         dwell: Dwell::Seconds("P", 3),
         leave: &[Leave::Tcp, Leave::Retract, Leave::Length],
         // P is not optional there.
         rigid: Rigid::Alone("M29"),
-        subprogram: Subprogram {
-            number: "M98 P{}",
-            name: "",
-            times: " L",
-        },
+        subprogram: Subprogram { number: "M98 P{}", name: "", times: " L" },
         words: &[words::SUBPROGRAM_END, OWN],
         ..Table::ISO
     };
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
-        Ok(Hurco {
-            shortest: setup.words.iter().any(|word| word.wrapped),
-        })
+        Ok(Hurco { shortest: setup.words.iter().any(|word| word.wrapped) })
     }
 
     fn begin(&self, engine: &mut Engine, out: &mut String) {

@@ -106,16 +106,8 @@ impl Cycles {
 impl Engine {
     /// A cycle is in force from the next point on.
     pub(crate) fn begin_cycle(&mut self, event: &Event<'_>) -> Result<(), String> {
-        let &Event::Cycle {
-            cycle: kind,
-            feed,
-            depth,
-            clearance,
-            retract,
-            step,
-            dwell,
-            pitch,
-        } = event
+        let &Event::Cycle { cycle: kind, feed, depth, clearance, retract, step, dwell, pitch } =
+            event
         else {
             return Err(event.refusal());
         };
@@ -242,9 +234,7 @@ impl Engine {
             self.motion.axes.forget_some(1 << x);
         }
         let (style, places) = (self.motion.style, self.motion.linear_decimals(2));
-        self.motion
-            .axes
-            .write_group(&mut self.motion.block, words, Group::Plane);
+        self.motion.axes.write_group(&mut self.motion.block, words, Group::Plane);
         let block = &mut self.motion.block;
         if running.bottom.set(bottom) {
             block.number("Z", bottom, places, style);

@@ -239,9 +239,9 @@ impl Engine {
             | Event::Spline { feed, .. }
             | Event::Cycle { feed, .. }
             | Event::Probe { feed, .. }
-            | Event::Position {
-                feed: Some(feed), ..
-            } if !self.motion.has(feed) => {
+            | Event::Position { feed: Some(feed), .. }
+                if !self.motion.has(feed) =>
+            {
                 return Err(format!("this control has no feed like {feed}"));
             }
             Event::Compensate(Compensation::Left { .. } | Compensation::Right { .. })
@@ -272,32 +272,14 @@ impl Engine {
                 self.motion.rapid(words, out);
             }
             Event::Rapid { words, tool } => self.motion.lead(words, leaning(tool)?, None, out),
-            Event::Arc {
-                feed,
-                centre,
-                normal,
-                turn,
-                radius,
-                words,
-                ..
-            } if !codes.arc[0].is_empty() => {
+            Event::Arc { feed, centre, normal, turn, radius, words, .. }
+                if !codes.arc[0].is_empty() =>
+            {
                 self.turn_again(out)?;
-                let arc = Arc {
-                    centre,
-                    normal,
-                    turn,
-                    radius,
-                    words,
-                };
+                let arc = Arc { centre, normal, turn, radius, words };
                 self.motion.arc(&arc, feed, out)?;
             }
-            Event::Spline {
-                feed,
-                degree,
-                knots,
-                weights,
-                points,
-            } if self.splines => {
+            Event::Spline { feed, degree, knots, weights, points } if self.splines => {
                 self.turn_again(out)?;
                 let spline = splines::Spline {
                     degree,
@@ -320,12 +302,7 @@ impl Engine {
                 fits(self.table, text)?;
                 self.line(text, out);
             }
-            Event::ToolChange {
-                number,
-                register,
-                name,
-                ..
-            } => {
+            Event::ToolChange { number, register, name, .. } => {
                 self.plane.must_be_off("a tool change")?;
                 self.change(number, &format!("T{number}"), register, name, out);
             }
@@ -338,12 +315,9 @@ impl Engine {
                 self.offset_before_position(out);
                 self.motion.turn(words, out);
             }
-            Event::Position {
-                words,
-                feed,
-                plane_first,
-                tool,
-            } => self.position(words, tool, feed, plane_first, out)?,
+            Event::Position { words, feed, plane_first, tool } => {
+                self.position(words, tool, feed, plane_first, out)?
+            }
             Event::Retract { axes, words } => self.leave(axes, words, out),
             Event::Park { axes, words } => {
                 self.motion.machine(self.table.machine, axes, words, out);
@@ -374,12 +348,7 @@ impl Engine {
                 self.line(codes.units[usize::from(self.inch)], out);
                 self.motion.forget();
             }
-            Event::Plane {
-                origin,
-                angles,
-                words,
-                ..
-            } => {
+            Event::Plane { origin, angles, words, .. } => {
                 self.offset_in_force(out);
                 self.begin_plane(origin, angles, words, out)?;
             }
@@ -434,8 +403,7 @@ impl Engine {
 
     /// The number of the length's register, for the words of the user's own.
     fn h(&self) -> String {
-        self.register
-            .map_or(String::new(), |register| register.to_string())
+        self.register.map_or(String::new(), |register| register.to_string())
     }
 
     /// The words that put the length in force.
@@ -563,9 +531,7 @@ fn counts_on(lines: &str) -> bool {
 fn names_offset(table: &Table, line: &str) -> bool {
     let words: Vec<&str> = line.split_whitespace().collect();
     (0..words.len()).any(|at| {
-        let next = words
-            .get(at + 1)
-            .map(|next| format!("{} {next}", words[at]));
+        let next = words.get(at + 1).map(|next| format!("{} {next}", words[at]));
         (table.offset.known)(words[at]) || next.is_some_and(|pair| (table.offset.known)(&pair))
     })
 }

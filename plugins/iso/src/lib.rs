@@ -97,9 +97,7 @@ pub struct Iso<C> {
 impl<C: Control> Iso<C> {
     #[inline]
     fn write_plain(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
-        let Iso {
-            control, engine, ..
-        } = self;
+        let Iso { control, engine, .. } = self;
         engine.resume(event, out)?;
         if control.write(event, engine, out)? {
             return Ok(());
@@ -144,11 +142,7 @@ impl<C: Control> Dialect for Iso<C> {
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
         let engine = Engine::new(C::TABLE, setup)?;
         let control = C::open(setup)?;
-        Ok(Iso {
-            control,
-            engine,
-            instead: None,
-        })
+        Ok(Iso { control, engine, instead: None })
     }
 
     fn format(&self) -> Format {

@@ -51,9 +51,9 @@ pub(crate) fn takes_number(line: &str) -> bool {
     let mut letters = line.trim_start().bytes();
     match letters.next() {
         None | Some(b'(' | b';' | b'%' | b':' | b'/') => false,
-        Some(b'N' | b'n' | b'O' | b'o') => !letters
-            .next()
-            .is_some_and(|next| next.is_ascii_digit() || next == b'<'),
+        Some(b'N' | b'n' | b'O' | b'o') => {
+            !letters.next().is_some_and(|next| next.is_ascii_digit() || next == b'<')
+        }
         Some(_) => true,
     }
 }
@@ -67,17 +67,9 @@ mod tests {
         for line in ["M77", " G0 X1", "#100=1", "NEXT", "$AA=1"] {
             assert!(takes_number(line), "{line}");
         }
-        for line in [
-            "",
-            "(M77)",
-            "; M77",
-            "%",
-            "/M77",
-            "N10 M77",
-            "O100 CALL",
-            "O<pocket> CALL",
-            ":1",
-        ] {
+        for line in
+            ["", "(M77)", "; M77", "%", "/M77", "N10 M77", "O100 CALL", "O<pocket> CALL", ":1"]
+        {
             assert!(!takes_number(line), "{line}");
         }
     }
@@ -92,10 +84,7 @@ mod tests {
         for line in &lines {
             assert!(line.len() <= 80 && line.starts_with("(GROESSE") && line.ends_with("E)"));
         }
-        let found: usize = lines
-            .iter()
-            .map(|line| line.matches("GROESSE").count())
-            .sum();
+        let found: usize = lines.iter().map(|line| line.matches("GROESSE").count()).sum();
         assert_eq!(found, 100);
     }
 }

@@ -53,10 +53,7 @@ mod tests {
         let mut out = String::from("G0 (A B)\n");
         let start = out.len();
         out.push_str(text);
-        let look = Look {
-            spaces,
-            leading_zeros,
-        };
+        let look = Look { spaces, leading_zeros };
         look.apply(&mut out, start);
         assert!(out.starts_with("G0 (A B)\n"));
         out.split_off(start)

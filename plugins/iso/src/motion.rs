@@ -65,11 +65,7 @@ pub struct FeedDecimals {
 pub(crate) const CENTRE: [&str; 3] = ["I", "J", "K"];
 
 /// A feed has a point but no zeros behind it: `F850.`
-const FEED_STYLE: NumberStyle = NumberStyle {
-    plus: false,
-    point: true,
-    trim: true,
-};
+const FEED_STYLE: NumberStyle = NumberStyle { plus: false, point: true, trim: true };
 
 /// An axis that is measured, and not drawn, leans by less: 0.1 degrees.
 const MEASURED: f64 = 1.8e-3;
@@ -283,10 +279,7 @@ impl Motion {
 
     /// Tool vectors take the place of rotary words from here on; with none, rotary words are written again.
     pub(crate) fn follow_vector(&mut self, decimals: Option<u8>) {
-        self.vector = decimals.map(|decimals| Vector {
-            decimals,
-            last: Modal::default(),
-        });
+        self.vector = decimals.map(|decimals| Vector { decimals, last: Modal::default() });
     }
 
     fn write_vector(&mut self, axis: [f64; 3]) {
@@ -296,8 +289,7 @@ impl Motion {
         let written = axis.map(|part| quantise(part, vector.decimals));
         if vector.last.set(written) {
             for (address, part) in CENTRE.into_iter().zip(written) {
-                self.block
-                    .number(address, part, vector.decimals, self.style);
+                self.block.number(address, part, vector.decimals, self.style);
             }
         }
     }
@@ -419,8 +411,7 @@ impl Motion {
     /// The next move writes all linear words.
     pub(crate) fn forget_linear(&mut self) {
         let linear = self.linear.into_iter().flatten();
-        self.axes
-            .forget_some(linear.fold(0, |all, place| all | 1 << place));
+        self.axes.forget_some(linear.fold(0, |all, place| all | 1 << place));
     }
 
     /// Where the axis of this word stands, if it is known.
@@ -530,9 +521,8 @@ impl Motion {
         if arc.turn.abs() > 360.0 + 1e-6 {
             return Err("this control makes one turn in a block at most".to_owned());
         }
-        let ends_at_start = [first, second]
-            .iter()
-            .all(|place| self.at[*place] == arc.words[*place]);
+        let ends_at_start =
+            [first, second].iter().all(|place| self.at[*place] == arc.words[*place]);
         if ends_at_start && (arc.turn.abs() < 180.0 || arc.radius.is_some()) {
             return Err(
                 "the arc ends where it starts: the control would make a whole circle of it, or none".to_owned(),
@@ -552,16 +542,14 @@ impl Motion {
         self.axes.write(&mut self.block, arc.words);
         match arc.radius {
             Some(radius) => {
-                self.block
-                    .number("R", radius, self.places[first], self.style);
+                self.block.number("R", radius, self.places[first], self.style);
             }
             None => {
                 let mut parts = [(across[0], first), (across[1], second)];
                 parts.sort_unstable();
                 for (part, place) in parts {
                     let offset = arc.centre[part] - self.at[place];
-                    self.block
-                        .number(CENTRE[part], offset, self.places[place], self.style);
+                    self.block.number(CENTRE[part], offset, self.places[place], self.style);
                 }
             }
         }

@@ -45,11 +45,8 @@ pub const BLOCK_STEP: OptionSpec =
 pub const TRAILING_ZEROS: OptionSpec =
     OptionSpec::flag("trailing_zeros", true, "X10.000 instead of X10.");
 /// Coolant through the tool.
-pub const COOLANT_THROUGH: OptionSpec = OptionSpec::text(
-    "coolant_through",
-    "",
-    "M codes of coolant through the tool.",
-);
+pub const COOLANT_THROUGH: OptionSpec =
+    OptionSpec::text("coolant_through", "", "M codes of coolant through the tool.");
 /// Air.
 pub const COOLANT_AIR: OptionSpec = OptionSpec::text("coolant_air", "", "M codes of air.");
 /// The end of coolant through the tool.
@@ -59,11 +56,8 @@ pub const COOLANT_THROUGH_OFF: OptionSpec = OptionSpec::text(
     "M codes that end it; empty: those of coolant_off.",
 );
 /// The end of air.
-pub const COOLANT_AIR_OFF: OptionSpec = OptionSpec::text(
-    "coolant_air_off",
-    "",
-    "M codes that end it; empty: those of coolant_off.",
-);
+pub const COOLANT_AIR_OFF: OptionSpec =
+    OptionSpec::text("coolant_air_off", "", "M codes that end it; empty: those of coolant_off.");
 /// What the program relies on.
 pub const PARAMETERS: OptionSpec = OptionSpec::flag(
     "parameters",
@@ -195,12 +189,7 @@ pub const fn decimals_inch(default: i64) -> OptionSpec {
 
 /// Decimals of rotary words.
 pub const fn rotary_decimals(default: i64) -> OptionSpec {
-    OptionSpec::integer(
-        "rotary_decimals",
-        (1, 6),
-        default,
-        "Of rotary words, degrees.",
-    )
+    OptionSpec::integer("rotary_decimals", (1, 6), default, "Of rotary words, degrees.")
 }
 
 /// Decimals of a feed a minute.

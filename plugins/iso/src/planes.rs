@@ -24,17 +24,10 @@ impl TiltedPlane {
     pub(crate) fn new(table: &Table, setup: &Setup<'_>, decimals: u8) -> Self {
         let offered = flag(setup, "planes", true);
         // An offset that turns with the part knows nothing of a head.
-        let head = setup
-            .words
-            .iter()
-            .any(|word| word.rotary && !word.carries_part);
+        let head = setup.words.iter().any(|word| word.rotary && !word.carries_part);
         let possible = !(head && matches!(table.plane, Plane::Turned { .. }));
         TiltedPlane {
-            words: if offered && possible {
-                table.plane
-            } else {
-                Plane::None
-            },
+            words: if offered && possible { table.plane } else { Plane::None },
             decimals,
             cycles: flag(setup, "cycles_in_plane", table.cycles_in_plane),
             on: false,

@@ -57,14 +57,8 @@ impl Settings {
             smoothing_off: text(setup, "smoothing_off", off),
             smoothing: None,
             waiting: None,
-            clamps: clamps
-                .map(|line| clamp(line, setup))
-                .collect::<Result<_, _>>()?,
-            axes: setup
-                .words
-                .iter()
-                .map(|word| word.name.to_owned())
-                .collect(),
+            clamps: clamps.map(|line| clamp(line, setup)).collect::<Result<_, _>>()?,
+            axes: setup.words.iter().map(|word| word.name.to_owned()).collect(),
             surface: None,
         })
     }
@@ -76,10 +70,7 @@ impl Settings {
             (table.surface.is_some(), Capabilities::SURFACE_SPEED),
             (!table.message.is_empty(), Capabilities::MESSAGE),
             (!table.probe.is_empty(), Capabilities::PROBE),
-            (
-                !table.subprogram.number.is_empty(),
-                Capabilities::SUBPROGRAM,
-            ),
+            (!table.subprogram.number.is_empty(), Capabilities::SUBPROGRAM),
         ];
         let declared = declared.into_iter().filter(|(has, _)| *has);
         declared.fold(Capabilities::NONE, |all, (_, capability)| all | capability)
@@ -129,11 +120,7 @@ impl Settings {
             false => (tolerance, 4),
         };
         let mut number = String::new();
-        let style = NumberStyle {
-            point: true,
-            trim: true,
-            plus: false,
-        };
+        let style = NumberStyle { point: true, trim: true, plus: false };
         style.write(&mut number, value, decimals);
         Ok(words.replace("{}", &number))
     }
@@ -166,14 +153,12 @@ fn clamp(line: &str, setup: &Setup<'_>) -> Result<Clamp, String> {
         axes.any(|word| word.rotary && word.name == axis)
     };
     match words.as_slice() {
-        [axis, ..] if !turns(axis) => Err(format!(
-            "clamps has the line `{line}`, and the machine has no rotary axis {axis}"
-        )),
-        [axis, on, off] => Ok(Clamp {
-            axis: (*axis).to_owned(),
-            on: (*on).to_owned(),
-            off: (*off).to_owned(),
-        }),
+        [axis, ..] if !turns(axis) => {
+            Err(format!("clamps has the line `{line}`, and the machine has no rotary axis {axis}"))
+        }
+        [axis, on, off] => {
+            Ok(Clamp { axis: (*axis).to_owned(), on: (*on).to_owned(), off: (*off).to_owned() })
+        }
         _ => Err(format!(
             "clamps has the line `{line}`, must be an axis, what clamps it and what lets it go: `C M10 M11`"
         )),
@@ -222,11 +207,9 @@ impl Engine {
             {
                 self.registers(length, radius)?;
             }
-            Event::Subprogram {
-                number,
-                times,
-                name,
-            } => self.call(number, times, name, event, out)?,
+            Event::Subprogram { number, times, name } => {
+                self.call(number, times, name, event, out)?
+            }
             Event::Probe { words, feed, .. } if !table.probe.is_empty() => {
                 if matches!(feed, Feed::InverseTime(_)) {
                     return Err("a probing move has no inverse-time feed".to_owned());

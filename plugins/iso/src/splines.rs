@@ -135,9 +135,7 @@ fn is_even(knots: &[f64], order: usize) -> bool {
     let inner = &knots[order - 1..=knots.len() - order];
     let [first, last] = [knots[0], knots[knots.len() - 1]];
     let ends = knots[..order].iter().all(|knot| *knot == first)
-        && knots[knots.len() - order..]
-            .iter()
-            .all(|knot| *knot == last);
+        && knots[knots.len() - order..].iter().all(|knot| *knot == last);
     let step = (last - first) / (inner.len() - 1) as f64;
     let mut pairs = inner.windows(2);
     ends && step > 0.0 && pairs.all(|pair| (pair[1] - pair[0] - step).abs() < 1e-9 * step)

@@ -301,9 +301,7 @@ pub struct Subprogram {
 
 /// G54 to G59 for 1 to 6.
 pub fn offset_of_six(number: u32) -> Option<String> {
-    (1..=6)
-        .contains(&number)
-        .then(|| format!("G{}", 53 + number))
+    (1..=6).contains(&number).then(|| format!("G{}", 53 + number))
 }
 
 /// G54 to G59, then `word` with 1 up to `most`: `G54.1 P1`.
@@ -317,9 +315,7 @@ pub fn offset_beyond_six(number: u32, word: &str, most: u32) -> Option<String> {
 
 /// Is it G54 to G59, or `word` with 1 to `most`?
 pub fn is_offset_beyond_six(text: &str, word: &str, most: u32) -> bool {
-    let beyond = text
-        .strip_prefix(word)
-        .and_then(|digits| digits.parse().ok());
+    let beyond = text.strip_prefix(word).and_then(|digits| digits.parse().ok());
     match beyond {
         Some(beyond) => (1..=most).contains(&beyond),
         None => (Table::ISO.offset.known)(text),
@@ -387,20 +383,12 @@ impl Table {
             word: |number| offset_of_six(number),
             at_start: false,
         },
-        length: Length {
-            on: "G43",
-            register: "H",
-            by_itself: false,
-            off: "G49",
-        },
+        length: Length { on: "G43", register: "H", by_itself: false, off: "G49" },
         tcp: Tcp::None,
         tcp_at_rapid: false,
         machine: "G53 G0",
         leave: &[Leave::Retract, Leave::Length],
-        stops: Stops {
-            spindle: true,
-            coolant: true,
-        },
+        stops: Stops { spindle: true, coolant: true },
         dwell: Dwell::Milliseconds("P"),
         change: "M6",
         cycles: CYCLES,
@@ -415,11 +403,7 @@ impl Table {
         message: "",
         units_inside: false,
         probe: "",
-        subprogram: Subprogram {
-            number: "",
-            name: "",
-            times: "",
-        },
+        subprogram: Subprogram { number: "", name: "", times: "" },
         spindle: ["M3", "M4", "M5", "M19"],
         coolant: ["M9", "M8", "M7", "", ""],
         end: "M30",

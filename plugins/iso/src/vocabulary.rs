@@ -32,10 +32,8 @@ const SHARED: &[(&str, Meaning)] = &[
 ];
 
 /// Words of controls that have cycles.
-const CYCLES: &[(&str, Meaning)] = &[
-    ("G98", Meaning::ReturnStart),
-    ("G99", Meaning::ReturnClearance),
-];
+const CYCLES: &[(&str, Meaning)] =
+    &[("G98", Meaning::ReturnStart), ("G99", Meaning::ReturnClearance)];
 
 /// Meanings of the words of a list, in its order.
 fn each<'a>(
@@ -52,9 +50,8 @@ impl Engine {
         let table = self.table;
         let codes = &self.motion.codes;
         let own = table.words.iter().flat_map(|group| group.iter());
-        let mut words: Vec<(Cow<'static, str>, Meaning)> = own
-            .map(|(word, meaning)| (Cow::Borrowed(*word), *meaning))
-            .collect();
+        let mut words: Vec<(Cow<'static, str>, Meaning)> =
+            own.map(|(word, meaning)| (Cow::Borrowed(*word), *meaning)).collect();
         let mut add = |word: &str, meaning: Meaning| {
             // Without the number behind it, nor the name that it is the value of: `G169 HL={h}`.
             let word = word.split('{').next().unwrap_or("").trim();
@@ -81,21 +78,12 @@ impl Engine {
             .chain(each(&codes.feed, &feeds))
             .chain(each(
                 &codes.compensation,
-                &[
-                    M::CompensationOff,
-                    M::CompensationLeft,
-                    M::CompensationRight,
-                ],
+                &[M::CompensationOff, M::CompensationLeft, M::CompensationRight],
             ))
             .chain(each(&codes.stop, &[M::Stop, M::OptionalStop]))
             .chain(each(
                 &table.spindle,
-                &[
-                    M::SpindleClockwise,
-                    M::SpindleCounterClockwise,
-                    M::SpindleOff,
-                    M::SpindleOrient,
-                ],
+                &[M::SpindleClockwise, M::SpindleCounterClockwise, M::SpindleOff, M::SpindleOrient],
             ));
         for (word, meaning) in listed {
             add(word, meaning);
@@ -156,10 +144,9 @@ impl Engine {
         match table.rigid {
             Rigid::Always => {}
             Rigid::Ahead(word) | Rigid::Alone(word) => add(word, M::Nothing),
-            Rigid::Beside(word) => add(
-                word.trim_end_matches(|c: char| c.is_ascii_digit()),
-                M::Nothing,
-            ),
+            Rigid::Beside(word) => {
+                add(word.trim_end_matches(|c: char| c.is_ascii_digit()), M::Nothing)
+            }
             Rigid::Codes([right, left]) => {
                 add(right, M::CycleTap);
                 add(left, M::CycleTapLeft);
@@ -167,17 +154,13 @@ impl Engine {
             Rigid::Move(word) => add(word, M::ThreadAndBack),
         }
         if !table.cycles.is_empty() {
-            CYCLES
-                .iter()
-                .for_each(|(word, meaning)| add(word, *meaning));
+            CYCLES.iter().for_each(|(word, meaning)| add(word, *meaning));
         }
         add(table.probe, M::Probe);
         add(first(table.subprogram.number), M::Subprogram);
         add(table.end, M::End);
         self.own_words(&mut add);
-        SHARED
-            .iter()
-            .for_each(|(word, meaning)| add(word, *meaning));
+        SHARED.iter().for_each(|(word, meaning)| add(word, *meaning));
         // What changes the tool may be what stops the program: M0 of a machine without a changer.
         for word in self.change.split_whitespace() {
             let change = (Cow::Owned(word.to_owned()), M::ToolChange);
@@ -186,9 +169,7 @@ impl Engine {
             }
         }
         let words = words.into_iter();
-        words
-            .map(|(word, meaning)| VocabularyWord { word, meaning })
-            .collect()
+        words.map(|(word, meaning)| VocabularyWord { word, meaning }).collect()
     }
 }
 

@@ -5,17 +5,12 @@
 use post_plugin::Meaning;
 
 /// Reference positions.
-pub const RETURNS: &[(&str, Meaning)] = &[
-    ("G28", Meaning::ReferenceReturn),
-    ("G30", Meaning::OtherReferenceReturn),
-];
+pub const RETURNS: &[(&str, Meaning)] =
+    &[("G28", Meaning::ReferenceReturn), ("G30", Meaning::OtherReferenceReturn)];
 
 /// What words count from: the zero shifted, the position called something else, tables of the control.
-pub const SHIFTS: &[(&str, Meaning)] = &[
-    ("G52", Meaning::LocalOffset),
-    ("G92", Meaning::SetPosition),
-    ("G10", Meaning::TableData),
-];
+pub const SHIFTS: &[(&str, Meaning)] =
+    &[("G52", Meaning::LocalOffset), ("G92", Meaning::SetPosition), ("G10", Meaning::TableData)];
 
 /// Coordinates that are turned, multiplied or mirrored.
 pub const FRAMES: &[(&str, Meaning)] = &[
@@ -39,11 +34,8 @@ pub const POLAR: &[(&str, Meaning)] = &[
 ];
 
 /// How closely the path is kept: stops at the ends of blocks, and none.
-pub const STOPS: &[(&str, Meaning)] = &[
-    ("G9", Meaning::ExactStop),
-    ("G61", Meaning::SmoothingOff),
-    ("G64", Meaning::Smoothing),
-];
+pub const STOPS: &[(&str, Meaning)] =
+    &[("G9", Meaning::ExactStop), ("G61", Meaning::SmoothingOff), ("G64", Meaning::Smoothing)];
 
 /// The end of a subprogram.
 pub const SUBPROGRAM_END: &[(&str, Meaning)] = &[("M99", Meaning::SubprogramEnd)];

@@ -33,17 +33,9 @@ impl Control for Whole {
         percent: false,
         tcp: Tcp::Length("G43.4"),
         vector: "G43.5",
-        plane: Plane::Euler {
-            on: "G68.2",
-            turn: "G53.1",
-            off: "G69",
-        },
+        plane: Plane::Euler { on: "G68.2", turn: "G53.1", off: "G69" },
         rigid: Rigid::Ahead("M29"),
-        splines: Splines::Knots {
-            code: "G6.2",
-            begin: "G5 P10000",
-            end: "G5 P0",
-        },
+        splines: Splines::Knots { code: "G6.2", begin: "G5 P10000", end: "G5 P0" },
         units_inside: true,
         ..Table::ISO
     };
@@ -64,15 +56,7 @@ fn whole() -> Bench {
 
 /// The lines of `events` behind a tool that stands on the face of the part.
 fn behind(bench: &Bench, events: &[Event<'_>]) -> Result<String, String> {
-    let ahead = [
-        Event::Start,
-        TOP,
-        TOOL,
-        turning(3000.0),
-        turn(OVER),
-        at(OVER),
-        cut(FACE, 850.0),
-    ];
+    let ahead = [Event::Start, TOP, TOOL, turning(3000.0), turn(OVER), at(OVER), cut(FACE, 850.0)];
     let before = bench.write(&ahead)?;
     let all = bench.write(&[&ahead[..], events].concat())?;
     Ok(all.strip_prefix(&before).unwrap().to_owned())
@@ -92,39 +76,24 @@ const QUARTER: &[f64] = &[20.0, -10.0, -2.0, 0.0, 0.0];
 
 #[test]
 fn arcs_that_the_control_would_read_otherwise_are_refused() {
-    assert_eq!(
-        written(&[arc(CENTRE, UP, 90.0, QUARTER)]),
-        "G3 X20.000 Y-10.000 I0.000 J10.000\n"
-    );
+    assert_eq!(written(&[arc(CENTRE, UP, 90.0, QUARTER)]), "G3 X20.000 Y-10.000 I0.000 J10.000\n");
     // The same arc, told by the other side of its plane.
     assert_eq!(
         written(&[arc(CENTRE, [0.0, 0.0, -1.0], -90.0, QUARTER)]),
         "G3 X20.000 Y-10.000 I0.000 J10.000\n"
     );
     for (wrong, why) in [
-        (
-            arc(CENTRE, [0.0, 0.6, 0.8], 90.0, QUARTER),
-            "about X, Y and Z alone",
-        ),
-        (
-            arc(CENTRE, UP, 450.0, QUARTER),
-            "one turn in a block at most",
-        ),
+        (arc(CENTRE, [0.0, 0.6, 0.8], 90.0, QUARTER), "about X, Y and Z alone"),
+        (arc(CENTRE, UP, 450.0, QUARTER), "one turn in a block at most"),
         (arc(CENTRE, UP, 0.01, FACE), "a whole circle of it"),
     ] {
         assert!(refused(&[wrong]).contains(why), "{why}");
     }
     let there = refused(&[TOP, arc(CENTRE, UP, 90.0, QUARTER)]);
-    assert!(
-        there.contains("nobody knows where the arc starts"),
-        "{there}"
-    );
+    assert!(there.contains("nobody knows where the arc starts"), "{there}");
     let left = Event::Compensate(post_plugin::Compensation::Left { register: 1 });
     let led = refused(&[left, arc(CENTRE, UP, 90.0, QUARTER)]);
-    assert!(
-        led.contains("begins and ends with a straight move"),
-        "{led}"
-    );
+    assert!(led.contains("begins and ends with a straight move"), "{led}");
 }
 
 #[test]
@@ -148,23 +117,12 @@ fn every_arc_under_inverse_time_has_its_feed() {
 
 const HOLE: &[f64] = &[0.0, 0.0, -2.0, 0.0, 0.0];
 const ABOVE: &[f64] = &[0.0, 0.0, 8.0, 0.0, 0.0];
-const POINT: Event<'_> = Event::CyclePoint {
-    tool: None,
-    words: HOLE,
-};
+const POINT: Event<'_> = Event::CyclePoint { tool: None, words: HOLE };
 
 #[test]
 fn a_cycle_must_begin_where_it_returns_to() {
-    let text = written(&[
-        rapid(ABOVE),
-        cycle(Cycle::Drill, 10.0),
-        POINT,
-        Event::CycleOff,
-    ]);
-    assert_eq!(
-        text,
-        "G0 X0.000 Y0.000 Z8.000\nG98 G81 X0.000 Y0.000 Z-14.500 R0.000 F120.\nG80\n"
-    );
+    let text = written(&[rapid(ABOVE), cycle(Cycle::Drill, 10.0), POINT, Event::CycleOff]);
+    assert_eq!(text, "G0 X0.000 Y0.000 Z8.000\nG98 G81 X0.000 Y0.000 Z-14.500 R0.000 F120.\nG80\n");
     let low = refused(&[cycle(Cycle::Drill, 10.0), POINT]);
     assert!(low.contains("begins at Z -2"), "{low}");
     assert!(refused(&[POINT]).contains("none is in force"));
@@ -197,10 +155,7 @@ fn a_cycle_of_another_kind_behind_a_line_of_the_users_own_is_whole() {
         Event::CycleOff,
     ]);
     let block = "G98 G81 X0.000 Y0.000 Z-14.500 R0.000 F120.";
-    assert!(
-        text.contains(&format!("\n{block}\nM77\nG94 {block}\nG80\n")),
-        "{text}"
-    );
+    assert!(text.contains(&format!("\n{block}\nM77\nG94 {block}\nG80\n")), "{text}");
 }
 
 #[test]
@@ -214,18 +169,8 @@ fn a_thread_is_told_by_its_pitch() {
         }
     };
     set(&mut tap, Feed::PerMinute(422.9));
-    let slow = Event::Spindle(Spindle::On {
-        rpm: 333.0,
-        sense: SpindleSense::Clockwise,
-    });
-    let text = written(&[
-        slow,
-        rapid(ABOVE),
-        tap,
-        POINT,
-        Event::CycleOff,
-        cut(FACE, 850.0),
-    ]);
+    let slow = Event::Spindle(Spindle::On { rpm: 333.0, sense: SpindleSense::Clockwise });
+    let text = written(&[slow, rapid(ABOVE), tap, POINT, Event::CycleOff, cut(FACE, 850.0)]);
     assert_eq!(
         text,
         "S333 M3\nG0 X0.000 Y0.000 Z8.000\nM29 S333\n\
@@ -234,15 +179,9 @@ fn a_thread_is_told_by_its_pitch() {
     );
     set(&mut tap, Feed::PerRevolution(1.27));
     let text = written(&[slow, rapid(ABOVE), tap, POINT, Event::CycleOff]);
-    assert!(
-        text.contains("G95 G98 G84 X0.000 Y0.000 Z-14.500 R0.000 F1.27\n"),
-        "{text}"
-    );
+    assert!(text.contains("G95 G98 G84 X0.000 Y0.000 Z-14.500 R0.000 F1.27\n"), "{text}");
     let floating = whole().with("tapping", Value::Text("floating"));
-    let text = behind(
-        &floating,
-        &[slow, rapid(ABOVE), tap, POINT, Event::CycleOff],
-    );
+    let text = behind(&floating, &[slow, rapid(ABOVE), tap, POINT, Event::CycleOff]);
     assert!(!text.unwrap().contains("M29"));
 }
 
@@ -251,13 +190,7 @@ fn nothing_changes_inside_a_tilted_plane() {
     let tilted = plane([0.0; 3], [0.0, 30.0, 0.0], OVER);
     for (event, what) in [
         (TOOL, "a tool change"),
-        (
-            Event::WorkOffset {
-                number: 2,
-                name: "",
-            },
-            "another work offset",
-        ),
+        (Event::WorkOffset { number: 2, name: "" }, "another work offset"),
         (tilted, "a tilted plane"),
     ] {
         let why = refused(&[TOP, turn(OVER), tilted, event]);
@@ -338,14 +271,9 @@ fn the_printed_angles_turn_the_part_into_the_tool_axis() {
 
 #[test]
 fn smoothing_waits_until_the_length_is_off_and_keeps_the_tolerance() {
-    let bench = whole().with(
-        "smoothing",
-        Value::Text("0.02 G5.1 Q1 R5\n0 G5.1 Q1 R1\n0.5 G5.1 Q1 R9"),
-    );
-    let smoothing = |tolerance| Event::Smoothing {
-        tolerance,
-        axis_tolerance: None,
-    };
+    let bench =
+        whole().with("smoothing", Value::Text("0.02 G5.1 Q1 R5\n0 G5.1 Q1 R1\n0.5 G5.1 Q1 R9"));
+    let smoothing = |tolerance| Event::Smoothing { tolerance, axis_tolerance: None };
     let text = behind(
         &bench,
         &[
@@ -367,36 +295,20 @@ fn smoothing_waits_until_the_length_is_off_and_keeps_the_tolerance() {
          G43 H1 Z50.000\nG5.1 Q0\nG53 G0 Z500.000\nG49\nG5.1 Q0\nG5.1 Q1 R1\nG5.1 Q0\nM5\nM9\nM30\n"
     );
     let coarse = whole().with("smoothing", Value::Text("0.1 G5.1 Q1"));
-    assert!(
-        behind(&coarse, &[smoothing(0.01)])
-            .unwrap_err()
-            .contains("within 0.01 mm")
-    );
+    assert!(behind(&coarse, &[smoothing(0.01)]).unwrap_err().contains("within 0.01 mm"));
     let slip = whole().with("smoothing", Value::Text("G5.1 Q1"));
-    assert!(
-        slip.write(&[])
-            .unwrap_err()
-            .contains("smoothing has the line")
-    );
+    assert!(slip.write(&[]).unwrap_err().contains("smoothing has the line"));
 }
 
 #[test]
 fn clamps_registers_and_units() {
     let bench = whole().with("clamps", Value::Text("A M20 M21\nC M10 M11"));
     let clamp = |word, on| Event::Clamp { word, on };
-    assert_eq!(
-        behind(&bench, &[clamp(4, true), clamp(3, false)]).unwrap(),
-        "M10\nM21\n"
-    );
+    assert_eq!(behind(&bench, &[clamp(4, true), clamp(3, false)]).unwrap(), "M10\nM21\n");
     // An axis without a line has no clamp.
     assert_eq!(behind(&bench, &[clamp(0, true)]).unwrap(), "");
     let stranger = whole().with("clamps", Value::Text("Q M10 M11"));
-    assert!(
-        stranger
-            .write(&[])
-            .unwrap_err()
-            .contains("no rotary axis Q")
-    );
+    assert!(stranger.write(&[]).unwrap_err().contains("no rotary axis Q"));
     let slip = whole().with("clamps", Value::Text("C M10"));
     assert!(slip.write(&[]).unwrap_err().contains("clamps has the line"));
 
@@ -407,12 +319,7 @@ fn clamps_registers_and_units() {
     );
     let left = Event::Compensate(post_plugin::Compensation::Left { register: 1 });
     assert_eq!(
-        written(&[
-            left,
-            cut(OVER, 850.0),
-            registers(None, Some(7)),
-            cut(QUARTER, 850.0)
-        ]),
+        written(&[left, cut(OVER, 850.0), registers(None, Some(7)), cut(QUARTER, 850.0)]),
         "G41 D1 Z50.000\nD7 X20.000 Y-10.000 Z-2.000\n"
     );
     let kept = behind(&whole().tcp(), &[registers(Some(31), None)]);
@@ -426,22 +333,10 @@ fn clamps_registers_and_units() {
 #[test]
 fn the_tool_vector_takes_the_place_of_rotary_words() {
     let bench = whole().tcp().with("tool_vector", Value::Flag(true));
-    let leaning = |axis| {
-        Some(ToolPose {
-            tip: [0.0; 3],
-            axis,
-        })
-    };
+    let leaning = |axis| Some(ToolPose { tip: [0.0; 3], axis });
     let to = |words, axis, feed| match feed {
-        Some(feed) => Event::Linear {
-            tool: leaning(axis),
-            feed: Feed::PerMinute(feed),
-            words,
-        },
-        None => Event::Rapid {
-            tool: leaning(axis),
-            words,
-        },
+        Some(feed) => Event::Linear { tool: leaning(axis), feed: Feed::PerMinute(feed), words },
+        None => Event::Rapid { tool: leaning(axis), words },
     };
     const LEANING: &[f64] = &[10.0, -20.0, -2.0, 0.0, 90.0];
     let text = bench.write(&[
@@ -476,9 +371,7 @@ fn the_tool_vector_takes_the_place_of_rotary_words() {
 #[test]
 fn lines_of_the_users_own_stand_for_an_event() {
     let text = written(&[
-        Event::Instead {
-            text: "G28 G91 Z0.\nG90",
-        },
+        Event::Instead { text: "G28 G91 Z0.\nG90" },
         TOP,
         Event::Instead { text: "M6 T7" },
         Event::tool_change(7, 17, "Drill"),
@@ -500,15 +393,9 @@ fn lines_of_the_users_own_stand_for_an_event() {
 
 #[test]
 fn blocks_look_as_the_options_say() {
-    let tools = whole()
-        .with("block_numbers", Value::Text("tools"))
-        .with("block_step", Value::Integer(100));
-    let text = tools.write(&[
-        Event::Start,
-        TOOL,
-        turning(9.0),
-        Event::tool_change(2, 2, ""),
-    ]);
+    let tools =
+        whole().with("block_numbers", Value::Text("tools")).with("block_step", Value::Integer(100));
+    let text = tools.write(&[Event::Start, TOOL, turning(9.0), Event::tool_change(2, 2, "")]);
     let text = text.unwrap();
     assert!(text.contains("\nN100 T1 M6\nS9 M3\nN200 T2 M6\n"), "{text}");
 
@@ -522,11 +409,7 @@ fn blocks_look_as_the_options_say() {
         "G1 X 5\nG00X10.0Y-20.000Z50.000A0.0000C0.000\n"
     );
     let slip = whole().with("word_decimals", Value::Text("Q=4"));
-    assert!(
-        slip.write(&[])
-            .unwrap_err()
-            .contains("word_decimals has `Q=4`")
-    );
+    assert!(slip.write(&[]).unwrap_err().contains("word_decimals has `Q=4`"));
 }
 
 #[test]
@@ -534,14 +417,7 @@ fn a_program_can_be_started_behind_each_tool_change() {
     let bench = whole().with("restart", Value::Flag(true));
     let text = behind(
         &bench,
-        &[
-            TOP,
-            Event::tool_change(2, 2, ""),
-            turning(9.0),
-            turn(OVER),
-            at(OVER),
-            cut(FACE, 850.0),
-        ],
+        &[TOP, Event::tool_change(2, 2, ""), turning(9.0), turn(OVER), at(OVER), cut(FACE, 850.0)],
     );
     assert_eq!(
         text.unwrap(),
@@ -559,11 +435,7 @@ fn what_it_declares_follows_from_table_and_options() {
             depth: name == "Z",
             ..post_plugin::AxisWord::default()
         });
-        let setup = Setup {
-            words: &words,
-            options,
-            ..Setup::default()
-        };
+        let setup = Setup { words: &words, options, ..Setup::default() };
         let mut opened = linked().open(&setup).unwrap().unwrap();
         opened.format().unwrap().1
     };
@@ -572,11 +444,7 @@ fn what_it_declares_follows_from_table_and_options() {
     for (option, value, capability) in [
         ("splines", Value::Flag(true), Capabilities::SPLINE),
         ("tool_vector", Value::Flag(true), Capabilities::TOOL_VECTOR),
-        (
-            "bore_shift",
-            Value::Number(0.3),
-            Capabilities::CYCLE_BORE_FINE,
-        ),
+        ("bore_shift", Value::Number(0.3), Capabilities::CYCLE_BORE_FINE),
         ("clamps", Value::Text("C M10 M11"), Capabilities::CLAMP),
         ("smoothing", Value::Text("0 G61.1"), Capabilities::SMOOTHING),
     ] {

@@ -14,17 +14,9 @@ struct Small;
 impl Control for Small {
     const TABLE: &'static Table = &Table {
         percent: false,
-        codes: Codes {
-            feed: ["G94", "", ""],
-            compensation: ["G40", "", ""],
-            ..Codes::ISO
-        },
+        codes: Codes { feed: ["G94", "", ""], compensation: ["G40", "", ""], ..Codes::ISO },
         safe: "G17 G90 G94",
-        length: Length {
-            on: "",
-            off: "",
-            ..Table::ISO.length
-        },
+        length: Length { on: "", off: "", ..Table::ISO.length },
         leave: &[Leave::Retract],
         dwell: Dwell::Seconds("P", 2),
         change: "",
@@ -41,15 +33,8 @@ struct Ordered;
 
 impl Control for Ordered {
     const TABLE: &'static Table = &Table {
-        length: Length {
-            on: "G56",
-            ..Table::ISO.length
-        },
-        tcp: Tcp::Blocks {
-            on: "M128",
-            off: "M129",
-            length_first: true,
-        },
+        length: Length { on: "G56", ..Table::ISO.length },
+        tcp: Tcp::Blocks { on: "M128", off: "M129", length_first: true },
         leave: &[Leave::Tcp, Leave::Length, Leave::Retract],
         dwell: Dwell::Seconds("F", 2),
         ..Table::ISO

@@ -20,28 +20,12 @@ const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// An arc by its centre.
 pub const fn arc(centre: [f64; 3], normal: [f64; 3], turn: f64, words: &[f64]) -> Event<'_> {
-    Event::Arc {
-        tool: None,
-        feed: FEED,
-        centre,
-        normal,
-        turn,
-        radius: None,
-        words,
-    }
+    Event::Arc { tool: None, feed: FEED, centre, normal, turn, radius: None, words }
 }
 
 /// The same in inverse time, or by its radius.
 const fn arc_by(feed: Feed, radius: Option<f64>, turn: f64, words: &[f64]) -> Event<'_> {
-    Event::Arc {
-        tool: None,
-        feed,
-        centre: [10.0, -20.0, -2.0],
-        normal: UP,
-        turn,
-        radius,
-        words,
-    }
+    Event::Arc { tool: None, feed, centre: [10.0, -20.0, -2.0], normal: UP, turn, radius, words }
 }
 
 /// A cycle 12.5 deep, from 2 above the point.
@@ -68,11 +52,8 @@ const fn point(words: &[f64]) -> Event<'_> {
     Event::CyclePoint { tool: None, words }
 }
 
-const HOLES: [&[f64]; 3] = [
-    &[0.0, 0.0, -2.0, 0.0, 0.0],
-    &[25.0, 0.0, -2.0, 0.0, 0.0],
-    &[25.0, 30.0, -4.5, 0.0, 0.0],
-];
+const HOLES: [&[f64]; 3] =
+    [&[0.0, 0.0, -2.0, 0.0, 0.0], &[25.0, 0.0, -2.0, 0.0, 0.0], &[25.0, 30.0, -4.5, 0.0, 0.0]];
 /// Above the first of them, 10 over its point; and above the last.
 const FIRST: &[f64] = &[0.0, 0.0, 8.0, 0.0, 0.0];
 
@@ -81,9 +62,7 @@ pub fn three_axes() -> Vec<Event<'static>> {
     let mut events = vec![
         Event::Start,
         TOP,
-        Event::Operation {
-            name: "Tasche Ø20"
-        },
+        Event::Operation { name: "Tasche Ø20" },
         TOOL,
         turning(3000.0),
         Event::Coolant(Coolant::Flood),
@@ -91,35 +70,15 @@ pub fn three_axes() -> Vec<Event<'static>> {
         at(OVER),
         cut(FACE, 850.0),
         // A quarter to the left, back to the right by its radius, and the long way by a negative one.
-        arc(
-            [10.0, -10.0, -2.0],
-            UP,
-            90.0,
-            &[20.0, -10.0, -2.0, 0.0, 0.0],
-        ),
+        arc([10.0, -10.0, -2.0], UP, 90.0, &[20.0, -10.0, -2.0, 0.0, 0.0]),
         arc_by(FEED, Some(10.0), -90.0, FACE),
         arc_by(FEED, Some(-10.0), 270.0, &[0.0, -10.0, -2.0, 0.0, 0.0]),
         // A whole circle, and a helix down.
-        arc(
-            [5.0, -10.0, -2.0],
-            UP,
-            -360.0,
-            &[0.0, -10.0, -2.0, 0.0, 0.0],
-        ),
+        arc([5.0, -10.0, -2.0], UP, -360.0, &[0.0, -10.0, -2.0, 0.0, 0.0]),
         arc([5.0, -10.0, -2.0], UP, 360.0, &[0.0, -10.0, -5.0, 0.0, 0.0]),
         // Half circles about Y and about -X.
-        arc(
-            [5.0, -10.0, -5.0],
-            [0.0, 1.0, 0.0],
-            180.0,
-            &[10.0, -10.0, -5.0, 0.0, 0.0],
-        ),
-        arc(
-            [10.0, 0.0, -5.0],
-            [-1.0, 0.0, 0.0],
-            180.0,
-            &[10.0, 10.0, -5.0, 0.0, 0.0],
-        ),
+        arc([5.0, -10.0, -5.0], [0.0, 1.0, 0.0], 180.0, &[10.0, -10.0, -5.0, 0.0, 0.0]),
+        arc([10.0, 0.0, -5.0], [-1.0, 0.0, 0.0], 180.0, &[10.0, 10.0, -5.0, 0.0, 0.0]),
         Event::Compensate(Compensation::Left { register: 21 }),
         cut(&[20.0, 10.0, -5.0, 0.0, 0.0], 850.0),
         arc([20.0, 20.0, -5.0], UP, 90.0, &[30.0, 20.0, -5.0, 0.0, 0.0]),
@@ -174,13 +133,7 @@ pub const ANGLES: [f64; 3] = [45.0, 30.0, -90.0];
 /// A plane, with its frame by Euler angles.
 pub fn plane<'a>(origin: [f64; 3], angles: [f64; 3], words: &'a [f64]) -> Event<'a> {
     let frame = frame(PlaneAngles::Zxz, angles);
-    Event::Plane {
-        origin,
-        x: frame[0],
-        z: frame[2],
-        angles,
-        words,
-    }
+    Event::Plane { origin, x: frame[0], z: frame[2], angles, words }
 }
 
 /// The axes of a plane's frame, by three turns one behind the other, each about an axis of the frame before it.
@@ -259,18 +212,12 @@ pub fn tools() -> Vec<Event<'static>> {
         Event::Preselect { number: 2 },
         turning(3000.0),
         Event::Coolant(Coolant::Flood),
-        Event::Smoothing {
-            tolerance: 0.05,
-            axis_tolerance: None,
-        },
+        Event::Smoothing { tolerance: 0.05, axis_tolerance: None },
         turn(OVER),
         Event::Clamp { word: 4, on: true },
         at(OVER),
         cut(FACE, 850.0),
-        Event::Offsets {
-            length: Some(31),
-            radius: None,
-        },
+        Event::Offsets { length: Some(31), radius: None },
         rapid(OVER),
         Event::Dwell { seconds: 0.75 },
         Event::OptionalStop,
@@ -278,10 +225,7 @@ pub fn tools() -> Vec<Event<'static>> {
         Event::SmoothingOff,
         Event::Clamp { word: 4, on: false },
         Event::OperationEnd,
-        Event::WorkOffset {
-            number: 2,
-            name: "G55",
-        },
+        Event::WorkOffset { number: 2, name: "G55" },
         turn(OVER),
         at(OVER),
         cut(FACE, 850.0),
@@ -289,34 +233,18 @@ pub fn tools() -> Vec<Event<'static>> {
         Event::Spindle(Spindle::Off),
         Event::Coolant(Coolant::Off),
         Event::tool_change(2, 2, "Bohrer"),
-        Event::Message {
-            text: "Späne entfernen!",
-        },
+        Event::Message { text: "Späne entfernen!" },
         Event::Stop,
-        Event::SurfaceSpeed {
-            speed: 120.0,
-            most: Some(6000.0),
-            sense: SpindleSense::Clockwise,
-        },
+        Event::SurfaceSpeed { speed: 120.0, most: Some(6000.0), sense: SpindleSense::Clockwise },
         turn(OVER),
         at(OVER),
         Event::Stop,
-        Event::Probe {
-            tool: None,
-            feed: Feed::PerMinute(100.0),
-            words: FACE,
-        },
+        Event::Probe { tool: None, feed: Feed::PerMinute(100.0), words: FACE },
         rapid(OVER),
         turning(900.0),
-        Event::Subprogram {
-            number: Some(1234),
-            times: 3,
-            name: "",
-        },
+        Event::Subprogram { number: Some(1234), times: 3, name: "" },
         rapid(OVER),
-        Event::Instead {
-            text: "G91 G28 Z0.\nG90",
-        },
+        Event::Instead { text: "G91 G28 Z0.\nG90" },
         TOP,
         Event::tool_change(3, 3, "Gewinde"),
         turning(400.0),

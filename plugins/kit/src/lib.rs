@@ -56,13 +56,7 @@ const fn word(name: &str, rotary: bool, depth: bool) -> AxisWord<'_> {
 impl Bench {
     /// Millimetres, axis positions, every option at its default.
     pub fn of(plugin: Linked) -> Self {
-        Self {
-            plugin,
-            units: Units::Millimetre,
-            tcp: false,
-            axes: WORDS.len(),
-            given: Vec::new(),
-        }
+        Self { plugin, units: Units::Millimetre, tcp: false, axes: WORDS.len(), given: Vec::new() }
     }
 
     /// An inch program.
@@ -224,15 +218,10 @@ pub const P4: &[f64] = &[15.0, -20.5, 2.0, -30.125, 46.0];
 pub const TOOL: Event<'static> = Event::tool_change(1, 1, "Ball Ø10 (R5)");
 
 /// Clear of the part: the depth axis at its end, machine coordinates.
-pub const TOP: Event<'static> = Event::Retract {
-    axes: 0b100,
-    words: &[0.0, 0.0, 500.0, 0.0, 0.0],
-};
+pub const TOP: Event<'static> = Event::Retract { axes: 0b100, words: &[0.0, 0.0, 500.0, 0.0, 0.0] };
 /// The rotary axes at zero and the plane aside, machine coordinates.
-pub const ASIDE: Event<'static> = Event::Park {
-    axes: 0b11011,
-    words: &[-250.0, 200.0, 0.0, 0.0, 0.0],
-};
+pub const ASIDE: Event<'static> =
+    Event::Park { axes: 0b11011, words: &[-250.0, 200.0, 0.0, 0.0, 0.0] };
 
 /// The turn to a first position.
 pub const fn turn(words: &[f64]) -> Event<'_> {
@@ -271,9 +260,7 @@ pub fn job(timed: bool) -> Vec<Event<'static>> {
     let mut events = vec![
         Event::Start,
         TOP,
-        Event::Comment {
-            text: "Schlichten (fein) 100%",
-        },
+        Event::Comment { text: "Schlichten (fein) 100%" },
         TOOL,
         turning(3000.0),
         Event::Coolant(Coolant::Flood),

@@ -8,19 +8,13 @@ pub const ORDER: &[(&str, &str)] = &[
     ("Start", "first, once"),
     ("Comment", "anywhere"),
     ("Literal", "anywhere but in a cycle"),
-    (
-        "ToolChange",
-        "away, spindle and coolant off; no plane, no cycle, no compensation",
-    ),
+    ("ToolChange", "away, spindle and coolant off; no plane, no cycle, no compensation"),
     ("Preselect", "anywhere but in a cycle"),
     ("Spindle", "anywhere but in a cycle"),
     ("Coolant", "anywhere but in a cycle"),
     ("Compensate", "anywhere but in a cycle"),
     ("Position", "away: ends it"),
-    (
-        "Retract",
-        "at the part, or behind the start, a tool change or a `Word`; not in a cycle",
-    ),
+    ("Retract", "at the part, or behind the start, a tool change or a `Word`; not in a cycle"),
     ("Rapid", "at the part, not in a cycle"),
     ("Linear", "at the part, not in a cycle"),
     ("Dwell", "anywhere but in a cycle"),
@@ -80,8 +74,7 @@ impl Order {
     /// # Errors
     /// What it may not come before or behind, in a sentence.
     pub fn next(&mut self, event: &Event<'_>) -> Result<(), String> {
-        self.check(event)
-            .map_err(|lack| format!("{} comes {lack}", event.name()))?;
+        self.check(event).map_err(|lack| format!("{} comes {lack}", event.name()))?;
         self.take(event);
         Ok(())
     }
@@ -103,10 +96,7 @@ impl Order {
                 | Event::Comment { .. }
                 | Event::Instead { .. }
         );
-        unless(
-            self.cycle.is_some() && !of_cycle,
-            "while a cycle is in force",
-        )?;
+        unless(self.cycle.is_some() && !of_cycle, "while a cycle is in force")?;
         match event {
             Event::ToolChange { .. } => {
                 away()?;
@@ -215,10 +205,7 @@ mod tests {
         dwell: None,
         pitch: None,
     };
-    const POINT: Event<'static> = Event::CyclePoint {
-        tool: None,
-        words: P2,
-    };
+    const POINT: Event<'static> = Event::CyclePoint { tool: None, words: P2 };
     const PLANE: Event<'static> = Event::Plane {
         origin: [0.0; 3],
         x: [1.0, 0.0, 0.0],
@@ -242,25 +229,8 @@ mod tests {
     #[test]
     fn a_program_in_order_passes() {
         let hole = [CYCLE, POINT, CYCLE, POINT, POINT, Event::CycleOff];
-        let plane = [
-            TOP,
-            turn(P1),
-            PLANE,
-            at(P1),
-            CYCLE,
-            POINT,
-            Event::CycleOff,
-            TOP,
-        ];
-        let mut events = vec![
-            Event::Start,
-            TOP,
-            TOOL,
-            turning(3000.0),
-            TOP,
-            turn(P1),
-            at(P1),
-        ];
+        let plane = [TOP, turn(P1), PLANE, at(P1), CYCLE, POINT, Event::CycleOff, TOP];
+        let mut events = vec![Event::Start, TOP, TOOL, turning(3000.0), TOP, turn(P1), at(P1)];
         events.extend(hole);
         events.extend(plane);
         events.extend([Event::PlaneOff, ASIDE, Event::End]);
@@ -276,66 +246,29 @@ mod tests {
             (&[Event::Start] as &[Event<'_>], "Start comes a second time"),
             (&[TOOL], "ToolChange comes at the part, before a retract"),
             (&[on, TOP, TOOL], "ToolChange comes while the spindle turns"),
-            (
-                &[Event::Coolant(Coolant::Mist), TOP, TOOL],
-                "while the coolant flows",
-            ),
-            (
-                &[at(P1)],
-                "Position comes without a retract since the last move",
-            ),
+            (&[Event::Coolant(Coolant::Mist), TOP, TOOL], "while the coolant flows"),
+            (&[at(P1)], "Position comes without a retract since the last move"),
             (&[TOP, rapid(P1)], "Rapid comes before a first position"),
             (&[TOP, TOP], "Retract comes twice without a move between"),
             (&[turn(P1)], "Turn comes at the part, before a retract"),
             (&[TOP, PLANE, ASIDE], "Park comes inside a tilted plane"),
-            (
-                &[TOP, PLANE, TOOL],
-                "ToolChange comes inside a tilted plane",
-            ),
+            (&[TOP, PLANE, TOOL], "ToolChange comes inside a tilted plane"),
             (&[TOP, PLANE, PLANE], "Plane comes inside another plane"),
-            (
-                &[
-                    TOP,
-                    PLANE,
-                    Event::WorkOffset {
-                        number: 2,
-                        name: "",
-                    },
-                ],
-                "WorkOffset comes inside",
-            ),
+            (&[TOP, PLANE, Event::WorkOffset { number: 2, name: "" }], "WorkOffset comes inside"),
             (&[PLANE], "Plane comes at the part"),
             (&[TOP, Event::PlaneOff], "PlaneOff comes without a plane"),
-            (
-                &[CYCLE, cut(P1, 1.0)],
-                "Linear comes while a cycle is in force",
-            ),
-            (
-                &[CYCLE, Event::CycleOff],
-                "CycleOff comes behind a cycle without a point",
-            ),
+            (&[CYCLE, cut(P1, 1.0)], "Linear comes while a cycle is in force"),
+            (&[CYCLE, Event::CycleOff], "CycleOff comes behind a cycle without a point"),
             (&[POINT], "CyclePoint comes without a cycle"),
-            (
-                &[CYCLE, POINT, TOP],
-                "Retract comes while a cycle is in force",
-            ),
-            (
-                &[TOP, Event::SmoothingOff],
-                "SmoothingOff comes without smoothing",
-            ),
-            (
-                &[Event::OperationEnd],
-                "OperationEnd comes without an operation",
-            ),
+            (&[CYCLE, POINT, TOP], "Retract comes while a cycle is in force"),
+            (&[TOP, Event::SmoothingOff], "SmoothingOff comes without smoothing"),
+            (&[Event::OperationEnd], "OperationEnd comes without an operation"),
             (&[Event::End], "End comes at the part"),
             (&[TOP, Event::End, Event::Stop], "Stop comes behind the end"),
         ] {
             let fault = follow(&[&start, behind].concat()).unwrap_err();
             assert!(fault.contains(lack), "{lack}: {fault}");
         }
-        assert_eq!(
-            follow(&[TOP]).unwrap_err(),
-            "Retract comes before the start"
-        );
+        assert_eq!(follow(&[TOP]).unwrap_err(), "Retract comes before the start");
     }
 }

@@ -36,58 +36,35 @@ impl Control for LinuxCnc {
             at_start: true,
         },
         // Without a register G43 takes that of the tool in the spindle.
-        length: Length {
-            by_itself: true,
-            ..Table::ISO.length
-        },
+        length: Length { by_itself: true, ..Table::ISO.length },
         // G90.1 and G7 stay in force over M2.
         safe: "G8 G17 G40 G80 G90 G91.1 G94 G97",
         // An offset of G92 shifts everything; G92.2 keeps its numbers.
         cancel: "G92.2",
         // G43 ahead of the switch, else the joints jump by the length.
-        tcp: Tcp::Blocks {
-            on: "M428",
-            off: "M429",
-            length_first: true,
-        },
+        tcp: Tcp::Blocks { on: "M428", off: "M429", length_first: true },
         // G53 means the kinematics in force: under TCP it turns with the table.
         leave: &[Leave::Tcp, Leave::Retract, Leave::Length],
         // M0 and M1 leave both as they are.
-        stops: Stops {
-            spindle: false,
-            coolant: false,
-        },
+        stops: Stops { spindle: false, coolant: false },
         dwell: Dwell::Seconds("P", 3),
         cycles: CYCLES,
         rigid: Rigid::Move("G33.1"),
-        splines: Splines::Even {
-            code: "G5.2",
-            end: "G5.3",
-        },
+        splines: Splines::Even { code: "G5.2", end: "G5.3" },
         smoothing: SMOOTHING,
         smoothing_anywhere: true,
-        surface: Some(SurfaceSpeed {
-            codes: ["G96", "G97"],
-            most: "D",
-        }),
+        surface: Some(SurfaceSpeed { codes: ["G96", "G97"], most: "D" }),
         message: "MSG, ",
         units_inside: true,
         probe: "G38.2",
-        subprogram: Subprogram {
-            number: "O{} CALL",
-            name: "O<{}> CALL",
-            times: "",
-        },
+        subprogram: Subprogram { number: "O{} CALL", name: "O<{}> CALL", times: "" },
         end: "M2",
         words: &[words::RETURNS, words::SHIFTS, words::SUBPROGRAM_END, OWN],
         ..Table::ISO
     };
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
-        no_range(
-            setup,
-            "LinuxCNC takes the sign of a wrapped rotary word for its direction",
-        )?;
+        no_range(setup, "LinuxCNC takes the sign of a wrapped rotary word for its direction")?;
         let blend = setup.number("blend");
         Ok(LinuxCnc { blend })
     }
@@ -103,10 +80,7 @@ impl Control for LinuxCnc {
 
     fn begin(&self, engine: &mut Engine, out: &mut String) {
         if self.blend > 0.0 {
-            let style = NumberStyle {
-                trim: true,
-                ..NumberStyle::default()
-            };
+            let style = NumberStyle { trim: true, ..NumberStyle::default() };
             let block = engine.motion.block.word("G64");
             block.number("P", self.blend, 6, style).end(out);
         } else {
@@ -148,11 +122,7 @@ const OPTIONS: &[OptionSpec] = &[
     ),
     options::RETRACT,
     options::RESTART,
-    OptionSpec::lines(
-        "tcp_on",
-        "M428",
-        "Remap that switches to the TCP kinematics.",
-    ),
+    OptionSpec::lines("tcp_on", "M428", "Remap that switches to the TCP kinematics."),
     OptionSpec::lines(
         "tcp_off",
         "",

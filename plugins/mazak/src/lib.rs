@@ -30,20 +30,12 @@ impl Control for Mazak {
         leave: &[Leave::Retract, Leave::Length, Leave::Again],
         vector: "G43.5",
         // P0: I J K are Euler angles.
-        plane: Plane::Euler {
-            on: "G68.2 P0",
-            turn: "G53.1",
-            off: "G69",
-        },
+        plane: Plane::Euler { on: "G68.2 P0", turn: "G53.1", off: "G69" },
         rigid: Rigid::Codes(["G84.2", "G84.3"]),
         smoothing: SMOOTHING,
         smoothing_anywhere: true,
         probe: "G31",
-        subprogram: Subprogram {
-            number: "M98 P{}",
-            name: "",
-            times: " L",
-        },
+        subprogram: Subprogram { number: "M98 P{}", name: "", times: " L" },
         words: &[words::RETURNS, words::SUBPROGRAM_END, OWN],
         ..Table::ISO
     };

@@ -27,23 +27,12 @@ impl Control for Mitsubishi {
         // Whether G49 moves the axis by the length is a parameter: behind it the axis goes up once more.
         leave: &[Leave::Retract, Leave::Length, Leave::Again],
         vector: "G43.5",
-        plane: Plane::Euler {
-            on: "G68.2",
-            turn: "G53.1",
-            off: "G69",
-        },
+        plane: Plane::Euler { on: "G68.2", turn: "G53.1", off: "G69" },
         // Else parameter #8159 decides, as delivered for a compensating chuck.
         rigid: Rigid::Beside(",R1"),
-        surface: Some(SurfaceSpeed {
-            codes: ["G96", "G97"],
-            most: "G92 S",
-        }),
+        surface: Some(SurfaceSpeed { codes: ["G96", "G97"], most: "G92 S" }),
         probe: "G31",
-        subprogram: Subprogram {
-            number: "M98 P{}",
-            name: "",
-            times: " L",
-        },
+        subprogram: Subprogram { number: "M98 P{}", name: "", times: " L" },
         words: &[
             words::RETURNS,
             words::SHIFTS,

@@ -22,43 +22,23 @@ impl Control for Okuma {
         title: Some(("O", 4)),
         line_length: Some(158),
         // The control's parameters choose the units, and its formula for inverse time is the machine's own.
-        codes: Codes {
-            units: ["", ""],
-            feed: ["G94", "", "G95"],
-            ..Codes::ISO
-        },
+        codes: Codes { units: ["", ""], feed: ["G94", "", "G95"], ..Codes::ISO },
         offset: Offset {
             known: |text| number(text).is_some_and(|number| (1..=200).contains(&number)),
             range: "G15 H1 to H200",
-            word: |number| {
-                (1..=200)
-                    .contains(&number)
-                    .then(|| format!("G15 H{number}"))
-            },
+            word: |number| (1..=200).contains(&number).then(|| format!("G15 H{number}")),
             at_start: false,
         },
         // Where the tool is retracted: positions of the machine count without it either way.
-        length: Length {
-            on: "G56",
-            off: "G53",
-            ..Table::ISO.length
-        },
+        length: Length { on: "G56", off: "G53", ..Table::ISO.length },
         relies: RELIES,
         feed_all_axes: true,
-        tcp: Tcp::Blocks {
-            on: "",
-            off: "",
-            length_first: false,
-        },
+        tcp: Tcp::Blocks { on: "", off: "", length_first: false },
         machine: "G16 H0 G0",
         leave: &[Leave::Tcp, Leave::Retract, Leave::Length],
         cycles: &[],
         dwell: Dwell::Seconds("F", 2),
-        subprogram: Subprogram {
-            number: "CALL O{}",
-            name: "CALL {}",
-            times: "",
-        },
+        subprogram: Subprogram { number: "CALL O{}", name: "CALL {}", times: "" },
         end: "M2",
         words: &[OWN],
         ..Table::ISO

@@ -24,9 +24,7 @@ impl ErrorModel for Parabolic {
     }
 
     fn open(_: &[(&str, Value<'_>)]) -> Result<Self, String> {
-        Ok(Parabolic {
-            answers: Vec::with_capacity(PLACES.len()),
-        })
+        Ok(Parabolic { answers: Vec::with_capacity(PLACES.len()) })
     }
 
     fn fit(
@@ -39,9 +37,7 @@ impl ErrorModel for Parabolic {
             return Err("the deviation was not told at every place".to_owned());
         };
         let bow = middle - start.lerp(end, 0.5);
-        Ok(Curve::of(&[start, end, bow], PIECES, |t| {
-            parabola(start, end, bow, t)
-        }))
+        Ok(Curve::of(&[start, end, bow], PIECES, |t| parabola(start, end, bow, t)))
     }
 
     fn value(&self, curve: &Curve, t: f64) -> Deviation {

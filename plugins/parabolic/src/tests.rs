@@ -1,9 +1,6 @@
 use super::*;
 
-const TOLERANCE: Tolerance = Tolerance {
-    tip: 0.005,
-    axis: 0.05,
-};
+const TOLERANCE: Tolerance = Tolerance { tip: 0.005, axis: 0.05 };
 
 /// Li 2024, table 3.1: deviations at 23 even places of a move. The last printed 0 breaks the second
 /// difference of -0.0163 that all others keep.
@@ -22,10 +19,7 @@ fn fit(shape: impl Fn(f64) -> Deviation) -> (Parabolic, Curve) {
 }
 
 fn tip(x: f64) -> Deviation {
-    Deviation {
-        tip: [x, 0.0, 0.0],
-        axis: [0.0; 3],
-    }
+    Deviation { tip: [x, 0.0, 0.0], axis: [0.0; 3] }
 }
 
 /// The share of what the places vary by that the curve explains (R²), and the largest rest.
@@ -44,14 +38,8 @@ fn compare(values: &[f64], curve: impl Fn(f64) -> f64) -> (f64, f64) {
 
 #[test]
 fn a_vector_parabola_between_rounded_ends_is_met_exactly() {
-    let start = Deviation {
-        tip: [4e-4, -3e-4, 0.0],
-        axis: [0.0, 2e-4, 1e-4],
-    };
-    let bow = Deviation {
-        tip: [0.002, 0.003, -0.006],
-        axis: [0.01, 0.0, -0.02],
-    };
+    let start = Deviation { tip: [4e-4, -3e-4, 0.0], axis: [0.0, 2e-4, 1e-4] };
+    let bow = Deviation { tip: [0.002, 0.003, -0.006], axis: [0.01, 0.0, -0.02] };
     let shape = |t: f64| start.lerp(start * -2.0, t) + bow * (4.0 * t * (1.0 - t));
     let (model, curve) = fit(shape);
     let mut longest = [0.0_f64; 2];
@@ -89,10 +77,7 @@ fn table_3_1_is_a_parabola_to_its_rounding() {
     let (model, curve) = fit(|t| tip(table[(t * 22.0) as usize]));
     let (explained, largest) = compare(&table, |t| model.value(&curve, t).tip[0]);
     println!("parabola, the last row put right: R² {explained:.7}, off by {largest:.1e} at most");
-    assert!(
-        explained > 0.999_999 && largest < 3e-4,
-        "{explained} {largest}"
-    );
+    assert!(explained > 0.999_999 && largest < 3e-4, "{explained} {largest}");
     assert!((curve.tip_peak - 0.9729).abs() < 3e-4);
 }
 
@@ -107,8 +92,5 @@ fn what_is_no_parabola_is_met_at_three_places() {
 fn a_deviation_that_is_no_number_is_refused() {
     let mut model = Parabolic::open(&[]).unwrap();
     let refused = model.fit(&TOLERANCE, &mut |_, out| out[2].axis[0] = f64::NAN);
-    assert_eq!(
-        refused.unwrap_err(),
-        "the deviation at 1 of the move is not a finite number"
-    );
+    assert_eq!(refused.unwrap_err(), "the deviation at 1 of the move is not a finite number");
 }

@@ -183,12 +183,7 @@ impl Sampled {
     fn ask(&mut self, deviation: &mut dyn FnMut(&[f64], &mut [Deviation])) -> Result<(), String> {
         ask(deviation, &self.asked, &mut self.answers)?;
         for (&t, &deviation) in self.asked.iter().zip(&self.answers) {
-            self.places.push(Place {
-                t,
-                deviation,
-                open: true,
-                fresh: true,
-            });
+            self.places.push(Place { t, deviation, open: true, fresh: true });
         }
         Ok(())
     }
@@ -200,8 +195,7 @@ impl Sampled {
     ) -> Result<bool, String> {
         self.asked.clear();
         let open = self.places.windows(2).filter(|pair| pair[0].open);
-        self.asked
-            .extend(open.map(|pair| (pair[0].t + pair[1].t) / 2.0));
+        self.asked.extend(open.map(|pair| (pair[0].t + pair[1].t) / 2.0));
         if self.asked.is_empty() {
             return Ok(false);
         }

@@ -1,9 +1,6 @@
 use super::*;
 
-const TOLERANCE: Tolerance = Tolerance {
-    tip: 0.01,
-    axis: 0.1,
-};
+const TOLERANCE: Tolerance = Tolerance { tip: 0.01, axis: 0.1 };
 
 /// Fits `shape`, the tip's deviation along one direction, and counts the places asked for.
 fn fit(samples: i64, shape: impl Fn(f64) -> f64) -> (Sampled, Curve, usize) {
@@ -30,10 +27,7 @@ fn check(name: &str, most: usize, peak: f64, shape: impl Fn(f64) -> f64) {
         curve.tip_peak
     );
     assert!((curve.axis_peak - 2.0 * curve.tip_peak).abs() < 1e-12);
-    assert!(
-        (shape(curve.tip_at).abs() - curve.tip_peak).abs() < 1e-12,
-        "{name}"
-    );
+    assert!((shape(curve.tip_at).abs() - curve.tip_peak).abs() < 1e-12, "{name}");
     assert!(asked <= most, "{name}: asked {asked} times");
 }
 
@@ -107,8 +101,5 @@ fn the_curve_goes_through_the_deviations() {
 fn a_deviation_that_is_no_number_is_refused() {
     let mut model = Sampled::open(&[]).unwrap();
     let refused = model.fit(&TOLERANCE, &mut |_, out| out[3].tip[1] = f64::NAN);
-    assert_eq!(
-        refused.unwrap_err(),
-        "the deviation at 0.25 of the move is not a finite number"
-    );
+    assert_eq!(refused.unwrap_err(), "the deviation at 0.25 of the move is not a finite number");
 }

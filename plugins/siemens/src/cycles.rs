@@ -44,9 +44,7 @@ impl Cycles {
         // Which way is down is told by the depth against the surface.
         let (drilling, raised) = drilling.below_its_point();
         let top = top + raised;
-        let Drilling {
-            cycle, feed, dwell, ..
-        } = drilling;
+        let Drilling { cycle, feed, dwell, .. } = drilling;
         let planes = [
             // Never below where the feed begins.
             top + drilling.retract.max(drilling.clearance),

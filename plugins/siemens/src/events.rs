@@ -33,11 +33,8 @@ impl Siemens {
                 return Ok(false);
             }
             Event::Linear { words, .. } | Event::Arc { words, .. }
-                if let Some(axis) = engine
-                    .motion
-                    .axes
-                    .turns_round(words)
-                    .filter(|_| !self.by_vector()) =>
+                if let Some(axis) =
+                    engine.motion.axes.turns_round(words).filter(|_| !self.by_vector()) =>
             {
                 return Err(format!(
                     "{axis} turns by a whole turn or more in one block, which the words of a modulo axis cannot say: \
@@ -59,12 +56,7 @@ impl Siemens {
                 self.stand(words);
                 return Ok(false);
             }
-            Event::Position {
-                words,
-                feed,
-                plane_first,
-                ..
-            } => {
+            Event::Position { words, feed, plane_first, .. } => {
                 self.position(words, feed, plane_first, engine, out)?;
             }
             Event::Park { .. } => {
@@ -79,12 +71,9 @@ impl Siemens {
                 }
                 return Ok(false);
             }
-            Event::ToolChange {
-                number,
-                register,
-                name,
-                ..
-            } if self.tool_names && !name.is_empty() => {
+            Event::ToolChange { number, register, name, .. }
+                if self.tool_names && !name.is_empty() =>
+            {
                 self.changed();
                 engine.change(number, &called(name)?, register, name, out);
             }
@@ -93,10 +82,8 @@ impl Siemens {
                 return Ok(false);
             }
             Event::Preselect { number } => {
-                let name = self
-                    .names
-                    .iter()
-                    .find(|(known, name)| *known == number && !name.is_empty());
+                let name =
+                    self.names.iter().find(|(known, name)| *known == number && !name.is_empty());
                 match name {
                     Some((_, name)) if self.tool_names => engine.line(&called(name)?, out),
                     _ => return Ok(false),
@@ -131,12 +118,7 @@ impl Siemens {
             Event::Cycle { .. } => self.drilling = Drilling::of(event),
             Event::CyclePoint { words, .. } => self.drill(words, engine, out)?,
             Event::CycleOff => self.drilling = None,
-            Event::Plane {
-                origin,
-                angles,
-                words,
-                ..
-            } => {
+            Event::Plane { origin, angles, words, .. } => {
                 // The cycle asks for a tool with its length.
                 self.length_on(engine, out);
                 engine.line(&self.swivel.plane(origin, angles, words), out);
@@ -146,10 +128,7 @@ impl Siemens {
                 engine.line("CYCLE800()", out);
                 self.tilted = false;
             }
-            Event::Smoothing {
-                tolerance,
-                axis_tolerance,
-            } => {
+            Event::Smoothing { tolerance, axis_tolerance } => {
                 engine.line(&self.smoothing.on(tolerance, axis_tolerance), out);
             }
             Event::SmoothingOff => engine.line(self.smoothing.off(), out),

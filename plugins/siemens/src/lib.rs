@@ -90,10 +90,7 @@ impl Control for Siemens {
             edge: setup.integer("edge"),
             offset: Some(setup.text("work_offset").to_owned()),
             tool_names: setup.flag("tool_names"),
-            names: tools
-                .iter()
-                .map(|tool| (tool.number, tool.name.to_owned()))
-                .collect(),
+            names: tools.iter().map(|tool| (tool.number, tool.name.to_owned())).collect(),
             tcp: setup.tcp,
             rotary: setup.words.iter().any(|word| word.rotary),
             tcp_on: match setup.text("tcp_on") {
@@ -113,11 +110,7 @@ impl Control for Siemens {
                 Units::Millimetre => "decimals",
                 Units::Inch => "decimals_inch",
             }) as u8,
-            style: NumberStyle {
-                point: true,
-                trim: !setup.flag("trailing_zeros"),
-                plus: false,
-            },
+            style: NumberStyle { point: true, trim: !setup.flag("trailing_zeros"), plus: false },
             at: Vec::new(),
             plane: Modal::default(),
             across: across(setup),
@@ -133,11 +126,7 @@ impl Control for Siemens {
     }
 
     fn format(&self, engine: Format) -> Format {
-        Format {
-            plane_angles: self.swivel.angles,
-            plane_decimals: 5,
-            ..engine
-        }
+        Format { plane_angles: self.swivel.angles, plane_decimals: 5, ..engine }
     }
 
     fn capabilities(&self) -> Capabilities {
@@ -167,12 +156,7 @@ impl Control for Siemens {
 /// The plane across the tool where the words are axis positions. Under a transformation the control turns the length with
 /// the tool.
 fn across(setup: &Setup<'_>) -> &'static str {
-    let lies = |name| {
-        setup
-            .words
-            .iter()
-            .any(|word| word.name == name && word.depth)
-    };
+    let lies = |name| setup.words.iter().any(|word| word.name == name && word.depth);
     match (setup.tcp, lies("X"), lies("Y")) {
         (false, true, false) => "G19",
         (false, false, true) => "G18",

@@ -90,11 +90,7 @@ impl Siemens {
             (Some(vector), _) => {
                 let turned = self.vector.set(vector);
                 let groups = [Group::Plane, Group::Depth];
-                if !turned
-                    && !groups
-                        .iter()
-                        .any(|group| motion.axes.moved_group(words, *group))
-                {
+                if !turned && !groups.iter().any(|group| motion.axes.moved_group(words, *group)) {
                     return;
                 }
                 if let Some(feed) = feed {
@@ -107,9 +103,7 @@ impl Siemens {
                 }
                 for (address, part) in ["A3=", "B3=", "C3="].into_iter().zip(vector) {
                     if turned {
-                        motion
-                            .block
-                            .number(address, part / 1e7, 7, NumberStyle::default());
+                        motion.block.number(address, part / 1e7, 7, NumberStyle::default());
                     }
                 }
                 if let Some(feed) = feed {
@@ -137,18 +131,8 @@ impl Siemens {
         engine: &mut Engine,
         out: &mut String,
     ) -> Result<(), String> {
-        let (
-            &Event::Arc {
-                feed,
-                centre,
-                normal,
-                turn,
-                radius,
-                words,
-                ..
-            },
-            Some(linear),
-        ) = (event, self.linear)
+        let (&Event::Arc { feed, centre, normal, turn, radius, words, .. }, Some(linear)) =
+            (event, self.linear)
         else {
             return Err(event.refusal());
         };
@@ -175,17 +159,13 @@ impl Siemens {
         }
         match radius {
             Some(radius) => {
-                motion
-                    .block
-                    .number("CR=", radius, self.decimals, self.style);
+                motion.block.number("CR=", radius, self.decimals, self.style);
             }
             None => {
                 for (part, address) in ["I", "J", "K"].into_iter().enumerate() {
                     if part != across {
                         let offset = centre[part] - self.at[linear[part]];
-                        motion
-                            .block
-                            .number(address, offset, self.decimals, self.style);
+                        motion.block.number(address, offset, self.decimals, self.style);
                     }
                 }
             }
@@ -193,9 +173,7 @@ impl Siemens {
         // Full turns before the one that ends there.
         let more = ((turn.abs() - 1e-6) / 360.0).floor();
         if more >= 1.0 {
-            motion
-                .block
-                .number("TURN=", more, 0, NumberStyle::default());
+            motion.block.number("TURN=", more, 0, NumberStyle::default());
         }
         motion.feed(feed);
         motion.block.end(out);

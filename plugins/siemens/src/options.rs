@@ -9,12 +9,7 @@ const fn choice(
     default: &'static str,
     help: &'static str,
 ) -> OptionSpec {
-    OptionSpec {
-        key,
-        kind: OptionKind::Choice(choices),
-        default: Value::Text(default),
-        help,
-    }
+    OptionSpec { key, kind: OptionKind::Choice(choices), default: Value::Text(default), help }
 }
 
 /// What is in force before the first block, and moves nothing when it is cancelled.
@@ -94,12 +89,7 @@ pub(crate) const OPTIONS: &[OptionSpec] = &[
         "Turns of CYCLE800 in their order (57, 45, 54, 30, 39, 27); direct: rotary words (192).",
     ),
     OptionSpec::text("swivel_record", "", "_TC: name of the swivel data record."),
-    OptionSpec::integer(
-        "swivel_retract",
-        (0, 8),
-        0,
-        "_FR: 0, the tool is away already.",
-    ),
+    OptionSpec::integer("swivel_retract", (0, 8), 0, "_FR: 0, the tool is away already."),
     OptionSpec::integer("swivel_status", (0, 999_999), 0, "_ST: 0, a new plane."),
     OptionSpec::integer(
         "swivel_direction",
@@ -135,12 +125,7 @@ pub(crate) const OPTIONS: &[OptionSpec] = &[
         0,
         "Second argument of CYCLE832 in software 2, which packs digits; 0: such a control is sent no smoothing.",
     ),
-    choice(
-        "tapping",
-        &["rigid", "floating"],
-        "rigid",
-        "CYCLE84, or CYCLE840 with an encoder.",
-    ),
+    choice("tapping", &["rigid", "floating"], "rigid", "CYCLE84, or CYCLE840 with an encoder."),
     OptionSpec::number(
         "bore_lift_x",
         (-100.0, 100.0),

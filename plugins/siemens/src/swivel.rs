@@ -40,10 +40,7 @@ impl Swivel {
             _ => (57, PlaneAngles::Xyz),
         };
         let mut axes = [None; 2];
-        for (axis, name) in axes
-            .iter_mut()
-            .zip(setup.text("swivel_axes").split_whitespace())
-        {
+        for (axis, name) in axes.iter_mut().zip(setup.text("swivel_axes").split_whitespace()) {
             *axis = Some(place(name).map_err(|lack| format!("swivel_axes: {lack}"))?);
         }
         if setup.flag("swivel") && mode == 192 && axes[0].is_none() {

@@ -7,10 +7,7 @@ use crate::options::{CANCEL, OPTIONS};
 
 pub(crate) const TABLE: Table = Table {
     options: OPTIONS,
-    axes: AxisNames {
-        numbered: true,
-        ..AxisNames::ISO
-    },
+    axes: AxisNames { numbered: true, ..AxisNames::ISO },
     extension: "mpf",
     percent: false,
     remark: |text| format!("; {}", ascii(text).trim()).trim_end().to_owned(),
@@ -37,17 +34,8 @@ pub(crate) const TABLE: Table = Table {
         },
         at_start: false,
     },
-    length: Length {
-        on: "",
-        register: "D",
-        by_itself: true,
-        off: "",
-    },
-    tcp: Tcp::Blocks {
-        on: "TRAORI",
-        off: "TRAFOOF",
-        length_first: true,
-    },
+    length: Length { on: "", register: "D", by_itself: true, off: "" },
+    tcp: Tcp::Blocks { on: "TRAORI", off: "TRAFOOF", length_first: true },
     // SUPA leaves the length in force (MD $MN_G53_TOOLCORR = 0), so D0 goes with it.
     machine: "G0 SUPA D0",
     leave: &[Leave::Retract],
@@ -57,11 +45,7 @@ pub(crate) const TABLE: Table = Table {
         codes: ["G961", "G971"],
         most: "LIMS=",
     }),
-    subprogram: Subprogram {
-        number: "L{}",
-        name: "{}",
-        times: " P",
-    },
+    subprogram: Subprogram { number: "L{}", name: "{}", times: " P" },
     dwell: Dwell::Seconds("F", 3),
     ..Table::ISO
 };
@@ -76,8 +60,6 @@ const RELIES: &[&str] = &[
 
 /// G54 to G57, G505 to G599.
 pub(crate) fn is_work_offset(text: &str) -> bool {
-    let number = text
-        .strip_prefix('G')
-        .and_then(|digits| digits.parse().ok());
+    let number = text.strip_prefix('G').and_then(|digits| digits.parse().ok());
     matches!(number, Some(54..=57 | 505..=599))
 }

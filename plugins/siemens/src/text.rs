@@ -33,10 +33,7 @@ pub(crate) fn call(name: &str, arguments: &[String]) -> String {
 /// A number as an argument: at most five decimals, none that is zero at the end.
 pub(crate) fn trimmed(value: f64) -> String {
     let mut text = String::new();
-    let trim = NumberStyle {
-        trim: true,
-        ..NumberStyle::default()
-    };
+    let trim = NumberStyle { trim: true, ..NumberStyle::default() };
     trim.write(&mut text, value, 5);
     text
 }
@@ -57,10 +54,7 @@ pub(crate) fn transfer_header(program: &str) -> String {
 /// If it cannot.
 pub(crate) fn callable(name: &str) -> Result<(), String> {
     let known = |letter: u8| letter.is_ascii_alphanumeric() || letter == b'_';
-    let first = name
-        .bytes()
-        .take(2)
-        .filter(|letter| !letter.is_ascii_digit());
+    let first = name.bytes().take(2).filter(|letter| !letter.is_ascii_digit());
     match name.len() <= 24 && name.bytes().all(known) && first.count() == 2 {
         true => Ok(()),
         false => Err(format!(

@@ -4,23 +4,14 @@ use post_plugin::{Meaning, VocabularyWord};
 
 /// All of them; `tcp_on` and `tcp_off` are lines of the options.
 pub(crate) fn vocabulary(tcp_on: &str, tcp_off: &str) -> Vec<VocabularyWord> {
-    let word = |word: &str, meaning| VocabularyWord {
-        word: word.to_owned().into(),
-        meaning,
-    };
+    let word = |word: &str, meaning| VocabularyWord { word: word.to_owned().into(), meaning };
     // ORIMKS behind TRAORI says how, not that.
     let first = |lines: &str| lines.lines().next().unwrap_or_default().trim().to_owned();
-    let own = [
-        (first(tcp_on), Meaning::TcpOn),
-        (first(tcp_off), Meaning::TcpOff),
-    ];
+    let own = [(first(tcp_on), Meaning::TcpOn), (first(tcp_off), Meaning::TcpOff)];
     let own = own.map(|(text, meaning)| word(&text, meaning));
     let offsets = (505..=599).map(|number| word(&format!("G{number}"), Meaning::WorkOffset));
-    let mut words: Vec<VocabularyWord> = WORDS
-        .iter()
-        .map(|(text, meaning)| word(text, *meaning))
-        .chain(offsets)
-        .collect();
+    let mut words: Vec<VocabularyWord> =
+        WORDS.iter().map(|(text, meaning)| word(text, *meaning)).chain(offsets).collect();
     for word in own {
         if !word.word.is_empty() && !words.contains(&word) {
             words.push(word);

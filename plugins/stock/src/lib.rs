@@ -10,10 +10,7 @@ pub fn plugins() -> &'static [Linked] {
 
 /// The one of this name.
 pub fn plugin(name: &str) -> Option<Linked> {
-    plugins()
-        .iter()
-        .find(|plugin| plugin.name() == name)
-        .copied()
+    plugins().iter().find(|plugin| plugin.name() == name).copied()
 }
 
 #[cfg(test)]

@@ -43,16 +43,9 @@ pub fn text(
     let word = record.statement.word().to_owned();
     let mut said = format!("**{word}**");
     if let Some(known) = MajorWord::find(&word) {
-        said.push_str(&format!(
-            " ({}): {}",
-            record.statement.usage().name(),
-            known.meaning
-        ));
+        said.push_str(&format!(" ({}): {}", record.statement.usage().name(), known.meaning));
         if known.spellings.len() > 1 {
-            said.push_str(&format!(
-                "\n\nalso spelt {}",
-                known.spellings[1..].join(", ")
-            ));
+            said.push_str(&format!("\n\nalso spelt {}", known.spellings[1..].join(", ")));
         }
     }
     let Some(posted) = posted else {

@@ -38,11 +38,7 @@ pub fn findings(of: &Snapshot, words: bool, token: &Token) -> Option<Vec<Diagnos
         }
         match reader.next_record() {
             Ok(Some(record)) if words => {
-                if let Statement::Other {
-                    word,
-                    directive: false,
-                    ..
-                } = &record.statement
+                if let Statement::Other { word, directive: false, .. } = &record.statement
                     && record.statement.usage() == Usage::Unknown
                 {
                     let text = record.text();

@@ -40,12 +40,7 @@ fn sections(of: &Snapshot, token: &Token) -> Option<Vec<Section>> {
         let mut begin = |open: &mut Option<usize>, name: String, kind: SymbolKind| {
             end(&mut sections, open.take(), line.saturating_sub(1));
             *open = Some(sections.len());
-            sections.push(Section {
-                name,
-                kind,
-                first: line,
-                last: line,
-            });
+            sections.push(Section { name, kind, first: line, last: line });
         };
         match record.statement {
             Statement::ToolPath { name, .. } => {
@@ -71,10 +66,7 @@ fn sections(of: &Snapshot, token: &Token) -> Option<Vec<Section>> {
         end(&mut sections, open, of.lines.count() - 1);
     }
     // Tools and operations begin and end across one another: where there are both, operations are what is folded.
-    if sections
-        .iter()
-        .any(|section| section.kind == SymbolKind::Function)
-    {
+    if sections.iter().any(|section| section.kind == SymbolKind::Function) {
         let tools = sections.iter_mut();
         for tool in tools.filter(|section| section.kind == SymbolKind::Object) {
             tool.last = tool.first;

@@ -110,11 +110,7 @@ pub fn post(
     let (report, found) = ended;
     let mut lines = watch.lines;
     lines.sort_by_key(|posted| posted.line);
-    let posted = Posted {
-        machine: Box::new(machine),
-        refused: report.is_none(),
-        lines,
-    };
+    let posted = Posted { machine: Box::new(machine), refused: report.is_none(), lines };
     Some(Ok((posted, found)))
 }
 

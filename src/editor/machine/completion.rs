@@ -14,11 +14,7 @@ use crate::job::plugin_finder::built_in;
 /// What is offered at a byte of the text.
 pub fn items(of: &Snapshot, byte: usize, library: &Library) -> Vec<CompletionItem> {
     let tree = Tree::of(&of.text);
-    let offers = Offers {
-        of,
-        tree: &tree,
-        library,
-    };
+    let offers = Offers { of, tree: &tree, library };
     match Cursor::at(&of.text, byte, &tree) {
         Cursor::Table(path) => offers.tables(&path),
         Cursor::Key(path) => offers.keys(&path),
@@ -101,9 +97,7 @@ impl Offers<'_> {
         let names: Vec<&str> = path.iter().map(String::as_str).collect();
         let named = |names: Vec<String>, what: &str| -> Vec<CompletionItem> {
             let items = names.into_iter();
-            items
-                .map(|name| text(&name, CompletionItemKind::Value, what.to_owned()))
-                .collect()
+            items.map(|name| text(&name, CompletionItemKind::Value, what.to_owned())).collect()
         };
         let own = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect();
         match names.as_slice() {
@@ -135,13 +129,7 @@ impl Offers<'_> {
         }
         let choices = meaning.choices().into_iter();
         choices
-            .map(|choice| {
-                text(
-                    &choice.value,
-                    CompletionItemKind::EnumMember,
-                    choice.meaning,
-                )
-            })
+            .map(|choice| text(&choice.value, CompletionItemKind::EnumMember, choice.meaning))
             .collect()
     }
 
@@ -168,11 +156,7 @@ impl Offers<'_> {
                 "A function; angles are in degrees.".to_owned(),
             )
         }));
-        items.push(text(
-            "pi",
-            CompletionItemKind::Constant,
-            "3.14159…".to_owned(),
-        ));
+        items.push(text("pi", CompletionItemKind::Constant, "3.14159…".to_owned()));
         items
     }
 

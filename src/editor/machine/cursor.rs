@@ -37,19 +37,13 @@ impl Cursor {
                 entry.value.start < begin
                     && begin <= entry.value.end
                     && text[entry.value.clone()].starts_with('[')
-                    && entry
-                        .key
-                        .as_ref()
-                        .is_some_and(|key| key.end <= entry.value.start)
+                    && entry.key.as_ref().is_some_and(|key| key.end <= entry.value.start)
                     && text[entry.key.clone().map_or(0, |key| key.end)..entry.value.start]
                         .contains('=')
             });
             if let Some(entry) = inside.min_by_key(|entry| entry.value.len()) {
                 let quoted = Quotes::open_at_end(before);
-                return Self::Value(
-                    [entry.path.as_slice(), &["[0]".to_owned()]].concat(),
-                    quoted,
-                );
+                return Self::Value([entry.path.as_slice(), &["[0]".to_owned()]].concat(), quoted);
             }
             if let Some(name) = start.strip_prefix('[') {
                 if name.contains(']') {
@@ -131,8 +125,7 @@ fn header_before(text: &str) -> Vec<String> {
 /// Keys between dots, without quotes.
 fn keys(text: &str) -> Vec<String> {
     let keys = text.split('.');
-    keys.map(|key| key.trim().trim_matches(['"', '\'']).to_owned())
-        .collect()
+    keys.map(|key| key.trim().trim_matches(['"', '\'']).to_owned()).collect()
 }
 
 /// Whether a letter stands between quotes.
@@ -170,8 +163,7 @@ impl Quotes {
 
     fn in_remark(line: &str) -> bool {
         let mut quotes = Self::default();
-        line.chars()
-            .any(|letter| quotes.outside(letter) && letter == '#')
+        line.chars().any(|letter| quotes.outside(letter) && letter == '#')
     }
 }
 
@@ -205,10 +197,7 @@ mod tests {
                 "[control]\narcs = { form = \"|",
                 Cursor::Value(path(&["control", "arcs", "form"]), true),
             ),
-            (
-                "[control]\narcs = { keep = true, |",
-                Cursor::Key(path(&["control", "arcs"])),
-            ),
+            ("[control]\narcs = { keep = true, |", Cursor::Key(path(&["control", "arcs"]))),
             ("name = \"a\" # not = |", Cursor::Nothing),
             (
                 "[tool]\ngauge = [\n  0,\n  \"|\",\n]\n",

@@ -38,12 +38,7 @@ pub fn fixes(of: &Snapshot, part: &Range<usize>, library: &Library) -> Vec<Fix> 
             .or_else(|| turned_travel(of, &tree, &finding, &span))
             .or_else(|| missing_axis(of, &tree, &finding, &span));
         if let Some((title, span, text)) = fix {
-            fixes.push(Fix {
-                title,
-                finding,
-                span,
-                text,
-            });
+            fixes.push(Fix { title, finding, span, text });
         }
     }
     fixes
@@ -56,18 +51,12 @@ fn near_word(of: &Snapshot, finding: &Diagnostic, span: &Range<usize>) -> Option
     let help = finding.help.as_deref()?;
     let (meant, _) = help.strip_prefix("did you mean `")?.split_once('`')?;
     let written = &of.text[span.clone()];
-    let quote = written
-        .chars()
-        .next()
-        .filter(|first| matches!(first, '"' | '\''));
+    let quote = written.chars().next().filter(|first| matches!(first, '"' | '\''));
     let text = match quote {
         // In an expression the wrong name is a part of it.
         Some(_) if finding.code == "machine-expression" => {
-            let wrong = finding
-                .message
-                .split_once(": `")
-                .and_then(|(_, rest)| rest.split_once('`'))?
-                .0;
+            let wrong =
+                finding.message.split_once(": `").and_then(|(_, rest)| rest.split_once('`'))?.0;
             let at = written.find(wrong)?;
             format!("{}{meant}{}", &written[..at], &written[at + wrong.len()..])
         }
@@ -100,11 +89,7 @@ fn turned_travel(
     if least.number? <= most.number? {
         return None;
     }
-    let text = format!(
-        "[{}, {}]",
-        &of.text[most.value.clone()],
-        &of.text[least.value.clone()]
-    );
+    let text = format!("[{}, {}]", &of.text[most.value.clone()], &of.text[least.value.clone()]);
     Some((format!("Turn it round: {text}"), travel.value.clone(), text))
 }
 
@@ -131,10 +116,9 @@ fn missing_axis(
         _ => "[0, 0, 1]",
     };
     let axis = match letter {
-        'A'..='C' => format!(
-            "rotary = {}\npoint = [0, 0, 0]\ntravel = [-120, 120]\n",
-            direction('A')
-        ),
+        'A'..='C' => {
+            format!("rotary = {}\npoint = [0, 0, 0]\ntravel = [-120, 120]\n", direction('A'))
+        }
         'X'..='Z' => format!("linear = {}\ntravel = [-300, 300]\n", direction('X')),
         _ => "linear = [1, 0, 0]\ntravel = [-300, 300]\n".to_owned(),
     };

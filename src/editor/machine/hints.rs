@@ -14,9 +14,8 @@ pub fn hints(of: &Snapshot, part: &Range<usize>, library: &Library) -> Vec<Inlay
         return Vec::new();
     };
     let values = reading.values.into_iter();
-    let mut values: Vec<_> = values
-        .filter(|value| value.file == of.name && part.contains(&value.span.start))
-        .collect();
+    let mut values: Vec<_> =
+        values.filter(|value| value.file == of.name && part.contains(&value.span.start)).collect();
     values.sort_by_key(|value| value.span.start);
     // The machine and its heads read the same text.
     values.dedup_by(|one, other| one.span == other.span && one.value == other.value);

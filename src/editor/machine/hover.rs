@@ -59,9 +59,7 @@ fn evaluated(of: &Snapshot, entry: &Entry, library: &Library) -> Option<f64> {
     entry.text.as_ref()?;
     let reading = super::examine(of, library).ok()?;
     let mut values = reading.values.into_iter();
-    values
-        .find(|value| value.file == of.name && value.span == entry.value)
-        .map(|value| value.value)
+    values.find(|value| value.file == of.name && value.span == entry.value).map(|value| value.value)
 }
 
 /// Which of two units a number of an axis has: `mm or degrees` is told for any axis.

@@ -25,8 +25,5 @@ pub fn lenses(of: &Snapshot) -> Vec<CodeLens> {
         }),
         data: None,
     };
-    vec![
-        lens("post check", CHECK),
-        lens("post check --commission", COMMISSION),
-    ]
+    vec![lens("post check", CHECK), lens("post check --commission", COMMISSION)]
 }

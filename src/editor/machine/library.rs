@@ -25,10 +25,7 @@ impl Library {
     pub fn read(&self, path: &Path) -> Result<Source, Missing> {
         let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         match self.open.get(&absolute) {
-            Some(open) => Ok(Source {
-                name: path.display().to_string(),
-                text: open.text.clone(),
-            }),
+            Some(open) => Ok(Source { name: path.display().to_string(), text: open.text.clone() }),
             None => machine_files::read(path),
         }
     }

@@ -28,10 +28,8 @@ pub struct Choice {
 /// The type that a reference leads to.
 fn followed(mut node: &'static Value) -> &'static Value {
     loop {
-        let reference = node
-            .get("$ref")
-            .or_else(|| node.pointer("/allOf/0/$ref"))
-            .and_then(Value::as_str);
+        let reference =
+            node.get("$ref").or_else(|| node.pointer("/allOf/0/$ref")).and_then(Value::as_str);
         let Some(reference) = reference else {
             return node;
         };
@@ -45,10 +43,7 @@ fn followed(mut node: &'static Value) -> &'static Value {
 impl Meaning {
     /// Of the keys that lead to a place; none for keys that nothing has.
     pub fn of<S: AsRef<str>>(path: &[S]) -> Option<Self> {
-        let mut found = Self {
-            named: &SCHEMA,
-            kind: &SCHEMA,
-        };
+        let mut found = Self { named: &SCHEMA, kind: &SCHEMA };
         for key in path {
             let key = key.as_ref();
             let named = if let Some(index) = key.strip_prefix('[') {
@@ -62,10 +57,7 @@ impl Meaning {
             if !named.is_object() {
                 return None;
             }
-            found = Self {
-                named,
-                kind: followed(named),
-            };
+            found = Self { named, kind: followed(named) };
         }
         Some(found)
     }
@@ -107,19 +99,18 @@ impl Meaning {
         let list = |key: &str| self.kind.get(key).and_then(Value::as_array);
         let mut choices = Vec::new();
         for word in list("enum").into_iter().flatten() {
-            choices.extend(word.as_str().map(|word| Choice {
-                value: word.to_owned(),
-                meaning: String::new(),
-            }));
+            choices.extend(
+                word.as_str().map(|word| Choice { value: word.to_owned(), meaning: String::new() }),
+            );
         }
         let described = list("oneOf").or_else(|| list("anyOf"));
         for one in described.into_iter().flatten() {
             let meaning = one["description"].as_str().unwrap_or_default();
             let word = one.get("const").or_else(|| one.pointer("/enum/0"));
-            choices.extend(word.and_then(Value::as_str).map(|word| Choice {
-                value: word.to_owned(),
-                meaning: meaning.to_owned(),
-            }));
+            choices.extend(
+                word.and_then(Value::as_str)
+                    .map(|word| Choice { value: word.to_owned(), meaning: meaning.to_owned() }),
+            );
         }
         choices
     }

@@ -31,10 +31,7 @@ use library::Library;
 
 /// A TOML text is a machine file: above its first table it has a chain, or extends another machine.
 pub fn is_machine(text: &str) -> bool {
-    let top = text
-        .lines()
-        .map(str::trim_ascii_start)
-        .take_while(|line| !line.starts_with('['));
+    let top = text.lines().map(str::trim_ascii_start).take_while(|line| !line.starts_with('['));
     let mut keys = top.filter_map(|line| Some(line.split_once('=')?.0.trim_ascii_end()));
     keys.any(|key| matches!(key, "chain" | "extends"))
 }
@@ -48,10 +45,7 @@ fn examine(
     of: &Snapshot,
     library: &Library,
 ) -> Result<post_machine::description::Reading, Vec<Diagnostic>> {
-    let source = Source {
-        name: of.name.clone(),
-        text: of.text.clone(),
-    };
+    let source = Source { name: of.name.clone(), text: of.text.clone() };
     let read = |path: &std::path::Path| library.read(path);
     machine_files::examine(source, &library.machines, &[], &read)
         .map_err(crate::failure::Failure::findings)

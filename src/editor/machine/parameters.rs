@@ -38,11 +38,7 @@ pub fn occurrences(text: &str) -> Vec<Occurrence> {
             && table == "parameters"
             && let Some(key) = unquoted(text, key, name)
         {
-            found.push(Occurrence {
-                name: name.clone(),
-                span: key,
-                defines: true,
-            });
+            found.push(Occurrence { name: name.clone(), span: key, defines: true });
         }
         found.extend(uses(text, entry));
     }
@@ -92,10 +88,7 @@ pub fn at(text: &str, byte: usize) -> Option<Occurrence> {
 
 /// A file and those that it extends, the file first.
 pub fn layers(of: &Snapshot, library: &Library) -> Vec<Source> {
-    let own = Source {
-        name: of.name.clone(),
-        text: of.text.clone(),
-    };
+    let own = Source { name: of.name.clone(), text: of.text.clone() };
     with_parents(own, library)
 }
 
@@ -152,10 +145,7 @@ impl Member {
     fn of(source: Source) -> Self {
         let path = Path::new(&source.name);
         let path = path.is_file().then(|| std::path::absolute(path).ok());
-        Self {
-            path: path.flatten(),
-            source,
-        }
+        Self { path: path.flatten(), source }
     }
 }
 
@@ -167,26 +157,17 @@ pub fn family(of: &Snapshot, name: &str, library: &Library) -> Vec<Member> {
         let mut all = occurrences(&source.text).into_iter();
         all.any(|one| one.defines && one.name == name)
     };
-    let definers: Vec<String> = layers
-        .iter()
-        .filter(|layer| defines(layer))
-        .map(|layer| layer.name.clone())
-        .collect();
+    let definers: Vec<String> =
+        layers.iter().filter(|layer| defines(layer)).map(|layer| layer.name.clone()).collect();
     let mut members: Vec<Member> = layers.into_iter().map(Member::of).collect();
     for source in beside(of, library) {
-        if members
-            .iter()
-            .any(|member| member.source.name == source.name)
-        {
+        if members.iter().any(|member| member.source.name == source.name) {
             continue;
         }
         let chain = with_parents(source, library);
         if chain.iter().any(|layer| definers.contains(&layer.name)) {
             for layer in chain {
-                if members
-                    .iter()
-                    .all(|member| member.source.name != layer.name)
-                {
+                if members.iter().all(|member| member.source.name != layer.name) {
                     members.push(Member::of(layer));
                 }
             }
@@ -204,9 +185,7 @@ fn beside(of: &Snapshot, library: &Library) -> Vec<Source> {
     paths.dedup();
     let sources = paths.iter().take(MOST_FILES);
     let sources = sources.filter_map(|path| library.read(path).ok());
-    sources
-        .filter(|source| super::is_machine(&source.text))
-        .collect()
+    sources.filter(|source| super::is_machine(&source.text)).collect()
 }
 
 /// A name that a parameter can have.

@@ -37,8 +37,7 @@ impl Tree {
         tree.table(table.get_ref(), &mut Vec::new());
         // What could not be read may stand anywhere.
         let sound = |span: &Range<usize>| text.get(span.clone()).is_some();
-        tree.entries
-            .retain(|entry| sound(&entry.value) && entry.key.as_ref().is_none_or(sound));
+        tree.entries.retain(|entry| sound(&entry.value) && entry.key.as_ref().is_none_or(sound));
         tree
     }
 
@@ -103,7 +102,6 @@ impl Tree {
             let span = key.or(value)?;
             Some((span.len(), entry))
         });
-        here.min_by_key(|(length, _)| *length)
-            .map(|(_, entry)| entry)
+        here.min_by_key(|(length, _)| *length).map(|(_, entry)| entry)
     }
 }

@@ -60,9 +60,7 @@ pub fn text(
 fn word(line: &str, column: usize, program: &Program) -> Option<String> {
     let end = |letter: char| !(letter.is_ascii_alphanumeric() || letter == '.' || letter == '_');
     let from = line[..column].rfind(end).map_or(0, |at| at + 1);
-    let to = line[column..]
-        .find(end)
-        .map_or(line.len(), |at| column + at);
+    let to = line[column..].find(end).map_or(line.len(), |at| column + at);
     // Words stand against one another: `G1X2.`.
     let mut written = &line[from..to];
     let mut start = from;
@@ -108,10 +106,9 @@ fn held(program: &Program, run: &ProgramLine, itself: bool) -> String {
     let mut text = format!("On {}: `{shown}`", machine.name);
     let how = match run.kind.filter(|_| itself) {
         Some(MotionKind::Rapid) => Some("rapid".to_owned()),
-        Some(MotionKind::Feed) => Some(format!(
-            "feed {} mm/min",
-            Short(libm::round(run.feed * 10.0) / 10.0)
-        )),
+        Some(MotionKind::Feed) => {
+            Some(format!("feed {} mm/min", Short(libm::round(run.feed * 10.0) / 10.0)))
+        }
         Some(MotionKind::Thread) => Some("thread".to_owned()),
         None => None,
     };
@@ -161,19 +158,13 @@ fn modes(state: &State) -> Vec<String> {
         Spindle::Surface { speed, .. } => format!("cutting speed {} m/min", Short(speed)),
     });
     let coolants = state.coolants;
-    for (flows, name) in [
-        (coolants.flood, "flood"),
-        (coolants.mist, "mist"),
-        (coolants.other, "coolant"),
-    ] {
+    for (flows, name) in
+        [(coolants.flood, "flood"), (coolants.mist, "mist"), (coolants.other, "coolant")]
+    {
         if flows {
             modes.push(name.to_owned());
         }
     }
-    modes.extend(
-        state
-            .smoothing
-            .map(|by| format!("smoothing {} mm", Short(by))),
-    );
+    modes.extend(state.smoothing.map(|by| format!("smoothing {} mm", Short(by))));
     modes
 }

@@ -79,11 +79,7 @@ impl Beside {
         {
             return kept.map.clone();
         }
-        let mut now = Kept {
-            path: path.clone(),
-            changed,
-            map: None,
-        };
+        let mut now = Kept { path: path.clone(), changed, map: None };
         let program = program.to_owned();
         if about.len() <= AT_ONCE {
             now.map = load(&path, &program).map(Arc::new);
@@ -113,10 +109,7 @@ fn load(map: &Path, program: &Path) -> Option<Map> {
     rows.sort_by_key(|row| row.nc_line);
     let cl = ENDINGS.iter().map(|ending| program.with_extension(ending));
     let mut cl = cl.filter(|path| path.is_file());
-    Some(Map {
-        rows,
-        cl: cl.next(),
-    })
+    Some(Map { rows, cl: cl.next() })
 }
 
 impl Map {

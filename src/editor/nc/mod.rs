@@ -13,6 +13,5 @@ mod program;
 pub use program::{Program, read};
 
 /// Endings of NC programs.
-pub const ENDINGS: &[&str] = &[
-    "nc", "h", "mpf", "spf", "ngc", "gcode", "tap", "eia", "min", "iso", "cnc",
-];
+pub const ENDINGS: &[&str] =
+    &["nc", "h", "mpf", "spf", "ngc", "gcode", "tap", "eia", "min", "iso", "cnc"];

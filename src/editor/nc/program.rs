@@ -79,14 +79,8 @@ pub fn read(
         Err(refused) => return Some(Err(refused.findings())),
     };
     let lexicon = Lexicon::new(&spoken.words);
-    let offsets = Offsets {
-        length: tool_length,
-        ..Offsets::default()
-    };
-    let limits = Limits {
-        blocks: MOST_BLOCKS,
-        ..Limits::default()
-    };
+    let offsets = Offsets { length: tool_length, ..Offsets::default() };
+    let limits = Limits { blocks: MOST_BLOCKS, ..Limits::default() };
     let input = Cursor::new(of.text.as_bytes());
     let opened = Interpreter::new(&machine, &lexicon, &offsets, limits, &of.name, input);
     let mut program = match opened {
@@ -127,11 +121,7 @@ pub fn read(
     lines.reverse();
     lines.dedup_by_key(|run| run.line);
     lines.reverse();
-    let program = Program {
-        machine: Box::new(machine),
-        words: spoken.words,
-        lines,
-    };
+    let program = Program { machine: Box::new(machine), words: spoken.words, lines };
     Some(Ok((program, found)))
 }
 

@@ -19,11 +19,7 @@ pub struct Envelope {
 impl Envelope {
     /// Of so many channels; a share is `width` at first, and doubles as the way grows.
     pub fn new(channels: usize, width: f64) -> Self {
-        Self {
-            channels,
-            width,
-            ranges: Vec::new(),
-        }
+        Self { channels, width, ranges: Vec::new() }
     }
 
     /// Way of a share.
@@ -53,10 +49,7 @@ impl Envelope {
         let pairs = self.ranges.chunks(2 * channels);
         let merged = pairs.flat_map(|pair| {
             (0..channels).map(|channel| {
-                let [a, b] = [
-                    pair[channel],
-                    *pair.get(channels + channel).unwrap_or(&NONE),
-                ];
+                let [a, b] = [pair[channel], *pair.get(channels + channel).unwrap_or(&NONE)];
                 [a[0].min(b[0]), a[1].max(b[1])]
             })
         });
@@ -105,9 +98,7 @@ mod tests {
         assert!(envelope.ranges.len() <= 2 * MOST_BINS);
         let drawn = envelope.runs(0, 1.0);
         assert_eq!(drawn.len(), 1);
-        let high = drawn[0]
-            .iter()
-            .fold(f64::NEG_INFINITY, |most, bin| most.max(bin[2]));
+        let high = drawn[0].iter().fold(f64::NEG_INFINITY, |most, bin| most.max(bin[2]));
         assert_eq!(high, most);
         let half = envelope.runs(1, 3.0);
         let last = half[0].last().unwrap();

@@ -65,10 +65,7 @@ impl Panels {
                 true => Scale::decades(ups),
                 false => Scale::new(ups, (panel.height / 40.0).max(2.0), true),
             };
-            let area = Area {
-                top,
-                height: panel.height,
-            };
+            let area = Area { top, height: panel.height };
             area.plot(&mut svg, [&x, &y], &panel.series, last);
             upright(&mut svg, [18.0, top + panel.height / 2.0], &panel.y);
             top += panel.height + GAP;

@@ -62,10 +62,7 @@ impl Area {
     pub fn plot(&self, svg: &mut String, [x, y]: [&Scale; 2], series: &[Series], numbered: bool) {
         self.axes(svg, x, y, numbered);
         let place = |[across, up]: [f64; 2]| {
-            [
-                LEFT + width() * x.share(across),
-                self.top + self.height * (1.0 - y.share(up)),
-            ]
+            [LEFT + width() * x.share(across), self.top + self.height * (1.0 - y.share(up))]
         };
         for (index, series) in series.iter().enumerate() {
             draw(svg, &series.draw, index, place);
@@ -83,13 +80,7 @@ impl Area {
         }
         for (value, text) in x.ticks() {
             let across = LEFT + width() * x.share(value);
-            line(
-                svg,
-                [across, bottom],
-                [across, bottom + 5.0],
-                "#000000",
-                1.0,
-            );
+            line(svg, [across, bottom], [across, bottom + 5.0], "#000000", 1.0);
             if numbered {
                 label(svg, [across, bottom + 19.0], "middle", &text);
             }

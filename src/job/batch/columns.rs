@@ -26,11 +26,8 @@ pub struct Head {
 }
 
 /// Of the job itself.
-pub const OF_JOB: [(&str, Kind); 3] = [
-    ("job", Kind::Count),
-    ("file", Kind::Text),
-    ("machine", Kind::Text),
-];
+pub const OF_JOB: [(&str, Kind); 3] =
+    [("job", Kind::Count), ("file", Kind::Text), ("machine", Kind::Text)];
 
 const STATE: &[(&str, Kind)] = &[
     ("state", Kind::Text),
@@ -60,10 +57,8 @@ const PROGRAM: &[(&str, Kind)] = &[
     ("travel_left_deg_axis", Kind::Text),
 ];
 
-const VERIFIED: &[(&str, Kind)] = &[
-    ("verified_tip_deviation_mm", Kind::Number),
-    ("verified_axis_deviation_deg", Kind::Number),
-];
+const VERIFIED: &[(&str, Kind)] =
+    &[("verified_tip_deviation_mm", Kind::Number), ("verified_axis_deviation_deg", Kind::Number)];
 
 const PREDICTED: &[(&str, Kind)] = &[
     ("predicted_cycle_time_s", Kind::Number),
@@ -106,11 +101,7 @@ pub fn columns(jobs: &[JobLine], options: &StudyArguments, inputs: &Inputs) -> V
         while columns.iter().chain(&after).any(|other| other.name == name) {
             name = format!("parameters.{name}");
         }
-        columns.push(Head {
-            name,
-            kind,
-            parameter: Some(parameter),
-        });
+        columns.push(Head { name, kind, parameter: Some(parameter) });
     }
     columns.extend(after);
     columns
@@ -137,10 +128,7 @@ fn parameters(jobs: &[JobLine]) -> Vec<(String, Kind)> {
         }
     }
     let kind = |name: &String| kinds.get(name).copied().unwrap_or(Kind::Text);
-    order
-        .into_iter()
-        .map(|name| (name.clone(), kind(&name)))
-        .collect()
+    order.into_iter().map(|name| (name.clone(), kind(&name))).collect()
 }
 
 /// Of every axis that a machine of the study has: with the settings of the first job that it can be loaded with.
@@ -164,17 +152,10 @@ fn of_axes(jobs: &[JobLine], inputs: &Inputs) -> Vec<Head> {
         }
     }
     let mut heads: Vec<Head> = Vec::new();
-    for name in axes
-        .iter()
-        .flat_map(|(name, rotary)| travel::columns(name, *rotary))
-    {
+    for name in axes.iter().flat_map(|(name, rotary)| travel::columns(name, *rotary)) {
         // A slide and a table may have one name on two machines: their shares are in one column.
         if heads.iter().all(|head| head.name != name) {
-            heads.push(Head {
-                name,
-                kind: Kind::Number,
-                parameter: None,
-            });
+            heads.push(Head { name, kind: Kind::Number, parameter: None });
         }
     }
     heads

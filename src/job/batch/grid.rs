@@ -168,9 +168,7 @@ fn range(text: &str) -> Result<Option<Vec<Written>>, String> {
     // The last may be missed by what sums round off.
     let steps = libm::floor((to - from) / step + 1e-9);
     if !(0.0..=MOST_STEPS).contains(&steps) {
-        return Err(format!(
-            "{text}: a range is FROM:TO:STEP, and this step does not lead there"
-        ));
+        return Err(format!("{text}: a range is FROM:TO:STEP, and this step does not lead there"));
     }
     let decimals = ends.iter().map(|end| decimals(end.trim()));
     let decimals = decimals.collect::<Option<Vec<usize>>>();
@@ -233,13 +231,9 @@ mod tests {
             turn: values("0,90").unwrap(),
             ..Grid::default()
         };
-        let own = JobLine {
-            machine: Some("vmc-a".to_owned()),
-            ..JobLine::of_file("b.cls".to_owned())
-        };
-        let jobs = grid
-            .jobs(vec![JobLine::of_file("a.cls".to_owned()), own])
-            .unwrap();
+        let own =
+            JobLine { machine: Some("vmc-a".to_owned()), ..JobLine::of_file("b.cls".to_owned()) };
+        let jobs = grid.jobs(vec![JobLine::of_file("a.cls".to_owned()), own]).unwrap();
         let told: Vec<String> = jobs
             .iter()
             .map(|job| {

@@ -23,10 +23,7 @@ pub struct ClText {
 
 impl ClText {
     fn new(bytes: Vec<u8>) -> Arc<Self> {
-        Arc::new(Self {
-            hash: blake3::hash(&bytes),
-            bytes: bytes.into(),
-        })
+        Arc::new(Self { hash: blake3::hash(&bytes), bytes: bytes.into() })
     }
 }
 
@@ -62,11 +59,7 @@ impl MachineTexts {
             parents.insert(parent.to_owned(), kept);
             found
         });
-        Self::Found {
-            name,
-            text,
-            parents,
-        }
+        Self::Found { name, text, parents }
     }
 
     /// The machine with settings over it.
@@ -75,11 +68,7 @@ impl MachineTexts {
     /// There is none, or what is wrong with its file.
     pub fn load(&self, settings: &[Setting]) -> Result<Machine, Vec<Diagnostic>> {
         let (name, text, parents) = match self {
-            Self::Found {
-                name,
-                text,
-                parents,
-            } => (name.clone(), text.clone(), parents),
+            Self::Found { name, text, parents } => (name.clone(), text.clone(), parents),
             Self::Missing(told) => {
                 let told = told.iter().map(|(message, help)| Diagnostic {
                     help: help.clone(),
@@ -88,18 +77,11 @@ impl MachineTexts {
                 return Err(told.collect());
             }
         };
-        load(
-            Source { name, text },
-            settings,
-            &mut |parent| match parents.get(parent) {
-                Some(Ok((name, text))) => Ok(Source {
-                    name: name.clone(),
-                    text: text.clone(),
-                }),
-                Some(Err(why)) => Err(why.clone()),
-                None => Err(format!("there is no machine {parent}")),
-            },
-        )
+        load(Source { name, text }, settings, &mut |parent| match parents.get(parent) {
+            Some(Ok((name, text))) => Ok(Source { name: name.clone(), text: text.clone() }),
+            Some(Err(why)) => Err(why.clone()),
+            None => Err(format!("there is no machine {parent}")),
+        })
     }
 }
 
@@ -138,23 +120,16 @@ impl Inputs {
             serde_json::from_str(machines).map_err(|error| error.to_string())?;
         let machines = machines.into_iter();
         Ok(Self {
-            given: files
-                .map(|(name, bytes)| (name, ClText::new(bytes)))
-                .collect(),
+            given: files.map(|(name, bytes)| (name, ClText::new(bytes))).collect(),
             read: Mutex::default(),
-            machines: machines
-                .map(|(name, texts)| (name, Arc::new(texts)))
-                .collect(),
+            machines: machines.map(|(name, texts)| (name, Arc::new(texts))).collect(),
         })
     }
 
     /// The texts of all machines, to be handed over.
     pub fn machines_json(&self) -> String {
-        let machines: BTreeMap<&str, &MachineTexts> = self
-            .machines
-            .iter()
-            .map(|(name, texts)| (name.as_str(), texts.as_ref()))
-            .collect();
+        let machines: BTreeMap<&str, &MachineTexts> =
+            self.machines.iter().map(|(name, texts)| (name.as_str(), texts.as_ref())).collect();
         crate::files::json_line(&machines)
     }
 

@@ -21,9 +21,7 @@ impl<'de> Deserialize<'de> for Written {
         let raw = Box::<RawValue>::deserialize(from)?;
         let raw = raw.get();
         if raw.starts_with('"') {
-            return serde_json::from_str(raw)
-                .map(Self)
-                .map_err(serde::de::Error::custom);
+            return serde_json::from_str(raw).map(Self).map_err(serde::de::Error::custom);
         }
         if raw.starts_with('{') || raw == "null" {
             return Err(serde::de::Error::custom(format!(
@@ -75,10 +73,7 @@ pub struct JobLine {
 impl JobLine {
     /// Of a CL file alone.
     pub fn of_file(file: String) -> Self {
-        Self {
-            file,
-            ..Self::default()
-        }
+        Self { file, ..Self::default() }
     }
 
     /// The jobs of a text with one in each line; `name` is what messages call it.
@@ -140,14 +135,10 @@ impl JobLine {
             machine: self.machine.clone(),
             input: Some(PathArg::from(PathBuf::from(&self.file))),
             reading: reading.clone(),
-            mount: mount
-                .transpose()
-                .map_err(|fault: String| told("mount", fault))?,
+            mount: mount.transpose().map_err(|fault: String| told("mount", fault))?,
             turn: number("turn", &self.turn, finite)?,
             tool_length: number("tool_length", &self.tool_length, length)?,
-            set: set
-                .map(|(key, value)| Setting::Written(format!("{key}={}", value.0)))
-                .collect(),
+            set: set.map(|(key, value)| Setting::Written(format!("{key}={}", value.0))).collect(),
             tolerance: number("tolerance", &self.tolerance, positive)?,
             tcp: tcp.transpose()?,
             dialect: self.dialect.as_ref().map(|name| name.0.clone()),

@@ -44,10 +44,7 @@ impl Journal {
                 }
                 if other && known.is_empty() {
                     let kind = io::ErrorKind::InvalidData;
-                    return Err(fault(io::Error::new(
-                        kind,
-                        "this is no journal of post batch",
-                    )));
+                    return Err(fault(io::Error::new(kind, "this is no journal of post batch")));
                 }
                 if !resume {
                     known.clear();
@@ -56,11 +53,7 @@ impl Journal {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(error) => return Err(fault(error)),
         }
-        Ok(Self {
-            path: path.to_owned(),
-            known,
-            file: Mutex::default(),
-        })
+        Ok(Self { path: path.to_owned(), known, file: Mutex::default() })
     }
 
     /// What came of the job with that key.

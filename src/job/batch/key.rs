@@ -36,11 +36,7 @@ pub fn key(
     add(job.file.as_bytes());
     add(cl.hash.as_bytes());
     add(crate::files::json_line(texts).as_bytes());
-    let settings = JobLine {
-        file: String::new(),
-        machine: None,
-        ..job.clone()
-    };
+    let settings = JobLine { file: String::new(), machine: None, ..job.clone() };
     add(crate::files::json_line(&settings).as_bytes());
     add(study.options_text().as_bytes());
     for name in [&machine.control.dialect, &machine.accuracy.model] {

@@ -41,9 +41,7 @@ pub fn run(
     stop: &Arc<AtomicBool>,
 ) -> Option<Did> {
     // What a job had in its hands is dropped with it: nothing of it is seen again.
-    let did = catch_unwind(AssertUnwindSafe(|| {
-        attempt(study, job, inputs, journal, stop)
-    }));
+    let did = catch_unwind(AssertUnwindSafe(|| attempt(study, job, inputs, journal, stop)));
     if stop.load(Ordering::Relaxed) {
         return None;
     }
@@ -52,10 +50,7 @@ pub fn run(
 
 /// A row of whatever came of a job.
 fn told(did: std::thread::Result<Result<Did, Failure>>) -> Did {
-    let new = |outcome| Did {
-        outcome,
-        known: false,
-    };
+    let new = |outcome| Did { outcome, known: false };
     match did {
         Ok(Ok(did)) => did,
         Ok(Err(Failure::Refused(findings))) => new(Outcome::not_written(REFUSED, &findings)),
@@ -69,10 +64,7 @@ fn told(did: std::thread::Result<Result<Did, Failure>>) -> Did {
         Err(panic) => {
             let told = panic.downcast_ref::<String>().map(String::as_str);
             let told = told.or_else(|| panic.downcast_ref::<&str>().copied());
-            let message = format!(
-                "post itself failed: {}",
-                told.unwrap_or("it does not say why")
-            );
+            let message = format!("post itself failed: {}", told.unwrap_or("it does not say why"));
             let finding = Diagnostic::error("panic", message);
             new(Outcome::not_written(FAILED, &[finding]))
         }
@@ -120,29 +112,13 @@ fn attempt(
     journal: Option<&Journal>,
     stop: &Arc<AtomicBool>,
 ) -> Result<Did, Failure> {
-    let Prepared {
-        arguments,
-        machine,
-        cl,
-        key,
-    } = Prepared::new(study, job, inputs)?;
-    let known = journal
-        .zip(key.as_ref())
-        .and_then(|(journal, key)| journal.known(key));
+    let Prepared { arguments, machine, cl, key } = Prepared::new(study, job, inputs)?;
+    let known = journal.zip(key.as_ref()).and_then(|(journal, key)| journal.known(key));
     if let Some(outcome) = known {
-        return Ok(Did {
-            outcome,
-            known: true,
-        });
+        return Ok(Did { outcome, known: true });
     }
     let begun = std::time::Instant::now();
-    let one = OneJob {
-        study,
-        arguments: &arguments,
-        machine: &machine,
-        cl: &cl,
-        stop,
-    };
+    let one = OneJob { study, arguments: &arguments, machine: &machine, cl: &cl, stop };
     let mut outcome = match one.make() {
         Ok(outcome) => outcome,
         Err(Failure::Refused(findings)) => Outcome::not_written(REFUSED, &findings),
@@ -153,10 +129,7 @@ fn attempt(
         outcome.text("key", key);
     }
     outcome.number("compute_time_s", begun.elapsed().as_secs_f64());
-    Ok(Did {
-        outcome,
-        known: false,
-    })
+    Ok(Did { outcome, known: false })
 }
 
 /// A job whose machine is loaded.
@@ -213,11 +186,7 @@ impl OneJob<'_> {
             tell_prediction(&predicted.found, &mut outcome);
             findings.extend(predicted.findings);
         }
-        debug_assert!(
-            findings
-                .iter()
-                .all(|finding| finding.severity == Severity::Warning)
-        );
+        debug_assert!(findings.iter().all(|finding| finding.severity == Severity::Warning));
         outcome.text("state", WRITTEN);
         outcome.text("codes", "");
         outcome.warnings(&findings);
@@ -225,10 +194,7 @@ impl OneJob<'_> {
     }
 
     fn source(&self) -> ClSource {
-        let text = HeldText {
-            bytes: Arc::clone(&self.cl.bytes),
-            stop: Arc::clone(self.stop),
-        };
+        let text = HeldText { bytes: Arc::clone(&self.cl.bytes), stop: Arc::clone(self.stop) };
         ClSource::of_held(self.arguments.input(), text)
     }
 
@@ -345,11 +311,7 @@ struct ProgramText {
 
 impl ProgramText {
     fn new(keeps: bool) -> Self {
-        Self {
-            bytes: 0,
-            hasher: blake3::Hasher::new(),
-            kept: keeps.then(Vec::new),
-        }
+        Self { bytes: 0, hasher: blake3::Hasher::new(), kept: keeps.then(Vec::new) }
     }
 }
 

@@ -33,10 +33,7 @@ impl<'de> Deserialize<'de> for Value {
         }
         match raw.parse::<i64>() {
             Ok(count) => Ok(Self::Count(count)),
-            Err(_) => raw
-                .parse::<f64>()
-                .map(Self::Number)
-                .map_err(serde::de::Error::custom),
+            Err(_) => raw.parse::<f64>().map(Self::Number).map_err(serde::de::Error::custom),
         }
     }
 }
@@ -55,8 +52,7 @@ impl Outcome {
     pub fn number(&mut self, column: impl Into<String>, value: f64) {
         if value.is_finite() {
             // Adding zero turns -0 into 0.
-            self.values
-                .insert(column.into(), Value::Number(value + 0.0));
+            self.values.insert(column.into(), Value::Number(value + 0.0));
         }
     }
 
@@ -66,8 +62,7 @@ impl Outcome {
     }
 
     pub fn text(&mut self, column: &str, value: impl Into<String>) {
-        self.values
-            .insert(column.to_owned(), Value::Text(value.into()));
+        self.values.insert(column.to_owned(), Value::Text(value.into()));
     }
 
     /// Refused, or failed, for these reasons; the first error is told.

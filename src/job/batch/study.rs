@@ -123,8 +123,7 @@ impl Study {
     /// The numbers of the jobs of a part, or of all.
     pub fn numbers(&self, shard: Option<Shard>) -> Vec<usize> {
         let all = 0..self.jobs.len();
-        all.filter(|job| shard.is_none_or(|shard| shard.has(*job)))
-            .collect()
+        all.filter(|job| shard.is_none_or(|shard| shard.has(*job))).collect()
     }
 
     /// What is asked of every job, as a text that is another if that is.

@@ -115,15 +115,9 @@ impl Table {
                     None => outcome.values.get(&head.name).cloned(),
                 }
             });
-            Column {
-                name: head.name.clone(),
-                values: Values::of(head.kind, values),
-            }
+            Column { name: head.name.clone(), values: Values::of(head.kind, values) }
         });
-        Self {
-            rows: numbers.len(),
-            columns: columns.collect(),
-        }
+        Self { rows: numbers.len(), columns: columns.collect() }
     }
 
     /// The column of that name.

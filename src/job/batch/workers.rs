@@ -82,14 +82,11 @@ pub fn run(
             };
             // What a job would print beside its row is in the row; bars of several threads would cross each other.
             let work = || read_files::apart(|| terminal::gathered(jobs));
-            let thread = thread::Builder::new()
-                .name("batch".to_owned())
-                .stack_size(STACK);
+            let thread = thread::Builder::new().name("batch".to_owned()).stack_size(STACK);
             if let Err(error) = thread.spawn_scoped(scope, move || drop(work())) {
                 let message = format!("no thread can be started: {error}");
-                fault = Some(Failure::from(
-                    Diagnostic::error("batch", message).help("fewer --jobs"),
-                ));
+                fault =
+                    Some(Failure::from(Diagnostic::error("batch", message).help("fewer --jobs")));
                 stop.store(true, Ordering::Relaxed);
             }
         }

@@ -106,11 +106,7 @@ pub fn compensate(
     machine.control.arcs.fit = false;
     machine.accuracy.reduce = false;
     let mut path = Recorded::default();
-    let mut tried = Tried {
-        program,
-        ahead,
-        source,
-    };
+    let mut tried = Tried { program, ahead, source };
     tried.post(&machine, Some(&mut path))?;
     let text = tried.post(program.machine, None)?;
     let mut errors = Errors::of(&path);
@@ -161,11 +157,7 @@ pub fn compensate(
         largest_move_mm: sizes.fold(0.0, f64::max),
         kept,
     };
-    Ok(Compensation {
-        machine,
-        moves: kept.then_some(moves),
-        found,
-    })
+    Ok(Compensation { machine, moves: kept.then_some(moves), found })
 }
 
 /// By how much points may be moved, mm.
@@ -199,18 +191,12 @@ impl Tried<'_, '_> {
         shift: Option<&mut dyn PathShift>,
     ) -> Result<Scratch, Failure> {
         let mut text = Scratch::new("a program that is tried")?;
-        let program = OneProgram {
-            machine,
-            ..self.program.clone()
-        };
+        let program = OneProgram { machine, ..self.program.clone() };
         let (report, findings) = program.write(
             self.ahead,
             self.source,
             &mut text,
-            Beside {
-                shift,
-                ..Beside::default()
-            },
+            Beside { shift, ..Beside::default() },
         )?;
         match report {
             Some(_) => Ok(text),
@@ -225,13 +211,7 @@ impl Tried<'_, '_> {
         path: &Recorded,
         errors: &mut Errors,
     ) -> Result<Stray, Failure> {
-        let OneProgram {
-            arguments,
-            machine,
-            finder,
-            lines,
-            ..
-        } = self.program;
+        let OneProgram { arguments, machine, finder, lines, .. } = self.program;
         let asked = Asked {
             arguments,
             machine,

@@ -32,9 +32,7 @@ pub struct Moved<'m> {
 
 impl<'m> Moved<'m> {
     pub fn new(moves: &'m Moves) -> Self {
-        Self {
-            moves: moves.iter(),
-        }
+        Self { moves: moves.iter() }
     }
 }
 
@@ -74,10 +72,7 @@ pub struct Errors {
 
 impl Errors {
     pub fn of(path: &Recorded) -> Self {
-        Self {
-            points: vec![Beside::default(); path.points.len()],
-            cursor: 0,
-        }
+        Self { points: vec![Beside::default(); path.points.len()], cursor: 0 }
     }
 
     /// Where the CL path asks for `asked` the tool is off by `error`. The points stand no more than `off` mm beside that
@@ -146,9 +141,7 @@ impl Recorded {
     /// place. It is looked for from the leg of the point `cursor` on, the nearer ones first.
     fn leg_at(&self, place: &Vector3<f64>, cursor: usize, off: f64) -> Option<(usize, f64)> {
         let ends = (0..AHEAD).flat_map(|step| {
-            let back = cursor
-                .checked_sub(step)
-                .filter(|_| (1..BACK).contains(&step));
+            let back = cursor.checked_sub(step).filter(|_| (1..BACK).contains(&step));
             std::iter::once(cursor + step).chain(back)
         });
         let mut found = ends
@@ -215,9 +208,7 @@ impl Recorded {
         let mut way = 0.0;
         for place in cut.clone() {
             let last = place.checked_sub(1).filter(|_| !self.points[place].begins);
-            way += last.map_or(0.0, |last| {
-                (self.points[place].tip - self.points[last].tip).norm()
-            });
+            way += last.map_or(0.0, |last| (self.points[place].tip - self.points[last].tip).norm());
             ways.push(way);
         }
         let errors = filled(&cut, errors);
@@ -242,11 +233,7 @@ impl Recorded {
 fn filled(cut: &std::ops::Range<usize>, errors: &Errors) -> Vec<Vector3<f64>> {
     let known: Vec<_> = cut
         .clone()
-        .map(|place| {
-            errors
-                .at(place)
-                .map(|error| Vector3::from(error.map(f64::from)))
-        })
+        .map(|place| errors.at(place).map(|error| Vector3::from(error.map(f64::from))))
         .collect();
     let mut all = vec![Vector3::zeros(); known.len()];
     let mut last: Option<usize> = None;

@@ -35,9 +35,7 @@ pub fn solve(problem: &Problem, weights: &[f64]) -> Result<Answer, String> {
     let found = reach.controllable(problem);
     found.map_err(|fault| problem.describe(&fault))?;
     let high = reach.sets().1.iter();
-    let unit: Vec<f64> = high
-        .map(|&high| if high > 0.0 { high } else { 1.0 })
-        .collect();
+    let unit: Vec<f64> = high.map(|&high| if high > 0.0 { high } else { 1.0 }).collect();
     let size = |interval: usize, row: &Row| {
         let [here, next] = [row.here * unit[interval], row.next * unit[interval + 1]];
         here.abs().max(next.abs())
@@ -86,11 +84,7 @@ pub fn solve(problem: &Problem, weights: &[f64]) -> Result<Answer, String> {
         starts.push(places.len());
     }
     let matrix = CscMatrix::new(side.len(), count, starts, places, values);
-    let gains: Vec<f64> = weights
-        .iter()
-        .zip(&unit)
-        .map(|(weight, unit)| weight * unit)
-        .collect();
+    let gains: Vec<f64> = weights.iter().zip(&unit).map(|(weight, unit)| weight * unit).collect();
     let most = gains.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let cost: Vec<f64> = gains.iter().map(|gain| -gain / most).collect();
     let settings = DefaultSettings {
@@ -105,24 +99,14 @@ pub fn solve(problem: &Problem, weights: &[f64]) -> Result<Answer, String> {
     let mut solver = made.map_err(|error| error.to_string())?;
     solver.solve();
     let solution = &solver.solution;
-    if !matches!(
-        solution.status,
-        SolverStatus::Solved | SolverStatus::AlmostSolved
-    ) {
+    if !matches!(solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
         return Err(format!("{:?}", solution.status));
     }
     let each = solution.x.iter().zip(&unit);
     let q: Vec<f64> = each.map(|(x, unit)| (x * unit).max(0.0)).collect();
     let broken = problem.worst(&q).share - 1.0;
     if broken > MOST_BROKEN {
-        return Err(format!(
-            "{:?}, a limit broken by {broken:.1e} of it",
-            solution.status
-        ));
+        return Err(format!("{:?}, a limit broken by {broken:.1e} of it", solution.status));
     }
-    Ok(Answer {
-        q,
-        bound: -solution.obj_val_dual * most,
-        iterations: solution.iterations,
-    })
+    Ok(Answer { q, bound: -solution.obj_val_dual * most, iterations: solution.iterations })
 }

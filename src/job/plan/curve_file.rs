@@ -132,10 +132,8 @@ impl CurveFile {
         let json = JsonText { file, text };
         let keys: CurveKeys<'_> = json.whole()?;
         let mut limits = FileLimits::default();
-        let beside = [
-            ("chord_error_um", keys.chord_error_um),
-            ("interp_period_s", keys.interp_period_s),
-        ];
+        let beside =
+            [("chord_error_um", keys.chord_error_um), ("interp_period_s", keys.interp_period_s)];
         for (key, raw) in beside {
             if let Some(raw) = raw {
                 limits.take(&json, key, raw)?;
@@ -159,11 +157,7 @@ impl CurveFile {
                 return Err(fault.help(help).boxed());
             }
         };
-        Ok(Self {
-            name: keys.name.unwrap_or_else(|| file.to_owned()),
-            path,
-            limits,
-        })
+        Ok(Self { name: keys.name.unwrap_or_else(|| file.to_owned()), path, limits })
     }
 }
 
@@ -203,12 +197,8 @@ fn splines<'a>(
         plane,
         pointing: pointing(json, keys, tip.len())?,
     };
-    let made = Curve::new(
-        degree,
-        splines.knots.clone(),
-        splines.tip.clone(),
-        splines.weights.clone(),
-    );
+    let made =
+        Curve::new(degree, splines.knots.clone(), splines.tip.clone(), splines.weights.clone());
     made.map_err(|fault| {
         let (raw, help) = match fault {
             CurveFault::Order { knot } => (
@@ -301,10 +291,7 @@ fn pointing<'a>(
 }
 
 /// Points with the text of each, and whether they have two coordinates.
-#[expect(
-    clippy::type_complexity,
-    reason = "points with their texts, and one word about them"
-)]
+#[expect(clippy::type_complexity, reason = "points with their texts, and one word about them")]
 fn coordinates<'a>(
     json: &JsonText<'a>,
     raw: Raw<'a>,
@@ -319,9 +306,7 @@ fn coordinates<'a>(
             let help = "points have three coordinates, or all of them two";
             return Err(json.fault(raw, message, help));
         }
-        if let Some((value, raw)) = numbers
-            .iter()
-            .find(|(value, _)| value.abs() > MOST_COORDINATE)
+        if let Some((value, raw)) = numbers.iter().find(|(value, _)| value.abs() > MOST_COORDINATE)
         {
             let message =
                 format!("a coordinate of {value} mm; the largest is {MOST_COORDINATE} mm");
@@ -339,13 +324,8 @@ fn given_points<'a>(
     keys: &CurveKeys<'a>,
     points: Raw<'a>,
 ) -> Result<GivenPath, Box<Diagnostic>> {
-    let splines = [
-        keys.tool_axis,
-        keys.second_points_mm,
-        keys.rotary_deg,
-        keys.knots,
-        keys.weights,
-    ];
+    let splines =
+        [keys.tool_axis, keys.second_points_mm, keys.rotary_deg, keys.knots, keys.weights];
     if let Some(raw) = splines.into_iter().flatten().next() {
         let message = "this key belongs to control_points_mm, and the file has points_mm";
         let help = "a tool axis stands behind each point: [x, y, z, i, j, k]";

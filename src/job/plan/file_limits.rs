@@ -15,13 +15,7 @@ const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
 const MOST: f64 = 1e12;
 
 /// Other keys than those of axes.
-const KEYS: [&str; 5] = [
-    "tip",
-    "chord_error_um",
-    "contour_error_um",
-    "interp_period_s",
-    "servo",
-];
+const KEYS: [&str; 5] = ["tip", "chord_error_um", "contour_error_um", "interp_period_s", "servo"];
 
 /// Largest velocity, acceleration and jerk, in mm or degrees and s; none where nothing is said.
 pub type Most = [Option<f64>; 3];
@@ -81,10 +75,9 @@ impl FileLimits {
             other => {
                 let help = match nearest(other, KEYS) {
                     Some(meant) => format!("did you mean {meant}?"),
-                    None => format!(
-                        "axes by their names (X, XYZ, A), {} are known",
-                        KEYS.join(", ")
-                    ),
+                    None => {
+                        format!("axes by their names (X, XYZ, A), {} are known", KEYS.join(", "))
+                    }
                 };
                 let message = format!("limits of {other} are not known");
                 return Err(json.fault(raw, message, &help));
@@ -124,10 +117,7 @@ impl FileLimits {
             }
         };
         let text = self.toml(first);
-        let source = Source {
-            name: file.to_owned(),
-            text,
-        };
+        let source = Source { name: file.to_owned(), text };
         let mut none = |name: &str| Err(format!("there is no machine {name}"));
         description::load(source, &[], &mut none).map_err(|faults| {
             // Their places are those of a text that the user never sees.
@@ -174,20 +164,15 @@ impl FileLimits {
         }
         text.push_str("[motion]\n");
         let [_, accel, jerk] = self.tip;
-        for (key, value) in [
-            ("period", self.period),
-            ("tip_accel", accel),
-            ("tip_jerk", jerk),
-        ] {
+        for (key, value) in [("period", self.period), ("tip_accel", accel), ("tip_jerk", jerk)] {
             if let Some(value) = value {
                 let _ = writeln!(text, "{key} = {value:?}");
             }
         }
         text.push_str("[plan]\n");
-        for (key, value) in [
-            ("contour_error", self.contour_error),
-            ("chord_error", self.chord_error),
-        ] {
+        for (key, value) in
+            [("contour_error", self.contour_error), ("chord_error", self.chord_error)]
+        {
             if let Some(value) = value {
                 let _ = writeln!(text, "{key} = {value:?}");
             }
@@ -267,9 +252,7 @@ fn quoted(text: &str) -> String {
 fn toml(value: &Value) -> String {
     match value {
         Value::Object(keys) => {
-            let keys = keys
-                .iter()
-                .map(|(key, value)| format!("{} = {}", quoted(key), toml(value)));
+            let keys = keys.iter().map(|(key, value)| format!("{} = {}", quoted(key), toml(value)));
             format!("{{ {} }}", keys.collect::<Vec<_>>().join(", "))
         }
         Value::Array(values) => {

@@ -73,12 +73,7 @@ impl<'a> Gauges<'a> {
     /// Those of the axes of `machine` at the places `axes`, for which `keep` was made; `turns`: rotary axes point the tool;
     /// `jerk`: the solver keeps jerk too.
     pub fn new(machine: &Machine, axes: &[usize], turns: bool, keep: &'a Keep, jerk: bool) -> Self {
-        let mut gauges = Self {
-            keep,
-            axes: axes.to_vec(),
-            turns,
-            all: Vec::new(),
-        };
+        let mut gauges = Self { keep, axes: axes.to_vec(), turns, all: Vec::new() };
         gauges.add(Quantity::Feed, "feed", "mm/min", 60.0, keep.feed, true);
         gauges.add_axes(
             machine,
@@ -96,14 +91,7 @@ impl<'a> Gauges<'a> {
             &keep.acceleration,
             true,
         );
-        gauges.add_axes(
-            machine,
-            Quantity::Jerk,
-            "jerk of",
-            ["mm/s³", "°/s³"],
-            &keep.jerk,
-            jerk,
-        );
+        gauges.add_axes(machine, Quantity::Jerk, "jerk of", ["mm/s³", "°/s³"], &keep.jerk, jerk);
         gauges.add(
             Quantity::TipAcceleration,
             "acceleration of the tip",
@@ -112,22 +100,8 @@ impl<'a> Gauges<'a> {
             keep.tip_acceleration,
             true,
         );
-        gauges.add(
-            Quantity::TipJerk,
-            "jerk of the tip",
-            "mm/s³",
-            1.0,
-            keep.tip_jerk,
-            jerk,
-        );
-        gauges.add(
-            Quantity::ChordError,
-            "chord error",
-            "µm",
-            1e3,
-            keep.chord_error,
-            true,
-        );
+        gauges.add(Quantity::TipJerk, "jerk of the tip", "mm/s³", 1.0, keep.tip_jerk, jerk);
+        gauges.add(Quantity::ChordError, "chord error", "µm", 1e3, keep.chord_error, true);
         if keep.servos.is_some() {
             gauges.add(
                 Quantity::ContourError,
@@ -178,11 +152,7 @@ impl<'a> Gauges<'a> {
                 limit,
                 kept: kept && limit.is_finite(),
                 name: format!("{of} {}", described.name),
-                unit: if described.joint.rotary {
-                    rotary
-                } else {
-                    linear
-                },
+                unit: if described.joint.rotary { rotary } else { linear },
                 scale: 1.0 / described.unit(),
             });
         }
@@ -292,11 +262,7 @@ mod tests {
     #[test]
     fn the_chord_error_of_the_fastest_feed_is_the_tolerance() {
         for (radius, tolerance) in [(8.0, 0.0005), (1000.0, 0.0005), (0.01, 0.0005)] {
-            let limit = ChordError {
-                tolerance,
-                period: 0.004,
-                collocation: Collocation::Start,
-            };
+            let limit = ChordError { tolerance, period: 0.004, collocation: Collocation::Start };
             let feed = limit.feed(1.0 / radius);
             let found = chord_error(feed, 1.0 / radius, 0.004);
             assert!((found / tolerance - 1.0).abs() < 1e-9, "{found}");

@@ -24,11 +24,7 @@ struct End {
 
 impl End {
     fn of(point: &PlannedPoint<'_>) -> Self {
-        Self {
-            tip: *point.tip,
-            course: *point.course,
-            q: point.q,
-        }
+        Self { tip: *point.tip, course: *point.course, q: point.q }
     }
 
     /// Way of the tip for that of the parameter, and its derivative by it.
@@ -99,11 +95,7 @@ impl Interval<'_> {
         let [from, to] = self.ends.each_ref().map(|end| end.q);
         let [value, slope, bend] = from;
         let half = 0.5 * self.length;
-        [
-            value,
-            (value + (slope + 0.5 * bend * half) * half).max(0.0),
-            to[0],
-        ]
+        [value, (value + (slope + 0.5 * bend * half) * half).max(0.0), to[0]]
     }
 
     /// Squared speed of the parameter at a share of it, and its first and second derivative.

@@ -132,9 +132,7 @@ impl<'a> JsonText<'a> {
         // The place is told beside it.
         let message = full.split(" at line ").next().unwrap_or(&full);
         let fault = Diagnostic::error("curve", message).at(Some(self.place(start, 1)));
-        fault
-            .help("`post plan --help` lists the keys of a curve file")
-            .boxed()
+        fault.help("`post plan --help` lists the keys of a curve file").boxed()
     }
 }
 

@@ -89,14 +89,8 @@ impl Keep {
             let most = self.feed;
             limits.push(Box::new(Feed { most, collocation }));
         }
-        limits.push(Box::new(AxisVelocity {
-            limits: self.velocity.clone(),
-            collocation,
-        }));
-        limits.push(Box::new(AxisAcceleration {
-            limits: self.acceleration.clone(),
-            collocation,
-        }));
+        limits.push(Box::new(AxisVelocity { limits: self.velocity.clone(), collocation }));
+        limits.push(Box::new(AxisAcceleration { limits: self.acceleration.clone(), collocation }));
         if self.tip_acceleration.is_finite() {
             let limit = self.tip_acceleration;
             limits.push(Box::new(TipAcceleration { limit, collocation }));
@@ -118,9 +112,7 @@ impl Keep {
             )));
         }
         if jerk && self.jerk.iter().any(|jerk| jerk.is_finite()) {
-            limits.push(Box::new(AxisJerk {
-                limits: self.jerk.clone(),
-            }));
+            limits.push(Box::new(AxisJerk { limits: self.jerk.clone() }));
         }
         if jerk && self.tip_jerk.is_finite() {
             let limit = self.tip_jerk;
@@ -153,10 +145,7 @@ impl Response for AxisResponse {
             return Answer::EXACT;
         };
         let value = servo.at(frequency);
-        Answer {
-            real: value.re,
-            imaginary: value.im,
-        }
+        Answer { real: value.re, imaginary: value.im }
     }
 }
 
@@ -174,9 +163,7 @@ impl Deviation {
             return None;
         }
         let highest = servos.iter().filter_map(|servo| servo.0.as_ref());
-        let highest = highest
-            .map(servo::Response::natural_frequency)
-            .fold(f64::INFINITY, f64::min);
+        let highest = highest.map(servo::Response::natural_frequency).fold(f64::INFINITY, f64::min);
         let ratio = libm::log(1.0 / LOWEST) / STEPS as f64;
         let at = |step: usize| highest * libm::exp(-ratio * (STEPS - step) as f64);
         let answers = servos.iter().map(|servo| {
@@ -187,12 +174,7 @@ impl Deviation {
         let all: Vec<&dyn Response> = servos.iter().map(|servo| servo as _).collect();
         let deviation = |step: usize| post_feed::limits::deviation(&all, at(step));
         let table = (0..=STEPS).map(deviation).collect();
-        Some(Self {
-            highest,
-            answers,
-            table,
-            servos,
-        })
+        Some(Self { highest, answers, table, servos })
     }
 
     /// The step of the tables below a frequency, and how far it is to the next.
@@ -260,11 +242,7 @@ impl Deviation {
             }
         }
         let square = dot(off, off);
-        let part = if length > 0.0 {
-            dot(off, along) * dot(off, along) / length
-        } else {
-            0.0
-        };
+        let part = if length > 0.0 { dot(off, along) * dot(off, along) / length } else { 0.0 };
         libm::sqrt((square - part).max(0.0))
     }
 }

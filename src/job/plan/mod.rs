@@ -74,13 +74,8 @@ impl Curve {
     ) -> Result<(Self, Vec<Diagnostic>), Failure> {
         let (name, input) = nc_program::open_as("the curve file", source)?;
         let mut text = String::new();
-        let read = input
-            .take(curve_file::MOST_BYTES + 1)
-            .read_to_string(&mut text);
-        read.map_err(|error| FileFault::Read {
-            name: name.clone(),
-            error,
-        })?;
+        let read = input.take(curve_file::MOST_BYTES + 1).read_to_string(&mut text);
+        read.map_err(|error| FileFault::Read { name: name.clone(), error })?;
         if text.len() as u64 > curve_file::MOST_BYTES {
             let message = format!("{name} is longer than {} bytes", curve_file::MOST_BYTES);
             return Err(Diagnostic::error("curve", message).into());
@@ -100,20 +95,15 @@ impl Curve {
             }
             None => {
                 let rotary: Vec<String> = match &file.path {
-                    GivenPath::Splines(Splines {
-                        pointing: Pointing::Rotary(axes),
-                        ..
-                    }) => axes.iter().map(|(name, _)| name.clone()).collect(),
+                    GivenPath::Splines(Splines { pointing: Pointing::Rotary(axes), .. }) => {
+                        axes.iter().map(|(name, _)| name.clone()).collect()
+                    }
                     _ => Vec::new(),
                 };
                 file.limits.machine(&name, &rotary)?
             }
         };
-        let curve = Self {
-            file,
-            name,
-            machine,
-        };
+        let curve = Self { file, name, machine };
         Ok((curve, findings))
     }
 
@@ -162,10 +152,7 @@ impl Curve {
         for stretch in &mut plans.stretches {
             stretch.spline.slow(slower);
         }
-        let names = path
-            .axes
-            .iter()
-            .map(|place| machine.axes[*place].name.clone());
+        let names = path.axes.iter().map(|place| machine.axes[*place].name.clone());
         let names: Vec<String> = names.collect();
         let mut rooms = rooms(machine, &path.axes, &keep);
         let mut tally = Tally::new(&gauges);
@@ -188,11 +175,7 @@ impl Curve {
             }
             false => None,
         };
-        let stops = plans
-            .stretches
-            .iter()
-            .skip(1)
-            .map(|stretch| stretch.parameters[0]);
+        let stops = plans.stretches.iter().skip(1).map(|stretch| stretch.parameters[0]);
         let found = Found {
             curve: self.name.clone(),
             name: self.file.name.clone(),
@@ -206,20 +189,12 @@ impl Curve {
             spline_slower: 1.0 - slower,
             limits: tally.limits(),
             simulated,
-            feed_splines: plans
-                .stretches
-                .iter()
-                .map(|stretch| spline(&stretch.spline))
-                .collect(),
+            feed_splines: plans.stretches.iter().map(|stretch| spline(&stretch.spline)).collect(),
             axes: names,
             rows,
         };
-        let note = format!(
-            "{} on {}, {} s",
-            self.file.name,
-            machine.name,
-            number(found.seconds, 3)
-        );
+        let note =
+            format!("{} on {}, {} s", self.file.name, machine.name, number(found.seconds, 3));
         Ok(Planned { found, rooms, note })
     }
 }
@@ -229,11 +204,7 @@ fn rooms(machine: &Machine, axes: &[usize], keep: &Keep) -> PlanRooms {
     let axes = axes.iter().enumerate().map(|(axis, place)| DrawnAxis {
         name: machine.axes[*place].name.clone(),
         rotary: machine.axes[*place].joint.rotary,
-        limits: [
-            keep.velocity[axis],
-            keep.acceleration[axis],
-            keep.jerk[axis],
-        ],
+        limits: [keep.velocity[axis], keep.acceleration[axis], keep.jerk[axis]],
     });
     PlanRooms::new(
         axes.collect(),

@@ -48,22 +48,15 @@ pub fn smooth_parts(splines: &Splines) -> Vec<Part> {
     let mut parts = vec![Part { first: 0, count }];
     let mut at = degree + 1;
     while at < count {
-        let times = (at..count)
-            .take_while(|place| splines.knots[*place] == splines.knots[at])
-            .count();
+        let times =
+            (at..count).take_while(|place| splines.knots[*place] == splines.knots[at]).count();
         // Of degree less the times that a knot stands are the derivatives that are continuous there.
         if degree < times + 2 {
             let last = parts.len() - 1;
             let whole = parts[last];
-            let before = Part {
-                first: whole.first,
-                count: at - whole.first,
-            };
+            let before = Part { first: whole.first, count: at - whole.first };
             let first = at + times - degree - 1;
-            let after = Part {
-                first,
-                count: count - first,
-            };
+            let after = Part { first, count: count - first };
             if jumps(splines, before, after) {
                 parts[last] = before;
                 parts.push(after);
@@ -86,10 +79,7 @@ fn jumps(splines: &Splines, before: Part, after: Part) -> bool {
     };
     let differs = |points: &[[f64; 3]]| {
         let (left, right) = (before.curve(splines, points), after.curve(splines, points));
-        differ(
-            left.derivatives(left.range()[1]),
-            right.derivatives(right.range()[0]),
-        )
+        differ(left.derivatives(left.range()[1]), right.derivatives(right.range()[0]))
     };
     differs(&splines.tip)
         || match &splines.pointing {

@@ -73,19 +73,13 @@ impl<'m> CurvePath<'m> {
         let mut turning = Turning::default();
         for joint in &rotary {
             match machine.axes[*joint].travel {
-                Some(travel) => turning.limits.push(Limit {
-                    joint: *joint,
-                    travel,
-                }),
+                Some(travel) => turning.limits.push(Limit { joint: *joint, travel }),
                 None => turning.cyclic.push(*joint),
             }
         }
         if rotary.len() > 2 {
-            let message = format!(
-                "{} rotary axes of {} point the tool",
-                rotary.len(),
-                machine.name
-            );
+            let message =
+                format!("{} rotary axes of {} point the tool", rotary.len(), machine.name);
             let help = "a curve is planned on machines with up to two; indexed = 0 holds one";
             return Err(Diagnostic::error("curve", message).help(help).boxed());
         }
@@ -96,14 +90,7 @@ impl<'m> CurvePath<'m> {
             let across = plane && rotary.is_empty() && axis.joint.direction.z.abs() > 1e-9;
             axis.indexed.is_none() && !across && (!axis.joint.rotary || rotary.contains(place))
         });
-        Ok(Self {
-            machine,
-            solver,
-            rotary,
-            turning,
-            axes,
-            stretches: Vec::new(),
-        })
+        Ok(Self { machine, solver, rotary, turning, axes, stretches: Vec::new() })
     }
 
     /// The path of `splines` on `machine` with a tool of `length` mm.
@@ -222,11 +209,7 @@ impl<'m> CurvePath<'m> {
             last = station.course.joints[0];
             for (place, axis) in self.machine.axes.iter().enumerate() {
                 if let Some(limit) = travel::passed(axis.travel, last[place], travel::AT_END) {
-                    let over = travel::OverTravel {
-                        joint: place,
-                        value: last[place],
-                        limit,
-                    };
+                    let over = travel::OverTravel { joint: place, value: last[place], limit };
                     return Err((parameter, NoStation::Over(over)));
                 }
             }
@@ -255,11 +238,7 @@ impl<'m> CurvePath<'m> {
         axis: Vector3<f64>,
         last: &Joints,
     ) -> Result<Joints, NoStation> {
-        let pose = Pose {
-            tip,
-            axis,
-            edge: Vector3::zeros(),
-        };
+        let pose = Pose { tip, axis, edge: Vector3::zeros() };
         let tolerance = self.machine.accuracy.axis_tolerance;
         let branches = self.solver.orient(&pose, tolerance);
         let branches = branches.map_err(NoStation::Unreachable)?;
@@ -287,12 +266,7 @@ impl<'m> CurvePath<'m> {
                         std::array::from_fn(|order| second[order] - vectors[order])
                     }
                     CurvePointing::Axis(curve) => curve.derivatives(parameter).map(Vector3::from),
-                    _ => [
-                        Vector3::z(),
-                        Vector3::zeros(),
-                        Vector3::zeros(),
-                        Vector3::zeros(),
-                    ],
+                    _ => [Vector3::z(), Vector3::zeros(), Vector3::zeros(), Vector3::zeros()],
                 };
                 let axis = direction(&along).ok_or(NoStation::NoAxis)?;
                 let joints = self.turned(vectors[0], axis[0], last)?;
@@ -308,11 +282,7 @@ impl<'m> CurvePath<'m> {
         }
         let placed = self.solver.course(&vectors, &mut course);
         placed.map_err(NoStation::Unreachable)?;
-        Ok(Station {
-            parameter,
-            tip,
-            course,
-        })
+        Ok(Station { parameter, tip, course })
     }
 
     /// The samples of a stretch at these parameters.
@@ -333,10 +303,7 @@ impl<'m> CurvePath<'m> {
                 .collect();
             samples.push(parameter, [first, second, third], &axes);
             if !self.rotary.is_empty() {
-                let rates = self
-                    .axes
-                    .iter()
-                    .map(|place| station.course.rates[*place].into());
+                let rates = self.axes.iter().map(|place| station.course.rates[*place].into());
                 samples.push_rates(&rates.collect::<Vec<[f64; 3]>>());
             }
         }

@@ -99,11 +99,7 @@ impl PlanRooms {
         let mut files = vec![("feed.svg", self.feed(note).svg())];
         let titles = [
             ("axis-velocity.svg", "Velocity of the axes", ["mm/s", "°/s"]),
-            (
-                "axis-acceleration.svg",
-                "Acceleration of the axes",
-                ["mm/s²", "°/s²"],
-            ),
+            ("axis-acceleration.svg", "Acceleration of the axes", ["mm/s²", "°/s²"]),
             ("axis-jerk.svg", "Jerk of the axes", ["mm/s³", "°/s³"]),
         ];
         for (order, (name, title, units)) in titles.into_iter().enumerate() {
@@ -136,17 +132,8 @@ impl PlanRooms {
 
     fn feed(&self, note: &str) -> Panels {
         let runs = self.along.runs(0, 60.0);
-        let panel = self.panel(
-            "feed, mm/min".to_owned(),
-            runs,
-            &[60.0 * self.limits.feed],
-            330.0,
-        );
-        panels(
-            "Planned feed of the tip against the part",
-            note,
-            vec![panel],
-        )
+        let panel = self.panel("feed, mm/min".to_owned(), runs, &[60.0 * self.limits.feed], 330.0);
+        panels("Planned feed of the tip against the part", note, vec![panel])
     }
 
     fn axes(&self, order: usize, title: &str, units: [&str; 2], note: &str) -> Panels {
@@ -157,12 +144,7 @@ impl PlanRooms {
             };
             let runs = self.motion.runs(order * self.axes.len() + place, scale);
             let limit = scale * axis.limits[order];
-            self.panel(
-                format!("{}, {unit}", axis.name),
-                runs,
-                &[limit, -limit],
-                150.0,
-            )
+            self.panel(format!("{}, {unit}", axis.name), runs, &[limit, -limit], 150.0)
         });
         panels(title, note, each.collect())
     }
@@ -177,12 +159,7 @@ impl PlanRooms {
             let line = vec![[0.0, *limit], [self.way.max(1e-6), *limit]];
             series.push(Series::line("limit", line, LIMIT));
         }
-        Panel {
-            y,
-            logarithmic: false,
-            height,
-            series,
-        }
+        Panel { y, logarithmic: false, height, series }
     }
 }
 

@@ -39,17 +39,10 @@ impl<'m> Limited<'m> {
         axes.retain(|place| machine.axes[*place].indexed.is_none());
         let keep = Keep::new(machine, &axes, Over::default()).or_else(|_| {
             // Nothing is known of the servos: a contour error is neither kept nor drawn.
-            let free = Over {
-                contour_error: Some(f64::INFINITY),
-                ..Over::default()
-            };
+            let free = Over { contour_error: Some(f64::INFINITY), ..Over::default() };
             Keep::new(machine, &axes, free)
         })?;
-        Ok(Self {
-            machine,
-            axes,
-            keep,
-        })
+        Ok(Self { machine, axes, keep })
     }
 
     /// What is used of them.
@@ -159,10 +152,7 @@ impl<'a> Along<'a> {
                 false => Vec::new(),
             },
         };
-        let note = format!(
-            "{program} on {machine}, planned cuts: {} s",
-            number(seconds, 3)
-        );
+        let note = format!("{program} on {machine}, planned cuts: {} s", number(seconds, 3));
         let mut files = self.rooms.files(&note);
         files.push((MARK.0, files::json(&found)));
         files

@@ -33,8 +33,7 @@ impl Row {
     pub fn new(machine: &Machine, axes: &[usize], point: &PlanPoint, limit: Option<&str>) -> Self {
         let shown = |values: &[f64]| -> Vec<f64> {
             let each = axes.iter().zip(values);
-            each.map(|(place, value)| value / machine.axes[*place].unit())
-                .collect()
+            each.map(|(place, value)| value / machine.axes[*place].unit()).collect()
         };
         let readings = axes.iter().zip(&point.position);
         Self {
@@ -43,9 +42,7 @@ impl Row {
             time_s: point.time,
             tip_mm: point.tip,
             feed_mm_min: 60.0 * point.feed,
-            position: readings
-                .map(|(place, value)| machine.axes[*place].reading(*value))
-                .collect(),
+            position: readings.map(|(place, value)| machine.axes[*place].reading(*value)).collect(),
             velocity: shown(&point.velocity),
             acceleration: shown(&point.acceleration),
             jerk: shown(&point.jerk),

@@ -65,14 +65,7 @@ struct Node {
 impl Timeline {
     /// Takes the next step.
     pub fn take(&mut self, step: &Step<'_>) {
-        let PlanPoint {
-            parameter,
-            time,
-            way,
-            tip,
-            contour_error,
-            ..
-        } = *step.point;
+        let PlanPoint { parameter, time, way, tip, contour_error, .. } = *step.point;
         self.nodes.push(Node {
             stretch: step.stretch,
             parameter,
@@ -167,11 +160,7 @@ impl Timeline {
             // Two nodes at one time stand where one stretch ends and the next begins.
             let (parameter, share) = if to.stretch == from.stretch {
                 let spline = &plans[to.stretch].spline;
-                let begin = if to.piece == from.piece {
-                    from.share
-                } else {
-                    0.0
-                };
+                let begin = if to.piece == from.piece { from.share } else { 0.0 };
                 let found = spline.share_after(to.piece, begin, time - from.time);
                 let share = ((found - begin) / (to.share - begin)).clamp(0.0, 1.0);
                 let step = to.parameter - from.parameter;
@@ -198,13 +187,8 @@ impl Timeline {
     fn off(&self, path: &CurvePath<'_>, point: &Commanded, tip: [f64; 3]) -> f64 {
         let room = AROUND + LAGS * distance(point.tip, tip);
         let near = |node: &Node| (node.way - point.way).abs() <= room;
-        let first = self.nodes[..=point.node]
-            .iter()
-            .rev()
-            .take_while(|node| near(node));
-        let behind = self.nodes[point.node + 1..]
-            .iter()
-            .take_while(|node| near(node));
+        let first = self.nodes[..=point.node].iter().rev().take_while(|node| near(node));
+        let behind = self.nodes[point.node + 1..].iter().take_while(|node| near(node));
         let around = first.chain(behind);
         let nearest = around.min_by(|a, b| distance(a.tip, tip).total_cmp(&distance(b.tip, tip)));
         let Some(node) = nearest else {

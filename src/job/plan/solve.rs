@@ -114,18 +114,11 @@ pub fn plan(
 ) -> Result<Plans, Box<Diagnostic>> {
     let owned = keep.limits(asked.solver == Solver::Jerk);
     let limits: Vec<&dyn Limit> = owned.iter().map(Box::as_ref).collect();
-    let spans = path
-        .stretches
-        .iter()
-        .map(|stretch| stretch.tip.breaks().len() - 1);
+    let spans = path.stretches.iter().map(|stretch| stretch.tip.breaks().len() - 1);
     let steps = asked.samples.div_ceil(spans.sum::<usize>()).max(4);
     let last = path.stretches.len() - 1;
-    let mut plans = Plans {
-        stretches: Vec::new(),
-        solvers: Vec::new(),
-        monotone: true,
-        samples: 0,
-    };
+    let mut plans =
+        Plans { stretches: Vec::new(), solvers: Vec::new(), monotone: true, samples: 0 };
     let solvers: &[Solver] = match asked.solver {
         Solver::Reach => &[Solver::Reach],
         Solver::Jerk => &[Solver::Jerk, Solver::Reach],
@@ -155,24 +148,13 @@ pub fn plan(
             if feed > 0.0 { speed * speed } else { 0.0 }
         };
         let ends = Ends {
-            start: if index == 0 {
-                speed(asked.start_feed, 0)
-            } else {
-                0.0
-            },
+            start: if index == 0 { speed(asked.start_feed, 0) } else { 0.0 },
             end: match index == last {
                 true => speed(asked.end_feed, samples.len() - 1),
                 false => 0.0,
             },
         };
-        let told = Told {
-            path,
-            index,
-            samples: &samples,
-            limits: &limits,
-            way,
-            file,
-        };
+        let told = Told { path, index, samples: &samples, limits: &limits, way, file };
         let mut problem = Problem::default();
         let made = problem.refill(&samples, &limits, ends);
         made.map_err(|fault| told.infeasible(&fault))?;
@@ -218,19 +200,12 @@ pub fn plan(
                     }
                 }
             };
-            let objective: f64 = answer
-                .q
-                .iter()
-                .zip(&weights)
-                .map(|(q, weight)| q * weight)
-                .sum();
+            let objective: f64 = answer.q.iter().zip(&weights).map(|(q, weight)| q * weight).sum();
             sum.objective += objective;
             sum.seconds += answer.seconds;
             // A stretch without a bound leaves the whole without.
             sum.bound = answer.bound.map(|bound| sum.bound.unwrap_or(0.0) + bound);
-            sum.iterations = answer
-                .iterations
-                .map(|more| sum.iterations.unwrap_or(0) + more);
+            sum.iterations = answer.iterations.map(|more| sum.iterations.unwrap_or(0) + more);
             for ((q, fast), upper) in answer.q.iter().zip(&fast).zip(&problem.upper) {
                 let size = fast.max(1e-6 * upper);
                 if size > 0.0 {
@@ -247,10 +222,7 @@ pub fn plan(
         }
         way += length(&samples, samples.len() - 1);
         plans.samples += samples.len();
-        plans.stretches.push(StretchPlan {
-            parameters,
-            spline: spline.unwrap_or_default(),
-        });
+        plans.stretches.push(StretchPlan { parameters, spline: spline.unwrap_or_default() });
     }
     plans.solvers = sums
         .into_iter()
@@ -258,9 +230,7 @@ pub fn plan(
             solver: sum.solver,
             sum_of_squared_feeds: sum.objective,
             seconds: sum.seconds,
-            proven_gap: sum
-                .bound
-                .map(|bound| ((bound - sum.objective) / bound).max(0.0)),
+            proven_gap: sum.bound.map(|bound| ((bound - sum.objective) / bound).max(0.0)),
             iterations: sum.iterations,
             largest_difference: sum.difference,
         })
@@ -326,13 +296,7 @@ impl Told<'_> {
             None => String::new(),
         };
         let (message, help) = match *fault {
-            Infeasible::TooFastStart {
-                source,
-                needed,
-                allowed,
-                braking,
-                ..
-            } => (
+            Infeasible::TooFastStart { source, needed, allowed, braking, .. } => (
                 format!(
                     "the start is too fast: by the hardest braking{} the feed is still {} mm/min {place}, and {} allows {}",
                     by(braking),
@@ -342,13 +306,7 @@ impl Told<'_> {
                 ),
                 "a smaller --start-feed",
             ),
-            Infeasible::OutOfReach {
-                source,
-                needed,
-                allowed,
-                accelerating,
-                ..
-            } => (
+            Infeasible::OutOfReach { source, needed, allowed, accelerating, .. } => (
                 format!(
                     "the end is too fast: to reach its feed, that {place} would have to be {} mm/min{}, and {} allows {}",
                     feed(needed),
@@ -366,16 +324,12 @@ impl Told<'_> {
                 "a larger limit, or a smaller --start-feed or --end-feed",
             ),
             Infeasible::NotANumber { source, .. } => (
-                format!(
-                    "{} is no limit {place}: not finite, or negative",
-                    self.limit(source)
-                ),
+                format!("{} is no limit {place}: not finite, or negative", self.limit(source)),
                 "the path may have a cusp there",
             ),
-            Infeasible::Unbounded { .. } => (
-                format!("no limit bounds the feed {place}"),
-                "--feed is the largest feed",
-            ),
+            Infeasible::Unbounded { .. } => {
+                (format!("no limit bounds the feed {place}"), "--feed is the largest feed")
+            }
             Infeasible::TooShort { .. } => (
                 format!("a plan with jerk needs four samples or more between two stops: {place}"),
                 "more --samples",
@@ -397,10 +351,7 @@ impl Told<'_> {
     fn limit(&self, source: Source) -> String {
         let limit = self.limits.get(usize::from(source.limit));
         let name = limit.map_or("a limit", |limit| limit.name());
-        match source
-            .axis
-            .and_then(|axis| self.path.axes.get(usize::from(axis)))
-        {
+        match source.axis.and_then(|axis| self.path.axes.get(usize::from(axis))) {
             Some(place) => format!("{name} of {}", self.path.machine.axes[*place].name),
             None => name.to_owned(),
         }

@@ -18,18 +18,11 @@ pub fn text(found: &Found) -> String {
         let _ = writeln!(text, "{name:<14} {value}");
     };
     row("curve", format!("{} ({})", found.name, found.curve));
-    row(
-        "machine",
-        format!("{}: {}", found.machine, found.axes.join(", ")),
-    );
+    row("machine", format!("{}: {}", found.machine, found.axes.join(", ")));
     row("samples", found.samples.to_string());
     row("length", format!("{} mm", number(found.length_mm, 3)));
     let mean = 60.0 * found.length_mm / found.seconds;
-    let time = format!(
-        "{} s, {} mm/min on average",
-        number(found.seconds, 3),
-        number(mean, 0)
-    );
+    let time = format!("{} s, {} mm/min on average", number(found.seconds, 3), number(mean, 0));
     row("cycle time", time);
     let of_samples = found.solvers.first().map_or(0.0, |solver| solver.seconds);
     row(
@@ -64,15 +57,7 @@ pub fn text(found: &Found) -> String {
 }
 
 fn limits(text: &mut String, found: &Found) {
-    let head = [
-        "limit",
-        "most",
-        "largest",
-        "share",
-        "at mm",
-        "active: way",
-        "time",
-    ];
+    let head = ["limit", "most", "largest", "share", "at mm", "active: way", "time"];
     let mut rows = vec![head.map(str::to_owned)];
     let mut unreached = [1.0, 1.0];
     let mut unkept = false;
@@ -90,15 +75,8 @@ fn limits(text: &mut String, found: &Found) {
             false => "-".to_owned(),
         };
         rows.push([
-            format!(
-                "{}, {}{}",
-                limit.limit,
-                limit.unit,
-                if free { " *" } else { "" }
-            ),
-            limit
-                .most
-                .map_or_else(|| "-".to_owned(), |most| number(most, decimals)),
+            format!("{}, {}{}", limit.limit, limit.unit, if free { " *" } else { "" }),
+            limit.most.map_or_else(|| "-".to_owned(), |most| number(most, decimals)),
             number(limit.largest, decimals),
             limit
                 .largest_share
@@ -138,14 +116,7 @@ fn decimals(size: f64) -> u8 {
 }
 
 fn solvers(text: &mut String, found: &Found) {
-    let head = [
-        "solver",
-        "Σ f², mm²/s²",
-        "seconds",
-        "proven gap",
-        "iterations",
-        "feeds differ by",
-    ];
+    let head = ["solver", "Σ f², mm²/s²", "seconds", "proven gap", "iterations", "feeds differ by"];
     let mut rows = vec![head.map(str::to_owned)];
     for solver in &found.solvers {
         let dash = || "-".to_owned();
@@ -153,12 +124,8 @@ fn solvers(text: &mut String, found: &Found) {
             name(solver.solver).to_owned(),
             number(solver.sum_of_squared_feeds, 3),
             number(solver.seconds, 5),
-            solver
-                .proven_gap
-                .map_or_else(dash, |gap| format!("{gap:.1e}")),
-            solver
-                .iterations
-                .map_or_else(dash, |count| count.to_string()),
+            solver.proven_gap.map_or_else(dash, |gap| format!("{gap:.1e}")),
+            solver.iterations.map_or_else(dash, |count| count.to_string()),
             match solver.solver {
                 Solver::Reach => dash(),
                 _ => format!("{:.1e}", solver.largest_difference),
@@ -241,14 +208,7 @@ fn simulation(text: &mut String, found: &Simulated) {
             micro(found.formula_largest)
         ),
     );
-    row(
-        "",
-        format!(
-            "RMS {} µm, by the formula {} µm",
-            micro(found.rms),
-            micro(found.formula_rms)
-        ),
-    );
+    row("", format!("RMS {} µm, by the formula {} µm", micro(found.rms), micro(found.formula_rms)));
     row(
         "",
         format!(

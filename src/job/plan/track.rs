@@ -104,11 +104,7 @@ pub struct SmoothPiece {
 
 /// Lays smooth curves through points: the tip in mm, then `rotary` axes in radians. Between two curves there is a corner.
 pub fn through(points: &[fit::Point], rotary: usize, tolerance: f64) -> Vec<SmoothPiece> {
-    let mut fit = Fit::new(Rules {
-        dimensions: 3 + rotary,
-        tolerance,
-        ..Rules::default()
-    });
+    let mut fit = Fit::new(Rules { dimensions: 3 + rotary, tolerance, ..Rules::default() });
     let mut pieces: Vec<SmoothPiece> = Vec::new();
     let mut at = 0.0;
     let mut take = |leg: &Leg<'_>| {

@@ -186,8 +186,7 @@ impl<'a> Tally<'a> {
 
     pub fn limits(&self) -> Vec<LimitFound> {
         let each = self.gauges.all.iter().zip(&self.found);
-        each.map(|(gauge, largest)| self.limit(gauge, largest))
-            .collect()
+        each.map(|(gauge, largest)| self.limit(gauge, largest)).collect()
     }
 
     fn limit(&self, gauge: &Gauge, largest: &Largest) -> LimitFound {

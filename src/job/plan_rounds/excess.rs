@@ -103,11 +103,7 @@ impl Excess {
 
     /// At `time` (s) the tool is nearest to `tip` (mm, part frame) of the path that the CL file asks for.
     pub fn take(&mut self, time: f64, tip: &Vector3<f64>, off: Off) {
-        let Off {
-            error,
-            cl_line: line,
-            ..
-        } = off;
+        let Off { error, cl_line: line, .. } = off;
         if time < self.entered + self.settling.memory {
             return self.take_beside_rapid(off);
         }
@@ -152,17 +148,10 @@ impl Excess {
             return;
         };
         let [first, last] = cell.times;
-        while self
-            .hot
-            .front()
-            .is_some_and(|hot| hot.time + self.settling.stretch < first)
-        {
+        while self.hot.front().is_some_and(|hot| hot.time + self.settling.stretch < first) {
             self.hot.pop_front();
         }
-        let near = self
-            .hot
-            .iter()
-            .take_while(|hot| hot.time - self.settling.stretch <= last);
+        let near = self.hot.iter().take_while(|hot| hot.time - self.settling.stretch <= last);
         let share = near.fold(1.0, |least: f64, hot| least.min(hot.share));
         if share == 1.0 {
             return;
@@ -198,10 +187,7 @@ mod tests {
     use super::*;
 
     fn settling(memory: f64) -> Settling {
-        Settling {
-            stretch: 0.1,
-            memory,
-        }
+        Settling { stretch: 0.1, memory }
     }
 
     fn at(x: f64) -> Vector3<f64> {
@@ -214,11 +200,7 @@ mod tests {
             let time = 1e-3 * f64::from(step);
             let x = 10.0 * time;
             let off = Off {
-                error: if (500..520).contains(&step) {
-                    0.02
-                } else {
-                    0.01
-                },
+                error: if (500..520).contains(&step) { 0.02 } else { 0.01 },
                 nc_line: 0,
                 cl_line: 1 + x as u64,
             };
@@ -232,14 +214,8 @@ mod tests {
         let excess = run(Excess::new(0.01, settling(0.1), Arc::default()));
         assert_eq!((excess.over, excess.largest.cl_line), (20, 6));
         let places = excess.finish();
-        let first = places
-            .iter()
-            .map(|it| it.tip[0] - it.reach)
-            .fold(f32::MAX, f32::min);
-        let last = places
-            .iter()
-            .map(|it| it.tip[0] + it.reach)
-            .fold(0.0, f32::max);
+        let first = places.iter().map(|it| it.tip[0] - it.reach).fold(f32::MAX, f32::min);
+        let last = places.iter().map(|it| it.tip[0] + it.reach).fold(0.0, f32::max);
         // A millimetre to both sides, and what is left of a cell.
         assert!((3.7..=4.0).contains(&first), "{first}");
         assert!((6.19..6.5).contains(&last), "{last}");
@@ -275,10 +251,7 @@ mod tests {
         let mut entered = Excess::new(0.01, settling(0.6), Arc::default());
         entered.rests(0.0);
         let excess = run(entered);
-        assert_eq!(
-            (excess.beside_rapid.error, excess.largest.error),
-            (0.02, 0.01)
-        );
+        assert_eq!((excess.beside_rapid.error, excess.largest.error), (0.02, 0.01));
         assert_eq!((excess.over, excess.finish()), (0, Vec::new()));
     }
 }

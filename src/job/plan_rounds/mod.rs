@@ -93,22 +93,11 @@ pub fn plan(
     source: &mut ClSource,
 ) -> Result<(Option<Arc<Tightening>>, Found), Failure> {
     let (limit, settling) = allowed(program.machine).map_err(|fault| *fault)?;
-    let mut tried = Tried {
-        program,
-        ahead,
-        source,
-        limit,
-        settling,
-    };
+    let mut tried = Tried { program, ahead, source, limit, settling };
     let (unplanned, _) = tried.run(None)?;
     let mut tightening = Arc::new(Tightening::default());
-    let mut found = Found {
-        limit_mm: limit,
-        unplanned,
-        rounds: Vec::new(),
-        chosen: 0,
-        kept: false,
-    };
+    let mut found =
+        Found { limit_mm: limit, unplanned, rounds: Vec::new(), chosen: 0, kept: false };
     let mut best = None;
     for round in 0..most.max(1) as usize {
         let (outcome, excess) = tried.run(Some(Arc::clone(&tightening)))?;
@@ -161,22 +150,15 @@ fn allowed(machine: &Machine) -> Result<(f64, Settling), Box<Diagnostic>> {
     };
     let servos = Response::of_machine(machine);
     let slowest = |of: fn(&Response) -> f64| servos.iter().flatten().map(of).reduce(f64::min);
-    let pole = |servo: &Response| {
-        servo
-            .poles()
-            .first()
-            .map_or(f64::INFINITY, |pole| -pole.real)
-    };
+    let pole = |servo: &Response| servo.poles().first().map_or(f64::INFINITY, |pole| -pole.real);
     let (Some(band), Some(pole)) = (slowest(Response::bandwidth), slowest(pole)) else {
         let message = "the machine file describes no servo: there is no contour error to keep";
         return Err(Diagnostic::error("plan-rounds", message)
             .help("[servo.X] for each axis says how it follows")
             .boxed());
     };
-    let settling = Settling {
-        stretch: (SETTLED / band).min(LONGEST),
-        memory: (SETTLED / pole).min(LONGEST),
-    };
+    let settling =
+        Settling { stretch: (SETTLED / band).min(LONGEST), memory: (SETTLED / pole).min(LONGEST) };
     Ok((limit, settling))
 }
 
@@ -195,23 +177,14 @@ impl Tried<'_, '_> {
         let mut text = Scratch::new("a program that is tried")?;
         let known = tightening.clone().unwrap_or_default();
         let tightened = tightening.as_ref().map_or(0, |it| it.places());
-        let program = OneProgram {
-            plans: tightening.is_some(),
-            tightening,
-            ..self.program.clone()
-        };
+        let program =
+            OneProgram { plans: tightening.is_some(), tightening, ..self.program.clone() };
         let (report, findings) =
             program.write(self.ahead, self.source, &mut text, Beside::default())?;
         if report.is_none() {
             return Err(findings.into());
         }
-        let OneProgram {
-            arguments,
-            machine,
-            finder,
-            lines,
-            ..
-        } = self.program;
+        let OneProgram { arguments, machine, finder, lines, .. } = self.program;
         let asked = Asked {
             arguments,
             machine,

@@ -50,11 +50,7 @@ fn line(round: &Round, limit: f64, first: Option<&Round>) -> String {
             number(100.0 * (round.contour_mm / limit - 1.0), 1),
             number(round.over_s, 3)
         ),
-        false => write!(
-            told,
-            "{} % to spare",
-            number(100.0 * (1.0 - round.contour_mm / limit), 1)
-        ),
+        false => write!(told, "{} % to spare", number(100.0 * (1.0 - round.contour_mm / limit), 1)),
     };
     if let Some(first) = first {
         let _ = write!(
@@ -65,11 +61,7 @@ fn line(round: &Round, limit: f64, first: Option<&Round>) -> String {
         );
     }
     if round.beside_rapid_mm > limit {
-        let _ = write!(
-            told,
-            "; {} mm beside rapids",
-            number(round.beside_rapid_mm, 5)
-        );
+        let _ = write!(told, "; {} mm beside rapids", number(round.beside_rapid_mm, 5));
     }
     told
 }

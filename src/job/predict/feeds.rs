@@ -15,10 +15,7 @@ pub struct FeedTally {
 impl FeedTally {
     /// Set-points come every `period` seconds.
     pub fn new(period: f64) -> Self {
-        Self {
-            period,
-            found: Feeds::default(),
-        }
+        Self { period, found: Feeds::default() }
     }
 
     /// A set-point in a cut: feed of the tip since the one before, feed of the program, mm/min.

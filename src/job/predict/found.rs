@@ -36,14 +36,10 @@ pub fn axes(machine: &Machine, report: &ContourReport) -> Vec<AxisFound> {
 
 /// How far the tool is off its path.
 pub fn contour(report: &ContourReport, against_a_path: bool) -> ContourFound {
-    let part = |part: &'static str, found: &contour::Spread| Part {
-        part,
-        tip_mm: spread(found, 1.0),
-    };
-    let mut parts = vec![
-        part("following", &report.cuts),
-        part("interpolation", &report.interpolation),
-    ];
+    let part =
+        |part: &'static str, found: &contour::Spread| Part { part, tip_mm: spread(found, 1.0) };
+    let mut parts =
+        vec![part("following", &report.cuts), part("interpolation", &report.interpolation)];
     let (tip, axis) = match against_a_path {
         true => {
             parts.push(part("program", &report.program));
@@ -110,16 +106,8 @@ pub fn assumed(machine: &Machine) -> Vec<String> {
 pub fn warn(machine: &Machine, findings: &mut Vec<Diagnostic>) {
     type Limit = fn(&Axis) -> f64;
     let keys: [(&str, Limit, &str); 2] = [
-        (
-            "max_feed",
-            |axis| axis.max_feed,
-            "its velocity is not limited",
-        ),
-        (
-            "max_accel",
-            |axis| axis.max_accel,
-            "it is at its velocity at once",
-        ),
+        ("max_feed", |axis| axis.max_feed, "its velocity is not limited"),
+        ("max_accel", |axis| axis.max_accel, "it is at its velocity at once"),
     ];
     for (key, value, so) in keys {
         let without = named(machine, |axis| value(axis).is_infinite());

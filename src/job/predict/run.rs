@@ -108,10 +108,7 @@ pub fn predict<R: Read + Seek>(
     };
     // The control's own period stays: it says how corners are passed, and not how closely we look.
     let machine = &read_back::as_counted(asked.machine, &words, &offsets);
-    let unreadable = |error| FileFault::Read {
-        name: name.to_owned(),
-        error,
-    };
+    let unreadable = |error| FileFault::Read { name: name.to_owned(), error };
     let (input, length) = Watched::new(input).map_err(unreadable)?;
     let position = input.position();
     let input = BufReader::new(input);
@@ -171,9 +168,7 @@ pub fn predict<R: Read + Seek>(
                         Task::Move(task) => task.line,
                         Task::Wait { line, .. } => *line,
                     };
-                    planner
-                        .push(planned.task)
-                        .map_err(|fault| unreachable(fault, name, line))?;
+                    planner.push(planned.task).map_err(|fault| unreachable(fault, name, line))?;
                 }
                 if reading.ended {
                     if points.is_none() {
@@ -214,11 +209,7 @@ pub fn predict<R: Read + Seek>(
         let finding = Diagnostic::warning("contour-far", message).help(help);
         findings.push(finding.at(Some(place)));
     }
-    Ok(Predicted {
-        found,
-        findings,
-        chains,
-    })
+    Ok(Predicted { found, findings, chains })
 }
 
 /// A program on the way to tasks.
@@ -252,18 +243,11 @@ impl Reading {
     /// A head was swapped in: from here on the axes are others.
     fn head(&self, name: &str) -> Option<Diagnostic> {
         self.done.iter().find_map(|done| match done {
-            Done::Told {
-                line,
-                told: Told::Head(head),
-            } => {
+            Done::Told { line, told: Told::Head(head) } => {
                 let message = format!("head {head} is swapped in: other axes move from here on");
                 let help = "predict the programs of its heads one by one (post --split tools)";
                 let place = Place::new(name, *line, "", 0..0);
-                Some(
-                    Diagnostic::error("head", message)
-                        .help(help)
-                        .at(Some(place)),
-                )
+                Some(Diagnostic::error("head", message).help(help).at(Some(place)))
             }
             _ => None,
         })
@@ -285,9 +269,7 @@ fn unreachable(fault: Unreachable, name: &str, line: u64) -> Diagnostic {
     };
     let place = Place::new(name, line, "", 0..0);
     let help = "tool lengths and work offsets may be others: --tool-length, --offsets, --mount";
-    Diagnostic::error("motion-unreachable", message)
-        .help(help)
-        .at(Some(place))
+    Diagnostic::error("motion-unreachable", message).help(help).at(Some(place))
 }
 
 /// What the reading of the program has to say.

@@ -213,10 +213,5 @@ impl<'r> Stages<'r> {
 /// A set-point with what is known of it by now.
 fn sample(point: &ContourPoint, waiting: &mut VecDeque<(At, [f64; 2])>) -> Sample {
     let (at, [feed, programmed]) = waiting.pop_front().unwrap_or_default();
-    Sample {
-        at,
-        feed,
-        programmed,
-        point: *point,
-    }
+    Sample { at, feed, programmed, point: *point }
 }

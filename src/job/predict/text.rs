@@ -36,18 +36,11 @@ fn head(text: &mut String, found: &Prediction) {
     let mut row = |name: &str, value: String| {
         let _ = writeln!(text, "{name:<16} {value}");
     };
-    row(
-        "program",
-        format!("{}, {} blocks", found.program, found.blocks),
-    );
+    row("program", format!("{}, {} blocks", found.program, found.blocks));
     row("machine", format!("{} ({})", found.machine, found.dialect));
     row(
         "set-points",
-        format!(
-            "{}, one every {} ms",
-            found.set_points,
-            short(1e3 * found.period_s)
-        ),
+        format!("{}, one every {} ms", found.set_points, short(1e3 * found.period_s)),
     );
     let time = &found.time;
     let mut parts = vec![format!("{} cutting", clock(time.cutting_s))];
@@ -56,10 +49,7 @@ fn head(text: &mut String, found: &Prediction) {
             parts.push(format!("{} {what}", clock(seconds)));
         }
     }
-    row(
-        "cycle time",
-        format!("{}: {}", clock(time.cycle_s), parts.join(", ")),
-    );
+    row("cycle time", format!("{}: {}", clock(time.cycle_s), parts.join(", ")));
     let feed = &found.feed;
     if feed.way_mm > 0.0 {
         row(
@@ -92,16 +82,8 @@ fn head(text: &mut String, found: &Prediction) {
         }
     };
     let contour = &found.contour;
-    let tip = Shown {
-        unit: "µm",
-        scale: 1e3,
-        decimals: 2,
-    };
-    let axis = Shown {
-        unit: "°",
-        scale: 1.0,
-        decimals: 5,
-    };
+    let tip = Shown { unit: "µm", scale: 1e3, decimals: 2 };
+    let axis = Shown { unit: "°", scale: 1.0, decimals: 5 };
     let most = tip.largest(&contour.tip_mm);
     row("contour error", format!("{most}{against}"));
     tip.spread(&mut row, &contour.tip_mm);
@@ -192,9 +174,7 @@ fn axes(text: &mut String, axes: &[AxisFound]) {
             line => line.to_string(),
         };
         let limit = |extreme: &Extreme| {
-            extreme
-                .limit
-                .map_or_else(|| "-".to_owned(), |limit| number(limit, 0))
+            extreme.limit.map_or_else(|| "-".to_owned(), |limit| number(limit, 0))
         };
         rows.push([
             format!("{} {}", axis.name, axis.unit),
@@ -290,8 +270,7 @@ fn operations(text: &mut String, found: &Prediction) {
     let mut rows = vec![head.map(str::to_owned)];
     for row in operations.iter().take(MOST_ROWS) {
         rows.push([
-            row.tool
-                .map_or_else(|| "-".to_owned(), |tool| format!("T{tool}")),
+            row.tool.map_or_else(|| "-".to_owned(), |tool| format!("T{tool}")),
             row.operation.clone().unwrap_or_else(|| "-".to_owned()),
             clock(row.seconds),
             clock(row.cutting_s),

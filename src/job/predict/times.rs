@@ -47,9 +47,8 @@ impl TimeTally {
     /// The row of a tool and an operation.
     pub fn operation(&mut self, tool: Option<u32>, operation: Option<&str>) -> usize {
         let rows = &mut self.times.operations;
-        let known = rows
-            .iter()
-            .rposition(|row| row.tool == tool && row.operation.as_deref() == operation);
+        let known =
+            rows.iter().rposition(|row| row.tool == tool && row.operation.as_deref() == operation);
         if let Some(known) = known {
             return known;
         }
@@ -86,10 +85,8 @@ impl TimeTally {
             Kind::Wait(_) => TimeLimit::Wait,
             _ => time.limit,
         };
-        let known = self
-            .limits
-            .iter()
-            .position(|(known, limit, _)| (*known, *limit) == (kind, now));
+        let known =
+            self.limits.iter().position(|(known, limit, _)| (*known, *limit) == (kind, now));
         let place = known.unwrap_or_else(|| {
             let (called, axis) = match kind {
                 Kind::Wait(why) => (reason(why), None),

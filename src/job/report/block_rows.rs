@@ -122,10 +122,8 @@ impl<'m> BlockRows<'m> {
     pub fn new(machine: &'m Machine, cl: ClWindow, predicted: bool) -> Result<Self, Failure> {
         let axes = axes::of_all_heads(machine);
         let accuracy = &machine.accuracy;
-        let [tip, turn] = [
-            decimals(accuracy.tolerance),
-            decimals(accuracy.axis_tolerance.to_degrees()),
-        ];
+        let [tip, turn] =
+            [decimals(accuracy.tolerance), decimals(accuracy.axis_tolerance.to_degrees())];
         let mut columns = vec![
             Column::new("nc", "", 0),
             Column::new("cl", "", 0),
@@ -312,8 +310,7 @@ impl<'m> BlockRows<'m> {
         }
         let length = self.length(block);
         let Left { axes, pose, tip } =
-            self.derived
-                .left(self.machine, &block.joints, [block.tip, block.axis], length);
+            self.derived.left(self.machine, &block.joints, [block.tip, block.axis], length);
         self.derived.check(row, &block.joints, length);
         self.path(row, block, length, tip);
         self.ends.push(block.line, tip, 0.0);
@@ -326,20 +323,12 @@ impl<'m> BlockRows<'m> {
         let left = packed(self.time - self.end - took);
         self.end += took + left;
         self.tip = tip;
-        let head = [
-            0.0,
-            block.line as f64,
-            from,
-            left,
-            f64::from(kind),
-            f64::from(reason),
-        ];
+        let head = [0.0, block.line as f64, from, left, f64::from(kind), f64::from(reason)];
         self.waiting.extend(head);
         for name in &self.axes {
             let mut known = self.machine.axes.iter().zip(axes);
             let value = known.find(|(axis, _)| axis.name == *name);
-            self.waiting
-                .push_back(value.map_or(0.0, |(_, value)| value));
+            self.waiting.push_back(value.map_or(0.0, |(_, value)| value));
         }
         self.waiting.extend(pose.iter().flatten());
         self.waiting.extend([

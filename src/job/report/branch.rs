@@ -31,11 +31,7 @@ impl Branch {
             }
             _ => None,
         };
-        Self {
-            axes,
-            tool: machine.tool_axis,
-            last: None,
-        }
+        Self { axes, tool: machine.tool_axis, last: None }
     }
 
     /// The axes come to stand here: whether that is the other solution than before. The tool axis, turned by the second
@@ -63,10 +59,7 @@ mod tests {
     #[test]
     fn the_other_side_of_the_pole_is_the_other_solution() {
         let text = include_str!("../../../machines/ac-trunnion.toml");
-        let source = Source {
-            name: "ac-trunnion".to_owned(),
-            text: text.to_owned(),
-        };
+        let source = Source { name: "ac-trunnion".to_owned(), text: text.to_owned() };
         let machine = load(source, &[], &mut |_| Err("none".to_owned())).unwrap();
         let a = machine.axes.iter().position(|axis| axis.name == "A");
         let mut branch = Branch::new(&machine);

@@ -43,10 +43,7 @@ impl Points {
     /// # Errors
     /// There is no place for them.
     pub fn new() -> Result<Self, Failure> {
-        Ok(Self {
-            kept: Parts::scratch()?,
-            fault: None,
-        })
+        Ok(Self { kept: Parts::scratch()?, fault: None })
     }
 
     /// Keeps a point.
@@ -104,9 +101,7 @@ pub fn pack(
             line = of;
             walk(line, &mut near, &mut blocks);
         }
-        let tip = near
-            .front()
-            .map_or([0.0; 3], |block| [block[1], block[2], block[3]]);
+        let tip = near.front().map_or([0.0; 3], |block| [block[1], block[2], block[3]]);
         let row = [line, x - tip[0], y - tip[1], z - tip[2], rapid];
         table.row(&row).map_err(fault)?;
     }

@@ -114,10 +114,7 @@ impl ClWindow {
 
     /// From the nearest point of the path to `tip`, mm; none where no path is known.
     pub fn off(&self, tip: Vector3<f64>) -> Option<Vector3<f64>> {
-        let off = self
-            .segments
-            .iter()
-            .map(|segment| tip - segment.nearest(tip));
+        let off = self.segments.iter().map(|segment| tip - segment.nearest(tip));
         off.min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))
     }
 
@@ -127,8 +124,7 @@ impl ClWindow {
             let later = self.segments.iter().enumerate().skip(start);
             let far =
                 later.map(|(place, segment)| (place, (tip - segment.nearest(tip)).norm_squared()));
-            far.min_by(|a, b| a.1.total_cmp(&b.1))
-                .map(|(place, _)| place)
+            far.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| place)
         };
         let Some(first) = nearest(from, 0) else {
             return Vec::new();
@@ -171,11 +167,7 @@ impl ClWindow {
                 true => piece.to.tip,
                 false => piece.at(chord as f64 / chords as f64, self.along).tip,
             };
-            self.segments.push_back(Segment {
-                line: piece.line,
-                from,
-                to,
-            });
+            self.segments.push_back(Segment { line: piece.line, from, to });
             self.point(piece.line, to, rapid);
             from = to;
         }

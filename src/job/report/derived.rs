@@ -114,11 +114,8 @@ impl<'m> Derived<'m> {
         for ((reading, value), axis) in readings.iter_mut().zip(joints).zip(&machine.axes) {
             *reading = axis.reading(*value);
         }
-        let whole = Left {
-            axes: readings,
-            pose: [tip, axis],
-            tip: tip.map(|value| rounded(value, 1e4)),
-        };
+        let whole =
+            Left { axes: readings, pose: [tip, axis], tip: tip.map(|value| rounded(value, 1e4)) };
         let Some(chain) = &self.chain else {
             return whole;
         };
@@ -146,11 +143,7 @@ impl<'m> Derived<'m> {
                         }
                     }
                 }
-                Left {
-                    axes,
-                    pose: [tip, axis - pose.axis],
-                    ..whole
-                }
+                Left { axes, pose: [tip, axis - pose.axis], ..whole }
             }
         }
     }
@@ -207,11 +200,8 @@ impl<'m> Derived<'m> {
         if libm::fabs(volume) < FLAT {
             return None;
         }
-        let ways = [
-            far.dot(&two.cross(three)),
-            one.dot(&far.cross(three)),
-            one.dot(&two.cross(&far)),
-        ];
+        let ways =
+            [far.dot(&two.cross(three)), one.dot(&far.cross(three)), one.dot(&two.cross(&far))];
         let mut found = Joints::default();
         for ((place, _), way) in slides.iter().zip(ways) {
             found[*place] = way / volume;

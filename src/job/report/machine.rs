@@ -39,9 +39,7 @@ fn axis(axis: &Axis) -> AxisMeta {
             true => "work",
             false => "tool",
         },
-        travel: axis
-            .travel
-            .map(|travel| travel.map(|end| axis.reading(end))),
+        travel: axis.travel.map(|travel| travel.map(|end| axis.reading(end))),
         cyclic: axis.travel.is_none(),
         zero: axis.zero / axis.unit(),
         max_feed: limit(axis.max_feed),

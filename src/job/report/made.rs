@@ -57,8 +57,7 @@ impl Made<'_> {
         meta.excludes = super::excludes();
         meta.tool_length = self.report.tools.first().map_or(0.0, |tool| tool.length_mm);
         if let Some(found) = self.prediction {
-            meta.maxima
-                .extend(super::predicted_maxima(self.machine, found));
+            meta.maxima.extend(super::predicted_maxima(self.machine, found));
             meta.facts.extend(super::predicted_facts(found));
             meta.excludes.extend(found.assumed.iter().cloned());
             if super::is_exceeded(&meta.maxima) {
@@ -99,11 +98,7 @@ impl Made<'_> {
             let warnings = if warned == 1 { "warning" } else { "warnings" };
             sentences.push(format!("{warned} {warnings}: look at them before it runs."));
         }
-        Verdict {
-            kind,
-            word: word.to_owned(),
-            sentences,
-        }
+        Verdict { kind, word: word.to_owned(), sentences }
     }
 
     fn maxima(&self) -> Vec<Maximum> {
@@ -119,18 +114,8 @@ impl Made<'_> {
         };
         let rapid = self.machine.accuracy.rapid_tolerance;
         vec![
-            maximum(
-                "tip deviation",
-                found.tip_deviation_mm,
-                "mm",
-                found.tolerance_mm,
-            ),
-            maximum(
-                "axis deviation",
-                found.axis_deviation_deg,
-                "deg",
-                found.axis_tolerance_deg,
-            ),
+            maximum("tip deviation", found.tip_deviation_mm, "mm", found.tolerance_mm),
+            maximum("axis deviation", found.axis_deviation_deg, "deg", found.axis_tolerance_deg),
             maximum("rapid deviation", found.rapid_deviation_mm, "mm", rapid),
         ]
     }

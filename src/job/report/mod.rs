@@ -54,10 +54,7 @@ use post_host::Finder;
 /// The name of a file without its folders: the same job gives the same bytes wherever it lies.
 pub fn name_of(file: &PathArg) -> String {
     let name = file.path().and_then(|path| path.file_name());
-    name.map_or_else(
-        || "standard input".to_owned(),
-        |name| name.to_string_lossy().into_owned(),
-    )
+    name.map_or_else(|| "standard input".to_owned(), |name| name.to_string_lossy().into_owned())
 }
 
 /// A text that names a file, without the file's folders.
@@ -83,11 +80,7 @@ pub fn about(job: &'static str, machine: &Machine, title: String, names: Names) 
             rapid: accuracy.rapid_tolerance,
         },
         machine: Some(self::machine(machine)),
-        heads: machine
-            .heads
-            .iter()
-            .map(|head| self::machine(&head.machine))
-            .collect(),
+        heads: machine.heads.iter().map(|head| self::machine(&head.machine)).collect(),
         ..Meta::default()
     }
 }
@@ -117,9 +110,7 @@ impl Again<'_> {
         name: &str,
         file: File,
     ) -> Result<Interpreter<File>, Failure> {
-        let Self {
-            arguments, machine, ..
-        } = *self;
+        let Self { arguments, machine, .. } = *self;
         let words = nc_program::spoken(self.finder, machine)?.words;
         let offsets = match self.offsets {
             Some(offsets) => offsets.clone(),

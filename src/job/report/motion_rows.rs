@@ -199,10 +199,7 @@ impl<'m> MotionRows<'m> {
 
     /// The same, held against the path of another program.
     pub fn against(self, old: OldPath) -> Self {
-        Self {
-            old: Some(old),
-            ..self
-        }
+        Self { old: Some(old), ..self }
     }
 
     /// Reads the rest; the tables go to `parts`, and what was seen to `meta`, whose maxima learn their rows.
@@ -291,13 +288,8 @@ impl<'m> MotionRows<'m> {
         }
         let pose = motion.to.pose;
         let joints = &motion.to.joints;
-        let Left {
-            axes,
-            pose: left,
-            tip: end,
-        } = self
-            .derived
-            .left(self.machine, joints, [pose.tip, pose.axis], length);
+        let Left { axes, pose: left, tip: end } =
+            self.derived.left(self.machine, joints, [pose.tip, pose.axis], length);
         self.derived.check(self.came, joints, length);
         for (name, _) in &self.axes {
             let mut known = self.machine.axes.iter().zip(axes);
@@ -332,9 +324,7 @@ impl<'m> MotionRows<'m> {
                     unit: axis.unit_name(),
                     min: f64::INFINITY,
                     max: f64::NEG_INFINITY,
-                    travel: axis
-                        .travel
-                        .map(|travel| travel.map(|end| axis.reading(end))),
+                    travel: axis.travel.map(|travel| travel.map(|end| axis.reading(end))),
                     way: Some(0.0),
                 });
                 self.used.len() - 1
@@ -368,21 +358,13 @@ impl<'m> MotionRows<'m> {
             }
             Way::Spline(way) => (16 * way.spans().count() as u32).min(MOST_PLACES as u32),
         };
-        (1..count)
-            .map(|place| motion.at(f64::from(place) / f64::from(count)).tip)
-            .collect()
+        (1..count).map(|place| motion.at(f64::from(place) / f64::from(count)).tip).collect()
     }
 
     /// Packs the first row that waits.
     fn write(&mut self, heard: Option<&Heard>) {
-        let Some(Waiting {
-            nc,
-            kind,
-            mut values,
-            tips: [tip, end],
-            places,
-            middle,
-        }) = self.waiting.pop_front()
+        let Some(Waiting { nc, kind, mut values, tips: [tip, end], places, middle }) =
+            self.waiting.pop_front()
         else {
             return;
         };
@@ -423,11 +405,8 @@ impl<'m> MotionRows<'m> {
             cl.forget(self.last_cl.min(heard.cl));
             self.last_cl = heard.cl;
         }
-        let places: Vec<_> = places
-            .into_iter()
-            .chain([tip])
-            .map(|place| (place, off(&self.cl, place)))
-            .collect();
+        let places: Vec<_> =
+            places.into_iter().chain([tip]).map(|place| (place, off(&self.cl, place))).collect();
         self.path.block(row, end, middle, &places);
         if self.cl.is_some() {
             self.ends.push(heard.cl, end, 0.0);
@@ -459,17 +438,12 @@ impl<'m> MotionRows<'m> {
             Told::ToolChange { number, name } => {
                 if *number != self.tool || number.is_none() {
                     let number = number.map_or(String::new(), |number| format!(" {number}"));
-                    let name = name
-                        .as_ref()
-                        .map_or(String::new(), |name| format!(" {name}"));
+                    let name = name.as_ref().map_or(String::new(), |name| format!(" {name}"));
                     self.event("tool", format!("tool{number}{name}"));
                 }
                 self.tool = *number;
             }
-            Told::Dwell {
-                time,
-                revolutions: false,
-            } => {
+            Told::Dwell { time, revolutions: false } => {
                 self.time += time;
                 self.event("dwell", format!("{time} s"));
             }

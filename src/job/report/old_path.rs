@@ -85,11 +85,7 @@ impl OldPath {
             });
             let nearest = far.min_by(|one, other| one.1.total_cmp(&other.1));
             let (place, off, line) = nearest?;
-            let limit = if ahead == AHEAD[0] {
-                APART / 100.0
-            } else {
-                APART
-            };
+            let limit = if ahead == AHEAD[0] { APART / 100.0 } else { APART };
             if off < limit {
                 let gone = place.saturating_sub(BEHIND);
                 self.segments.drain(..gone);
@@ -158,11 +154,7 @@ impl OldPath {
                 };
                 self.point(motion.line, to, rapid);
                 let from = self.last.replace(to).unwrap_or(to);
-                self.segments.push_back(Segment {
-                    line: motion.line,
-                    from,
-                    to,
-                });
+                self.segments.push_back(Segment { line: motion.line, from, to });
             }
         }
         self.done = done;

@@ -98,10 +98,9 @@ impl Parts {
         let mut writer = TextWriter::new(name, Self::scratch()?);
         let mut buffer = vec![0; 1 << 16];
         loop {
-            let length = text.read(&mut buffer).map_err(|error| FileFault::Read {
-                name: file.to_owned(),
-                error,
-            })?;
+            let length = text
+                .read(&mut buffer)
+                .map_err(|error| FileFault::Read { name: file.to_owned(), error })?;
             if length == 0 {
                 break;
             }
@@ -165,12 +164,7 @@ impl Parts {
 
 /// What is packed cannot be kept.
 pub fn fault(error: io::Error) -> Failure {
-    FileFault::NoWaiting {
-        name: NAME.to_owned(),
-        folder: std::env::temp_dir(),
-        error,
-    }
-    .into()
+    FileFault::NoWaiting { name: NAME.to_owned(), folder: std::env::temp_dir(), error }.into()
 }
 
 /// What "certified" leaves out.

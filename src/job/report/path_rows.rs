@@ -68,9 +68,7 @@ impl PathRows {
                 true => off - bow(known + left.map(packed), from, step),
                 false => off,
             });
-            let row = [
-                row as f64, left.x, left.y, left.z, off.x, off.y, off.z, held,
-            ];
+            let row = [row as f64, left.x, left.y, left.z, off.x, off.y, off.z, held];
             if let Err(error) = self.table.row(&row) {
                 self.fault.get_or_insert(fault(error));
             }

@@ -60,11 +60,7 @@ impl PredictedLines {
         if sample.at.line != self.line {
             self.end(rows);
             self.line = sample.at.line;
-            self.heard = Heard {
-                cl,
-                times: Some([time, time]),
-                ..Heard::default()
-            };
+            self.heard = Heard { cl, times: Some([time, time]), ..Heard::default() };
         }
         if let Some([_, to]) = &mut self.heard.times {
             *to = time + self.period;

@@ -17,11 +17,7 @@ const AHEAD: usize = 4096;
 
 /// The largest contour error of a row, and the largest velocity and acceleration of each axis.
 pub fn columns(machine: &Machine) -> Vec<Column> {
-    let mut columns = vec![Column::new(
-        "contour",
-        "mm",
-        decimals(machine.accuracy.tolerance),
-    )];
+    let mut columns = vec![Column::new("contour", "mm", decimals(machine.accuracy.tolerance))];
     for (letter, units) in [("v", ["mm/s", "deg/s"]), ("a", ["mm/s²", "deg/s²"])] {
         for axis in &machine.axes {
             let unit = units[usize::from(axis.joint.rotary)];
@@ -60,10 +56,7 @@ impl<'m> PredictedRows<'m> {
     /// # Errors
     /// There is no place for them.
     pub fn new(machine: &'m Machine, lines: Box<dyn Read>) -> Result<Self, Failure> {
-        let mut all = vec![
-            Column::new("t0", "s", 4).from("t1"),
-            Column::new("t1", "s", 4),
-        ];
+        let mut all = vec![Column::new("t0", "s", 4).from("t1"), Column::new("t1", "s", 4)];
         all.extend(columns(machine));
         Ok(Self {
             machine,

@@ -17,10 +17,7 @@ type Shape<'m> = (&'m description::Solid, Solid);
 
 /// What cannot be shown of the shapes that a machine file names; a picture lacks them, and nothing else.
 pub fn faults(machine: &Machine) -> Vec<Diagnostic> {
-    sets(machine)
-        .into_iter()
-        .flat_map(|set| shapes(set).1)
-        .collect()
+    sets(machine).into_iter().flat_map(|set| shapes(set).1).collect()
 }
 
 /// The shapes of a machine and those of its heads that have others.
@@ -65,11 +62,7 @@ pub(super) fn add(
         let (shapes, found) = shapes(set);
         faults.extend(found);
         let told = meta.machine.iter_mut().chain(&mut meta.heads);
-        for (_, told) in machines
-            .iter()
-            .zip(told)
-            .filter(|(one, _)| same(&one.solids, set))
-        {
+        for (_, told) in machines.iter().zip(told).filter(|(one, _)| same(&one.solids, set)) {
             told.shapes = number;
             told.solid = shapes
                 .iter()
@@ -106,10 +99,7 @@ fn shapes(set: &[description::Solid]) -> (Vec<Shape<'_>>, Vec<Diagnostic>) {
             Err(fault) => faults.push(*fault),
         }
     }
-    let edges = share(
-        shapes.iter().map(|(_, solid)| solid.edges.len()),
-        MOST_EDGES,
-    );
+    let edges = share(shapes.iter().map(|(_, solid)| solid.edges.len()), MOST_EDGES);
     for (_, solid) in &mut shapes {
         solid.edges.truncate(edges);
     }

@@ -54,10 +54,7 @@ pub fn predicted_maxima(machine: &Machine, found: &Prediction) -> Vec<Maximum> {
 /// Something is larger than its limit, by more than rounding.
 pub fn is_exceeded(maxima: &[Maximum]) -> bool {
     let mut maxima = maxima.iter();
-    maxima.any(|one| {
-        one.limit
-            .is_some_and(|limit| one.value > limit * (1.0 + 1e-6))
-    })
+    maxima.any(|one| one.limit.is_some_and(|limit| one.value > limit * (1.0 + 1e-6)))
 }
 
 /// Times and feeds.
@@ -78,14 +75,7 @@ pub fn predicted_facts(found: &Prediction) -> Vec<[String; 2]> {
                 number(feed.programmed_mean, 0)
             ),
         ),
-        fact(
-            "set-points",
-            format!(
-                "{}, one every {} ms",
-                found.set_points,
-                1e3 * found.period_s
-            ),
-        ),
+        fact("set-points", format!("{}, one every {} ms", found.set_points, 1e3 * found.period_s)),
     ];
     for limit in found.time.limits.iter().take(6) {
         let axis = limit.axis.as_ref();

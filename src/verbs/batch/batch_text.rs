@@ -11,11 +11,8 @@ const MOST_CODES: usize = 6;
 
 /// How many jobs there were, what became of them, and the fastest.
 pub fn text(table: &Table, known: usize, output: &PathArg) -> String {
-    let count = |state: &str| {
-        (0..table.rows)
-            .filter(|row| cell(table, "state", *row) == state)
-            .count()
-    };
+    let count =
+        |state: &str| (0..table.rows).filter(|row| cell(table, "state", *row) == state).count();
     let mut text = format!("{} jobs: {} written", table.rows, count(WRITTEN));
     for state in [REFUSED, FAILED] {
         let rows = count(state);
@@ -71,10 +68,7 @@ fn job(table: &Table, row: usize) -> String {
 }
 
 fn cell(table: &Table, name: &str, row: usize) -> String {
-    table
-        .column(name)
-        .map(|values: &Values| values.text(row))
-        .unwrap_or_default()
+    table.column(name).map(|values: &Values| values.text(row)).unwrap_or_default()
 }
 
 /// The codes of the rows in a state, each with how often.
@@ -93,9 +87,7 @@ fn codes(table: &Table, state: &str) -> String {
     }
     counts.sort_by(|one, other| other.1.cmp(&one.1).then_with(|| one.0.cmp(&other.0)));
     let told = counts.iter().take(MOST_CODES);
-    let mut told: Vec<String> = told
-        .map(|(code, count)| format!("{code} {count}"))
-        .collect();
+    let mut told: Vec<String> = told.map(|(code, count)| format!("{code} {count}")).collect();
     if counts.len() > MOST_CODES {
         told.push("…".to_owned());
     }

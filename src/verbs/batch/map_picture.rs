@@ -77,11 +77,7 @@ impl Map {
                 "from {} (light) to {} (dark); bold frame: {}; cross: refused",
                 short(least),
                 short(most),
-                if self.most {
-                    "largest of all"
-                } else {
-                    "least of all"
-                }
+                if self.most { "largest of all" } else { "least of all" }
             ),
         };
         label(&mut svg, [middle, 20.0], "middle", &self.value);
@@ -109,17 +105,8 @@ impl Map {
             let shades = [least, most, best];
             draw_cells(&mut svg, panel, [corner, cell], xs.len(), shades);
             draw_axes(&mut svg, [corner, cell], [&xs, &ys]);
-            label(
-                &mut svg,
-                [middle, corner[1] + size[1] + 40.0],
-                "middle",
-                &self.x,
-            );
-            upright(
-                &mut svg,
-                [corner[0] - 66.0, corner[1] + size[1] / 2.0],
-                &self.y,
-            );
+            label(&mut svg, [middle, corner[1] + size[1] + 40.0], "middle", &self.x);
+            upright(&mut svg, [corner[0] - 66.0, corner[1] + size[1] / 2.0], &self.y);
         }
         svg.push_str("</svg>\n");
         svg
@@ -216,13 +203,7 @@ fn draw_cells(
                 let width = if value == best { 3.0 } else { 0.5 };
                 let inner = width / 2.0;
                 let (at, size) = ([x + inner, y + inner], [cell[0] - width, cell[1] - width]);
-                rect(
-                    svg,
-                    at,
-                    size,
-                    &format!("#{grey:02x}{grey:02x}{grey:02x}"),
-                    width,
-                );
+                rect(svg, at, size, &format!("#{grey:02x}{grey:02x}{grey:02x}"), width);
                 if cell[0] >= TOLD && cell[1] >= 16.0 {
                     let middle = [x + cell[0] / 2.0, y + cell[1] / 2.0 + 4.5];
                     label(svg, middle, "middle", &short(value));

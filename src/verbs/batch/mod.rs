@@ -18,15 +18,9 @@ use crate::job::batch::{
 use crate::terminal::{self, JobsProgress};
 use map_picture::Map;
 
-const RESULTS: Role = Role {
-    what: "table of results",
-    remedy: "name another file with -o",
-};
+const RESULTS: Role = Role { what: "table of results", remedy: "name another file with -o" };
 
-const JOURNAL: Role = Role {
-    what: "journal",
-    remedy: "name another file with --resume=",
-};
+const JOURNAL: Role = Role { what: "journal", remedy: "name another file with --resume=" };
 
 /// Posts many CL files on many machines with many settings: a grid of jobs, and a table with a row for each.
 ///
@@ -154,18 +148,12 @@ struct Mounts(Vec<[Written; 3]>);
 fn mounts(text: &str) -> Result<Mounts, String> {
     let parts: Vec<&str> = text.split(',').collect();
     let [x, y, z] = parts[..] else {
-        return Err(format!(
-            "three numbers are needed, X,Y,Z; there are {}",
-            parts.len()
-        ));
+        return Err(format!("three numbers are needed, X,Y,Z; there are {}", parts.len()));
     };
     let (xs, ys, zs) = (batch::values(x)?, batch::values(y)?, batch::values(z)?);
     let count = xs.len().saturating_mul(ys.len()).saturating_mul(zs.len());
     if count > batch::MOST_JOBS {
-        return Err(format!(
-            "these are {count} mounts, {} are allowed",
-            batch::MOST_JOBS
-        ));
+        return Err(format!("these are {count} mounts, {} are allowed", batch::MOST_JOBS));
     }
     let mut mounts = Vec::new();
     for x in &xs {
@@ -193,18 +181,12 @@ pub fn run(arguments: &BatchArguments) -> Result<(), Failure> {
     let numbers = study.numbers(arguments.shard);
     let progress = JobsProgress::new(numbers.len() as u64);
     let mut done = batch::Done::default();
-    let outcomes = batch::run(
-        &study,
-        &inputs,
-        &numbers,
-        arguments.jobs,
-        journal.as_ref(),
-        &mut |now| {
+    let outcomes =
+        batch::run(&study, &inputs, &numbers, arguments.jobs, journal.as_ref(), &mut |now| {
             done = now;
             progress.at(now.jobs as u64, now.refused as u64);
             Ok(())
-        },
-    )?;
+        })?;
     progress.finish();
     let table = Table::new(&study, &numbers, &outcomes.unwrap_or_default());
     texts[0].write_bytes(&table.bytes(&ending).unwrap_or_default())?;
@@ -233,10 +215,8 @@ fn ending(output: &PathArg) -> Result<String, Failure> {
     match ending.to_ascii_lowercase().as_str() {
         known @ ("parquet" | "csv" | "json" | "jsonl" | "ndjson") => Ok(known.to_owned()),
         _ => {
-            let message = format!(
-                "{}: the name of the table says how it is written",
-                path.display()
-            );
+            let message =
+                format!("{}: the name of the table says how it is written", path.display());
             Err(Diagnostic::error("output", message)
                 .help("let it end in .parquet, .csv or .jsonl")
                 .into())
@@ -274,8 +254,7 @@ fn jobs(arguments: &BatchArguments) -> Result<Vec<JobLine>, Failure> {
     let jobs = grid.jobs(seeds)?;
     // What is no value of its kind is a slip of the command line and no finding of the study.
     for job in &jobs {
-        job.arguments(&arguments.study.reading)
-            .map_err(|fault| Diagnostic::error("job", fault))?;
+        job.arguments(&arguments.study.reading).map_err(|fault| Diagnostic::error("job", fault))?;
     }
     Ok(jobs)
 }
@@ -316,18 +295,10 @@ fn map(arguments: &BatchArguments, study: &Study) -> Result<Option<Map>, Failure
     };
     for name in [x, y, &arguments.value] {
         if study.columns.iter().all(|head| head.name != *name) {
-            let names: Vec<&str> = study
-                .columns
-                .iter()
-                .map(|head| head.name.as_str())
-                .collect();
+            let names: Vec<&str> = study.columns.iter().map(|head| head.name.as_str()).collect();
             let message = format!("there is no column {name} to draw");
             return Err(Diagnostic::error("map", message)
-                .help(post_machine::diagnostic::meant(
-                    name,
-                    "the columns are",
-                    &names,
-                ))
+                .help(post_machine::diagnostic::meant(name, "the columns are", &names))
                 .into());
         }
     }

@@ -81,16 +81,7 @@ fn class(text: &mut String, class: &Class) {
     row(text, "carry the part", &list(&class.carry_the_part));
     row(text, "carry the tool", &list(&class.carry_the_tool));
     for angle in &class.angles {
-        row(
-            text,
-            "angle",
-            &format!(
-                "{} to {}: {}°",
-                angle.from,
-                angle.to,
-                number(angle.value, 5)
-            ),
-        );
+        row(text, "angle", &format!("{} to {}: {}°", angle.from, angle.to, number(angle.value, 5)));
     }
     for distance in &class.distances {
         row(
@@ -110,11 +101,7 @@ fn class(text: &mut String, class: &Class) {
 }
 
 fn axes(text: &mut String, axes: &[AxisLine]) {
-    row(
-        text,
-        "axis",
-        "kind    direction                         travel",
-    );
+    row(text, "axis", "kind    direction                         travel");
     for axis in axes {
         let [x, y, z] = axis
             .direction
@@ -129,11 +116,7 @@ fn axes(text: &mut String, axes: &[AxisLine]) {
             None => "endless".to_owned(),
         });
         if let Some(at) = axis.indexed {
-            let _ = write!(
-                line,
-                ", set between cuts, starts at {}{unit}",
-                number(at, 3)
-            );
+            let _ = write!(line, ", set between cuts, starts at {}{unit}", number(at, 3));
         }
         if let Some(feed) = axis.max_feed {
             let _ = write!(line, ", at most {}{}/min", number(feed, 1), unit);
@@ -149,11 +132,8 @@ fn signs(text: &mut String, signs: &[Sign]) {
         "Signs: each axis moved by itself, all others at rest. +X, +Y, +Z are those of the machine frame, Z along the\n\
          spindle; seen from +Z is from above where the spindle is upright. Compare with the machine, line by line.\n",
     );
-    let _ = writeln!(
-        text,
-        "  {:<10}{:<38}  what the eye sees",
-        "move", "the tool, seen from the part"
-    );
+    let _ =
+        writeln!(text, "  {:<10}{:<38}  what the eye sees", "move", "the tool, seen from the part");
     for sign in signs {
         let by = number(sign.by, 3);
         let plus = if sign.by > 0.0 { "+" } else { "" };
@@ -208,9 +188,7 @@ fn solutions(text: &mut String, found: &Solutions) {
 
 fn reach(text: &mut String, reach: &Reach) {
     let tilt = |tilt: Option<f64>| {
-        tilt.map_or("not even +Z".to_owned(), |tilt| {
-            format!("{}°", number(tilt, 2))
-        })
+        tilt.map_or("not even +Z".to_owned(), |tilt| format!("{}°", number(tilt, 2)))
     };
     if reach.tied_to_the_tip {
         let told = "the direction of the tool depends on the point: with the tip kept it cannot turn every way";
@@ -271,11 +249,7 @@ fn reach(text: &mut String, reach: &Reach) {
             .filter(|(_, share)| **share > 0.0)
             .map(|(count, share)| format!("{count} in {} %", number(100.0 * share, 1)))
             .collect();
-        row(
-            text,
-            "solutions inside",
-            &format!("of all directions: {}", each.join(", ")),
-        );
+        row(text, "solutions inside", &format!("of all directions: {}", each.join(", ")));
     }
 }
 
@@ -309,29 +283,17 @@ fn volume(text: &mut String, volume: &Volume, length: f64) {
     row(
         text,
         "travel of the tip",
-        &format!(
-            "part frame, tool along ({x}, {y}, {z}){rotary}, {} mm long:",
-            number(length, 3)
-        ),
+        &format!("part frame, tool along ({x}, {y}, {z}){rotary}, {} mm long:", number(length, 3)),
     );
     let spans = ["X", "Y", "Z"].iter().enumerate().map(|(index, name)| {
-        format!(
-            "{name} {} to {}",
-            number(least[index], 3),
-            number(most[index], 3)
-        )
+        format!("{name} {} to {}", number(least[index], 3), number(most[index], 3))
     });
-    row(
-        text,
-        "",
-        &format!("{} mm", spans.collect::<Vec<_>>().join(", ")),
-    );
+    row(text, "", &format!("{} mm", spans.collect::<Vec<_>>().join(", ")));
 }
 
 fn readings(readings: &[Reading]) -> String {
-    let each = readings
-        .iter()
-        .map(|reading| format!("{} {}", reading.axis, number(reading.value, 3)));
+    let each =
+        readings.iter().map(|reading| format!("{} {}", reading.axis, number(reading.value, 3)));
     each.collect::<Vec<_>>().join(" ")
 }
 
@@ -352,35 +314,20 @@ pub fn comparison(compared: &Comparison) -> String {
     row(
         &mut text,
         "tip deviation",
-        &format!(
-            "at most {:.5} mm: ({x}, {y}, {z}) in the part frame",
-            compared.tip_mm
-        ),
+        &format!("at most {:.5} mm: ({x}, {y}, {z}) in the part frame", compared.tip_mm),
     );
     row(&mut text, "", &format!("at {}", readings(&compared.tip_at)));
     shares(&mut text, &compared.tip_shares, "mm");
-    row(
-        &mut text,
-        "axis deviation",
-        &format!("at most {:.6}°", compared.axis_deg),
-    );
+    row(&mut text, "axis deviation", &format!("at most {:.6}°", compared.axis_deg));
     if compared.axis_deg > 0.0 {
-        row(
-            &mut text,
-            "",
-            &format!("at {}", readings(&compared.axis_at)),
-        );
+        row(&mut text, "", &format!("at {}", readings(&compared.axis_at)));
         shares(&mut text, &compared.axis_shares, "°");
     }
     text
 }
 
 fn shares(text: &mut String, shares: &[Share], unit: &str) {
-    row(
-        text,
-        "",
-        "each difference by itself there; as vectors they add up:",
-    );
+    row(text, "", "each difference by itself there; as vectors they add up:");
     let mut said = false;
     for share in shares {
         let (size, decimals) = match unit {
@@ -402,10 +349,7 @@ fn shares(text: &mut String, shares: &[Share], unit: &str) {
         row(
             text,
             "",
-            &format!(
-                "  {:<24}{size}  ({x}, {y}, {z}), the files differ by {differs}",
-                share.of
-            ),
+            &format!("  {:<24}{size}  ({x}, {y}, {z}), the files differ by {differs}", share.of),
         );
     }
     if !said {

@@ -104,10 +104,7 @@ impl Writer<'_> {
             let names: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
             names.join(" ")
         };
-        self.say(&format!(
-            "Commissioning of {}: each axis moves by itself",
-            self.machine.name
-        ));
+        self.say(&format!("Commissioning of {}: each axis moves by itself", self.machine.name));
         self.say("RUN IT WITHOUT A PART, WITH AN EMPTY TABLE AND SPINDLE, IN SINGLE BLOCK, WITH A HAND ON THE FEED OVERRIDE");
         self.say("TCP and tool length compensation must be off");
         self.say("Before the start bring the axes to these machine positions, and see that nothing is in the way:");
@@ -116,9 +113,7 @@ impl Writer<'_> {
         let mut set = Vec::new();
         if !linear.is_empty() {
             let shown = names(&linear);
-            set.push(format!(
-                "There set the work offset of this program so that {shown} show 0"
-            ));
+            set.push(format!("There set the work offset of this program so that {shown} show 0"));
         }
         if !rotary.is_empty() {
             set.push(format!("the offset of {} is 0", names(&rotary)));
@@ -142,11 +137,7 @@ impl Writer<'_> {
         };
         let length = self.length(axis);
         let plus = if *by > 0.0 { "+" } else { "" };
-        self.say(&format!(
-            "Next {} {plus}{} {unit}: {seen}",
-            axis.name,
-            number(by / length, 4)
-        ));
+        self.say(&format!("Next {} {plus}{} {unit}: {seen}", axis.name, number(by / length, 4)));
         if axis.joint.rotary {
             self.say(&format!("The tool, seen from the part: {tool}"));
         }
@@ -193,11 +184,7 @@ impl Writer<'_> {
 
     /// mm in a unit of a linear word; 1 for a rotary one.
     fn length(&self, axis: &Axis) -> f64 {
-        if axis.joint.rotary {
-            1.0
-        } else {
-            axis_words::unit_length(self.machine.control.units)
-        }
+        if axis.joint.rotary { 1.0 } else { axis_words::unit_length(self.machine.control.units) }
     }
 
     /// The words for axis values, in their order and as they are printed: linear ones from the start.

@@ -121,10 +121,7 @@ fn alone(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failure> {
     if !machine.heads.is_empty() {
         let heads = machine.heads.iter().map(|head| head.name.as_str());
         let heads: Vec<&str> = heads.collect();
-        print(&format!(
-            "further heads, see --head: {}\n",
-            heads.join(", ")
-        ));
+        print(&format!("further heads, see --head: {}\n", heads.join(", ")));
     }
     Ok(())
 }
@@ -201,18 +198,10 @@ fn write(
     json: Option<String>,
 ) -> Result<bool, Failure> {
     let of = |role, target: &'_ Option<PathArg>, text: Option<String>| {
-        target
-            .clone()
-            .zip(text)
-            .map(|(target, text)| (role, target, text))
+        target.clone().zip(text).map(|(target, text)| (role, target, text))
     };
-    let texts = [
-        of(Role::PICTURE, &arguments.svg, picture),
-        of(Role::JSON, &arguments.json, json),
-    ];
+    let texts = [of(Role::PICTURE, &arguments.svg, picture), of(Role::JSON, &arguments.json, json)];
     let texts = texts.iter().flatten();
-    let texts: Vec<_> = texts
-        .map(|(role, target, text)| (*role, target, text.as_str()))
-        .collect();
+    let texts: Vec<_> = texts.map(|(role, target, text)| (*role, target, text.as_str())).collect();
     Ok(files::write(&texts)?)
 }

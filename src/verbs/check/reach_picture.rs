@@ -56,10 +56,8 @@ fn cells(svg: &mut String, check: &Check) {
         let mut start = 0;
         // Neighbours of one grey are one piece, so that no seams are seen.
         while start < row.len() {
-            let run = row[start..]
-                .iter()
-                .take_while(|ways| grey(**ways) == grey(row[start]))
-                .count();
+            let run =
+                row[start..].iter().take_while(|ways| grey(**ways) == grey(row[start])).count();
             if row[start] > 0 {
                 let from = width * start as f64;
                 let to = width * (start + run) as f64;
@@ -73,10 +71,7 @@ fn cells(svg: &mut String, check: &Check) {
 /// The numbers of solutions that there are, the fewest first.
 fn shades(check: &Check) -> Vec<usize> {
     let shares = check.reach.shares_by_solutions.iter().enumerate();
-    shares
-        .filter(|(ways, share)| *ways > 0 && **share > 0.0)
-        .map(|(ways, _)| ways)
-        .collect()
+    shares.filter(|(ways, share)| *ways > 0 && **share > 0.0).map(|(ways, _)| ways).collect()
 }
 
 /// Which of the greys a number of solutions has.
@@ -118,11 +113,8 @@ fn sector(svg: &mut String, [near, far]: [f64; 2], [from, to]: [f64; 2], fill: &
 fn curve(svg: &mut String, check: &Check) {
     for [tilt, azimuth] in &check.reach.map.curve {
         let [x, y] = place(*tilt, *azimuth);
-        let _ = writeln!(
-            svg,
-            "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"3\" fill=\"{}\"/>",
-            GREYS[4]
-        );
+        let _ =
+            writeln!(svg, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"3\" fill=\"{}\"/>", GREYS[4]);
     }
 }
 
@@ -187,12 +179,7 @@ fn legend(svg: &mut String, check: &Check) {
             top + 9.0,
             GREYS[4]
         );
-        label(
-            svg,
-            [52.0, top + 14.0],
-            "start",
-            "directions inside the travel of the rotary axes",
-        );
+        label(svg, [52.0, top + 14.0], "start", "directions inside the travel of the rotary axes");
         return;
     }
     label(svg, [30.0, top + 14.0], "start", "Solutions inside travel:");
@@ -213,9 +200,7 @@ fn legend(svg: &mut String, check: &Check) {
         label(svg, [left + 26.0, top + 14.0], "start", &name);
     }
     let tilt = |tilt: Option<f64>| {
-        tilt.map_or("not even +Z".to_owned(), |tilt| {
-            format!("{}°", number(tilt, 1))
-        })
+        tilt.map_or("not even +Z".to_owned(), |tilt| format!("{}°", number(tilt, 1)))
     };
     label(
         svg,

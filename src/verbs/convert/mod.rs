@@ -178,13 +178,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
 
     let mut targets = vec![(Role::PROGRAM, &arguments.output)];
     targets.extend(arguments.cl.iter().map(|cl| (Role::CL, cl)));
-    targets.extend(
-        arguments
-            .report
-            .report
-            .iter()
-            .map(|page| (Role::REPORT, page)),
-    );
+    targets.extend(arguments.report.report.iter().map(|page| (Role::REPORT, page)));
     let mut files = AtomicFile::create(&targets)?;
     let page = arguments.report.report.as_ref().and_then(|_| files.pop());
     let (program, cl_file) = files.split_at_mut(1);
@@ -198,10 +192,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
             &mut course,
             &part,
             chords.tip,
-            Tools {
-                length: arguments.tool_length,
-                edges: from.lexicon.tools_have_edges(),
-            },
+            Tools { length: arguments.tool_length, edges: from.lexicon.tools_have_edges() },
             &mut |text| {
                 copy(text)?;
                 match cl_file.first_mut() {
@@ -252,11 +243,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         return Err(notes.into());
     };
 
-    let finer = Chords {
-        tip: chords.tip * FINER,
-        axis: chords.axis * FINER,
-        ..chords
-    };
+    let finer = Chords { tip: chords.tip * FINER, axis: chords.axis * FINER, ..chords };
     let mut read = ClCourse::new(Settings::of(&machine, &name), source.open()?.bytes);
     let (facts, _) = CourseFacts::of(&mut read);
     let again = ClCourse::new(Settings::of(&machine, &name), source.open()?.bytes);
@@ -292,14 +279,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
     if let Some((mut page, rows)) = rows {
         // The same job gives the same page wherever its files lie.
         let [name, target] = [&arguments.input, &arguments.output].map(report::name_of);
-        let summed = summary(
-            &name,
-            &from.machine,
-            (&machine, &target),
-            &report,
-            &held,
-            &facts,
-        );
+        let summed = summary(&name, &from.machine, (&machine, &target), &report, &held, &facts);
         let made = Made {
             machine: &machine,
             cl: format!("{} as CL file", report::name_of(&arguments.input)),
@@ -324,14 +304,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
     AtomicFile::finish(files)?;
     terminal::findings(&notes);
     if !arguments.quiet {
-        let text = summary(
-            &name,
-            &from.machine,
-            (&machine, &told),
-            &report,
-            &held,
-            &facts,
-        );
+        let text = summary(&name, &from.machine, (&machine, &told), &report, &held, &facts);
         let text = table(&text, 2);
         if taken {
             terminal::tell(&text);
@@ -394,14 +367,8 @@ fn summary(
     let found = &held.found;
     let mut rows: Vec<[String; 2]> = Vec::new();
     let mut row = |name: &str, value: String| rows.push([name.to_owned(), value]);
-    row(
-        "from",
-        format!("{name}, {} ({})", from.name, from.control.dialect),
-    );
-    row(
-        "to",
-        format!("{target}, {} ({})", to.name, to.control.dialect),
-    );
+    row("from", format!("{name}, {} ({})", from.name, from.control.dialect));
+    row("to", format!("{target}, {} ({})", to.name, to.control.dialect));
     row(
         "path",
         format!(
@@ -409,13 +376,7 @@ fn summary(
             facts.cuts, facts.arcs, facts.splines, facts.rapids, facts.holes
         ),
     );
-    row(
-        "program",
-        format!(
-            "{} blocks, {} points put in",
-            report.blocks, report.points_added
-        ),
-    );
+    row("program", format!("{} blocks, {} points put in", report.blocks, report.points_added));
     row(
         "tip",
         format!(
@@ -424,10 +385,7 @@ fn summary(
             number(report.tolerance_mm / (1.0 - CHORDS), 6)
         ),
     );
-    row(
-        "tool axis",
-        format!("within {}°", number(found.axis.value, 5)),
-    );
+    row("tool axis", format!("within {}°", number(found.axis.value, 5)));
     row("time", clock(report.time_s));
     rows
 }

@@ -45,12 +45,7 @@ pub struct Bin {
 
 impl Along {
     pub fn new(apart: f64) -> Self {
-        let path = || Path {
-            pieces: Vec::new(),
-            points: 0,
-            apart,
-            last: None,
-        };
+        let path = || Path { pieces: Vec::new(), points: 0, apart, last: None };
         Self {
             paths: [path(), path()],
             bins: Vec::new(),
@@ -81,18 +76,14 @@ impl Along {
         if self.bins.len() <= place {
             self.bins.resize(place + 1, Bin::default());
         }
-        self.bins[place] = self.bins[place].with(Bin {
-            tip: sample.tip,
-            axis: sample.axis,
-            feeds: sample.feeds,
-        });
+        self.bins[place] =
+            self.bins[place].with(Bin { tip: sample.tip, axis: sample.axis, feeds: sample.feeds });
     }
 
     fn halve(&mut self) {
         let pairs = self.bins.chunks(2);
-        self.bins = pairs
-            .map(|pair| pair.iter().fold(Bin::default(), |all, bin| all.with(*bin)))
-            .collect();
+        self.bins =
+            pairs.map(|pair| pair.iter().fold(Bin::default(), |all, bin| all.with(*bin))).collect();
         self.width *= 2.0;
     }
 }
@@ -110,9 +101,7 @@ impl Bin {
 impl Path {
     fn take(&mut self, tip: [f64; 3], cut: bool) {
         let same = self.pieces.last().is_some_and(|(known, _)| *known == cut);
-        let apart = self
-            .last
-            .is_none_or(|last| distance(last, tip) >= self.apart);
+        let apart = self.last.is_none_or(|last| distance(last, tip) >= self.apart);
         if same && !apart {
             return;
         }

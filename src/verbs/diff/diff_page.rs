@@ -52,10 +52,7 @@ impl Shown<'_> {
         meta.maxima = self.maxima();
         meta.facts = self.facts();
         let mut parts = Parts::of(self.machine, &mut meta)?;
-        let besides = Besides {
-            other: true,
-            ..Besides::default()
-        };
+        let besides = Besides { other: true, ..Besides::default() };
         let rows = MotionRows::new(self.machine, new, None, besides)?;
         let rows = rows.against(OldPath::new(self.machine, old)?);
         rows.finish(&mut parts, &mut meta)?;
@@ -69,26 +66,14 @@ impl Shown<'_> {
         let operations = &self.found.operations;
         let different = operations.iter().filter(|operation| !operation.same);
         let (kind, word, sentence) = match self.found.same {
-            true => (
-                "good",
-                "The same",
-                "Both programs make the machine do the same.".to_owned(),
-            ),
+            true => ("good", "The same", "Both programs make the machine do the same.".to_owned()),
             false => (
                 "warn",
                 "Different",
-                format!(
-                    "{} of {} operations are different.",
-                    different.count(),
-                    operations.len()
-                ),
+                format!("{} of {} operations are different.", different.count(), operations.len()),
             ),
         };
-        Verdict {
-            kind,
-            word: word.to_owned(),
-            sentences: vec![sentence],
-        }
+        Verdict { kind, word: word.to_owned(), sentences: vec![sentence] }
     }
 
     fn maxima(&self) -> Vec<Maximum> {
@@ -98,12 +83,7 @@ impl Shown<'_> {
             let name = name.unwrap_or_else(|| format!("operation {}", index + 1));
             for (what, worst, unit, limit) in [
                 ("tip", &operation.tip, "mm", self.rules.tip),
-                (
-                    "tool axis",
-                    &operation.axis,
-                    "deg",
-                    self.rules.axis.to_degrees(),
-                ),
+                ("tool axis", &operation.axis, "deg", self.rules.axis.to_degrees()),
             ] {
                 if worst.value > 0.0 {
                     maxima.push(Maximum {

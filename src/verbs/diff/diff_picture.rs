@@ -22,10 +22,8 @@ const RING: f64 = 8.0;
 /// The picture.
 pub fn draw(names: [&str; 2], found: &Difference, along: &Along) -> String {
     let charts = charts(along);
-    let charts: Vec<(f64, String)> = charts
-        .iter()
-        .map(|chart| (chart.height(), chart.svg()))
-        .collect();
+    let charts: Vec<(f64, String)> =
+        charts.iter().map(|chart| (chart.height(), chart.svg())).collect();
     let below: f64 = charts.iter().map(|(height, _)| height).sum();
     let start = TOP + SIZE[1] + 60.0;
     let mut picture = svg::open(WIDTH, start + below);
@@ -44,10 +42,7 @@ pub fn draw(names: [&str; 2], found: &Difference, along: &Along) -> String {
     paths(&mut picture, found, along);
     let mut up = start;
     for (height, chart) in charts {
-        let _ = writeln!(
-            picture,
-            "<g transform=\"translate(0 {up:.2})\">\n{chart}</g>"
-        );
+        let _ = writeln!(picture, "<g transform=\"translate(0 {up:.2})\">\n{chart}</g>");
         up += height;
     }
     picture.push_str("</svg>\n");
@@ -57,9 +52,7 @@ pub fn draw(names: [&str; 2], found: &Difference, along: &Along) -> String {
 /// Both paths in the plane of two axes in which they are largest.
 fn paths(picture: &mut String, found: &Difference, along: &Along) {
     let pieces = along.paths.iter().flat_map(|path| &path.pieces);
-    let points = pieces
-        .filter(|(cut, _)| *cut)
-        .flat_map(|(_, points)| points);
+    let points = pieces.filter(|(cut, _)| *cut).flat_map(|(_, points)| points);
     let view = PlanView::of(points, [LEFT, TOP], SIZE, ROOM);
     let place = |point: &[f64; 3]| view.place(point);
     view.open_clip(picture);
@@ -85,10 +78,7 @@ fn paths(picture: &mut String, found: &Difference, along: &Along) {
     // Names of rings that lie on one another stand side by side.
     let mut rings: Vec<(String, [f64; 2])> = Vec::new();
     let operations = found.operations.iter();
-    for (name, at) in operations
-        .filter(|operation| !operation.same)
-        .flat_map(marks)
-    {
+    for (name, at) in operations.filter(|operation| !operation.same).flat_map(marks) {
         let at = place(&at);
         let close = |ring: &&mut (String, [f64; 2])| {
             libm::hypot(ring.1[0] - at[0], ring.1[1] - at[1]) < RING
@@ -113,18 +103,11 @@ fn marks(operation: &Operation) -> Vec<(String, [f64; 3])> {
     let worst = [
         (&operation.tip, operation.tip.on_mm > 0.0, "position"),
         (&operation.axis, operation.axis.on_mm > 0.0, "tool axis"),
-        (
-            &operation.feed.worst,
-            operation.feed.worst.on_mm > 0.0,
-            "feed",
-        ),
+        (&operation.feed.worst, operation.feed.worst.on_mm > 0.0, "feed"),
     ];
     let worst = worst.into_iter().filter(|(_, differs, _)| *differs);
     let worst = worst.map(|(worst, _, what)| (what.to_owned(), worst.at));
-    let alone = [
-        (&operation.left_out, "left out"),
-        (&operation.added, "added"),
-    ];
+    let alone = [(&operation.left_out, "left out"), (&operation.added, "added")];
     let longest = alone.into_iter().filter_map(|(stretches, what)| {
         let longest = stretches.iter().max_by(|a, b| a.mm.total_cmp(&b.mm))?;
         Some((what.to_owned(), longest.at))
@@ -136,8 +119,7 @@ fn marks(operation: &Operation) -> Vec<(String, [f64; 3])> {
 fn charts(along: &Along) -> Vec<Chart> {
     let line = |value: &dyn Fn(&Bin) -> f64| -> Vec<[f64; 2]> {
         let bins = along.bins.iter().enumerate();
-        bins.map(|(place, bin)| [(place as f64 + 0.5) * along.width, value(bin)])
-            .collect()
+        bins.map(|(place, bin)| [(place as f64 + 0.5) * along.width, value(bin)]).collect()
     };
     let chart = |title: &str, y: &str, series: Vec<Series>| Chart {
         title: title.to_owned(),

@@ -13,12 +13,7 @@ const MOST_TOLD: usize = 8;
 pub fn text(names: [&str; 2], machines: [&str; 2], rules: &Rules, found: &Difference) -> String {
     let mut text = String::new();
     for (what, side) in ["old", "new"].iter().zip(0..) {
-        let Side {
-            motions,
-            cut_mm,
-            seconds,
-            ..
-        } = found.sides[side];
+        let Side { motions, cut_mm, seconds, .. } = found.sides[side];
         let _ = writeln!(
             text,
             "{what:<10} {} on {}: {motions} motions, {} mm at feed, {}",
@@ -87,10 +82,7 @@ fn title(index: usize, operation: &Operation) -> String {
 fn row(index: usize, operation: &Operation) -> [String; 9] {
     let [old, new] = operation.sides;
     let lines = |side: Option<Side>| {
-        side.map_or_else(
-            || "-".to_owned(),
-            |side| format!("{}-{}", side.lines[0], side.lines[1]),
-        )
+        side.map_or_else(|| "-".to_owned(), |side| format!("{}-{}", side.lines[0], side.lines[1]))
     };
     let time = |side: Option<Side>| side.map_or_else(|| "-".to_owned(), |side| clock(side.seconds));
     let both = old.is_some() && new.is_some();
@@ -133,22 +125,12 @@ fn details(text: &mut String, operation: &Operation, rules: &Rules) {
     if operation.tip.value > rules.tip {
         let worst = &operation.tip;
         let far = number(worst.value, 4);
-        told(
-            "position",
-            format!(
-                "up to {far} mm apart, {}; {}",
-                place(worst),
-                on(worst.on_mm)
-            ),
-        );
+        told("position", format!("up to {far} mm apart, {}; {}", place(worst), on(worst.on_mm)));
     }
     if operation.axis.value > degrees {
         let worst = &operation.axis;
         let far = number(worst.value, 4);
-        told(
-            "tool axis",
-            format!("up to {far}° apart, {}; {}", place(worst), on(worst.on_mm)),
-        );
+        told("tool axis", format!("up to {far}° apart, {}; {}", place(worst), on(worst.on_mm)));
     }
     for (name, worst) in &operation.rotary {
         if worst.value > degrees {
@@ -164,21 +146,14 @@ fn details(text: &mut String, operation: &Operation, rules: &Rules) {
         let [old, new] = feed.feeds.map(|feed| number(feed, 1));
         told(
             "feed",
-            format!(
-                "{old} and {new} mm/min, {}; {}",
-                place(&feed.worst),
-                on(feed.worst.on_mm)
-            ),
+            format!("{old} and {new} mm/min, {}; {}", place(&feed.worst), on(feed.worst.on_mm)),
         );
     }
     for state in operation.states.iter().take(MOST_TOLD) {
         let ([old, new], [line, other]) = (&state.values, state.lines);
         told(
             state.what,
-            format!(
-                "{old}, now {new}, from lines {line} and {other} on; {}",
-                on(state.on_mm)
-            ),
+            format!("{old}, now {new}, from lines {line} and {other} on; {}", on(state.on_mm)),
         );
     }
     for event in operation.events.iter().take(MOST_TOLD) {
@@ -195,10 +170,7 @@ fn details(text: &mut String, operation: &Operation, rules: &Rules) {
         told("other way", format!("{}; now {}", way(old), way(new)));
     }
     more(&mut told, "other way", operation.other_ways.len());
-    for (what, stretches) in [
-        ("left out", &operation.left_out),
-        ("added", &operation.added),
-    ] {
+    for (what, stretches) in [("left out", &operation.left_out), ("added", &operation.added)] {
         for stretch in stretches.iter().take(MOST_TOLD) {
             told(what, way(stretch));
         }

@@ -131,20 +131,14 @@ impl Side {
 
 /// Does as the arguments say.
 pub fn run(arguments: &DiffArguments) -> Result<(), Failure> {
-    let controls = [
-        NcControl::new(&arguments.program)?,
-        NcControl::new(&of_new(arguments))?,
-    ];
+    let controls = [NcControl::new(&arguments.program)?, NcControl::new(&of_new(arguments))?];
     let sides = [Side::open(&arguments.old)?, Side::open(&arguments.new)?];
     let [old, new] = &controls;
     let rules = rules(arguments, [old, new]);
     let mut along = Along::new(rules.tip);
     let opened = |new: bool| sides[usize::from(new)].read(&controls[usize::from(new)]);
     let (found, unread) = compare(&rules, opened, &mut |sample| along.take(sample))?;
-    let Unread {
-        old: mut refused,
-        new: more,
-    } = unread;
+    let Unread { old: mut refused, new: more } = unread;
     refused.extend(more);
     if !refused.is_empty() {
         // What stands behind a block that is not run counts from elsewhere.
@@ -161,17 +155,9 @@ pub fn run(arguments: &DiffArguments) -> Result<(), Failure> {
     if let Some(target) = &arguments.svg {
         texts.push((Role::PICTURE, target, picture.as_str()));
     }
-    let mut targets: Vec<(Role, &PathArg)> = texts
-        .iter()
-        .map(|(role, target, _)| (*role, *target))
-        .collect();
-    targets.extend(
-        arguments
-            .report
-            .report
-            .iter()
-            .map(|page| (Role::REPORT, page)),
-    );
+    let mut targets: Vec<(Role, &PathArg)> =
+        texts.iter().map(|(role, target, _)| (*role, *target)).collect();
+    targets.extend(arguments.report.report.iter().map(|page| (Role::REPORT, page)));
     let mut written = AtomicFile::create(&targets)?;
     for (file, (_, _, text)) in written.iter_mut().zip(&texts) {
         file.write_bytes(text.as_bytes())?;
@@ -185,10 +171,7 @@ pub fn run(arguments: &DiffArguments) -> Result<(), Failure> {
         };
         let programs = [sides[0].copied(old)?, sides[1].copied(new)?];
         let texts = [&sides[0], &sides[1]].map(|side| -> Result<_, Failure> {
-            Ok((
-                side.name.as_str(),
-                nc_program::again(&side.name, &side.file)?,
-            ))
+            Ok((side.name.as_str(), nc_program::again(&side.name, &side.file)?))
         });
         let [first, second] = texts;
         shown.write(programs, [first?, second?], arguments.report.most(), page)?;
@@ -229,8 +212,7 @@ fn of_new(arguments: &DiffArguments) -> ProgramArguments {
 fn rules(arguments: &DiffArguments, [old, new]: [&NcControl; 2]) -> Rules {
     let axes = |control: &NcControl| -> Vec<(String, bool)> {
         let axes = control.machine.axes.iter();
-        axes.map(|axis| (axis.name.clone(), axis.joint.rotary))
-            .collect()
+        axes.map(|axis| (axis.name.clone(), axis.joint.rotary)).collect()
     };
     let one_machine = arguments.machine_new.is_none() && axes(old) == axes(new);
     let (axes, rotary) = axes(old).into_iter().unzip();
@@ -255,9 +237,6 @@ fn warn(unknown: &[Vec<String>; 2]) {
     if words.is_empty() {
         return;
     }
-    let message = format!(
-        "what {} does is not known, and not compared",
-        words.join(", ")
-    );
+    let message = format!("what {} does is not known, and not compared", words.join(", "));
     terminal::findings(&[Diagnostic::warning("nc-unknown", message)]);
 }

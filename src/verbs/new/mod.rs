@@ -17,10 +17,7 @@ use crate::job::{self, plugin_finder};
 use crate::terminal;
 use template::Class;
 
-const MACHINE: Role = Role {
-    what: "machine file",
-    remedy: "give it another name",
-};
+const MACHINE: Role = Role { what: "machine file", remedy: "give it another name" };
 
 /// Writes a machine file that `post check` accepts, with a remark on each value that says what to measure.
 ///
@@ -142,13 +139,9 @@ pub fn run(arguments: &NewArguments) -> Result<(), Failure> {
     }
     let text = template::write(&choices);
     // Nothing is written that the loader would refuse.
-    let source = description::Source {
-        name: path.display().to_string(),
-        text: text.clone(),
-    };
-    let machine = description::load(source, &[], &mut |parent| {
-        Err(format!("there is no machine {parent}"))
-    })?;
+    let source = description::Source { name: path.display().to_string(), text: text.clone() };
+    let machine =
+        description::load(source, &[], &mut |parent| Err(format!("there is no machine {parent}")))?;
     let checked = job::derive(&machine, 0.0)?;
     let stranger = plugin_finder::not_built_in(&machine.control.dialect);
     if stranger.is_none() {
@@ -196,9 +189,7 @@ fn file(name: &Path) -> Result<PathBuf, Failure> {
             return Err(Diagnostic::error("new", message).into());
         }
     }
-    if let Some(folder) = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
+    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty())
         && !fs::metadata(folder).is_ok_and(|folder| folder.is_dir())
     {
         let message = format!("there is no folder {}", folder.display());
@@ -249,13 +240,7 @@ fn useless_flags(arguments: &NewArguments, class: Class) -> Vec<Diagnostic> {
             "tilting table",
             class.axis_at("tilt"),
         ),
-        (
-            "--tcp",
-            arguments.tcp.is_some(),
-            Class::turns,
-            "rotary axis",
-            None,
-        ),
+        ("--tcp", arguments.tcp.is_some(), Class::turns, "rotary axis", None),
     ];
     let mut faults = Vec::new();
     for (flag, _, has, part, axis) in flags.into_iter().filter(|(_, given, ..)| *given) {
@@ -294,24 +279,11 @@ fn useless_flags(arguments: &NewArguments, class: Class) -> Vec<Diagnostic> {
 fn unknown_axes(choices: &Choices) -> Vec<Diagnostic> {
     let known = choices.class.axes();
     let all = [
-        (
-            "--travel",
-            choices
-                .travel
-                .iter()
-                .map(|given| &given.axis)
-                .collect::<Vec<_>>(),
-        ),
+        ("--travel", choices.travel.iter().map(|given| &given.axis).collect::<Vec<_>>()),
         ("--cyclic", choices.cyclic.iter().collect()),
         ("--reversed", choices.reversed.iter().collect()),
-        (
-            "--max-feed",
-            choices.max_feed.iter().map(|given| &given.axis).collect(),
-        ),
-        (
-            "--point",
-            choices.point.iter().map(|given| &given.axis).collect(),
-        ),
+        ("--max-feed", choices.max_feed.iter().map(|given| &given.axis).collect()),
+        ("--point", choices.point.iter().map(|given| &given.axis).collect()),
     ];
     all.iter()
         .flat_map(|(flag, axes)| axes.iter().map(move |axis| (flag, axis)))
@@ -338,17 +310,13 @@ fn split(text: &str) -> Result<(String, &str), String> {
 
 fn travel(text: &str) -> Result<Given<[f64; 2]>, String> {
     let (axis, value) = split(text)?;
-    Ok(Given {
-        axis,
-        value: range(value)?,
-    })
+    Ok(Given { axis, value: range(value)? })
 }
 
 /// `-300:300`.
 pub fn range(text: &str) -> Result<[f64; 2], String> {
-    let (least, most) = text
-        .split_once(':')
-        .ok_or_else(|| format!("`{text}` is no travel: -300:300"))?;
+    let (least, most) =
+        text.split_once(':').ok_or_else(|| format!("`{text}` is no travel: -300:300"))?;
     let range = [finite(least.trim())?, finite(most.trim())?];
     if range[0] >= range[1] {
         return Err(format!("`{text}`: the first must be the smaller"));
@@ -367,24 +335,17 @@ pub fn dialect(text: &str) -> Result<String, String> {
 
 fn feed(text: &str) -> Result<Given<f64>, String> {
     let (axis, value) = split(text)?;
-    Ok(Given {
-        axis,
-        value: flag_values::positive(value.trim())?,
-    })
+    Ok(Given { axis, value: flag_values::positive(value.trim())? })
 }
 
 fn point(text: &str) -> Result<Given<[f64; 3]>, String> {
     let (axis, value) = split(text)?;
-    Ok(Given {
-        axis,
-        value: flag_values::point(value)?,
-    })
+    Ok(Given { axis, value: flag_values::point(value)? })
 }
 
 impl Class {
     /// As it is written on the command line.
     pub fn name(self) -> String {
-        self.to_possible_value()
-            .map_or_else(String::new, |value| value.get_name().to_owned())
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
     }
 }

@@ -18,10 +18,7 @@ const PATIENCE: usize = 3;
 /// Asks for what no flag says. An empty answer, or the end of the input, takes what stands in brackets; only the
 /// class must be said.
 pub fn ask(arguments: &NewArguments, choices: &mut Choices) -> Result<(), Failure> {
-    let classes: Vec<String> = Class::value_variants()
-        .iter()
-        .map(|class| class.name())
-        .collect();
+    let classes: Vec<String> = Class::value_variants().iter().map(|class| class.name()).collect();
     tell("How do the rotary axes stand?\n");
     for class in Class::value_variants() {
         let help = class.to_possible_value();
@@ -41,11 +38,8 @@ pub fn ask(arguments: &NewArguments, choices: &mut Choices) -> Result<(), Failur
     })?;
     if arguments.dialect.is_none() {
         let usual = choices.dialect.clone();
-        let said = question(
-            "dialect of the control: fanuc, heidenhain, linuxcnc",
-            &usual,
-            dialect,
-        )?;
+        let said =
+            question("dialect of the control: fanuc, heidenhain, linuxcnc", &usual, dialect)?;
         choices.dialect = said.unwrap_or(usual);
     }
     if choices.class.turns() && arguments.tcp.is_none() {
@@ -61,22 +55,15 @@ pub fn ask(arguments: &NewArguments, choices: &mut Choices) -> Result<(), Failur
         choices.tcp = said.unwrap_or(choices.tcp);
     }
     if arguments.gauge.is_none() {
-        choices.gauge = length(
-            "gauge line over the table's face, all axes at zero, mm",
-            choices.gauge,
-        )?;
+        choices.gauge =
+            length("gauge line over the table's face, all axes at zero, mm", choices.gauge)?;
     }
     if choices.class.has_pivot() && arguments.pivot.is_none() {
-        choices.pivot = length(
-            "swivel axis of the head to the gauge line, mm",
-            choices.pivot,
-        )?;
+        choices.pivot = length("swivel axis of the head to the gauge line, mm", choices.pivot)?;
     }
     if choices.class.has_tilt() && arguments.tilt.is_none() {
-        choices.tilt = length(
-            "tilting axis over the table's face (below is negative), mm",
-            choices.tilt,
-        )?;
+        choices.tilt =
+            length("tilting axis over the table's face (below is negative), mm", choices.tilt)?;
     }
     for axis in choices.class.axes() {
         let said = |given: &Given<[f64; 2]>| given.axis == axis;
@@ -97,10 +84,7 @@ pub fn ask(arguments: &NewArguments, choices: &mut Choices) -> Result<(), Failur
             travel => range(travel).map(Some),
         })?;
         match travel.flatten() {
-            Some(value) => choices.travel.push(Given {
-                axis: axis.to_owned(),
-                value,
-            }),
+            Some(value) => choices.travel.push(Given { axis: axis.to_owned(), value }),
             None if rotary => choices.cyclic.push(axis.to_owned()),
             None => {}
         }

@@ -118,10 +118,9 @@ impl Class {
             Self::HeadHeadAc => vec![FORK_C, swivel("A", "[1, 0, 0]", [-110.0, 110.0])],
             Self::HeadHeadBc => vec![FORK_C, swivel("B", "[0, 1, 0]", [-110.0, 110.0])],
             Self::HeadTableBc => vec![TABLE_C, swivel("B", "[0, 1, 0]", [-100.0, 100.0])],
-            Self::HeadTableBa => vec![
-                table("A", "[1, 0, 0]"),
-                swivel("B", "[0, 1, 0]", [-100.0, 100.0]),
-            ],
+            Self::HeadTableBa => {
+                vec![table("A", "[1, 0, 0]"), swivel("B", "[0, 1, 0]", [-100.0, 100.0])]
+            }
             Self::NutatingHead => vec![TABLE_C, swivel("B", "[0, 1, 1]", [0.0, 180.0])],
         }
     }
@@ -176,10 +175,7 @@ pub fn write(choices: &Choices) -> String {
     let class = choices.class;
     let mut text = String::new();
     let title = choices.title.replace('\\', "\\\\").replace('"', "\\\"");
-    let title: String = title
-        .chars()
-        .filter(|letter| !letter.is_control())
-        .collect();
+    let title: String = title.chars().filter(|letter| !letter.is_control()).collect();
     // Writing to a String cannot fail.
     let mut line = |said: &str, remark: &str| {
         let _ = match remark {
@@ -230,10 +226,7 @@ pub fn write(choices: &Choices) -> String {
     }
     line("", "");
     line("[workpiece]", "");
-    line(
-        "mount = [0, 0, 0]",
-        "part origin: here the middle of the table; --mount for one job",
-    );
+    line("mount = [0, 0, 0]", "part origin: here the middle of the table; --mount for one job");
     line("", "");
     line("[tool]", "");
     line("gauge = [0, 0, \"gauge\"]", "");
@@ -245,25 +238,16 @@ pub fn write(choices: &Choices) -> String {
     ] {
         line("", "");
         line(&format!("[axis.{name}]"), "");
-        line(
-            &format!("linear   = {direction}"),
-            &format!("as measured; a lean of {lean}"),
-        );
+        line(&format!("linear   = {direction}"), &format!("as measured; a lean of {lean}"));
         travel(&mut line, choices, name);
         reversed(&mut line, choices, name);
-        line(
-            &format!("max_feed = {}", feed(choices, name, 20_000.0)),
-            "mm/min",
-        );
+        line(&format!("max_feed = {}", feed(choices, name, 20_000.0)), "mm/min");
     }
     for rotary in class.rotary() {
         let name = rotary.name;
         line("", "");
         line(&format!("[axis.{name}]"), "");
-        line(
-            &format!("rotary   = {}", rotary.direction),
-            "any length; as measured",
-        );
+        line(&format!("rotary   = {}", rotary.direction), "any length; as measured");
         let point = match given(&choices.point, name) {
             Some([x, y, z]) => format!("[{x}, {y}, {z}]"),
             None => rotary.point.to_owned(),
@@ -271,10 +255,7 @@ pub fn write(choices: &Choices) -> String {
         line(&format!("point    = {point}"), rotary.measure);
         travel(&mut line, choices, name);
         reversed(&mut line, choices, name);
-        line(
-            &format!("max_feed = {}", feed(choices, name, 3600.0)),
-            "deg/min",
-        );
+        line(&format!("max_feed = {}", feed(choices, name, 3600.0)), "deg/min");
     }
     line("", "");
     line("[control]", "");
@@ -286,10 +267,7 @@ pub fn write(choices: &Choices) -> String {
         );
     }
     if choices.units == OutputUnits::Inch {
-        line(
-            "units   = \"inch\"",
-            "of the NC program; this file stays in mm",
-        );
+        line("units   = \"inch\"", "of the NC program; this file stays in mm");
     }
     if let Some((below, remark)) = stands_clear(choices)
         && let Some([_, top]) = z_travel(choices)
@@ -312,10 +290,7 @@ pub fn write(choices: &Choices) -> String {
     );
     line("", "");
     line("[accuracy]", "");
-    line(
-        &format!("tolerance = {}", choices.tolerance),
-        "mm, the tip in cuts",
-    );
+    line(&format!("tolerance = {}", choices.tolerance), "mm, the tip in cuts");
     text
 }
 
@@ -327,10 +302,7 @@ fn options(choices: &Choices) -> Vec<(&'static str, &'static str)> {
                 OutputUnits::Mm => "unit_system = \"1 mm\"",
                 OutputUnits::Inch => "unit_system = \"1 inch\"",
             };
-            vec![(
-                units,
-                "a parameter of the control: compare, a point does not override it",
-            )]
+            vec![(units, "a parameter of the control: compare, a point does not override it")]
         }
         "grbl" if choices.class.turns() => {
             vec![("hal = true", "grblHAL: GRBL 1.1 has X, Y and Z alone")]
@@ -343,14 +315,12 @@ fn options(choices: &Choices) -> Vec<(&'static str, &'static str)> {
 /// the axis does; and why it must be looked at.
 fn stands_clear(choices: &Choices) -> Option<(f64, &'static str)> {
     match choices.dialect.as_str() {
-        "okuma" => Some((
-            0.0,
-            "where Z stands clear, from the zero of G16 H0: read it off the machine",
-        )),
-        "grbl" => Some((
-            2.0,
-            "Z at its end is on the homing switch: minus the pull-off ($27), or lower",
-        )),
+        "okuma" => {
+            Some((0.0, "where Z stands clear, from the zero of G16 H0: read it off the machine"))
+        }
+        "grbl" => {
+            Some((2.0, "Z at its end is on the homing switch: minus the pull-off ($27), or lower"))
+        }
         _ => None,
     }
 }
@@ -373,10 +343,7 @@ fn travel(line: &mut impl FnMut(&str, &str), choices: &Choices, axis: &str) {
         );
     }
     if travel.is_none() || endless {
-        line(
-            "cyclic   = true",
-            "turns without end; else travel = [-360, 360]",
-        );
+        line("cyclic   = true", "turns without end; else travel = [-360, 360]");
     }
 }
 
@@ -392,8 +359,5 @@ fn feed(choices: &Choices, axis: &str, usual: f64) -> f64 {
 
 /// The last that was given.
 fn given<T: Copy>(all: &[Given<T>], axis: &str) -> Option<T> {
-    all.iter()
-        .rev()
-        .find(|given| given.axis == axis)
-        .map(|given| given.value)
+    all.iter().rev().find(|given| given.axis == axis).map(|given| given.value)
 }

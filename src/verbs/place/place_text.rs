@@ -30,29 +30,13 @@ pub fn text(arguments: &PlaceArguments, found: &Found) -> String {
         let _ = writeln!(text, "{name:<10} {value}");
     };
     let best = &found.best;
-    row(
-        "file",
-        format!("{}, {} moves", found.file, best.report.moves),
-    );
-    row(
-        "machine",
-        format!(
-            "{}, the {} keeps the tip",
-            best.report.machine, best.report.tcp
-        ),
-    );
+    row("file", format!("{}, {} moves", found.file, best.report.moves));
+    row("machine", format!("{}, the {} keeps the tip", best.report.machine, best.report.tcp));
     row("seat", seat_text(arguments, found, best));
     row("why", why(arguments, found));
-    let before = found
-        .present
-        .as_ref()
-        .filter(|present| present.seat != best.seat)
-        .map(|present| {
-            format!(
-                "; {} with {}",
-                cost(arguments, present),
-                seat_text(arguments, found, present)
-            )
+    let before =
+        found.present.as_ref().filter(|present| present.seat != best.seat).map(|present| {
+            format!("; {} with {}", cost(arguments, present), seat_text(arguments, found, present))
         });
     row(
         match arguments.least {
@@ -63,11 +47,8 @@ pub fn text(arguments: &PlaceArguments, found: &Found) -> String {
     );
     text.push('\n');
     text.push_str(&table(&best.report.axes));
-    let _ = writeln!(
-        text,
-        "\n{}",
-        command(&seat_text(arguments, found, best), std::env::args_os())
-    );
+    let _ =
+        writeln!(text, "\n{}", command(&seat_text(arguments, found, best), std::env::args_os()));
     text
 }
 
@@ -103,11 +84,7 @@ fn why(arguments: &PlaceArguments, found: &Found) -> String {
         Least::Time => "no mount that was tried takes less time".to_owned(),
         Least::Rotary => "nothing that was tried turns the axes less".to_owned(),
     };
-    let spent = if found.spent {
-        "; --runs ended the search"
-    } else {
-        ""
-    };
+    let spent = if found.spent { "; --runs ended the search" } else { "" };
     format!(
         "{fits} {least} ({} dry runs, linear axes {} mm from their ends{spent})",
         found.runs, arguments.margin

@@ -107,12 +107,7 @@ impl<'s, 'a> Search<'s, 'a> {
         if let Some(step) = self.arguments.search_turn {
             best = self.turned(best, step)?;
         }
-        let Some(Seated {
-            mut trial,
-            bounds,
-            evenly,
-        }) = best
-        else {
+        let Some(Seated { mut trial, bounds, evenly }) = best else {
             return Err(self.refuse(nothing, present.err()));
         };
         // A straight shift of all axes takes no longer, and turns nothing.
@@ -168,9 +163,7 @@ impl<'s, 'a> Search<'s, 'a> {
             let travel = self.machine.axes[joint].travel;
             let both = travel.is_none_or(|[least, most]| least < 0.0 && most > 0.0);
             let sides = [Side::Positive, Side::Negative].into_iter();
-            sides
-                .filter(move |_| both)
-                .map(move |side| Some((joint, side)))
+            sides.filter(move |_| both).map(move |side| Some((joint, side)))
         });
         [None].into_iter().chain(sides).collect()
     }
@@ -183,21 +176,15 @@ impl<'s, 'a> Search<'s, 'a> {
         known: Option<&Trial>,
     ) -> Result<Result<Seated, Nothing>, Failure> {
         let wished = self.present.mount;
-        let mut seat = Seat {
-            mount: wished,
-            turn,
-        };
+        let mut seat = Seat { mount: wished, turn };
         let mut bounds = Vec::new();
         let mut refused = Vec::new();
         for _ in 0..ROUNDS {
             let opened = self.trials.opened(&seat, prefer)?;
             bounds.extend(opened.bounds);
             bounds = shuffled(bounds);
-            let seated = |trial: Trial, bounds: Vec<Bound>| Seated {
-                trial,
-                bounds,
-                evenly: opened.evenly,
-            };
+            let seated =
+                |trial: Trial, bounds: Vec<Bound>| Seated { trial, bounds, evenly: opened.evenly };
             if let Some(known) = known
                 && self.holds(known)
             {
@@ -259,9 +246,7 @@ impl<'s, 'a> Search<'s, 'a> {
         // From -180 exclusive to 180 inclusive, and no more digits than one would set.
         let turn = libm::remainder(libm::rint(turn * 1e3) / 1e3, 360.0);
         if let Ok(seated) = self.seat_at(turn, None)?
-            && best
-                .as_ref()
-                .is_none_or(|best| seated.trial.cost < best.trial.cost * (1.0 - WORTH))
+            && best.as_ref().is_none_or(|best| seated.trial.cost < best.trial.cost * (1.0 - WORTH))
         {
             *best = Some(seated);
         }
@@ -287,11 +272,10 @@ impl<'s, 'a> Search<'s, 'a> {
                 if fault.is_some() {
                     return None;
                 }
-                self.cost_at(trial, mount, &bodies)
-                    .unwrap_or_else(|failure| {
-                        fault = Some(failure);
-                        None
-                    })
+                self.cost_at(trial, mount, &bodies).unwrap_or_else(|failure| {
+                    fault = Some(failure);
+                    None
+                })
             });
             fault.map_or(Ok(()), Err)?;
         }
@@ -309,10 +293,7 @@ impl<'s, 'a> Search<'s, 'a> {
         if !inside || self.trials.left() == 0 {
             return Ok(None);
         }
-        let seat = Seat {
-            mount: tidy(&mount),
-            turn: least.seat.turn,
-        };
+        let seat = Seat { mount: tidy(&mount), turn: least.seat.turn };
         let trial = match self.trials.post(seat)? {
             Ok(trial) if self.holds(&trial) => trial,
             _ => return Ok(None),
@@ -345,11 +326,7 @@ impl<'s, 'a> Search<'s, 'a> {
         let told: Vec<String> = ends
             .iter()
             .map(|bound| {
-                let end = if bound.end.side.largest {
-                    "largest"
-                } else {
-                    "least"
-                };
+                let end = if bound.end.side.largest { "largest" } else { "least" };
                 format!("{} at its {end} end on line {}", bound.axis, bound.end.line)
             })
             .collect();

@@ -38,12 +38,7 @@ pub fn draw(found: &Found) -> String {
         "light: travel; dark: what the program uses; numbers above a bar: what is left".to_owned(),
     ];
     for (line, title) in titles.iter().enumerate() {
-        label(
-            &mut svg,
-            [middle, 22.0 + 18.0 * line as f64],
-            "middle",
-            title,
-        );
+        label(&mut svg, [middle, 22.0 + 18.0 * line as f64], "middle", title);
     }
     for (row, axis) in axes.iter().enumerate() {
         bar(&mut svg, TOP + ROW * row as f64, axis, unit(found, axis));
@@ -80,12 +75,7 @@ fn bar(svg: &mut String, top: f64, axis: &AxisRange, unit: &str) {
         None => " stroke-dasharray=\"6 4\"",
     };
     label(svg, [left - 14.0, bar + 15.0], "end", &axis.name);
-    rectangle(
-        svg,
-        [left, right],
-        bar,
-        &format!("fill=\"#e4e4e4\" stroke=\"#000000\"{dashes}"),
-    );
+    rectangle(svg, [left, right], bar, &format!("fill=\"#e4e4e4\" stroke=\"#000000\"{dashes}"));
     let (from, to) = (at(axis.min), at(axis.max));
     let thin = (SEEN - (to - from)).max(0.0) / 2.0;
     rectangle(svg, [from - thin, to + thin], bar, "fill=\"#5a5a5a\"");
@@ -94,18 +84,8 @@ fn bar(svg: &mut String, top: f64, axis: &AxisRange, unit: &str) {
     label(svg, [middle, above], "middle", &format!("uses {used}"));
     match axis.travel {
         Some([least, most]) => {
-            label(
-                svg,
-                [left, above],
-                "start",
-                &format!("{} left", shown(axis.min - least)),
-            );
-            label(
-                svg,
-                [right, above],
-                "end",
-                &format!("{} left", shown(most - axis.max)),
-            );
+            label(svg, [left, above], "start", &format!("{} left", shown(axis.min - least)));
+            label(svg, [right, above], "end", &format!("{} left", shown(most - axis.max)));
             label(svg, [left, below], "start", &shown(least));
             label(svg, [right, below], "end", &shown(most));
         }

@@ -107,11 +107,8 @@ impl<'a> Trials<'a> {
             Err(Failure::Refused(findings)) => return Ok(Err(findings)),
             Err(failure) => return Err(failure),
         };
-        let rotary = |name: &str| {
-            machine
-                .with_axis(name)
-                .is_some_and(|(_, axis)| axis.joint.rotary)
-        };
+        let rotary =
+            |name: &str| machine.with_axis(name).is_some_and(|(_, axis)| axis.joint.rotary);
         let turning = report.axes.iter().filter(|axis| rotary(&axis.name));
         let cost = match self.least {
             Least::Time => report.time_s,
@@ -123,13 +120,7 @@ impl<'a> Trials<'a> {
             let left = (range.min - least).min(most - range.max);
             follows_the_part(machine, axis).then_some(left)
         });
-        Ok(Ok(Trial {
-            room: left.fold(f64::INFINITY, f64::min),
-            seat,
-            cost,
-            findings,
-            report,
-        }))
+        Ok(Ok(Trial { room: left.fold(f64::INFINITY, f64::min), seat, cost, findings, report }))
     }
 
     /// Posts the file with the part there on the machine with its linear travel opened; `prefer` is a side on which a
@@ -151,10 +142,7 @@ impl<'a> Trials<'a> {
             Err(Failure::Refused(findings)) => findings,
             Err(failure) => return Err(failure),
         };
-        let bounds = watch.ends().map(|(axis, end)| Bound {
-            axis: axis.to_owned(),
-            end,
-        });
+        let bounds = watch.ends().map(|(axis, end)| Bound { axis: axis.to_owned(), end });
         Ok(Opened {
             bounds: bounds.collect(),
             faults: faults

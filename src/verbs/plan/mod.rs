@@ -151,15 +151,9 @@ fn error(text: &str) -> Result<f64, String> {
     }
 }
 
-const PLAN: Role = Role {
-    what: "plan",
-    remedy: "name another file with -o",
-};
+const PLAN: Role = Role { what: "plan", remedy: "name another file with -o" };
 
-const PICTURES: Role = Role {
-    what: "plan",
-    remedy: "name another folder with --pictures",
-};
+const PICTURES: Role = Role { what: "plan", remedy: "name another folder with --pictures" };
 
 /// The file by which a folder of pictures is known, and how it begins.
 const MARK: (&str, &str) = ("plan.json", "{\n  \"curve\": ");
@@ -182,11 +176,8 @@ pub fn run(arguments: &PlanArguments) -> Result<(), Failure> {
         None => None,
     };
     let (curve, findings) = Curve::read(&arguments.curve, machine)?;
-    let targets: Vec<(Role, &PathArg)> = arguments
-        .output
-        .iter()
-        .map(|target| (PLAN, target))
-        .collect();
+    let targets: Vec<(Role, &PathArg)> =
+        arguments.output.iter().map(|target| (PLAN, target)).collect();
     let mut texts = AtomicFile::create(&targets)?;
     let samples = match arguments.solver {
         Solver::Reach | Solver::Interior => 20_000,

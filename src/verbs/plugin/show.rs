@@ -77,9 +77,7 @@ fn writes(opened: &OpenedDialect) -> String {
     let format = opened.format();
     let mut text = format!("\nNumbers: {}\n", numbers(format));
     let capabilities = opened.capabilities();
-    let written = CAPABILITIES
-        .iter()
-        .filter(|spec| capabilities.has(spec.set));
+    let written = CAPABILITIES.iter().filter(|spec| capabilities.has(spec.set));
     let mut known = 0;
     let mut rows = String::new();
     for spec in written {

@@ -57,9 +57,8 @@ pub fn run(arguments: &TestArguments) -> Result<(), Failure> {
         return Ok(());
     }
     let wrong = report.wrong();
-    let findings: Vec<Diagnostic> = wrong
-        .map(|sentence| Diagnostic::error("plugin-test", sentence))
-        .collect();
+    let findings: Vec<Diagnostic> =
+        wrong.map(|sentence| Diagnostic::error("plugin-test", sentence)).collect();
     Err(findings.into())
 }
 

@@ -24,15 +24,10 @@ use crate::terminal;
 use parts::Split;
 use shown::ShownArguments;
 
-const SETUP_SHEET: Role = Role {
-    what: "setup sheet",
-    remedy: "name another file with --setup-sheet",
-};
+const SETUP_SHEET: Role =
+    Role { what: "setup sheet", remedy: "name another file with --setup-sheet" };
 
-const PREDICTION: Role = Role {
-    what: "prediction",
-    remedy: "name another file with --predict=",
-};
+const PREDICTION: Role = Role { what: "prediction", remedy: "name another file with --predict=" };
 
 #[derive(Debug, Args)]
 pub struct PostArguments {
@@ -97,37 +92,19 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         || arguments.predict.is_some();
     let mut source = ClSource::new(arguments.job.input(), twice)?;
     let ahead = match looks_ahead {
-        true => Some(job::look_ahead(
-            &arguments.job,
-            &machine,
-            &finder,
-            &mut source,
-            None,
-        )?),
+        true => Some(job::look_ahead(&arguments.job, &machine, &finder, &mut source, None)?),
         false => None,
     };
     let parts = the_parts(arguments, machine, &finder, ahead.as_ref())?;
     let places = arguments.shown.places(arguments.split, parts.len());
     let folders = places.folders()?;
-    let mut targets: Vec<(Role, &PathArg)> = parts
-        .iter()
-        .map(|part| (Role::PROGRAM, &part.target))
-        .collect();
+    let mut targets: Vec<(Role, &PathArg)> =
+        parts.iter().map(|part| (Role::PROGRAM, &part.target)).collect();
     targets.extend(places.maps.iter().map(|map| (shown::MAP, map)));
     let pages = parts::each(&arguments.report.report, arguments.split, parts.len());
     targets.extend(pages.iter().map(|page| (Role::REPORT, page)));
-    targets.extend(
-        arguments
-            .summary
-            .iter()
-            .map(|summary| (Role::SUMMARY, summary)),
-    );
-    targets.extend(
-        arguments
-            .setup_sheet
-            .iter()
-            .map(|sheet| (SETUP_SHEET, sheet)),
-    );
+    targets.extend(arguments.summary.iter().map(|summary| (Role::SUMMARY, summary)));
+    targets.extend(arguments.setup_sheet.iter().map(|sheet| (SETUP_SHEET, sheet)));
     let prediction = arguments.predict.iter().flatten();
     targets.extend(prediction.map(|target| (PREDICTION, target)));
     // All are opened before the work begins: a program without its summary would be half a result.
@@ -173,10 +150,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         };
         let wrote = shown::show(&part.machine, &part.target, maps.next(), draws, |watch| {
             let files = (&mut source, &mut *file);
-            let mut beside = Beside {
-                watch,
-                ..Beside::default()
-            };
+            let mut beside = Beside { watch, ..Beside::default() };
             if let Some(rows) = &mut rows {
                 beside.observer = Some(rows);
             }
@@ -236,11 +210,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             };
             let rows = (rows, heard);
             let name = file.name().to_owned();
-            let text = (
-                &mut source,
-                name.as_str(),
-                &mut file.reread()? as &mut dyn Read,
-            );
+            let text = (&mut source, name.as_str(), &mut file.reread()? as &mut dyn Read);
             made.write(rows, text, arguments.report.most(), page)?;
         }
     }
@@ -266,18 +236,9 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     }
     let sheet_file = next_if(arguments.setup_sheet.is_some());
     if let (Some(sheet), Some(ahead), Some(file)) = (&arguments.setup_sheet, &ahead, sheet_file) {
-        let programs: Vec<_> = parts
-            .iter()
-            .map(|part| &part.target)
-            .zip(&reports)
-            .collect();
-        let text = setup_sheet::text(
-            sheet,
-            &parts[0].machine,
-            arguments.job.input(),
-            ahead,
-            &programs,
-        );
+        let programs: Vec<_> = parts.iter().map(|part| &part.target).zip(&reports).collect();
+        let text =
+            setup_sheet::text(sheet, &parts[0].machine, arguments.job.input(), ahead, &programs);
         file.write_bytes(text.as_bytes())?;
     }
     if let Some(file) = next_if(matches!(arguments.predict, Some(Some(_)))) {
@@ -296,17 +257,11 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     for (folder, pictures) in folders.iter().zip(&drawn) {
         folder.tidy(pictures)?;
     }
-    debug_assert!(
-        findings
-            .iter()
-            .all(|finding| finding.severity == Severity::Warning)
-    );
+    debug_assert!(findings.iter().all(|finding| finding.severity == Severity::Warning));
     terminal::findings(&findings);
     if !arguments.quiet {
         let name = arguments.job.input().path();
-        let name = name.map_or("standard input".to_owned(), |path| {
-            path.display().to_string()
-        });
+        let name = name.map_or("standard input".to_owned(), |path| path.display().to_string());
         for (index, (part, report)) in parts.iter().zip(&reports).enumerate() {
             let mut text = summary::text(report, verifications.get(index), &name, &part.target);
             if let Some(found) = compensations.get(index) {
@@ -338,11 +293,7 @@ fn the_parts(
 ) -> Result<Vec<Part>, Failure> {
     let target = making::target(&arguments.job, arguments.output.as_ref(), &machine, finder)?;
     let (Some(split), Some(ahead)) = (arguments.split, ahead) else {
-        return Ok(vec![Part {
-            lines: None,
-            target,
-            machine,
-        }]);
+        return Ok(vec![Part { lines: None, target, machine }]);
     };
     if target == PathArg::Standard {
         return Err(Diagnostic::error(

@@ -36,11 +36,7 @@ pub fn lines(split: Split, ahead: &LookedAhead) -> Result<Vec<Range<u64>>, Failu
     starts.extend_from_slice(begins);
     starts.dedup();
     let ends = starts[1..].iter().copied().chain([u64::MAX]);
-    Ok(starts
-        .iter()
-        .zip(ends)
-        .map(|(start, end)| *start..end)
-        .collect())
+    Ok(starts.iter().zip(ends).map(|(start, end)| *start..end).collect())
 }
 
 /// The target of program `number` (from 1) of `count`: `part.nc` becomes `part-03.nc`.

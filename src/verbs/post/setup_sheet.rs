@@ -54,11 +54,7 @@ fn the_machine(
     row("Machine", machine.name.clone());
     row(
         "Control",
-        format!(
-            "{}, {} keeps the tip",
-            machine.control.dialect,
-            machine.control.tcp.name()
-        ),
+        format!("{}, {} keeps the tip", machine.control.dialect, machine.control.tcp.name()),
     );
     let units = match machine.control.units {
         OutputUnits::Mm => "mm",
@@ -67,10 +63,7 @@ fn the_machine(
     row("Units of the program", units.to_owned());
     let [x, y, z] =
         [machine.mount.x, machine.mount.y, machine.mount.z].map(|value| number(value, 3));
-    row(
-        "Part origin, all axes at zero",
-        format!("X {x}, Y {y}, Z {z} mm in the machine frame"),
-    );
+    row("Part origin, all axes at zero", format!("X {x}, Y {y}, Z {z} mm in the machine frame"));
     row(
         "The program holds",
         match machine.holds_on_mount_alone() {
@@ -84,32 +77,20 @@ fn the_machine(
     }
     for head in &machine.heads {
         if head.machine.length_axis == LengthAxis::None && machine.length_axis != LengthAxis::None {
-            row(
-                &format!("Length registers with head {}", head.name),
-                NO_LENGTH.to_owned(),
-            );
+            row(&format!("Length registers with head {}", head.name), NO_LENGTH.to_owned());
         }
         if let Some(offset) = head.offset {
             let name = format!("Work offset of head {}", head.name);
-            row(
-                &name,
-                format!("number {offset} (1 is G54), measured with it"),
-            );
+            row(&name, format!("number {offset} (1 is G54), measured with it"));
         }
     }
     if machine.turn != 0.0 {
-        row(
-            "Part turned about its Z",
-            format!("{}°", number(machine.turn.to_degrees(), 3)),
-        );
+        row("Part turned about its Z", format!("{}°", number(machine.turn.to_degrees(), 3)));
     }
     if let Some([least, most]) = ahead.extents {
         let range =
             |axis: usize| format!("{} to {}", number(least[axis], 3), number(most[axis], 3));
-        row(
-            "Tip in the part frame",
-            format!("X {}, Y {}, Z {} mm", range(0), range(1), range(2)),
-        );
+        row("Tip in the part frame", format!("X {}, Y {}, Z {} mm", range(0), range(1), range(2)));
     }
     if let Some(time) = ahead.time_s {
         row("Time without tool changes", clock(time));
@@ -128,31 +109,19 @@ fn the_machine(
                 Some(hash) => format!(", {hash}"),
                 None => String::new(),
             };
-            row(
-                "Plugin",
-                format!("{} {}{origin}", plugin.name, plugin.version),
-            );
+            row("Plugin", format!("{} {}{origin}", plugin.name, plugin.version));
         }
     }
-    Section {
-        title: "Machine and part".to_owned(),
-        head: vec!["", ""],
-        rows,
-    }
+    Section { title: "Machine and part".to_owned(), head: vec!["", ""], rows }
 }
 
 fn the_programs(programs: &[(&PathArg, &Report)]) -> Section {
     let rows = programs.iter().map(|(target, report)| {
         let name = target.path().and_then(|path| path.file_name());
-        let tools: Vec<String> = report
-            .tools
-            .iter()
-            .filter_map(|tool| Some(tool.number?.to_string()))
-            .collect();
+        let tools: Vec<String> =
+            report.tools.iter().filter_map(|tool| Some(tool.number?.to_string())).collect();
         vec![
-            name.map_or("standard output".to_owned(), |name| {
-                name.to_string_lossy().into_owned()
-            }),
+            name.map_or("standard output".to_owned(), |name| name.to_string_lossy().into_owned()),
             report.nc_lines.to_string(),
             tools.join(", "),
             clock(report.time_s),
@@ -173,9 +142,7 @@ fn the_tools(ahead: &LookedAhead, programs: &[(&PathArg, &Report)]) -> Section {
     let size = |value: Option<f64>| value.map_or("?".to_owned(), |value| number(value, 3));
     let used = |tool: &Tool| {
         let tools = programs.iter().flat_map(|(_, report)| &report.tools);
-        tools
-            .into_iter()
-            .find(|used| used.number == Some(tool.number))
+        tools.into_iter().find(|used| used.number == Some(tool.number))
     };
     let rows = ahead.tools().into_iter().map(|tool| {
         let length = match used(tool) {
@@ -193,14 +160,7 @@ fn the_tools(ahead: &LookedAhead, programs: &[(&PathArg, &Report)]) -> Section {
     });
     Section {
         title: "Tools".to_owned(),
-        head: vec![
-            "T",
-            "Length register",
-            "Name",
-            "Length, mm",
-            "Diameter, mm",
-            "Corner, mm",
-        ],
+        head: vec!["T", "Length register", "Name", "Length, mm", "Diameter, mm", "Corner, mm"],
         rows: rows.collect(),
     }
 }
@@ -221,11 +181,7 @@ fn the_axes(programs: &[(&PathArg, &Report)]) -> Section {
             Some([min, max]) => format!("{} to {}", number(min, 3), number(max, 3)),
             None => "endless".to_owned(),
         };
-        vec![
-            name,
-            format!("{} to {}", number(min, 3), number(max, 3)),
-            travel,
-        ]
+        vec![name, format!("{} to {}", number(min, 3), number(max, 3)), travel]
     });
     Section {
         title: "Axes, in machine coordinates".to_owned(),
@@ -245,10 +201,7 @@ fn the_options(machine: &Machine) -> Section {
         vec![option.key.clone(), value]
     });
     Section {
-        title: format!(
-            "What the machine file says of its control ({})",
-            machine.control.dialect
-        ),
+        title: format!("What the machine file says of its control ({})", machine.control.dialect),
         head: vec!["Option", "Value"],
         rows: rows.collect(),
     }
@@ -273,15 +226,10 @@ fn as_markdown(title: &str, sections: &[Section]) -> String {
 
 fn as_html(title: &str, sections: &[Section]) -> String {
     let plain = |text: &str| {
-        text.replace('&', "&amp;")
-            .replace('<', "&lt;")
-            .replace('>', "&gt;")
-            .replace('"', "&quot;")
+        text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
     };
     let row = |cells: &mut dyn Iterator<Item = &str>, kind: &str| {
-        let cells: String = cells
-            .map(|cell| format!("<{kind}>{}</{kind}>", plain(cell)))
-            .collect();
+        let cells: String = cells.map(|cell| format!("<{kind}>{}</{kind}>", plain(cell))).collect();
         format!("<tr>{cells}</tr>\n")
     };
     let title = plain(title);

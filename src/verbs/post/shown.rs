@@ -11,16 +11,10 @@ use crate::job::plan::map::{LimitMap, MapRow};
 use crate::job::plan::pictures;
 use crate::job::plan::posted::{Along, Limited, MARK};
 
-const PICTURES: Role = Role {
-    what: "plan",
-    remedy: "name another folder with --plan-pictures",
-};
+const PICTURES: Role = Role { what: "plan", remedy: "name another folder with --plan-pictures" };
 
 /// What a map is to the files of a run.
-pub const MAP: Role = Role {
-    what: "map",
-    remedy: "name another file with --map",
-};
+pub const MAP: Role = Role { what: "map", remedy: "name another file with --map" };
 
 #[derive(Debug, Args)]
 pub struct ShownArguments {
@@ -51,10 +45,7 @@ impl ShownArguments {
     /// For so many programs.
     pub fn places(&self, split: Option<Split>, count: usize) -> Places {
         let each = |named| parts::each(named, split, count);
-        Places {
-            maps: each(&self.map),
-            folders: each(&self.plan_pictures),
-        }
+        Places { maps: each(&self.map), folders: each(&self.plan_pictures) }
     }
 }
 
@@ -90,10 +81,8 @@ pub fn show<T>(
     }
     let limited = Limited::new(machine).map_err(|fault| *fault)?;
     let gauges = limited.gauges();
-    let mut shown = Shown {
-        map: map.map(MapFile::new),
-        along: draws.then(|| Along::new(&limited, &gauges)),
-    };
+    let mut shown =
+        Shown { map: map.map(MapFile::new), along: draws.then(|| Along::new(&limited, &gauges)) };
     let given = write(Some(&mut shown))?;
     if let Some(map) = shown.map {
         map.finish()?;
@@ -140,11 +129,7 @@ impl<'f> MapFile<'f> {
             true => Rows::Csv(file.write_bytes(MapRow::HEAD.as_bytes())),
             false => Rows::Json(JsonRows::default()),
         };
-        Self {
-            map: LimitMap::default(),
-            file,
-            rows,
-        }
+        Self { map: LimitMap::default(), file, rows }
     }
 
     fn take(&mut self, point: &PlannedPoint<'_>) {
@@ -154,11 +139,7 @@ impl<'f> MapFile<'f> {
     }
 
     fn finish(self) -> Result<(), FileFault> {
-        let Self {
-            map,
-            file,
-            mut rows,
-        } = self;
+        let Self { map, file, mut rows } = self;
         if let Some(row) = map.finish() {
             rows.row(&row, file);
         }

@@ -43,21 +43,14 @@ pub struct MeasuredArguments {
 
     /// Adjusts these numbers of the servos (X.kv,X.velocity_gain) to the log by least squares, axis by axis, and says how
     /// well each is determined; the machine file is not changed.
-    #[arg(
-        long,
-        value_name = "NAMES",
-        value_delimiter = ',',
-        requires = "measured"
-    )]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "measured")]
     fit: Vec<String>,
 }
 
 impl MeasuredArguments {
     /// The log is standard input.
     pub fn is_standard(&self) -> bool {
-        self.measured
-            .as_ref()
-            .is_some_and(|file| file.path().is_none())
+        self.measured.as_ref().is_some_and(|file| file.path().is_none())
     }
 
     /// The log, to be laid over a prediction every `period` seconds.

@@ -41,11 +41,7 @@ impl MeasuredRoom {
             rotary: machine.axes[place].joint.rotary,
         });
         let axes: Vec<Drawn> = axes.collect();
-        Self {
-            period,
-            errors: Envelope::new(CURVES * (axes.len() + 1), period),
-            axes,
-        }
+        Self { period, errors: Envelope::new(CURVES * (axes.len() + 1), period), axes }
     }
 
     /// Takes the next row of the log.
@@ -102,9 +98,7 @@ impl MeasuredRoom {
         // In a narrow share of the time least and largest are close: one line in the middle of them.
         let middle = |run: Vec<[f64; 3]>| {
             let points = run.iter();
-            points
-                .map(|[at, low, high]| [*at, (low + high) / 2.0])
-                .collect()
+            points.map(|[at, low, high]| [*at, (low + high) / 2.0]).collect()
         };
         let bands = |name: &str, runs: Vec<Vec<[f64; 3]>>, grey: &'static str| Series {
             name: name.to_owned(),

@@ -102,15 +102,10 @@ pub struct PredictArguments {
     quiet: bool,
 }
 
-const SET_POINTS: Role = Role {
-    what: "table of set-points",
-    remedy: "name another file with --csv",
-};
+const SET_POINTS: Role =
+    Role { what: "table of set-points", remedy: "name another file with --csv" };
 
-const PICTURES: Role = Role {
-    what: "prediction",
-    remedy: "name another folder with --pictures",
-};
+const PICTURES: Role = Role { what: "prediction", remedy: "name another folder with --pictures" };
 
 /// The file by which a folder of pictures is known, and how it begins.
 const MARK: (&str, &str) = ("prediction.json", "{\n  \"program\": ");
@@ -145,19 +140,8 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
     let mut overlay = arguments.measured.overlay(&machine, period)?;
     let mut targets: Vec<(Role, &PathArg)> = Vec::new();
     targets.extend(arguments.csv.iter().map(|target| (SET_POINTS, target)));
-    targets.extend(
-        arguments
-            .summary
-            .iter()
-            .map(|target| (Role::SUMMARY, target)),
-    );
-    targets.extend(
-        arguments
-            .report
-            .report
-            .iter()
-            .map(|page| (Role::REPORT, page)),
-    );
+    targets.extend(arguments.summary.iter().map(|target| (Role::SUMMARY, target)));
+    targets.extend(arguments.report.report.iter().map(|page| (Role::REPORT, page)));
     let mut texts = AtomicFile::create(&targets)?;
     let page = arguments.report.report.as_ref().and_then(|_| texts.pop());
     let again = nc_program::again(&name, &program)?;
@@ -166,10 +150,7 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
         machine: &machine,
         finder: &finder,
         offsets,
-        limits: Limits {
-            blocks: arguments.most_blocks,
-            ..Limits::default()
-        },
+        limits: Limits { blocks: arguments.most_blocks, ..Limits::default() },
         period: arguments.period,
         lines: None,
     };
@@ -192,10 +173,7 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
                 Some(source) => Some(once_more.cl(source)?),
                 None => None,
             };
-            let besides = Besides {
-                predicted: true,
-                ..Besides::default()
-            };
+            let besides = Besides { predicted: true, ..Besides::default() };
             let rows = MotionRows::new(&machine, read, cl, besides)?;
             Some((page, rows, PredictedLines::new(&machine, period)?))
         }
@@ -232,11 +210,7 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
         }
         predicted
     };
-    let Predicted {
-        mut found,
-        mut findings,
-        chains,
-    } = predicted;
+    let Predicted { mut found, mut findings, chains } = predicted;
     let mut measured_picture = None;
     if let Some(overlay) = &overlay {
         let mut room = MeasuredRoom::new(&machine, overlay.log().clock.period);

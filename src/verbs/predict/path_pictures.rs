@@ -37,16 +37,9 @@ const STEPS: [(&str, f64); LEVELS] = [
 
 /// The error vectors, magnified and drawn outward from the path (Zhang, Chen 2025, fig. 12).
 pub fn vectors(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
-    let mut picture = Picture::new(
-        "Contour error, magnified, drawn from the path",
-        note,
-        cuts,
-        ROOM + LONGEST,
-    );
-    let seen = cuts
-        .iter()
-        .flatten()
-        .map(|spot| picture.view.seen(&spot.error));
+    let mut picture =
+        Picture::new("Contour error, magnified, drawn from the path", note, cuts, ROOM + LONGEST);
+    let seen = cuts.iter().flatten().map(|spot| picture.view.seen(&spot.error));
     let largest = seen.fold(1e-9, f64::max);
     // Rounded down, so that nothing is drawn longer than meant.
     let wanted = LONGEST / (picture.view.scale() * largest);
@@ -62,27 +55,15 @@ pub fn vectors(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
     let mut whiskers = String::new();
     for spot in cuts.iter().flatten() {
         let [from, to] = [spot.tip, far(spot)].map(|point| picture.view.place(&point));
-        let _ = write!(
-            whiskers,
-            "M{:.1} {:.1}L{:.1} {:.1}",
-            from[0], from[1], to[0], to[1]
-        );
+        let _ = write!(whiskers, "M{:.1} {:.1}L{:.1} {:.1}", from[0], from[1], to[0], to[1]);
     }
     picture.view.open_clip(&mut picture.svg);
-    let _ = writeln!(
-        picture.svg,
-        "<path d=\"{whiskers}\" stroke=\"#b8b8b8\" stroke-width=\"0.6\"/>"
-    );
+    let _ =
+        writeln!(picture.svg, "<path d=\"{whiskers}\" stroke=\"#b8b8b8\" stroke-width=\"0.6\"/>");
     for cut in cuts {
-        let path: Vec<[f64; 2]> = cut
-            .iter()
-            .map(|spot| picture.view.place(&spot.tip))
-            .collect();
+        let path: Vec<[f64; 2]> = cut.iter().map(|spot| picture.view.place(&spot.tip)).collect();
         picture.line(&path, "#777777", 1.0);
-        let path: Vec<[f64; 2]> = cut
-            .iter()
-            .map(|spot| picture.view.place(&far(spot)))
-            .collect();
+        let path: Vec<[f64; 2]> = cut.iter().map(|spot| picture.view.place(&far(spot))).collect();
         picture.line(&path, "#000000", 1.3);
     }
     picture.view.close_clip(&mut picture.svg);
@@ -92,11 +73,7 @@ pub fn vectors(found: &Prediction, note: &str, cuts: &[Vec<Spot>]) -> String {
     let foot = TOP + SIZE[1] + TICKS;
     picture.line(&[[LEFT, foot], [LEFT + 38.0, foot]], "#777777", 1.0);
     picture.text([LEFT + 46.0, foot + 4.5], &path_of(found));
-    picture.line(
-        &[[LEFT + 190.0, foot], [LEFT + 228.0, foot]],
-        "#000000",
-        1.3,
-    );
+    picture.line(&[[LEFT + 190.0, foot], [LEFT + 228.0, foot]], "#000000", 1.3);
     let text = format!("error × {}, as it is seen in this plane", number(times, 0));
     picture.text([LEFT + 236.0, foot + 4.5], &text);
     let below = foot + 26.0;

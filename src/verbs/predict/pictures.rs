@@ -70,9 +70,8 @@ impl DrawnAxis {
 
 impl Rooms {
     pub fn new(machine: &Machine, period: f64) -> Self {
-        let axes = axis_words::order(machine)
-            .into_iter()
-            .map(|place| (place, &machine.axes[place]));
+        let axes =
+            axis_words::order(machine).into_iter().map(|place| (place, &machine.axes[place]));
         let axes: Vec<DrawnAxis> = axes
             .filter(|(_, axis)| axis.servo.is_some())
             .map(|(place, axis)| DrawnAxis {
@@ -98,12 +97,10 @@ impl Rooms {
             let point = &sample.point;
             point.commanded_joints[axis.place] - point.actual_joints[axis.place]
         };
-        let lags = [sample.at.cuts, !sample.at.cuts]
-            .into_iter()
-            .flat_map(|now| {
-                let axes = self.axes.iter();
-                axes.map(move |axis| if now { lag(axis) } else { f64::NAN })
-            });
+        let lags = [sample.at.cuts, !sample.at.cuts].into_iter().flat_map(|now| {
+            let axes = self.axes.iter();
+            axes.map(move |axis| if now { lag(axis) } else { f64::NAN })
+        });
         self.lags.take(sample.point.time, lags);
         for (axis, spectrum) in self.axes.iter().zip(&mut self.spectra) {
             match sample.at.cuts {
@@ -156,9 +153,7 @@ impl Rooms {
             let largest = cuts
                 .iter()
                 .flatten()
-                .fold(0.0, |largest: f64, [_, low, high]| {
-                    largest.max(-low).max(*high)
-                });
+                .fold(0.0, |largest: f64, [_, low, high]| largest.max(-low).max(*high));
             if largest > 0.0 {
                 // What the axis lags behind at rapid would leave no room for what counts.
                 for [_, low, high] in rapids.iter_mut().flatten() {
@@ -170,11 +165,7 @@ impl Rooms {
                 logarithmic: false,
                 height: 120.0,
                 series: vec![
-                    bands(
-                        "at rapid, cut off where it is larger than in cuts",
-                        rapids,
-                        "#b0b0b0",
-                    ),
+                    bands("at rapid, cut off where it is larger than in cuts", rapids, "#b0b0b0"),
                     bands("in cuts", cuts, "#000000"),
                 ],
             }
@@ -191,11 +182,7 @@ impl Rooms {
     /// How fast the tip goes in cuts, and how fast it is asked to.
     fn feed(&self, note: &str) -> Panels {
         let series = vec![
-            bands(
-                "true, lowest to highest at each time",
-                self.feeds.runs(0, 1.0),
-                "#8c8c8c",
-            ),
+            bands("true, lowest to highest at each time", self.feeds.runs(0, 1.0), "#8c8c8c"),
             bands("programmed", self.feeds.runs(1, 1.0), "#000000"),
         ];
         Panels {
@@ -228,11 +215,7 @@ impl Rooms {
         let mut panels = vec![panel(
             "tip, µm",
             vec![
-                bands(
-                    "lowest to highest at each place",
-                    self.contour.runs(0, MICRO),
-                    "#6b6b6b",
-                ),
+                bands("lowest to highest at each place", self.contour.runs(0, MICRO), "#6b6b6b"),
                 Series::line("95 % of the set-points stay below", most(tip.p95), DASHED),
                 Series::line("root of the mean square", most(tip.rms), DOTTED),
             ],
@@ -291,8 +274,5 @@ pub fn file_name(path: &str) -> &str {
 }
 
 fn bands(name: &str, runs: Vec<Vec<[f64; 3]>>, grey: &'static str) -> Series {
-    Series {
-        name: name.to_owned(),
-        draw: Draw::Bands(runs, grey),
-    }
+    Series { name: name.to_owned(), draw: Draw::Bands(runs, grey) }
 }

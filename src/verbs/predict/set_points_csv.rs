@@ -34,12 +34,7 @@ impl<'a, 'f> SetPointsCsv<'a, 'f> {
         text.push_str(
             ",tip_x,tip_y,tip_z,tip_x_actual,tip_y_actual,tip_z_actual,error_x,error_y,error_z,error,axis_error,feed,feed_programmed\n",
         );
-        Self {
-            machine,
-            file,
-            order,
-            text,
-        }
+        Self { machine, file, order, text }
     }
 
     /// Takes the next set-point.
@@ -47,16 +42,9 @@ impl<'a, 'f> SetPointsCsv<'a, 'f> {
         let text = &mut self.text;
         let point = &sample.point;
         fixed(text, point.time, 6);
-        let cl_line = sample
-            .cl_line()
-            .map_or_else(String::new, |line| line.to_string());
+        let cl_line = sample.cl_line().map_or_else(String::new, |line| line.to_string());
         // Writing to a String cannot fail.
-        let _ = write!(
-            text,
-            ",{},{cl_line},{}",
-            sample.at.line,
-            u8::from(sample.at.cuts)
-        );
+        let _ = write!(text, ",{},{cl_line},{}", sample.at.line, u8::from(sample.at.cuts));
         let mut column = |value: f64, decimals: u8| {
             text.push(',');
             fixed(text, value, decimals);

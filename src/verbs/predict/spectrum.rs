@@ -43,9 +43,7 @@ impl Spectrum {
             squares: vec![0.0; window / 2],
             windows: 0,
             tables: Tables {
-                hann: (0..window)
-                    .map(|place| 0.5 - 0.5 * libm::cos(angle(place)))
-                    .collect(),
+                hann: (0..window).map(|place| 0.5 - 0.5 * libm::cos(angle(place))).collect(),
                 turns: fourier::turns(window),
             },
         }
@@ -115,10 +113,7 @@ mod tests {
             spectrum.take(0.5 + 0.003 * libm::sin(TAU * frequency * time + 0.4));
         }
         let amplitudes = spectrum.amplitudes(period, 1e3);
-        let peak = amplitudes
-            .iter()
-            .max_by(|a, b| a[1].total_cmp(&b[1]))
-            .unwrap();
+        let peak = amplitudes.iter().max_by(|a, b| a[1].total_cmp(&b[1])).unwrap();
         assert!((peak[0] - frequency).abs() < 1e-9, "{peak:?}");
         assert!((peak[1] - 3.0).abs() < 1e-6, "{peak:?}");
     }

@@ -33,13 +33,7 @@ pub struct Trail {
 
 impl Trail {
     pub fn new() -> Self {
-        Self {
-            shares: Vec::new(),
-            width: 1e-3,
-            way: 0.0,
-            cut: 0,
-            last: None,
-        }
+        Self { shares: Vec::new(), width: 1e-3, way: 0.0, cut: 0, last: None }
     }
 
     /// Takes the next set-point.
@@ -58,9 +52,8 @@ impl Trail {
         let mut place = (self.way / self.width) as usize;
         while place >= MOST_SPOTS {
             let pairs = self.shares.chunks(2);
-            self.shares = pairs
-                .map(|pair| pair.iter().fold(None, |all, spot| worse(all, *spot)))
-                .collect();
+            self.shares =
+                pairs.map(|pair| pair.iter().fold(None, |all, spot| worse(all, *spot))).collect();
             self.width *= 2.0;
             place = (self.way / self.width) as usize;
         }

@@ -31,18 +31,8 @@ impl BeyondTravel {
             return;
         };
         let axis = message.split(' ').next().unwrap_or_default().to_owned();
-        let beyond = Beyond {
-            axis,
-            message,
-            by,
-            line: motion.line,
-            count: 1,
-        };
-        match self
-            .found
-            .iter_mut()
-            .find(|found| found.axis == beyond.axis)
-        {
+        let beyond = Beyond { axis, message, by, line: motion.line, count: 1 };
+        match self.found.iter_mut().find(|found| found.axis == beyond.axis) {
             None => self.found.push(beyond),
             Some(found) => {
                 let count = found.count + 1;

@@ -80,10 +80,7 @@ pub struct ReadArguments {
 /// Of the machine's tolerance so much is used by chords of curves that no record of a CL file has.
 const CHORDS: f64 = 0.1;
 
-const MOTIONS: Role = Role {
-    what: "table of motions",
-    remedy: "name another file with --csv",
-};
+const MOTIONS: Role = Role { what: "table of motions", remedy: "name another file with --csv" };
 
 /// Does as the arguments say.
 pub fn run(arguments: &ReadArguments) -> Result<(), Failure> {
@@ -95,9 +92,7 @@ pub fn run(arguments: &ReadArguments) -> Result<(), Failure> {
     targets.extend(arguments.cl.iter().map(|target| (Role::CL, target)));
     let mut files = AtomicFile::create(&targets)?;
     let (tables, cl_files) = files.split_at_mut(usize::from(arguments.csv.is_some()));
-    let mut csv = tables
-        .first_mut()
-        .map(|file| MotionsCsv::new(&control.machine, file));
+    let mut csv = tables.first_mut().map(|file| MotionsCsv::new(&control.machine, file));
     let mut survey = Survey::new(&control.machine);
     let mut refused: Vec<Diagnostic> = Vec::new();
     let mut beyond = BeyondTravel::default();
@@ -149,11 +144,7 @@ pub fn run(arguments: &ReadArguments) -> Result<(), Failure> {
     } else {
         terminal::print(&text);
     }
-    if refused.is_empty() {
-        Ok(())
-    } else {
-        Err(refused.into())
-    }
+    if refused.is_empty() { Ok(()) } else { Err(refused.into()) }
 }
 
 /// Runs the program once more, and writes its path.
@@ -179,13 +170,10 @@ fn write_cl(
     let [tip, axis] = [accuracy.tolerance, accuracy.axis_tolerance].map(|mm| mm * CHORDS);
     let mut course = DoneCourse::new(program, Chords::within(tip, axis));
     let part = arguments.input.stem().unwrap_or_default();
-    let tools = Tools {
-        length: arguments.program.tool_length,
-        edges: control.lexicon.tools_have_edges(),
-    };
-    let written = nc_to_cl::write(&mut course, &part, tip, tools, &mut |text| {
-        file.write_bytes(text)
-    })?;
+    let tools =
+        Tools { length: arguments.program.tool_length, edges: control.lexicon.tools_have_edges() };
+    let written =
+        nc_to_cl::write(&mut course, &part, tip, tools, &mut |text| file.write_bytes(text))?;
     terminal::findings(&written.notes);
     terminal::findings(nc_to_cl::fed(course.program().left()).as_slice());
     refused.extend(written.faults);

@@ -44,23 +44,14 @@ impl<'a, 'f> MotionsCsv<'a, 'f> {
             let _ = write!(text, ",{name}");
         }
         text.push_str(",tip_x,tip_y,tip_z,axis_i,axis_j,axis_k,feed,minutes,tool,spindle,tcp\n");
-        Self {
-            base: machine,
-            machine,
-            file,
-            columns,
-            text,
-        }
+        Self { base: machine, machine, file, columns, text }
     }
 
     /// Takes what was done.
     pub fn take(&mut self, done: &Done) -> Result<(), FileFault> {
         match done {
             Done::Motion(motion) => self.row(motion),
-            Done::Told {
-                told: Told::Head(name),
-                ..
-            } => {
+            Done::Told { told: Told::Head(name), .. } => {
                 self.machine = self.base.head(name).map_or(self.base, |head| &head.machine);
             }
             _ => {}
@@ -74,9 +65,7 @@ impl<'a, 'f> MotionsCsv<'a, 'f> {
 
     fn row(&mut self, motion: &Motion) {
         let text = &mut self.text;
-        let block = motion
-            .number
-            .map_or_else(String::new, |number| number.to_string());
+        let block = motion.number.map_or_else(String::new, |number| number.to_string());
         let kind = match motion.kind {
             MotionKind::Rapid => "rapid",
             MotionKind::Feed => "feed",
@@ -95,34 +84,22 @@ impl<'a, 'f> MotionsCsv<'a, 'f> {
             text.push(',');
             let place = self.machine.axes.iter().position(|axis| axis.name == *name);
             if let Some(place) = place {
-                fixed(
-                    text,
-                    self.machine.axes[place].reading(motion.to.joints[place]),
-                    6,
-                );
+                fixed(text, self.machine.axes[place].reading(motion.to.joints[place]), 6);
             }
         }
         let pose = &motion.to.pose;
-        for (value, decimals) in pose
-            .tip
-            .iter()
-            .map(|value| (value, 6))
-            .chain(pose.axis.iter().map(|value| (value, 9)))
+        for (value, decimals) in
+            pose.tip.iter().map(|value| (value, 6)).chain(pose.axis.iter().map(|value| (value, 9)))
         {
             text.push(',');
             fixed(text, *value, decimals);
         }
         let (feed, minutes) = (motion.feed, motion.minutes);
-        let tool = motion
-            .state
-            .tool
-            .map_or_else(String::new, |tool| tool.to_string());
+        let tool = motion.state.tool.map_or_else(String::new, |tool| tool.to_string());
         let spindle = match motion.state.spindle {
             Spindle::Clockwise(speed) => speed,
             Spindle::CounterClockwise(speed) => -speed,
-            Spindle::Surface {
-                speed, clockwise, ..
-            } => {
+            Spindle::Surface { speed, clockwise, .. } => {
                 if clockwise {
                     speed
                 } else {

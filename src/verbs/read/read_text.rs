@@ -15,10 +15,7 @@ const LISTED: usize = 40;
 pub fn text(machine: &Machine, survey: &Survey<'_>, report: &ReadReport, refused: usize) -> String {
     let mut rows: Vec<[String; 2]> = Vec::new();
     let mut row = |name: &str, value: String| rows.push([name.to_owned(), value]);
-    row(
-        "machine",
-        format!("{} ({})", machine.name, machine.control.dialect),
-    );
+    row("machine", format!("{} ({})", machine.name, machine.control.dialect));
     if report.header > 0 {
         row(
             "in front of the program",
@@ -39,27 +36,18 @@ pub fn text(machine: &Machine, survey: &Survey<'_>, report: &ReadReport, refused
         row("in machine coordinates", survey.in_machine.to_string());
     }
     if survey.kept > 0 {
-        row(
-            "the control keeps the tip",
-            format!("in {} motions", survey.kept),
-        );
+        row("the control keeps the tip", format!("in {} motions", survey.kept));
     }
     let [rapid, feed] = survey.minutes;
     row("time at the stated feeds", clock(feed * 60.0));
     if rapid > 0.0 {
-        row(
-            "time of rapids",
-            format!("{}, each axis at its max_feed", clock(rapid * 60.0)),
-        );
+        row("time of rapids", format!("{}, each axis at its max_feed", clock(rapid * 60.0)));
     }
     if survey.waits > 0.0 {
         row("waits", clock(survey.waits));
     }
     if survey.feed > 0.0 {
-        row(
-            "largest feed of the tip",
-            format!("{} mm/min", number(survey.feed, 0)),
-        );
+        row("largest feed of the tip", format!("{} mm/min", number(survey.feed, 0)));
     }
     let mut text = table(&rows, 2);
     axes(machine, survey, &mut text);
@@ -72,12 +60,8 @@ fn axes(machine: &Machine, survey: &Survey<'_>, text: &mut String) {
     if survey.axes.is_empty() {
         return;
     }
-    let mut rows = vec![[
-        "".to_owned(),
-        "least".to_owned(),
-        "most".to_owned(),
-        "travel".to_owned(),
-    ]];
+    let mut rows =
+        vec![["".to_owned(), "least".to_owned(), "most".to_owned(), "travel".to_owned()]];
     for (name, [least, most]) in &survey.axes {
         let axis = machine.with_axis(name).map(|(_, axis)| axis);
         let unit = axis.map_or("mm", Axis::unit_name);
@@ -113,9 +97,7 @@ fn tools(survey: &Survey<'_>, text: &mut String) {
     let mut rows = vec![head.map(str::to_owned)];
     for tool in &survey.tools {
         rows.push([
-            tool.name
-                .clone()
-                .unwrap_or_else(|| "none changed".to_owned()),
+            tool.name.clone().unwrap_or_else(|| "none changed".to_owned()),
             number(tool.length, 3),
             tool.cuts.to_string(),
             clock(tool.minutes * 60.0),
@@ -129,11 +111,7 @@ fn words(report: &ReadReport, text: &mut String) {
     if report.unknown.is_empty() {
         return;
     }
-    let head = [
-        "words not known, that move nothing",
-        "times",
-        "first in line",
-    ];
+    let head = ["words not known, that move nothing", "times", "first in line"];
     let mut rows = vec![head.map(str::to_owned)];
     for (word, times, line) in report.unknown.iter().take(LISTED) {
         rows.push([word.clone(), times.to_string(), line.to_string()]);

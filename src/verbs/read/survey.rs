@@ -64,15 +64,10 @@ impl<'a> Survey<'a> {
             Done::Motion(motion) => self.motion(motion),
             Done::Told { told, .. } => match told {
                 Told::ToolChange { number, name } => {
-                    let name = name
-                        .clone()
-                        .or_else(|| number.map(|number| number.to_string()));
+                    let name = name.clone().or_else(|| number.map(|number| number.to_string()));
                     self.tool(name);
                 }
-                Told::Dwell {
-                    time,
-                    revolutions: false,
-                } => self.waits += time,
+                Told::Dwell { time, revolutions: false } => self.waits += time,
                 Told::Head(name) => {
                     self.machine = self.base.head(name).map_or(self.base, |head| &head.machine);
                 }
@@ -83,12 +78,7 @@ impl<'a> Survey<'a> {
     }
 
     fn tool(&mut self, name: Option<String>) {
-        self.tools.push(ToolUse {
-            name,
-            length: 0.0,
-            cuts: 0,
-            minutes: 0.0,
-        });
+        self.tools.push(ToolUse { name, length: 0.0, cuts: 0, minutes: 0.0 });
     }
 
     fn motion(&mut self, motion: &Motion) {

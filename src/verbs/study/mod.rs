@@ -26,10 +26,7 @@ use crate::job::{self, DryRun, plugin_finder};
 use crate::terminal;
 use sweep::{Sweep, Swept};
 
-const STUDY: Role = Role {
-    what: "study",
-    remedy: "name another folder with -o",
-};
+const STUDY: Role = Role { what: "study", remedy: "name another folder with -o" };
 
 /// Moves before and behind the one that is looked at, in the pictures that show several.
 const AROUND: usize = 4;
@@ -134,11 +131,7 @@ pub fn run(arguments: &StudyArguments) -> Result<(), Failure> {
     let own = OwnFolder::open(&folder, STUDY, mark, &names).map_err(|fault| *fault)?;
     let (names, mut models) = models(&dry_run, &machine)?;
     let (surveyed, findings) = survey(&dry_run, &machine, &names, &mut models)?;
-    let Surveyed {
-        rows,
-        pieces,
-        spreads,
-    } = surveyed;
+    let Surveyed { rows, pieces, spreads } = surveyed;
     let focus = focus(arguments, &rows)?;
     let around = focus.saturating_sub(AROUND)..(focus + AROUND + 1).min(rows.len());
     let study = Study {
@@ -194,10 +187,8 @@ fn machine(dry_run: &DryRun<'_>, more: &[Setting]) -> Result<Machine, Failure> {
 fn models(dry_run: &DryRun<'_>, machine: &Machine) -> Result<(Vec<String>, Models), Failure> {
     let own = &machine.accuracy.model;
     // All that are part of the command; the machine's own comes to them.
-    let mut names: Vec<String> = plugin_finder::built_in(true)
-        .into_iter()
-        .map(str::to_owned)
-        .collect();
+    let mut names: Vec<String> =
+        plugin_finder::built_in(true).into_iter().map(str::to_owned).collect();
     if !names.contains(own) {
         names.push(own.clone());
     }
@@ -209,10 +200,7 @@ fn models(dry_run: &DryRun<'_>, machine: &Machine) -> Result<(Vec<String>, Model
     };
     Ok((
         names.clone(),
-        Models {
-            opened: names.iter().map(open).collect::<Result<_, _>>()?,
-            own: open(own)?,
-        },
+        Models { opened: names.iter().map(open).collect::<Result<_, _>>()?, own: open(own)? },
     ))
 }
 
@@ -244,18 +232,10 @@ fn survey(
     let rows = survey.rows;
     let mut spreads = Vec::new();
     let mut spread = |name: String, mut values: Vec<f64>, points: Option<u64>| {
-        spreads.push(Spread {
-            name,
-            distribution: Distribution::of(&mut values),
-            points,
-        });
+        spreads.push(Spread { name, distribution: Distribution::of(&mut values), points });
     };
     let of_rows = |value: &dyn Fn(&Row) -> f64| rows.iter().map(value).collect::<Vec<f64>>();
-    spread(
-        "uncompensated".to_owned(),
-        of_rows(&|row| row.raw.size),
-        None,
-    );
+    spread("uncompensated".to_owned(), of_rows(&|row| row.raw.size), None);
     for (index, name) in names.iter().enumerate() {
         let left = of_rows(&|row| row.models[index].residual);
         spread(format!("left by {name}"), left, None);
@@ -271,14 +251,7 @@ fn survey(
         let name = placement.name().to_owned();
         spread(name, pieces.clone(), Some(points));
     }
-    Ok((
-        Surveyed {
-            rows,
-            pieces: survey.pieces,
-            spreads,
-        },
-        findings,
-    ))
+    Ok((Surveyed { rows, pieces: survey.pieces, spreads }, findings))
 }
 
 /// Which move is looked at.
@@ -325,11 +298,7 @@ fn programs(dry_run: &DryRun<'_>, models: &[String]) -> Result<Vec<Program>, Fai
                 .next()
                 .map_or_else(|| "refused".to_owned(), |finding| finding.message)),
         };
-        programs.push(Program {
-            name,
-            reduce,
-            report,
-        });
+        programs.push(Program { name, reduce, report });
         Ok::<(), Failure>(())
     };
     for placement in Survey::PLACEMENTS {
@@ -343,10 +312,7 @@ fn programs(dry_run: &DryRun<'_>, models: &[String]) -> Result<Vec<Program>, Fai
         }
     }
     for model in models {
-        let settings = [
-            Setting::Method(Method::Compensate),
-            Setting::Model(model.clone()),
-        ];
+        let settings = [Setting::Method(Method::Compensate), Setting::Model(model.clone())];
         post(format!("compensate, {model}"), false, &settings)?;
     }
     Ok(programs)

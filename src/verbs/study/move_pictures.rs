@@ -51,21 +51,12 @@ pub fn fits(kept: &Kept, study: &Study, models: &mut Models) -> Vec<Fit> {
 
 /// Deviation along one move and the curves that the models fit (parabolic fig. 5; harmonic fig. 3.2).
 pub fn along(study: &Study, kept: &Kept, fits: &[Fit]) -> Chart {
-    let mut series = vec![Series::line(
-        "deviation",
-        sampled(|t| kept.deviation(t).norm()),
-        GREY,
-    )];
+    let mut series = vec![Series::line("deviation", sampled(|t| kept.deviation(t).norm()), GREY)];
     series.extend(tolerance(study, [0.0, 1.0], kept.peak().size * MICRO));
     for (fit, look) in fits.iter().zip(&LOOKS[1..]) {
-        let explained = fit
-            .explained
-            .map_or(String::new(), |share| format!(", R² {}", digits(share)));
-        series.push(Series::line(
-            format!("{}{explained}", fit.name),
-            fit.curve.clone(),
-            *look,
-        ));
+        let explained =
+            fit.explained.map_or(String::new(), |share| format!(", R² {}", digits(share)));
+        series.push(Series::line(format!("{}{explained}", fit.name), fit.curve.clone(), *look));
     }
     Chart {
         title: "Deviation along one move and the models' curves".to_owned(),
@@ -83,11 +74,7 @@ pub fn left(study: &Study, kept: &Kept, fits: &[Fit]) -> Chart {
     let series = fits.iter().zip(&LOOKS[1..]).map(|(fit, look)| {
         let most = fit.left.iter().map(|point| point[1]).fold(0.0, f64::max);
         let share = if peak > 0.0 { 100.0 * most / peak } else { 0.0 };
-        Series::line(
-            format!("{}, {share:.2} % of the peak", fit.name),
-            fit.left.clone(),
-            *look,
-        )
+        Series::line(format!("{}, {share:.2} % of the peak", fit.name), fit.left.clone(), *look)
     });
     Chart {
         title: "What is left of the deviation when a model's curve is taken away".to_owned(),
@@ -107,9 +94,7 @@ pub fn neighbours(study: &Study, models: &mut Models) -> Chart {
         let number = kept.number as f64 + 0.5;
         let place = |stretch: &Stretch| -> Vec<[f64; 2]> {
             let samples = stretch.samples.iter();
-            samples
-                .map(|(t, strays)| [number + t, strays.norm() * MICRO])
-                .collect()
+            samples.map(|(t, strays)| [number + t, strays.norm() * MICRO]).collect()
         };
         before.extend(place(&kept.raw(FINE / 3)));
         let pieces = kept.placed(&study.machine, placement, &mut models.own, 24);
@@ -147,12 +132,7 @@ pub fn neighbours(study: &Study, models: &mut Models) -> Chart {
 pub fn edge(study: &Study, kept: &Kept) -> Option<Chart> {
     let machine: &Machine = &study.machine;
     let [from, to] = kept.joints();
-    let rotary = |joint: usize| {
-        machine
-            .axes
-            .get(joint)
-            .is_some_and(|axis| axis.joint.rotary)
-    };
+    let rotary = |joint: usize| machine.axes.get(joint).is_some_and(|axis| axis.joint.rotary);
     let turn = study.rows[study.focus].turn;
     if turn < 1e-9 {
         return None;
@@ -160,11 +140,7 @@ pub fn edge(study: &Study, kept: &Kept) -> Option<Chart> {
     let most = (2.0 * turn).max(5f64.to_radians());
     let rim = Rim::new(kept.chain(), machine.tool_axis);
     let share = |joint: usize| {
-        if rotary(joint) {
-            (to[joint] - from[joint]) / turn
-        } else {
-            0.0
-        }
+        if rotary(joint) { (to[joint] - from[joint]) / turn } else { 0.0 }
     };
     // Axis values so far from the middle of the move, as a turn of all rotary axes together.
     let at = |away: f64| {

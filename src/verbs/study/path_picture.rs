@@ -56,11 +56,7 @@ pub fn chart(study: &Study, middle: &Kept, models: &mut Models) -> Option<Chart>
         series: vec![
             Series::line("ideal", ideal, GREY),
             Series::line("uncompensated", actual, LOOKS[1]),
-            Series::line(
-                format!("compensated by {name} (eq. 3.4)"),
-                compensated,
-                LOOKS[0],
-            ),
+            Series::line(format!("compensated by {name} (eq. 3.4)"), compensated, LOOKS[0]),
             Series::dots("CL points", points, Marker::Diamond),
         ],
     })

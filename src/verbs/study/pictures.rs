@@ -39,10 +39,7 @@ pub fn files(study: &Study, models: &mut Models) -> Vec<File> {
         let fits = move_pictures::fits(kept, study, models);
         files.push(("move.svg", move_pictures::along(study, kept, &fits).svg()));
         files.push(("left.svg", move_pictures::left(study, kept, &fits).svg()));
-        files.push((
-            "neighbours.svg",
-            move_pictures::neighbours(study, models).svg(),
-        ));
+        files.push(("neighbours.svg", move_pictures::neighbours(study, models).svg()));
         if let Some(chart) = path_picture::chart(study, kept, models) {
             files.push(("path.svg", chart.svg()));
         }
@@ -71,11 +68,7 @@ fn before_after(study: &Study) -> Chart {
             })
             .collect()
     };
-    let mut series = vec![Series::line(
-        "uncompensated",
-        largest(&|row| rows[row].raw.size),
-        GREY,
-    )];
+    let mut series = vec![Series::line("uncompensated", largest(&|row| rows[row].raw.size), GREY)];
     let most = rows.iter().map(|row| row.raw.size).fold(0.0, f64::max);
     let ends = [1.0, rows.len() as f64];
     series.extend(tolerance(study, ends, most * MICRO));
@@ -90,11 +83,7 @@ fn before_after(study: &Study) -> Chart {
     for (index, name) in study.models.iter().enumerate().take(2) {
         if let Some(look) = looks.next() {
             let left = |row: usize| rows[row].models[index].residual;
-            series.push(Series::line(
-                format!("left by {name}"),
-                largest(&left),
-                look,
-            ));
+            series.push(Series::line(format!("left by {name}"), largest(&left), look));
         }
     }
     Chart {
@@ -171,10 +160,7 @@ fn swept(study: &Study) -> Chart {
         None => ("", [].as_slice()),
     };
     let of = |value: &dyn Fn(&super::Swept) -> f64| -> Vec<[f64; 2]> {
-        swept
-            .iter()
-            .map(|step| [step.value, value(step) * MICRO])
-            .collect()
+        swept.iter().map(|step| [step.value, value(step) * MICRO]).collect()
     };
     Chart {
         title: format!("Deviation over {name}"),
@@ -183,16 +169,8 @@ fn swept(study: &Study) -> Chart {
         y: "deviation from the CL path, µm".to_owned(),
         logarithmic: false,
         series: vec![
-            Series::line(
-                "largest of all moves",
-                of(&|step| step.distribution.max),
-                LOOKS[0],
-            ),
-            Series::line(
-                "mean of all moves",
-                of(&|step| step.distribution.mean),
-                DASHED,
-            ),
+            Series::line("largest of all moves", of(&|step| step.distribution.max), LOOKS[0]),
+            Series::line("mean of all moves", of(&|step| step.distribution.mean), DASHED),
             Series::line(
                 format!("move {}", study.focus + 1),
                 of(&|step| step.kept.as_ref().map_or(0.0, |kept| kept.peak().size)),

@@ -31,14 +31,9 @@ pub fn files(study: &Study) -> Vec<File> {
 fn moves(study: &Study) -> String {
     let mut text = BEGIN.to_owned();
     for name in &study.models {
-        for column in [
-            "peak_um",
-            "peak_at",
-            "left_um",
-            "r2",
-            "compensated_um",
-            "compensated_points",
-        ] {
+        for column in
+            ["peak_um", "peak_at", "left_um", "r2", "compensated_um", "compensated_points"]
+        {
             let _ = write!(text, ",{name}_{column}");
         }
     }
@@ -62,9 +57,7 @@ fn one_move(text: &mut String, number: usize, row: &Row) {
         row.turn.to_degrees(),
         row.raw.size * MICRO,
         row.raw.at,
-        row.edge
-            .map(|size| format!("{:.6}", size * MICRO))
-            .unwrap_or_default(),
+        row.edge.map(|size| format!("{:.6}", size * MICRO)).unwrap_or_default(),
         row.axis.to_degrees()
     );
     for model in &row.models {
@@ -125,12 +118,7 @@ fn summary(study: &Study) -> String {
             let _ = write!(text, ",{:.6}", value * MICRO);
         }
         let points = spread.points.map(|points| points.to_string());
-        let _ = writeln!(
-            text,
-            ",{:.6},{}",
-            distribution.max * MICRO,
-            points.unwrap_or_default()
-        );
+        let _ = writeln!(text, ",{:.6},{}", distribution.max * MICRO, points.unwrap_or_default());
     }
     text
 }

@@ -38,11 +38,7 @@ fn head(text: &mut String, study: &Study) {
         machine.name,
         count_of_moves(study.rows.len()),
         machine.accuracy.tolerance * MICRO,
-        if study.exact {
-            "not rounded"
-        } else {
-            "as the dialect rounds them"
-        }
+        if study.exact { "not rounded" } else { "as the dialect rounds them" }
     );
     let axes = study.rows.iter().map(|row| row.axis.to_degrees());
     let _ = writeln!(
@@ -108,9 +104,7 @@ fn fits(text: &mut String, study: &Study) {
     for (index, name) in study.models.iter().enumerate() {
         let model = &row.models[index];
         let strays = study.rows.iter().filter(|row| row.raw.size >= LEAST);
-        let shares: Vec<f64> = strays
-            .filter_map(|row| row.models[index].explained)
-            .collect();
+        let shares: Vec<f64> = strays.filter_map(|row| row.models[index].explained).collect();
         let none = "-".to_owned();
         let (mean, least) = if shares.is_empty() {
             (none.clone(), none.clone())
@@ -135,11 +129,7 @@ fn fits(text: &mut String, study: &Study) {
 }
 
 fn percent(part: f64, whole: f64) -> String {
-    if whole > 0.0 {
-        format!("{:.2}", 100.0 * part / whole)
-    } else {
-        "-".to_owned()
-    }
+    if whole > 0.0 { format!("{:.2}", 100.0 * part / whole) } else { "-".to_owned() }
 }
 
 /// The moves that stray farthest, and the one that is looked at.
@@ -183,12 +173,7 @@ fn one_move(text: &mut String, number: usize, row: &Row) {
         row.raw.at
     );
     for model in &row.models {
-        let _ = write!(
-            text,
-            " | {:>9.3} {:>7.3}",
-            model.peak.size * MICRO,
-            model.residual * MICRO
-        );
+        let _ = write!(text, " | {:>9.3} {:>7.3}", model.peak.size * MICRO, model.residual * MICRO);
     }
     text.push_str(" |");
     for placed in &row.placed {

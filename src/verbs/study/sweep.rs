@@ -33,10 +33,8 @@ pub struct Swept {
 pub fn parse(text: &str) -> Result<Sweep, String> {
     let form = || "it has the form NAME=FROM:TO:STEP, as in Lm=100:400:50".to_owned();
     let (name, range) = text.split_once('=').ok_or_else(form)?;
-    let numbers: Vec<f64> = range
-        .split(':')
-        .map(|number| finite(number.trim()))
-        .collect::<Result<_, _>>()?;
+    let numbers: Vec<f64> =
+        range.split(':').map(|number| finite(number.trim())).collect::<Result<_, _>>()?;
     let [from, to, step] = numbers[..] else {
         return Err(form());
     };
@@ -52,9 +50,7 @@ pub fn parse(text: &str) -> Result<Sweep, String> {
     }
     Ok(Sweep {
         name: name.trim().to_owned(),
-        values: (0..count as u32)
-            .map(|index| short(from + f64::from(index) * step))
-            .collect(),
+        values: (0..count as u32).map(|index| short(from + f64::from(index) * step)).collect(),
     })
 }
 
@@ -67,20 +63,15 @@ fn short(value: f64) -> f64 {
 pub fn run(dry_run: &DryRun<'_>, sweep: &Sweep, number: usize) -> Result<Vec<Swept>, Failure> {
     let mut swept = Vec::new();
     for value in &sweep.values {
-        let setting = Setting::Number {
-            name: sweep.name.clone(),
-            value: *value,
-        };
+        let setting = Setting::Number { name: sweep.name.clone(), value: *value };
         let machine = super::machine(dry_run, &[setting])?;
         let mut keeper = Keeper::new(number..number + 1);
-        dry_run
-            .pass(&machine, Some(&mut keeper))
-            .map_err(|failure| {
-                let mut findings = failure.findings();
-                let message = format!("this is with --sweep {} = {value}", sweep.name);
-                findings.push(Diagnostic::error("study", message));
-                findings
-            })?;
+        dry_run.pass(&machine, Some(&mut keeper)).map_err(|failure| {
+            let mut findings = failure.findings();
+            let message = format!("this is with --sweep {} = {value}", sweep.name);
+            findings.push(Diagnostic::error("study", message));
+            findings
+        })?;
         swept.push(Swept {
             value: *value,
             distribution: Distribution::of(&mut keeper.peaks),
@@ -98,10 +89,7 @@ mod tests {
     fn a_sweep_has_both_ends() {
         let sweep = parse("Lm=100:400:50").unwrap();
         assert_eq!(sweep.name, "Lm");
-        assert_eq!(
-            sweep.values,
-            [100.0, 150.0, 200.0, 250.0, 300.0, 350.0, 400.0]
-        );
+        assert_eq!(sweep.values, [100.0, 150.0, 200.0, 250.0, 300.0, 350.0, 400.0]);
         let tenths = parse("a.b=0:1:0.1").unwrap().values;
         assert_eq!(tenths.len(), 11);
         assert_eq!(tenths[3], 0.3);

@@ -103,10 +103,7 @@ enum Ignored {
     WorkOffset,
 }
 
-const MAP: Role = Role {
-    what: "map",
-    remedy: "name another file with --map",
-};
+const MAP: Role = Role { what: "map", remedy: "name another file with --map" };
 
 /// Verifies as the arguments say.
 pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
@@ -123,19 +120,8 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     let mut source = ClSource::new(arguments.job.input(), true)?;
     let mut targets: Vec<(Role, &PathArg)> = Vec::new();
     targets.extend(arguments.map.iter().map(|map| (MAP, map)));
-    targets.extend(
-        arguments
-            .summary
-            .iter()
-            .map(|summary| (Role::SUMMARY, summary)),
-    );
-    targets.extend(
-        arguments
-            .report
-            .report
-            .iter()
-            .map(|page| (Role::REPORT, page)),
-    );
+    targets.extend(arguments.summary.iter().map(|summary| (Role::SUMMARY, summary)));
+    targets.extend(arguments.report.report.iter().map(|page| (Role::REPORT, page)));
     let mut texts = AtomicFile::create(&targets)?;
     let page = arguments.report.report.as_ref().and_then(|_| texts.pop());
     let again = nc_program::again(&name, &program)?;
@@ -144,10 +130,7 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
         machine: &machine,
         finder: &finder,
         offsets,
-        limits: Limits {
-            blocks: arguments.most_blocks,
-            ..Limits::default()
-        },
+        limits: Limits { blocks: arguments.most_blocks, ..Limits::default() },
         tolerances: [None, arguments.axis_tolerance.map(f64::to_radians)],
         planned: arguments.planned,
         solutions: arguments.map.is_some(),
@@ -168,10 +151,7 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
             let read = nc_program::reopened(&name, &program)?;
             let program = once_more.program(Some(&source), &name, read)?;
             let cl = once_more.cl(&source)?;
-            let besides = Besides {
-                deviations: true,
-                ..Besides::default()
-            };
+            let besides = Besides { deviations: true, ..Besides::default() };
             Some(MotionRows::new(&machine, program, Some(cl), besides)?)
         }
         None => None,
@@ -205,12 +185,7 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
             tolerances: reading.tolerances,
         };
         let text = nc_program::again(&name, &again)?;
-        shown.write(
-            rows,
-            (&mut source, &name, text),
-            arguments.report.most(),
-            &mut page,
-        )?;
+        shown.write(rows, (&mut source, &name, text), arguments.report.most(), &mut page)?;
         texts.push(page);
     }
     let taken = texts.iter().any(AtomicFile::is_standard);

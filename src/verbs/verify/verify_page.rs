@@ -46,12 +46,8 @@ impl Shown<'_> {
     ) -> Result<(), Failure> {
         let [nc, cl] = self.names.map(report::name_of);
         let title = format!("{nc} against {cl}");
-        let names = Names {
-            nc: Some(nc),
-            cl: Some(cl),
-            nc2: None,
-            machine: self.machine.name.clone(),
-        };
+        let names =
+            Names { nc: Some(nc), cl: Some(cl), nc2: None, machine: self.machine.name.clone() };
         let mut meta = report::about("verify", self.machine, title, names);
         let [tip, axis] = self.tolerances;
         if let Some(tip) = tip {
@@ -82,10 +78,7 @@ impl Shown<'_> {
             fact("cuts", found.cuts.to_string()),
             fact("rapids", found.rapids.to_string()),
             fact("holes", found.holes.to_string()),
-            fact(
-                "times a cut is left and gone on with",
-                found.excursions.to_string(),
-            ),
+            fact("times a cut is left and gone on with", found.excursions.to_string()),
             fact("rapids made at feed", found.rapids_at_feed.to_string()),
             fact("time", clock(found.time_s)),
         ];
@@ -119,14 +112,8 @@ impl Shown<'_> {
         )];
         if faults > 0 {
             let more = if found.gave_up { " and more" } else { "" };
-            sentences.push(format!(
-                "{faults}{more} faults were found: they are listed below."
-            ));
+            sentences.push(format!("{faults}{more} faults were found: they are listed below."));
         }
-        Verdict {
-            kind,
-            word: word.to_owned(),
-            sentences,
-        }
+        Verdict { kind, word: word.to_owned(), sentences }
     }
 }

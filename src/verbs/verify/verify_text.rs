@@ -27,23 +27,13 @@ pub fn text(held: &Held, machine: &Machine, name: &str, tolerances: [Option<f64>
     );
     let tolerance = tolerances[0].unwrap_or(machine.accuracy.tolerance);
     let axis_tolerance = tolerances[1].unwrap_or(machine.accuracy.axis_tolerance);
-    row(
-        "tip deviation",
-        format!("{}, tolerance {tolerance} mm", worst(&found.tip, "mm", 6)),
-    );
+    row("tip deviation", format!("{}, tolerance {tolerance} mm", worst(&found.tip, "mm", 6)));
     row(
         "axis deviation",
-        format!(
-            "{}, tolerance {:.4}°",
-            worst(&found.axis, "°", 5),
-            axis_tolerance.to_degrees()
-        ),
+        format!("{}, tolerance {:.4}°", worst(&found.axis, "°", 5), axis_tolerance.to_degrees()),
     );
     if found.rapid.nc_line > 0 {
-        row(
-            "rapid points",
-            format!("passed within {}", worst(&found.rapid, "mm", 3)),
-        );
+        row("rapid points", format!("passed within {}", worst(&found.rapid, "mm", 3)));
     }
     let mut more = Vec::new();
     for (count, what) in [
@@ -77,9 +67,6 @@ fn worst(worst: &Worst, unit: &str, decimals: u8) -> String {
     let value = number(worst.value, decimals);
     match worst.nc_line {
         0 => format!("{value} {unit}"),
-        line => format!(
-            "{value} {unit}, in line {line} of the program, CL line {}",
-            worst.cl_line
-        ),
+        line => format!("{value} {unit}, in line {line} of the program, CL line {}", worst.cl_line),
     }
 }

@@ -17,11 +17,7 @@ pub fn machine(name: &str, settings: &[String]) -> Result<Machine, Box<dyn Error
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("machines");
     let mut find = |name: &str| {
         let text = fs::read_to_string(root.join(format!("{name}.toml")));
-        text.map(|text| Source {
-            name: name.to_owned(),
-            text,
-        })
-        .map_err(|error| error.to_string())
+        text.map(|text| Source { name: name.to_owned(), text }).map_err(|error| error.to_string())
     };
     let source = find(name)?;
     let settings: Vec<Setting> = settings.iter().cloned().map(Setting::Written).collect();

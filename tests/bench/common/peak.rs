@@ -7,10 +7,7 @@ use std::time::Duration;
 
 /// Runs a command to its end; the peak of its resident memory, kB, where the system tells it.
 pub fn of(command: &mut Command) -> Result<u64, Box<dyn Error>> {
-    let mut child = command
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()?;
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn()?;
     let status = format!("/proc/{}/status", child.id());
     let mut peak = 0;
     loop {

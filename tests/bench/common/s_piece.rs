@@ -109,18 +109,10 @@ fn tool(way: f64, foot: [f64; 2], side: f64) -> [f64; 6] {
     // Out of the flank: to the left of its way.
     let out = unit(cross(ruling, moves)).map(|value| side * value);
     let axis = unit(ruling);
-    let tip = [
-        RADIUS * out[0],
-        side * HALF + RADIUS * out[1],
-        RADIUS * out[2],
-    ];
+    let tip = [RADIUS * out[0], side * HALF + RADIUS * out[1], RADIUS * out[2]];
     let (sine, cosine) = libm::sincos(heading(way));
     let turned = |[along, left, up]: [f64; 3]| {
-        [
-            cosine * along - sine * left,
-            sine * along + cosine * left,
-            up,
-        ]
+        [cosine * along - sine * left, sine * along + cosine * left, up]
     };
     let ([x, y, z], [i, j, k]) = (turned(tip), turned(axis));
     [foot[0] + x, foot[1] + y, FOOT + z, i, j, k]
@@ -150,11 +142,7 @@ fn goto(out: &mut impl Write, [x, y, z, i, j, k]: &[f64; 6]) -> io::Result<()> {
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 fn unit(vector: [f64; 3]) -> [f64; 3] {

@@ -11,9 +11,8 @@ fn first() -> V {
 }
 
 fn fork(more: &[(&str, &str)]) -> Setup {
-    let mut fork = on("head-head")
-        .with("control.tcp", "control")
-        .with("axis.Z.travel", "[-2000, 600]");
+    let mut fork =
+        on("head-head").with("control.tcp", "control").with("axis.Z.travel", "[-2000, 600]");
     for (key, value) in more {
         fork = fork.with(key, value);
     }
@@ -22,17 +21,11 @@ fn fork(more: &[(&str, &str)]) -> Setup {
 
 /// Where the tip comes by until it stands on its first position.
 fn ways_in(setup: &Setup, axis: V) -> Vec<V> {
-    let cl = cl()
-        .rapid(first(), axis)
-        .cut(first() - axis * 10.0, axis)
-        .rapid(first(), axis)
-        .end();
+    let cl = cl().rapid(first(), axis).cut(first() - axis * 10.0, axis).rapid(first(), axis).end();
     let made = setup.made(&cl);
     let tips = made.poses().into_iter().map(|pose| pose.tip);
     let mut ways: Vec<V> = tips.collect();
-    let arrives = ways
-        .iter()
-        .position(|tip| (tip - first()).norm() < ROUNDING);
+    let arrives = ways.iter().position(|tip| (tip - first()).norm() < ROUNDING);
     ways.truncate(arrives.unwrap_or_else(|| panic!("{}", made.text)));
     ways
 }
@@ -99,8 +92,5 @@ fn a_tool_that_lies_or_hangs_comes_down_outside_and_in_along_its_line() {
 #[test]
 fn the_room_over_a_first_position_is_a_length() {
     let said = fork(&[("control.approach_room", "-1")]).refused(&cl().end());
-    assert!(
-        said.contains("error[machine-frame]: approach_room is -1 mm"),
-        "{said}"
-    );
+    assert!(said.contains("error[machine-frame]: approach_room is -1 mm"), "{said}");
 }

@@ -8,10 +8,8 @@ use super::*;
 
 #[test]
 fn axes_start_where_the_file_says() {
-    let upright = cl()
-        .rapid(V::new(0.0, 0.0, 60.0), V::z())
-        .cut(V::new(5.0, 0.0, 30.0), V::z())
-        .end();
+    let upright =
+        cl().rapid(V::new(0.0, 0.0, 60.0), V::z()).cut(V::new(5.0, 0.0, 30.0), V::z()).end();
     for (start, wanted) in [(None, 0.0), (Some("170"), 170.0), (Some("-400"), -400.0)] {
         let mut setup = on("ac-trunnion").with("control.tcp", "control");
         if let Some(start) = start {
@@ -23,9 +21,7 @@ fn axes_start_where_the_file_says() {
     // The nearest solution is that next to the start: 20° towards -Y are A -20 C 0 or A 20 C 180.
     let tilted = cl().rapid(V::new(0.0, 0.0, 60.0), lean(20.0, 90.0)).end();
     let chosen = |c: &str| {
-        let setup = on("ac-trunnion")
-            .with("control.tcp", "control")
-            .with("solution.start.C", c);
+        let setup = on("ac-trunnion").with("control.tcp", "control").with("solution.start.C", c);
         let made = setup.made(&tilted);
         (made.words("A")[0], made.words("C")[0])
     };
@@ -34,13 +30,8 @@ fn axes_start_where_the_file_says() {
     assert_eq!(near_half.1, 180.0);
     assert_eq!(near_zero.0, -near_half.0);
     assert_eq!(near_zero.0.abs(), 20.0);
-    let said = on("ac-trunnion")
-        .with("solution.start.A", "31")
-        .refused(&tilted);
-    assert!(
-        said.contains("error[machine-travel]: A cannot start there"),
-        "{said}"
-    );
+    let said = on("ac-trunnion").with("solution.start.A", "31").refused(&tilted);
+    assert!(said.contains("error[machine-travel]: A cannot start there"), "{said}");
 }
 
 #[test]
@@ -48,10 +39,7 @@ fn a_side_is_preferred_or_required() {
     let mut text = cl();
     for (azimuth, tilt) in [(10.0, 20.0), (100.0, 25.0), (190.0, 60.0), (280.0, 15.0)] {
         let out = lean(tilt, azimuth);
-        text = text
-            .rapid(out * 120.0, out)
-            .cut(out * 70.0, out)
-            .rapid(out * 120.0, out);
+        text = text.rapid(out * 120.0, out).cut(out * 70.0, out).rapid(out * 120.0, out);
     }
     let text = text.end();
     let signs = |setup: Setup| {
@@ -68,9 +56,7 @@ fn a_side_is_preferred_or_required() {
     }
     let (required, _) = signs(on("ac-trunnion").with("solution.require.A", "negative"));
     assert!(required.iter().all(|word| *word <= 0.0), "{required:?}");
-    let said = on("ac-trunnion")
-        .with("solution.require.A", "positive")
-        .refused(&text);
+    let said = on("ac-trunnion").with("solution.require.A", "positive").refused(&text);
     assert!(said.contains("error["), "{said}");
     assert!(said.contains("A would be"), "{said}");
 }
@@ -80,25 +66,16 @@ fn a_side_is_preferred_or_required() {
 fn a_required_side_that_forbids_a_cut_is_named() {
     let tip = V::new(10.0, 7.0, 20.0);
     let text = cl().rapid(tip, V::z()).cut(tip, lean(60.0, -90.0)).end();
-    let said = on("ac-trunnion")
-        .with("solution.require.A", "positive")
-        .refused(&text);
+    let said = on("ac-trunnion").with("solution.require.A", "positive").refused(&text);
     assert!(said.contains("require"), "{said}");
 }
 
 #[test]
 fn no_look_ahead_is_refused() {
-    let said = on("ac-trunnion")
-        .with("solution.look_ahead", "0")
-        .refused(&turning_cuts());
-    assert!(
-        said.contains("error[machine-solution]: look_ahead is a number of points"),
-        "{said}"
-    );
+    let said = on("ac-trunnion").with("solution.look_ahead", "0").refused(&turning_cuts());
+    assert!(said.contains("error[machine-solution]: look_ahead is a number of points"), "{said}");
     // One takes the nearest each time.
-    on("ac-trunnion")
-        .with("solution.look_ahead", "1")
-        .made(&turning_cuts());
+    on("ac-trunnion").with("solution.look_ahead", "1").made(&turning_cuts());
 }
 
 /// The table of solutions in the manual of the iTNC 530 (PLANE SPATIAL, SEQ): the spatial angle B+45 on a machine whose
@@ -113,9 +90,8 @@ fn the_choice_is_that_of_the_itnc_530_for_a_plane_at_b_45() {
         ("[-90, 10]", None, Some([-45.0, -90.0])),
         ("[-90, 10]", Some("positive"), None),
     ] {
-        let mut setup = on("ac-trunnion")
-            .with("control.tcp", "control")
-            .with("axis.A.travel", travel);
+        let mut setup =
+            on("ac-trunnion").with("control.tcp", "control").with("axis.A.travel", travel);
         if let Some(side) = side {
             setup = setup.with("solution.require.A", &format!("\"{side}\""));
         }

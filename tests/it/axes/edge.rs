@@ -18,8 +18,7 @@ fn drawn(points: &[[f64; 2]]) -> String {
     for point in points {
         cl = cl.cut(tip(point), axis);
     }
-    cl.rapid(tip(points.last().unwrap()) + axis * 40.0, axis)
-        .end()
+    cl.rapid(tip(points.last().unwrap()) + axis * 40.0, axis).end()
 }
 
 /// The part of a direction across the tool axis.
@@ -39,27 +38,18 @@ fn the_edge_follows_the_tangent_of_a_circle() {
     for step in 0..=60 {
         cl = cl.cut(foot(at(step)), lean(20.0, at(step)));
     }
-    let cl = cl
-        .rapid(foot(300.0) + lean(20.0, 300.0) * 40.0, lean(20.0, 300.0))
-        .end();
+    let cl = cl.rapid(foot(300.0) + lean(20.0, 300.0) * 40.0, lean(20.0, 300.0)).end();
     let made = knife().made(&cl);
     let poses = made.poses();
     for step in 1..60 {
         let (sine, cosine) = libm::sincos(at(step).to_radians());
         // The tool leans along the radius, so the tangent lies across it.
         let tangent = V::new(-sine, cosine, 0.0);
-        let here: Vec<&Pose> = poses
-            .iter()
-            .filter(|pose| (pose.tip - foot(at(step))).norm() < ROUNDING)
-            .collect();
+        let here: Vec<&Pose> =
+            poses.iter().filter(|pose| (pose.tip - foot(at(step))).norm() < ROUNDING).collect();
         assert!(!here.is_empty(), "{}", at(step));
         for pose in here {
-            assert!(
-                angle(pose.edge, tangent) < 0.2,
-                "{}: {}",
-                at(step),
-                angle(pose.edge, tangent)
-            );
+            assert!(angle(pose.edge, tangent) < 0.2, "{}: {}", at(step), angle(pose.edge, tangent));
             assert!(angle(pose.axis, lean(20.0, at(step))) < 0.2);
         }
     }
@@ -68,10 +58,7 @@ fn the_edge_follows_the_tangent_of_a_circle() {
         let azimuth = libm::atan2(pose.tip.y, pose.tip.x).to_degrees();
         if pose.tip.z < 20.01 && (3.0..297.0).contains(&azimuth.rem_euclid(360.0)) {
             let (sine, cosine) = libm::sincos(azimuth.to_radians());
-            assert!(
-                angle(pose.edge, V::new(-sine, cosine, 0.0)) < 0.5,
-                "{azimuth}"
-            );
+            assert!(angle(pose.edge, V::new(-sine, cosine, 0.0)) < 0.5, "{azimuth}");
         }
     }
 }
@@ -95,11 +82,7 @@ fn the_edge_follows_an_arc() {
         if pose.tip.x > 5.0 && pose.tip.y < -5.0 {
             assert!(near(radius.norm(), 60.0, 0.05 + ROUNDING));
             let tangent = across(V::z().cross(&radius), axis);
-            assert!(
-                angle(pose.edge, tangent) < 0.2,
-                "{}",
-                angle(pose.edge, tangent)
-            );
+            assert!(angle(pose.edge, tangent) < 0.2, "{}", angle(pose.edge, tangent));
             met += 1;
         }
     }
@@ -113,18 +96,15 @@ fn at_a_corner_the_edge_is_turned_on_the_spot() {
     let poses = made.poses();
     let axis = lean(20.0, 90.0);
     let corner = V::new(50.0, -50.0, 20.0);
-    let there: Vec<usize> = (0..poses.len())
-        .filter(|at| (poses[*at].tip - corner).norm() < ROUNDING)
-        .collect();
+    let there: Vec<usize> =
+        (0..poses.len()).filter(|at| (poses[*at].tip - corner).norm() < ROUNDING).collect();
     assert_eq!(there.len(), 2, "{}", made.text);
     let (come, go) = (there[0], there[1]);
     assert_eq!(go, come + 1);
     assert!(angle(poses[come].edge, across(V::x(), axis)) < 0.2);
     assert!(angle(poses[go].edge, across(V::y(), axis)) < 0.2);
-    for (name, (a, b)) in made
-        .names
-        .iter()
-        .zip(made.blocks[come].words.iter().zip(&made.blocks[go].words))
+    for (name, (a, b)) in
+        made.names.iter().zip(made.blocks[come].words.iter().zip(&made.blocks[go].words))
     {
         assert_eq!(a == b, name != "A", "{name} {a} {b}");
     }
@@ -149,11 +129,7 @@ fn below_the_corner_the_edge_turns_along() {
             .blocks
             .windows(2)
             .filter(|pair| !pair[1].rapid)
-            .filter(|pair| {
-                [x, y]
-                    .iter()
-                    .all(|at| pair[0].words[*at] == pair[1].words[*at])
-            })
+            .filter(|pair| [x, y].iter().all(|at| pair[0].words[*at] == pair[1].words[*at]))
             .count();
         assert_eq!(on_the_spot, spots, "{bend}:\n{}", made.text);
         if spots == 0 {
@@ -165,10 +141,7 @@ fn below_the_corner_the_edge_turns_along() {
                     across(V::new(to[0] - from[0], to[1] - from[1], 0.0), axis)
                 };
                 let halved = way(points[place - 1], *point) + way(*point, points[place + 1]);
-                let pose = made
-                    .poses()
-                    .into_iter()
-                    .find(|pose| (pose.tip - tip).norm() < ROUNDING);
+                let pose = made.poses().into_iter().find(|pose| (pose.tip - tip).norm() < ROUNDING);
                 assert!(angle(pose.unwrap().edge, halved.normalize()) < 0.2);
             }
         }
@@ -186,9 +159,7 @@ fn rewound() -> (Made, usize) {
         .made(&cl);
     let corner = V::new(50.0, -50.0, 20.0);
     let poses = made.poses();
-    let come = poses
-        .iter()
-        .position(|pose| (pose.tip - corner).norm() < ROUNDING);
+    let come = poses.iter().position(|pose| (pose.tip - corner).norm() < ROUNDING);
     (made, come.unwrap())
 }
 
@@ -205,22 +176,12 @@ fn with_a_rewind_the_edge_is_turned_outside_the_part() {
         (turned, corner + axis * 20.0, V::y()),
         (back, corner, V::y()),
     ] {
-        assert!(
-            (poses[at].tip - tip).norm() < ROUNDING,
-            "{at}:\n{}",
-            made.text
-        );
-        assert!(
-            angle(poses[at].edge, across(edge, axis)) < 0.2,
-            "{at}:\n{}",
-            made.text
-        );
+        assert!((poses[at].tip - tip).norm() < ROUNDING, "{at}:\n{}", made.text);
+        assert!(angle(poses[at].edge, across(edge, axis)) < 0.2, "{at}:\n{}", made.text);
     }
     let feed = |at: usize| {
         let line = made.line(&made.blocks[at]);
-        line.split(' ')
-            .find(|word| word.starts_with('F'))
-            .map(str::to_owned)
+        line.split(' ').find(|word| word.starts_with('F')).map(str::to_owned)
     };
     assert_eq!(feed(out).as_deref(), Some("F3000."), "{}", made.text);
     assert_eq!(feed(back).as_deref(), Some("F400."), "{}", made.text);
@@ -252,10 +213,7 @@ fn three_rounds() -> String {
 fn a_knife_that_goes_round_and_round_is_drawn_out_where_an_axis_ends() {
     let text = three_rounds();
     let said = knife().refused(&text);
-    for word in [
-        "error[jump]",
-        "takes C to 365.000° (travel -360.000° to 360.000°)",
-    ] {
+    for word in ["error[jump]", "takes C to 365.000° (travel -360.000° to 360.000°)"] {
         assert!(said.contains(word), "{said}");
     }
     let made = knife().with("rewind.distance", "20").made(&text);
@@ -267,9 +225,7 @@ fn a_knife_that_goes_round_and_round_is_drawn_out_where_an_axis_ends() {
     let mut at = 0;
     let points = post_testruns::read_back::points(&text);
     for point in &points[2..points.len() - 2] {
-        let tangent = V::z()
-            .cross(&V::new(point.tip.x, point.tip.y, 0.0))
-            .normalize();
+        let tangent = V::z().cross(&V::new(point.tip.x, point.tip.y, 0.0)).normalize();
         let met = (at..poses.len()).find(|at| {
             (poses[*at].tip - point.tip).norm() < ROUNDING
                 && angle(poses[*at].axis, point.axis) < 0.2
@@ -294,17 +250,13 @@ fn a_knife_that_goes_round_and_round_is_drawn_out_where_an_axis_ends() {
 /// C turns back by 360° at least, which takes half a minute and more at 720°/min.
 #[test]
 fn a_rewind_turns_at_its_feed() {
-    let made = knife()
-        .with("rewind.distance", "20")
-        .with("rewind.turn_feed", "720")
-        .made(&three_rounds());
+    let made =
+        knife().with("rewind.distance", "20").with("rewind.turn_feed", "720").made(&three_rounds());
     let c = made.words("C");
     let (mut turned, mut minutes, mut feed) = (0.0, 0.0, 0.0);
     for (at, pose) in made.poses().iter().enumerate().skip(1) {
         let line = made.line(&made.blocks[at]);
-        let word = line
-            .split(' ')
-            .find_map(|word| word.strip_prefix('F')?.parse::<f64>().ok());
+        let word = line.split(' ').find_map(|word| word.strip_prefix('F')?.parse::<f64>().ok());
         feed = word.unwrap_or(feed);
         // Drawn out, in G93.
         if !made.blocks[at].rapid && pose.tip.z > 30.0 && c[at] != c[at - 1] {
@@ -313,10 +265,7 @@ fn a_rewind_turns_at_its_feed() {
         }
     }
     assert!(turned > 359.0, "{turned}");
-    assert!(
-        minutes > 0.98 * turned / 720.0,
-        "{turned}° in {minutes} min"
-    );
+    assert!(minutes > 0.98 * turned / 720.0, "{turned}° in {minutes} min");
 }
 
 /// The tip stands still in the part and the tool leans over by 20°, at 500: the feed is along the axes, so no
@@ -324,19 +273,14 @@ fn a_rewind_turns_at_its_feed() {
 #[test]
 fn a_tool_that_turns_on_the_spot_does_not_race() {
     let tip = V::new(10.0, 7.0, 20.0);
-    let text = cl()
-        .rapid(tip + V::z() * 40.0, V::z())
-        .cut(tip, V::z())
-        .cut(tip, lean(20.0, -90.0))
-        .end();
+    let text =
+        cl().rapid(tip + V::z() * 40.0, V::z()).cut(tip, V::z()).cut(tip, lean(20.0, -90.0)).end();
     let made = on("ac-trunnion").with("control.tcp", "post").made(&text);
     let a = made.words("A");
     let mut feed = 0.0;
     for at in 1..made.blocks.len() {
         let line = made.line(&made.blocks[at]);
-        let word = line
-            .split(' ')
-            .find_map(|word| word.strip_prefix('F')?.parse::<f64>().ok());
+        let word = line.split(' ').find_map(|word| word.strip_prefix('F')?.parse::<f64>().ok());
         feed = word.unwrap_or(feed);
         if !made.blocks[at].rapid && a[at] != a[at - 1] {
             let speed = (a[at] - a[at - 1]).abs() * feed;
@@ -363,9 +307,7 @@ fn a_second_vector_of_the_points_is_the_edge() {
         let (sine, cosine) = libm::sincos(f64::to_radians(25.0 * step - 40.0));
         V::new(cosine, sine, 0.0)
     };
-    let mut cl = cl()
-        .line("RAPID")
-        .edge(tip(0.0) + axis * 40.0, axis, edge(0.0));
+    let mut cl = cl().line("RAPID").edge(tip(0.0) + axis * 40.0, axis, edge(0.0));
     for step in 0..6 {
         cl = cl.edge(tip(step.into()), axis, edge(step.into()));
     }
@@ -374,24 +316,14 @@ fn a_second_vector_of_the_points_is_the_edge() {
     let poses = made.poses();
     for step in 0..6 {
         let step = f64::from(step);
-        let there = poses
-            .iter()
-            .filter(|pose| (pose.tip - tip(step)).norm() < ROUNDING);
-        let off: Vec<f64> = there
-            .map(|pose| angle(pose.edge, across(edge(step), axis)))
-            .collect();
-        assert!(
-            !off.is_empty() && off.iter().all(|off| *off < 0.01),
-            "{step}: {off:?}"
-        );
+        let there = poses.iter().filter(|pose| (pose.tip - tip(step)).norm() < ROUNDING);
+        let off: Vec<f64> = there.map(|pose| angle(pose.edge, across(edge(step), axis))).collect();
+        assert!(!off.is_empty() && off.iter().all(|off| *off < 0.01), "{step}: {off:?}");
     }
     // By the direction of travel the second vector counts for nothing.
     let travel = knife().made(&text);
     let along = across(V::new(3.0, 1.0, 0.0), axis);
-    let pose = travel
-        .poses()
-        .into_iter()
-        .find(|pose| (pose.tip - tip(2.0)).norm() < ROUNDING);
+    let pose = travel.poses().into_iter().find(|pose| (pose.tip - tip(2.0)).norm() < ROUNDING);
     assert!(angle(pose.unwrap().edge, along) < 0.2);
     // A machine without an edge takes the points and leaves the edge.
     let six: Vec<String> = text
@@ -401,10 +333,7 @@ fn a_second_vector_of_the_points_is_the_edge() {
             false => line.to_owned(),
         })
         .collect();
-    assert_eq!(
-        on("ac-trunnion").made(&text).text,
-        on("ac-trunnion").made(&six.join("\n")).text
-    );
+    assert_eq!(on("ac-trunnion").made(&text).text, on("ac-trunnion").made(&six.join("\n")).text);
 }
 
 #[test]
@@ -412,8 +341,5 @@ fn an_edge_without_direction_is_refused() {
     let axis = lean(20.0, 90.0);
     let text = cl().edge(V::new(0.0, 0.0, 20.0), axis, V::zeros()).end();
     let said = knife().with("solution.edge", "cl").refused(&text);
-    assert!(
-        said.contains("error[axis]: the direction of the leading edge is null"),
-        "{said}"
-    );
+    assert!(said.contains("error[axis]: the direction of the leading edge is null"), "{said}");
 }

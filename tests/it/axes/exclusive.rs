@@ -61,23 +61,15 @@ fn exclusive_axes_move_one_after_the_other() {
 fn a_cut_that_moves_exclusive_axes_is_refused() {
     let cl = turning_cuts();
     on("ac-trunnion").made(&cl);
-    let said = on("ac-trunnion")
-        .with("solution.exclusive", EXCLUSIVE)
-        .refused(&cl);
+    let said = on("ac-trunnion").with("solution.exclusive", EXCLUSIVE).refused(&cl);
     for word in ["error[exclusive]", "A and C", "GOTO / 14.000000"] {
-        let word = if word == "A and C" && said.contains("C and A") {
-            "C and A"
-        } else {
-            word
-        };
+        let word = if word == "A and C" && said.contains("C and A") { "C and A" } else { word };
         assert!(said.contains(word), "{said}");
     }
     // A cut that turns one of them is made.
     let one = cl_of_c();
     let free = on("ac-trunnion").made(&one);
-    let made = on("ac-trunnion")
-        .with("solution.exclusive", EXCLUSIVE)
-        .made(&one);
+    let made = on("ac-trunnion").with("solution.exclusive", EXCLUSIVE).made(&one);
     assert_eq!(made.text, free.text);
 }
 
@@ -99,9 +91,7 @@ fn cl_of_c() -> String {
 fn exclusive_axes_are_not_brought_to_the_first_position_together() {
     let tip = V::new(30.0, 0.0, 60.0);
     let cl = cl().rapid(tip, lean(15.0, 30.0)).end();
-    let made = on("ac-trunnion")
-        .with("solution.exclusive", EXCLUSIVE)
-        .made(&cl);
+    let made = on("ac-trunnion").with("solution.exclusive", EXCLUSIVE).made(&cl);
     for line in made.text.lines() {
         let has = |name: char| line.split(' ').any(|word| word.starts_with(name));
         assert!(!(has('A') && has('C')), "{line}");

@@ -9,11 +9,7 @@ use super::*;
 /// A cut with the straight head, one with the other, and one with the straight head again.
 fn heads(other: &str) -> String {
     let mut text = cl();
-    for (head, axis) in [
-        (None, V::z()),
-        (Some(other), V::y()),
-        (Some("STRAIGHT"), V::z()),
-    ] {
+    for (head, axis) in [(None, V::z()), (Some(other), V::y()), (Some("STRAIGHT"), V::z())] {
         if let Some(head) = head {
             // Of a tool that lies down the control's length is 0: it has a number of its own.
             let tool = if head == "STRAIGHT" { 1 } else { 2 };
@@ -54,17 +50,9 @@ fn a_head_is_swapped_between_retract_and_next_position() {
     let lines: Vec<&str> = made.text.lines().collect();
     for swap in ["M62", "M61"] {
         let place = lines.iter().position(|line| *line == swap).unwrap();
-        let before = lines[..place]
-            .iter()
-            .rposition(|line| line.starts_with("G53 G0 Z"))
-            .unwrap();
+        let before = lines[..place].iter().rposition(|line| line.starts_with("G53 G0 Z")).unwrap();
         let between = &lines[before + 1..place];
-        assert!(
-            between
-                .iter()
-                .all(|line| !line.contains(['X', 'Y', 'Z', 'C'])),
-            "{between:?}"
-        );
+        assert!(between.iter().all(|line| !line.contains(['X', 'Y', 'Z', 'C'])), "{between:?}");
     }
 }
 
@@ -76,21 +64,12 @@ fn a_head_without_a_word_stops_the_program() {
     );
     let made = setup.made(&heads("SIDE"));
     let lines: Vec<&str> = made.text.lines().collect();
-    let told = lines
-        .iter()
-        .position(|line| *line == "(CHANGE TO HEAD SIDE)")
-        .unwrap();
+    let told = lines.iter().position(|line| *line == "(CHANGE TO HEAD SIDE)").unwrap();
     assert_eq!(lines[told + 1], "M0");
     let moved = |line: &&str| line.contains(['X', 'Y', 'C']) && line.starts_with("G0");
     let next = lines[told + 2..].iter().find(|line| moved(line)).unwrap();
     assert_eq!(*next, "G0 C-90.000");
-    assert!(
-        lines[..told]
-            .iter()
-            .rev()
-            .take(4)
-            .any(|line| line.starts_with("G53 G0 Z"))
-    );
+    assert!(lines[..told].iter().rev().take(4).any(|line| line.starts_with("G53 G0 Z")));
 }
 
 #[test]
@@ -104,10 +83,7 @@ fn the_spindle_stands_while_a_head_is_swapped() {
 #[test]
 fn a_head_that_is_not_there_is_refused() {
     let said = on("head-change").refused(&heads("BENT"));
-    assert!(
-        said.contains("error[head]: head change has no head BENT"),
-        "{said}"
-    );
+    assert!(said.contains("error[head]: head change has no head BENT"), "{said}");
     assert!(said.contains("its heads are: ANGLE, STRAIGHT"), "{said}");
     let said = on("gantry").refused(&heads("ANGLE"));
     assert!(said.contains("error[head]"), "{said}");
@@ -151,11 +127,7 @@ fn the_swing_length_moves_the_linear_words_along_the_tool() {
                 "Z" => wanted.z,
                 _ => 0.0,
             };
-            assert!(
-                near(*by, wanted, 2e-4),
-                "line {}: {name} {by} {wanted}",
-                block.line
-            );
+            assert!(near(*by, wanted, 2e-4), "line {}: {name} {by} {wanted}", block.line);
         }
     }
 }

@@ -15,18 +15,12 @@ fn watch(program: &str, axis: char, clamp: &str, unclamp: &str, reference: &str)
     let mut stood: Vec<f64> = Vec::new();
     for line in program.lines() {
         let code = line.split(['(', ';']).next().unwrap();
-        let words: Vec<&str> = code
-            .split_whitespace()
-            .skip(usize::from(conversational))
-            .collect();
+        let words: Vec<&str> = code.split_whitespace().skip(usize::from(conversational)).collect();
         if code.contains(reference) {
             away = true;
             continue;
         }
-        if ["G28", "G53", "CYCL", "TOOL", "BLK"]
-            .iter()
-            .any(|other| words.contains(other))
-        {
+        if ["G28", "G53", "CYCL", "TOOL", "BLK"].iter().any(|other| words.contains(other)) {
             continue;
         }
         for word in &words {
@@ -38,11 +32,7 @@ fn watch(program: &str, axis: char, clamp: &str, unclamp: &str, reference: &str)
                 _ => {}
             }
         }
-        let rapid = if conversational {
-            words.contains(&"FMAX")
-        } else {
-            modal_rapid
-        };
+        let rapid = if conversational { words.contains(&"FMAX") } else { modal_rapid };
         let value = |name: char| {
             let word = words.iter().find(|word| word.starts_with(name))?;
             word[1..].parse::<f64>().ok()
@@ -52,15 +42,8 @@ fn watch(program: &str, axis: char, clamp: &str, unclamp: &str, reference: &str)
             && stood.last() != Some(&value)
         {
             assert!(rapid && !slides, "{axis} does not turn alone: {line}");
-            assert_eq!(
-                clamped,
-                Some(false),
-                "{axis} turns and was not let go: {line}"
-            );
-            assert!(
-                away,
-                "{axis} turns, and the tool is not at the reference: {line}"
-            );
+            assert_eq!(clamped, Some(false), "{axis} turns and was not let go: {line}");
+            assert!(away, "{axis} turns, and the tool is not at the reference: {line}");
             stood.push(value);
         }
         if slides {
@@ -93,9 +76,7 @@ fn sides(angles: &[f64]) -> String {
 fn an_index_table_turns_at_the_reference_let_go_and_is_clamped_in_cuts() {
     let cl = sides(&[0.0, 90.0, 35.0, 270.0, 271.0]);
     for (dialect, reference) in [("fanuc", "G53 G0 "), ("heidenhain", "M91")] {
-        let made = on("hmc-b-pallet")
-            .with("control.dialect", dialect)
-            .made(&cl);
+        let made = on("hmc-b-pallet").with("control.dialect", dialect).made(&cl);
         let stood = watch(&made.text, 'B', "M10", "M11", reference);
         assert_eq!(stood, [0.0, 90.0, 35.0, 270.0, 271.0], "{dialect}");
         // The tip is where the CL file has it: on each side, both ends of the cut.
@@ -219,19 +200,14 @@ fn a_cut_that_turns_an_index_table_is_refused_by_name() {
         .cut(V::new(100.0, 120.0, 0.0), V::x())
         .end();
     let said = on("hmc-b-pallet").refused(&text);
-    assert!(
-        said.contains("B 0.000°") || said.contains("B would"),
-        "{said}"
-    );
+    assert!(said.contains("B 0.000°") || said.contains("B would"), "{said}");
 }
 
 /// A first position without RAPID before it is a move with a feed.
 #[test]
 fn a_first_position_at_feed_is_made_with_the_table_clamped() {
-    let text = cl()
-        .cut(V::new(0.0, 120.0, 150.0), V::z())
-        .cut(V::new(0.0, 120.0, 100.0), V::z())
-        .end();
+    let text =
+        cl().cut(V::new(0.0, 120.0, 150.0), V::z()).cut(V::new(0.0, 120.0, 100.0), V::z()).end();
     let made = on("hmc-b-pallet").made(&text);
     watch(&made.text, 'B', "M10", "M11", "G53 G0 ");
 }
@@ -245,20 +221,14 @@ fn indexed_cuts(angle: f64) -> String {
     let mut cl = cl().rapid(V::new(0.0, 0.0, 90.0), lean(10.0, 80.0));
     for step in 0..4 {
         let step = f64::from(step);
-        cl = cl.cut(
-            V::new(20.0 * step, 5.0, 30.0),
-            lean(10.0 + 3.0 * step, 80.0),
-        );
+        cl = cl.cut(V::new(20.0 * step, 5.0, 30.0), lean(10.0 + 3.0 * step, 80.0));
     }
     cl = cl.rapid(V::new(60.0, 5.0, 90.0), lean(19.0, 80.0));
     cl = cl.line(&format!("ROTABL / BAXIS, {angle}"));
     cl = cl.rapid(V::new(-60.0, 60.0, 90.0), lean(15.0, 70.0));
     for step in 0..4 {
         let step = f64::from(step);
-        cl = cl.cut(
-            V::new(20.0 * step, 40.0, 25.0),
-            lean(15.0 + 3.0 * step, 70.0),
-        );
+        cl = cl.cut(V::new(20.0 * step, 40.0, 25.0), lean(15.0 + 3.0 * step, 70.0));
     }
     cl.rapid(V::new(60.0, 40.0, 90.0), lean(24.0, 70.0)).end()
 }
@@ -267,10 +237,7 @@ fn indexed_cuts(angle: f64) -> String {
 fn assert_retracted(made: &Made, line: usize) {
     let lines: Vec<&str> = made.text.lines().collect();
     let before = &lines[line - 3..line - 1];
-    assert!(
-        before[0].starts_with("G53 G0 Z") && before[1] == "G49",
-        "{before:?}"
-    );
+    assert!(before[0].starts_with("G53 G0 Z") && before[1] == "G49", "{before:?}");
 }
 
 #[test]
@@ -279,27 +246,16 @@ fn an_index_move_of_the_file_sets_the_sixth_axis() {
     let made = on("disc-cutter").long(0.0).made(&cl);
     let words = made.words("B");
     let turned = words.iter().position(|word| *word != 0.0).unwrap();
-    assert!(
-        turned > 0 && words[turned..].iter().all(|word| *word == 25.0),
-        "{words:?}"
-    );
+    assert!(turned > 0 && words[turned..].iter().all(|word| *word == 25.0), "{words:?}");
     let poses = made.poses();
-    let index_line = 1 + cl
-        .lines()
-        .position(|line| line.starts_with("ROTABL"))
-        .unwrap();
+    let index_line = 1 + cl.lines().position(|line| line.starts_with("ROTABL")).unwrap();
     let mut at = 0;
     for point in post_testruns::read_back::points(&cl) {
         let met = (at..poses.len()).find(|at| {
             (poses[*at].tip - point.tip).norm() < 4e-4 && angle(poses[*at].axis, point.axis) < 2e-4
         });
         at = met.unwrap_or_else(|| panic!("CL line {}\n{}", point.line, made.text));
-        assert_eq!(
-            at >= turned,
-            point.line > index_line,
-            "CL line {}",
-            point.line
-        );
+        assert_eq!(at >= turned, point.line > index_line, "CL line {}", point.line);
     }
     // It turns at the reference, alone or with the other rotary axes.
     let line = made.line(&made.blocks[turned]);
@@ -310,18 +266,9 @@ fn an_index_move_of_the_file_sets_the_sixth_axis() {
 #[test]
 fn an_index_move_that_cannot_be_is_refused_by_name() {
     let said = on("disc-cutter").long(0.0).refused(&indexed_cuts(200.0));
-    assert!(
-        said.contains("error[index]: B cannot stand at 200.000°"),
-        "{said}"
-    );
-    let said = on("disc-cutter")
-        .long(0.0)
-        .with("axis.B.step", "15")
-        .refused(&indexed_cuts(25.0));
-    assert!(
-        said.contains("error[index]: B cannot stand at 25.000°"),
-        "{said}"
-    );
+    assert!(said.contains("error[index]: B cannot stand at 200.000°"), "{said}");
+    let said = on("disc-cutter").long(0.0).with("axis.B.step", "15").refused(&indexed_cuts(25.0));
+    assert!(said.contains("error[index]: B cannot stand at 25.000°"), "{said}");
     assert!(said.contains("ROTABL / BAXIS, 25"), "{said}");
 }
 
@@ -336,11 +283,7 @@ fn the_sixth_axis_is_set_so_that_the_others_stay_in_travel() {
         cl = cl.rapid(out * 150.0 + V::y() * 40.0, out);
     }
     let cl = cl.end();
-    let narrow = || {
-        on("disc-cutter")
-            .long(0.0)
-            .with("axis.A.travel", "[-30, 30]")
-    };
+    let narrow = || on("disc-cutter").long(0.0).with("axis.A.travel", "[-30, 30]");
     let said = narrow().refused(&cl);
     assert!(said.contains("error[over-travel]: A would be"), "{said}");
     let made = narrow().with("axis.B.step", "15").made(&cl);

@@ -186,11 +186,7 @@ fn a_tool_leaves_a_bore_along_it_and_comes_back_along_it() {
                     let words = between(&blocks[at], &blocks[at + 1], f64::from(share) / 20.0);
                     let [off, _] = lying.place(pose(&words).tip);
                     let line = lines[blocks[at + 1].line - 1];
-                    assert!(
-                        off <= lying.off,
-                        "{what}: {off} mm off in {line}\n{}",
-                        run.out
-                    );
+                    assert!(off <= lying.off, "{what}: {off} mm off in {line}\n{}", run.out);
                     let leans = angle(pose(&words).axis, lying.axis);
                     assert!(leans < 0.06, "{what}: {leans}° in {line}");
                 }
@@ -215,12 +211,7 @@ fn without_leave_such_a_machine_is_refused() {
     for lying in lying() {
         let run = lying.run("");
         assert_eq!(run.code, 1, "{}:\n{}", lying.name, run.out);
-        assert!(
-            run.err.contains(lying.refused),
-            "{}: {}",
-            lying.name,
-            run.err
-        );
+        assert!(run.err.contains(lying.refused), "{}: {}", lying.name, run.err);
     }
 }
 
@@ -233,9 +224,7 @@ fn a_way_that_travel_ends_is_told() {
     let cl = bores(V::z());
     let run = short.run(&cl);
     assert_eq!(run.code, 0, "{}", run.err);
-    let told = run
-        .err
-        .contains("warning[retract]: the tool leaves the part by")
+    let told = run.err.contains("warning[retract]: the tool leaves the part by")
         && run.err.contains("[control] leave says 500");
     assert!(told, "{}", run.err);
     // Z stands 100 mm over the tip, which ends 22 mm over the origin; 300 mm is the end of its travel.
@@ -257,14 +246,8 @@ fn the_check_says_how_the_tool_leaves() {
 #[test]
 fn what_leave_says_is_checked_against_the_machine() {
     for (leave, said) in [
-        (
-            "leave = { distance = 0 }",
-            "leave draws the tool back by 0 mm",
-        ),
-        (
-            "leave = { distance = 50, then = { Q = \"max\" } }",
-            "the machine has no axis Q",
-        ),
+        ("leave = { distance = 0 }", "leave draws the tool back by 0 mm"),
+        ("leave = { distance = 50, then = { Q = \"max\" } }", "the machine has no axis Q"),
         (
             "leave = { distance = 50, then = { Z = 10000 } }",
             "Z cannot stand at 10000: its travel is -2000 to 9000",
@@ -277,18 +260,11 @@ fn what_leave_says_is_checked_against_the_machine() {
             "leave = { distance = 50 }\nretract = { Z = 100 }",
             "retract and leave both say how the tool leaves the part",
         ),
-        (
-            "leave = { along = \"part\", distance = 50 }",
-            "there is no value `part` here",
-        ),
+        ("leave = { along = \"part\", distance = 50 }", "there is no value `part` here"),
     ] {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("machine.toml");
-        fs::write(
-            &file,
-            format!("extends = \"head-head\"\n[control]\n{leave}\n"),
-        )
-        .unwrap();
+        fs::write(&file, format!("extends = \"head-head\"\n[control]\n{leave}\n")).unwrap();
         let run = crate::common::run(
             crate::common::command().args(["check", file.to_str().unwrap()]),
             b"",

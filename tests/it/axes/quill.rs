@@ -32,15 +32,9 @@ fn a_mill_with_a_quill_comes_down_last() {
     let text = depths(&[100.0, 50.0]);
     let made = on("quill-mill").made(&text);
     let moves = |line: &&str| line.contains(" X") || line.contains(" Z");
-    let first = made
-        .text
-        .lines()
-        .skip_while(|line| *line != "G54")
-        .find(moves);
+    let first = made.text.lines().skip_while(|line| *line != "G54").find(moves);
     assert!(!first.unwrap().contains('Z'), "{}", made.text);
-    let made = on("quill-mill")
-        .with("control.dialect", "heidenhain")
-        .made(&text);
+    let made = on("quill-mill").with("control.dialect", "heidenhain").made(&text);
     assert!(made.text.contains("TOOL CALL 1 Z"), "{}", made.text);
 }
 
@@ -63,14 +57,8 @@ fn a_quill_in_reserve_moves_where_the_other_ends() {
         });
         assert!(met, "{z}: {wanted:?}\n{}", made.text);
     }
-    assert!(
-        words("W").iter().all(|word| *word <= 250.0),
-        "{:?}",
-        words("W")
-    );
-    let said = on("boring-mill")
-        .long(150.0)
-        .refused(&depths(&[300.0, -251.0]));
+    assert!(words("W").iter().all(|word| *word <= 250.0), "{:?}", words("W"));
+    let said = on("boring-mill").long(150.0).refused(&depths(&[300.0, -251.0]));
     assert!(
         said.contains("error[over-travel]: W would be -501.000 mm, its limit is -500.000 mm"),
         "{said}"
@@ -80,28 +68,17 @@ fn a_quill_in_reserve_moves_where_the_other_ends() {
 /// On the way past the end of Z the tip stays on its line: at the end of every block and half way along it.
 #[test]
 fn the_tip_is_exact_where_the_quill_takes_over() {
-    let text = cl()
-        .line("GOTO / 0, 0, 350")
-        .line("GOTO / 300, 30, 150")
-        .end();
+    let text = cl().line("GOTO / 0, 0, 350").line("GOTO / 300, 30, 150").end();
     let made = on("boring-mill").long(150.0).made(&text);
     let model = &made.model;
     for pair in made.blocks.windows(2) {
-        let middle: Vec<f64> = pair[0]
-            .words
-            .iter()
-            .zip(&pair[1].words)
-            .map(|(a, b)| (a + b) / 2.0)
-            .collect();
+        let middle: Vec<f64> =
+            pair[0].words.iter().zip(&pair[1].words).map(|(a, b)| (a + b) / 2.0).collect();
         for words in [&middle, &pair[1].words] {
             let tip = model.pose(words, 150.0).tip;
             let t = tip.x / 300.0;
             let line = V::new(300.0 * t, 30.0 * t, 350.0 - 200.0 * t);
-            assert!(
-                (tip - line).norm() < 0.010 + ROUNDING,
-                "{tip} {line}\n{}",
-                made.text
-            );
+            assert!((tip - line).norm() < 0.010 + ROUNDING, "{tip} {line}\n{}", made.text);
         }
     }
 }

@@ -38,13 +38,10 @@ fn a_shifted_rotary_zero_shifts_the_words_of_its_axis_alone() {
 fn the_work_offset_is_taken_where_the_rotary_axes_read_zero() {
     let cl = turning_cuts();
     let base = on("ac-trunnion").with("control.tcp", "post").made(&cl);
-    for (axis, travel, y, z) in [
-        ("C", None, 0.0, 0.0),
-        ("A", Some("[-30, 120]"), -50.016, -49.992),
-    ] {
-        let mut shifted = on("ac-trunnion")
-            .with("control.tcp", "post")
-            .with(&format!("axis.{axis}.zero"), "90");
+    for (axis, travel, y, z) in [("C", None, 0.0, 0.0), ("A", Some("[-30, 120]"), -50.016, -49.992)]
+    {
+        let mut shifted =
+            on("ac-trunnion").with("control.tcp", "post").with(&format!("axis.{axis}.zero"), "90");
         if let Some(travel) = travel {
             shifted = shifted.with(&format!("axis.{axis}.travel"), travel);
         }
@@ -112,10 +109,8 @@ fn a_reversed_axis_has_the_opposite_words() {
     }
     // A linear axis: its words are axis positions.
     let base = on("ac-trunnion").with("control.tcp", "post").made(&cl);
-    let other = on("ac-trunnion")
-        .with("control.tcp", "post")
-        .with("axis.Y.reversed", "true")
-        .made(&cl);
+    let other =
+        on("ac-trunnion").with("control.tcp", "post").with("axis.Y.reversed", "true").made(&cl);
     for (a, b) in base.words("Y").iter().zip(other.words("Y")) {
         assert!(near(*a, -b, 1e-9), "{a} {b}");
     }
@@ -154,10 +149,7 @@ fn words_stay_in_the_range_that_the_control_shows() {
         let words = endless.words("C");
         assert!(words.iter().any(|word| word.abs() > 720.0), "{words:?}");
         for (range, least) in [("[0, 360]", 0.0), ("[-180, 180]", -180.0)] {
-            let made = narrow()
-                .with("control.tcp", tcp)
-                .with("axis.C.range", range)
-                .made(&cl);
+            let made = narrow().with("control.tcp", tcp).with("axis.C.range", range).made(&cl);
             let words = made.words("C");
             for word in &words {
                 assert!((least..least + 360.0).contains(word), "{range}: C{word}");
@@ -195,10 +187,7 @@ fn words_stay_in_the_range_that_the_control_shows() {
                 let tip = made.model.pose(&middle, made.length).tip;
                 let wanted = (poses[at - 1].tip + poses[at].tip) / 2.0;
                 let line = made.blocks[at].line;
-                assert!(
-                    (tip - wanted).norm() < 0.005 + ROUNDING,
-                    "line {line}: {tip} {wanted}"
-                );
+                assert!((tip - wanted).norm() < 0.005 + ROUNDING, "line {line}: {tip} {wanted}");
             }
         }
     }
@@ -227,9 +216,7 @@ fn half_a_turn_is_made_in_pieces() {
 fn the_range_holds_what_a_shifted_zero_shows() {
     let narrow = || on("ac-trunnion").with("axis.A.travel", "[-120, 5]");
     let endless = narrow().made(&spiral()).words("C");
-    let shown = narrow()
-        .with("axis.C.zero", "100")
-        .with("axis.C.range", "[0, 360]");
+    let shown = narrow().with("axis.C.zero", "100").with("axis.C.range", "[0, 360]");
     let words = shown.made(&spiral()).words("C");
     assert!(words.iter().all(|word| (0.0..360.0).contains(word)));
     let last = |words: &[f64]| *words.last().unwrap();

@@ -157,9 +157,9 @@ impl Browser {
             let parameters = &event["params"];
             let loud = match event["method"].as_str().unwrap_or_default() {
                 "Runtime.exceptionThrown" => true,
-                "Runtime.consoleAPICalled" => ["error", "warning"]
-                    .iter()
-                    .any(|kind| parameters["type"] == *kind),
+                "Runtime.consoleAPICalled" => {
+                    ["error", "warning"].iter().any(|kind| parameters["type"] == *kind)
+                }
                 "Log.entryAdded" => parameters["entry"]["level"] == "error",
                 "Network.requestWillBeSent" => {
                     let url = parameters["request"]["url"].as_str().unwrap_or_default();

@@ -83,10 +83,7 @@ fn a_record_that_nobody_knows_never_changes_the_path() {
                 refusals += usize::from(!faults.is_empty());
                 let found = path(&beats);
                 let same = found.len() == expected.len()
-                    && found
-                        .iter()
-                        .zip(expected)
-                        .all(|(a, b)| (a - b).norm() < SAME);
+                    && found.iter().zip(expected).all(|(a, b)| (a - b).norm() < SAME);
                 if faults.is_empty() && !same {
                     wrong.push(format!("{name}:{} {reading}: {}", place + 1, lines[place]));
                 }
@@ -94,22 +91,13 @@ fn a_record_that_nobody_knows_never_changes_the_path() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(
-        renamings > 2_500 && sound > 30,
-        "{renamings} {refusals} {sound}"
-    );
+    assert!(renamings > 2_500 && sound > 30, "{renamings} {refusals} {sound}");
 }
 
 /// What the two readings find wrong where the user lets the word pass.
 fn with_allowed(text: &str, word: &str) -> [Vec<String>; 2] {
-    let how = How {
-        allowed: vec![word.to_owned()],
-        ..How::default()
-    };
-    [
-        posted(text.as_bytes(), &how).1,
-        course(text.as_bytes(), &how).1,
-    ]
+    let how = How { allowed: vec![word.to_owned()], ..How::default() };
+    [posted(text.as_bytes(), &how).1, course(text.as_bytes(), &how).1]
 }
 
 #[test]
@@ -134,10 +122,7 @@ fn what_may_be_a_move_cannot_be_allowed() {
         "PLUNGE/1",
     ];
     for record in moves {
-        let word: String = record
-            .chars()
-            .take_while(char::is_ascii_alphanumeric)
-            .collect();
+        let word: String = record.chars().take_while(char::is_ascii_alphanumeric).collect();
         for faults in with_allowed(&file(record), &word) {
             assert!(!faults.is_empty(), "{record}");
         }
@@ -146,11 +131,7 @@ fn what_may_be_a_move_cannot_be_allowed() {
     let head = file("").replace("LOADTL/1", "ZZYZX/1,2,3\nLOADTL/1");
     let tail = file("").replace("FINI", "ZZYZX/1,2,3\nFINI");
     for text in [file("ZZYZX/1,2"), head, tail] {
-        assert_eq!(
-            with_allowed(&text, "ZZYZX"),
-            [const { Vec::<String>::new() }; 2],
-            "{text}"
-        );
+        assert_eq!(with_allowed(&text, "ZZYZX"), [const { Vec::<String>::new() }; 2], "{text}");
         for faults in with_allowed(&text, "OTHER") {
             assert!(!faults.is_empty(), "{text}");
         }

@@ -14,11 +14,7 @@ fn both(text: &str, how: &How) -> Vec<Beat> {
 
 /// What both readings refuse it for.
 fn refused(text: &str, how: &How) -> [String; 2] {
-    [
-        posted(text.as_bytes(), how).1,
-        course(text.as_bytes(), how).1,
-    ]
-    .map(|faults| {
+    [posted(text.as_bytes(), how).1, course(text.as_bytes(), how).1].map(|faults| {
         assert!(!faults.is_empty(), "{text}");
         faults.join("; ")
     })
@@ -50,10 +46,7 @@ fn on_circle(
         assert!((arm.norm() - radius).abs() < 1e-9, "{point} {centre:?}");
     }
     let found = points[points.len() / 2];
-    assert!(
-        (found - Vector3::from(middle)).norm() < 1e-9,
-        "{found} {middle:?}"
-    );
+    assert!((found - Vector3::from(middle)).norm() < 1e-9, "{found} {middle:?}");
 }
 
 fn sample(name: &str) -> String {
@@ -62,10 +55,7 @@ fn sample(name: &str) -> String {
 
 /// The line, counted from 1, of the first record after the one that begins so.
 fn behind(text: &str, record: &str) -> u64 {
-    text.lines()
-        .position(|line| line.starts_with(record))
-        .unwrap() as u64
-        + 2
+    text.lines().position(|line| line.starts_with(record)).unwrap() as u64 + 2
 }
 
 const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -75,18 +65,8 @@ fn autodesks_arcs_are_circles() {
     let text = sample("lever.apt");
     let beats = both(&text, &How::default());
     for (record, centre, radius, middle) in [
-        (
-            "MOVARC/0, 0, 0,",
-            [0.0, 0.0, 0.0],
-            20.0,
-            [20.0 * HALF, 20.0 * HALF, 0.0],
-        ),
-        (
-            "MOVARC/-30,",
-            [-30.0, 30.0, 0.0],
-            10.0,
-            [-30.0 - 10.0 * HALF, 30.0 - 10.0 * HALF, 0.0],
-        ),
+        ("MOVARC/0, 0, 0,", [0.0, 0.0, 0.0], 20.0, [20.0 * HALF, 20.0 * HALF, 0.0]),
+        ("MOVARC/-30,", [-30.0, 30.0, 0.0], 10.0, [-30.0 - 10.0 * HALF, 30.0 - 10.0 * HALF, 0.0]),
         // A half turn: an arc before it has shown that axes are turned over.
         ("MOVARC/-50,", [-50.0, 30.0, 0.0], 10.0, [-50.0, 40.0, 0.0]),
         // A helix over three quarters.
@@ -97,13 +77,7 @@ fn autodesks_arcs_are_circles() {
             [-60.0 - 15.0 * HALF, -15.0 - 15.0 * HALF, -1.5],
         ),
     ] {
-        on_circle(
-            &through(&beats, behind(&text, record)),
-            centre,
-            2,
-            radius,
-            middle,
-        );
+        on_circle(&through(&beats, behind(&text, record)), centre, 2, radius, middle);
     }
     // ON stops the spindle.
     let said: Vec<&str> = beats
@@ -137,19 +111,11 @@ fn autodesks_cycles_count_from_the_bottom() {
     let heights: Vec<(bool, f64)> = beats
         .iter()
         .filter_map(|beat| match beat {
-            Beat::To {
-                line: at,
-                rapid,
-                tip,
-                ..
-            } if *at == line => Some((*rapid, tip.z)),
+            Beat::To { line: at, rapid, tip, .. } if *at == line => Some((*rapid, tip.z)),
             _ => None,
         })
         .collect();
-    assert_eq!(
-        heights,
-        [(true, 15.0), (true, 3.0), (false, -12.0), (true, 15.0)]
-    );
+    assert_eq!(heights, [(true, 15.0), (true, 3.0), (false, -12.0), (true, 15.0)]);
     // A plane below the stock, a leaning tool.
     for wrong in [
         text.replace("150, 15, RAPTO, 12", "150, -1, RAPTO, 12"),
@@ -186,11 +152,7 @@ fn catias_arcs_are_circles() {
             "INDIRV/    1.00000,    0.00000,    0.00000",
             "INDIRV",
         ),
-        (
-            "INDIRV/    0.00000,    1.00000,    0.00000",
-            "RAPID",
-            "sets out",
-        ),
+        ("INDIRV/    0.00000,    1.00000,    0.00000", "RAPID", "sets out"),
         (
             "\n    0.00000,  -20.00000,    0.00000)",
             "\n    0.00000,  -21.00000,    0.00000)",
@@ -203,11 +165,7 @@ fn catias_arcs_are_circles() {
             "(VECTOR/    0.00000,    0.00000,    1.00000))\n",
             "plane",
         ),
-        (
-            "12.0000,MMPM,  200.0000,    3.0000",
-            "12.0000,  200.0000,    3.0000",
-            "height",
-        ),
+        ("12.0000,MMPM,  200.0000,    3.0000", "12.0000,  200.0000,    3.0000", "height"),
     ] {
         let wrong = text.replacen(from, to, 1);
         assert_ne!(wrong, text, "{from}");
@@ -227,10 +185,7 @@ fn arc(before: &str, arc: &str, end: &str) -> String {
 #[test]
 fn an_arc_by_its_angle_says_its_way_or_is_refused() {
     let how = How::default();
-    let allowed = How {
-        allowed: vec!["MOVARC".to_owned()],
-        ..How::default()
-    };
+    let allowed = How { allowed: vec!["MOVARC".to_owned()], ..How::default() };
     for (axis, degrees, end, middle) in [
         ("0,0,1", "90", "0,10,0", [10.0 * HALF, 10.0 * HALF, 0.0]),
         ("0,0,-1", "270", "0,10,0", [-10.0 * HALF, -10.0 * HALF, 0.0]),
@@ -241,29 +196,19 @@ fn an_arc_by_its_angle_says_its_way_or_is_refused() {
             "0,0,1",
             "179",
             "-9.99848,0.17452,0",
-            [
-                10.0 * libm::cos(89.5_f64.to_radians()),
-                10.0 * libm::sin(89.5_f64.to_radians()),
-                0.0,
-            ],
+            [10.0 * libm::cos(89.5_f64.to_radians()), 10.0 * libm::sin(89.5_f64.to_radians()), 0.0],
         ),
     ] {
         let text = arc("", &format!("MOVARC/0,0,0,{axis},10,ANGLE,{degrees}"), end);
         let points = through(&both(&text, &how), 6);
         let found = points[points.len() / 2];
-        assert!(
-            (found - Vector3::from(middle)).norm() < 1e-3,
-            "{axis} {degrees}: {found}"
-        );
+        assert!((found - Vector3::from(middle)).norm() < 1e-3, "{axis} {degrees}: {found}");
     }
     let over = "MOVARC/0,0,0,0,0,-1,10,ANGLE,90\nGOTO/0,-10,0\nMOVARC/0,0,0,0,0,1,10,ANGLE,90\nGOTO/10,0,0\n";
     for (degrees, end) in [("180", "-10,0,0"), ("360", "10,0,0")] {
         let round = format!("MOVARC/0,0,0,0,0,1,10,ANGLE,{degrees}");
         for told in refused(&arc("", &round, end), &how) {
-            assert!(
-                told.contains("either way") || told.contains("both ways"),
-                "{told}"
-            );
+            assert!(told.contains("either way") || told.contains("both ways"), "{told}");
         }
         both(&arc("", &round, end), &allowed);
         both(&arc(over, &round, end), &how);
@@ -293,10 +238,8 @@ fn pecks_are_read_or_the_cycle_is_refused() {
         )
     };
     let pecks = |text: &str| {
-        let mut interpreter = Interpreter::new(Reading {
-            spindle: ToldSpindle::Still,
-            ..Reading::default()
-        });
+        let mut interpreter =
+            Interpreter::new(Reading { spindle: ToldSpindle::Still, ..Reading::default() });
         let mut reader = Reader::new(text.as_bytes());
         let mut down = Vec::new();
         while let Ok(Some(record)) = reader.next_record() {
@@ -322,19 +265,13 @@ fn pecks_are_read_or_the_cycle_is_refused() {
         both(&text, &How::default());
         assert_eq!(pecks(&text), [-5.0, -9.0, -12.0], "{form}");
     }
-    assert_eq!(
-        pecks(&file("DEEP,12,INCR,5,MMPM,100,2")),
-        [-5.0, -10.0, -12.0]
-    );
+    assert_eq!(pecks(&file("DEEP,12,INCR,5,MMPM,100,2")), [-5.0, -10.0, -12.0]);
     for kind in ["DEEP", "DEEP2", "DEEPHL", "BRKCHP", "CHIP"] {
         let text = file(&format!("DRILL,{kind},FEDTO,12,MMPM,100,RAPTO,2"));
         for told in refused(&text, &How::default()) {
             assert!(told.contains("without a peck"), "{told}");
         }
-        let how = How {
-            allowed: vec![kind.to_owned()],
-            ..How::default()
-        };
+        let how = How { allowed: vec![kind.to_owned()], ..How::default() };
         both(&text, &how);
     }
     // Creo's form by position: no number says which it is.

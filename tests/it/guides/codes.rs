@@ -37,19 +37,14 @@ fn first_code(source: &str) -> Option<&str> {
     let mut rest = source.trim_start();
     if !rest.starts_with('"') {
         let (name, behind) = rest.split_once(',')?;
-        if !name
-            .chars()
-            .all(|letter| letter.is_alphanumeric() || "_&.*".contains(letter))
-        {
+        if !name.chars().all(|letter| letter.is_alphanumeric() || "_&.*".contains(letter)) {
             return None;
         }
         rest = behind.trim_start();
     }
     let text = rest.strip_prefix('"')?.split('"').next()?;
-    let is_code = !text.is_empty()
-        && text
-            .chars()
-            .all(|letter| letter.is_ascii_lowercase() || letter == '-');
+    let is_code =
+        !text.is_empty() && text.chars().all(|letter| letter.is_ascii_lowercase() || letter == '-');
     is_code.then_some(text)
 }
 
@@ -76,11 +71,8 @@ fn every_code_is_explained_and_every_explained_code_is_said() {
     assert!(said.len() > 140, "{}", said.len());
     let told = post(&["explain"]);
     assert_eq!((told.code, told.err.as_str()), (0, ""));
-    let explained: BTreeSet<&str> = told
-        .out
-        .lines()
-        .filter(|line| !line.is_empty() && !line.contains(' '))
-        .collect();
+    let explained: BTreeSet<&str> =
+        told.out.lines().filter(|line| !line.is_empty() && !line.contains(' ')).collect();
     for (code, path) in &said {
         assert!(
             explained.contains(code.as_str()),
@@ -101,12 +93,7 @@ fn a_code_is_explained_as_it_stands_in_a_message() {
     let told = post(&["explain", "over-travel"]);
     assert_eq!((told.code, told.err.as_str()), (0, ""));
     // Posting says it, and so does holding a program against its CL file.
-    assert_eq!(
-        told.out.matches("\nover-travel\n").count(),
-        2,
-        "{}",
-        told.out
-    );
+    assert_eq!(told.out.matches("\nover-travel\n").count(), 2, "{}", told.out);
     for code in ["error[over-travel]", "error[over-travel]:", "[over-travel]"] {
         assert_eq!(post(&["explain", code]), told);
     }

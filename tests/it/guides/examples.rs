@@ -11,13 +11,8 @@ use crate::common::{command_as, root};
 use crate::guides::page::{Part, language, pages, parts, sources, told, updating, write};
 
 /// What the folder of a page has.
-const COPIED: [&str; 5] = [
-    "machines",
-    "tests/samples",
-    "tests/curves",
-    "tests/papers",
-    "tests/measured",
-];
+const COPIED: [&str; 5] =
+    ["machines", "tests/samples", "tests/curves", "tests/papers", "tests/measured"];
 
 /// A folder like the checkout's, of which a reader may write in any part.
 fn folder() -> TempDir {
@@ -39,11 +34,7 @@ fn folder() -> TempDir {
 fn run(folder: &Path, line: &str) -> (String, i32) {
     let built = Path::new(env!("CARGO_BIN_EXE_post")).parent().unwrap();
     let others = env::var_os("PATH").unwrap_or_default();
-    let path = env::join_paths(
-        [built.to_owned()]
-            .into_iter()
-            .chain(env::split_paths(&others)),
-    );
+    let path = env::join_paths([built.to_owned()].into_iter().chain(env::split_paths(&others)));
     let mut shell: Command = command_as("sh");
     let output = shell
         .current_dir(folder)

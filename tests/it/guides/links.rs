@@ -23,10 +23,7 @@ fn text_of(path: &Path) -> String {
     let text = fs::read_to_string(path).unwrap();
     let mut whole = String::new();
     for line in text.lines() {
-        match line
-            .strip_prefix("{{#include ")
-            .and_then(|line| line.strip_suffix("}}"))
-        {
+        match line.strip_prefix("{{#include ").and_then(|line| line.strip_suffix("}}")) {
             Some(file) if !file.contains(':') => {
                 whole.push_str(&text_of(&path.parent().unwrap().join(file)));
             }
@@ -171,11 +168,7 @@ fn every_link_leads_somewhere() {
 #[test]
 fn the_contents_have_every_page_once() {
     let summary = fs::read_to_string(sources().join("SUMMARY.md")).unwrap();
-    let mut listed: Vec<PathBuf> = summary
-        .lines()
-        .flat_map(targets)
-        .map(PathBuf::from)
-        .collect();
+    let mut listed: Vec<PathBuf> = summary.lines().flat_map(targets).map(PathBuf::from).collect();
     listed.sort();
     let mut there = pages();
     there.retain(|page| page != Path::new("SUMMARY.md"));

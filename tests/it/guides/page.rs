@@ -39,11 +39,7 @@ pub enum Part<'a> {
     /// Lines outside of fenced blocks, and the fences.
     Text(Vec<&'a str>),
     /// The lines of a fenced block, with what stands behind its fence and the page's line of its first line.
-    Block {
-        info: &'a str,
-        line: usize,
-        lines: Vec<&'a str>,
-    },
+    Block { info: &'a str, line: usize, lines: Vec<&'a str> },
 }
 
 /// A page as text and blocks in turns: all lines are in it, in order.
@@ -60,9 +56,7 @@ pub fn parts(text: &str) -> Vec<Part<'_>> {
             }
             None if ticks >= 3 => {
                 fence = Some(ticks);
-                let Some(Part::Text(lines)) = parts.last_mut() else {
-                    unreachable!()
-                };
+                let Some(Part::Text(lines)) = parts.last_mut() else { unreachable!() };
                 lines.push(line);
                 parts.push(Part::Block {
                     info: &line[ticks..],
@@ -83,8 +77,7 @@ pub fn parts(text: &str) -> Vec<Part<'_>> {
 
 /// What `key=` says behind a fence.
 pub fn told<'a>(info: &'a str, key: &str) -> Option<&'a str> {
-    info.split(',')
-        .find_map(|word| word.trim().strip_prefix(key)?.strip_prefix('='))
+    info.split(',').find_map(|word| word.trim().strip_prefix(key)?.strip_prefix('='))
 }
 
 /// The language of a block.
@@ -104,13 +97,9 @@ pub fn write(path: &Path, text: &str) {
 fn a_page_is_taken_apart() {
     let page = "A\n```console,exit=1\n$ b\n```\nC\n````md\n```sh\nd\n```\n````\n";
     let parts = parts(page);
-    let Part::Block { info, line, lines } = &parts[1] else {
-        panic!("{parts:?}")
-    };
+    let Part::Block { info, line, lines } = &parts[1] else { panic!("{parts:?}") };
     assert_eq!((language(info), told(info, "exit")), ("console", Some("1")));
     assert_eq!((*line, lines.as_slice()), (3, &["$ b"][..]));
-    let Part::Block { lines, .. } = &parts[3] else {
-        panic!("{parts:?}")
-    };
+    let Part::Block { lines, .. } = &parts[3] else { panic!("{parts:?}") };
     assert_eq!(lines, &["```sh", "d", "```"]);
 }

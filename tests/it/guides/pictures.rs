@@ -29,13 +29,7 @@ const fn picture(
     keys: &'static [&'static str],
     dark: bool,
 ) -> Picture {
-    Picture {
-        name,
-        file,
-        arguments,
-        keys,
-        dark,
-    }
+    Picture { name, file, arguments, keys, dark }
 }
 
 const BLADE: &str = "tests/samples/blade.cls";
@@ -56,63 +50,21 @@ const ROUGH: &str = "creo3x_MichaHofft_schruppen_1.ncl";
 const ON_ROUGH: &str = "-m vmc --tool-length 80";
 
 const PICTURES: &[Picture] = &[
-    picture(
-        "report-light",
-        BLADE,
-        ON_BLADE,
-        &["x", "m", "-", "-"],
-        false,
-    ),
+    picture("report-light", BLADE, ON_BLADE, &["x", "m", "-", "-"], false),
     picture("report-dark", BLADE, ON_BLADE, &["x", "m", "-", "-"], true),
     picture("report-path", BLADE, ON_BLADE, &["x", "2", "2"], false),
     picture("report-charts", S_PIECE, ON_S, &["x", "5", "5"], false),
-    picture(
-        "job-finish-light",
-        FINISH,
-        ON_FINISH,
-        &["x", "m", "-", "-"],
-        false,
-    ),
+    picture("job-finish-light", FINISH, ON_FINISH, &["x", "m", "-", "-"], false),
     picture("job-finish-dark", FINISH, ON_FINISH, &["x"], true),
     picture("job-leaning-light", LEANING, ON_LEANING, &["x"], false),
-    picture(
-        "job-leaning-dark",
-        LEANING,
-        ON_LEANING,
-        &["x", "m", "-", "-"],
-        true,
-    ),
+    picture("job-leaning-dark", LEANING, ON_LEANING, &["x", "m", "-", "-"], true),
     picture("job-nurbs-light", NURBS, ON_NURBS, &["x"], false),
-    picture(
-        "job-nurbs-dark",
-        NURBS,
-        ON_NURBS,
-        &["x", "m", "-", "-"],
-        true,
-    ),
-    picture(
-        "job-indexed-light",
-        INDEXED,
-        ON_INDEXED,
-        &["x", "m", "-", "-"],
-        false,
-    ),
+    picture("job-nurbs-dark", NURBS, ON_NURBS, &["x", "m", "-", "-"], true),
+    picture("job-indexed-light", INDEXED, ON_INDEXED, &["x", "m", "-", "-"], false),
     picture("job-indexed-dark", INDEXED, ON_INDEXED, &["x"], true),
     picture("job-probe-light", HEADS, ON_HEADS, &["x"], false),
-    picture(
-        "job-probe-dark",
-        HEADS,
-        ON_HEADS,
-        &["x", "m", "-", "-"],
-        true,
-    ),
-    picture(
-        "job-rough-light",
-        ROUGH,
-        ON_ROUGH,
-        &["x", "m", "-", "-"],
-        false,
-    ),
+    picture("job-probe-dark", HEADS, ON_HEADS, &["x", "m", "-", "-"], true),
+    picture("job-rough-light", ROUGH, ON_ROUGH, &["x", "m", "-", "-"], false),
     picture("job-rough-dark", ROUGH, ON_ROUGH, &["x"], true),
 ];
 
@@ -146,10 +98,8 @@ fn bytes_of(base64: &str) -> Vec<u8> {
 /// The page as it looks, WebP of at most [`LARGEST`] bytes.
 fn taken(browser: &mut Browser) -> Vec<u8> {
     for quality in [86, 78, 70, 60, 50] {
-        let picture = browser.send(
-            "Page.captureScreenshot",
-            &json!({"format": "webp", "quality": quality}),
-        );
+        let picture =
+            browser.send("Page.captureScreenshot", &json!({"format": "webp", "quality": quality}));
         let bytes = bytes_of(picture["data"].as_str().unwrap());
         if bytes.len() as u64 <= LARGEST {
             return bytes;
@@ -206,8 +156,6 @@ fn every_picture_is_there_and_small() {
     // Others take pictures of the editor.
     let there = fs::read_dir(folder()).unwrap();
     let ours = |path: &Path| path.extension().is_some_and(|end| end == "webp");
-    let there = there
-        .filter(|entry| ours(&entry.as_ref().unwrap().path()))
-        .count();
+    let there = there.filter(|entry| ours(&entry.as_ref().unwrap().path())).count();
     assert_eq!(there, PICTURES.len(), "a picture that nobody takes");
 }

@@ -78,10 +78,7 @@ fn the_page_of_commands_is_their_help() {
         let _ = write!(
             text,
             "\n## {name}\n\n```text\n{}\n```\n",
-            help.lines()
-                .map(str::trim_end)
-                .collect::<Vec<_>>()
-                .join("\n")
+            help.lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
         );
         help
     };
@@ -135,9 +132,7 @@ fn the_page_of_dialects_is_what_plugins_declare() {
         let _ = write!(text, "\n## {name}\n\n{}.", cell(title));
         let mut in_table = false;
         while let Some(line) = lines.next() {
-            let option = line
-                .strip_prefix("  ")
-                .and_then(|row| row.split_once(" = "));
+            let option = line.strip_prefix("  ").and_then(|row| row.split_once(" = "));
             match option {
                 Some((key, rest)) if in_table => {
                     let (default, takes) = rest.split_once("    # ").unwrap();
@@ -229,11 +224,7 @@ fn takes(schema: &Value, all: &Value) -> String {
         _ => Vec::new(),
     };
     let bound = |key: &str| schema[key].as_f64();
-    let range = match (
-        bound("minimum"),
-        bound("maximum"),
-        bound("exclusiveMinimum"),
-    ) {
+    let range = match (bound("minimum"), bound("maximum"), bound("exclusiveMinimum")) {
         (Some(least), Some(most), _) => format!(", {least} to {most}"),
         (Some(least), None, _) => format!(", from {least}"),
         (_, Some(most), Some(above)) => format!(", above {above}, to {most}"),
@@ -300,18 +291,11 @@ fn table(name: &str, what: &str, schema: &Value, all: &Value, text: &mut String)
             continue;
         }
         let inner = |path: String| {
-            if path.is_empty() {
-                key.to_string()
-            } else {
-                format!("{path}.{key}")
-            }
+            if path.is_empty() { key.to_string() } else { format!("{path}.{key}") }
         };
         let path = name.trim_matches(['[', ']']);
-        let path = inner(if path == "The top of the file" {
-            String::new()
-        } else {
-            path.to_owned()
-        });
+        let path =
+            inner(if path == "The top of the file" { String::new() } else { path.to_owned() });
         let mut value = takes(schema, all);
         if schema["properties"].is_object() {
             let name = format!("[{path}]");

@@ -105,11 +105,7 @@ fn theirs(file: &Path) -> Option<Vec<End>> {
         eprintln!("skipped: {}", String::from_utf8_lossy(&done.stderr));
         return None;
     }
-    assert!(
-        done.status.success(),
-        "{}",
-        String::from_utf8_lossy(&done.stderr)
-    );
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     let text = String::from_utf8_lossy(&done.stdout).into_owned();
     let ends = text.lines().filter_map(|line| {
         let (word, values) = line.split_once('(')?;
@@ -117,9 +113,7 @@ fn theirs(file: &Path) -> Option<Vec<End>> {
         if !rapid && !word.ends_with("STRAIGHT_FEED") {
             return None;
         }
-        let mut values = values
-            .split(',')
-            .map(|value| value.trim().parse::<f64>().unwrap());
+        let mut values = values.split(',').map(|value| value.trim().parse::<f64>().unwrap());
         Some((std::array::from_fn(|_| values.next().unwrap()), rapid))
     });
     Some(ends.collect())
@@ -134,23 +128,14 @@ fn ours(file: &Path) -> Vec<End> {
             .arg(file),
         b"",
     );
-    assert_eq!(
-        done.code,
-        0,
-        "{}\n{}",
-        done.err,
-        fs::read_to_string(file).unwrap()
-    );
+    assert_eq!(done.code, 0, "{}\n{}", done.err, fs::read_to_string(file).unwrap());
     let mut lines = done.out.lines();
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
     let column = |name: &str| header.iter().position(|known| *known == name).unwrap();
     let (tip, kind) = (["tip_x", "tip_y", "tip_z"].map(column), column("kind"));
     let ends = lines.map(|row| {
         let fields: Vec<&str> = row.split(',').collect();
-        (
-            tip.map(|place| fields[place].parse().unwrap()),
-            fields[kind] == "rapid",
-        )
+        (tip.map(|place| fields[place].parse().unwrap()), fields[kind] == "rapid")
     });
     ends.collect()
 }
@@ -160,10 +145,8 @@ fn moving(ends: Vec<End>) -> Vec<End> {
     let mut at = [f64::NAN; 3];
     let mut kept = Vec::new();
     for (end, rapid) in ends {
-        let moves = end
-            .iter()
-            .zip(&at)
-            .any(|(to, from)| from.is_nan() || (to - from).abs() > PRINTED);
+        let moves =
+            end.iter().zip(&at).any(|(to, from)| from.is_nan() || (to - from).abs() > PRINTED);
         if moves {
             kept.push((end, rapid));
         }
@@ -181,11 +164,7 @@ fn agree(name: &str, program: &str) -> bool {
     };
     let (theirs, ours) = (moving(theirs), moving(ours(&file)));
     for (place, (their, our)) in theirs.iter().zip(&ours).enumerate() {
-        let near = their
-            .0
-            .iter()
-            .zip(&our.0)
-            .all(|(a, b)| (a - b).abs() <= PRINTED);
+        let near = their.0.iter().zip(&our.0).all(|(a, b)| (a - b).abs() <= PRINTED);
         assert!(
             near && their.1 == our.1,
             "motion {place}: {their:?} there, {our:?} here\n{program}"

@@ -58,17 +58,12 @@ fn descent(machine: &Machine, rows: &[Row], moved: Vector3<f64>) -> [f64; 2] {
     // The block that comes to the point, at rapid or at feed, is the one in force shortly before.
     let near = |row: &&Row| (stands(row) - point).norm() < NEARLY;
     let line = rows.iter().find(near).unwrap().line;
-    let down: Vec<Vector3<f64>> = (rows.iter())
-        .filter(|row| row.line == line)
-        .map(stands)
-        .collect();
+    let down: Vec<Vector3<f64>> =
+        (rows.iter()).filter(|row| row.line == line).map(stands).collect();
     let last = down[down.len() - 1];
     let aside = |tip: &Vector3<f64>| (tip - point).cross(&way).norm();
     assert!((last - point).norm() < SIDEWAYS, "{last}");
-    [
-        (down[0] - last).norm(),
-        down.iter().map(aside).fold(0.0, f64::max),
-    ]
+    [(down[0] - last).norm(), down.iter().map(aside).fold(0.0, f64::max)]
 }
 
 #[test]
@@ -80,10 +75,7 @@ fn the_tip_comes_in_along_the_tool_wherever_the_part_is() {
         let folder = tempfile::tempdir().unwrap();
         let program = posted(machine, folder.path());
         for moved in [Vector3::zeros(), Vector3::new(40.0, 20.0, -15.0)] {
-            let begin = Begin {
-                moved,
-                ..Begin::aside(machine)
-            };
+            let begin = Begin { moved, ..Begin::aside(machine) };
             let good = run_until_good(machine, &program, &begin, |rows| {
                 let [way, aside] = descent(machine, rows, moved);
                 println!("{}: {aside:.3} mm aside on {way:.3} mm down", machine.file);
@@ -106,19 +98,10 @@ type LineEnd = (usize, [f64; 15]);
 fn course(rows: &[Row]) -> Vec<LineEnd> {
     let mut course: Vec<LineEnd> = Vec::new();
     for row in rows.iter().filter(|row| row.feed || row.arc) {
-        let at = [
-            row.linear.x,
-            row.linear.y,
-            row.linear.z,
-            row.rotary[0],
-            row.rotary[1],
-        ];
+        let at = [row.linear.x, row.linear.y, row.linear.z, row.rotary[0], row.rotary[1]];
         if course.last().is_none_or(|(line, _)| *line != row.line) {
             let [x, y, z, tilt, c] = at;
-            course.push((
-                row.line,
-                [x, y, z, tilt, c, x, y, z, tilt, c, x, y, z, tilt, c],
-            ));
+            course.push((row.line, [x, y, z, tilt, c, x, y, z, tilt, c, x, y, z, tilt, c]));
         }
         if let Some((_, seen)) = course.last_mut() {
             for (place, value) in at.into_iter().enumerate() {
@@ -150,12 +133,7 @@ fn what_the_program_before_left_in_force_changes_nothing() {
         (&["G92 X7 Y-3 Z5"], false),
         (&["G90.1", "G20", "G92 X1", "G18", "G91"], true),
     ] {
-        let begin = Begin {
-            tcp_on,
-            moved,
-            left: left.to_vec(),
-            ..Begin::aside(machine)
-        };
+        let begin = Begin { tcp_on, moved, left: left.to_vec(), ..Begin::aside(machine) };
         let mut found = std::cell::RefCell::new(Vec::new());
         let good = run_until_good(machine, &program, &begin, |rows| {
             let course = course(rows);
@@ -165,19 +143,14 @@ fn what_the_program_before_left_in_force_changes_nothing() {
             }
             let off = |(one, other): (&LineEnd, &LineEnd)| {
                 let apart = one.1.iter().zip(&other.1).map(|(a, b)| (a - b).abs());
-                if one.0 == other.0 {
-                    apart.fold(0.0, f64::max)
-                } else {
-                    f64::INFINITY
-                }
+                if one.0 == other.0 { apart.fold(0.0, f64::max) } else { f64::INFINITY }
             };
             let most = clean.iter().zip(&course).map(off).fold(0.0, f64::max);
             match clean.len() == course.len() && most < 0.2 {
                 true => Ok(()),
-                false => Err(format!(
-                    "behind {left:?}: {most} mm or ° off, {} lines",
-                    course.len()
-                )),
+                false => {
+                    Err(format!("behind {left:?}: {most} mm or ° off, {} lines", course.len()))
+                }
             }
         });
         if good.is_none() {

@@ -69,9 +69,7 @@ struct Told {
 /// What `post read` says of a program.
 fn told(machine: &Machine, folder: &Path, program: &str) -> Vec<Told> {
     let done = run(
-        command()
-            .current_dir(folder)
-            .args(["read", "-m", "fast.toml", program, "--csv", "-"]),
+        command().current_dir(folder).args(["read", "-m", "fast.toml", program, "--csv", "-"]),
         b"",
     );
     assert_eq!(done.code, 0, "{}", done.err);
@@ -108,11 +106,7 @@ fn from_piece(place: &[f64; 5], from: &Row, to: &Row) -> f64 {
     let way: [f64; 5] = std::array::from_fn(|index| to[index] - from[index]);
     let arm: [f64; 5] = std::array::from_fn(|index| place[index] - from[index]);
     let square = dot(&way, &way);
-    let share = if square > 0.0 {
-        (dot(&arm, &way) / square).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
+    let share = if square > 0.0 { (dot(&arm, &way) / square).clamp(0.0, 1.0) } else { 0.0 };
     let off: [f64; 5] = std::array::from_fn(|index| arm[index] - way[index] * share);
     dot(&off, &off).sqrt()
 }
@@ -149,10 +143,10 @@ fn cuts_are_told(machine: &Machine, told: &[Told], rows: &[Row]) -> Result<(), S
         .map(|pair| pair[1].line)
         .collect();
     // The joints come some milliseconds behind the motion that LinuxCNC names.
-    for stretch in rows.windows(LAG).filter(|rows| {
-        rows.iter()
-            .all(|row| row.feed && !switched.contains(&row.line))
-    }) {
+    for stretch in rows
+        .windows(LAG)
+        .filter(|rows| rows.iter().all(|row| row.feed && !switched.contains(&row.line)))
+    {
         let row = &stretch[LAG - 1];
         let [tilt, c] = row.rotary.map(f64::to_radians);
         let (tip, _) = (machine.law)(row.linear, tilt, c, row.length);
@@ -225,9 +219,8 @@ fn words_of_every_kind_are_read_as_they_are_run() {
         let told = told(machine, folder.path(), "words.ngc");
         let program = folder.path().join("words.ngc");
         let begin = Begin::at("Z=-5");
-        let good = run_until_good(machine, &program, &begin, |rows| {
-            ends_are_met(machine, &told, rows)
-        });
+        let good =
+            run_until_good(machine, &program, &begin, |rows| ends_are_met(machine, &told, rows));
         if good.is_none() {
             return;
         }
@@ -243,20 +236,15 @@ fn programs_of_others_are_read_as_they_are_run() {
     let machine = &MACHINES[0];
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("fast.toml"), fast(machine)).unwrap();
-    for name in [
-        "linuxcnc_xyzac_switchkins_test_3.ngc",
-        "linuxcnc_boat-xyzac.ngc",
-    ] {
+    for name in ["linuxcnc_xyzac_switchkins_test_3.ngc", "linuxcnc_boat-xyzac.ngc"] {
         // The feed has nothing to do with where it goes, and a run takes the program's own time; on exact paths every
         // end is come to.
         let text = fs::read_to_string(data.join(name)).unwrap();
         let words = text.lines().map(|line| {
-            let words = line
-                .split_whitespace()
-                .map(|word| match word.strip_prefix('F') {
-                    Some(feed) if feed.parse::<f64>().is_ok() => "F12000",
-                    _ => word,
-                });
+            let words = line.split_whitespace().map(|word| match word.strip_prefix('F') {
+                Some(feed) if feed.parse::<f64>().is_ok() => "F12000",
+                _ => word,
+            });
             words.collect::<Vec<_>>().join(" ")
         });
         let mut lines: Vec<String> = words.collect();

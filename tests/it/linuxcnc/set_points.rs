@@ -10,10 +10,8 @@ use super::*;
 /// between a line and an arc at different feeds, and how fast a move begins on which rotary axes alone turn where a tolerance
 /// bounds the overlap.
 const CYCLE: f64 = 0.02;
-const APART: [(&str, &str, f64); 2] = [
-    ("lines and arcs", "G93 G64", 0.10),
-    ("kept tip", "G94 G64 P0.05", 0.03),
-];
+const APART: [(&str, &str, f64); 2] =
+    [("lines and arcs", "G93 G64", 0.10), ("kept tip", "G94 G64 P0.05", 0.03)];
 
 /// Durations of blocks, s.
 const BLOCK: f64 = 0.010;
@@ -63,14 +61,7 @@ linear = [0, 0, 1]
 
 /// A trunnion table whose tip is kept, the tip of a tool of 40 mm on the table's centre at 20 mm.
 const TRUNNION: Rig = Rig {
-    theirs: &[
-        "--machine",
-        "xyzac-trt",
-        "--tool",
-        "1=40",
-        "--start",
-        "Z=60",
-    ],
+    theirs: &["--machine", "xyzac-trt", "--tool", "1=40", "--start", "Z=60"],
     ours: r#"extends = "xyzac-trt"
 [tools]
 1 = 40
@@ -95,10 +86,7 @@ impl Rig {
             axis.as_table_mut().unwrap().extend(limits);
         }
         let motion = "limits = \"programmed\"\nrapids = \"among-rapids\"\nblend = \"overlap\"";
-        table.insert(
-            "motion".to_owned(),
-            motion.parse::<toml::Table>().unwrap().into(),
-        );
+        table.insert("motion".to_owned(), motion.parse::<toml::Table>().unwrap().into());
         table.to_string()
     }
 
@@ -107,22 +95,8 @@ impl Rig {
         let out = program.with_extension("csv");
         let mut linuxcnc = Command::new(shared("linuxcnc/run")?);
         linuxcnc.arg(program).args(self.theirs);
-        linuxcnc.args([
-            "--max-feed",
-            "X=12000",
-            "Y=12000",
-            "Z=12000",
-            "A=3600",
-            "C=3600",
-        ]);
-        linuxcnc.args([
-            "--max-accel",
-            "X=1000",
-            "Y=1000",
-            "Z=1000",
-            "A=300",
-            "C=300",
-        ]);
+        linuxcnc.args(["--max-feed", "X=12000", "Y=12000", "Z=12000", "A=3600", "C=3600"]);
+        linuxcnc.args(["--max-accel", "X=1000", "Y=1000", "Z=1000", "A=300", "C=300"]);
         linuxcnc.args(["--limits", "X=-300:300", "Y=-300:300", "Z=-300:300"]);
         let done = linuxcnc.arg("-o").arg(&out).output().unwrap();
         let said = String::from_utf8_lossy(&done.stderr);
@@ -148,11 +122,7 @@ fn points(text: &str, time: &str) -> Vec<Point> {
     let rows = lines.map(|row| {
         let fields: Vec<&str> = row.split(',').collect();
         let number = |place: usize| fields[place].parse::<f64>().unwrap();
-        Point {
-            time: number(time),
-            axes: axes.map(number),
-            line: number(line) as u64,
-        }
+        Point { time: number(time), axes: axes.map(number), line: number(line) as u64 }
     });
     let rows: Vec<Point> = rows.collect();
     let apart = |a: &Point, b: &Point| {
@@ -161,18 +131,10 @@ fn points(text: &str, time: &str) -> Vec<Point> {
     };
     let first = rows.iter().position(|row| apart(row, &rows[0])).unwrap() - 1;
     let end = rows.len() - 1;
-    let last = (0..=end)
-        .rev()
-        .find(|at| apart(&rows[*at], &rows[end]))
-        .unwrap()
-        + 1;
+    let last = (0..=end).rev().find(|at| apart(&rows[*at], &rows[end])).unwrap() + 1;
     let start = rows[first].time;
     let rows = rows[first..=last].iter().copied();
-    rows.map(|row| Point {
-        time: row.time - start,
-        ..row
-    })
-    .collect()
+    rows.map(|row| Point { time: row.time - start, ..row }).collect()
 }
 
 /// The largest distance of a recorded row from the predicted path, mm and degrees alike.
@@ -192,12 +154,7 @@ fn off_path(theirs: &[Point], ours: &[Point]) -> f64 {
     for row in theirs {
         let near = at.saturating_sub(60).max(1)..(at + 300).min(ours.len());
         let nearest = near
-            .map(|place| {
-                (
-                    distance(&row.axes, &ours[place - 1].axes, &ours[place].axes),
-                    place,
-                )
-            })
+            .map(|place| (distance(&row.axes, &ours[place - 1].axes, &ours[place].axes), place))
             .min_by(|a, b| a.0.total_cmp(&b.0));
         let (off, place) = nearest.unwrap();
         (at, worst) = (place, worst.max(off));
@@ -214,17 +171,11 @@ fn durations(rows: &[Point]) -> Vec<(u64, f64)> {
         }
     }
     let end = rows.last().unwrap().time;
-    let ends: Vec<f64> = lines
-        .iter()
-        .skip(1)
-        .map(|line| line.1)
-        .chain([end])
-        .collect();
+    let ends: Vec<f64> = lines.iter().skip(1).map(|line| line.1).chain([end]).collect();
     // The first row stands before the first line.
     let begin = |place: usize, time: f64| if place == 0 { 0.0 } else { time };
     let each = lines.iter().zip(ends).enumerate();
-    each.map(|(place, ((line, time), ends))| (*line, ends - begin(place, *time)))
-        .collect()
+    each.map(|(place, ((line, time), ends))| (*line, ends - begin(place, *time))).collect()
 }
 
 /// Runs a program under `mode` in both; the path may differ by `path` µm. Blocks are compared under G61.
@@ -236,9 +187,7 @@ fn agrees(rig: &Rig, name: &str, mode: &str, path: f64, program: &str) {
     let file = folder.path().join("part.ngc");
     fs::write(&file, format!("G21 G90 {mode}\n{program}M2\n")).unwrap();
     fs::write(folder.path().join("own.toml"), rig.machine()).unwrap();
-    let arguments = [
-        "predict", "part.ngc", "-m", "own.toml", "--csv", "ours.csv", "-q",
-    ];
+    let arguments = ["predict", "part.ngc", "-m", "own.toml", "--csv", "ours.csv", "-q"];
     let done = run(command().current_dir(folder.path()).args(arguments), b"");
     assert_eq!(done.code, 0, "{name} {mode}: {}", done.err);
     let text = fs::read_to_string(folder.path().join("ours.csv")).unwrap();
@@ -286,9 +235,7 @@ fn judge_points(
         100.0 * (own / other - 1.0),
     );
     eprintln!("{all}");
-    let known = APART
-        .iter()
-        .find(|known| (known.0, known.1) == (name, mode));
+    let known = APART.iter().find(|known| (known.0, known.1) == (name, mode));
     let cycle = known.map_or(CYCLE, |known| known.2);
     match (own / other - 1.0).abs() <= cycle && off <= path && worst <= BLOCK {
         true => Ok(()),
@@ -301,16 +248,10 @@ fn inverse_time(program: &str) -> String {
     let times = [150, 220, 90, 300].iter().cycle();
     let mut times = times.map(|time| format!(" F{time}"));
     let line = |line: &str| {
-        let cuts = ["G1 ", "G2 ", "G3 "]
-            .iter()
-            .any(|word| line.starts_with(word));
+        let cuts = ["G1 ", "G2 ", "G3 "].iter().any(|word| line.starts_with(word));
         let words = line.split(' ').filter(|word| !word.starts_with('F'));
         let words: Vec<&str> = words.collect();
-        let time = if cuts {
-            times.next().unwrap()
-        } else {
-            String::new()
-        };
+        let time = if cuts { times.next().unwrap() } else { String::new() };
         words.join(" ") + &time + "\n"
     };
     program.lines().map(line).collect()
@@ -374,11 +315,7 @@ fn short_blocks() -> String {
     for block in 1..=40 {
         let w = f64::from(block) / 60.0 * std::f64::consts::PI;
         let turned = [-20.0 * libm::sin(w / 2.0), 30.0 * w / std::f64::consts::PI];
-        let tip = [
-            10.0 * libm::cos(w),
-            10.0 * libm::sin(w),
-            20.0 + 2.0 * libm::sin(2.0 * w),
-        ];
+        let tip = [10.0 * libm::cos(w), 10.0 * libm::sin(w), 20.0 + 2.0 * libm::sin(2.0 * w)];
         program += &format!(
             "G1 X{:.4} Y{:.4} Z{:.4} A{:.4} C{:.4}\n",
             tip[0], tip[1], tip[2], turned[0], turned[1]

@@ -23,22 +23,12 @@ FINI
 fn what_cannot_be_read_is_told_in_utf_16_columns() {
     let mut client = Client::new(&[], &json!({}));
     let uri = "file:///nowhere/part.cls";
-    client.open(
-        uri,
-        "plaintext",
-        "PPRINT 𝄞\nGOTO/1,2\nFEDRATE/5,MMPM\nGOTO/1,2,x\n",
-    );
+    client.open(uri, "plaintext", "PPRINT 𝄞\nGOTO/1,2\nFEDRATE/5,MMPM\nGOTO/1,2,x\n");
     let found = client.findings(uri, 1);
     let places = told(&found);
     assert_eq!(places.len(), 3, "{found:#?}");
-    assert!(
-        places.contains(&"unknown-word 2:0-7".to_owned()),
-        "{places:?}"
-    );
-    let word = found
-        .iter()
-        .find(|finding| finding["code"] == "unknown-word")
-        .unwrap();
+    assert!(places.contains(&"unknown-word 2:0-7".to_owned()), "{places:?}");
+    let word = found.iter().find(|finding| finding["code"] == "unknown-word").unwrap();
     assert_contains(&word["message"].to_string(), &["did you mean `FEDRAT`?"]);
     // What stands behind a letter of two units.
     let text = "GOTO/1,2,\u{1D11E}x\n";
@@ -67,9 +57,7 @@ fn operations_and_tools_are_found_and_folded() {
         .collect();
     assert_eq!(names, ["BLADE_FINISH", "tool 3"]);
     let folds = client.ask("textDocument/foldingRange", of);
-    let end = text
-        .lines()
-        .position(|line| line.starts_with("END-OF-PATH"));
+    let end = text.lines().position(|line| line.starts_with("END-OF-PATH"));
     assert_eq!(
         folds["result"],
         json!([{ "startLine": 0, "endLine": end.unwrap(), "kind": "region" }])
@@ -96,10 +84,7 @@ fn axis_values_and_deviation_are_those_of_the_chosen_machine() {
     }
     // The tool leans by 10 degrees away from -Y, whichever of the two solutions is taken.
     assert_contains(&said, &["X ", " C ", "certified: tip ", "block"]);
-    assert!(
-        said.contains("A -10.000°") || said.contains("A 10.000°"),
-        "{said}"
-    );
+    assert!(said.contains("A -10.000°") || said.contains("A 10.000°"), "{said}");
     // The first line of a record that goes over two tells the same.
     assert_eq!(client.hover(uri, 7, 0), said);
     // An edit takes it back: the axes stand elsewhere now.
@@ -113,10 +98,8 @@ fn what_posting_refuses_is_told_where_it_stands() {
     let mut client = Client::new(&["--machine", "vmc", "--tool-length", "100"], &json!({}));
     client.open(uri, "plaintext", SHOWN);
     let found = client.findings_if(uri, 1, |found| !found.is_empty());
-    let lines: Vec<&Value> = found
-        .iter()
-        .map(|finding| &finding["range"]["start"]["line"])
-        .collect();
+    let lines: Vec<&Value> =
+        found.iter().map(|finding| &finding["range"]["start"]["line"]).collect();
     // The leaning tool axis, which three axes cannot reach.
     assert!(lines.contains(&&json!(7)), "{found:#?}");
     client.edit(uri, 2, [7, 0, 8, 22], "GOTO/20,0,10");
@@ -128,8 +111,5 @@ fn what_posting_refuses_is_told_where_it_stands() {
         json!({ "settings": { "post": { "machine": "vmcc" } } }),
     );
     let found = client.findings_if(uri, 2, |found| !found.is_empty());
-    assert_contains(
-        &found[0]["message"].to_string(),
-        &["no machine vmcc", "vmc"],
-    );
+    assert_contains(&found[0]["message"].to_string(), &["no machine vmcc", "vmc"]);
 }

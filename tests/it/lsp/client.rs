@@ -43,10 +43,7 @@ impl Client {
             "initialize",
             json!({ "processId": null, "rootUri": null, "capabilities": {}, "initializationOptions": options }),
         );
-        assert!(
-            about["result"]["capabilities"]["hoverProvider"] == true,
-            "{about}"
-        );
+        assert!(about["result"]["capabilities"]["hoverProvider"] == true, "{about}");
         client.tell("initialized", json!({}));
         client
     }
@@ -144,10 +141,7 @@ impl Client {
     /// What is said of a place.
     pub fn hover(&mut self, uri: &str, line: usize, column: usize) -> String {
         let said = self.at("hover", uri, line, column);
-        said["contents"]["value"]
-            .as_str()
-            .unwrap_or_default()
-            .to_owned()
+        said["contents"]["value"].as_str().unwrap_or_default().to_owned()
     }
 
     /// Opens a text.

@@ -37,11 +37,7 @@ fn neovim_shows_findings_and_what_hovers() {
     let folder = tempfile::tempdir().unwrap();
     let good = fs::read_to_string(crate::common::root().join("machines/vmc.toml")).unwrap();
     let at = good.find("max_feed").unwrap();
-    let text = format!(
-        "# 𝄞\n{}max_fed{}",
-        &good[..at],
-        &good[at + "max_feed".len()..]
-    );
+    let text = format!("# 𝄞\n{}max_fed{}", &good[..at], &good[at + "max_feed".len()..]);
     let line = text[..text.find("max_fed").unwrap()].matches('\n').count();
     // The second line is one that means something.
     let begin = text.find("name").unwrap();
@@ -50,14 +46,7 @@ fn neovim_shows_findings_and_what_hovers() {
     fs::write(folder.path().join("mine.toml"), &text).unwrap();
     fs::write(folder.path().join("script.lua"), SCRIPT).unwrap();
     let run = Command::new("nvim")
-        .args([
-            "--headless",
-            "--clean",
-            "-n",
-            "mine.toml",
-            "-c",
-            "luafile script.lua",
-        ])
+        .args(["--headless", "--clean", "-n", "mine.toml", "-c", "luafile script.lua"])
         .current_dir(folder.path())
         .env("POST_BIN", env!("CARGO_BIN_EXE_post"))
         .env("XDG_STATE_HOME", folder.path())
@@ -69,10 +58,7 @@ fn neovim_shows_findings_and_what_hovers() {
     let answer: serde_json::Value = serde_json::from_str(&answer).unwrap();
     assert_eq!(answer[0], true, "{answer}");
     assert_eq!(answer[1]["line"], line, "{answer}");
-    assert_contains(
-        &answer[1]["message"].to_string(),
-        &["max_fed", "did you mean `max_feed`?"],
-    );
+    assert_contains(&answer[1]["message"].to_string(), &["max_fed", "did you mean `max_feed`?"]);
     assert_contains(&answer[2].to_string(), &["What the machine is called"]);
     assert_eq!(answer[3], true, "{answer}");
 }

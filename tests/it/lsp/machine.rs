@@ -25,9 +25,7 @@ fn with(text: &str, from: &str, to: &str) -> String {
 
 fn labels(items: &Value) -> Vec<String> {
     let items = items.as_array().unwrap().iter();
-    items
-        .map(|item| item["label"].as_str().unwrap().to_owned())
-        .collect()
+    items.map(|item| item["label"].as_str().unwrap().to_owned()).collect()
 }
 
 #[test]
@@ -84,14 +82,7 @@ fn all_independent_faults_are_told_at_once_and_go_as_they_are_put_right() {
         assert!(version < 10, "{titles:?}");
     }
     titles.sort();
-    assert_eq!(
-        titles,
-        [
-            "Turn it round: [-120, 30]",
-            "Write `Zc`",
-            "Write `max_feed`"
-        ]
-    );
+    assert_eq!(titles, ["Turn it round: [-120, 30]", "Write `Zc`", "Write `max_feed`"]);
     assert_eq!(client.findings(&uri, version), Vec::<Value>::new());
     assert_eq!(client.end().0, 0);
 }
@@ -119,8 +110,7 @@ fn an_axis_that_is_missing_is_put_in() {
     let codes = told(&left).join(" ");
     assert!(!codes.contains("machine-syntax"), "{left:#?}");
     assert!(
-        left.iter()
-            .all(|finding| !finding["message"].to_string().contains("no [axis.W]")),
+        left.iter().all(|finding| !finding["message"].to_string().contains("no [axis.W]")),
         "{left:#?}"
     );
 }
@@ -153,10 +143,7 @@ fn keys_axes_dialects_options_and_parameters_are_offered() {
     assert!(dialects.contains(&"heidenhain".to_owned()), "{dialects:?}");
     let text = format!("{good}\n[control.fanuc]\nproq");
     let options = offered(&text, 5, "proq");
-    assert!(
-        options.iter().any(|option| option.contains("program")),
-        "{options:?}"
-    );
+    assert!(options.iter().any(|option| option.contains("program")), "{options:?}");
     let text = with(&good, "[0, 0, 400]", "[0, 0, \"\"]");
     let numbers = offered(&text, 6, "[0, 0, \"");
     assert_eq!(numbers[0], "Zc");
@@ -173,11 +160,7 @@ fn keys_axes_dialects_options_and_parameters_are_offered() {
 #[test]
 fn meaning_unit_default_and_value_are_told() {
     let (_folder, uri, good) = trunnion();
-    let text = with(
-        &good,
-        "gauge = [0, 0, 400]",
-        "gauge = [0, 0, \"8 * Zc - 32e-3\"]",
-    );
+    let text = with(&good, "gauge = [0, 0, 400]", "gauge = [0, 0, \"8 * Zc - 32e-3\"]");
     let mut client = Client::new(&[], &json!({}));
     client.open(&uri, "toml", &text);
     let mut hover = |part: &str, behind: usize| {
@@ -186,16 +169,9 @@ fn meaning_unit_default_and_value_are_told() {
     };
     assert_contains(
         &hover("max_jerk  = 12000", 2),
-        &[
-            "`axis.C.max_jerk`",
-            "degrees/s³",
-            "a rotary axis, so degrees",
-        ],
+        &["`axis.C.max_jerk`", "degrees/s³", "a rotary axis, so degrees"],
     );
-    assert_contains(
-        &hover("[axis.X]", 3),
-        &["`axis.X`", "One axis: its kind and line"],
-    );
+    assert_contains(&hover("[axis.X]", 3), &["`axis.X`", "One axis: its kind and line"]);
     assert_contains(&hover("axis_tolerance", 3), &["degrees; 0.05 if not said"]);
     assert_contains(&hover("tcp ", 1), &["- `control`:", "must be said"]);
     assert_contains(&hover("Zc - 32", 1), &["`Zc` = 50.004", "this file"]);
@@ -206,10 +182,7 @@ fn meaning_unit_default_and_value_are_told() {
     });
     let hints = client.ask("textDocument/inlayHint", whole);
     let hints = hints["result"].as_array().unwrap();
-    let shown: Vec<&str> = hints
-        .iter()
-        .map(|hint| hint["label"].as_str().unwrap())
-        .collect();
+    let shown: Vec<&str> = hints.iter().map(|hint| hint["label"].as_str().unwrap()).collect();
     assert_eq!(shown, ["= 400", "= 50.004"]);
 }
 
@@ -300,10 +273,7 @@ fn a_click_checks_the_file_as_the_command_would() {
     let (_folder, uri, good) = trunnion();
     let mut client = Client::new(&[], &json!({}));
     client.open(&uri, "toml", &good);
-    let lenses = client.ask(
-        "textDocument/codeLens",
-        json!({ "textDocument": { "uri": uri } }),
-    );
+    let lenses = client.ask("textDocument/codeLens", json!({ "textDocument": { "uri": uri } }));
     let titles: Vec<&str> = lenses["result"]
         .as_array()
         .unwrap()

@@ -29,11 +29,7 @@ fn what_holds_at_a_line_and_the_cl_line_it_came_from_are_told() {
         assert_eq!(run.code, 0, "{}", run.err);
     };
     let length = ["--tool-length", "100"];
-    run(&[
-        &["--machine", "vmc", "part.cls", "-o", "part.nc"],
-        &length[..],
-    ]
-    .concat());
+    run(&[&["--machine", "vmc", "part.cls", "-o", "part.nc"], &length[..]].concat());
     run(&[
         &[
             "verify",
@@ -88,10 +84,7 @@ fn what_holds_at_a_line_and_the_cl_line_it_came_from_are_told() {
     assert!(!turning.contains("flood"), "{turning}");
     // Words say what they mean, however they are joined.
     let (line, column) = place(&text, "G21", 1);
-    assert_contains(
-        &client.hover(&program, line, column),
-        &["`G21`: millimetre"],
-    );
+    assert_contains(&client.hover(&program, line, column), &["`G21`: millimetre"]);
 }
 
 #[test]

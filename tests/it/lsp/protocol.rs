@@ -32,13 +32,8 @@ fn long(points: usize) -> String {
     let mut text =
         "TOOL PATH/ONE,TOOL,A\nLOADTL/1\nSPINDL/RPM,3000,CLW\nFEDRAT/100,MMPM\n".to_owned();
     for point in 0..points {
-        writeln!(
-            text,
-            "GOTO/{}.5,{}.25,10.125,0,0.1736482,0.9848078",
-            point % 200,
-            point % 97
-        )
-        .unwrap();
+        writeln!(text, "GOTO/{}.5,{}.25,10.125,0,0.1736482,0.9848078", point % 200, point % 97)
+            .unwrap();
     }
     text.push_str("END-OF-PATH\nFINI\n");
     text
@@ -76,10 +71,7 @@ fn edits_are_counted_in_utf_16_units() {
     assert_eq!(told(&found), ["machine-expression 4:15-18"], "{found:#?}");
     client.edit(uri, 6, [1, 0, 1, 0], "\"𝄞\" = 1 #");
     let found = client.findings(uri, 6);
-    assert!(
-        told(&found).contains(&"machine-key 1:0-4".to_owned()),
-        "{found:#?}"
-    );
+    assert!(told(&found).contains(&"machine-key 1:0-4".to_owned()), "{found:#?}");
 }
 
 #[test]
@@ -106,10 +98,7 @@ fn a_question_is_taken_back_or_overtaken_by_an_edit() {
 fn what_is_slow_is_done_beside_and_given_up_on_edit() {
     let uri = "file:///nowhere/long.cls";
     let small = "file:///nowhere/mill.toml";
-    let mut client = Client::new(
-        &["--machine", "ac-trunnion", "--tool-length", "100"],
-        &json!({}),
-    );
+    let mut client = Client::new(&["--machine", "ac-trunnion", "--tool-length", "100"], &json!({}));
     client.open(uri, "plaintext", &long(200_000));
     client.open(small, "toml", MACHINE);
     assert_eq!(client.findings(uri, 1), Vec::<Value>::new());
@@ -139,10 +128,7 @@ fn what_is_slow_is_done_beside_and_given_up_on_edit() {
     );
     let found = client.findings(uri, 2);
     assert_eq!(told(&found).len(), 1, "{found:#?}");
-    let late = client.ask(
-        "textDocument/codeLens",
-        json!({ "textDocument": { "uri": small } }),
-    );
+    let late = client.ask("textDocument/codeLens", json!({ "textDocument": { "uri": small } }));
     assert_eq!(late["result"].as_array().unwrap().len(), 2);
     for message in &client.told {
         let params = &message["params"];
@@ -165,10 +151,7 @@ fn whatever_is_sent_it_stays() {
     assert_eq!(refused["error"]["code"], -32602);
     assert_eq!(client.ask("no/such", json!({}))["error"]["code"], -32601);
     client.tell("textDocument/didChange", json!({ "textDocument": 3 }));
-    client.tell(
-        "textDocument/didClose",
-        json!({ "textDocument": { "uri": "x" } }),
-    );
+    client.tell("textDocument/didClose", json!({ "textDocument": { "uri": "x" } }));
     client.tell("$/cancelRequest", json!({ "id": 99 }));
     client.tell("$/unknown", Value::Null);
     client.edit(uri, 5, [0, 0, 0, 0], "x");

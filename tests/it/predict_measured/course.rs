@@ -61,10 +61,7 @@ pub struct Course {
 
 impl Course {
     pub fn new() -> Self {
-        let mut course = Self {
-            moves: Vec::new(),
-            seconds: 0.0,
-        };
+        let mut course = Self { moves: Vec::new(), seconds: 0.0 };
         let mut from = START;
         for (to, feed) in BLOCKS {
             let by: [f64; 4] = std::array::from_fn(|axis| to[axis] - from[axis]);
@@ -74,8 +71,7 @@ impl Course {
             let along = by.map(|by| by / way);
             let least = |which: usize, first: f64| {
                 let axes = along.iter().zip(LIMITS).filter(|(share, _)| **share != 0.0);
-                axes.map(|(share, limits)| limits[which] / share.abs())
-                    .fold(first, f64::min)
+                axes.map(|(share, limits)| limits[which] / share.abs()).fold(first, f64::min)
             };
             let acceleration = least(1, f64::INFINITY);
             let velocity = least(0, feed / 60.0).min((way * acceleration).sqrt());

@@ -8,11 +8,7 @@ use crate::common::assert_contains;
 fn wrong() -> String {
     let changed = MILL
         .replacen("kv = 40\n", "kv = 30\n", 1)
-        .replacen(
-            "velocity_feed_forward = 0.5",
-            "velocity_feed_forward = 0.3",
-            1,
-        )
+        .replacen("velocity_feed_forward = 0.5", "velocity_feed_forward = 0.3", 1)
         .replacen("table_mass = 300", "table_mass = 380", 1);
     assert_ne!(changed, MILL);
     changed
@@ -35,11 +31,7 @@ fn fitted<'v>(found: &'v Value, name: &str) -> &'v Value {
 fn numbers_come_back_as_well_as_is_said() {
     let course = Course::new();
     let run = plant::Run::of(&course, AS_FILED);
-    let truth = [
-        ("kv", 40.0),
-        ("velocity_feed_forward", 0.5),
-        ("table_mass", 300.0),
-    ];
+    let truth = [("kv", 40.0), ("velocity_feed_forward", 0.5), ("table_mass", 300.0)];
     let names = "X.kv,X.velocity_feed_forward,X.table_mass";
     let mut scores = Vec::new();
     let mut pasted = None;
@@ -72,17 +64,10 @@ fn numbers_come_back_as_well_as_is_said() {
     }
     let squares = scores.iter().map(|score| score * score).sum::<f64>() / scores.len() as f64;
     let within = scores.iter().filter(|score| score.abs() < 3.0).count();
-    assert!(
-        (0.3..2.2).contains(&squares) && within >= 29,
-        "{squares} {scores:?}"
-    );
+    assert!((0.3..2.2).contains(&squares) && within >= 29, "{squares} {scores:?}");
     // What is said to be written into the machine file can be written there: over the one that was wrong.
     let (lines, shop) = pasted.unwrap();
-    fs::write(
-        shop.path("better.toml"),
-        format!("extends = \"mill.toml\"\n{lines}"),
-    )
-    .unwrap();
+    fs::write(shop.path("better.toml"), format!("extends = \"mill.toml\"\n{lines}")).unwrap();
     let arguments = [
         "predict",
         "part.nc",
@@ -141,10 +126,7 @@ fn what_the_log_does_not_determine_is_named_and_not_pasted() {
 
 #[test]
 fn a_model_that_lacks_something_leaves_more_than_noise() {
-    let truth = Truth {
-        friction: 900.0,
-        ..AS_FILED
-    };
+    let truth = Truth { friction: 900.0, ..AS_FILED };
     let log = log_of(truth, |recorder| recorder.noise = 1e-3);
     let shop = Shop::new(&wrong(), &log);
     let (said, found) = shop.found(&["--fit", "X.kv,X.velocity_feed_forward"]);
@@ -153,24 +135,16 @@ fn a_model_that_lacks_something_leaves_more_than_noise() {
     assert!(number(&fit["rows_alike"]) > 5.0, "{fit}");
     assert_contains(
         &said.out,
-        &[
-            "what is left is no noise",
-            "the model lacks something (friction, backlash",
-        ],
+        &["what is left is no noise", "the model lacks something (friction, backlash"],
     );
     // With friction in the model it is noise.
     let with = wrong() + "[servo.X.friction]\ncoulomb = 300\nwidth = 1\n";
     let shop = Shop::new(&with, &log);
-    let (said, found) = shop.found(&[
-        "--fit",
-        "X.kv,X.velocity_feed_forward,X.table_mass,X.coulomb",
-    ]);
+    let (said, found) =
+        shop.found(&["--fit", "X.kv,X.velocity_feed_forward,X.table_mass,X.coulomb"]);
     close(&found["fitted"][0]["after"], 1e-3, 3e-4);
     let coulomb = fitted(&found, "coulomb");
-    assert!(
-        (number(&coulomb["value"]) / 900.0 - 1.0).abs() < 0.05,
-        "{coulomb}"
-    );
+    assert!((number(&coulomb["value"]) / 900.0 - 1.0).abs() < 0.05, "{coulomb}");
     assert_contains(&said.out, &["[servo.X.friction]\ncoulomb = "]);
 }
 
@@ -195,8 +169,5 @@ fn a_name_that_is_none_and_a_log_that_lacks_the_axis() {
     let shop = Shop::new(MILL, &log);
     let run = shop.run(&["--fit", "X.kw"]);
     assert_eq!(run.code, 1);
-    assert_contains(
-        &run.err,
-        &["this servo has no number called kw", "did you mean `kv`"],
-    );
+    assert_contains(&run.err, &["this servo has no number called kw", "did you mean `kv`"]);
 }

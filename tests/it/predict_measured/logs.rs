@@ -31,11 +31,7 @@ fn a_log_of_another_simulation_is_what_is_predicted() {
     let (_, log) = recorded(|_| {});
     let shop = Shop::new(MILL, &log);
     let (run, found) = shop.found(&[]);
-    assert!(
-        run.err.is_empty() || !run.err.contains("[log]"),
-        "{}",
-        run.err
-    );
+    assert!(run.err.is_empty() || !run.err.contains("[log]"), "{}", run.err);
     let measured = &found["measured"];
     close(&measured["shift_s"], 3.21, 2e-6);
     assert!(measured["rival_shift_s"].is_null(), "{measured}");
@@ -79,10 +75,7 @@ fn semicolons_decimal_commas_other_names_and_units() {
     for name in ["X", "Y", "Z", "C"] {
         close(&axis(&found, name)["actual"]["rms"], recorder.noise, 1e-4);
     }
-    assert_contains(
-        &run.out,
-        &["Soll C [rad] = C commanded (rad)", "Zeit [ms] = time (ms)"],
-    );
+    assert_contains(&run.out, &["Soll C [rad] = C commanded (rad)", "Zeit [ms] = time (ms)"]);
 }
 
 #[test]
@@ -107,10 +100,7 @@ fn no_names_blanks_late_rows_and_missing_ones() {
     let missing = number(&measured["missing_rows"]);
     assert!((60.0..160.0).contains(&missing), "{missing}");
     agrees(&found, &["X", "Y", "C"], 0.006);
-    assert_contains(
-        &run.out,
-        &["rows, interpolated", "beside even distances by 0.17"],
-    );
+    assert_contains(&run.out, &["rows, interpolated", "beside even distances by 0.17"]);
 }
 
 #[test]
@@ -180,29 +170,20 @@ fn an_approach_from_elsewhere_moves_neither_clock_nor_zeros() {
     let (run, found) = shop.found(&[]);
     // Rapid: 480 mm at 250 mm/s and 1200 mm/s².
     let approach = 480.0 / 250.0 + 250.0 / 1200.0;
-    close(
-        &found["measured"]["shift_s"],
-        recorder.shift - approach,
-        1e-4,
-    );
+    close(&found["measured"]["shift_s"], recorder.shift - approach, 1e-4);
     close(&axis(&found, "Z")["zero"], 500.0, 1e-3);
     agrees(&found, &["X", "Y", "C"], EXACT);
     assert_contains(
         &run.err,
-        &[
-            "warning[log]: in ",
-            "% of the rows an axis is far from where it is predicted",
-        ],
+        &["warning[log]: in ", "% of the rows an axis is far from where it is predicted"],
     );
 }
 
 #[test]
 fn rows_of_one_period_without_times_and_rounded_times() {
     let (_, log) = recorded(|recorder| recorder.period = 0.0025);
-    let without: String = log
-        .lines()
-        .map(|line| line.split_once(',').unwrap().1.to_owned() + "\n")
-        .collect();
+    let without: String =
+        log.lines().map(|line| line.split_once(',').unwrap().1.to_owned() + "\n").collect();
     let shop = Shop::new(MILL, &without);
     let (_, found) = shop.found(&["--log-period", "0.0025"]);
     close(&found["measured"]["shift_s"], super::plant::REST, 1e-5);
@@ -226,10 +207,7 @@ fn rows_of_one_period_without_times_and_rounded_times() {
     assert_eq!(found["measured"]["rounded_times"], true);
     close(&found["measured"]["shift_s"], 3.21, 6e-4);
     agrees(&found, &["X", "Y", "Z", "C"], EXACT);
-    assert_contains(
-        &run.out,
-        &["rounded; rows are taken to lie at even distances"],
-    );
+    assert_contains(&run.out, &["rounded; rows are taken to lie at even distances"]);
 }
 
 #[test]
@@ -287,15 +265,7 @@ fn the_picture_has_both_and_their_difference() {
     // Drawn once more without a log, none stays behind.
     let again = post_in(
         shop.0.path(),
-        &[
-            "predict",
-            "part.nc",
-            "-m",
-            "mill.toml",
-            "--pictures",
-            "seen",
-            "-q",
-        ],
+        &["predict", "part.nc", "-m", "mill.toml", "--pictures", "seen", "-q"],
     );
     assert_eq!(again.code, 0, "{}", again.err);
     assert!(!shop.path("seen/measured.svg").exists());
@@ -308,19 +278,12 @@ fn a_log_of_linuxcnc_lies_over_its_prediction() {
     let data = Path::new(root()).join("../shared/data/motion");
     let packed = data.join("linuxcnc_t1_xyzac_1ms.txt.gz");
     if !packed.exists() {
-        assert!(
-            std::env::var_os("CI").is_none(),
-            "{} is missing",
-            packed.display()
-        );
+        assert!(std::env::var_os("CI").is_none(), "{} is missing", packed.display());
         eprintln!("skipped: {} is not there", packed.display());
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    let log = run(
-        std::process::Command::new("gzip").arg("-dc").arg(&packed),
-        b"",
-    );
+    let log = run(std::process::Command::new("gzip").arg("-dc").arg(&packed), b"");
     fs::write(folder.path().join("t1.txt"), &log.out).unwrap();
     let program = fs::read_to_string(data.join("t1.ngc")).unwrap();
     fs::write(folder.path().join("off.ngc"), &program).unwrap();
@@ -346,19 +309,9 @@ fn a_log_of_linuxcnc_lies_over_its_prediction() {
     let laid = |program: &str, more: &[&str]| {
         let mut command = command();
         command.current_dir(folder.path());
-        command.args([
-            "predict",
-            program,
-            "-m",
-            "xyzac-trt",
-            "--measured",
-            "t1.txt",
-        ]);
+        command.args(["predict", program, "-m", "xyzac-trt", "--measured", "t1.txt"]);
         command.args(["--log-period", "0.001", "--columns", "X=1,Y=2,Z=3,A=4,C=5"]);
-        command
-            .args(["--summary", "found.json", "-q"])
-            .args(&limits)
-            .args(more);
+        command.args(["--summary", "found.json", "-q"]).args(&limits).args(more);
         let done = run(&mut command, b"");
         (done, folder.path().join("found.json"))
     };
@@ -377,10 +330,7 @@ fn a_log_of_linuxcnc_lies_over_its_prediction() {
     assert_eq!(done.code, 0, "{}", done.err);
     assert_contains(
         &done.err,
-        &[
-            "hardly look alike in some axes: Y -0.",
-            "was tool centre point control on",
-        ],
+        &["hardly look alike in some axes: Y -0.", "was tool centre point control on"],
     );
 }
 

@@ -22,12 +22,7 @@ pub struct Truth {
 }
 
 /// As the machine file has it.
-pub const AS_FILED: Truth = Truth {
-    kv: 40.0,
-    feed_forward: 0.5,
-    table_mass: 300.0,
-    friction: 0.0,
-};
+pub const AS_FILED: Truth = Truth { kv: 40.0, feed_forward: 0.5, table_mass: 300.0, friction: 0.0 };
 
 /// States of a servo; not all need so many.
 type State = [f64; 5];
@@ -44,16 +39,13 @@ impl Run {
         let time = |place: f64| place * STEP - REST;
         let first = course.at(time(0.0));
         let mut states: [State; 4] = std::array::from_fn(|axis| rest(axis, first[axis]));
-        let mut run = Self {
-            commanded: Vec::with_capacity(count),
-            actual: Vec::with_capacity(count),
-        };
+        let mut run =
+            Self { commanded: Vec::with_capacity(count), actual: Vec::with_capacity(count) };
         for place in 0..count {
             let at = |share: f64| course.at(time(place as f64 + share));
             let three = [at(0.0), at(0.5), at(1.0)];
             run.commanded.push(three[0]);
-            run.actual
-                .push(std::array::from_fn(|axis| position(axis, &states[axis])));
+            run.actual.push(std::array::from_fn(|axis| position(axis, &states[axis])));
             for (axis, state) in states.iter_mut().enumerate() {
                 step(axis, &truth, state, three.map(|row| row[axis]));
             }
@@ -125,13 +117,7 @@ fn slope(axis: usize, truth: &Truth, state: &State, command: f64, rate: f64) -> 
         // Z: a swing; mm.
         2 => {
             let [place, speed, ..] = *state;
-            [
-                speed,
-                900.0 * (command - place) - 42.0 * speed,
-                0.0,
-                0.0,
-                0.0,
-            ]
+            [speed, 900.0 * (command - place) - 42.0 * speed, 0.0, 0.0, 0.0]
         }
         // C: position and velocity loop of a torque motor; radians.
         _ => {

@@ -73,11 +73,7 @@ impl Recorder {
             let [commanded, actual] = run.at(time);
             for (which, values) in [commanded, actual].into_iter().enumerate() {
                 for axis in &self.axes {
-                    let error = if which == 1 {
-                        self.noise * random.normal()
-                    } else {
-                        0.0
-                    };
+                    let error = if which == 1 { self.noise * random.normal() } else { 0.0 };
                     let unit = self.units[if AXES[*axis] == "C" { 2 } else { 1 }];
                     let value = (values[*axis] + self.zeros[*axis] + error) * unit;
                     if which == 1 || self.commanded {
@@ -85,10 +81,8 @@ impl Recorder {
                     }
                 }
             }
-            let numbers: Vec<String> = numbers
-                .iter()
-                .map(|number| number.replace('.', self.decimal))
-                .collect();
+            let numbers: Vec<String> =
+                numbers.iter().map(|number| number.replace('.', self.decimal)).collect();
             text += &numbers.join(self.separator);
             text += self.tail;
             text.push('\n');

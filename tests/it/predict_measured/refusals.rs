@@ -42,22 +42,13 @@ fn a_row_that_is_none_is_named_by_its_line_and_column() {
         ),
         (
             "0.004,0.4,0.5,inf,0.5",
-            &[
-                "log.csv:6:15",
-                "`inf` in column 4 (X actual) is no finite number",
-            ],
+            &["log.csv:6:15", "`inf` in column 4 (X actual) is no finite number"],
         ),
         (
             "0.004,0.4,here,0.4,0.5",
-            &[
-                "log.csv:6:11",
-                "`here` in column 3 (Y commanded) is no number",
-            ],
+            &["log.csv:6:11", "`here` in column 3 (Y commanded) is no number"],
         ),
-        (
-            "0.004,0.4,,0.4,0.5",
-            &["log.csv:6", "column 3 (Y commanded) is empty"],
-        ),
+        ("0.004,0.4,,0.4,0.5", &["log.csv:6", "column 3 (Y commanded) is empty"]),
         (
             "0.004,0.4,0.5,0.4",
             &[
@@ -68,17 +59,11 @@ fn a_row_that_is_none_is_named_by_its_line_and_column() {
         ),
         (
             "0.004,0.4,0.5,0.4,0.5,7",
-            &[
-                "log.csv:6",
-                "the row has 6 columns, the first row (line 2) has 5",
-            ],
+            &["log.csv:6", "the row has 6 columns, the first row (line 2) has 5"],
         ),
         (
             "0.003,0.4,0.5,0.4,0.5",
-            &[
-                "log.csv:6",
-                "the time does not increase: 0.003 s behind 0.003 s",
-            ],
+            &["log.csv:6", "the time does not increase: 0.003 s behind 0.003 s"],
         ),
         (
             "0.001,0.4,0.5,0.4,0.5",
@@ -93,24 +78,14 @@ fn a_row_that_is_none_is_named_by_its_line_and_column() {
         refused(&with(4, line), &[], said);
     }
     // The first row too: it is not taken for a line of the head.
-    refused(
-        &with(0, "0,nan,nan,nan,nan"),
-        &[],
-        &["log.csv:2", "`nan` in column 2"],
-    );
+    refused(&with(0, "0,nan,nan,nan,nan"), &[], &["log.csv:2", "`nan` in column 2"]);
     // What stands below the last row is no remark.
-    refused(
-        &(with(99, "") + "end of recording\n"),
-        &[],
-        &["log.csv:42", "the row has 1 columns"],
-    );
+    refused(&(with(99, "") + "end of recording\n"), &[], &["log.csv:42", "the row has 1 columns"]);
 }
 
 #[test]
 fn a_gap_an_empty_log_and_what_is_no_table() {
-    let late = with(99, "")
-        .replace("\n0.02", "\n0.12")
-        .replace("\n0.03", "\n0.13");
+    let late = with(99, "").replace("\n0.02", "\n0.12").replace("\n0.03", "\n0.13");
     refused(
         &late,
         &[],
@@ -120,32 +95,13 @@ fn a_gap_an_empty_log_and_what_is_no_table() {
             "part before it or behind it",
         ],
     );
-    refused(
-        "",
-        &[],
-        &["log.csv", "the log is empty: there is no row of numbers"],
-    );
+    refused("", &[], &["log.csv", "the log is empty: there is no row of numbers"]);
     refused(HEAD, &[], &["the log is empty"]);
-    let short: String = with(99, "")
-        .lines()
-        .take(6)
-        .map(|line| line.to_owned() + "\n")
-        .collect();
+    let short: String = with(99, "").lines().take(6).map(|line| line.to_owned() + "\n").collect();
     refused(&short, &[], &["the log has 5 rows, at least 8 are needed"]);
-    refused(
-        "\u{1f}\u{8b}\u{0}\u{0}",
-        &[],
-        &["log.csv:1", "this is no text", "unpacked"],
-    );
+    refused("\u{1f}\u{8b}\u{0}\u{0}", &[], &["log.csv:1", "this is no text", "unpacked"]);
     let words = "a word and another\n".repeat(200);
-    refused(
-        &words,
-        &[],
-        &[
-            "log.csv:101",
-            "there is no row of numbers in the first 100 lines",
-        ],
-    );
+    refused(&words, &[], &["log.csv:101", "there is no row of numbers in the first 100 lines"]);
 }
 
 #[test]
@@ -168,21 +124,9 @@ fn columns_and_units_that_are_not_there() {
             ],
         ),
         ("t=time,X=9", &["the log has no column `9`"]),
-        (
-            "t=time,X=2,X=4",
-            &["two columns of the log, X and X_act, hold X commanded"],
-        ),
-        (
-            "X=2,X'=4",
-            &[
-                "no column of the log is known to hold the time",
-                "--log-period SECONDS",
-            ],
-        ),
-        (
-            "t=1",
-            &["no column of the log is known to hold an axis of the machine"],
-        ),
+        ("t=time,X=2,X=4", &["two columns of the log, X and X_act, hold X commanded"]),
+        ("X=2,X'=4", &["no column of the log is known to hold the time", "--log-period SECONDS"]),
+        ("t=1", &["no column of the log is known to hold an axis of the machine"]),
     ];
     for (columns, said) in cases {
         refused(&log, &["--columns", columns], said);
@@ -190,19 +134,12 @@ fn columns_and_units_that_are_not_there() {
     refused(
         &log,
         &["--columns", "t=1,X=2", "--log-period", "0.001"],
-        &[
-            "--columns names the time, and --log-period",
-            "keep one of both",
-        ],
+        &["--columns names the time, and --log-period", "keep one of both"],
     );
     refused(
-        &log.replacen("X,Y,X_act", "q1,q2,q3", 1)
-            .replacen("Y_act", "q4", 1),
+        &log.replacen("X,Y,X_act", "q1,q2,q3", 1).replacen("Y_act", "q4", 1),
         &[],
-        &[
-            "no column of the log is known to hold an axis",
-            "the log has time, q1, q2, q3, q4",
-        ],
+        &["no column of the log is known to hold an axis", "the log has time, q1, q2, q3, q4"],
     );
     refused(
         &log.replacen("X_act", "X", 1),
@@ -233,22 +170,14 @@ fn columns_and_units_that_are_not_there() {
         &[],
         &["`deg` is not a unit of time (s, ms, us)"],
     );
-    refused(
-        &log,
-        &["--log-zeros", "B=1"],
-        &["--log-zeros: the machine has no axis B"],
-    );
+    refused(&log, &["--log-zeros", "B=1"], &["--log-zeros: the machine has no axis B"]);
 }
 
 #[test]
 fn a_command_line_that_is_none() {
     let shop = Shop::new(MILL, &with(99, ""));
     for (flag, value, said) in [
-        (
-            "--columns",
-            "time",
-            "`time` is not of the form CONTENT=COLUMN",
-        ),
+        ("--columns", "time", "`time` is not of the form CONTENT=COLUMN"),
         ("--log-units", "ms,s", "`s` is a second unit of its kind"),
         ("--log-units", "furlong", "`furlong` is no unit of a log"),
         ("--log-zeros", "X", "`X` is not of the form AXIS=VALUE"),
@@ -291,31 +220,19 @@ fn a_log_of_another_program_is_not_laid_over() {
             fields.join(",") + "\n"
         })
         .collect();
-    refused(
-        &still,
-        &[],
-        &["no axis moves both in the program and in the log"],
-    );
+    refused(&still, &[], &["no axis moves both in the program and in the log"]);
 }
 
 #[test]
 fn what_may_be_wrong_is_named() {
     let (_, inches) = recorded(|recorder| recorder.units[1] = 1.0 / 25.4);
-    refused(
-        &inches,
-        &[],
-        &["as if the log counted in inch: --log-units inch"],
-    );
+    refused(&inches, &[], &["as if the log counted in inch: --log-units inch"]);
     let (_, radians) = recorded(|recorder| {
         recorder.units[2] = 1f64.to_radians();
         recorder.axes = vec![3];
         recorder.head = "time,C,C_act\n".to_owned();
     });
-    refused(
-        &radians,
-        &[],
-        &["as if the log counted in rad: --log-units rad"],
-    );
+    refused(&radians, &[], &["as if the log counted in rad: --log-units rad"]);
     let (_, log) = recorded(|_| {});
     let other_way: String = log
         .lines()
@@ -350,8 +267,5 @@ fn a_log_is_not_written_over_and_standard_input_is_one_file() {
     let arguments = ["predict", "-", "-m", "mill.toml", "--measured", "-"];
     let run = post_in(shop.0.path(), &arguments);
     assert_eq!(run.code, 1);
-    assert_contains(
-        &run.err,
-        &["the log and another input cannot both be standard input"],
-    );
+    assert_contains(&run.err, &["the log and another input cannot both be standard input"]);
 }

@@ -12,47 +12,19 @@ const GOOD: &[(&str, &str, &str)] = &[
     ("creo3x_MichaHofft_schruppen_1.ncl", "nutating-head", ""),
     // In inches, as it says, the blade is 5 m long.
     ("creo5x_4r19415_finition.ncl", "head-head", "--tcp post"),
-    (
-        "creo5x_4r19415_finition.ncl",
-        "ac-trunnion",
-        "--tcp post --units mm --mount -140,21,-40",
-    ),
-    (
-        "creo5x_4r19415_finition.ncl",
-        "ac-trunnion",
-        "--tcp control --units mm",
-    ),
+    ("creo5x_4r19415_finition.ncl", "ac-trunnion", "--tcp post --units mm --mount -140,21,-40"),
+    ("creo5x_4r19415_finition.ncl", "ac-trunnion", "--tcp control --units mm"),
     (
         "creo5x_4r19415_finition.ncl",
         "dmu50",
         "--tcp post --units mm --mount -140,21,0 --tool-length 120",
     ),
-    (
-        "nx_HumMan_ust_a2.cls",
-        "head-head-360",
-        "--tcp post --set control.retract.Z=9000",
-    ),
-    (
-        "nx_HumMan_ust_a2.cls",
-        "head-head",
-        "--tcp post --msys apply",
-    ),
-    (
-        "nx_HumMan_ust_a.cls",
-        "head-head-360",
-        "--set control.retract.Z=9000",
-    ),
-    (
-        "nx_HumMan_ust_a.cls",
-        "head-head",
-        "--msys apply --tool-length 150",
-    ),
+    ("nx_HumMan_ust_a2.cls", "head-head-360", "--tcp post --set control.retract.Z=9000"),
+    ("nx_HumMan_ust_a2.cls", "head-head", "--tcp post --msys apply"),
+    ("nx_HumMan_ust_a.cls", "head-head-360", "--set control.retract.Z=9000"),
+    ("nx_HumMan_ust_a.cls", "head-head", "--msys apply --tool-length 150"),
     // Its points are the tool's centre, as those of SolidWorks CAM and CAMWorks.
-    (
-        "nx_HumMan_cutcom.clsf",
-        "vmc",
-        "--set control.compensation_on_centre=wear",
-    ),
+    ("nx_HumMan_cutcom.clsf", "vmc", "--set control.compensation_on_centre=wear"),
     // Cutter compensation on an indexed table: the tool stands upright in the machine.
     (
         "camworks_neMoguta_UniSource.clt",
@@ -75,11 +47,7 @@ const GOOD: &[(&str, &str, &str)] = &[
     ("nx_HumMan_deep_drill.clsf", "vmc", "--tool 1 --allow DEEP"),
     ("nx_HumMan_standart_drill.clsf", "vmc", "--tool 1"),
     ("nx_HumMan__3_PAZ_125_N2.cls", "head-head", "--tool 1"),
-    (
-        "nx_HumMan__10_KONTUR_125_N2_162.cls",
-        "head-head",
-        "--tool 1",
-    ),
+    ("nx_HumMan__10_KONTUR_125_N2_162.cls", "head-head", "--tool 1"),
     ("nx_HumMan__8_SVERL_63_N2.cls", "head-head", "--tool 1"),
     ("nx_HumMan__8_SVERL_63_N2.cls", "disc-cutter", "--tool 1"),
     (
@@ -95,11 +63,7 @@ const GOOD: &[(&str, &str, &str)] = &[
     // It has no word for its units; it is in inches.
     ("own_ncl_form.as", "ac-trunnion", "--units inch"),
     ("own_ncl_form.as", "dmu50", "--units inch"),
-    (
-        "own_ncl_form.as",
-        "nutating-head",
-        "--units inch --tcp post --tool-length 100",
-    ),
+    ("own_ncl_form.as", "nutating-head", "--units inch --tcp post --tool-length 100"),
 ];
 
 /// Every file once, on a machine that makes it.
@@ -112,85 +76,30 @@ pub fn one_each() -> impl Iterator<Item = (&'static str, &'static str, &'static 
 /// File, machine, further arguments, code of the fault: these are refused.
 const REFUSED: &[(&str, &str, &str, &str)] = &[
     ("creo5x_4r19415_finition.ncl", "vmc", "", "out-of-reach"),
-    (
-        "creo5x_4r19415_finition.ncl",
-        "ac-trunnion",
-        "",
-        "over-travel",
-    ),
+    ("creo5x_4r19415_finition.ncl", "ac-trunnion", "", "over-travel"),
     ("nx_HumMan_ust_a2.cls", "vmc", "", "out-of-reach"),
     // It works from below, and these heads do not swing so far.
     ("nx_HumMan_ust_a2.cls", "head-head", "", "over-travel"),
     ("nx_HumMan_ust_a2.cls", "ac-trunnion", "", "over-travel"),
     ("nx_HumMan_ust_a.cls", "dmu50", "", "over-travel"),
     ("nx_HumMan_ust_a.cls", "nutating-head", "", "out-of-reach"),
-    (
-        "nx_HumMan__3_PAZ_125_N2.cls",
-        "vmc",
-        "--tool 1",
-        "over-travel",
-    ),
-    (
-        "nx_HumMan__10_KONTUR_125_N2_162.cls",
-        "ac-trunnion",
-        "--tool 1",
-        "over-travel",
-    ),
+    ("nx_HumMan__3_PAZ_125_N2.cls", "vmc", "--tool 1", "over-travel"),
+    ("nx_HumMan__10_KONTUR_125_N2_162.cls", "ac-trunnion", "--tool 1", "over-travel"),
     // A dialect with G43 H must know the tool.
-    (
-        "nx_HumMan_deep_drill.clsf",
-        "vmc",
-        "--allow DEEP",
-        "dialect",
-    ),
+    ("nx_HumMan_deep_drill.clsf", "vmc", "--allow DEEP", "dialect"),
     // It goes in pecks and says none.
     ("nx_HumMan_deep_drill.clsf", "vmc", "--tool 1", "cycle"),
     // Points of the tool's centre, and the radius in the register.
     ("nx_HumMan_cutcom.clsf", "vmc", "", "compensation"),
-    (
-        "swcam_aamorim_basemach.apt",
-        "vmc",
-        "--mount -170,-75,0",
-        "compensation",
-    ),
+    ("swcam_aamorim_basemach.apt", "vmc", "--mount -170,-75,0", "compensation"),
     ("own_ncl_form.as", "vmc", "", "out-of-reach"),
-    (
-        "camworks_neMoguta_UniSource.clt",
-        "vmc",
-        "--tool-from-cutter",
-        "out-of-reach",
-    ),
-    (
-        "swcam_aamorim_Interface-glue.clt",
-        "vmc",
-        "--tool-from-cutter",
-        "out-of-reach",
-    ),
-    (
-        "swcam_aamorim_Teste-Metrologia.apt",
-        "vmc",
-        "",
-        "out-of-reach",
-    ),
+    ("camworks_neMoguta_UniSource.clt", "vmc", "--tool-from-cutter", "out-of-reach"),
+    ("swcam_aamorim_Interface-glue.clt", "vmc", "--tool-from-cutter", "out-of-reach"),
+    ("swcam_aamorim_Teste-Metrologia.apt", "vmc", "", "out-of-reach"),
     // Radius compensation on a tilted plane: a head or TCP would offset in the wrong plane.
-    (
-        "camworks_neMoguta_UniSource.clt",
-        "head-head",
-        "--tool-from-cutter",
-        "compensation",
-    ),
-    (
-        "swcam_aamorim_Interface-glue.clt",
-        "head-head-360",
-        "--tool-from-cutter",
-        "compensation",
-    ),
-    (
-        "swcam_aamorim_Teste-Metrologia.apt",
-        "head-head",
-        "",
-        "compensation",
-    ),
+    ("camworks_neMoguta_UniSource.clt", "head-head", "--tool-from-cutter", "compensation"),
+    ("swcam_aamorim_Interface-glue.clt", "head-head-360", "--tool-from-cutter", "compensation"),
+    ("swcam_aamorim_Teste-Metrologia.apt", "head-head", "", "compensation"),
 ];
 
 #[test]
@@ -208,16 +117,9 @@ fn files_are_posted_within_tolerance() {
         }
         let summary = summary.unwrap();
         check_numbers(&done.out);
-        let tolerance = if *machine == "nutating-head" {
-            0.010
-        } else {
-            0.005
-        };
+        let tolerance = if *machine == "nutating-head" { 0.010 } else { 0.005 };
         assert_eq!(summary["tolerance_mm"], tolerance, "{name}");
-        for (key, limit) in [
-            ("tip_deviation_mm", tolerance),
-            ("axis_deviation_deg", 0.05),
-        ] {
+        for (key, limit) in [("tip_deviation_mm", tolerance), ("axis_deviation_deg", 0.05)] {
             let value = summary[key]["value"].as_f64().unwrap();
             assert!(value <= limit, "{name}: {key} {value}");
         }
@@ -239,11 +141,7 @@ fn files_are_refused_for_a_reason() {
         let code = format!("error[{code}]");
         assert!(done.err.contains(&code), "{name}:\n{}", done.err);
         // The file and the line are told.
-        assert!(
-            done.err.contains(&format!("{file}:")),
-            "{name}:\n{}",
-            done.err
-        );
+        assert!(done.err.contains(&format!("{file}:")), "{name}:\n{}", done.err);
     }
 }
 
@@ -273,20 +171,10 @@ fn the_words_of_every_file_are_listed() {
     for entry in fs::read_dir(data).unwrap() {
         let path = entry.unwrap().path();
         let done = run(command().arg("words").arg(&path), b"");
-        assert_eq!(
-            (done.code, done.err.as_str()),
-            (0, ""),
-            "{}",
-            path.display()
-        );
+        assert_eq!((done.code, done.err.as_str()), (0, ""), "{}", path.display());
         let row = done.out.lines().find(|line| line.starts_with("GOTO "));
         assert!(row.unwrap().contains("used"), "{}", path.display());
-        assert!(
-            !done.out.contains("refused"),
-            "{}\n{}",
-            path.display(),
-            done.out
-        );
+        assert!(!done.out.contains("refused"), "{}\n{}", path.display(), done.out);
     }
 }
 
@@ -332,9 +220,7 @@ fn the_choice_travels_no_farther_than_the_greedy_one() {
                     let axes = summary["axes"].as_array().unwrap().iter();
                     let rotary = axes.filter(|axis| "ABC".contains(axis["name"].as_str().unwrap()));
                     (
-                        rotary
-                            .map(|axis| axis["way"].as_f64().unwrap())
-                            .sum::<f64>(),
+                        rotary.map(|axis| axis["way"].as_f64().unwrap()).sum::<f64>(),
                         told("branch_changes", &summary),
                         told("rewinds", &summary),
                     )

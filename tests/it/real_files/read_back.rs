@@ -73,21 +73,13 @@ fn follow(points: &[Pose], blocks: &[Block], forward: impl Fn([f64; 6]) -> Pose)
         }
         last = *block;
     }
-    assert_eq!(
-        at,
-        Some(points.len() - 1),
-        "the points after this one are not reached"
-    );
+    assert_eq!(at, Some(points.len() - 1), "the points after this one are not reached");
     found
 }
 
 fn read_back(file: &Path, check: &Check) {
     let (done, summary) = post(file, check.machine, check.with);
-    assert_eq!(
-        done.code, 0,
-        "{} on {}:\n{}",
-        check.name, check.machine, done.err
-    );
+    assert_eq!(done.code, 0, "{} on {}:\n{}", check.name, check.machine, done.err);
     let summary = summary.unwrap();
     let text = fs::read_to_string(file).unwrap();
     let mut points = cl_points(&text, check.scale, check.with.contains("--msys apply"));
@@ -105,10 +97,7 @@ fn read_back(file: &Path, check: &Check) {
     eprintln!("{name}");
     // What is certified is a bound of what is found; the words are printed numbers on both sides.
     assert!(found.cut <= value("tip_deviation_mm") + 1e-6, "{name}");
-    assert!(
-        found.cut <= summary["tolerance_mm"].as_f64().unwrap(),
-        "{name}"
-    );
+    assert!(found.cut <= summary["tolerance_mm"].as_f64().unwrap(), "{name}");
     assert!(found.rapid <= 0.5, "{name}");
     assert!(found.axis <= 0.05 + 1e-6, "{name}");
     // The check can see: a program of points alone would not do.
@@ -120,27 +109,9 @@ fn read_back(file: &Path, check: &Check) {
 #[test]
 fn samples_are_read_back_on_every_arrangement() {
     for case in [
-        check(
-            "blade.cls",
-            "ac-trunnion",
-            "--mount 3,-4,5",
-            "XYZAC",
-            ac_trunnion,
-        ),
-        check(
-            "blade.cls",
-            "dmu50",
-            "--mount 3,-4,5 --tcp post",
-            "XYZBC",
-            dmu50,
-        ),
-        check(
-            "blade.cls",
-            "head-head",
-            "--mount 3,-4,5 --tool-length 90",
-            "XYZAC",
-            head_head,
-        ),
+        check("blade.cls", "ac-trunnion", "--mount 3,-4,5", "XYZAC", ac_trunnion),
+        check("blade.cls", "dmu50", "--mount 3,-4,5 --tcp post", "XYZBC", dmu50),
+        check("blade.cls", "head-head", "--mount 3,-4,5 --tool-length 90", "XYZAC", head_head),
         check(
             "blade.cls",
             "nutating-head",
@@ -148,29 +119,11 @@ fn samples_are_read_back_on_every_arrangement() {
             "XYZBC",
             nutating_head,
         ),
-        check(
-            "blade.cls",
-            "disc-cutter",
-            "--mount 3,-4,5 --tool-length 90",
-            "XYZABC",
-            disc_cutter,
-        ),
-        check(
-            "knife.ncl",
-            "disc-cutter",
-            "--mount 3,-4,5 --tool-length 90",
-            "XYZABC",
-            disc_cutter,
-        ),
+        check("blade.cls", "disc-cutter", "--mount 3,-4,5 --tool-length 90", "XYZABC", disc_cutter),
+        check("knife.ncl", "disc-cutter", "--mount 3,-4,5 --tool-length 90", "XYZABC", disc_cutter),
         Check {
             turned: 33.0,
-            ..check(
-                "blade.cls",
-                "dmu50",
-                "--mount 3,-4,5 --tcp post --turn 33",
-                "XYZBC",
-                dmu50,
-            )
+            ..check("blade.cls", "dmu50", "--mount 3,-4,5 --tcp post --turn 33", "XYZBC", dmu50)
         },
         Check {
             turned: -120.5,
@@ -182,24 +135,10 @@ fn samples_are_read_back_on_every_arrangement() {
                 head_head,
             )
         },
-        check(
-            "knife.ncl",
-            "head-head",
-            "--mount 3,-4,5 --tool-length 90",
-            "XYZAC",
-            head_head,
-        ),
+        check("knife.ncl", "head-head", "--mount 3,-4,5 --tool-length 90", "XYZAC", head_head),
     ] {
-        let tool = if case.with.contains("length") {
-            90.0
-        } else {
-            0.0
-        };
-        let case = Check {
-            mount: [3.0, -4.0, 5.0],
-            tool,
-            ..case
-        };
+        let tool = if case.with.contains("length") { 90.0 } else { 0.0 };
+        let case = Check { mount: [3.0, -4.0, 5.0], tool, ..case };
         read_back(&root().join(sample(case.name)), &case);
     }
 }
@@ -211,19 +150,10 @@ fn real_files_are_read_back() {
     };
     const CREO: &str = "creo5x_4r19415_finition.ncl";
     for case in [
-        Check {
-            scale: 25.4,
-            ..check(CREO, "head-head", "", "XYZAC", head_head)
-        },
+        Check { scale: 25.4, ..check(CREO, "head-head", "", "XYZAC", head_head) },
         Check {
             mount: [-140.0, 21.0, -40.0],
-            ..check(
-                CREO,
-                "ac-trunnion",
-                "--units mm --mount -140,21,-40",
-                "XYZAC",
-                ac_trunnion,
-            )
+            ..check(CREO, "ac-trunnion", "--units mm --mount -140,21,-40", "XYZAC", ac_trunnion)
         },
         Check {
             mount: [-140.0, 21.0, 0.0],
@@ -243,13 +173,7 @@ fn real_files_are_read_back() {
             "XYZAC",
             head_head,
         ),
-        check(
-            "nx_HumMan_ust_a2.cls",
-            "head-head",
-            "--msys apply",
-            "XYZAC",
-            head_head,
-        ),
+        check("nx_HumMan_ust_a2.cls", "head-head", "--msys apply", "XYZAC", head_head),
         Check {
             scale: 25.4,
             tool: 100.0,

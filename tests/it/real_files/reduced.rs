@@ -6,11 +6,7 @@ use super::*;
 fn beside(point: V, from: V, to: V) -> f64 {
     let along = to - from;
     let square = along.norm_squared();
-    let t = if square > 0.0 {
-        ((point - from).dot(&along) / square).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
+    let t = if square > 0.0 { ((point - from).dot(&along) / square).clamp(0.0, 1.0) } else { 0.0 };
     (point - from - along * t).norm()
 }
 
@@ -112,17 +108,11 @@ fn read_loosely(file: &Path, check: &Check) {
         let off = nearby(points[index].tip, &tips[..until], 40 * SAMPLES as usize);
         worst = worst.max(off);
         // A rapid ends beside its point by the words' rounding, which is not in what is certified of cuts.
-        assert!(
-            off <= (tip * 1.02).max(0.0009) + 1e-4,
-            "{name}: point {index} is missed by {off}"
-        );
+        assert!(off <= (tip * 1.02).max(0.0009) + 1e-4, "{name}: point {index} is missed by {off}");
         let Some(next) = points.get(index + 1) else {
             continue;
         };
-        let ways = [
-            points[index].tip - points[index - 1].tip,
-            next.tip - points[index].tip,
-        ];
+        let ways = [points[index].tip - points[index - 1].tip, next.tip - points[index].tip];
         if ways.iter().any(|way| way.norm() < 0.01) || angle(ways[0], ways[1]) < 10.5 {
             continue;
         }
@@ -147,13 +137,7 @@ fn reduced_programs_are_read_back() {
         root().join(sample("blade.cls")),
         Check {
             mount: [3.0, -4.0, 5.0],
-            ..check(
-                "blade.cls",
-                "ac-trunnion",
-                "--tcp post --mount 3,-4,5",
-                "XYZAC",
-                ac_trunnion,
-            )
+            ..check("blade.cls", "ac-trunnion", "--tcp post --mount 3,-4,5", "XYZAC", ac_trunnion)
         },
     )];
     if let Some(data) = shared("data/cl") {
@@ -212,11 +196,9 @@ fn reduced_programs_are_read_back() {
     }
     for (file, case) in files {
         for placement in ["placement=bisect", "placement=fewest", "method=compensate"] {
-            let with: &'static str = format!(
-                "{} --set accuracy.reduce=true --set accuracy.{placement}",
-                case.with
-            )
-            .leak();
+            let with: &'static str =
+                format!("{} --set accuracy.reduce=true --set accuracy.{placement}", case.with)
+                    .leak();
             read_loosely(&file, &Check { with, ..case });
         }
     }
@@ -230,11 +212,7 @@ fn arcs_of_nx_stay_among_the_points_of_the_file() {
         return;
     };
     for (file, machine, arguments) in [
-        (
-            "nx_HumMan_cutcom.clsf",
-            "vmc",
-            "--set control.compensation_on_centre=wear",
-        ),
+        ("nx_HumMan_cutcom.clsf", "vmc", "--set control.compensation_on_centre=wear"),
         ("nx_HumMan__3_PAZ_125_N2.cls", "head-head", "--tool 1"),
     ] {
         let text = fs::read_to_string(folder.join(file)).unwrap();
@@ -242,10 +220,7 @@ fn arcs_of_nx_stay_among_the_points_of_the_file() {
             .lines()
             .filter_map(|line| line.trim().strip_prefix("GOTO/"))
             .map(|rest| {
-                rest.split(',')
-                    .take(2)
-                    .map(|number| number.trim().parse().unwrap())
-                    .collect()
+                rest.split(',').take(2).map(|number| number.trim().parse().unwrap()).collect()
             })
             .collect();
         let (done, summary) = post(&folder.join(file), machine, arguments);

@@ -215,10 +215,7 @@ impl Cl {
         let step = self.random.range(0.4, 3.0);
         let closed = self.yes(2);
         let compensated = self.yes(8);
-        let (mut x, mut y) = (
-            self.random.range(-20.0, 20.0),
-            self.random.range(-20.0, 20.0),
-        );
+        let (mut x, mut y) = (self.random.range(-20.0, 20.0), self.random.range(-20.0, 20.0));
         let start = [x, y];
         self.rapid([x, y, level]);
         let clearance = self.random.range(0.5, 5.0);
@@ -239,10 +236,7 @@ impl Cl {
             for _ in 0..points {
                 match self.random.pick(if compensated { 1 } else { 4 }) {
                     0 | 1 => {
-                        (x, y) = (
-                            self.random.range(-25.0, 25.0),
-                            self.random.range(-25.0, 25.0),
-                        );
+                        (x, y) = (self.random.range(-25.0, 25.0), self.random.range(-25.0, 25.0));
                         self.goto([x, y, z]);
                     }
                     _ => (x, y) = self.arc([x, y, z]),
@@ -274,19 +268,13 @@ impl Cl {
                     self.has("rapid beside a cut");
                     let above = z + self.random.range(0.3, 3.0);
                     self.rapid([x, y, above]);
-                    (x, y) = (
-                        self.random.range(-25.0, 25.0),
-                        self.random.range(-25.0, 25.0),
-                    );
+                    (x, y) = (self.random.range(-25.0, 25.0), self.random.range(-25.0, 25.0));
                     self.rapid([x, y, above]);
                 }
                 _ => {
                     self.retract([x, y, z], level);
                     if depth < depths {
-                        (x, y) = (
-                            self.random.range(-25.0, 25.0),
-                            self.random.range(-25.0, 25.0),
-                        );
+                        (x, y) = (self.random.range(-25.0, 25.0), self.random.range(-25.0, 25.0));
                         self.rapid([x, y, level]);
                     }
                 }
@@ -307,10 +295,7 @@ impl Cl {
         let whole = self.yes(8);
         let to = match whole {
             true => [x, y],
-            false => [
-                centre[0] + radius * libm::cos(end),
-                centre[1] + radius * libm::sin(end),
-            ],
+            false => [centre[0] + radius * libm::cos(end), centre[1] + radius * libm::sin(end)],
         };
         let middle = self.part([centre[0], centre[1], z]);
         let normal = self.turn * Vector3::new(0.0, 0.0, sense);
@@ -372,10 +357,7 @@ impl Cl {
         let depth = (depth * 1000.0).round() / 1000.0;
         let step = self.random.range(1.5, 8.0);
         let feed = self.random.range(60.0, 600.0);
-        let (x, y) = (
-            self.random.range(-20.0, 20.0),
-            self.random.range(-20.0, 20.0),
-        );
+        let (x, y) = (self.random.range(-20.0, 20.0), self.random.range(-20.0, 20.0));
         self.rapid([x, y, level]);
         let [deep, clear, step] = [depth, clear, step].map(|mm| self.number(mm));
         let per_minute = match self.scale < 1.0 {

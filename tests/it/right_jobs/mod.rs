@@ -117,13 +117,7 @@ impl RightJob {
         }
         let length = (random.range(40.0, 160.0) * 100.0).round() / 100.0;
         let cl = Cl::random(random.next(), leans);
-        Self {
-            machine,
-            set,
-            length,
-            options,
-            cl,
-        }
+        Self { machine, set, length, options, cl }
     }
 
     /// The command line that does the same, for whoever looks at one that went wrong.
@@ -133,10 +127,7 @@ impl RightJob {
             line.push_str(&format!(" --set {key}={value}"));
         }
         for (key, value) in &self.options {
-            line.push_str(&format!(
-                " --{key} {}",
-                value.as_deref().unwrap_or_default()
-            ));
+            line.push_str(&format!(" --{key} {}", value.as_deref().unwrap_or_default()));
         }
         line + " " + file
     }
@@ -156,9 +147,7 @@ impl RightJob {
             let error = errors
                 .rev()
                 .find(|finding| finding.severity == post_machine::diagnostic::Severity::Error);
-            error.map_or(String::new(), |error| {
-                format!("{}: {}", error.code, error.message)
-            })
+            error.map_or(String::new(), |error| format!("{}: {}", error.code, error.message))
         };
         let machine = match LoadedMachine::load(told) {
             Ok(machine) => machine,
@@ -215,11 +204,7 @@ fn study(first: u64, programs: usize, most: usize) -> (usize, Vec<String>, Strin
         let mut row = |bad: bool| {
             let mut names: Vec<String> = job.cl.has.iter().map(|has| (*has).to_owned()).collect();
             names.extend(job.set.iter().map(|(key, value)| format!("{key}={value}")));
-            names.extend(
-                job.options
-                    .iter()
-                    .map(|(_, value)| value.clone().unwrap_or_default()),
-            );
+            names.extend(job.options.iter().map(|(_, value)| value.clone().unwrap_or_default()));
             for name in names {
                 let row = features.entry(name).or_default();
                 row[usize::from(bad)] += 1;
@@ -236,40 +221,29 @@ fn study(first: u64, programs: usize, most: usize) -> (usize, Vec<String>, Strin
             Outcome::Wrong(text, told) => {
                 made += 1;
                 row(true);
-                let first = told.first().map_or(String::new(), |(code, message)| {
-                    format!("{code}: {message}")
-                });
+                let first = told
+                    .first()
+                    .map_or(String::new(), |(code, message)| format!("{code}: {message}"));
                 by.entry(kind(&first)).or_insert((0, seed)).0 += 1;
-                wrong.push(format!(
-                    "{seed}: {} [{first}]",
-                    job.command(&format!("{seed}.cls"))
-                ));
+                wrong.push(format!("{seed}: {} [{first}]", job.command(&format!("{seed}.cls"))));
                 if let Some(keep) = &keep {
                     let keep = std::path::Path::new(keep);
                     fs::create_dir_all(keep).unwrap();
                     fs::write(keep.join(format!("{seed}.cls")), &job.cl.text).unwrap();
                     fs::write(keep.join(format!("{seed}.nc")), &text).unwrap();
-                    let told: Vec<String> = told
-                        .iter()
-                        .map(|(code, message)| format!("{code}: {message}"))
-                        .collect();
+                    let told: Vec<String> =
+                        told.iter().map(|(code, message)| format!("{code}: {message}")).collect();
                     fs::write(
                         keep.join(format!("{seed}.txt")),
-                        format!(
-                            "{}\n{}\n",
-                            job.command(&format!("{seed}.cls")),
-                            told.join("\n")
-                        ),
+                        format!("{}\n{}\n", job.command(&format!("{seed}.cls")), told.join("\n")),
                     )
                     .unwrap();
                 }
             }
         }
     }
-    let mut table = format!(
-        "{tried} jobs, {made} programs, {} of them refused by verification\n",
-        wrong.len()
-    );
+    let mut table =
+        format!("{tried} jobs, {made} programs, {} of them refused by verification\n", wrong.len());
     let mut kinds: Vec<_> = by.into_iter().collect();
     kinds.sort_by_key(|(_, (count, _))| std::cmp::Reverse(*count));
     for (kind, (count, seed)) in kinds {
@@ -291,11 +265,7 @@ fn study(first: u64, programs: usize, most: usize) -> (usize, Vec<String>, Strin
 #[test]
 fn right_programs_are_not_refused() {
     let (made, wrong, table) = study(1, 60, 400);
-    assert!(
-        made >= 40 && wrong.is_empty(),
-        "{table}\n{}",
-        wrong.join("\n")
-    );
+    assert!(made >= 40 && wrong.is_empty(), "{table}\n{}", wrong.join("\n"));
 }
 
 /// The study: `cargo test --test it right_jobs -- --ignored --nocapture`; POST_JOBS is how many programs it is made of,
@@ -312,9 +282,5 @@ fn thousands_of_right_programs() {
     for wrong in &wrong {
         println!("{wrong}");
     }
-    assert!(
-        wrong.len() * 1000 <= made,
-        "{} of {made} right programs are refused",
-        wrong.len()
-    );
+    assert!(wrong.len() * 1000 <= made, "{} of {made} right programs are refused", wrong.len());
 }

@@ -16,11 +16,7 @@ pub fn shared(path: &str) -> Option<PathBuf> {
     if path.exists() {
         return Some(path);
     }
-    assert!(
-        std::env::var_os("CI").is_none(),
-        "{} is missing",
-        path.display()
-    );
+    assert!(std::env::var_os("CI").is_none(), "{} is missing", path.display());
     eprintln!("skipped: {} is missing", path.display());
     None
 }

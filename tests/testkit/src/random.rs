@@ -17,9 +17,7 @@ pub fn seed() -> u64 {
 
 fn number<N: std::str::FromStr>(variable: &str, otherwise: N) -> N {
     match std::env::var(variable) {
-        Ok(text) => text
-            .parse()
-            .unwrap_or_else(|_| panic!("{variable}={text} is no count")),
+        Ok(text) => text.parse().unwrap_or_else(|_| panic!("{variable}={text} is no count")),
         Err(_) => otherwise,
     }
 }

@@ -27,8 +27,7 @@ pub fn keeps_within(curve: &[V], apart: &[f64], path: &[V]) -> bool {
     let below =
         |piece: usize, leg: usize| within(path[leg], curve[piece], curve[piece + 1], apart[piece]);
     let behind = |free: Reach, least: f64| {
-        free.map(|[low, high]| [low.max(least), high])
-            .filter(|[low, high]| low <= high)
+        free.map(|[low, high]| [low.max(least), high]).filter(|[low, high]| low <= high)
     };
     let begins = |free: Reach| free.filter(|[low, _]| *low == 0.0);
     let ends = |reach: Reach| reach.is_some_and(|[_, high]| high == 1.0);
@@ -42,11 +41,7 @@ pub fn keeps_within(curve: &[V], apart: &[f64], path: &[V]) -> bool {
     let mut starts = true;
     for piece in 0..pieces {
         // Along the curve while the path stands at its start.
-        let mut floor = if starts {
-            begins(below(piece, 0))
-        } else {
-            None
-        };
+        let mut floor = if starts { begins(below(piece, 0)) } else { None };
         starts = ends(floor);
         for (leg, side) in column.iter_mut().enumerate() {
             let (right, top) = (left(piece + 1, leg), below(piece, leg + 1));

@@ -28,11 +28,7 @@ pub fn slerp(a: Vector3<f64>, b: Vector3<f64>, t: f64) -> Vector3<f64> {
 pub fn distance(point: Vector3<f64>, from: Vector3<f64>, to: Vector3<f64>) -> f64 {
     let along = to - from;
     let square = along.norm_squared();
-    let t = if square > 0.0 {
-        ((point - from).dot(&along) / square).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
+    let t = if square > 0.0 { ((point - from).dot(&along) / square).clamp(0.0, 1.0) } else { 0.0 };
     (point - from - along * t).norm()
 }
 

@@ -16,9 +16,7 @@ pub fn blade() -> Option<Vec<Pose>> {
         .lines()
         .skip_while(|line| !line.starts_with("Table 3.2"))
         .map(|line| {
-            line.split_whitespace()
-                .filter_map(|field| field.parse().ok())
-                .collect::<Vec<f64>>()
+            line.split_whitespace().filter_map(|field| field.parse().ok()).collect::<Vec<f64>>()
         })
         .filter(|numbers| numbers.len() == 7)
         .take(20)

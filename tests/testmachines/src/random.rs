@@ -46,15 +46,9 @@ impl Random {
                     tip: rng.point(SIZE),
                     axis: rng.direction(),
                 },
-                free: (0..kinds.len())
-                    .filter(|index| kinds[*index] == 1)
-                    .collect(),
+                free: (0..kinds.len()).filter(|index| kinds[*index] == 1).collect(),
                 held: std::array::from_fn(|index| {
-                    if kinds.get(index) == Some(&2) {
-                        rng.range(-PI, PI)
-                    } else {
-                        0.0
-                    }
+                    if kinds.get(index) == Some(&2) { rng.range(-PI, PI) } else { 0.0 }
                 }),
             };
             let apart = match *machine.free.as_slice() {
@@ -114,9 +108,7 @@ impl Random {
                 tip: rng.point(SIZE),
                 axis: rng.direction(),
             },
-            free: (0..kinds.len())
-                .filter(|index| kinds[*index] == Kind::Free)
-                .collect(),
+            free: (0..kinds.len()).filter(|index| kinds[*index] == Kind::Free).collect(),
             held: std::array::from_fn(|index| match kinds.get(index) {
                 Some(Kind::Held) => rng.range(-PI, PI),
                 _ => 0.0,

@@ -35,10 +35,7 @@ impl Reference {
                     )
                 }
         };
-        self.joints[..count]
-            .iter()
-            .zip(q)
-            .fold(Isometry3::identity(), step)
+        self.joints[..count].iter().zip(q).fold(Isometry3::identity(), step)
     }
 
     /// Tip and tool axis, part frame.
@@ -65,9 +62,7 @@ impl Reference {
 
     /// Places of the linear joints.
     pub fn linear(&self) -> Vec<usize> {
-        (0..self.joints.len())
-            .filter(|index| !self.joints[*index].rotary)
-            .collect()
+        (0..self.joints.len()).filter(|index| !self.joints[*index].rotary).collect()
     }
 
     /// A direction of the tool with all axes at zero, seen from the part at `q`.
@@ -77,11 +72,8 @@ impl Reference {
 
     /// The volume that the linear directions span at `q`, part frame.
     pub fn volume(&self, q: &[f64]) -> f64 {
-        let columns: Vec<Vector3<f64>> = self
-            .linear()
-            .into_iter()
-            .map(|index| self.direction(q, index))
-            .collect();
+        let columns: Vec<Vector3<f64>> =
+            self.linear().into_iter().map(|index| self.direction(q, index)).collect();
         Matrix3::from_columns(&columns).determinant().abs()
     }
 
@@ -91,15 +83,12 @@ impl Reference {
         for place in &linear {
             joints[*place] = 0.0;
         }
-        let columns: Vec<Vector3<f64>> = linear
-            .iter()
-            .map(|place| self.direction(&joints, *place))
-            .collect();
+        let columns: Vec<Vector3<f64>> =
+            linear.iter().map(|place| self.direction(&joints, *place)).collect();
         let way = tip - self.forward(&joints).0;
-        let values = Matrix3::from_columns(&columns)
-            .try_inverse()
-            .expect("linear axes that span the space")
-            * way;
+        let values =
+            Matrix3::from_columns(&columns).try_inverse().expect("linear axes that span the space")
+                * way;
         for (place, value) in linear.iter().zip(values.iter()) {
             joints[*place] = *value;
         }

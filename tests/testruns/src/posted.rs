@@ -139,36 +139,22 @@ impl DialectSession for Recorder {
     ) -> Result<(), WriteFault> {
         for (index, event) in batch.iter().enumerate() {
             let spline = match event {
-                Event::Spline { knots, points, .. } => Some(AskedSpline {
-                    knots: knots.0.to_vec(),
-                    points: points.0.to_vec(),
-                }),
+                Event::Spline { knots, points, .. } => {
+                    Some(AskedSpline { knots: knots.0.to_vec(), points: points.0.to_vec() })
+                }
                 _ => None,
             };
             let arc = match event {
-                Event::Arc {
-                    centre,
-                    normal,
-                    turn,
-                    radius,
-                    ..
-                } => Some(AskedArc {
-                    centre,
-                    normal,
-                    turn,
-                    radius,
-                }),
+                Event::Arc { centre, normal, turn, radius, .. } => {
+                    Some(AskedArc { centre, normal, turn, radius })
+                }
                 _ => None,
             };
             let (words, tool, feed, value) = match event {
-                Event::Position {
-                    words, tool, feed, ..
-                } => (words, tool, feed, 0.0),
+                Event::Position { words, tool, feed, .. } => (words, tool, feed, 0.0),
                 Event::Rapid { words, tool } => (words, tool, None, 0.0),
                 Event::Linear { words, tool, feed } => (words, tool, Some(feed), 0.0),
-                Event::Arc {
-                    words, tool, feed, ..
-                } => (words, tool, Some(feed), 0.0),
+                Event::Arc { words, tool, feed, .. } => (words, tool, Some(feed), 0.0),
                 Event::CyclePoint { words, tool } => (words, tool, None, 0.0),
                 Event::Dwell { seconds } => (&[][..], None, None, seconds),
                 Event::ToolChange { number, .. } => (&[][..], None, None, f64::from(number)),
@@ -210,40 +196,14 @@ impl DialectSession for Recorder {
 }
 
 fn cycle(event: &Event<'_>) -> Option<AskedCycle> {
-    let Event::Cycle {
-        cycle,
-        feed,
-        depth,
-        clearance,
-        retract,
-        step,
-        dwell,
-        pitch,
-    } = *event
-    else {
+    let Event::Cycle { cycle, feed, depth, clearance, retract, step, dwell, pitch } = *event else {
         return None;
     };
-    Some(AskedCycle {
-        kind: cycle,
-        feed,
-        depth,
-        clearance,
-        retract,
-        step,
-        dwell,
-        pitch,
-    })
+    Some(AskedCycle { kind: cycle, feed, depth, clearance, retract, step, dwell, pitch })
 }
 
 fn plane(event: &Event<'_>) -> Option<AskedPlane> {
-    let Event::Plane {
-        origin,
-        x,
-        z,
-        angles,
-        words,
-    } = event
-    else {
+    let Event::Plane { origin, x, z, angles, words } = event else {
         return None;
     };
     Some(AskedPlane {
@@ -268,13 +228,7 @@ impl ModelSession for Samples {
         let mut out = [Deviation::default(); 33];
         deviation(&places, &mut out);
         let [tip_peak, axis_peak] = peaks(&out);
-        Ok(Curve {
-            tip_peak,
-            tip_at: 0.5,
-            axis_peak,
-            axis_at: 0.5,
-            terms: [0.0; 60],
-        })
+        Ok(Curve { tip_peak, tip_at: 0.5, axis_peak, axis_at: 0.5, terms: [0.0; 60] })
     }
 
     fn value(&self, _: &Curve, _: f64) -> Deviation {
@@ -404,11 +358,7 @@ pub fn framed(
         }
     }
     let (report, findings) = post.finish();
-    Run {
-        asked: dialect.asked,
-        report,
-        findings,
-    }
+    Run { asked: dialect.asked, report, findings }
 }
 
 /// A machine, and the same once more for the isometries.
@@ -428,10 +378,7 @@ pub struct Bench {
 impl Bench {
     /// From the text of a machine file with three linear axes or, where the post keeps the tip, fewer.
     pub fn new(text: &str, decimals: u8, length: f64) -> Self {
-        let source = Source {
-            name: "machine.toml".to_owned(),
-            text: text.to_owned(),
-        };
+        let source = Source { name: "machine.toml".to_owned(), text: text.to_owned() };
         let machine = load(source, &[], &mut |_| Err(String::new()))
             .unwrap_or_else(|faults| panic!("{faults:#?}\n{text}"));
         let reference = Reference {
@@ -468,10 +415,7 @@ impl Bench {
     /// Places of the rotary axes.
     pub fn rotary(&self) -> Vec<usize> {
         let joints = self.reference.joints.iter().enumerate();
-        joints
-            .filter(|(_, joint)| joint.rotary)
-            .map(|(place, _)| place)
-            .collect()
+        joints.filter(|(_, joint)| joint.rotary).map(|(place, _)| place).collect()
     }
 
     /// The linear axes where they put the tip on `tip`, the rotary ones standing as they do.
@@ -513,11 +457,7 @@ impl Bench {
 
     /// With an error model of the test's own, and maybe nothing but its word.
     pub fn run_with(&self, cl: &str, model: &mut dyn ModelSession, trust_model: bool) -> Run {
-        let job = Job {
-            tool_length: Some(self.length),
-            trust_model,
-            ..Job::default()
-        };
+        let job = Job { tool_length: Some(self.length), trust_model, ..Job::default() };
         post(&self.machine, self.decimals, cl, job, model)
     }
 }
@@ -534,22 +474,14 @@ pub struct Point {
 pub fn point(tip: Vector3<f64>, axis: Vector3<f64>, rapid: bool) -> Point {
     let rounded =
         |vector: Vector3<f64>, scale: f64| vector.map(|value| libm::rint(value * scale) / scale);
-    Point {
-        tip: rounded(tip, 1e4),
-        axis: rounded(axis, 1e9),
-        rapid,
-    }
+    Point { tip: rounded(tip, 1e4), axis: rounded(axis, 1e9), rapid }
 }
 
 /// A CL file with two lines a point, its pace and its numbers.
 pub fn cl(points: &[Point], feed: f64) -> String {
     let mut text = "UNITS/MM\nMULTAX/ON\nSPINDL/3000,RPM,CLW\n".to_owned();
     for Point { tip, axis, rapid } in points {
-        text += &if *rapid {
-            "RAPID\n".to_owned()
-        } else {
-            format!("FEDRAT/{feed},MMPM\n")
-        };
+        text += &if *rapid { "RAPID\n".to_owned() } else { format!("FEDRAT/{feed},MMPM\n") };
         text += &format!(
             "GOTO/{:.4},{:.4},{:.4},{:.9},{:.9},{:.9}\n",
             tip.x, tip.y, tip.z, axis.x, axis.y, axis.z

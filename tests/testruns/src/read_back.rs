@@ -109,9 +109,7 @@ impl Numbers<'_> {
     }
 
     fn vector(&self, value: Option<&Value>, default: [f64; 3]) -> V {
-        value.map_or(V::from(default), |value| {
-            V::from_column_slice(&self.list(value))
-        })
+        value.map_or(V::from(default), |value| V::from_column_slice(&self.list(value)))
     }
 }
 
@@ -130,9 +128,7 @@ impl Model {
             overlay(&mut table, overrides);
         }
         let section = |name: &str| table.get(name).and_then(Value::as_table);
-        let numbers = Numbers {
-            parameters: section("parameters"),
-        };
+        let numbers = Numbers { parameters: section("parameters") };
         let chain = table["chain"].as_str().unwrap();
         let names = chain
             .trim_matches(['[', ']'])
@@ -178,9 +174,7 @@ impl Model {
             axes,
             mount: numbers.vector(mount, [0.0; 3]),
             gauge: numbers.vector(tool.get("gauge"), [0.0; 3]),
-            tool_axis: numbers
-                .vector(tool.get("axis"), [0.0, 0.0, 1.0])
-                .normalize(),
+            tool_axis: numbers.vector(tool.get("axis"), [0.0, 0.0, 1.0]).normalize(),
             edge: edge.try_normalize(1e-9).unwrap_or_default(),
             control_keeps_tip: says("tcp", "control"),
             unit: if says("units", "inch") { 25.4 } else { 1.0 },
@@ -198,9 +192,8 @@ impl Model {
     /// Positions of the linear axes with the tip on the part origin and all rotary axes showing zero; of quills and
     /// what they run along, only the sum is meant.
     fn work_offset(&self, length: f64) -> Vec<f64> {
-        let linear: Vec<usize> = (0..self.axes.len())
-            .filter(|place| !self.axes[*place].rotary)
-            .collect();
+        let linear: Vec<usize> =
+            (0..self.axes.len()).filter(|place| !self.axes[*place].rotary).collect();
         if linear.is_empty() {
             return vec![0.0; self.axes.len()];
         }
@@ -279,10 +272,7 @@ impl Model {
                 continue;
             };
             if value < least - 2e-3 || value > most + 2e-3 {
-                return Some(format!(
-                    "{} is at {value}, travel {least} to {most}",
-                    axis.name
-                ));
+                return Some(format!("{} is at {value}, travel {least} to {most}", axis.name));
             }
         }
         None
@@ -310,14 +300,10 @@ pub fn blocks(program: &str, names: &[&str], swap: &[String]) -> Vec<Block> {
     for (index, line) in program.lines().enumerate() {
         // The place within a turn, and the way there: `C=ACP(280.000)`.
         let ways = ["=DC(", "=ACP(", "=ACN("];
-        let plain = ways
-            .iter()
-            .fold(line.to_owned(), |line, way| line.replace(way, ""));
+        let plain = ways.iter().fold(line.to_owned(), |line, way| line.replace(way, ""));
         let code = plain.split(['(', ';']).next().unwrap();
         let words = || code.split_whitespace();
-        swaps += words()
-            .filter(|word| swap.iter().any(|swap| swap == word))
-            .count();
+        swaps += words().filter(|word| swap.iter().any(|swap| swap == word)).count();
         // Retracts are in machine coordinates or steps; cycles and tools have words of their own.
         let other = ["G28", "G53", "M91", "M140", "CYCL", "TOOL", "BLK"];
         if words().any(|word| other.contains(&word)) {
@@ -384,9 +370,7 @@ pub fn points(text: &str) -> Vec<Point> {
             "RAPID" => rapid = true,
             "HEAD" => head = Some(items[0].to_owned()),
             "CYCLE" => {
-                let at = items
-                    .iter()
-                    .position(|item| ["DEPTH", "FEDTO"].contains(item));
+                let at = items.iter().position(|item| ["DEPTH", "FEDTO"].contains(item));
                 depth = at.map(|at| number(&items[at + 1]).unwrap().abs() * unit);
             }
             "GOTO" => {

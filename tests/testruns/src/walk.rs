@@ -25,12 +25,7 @@ pub struct Stop {
 /// A stop whose numbers are those that are written.
 pub fn stop(tip: V, axis: V, feed: Option<f64>) -> Stop {
     let Point { tip, axis, .. } = point(tip, axis, feed.is_none());
-    Stop {
-        tip,
-        axis,
-        feed,
-        before: String::new(),
-    }
+    Stop { tip, axis, feed, before: String::new() }
 }
 
 /// The CL file, and the line of each stop.
@@ -138,11 +133,7 @@ pub struct Walk<'a> {
 
 impl<'a> Walk<'a> {
     pub fn new(path: &'a [(V, V)]) -> Self {
-        Self {
-            path,
-            leg: 0,
-            t: 0.0,
-        }
+        Self { path, leg: 0, t: 0.0 }
     }
 
     pub fn at(&self) -> (usize, f64) {
@@ -286,22 +277,12 @@ impl ModelSession for Shape {
             terms[..3].copy_from_slice(&out[32].tip);
             tip_peak = Vector3::from(out[32].tip).norm();
         }
-        Ok(Curve {
-            tip_peak,
-            tip_at: 0.5,
-            axis_peak,
-            axis_at: 0.5,
-            terms,
-        })
+        Ok(Curve { tip_peak, tip_at: 0.5, axis_peak, axis_at: 0.5, terms })
     }
 
     fn value(&self, curve: &Curve, t: f64) -> Deviation {
         let at = |index: usize| {
-            V::new(
-                curve.terms[3 * index],
-                curve.terms[3 * index + 1],
-                curve.terms[3 * index + 2],
-            )
+            V::new(curve.terms[3 * index], curve.terms[3 * index + 1], curve.terms[3 * index + 2])
         };
         let tip = match self {
             Self::Sine => at(0) * libm::sin(std::f64::consts::PI * t),
@@ -312,10 +293,7 @@ impl ModelSession for Shape {
                 for index in 0..PLACES {
                     let apart = t - place(index);
                     if apart == 0.0 {
-                        return Deviation {
-                            tip: at(index).into(),
-                            axis: [0.0; 3],
-                        };
+                        return Deviation { tip: at(index).into(), axis: [0.0; 3] };
                     }
                     let end = index == 0 || index == PLACES - 1;
                     let sign = if index % 2 == 0 { 1.0 } else { -1.0 };
@@ -326,10 +304,7 @@ impl ModelSession for Shape {
                 sum / weights
             }
         };
-        Deviation {
-            tip: tip.into(),
-            axis: [0.0; 3],
-        }
+        Deviation { tip: tip.into(), axis: [0.0; 3] }
     }
 }
 

@@ -45,9 +45,7 @@ impl<const W: usize> Hull<W> {
         if depth == 0 || hull <= enough {
             return hull;
         }
-        let halves = self
-            .cut(0.5)
-            .map(|half| half.bound_within(enough, depth - 1));
+        let halves = self.cut(0.5).map(|half| half.bound_within(enough, depth - 1));
         halves[0].max(halves[1])
     }
 
@@ -72,12 +70,7 @@ impl<const W: usize> Hull<W> {
     pub(super) fn peak(&self) -> (usize, f64) {
         let size = |quarter: usize| norm(&self.cut(0.25 * quarter as f64)[1].0[0]);
         let sizes = (0..=4).map(|quarter| (quarter, size(quarter)));
-        sizes.fold(
-            (0, 0.0),
-            |best, other| {
-                if other.1 > best.1 { other } else { best }
-            },
-        )
+        sizes.fold((0, 0.0), |best, other| if other.1 > best.1 { other } else { best })
     }
 }
 
@@ -94,10 +87,7 @@ mod tests {
             .map(|step| jet(-1.0 + 2.3 * f64::from(step) / 1000.0)[0][0].abs())
             .fold(0.0, f64::max);
         let bound = hull.bound(0.0);
-        assert!(
-            bound >= largest && bound < 1.05 * largest,
-            "{bound} {largest}"
-        );
+        assert!(bound >= largest && bound < 1.05 * largest, "{bound} {largest}");
         assert_eq!(hull.peak().0, 4);
         // A slope of the polyline is taken off.
         let hull = Hull::new(&[[0.0], [2.0], [0.0]], &[[0.0], [2.0], [0.0]], &[2.0], 1.0);

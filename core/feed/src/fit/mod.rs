@@ -119,10 +119,7 @@ impl Fit {
     /// smoothing or the largest distance of samples is not positive.
     #[must_use]
     pub fn new(rules: Rules) -> Self {
-        assert!(
-            (3..=MOST).contains(&rules.dimensions),
-            "a point has 3 to {MOST} coordinates"
-        );
+        assert!((3..=MOST).contains(&rules.dimensions), "a point has 3 to {MOST} coordinates");
         for positive in [
             rules.tolerance,
             rules.turn_tolerance,
@@ -251,11 +248,7 @@ impl Fit {
     fn way(&self, from: &Point, to: &Point) -> Point {
         std::array::from_fn(|axis| {
             let way = to[axis] - from[axis];
-            if axis < 3 {
-                way
-            } else {
-                way * self.rules.turn_weight
-            }
+            if axis < 3 { way } else { way * self.rules.turn_weight }
         })
     }
 
@@ -263,12 +256,7 @@ impl Fit {
     fn extend(&mut self, point: Point, length: f64) {
         let end = self.track.vertices.len() - 1;
         let at = self.track.vertices[end].at + length;
-        self.track.vertices.push(Vertex {
-            point,
-            at,
-            bend: 0.0,
-            zeros: 0,
-        });
+        self.track.vertices.push(Vertex { point, at, bend: 0.0, zeros: 0 });
         if end > 0 {
             let slope = |leg: usize| -> Point {
                 let [a, b] = [leg, leg + 1].map(|vertex| &self.track.vertices[vertex]);
@@ -305,8 +293,7 @@ impl Fit {
             turn.drop_before(spans);
         }
         self.fixed.clear();
-        self.fixed
-            .extend_from_slice(&self.points[spans..spans + DEGREE]);
+        self.fixed.extend_from_slice(&self.points[spans..spans + DEGREE]);
     }
 
     /// Ends the piece at its last point, which its last vertex may be a hair from, and hands on what is left of it.
@@ -388,12 +375,7 @@ impl Fit {
     /// Hands on the legs without length at a vertex.
     fn stand(&mut self, vertex: usize, sink: &mut dyn FnMut(&Leg<'_>)) {
         for _ in 0..std::mem::take(&mut self.track.vertices[vertex].zeros) {
-            sink(&Leg {
-                length: 0.0,
-                begins: false,
-                ends: false,
-                samples: &[],
-            });
+            sink(&Leg { length: 0.0, begins: false, ends: false, samples: &[] });
         }
     }
 }

@@ -53,12 +53,9 @@ mod tests {
 
     #[test]
     fn a_long_leg_is_cut_in_steps_that_grow_slowly() {
-        for (length, near) in [
-            (50.0, [0.2, 0.2]),
-            (50.0, [0.2, 50.0]),
-            (3.0, [1.0, 0.01]),
-            (1000.0, [0.001, 1.0]),
-        ] {
+        for (length, near) in
+            [(50.0, [0.2, 0.2]), (50.0, [0.2, 50.0]), (3.0, [1.0, 0.01]), (1000.0, [0.001, 1.0])]
+        {
             let widths = widths(length, near, f64::INFINITY);
             assert!((widths.iter().sum::<f64>() - length).abs() < 1e-9 * length);
             for pair in widths.windows(2) {

@@ -127,8 +127,7 @@ impl<const W: usize> Smoother<W> {
         let held = [fixed.len(), usize::from(ends)];
         let sites = track.sites[..track.ready].iter();
         self.factors.clear();
-        self.factors
-            .extend(sites.map(|site| f64::from(u8::from(site.data))));
+        self.factors.extend(sites.map(|site| f64::from(u8::from(site.data))));
         self.extras.clear();
         self.weigh(track);
         for round in 0..ROUNDS {
@@ -253,25 +252,13 @@ impl<const W: usize> Smoother<W> {
             weight: extra.weight,
             error: extra.error,
         });
-        self.equations
-            .weigh(track.reference.len(), sites.chain(extras));
+        self.equations.weigh(track.reference.len(), sites.chain(extras));
     }
 
     fn solve(&mut self, track: &Track, held: [usize; 2]) {
-        self.equations.solve(
-            &track.spans,
-            &self.forces,
-            &self.lengths,
-            held,
-            &mut self.deltas,
-        );
+        self.equations.solve(&track.spans, &self.forces, &self.lengths, held, &mut self.deltas);
         // What cannot be solved in the numbers that there are stays on the reference.
-        if !self
-            .deltas
-            .as_flattened()
-            .iter()
-            .all(|delta| delta.is_finite())
-        {
+        if !self.deltas.as_flattened().iter().all(|delta| delta.is_finite()) {
             self.deltas[held[0]..].fill([0.0; W]);
         }
         self.residuals.clear();
@@ -386,13 +373,7 @@ impl<const W: usize> Smoother<W> {
         let target: Point = std::array::from_fn(|axis| start.target[axis] + slope[axis] * x);
         let row = Basis::new(&track.knots[span + 1..]).rows(at)[0];
         let error = self.error(track, span, &row, &target);
-        self.extras.push(Extra {
-            at,
-            span,
-            row,
-            weight: 0.1 * width,
-            error,
-        });
+        self.extras.push(Extra { at, span, row, weight: 0.1 * width, error });
     }
 
     /// Residual, first and second derivative of the spline at a site.

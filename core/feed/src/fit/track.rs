@@ -55,11 +55,8 @@ pub(super) struct Span {
 }
 
 /// Nodes and weights of Gauss's rule on (-1, 1).
-const RULE: [[f64; 2]; GAUSS] = [
-    [-0.774_596_669_241_483_4, 5.0 / 9.0],
-    [0.0, 8.0 / 9.0],
-    [0.774_596_669_241_483_4, 5.0 / 9.0],
-];
+const RULE: [[f64; 2]; GAUSS] =
+    [[-0.774_596_669_241_483_4, 5.0 / 9.0], [0.0, 8.0 / 9.0], [0.774_596_669_241_483_4, 5.0 / 9.0]];
 
 /// A piece from where it is settled to as far as it is known.
 #[derive(Debug, Default)]
@@ -91,12 +88,7 @@ impl Track {
         self.spans.clear();
         self.ready = 0;
         self.fineness = 1.0;
-        self.vertices.push(Vertex {
-            point,
-            at: 0.0,
-            bend: 0.0,
-            zeros: 0,
-        });
+        self.vertices.push(Vertex { point, at: 0.0, bend: 0.0, zeros: 0 });
         self.knots.resize(ORDER, 0.0);
     }
 
@@ -115,11 +107,7 @@ impl Track {
         let far = each().fold(0.0, |most: f64, &length| most.max(length));
         let bend = self.vertices[vertex].bend;
         // A curve through the points would leave the longer leg by more than the tolerance.
-        if bend * far > 8.0 / self.fineness {
-            near.min(2.0 / (bend * self.fineness))
-        } else {
-            near
-        }
+        if bend * far > 8.0 / self.fineness { near.min(2.0 / (bend * self.fineness)) } else { near }
     }
 
     /// Whether a leg is straight, and no chord of a curve: a curve would leave it by far more than the tolerance, or
@@ -147,12 +135,7 @@ impl Track {
             *slope = (last - first) / length;
         }
         let mut inside = std::mem::take(&mut self.inside);
-        place(
-            length,
-            [self.near(leg), self.near(leg + 1)],
-            most,
-            &mut inside,
-        );
+        place(length, [self.near(leg), self.near(leg + 1)], most, &mut inside);
         let site = |x: f64, span: usize, weight: f64, data: bool| Site {
             at: from + x,
             span,
@@ -194,11 +177,7 @@ impl Track {
         self.sites[end].target = last;
         inside.pop();
         self.inside = inside;
-        self.legs.push(Leg {
-            sites: [begin, end],
-            slope,
-            carried,
-        });
+        self.legs.push(Leg { sites: [begin, end], slope, carried });
         if ends {
             let last = from + length;
             self.knots.extend([last; DEGREE - 1]);
@@ -218,8 +197,7 @@ impl Track {
         let leg = &self.legs[first];
         let (site, span, carried) = (leg.sites[0], span_of(leg), leg.carried);
         self.knots.truncate(ORDER + span);
-        self.spans
-            .truncate(self.knots.len().saturating_sub(2 * DEGREE));
+        self.spans.truncate(self.knots.len().saturating_sub(2 * DEGREE));
         self.legs.truncate(first);
         if first == 0 {
             self.sites.clear();
@@ -228,11 +206,7 @@ impl Track {
             self.sites[site].weight = carried;
         }
         let known = self.spans.len();
-        self.ready = self
-            .sites
-            .iter()
-            .take_while(|site| site.span < known)
-            .count();
+        self.ready = self.sites.iter().take_while(|site| site.span < known).count();
         self.fineness = fineness;
         while self.legs.len() < count {
             self.place(most, ends && self.legs.len() + 1 == count);
@@ -257,12 +231,7 @@ impl Track {
                     }
                 }
             }
-            self.spans.push(Span {
-                width: last - first,
-                thirds,
-                weights,
-                gram,
-            });
+            self.spans.push(Span { width: last - first, thirds, weights, gram });
             while let Some(site) = self.sites.get_mut(self.ready)
                 && site.span == index
             {
@@ -286,9 +255,7 @@ impl Track {
             let vertex = &self.vertices[leg];
             let slope = &self.legs[leg].slope;
             let x = mean - vertex.at;
-            self.reference.push(std::array::from_fn(|axis| {
-                vertex.point[axis] + slope[axis] * x
-            }));
+            self.reference.push(std::array::from_fn(|axis| vertex.point[axis] + slope[axis] * x));
         }
     }
 

@@ -163,10 +163,7 @@ impl<const K: usize> Program<K> {
         }
         let ends = self.lower.iter().zip(&self.upper);
         let each = slope.iter().zip(ends);
-        bound
-            + each
-                .map(|(slope, (low, high))| (slope * low).min(slope * high))
-                .sum::<f64>()
+        bound + each.map(|(slope, (low, high))| (slope * low).min(slope * high)).sum::<f64>()
     }
 
     fn fixed(&self, unknown: usize) -> bool {
@@ -197,11 +194,7 @@ impl<'a, const K: usize> State<'a, K> {
     fn new(program: &'a Program<K>, start: &[f64]) -> Self {
         let count = start.len();
         let centre = 0.1;
-        let pair = |s: f64| Pair {
-            s,
-            z: centre / s,
-            ..Pair::default()
-        };
+        let pair = |s: f64| Pair { s, z: centre / s, ..Pair::default() };
         let mut rows = Vec::with_capacity(program.rows.len());
         for (first, range) in program.offsets.windows(2).enumerate() {
             for row in &program.rows[range[0]..range[1]] {
@@ -212,8 +205,7 @@ impl<'a, const K: usize> State<'a, K> {
         }
         let side = |bound: &[f64], sign: f64| -> Vec<Pair> {
             let ends = bound.iter().zip(start);
-            ends.map(|(bound, x)| pair((sign * (bound - x)).max(1e-9)))
-                .collect()
+            ends.map(|(bound, x)| pair((sign * (bound - x)).max(1e-9))).collect()
         };
         Self {
             program,
@@ -231,12 +223,7 @@ impl<'a, const K: usize> State<'a, K> {
     /// Residuals, and the normal matrix of this point, factored.
     fn measure(&mut self) -> Measure {
         let program = self.program;
-        let mut measure = Measure {
-            gap: 0.0,
-            cost: 0.0,
-            primal: 0.0,
-            dual: 0.0,
-        };
+        let mut measure = Measure { gap: 0.0, cost: 0.0, primal: 0.0, dual: 0.0 };
         self.band.reset(self.x.len());
         for unknown in 0..self.x.len() {
             if program.fixed(unknown) {
@@ -280,9 +267,7 @@ impl<'a, const K: usize> State<'a, K> {
         self.band.factor();
         let ends = program.lower.iter().zip(&program.upper);
         let each = self.dual.iter().zip(ends);
-        measure.dual = each
-            .map(|(slope, (low, high))| slope.abs() * (high - low))
-            .sum();
+        measure.dual = each.map(|(slope, (low, high))| slope.abs() * (high - low)).sum();
         measure.cost = measure.cost.abs();
         measure
     }
@@ -299,10 +284,7 @@ impl<'a, const K: usize> State<'a, K> {
         if self.program.cost != Cost::Linear {
             // A curved cost ties both steps together.
             let both = room.primal.min(room.dual);
-            room = Room {
-                primal: both,
-                dual: both,
-            };
+            room = Room { primal: both, dual: both };
         }
         let primal = (SHORT * room.primal).min(1.0);
         let dual = (SHORT * room.dual).min(1.0);
@@ -341,10 +323,7 @@ impl<'a, const K: usize> State<'a, K> {
             }
         }
         self.band.solve(&mut self.dx);
-        let mut room = Room {
-            primal: f64::INFINITY,
-            dual: f64::INFINITY,
-        };
+        let mut room = Room { primal: f64::INFINITY, dual: f64::INFINITY };
         for unknown in 0..self.x.len() {
             let dx = self.dx[unknown];
             if program.fixed(unknown) {

@@ -17,11 +17,7 @@ pub(super) struct Ahead {
 
 impl Ahead {
     pub(super) fn new(planned: Planned) -> Self {
-        Self {
-            law: planned.law,
-            middles: planned.middles,
-            tangents: planned.tangents,
-        }
+        Self { law: planned.law, middles: planned.middles, tangents: planned.tangents }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -69,9 +65,7 @@ impl Ahead {
     /// Tangents with which this plan is known to keep its rows, up to where it stops.
     pub(super) fn known(&self, fast: &[f64]) -> Vec<f64> {
         let known = self.tangents.iter().zip(fast).map(not_small);
-        known
-            .chain(fast.iter().skip(self.tangents.len()).copied())
-            .collect()
+        known.chain(fast.iter().skip(self.tangents.len()).copied()).collect()
     }
 }
 

@@ -89,18 +89,11 @@ pub(super) fn reversed(channel: &Channel) -> Channel {
     let [f0, f1] = channel.first;
     let [c0, c1] = channel.second;
     let [t0, t1, t2] = channel.third;
-    Channel {
-        first: [-f1, -f0],
-        second: [c1, c0],
-        third: [-t2, -t1, -t0],
-        ..*channel
-    }
+    Channel { first: [-f1, -f0], second: [c1, c0], third: [-t2, -t1, -t0], ..*channel }
 }
 
 fn largest(values: &[f64]) -> f64 {
-    values
-        .iter()
-        .fold(0.0, |most: f64, value| most.max(value.abs()))
+    values.iter().fold(0.0, |most: f64, value| most.max(value.abs()))
 }
 
 /// Bernstein coefficients of `q'`.
@@ -111,12 +104,7 @@ fn slope(step: f64) -> [Form; 2] {
 
 /// A linear function times `q`.
 fn times_q([a, b]: [f64; 2]) -> Cubic<Form> {
-    [
-        [a, 0.0, 0.0],
-        [b / 3.0, 2.0 / 3.0 * a, 0.0],
-        [0.0, 2.0 / 3.0 * b, a / 3.0],
-        [0.0, 0.0, b],
-    ]
+    [[a, 0.0, 0.0], [b / 3.0, 2.0 / 3.0 * a, 0.0], [0.0, 2.0 / 3.0 * b, a / 3.0], [0.0, 0.0, b]]
 }
 
 /// A quadratic times `q`.
@@ -156,9 +144,7 @@ mod tests {
         match coefficients {
             [value] => *value,
             more => {
-                let pairs = more
-                    .windows(2)
-                    .map(|pair| pair[0] + t * (pair[1] - pair[0]));
+                let pairs = more.windows(2).map(|pair| pair[0] + t * (pair[1] - pair[0]));
                 bernstein(&pairs.collect::<Vec<_>>(), t)
             }
         }
@@ -192,13 +178,9 @@ mod tests {
         let piece = Piece::Quadratic(q);
         let value = |forms: &[Form]| -> Vec<f64> {
             let each = forms.iter();
-            each.map(|form| form.iter().zip(q).map(|(a, b)| a * b).sum())
-                .collect()
+            each.map(|form| form.iter().zip(q).map(|(a, b)| a * b).sum()).collect()
         };
-        let (second, third) = (
-            value(&acceleration(&cubic, 0.5)),
-            value(&jerk(&channel, 0.5)),
-        );
+        let (second, third) = (value(&acceleration(&cubic, 0.5)), value(&jerk(&channel, 0.5)));
         for step in 0..=10 {
             let share = f64::from(step) / 10.0;
             let [q, slope, curve] = piece.at(share, 0.5);
@@ -231,13 +213,7 @@ mod tests {
             3.0 * leaving_acceleration(&channel, 0.5),
             3.0 * 3f64.sqrt() * leaving_jerk(&channel, 0.5),
         ];
-        assert!(
-            second <= bounds[0] && second > 0.9 * bounds[0],
-            "{second} {bounds:?}"
-        );
-        assert!(
-            third <= bounds[1] && third > 0.9 * bounds[1],
-            "{third} {bounds:?}"
-        );
+        assert!(second <= bounds[0] && second > 0.9 * bounds[0], "{second} {bounds:?}");
+        assert!(third <= bounds[1] && third > 0.9 * bounds[1], "{third} {bounds:?}");
     }
 }

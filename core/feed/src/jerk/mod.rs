@@ -49,10 +49,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self {
-            rounds: 40,
-            progress: 1e-5,
-        }
+        Self { rounds: 40, progress: 1e-5 }
     }
 }
 
@@ -116,10 +113,7 @@ pub fn solve(
 ) -> Result<Plan, Infeasible> {
     let fast = reach::solve(problem)?;
     let last = problem.steps.len();
-    let mut law = Law {
-        steps: problem.steps.clone(),
-        pieces: Vec::with_capacity(last),
-    };
+    let mut law = Law { steps: problem.steps.clone(), pieces: Vec::with_capacity(last) };
     let mut work = Work::default();
     let corners = vec![false; last + 1];
     let mut first = 0;
@@ -164,8 +158,6 @@ fn of_limits(
     sink: &mut dyn FnMut(u16, Channel),
 ) {
     for (index, limit) in limits.iter().enumerate() {
-        limit.channels(samples, interval, &mut |channel| {
-            sink(index as u16, channel)
-        });
+        limit.channels(samples, interval, &mut |channel| sink(index as u16, channel));
     }
 }

@@ -170,11 +170,7 @@ impl Stretch<'_> {
             let step = self.steps[interval];
             let mut most = f64::INFINITY;
             (self.channels)(interval, &mut |_, channel| {
-                let channel = if interval == 0 {
-                    channel
-                } else {
-                    forms::reversed(&channel)
-                };
+                let channel = if interval == 0 { channel } else { forms::reversed(&channel) };
                 most = most.min(match channel.order {
                     Order::Acceleration => {
                         channel.limit / forms::leaving_acceleration(&channel, step)
@@ -201,12 +197,7 @@ impl Stretch<'_> {
         rules: &Rules,
         tangents: &[f64],
     ) -> Program<3> {
-        let side = |k: usize| {
-            bounds
-                .iter()
-                .zip(scale)
-                .map(move |(bound, scale)| bound[k] / scale)
-        };
+        let side = |k: usize| bounds.iter().zip(scale).map(move |(bound, scale)| bound[k] / scale);
         let mut program = Program {
             cost: Cost::Time,
             weights: spline.weights(scale),
@@ -222,11 +213,7 @@ impl Stretch<'_> {
                 program.offsets.push(program.rows.len());
             }
             // What is given keeps the row itself alone.
-            let room = if spline.rest[0] || interval > 1 {
-                self.room
-            } else {
-                0.0
-            };
+            let room = if spline.rest[0] || interval > 1 { self.room } else { 0.0 };
             for rule in rules.of(interval) {
                 for side in [1.0, -1.0] {
                     let (form, most) = rule.linear(side, tangent);
@@ -248,10 +235,7 @@ fn start(spline: &Spline, program: &Program<3>, tangents: &[f64], scale: &[f64])
     for (tangent, &unknown) in tangents.iter().zip(&spline.unknowns[1..]) {
         start[unknown] = 0.5 * tangent / scale[unknown];
     }
-    for (x, (low, high)) in start
-        .iter_mut()
-        .zip(program.lower.iter().zip(&program.upper))
-    {
+    for (x, (low, high)) in start.iter_mut().zip(program.lower.iter().zip(&program.upper)) {
         *x = x.clamp(low + 1e-3 * (high - low), high - 1e-3 * (high - low));
     }
     start

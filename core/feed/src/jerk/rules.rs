@@ -107,10 +107,7 @@ impl Rules {
                 let value = spline.value(interval, rule.form, unknowns).abs() * speed;
                 if value > worst {
                     worst = value;
-                    fault = Infeasible::Contradiction {
-                        sample: interval,
-                        source: rule.source,
-                    };
+                    fault = Infeasible::Contradiction { sample: interval, source: rule.source };
                 }
             }
         }

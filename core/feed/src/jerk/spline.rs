@@ -70,12 +70,7 @@ impl Spline {
             unknown += usize::from(!merged);
             unknowns.push(unknown);
         }
-        Ok(Self {
-            widths,
-            rest,
-            fixed: [[start.q, start.middle], [end, end]],
-            unknowns,
-        })
+        Ok(Self { widths, rest, fixed: [[start.q, start.middle], [end, end]], unknowns })
     }
 
     pub(super) fn intervals(&self) -> usize {
@@ -146,10 +141,7 @@ impl Spline {
     /// What a form of an interval comes to.
     pub(super) fn value(&self, interval: usize, form: Form, unknowns: &[f64]) -> f64 {
         let place = &self.unknowns[interval..interval + 3];
-        form.iter()
-            .zip(place)
-            .map(|(a, &at)| a * unknowns[at])
-            .sum()
+        form.iter().zip(place).map(|(a, &at)| a * unknowns[at]).sum()
     }
 
     /// The feed over `steps`.
@@ -166,9 +158,6 @@ impl Spline {
                 Piece::Arrive(value(bernstein[0]))
             }
         };
-        Law {
-            steps: steps.to_vec(),
-            pieces: (0..=last).map(piece).collect(),
-        }
+        Law { steps: steps.to_vec(), pieces: (0..=last).map(piece).collect() }
     }
 }

@@ -56,11 +56,7 @@ impl Passed<'_> {
         let mut usage = Usage::default();
         for (share, (bound, source)) in [0.0, 1.0].into_iter().zip(self.bounds) {
             if bound > 0.0 {
-                usage.raise(
-                    self.piece.at(share, self.step)[0] / bound,
-                    self.sample,
-                    source,
-                );
+                usage.raise(self.piece.at(share, self.step)[0] / bound, self.sample, source);
             }
         }
         // At rest itself the parameter's third derivative is a product of 0 and infinity.
@@ -194,14 +190,9 @@ impl Stream {
             }
             self.window.append(problem, interval, &joint);
             let channels = &mut self.channels;
-            of_limits(
-                batch.samples,
-                batch.limits,
-                interval,
-                &mut |limit, channel| {
-                    channels.push((joint.limit(limit), channel));
-                },
-            );
+            of_limits(batch.samples, batch.limits, interval, &mut |limit, channel| {
+                channels.push((joint.limit(limit), channel));
+            });
             self.offsets.push(self.channels.len());
             self.corners.push(false);
         }
@@ -292,12 +283,7 @@ impl Stream {
 
     /// Hands on the first intervals of the plan ahead.
     fn hand_on(&mut self, count: usize, sink: &mut impl FnMut(Passed<'_>)) {
-        let Problem {
-            steps,
-            upper,
-            causes,
-            ..
-        } = &self.window.problem;
+        let Problem { steps, upper, causes, .. } = &self.window.problem;
         for (place, &piece) in self.ahead.law.pieces[..count].iter().enumerate() {
             sink(Passed {
                 sample: self.window.done + place,

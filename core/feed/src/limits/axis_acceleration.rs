@@ -23,8 +23,7 @@ impl Limit for AxisAcceleration {
     fn rows(&self, samples: &Samples) -> Vec<Option<u16>> {
         let each = self.collocation.rows();
         let axes = 0..samples.axes.len().min(self.limits.len());
-        axes.flat_map(|axis| std::iter::repeat_n(Some(axis as u16), each))
-            .collect()
+        axes.flat_map(|axis| std::iter::repeat_n(Some(axis as u16), each)).collect()
     }
 
     fn apply(&self, samples: &Samples, table: &mut Table<'_>) {
@@ -63,17 +62,8 @@ pub(super) fn acceleration(first: [f64; 2], second: [f64; 2], step: f64, scale: 
     let [first, middle, last] = first_derivative(first, second, step);
     let [here, next] = [second[0] * scale, second[1] * scale];
     [
-        Row {
-            here: here - first * push,
-            next: first * push,
-        },
-        Row {
-            here: 0.5 * next - middle * push,
-            next: 0.5 * here + middle * push,
-        },
-        Row {
-            here: -last * push,
-            next: next + last * push,
-        },
+        Row { here: here - first * push, next: first * push },
+        Row { here: 0.5 * next - middle * push, next: 0.5 * here + middle * push },
+        Row { here: -last * push, next: next + last * push },
     ]
 }

@@ -32,9 +32,7 @@ impl Limit for AxisVelocity {
                 let first = [axis.first[interval], axis.first[interval + 1]];
                 let second = [axis.second[interval], axis.second[interval + 1]];
                 let hull = first_derivative(first, second, samples.step(interval));
-                let largest = hull
-                    .iter()
-                    .fold(0.0, |most: f64, value| most.max(value.abs()));
+                let largest = hull.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
                 table.lower(interval, bound(largest), name);
                 table.lower(interval + 1, bound(largest), name);
             }

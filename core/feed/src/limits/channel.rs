@@ -83,14 +83,7 @@ impl Channel {
                 [third[0], mean, 2.0 * mean - third[0]]
             }
         };
-        Self {
-            first,
-            second,
-            third,
-            order,
-            limit,
-            axis: None,
-        }
+        Self { first, second, third, order, limit, axis: None }
     }
 }
 
@@ -107,10 +100,7 @@ pub(super) fn axis_channels(
         let pair = |all: &[f64]| [all[interval], all[interval + 1]];
         let (first, second, third) = (pair(&axis.first), pair(&axis.second), pair(&axis.third));
         let channel = Channel::between(first, second, third, samples.smooth, step, order, limit);
-        sink(Channel {
-            axis: Some(index as u16),
-            ..channel
-        });
+        sink(Channel { axis: Some(index as u16), ..channel });
     }
 }
 
@@ -129,11 +119,7 @@ impl Directions {
     fn of(samples: &Samples, interval: usize) -> &'static Self {
         let ends = [interval, interval + 1];
         let flat = |vectors: &Vec<[f64; 3]>| ends.iter().all(|&at| vectors[at][2] == 0.0);
-        if samples.tip.iter().all(flat) {
-            &PLANE
-        } else {
-            &SPACE
-        }
+        if samples.tip.iter().all(flat) { &PLANE } else { &SPACE }
     }
 
     fn plane(pairs: usize) -> Self {
@@ -141,10 +127,7 @@ impl Directions {
             let angle = pair as f64 * PI / pairs as f64;
             [libm::cos(angle), libm::sin(angle), 0.0]
         };
-        Self {
-            units: (0..pairs).map(unit).collect(),
-            share: libm::cos(0.5 * PI / pairs as f64),
-        }
+        Self { units: (0..pairs).map(unit).collect(), share: libm::cos(0.5 * PI / pairs as f64) }
     }
 
     /// Through 12 corners, 20 faces and 30 edges.
@@ -155,10 +138,7 @@ impl Directions {
             let length = (x * x + y * y + z * z).sqrt();
             let unit = [x / length, y / length, z / length];
             // Of a direction and its opposite the first is enough.
-            if units
-                .iter()
-                .all(|other| dot(*other, unit).abs() < 1.0 - 1e-9)
-            {
+            if units.iter().all(|other| dot(*other, unit).abs() < 1.0 - 1e-9) {
                 units.push(unit);
             }
         };
@@ -182,10 +162,7 @@ impl Directions {
             }
         }
         // The circle around a triangle of neighbours: a corner, a face and an edge, with a right angle at the edge.
-        Self {
-            units,
-            share: ICOSAHEDRON,
-        }
+        Self { units, share: ICOSAHEDRON }
     }
 }
 

@@ -34,9 +34,7 @@ impl Limit for ChordError {
     }
 
     fn apply(&self, samples: &Samples, table: &mut Table<'_>) {
-        bound_feed(samples, self.collocation, table, |curvature| {
-            self.feed(curvature)
-        });
+        bound_feed(samples, self.collocation, table, |curvature| self.feed(curvature));
     }
 }
 
@@ -46,11 +44,8 @@ mod tests {
 
     #[test]
     fn the_chord_of_one_period_strays_by_the_tolerance() {
-        let limit = ChordError {
-            tolerance: 0.0005,
-            period: 0.004,
-            collocation: Collocation::Start,
-        };
+        let limit =
+            ChordError { tolerance: 0.0005, period: 0.004, collocation: Collocation::Start };
         for radius in [0.001, 0.02, 8.0, 1e6] {
             let half: f64 = limit.feed(1.0 / radius) * limit.period / 2.0;
             let error = half * half / (radius + (radius * radius - half * half).max(0.0).sqrt());

@@ -74,13 +74,7 @@ impl ContourError {
             most
         };
         let deviations = frequencies.iter().map(largest).collect();
-        Self {
-            tolerance,
-            collocation,
-            frequencies,
-            deviations,
-            lags: Lags::new(axes, highest),
-        }
+        Self { tolerance, collocation, frequencies, deviations, lags: Lags::new(axes, highest) }
     }
 
     /// The largest frequency up to which the contour error of an arc of this curvature in 1/mm is within the
@@ -129,11 +123,7 @@ impl ContourError {
         let turning = across.turning();
         let frequency = self.faithful_up_to(tolerance * turning * turning / across.bend());
         Bound {
-            speed: if turning > 0.0 {
-                frequency / turning
-            } else {
-                f64::INFINITY
-            },
+            speed: if turning > 0.0 { frequency / turning } else { f64::INFINITY },
             rate: 0.0,
             push: 0.0,
         }
@@ -188,22 +178,10 @@ fn channels(first: &Bound, last: &Bound) -> [Channel; 2] {
 fn rows(first: &Bound, last: &Bound, step: f64) -> [Row; 4] {
     let row = |bound: &Bound, at_end: bool, sign: f64| {
         let push = sign * 0.5 * bound.push / step;
-        let [here, next] = if at_end {
-            [0.0, bound.rate]
-        } else {
-            [bound.rate, 0.0]
-        };
-        Row {
-            here: here - push,
-            next: next + push,
-        }
+        let [here, next] = if at_end { [0.0, bound.rate] } else { [bound.rate, 0.0] };
+        Row { here: here - push, next: next + push }
     };
-    [
-        row(first, false, 1.0),
-        row(first, false, -1.0),
-        row(last, true, 1.0),
-        row(last, true, -1.0),
-    ]
+    [row(first, false, 1.0), row(first, false, -1.0), row(last, true, 1.0), row(last, true, -1.0)]
 }
 
 /// By how much of its radius the steady path of the axes strays from a circle that is gone with `frequency` rad/s.

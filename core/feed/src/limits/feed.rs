@@ -47,10 +47,7 @@ mod tests {
     }
 
     fn speeds(samples: &Samples, collocation: Collocation) -> Result<Vec<f64>, Infeasible> {
-        let feed = Feed {
-            most: 30.0,
-            collocation,
-        };
+        let feed = Feed { most: 30.0, collocation };
         let problem = Problem::new(samples, &[&feed], Ends::default())?;
         Ok(problem.upper.into_iter().map(f64::sqrt).collect())
     }
@@ -63,10 +60,7 @@ mod tests {
         assert_eq!(speeds(&samples, Collocation::Start), Ok(at_samples));
         // The slower block may begin anywhere behind sample 3.
         let throughout = [[15.0; 3].as_slice(), &[5.0; 7]].concat();
-        assert_eq!(
-            speeds(&samples, Collocation::Throughout),
-            Ok(throughout.clone())
-        );
+        assert_eq!(speeds(&samples, Collocation::Throughout), Ok(throughout.clone()));
         // And the same backwards.
         samples.feeds.reverse();
         let backwards: Vec<f64> = throughout.into_iter().rev().collect();

@@ -102,11 +102,7 @@ impl Place {
     /// All of a batch: its samples, or its intervals if a limit is kept between samples too.
     fn all(samples: &Samples, collocation: Collocation) -> impl Iterator<Item = Self> + '_ {
         let throughout = collocation == Collocation::Throughout;
-        let count = if throughout {
-            samples.intervals()
-        } else {
-            samples.len()
-        };
+        let count = if throughout { samples.intervals() } else { samples.len() };
         (0..count).map(move |first| {
             if throughout {
                 Self::between(samples, first)
@@ -145,11 +141,7 @@ impl Place {
     /// Bounds the speed of the parameter there.
     pub(crate) fn bound(&self, table: &mut Table<'_>, speed: f64) {
         // A speed below 0 is none, and must not become one by being squared.
-        let bound = if speed >= 0.0 {
-            speed * speed
-        } else {
-            f64::NAN
-        };
+        let bound = if speed >= 0.0 { speed * speed } else { f64::NAN };
         for sample in self.samples.clone() {
             table.lower(sample, bound, None);
         }
@@ -175,11 +167,7 @@ pub(crate) fn least_of_blocks(each: &[f64], place: &Place) -> f64 {
     let here = each.get(place.samples.clone()).unwrap_or_default();
     // What is not a number must not get lost in a comparison.
     let least = |least: f64, &value: &f64| {
-        if value < least || value.is_nan() {
-            value
-        } else {
-            least
-        }
+        if value < least || value.is_nan() { value } else { least }
     };
     here.iter().fold(f64::INFINITY, least)
 }

@@ -54,16 +54,8 @@ impl Limit for TipAcceleration {
             };
             let rows = table.rows_mut(interval);
             for (number, &place) in places.iter().enumerate() {
-                let here = [
-                    each[0][place].here,
-                    each[1][place].here,
-                    each[2][place].here,
-                ];
-                let next = [
-                    each[0][place].next,
-                    each[1][place].next,
-                    each[2][place].next,
-                ];
+                let here = [each[0][place].here, each[1][place].here, each[2][place].here];
+                let next = [each[0][place].next, each[1][place].next, each[2][place].next];
                 let [along, across] = frame(here, next);
                 for (row, normal) in rows[number * PAIRS..].iter_mut().zip(&normals) {
                     let [x, y] = *normal;
@@ -85,11 +77,7 @@ impl Limit for TipAcceleration {
 fn frame(here: [f64; 3], next: [f64; 3]) -> [[f64; 3]; 2] {
     let unit = |vector: [f64; 3]| {
         let length = norm(vector);
-        if length > 0.0 {
-            vector.map(|value| value / length)
-        } else {
-            vector
-        }
+        if length > 0.0 { vector.map(|value| value / length) } else { vector }
     };
     let along = unit(std::array::from_fn(|axis| next[axis] - here[axis]));
     // Their sum is what `q` is multiplied with.

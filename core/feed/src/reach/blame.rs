@@ -65,10 +65,7 @@ fn slowest(problem: &Problem, back: bool) -> Option<Broken> {
         rows.clear();
         if index < last {
             let interval = if back { sample - 1 } else { sample };
-            let turned = |row: &Row| Row {
-                here: row.next,
-                next: row.here,
-            };
+            let turned = |row: &Row| Row { here: row.next, next: row.here };
             let all = problem.rows_of(interval).iter();
             rows.extend(all.map(|row| if back { turned(row) } else { *row }));
             // Rows may forbid it whatever follows.
@@ -80,13 +77,7 @@ fn slowest(problem: &Problem, back: bool) -> Option<Broken> {
             }
         }
         if q > allowed * (1.0 + 1e-12) {
-            return Some(Broken {
-                sample,
-                source,
-                needed: q,
-                allowed,
-                by,
-            });
+            return Some(Broken { sample, source, needed: q, allowed, by });
         }
         let (least, row) = step::lowest_after(&rows, q);
         q = least;

@@ -28,12 +28,7 @@ struct Span {
 
 #[inline]
 fn span(rows: &[Row], x: f64, low: f64, high: f64) -> Span {
-    let mut span = Span {
-        low,
-        low_slope: 0.0,
-        high,
-        high_slope: 0.0,
-    };
+    let mut span = Span { low, low_slope: 0.0, high, high_slope: 0.0 };
     for &row in rows {
         let [slope, half] = lines(row);
         let middle = slope * x;
@@ -55,10 +50,7 @@ fn span(rows: &[Row], x: f64, low: f64, high: f64) -> Span {
 fn lines(row: Row) -> [f64; 2] {
     let flat = row.next.abs() <= FLAT;
     let inverse = 1.0 / row.next;
-    [
-        if flat { 0.0 } else { -row.here * inverse },
-        if flat { f64::INFINITY } else { inverse.abs() },
-    ]
+    [if flat { 0.0 } else { -row.here * inverse }, if flat { f64::INFINITY } else { inverse.abs() }]
 }
 
 /// The largest `x` by the rows that bound it alone.
@@ -152,25 +144,10 @@ mod tests {
     /// `|(y - x)| <= 2`, and `|x - 3| <= 1` through a row without `y` (scaled).
     #[test]
     fn the_root_is_found_with_a_row_that_bounds_x_alone() {
-        let rows = [
-            Row {
-                here: -0.5,
-                next: 0.5,
-            },
-            Row {
-                here: 0.25,
-                next: 0.0,
-            },
-        ];
-        assert_eq!(
-            highest_before(&rows, 10.0, 0.0, 1.0),
-            Some(3.0 * (1.0 - INSIDE))
-        );
+        let rows = [Row { here: -0.5, next: 0.5 }, Row { here: 0.25, next: 0.0 }];
+        assert_eq!(highest_before(&rows, 10.0, 0.0, 1.0), Some(3.0 * (1.0 - INSIDE)));
         assert_eq!(highest_before(&rows, 10.0, 0.0, 8.0), Some(4.0));
-        assert_eq!(
-            lowest_before(&rows, 10.0, 5.0, 8.0),
-            Some(3.0 * (1.0 + INSIDE))
-        );
+        assert_eq!(lowest_before(&rows, 10.0, 5.0, 8.0), Some(3.0 * (1.0 + INSIDE)));
         assert_eq!(lowest_before(&rows, 10.0, 7.0, 8.0), None);
         assert_eq!(highest_after(&rows, 4.0, 0.0, 8.0), 6.0);
         assert_eq!(lowest_after(&rows, 4.0), (2.0, Some(0)));

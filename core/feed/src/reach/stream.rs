@@ -42,10 +42,7 @@ impl Settled<'_> {
         if self.place == 0 {
             usage.raise(self.arrived.share, self.sample, self.arrived.source);
         }
-        Usage {
-            sample: self.sample,
-            ..usage
-        }
+        Usage { sample: self.sample, ..usage }
     }
 }
 

@@ -23,11 +23,7 @@ fn check(problem: &Problem, name: &str) -> [f64; 2] {
         assert!(worst.share <= KEPT, "{name}: {worst:?}");
     }
     // Clarabel itself keeps rows to some 1e-8, so it may have a little more than there is.
-    assert!(
-        (best.objective / oracle - 1.0).abs() < 1e-6,
-        "{name}: {} {oracle}",
-        best.objective
-    );
+    assert!((best.objective / oracle - 1.0).abs() < 1e-6, "{name}: {} {oracle}", best.objective);
     assert!(best.gap() < 1e-6, "{name}: {}", best.gap());
     assert!(sum(&fast) <= best.bound * (1.0 + 1e-12), "{name}");
     [sum(&fast), best.objective]
@@ -54,18 +50,10 @@ fn where_all_limits_are_monotone_both_solvers_have_every_feed_the_same() {
 #[test]
 fn on_smooth_paths_the_optimum_is_that_of_clarabel_and_reachability_is_near() {
     for (seed, axes) in (0..12).zip([2, 3, 5].into_iter().cycle()) {
-        for collocation in [
-            Collocation::Start,
-            Collocation::Ends,
-            Collocation::Throughout,
-        ] {
+        for collocation in [Collocation::Start, Collocation::Ends, Collocation::Throughout] {
             let problem = random::problem(seed, axes, 400, collocation);
             let [fast, best] = check(&problem, &format!("seed {seed}, {collocation:?}"));
-            assert!(
-                fast > 0.97 * best,
-                "seed {seed}, {collocation:?}: {}",
-                fast / best
-            );
+            assert!(fast > 0.97 * best, "seed {seed}, {collocation:?}: {}", fast / best);
         }
     }
 }
@@ -73,9 +61,6 @@ fn on_smooth_paths_the_optimum_is_that_of_clarabel_and_reachability_is_near() {
 #[test]
 fn rows_of_any_signs_are_kept_and_the_optimum_is_that_of_clarabel() {
     for seed in 0..60 {
-        check(
-            &random::any(seed, 50 + 5 * seed as usize),
-            &format!("seed {seed}"),
-        );
+        check(&random::any(seed, 50 + 5 * seed as usize), &format!("seed {seed}"));
     }
 }

@@ -27,17 +27,9 @@ fn on_a_line_the_plan_with_jerk_limits_is_the_s_curve() {
     let jerk_limit = 3000.0;
     let length = 100.0;
     let collocation = Collocation::Throughout;
-    let velocity = AxisVelocity {
-        limits: vec![VELOCITY],
-        collocation,
-    };
-    let acceleration = AxisAcceleration {
-        limits: vec![ACCELERATION],
-        collocation,
-    };
-    let jerk = AxisJerk {
-        limits: vec![jerk_limit],
-    };
+    let velocity = AxisVelocity { limits: vec![VELOCITY], collocation };
+    let acceleration = AxisAcceleration { limits: vec![ACCELERATION], collocation };
+    let jerk = AxisJerk { limits: vec![jerk_limit] };
     let limits: [&dyn Limit; 3] = [&velocity, &acceleration, &jerk];
     let trapezoid = length / VELOCITY + VELOCITY / ACCELERATION;
     let s_curve = trapezoid + ACCELERATION / jerk_limit;
@@ -59,11 +51,7 @@ fn on_a_line_the_plan_with_jerk_limits_is_the_s_curve() {
         );
         assert!((plan.bound / trapezoid - 1.0).abs() < 1e-3);
         // Never below what physics allows.
-        assert!(
-            over > -1e-9 && over < most,
-            "{} samples: {over}",
-            parameters.len()
-        );
+        assert!(over > -1e-9 && over < most, "{} samples: {over}", parameters.len());
     }
 }
 
@@ -81,22 +69,13 @@ fn on_a_circle_the_tip_accelerates_with_what_the_curvature_leaves() {
         let second = [-cos / radius, -sin / radius, 0.0];
         samples.push(s, [first, second, [0.0; 3]], &[]);
     }
-    let tip = TipAcceleration {
-        limit,
-        collocation: Collocation::Throughout,
-    };
-    let feed = post_feed::limits::Feed {
-        most: 200.0,
-        collocation: Collocation::Throughout,
-    };
+    let tip = TipAcceleration { limit, collocation: Collocation::Throughout };
+    let feed = post_feed::limits::Feed { most: 200.0, collocation: Collocation::Throughout };
     let problem = Problem::new(&samples, &[&tip, &feed], Ends::default()).unwrap();
     let plan = reach::solve(&problem).unwrap();
     let fastest = plan.iter().copied().fold(0.0, f64::max).sqrt();
     // All across: v² = a ρ, at a corner of the polygon.
-    assert!(
-        (fastest / (limit * radius).sqrt() - 1.0).abs() < 1e-3,
-        "{fastest}"
-    );
+    assert!((fastest / (limit * radius).sqrt() - 1.0).abs() < 1e-3, "{fastest}");
     // dq/ds = 2 sqrt(a² - q²/ρ²) has q = a ρ sin(2 s / ρ) up to a quarter of the sine.
     for sample in [200, 500, 1000, 1400] {
         let s = samples.parameter[sample];

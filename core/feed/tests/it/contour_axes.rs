@@ -10,20 +10,14 @@ use post_feed::{Ends, Infeasible, Problem, Samples, reach};
 fn servo(x: bool) -> impl Response {
     let pick = |a: f64, b: f64| if x { a } else { b };
     let drive = pick(6.5723, 6.2274) * 0.4769 * 1.5915;
-    let (kp, ki, kd) = (
-        drive * pick(10.0, 12.344),
-        drive * pick(50.0, 61.718),
-        drive * pick(0.3, 0.367),
-    );
+    let (kp, ki, kd) =
+        (drive * pick(10.0, 12.344), drive * pick(50.0, 61.718), drive * pick(0.3, 0.367));
     let (inertia, damping) = (pick(7.0028e-3, 8.1904e-3), pick(0.023_569, 0.043_009));
     move |w: f64| {
         let (a, b) = (ki - kd * w * w, kp * w);
         let (c, d) = (ki - (damping + kd) * w * w, kp * w - inertia * w * w * w);
         let square = c * c + d * d;
-        Answer {
-            real: (a * c + b * d) / square,
-            imaginary: (b * c - a * d) / square,
-        }
+        Answer { real: (a * c + b * d) / square, imaginary: (b * c - a * d) / square }
     }
 }
 
@@ -47,10 +41,7 @@ fn circle(radius: f64, count: usize) -> Samples {
 }
 
 fn speeds(samples: &Samples, limit: &ContourError) -> Vec<f64> {
-    let feed = Feed {
-        most: 1e6,
-        collocation: Collocation::Start,
-    };
+    let feed = Feed { most: 1e6, collocation: Collocation::Start };
     let problem = Problem::new(samples, &[&feed, limit], Ends::default()).unwrap();
     problem.upper.iter().map(|q| q.sqrt()).collect()
 }
@@ -63,19 +54,13 @@ fn three_axes_that_answer_alike_are_the_papers_rule() {
         let limit = ContourError::new(&axes, 0.02, 49.8, Collocation::Start);
         let want = limit.feed(1.0 / radius);
         for speed in speeds(&circle(radius, 16), &limit) {
-            assert!(
-                (speed / want - 1.0).abs() < 1e-9,
-                "{radius}: {speed} {want}"
-            );
+            assert!((speed / want - 1.0).abs() < 1e-9, "{radius}: {speed} {want}");
         }
         // And without rates.
         let mut samples = circle(radius, 16);
         samples.rates.clear();
         for speed in speeds(&samples, &limit) {
-            assert!(
-                (speed / want - 1.0).abs() < 1e-9,
-                "{radius}: {speed} {want}"
-            );
+            assert!((speed / want - 1.0).abs() < 1e-9, "{radius}: {speed} {want}");
         }
     }
 }
@@ -106,11 +91,7 @@ fn a_rotary_axis_that_goes_evenly_leaves_no_contour_error() {
     for index in 0..50 {
         let angle = 0.02 * f64::from(index);
         let [sine, cosine] = [libm::sin(angle), libm::cos(angle)].map(|value| 50.0 * value);
-        let tip = [
-            [-sine, cosine, 0.0],
-            [-cosine, -sine, 0.0],
-            [sine, -cosine, 0.0],
-        ];
+        let tip = [[-sine, cosine, 0.0], [-cosine, -sine, 0.0], [sine, -cosine, 0.0]];
         samples.push(angle, tip, &[[0.0; 3], [1.0, 0.0, 0.0]]);
         samples.push_rates(&[[1.0, 0.0, 0.0], [-sine, cosine, 0.0]]);
     }
@@ -171,9 +152,8 @@ fn a_share_tightens_where_it_stands() {
                 assert_eq!(speeds(&samples, &limit), before);
                 samples.contour_share[10] = 0.25;
                 let after = speeds(&samples, &limit);
-                let changed: Vec<usize> = (0..after.len())
-                    .filter(|&at| after[at] < before[at])
-                    .collect();
+                let changed: Vec<usize> =
+                    (0..after.len()).filter(|&at| after[at] < before[at]).collect();
                 let want: &[usize] = match collocation {
                     Collocation::Throughout => &[9, 10, 11],
                     _ => &[10],
@@ -193,10 +173,7 @@ fn the_formula_holds_along_a_plan_that_accelerates() {
     let axes: [&dyn Response; 3] = [&x, &y, &x];
     let samples = circle(8.0, 2000);
     let limit = ContourError::new(&axes, 0.01, 49.8, Collocation::Ends);
-    let feed = Feed {
-        most: 50.0,
-        collocation: Collocation::Ends,
-    };
+    let feed = Feed { most: 50.0, collocation: Collocation::Ends };
     let limits: [&dyn Limit; 2] = [&feed, &limit];
     let problem = Problem::new(&samples, &limits, Ends::default()).unwrap();
     let plan = reach::solve(&problem).unwrap();

@@ -41,18 +41,9 @@ impl Side {
 
 /// The batches of a polygon; the corner behind each side is a bound of the side before or of the one behind.
 fn batches(sides: &[Side], velocity: f64, collocation: Collocation) -> Vec<Problem> {
-    let feed = Feed {
-        most: FEED,
-        collocation,
-    };
-    let velocity = AxisVelocity {
-        limits: vec![velocity; 2],
-        collocation,
-    };
-    let acceleration = AxisAcceleration {
-        limits: vec![ACCELERATION; 2],
-        collocation,
-    };
+    let feed = Feed { most: FEED, collocation };
+    let velocity = AxisVelocity { limits: vec![velocity; 2], collocation };
+    let acceleration = AxisAcceleration { limits: vec![ACCELERATION; 2], collocation };
     let limits: [&dyn Limit; 3] = [&feed, &velocity, &acceleration];
     let problem = |side: &Side| Problem::new(&side.samples(), &limits, Ends::default()).unwrap();
     let mut batches: Vec<Problem> = sides.iter().map(problem).collect();
@@ -106,11 +97,7 @@ fn closed_form(sides: &[Side], velocity: f64) -> Vec<f64> {
             let way = side.length * sample as f64 / side.intervals as f64;
             let up = corners[index] + 2.0 * acceleration * way;
             let down = corners[index + 1] + 2.0 * acceleration * (side.length - way);
-            let end = if sample == side.intervals {
-                corners[index + 1]
-            } else {
-                most
-            };
+            let end = if sample == side.intervals { corners[index + 1] } else { most };
             all.push(up.min(down).min(end));
         }
     }
@@ -118,11 +105,7 @@ fn closed_form(sides: &[Side], velocity: f64) -> Vec<f64> {
 }
 
 fn check(sides: &[Side], velocity: f64, lookahead: usize) {
-    for collocation in [
-        Collocation::Start,
-        Collocation::Ends,
-        Collocation::Throughout,
-    ] {
+    for collocation in [Collocation::Start, Collocation::Ends, Collocation::Throughout] {
         let batches = batches(sides, velocity, collocation);
         let mut stream = Stream::new(batches[0].stride(), lookahead);
         let (mut plan, mut active) = (Vec::new(), Vec::new());
@@ -157,12 +140,7 @@ fn check(sides: &[Side], velocity: f64, lookahead: usize) {
 /// 40 mm along X, 30 mm along Y; around the corner with 8 mm/s.
 #[test]
 fn an_l_is_gone_as_its_corner_allows() {
-    let side = |length, direction, intervals| Side {
-        length,
-        direction,
-        intervals,
-        corner: 8.0,
-    };
+    let side = |length, direction, intervals| Side { length, direction, intervals, corner: 8.0 };
     // Sampled so that the change from acceleration to feed falls on samples: the time is that of the trapezoids.
     let sides = [side(40.0, [1.0, 0.0], 10_000), side(30.0, [0.0, 1.0], 7500)];
     check(&sides, 60.0, 2000);
@@ -206,12 +184,7 @@ fn polygons_are_gone_as_their_corners_allow() {
 /// batches lowered.
 #[test]
 fn a_corner_is_named_as_the_limit_that_is_active_there() {
-    let side = |direction| Side {
-        length: 40.0,
-        direction,
-        intervals: 400,
-        corner: 5.0,
-    };
+    let side = |direction| Side { length: 40.0, direction, intervals: 400, corner: 5.0 };
     let sides = [[1.0, 0.0], [0.0, 1.0], [1.0, 0.0]].map(side);
     let mut batches = batches(&sides, 60.0, Collocation::Throughout);
     // Known to the last batch alone, and before the corner.
@@ -223,13 +196,9 @@ fn a_corner_is_named_as_the_limit_that_is_active_there() {
     let mut stream = Stream::new(batches[0].stride(), 100);
     let mut active = Vec::new();
     for batch in &batches {
-        stream
-            .push(batch, &mut |sample| active.push(sample.active()))
-            .unwrap();
+        stream.push(batch, &mut |sample| active.push(sample.active())).unwrap();
     }
-    stream
-        .finish(0.0, &mut |sample| active.push(sample.active()))
-        .unwrap();
+    stream.finish(0.0, &mut |sample| active.push(sample.active())).unwrap();
     let name = |sample: usize| stream.name(active[sample].source);
     assert_eq!(name(400), "corner");
     assert_eq!(name(800), "corner");
@@ -242,12 +211,7 @@ fn a_corner_is_named_as_the_limit_that_is_active_there() {
 /// What cannot be planned is refused with its place, leaves nothing behind, and another batch may take its place.
 #[test]
 fn a_batch_that_is_refused_leaves_the_stream_as_it_was() {
-    let side = |length, corner| Side {
-        length,
-        direction: [1.0, 0.0],
-        intervals: 100,
-        corner,
-    };
+    let side = |length, corner| Side { length, direction: [1.0, 0.0], intervals: 100, corner };
     let sides = [side(10.0, 40.0), side(10.0, 20.0), side(10.0, 0.0)];
     let good = batches(&sides, 60.0, Collocation::Throughout);
     let whole = reach::solve(&joined(&good)).unwrap();
@@ -270,9 +234,7 @@ fn a_batch_that_is_refused_leaves_the_stream_as_it_was() {
             let fault = stream.push(wrong, &mut |sample| plan.push(sample.q));
             refused += usize::from(fault.is_err());
         }
-        stream
-            .push(batch, &mut |sample| plan.push(sample.q))
-            .unwrap();
+        stream.push(batch, &mut |sample| plan.push(sample.q)).unwrap();
     }
     assert_eq!(refused, 11);
     // Faster than the path can be left with.
@@ -285,30 +247,21 @@ fn a_batch_that_is_refused_leaves_the_stream_as_it_was() {
     );
     let fault = stream.finish(f64::NAN, &mut |sample| plan.push(sample.q));
     assert_eq!((fault, plan.len()), (Err(Infeasible::Shape), before));
-    stream
-        .finish(0.0, &mut |sample| plan.push(sample.q))
-        .unwrap();
+    stream.finish(0.0, &mut |sample| plan.push(sample.q)).unwrap();
     assert_eq!(plan, whole);
 }
 
 /// A start from which nothing ahead can be kept: named, nothing handed on, and the stream begins anew.
 #[test]
 fn after_a_start_that_is_too_fast_the_stream_begins_anew() {
-    let side = Side {
-        length: 10.0,
-        direction: [1.0, 0.0],
-        intervals: 1000,
-        corner: 2.0,
-    };
+    let side = Side { length: 10.0, direction: [1.0, 0.0], intervals: 1000, corner: 2.0 };
     let mut good = batches(&[side, side, side], 60.0, Collocation::Throughout);
     // Needs 3.1 mm to stop.
     good[0].lower(300, 0.0, "stop");
     good[0].ends.start = 1240.0;
     let mut stream = Stream::new(good[0].stride(), 100);
     let mut plan = Vec::new();
-    let fault = stream
-        .push(&good[0], &mut |sample| plan.push(sample.q))
-        .unwrap_err();
+    let fault = stream.push(&good[0], &mut |sample| plan.push(sample.q)).unwrap_err();
     let Infeasible::TooFastStart { sample, source, .. } = fault else {
         panic!("{fault:?}");
     };
@@ -317,13 +270,9 @@ fn after_a_start_that_is_too_fast_the_stream_begins_anew() {
     stream.clear();
     good[0].ends.start = 1190.0;
     for batch in &good {
-        stream
-            .push(batch, &mut |sample| plan.push(sample.q))
-            .unwrap();
+        stream.push(batch, &mut |sample| plan.push(sample.q)).unwrap();
     }
-    stream
-        .finish(0.0, &mut |sample| plan.push(sample.q))
-        .unwrap();
+    stream.finish(0.0, &mut |sample| plan.push(sample.q)).unwrap();
     let mut whole = joined(&good);
     whole.ends.start = 1190.0;
     assert_eq!(plan.len(), 3001);
@@ -334,20 +283,9 @@ fn after_a_start_that_is_too_fast_the_stream_begins_anew() {
 /// What waits in a stream does not grow with the path.
 #[test]
 fn the_memory_of_a_stream_is_that_of_its_look_ahead() {
-    let time = BlockTime {
-        seconds: 0.002,
-        collocation: Collocation::Throughout,
-    };
-    let feed = Feed {
-        most: FEED,
-        collocation: Collocation::Throughout,
-    };
-    let side = Side {
-        length: 10.0,
-        direction: [1.0, 0.0],
-        intervals: 64,
-        corner: 0.0,
-    };
+    let time = BlockTime { seconds: 0.002, collocation: Collocation::Throughout };
+    let feed = Feed { most: FEED, collocation: Collocation::Throughout };
+    let side = Side { length: 10.0, direction: [1.0, 0.0], intervals: 64, corner: 0.0 };
     let mut samples = side.samples();
     samples.blocks = vec![0.08; 65];
     let batch = Problem::new(&samples, &[&feed, &time], Ends::default()).unwrap();

@@ -8,14 +8,8 @@ use crate::support::paths::{Dual, dual, even};
 
 /// The path's limits of velocity and acceleration.
 fn drives(path: &Dual, collocation: Collocation) -> (AxisVelocity, AxisAcceleration) {
-    let velocity = AxisVelocity {
-        limits: path.velocity.clone(),
-        collocation,
-    };
-    let acceleration = AxisAcceleration {
-        limits: path.acceleration.clone(),
-        collocation,
-    };
+    let velocity = AxisVelocity { limits: path.velocity.clone(), collocation };
+    let acceleration = AxisAcceleration { limits: path.acceleration.clone(), collocation };
     (velocity, acceleration)
 }
 
@@ -31,11 +25,7 @@ fn velocity_and_acceleration_alone_give_the_published_lower_bound() {
         })
         .sum();
     assert!((length - 98.1682).abs() < 1e-3, "{length}");
-    for collocation in [
-        Collocation::Start,
-        Collocation::Ends,
-        Collocation::Throughout,
-    ] {
+    for collocation in [Collocation::Start, Collocation::Ends, Collocation::Throughout] {
         let (velocity, acceleration) = drives(&path, collocation);
         let problem = Problem::new(&samples, &[&velocity, &acceleration], Ends::default()).unwrap();
         let plan = reach::solve(&problem).unwrap();
@@ -46,10 +36,7 @@ fn velocity_and_acceleration_alone_give_the_published_lower_bound() {
             "{collocation:?}: {seconds:.4} s, linear program {by_program:.4} s in {} iterations",
             best.iterations
         );
-        assert!(
-            (seconds / 7.13 - 1.0).abs() < 0.005,
-            "{collocation:?}: {seconds}"
-        );
+        assert!((seconds / 7.13 - 1.0).abs() < 0.005, "{collocation:?}: {seconds}");
         assert!(problem.worst(&plan).share < 1.0 + 1e-11);
     }
 }
@@ -84,14 +71,8 @@ fn with_jerk_limits_no_limit_is_broken_between_samples_and_published_times_are_b
     let Some(path) = dual() else { return };
     let collocation = Collocation::Throughout;
     let (velocity, acceleration) = drives(&path, collocation);
-    let jerk = AxisJerk {
-        limits: path.jerk.clone(),
-    };
-    let chord = ChordError {
-        tolerance: 0.000_125,
-        period: 0.002,
-        collocation,
-    };
+    let jerk = AxisJerk { limits: path.jerk.clone() };
+    let chord = ChordError { tolerance: 0.000_125, period: 0.002, collocation };
     let mut seconds = Vec::new();
     for (count, chord) in [(501, None), (2001, None), (2001, Some(chord))] {
         let parameters = even(0.0, 1.0, count);

@@ -9,10 +9,7 @@ use crate::support::{oracle, random};
 
 /// Ten samples a millimetre apart, 50 mm/s² and 100 mm/s; at sample 6 a bound of 10 (mm/s)².
 fn slope() -> Problem {
-    let row = Row {
-        here: -0.01,
-        next: 0.01,
-    };
+    let row = Row { here: -0.01, next: 0.01 };
     let mut upper = vec![1e4; 10];
     upper[6] = 10.0;
     Problem::from_rows(vec![1.0; 9], upper, 1, vec![row; 9])
@@ -53,14 +50,8 @@ fn an_end_that_cannot_be_reached_is_named_with_the_bound_before() {
     let mut problem = slope();
     problem.ends.end = 311.0;
     let fault = reach::solve(&problem).unwrap_err();
-    assert!(
-        matches!(fault, Infeasible::OutOfReach { sample: 6, .. }),
-        "{fault:?}"
-    );
-    assert_eq!(
-        linear_program::solve(&problem, &[1.0; 10]).unwrap_err(),
-        fault
-    );
+    assert!(matches!(fault, Infeasible::OutOfReach { sample: 6, .. }), "{fault:?}");
+    assert_eq!(linear_program::solve(&problem, &[1.0; 10]).unwrap_err(), fault);
     problem.ends.end = 309.0;
     assert!(reach::solve(&problem).is_ok());
     // From rest at the start of a path without the bound.
@@ -68,42 +59,24 @@ fn an_end_that_cannot_be_reached_is_named_with_the_bound_before() {
     problem.upper[6] = 1e4;
     problem.ends.end = 901.0;
     let fault = reach::solve(&problem).unwrap_err();
-    assert!(
-        matches!(fault, Infeasible::OutOfReach { sample: 0, .. }),
-        "{fault:?}"
-    );
+    assert!(matches!(fault, Infeasible::OutOfReach { sample: 0, .. }), "{fault:?}");
 }
 
 #[test]
 fn what_is_no_problem_is_refused_by_its_place() {
     let mut problem = slope();
     problem.upper[4] = f64::INFINITY;
-    assert_eq!(
-        reach::solve(&problem),
-        Err(Infeasible::Unbounded { sample: 4 })
-    );
+    assert_eq!(reach::solve(&problem), Err(Infeasible::Unbounded { sample: 4 }));
     problem.upper[4] = f64::NAN;
-    assert!(matches!(
-        reach::solve(&problem),
-        Err(Infeasible::NotANumber { sample: 4, .. })
-    ));
+    assert!(matches!(reach::solve(&problem), Err(Infeasible::NotANumber { sample: 4, .. })));
     problem.upper[4] = -1.0;
-    assert!(matches!(
-        reach::solve(&problem),
-        Err(Infeasible::NotANumber { sample: 4, .. })
-    ));
+    assert!(matches!(reach::solve(&problem), Err(Infeasible::NotANumber { sample: 4, .. })));
     let mut problem = slope();
     problem.rows[5].next = f64::NAN;
-    assert!(matches!(
-        reach::solve(&problem),
-        Err(Infeasible::NotANumber { sample: 5, .. })
-    ));
+    assert!(matches!(reach::solve(&problem), Err(Infeasible::NotANumber { sample: 5, .. })));
     let mut problem = slope();
     problem.steps[3] = 0.0;
-    assert_eq!(
-        reach::solve(&problem),
-        Err(Infeasible::Standstill { sample: 3 })
-    );
+    assert_eq!(reach::solve(&problem), Err(Infeasible::Standstill { sample: 3 }));
     let problem = Problem::from_rows(Vec::new(), vec![1.0], 0, Vec::new());
     assert_eq!(reach::solve(&problem), Err(Infeasible::Shape));
 }
@@ -136,10 +109,7 @@ fn clarabel_finds_the_same_problems_infeasible() {
             }
             (Err(fault), _) => {
                 refused += 1;
-                assert!(
-                    fault.sample().is_some() && fault.source().is_some(),
-                    "{fault:?}"
-                );
+                assert!(fault.sample().is_some() && fault.source().is_some(), "{fault:?}");
                 // On a path something is above a bound somewhere; rows of any signs may contradict each other.
                 let named = !matches!(fault, Infeasible::Contradiction { .. });
                 assert!(named || seed % 2 == 0, "seed {seed}: {fault:?}");

@@ -24,12 +24,7 @@ fn streamed(
         assert!(used.share < 1.0 + 1e-6, "{used:?}");
     };
     for (samples, problem, corner) in batches {
-        let batch = Batch {
-            samples,
-            limits,
-            problem,
-            corner: *corner,
-        };
+        let batch = Batch { samples, limits, problem, corner: *corner };
         stream.push(batch, &mut take)?;
     }
     stream.finish(end, &mut take)?;
@@ -46,9 +41,7 @@ impl Drives {
     fn new(random: &mut Rng, axes: usize) -> Self {
         Self {
             without: Limits::new(random, axes, Collocation::Throughout),
-            jerk: AxisJerk {
-                limits: (0..axes).map(|_| random.range(2e3, 4e4)).collect(),
-            },
+            jerk: AxisJerk { limits: (0..axes).map(|_| random.range(2e3, 4e4)).collect() },
         }
     }
 
@@ -72,17 +65,11 @@ fn check_joints(law: &Law) {
         let [before, _, _] = pair[0].at(1.0, law.steps[index]);
         let [behind, _, _] = pair[1].at(0.0, law.steps[index + 1]);
         let most = before.max(behind);
-        assert!(
-            (before - behind).abs() <= 1e-9 * most,
-            "{index}: {before} {behind}"
-        );
+        assert!((before - behind).abs() <= 1e-9 * most, "{index}: {before} {behind}");
         let before = pair[0].at(1.0, law.steps[index])[1];
         let behind = pair[1].at(0.0, law.steps[index + 1])[1];
         let size = most / law.steps[index];
-        assert!(
-            (before - behind).abs() <= 1e-7 * size,
-            "{index}: {before} {behind}"
-        );
+        assert!((before - behind).abs() <= 1e-7 * size, "{index}: {before} {behind}");
     }
 }
 
@@ -195,22 +182,12 @@ impl Pair {
     fn new() -> Self {
         let collocation = Collocation::Throughout;
         let limits = vec![VELOCITY; 2];
-        let velocity = AxisVelocity {
-            limits,
-            collocation,
-        };
+        let velocity = AxisVelocity { limits, collocation };
         let limits = vec![ACCELERATION; 2];
-        let acceleration = AxisAcceleration {
-            limits,
-            collocation,
-        };
+        let acceleration = AxisAcceleration { limits, collocation };
         let limits = vec![JERK; 2];
         let jerk = AxisJerk { limits };
-        Self {
-            velocity,
-            acceleration,
-            jerk,
-        }
+        Self { velocity, acceleration, jerk }
     }
 
     fn all(&self) -> [&dyn Limit; 3] {
@@ -263,10 +240,8 @@ fn an_l_with_jerk_limits_is_the_s_curves_of_its_sides() {
     let joint = before.steps.len();
     before.lower(joint, corner * corner, "corner");
     for lookahead in [250, 2000] {
-        let batches = [
-            (first.clone(), before.clone(), false),
-            (second.clone(), behind.clone(), true),
-        ];
+        let batches =
+            [(first.clone(), before.clone(), false), (second.clone(), behind.clone(), true)];
         let (law, stream) = streamed(&batches, &limits, lookahead, 0.0).unwrap();
         let over = law.duration() / exact - 1.0;
         println!(
@@ -279,10 +254,7 @@ fn an_l_with_jerk_limits_is_the_s_curves_of_its_sides() {
         assert!(over > -1e-9 && over < 3e-3, "{over}");
         // No acceleration at the corner, on either side.
         let [q, slope, _] = law.pieces[joint].at(0.0, law.steps[joint]);
-        assert!(
-            slope.abs() < 1e-9 * q / law.steps[joint] && q <= corner * corner,
-            "{q} {slope}"
-        );
+        assert!(slope.abs() < 1e-9 * q / law.steps[joint] && q <= corner * corner, "{q} {slope}");
         assert!(q > 0.99 * corner * corner, "{q}");
         // As a smooth joint the path would keep its acceleration there, and both axes would jump in it.
         let mut smooth = batches;
@@ -370,31 +342,17 @@ fn a_long_path_goes_on_behind_batches_that_are_refused() {
         for first in (0..count - 1).step_by(100) {
             let samples = part(&samples, first, first + 100);
             let problem = whole.part(first, first + 100);
-            let batch = Batch {
-                samples: &samples,
-                limits: &all,
-                problem: &problem,
-                corner: false,
-            };
+            let batch = Batch { samples: &samples, limits: &all, problem: &problem, corner: false };
             if disturbed {
                 let mut wrong = problem.clone();
                 // Were it taken, the path would be slower here.
                 wrong.upper[0] = 1e-3;
                 wrong.steps[99] = 0.0;
-                let refused = stream.push(
-                    Batch {
-                        problem: &wrong,
-                        corner: true,
-                        ..batch
-                    },
-                    &mut take,
-                );
+                let refused =
+                    stream.push(Batch { problem: &wrong, corner: true, ..batch }, &mut take);
                 assert_eq!(refused, Err(Infeasible::Standstill { sample: 99 }));
                 let short = part(&samples, 0, 50);
-                let batch = Batch {
-                    samples: &short,
-                    ..batch
-                };
+                let batch = Batch { samples: &short, ..batch };
                 assert_eq!(stream.push(batch, &mut take), Err(Infeasible::Shape));
             }
             stream.push(batch, &mut take).unwrap();
@@ -404,12 +362,8 @@ fn a_long_path_goes_on_behind_batches_that_are_refused() {
         stream.finish(0.0, &mut take).unwrap();
         assert!(most <= 4 * lookahead + 5, "{most}");
         assert_eq!(law.pieces.len(), count - 1);
-        let named = |name: &str| {
-            names
-                .iter()
-                .filter(|&&source| stream.name(source) == name)
-                .count()
-        };
+        let named =
+            |name: &str| names.iter().filter(|&&source| stream.name(source) == name).count();
         assert!(named("axis jerk of axis 0") > 100);
         assert_eq!(named("bound"), 0);
         plans.push(law);
@@ -432,12 +386,7 @@ fn what_has_no_plan_with_jerk_limits_is_named_and_the_stream_begins_anew() {
             law.steps.push(passed.step);
             law.pieces.push(passed.piece);
         };
-        let batch = Batch {
-            samples: &samples,
-            limits: &limits,
-            problem,
-            corner: false,
-        };
+        let batch = Batch { samples: &samples, limits: &limits, problem, corner: false };
         let pushed = stream.push(batch, &mut take);
         pushed.and_then(|()| stream.finish(0.0, &mut take))?;
         Ok(law.duration())
@@ -447,10 +396,7 @@ fn what_has_no_plan_with_jerk_limits_is_named_and_the_stream_begins_anew() {
     let mut short = problem.clone();
     short.lower(100, 0.0, "stop");
     short.lower(103, 0.0, "stop");
-    assert_eq!(
-        batch(&short, &mut stream),
-        Err(Infeasible::TooShort { sample: 100 })
-    );
+    assert_eq!(batch(&short, &mut stream), Err(Infeasible::TooShort { sample: 100 }));
     stream.clear();
     assert_eq!(batch(&problem, &mut stream), Ok(good));
     // 40 mm/s, and a stop 0.5 mm ahead.
@@ -502,12 +448,7 @@ fn pieces_of_any_path_meet_at_corners_without_breaking_a_limit() {
             }
             if *corner && at > 0 && q[at] > 0.0 {
                 let slope = law.pieces[at].at(0.0, law.steps[at])[1];
-                assert!(
-                    slope.abs() <= 1e-9 * q[at] / law.steps[at],
-                    "{} {}",
-                    slope,
-                    q[at]
-                );
+                assert!(slope.abs() <= 1e-9 * q[at] / law.steps[at], "{} {}", slope, q[at]);
             }
             at += problem.steps.len();
         }

@@ -3,10 +3,7 @@
     clippy::unwrap_used,
     reason = "clippy lets test functions unwrap, but not the helpers beside them"
 )]
-#![allow(
-    clippy::print_stdout,
-    reason = "helpers of tests tell what was measured"
-)]
+#![allow(clippy::print_stdout, reason = "helpers of tests tell what was measured")]
 
 mod agreement;
 mod closed_forms;

@@ -40,17 +40,10 @@ fn the_servo_has_the_coefficients_and_the_response_of_the_paper() {
     for (got, want) in x.denominator.iter().zip([249.415, 49.883, 1.52, 0.007]) {
         assert!((got / want - 1.0).abs() < 1e-3, "{got} {want}");
     }
-    for (frequency, gain) in [
-        (1.0, 1.000_10),
-        (5.0, 1.003_21),
-        (10.0, 1.014_62),
-        (20.0, 1.049_02),
-        (49.8, 1.0996),
-    ] {
-        assert!(
-            (x.at(frequency).gain() - gain).abs() < 1e-5 * 6.0,
-            "{frequency}"
-        );
+    for (frequency, gain) in
+        [(1.0, 1.000_10), (5.0, 1.003_21), (10.0, 1.014_62), (20.0, 1.049_02), (49.8, 1.0996)]
+    {
+        assert!((x.at(frequency).gain() - gain).abs() < 1e-5 * 6.0, "{frequency}");
     }
     let peak = even(40.0, 60.0, 2001)
         .into_iter()
@@ -61,9 +54,7 @@ fn the_servo_has_the_coefficients_and_the_response_of_the_paper() {
 
 /// The drive's answer to `input`, by Runge and Kutta's scheme of fourth order on the controllable form.
 fn simulated(servo: &Transfer, step: f64, count: usize, input: impl Fn(f64) -> f64) -> Vec<f64> {
-    let [a0, a1, a2, a3] = servo.denominator[..] else {
-        panic!("third order")
-    };
+    let [a0, a1, a2, a3] = servo.denominator[..] else { panic!("third order") };
     let slope = |x: [f64; 3], u: f64| [x[1], x[2], (u - a0 * x[0] - a1 * x[1] - a2 * x[2]) / a3];
     let moved = |x: [f64; 3], by: f64, d: [f64; 3]| std::array::from_fn(|k| x[k] + by * d[k]);
     // As if it had stood at the first value for ever.
@@ -95,9 +86,7 @@ fn where_axes_differ_the_contour_error_is_that_of_a_simulated_circle() {
     // The last turn, when the beginning is forgotten.
     let turn = (TAU / rate / step) as usize;
     let last = horizontal.iter().zip(&vertical).skip(count - turn);
-    let worst = last
-        .map(|(x, y)| (libm::hypot(*x, *y) - radius).abs())
-        .fold(0.0, f64::max);
+    let worst = last.map(|(x, y)| (libm::hypot(*x, *y) - radius).abs()).fold(0.0, f64::max);
     let alone = radius * deviation(&[&x], rate).max(deviation(&[&y], rate));
     let both = radius * deviation(&[&x, &y], rate);
     println!(
@@ -134,11 +123,7 @@ fn the_largest_frequency_is_where_the_contour_error_reaches_its_tolerance() {
 #[test]
 fn the_butterfly_has_its_length_and_its_largest_curvature() {
     let Some(curve) = butterfly(1.0) else { return };
-    assert!(
-        (length(&curve, 400) - 382.859_558).abs() < 1e-5,
-        "{}",
-        length(&curve, 400)
-    );
+    assert!((length(&curve, 400) - 382.859_558).abs() < 1e-5, "{}", length(&curve, 400));
     let parameters = even(0.0, 1.0, 100_001);
     let samples = plane(&curve, &parameters);
     let sharpest = (0..samples.len())
@@ -159,23 +144,10 @@ struct Case {
 impl Case {
     fn new(collocation: Collocation) -> Self {
         Self {
-            feed: Feed {
-                most: 50.0,
-                collocation,
-            },
-            velocity: AxisVelocity {
-                limits: vec![50.0; 2],
-                collocation,
-            },
-            acceleration: AxisAcceleration {
-                limits: vec![200.0; 2],
-                collocation,
-            },
-            chord: ChordError {
-                tolerance: 0.0005,
-                period: 0.004,
-                collocation,
-            },
+            feed: Feed { most: 50.0, collocation },
+            velocity: AxisVelocity { limits: vec![50.0; 2], collocation },
+            acceleration: AxisAcceleration { limits: vec![200.0; 2], collocation },
+            chord: ChordError { tolerance: 0.0005, period: 0.004, collocation },
         }
     }
 
@@ -235,11 +207,7 @@ fn the_case_set_of_the_paper_on_the_butterfly() {
                 let problem = Problem::new(&samples, &limits, Ends::default()).unwrap();
                 let plan = reach::solve(&problem).unwrap();
                 let best = linear_program::solve(&problem, &weights).unwrap();
-                let objective: f64 = plan
-                    .iter()
-                    .zip(&weights)
-                    .map(|(q, weight)| q * weight)
-                    .sum();
+                let objective: f64 = plan.iter().zip(&weights).map(|(q, weight)| q * weight).sum();
                 let error = 1e3 * contour_error(&samples, &plan, &axes);
                 let between = used(&curve, &parameters, &plan);
                 println!(
@@ -269,14 +237,9 @@ fn with_jerk_limits_the_butterfly_takes_longer_and_keeps_them_between_samples() 
     let parameters = spans(&curve, 100);
     let samples = plane(&curve, &parameters);
     let case = Case::new(Collocation::Throughout);
-    let axis = AxisJerk {
-        limits: vec![4000.0; 2],
-    };
+    let axis = AxisJerk { limits: vec![4000.0; 2] };
     let tip = TipJerk { limit: 4000.0 };
-    let push = TipAcceleration {
-        limit: 200.0,
-        collocation: Collocation::Throughout,
-    };
+    let push = TipAcceleration { limit: 200.0, collocation: Collocation::Throughout };
     for of_tip in [false, true] {
         let mut limits = case.limits();
         limits.push(&axis);

@@ -28,10 +28,7 @@ fn problem(random: &mut Rng) -> Problem {
     let (count, stride) = (2 + random.pick(18), random.pick(4));
     let upper: Vec<f64> = (0..count).map(|_| number(random)).collect();
     let rows = (0..stride * (count - 1))
-        .map(|_| Row {
-            here: signed(random),
-            next: signed(random),
-        })
+        .map(|_| Row { here: signed(random), next: signed(random) })
         .collect();
     let mut ends = Ends::default();
     if random.pick(2) == 0 {
@@ -81,17 +78,11 @@ fn the_optimum_is_that_of_clarabel() {
         let count = 2 + random.pick(58);
         let upper = (0..count).map(|_| random.range(1.0, 100.0)).collect();
         let rows = (0..2 * (count - 1))
-            .map(|_| Row {
-                here: random.range(-0.3, 0.3),
-                next: random.range(-0.3, 0.3),
-            })
+            .map(|_| Row { here: random.range(-0.3, 0.3), next: random.range(-0.3, 0.3) })
             .collect();
         let mut problem = Problem::from_rows(vec![1.0; count - 1], upper, 2, rows);
         if random.range(0.0, 1.0) < 0.5 {
-            problem.ends = Ends {
-                start: random.range(0.0, 8.0).min(problem.upper[0]),
-                end: 0.0,
-            };
+            problem.ends = Ends { start: random.range(0.0, 8.0).min(problem.upper[0]), end: 0.0 };
         }
         let weights: Vec<f64> = (0..count).map(|_| random.range(0.0, 2.0)).collect();
         let ours = linear_program::solve(&problem, &weights);
@@ -122,12 +113,8 @@ fn a_stream_keeps_every_limit_with_any_look_ahead() {
         let whole = reach::solve(&problem).unwrap();
         let mut stream = Stream::new(problem.stride(), lookahead);
         let mut plan = Vec::new();
-        stream
-            .push(&problem, &mut |sample| plan.push(sample.q))
-            .unwrap();
-        stream
-            .finish(0.0, &mut |sample| plan.push(sample.q))
-            .unwrap();
+        stream.push(&problem, &mut |sample| plan.push(sample.q)).unwrap();
+        stream.finish(0.0, &mut |sample| plan.push(sample.q)).unwrap();
         assert!(problem.worst(&plan).share <= 1.0 + 1e-11, "{problem:?}");
         if stream.all_certain() {
             assert_eq!(plan, whole, "{problem:?}");
@@ -146,20 +133,13 @@ fn plans_with_jerk_limits_keep_them_and_are_no_faster() {
         let mut random = Rng::new(seed);
         let samples = samples(&mut random, axes, 301, 30.0);
         let limits = Limits::new(&mut random, axes, Collocation::Throughout);
-        let jerk = AxisJerk {
-            limits: (0..axes).map(|_| random.range(2e3, 4e4)).collect(),
-        };
+        let jerk = AxisJerk { limits: (0..axes).map(|_| random.range(2e3, 4e4)).collect() };
         let mut all: Vec<&dyn Limit> = limits.all().to_vec();
         all.push(&jerk);
         let mut problem = Problem::new(&samples, &all, Ends::default()).unwrap();
         problem.upper[150] = 0.0;
         let plan = jerk::solve(&samples, &all, &problem, Settings::default()).unwrap();
-        assert!(
-            plan.seconds >= plan.bound * 0.999,
-            "{seed}: {} {}",
-            plan.seconds,
-            plan.bound
-        );
+        assert!(plan.seconds >= plan.bound * 0.999, "{seed}: {} {}", plan.seconds, plan.bound);
         assert!((plan.law.q()[150]).abs() < 1e-12, "{seed}");
         for (q, upper) in plan.law.q().iter().zip(&problem.upper) {
             assert!(*q <= upper * (1.0 + 1e-12), "{seed}");
@@ -186,9 +166,7 @@ fn too_few_samples_between_two_stops_are_named() {
     let mut random = Rng::new(5);
     let samples = samples(&mut random, 2, 101, 10.0);
     let limits = Limits::new(&mut random, 2, Collocation::Throughout);
-    let jerk = AxisJerk {
-        limits: vec![1e4; 2],
-    };
+    let jerk = AxisJerk { limits: vec![1e4; 2] };
     let mut all: Vec<&dyn Limit> = limits.all().to_vec();
     all.push(&jerk);
     let mut problem = Problem::new(&samples, &all, Ends::default()).unwrap();
@@ -203,21 +181,13 @@ fn plans_with_jerk_limits_begin_and_end_at_given_speeds() {
     let mut random = Rng::new(11);
     let samples = samples(&mut random, 2, 401, 40.0);
     let limits = Limits::new(&mut random, 2, Collocation::Throughout);
-    let jerk = AxisJerk {
-        limits: vec![2e4; 2],
-    };
+    let jerk = AxisJerk { limits: vec![2e4; 2] };
     let mut all: Vec<&dyn Limit> = limits.all().to_vec();
     all.push(&jerk);
     let whole = Problem::new(&samples, &all, Ends::default()).unwrap();
     let slow = jerk::solve(&samples, &all, &whole, Settings::default()).unwrap();
-    let least = slow.law.q()[100..300]
-        .iter()
-        .copied()
-        .fold(f64::INFINITY, f64::min);
-    let ends = Ends {
-        start: 0.3 * least,
-        end: 0.3 * least,
-    };
+    let least = slow.law.q()[100..300].iter().copied().fold(f64::INFINITY, f64::min);
+    let ends = Ends { start: 0.3 * least, end: 0.3 * least };
     let moving = Problem { ends, ..whole };
     let plan = jerk::solve(&samples, &all, &moving, Settings::default()).unwrap();
     let q = plan.law.q();

@@ -21,9 +21,7 @@ fn streamed(
     let mut first = 0;
     while first < last {
         let next = (first + random.range(1.0, 300.0) as usize).min(last);
-        stream.push(&problem.part(first, next), &mut |sample| {
-            plan.push(sample.q)
-        })?;
+        stream.push(&problem.part(first, next), &mut |sample| plan.push(sample.q))?;
         first = next;
     }
     stream.finish(problem.ends.end, &mut |sample| plan.push(sample.q))?;
@@ -55,18 +53,13 @@ fn a_look_ahead_that_is_long_enough_gives_the_plan_of_the_whole_path() {
 fn too_short_a_look_ahead_costs_speed_and_breaks_no_limit() {
     let mut slower = 0;
     for seed in 0..12 {
-        for problem in [
-            random::problem(seed, 3, 3000, Collocation::Ends),
-            random::any(seed, 3000),
-        ] {
+        for problem in [random::problem(seed, 3, 3000, Collocation::Ends), random::any(seed, 3000)]
+        {
             let whole = reach::solve(&problem).unwrap();
             for lookahead in [1, 2, 7, 40] {
                 let (plan, uncertain) = streamed(&problem, lookahead, seed).unwrap();
                 let worst = problem.worst(&plan);
-                assert!(
-                    worst.share <= 1.0 + 1e-11,
-                    "seed {seed}, {lookahead}: {worst:?}"
-                );
+                assert!(worst.share <= 1.0 + 1e-11, "seed {seed}, {lookahead}: {worst:?}");
                 assert_eq!((plan[0], plan[3000 - 1]), (0.0, 0.0));
                 if uncertain == 0 {
                     assert_eq!(plan, whole, "seed {seed}, {lookahead}");
@@ -81,16 +74,10 @@ fn too_short_a_look_ahead_costs_speed_and_breaks_no_limit() {
 #[test]
 fn a_start_and_an_end_in_motion_are_kept() {
     let mut problem = random::problem(3, 3, 4000, Collocation::Throughout);
-    problem.ends = Ends {
-        start: 0.1 * problem.upper[0],
-        end: 0.1 * problem.upper[3999],
-    };
+    problem.ends = Ends { start: 0.1 * problem.upper[0], end: 0.1 * problem.upper[3999] };
     let whole = reach::solve(&problem).unwrap();
     let (plan, _) = streamed(&problem, 1500, 3).unwrap();
-    assert_eq!(
-        (plan[0], plan[3999]),
-        (problem.ends.start, problem.ends.end)
-    );
+    assert_eq!((plan[0], plan[3999]), (problem.ends.start, problem.ends.end));
     assert!(problem.worst(&plan).share <= 1.0 + 1e-11);
     assert_eq!(plan, whole);
 }

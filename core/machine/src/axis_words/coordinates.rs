@@ -30,9 +30,7 @@ impl Words {
     /// The linear words of a block as a point, mm.
     pub fn point(&self, values: &WordValues) -> Option<Vector3<f64>> {
         let words = self.cartesian()?;
-        Some(Vector3::from_fn(|row, _| {
-            values[words[row].place] * words[row].unit
-        }))
+        Some(Vector3::from_fn(|row, _| values[words[row].place] * words[row].unit))
     }
 
     /// The printed point nearest to `point` (mm), in program units and in mm.

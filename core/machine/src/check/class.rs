@@ -70,9 +70,8 @@ pub struct AxisLine {
 impl Class {
     /// What kind of machine it is.
     pub fn of(machine: &Machine) -> Self {
-        let rotary: Vec<usize> = (0..machine.axes.len())
-            .filter(|place| machine.axes[*place].joint.rotary)
-            .collect();
+        let rotary: Vec<usize> =
+            (0..machine.axes.len()).filter(|place| machine.axes[*place].joint.rotary).collect();
         let (angles, distances) = between(machine, &rotary);
         Self {
             chain: sentence(&machine.axes),
@@ -82,9 +81,7 @@ impl Class {
             carry_the_tool: names(&machine.axes, |axis| !axis.carries_part),
             angles,
             distances,
-            axes: (0..machine.axes.len())
-                .map(|place| AxisLine::of(machine, place))
-                .collect(),
+            axes: (0..machine.axes.len()).map(|place| AxisLine::of(machine, place)).collect(),
         }
     }
 }
@@ -98,13 +95,8 @@ impl AxisLine {
             carries_part: axis.carries_part,
             direction: axis.joint.direction.into(),
             along: named(axis.joint.direction),
-            travel: axis
-                .travel
-                .map(|travel| travel.map(|value| axis.reading(value))),
-            indexed: axis
-                .indexed
-                .as_ref()
-                .map(|indexed| axis.reading(indexed.start)),
+            travel: axis.travel.map(|travel| travel.map(|value| axis.reading(value))),
+            indexed: axis.indexed.as_ref().map(|indexed| axis.reading(indexed.start)),
             set_between_cuts: set_between_cuts(machine, place),
             max_feed: Some(axis.max_feed / axis.unit()).filter(|feed| feed.is_finite()),
         }
@@ -155,22 +147,15 @@ fn sentence(axes: &[Axis]) -> String {
 
 fn name(machine: &Machine, rotary: &[usize], angles: &[Between]) -> String {
     let count = machine.axes.len();
-    let number_word = [
-        "no", "one", "two", "three", "four", "five", "six", "seven", "eight",
-    ]
-    .get(count)
-    .copied()
-    .unwrap_or("many");
+    let number_word = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"]
+        .get(count)
+        .copied()
+        .unwrap_or("many");
     let axis = |place: &usize| &machine.axes[*place];
-    let (free, held): (Vec<usize>, Vec<usize>) = rotary
-        .iter()
-        .partition(|place| axis(place).indexed.is_none());
+    let (free, held): (Vec<usize>, Vec<usize>) =
+        rotary.iter().partition(|place| axis(place).indexed.is_none());
     let side = |place: &usize| {
-        if axis(place).carries_part {
-            "table"
-        } else {
-            "head"
-        }
+        if axis(place).carries_part { "table" } else { "head" }
     };
     let mut text = format!("{number_word}-axis");
     match *free {
@@ -190,9 +175,7 @@ fn name(machine: &Machine, rotary: &[usize], angles: &[Between]) -> String {
             });
         }
         _ => {
-            let each = free
-                .iter()
-                .map(|place| format!("{} {}", side(place), axis(place).name));
+            let each = free.iter().map(|place| format!("{} {}", side(place), axis(place).name));
             text.push_str(&format!(
                 ", {} rotary axes {}: {}",
                 free.len(),
@@ -205,17 +188,9 @@ fn name(machine: &Machine, rotary: &[usize], angles: &[Between]) -> String {
         }
     }
     for place in &held {
-        text.push_str(&format!(
-            "; {} {} is set between cuts",
-            side(place),
-            axis(place).name
-        ));
+        text.push_str(&format!("; {} {} is set between cuts", side(place), axis(place).name));
     }
-    let linear = machine
-        .axes
-        .iter()
-        .filter(|axis| !axis.joint.rotary)
-        .count();
+    let linear = machine.axes.iter().filter(|axis| !axis.joint.rotary).count();
     if linear > 3 {
         let seconds = names(&machine.axes, |axis| axis.second.is_some());
         text.push_str(&format!("; {linear} linear axes"));
@@ -238,12 +213,7 @@ fn name(machine: &Machine, rotary: &[usize], angles: &[Between]) -> String {
                     && (angle.value - 90.0).abs() > SQUARE
             })
             .map(|angle| {
-                format!(
-                    "{}° between {} and {}",
-                    number(angle.value, 3),
-                    angle.from,
-                    angle.to
-                )
+                format!("{}° between {} and {}", number(angle.value, 3), angle.from, angle.to)
             })
             .collect();
         text.push_str(&match askew.as_slice() {
@@ -263,11 +233,7 @@ fn between(machine: &Machine, rotary: &[usize]) -> (Vec<Between>, Vec<Between>) 
     };
     for pair in rotary.windows(2) {
         let [from, to] = [pair[0], pair[1]].map(|place| &machine.axes[place]);
-        let measure = |value| Between {
-            from: from.name.clone(),
-            to: to.name.clone(),
-            value,
-        };
+        let measure = |value| Between { from: from.name.clone(), to: to.name.clone(), value };
         angles.push(measure(acute(from.joint.direction, to.joint.direction)));
         distances.push(measure(line_distance(&from.joint, &to.joint)));
     }

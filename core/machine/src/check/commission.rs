@@ -86,11 +86,7 @@ impl Commission {
                 trials.push(Trial {
                     place,
                     by,
-                    feed: largest.min(if axis.joint.rotary {
-                        ROTARY_FEED
-                    } else {
-                        LINEAR_FEED
-                    }),
+                    feed: largest.min(if axis.joint.rotary { ROTARY_FEED } else { LINEAR_FEED }),
                     sign: sign(probe, place, by),
                 });
             }

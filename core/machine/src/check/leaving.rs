@@ -11,11 +11,7 @@ pub(super) fn told(machine: &Machine) -> Option<String> {
     let then = then.map(|(place, value)| {
         let axis = &machine.axes[*place];
         let unit = if axis.joint.rotary { "°" } else { " mm" };
-        format!(
-            ", then {} to {}{unit}",
-            axis.name,
-            Short(axis.reading(*value))
-        )
+        format!(", then {} to {}{unit}", axis.name, Short(axis.reading(*value)))
     });
     let back = format!("{} mm straight back along the tool", Short(distance));
     Some(then.fold(back, |told, then| told + &then))

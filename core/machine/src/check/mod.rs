@@ -106,10 +106,7 @@ impl Check {
 
     /// The warnings as findings.
     pub fn findings(&self) -> Vec<Diagnostic> {
-        self.warnings
-            .iter()
-            .map(|warning| Diagnostic::warning("check", warning.clone()))
-            .collect()
+        self.warnings.iter().map(|warning| Diagnostic::warning("check", warning.clone())).collect()
     }
 }
 

@@ -85,27 +85,15 @@ struct Worded<'a> {
 
 impl<'a> Worded<'a> {
     fn new(machine: &'a Machine, length: f64) -> Result<Self, Differing> {
-        let no_zero = || Differing::NoZero {
-            machine: machine.name.clone(),
-        };
+        let no_zero = || Differing::NoZero { machine: machine.name.clone() };
         let solver = machine.solver(length).map_err(|_| no_zero())?;
         // What the control shows of every rotary axis is zero, the tip on the part origin.
         let mut zero: Joints = std::array::from_fn(|place| {
-            machine
-                .axes
-                .get(place)
-                .filter(|axis| axis.joint.rotary)
-                .map_or(0.0, |axis| -axis.zero)
+            machine.axes.get(place).filter(|axis| axis.joint.rotary).map_or(0.0, |axis| -axis.zero)
         });
         let turns = solver.chain().turns(&zero);
-        solver
-            .place(Vector3::zeros(), &mut zero, &turns)
-            .map_err(|_| no_zero())?;
-        Ok(Self {
-            machine,
-            solver,
-            zero,
-        })
+        solver.place(Vector3::zeros(), &mut zero, &turns).map_err(|_| no_zero())?;
+        Ok(Self { machine, solver, zero })
     }
 
     fn chain(&self) -> &Chain {
@@ -138,21 +126,14 @@ pub fn compare(machine: &Machine, nominal: &Machine, length: f64) -> Result<Comp
                 "{}{} ({})",
                 axis.name,
                 if axis.carries_part { "'" } else { "" },
-                if axis.joint.rotary {
-                    "rotary"
-                } else {
-                    "linear"
-                }
+                if axis.joint.rotary { "rotary" } else { "linear" }
             )
         })
         .collect()
     };
     let (ours, theirs) = (described(machine), described(nominal));
     if ours != theirs {
-        return Err(Differing::Axes {
-            machine: ours,
-            nominal: theirs,
-        });
+        return Err(Differing::Axes { machine: ours, nominal: theirs });
     }
     let real = Worded::new(machine, length)?;
     let drawn = Worded::new(nominal, length)?;
@@ -186,19 +167,13 @@ pub fn compare(machine: &Machine, nominal: &Machine, length: f64) -> Result<Comp
 }
 
 fn both(real: &Worded<'_>, drawn: &Worded<'_>, joints: &Joints) -> [Pose; 2] {
-    [
-        real.chain().forward(joints),
-        drawn.at_words_of(real, joints),
-    ]
+    [real.chain().forward(joints), drawn.at_words_of(real, joints)]
 }
 
 fn readings(machine: &Machine, joints: &Joints, of: impl Fn(&Axis) -> bool) -> Vec<Reading> {
     let axes = machine.axes.iter().zip(joints);
     axes.filter(|(axis, _)| of(axis))
-        .map(|(axis, value)| Reading {
-            axis: axis.name.clone(),
-            value: axis.reading(*value),
-        })
+        .map(|(axis, value)| Reading { axis: axis.name.clone(), value: axis.reading(*value) })
         .collect()
 }
 
@@ -218,16 +193,10 @@ fn worst(
 ) -> Joints {
     let places = |rotary: bool| -> Vec<usize> {
         let axes = machine.axes.iter().enumerate();
-        axes.filter(|(_, axis)| axis.joint.rotary == rotary)
-            .map(|(place, _)| place)
-            .collect()
+        axes.filter(|(_, axis)| axis.joint.rotary == rotary).map(|(place, _)| place).collect()
     };
     let (rotary, linear) = (places(true), places(false));
-    let corners = if linear_matter {
-        1usize << linear.len()
-    } else {
-        1
-    };
+    let corners = if linear_matter { 1usize << linear.len() } else { 1 };
     let at_corner = |joints: &mut Joints, corner: usize| {
         if linear_matter {
             for (bit, place) in linear.iter().enumerate() {
@@ -303,10 +272,7 @@ fn shares(
                 with(&|hybrid| hybrid.axes[place].joint.direction = axis.joint.direction),
             ));
         }
-        let apart = other
-            .joint
-            .direction
-            .cross(&(axis.joint.point - other.joint.point));
+        let apart = other.joint.direction.cross(&(axis.joint.point - other.joint.point));
         if axis.joint.rotary && apart.norm() > 0.0 {
             changed.push((
                 format!("position of {name}"),
@@ -329,20 +295,12 @@ fn shares(
             changed.push((of.to_owned(), by, hybrid));
         }
     };
-    whole(
-        "gauge point",
-        (machine.gauge - nominal.gauge).norm(),
-        &|hybrid| {
-            hybrid.gauge = machine.gauge;
-        },
-    );
-    whole(
-        "mount of the part",
-        (machine.mount - nominal.mount).norm(),
-        &|hybrid| {
-            hybrid.mount = machine.mount;
-        },
-    );
+    whole("gauge point", (machine.gauge - nominal.gauge).norm(), &|hybrid| {
+        hybrid.gauge = machine.gauge;
+    });
+    whole("mount of the part", (machine.mount - nominal.mount).norm(), &|hybrid| {
+        hybrid.mount = machine.mount;
+    });
     let leans = angle(machine.tool_axis, nominal.tool_axis).to_degrees();
     whole("direction of the tool", leans, &|hybrid| {
         hybrid.tool_axis = machine.tool_axis;
@@ -352,12 +310,7 @@ fn shares(
     for (of, differs_by, hybrid) in changed {
         let pose = Worded::new(&hybrid, length)?.at_words_of(real, joints);
         let vector = deviation(&pose, &drawn_pose);
-        shares.push(Share {
-            of,
-            differs_by,
-            size: vector.norm(),
-            vector: vector.into(),
-        });
+        shares.push(Share { of, differs_by, size: vector.norm(), vector: vector.into() });
     }
     shares.sort_by(|a, b| b.size.total_cmp(&a.size));
     Ok(shares)

@@ -83,11 +83,7 @@ pub(super) fn typical(probe: &Probe<'_>) -> Option<Solutions> {
         axis: axis.into(),
         tilt_deg: angle(axis, Vector3::z()).to_degrees(),
         azimuth_deg: libm::atan2(axis.y, axis.x).to_degrees(),
-        inside: ways
-            .iter()
-            .filter(|way| way.has_positions)
-            .map(|way| way.turns)
-            .sum(),
+        inside: ways.iter().filter(|way| way.has_positions).map(|way| way.turns).sum(),
         ways,
         at_least,
     })
@@ -104,10 +100,7 @@ pub(super) fn direction(tilt: f64, azimuth: f64) -> Vector3<f64> {
 fn readings(probe: &Probe<'_>, joints: &Joints) -> Vec<Reading> {
     let reading = |place: usize| {
         let axis = &probe.machine().axes[place];
-        Reading {
-            axis: axis.name.clone(),
-            value: axis.reading(joints[place]),
-        }
+        Reading { axis: axis.name.clone(), value: axis.reading(joints[place]) }
     };
     probe.free().into_iter().map(reading).collect()
 }
@@ -142,10 +135,7 @@ pub struct Pole {
 impl Poles {
     pub(super) fn of(probe: &Probe<'_>) -> Self {
         let free = probe.free();
-        let told = |told: &str| Self {
-            told: told.to_owned(),
-            at: Vec::new(),
-        };
+        let told = |told: &str| Self { told: told.to_owned(), at: Vec::new() };
         match (probe.freedom(), free.len()) {
             (0, _) => return told("none: no rotary axis turns the tool in a cut"),
             (1, _) => {
@@ -165,15 +155,9 @@ impl Poles {
             }
         }
         let first = free[0];
-        let along = probe.turned(
-            0..first,
-            probe.home(),
-            probe.chain().joints()[first].direction,
-        );
-        let mut at: Vec<Pole> = [along, -along]
-            .into_iter()
-            .map(|axis| pole(probe, axis, &free))
-            .collect();
+        let along = probe.turned(0..first, probe.home(), probe.chain().joints()[first].direction);
+        let mut at: Vec<Pole> =
+            [along, -along].into_iter().map(|axis| pole(probe, axis, &free)).collect();
         at.sort_by_key(|pole| (!pole.inside, pole.missed_by_deg > 0.0));
         Self {
             told: format!(

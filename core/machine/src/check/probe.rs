@@ -104,10 +104,7 @@ impl<'a> Probe<'a> {
 
     pub(super) fn count(&self, poses: usize, steps: usize) {
         let work = self.work.get();
-        self.work.set(Work {
-            poses: work.poses + poses,
-            steps: work.steps + steps,
-        });
+        self.work.set(Work { poses: work.poses + poses, steps: work.steps + steps });
     }
 
     /// Axis values at rest.
@@ -174,11 +171,7 @@ impl<'a> Probe<'a> {
         axis: Vector3<f64>,
         tolerance: f64,
     ) -> Result<Vec<Joints>, Unreachable> {
-        let pose = Pose {
-            tip,
-            axis,
-            ..Pose::default()
-        };
+        let pose = Pose { tip, axis, ..Pose::default() };
         if !solver.closed_form() {
             let mut left = STEPS;
             let starts = (0..STARTS).map(|number| self.start(number));
@@ -236,9 +229,7 @@ impl<'a> Probe<'a> {
         let positions =
             [0.0, TAU, -TAU].map(|turn| indexed.positions.nearest(value + turn, endless) - turn);
         let away = |position: &f64| libm::fabs(position - value);
-        let nearest = positions
-            .into_iter()
-            .min_by(|a, b| away(a).total_cmp(&away(b)));
+        let nearest = positions.into_iter().min_by(|a, b| away(a).total_cmp(&away(b)));
         nearest.unwrap_or(value)
     }
 
@@ -307,9 +298,8 @@ impl<'a> Probe<'a> {
             let nearest = joints[place] - TAU * libm::rint((joints[place] - home) / TAU);
             let travel = self.machine.axes[place].travel;
             let within = |value: f64| passed(travel, value, GRACE).is_none();
-            inside[place] = [nearest, nearest + TAU, nearest - TAU]
-                .into_iter()
-                .find(|value| within(*value))?;
+            inside[place] =
+                [nearest, nearest + TAU, nearest - TAU].into_iter().find(|value| within(*value))?;
         }
         Some(inside)
     }
@@ -317,10 +307,10 @@ impl<'a> Probe<'a> {
     /// Ways to point the tool along `axis` (part frame) inside the travel of the rotary axes, whichever positions index
     /// axes have there: those that are not solved for are tried at each of theirs, the others taken to stand anywhere.
     pub fn ways(&self, axis: Vector3<f64>) -> usize {
-        let solved = self.solvers.iter().map(|solver| {
-            self.solved(solver, Vector3::zeros(), axis, EXACT)
-                .unwrap_or_default()
-        });
+        let solved = self
+            .solvers
+            .iter()
+            .map(|solver| self.solved(solver, Vector3::zeros(), axis, EXACT).unwrap_or_default());
         solved.flatten().map(|joints| self.turns(&joints)).sum()
     }
 
@@ -369,9 +359,7 @@ impl<'a> Probe<'a> {
                 run.push(joint);
             }
         }
-        Chain::new(run, Vector3::zeros(), Vector3::zeros(), vector)
-            .forward(&angles)
-            .axis
+        Chain::new(run, Vector3::zeros(), Vector3::zeros(), vector).forward(&angles).axis
     }
 
     /// The rank of what the free rotary axes do to the tool axis, the largest over some settings: a setting may
@@ -395,10 +383,7 @@ impl<'a> Probe<'a> {
                 if slope.norm() > 1e-4 {
                     freedom = freedom.max(1);
                 }
-                if slopes[..index]
-                    .iter()
-                    .any(|other| other.cross(slope).norm() > 1e-4)
-                {
+                if slopes[..index].iter().any(|other| other.cross(slope).norm() > 1e-4) {
                     return 2;
                 }
             }
@@ -410,11 +395,9 @@ impl<'a> Probe<'a> {
 /// A direction in words: `+X` within half a degree of an axis of the frame, else its three numbers.
 pub fn named(direction: Vector3<f64>) -> String {
     match principal(direction) {
-        Some((index, sign)) => format!(
-            "{}{}",
-            if sign > 0.0 { '+' } else { '-' },
-            ["X", "Y", "Z"][index]
-        ),
+        Some((index, sign)) => {
+            format!("{}{}", if sign > 0.0 { '+' } else { '-' }, ["X", "Y", "Z"][index])
+        }
         None => {
             let [x, y, z] = [direction.x, direction.y, direction.z]
                 .map(|number| format!("{:.3}", number + 0.0).replace("-0.000", "0.000"));

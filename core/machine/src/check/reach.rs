@@ -70,11 +70,7 @@ impl Reach {
         } else if probe.closed_form() {
             Self::over_the_sphere(probe)
         } else if probe.ways_by_search().is_some_and(|[_, ways]| ways < 2) {
-            Self {
-                freedom: probe.freedom(),
-                tied_to_the_tip: true,
-                ..Self::default()
-            }
+            Self { freedom: probe.freedom(), tied_to_the_tip: true, ..Self::default() }
         } else {
             Self::by_search(probe)
         };
@@ -138,10 +134,7 @@ impl Reach {
             tilt_in_all_azimuths_deg: all.map(f64::to_degrees),
             tilt_in_some_azimuth_deg: some.map(|(tilt, _)| tilt.to_degrees()),
             azimuth_of_largest_tilt_deg: some.map(|(_, azimuth)| azimuth.to_degrees()),
-            map: Map {
-                cells,
-                curve: Vec::new(),
-            },
+            map: Map { cells, curve: Vec::new() },
             ..Self::default()
         }
     }
@@ -192,9 +185,7 @@ impl Reach {
                 let [least, most] = probe.span(place);
                 least + (most - least) * share
             };
-            (0..steps)
-                .map(|step| axis_at(&|place| value(place, share(step))))
-                .collect()
+            (0..steps).map(|step| axis_at(&|place| value(place, share(step)))).collect()
         };
         let largest = curve.iter().copied().max_by(|a, b| a[0].total_cmp(&b[0]));
         let upright = curve.iter().any(|[tilt, _]| *tilt < 1e-9);
@@ -207,10 +198,7 @@ impl Reach {
             azimuth_of_largest_tilt_deg: largest
                 .filter(|[tilt, _]| *tilt > 1e-6)
                 .map(|[_, azimuth]| azimuth.to_degrees()),
-            map: Map {
-                cells: Vec::new(),
-                curve,
-            },
+            map: Map { cells: Vec::new(), curve },
             ..Self::default()
         }
     }

@@ -30,13 +30,7 @@ impl RoundTrip {
     pub(super) fn of(probe: &Probe<'_>) -> Self {
         let mut random = Random(0x706f_7374);
         let poses = if probe.closed_form() { POSES } else { SEARCHED };
-        let mut trip = Self {
-            poses,
-            solutions: 0,
-            not_found: 0,
-            tip_mm: 0.0,
-            axis_rad: 0.0,
-        };
+        let mut trip = Self { poses, solutions: 0, not_found: 0, tip_mm: 0.0, axis_rad: 0.0 };
         for _ in 0..poses {
             let mut joints = *probe.home();
             let count = probe.machine().axes.len();
@@ -64,10 +58,8 @@ struct Random(u64);
 impl Random {
     /// Even in 0 to 1.
     fn share(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 }

@@ -55,10 +55,7 @@ pub(super) fn directions(probe: &Probe<'_>) -> Found {
     probe.count(0, MAP_STEPS - flood.left);
     let made = |cell: &Option<Joints>| usize::from(cell.is_some());
     let row = |row: &Vec<Option<Joints>>| row.iter().map(made).collect();
-    Found {
-        cells: flood.cells.iter().map(row).collect(),
-        borders,
-    }
+    Found { cells: flood.cells.iter().map(row).collect(), borders }
 }
 
 struct Flood<'a> {
@@ -154,14 +151,7 @@ fn tilt(band: usize) -> f64 {
 fn cell_of(axis: Vector3<f64>) -> [usize; 2] {
     let band = angle(axis, Vector3::z()) / PI * TILTS as f64;
     let azimuth = libm::atan2(axis.y, axis.x);
-    let turned = if azimuth < 0.0 {
-        azimuth + TAU
-    } else {
-        azimuth
-    };
+    let turned = if azimuth < 0.0 { azimuth + TAU } else { azimuth };
     let cell = turned / TAU * AZIMUTHS as f64;
-    [
-        (band as usize).min(TILTS - 1),
-        (cell as usize).min(AZIMUTHS - 1),
-    ]
+    [(band as usize).min(TILTS - 1), (cell as usize).min(AZIMUTHS - 1)]
 }

@@ -19,11 +19,7 @@ const MOST_SEARCHED: usize = 3;
 pub(super) fn solvers(machine: &Machine, length: f64) -> Result<Vec<Solver>, NoClosedForm> {
     let start = machine.solution.start;
     let first = machine.solver(length)?;
-    let most = if first.closed_form() {
-        MOST
-    } else {
-        MOST_SEARCHED
-    };
+    let most = if first.closed_form() { MOST } else { MOST_SEARCHED };
     let mut others: Vec<Joints> = Vec::new();
     for place in machine.redundant() {
         for value in positions(machine, place) {

@@ -43,8 +43,7 @@ pub(super) fn table(probe: &Probe<'_>) -> Vec<Sign> {
                 let askew = principal(axis.joint.direction).is_none();
                 room(probe, place, sense).min(if askew { PI } else { FRAC_PI_2 })
             } else {
-                axis.travel
-                    .map_or(WAY, |[least, most]| (most - least).min(WAY))
+                axis.travel.map_or(WAY, |[least, most]| (most - least).min(WAY))
             };
             if !axis.joint.rotary || room >= LEAST {
                 signs.push(sign(probe, place, sense * room));
@@ -78,16 +77,8 @@ fn linear(probe: &Probe<'_>, place: usize, by: f64) -> Sign {
     let mut there = *probe.home();
     there[place] += by;
     let moved = probe.chain().forward(&there).tip - probe.chain().forward(probe.home()).tip;
-    let tool = format!(
-        "moves {} mm to {}",
-        number(moved.norm(), 3),
-        named(moved.normalize())
-    );
-    let (body, way) = if axis.carries_part {
-        ("table", -1.0)
-    } else {
-        ("head", 1.0)
-    };
+    let tool = format!("moves {} mm to {}", number(moved.norm(), 3), named(moved.normalize()));
+    let (body, way) = if axis.carries_part { ("table", -1.0) } else { ("head", 1.0) };
     let direction = in_bed(probe, place) * by.signum() * way;
     Sign {
         axis: axis.name.clone(),
@@ -110,28 +101,17 @@ fn rotary(probe: &Probe<'_>, place: usize, by: f64) -> Sign {
         format!("its axis goes {}", goes(from, to, direction, by))
     } else {
         let side = beside(direction);
-        format!(
-            "goes round {}",
-            goes(side, about(direction, by, side), direction, by)
-        )
+        format!("goes round {}", goes(side, about(direction, by, side), direction, by))
     };
     let bed = in_bed(probe, place);
-    let (body, turn) = if axis.carries_part {
-        ("table", -by)
-    } else {
-        ("head", by)
-    };
+    let (body, turn) = if axis.carries_part { ("table", -by) } else { ("head", by) };
     // Seen from the plus side of the frame; an axis askew from its own upper end.
     let view = match principal(bed) {
         Some((index, _)) => Vector3::ith(index, 1.0),
         None if bed.z < 0.0 => -bed,
         None => bed,
     };
-    let sense = if turn * bed.dot(&view) > 0.0 {
-        "counter-clockwise"
-    } else {
-        "clockwise"
-    };
+    let sense = if turn * bed.dot(&view) > 0.0 { "counter-clockwise" } else { "clockwise" };
     let mut seen = format!("the {body} turns {sense} seen from {}", named(view));
     if axis.carries_part {
         let side = beside(bed);
@@ -142,24 +122,14 @@ fn rotary(probe: &Probe<'_>, place: usize, by: f64) -> Sign {
         ));
     } else if tilts {
         let count = probe.chain().joints().len();
-        let carried = probe
-            .machine()
-            .axes
-            .iter()
-            .take_while(|axis| axis.carries_part)
-            .count();
+        let carried = probe.machine().axes.iter().take_while(|axis| axis.carries_part).count();
         let tip = -probe.turned(carried..count, home, probe.chain().axis());
         seen.push_str(&format!(
             ", the tip swings {}",
             where_to(tip, about(bed, turn, tip), bed, turn)
         ));
     }
-    Sign {
-        axis: axis.name.clone(),
-        by: by.to_degrees(),
-        tool,
-        seen,
-    }
+    Sign { axis: axis.name.clone(), by: by.to_degrees(), tool, seen }
 }
 
 /// The direction of an axis at rest, in the frame of the bed.
@@ -183,16 +153,10 @@ fn in_bed(probe: &Probe<'_>, place: usize) -> Vector3<f64> {
 
 /// `vector` turned about `direction` by `by`, by the chain's own forward product.
 fn about(direction: Vector3<f64>, by: f64, vector: Vector3<f64>) -> Vector3<f64> {
-    let joint = Joint {
-        rotary: true,
-        direction,
-        point: Vector3::zeros(),
-    };
+    let joint = Joint { rotary: true, direction, point: Vector3::zeros() };
     let mut angles = [0.0; MAX_AXES];
     angles[0] = by;
-    Chain::new(vec![joint], Vector3::zeros(), Vector3::zeros(), vector)
-        .forward(&angles)
-        .axis
+    Chain::new(vec![joint], Vector3::zeros(), Vector3::zeros(), vector).forward(&angles).axis
 }
 
 /// The first of +X, +Y, +Z that stands most nearly across `direction`.
@@ -212,19 +176,15 @@ fn goes(from: Vector3<f64>, to: Vector3<f64>, direction: Vector3<f64>, by: f64) 
 
 /// `to -Y` for a whole quarter or half turn, else `30° towards -Y`.
 fn where_to(from: Vector3<f64>, to: Vector3<f64>, direction: Vector3<f64>, by: f64) -> String {
-    let whole = [FRAC_PI_2, PI]
-        .iter()
-        .any(|turn| (by.abs() - turn).abs() < 1e-6);
+    let whole = [FRAC_PI_2, PI].iter().any(|turn| (by.abs() - turn).abs() < 1e-6);
     if whole {
         return format!("to {}", named(to));
     }
     let towards = direction.cross(&from) * by;
     match towards.try_normalize(1e-9) {
-        Some(towards) => format!(
-            "{}° towards {}",
-            number(angle(from, to).to_degrees(), 3),
-            named(towards)
-        ),
+        Some(towards) => {
+            format!("{}° towards {}", number(angle(from, to).to_degrees(), 3), named(towards))
+        }
         None => format!("to {}", named(to)),
     }
 }

@@ -46,9 +46,8 @@ impl Volume {
             }
         };
         let machine = probe.machine();
-        let linear: Vec<usize> = (0..machine.axes.len())
-            .filter(|place| !machine.axes[*place].joint.rotary)
-            .collect();
+        let linear: Vec<usize> =
+            (0..machine.axes.len()).filter(|place| !machine.axes[*place].joint.rotary).collect();
         let mut least = Vector3::repeat(f64::INFINITY);
         let mut most = Vector3::repeat(f64::NEG_INFINITY);
         // The tip is linear in the linear axes, so its extremes are at corners.
@@ -79,10 +78,7 @@ impl Volume {
             .iter()
             .zip(at_origin)
             .filter(|(axis, _)| axis.joint.rotary)
-            .map(|(axis, value)| Reading {
-                axis: axis.name.clone(),
-                value: axis.reading(value),
-            })
+            .map(|(axis, value)| Reading { axis: axis.name.clone(), value: axis.reading(value) })
             .collect();
         Some(Self {
             axis: axis.into(),

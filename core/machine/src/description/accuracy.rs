@@ -116,10 +116,7 @@ impl Builder<'_> {
             servo_compensation,
             options: options.remove(&model).unwrap_or_default(),
             model,
-            model_place: file
-                .model
-                .as_ref()
-                .and_then(|model| self.sources.place(model.span())),
+            model_place: file.model.as_ref().and_then(|model| self.sources.place(model.span())),
             method: file.method,
             points,
             placement: file.placement,

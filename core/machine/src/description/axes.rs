@@ -270,10 +270,7 @@ impl Builder<'_> {
         }
         let max_accel = rate(self, "max_accel", &axis.max_accel);
         let max_jerk = rate(self, "max_jerk", &axis.max_jerk);
-        let max_jump = axis
-            .max_jump
-            .as_ref()
-            .map(|_| rate(self, "max_jump", &axis.max_jump));
+        let max_jump = axis.max_jump.as_ref().map(|_| rate(self, "max_jump", &axis.max_jump));
         let indexed = self.indexed(name, spanned, zero, unit, travel);
         let clamp = self.clamp(name, spanned);
         let range = self.range(name, spanned, unit);
@@ -281,11 +278,7 @@ impl Builder<'_> {
             name: name.to_owned(),
             place: self.sources.place(spanned.span()),
             carries_part,
-            joint: Joint {
-                rotary,
-                direction,
-                point,
-            },
+            joint: Joint { rotary, direction, point },
             zero: zero * unit,
             travel,
             range,
@@ -333,10 +326,7 @@ impl Builder<'_> {
             self.fault(
                 "machine-travel",
                 start.span(),
-                format!(
-                    "{name} is indexed at {}, outside its travel",
-                    value / unit + zero
-                ),
+                format!("{name} is indexed at {}, outside its travel", value / unit + zero),
                 "",
             );
         }
@@ -388,10 +378,7 @@ impl Builder<'_> {
                         "step = 5 lets it stand at 0, 5, 10 …",
                     );
                 }
-                Positions::Step {
-                    first: -zero * unit,
-                    step: width.max(1e-6),
-                }
+                Positions::Step { first: -zero * unit, step: width.max(1e-6) }
             }
             (Some(list), Some(_)) => {
                 self.fault(
@@ -414,10 +401,7 @@ impl Builder<'_> {
                 "",
             );
         }
-        Some(Indexed {
-            start: value,
-            positions,
-        })
+        Some(Indexed { start: value, positions })
     }
 
     fn clamp(&mut self, name: &str, spanned: &Spanned<AxisFile>) -> Option<Clamp> {
@@ -425,26 +409,16 @@ impl Builder<'_> {
         let (span, help) = match (&axis.clamp, &axis.unclamp) {
             (None, None) => return None,
             (Some(on), Some(off)) if axis.indexed.is_some() || axis.rotary.is_some() => {
-                return Some(Clamp {
-                    on: on.get_ref().clone(),
-                    off: off.get_ref().clone(),
-                });
+                return Some(Clamp { on: on.get_ref().clone(), off: off.get_ref().clone() });
             }
-            (Some(on), Some(_)) => (
-                on.span(),
-                "a linear axis is clamped if it stands still in cuts: indexed = 0",
-            ),
-            (Some(word), None) | (None, Some(word)) => (
-                word.span(),
-                "clamp and unclamp go together: clamp = \"M10\", unclamp = \"M11\"",
-            ),
+            (Some(on), Some(_)) => {
+                (on.span(), "a linear axis is clamped if it stands still in cuts: indexed = 0")
+            }
+            (Some(word), None) | (None, Some(word)) => {
+                (word.span(), "clamp and unclamp go together: clamp = \"M10\", unclamp = \"M11\"")
+            }
         };
-        self.fault(
-            "machine-axis",
-            span,
-            format!("{name} cannot be clamped like this"),
-            help,
-        );
+        self.fault("machine-axis", span, format!("{name} cannot be clamped like this"), help);
         None
     }
 
@@ -491,10 +465,7 @@ impl Builder<'_> {
                     self.fault(
                         "machine-axis",
                         share.span(),
-                        format!(
-                            "{} has both share and reserve: which of the two?",
-                            axis.name
-                        ),
+                        format!("{} has both share and reserve: which of the two?", axis.name),
                         "keep one of them",
                     );
                     continue;
@@ -531,7 +502,5 @@ impl Builder<'_> {
 
 /// It is a quill that moves where another axis ends.
 fn reserves(axis: &AxisFile) -> bool {
-    axis.reserve
-        .as_ref()
-        .is_some_and(|reserve| *reserve.get_ref())
+    axis.reserve.as_ref().is_some_and(|reserve| *reserve.get_ref())
 }

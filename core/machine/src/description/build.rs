@@ -65,26 +65,16 @@ pub fn examine(
     let sources = match Sources::collect(source, settings, find) {
         Ok(sources) => sources,
         Err(faults) => {
-            return Reading {
-                machine: Err(faults),
-                values: Vec::new(),
-            };
+            return Reading { machine: Err(faults), values: Vec::new() };
         }
     };
     let machine = with_heads(&sources, &mut evaluated);
     let values = evaluated.into_iter();
     let values = values.filter_map(|(span, value)| {
         let (file, span) = sources.local(span)?;
-        Some(Evaluated {
-            file: file.to_owned(),
-            span,
-            value,
-        })
+        Some(Evaluated { file: file.to_owned(), span, value })
     });
-    Reading {
-        machine,
-        values: values.collect(),
-    }
+    Reading { machine, values: values.collect() }
 }
 
 /// The machine with all its heads.
@@ -103,11 +93,7 @@ fn with_heads(
         overlay(layered.get_mut(), head.overrides);
         let mut other = read(layered, sources, Vec::new(), evaluated)?;
         other.keep_frame_of(&machine);
-        if !other
-            .axes
-            .iter()
-            .map(|axis| &axis.name)
-            .eq(machine.axes.iter().map(|axis| &axis.name))
+        if !other.axes.iter().map(|axis| &axis.name).eq(machine.axes.iter().map(|axis| &axis.name))
         {
             return Err(vec![
                 Diagnostic::error(
@@ -171,9 +157,7 @@ fn take_heads<'i>(
     };
     if heads.len() > MOST_HEADS {
         let message = format!("{} heads; at most {MOST_HEADS} are possible", heads.len());
-        return Err(vec![
-            Diagnostic::error("machine-head", message).at(sources.place(span)),
-        ]);
+        return Err(vec![Diagnostic::error("machine-head", message).at(sources.place(span))]);
     }
     let mut taken = Vec::new();
     for (name, head) in heads {
@@ -220,9 +204,7 @@ fn take_heads<'i>(
 fn no_offset(place: Option<Place>) -> Diagnostic {
     let message =
         format!("the offset of a head is the number of a work offset, 1 to {MOST_OFFSETS}");
-    Diagnostic::error("machine-head", message)
-        .at(place)
-        .help("1 is G54, 2 is G55, and so on")
+    Diagnostic::error("machine-head", message).at(place).help("1 is G54, 2 is G55, and so on")
 }
 
 /// What a merged table means. `unread` says what of the texts could not be read; what is said of the rest is said beside
@@ -323,9 +305,7 @@ impl Builder<'_> {
         let gauge = self.vector(&file.tool.gauge);
         let tool_axis = match &file.tool.axis {
             // One that is null was told, and no machine comes of it.
-            Some(axis) => self
-                .direction("the tool axis", axis)
-                .unwrap_or_else(Vector3::z),
+            Some(axis) => self.direction("the tool axis", axis).unwrap_or_else(Vector3::z),
             None => Vector3::z(),
         };
         let edge = match &file.tool.edge {
@@ -369,24 +349,17 @@ impl Builder<'_> {
         let accuracy = self.accuracy(&file.accuracy, &mut model_options);
         let unused = |section: &'static str, tables: BTreeMap<String, Vec<GivenOption>>| {
             let tables = tables.into_iter();
-            tables.map(move |(plugin, options)| UnusedOptions {
-                section,
-                plugin,
-                options,
-            })
+            tables.map(move |(plugin, options)| UnusedOptions { section, plugin, options })
         };
-        let unused_options = unused("control", control_options)
-            .chain(unused("accuracy", model_options))
-            .collect();
+        let unused_options =
+            unused("control", control_options).chain(unused("accuracy", model_options)).collect();
         let control_point = self.control_point(&file.tool.control_point);
         let spindle = self.spindle(&file.spindle);
         let arcs = self.arcs(&control.arcs);
         let word_rules = self.word_rules(&file.cl);
         let program = self.program(&file.program);
         let smoothing = file.program.smoothing.as_ref();
-        let smoothing = smoothing
-            .map(|file| self.smoothing(file))
-            .unwrap_or_default();
+        let smoothing = smoothing.map(|file| self.smoothing(file)).unwrap_or_default();
         let indexes = axes.iter().any(|axis| axis.indexed.is_some());
         let clamps = axes.iter().any(|axis| axis.clamp.is_some());
         let solids = self.solids(&file.solids, &axes);
@@ -409,11 +382,7 @@ impl Builder<'_> {
                 dialect,
                 dialect_place: self.sources.place(control.dialect.span()),
                 options,
-                tcp: if turns {
-                    control.tcp.unwrap_or_default()
-                } else {
-                    Tcp::Post
-                },
+                tcp: if turns { control.tcp.unwrap_or_default() } else { Tcp::Post },
                 units: control.units,
                 feed: control.feed,
                 feed_length: control.feed_length,
@@ -556,11 +525,8 @@ impl Builder<'_> {
 
     /// Where the control keeps the tip, the linear words are its coordinates.
     fn check_tip_words(&mut self, axes: &[Axis], span: Range<usize>) {
-        let linear: BTreeSet<&str> = axes
-            .iter()
-            .filter(|axis| !axis.joint.rotary)
-            .map(|axis| axis.name.as_str())
-            .collect();
+        let linear: BTreeSet<&str> =
+            axes.iter().filter(|axis| !axis.joint.rotary).map(|axis| axis.name.as_str()).collect();
         if linear != BTreeSet::from(["X", "Y", "Z"]) {
             self.fault(
                 "machine-tcp",

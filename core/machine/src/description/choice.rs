@@ -138,10 +138,7 @@ impl Builder<'_> {
                 self.fault(
                     "machine-travel",
                     name.span(),
-                    format!(
-                        "{} cannot start there: it is none of its positions",
-                        axis.name
-                    ),
+                    format!("{} cannot start there: it is none of its positions", axis.name),
                     "",
                 );
             }
@@ -182,11 +179,8 @@ impl Builder<'_> {
                 *points.get_ref()
             }
         };
-        let corner = said
-            .corner
-            .as_ref()
-            .map_or(10.0, |corner| self.positive("corner", corner))
-            .min(180.0);
+        let corner =
+            said.corner.as_ref().map_or(10.0, |corner| self.positive("corner", corner)).min(180.0);
         Solution {
             rule,
             prefer,

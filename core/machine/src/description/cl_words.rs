@@ -41,10 +41,7 @@ impl WordRule {
                 Argument::Number(number) => numbers.push(*number),
                 Argument::Word(word) if word.is_empty() => {}
                 Argument::Word(word) => {
-                    return Err(format!(
-                        "the rule for {} knows nothing of {word}",
-                        self.name()
-                    ));
+                    return Err(format!("the rule for {} knows nothing of {word}", self.name()));
                 }
             }
         }
@@ -70,11 +67,8 @@ impl Builder<'_> {
     pub(super) fn word_rules(&mut self, file: &ClFile) -> Vec<WordRule> {
         let mut rules: Vec<WordRule> = Vec::new();
         for (key, lines) in &file.words {
-            let words: Vec<String> = key
-                .get_ref()
-                .split('/')
-                .map(|word| word.trim().to_ascii_uppercase())
-                .collect();
+            let words: Vec<String> =
+                key.get_ref().split('/').map(|word| word.trim().to_ascii_uppercase()).collect();
             let help = "OFSETL = \"G{n+53}\", \"SET/OFSETL\" = \"G{n+53}\"";
             if words.iter().any(String::is_empty) {
                 self.rule_fault(
@@ -109,10 +103,7 @@ impl Builder<'_> {
                     "--allow WORD leaves a word out",
                 );
             }
-            rules.push(WordRule {
-                words,
-                lines: templates,
-            });
+            rules.push(WordRule { words, lines: templates });
         }
         rules
     }
@@ -131,9 +122,7 @@ fn known(words: &[String]) -> Option<String> {
         Usage::Passed => {
             Some("[control] insert says what becomes of INSERT; texts are remarks".to_owned())
         }
-        Usage::Used => Some(format!(
-            "\"{word}/WORD\" is a form of it that post does not know"
-        )),
+        Usage::Used => Some(format!("\"{word}/WORD\" is a form of it that post does not know")),
         _ => None,
     }
 }

@@ -152,10 +152,7 @@ pub(crate) struct ClFile {
 
 /// A line of the program, or several.
 #[derive(Debug, Deserialize, JsonSchema)]
-#[serde(
-    untagged,
-    expecting = "a line of the program or a list of lines is expected"
-)]
+#[serde(untagged, expecting = "a line of the program or a list of lines is expected")]
 pub(crate) enum Lines {
     One(String),
     #[schemars(extend("minItems" = 1))]

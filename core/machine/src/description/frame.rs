@@ -207,8 +207,7 @@ impl Builder<'_> {
 
     fn positions(&mut self, said: &Said, machine: &Machine) -> Vec<(usize, f64)> {
         let said = said.iter();
-        said.filter_map(|said| self.position(said, false, machine))
-            .collect()
+        said.filter_map(|said| self.position(said, false, machine)).collect()
     }
 
     /// A position of an axis; `ends`: it may be that of an end of travel, by its name.
@@ -218,10 +217,7 @@ impl Builder<'_> {
         ends: bool,
         machine: &Machine,
     ) -> Option<(usize, f64)> {
-        let known = machine
-            .axes
-            .iter()
-            .position(|axis| axis.name == *name.get_ref());
+        let known = machine.axes.iter().position(|axis| axis.name == *name.get_ref());
         let Some(place) = known else {
             self.fault(
                 "machine-frame",

@@ -34,18 +34,12 @@ pub(super) fn typed(mut table: Spanned<DeTable<'_>>, sources: &Sources, whole: b
         // Reading ends at its first fault: what is wrong is put right or taken out, and the rest read again.
         let error = match MachineFile::deserialize(Deserializer::from(table.clone())) {
             Ok(file) => {
-                return Typed {
-                    file: Some(file).filter(|_| !stood_in),
-                    faults,
-                    hiding,
-                };
+                return Typed { file: Some(file).filter(|_| !stood_in), faults, hiding };
             }
             Err(error) => error,
         };
         let message = error.message();
-        let missing = message
-            .strip_prefix(MISSING)
-            .and_then(|rest| rest.strip_suffix('`'));
+        let missing = message.strip_prefix(MISSING).and_then(|rest| rest.strip_suffix('`'));
         let near_taken = |key: &str| nearest(key, taken.iter().map(String::as_str)).is_some();
         let echo = missing.is_some_and(|key| !whole || near_taken(key));
         let (told, help) = explained(message);
@@ -72,11 +66,7 @@ pub(super) fn typed(mut table: Spanned<DeTable<'_>>, sources: &Sources, whole: b
             break;
         }
     }
-    Typed {
-        file: None,
-        faults,
-        hiding,
-    }
+    Typed { file: None, faults, hiding }
 }
 
 /// How serde begins what it says of a key, and of a word in place of one of a few.
@@ -128,9 +118,7 @@ fn take(table: &mut DeTable<'_>, span: &Range<usize>) -> Option<String> {
     let holds = |whole: Range<usize>| {
         whole.start <= span.start && span.end <= whole.end && span.start < whole.end
     };
-    let found = table
-        .iter()
-        .find(|(key, value)| key.span() == *span || holds(value.span()));
+    let found = table.iter().find(|(key, value)| key.span() == *span || holds(value.span()));
     let name = found.map(|(key, _)| key.get_ref().to_string())?;
     table.remove(name.as_str()).map(|_| name)
 }

@@ -47,11 +47,7 @@ const MOST_UNREADABLE: usize = 10;
 impl Readable {
     /// Reading ends at its first fault: the line is taken out, and the rest read again.
     fn of(text: &str) -> Self {
-        let mut readable = Self {
-            text: text.to_owned(),
-            faults: Vec::new(),
-            lost: false,
-        };
+        let mut readable = Self { text: text.to_owned(), faults: Vec::new(), lost: false };
         let mut last: Option<Range<usize>> = None;
         while readable.faults.len() < MOST_UNREADABLE {
             let (_, faults) = DeTable::parse_recoverable(&readable.text);
@@ -60,16 +56,12 @@ impl Readable {
             };
             let Some(span) = fault.span().filter(|span| span.start < text.len()) else {
                 if last.is_none() {
-                    readable
-                        .faults
-                        .push((fault.span(), fault.message().to_owned()));
+                    readable.faults.push((fault.span(), fault.message().to_owned()));
                 }
                 break;
             };
             let begin = text[..span.start].rfind('\n').map_or(0, |at| at + 1);
-            let end = text[span.start..]
-                .find('\n')
-                .map_or(text.len(), |at| span.start + at);
+            let end = text[span.start..].find('\n').map_or(text.len(), |at| span.start + at);
             // A bracket that nothing closes spoils line after line.
             let echo = last.is_some_and(|last| {
                 begin < last.end || text[last.end..begin].trim_ascii().is_empty()
@@ -77,9 +69,7 @@ impl Readable {
             if echo {
                 break;
             }
-            readable
-                .faults
-                .push((Some(span), fault.message().to_owned()));
+            readable.faults.push((Some(span), fault.message().to_owned()));
             // Under which table the following keys stand is not known.
             if is_header(&text[begin..end]) {
                 break;
@@ -145,9 +135,7 @@ impl Sources {
                 let message = format!(
                     "more than {DEPTH} machines extend one another: do they go in a circle?"
                 );
-                return Err(vec![
-                    Diagnostic::error("machine-extends", message).at(place),
-                ]);
+                return Err(vec![Diagnostic::error("machine-extends", message).at(place)]);
             }
             // A stranger's file may name any file of the user's: nothing of what is no machine is shown.
             let parent = find(name.get_ref()).and_then(|parent| match is_machine(&parent.text) {
@@ -182,10 +170,7 @@ impl Sources {
             return Err(vec![Diagnostic::error("machine", message)]);
         }
         // One more, so that a span at the very end of a text is not taken for the next one's start.
-        let start = self
-            .sources
-            .last()
-            .map_or(0, |(start, last)| start + last.text.len() + 1);
+        let start = self.sources.last().map_or(0, |(start, last)| start + last.text.len() + 1);
         let ends = source.text.match_indices('\n').map(|(end, _)| end + 1);
         self.readable.push(Readable::of(&source.text));
         self.lines.push(std::iter::once(0).chain(ends).collect());
@@ -216,9 +201,7 @@ impl Sources {
             let (start, readable) = (self.sources[index].0, &self.readable[index]);
             lost |= readable.lost;
             errors.extend(readable.faults.iter().map(|(span, message)| {
-                let place = span
-                    .clone()
-                    .and_then(|span| self.place(shifted(span, start)));
+                let place = span.clone().and_then(|span| self.place(shifted(span, start)));
                 Diagnostic::error("machine-syntax", message).at(place)
             }));
             let (table, _) = DeTable::parse_recoverable(&readable.text);
@@ -234,10 +217,7 @@ impl Sources {
         if lost {
             return Err(errors);
         }
-        Ok(Merged {
-            table: Spanned::new(0..0, merged),
-            faults: errors,
-        })
+        Ok(Merged { table: Spanned::new(0..0, merged), faults: errors })
     }
 
     /// The file of a finding, and number and text of the header that it stands under; 0 above all tables.
@@ -262,24 +242,16 @@ impl Sources {
 
     /// The line that a span begins in.
     pub(crate) fn place(&self, span: Range<usize>) -> Option<Place> {
-        let index = self
-            .sources
-            .iter()
-            .rposition(|(start, _)| *start <= span.start)?;
+        let index = self.sources.iter().rposition(|(start, _)| *start <= span.start)?;
         let (start, source) = &self.sources[index];
         let text = &source.text;
         let at = (span.start - start).min(text.len());
         let number = self.lines[index].partition_point(|begin| *begin <= at);
         let begin = self.lines[index][number - 1];
-        let end = self.lines[index]
-            .get(number)
-            .map_or(text.len(), |next| next - 1);
+        let end = self.lines[index].get(number).map_or(text.len(), |next| next - 1);
         let line = text[begin..end].trim_end_matches('\r');
         let from = (at - begin).min(line.len());
-        let to = span
-            .end
-            .saturating_sub(start + begin)
-            .clamp(from, line.len());
+        let to = span.end.saturating_sub(start + begin).clamp(from, line.len());
         Some(Place::new(&source.name, number as u64, line, from..to))
     }
 
@@ -407,9 +379,8 @@ const INSTEAD: &[(&str, &str)] = &[
 pub(crate) fn overlay<'i>(base: &mut DeTable<'i>, layer: DeTable<'i>) {
     for (one, other) in INSTEAD {
         for (said, unsaid) in [(one, other), (other, one)] {
-            let meant = layer
-                .get(*said)
-                .is_some_and(|value| value.get_ref().as_bool() != Some(false));
+            let meant =
+                layer.get(*said).is_some_and(|value| value.get_ref().as_bool() != Some(false));
             if meant && !layer.contains_key(*unsaid) {
                 base.remove(*unsaid);
             }
@@ -459,10 +430,7 @@ fn moved(value: Spanned<DeValue<'_>>, start: usize) -> Spanned<DeValue<'_>> {
     let span = shifted(value.span(), start);
     let inner = match value.into_inner() {
         DeValue::Array(array) => DeValue::Array(
-            array
-                .into_iter()
-                .map(|item| moved(item, start))
-                .collect::<DeArray<'_>>(),
+            array.into_iter().map(|item| moved(item, start)).collect::<DeArray<'_>>(),
         ),
         DeValue::Table(table) => DeValue::Table(moved_table(table, start)),
         scalar => scalar,

@@ -37,20 +37,14 @@ impl Machine {
         let solver = self.solver(0.0).ok()?;
         let linear = (0..self.axes.len()).filter(|place| !self.axes[*place].joint.rotary);
         let ways = linear.map(|place| (place, solver.chain().way_of(place, &short)));
-        let by: Vector3<f64> = ways
-            .clone()
-            .map(|(place, way)| way * (long[place] - short[place]))
-            .sum();
+        let by: Vector3<f64> =
+            ways.clone().map(|(place, way)| way * (long[place] - short[place])).sum();
         let misses = ways.map(|(place, way)| (place, (by - way).norm()));
         let depth = axis_words::depth(self);
         let (along, miss) = misses.reduce(|best, next| {
             let nearer = next.1 - best.1;
             let as_near = libm::fabs(nearer) < SAME && Some(next.0) == depth;
-            if nearer < -SAME || as_near {
-                next
-            } else {
-                best
-            }
+            if nearer < -SAME || as_near { next } else { best }
         })?;
         (miss < MEASURED).then_some((along, miss))
     }
@@ -93,10 +87,7 @@ impl Builder<'_> {
                     "machine-axis",
                     said.span(),
                     format!("the machine has no linear axis {name}"),
-                    &format!(
-                        "{}; \"none\" where the control puts on no length",
-                        axes_are(axes)
-                    ),
+                    &format!("{}; \"none\" where the control puts on no length", axes_are(axes)),
                 );
                 LengthAxis::Dialect
             }

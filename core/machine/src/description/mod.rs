@@ -214,11 +214,7 @@ pub enum Positions {
 impl Axis {
     /// Axis units (mm, radians) in one unit of what the control shows (mm, degrees).
     pub fn unit(&self) -> f64 {
-        if self.joint.rotary {
-            1f64.to_radians()
-        } else {
-            1.0
-        }
+        if self.joint.rotary { 1f64.to_radians() } else { 1.0 }
     }
 
     /// What its positions are told in: `mm`, or `deg` of a rotary axis.
@@ -383,11 +379,8 @@ impl Machine {
     /// for index axes that stand elsewhere since.
     pub fn unsolvable(&self, lack: &NoClosedForm) -> Diagnostic {
         let (message, help) = lack.told(|joint| &self.axes[joint].name);
-        Diagnostic::error(
-            "machine-chain",
-            format!("{} cannot be solved: {message}", self.name),
-        )
-        .help(help)
+        Diagnostic::error("machine-chain", format!("{} cannot be solved: {message}", self.name))
+            .help(help)
     }
 
     /// Rotary axes that are solved for from the wanted tool axis: those that move in cuts, and as many of the
@@ -467,8 +460,6 @@ impl Machine {
 
     /// Some rotary axis turns in a cut.
     pub fn turns(&self) -> bool {
-        self.axes
-            .iter()
-            .any(|axis| axis.joint.rotary && axis.indexed.is_none())
+        self.axes.iter().any(|axis| axis.joint.rotary && axis.indexed.is_none())
     }
 }

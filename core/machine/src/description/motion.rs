@@ -87,16 +87,14 @@ impl Builder<'_> {
             count.clamp(1, most)
         });
         let mut positive = |name: &str, said: &Option<Quantity>| {
-            said.as_ref()
-                .and_then(|said| self.above_zero_of(name, said))
+            said.as_ref().and_then(|said| self.above_zero_of(name, said))
         };
         let tip_accel = positive("tip_accel", &file.tip_accel);
         let tip_jerk = positive("tip_jerk", &file.tip_jerk);
         let tip_jump = positive("tip_jump", &file.tip_jump);
         let corner_tolerance = positive("corner_tolerance", &file.corner_tolerance);
         let mut seconds = |name: &str, said: &Option<Quantity>| {
-            said.as_ref()
-                .map_or(0.0, |said| self.seconds_of("motion", name, said))
+            said.as_ref().map_or(0.0, |said| self.seconds_of("motion", name, said))
         };
         MotionRules {
             period,
@@ -138,10 +136,7 @@ impl Builder<'_> {
             self.fault(
                 "machine-motion",
                 said.span(),
-                format!(
-                    "[{table}] {name} is {} s; it must be 0 to {MOST_SECONDS} s",
-                    Short(value)
-                ),
+                format!("[{table}] {name} is {} s; it must be 0 to {MOST_SECONDS} s", Short(value)),
                 "the unit is seconds",
             );
         }

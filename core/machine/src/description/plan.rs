@@ -52,13 +52,11 @@ impl Builder<'_> {
         let usual = motion.block_time.max(PERIODS * motion.period);
         let shortest = &file.shortest_block;
         let shortest = shortest.as_ref().map_or(usual, |said| {
-            self.seconds_of("plan", "shortest_block", said)
-                .max(motion.block_time)
+            self.seconds_of("plan", "shortest_block", said).max(motion.block_time)
         });
         let saving = file.least_saving.as_ref();
-        let saving = saving.map_or(SAVING * shortest, |said| {
-            self.seconds_of("plan", "least_saving", said)
-        });
+        let saving =
+            saving.map_or(SAVING * shortest, |said| self.seconds_of("plan", "least_saving", said));
         PlanRules {
             contour_error,
             chord_error,

@@ -92,10 +92,7 @@ impl TextPlace {
                 Self::ToolChange | Self::AfterToolChange | Self::BetweenTools
             )),
             next_tool: (self != Self::Header).then_some(2),
-            operation: operation.then(|| OperationFacts {
-                name: "ROUGH".to_owned(),
-                number: 1,
-            }),
+            operation: operation.then(|| OperationFacts { name: "ROUGH".to_owned(), number: 1 }),
             tolerance: smooth.then_some(0.01),
             axis_tolerance: smooth.then_some(0.05),
             line: 1,
@@ -122,9 +119,7 @@ impl ProgramText {
         self.template.lines(facts).map_err(|fault| {
             let at = fault.span.map_or(0, |span| span.start);
             let place = self.places.iter().find(|(line, _)| at <= line.end);
-            let place = place
-                .or(self.places.first())
-                .and_then(|(_, place)| place.clone());
+            let place = place.or(self.places.first()).and_then(|(_, place)| place.clone());
             Diagnostic::error(
                 "program-text",
                 format!("[program] {}: {}", self.at.key(), fault.message),
@@ -156,10 +151,7 @@ impl ProgramRules {
 
     /// The words of all lines of the user's own, facts of samples in them.
     pub fn own_words(&self) -> impl Iterator<Item = String> {
-        let lines = self
-            .texts
-            .iter()
-            .filter_map(|text| text.lines(&text.at.sample()).ok());
+        let lines = self.texts.iter().filter_map(|text| text.lines(&text.at.sample()).ok());
         let words = lines.flatten().flat_map(|line| {
             let words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
             words
@@ -169,12 +161,7 @@ impl ProgramRules {
 }
 
 /// Facts that a first pass over the CL file finds.
-const AHEAD: [&str; 4] = [
-    "program.tools",
-    "program.extents",
-    "program.time",
-    "next_tool",
-];
+const AHEAD: [&str; 4] = ["program.tools", "program.extents", "program.time", "next_tool"];
 
 impl Machine {
     /// The machine without text of its own: for a pass whose program nobody reads, and in which not all is known that a
@@ -209,12 +196,8 @@ impl Builder<'_> {
             (TextPlace::SmoothingOff, &file.smoothing_off),
         ] {
             let Some(lines) = lines else { continue };
-            let source: Vec<&str> = lines
-                .get_ref()
-                .0
-                .iter()
-                .map(|(line, _)| line.as_str())
-                .collect();
+            let source: Vec<&str> =
+                lines.get_ref().0.iter().map(|(line, _)| line.as_str()).collect();
             let source = source.join("\n");
             rules.looks_ahead |= AHEAD.iter().any(|fact| source.contains(fact));
             rules.texts.extend(self.text(at, lines, &source));
@@ -226,8 +209,7 @@ impl Builder<'_> {
             if let (Some(text), None) = (rules.text(on), rules.text(off)) {
                 let place = text.places.first().and_then(|(_, place)| place.clone());
                 let message = format!("[program] has {} and no {}", on.key(), off.key());
-                self.faults
-                    .push(Diagnostic::error("program-text", message).at(place));
+                self.faults.push(Diagnostic::error("program-text", message).at(place));
             }
         }
         if let Some(extension) = &file.extension {

@@ -11,10 +11,7 @@ use super::file::MachineFile;
 /// travel in order) is not in it: loading the file tells.
 pub fn schema() -> Value {
     let settings = SchemaSettings::draft07().for_deserialize();
-    let mut schema = settings
-        .into_generator()
-        .into_root_schema_for::<MachineFile>()
-        .to_value();
+    let mut schema = settings.into_generator().into_root_schema_for::<MachineFile>().to_value();
     tidy(&mut schema);
     schema["title"] = json!("Machine file of post");
     for (name, whose) in [
@@ -115,9 +112,7 @@ fn take_required(schema: &mut Value) -> Value {
 
 /// The definition that a property refers to.
 fn referred(property: &Value) -> Option<String> {
-    let reference = property
-        .get("$ref")
-        .or_else(|| property.pointer("/allOf/0/$ref"))?;
+    let reference = property.get("$ref").or_else(|| property.pointer("/allOf/0/$ref"))?;
     let name = reference.as_str()?.rsplit('/').next()?;
     Some(name.to_owned())
 }

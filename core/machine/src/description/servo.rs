@@ -79,17 +79,9 @@ impl Builder<'_> {
             }
         };
         let backlash = self.servo_number("backlash", &file.backlash, Allowed::From, 0.0);
-        let friction = file
-            .friction
-            .as_ref()
-            .map(|friction| self.friction(name, friction, &model));
-        let servo = Servo {
-            place: self.sources.place(spanned.span()),
-            rotary,
-            model,
-            friction,
-            backlash,
-        };
+        let friction = file.friction.as_ref().map(|friction| self.friction(name, friction, &model));
+        let servo =
+            Servo { place: self.sources.place(spanned.span()), rotary, model, friction, backlash };
         self.check_backlash(name, file, &servo);
         // Numbers that are refused already would only be refused again.
         if self.faults.len() == before {
@@ -208,11 +200,8 @@ impl Builder<'_> {
         span: Range<usize>,
         needed: &[(&str, bool)],
     ) -> bool {
-        let missing: Vec<&str> = needed
-            .iter()
-            .filter(|(_, said)| !said)
-            .map(|(key, _)| *key)
-            .collect();
+        let missing: Vec<&str> =
+            needed.iter().filter(|(_, said)| !said).map(|(key, _)| *key).collect();
         if !missing.is_empty() {
             let message = format!("{what} lacks {}", missing.join(", "));
             self.fault("machine-servo", span, message, "");
@@ -221,9 +210,7 @@ impl Builder<'_> {
     }
 
     pub(super) fn servo_option(&mut self, key: &str, quantity: &Option<Quantity>) -> Option<f64> {
-        quantity
-            .as_ref()
-            .map(|_| self.servo_number(key, quantity, Allowed::Above, 1.0))
+        quantity.as_ref().map(|_| self.servo_number(key, quantity, Allowed::Above, 1.0))
     }
 
     pub(super) fn servo_number(
@@ -240,10 +227,9 @@ impl Builder<'_> {
         let (refused, must) = match range {
             Allowed::Above => (value <= 0.0, "must be above zero"),
             Allowed::From => (value < 0.0, "cannot be below zero"),
-            Allowed::Share => (
-                !(0.0..=2.0).contains(&value) && !value.is_nan(),
-                "must be from 0 to 2",
-            ),
+            Allowed::Share => {
+                (!(0.0..=2.0).contains(&value) && !value.is_nan(), "must be from 0 to 2")
+            }
         };
         if refused {
             let message = format!("{key} is {}; it {must}", Short(value));

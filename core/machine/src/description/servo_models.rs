@@ -120,10 +120,7 @@ impl Builder<'_> {
         use Allowed::{Above, From};
         let file = spanned.get_ref();
         let what = format!("[servo.{name}.loops.screw]");
-        let needed = [
-            ("lead", file.lead.is_some()),
-            ("table_mass", file.table_mass.is_some()),
-        ];
+        let needed = [("lead", file.lead.is_some()), ("table_mass", file.table_mass.is_some())];
         if self.lacks(&what, spanned.span(), &needed) {
             return None;
         }
@@ -145,10 +142,8 @@ impl Builder<'_> {
         use Allowed::{Above, From};
         let file = spanned.get_ref();
         let what = format!("[servo.{name}.loops.gear]");
-        let needed = [
-            ("ratio", file.ratio.is_some()),
-            ("table_inertia", file.table_inertia.is_some()),
-        ];
+        let needed =
+            [("ratio", file.ratio.is_some()), ("table_inertia", file.table_inertia.is_some())];
         if self.lacks(&what, spanned.span(), &needed) {
             return None;
         }
@@ -182,10 +177,8 @@ impl Builder<'_> {
     ) -> Option<Transfer> {
         let file = spanned.get_ref();
         let what = format!("[servo.{name}.transfer]");
-        let needed = [
-            ("numerator", file.numerator.is_some()),
-            ("denominator", file.denominator.is_some()),
-        ];
+        let needed =
+            [("numerator", file.numerator.is_some()), ("denominator", file.denominator.is_some())];
         if self.lacks(&what, spanned.span(), &needed) {
             return None;
         }
@@ -218,10 +211,7 @@ impl Builder<'_> {
                 "such a servo would follow a change of velocity by an infinite jump",
             )
         } else {
-            return Some(Transfer {
-                numerator: above,
-                denominator: below,
-            });
+            return Some(Transfer { numerator: above, denominator: below });
         };
         self.fault("machine-servo", span, message, help);
         None

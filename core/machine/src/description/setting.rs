@@ -60,11 +60,9 @@ impl Setting {
             Self::Written(setting) => match setting.split_once('=') {
                 Some((name, value)) => written(name.trim(), value.trim()),
                 None => {
-                    return Err(
-                        Diagnostic::error("setting", format!("--set {setting}: no value"))
-                            .help("write --set NAME=VALUE")
-                            .boxed(),
-                    );
+                    return Err(Diagnostic::error("setting", format!("--set {setting}: no value"))
+                        .help("write --set NAME=VALUE")
+                        .boxed());
                 }
             },
             Self::Number { name, value } => written(name, &format!("{value:?}")),
@@ -89,9 +87,5 @@ fn written(name: &str, value: &str) -> String {
         format!("parameters.{name}")
     };
     let plain = format!("{key} = {value}");
-    if DeTable::parse(&plain).is_ok() {
-        plain
-    } else {
-        format!("{key} = {value:?}")
-    }
+    if DeTable::parse(&plain).is_ok() { plain } else { format!("{key} = {value:?}") }
 }

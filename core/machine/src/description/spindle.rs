@@ -17,11 +17,7 @@ pub struct SpindleSpeeds {
 
 impl Default for SpindleSpeeds {
     fn default() -> Self {
-        Self {
-            min: 0.0,
-            max: f64::INFINITY,
-            surface_speed: false,
-        }
+        Self { min: 0.0, max: f64::INFINITY, surface_speed: false }
     }
 }
 
@@ -33,10 +29,8 @@ impl SpindleSpeeds {
     pub fn refuse(&self, rpm: f64) -> Option<Diagnostic> {
         // S has no decimals.
         if !(0.5..MOST).contains(&rpm) {
-            let message = format!(
-                "a spindle at {} rpm: from 0.5 to {MOST} rpm are possible",
-                Short(rpm)
-            );
+            let message =
+                format!("a spindle at {} rpm: from 0.5 to {MOST} rpm are possible", Short(rpm));
             return Some(
                 Diagnostic::error("spindle-speed", message)
                     .help("another speed in the CAM system, in revolutions a minute"),
@@ -75,17 +69,14 @@ impl SpindleSpeeds {
             );
             return Err(finding.boxed());
         };
-        self.refuse(limit)
-            .map_or(Ok(limit), |finding| Err(finding.boxed()))
+        self.refuse(limit).map_or(Ok(limit), |finding| Err(finding.boxed()))
     }
 }
 
 impl Builder<'_> {
     pub(super) fn spindle(&mut self, file: &SpindleFile) -> SpindleSpeeds {
-        let mut speeds = SpindleSpeeds {
-            surface_speed: file.surface_speed,
-            ..SpindleSpeeds::default()
-        };
+        let mut speeds =
+            SpindleSpeeds { surface_speed: file.surface_speed, ..SpindleSpeeds::default() };
         for (key, quantity, speed) in [
             ("min_speed", &file.min_speed, &mut speeds.min),
             ("max_speed", &file.max_speed, &mut speeds.max),
@@ -94,12 +85,7 @@ impl Builder<'_> {
             *speed = self.number(quantity);
             if *speed < 0.0 || (key == "max_speed" && *speed == 0.0) {
                 let message = format!("{key} is {} rpm", Short(*speed));
-                self.fault(
-                    "machine-spindle",
-                    quantity.span(),
-                    message,
-                    "speeds are above zero",
-                );
+                self.fault("machine-spindle", quantity.span(), message, "speeds are above zero");
             }
         }
         if let (Some(max), true) = (&file.max_speed, speeds.min > speeds.max) {

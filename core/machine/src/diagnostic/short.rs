@@ -30,11 +30,7 @@ impl fmt::Display for Short {
 
 /// `1.500` is `1.5`, `2.000` is `2`.
 fn without_zeros(text: &str) -> &str {
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.')
-    } else {
-        text
-    }
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
 #[cfg(test)]

@@ -49,12 +49,7 @@ impl Default for Axes {
 impl Default for Traces {
     fn default() -> Self {
         const ZERO: [Vector3<f64>; LANES] = [Vector3::new(0.0, 0.0, 0.0); LANES];
-        Self {
-            tip: ZERO,
-            axis: ZERO,
-            tip_rates: [ZERO; MAX_AXES],
-            axes: [ZERO; MAX_AXES],
-        }
+        Self { tip: ZERO, axis: ZERO, tip_rates: [ZERO; MAX_AXES], axes: [ZERO; MAX_AXES] }
     }
 }
 

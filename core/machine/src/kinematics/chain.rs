@@ -50,10 +50,7 @@ impl Pose {
 /// The direction across `axis` that is nearest to `edge`.
 pub(super) fn square(edge: Vector3<f64>, axis: Vector3<f64>) -> Vector3<f64> {
     let across = |v: Vector3<f64>| (v - axis * axis.dot(&v)).try_normalize(1e-6);
-    across(edge)
-        .or_else(|| across(Vector3::x()))
-        .or_else(|| across(Vector3::y()))
-        .unwrap_or(edge)
+    across(edge).or_else(|| across(Vector3::x())).or_else(|| across(Vector3::y())).unwrap_or(edge)
 }
 
 /// Sine and cosine of every rotary joint, so that a set of angles is evaluated once.
@@ -144,13 +141,7 @@ impl Chain {
         axis: Vector3<f64>,
     ) -> Self {
         debug_assert!(joints.len() <= MAX_AXES);
-        Self {
-            joints,
-            mount,
-            tip,
-            axis: axis.normalize(),
-            edge: None,
-        }
+        Self { joints, mount, tip, axis: axis.normalize(), edge: None }
     }
 
     /// The chain with a tool that has a leading edge: a direction across the tool axis, all axes at zero,
@@ -193,10 +184,7 @@ impl Chain {
     /// Sines and cosines of the rotary values of `joints`.
     #[inline]
     pub fn turns(&self, joints: &Joints) -> Turns {
-        let mut turns = Turns {
-            sines: [0.0; MAX_AXES],
-            cosines: [1.0; MAX_AXES],
-        };
+        let mut turns = Turns { sines: [0.0; MAX_AXES], cosines: [1.0; MAX_AXES] };
         for (index, joint) in self.joints().iter().enumerate() {
             if joint.rotary {
                 (turns.sines[index], turns.cosines[index]) = libm::sincos(joints[index]);
@@ -236,13 +224,7 @@ impl Chain {
     /// [`Chain::forward`] from the joints and turns of `trace`; fills in the rest of it.
     #[inline]
     pub fn trace(&self, trace: &mut Trace) {
-        let Trace {
-            joints,
-            turns,
-            tip_rates,
-            axes,
-            pose,
-        } = trace;
+        let Trace { joints, turns, tip_rates, axes, pose } = trace;
         *pose = self.reach(joints, turns, |index, joint, arm, axis| {
             tip_rates[index] = joint.direction.cross(arm);
             axes[index] = *axis;
@@ -301,11 +283,7 @@ impl Chain {
                 tip += joint.direction * joints[index];
             }
         }
-        Pose {
-            tip: tip - self.mount,
-            axis,
-            edge: edge.unwrap_or_default(),
-        }
+        Pose { tip: tip - self.mount, axis, edge: edge.unwrap_or_default() }
     }
 }
 
@@ -351,10 +329,7 @@ mod tests {
         for step in 0..80 {
             // Up to whole turns apart, and so to both sides of where the sum of the ends says little.
             let first = [-3.0 + 0.07 * f64::from(step), 0.4];
-            let last = [
-                first[0] + 0.1 * f64::from(step),
-                0.4 - 0.06 * f64::from(step),
-            ];
+            let last = [first[0] + 0.1 * f64::from(step), 0.4 - 0.06 * f64::from(step)];
             let middle = chain.halfway(&at(first), &at(last));
             let wanted = at([0, 1].map(|place| (first[place] + last[place]) / 2.0)).pose;
             assert!((middle.tip - wanted.tip).norm() < 1e-11, "step {step}");

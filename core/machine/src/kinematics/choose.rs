@@ -59,11 +59,7 @@ impl Turning {
             (Err(_), Ok(_)) => true,
             (Ok(a), Ok(b)) => {
                 let tie = (other_cost - cost).abs() < 1e-9;
-                if tie {
-                    b[joint] > a[joint]
-                } else {
-                    other_cost < cost
-                }
+                if tie { b[joint] > a[joint] } else { other_cost < cost }
             }
         };
         if better { second } else { first }
@@ -124,20 +120,8 @@ impl Turning {
     ) -> (Choice, f64) {
         let set = solver.angles(branches, index);
         match near(set, last, &self.limits, &self.cyclic) {
-            Ok((joints, cost)) => (
-                Choice {
-                    index,
-                    joints: Ok(joints),
-                },
-                cost,
-            ),
-            Err(over) => (
-                Choice {
-                    index,
-                    joints: Err(over),
-                },
-                f64::INFINITY,
-            ),
+            Ok((joints, cost)) => (Choice { index, joints: Ok(joints) }, cost),
+            Err(over) => (Choice { index, joints: Err(over) }, f64::INFINITY),
         }
     }
 }

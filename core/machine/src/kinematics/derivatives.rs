@@ -130,12 +130,7 @@ impl Turning {
                 cosine[order] -= share * sine[order - lower];
             }
         }
-        Self {
-            k,
-            sine,
-            cosine,
-            stands: angle[1..] == [0.0; ORDERS - 1],
-        }
+        Self { k, sine, cosine, stands: angle[1..] == [0.0; ORDERS - 1] }
     }
 
     pub(super) fn once(&self, vector: Vector3<f64>) -> Vector3<f64> {

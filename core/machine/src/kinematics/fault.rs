@@ -73,11 +73,7 @@ impl NoClosedForm {
                 ),
                 "share = 0.5 or reserve = true moves a quill along with the axis beside it, indexed = 0 holds an axis during cuts",
             ),
-            Self::FewAxes {
-                linear,
-                rotary,
-                quills,
-            } => (
+            Self::FewAxes { linear, rotary, quills } => (
                 format!(
                     "{linear} linear and {rotary} rotary axes move by themselves{}: they cannot place the tip",
                     match quills {
@@ -115,9 +111,7 @@ impl NoClosedForm {
                 ),
                 "indexed = 0 holds an axis at an angle during cuts; three axes follow a tool that has an [tool] edge",
             ),
-            Self::Parallel {
-                joints: [first, second],
-            } => (
+            Self::Parallel { joints: [first, second] } => (
                 format!(
                     "{} and {} turn about parallel axes: they cannot point the tool",
                     name(*first),

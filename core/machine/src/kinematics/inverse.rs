@@ -64,10 +64,7 @@ enum Form {
         linear: Linear,
     },
     /// All joints that move, and the linear ones among them.
-    Numeric {
-        free: Vec<usize>,
-        linear: Vec<usize>,
-    },
+    Numeric { free: Vec<usize>, linear: Vec<usize> },
 }
 
 impl Solver {
@@ -76,11 +73,7 @@ impl Solver {
     /// # Errors
     /// What the chain lacks.
     pub fn new(chain: Chain, free: &[usize], held: Joints) -> Result<Self, NoClosedForm> {
-        let freedom = Freedom {
-            rotary: free.to_vec(),
-            held,
-            ..Freedom::default()
-        };
+        let freedom = Freedom { rotary: free.to_vec(), held, ..Freedom::default() };
         Self::with(chain, &freedom)
     }
 
@@ -93,25 +86,13 @@ impl Solver {
         let form = match Linear::new(&chain, &freedom.still, &freedom.seconds) {
             Ok(linear) => {
                 let (orientation, idle) = Orientation::new(&chain, &freedom.rotary, &held)?;
-                Form::Closed {
-                    orientation,
-                    idle,
-                    linear,
-                }
+                Form::Closed { orientation, idle, linear }
             }
             // Rotary axes have to place the tip as well.
-            Err(NoClosedForm::FewAxes {
-                linear: count,
-                quills,
-                ..
-            }) => {
+            Err(NoClosedForm::FewAxes { linear: count, quills, .. }) => {
                 let rotary = freedom.rotary.len();
                 if quills || count + rotary < 3 {
-                    return Err(NoClosedForm::FewAxes {
-                        linear: count,
-                        rotary,
-                        quills,
-                    });
+                    return Err(NoClosedForm::FewAxes { linear: count, rotary, quills });
                 }
                 let free: Vec<usize> = (0..chain.joints().len())
                     .filter(|joint| {
@@ -133,10 +114,7 @@ impl Solver {
                     return Err(NoClosedForm::FlatTip { ways });
                 }
                 let slides = |joint: &usize| !chain.joints()[*joint].rotary;
-                Form::Numeric {
-                    linear: free.iter().copied().filter(slides).collect(),
-                    free,
-                }
+                Form::Numeric { linear: free.iter().copied().filter(slides).collect(), free }
             }
             Err(lack) => return Err(lack),
         };
@@ -162,9 +140,7 @@ impl Solver {
     pub fn orient(&self, pose: &Pose, tolerance: f64) -> Result<Branches, Unreachable> {
         match &self.form {
             Form::Closed { orientation, .. } => orientation.orient(pose, tolerance),
-            Form::Numeric { .. } => Err(Unreachable::Numeric {
-                miss: f64::INFINITY,
-            }),
+            Form::Numeric { .. } => Err(Unreachable::Numeric { miss: f64::INFINITY }),
         }
     }
 
@@ -180,14 +156,8 @@ impl Solver {
     /// The rotary angles of a branch.
     #[inline]
     pub fn angles(&self, branches: &Branches, index: usize) -> RotarySet {
-        let mut set = RotarySet {
-            joints: self.held,
-            ..RotarySet::default()
-        };
-        if let Form::Closed {
-            orientation, idle, ..
-        } = &self.form
-        {
+        let mut set = RotarySet { joints: self.held, ..RotarySet::default() };
+        if let Form::Closed { orientation, idle, .. } = &self.form {
             set.free = *idle;
             orientation.angles(branches, index, &mut set);
         }
@@ -386,8 +356,7 @@ impl Solver {
             return Vec::new();
         };
         let free = free.iter().copied();
-        free.filter(|joint| self.chain.joints()[*joint].rotary)
-            .collect()
+        free.filter(|joint| self.chain.joints()[*joint].rotary).collect()
     }
 
     /// For a chain without a closed form: all solutions that searches from `starts` find, in no more steps than `left`,
@@ -419,8 +388,7 @@ impl Solver {
                         joints[*joint] = libm::remainder(joints[*joint], std::f64::consts::TAU);
                     }
                     let same = |known: &Joints| {
-                        free.iter()
-                            .all(|joint| libm::fabs(known[*joint] - joints[*joint]) < SAME)
+                        free.iter().all(|joint| libm::fabs(known[*joint] - joints[*joint]) < SAME)
                     };
                     if !found.iter().any(same) {
                         found.push(joints);
@@ -466,11 +434,7 @@ impl Solver {
                 fault = unreachable;
                 continue;
             }
-            let allowed = if set.free != *idle {
-                2.0 * POLE
-            } else {
-                VERIFIED
-            };
+            let allowed = if set.free != *idle { 2.0 * POLE } else { VERIFIED };
             if self.verified(&joints, pose, allowed.max(tolerance)) {
                 solutions.push(joints);
             }

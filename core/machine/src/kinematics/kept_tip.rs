@@ -183,11 +183,7 @@ impl<'a> KeptTip<'a> {
         let minutes: [f64; 3] = std::array::from_fn(|row| {
             let speed = a.slope[row].abs().max(b.slope[row].abs()) + faster;
             // An axis without a largest feed needs no time, however little is known of its speed.
-            if slowness[joints[row]] > 0.0 {
-                speed * slowness[joints[row]]
-            } else {
-                0.0
-            }
+            if slowness[joints[row]] > 0.0 { speed * slowness[joints[row]] } else { 0.0 }
         });
         let allowed = (CLOSE * slides.certain).max(slides.enough);
         let clear = beyond <= STRAY && minutes.iter().all(|minutes| *minutes <= allowed);
@@ -296,11 +292,7 @@ impl<'a> KeptTip<'a> {
         let pass = |[d1, d2, d3]: [f64; 3], index: usize| {
             let w = self.steps[index].abs();
             let r = a.radii[index].max(b.radii[index]) + d2 * square / 8.0;
-            [
-                w * r + d1,
-                w * (w * r + 2.0 * d1) + d2,
-                w * (w * (w * r + 3.0 * d1) + 3.0 * d2) + d3,
-            ]
+            [w * r + d1, w * (w * r + 2.0 * d1) + d2, w * (w * (w * r + 3.0 * d1) + 3.0 * d2) + d3]
         };
         let [from, to] = self.tips;
         let front = (0..self.linear.first).fold([(to - from).norm(), 0.0, 0.0], pass);

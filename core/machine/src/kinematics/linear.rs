@@ -64,9 +64,8 @@ impl Linear {
         held: &[usize],
         seconds: &[(usize, Second, [f64; 2])],
     ) -> Result<Self, NoClosedForm> {
-        let all: Vec<usize> = (0..chain.joints().len())
-            .filter(|index| !chain.joints()[*index].rotary)
-            .collect();
+        let all: Vec<usize> =
+            (0..chain.joints().len()).filter(|index| !chain.joints()[*index].rotary).collect();
         let places: Vec<usize> = all
             .iter()
             .copied()
@@ -85,19 +84,13 @@ impl Linear {
             }
         };
         let columns = joints.map(|index| chain.joints()[index].direction);
-        let between = chain.joints()[joints[0]..joints[2]]
-            .iter()
-            .any(|joint| joint.rotary);
+        let between = chain.joints()[joints[0]..joints[2]].iter().any(|joint| joint.rotary);
         let matrix = Matrix3::from_columns(&columns);
         if !between && libm::fabs(matrix.determinant()) < FLAT {
             return Err(NoClosedForm::FlatLinearAxes);
         }
         let more = all.len() > 3;
-        let inverse = if between || more {
-            None
-        } else {
-            matrix.try_inverse()
-        };
+        let inverse = if between || more { None } else { matrix.try_inverse() };
         let seconds = seconds
             .iter()
             .filter_map(|(joint, second, travel)| {
@@ -186,10 +179,7 @@ impl Linear {
                 let at_end = || quill.travel.contains(&joints[joint]);
                 let share = quill.share.unwrap_or_else(|| f64::from(u8::from(at_end())));
                 way[0].share -= share;
-                way[1] = Share {
-                    joint: quill.joint,
-                    share,
-                };
+                way[1] = Share { joint: quill.joint, share };
             }
             way
         })

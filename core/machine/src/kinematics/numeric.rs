@@ -94,9 +94,7 @@ pub(super) fn ways(chain: &Chain, free: &[usize], joints: &Joints) -> Ways {
         let column = |place: usize| {
             let mut column = Rows::zeros();
             let part = jacobian.column(place);
-            column
-                .rows_mut(from, rows)
-                .copy_from(&part.rows(from, rows));
+            column.rows_mut(from, rows).copy_from(&part.rows(from, rows));
             column
         };
         rank((0..free.len()).map(column).collect())
@@ -162,10 +160,7 @@ pub(super) fn approach(chain: &Chain, linear: &[usize], tip: Vector3<f64>, joint
                 return;
             }
             let (aw, bw) = (a.dot(&way), b.dot(&way));
-            vec![
-                (bb * aw - ab * bw) / determinant,
-                (aa * bw - ab * aw) / determinant,
-            ]
+            vec![(bb * aw - ab * bw) / determinant, (aa * bw - ab * aw) / determinant]
         }
         _ => return,
     };
@@ -209,9 +204,7 @@ fn linearised(
     let reached = Pose {
         tip: origin + out(&frame, chain.tip()),
         axis: out(&frame, chain.axis()),
-        edge: chain
-            .edge()
-            .map_or_else(Vector3::zeros, |edge| out(&frame, edge)),
+        edge: chain.edge().map_or_else(Vector3::zeros, |edge| out(&frame, edge)),
     };
     let edged = chain.edge().is_some();
     let mut residual = Rows::zeros();

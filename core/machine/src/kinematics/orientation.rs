@@ -65,12 +65,7 @@ pub(super) enum Orientation {
     /// No free rotary axis: the tool axis is constant.
     Fixed { axis: Vector3<f64> },
     /// One free rotary axis.
-    One {
-        joint: usize,
-        before: Option<Matrix3<f64>>,
-        k: Vector3<f64>,
-        a: Vector3<f64>,
-    },
+    One { joint: usize, before: Option<Matrix3<f64>>, k: Vector3<f64>, a: Vector3<f64> },
     /// Two, or the first two of three.
     Two(Box<Two>),
 }
@@ -176,12 +171,7 @@ impl Orientation {
             (turns != Matrix3::identity()).then(|| turns.transpose())
         };
         match *free {
-            [] => Ok((
-                Self::Fixed {
-                    axis: hold(0..count) * chain.axis(),
-                },
-                0,
-            )),
+            [] => Ok((Self::Fixed { axis: hold(0..count) * chain.axis() }, 0)),
             [joint] => Ok((
                 Self::One {
                     joint,
@@ -198,12 +188,7 @@ impl Orientation {
                 let a = between * hold(second + 1..count) * chain.axis();
                 let apart = k1.cross(&k2).norm_squared() >= 1e-6;
                 if apart && k2.cross(&a).norm() < POLE {
-                    let one = Self::One {
-                        joint: first,
-                        before: in_front(first),
-                        k: k1,
-                        a,
-                    };
+                    let one = Self::One { joint: first, before: in_front(first), k: k1, a };
                     return Ok((one, 1 << second));
                 }
                 let mut two = Two::new([first, second], in_front(first), k1, k2, a)?;
@@ -229,17 +214,11 @@ impl Orientation {
                     frame: frame(axis, edge).transpose(),
                     edge,
                     k: k3,
-                    p: if k3.dot(&axis).abs() < k3.dot(&edge).abs() {
-                        axis
-                    } else {
-                        edge
-                    },
+                    p: if k3.dot(&axis).abs() < k3.dot(&edge).abs() { axis } else { edge },
                 });
                 Ok((Self::Two(Box::new(two)), 0))
             }
-            _ => Err(NoClosedForm::RotaryAxes {
-                joints: free.to_vec(),
-            }),
+            _ => Err(NoClosedForm::RotaryAxes { joints: free.to_vec() }),
         }
     }
 
@@ -247,11 +226,7 @@ impl Orientation {
     #[inline]
     pub(super) fn orient(&self, pose: &Pose, tolerance: f64) -> Result<Branches, Unreachable> {
         let within = |miss: f64| {
-            if miss > tolerance {
-                Err(Unreachable::Axis { miss })
-            } else {
-                Ok(())
-            }
+            if miss > tolerance { Err(Unreachable::Axis { miss }) } else { Ok(()) }
         };
         match self {
             Self::Fixed { axis } => {
@@ -261,16 +236,8 @@ impl Orientation {
             Self::One { before, k, a, .. } => {
                 let u = before.map_or(pose.axis, |before| before * pose.axis);
                 let pole = k.cross(a).norm() < POLE || k.cross(&u).norm() < POLE;
-                within(if pole {
-                    angle(*a, u)
-                } else {
-                    (angle(*k, u) - angle(*k, *a)).abs()
-                })?;
-                Ok(Branches {
-                    u,
-                    pole,
-                    ..Branches::ONE
-                })
+                within(if pole { angle(*a, u) } else { (angle(*k, u) - angle(*k, *a)).abs() })?;
+                Ok(Branches { u, pole, ..Branches::ONE })
             }
             Self::Two(two) => two.orient(pose, tolerance),
         }
@@ -480,10 +447,7 @@ impl Two {
     fn band(&self) -> [f64; 2] {
         let (tilt, cone) = (angle(self.k1, self.k2), angle(self.k2, self.a));
         let sum = tilt + cone;
-        [
-            libm::fabs(tilt - cone),
-            sum.min(2.0 * std::f64::consts::PI - sum),
-        ]
+        [libm::fabs(tilt - cone), sum.min(2.0 * std::f64::consts::PI - sum)]
     }
 
     /// By how much the nearest orientation misses `u`, and at which angle from k1 it lies: k2 keeps a on a cone

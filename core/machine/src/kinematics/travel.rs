@@ -37,11 +37,7 @@ pub fn over(
 ) -> Result<(), OverTravel> {
     match passed(travel, value, slack) {
         None => Ok(()),
-        Some(limit) => Err(OverTravel {
-            joint,
-            value,
-            limit,
-        }),
+        Some(limit) => Err(OverTravel { joint, value, limit }),
     }
 }
 

@@ -26,22 +26,17 @@ pub fn direction(along: &[Vector3<f64>; ORDERS]) -> Option<[Vector3<f64>; ORDERS
     }
     let vector: Series = std::array::from_fn(|order| along[order] / (length * FACTORIALS[order]));
     let product = |a: &Series, order: usize| -> f64 {
-        (0..=order)
-            .map(|lower| a[lower].dot(&vector[order - lower]))
-            .sum()
+        (0..=order).map(|lower| a[lower].dot(&vector[order - lower])).sum()
     };
     // Of |v|² = v·v, then of u |v| = v.
     let mut size = [1.0, 0.0, 0.0, 0.0];
     let mut unit: Series = Default::default();
     unit[0] = vector[0];
     for order in 1..ORDERS {
-        let known: f64 = (1..order)
-            .map(|lower| size[lower] * size[order - lower])
-            .sum();
+        let known: f64 = (1..order).map(|lower| size[lower] * size[order - lower]).sum();
         size[order] = (product(&vector, order) - known) / 2.0;
-        unit[order] = (0..order).fold(vector[order], |rest, lower| {
-            rest - unit[lower] * size[order - lower]
-        });
+        unit[order] =
+            (0..order).fold(vector[order], |rest, lower| rest - unit[lower] * size[order - lower]);
     }
     Some(std::array::from_fn(|order| unit[order] * FACTORIALS[order]))
 }
@@ -57,10 +52,7 @@ pub(super) fn follow(
     axis: &[Vector3<f64>; ORDERS],
     course: &mut Course,
 ) -> Result<(), Unreachable> {
-    let base: f64 = axis[1..]
-        .iter()
-        .map(|vector| vector.norm())
-        .fold(1.0, f64::max);
+    let base: f64 = axis[1..].iter().map(|vector| vector.norm()).fold(1.0, f64::max);
     for order in 1..ORDERS {
         for joint in rotary {
             course.joints[order][*joint] = 0.0;
@@ -80,10 +72,7 @@ pub(super) fn follow(
                 let side = Vector2::new(one.dot(&wanted), other.dot(&wanted));
                 let inverse = normal.try_inverse();
                 let inverse = inverse.filter(|_| normal.determinant() > POLE * POLE);
-                (inverse.ok_or(Unreachable::Axis {
-                    miss: wanted.norm(),
-                })? * side)
-                    .into()
+                (inverse.ok_or(Unreachable::Axis { miss: wanted.norm() })? * side).into()
             }
         };
         let mut left = wanted;

@@ -48,9 +48,8 @@ pub fn spread(
     let Some(first) = ends.first() else {
         return Vec::new();
     };
-    let (least, most) = ends.iter().fold((*first, *first), |(least, most), end| {
-        (least.inf(end), most.sup(end))
-    });
+    let (least, most) =
+        ends.iter().fold((*first, *first), |(least, most), end| (least.inf(end), most.sup(end)));
     let middle = most_room(bodies, about).map(|tight| tight.point);
     let tries = u32::try_from(count * 16).unwrap_or(u32::MAX);
     let inside = (1..=tries).map(|number| {
@@ -82,9 +81,8 @@ pub fn descend(
     let (mut best, mut least) = (start, cost);
     for step in steps {
         // The way that helped last is tried again first.
-        let mut ways: Vec<(usize, f64)> = (0..3)
-            .flat_map(|axis| [(axis, 1.0), (axis, -1.0)])
-            .collect();
+        let mut ways: Vec<(usize, f64)> =
+            (0..3).flat_map(|axis| [(axis, 1.0), (axis, -1.0)]).collect();
         let mut tried = 0;
         while tried < ways.len() {
             let (axis, sign) = ways[tried];

@@ -81,9 +81,8 @@ pub fn shuffled<T>(mut list: Vec<T>) -> Vec<T> {
     // A linear congruential generator with Knuth's multiplier.
     let mut state: u64 = 1;
     for last in (1..list.len()).rev() {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         list.swap(last, ((state >> 33) % (last as u64 + 1)) as usize);
     }
     list
@@ -112,16 +111,11 @@ pub fn most_room(bodies: &[HalfSpace], wished: &Vector3<f64>) -> Option<Tight> {
             None => most = middle,
         }
     }
-    let mut between: Vec<usize> = (0..bodies.len())
-        .filter(|body| bodies[*body].room(&point) < least + 1e-3)
-        .collect();
+    let mut between: Vec<usize> =
+        (0..bodies.len()).filter(|body| bodies[*body].room(&point) < least + 1e-3).collect();
     between.sort_by(|a, b| {
         let rooms = [*a, *b].map(|body| bodies[body].room(&point));
         rooms[0].total_cmp(&rooms[1])
     });
-    Some(Tight {
-        point,
-        room: least,
-        between,
-    })
+    Some(Tight { point, room: least, between })
 }

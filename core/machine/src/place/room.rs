@@ -74,11 +74,7 @@ impl Room {
             .collect();
         Ok(Self {
             mount: machine.mount,
-            slides: if solver.closed_form() {
-                slides
-            } else {
-                Vec::new()
-            },
+            slides: if solver.closed_form() { slides } else { Vec::new() },
             solver,
             rates: None,
             found: BTreeMap::new(),
@@ -98,11 +94,7 @@ impl Room {
         if slides.any(|(joint, _)| libm::fabs(joints[*joint]) > OPEN / 2.0) {
             return;
         }
-        if self
-            .rates
-            .as_ref()
-            .is_none_or(|(at, _)| self.turned(at, joints))
-        {
+        if self.rates.as_ref().is_none_or(|(at, _)| self.turned(at, joints)) {
             let turns = self.solver.chain().turns(joints);
             let Some(rates) = self.rates_at(joints, &turns) else {
                 return;
@@ -118,17 +110,11 @@ impl Room {
                 let normal = rate * sign;
                 let room = end - value * sign;
                 let bound = Bound {
-                    body: HalfSpace {
-                        normal,
-                        most: room + normal.dot(&self.mount),
-                    },
+                    body: HalfSpace { normal, most: room + normal.dot(&self.mount) },
                     room,
                     line,
                 };
-                let side = Side {
-                    joint: *joint,
-                    largest,
-                };
+                let side = Side { joint: *joint, largest };
                 let cell = [normal.x, normal.y, normal.z];
                 let cell = cell.map(|part| libm::rint(part * CELLS) as i32);
                 match self.found.entry((side, cell)) {
@@ -230,11 +216,7 @@ impl Room {
 fn with_reserve(machine: &Machine, joint: usize, [least, most]: [f64; 2]) -> [f64; 2] {
     let mut reserves = machine.axes.iter().filter(|axis| {
         axis.second == Some(Second::Reserve { of: joint })
-            && axis
-                .joint
-                .direction
-                .dot(&machine.axes[joint].joint.direction)
-                > 1.0 - 1e-9
+            && axis.joint.direction.dot(&machine.axes[joint].joint.direction) > 1.0 - 1e-9
     });
     match reserves.next().and_then(|axis| axis.travel) {
         Some([first, last]) => [least + first.min(0.0), most + last.max(0.0)],

@@ -25,9 +25,7 @@ const MOST_FACT: usize = 200;
 
 /// Letters that end a remark, begin one, or mean something else in a line of a program: in a text of the CL file they
 /// are printed as blanks, so that the name of an operation cannot become a line of the program.
-const MEANT: &[char] = &[
-    '(', ')', '[', ']', '{', '}', ';', '"', '%', '#', '=', '~', '*', '/',
-];
+const MEANT: &[char] = &['(', ')', '[', ']', '{', '}', ';', '"', '%', '#', '=', '~', '*', '/'];
 
 /// A template that was read and checked.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,9 +60,7 @@ impl TextTemplate {
         check_tags(source)?;
         ENVIRONMENT
             .template_from_str(source)
-            .map(|_| Self {
-                source: source.into(),
-            })
+            .map(|_| Self { source: source.into() })
             .map_err(|error| fault(&error))
     }
 
@@ -74,9 +70,8 @@ impl TextTemplate {
     /// A fact that is not known, work or text without end, a letter that no line of a program holds.
     pub fn lines(&self, facts: &Facts) -> Result<Vec<String>, TemplateFault> {
         let mut text = Bounded(Vec::new());
-        let template = ENVIRONMENT
-            .template_from_str(&self.source)
-            .map_err(|error| fault(&error))?;
+        let template =
+            ENVIRONMENT.template_from_str(&self.source).map_err(|error| fault(&error))?;
         let facts = Value::from(Serde(facts));
         let filled = template.render_captured_to(facts, &mut text);
         if let Err(error) = filled {
@@ -90,14 +85,10 @@ impl TextTemplate {
         }
         let text = String::from_utf8_lossy(&text.0);
         let lines = text.split('\n').map(str::trim_end);
-        let lines: Vec<String> = lines
-            .filter(|line| !line.trim().is_empty())
-            .map(str::to_owned)
-            .collect();
-        if let Some(odd) = lines
-            .iter()
-            .flat_map(|line| line.chars())
-            .find(|letter| is_unprintable(*letter))
+        let lines: Vec<String> =
+            lines.filter(|line| !line.trim().is_empty()).map(str::to_owned).collect();
+        if let Some(odd) =
+            lines.iter().flat_map(|line| line.chars()).find(|letter| is_unprintable(*letter))
         {
             return Err(TemplateFault {
                 message: format!(
@@ -137,16 +128,12 @@ static ENVIRONMENT: LazyLock<Environment<'static>> = LazyLock::new(|| {
         ValueKind::String => {
             let text = value.as_str().unwrap_or_default();
             let text = post_grammar::text::excerpt(text, MOST_FACT);
-            let plain: String = text
-                .chars()
-                .map(|letter| {
-                    if MEANT.contains(&letter) || is_unprintable(letter) {
-                        ' '
-                    } else {
-                        letter
-                    }
-                })
-                .collect();
+            let plain: String =
+                text.chars()
+                    .map(|letter| {
+                        if MEANT.contains(&letter) || is_unprintable(letter) { ' ' } else { letter }
+                    })
+                    .collect();
             write!(out, "{plain}").map_err(Error::from)
         }
         ValueKind::None | ValueKind::Undefined => Err(Error::new(
@@ -176,28 +163,16 @@ fn fixed(value: f64, decimals: u8) -> Result<String, Error> {
     }
     let text = format!("{value:.*}", usize::from(decimals));
     let zero = text.bytes().all(|byte| matches!(byte, b'-' | b'0' | b'.'));
-    Ok(if zero {
-        text.trim_start_matches('-').to_owned()
-    } else {
-        text
-    })
+    Ok(if zero { text.trim_start_matches('-').to_owned() } else { text })
 }
 
 /// Seconds as hours, minutes and seconds: `1:02:03`.
 fn clock(seconds: f64) -> Result<String, Error> {
     if !(0.0..1e9).contains(&seconds) {
-        return Err(Error::new(
-            ErrorKind::InvalidOperation,
-            "clock takes seconds",
-        ));
+        return Err(Error::new(ErrorKind::InvalidOperation, "clock takes seconds"));
     }
     let seconds = libm::rint(seconds) as u64;
-    Ok(format!(
-        "{}:{:02}:{:02}",
-        seconds / 3600,
-        seconds / 60 % 60,
-        seconds % 60
-    ))
+    Ok(format!("{}:{:02}:{:02}", seconds / 3600, seconds / 60 % 60, seconds % 60))
 }
 
 /// An error of the engine in a sentence.
@@ -209,10 +184,7 @@ fn fault(error: &Error) -> TemplateFault {
         (kind, None) => kind.to_string(),
         (kind, Some(detail)) => format!("{kind}: {detail}"),
     };
-    TemplateFault {
-        message,
-        span: error.range(),
-    }
+    TemplateFault { message, span: error.range() }
 }
 
 /// What stands in a tag.
@@ -225,9 +197,7 @@ fn check_tags(source: &str) -> Result<(), TemplateFault> {
     while let Some(start) = source[at..].find('{').map(|found| at + found) {
         let inside = start + 2;
         let end = match source.as_bytes().get(start + 1) {
-            Some(b'#') => source[inside..]
-                .find("#}")
-                .map_or(source.len(), |end| inside + end),
+            Some(b'#') => source[inside..].find("#}").map_or(source.len(), |end| inside + end),
             Some(b'{') => check_tag(source, inside, "}}")?,
             Some(b'%') => {
                 let end = check_tag(source, inside, "%}")?;
@@ -274,23 +244,12 @@ fn check_tag(source: &str, from: usize, close: &str) -> Result<usize, TemplateFa
 fn check_statement(source: &str, tag: Range<usize>) -> Result<(), TemplateFault> {
     let text = source[tag.clone()].trim_matches(['-', '+']).trim();
     let word = text.split_whitespace().next().unwrap_or_default();
-    let fault = |message: String| {
-        Err(TemplateFault {
-            message,
-            span: Some(tag.clone()),
-        })
-    };
+    let fault = |message: String| Err(TemplateFault { message, span: Some(tag.clone()) });
     if !STATEMENTS.contains(&word) {
-        return fault(format!(
-            "there is no `{word}` here; there are {}",
-            STATEMENTS.join(", ")
-        ));
+        return fault(format!("there is no `{word}` here; there are {}", STATEMENTS.join(", ")));
     }
-    let name = |piece: &str| {
-        piece
-            .chars()
-            .all(|letter| letter.is_alphanumeric() || "_.".contains(letter))
-    };
+    let name =
+        |piece: &str| piece.chars().all(|letter| letter.is_alphanumeric() || "_.".contains(letter));
     let pieces: Vec<&str> = text.split_whitespace().collect();
     match pieces.as_slice() {
         ["for", one, "in", list] if name(one) && name(list) => Ok(()),
@@ -330,10 +289,7 @@ mod tests {
                 ..ProgramFacts::default()
             },
             tool: Some(tool(7)),
-            operation: Some(OperationFacts {
-                name: "A) M30 (\u{2028}B".to_owned(),
-                number: 2,
-            }),
+            operation: Some(OperationFacts { name: "A) M30 (\u{2028}B".to_owned(), number: 2 }),
             ..Facts::default()
         }
     }
@@ -352,10 +308,7 @@ mod tests {
                 "{% for tool in program.tools %}\n(T{{ tool.number }} D{{ tool.diameter|fixed(3) }})\n{% endfor %}",
                 &["(T1 D12.500)", "(T7 D12.500)"],
             ),
-            (
-                "{% if tool.length is none %}G4\n{% else %}Z{{ tool.length }}\n{% endif %}",
-                &["G4"],
-            ),
+            ("{% if tool.length is none %}G4\n{% else %}Z{{ tool.length }}\n{% endif %}", &["G4"]),
             ("H{{ tool.number + 20 }}", &["H27"]),
             ("({{ program.time|clock }})", &["(1:02:03)"]),
             ("{{ -0.0001|fixed(2) }}", &["0.00"]),
@@ -405,11 +358,7 @@ mod tests {
             many.as_str(),
             &"x".repeat(MOST_TEXT + 1),
         ] {
-            assert!(
-                filled(source).is_err(),
-                "{}",
-                &source[..source.len().min(60)]
-            );
+            assert!(filled(source).is_err(), "{}", &source[..source.len().min(60)]);
         }
         // The place is that of the fault.
         let fault = TextTemplate::parse("G0\n{{ tool.number }}{% set x = 1 %}").unwrap_err();

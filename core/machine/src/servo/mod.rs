@@ -266,20 +266,16 @@ impl Drive {
                     damping: table_damping,
                 }
             }
-            Self::Gear {
-                ratio,
-                gear_stiffness,
-                gear_damping,
-                table_inertia,
-                table_damping,
-            } => Mechanics {
-                travel: 1.0 / ratio,
-                shaft_damping: 0.0,
-                stiffness: gear_stiffness,
-                stiffness_damping: gear_damping,
-                mass: table_inertia,
-                damping: table_damping,
-            },
+            Self::Gear { ratio, gear_stiffness, gear_damping, table_inertia, table_damping } => {
+                Mechanics {
+                    travel: 1.0 / ratio,
+                    shaft_damping: 0.0,
+                    stiffness: gear_stiffness,
+                    stiffness_damping: gear_damping,
+                    mass: table_inertia,
+                    damping: table_damping,
+                }
+            }
             Self::Direct { load, load_damping } => Mechanics {
                 travel: 1.0,
                 shaft_damping: 0.0,

@@ -24,14 +24,8 @@ impl Servo {
             ServoModel::Loops(loops) => {
                 let numbers = vec![
                     ("kv", Some(&mut loops.kv)),
-                    (
-                        "velocity_feed_forward",
-                        Some(&mut loops.velocity_feed_forward),
-                    ),
-                    (
-                        "acceleration_feed_forward",
-                        Some(&mut loops.acceleration_feed_forward),
-                    ),
+                    ("velocity_feed_forward", Some(&mut loops.velocity_feed_forward)),
+                    ("acceleration_feed_forward", Some(&mut loops.acceleration_feed_forward)),
                     ("velocity_gain", Some(&mut loops.velocity_gain)),
                     ("velocity_time", loops.velocity_time.as_mut()),
                     ("motor_inertia", Some(&mut loops.motor_inertia)),
@@ -79,8 +73,7 @@ impl Servo {
     /// The number of that key.
     pub fn parameter(&mut self, name: &str) -> Option<&mut f64> {
         let mut all = self.parameters().into_iter();
-        all.find(|parameter| parameter.name == name)
-            .map(|parameter| parameter.value)
+        all.find(|parameter| parameter.name == name).map(|parameter| parameter.value)
     }
 }
 
@@ -113,13 +106,7 @@ fn of_drive(drive: &mut Drive) -> (&'static str, Named<'_>) {
                 ("table_damping", Some(table_damping)),
             ],
         ),
-        Drive::Gear {
-            ratio,
-            gear_stiffness,
-            gear_damping,
-            table_inertia,
-            table_damping,
-        } => (
+        Drive::Gear { ratio, gear_stiffness, gear_damping, table_inertia, table_damping } => (
             "loops.gear",
             vec![
                 ("ratio", Some(ratio)),

@@ -52,10 +52,7 @@ impl StateSpace {
         let mut poles: Vec<Pole> = schur
             .complex_eigenvalues()
             .iter()
-            .map(|value| Pole {
-                real: value.re,
-                imaginary: value.im,
-            })
+            .map(|value| Pole { real: value.re, imaginary: value.im })
             .collect();
         poles.sort_by(|one, other| {
             (other.real.total_cmp(&one.real)).then(other.imaginary.total_cmp(&one.imaginary))

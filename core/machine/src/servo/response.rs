@@ -33,11 +33,7 @@ impl Response {
             ServoModel::Loops(loops) => loops.drive.mechanics().natural_frequency(),
             ServoModel::Transfer(_) | ServoModel::Pid(_) => None,
         };
-        Self {
-            space,
-            poles,
-            swing,
-        }
+        Self { space, poles, swing }
     }
 
     /// Those of the axes of `machine`, by their places in the chain; none for an axis without a servo, which is where it
@@ -58,11 +54,7 @@ impl Response {
         let order = space.order();
         let s = Complex::new(0.0, omega);
         let matrix = DMatrix::from_fn(order, order, |row, column| {
-            let own = if row == column {
-                s
-            } else {
-                Complex::new(0.0, 0.0)
-            };
+            let own = if row == column { s } else { Complex::new(0.0, 0.0) };
             own - space.a[(row, column)]
         });
         let input = DVector::from_fn(order, |row, _| {

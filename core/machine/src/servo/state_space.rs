@@ -64,10 +64,7 @@ struct Signal {
 
 impl Signal {
     fn zero(order: usize) -> Self {
-        Self {
-            states: RowDVector::zeros(order),
-            command: [0.0; 3],
-        }
+        Self { states: RowDVector::zeros(order), command: [0.0; 3] }
     }
 
     fn state(order: usize, place: usize) -> Self {
@@ -116,10 +113,7 @@ impl StateSpace {
     /// The states at rest, where the commanded position is 1; none where a pole lies at zero.
     pub fn rest(&self) -> Option<DVector<f64>> {
         let decomposed = self.a.clone().full_piv_lu();
-        decomposed
-            .is_invertible()
-            .then(|| decomposed.solve(&-&self.value))
-            .flatten()
+        decomposed.is_invertible().then(|| decomposed.solve(&-&self.value)).flatten()
     }
 
     /// Position of the table over the commanded position once everything has come to rest; none where a pole lies at zero.
@@ -136,12 +130,7 @@ impl StateSpace {
         let mut balanced = self.a.clone();
         let scale = balance_parlett_reinsch(&mut balanced);
         self.a = balanced;
-        for column in [
-            &mut self.value,
-            &mut self.rate,
-            &mut self.jump,
-            &mut self.push,
-        ] {
+        for column in [&mut self.value, &mut self.rate, &mut self.jump, &mut self.push] {
             column.component_div_assign(&scale);
         }
         let row_scale = scale.transpose();
@@ -184,14 +173,7 @@ impl Places {
         let current = next(loops.current.is_some(), 1);
         let integral = loops.current.is_some_and(|current| current.time.is_some());
         let current_integral = next(integral, 1);
-        Self {
-            order,
-            motor: 0,
-            table,
-            velocity_integral,
-            current,
-            current_integral,
-        }
+        Self { order, motor: 0, table, velocity_integral, current, current_integral }
     }
 }
 
@@ -220,10 +202,9 @@ fn of_loops(loops: &Loops, length: f64) -> StateSpace {
         .times(loops.kv)
         .plus(loops.velocity_feed_forward, &command(1))
         .plus(-1.0, &motor_velocity);
-    let mut wanted = velocity_error.times(velocity_gain).plus(
-        loops.acceleration_feed_forward * (motor_mass + mechanics.mass),
-        &command(2),
-    );
+    let mut wanted = velocity_error
+        .times(velocity_gain)
+        .plus(loops.acceleration_feed_forward * (motor_mass + mechanics.mass), &command(2));
     if let (Some(place), Some(time)) = (places.velocity_integral, loops.velocity_time) {
         wanted = wanted.plus(velocity_gain / time, &state(place));
         rows.push((place, velocity_error));
@@ -231,9 +212,7 @@ fn of_loops(loops: &Loops, length: f64) -> StateSpace {
     let force = match (&loops.current, places.current) {
         (Some(current), Some(place)) => {
             let newtons_per_ampere = current.torque_constant / travel;
-            let error = wanted
-                .times(1.0 / newtons_per_ampere)
-                .plus(-1.0, &state(place));
+            let error = wanted.times(1.0 / newtons_per_ampere).plus(-1.0, &state(place));
             let mut voltage = error
                 .times(current.gain)
                 .plus(-current.resistance, &state(place))
@@ -259,10 +238,7 @@ fn of_loops(loops: &Loops, length: f64) -> StateSpace {
             .plus(mechanics.stiffness_damping, &motor_velocity)
             .plus(-mechanics.stiffness_damping, &table_velocity);
         let mass = mechanics.mass;
-        rows.push((
-            places.motor + 1,
-            shaft.plus(-1.0, &spring).times(1.0 / motor_mass),
-        ));
+        rows.push((places.motor + 1, shaft.plus(-1.0, &spring).times(1.0 / motor_mass)));
         rows.push((places.table, table_velocity.clone()));
         let driven = spring.plus(-mechanics.damping, &table_velocity);
         rows.push((places.table + 1, driven.times(1.0 / mass)));
@@ -327,11 +303,7 @@ fn of_transfer(transfer: &Transfer) -> StateSpace {
         place.map_or(0.0, |place| coefficients[place] / first)
     };
     let size = libm::fabs(of(&denominator, 0));
-    let rate = if size > 0.0 {
-        libm::pow(size, 1.0 / order as f64)
-    } else {
-        1.0
-    };
+    let rate = if size > 0.0 { libm::pow(size, 1.0 / order as f64) } else { 1.0 };
     let scaled = |coefficients: &[f64], power: usize| {
         of(coefficients, power) * libm::pow(rate, power as f64 - order as f64)
     };
@@ -373,9 +345,6 @@ impl Pid {
             numerator.push(gain * self.ki);
             denominator.push(gain * self.ki);
         }
-        Transfer {
-            numerator,
-            denominator,
-        }
+        Transfer { numerator, denominator }
     }
 }

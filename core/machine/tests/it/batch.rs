@@ -25,10 +25,7 @@ fn a_batch_is_placed_and_traced_with_the_bits_of_its_points() {
         let tips: Vec<_> = (0..count).map(|_| rng.point(300.0)).collect();
         let mut singles: Vec<Trace> = Vec::new();
         for lane in 0..count {
-            let mut trace = Trace {
-                joints: machine.values(&mut rng),
-                ..Trace::default()
-            };
+            let mut trace = Trace { joints: machine.values(&mut rng), ..Trace::default() };
             trace.turns = chain.turns(&trace.joints);
             for (index, value) in trace.joints.iter().enumerate() {
                 at.joints[index][lane] = *value;
@@ -40,9 +37,7 @@ fn a_batch_is_placed_and_traced_with_the_bits_of_its_points() {
             placed += count;
             for (trace, tip) in singles.iter_mut().zip(&tips) {
                 let turns = trace.turns;
-                solver
-                    .place(*tip, &mut trace.joints, &turns)
-                    .expect("placed");
+                solver.place(*tip, &mut trace.joints, &turns).expect("placed");
             }
         } else {
             left += count;
@@ -51,10 +46,7 @@ fn a_batch_is_placed_and_traced_with_the_bits_of_its_points() {
         for (lane, trace) in singles.iter_mut().enumerate() {
             chain.trace(trace);
             for (index, joint) in chain.joints().iter().enumerate() {
-                assert_eq!(
-                    at.joints[index][lane].to_bits(),
-                    trace.joints[index].to_bits()
-                );
+                assert_eq!(at.joints[index][lane].to_bits(), trace.joints[index].to_bits());
                 if joint.rotary {
                     assert_eq!(out.tip_rates[index][lane], trace.tip_rates[index]);
                     assert_eq!(out.axes[index][lane], trace.axes[index]);

@@ -11,10 +11,7 @@ use post_testkit::{Rng, randomised};
 use post_testmachines::{Reference, angle};
 
 /// What any check may ask of the inverse: poses, and steps of searches.
-const MOST: Work = Work {
-    poses: 450_000,
-    steps: 260_000,
-};
+const MOST: Work = Work { poses: 450_000, steps: 260_000 };
 
 /// One axis: its name, the line that says how it moves, and where it may go.
 struct Line<'a>(&'a str, &'a str, &'a str);
@@ -26,20 +23,14 @@ fn read(chain: &str, tool: &str, axes: &[Line<'_>]) -> Result<Machine, Vec<Diagn
     for Line(name, kind, travel) in axes {
         let _ = writeln!(text, "[axis.{name}]\n{kind}\n{travel}\nmax_feed = 9000");
     }
-    let source = Source {
-        name: "x.toml".to_owned(),
-        text,
-    };
+    let source = Source { name: "x.toml".to_owned(), text };
     load(source, &[], &mut |name| Err(name.to_owned()))
 }
 
 fn checked(machine: &Machine) -> Check {
     let check = Check::of(machine, 50.0).unwrap();
     let work = check.work;
-    assert!(
-        work.poses <= MOST.poses && work.steps <= MOST.steps,
-        "{work:?}"
-    );
+    assert!(work.poses <= MOST.poses && work.steps <= MOST.steps, "{work:?}");
     check
 }
 
@@ -58,19 +49,12 @@ fn arm() -> Machine {
         at(Y, "[1300, 0, 1500]"),
         at(X, "[0, 0, 1500]"),
     ];
-    let travels = [
-        "[-170, 170]",
-        "[-90, 140]",
-        "[-120, 155]",
-        "[-350, 350]",
-        "[-120, 120]",
-        "[-350, 350]",
-    ]
-    .map(|travel| format!("travel = {travel}"));
+    let travels =
+        ["[-170, 170]", "[-90, 140]", "[-120, 155]", "[-350, 350]", "[-120, 120]", "[-350, 350]"]
+            .map(|travel| format!("travel = {travel}"));
     let names = ["A", "B", "C", "U", "V", "W"];
-    let axes: Vec<Line<'_>> = (0..6)
-        .map(|place| Line(names[place], &lines[place], &travels[place]))
-        .collect();
+    let axes: Vec<Line<'_>> =
+        (0..6).map(|place| Line(names[place], &lines[place], &travels[place])).collect();
     read(
         "[w b A B C U V W (S) t]",
         "[workpiece]\nmount = [1200, 0, 500]\n[tool]\ngauge = [1500, 0, 1300]\naxis = [0, 0, 1]",
@@ -92,11 +76,7 @@ fn scara(fourth: bool) -> Machine {
         axes.push(Line("C", &c, "travel = [-360, 360]"));
     }
     read(
-        if fourth {
-            "[w b A B Z C (S) t]"
-        } else {
-            "[w b A B Z (S) t]"
-        },
+        if fourth { "[w b A B Z C (S) t]" } else { "[w b A B Z (S) t]" },
         "[workpiece]\nmount = [500, 0, 0]\n[tool]\ngauge = [700, 0, 200]",
         &axes,
     )
@@ -137,11 +117,7 @@ fn an_arm_is_checked() {
     let mut measured = machine.clone();
     measured.axes[2].joint.point.z += 0.1;
     let compared = compare(&measured, &machine, 50.0).unwrap();
-    assert!(
-        (0.05..0.4).contains(&compared.tip_mm),
-        "{}",
-        compared.tip_mm
-    );
+    assert!((0.05..0.4).contains(&compared.tip_mm), "{}", compared.tip_mm);
 }
 
 /// Arms whose elbow reaches the origin both ways: two solutions, and the law of cosines gives them.
@@ -205,13 +181,7 @@ fn chains_without_an_answer_are_refused_with_the_reason() {
     let turn = "travel = [-90, 90]";
     let slide = "travel = [-300, 300]";
     let [x, y, z] = ["[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"].map(|d| format!("linear = {d}"));
-    let linear = || {
-        [
-            Line("X", &x, slide),
-            Line("Y", &y, slide),
-            Line("Z", &z, slide),
-        ]
-    };
+    let linear = || [Line("X", &x, slide), Line("Y", &y, slide), Line("Z", &z, slide)];
     let beside = |more: Vec<_>| linear().into_iter().chain(more).collect();
     let cases: Vec<(&str, Vec<Line<'_>>, &str)> = vec![
         (
@@ -232,11 +202,7 @@ fn chains_without_an_answer_are_refused_with_the_reason() {
         (
             // A planar arm: its tip never leaves its plane.
             "[w b A B C t]",
-            vec![
-                Line("A", &c, turn),
-                Line("B", &c1, turn),
-                Line("C", &c2, turn),
-            ],
+            vec![Line("A", &c, turn), Line("B", &c1, turn), Line("C", &c2, turn)],
             "all axes together move the tip over a surface alone: they do not span the space",
         ),
         (
@@ -246,11 +212,7 @@ fn chains_without_an_answer_are_refused_with_the_reason() {
         ),
         (
             "[w A' B' b X Y Z C t]",
-            beside(vec![
-                Line("A", &a, turn),
-                Line("B", &b, turn),
-                Line("C", &c, turn),
-            ]),
+            beside(vec![Line("A", &a, turn), Line("B", &b, turn), Line("C", &c, turn)]),
             "3 rotary axes move at once (A, B, C); at most two can be free",
         ),
         (
@@ -293,11 +255,7 @@ fn a_chain_that_can_make_few_programs_says_so() {
     let machine = read(
         "[w b A B C (S) t]",
         "[workpiece]\nmount = [1200, 0, 300]\n[tool]\ngauge = [1300, 0, 1100]",
-        &[
-            Line("A", &a, turn),
-            Line("B", &b, turn),
-            Line("C", &c, turn),
-        ],
+        &[Line("A", &a, turn), Line("B", &b, turn), Line("C", &c, turn)],
     )
     .unwrap();
     let check = checked(&machine);
@@ -389,12 +347,7 @@ fn an_upright_tool_is_not_called_impossible_where_it_is_posted() {
         Line("A", &a, "travel = [-30, 30]"),
         Line("B", &b, "travel = [-10, 100]"),
     ]);
-    let machine = read(
-        "[w C' A' b X Y Z B (S) t]",
-        "[tool]\ngauge = [0, 0, 300]",
-        &axes,
-    )
-    .unwrap();
+    let machine = read("[w C' A' b X Y Z B (S) t]", "[tool]\ngauge = [0, 0, 300]", &axes).unwrap();
     assert!(checked(&machine).reach.ways_upright > 0);
     // 0.03° off, 0.05° are allowed; 0.06° are not.
     for (lean, ways) in [(5.2e-4, 1), (1.05e-3, 0)] {
@@ -431,10 +384,7 @@ fn random_chains_come_to_an_end() {
                     }
                 };
                 let work = check.work;
-                assert!(
-                    work.poses <= MOST.poses && work.steps <= MOST.steps,
-                    "{work:?}"
-                );
+                assert!(work.poses <= MOST.poses && work.steps <= MOST.steps, "{work:?}");
                 poses = poses.max(work.poses);
                 steps = steps.max(work.steps);
                 assert!((0.0..=1.0 + 1e-9).contains(&check.reach.share_of_sphere));
@@ -473,11 +423,8 @@ fn random(rng: &mut Rng) -> Result<Machine, Vec<Diagnostic>> {
             _ => [Vector3::x(), Vector3::y(), Vector3::z()][rng.pick(3)],
         };
         let kind = if rotary { "rotary" } else { "linear" };
-        let _ = writeln!(
-            axes,
-            "[axis.{}]\n{kind} = [{:?}, {:?}, {:?}]",
-            NAMES[place], d.x, d.y, d.z
-        );
+        let _ =
+            writeln!(axes, "[axis.{}]\n{kind} = [{:?}, {:?}, {:?}]", NAMES[place], d.x, d.y, d.z);
         if rotary {
             let p = rng.point(500.0);
             let _ = writeln!(axes, "point = [{:?}, {:?}, {:?}]", p.x, p.y, p.z);
@@ -514,9 +461,6 @@ fn random(rng: &mut Rng) -> Result<Machine, Vec<Diagnostic>> {
         "name = \"x\"\nchain = \"{chain}\"\n[tool]\ngauge = [{:?}, {:?}, {:?}]\naxis = [{:?}, {:?}, {:?}]\n{edge}[control]\ndialect = \"fanuc\"\ntcp = \"post\"\n{axes}",
         gauge.x, gauge.y, gauge.z, axis.x, axis.y, axis.z
     );
-    let source = Source {
-        name: "x.toml".to_owned(),
-        text,
-    };
+    let source = Source { name: "x.toml".to_owned(), text };
     load(source, &[], &mut |name| Err(name.to_owned()))
 }

@@ -21,11 +21,9 @@ const CHAINS: [(&str, [&str; 2]); 4] = [
 fn machine(chain: &str, rng: &mut Rng, tilt: f64, shift: f64) -> Machine {
     let mut off = |size: f64| rng.range(-size, size);
     let mut axes = String::new();
-    for (name, [x, y, z]) in [
-        ("X", [1.0, 0.0, 0.0]),
-        ("Y", [0.0, 1.0, 0.0]),
-        ("Z", [0.0, 0.0, 1.0]),
-    ] {
+    for (name, [x, y, z]) in
+        [("X", [1.0, 0.0, 0.0]), ("Y", [0.0, 1.0, 0.0]), ("Z", [0.0, 0.0, 1.0])]
+    {
         axes.push_str(&format!(
             "[axis.{name}]\nlinear = [{:?}, {:?}, {:?}]\ntravel = [-300, 250]\n",
             x + off(tilt),
@@ -50,10 +48,7 @@ fn machine(chain: &str, rng: &mut Rng, tilt: f64, shift: f64) -> Machine {
     let text = format!(
         "name = \"x\"\nchain = \"{chain}\"\n[tool]\ngauge = [0, 0, 300]\n[control]\ndialect = \"fanuc\"\ntcp = \"post\"\n{axes}"
     );
-    let source = Source {
-        name: "x.toml".to_owned(),
-        text,
-    };
+    let source = Source { name: "x.toml".to_owned(), text };
     load(source, &[], &mut |name| Err(name.to_owned())).unwrap()
 }
 
@@ -69,10 +64,8 @@ fn reference(machine: &Machine) -> Reference {
 /// Axis values with the tip on the part origin and every rotary axis at zero.
 fn zero(reference: &Reference) -> Vec<f64> {
     let linear = reference.linear();
-    let columns: Vec<Vector3<f64>> = linear
-        .iter()
-        .map(|place| reference.joints[*place].direction)
-        .collect();
+    let columns: Vec<Vector3<f64>> =
+        linear.iter().map(|place| reference.joints[*place].direction).collect();
     let values =
         Matrix3::from_columns(&columns).try_inverse().unwrap() * (reference.mount - reference.tip);
     let mut zero = vec![0.0; reference.joints.len()];
@@ -115,26 +108,10 @@ fn no_setting_of_the_axes_is_worse_than_the_one_told() {
                 tip = tip.max((tip_a - tip_b).norm());
                 axis = axis.max(angle(axis_a, axis_b).to_degrees());
             }
-            assert!(
-                tip <= told.tip_mm + 1e-9,
-                "{chain}: {tip} over {}",
-                told.tip_mm
-            );
-            assert!(
-                tip > 0.9 * told.tip_mm,
-                "{chain}: {tip} under {}",
-                told.tip_mm
-            );
-            assert!(
-                axis <= told.axis_deg + 1e-9,
-                "{chain}: {axis} over {}",
-                told.axis_deg
-            );
-            assert!(
-                axis > 0.9 * told.axis_deg,
-                "{chain}: {axis} under {}",
-                told.axis_deg
-            );
+            assert!(tip <= told.tip_mm + 1e-9, "{chain}: {tip} over {}", told.tip_mm);
+            assert!(tip > 0.9 * told.tip_mm, "{chain}: {tip} under {}", told.tip_mm);
+            assert!(axis <= told.axis_deg + 1e-9, "{chain}: {axis} over {}", told.axis_deg);
+            assert!(axis > 0.9 * told.axis_deg, "{chain}: {axis} under {}", told.axis_deg);
         }
     }
 }
@@ -147,15 +124,12 @@ fn the_parts_add_up_to_the_whole() {
         let drawn = machine(chain, &mut rng, 0.0, 0.0);
         let real = machine(chain, &mut rng, 1e-4, 0.02);
         let told = compare(&real, &drawn, LENGTH).unwrap();
-        let sum = told.tip_shares.iter().fold(Vector3::zeros(), |sum, share| {
-            sum + Vector3::from(share.vector)
-        });
+        let sum = told
+            .tip_shares
+            .iter()
+            .fold(Vector3::zeros(), |sum, share| sum + Vector3::from(share.vector));
         let missing = (sum - Vector3::from(told.tip)).norm();
-        assert!(
-            missing < 0.01 * told.tip_mm,
-            "{chain}: {missing} of {}",
-            told.tip_mm
-        );
+        assert!(missing < 0.01 * told.tip_mm, "{chain}: {missing} of {}", told.tip_mm);
     }
 }
 
@@ -167,16 +141,8 @@ fn measured_machines_of_every_chain_pass_the_round_trip() {
         let real = machine(chain, &mut rng, 2e-3, 0.5);
         let check = Check::of(&real, LENGTH).unwrap();
         assert_eq!(check.round_trip.not_found, 0, "{chain}");
-        assert!(
-            check.round_trip.tip_mm < 1e-9,
-            "{chain}: {:?}",
-            check.round_trip
-        );
-        assert!(
-            check.round_trip.axis_rad < 1e-9,
-            "{chain}: {:?}",
-            check.round_trip
-        );
+        assert!(check.round_trip.tip_mm < 1e-9, "{chain}: {:?}", check.round_trip);
+        assert!(check.round_trip.axis_rad < 1e-9, "{chain}: {:?}", check.round_trip);
         let again = Check::of(&real, LENGTH).unwrap();
         assert_eq!(format!("{check:?}"), format!("{again:?}"));
     }

@@ -29,12 +29,8 @@ struct Case {
 fn solved(rng: &mut Rng, free: usize, held: usize) -> (Random, Solver) {
     let machine = Random::new(rng, free, held);
     let reference = &machine.reference;
-    let chain = Chain::new(
-        reference.joints.clone(),
-        reference.mount,
-        reference.tip,
-        reference.axis,
-    );
+    let chain =
+        Chain::new(reference.joints.clone(), reference.mount, reference.tip, reference.axis);
     let solver = Solver::new(chain, &machine.free, machine.held).expect("a closed form");
     (machine, solver)
 }
@@ -57,12 +53,7 @@ fn case(rng: &mut Rng) -> Case {
         _ => rng.direction() * rng.range(0.0, 1.0),
     });
     solver.course(&tip, &mut course).expect("axes that follow");
-    Case {
-        machine,
-        solver,
-        tip,
-        course,
-    }
+    Case { machine, solver, tip, course }
 }
 
 #[test]
@@ -80,17 +71,9 @@ fn axes_that_go_by_their_derivatives_lead_the_tip_along_its_path() {
         // one length, not at both.
         let orders = [0.1, 0.025].map(|way| {
             let (whole, half) = (miss(way), miss(0.5 * way));
-            if whole > 1e-9 {
-                libm::log2(whole / half)
-            } else {
-                4.0
-            }
+            if whole > 1e-9 { libm::log2(whole / half) } else { 4.0 }
         });
-        assert!(
-            orders.iter().any(|order| *order > 3.5),
-            "{orders:?} of {:?}",
-            case.course.joints
-        );
+        assert!(orders.iter().any(|order| *order > 3.5), "{orders:?} of {:?}", case.course.joints);
         worst = worst.max(miss(1e-3));
     }
     assert!(worst < 1e-9, "{worst}");
@@ -131,18 +114,11 @@ fn rotary_axes_that_go_by_their_derivatives_lead_the_tool_axis_along_its_path() 
         // A vector that goes so, as a unit vector.
         let vector = |way: f64| on([start, goes[0], goes[1], goes[2]], way).normalize();
         let axis = direction(&[start, goes[0], goes[1], goes[2]]).expect("not null");
-        if solver
-            .turn_along(&machine.free, &axis, &mut course)
-            .is_err()
-        {
+        if solver.turn_along(&machine.free, &axis, &mut course).is_err() {
             continue;
         }
         // Close to the pole all orders are large.
-        if course.joints[1..]
-            .iter()
-            .flatten()
-            .any(|size| size.abs() > 0.2)
-        {
+        if course.joints[1..].iter().flatten().any(|size| size.abs() > 0.2) {
             continue;
         }
         followed += 1;
@@ -152,11 +128,7 @@ fn rotary_axes_that_go_by_their_derivatives_lead_the_tool_axis_along_its_path() 
         };
         let orders = [0.4, 0.1].map(|way| {
             let (whole, half) = (miss(way), miss(0.5 * way));
-            if whole > 1e-10 {
-                libm::log2(whole / half)
-            } else {
-                4.0
-            }
+            if whole > 1e-10 { libm::log2(whole / half) } else { 4.0 }
         });
         assert!(orders.iter().any(|order| *order > 3.5), "{orders:?}");
         assert!(miss(1e-2) < 1e-9);

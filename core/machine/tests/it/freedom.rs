@@ -31,19 +31,13 @@ fn apart(machine: &Random, a: &Joints, b: &Joints) -> f64 {
 
 /// How large the values are: rounding errors grow with them, per metre.
 fn reach(values: &Joints) -> f64 {
-    values
-        .iter()
-        .fold(1.0, |reach: f64, value| reach.max(value.abs() / 1000.0))
+    values.iter().fold(1.0, |reach: f64, value| reach.max(value.abs() / 1000.0))
 }
 
 /// The inverse of a pose made at `q` with the reference; every solution is put through the isometries.
 fn solutions(solver: &Solver, machine: &Random, q: &Joints) -> (Vec<Joints>, f64) {
     let (tip, axis) = machine.reference.forward(q);
-    let pose = Pose {
-        tip,
-        axis,
-        ..Pose::default()
-    };
+    let pose = Pose { tip, axis, ..Pose::default() };
     let found = solver
         .inverse(&pose, &machine.held, 1e-9)
         .unwrap_or_else(|fault| panic!("{fault:?} at {q:?}"));

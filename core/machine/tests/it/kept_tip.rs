@@ -23,11 +23,7 @@ fn block(rng: &mut Rng) -> Block {
     let held = rng.pick(2);
     let machine = Random::new(rng, free, held);
     let reference = &machine.reference;
-    let along = if rng.pick(2) == 0 {
-        0.0
-    } else {
-        rng.range(-50.0, 90.0)
-    };
+    let along = if rng.pick(2) == 0 { 0.0 } else { rng.range(-50.0, 90.0) };
     let chain = Chain::new(
         reference.joints.clone(),
         reference.mount,
@@ -45,14 +41,7 @@ fn block(rng: &mut Rng) -> Block {
     let end = start + rng.direction() * rng.order(-3.0, 2.0);
     let from = reference.put(start, from);
     let to = reference.put(end, to);
-    Block {
-        machine,
-        solver,
-        along,
-        from,
-        to,
-        tips: [start, end],
-    }
+    Block { machine, solver, along, from, to, tips: [start, end] }
 }
 
 impl Block {
@@ -67,11 +56,7 @@ impl Block {
     fn traces(&self) -> [Trace; 2] {
         [self.from, self.to].map(|joints| {
             let chain = self.solver.chain();
-            let mut trace = Trace {
-                joints,
-                turns: chain.turns(&joints),
-                ..Trace::default()
-            };
+            let mut trace = Trace { joints, turns: chain.turns(&joints), ..Trace::default() };
             chain.trace(&mut trace);
             trace
         })
@@ -116,18 +101,10 @@ fn no_sample_exceeds_what_is_said() {
             let least = places.iter().map(value).fold(f64::INFINITY, f64::min);
             let most = places.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
             let (said_least, said_most) = (slides.least[joint], slides.most[joint]);
-            assert!(
-                least >= said_least - rounding,
-                "round {round}: {least} {said_least}"
-            );
-            assert!(
-                most <= said_most + rounding,
-                "round {round}: {most} {said_most}"
-            );
-            let way: f64 = places
-                .windows(2)
-                .map(|pair| (pair[1][joint] - pair[0][joint]).abs())
-                .sum();
+            assert!(least >= said_least - rounding, "round {round}: {least} {said_least}");
+            assert!(most <= said_most + rounding, "round {round}: {most} {said_most}");
+            let way: f64 =
+                places.windows(2).map(|pair| (pair[1][joint] - pair[0][joint]).abs()).sum();
             for pair in places.windows(2) {
                 fastest =
                     fastest.max((pair[1][joint] - pair[0][joint]).abs() / step * slowness[joint]);
@@ -157,10 +134,7 @@ fn no_sample_exceeds_what_is_said() {
         );
         close &= fastest < 1e-6 || said < 1.01 * fastest;
         // Nearly in one plane on the way, the axes run away: there a bound is all that there is.
-        assert!(
-            close || bend.is_infinite(),
-            "round {round}: {said} {fastest}"
-        );
+        assert!(close || bend.is_infinite(), "round {round}: {said} {fastest}");
         loose += u32::from(!close);
     }
     println!("{looked} blocks, {cheap} with a cheap bound, {singular} singular, {loose} loose");

@@ -13,10 +13,7 @@ use post_testmachines::{Random, angle, turned};
 
 /// A pose of which the tool axis alone matters.
 fn towards(axis: Vector3<f64>) -> Pose {
-    Pose {
-        axis,
-        ..Pose::default()
-    }
+    Pose { axis, ..Pose::default() }
 }
 
 fn solver(machine: &Random) -> Solver {
@@ -31,9 +28,8 @@ fn sets(
     tolerance: f64,
 ) -> Result<Vec<RotarySet>, Unreachable> {
     let branches = solver.orient(&towards(wanted), tolerance)?;
-    let sets: Vec<RotarySet> = (0..branches.count())
-        .map(|index| solver.angles(&branches, index))
-        .collect();
+    let sets: Vec<RotarySet> =
+        (0..branches.count()).map(|index| solver.angles(&branches, index)).collect();
     if let [first, second] = *sets.as_slice() {
         // What lets the chooser skip the farther branch.
         let joint = solver.last_rotary();
@@ -58,9 +54,8 @@ fn every_solution_leads_back_to_the_pose() {
             let q = machine.values(&mut rng);
             let (wanted_tip, wanted_axis) = reference.forward(&q);
             let pose = solver.chain().forward(&q);
-            forward = forward
-                .max((pose.tip - wanted_tip).norm())
-                .max((pose.axis - wanted_axis).norm());
+            forward =
+                forward.max((pose.tip - wanted_tip).norm()).max((pose.axis - wanted_axis).norm());
             // Linear axes that rotary ones between them have laid flat cannot be solved well by anyone.
             if reference.volume(&q) < 0.1 {
                 continue;
@@ -77,11 +72,8 @@ fn every_solution_leads_back_to_the_pose() {
                 tip = tip.max((reached_tip - wanted_tip).norm() / reach);
                 axis = axis.max(angle(reached_axis, wanted_axis));
             }
-            let slopes: Vec<Vector3<f64>> = machine
-                .free
-                .iter()
-                .map(|index| reference.axis_slope(&q, *index))
-                .collect();
+            let slopes: Vec<Vector3<f64>> =
+                machine.free.iter().map(|index| reference.axis_slope(&q, *index)).collect();
             let singular = match *slopes.as_slice() {
                 [] => 1.0,
                 [slope] => slope.norm(),
@@ -169,17 +161,11 @@ fn axes_out_of_reach_are_refused_by_the_angle_that_a_scan_finds() {
         let least = scan(&machine, wanted);
         match sets(&solver(&machine), wanted, 1e-9) {
             Ok(_) => {
-                assert!(
-                    least < 1e-6,
-                    "round {round}: accepted, but the scan misses by {least}"
-                );
+                assert!(least < 1e-6, "round {round}: accepted, but the scan misses by {least}");
                 reached += 1;
             }
             Err(Unreachable::Axis { miss }) => {
-                assert!(
-                    least > 1e-6,
-                    "round {round}: refused by {miss}, but the scan reaches it"
-                );
+                assert!(least > 1e-6, "round {round}: refused by {miss}, but the scan reaches it");
                 worst = worst.max((miss - least).abs());
                 refused += 1;
             }
@@ -228,10 +214,7 @@ fn one_axis_or_none_takes_the_nearest_orientation() {
         let found = sets(&solver, wanted, least * 1.0001 + 1e-7).unwrap();
         for set in &found {
             let reached = angle(reference.forward(&set.joints).1, wanted);
-            assert!(
-                (reached - least).abs() < 1e-7,
-                "round {round}: {reached} {least}"
-            );
+            assert!((reached - least).abs() < 1e-7, "round {round}: {reached} {least}");
         }
         if least > 1e-5 {
             let Err(Unreachable::Axis { miss }) = solver.orient(&towards(wanted), least * 0.999)
@@ -273,11 +256,7 @@ fn on_the_pole_the_first_axis_is_free() {
             continue;
         }
         let tip = reference.forward(&q).0;
-        let pose = Pose {
-            tip,
-            axis: wanted,
-            ..Pose::default()
-        };
+        let pose = Pose { tip, axis: wanted, ..Pose::default() };
         let solutions = solver.inverse(&pose, &q, 1e-9).unwrap();
         for solution in &solutions {
             assert_eq!(solution[machine.free[0]], q[machine.free[0]]);
@@ -332,24 +311,13 @@ fn the_inverse_finds_every_pose_beside_the_pole() {
             continue;
         }
         let (tip, axis) = machine.reference.forward(&q);
-        if let Err(fault) = solver(&machine).inverse(
-            &Pose {
-                tip,
-                axis,
-                ..Pose::default()
-            },
-            &q,
-            0.0,
-        ) {
+        if let Err(fault) =
+            solver(&machine).inverse(&Pose { tip, axis, ..Pose::default() }, &q, 0.0)
+        {
             refused.push((angle(axis, on_pole), fault));
         }
     }
-    assert!(
-        refused.is_empty(),
-        "{} refused: {:?}",
-        refused.len(),
-        refused
-    );
+    assert!(refused.is_empty(), "{} refused: {:?}", refused.len(), refused);
 }
 
 /// An axis that turns the tool about itself is free: its last value is kept, as `RotarySet::free` promises.
@@ -365,24 +333,10 @@ fn an_axis_along_the_tool_keeps_its_value() {
             continue;
         }
         let (tip, axis) = machine.reference.forward(&q);
-        let solutions = solver(&machine)
-            .inverse(
-                &Pose {
-                    tip,
-                    axis,
-                    ..Pose::default()
-                },
-                &q,
-                1e-9,
-            )
-            .unwrap();
-        let kept = solutions
-            .iter()
-            .any(|solution| turned(q[second], solution[second]).abs() < 1e-6);
-        assert!(
-            kept,
-            "round {round}: {} became {}",
-            q[second], solutions[0][second]
-        );
+        let solutions =
+            solver(&machine).inverse(&Pose { tip, axis, ..Pose::default() }, &q, 1e-9).unwrap();
+        let kept =
+            solutions.iter().any(|solution| turned(q[second], solution[second]).abs() < 1e-6);
+        assert!(kept, "round {round}: {} became {}", q[second], solutions[0][second]);
     }
 }

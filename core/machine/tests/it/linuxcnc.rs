@@ -99,9 +99,7 @@ fn read(name: &str, rotary: &str) -> Option<Table> {
     let machine = load(source, &settings, &mut |_| Err(String::new()))
         .unwrap_or_else(|faults| panic!("{name}: {faults:?}"));
     let numbers = |line: &str| -> Vec<f64> {
-        line.split(',')
-            .map(|field| field.trim().parse().expect("a number"))
-            .collect()
+        line.split(',').map(|field| field.trim().parse().expect("a number")).collect()
     };
     let rows: Vec<_> = text
         .lines()
@@ -109,11 +107,7 @@ fn read(name: &str, rotary: &str) -> Option<Table> {
         .map(numbers)
         .collect();
     assert!(rows.len() >= 500, "{name} has {} rows", rows.len());
-    Some(Table {
-        machine,
-        length,
-        rows,
-    })
+    Some(Table { machine, length, rows })
 }
 
 /// Forward at the joints is the pose, and the inverse of the pose has the joints among its solutions.
@@ -129,11 +123,7 @@ fn check(name: &str, rotary: &str, order: &str) {
         let mut joints: Joints = Default::default();
         let mut length = table.length;
         for (letter, value) in order.chars().zip(columns) {
-            match machine
-                .axes
-                .iter()
-                .position(|axis| axis.name == letter.to_string())
-            {
+            match machine.axes.iter().position(|axis| axis.name == letter.to_string()) {
                 Some(place) if machine.axes[place].joint.rotary => {
                     joints[place] = value.to_radians();
                 }
@@ -149,15 +139,7 @@ fn check(name: &str, rotary: &str, order: &str) {
         let axis = law(order, pose);
         axis_error = axis_error.max(angle(reached.axis, axis));
         let solutions = solver
-            .inverse(
-                &Pose {
-                    tip,
-                    axis,
-                    ..Pose::default()
-                },
-                &joints,
-                1e-9,
-            )
+            .inverse(&Pose { tip, axis, ..Pose::default() }, &joints, 1e-9)
             .unwrap_or_else(|fault| panic!("{name}: {fault:?} at {row:?}"));
         let nearest = solutions
             .iter()

@@ -65,10 +65,8 @@ tolerance = 0.005
 
 /// Loads `text` with `settings`; the machine `good` can be extended, and `circle` extends itself.
 fn try_load(text: &str, settings: &[&str]) -> Result<Machine, Vec<Diagnostic>> {
-    let settings: Vec<Setting> = settings
-        .iter()
-        .map(|&setting| Setting::Written(setting.to_owned()))
-        .collect();
+    let settings: Vec<Setting> =
+        settings.iter().map(|&setting| Setting::Written(setting.to_owned())).collect();
     load(source("m.toml", text), &settings, &mut |name| match name {
         "good" => Ok(source("good.toml", GOOD)),
         "circle" => Ok(source("circle.toml", "extends = \"circle\"\n")),
@@ -78,10 +76,7 @@ fn try_load(text: &str, settings: &[&str]) -> Result<Machine, Vec<Diagnostic>> {
 
 /// What is underlined, behind its line.
 fn underlined(finding: &Diagnostic) -> String {
-    let place = finding
-        .place
-        .as_ref()
-        .unwrap_or_else(|| panic!("no place: {finding:?}"));
+    let place = finding.place.as_ref().unwrap_or_else(|| panic!("no place: {finding:?}"));
     format!("{} {}", place.line, &place.text[place.span.clone()])
 }
 
@@ -115,10 +110,7 @@ fn a_good_file_means_what_it_says() {
     assert_eq!(names, ["C", "A", "Y", "X", "Z"]);
     assert_eq!(machine.mount.z, 25.25);
     assert_eq!(machine.axes[1].joint.point.z, 50.5);
-    assert_eq!(
-        machine.axes[1].travel,
-        Some([-120.0f64, 30.0].map(f64::to_radians))
-    );
+    assert_eq!(machine.axes[1].travel, Some([-120.0f64, 30.0].map(f64::to_radians)));
     assert_eq!(machine.axes[0].travel, None);
     assert_eq!(machine.axes[0].max_feed, 9000f64.to_radians());
     assert_eq!(machine.tools, [(1, 120.5)]);
@@ -135,43 +127,13 @@ const CHAIN: &str = "2 \"[w C' A' b Y X Z (S) t]\"";
 
 const SLIPS: &[Slip] = &[
     // Keys and syntax.
-    (
-        "mount =",
-        "mout =",
-        "9 mout",
-        "there is no key `mout`",
-        true,
-    ),
-    (
-        "tolerance =",
-        "tolerence =",
-        "49 tolerence",
-        "there is no key `tolerence`",
-        true,
-    ),
-    (
-        "max_feed = 9000",
-        "max_fed = 9000",
-        "22 max_fed",
-        "there is no key `max_fed`",
-        true,
-    ),
-    (
-        "half = \"Zc / 2\"",
-        "Zc = 2",
-        "6 Zc",
-        "duplicate key",
-        false,
-    ),
+    ("mount =", "mout =", "9 mout", "there is no key `mout`", true),
+    ("tolerance =", "tolerence =", "49 tolerence", "there is no key `tolerence`", true),
+    ("max_feed = 9000", "max_fed = 9000", "22 max_fed", "there is no key `max_fed`", true),
+    ("half = \"Zc / 2\"", "Zc = 2", "6 Zc", "duplicate key", false),
     ("[axis.A]\n", "[axis.C]\n", "24 C", "duplicate key", false),
     ("[0, 0, 400]", "[0, 0, 400", "13 ", "expected `,`", false),
-    (
-        "[0, 0, 400]",
-        "[0, 400]",
-        "12 [0, 400]",
-        "array of length 3",
-        false,
-    ),
+    ("[0, 0, 400]", "[0, 400]", "12 [0, 400]", "array of length 3", false),
     (
         "[control]\ndialect = \"fanuc\"",
         "[control]",
@@ -179,13 +141,7 @@ const SLIPS: &[Slip] = &[
         "missing field `dialect`",
         false,
     ),
-    (
-        "tcp = \"post\"",
-        "tcp = \"posts\"",
-        "43 \"posts\"",
-        "there is no value `posts`",
-        true,
-    ),
+    ("tcp = \"post\"", "tcp = \"posts\"", "43 \"posts\"", "there is no value `posts`", true),
     (
         "program = 7",
         "program = [7]",
@@ -193,13 +149,7 @@ const SLIPS: &[Slip] = &[
         "a flag, a number, a text or an array of lines",
         false,
     ),
-    (
-        "1 = 120.5",
-        "one = 120.5",
-        "16 120.5",
-        "no tool number",
-        true,
-    ),
+    ("1 = 120.5", "one = 120.5", "16 120.5", "no tool number", true),
     // Geometry.
     (
         "[axis.A]\nrotary = [1, 0, 0]",
@@ -208,27 +158,9 @@ const SLIPS: &[Slip] = &[
         "direction of A is null",
         true,
     ),
-    (
-        "axis = [0, 0, 1]",
-        "axis = [0, 0, 0]",
-        "13 0, 0, 0",
-        "tool axis is null",
-        true,
-    ),
-    (
-        "[-120, 30]",
-        "[30, -120]",
-        "27 [30, -120]",
-        "from 30 to -120",
-        true,
-    ),
-    (
-        "[-120, 30]",
-        "[30, 30]",
-        "27 [30, 30]",
-        "from 30 to 30",
-        true,
-    ),
+    ("axis = [0, 0, 1]", "axis = [0, 0, 0]", "13 0, 0, 0", "tool axis is null", true),
+    ("[-120, 30]", "[30, -120]", "27 [30, -120]", "from 30 to -120", true),
+    ("[-120, 30]", "[30, 30]", "27 [30, 30]", "from 30 to 30", true),
     (
         "cyclic = true",
         "cyclic = true\ntravel = [-1, 1]",
@@ -236,13 +168,7 @@ const SLIPS: &[Slip] = &[
         "cyclic (endless) and has travel",
         true,
     ),
-    (
-        "cyclic = true\n",
-        "",
-        "18 [axis.C]",
-        "C has no travel",
-        true,
-    ),
+    ("cyclic = true\n", "", "18 [axis.C]", "C has no travel", true),
     (
         "linear = [1, 0, 0]\ntravel = [-300, 300]",
         "linear = [1, 0, 0]",
@@ -264,27 +190,9 @@ const SLIPS: &[Slip] = &[
         "a point means nothing",
         true,
     ),
-    (
-        "linear = [1, 0, 0]",
-        "linear = [0, 1, 1]",
-        CHAIN,
-        "span no volume",
-        true,
-    ),
-    (
-        "point = [0, 0.012, \"Zc\"]\n",
-        "",
-        "24 [axis.A]",
-        "where its axis line runs",
-        true,
-    ),
-    (
-        "rotary = [1, 0, 0]",
-        "rotary = [0, 0, -2]",
-        CHAIN,
-        "C and A turn about parallel axes",
-        true,
-    ),
+    ("linear = [1, 0, 0]", "linear = [0, 1, 1]", CHAIN, "span no volume", true),
+    ("point = [0, 0.012, \"Zc\"]\n", "", "24 [axis.A]", "where its axis line runs", true),
+    ("rotary = [1, 0, 0]", "rotary = [0, 0, -2]", CHAIN, "C and A turn about parallel axes", true),
     (
         "b Y X Z (S) t]\"",
         "b Y X Z B t]\"\naxis.B = { rotary = [0, 1, 0], point = [0, 0, 0], cyclic = true }",
@@ -306,27 +214,9 @@ const SLIPS: &[Slip] = &[
         "outside its travel",
         false,
     ),
-    (
-        "max_feed = 9000",
-        "max_feed = 0",
-        "22 0",
-        "above zero",
-        false,
-    ),
-    (
-        "tolerance = 0.005",
-        "tolerance = -0.005",
-        "49 -0.005",
-        "above zero",
-        false,
-    ),
-    (
-        "tcp = \"post\"\n",
-        "",
-        "41 [control]",
-        "who keeps the tip",
-        true,
-    ),
+    ("max_feed = 9000", "max_feed = 0", "22 0", "above zero", false),
+    ("tolerance = 0.005", "tolerance = -0.005", "49 -0.005", "above zero", false),
+    ("tcp = \"post\"\n", "", "41 [control]", "who keeps the tip", true),
     (
         "b Y X Z (S) t]\"",
         "b Y X S t]\"\naxis.S = { linear = [0, 0, 1], travel = [0, 1] }",
@@ -334,21 +224,9 @@ const SLIPS: &[Slip] = &[
         "an axis cannot be called S: in the program of every control S is the speed of the spindle",
         true,
     ),
-    (
-        "b Y X Z (S) t]\"",
-        "b Y X Z H2 t]\"",
-        "2 H2",
-        "an axis cannot be called H2",
-        true,
-    ),
+    ("b Y X Z (S) t]\"", "b Y X Z H2 t]\"", "2 H2", "an axis cannot be called H2", true),
     // The chain.
-    (
-        "b Y X Z",
-        "b Y Z",
-        "29 [axis.X]",
-        "does not stand in the chain",
-        true,
-    ),
+    ("b Y X Z", "b Y Z", "29 [axis.X]", "does not stand in the chain", true),
     ("b Y X Z", "b Y X Z U", "2 U", "no [axis.U]", true),
     ("C' A' b", "C' A b", "2 A", "write A'", true),
     ("b Y X", "b Y X'", "2 X'", "X' is primed", true),
@@ -356,41 +234,11 @@ const SLIPS: &[Slip] = &[
     ("(S) t]", "(S)]", "2 ", "`t`, the tool, is missing", true),
     // Expressions.
     ("\"Zc\"", "\"Zd\"", "26 \"Zd\"", "`Zd` is not known", true),
-    (
-        "\"Zc\"",
-        "\"Zc +\"",
-        "26 \"Zc +\"",
-        "is missing at the end",
-        true,
-    ),
-    (
-        "\"Zc\"",
-        "\"Zc / (half - 25.25)\"",
-        "26 \"Zc / (half - 25.25)\"",
-        "division by zero",
-        true,
-    ),
-    (
-        "\"Zc\"",
-        "\"sqrt(-Zc)\"",
-        "26 \"sqrt(-Zc)\"",
-        "no finite value",
-        true,
-    ),
-    (
-        "Zc = 50.5",
-        "Zc = \"half * 2\"",
-        "5 \"half * 2\"",
-        "in a circle",
-        true,
-    ),
-    (
-        "[0, 0, 400]",
-        "[0, 0, nan]",
-        "12 nan",
-        "no finite number",
-        false,
-    ),
+    ("\"Zc\"", "\"Zc +\"", "26 \"Zc +\"", "is missing at the end", true),
+    ("\"Zc\"", "\"Zc / (half - 25.25)\"", "26 \"Zc / (half - 25.25)\"", "division by zero", true),
+    ("\"Zc\"", "\"sqrt(-Zc)\"", "26 \"sqrt(-Zc)\"", "no finite value", true),
+    ("Zc = 50.5", "Zc = \"half * 2\"", "5 \"half * 2\"", "in a circle", true),
+    ("[0, 0, 400]", "[0, 0, nan]", "12 nan", "no finite number", false),
     // How the control makes motion.
     (
         "tolerance = 0.005",
@@ -460,10 +308,7 @@ const SLIPS: &[Slip] = &[
 /// All full turns of all rotary axes are weighed with one another, so that there must not be too many.
 #[test]
 fn rotary_axes_that_wind_up_together_are_refused() {
-    let wide = [
-        "axis.A.travel=[-18000, 18000]",
-        "axis.C.travel=[-18000, 18000]",
-    ];
+    let wide = ["axis.A.travel=[-18000, 18000]", "axis.C.travel=[-18000, 18000]"];
     let wide = [wide[0], wide[1], "axis.C.cyclic=false"];
     let found = try_load(GOOD, &wide).unwrap_err();
     let said = "hold 10000 ways to set them on other full turns; 1000 are possible";
@@ -484,38 +329,23 @@ fn every_slip_is_refused_where_it_stands() {
         assert!(first.message.contains(message), "{bad}: {}", first.message);
         assert_eq!(first.help.is_some(), *help, "{bad}: {:?}", first.help);
         assert_eq!(first.severity, Severity::Error);
-        assert_eq!(
-            first.place.as_ref().map(|place| place.file.as_str()),
-            Some("m.toml")
-        );
+        assert_eq!(first.place.as_ref().map(|place| place.file.as_str()), Some("m.toml"));
     }
 }
 
 /// A cycle time cannot be told without accelerations; with them the rule is as good as any.
 #[test]
 fn the_rule_of_the_cycle_time_asks_for_accelerations() {
-    let ruled = |text: &str| {
-        text.replace(
-            "[control]",
-            "[solution]\nrule = \"cycle-time\"\n\n[control]",
-        )
-    };
+    let ruled =
+        |text: &str| text.replace("[control]", "[solution]\nrule = \"cycle-time\"\n\n[control]");
     let found = try_load(&ruled(GOOD), &[]).unwrap_err();
     assert_eq!(found.len(), 1, "{found:?}");
     assert_eq!(underlined(&found[0]), "42 \"cycle-time\"");
-    assert!(
-        found[0].message.contains("max_accel of C, A, Y, X, Z"),
-        "{}",
-        found[0].message
-    );
+    assert!(found[0].message.contains("max_accel of C, A, Y, X, Z"), "{}", found[0].message);
     assert!(found[0].help.is_some());
     let driven = GOOD.replace("rotary =", "max_accel = 300\nrotary =");
     let found = try_load(&ruled(&driven), &[]).unwrap_err();
-    assert!(
-        found[0].message.ends_with("max_accel of Y, X, Z"),
-        "{}",
-        found[0].message
-    );
+    assert!(found[0].message.ends_with("max_accel of Y, X, Z"), "{}", found[0].message);
     let driven = driven.replace("linear =", "max_accel = 4000\nlinear =");
     let machine = try_load(&ruled(&driven), &[]).unwrap();
     assert_eq!(machine.solution.rule, Rule::CycleTime);
@@ -530,10 +360,7 @@ fn faults_that_do_not_hide_one_another_are_told_together() {
         .replace("tcp = \"post\"\n", "");
     let found = try_load(&text, &[]).unwrap_err();
     let places: Vec<String> = found.iter().map(underlined).collect();
-    assert_eq!(
-        places,
-        ["22 -1", "27 [30, -120]", "12 \"gauge\"", "41 [control]"]
-    );
+    assert_eq!(places, ["22 -1", "27 [30, -120]", "12 \"gauge\"", "41 [control]"]);
 }
 
 /// One missing bracket is one slip.
@@ -562,16 +389,10 @@ fn parameters_that_nothing_uses_are_checked_too() {
 
 #[test]
 fn a_machine_extends_another_key_by_key() {
-    let machine = try_load(
-        "extends = \"good\"\nname = \"other\"\naxis.A.travel = [-90, 90]\n",
-        &[],
-    )
-    .unwrap();
+    let machine =
+        try_load("extends = \"good\"\nname = \"other\"\naxis.A.travel = [-90, 90]\n", &[]).unwrap();
     assert_eq!(machine.name, "other");
-    assert_eq!(
-        machine.axes[1].travel,
-        Some([-90.0f64, 90.0].map(f64::to_radians))
-    );
+    assert_eq!(machine.axes[1].travel, Some([-90.0f64, 90.0].map(f64::to_radians)));
     assert_eq!(machine.axes[1].joint.point.z, 50.5);
 
     let found = try_load("name = \"x\"\nextends = \"nowhere\"\n", &[]).unwrap_err();
@@ -604,14 +425,8 @@ fn a_machine_extends_another_key_by_key() {
 #[test]
 fn how_a_control_makes_motion_is_merged_key_by_key() {
     let rules = try_load(GOOD, &[]).unwrap().motion;
-    assert_eq!(
-        (rules.period, rules.block_time, rules.look_ahead),
-        (0.001, 0.0, 200)
-    );
-    assert_eq!(
-        (rules.corner, rules.corner_tolerance),
-        (CornerRule::Blend, None)
-    );
+    assert_eq!((rules.period, rules.block_time, rules.look_ahead), (0.001, 0.0, 200));
+    assert_eq!((rules.corner, rules.corner_tolerance), (CornerRule::Blend, None));
     assert_eq!(
         (rules.limits, rules.blend, rules.rapids),
         (LimitsActOn::Axes, BlendRule::Round, RapidRule::Stop)
@@ -621,26 +436,13 @@ fn how_a_control_makes_motion_is_merged_key_by_key() {
 
     let own = "extends = \"good\"\n[motion]\nperiod = \"Zc / 12625\"\nlimits = \"programmed\"\ncorner = \"path\"\n\
                corner_tolerance = 0.02\nblend = \"overlap\"\nrapids = \"among-rapids\"\ntip_accel = 900\ntip_jerk = 8000\n";
-    let settings = [
-        "motion.period=0.008",
-        "motion.look_ahead=20",
-        "motion.block_time=0.002",
-    ];
+    let settings = ["motion.period=0.008", "motion.look_ahead=20", "motion.block_time=0.002"];
     let plain = try_load(own, &[]).unwrap().motion;
     assert_eq!((plain.period, plain.look_ahead), (0.004, 200));
     let rules = try_load(own, &settings).unwrap().motion;
-    assert_eq!(
-        (rules.period, rules.block_time, rules.look_ahead),
-        (0.008, 0.002, 20)
-    );
-    assert_eq!(
-        (rules.corner, rules.corner_tolerance),
-        (CornerRule::Path, Some(0.02))
-    );
-    assert_eq!(
-        (rules.limits, rules.blend),
-        (LimitsActOn::Programmed, BlendRule::Overlap)
-    );
+    assert_eq!((rules.period, rules.block_time, rules.look_ahead), (0.008, 0.002, 20));
+    assert_eq!((rules.corner, rules.corner_tolerance), (CornerRule::Path, Some(0.02)));
+    assert_eq!((rules.limits, rules.blend), (LimitsActOn::Programmed, BlendRule::Overlap));
     assert_eq!(
         (rules.tip_accel, rules.tip_jerk, rules.rapids),
         (900.0, 8000.0, RapidRule::AmongRapids)
@@ -661,10 +463,7 @@ fn jumps_of_velocity_are_those_of_the_file_that_says_them_last() {
     let own = "extends = \"good\"\n[axis.X]\nmax_jump = \"Zc * 4\"\n[axis.A]\nmax_jump = 180\n[motion]\ntip_jump = 300\n";
     let turn = Some(std::f64::consts::PI);
     assert_eq!(of(own, &[]), (Some(202.0), turn, Some(300.0)));
-    assert_eq!(
-        of(own, &["axis.X.max_jump=60"]),
-        (Some(60.0), turn, Some(300.0))
-    );
+    assert_eq!(of(own, &["axis.X.max_jump=60"]), (Some(60.0), turn, Some(300.0)));
     for (own, shown) in [
         ("extends = \"good\"\n[axis.X]\nmax_jump = 0\n", "3 0"),
         ("extends = \"good\"\n[motion]\ntip_jump = -5\n", "3 -5"),
@@ -691,21 +490,13 @@ fn a_part_sits_turned_whatever_head_is_in() {
 fn settings_win_over_the_file() {
     let machine = try_load(
         GOOD,
-        &[
-            "Zc=60",
-            "accuracy.tolerance=0.001",
-            "control.dialect=own",
-            "axis.A.travel=[-90, 20]",
-        ],
+        &["Zc=60", "accuracy.tolerance=0.001", "control.dialect=own", "axis.A.travel=[-90, 20]"],
     )
     .unwrap();
     assert_eq!(machine.mount.z, 30.0);
     assert_eq!(machine.accuracy.tolerance, 0.001);
     assert_eq!(machine.control.dialect, "own");
-    assert_eq!(
-        machine.axes[1].travel,
-        Some([-90.0f64, 20.0].map(f64::to_radians))
-    );
+    assert_eq!(machine.axes[1].travel, Some([-90.0f64, 20.0].map(f64::to_radians)));
     // The last one wins, and an expression is one here too.
     assert_eq!(
         try_load(GOOD, &["Zc=1", "Zc=\"half0 * 2\"", "parameters.half0=7"])
@@ -713,33 +504,18 @@ fn settings_win_over_the_file() {
             .ok(),
         None
     );
-    assert_eq!(
-        try_load(GOOD, &["Zc=1", "Zc=\"3 * 4\""]).unwrap().mount.z,
-        6.0
-    );
+    assert_eq!(try_load(GOOD, &["Zc=1", "Zc=\"3 * 4\""]).unwrap().mount.z, 6.0);
 
     let found = try_load(GOOD, &["Zd=60"]).unwrap_err();
-    assert!(
-        found[0].message.contains("no parameter of that name"),
-        "{found:?}"
-    );
-    assert!(
-        found[0].help.as_ref().unwrap().contains("Zc, half"),
-        "{found:?}"
-    );
+    assert!(found[0].message.contains("no parameter of that name"), "{found:?}");
+    assert!(found[0].help.as_ref().unwrap().contains("Zc, half"), "{found:?}");
     let found = try_load(GOOD, &["Zc"]).unwrap_err();
-    assert!(
-        found[0].message.contains("no value") && found[0].help.is_some(),
-        "{found:?}"
-    );
+    assert!(found[0].message.contains("no value") && found[0].help.is_some(), "{found:?}");
     let found = try_load(GOOD, &["accuracy.tolerence=1"]).unwrap_err();
     assert_eq!(underlined(&found[0]), "1 tolerence");
     let found = try_load(GOOD, &["accuracy.tolerance=-1"]).unwrap_err();
     let place = found[0].place.as_ref().unwrap();
-    assert_eq!(
-        (place.file.as_str(), underlined(&found[0]).as_str()),
-        ("--set", "1 -1")
-    );
+    assert_eq!((place.file.as_str(), underlined(&found[0]).as_str()), ("--set", "1 -1"));
 }
 
 /// Whatever is done to a file, it loads or is refused with places that can be shown.
@@ -748,11 +524,8 @@ fn no_text_makes_it_stumble() {
     let mut refused = 0;
     for at in 0..GOOD.len() {
         for piece in ["", "\"", "[", "=", "\n", "ß", "-", "9e999"] {
-            let text = format!(
-                "{}{piece}{}",
-                &GOOD[..at],
-                &GOOD[at + usize::from(piece.is_empty())..]
-            );
+            let text =
+                format!("{}{piece}{}", &GOOD[..at], &GOOD[at + usize::from(piece.is_empty())..]);
             if let Err(found) = try_load(&text, &[]) {
                 refused += 1;
                 for finding in found.iter().filter(|finding| finding.place.is_some()) {
@@ -790,20 +563,10 @@ fn no_independent_fault_hides_another() {
             ("tcp = \"post\"", "tcp = \"pots\""),
             ("axis = [0, 0, 1]", "axis = [0, 0, 0]"),
             ("mount = [0, 0, \"half\"]", "mount = [0, 0, \"hlf\"]"),
-            (
-                "point = [0, 0, 0]\ncyclic = true",
-                "point = [0, 0, 0]\ntravel = [9, -9]",
-            ),
+            ("point = [0, 0, 0]\ncyclic = true", "point = [0, 0, 0]\ntravel = [9, -9]"),
             ("tolerance = 0.005", "tolerance = -1"),
         ],
-        &[
-            "22 max_fed",
-            "43 \"pots\"",
-            "13 0, 0, 0",
-            "9 \"hlf\"",
-            "21 [9, -9]",
-            "49 -1",
-        ],
+        &["22 max_fed", "43 \"pots\"", "13 0, 0, 0", "9 \"hlf\"", "21 [9, -9]", "49 -1"],
     );
     // Lines that are no TOML, apart from one another, and what else is wrong.
     assert_all(
@@ -816,18 +579,12 @@ fn no_independent_fault_hides_another() {
     );
     // A parameter without a value is told once, whatever uses it, and hides nothing.
     assert_all(
-        &[
-            ("Zc = 50.5", "Zc = \"1 / 0\""),
-            ("travel = [-450, 200]", "travel = [200, -450]"),
-        ],
+        &[("Zc = 50.5", "Zc = \"1 / 0\""), ("travel = [-450, 200]", "travel = [200, -450]")],
         &["5 \"1 / 0\"", "39 [200, -450]"],
     );
     // A table that is missing, and a value of another kind.
     assert_all(
-        &[
-            ("gauge = [0, 0, 400]", "gauge = true"),
-            ("dialect = \"fanuc\"\n", ""),
-        ],
+        &[("gauge = [0, 0, 400]", "gauge = true"), ("dialect = \"fanuc\"\n", "")],
         &["12 true", "41 [control]"],
     );
 }

@@ -21,8 +21,5 @@ use post_machine::description::Source;
 
 /// A machine file that is nowhere but here.
 fn source(name: &str, text: &str) -> Source {
-    Source {
-        name: name.to_owned(),
-        text: text.to_owned(),
-    }
+    Source { name: name.to_owned(), text: text.to_owned() }
 }

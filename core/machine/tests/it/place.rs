@@ -37,9 +37,7 @@ fn nearest_of_all(bodies: &[HalfSpace], wished: &Vector3<f64>, room: f64) -> Opt
     }
     found.retain(|point| bodies.iter().all(|body| body.room(point) >= room - 1e-6));
     let distance = |point: &Vector3<f64>| (point - wished).norm();
-    found
-        .into_iter()
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    found.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
 fn bodies(rng: &mut Rng) -> Vec<HalfSpace> {
@@ -47,10 +45,7 @@ fn bodies(rng: &mut Rng) -> Vec<HalfSpace> {
     (0..1 + rng.pick(14))
         .map(|_| {
             let normal = rng.direction() * rng.order(-0.5, 0.3);
-            HalfSpace {
-                normal,
-                most: normal.dot(&middle) + rng.range(-20.0, 30.0),
-            }
+            HalfSpace { normal, most: normal.dot(&middle) + rng.range(-20.0, 30.0) }
         })
         .collect()
 }
@@ -108,19 +103,13 @@ fn the_most_room_is_what_no_grid_beats() {
             let rooms = bodies.iter().map(|body| body.room(point));
             rooms.fold(f64::INFINITY, f64::min)
         };
-        assert!(
-            (room(&tight.point) - tight.room).abs() < 1e-4,
-            "round {round}"
-        );
+        assert!((room(&tight.point) - tight.room).abs() < 1e-4, "round {round}");
         assert!(!tight.between.is_empty());
         assert!(nearest_of_all(&bodies, &Vector3::zeros(), tight.room + 1e-3).is_none());
         for cell in 0..21 * 21 * 21 {
             let at = [cell % 21, cell / 21 % 21, cell / 441];
             let step = Vector3::from(at.map(|at| f64::from(at) * 20.0 - 200.0));
-            assert!(
-                room(&(tight.point + step)) <= tight.room + 1e-4,
-                "round {round}"
-            );
+            assert!(room(&(tight.point + step)) <= tight.room + 1e-4, "round {round}");
         }
     }
 }
@@ -143,10 +132,7 @@ fn few_decimals_and_a_way_down() {
 fn machine(name: &str, mount: Vector3<f64>) -> Machine {
     let path = post_testkit::repository().join(format!("machines/{name}.toml"));
     let text = std::fs::read_to_string(path).unwrap();
-    let source = Source {
-        name: name.to_owned(),
-        text,
-    };
+    let source = Source { name: name.to_owned(), text };
     let [x, y, z] = mount.into();
     let mount = post_machine::description::Setting::Mount([x, y, z]);
     load(source, &[mount], &mut |name| Err(name.to_owned())).unwrap()
@@ -213,10 +199,7 @@ fn a_point_leaves_to_the_mount_what_isometries_say() {
                 };
                 let (.., wanted) = wanted.iter().find(same).unwrap();
                 let said = end.body.room(&there.mount);
-                assert!(
-                    (said - wanted).abs() < 1e-8,
-                    "round {round}, {name}: {said} {wanted}"
-                );
+                assert!((said - wanted).abs() < 1e-8, "round {round}, {name}: {said} {wanted}");
             }
         }
     }
@@ -228,10 +211,7 @@ fn the_way_between_two_points_is_looked_at_where_the_tip_goes_straight() {
     let here = machine("dmu50", Vector3::zeros());
     let stands = reference(&here, 100.0);
     let turn = here.axes.iter().position(|axis| axis.name == "B").unwrap();
-    let tips = [
-        Vector3::new(80.0, 10.0, 30.0),
-        Vector3::new(81.0, 10.0, 30.0),
-    ];
+    let tips = [Vector3::new(80.0, 10.0, 30.0), Vector3::new(81.0, 10.0, 30.0)];
     let at = |t: f64| {
         let mut joints = Joints::default();
         joints[turn] = 0.2 + 1.4 * t;
@@ -244,16 +224,10 @@ fn the_way_between_two_points_is_looked_at_where_the_tip_goes_straight() {
     for step in 0..=100u32 {
         let joints = at(f64::from(step) / 100.0);
         for (joint, largest, left) in rooms(&here, &joints) {
-            let ends = room
-                .ends()
-                .filter(|end| (end.side.joint, end.side.largest) == (joint, largest));
-            let least = ends
-                .map(|end| end.body.room(&here.mount))
-                .fold(f64::INFINITY, f64::min);
-            assert!(
-                least < left + 0.05,
-                "axis {joint} at step {step}: {least} {left}"
-            );
+            let ends =
+                room.ends().filter(|end| (end.side.joint, end.side.largest) == (joint, largest));
+            let least = ends.map(|end| end.body.room(&here.mount)).fold(f64::INFINITY, f64::min);
+            assert!(least < left + 0.05, "axis {joint} at step {step}: {least} {left}");
         }
     }
 }

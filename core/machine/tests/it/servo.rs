@@ -95,31 +95,19 @@ fn what_the_file_says_arrives() {
     assert!(axis(&machine, "Y").servo.is_none());
     let servo = axis(&machine, "X").servo.as_deref().unwrap();
     assert_eq!(servo.place.as_ref().unwrap().line, 24);
-    let ServoModel::Loops(loops) = &servo.model else {
-        panic!("{servo:?}")
-    };
+    let ServoModel::Loops(loops) = &servo.model else { panic!("{servo:?}") };
     assert_eq!(loops.feedback, Feedback::Scale);
     assert_eq!((loops.kv, loops.velocity_time), (50.0, Some(0.02)));
     assert_eq!(loops.acceleration_feed_forward, 0.9);
     let current = loops.current.unwrap();
     assert_eq!((current.inductance, current.back_emf), (5.0, 0.8));
-    let Drive::Screw {
-        lead, table_mass, ..
-    } = loops.drive
-    else {
-        panic!("{loops:?}")
-    };
+    let Drive::Screw { lead, table_mass, .. } = loops.drive else { panic!("{loops:?}") };
     assert_eq!((lead, table_mass), (16.0, 450.0));
 
     let servo = axis(&machine, "C").servo.as_deref().unwrap();
     assert!(servo.rotary && servo.play_inside());
-    assert_eq!(
-        (servo.backlash, servo.friction.unwrap().coulomb),
-        (0.002, 15.0)
-    );
-    let ServoModel::Loops(loops) = &servo.model else {
-        panic!("{servo:?}")
-    };
+    assert_eq!((servo.backlash, servo.friction.unwrap().coulomb), (0.002, 15.0));
+    let ServoModel::Loops(loops) = &servo.model else { panic!("{servo:?}") };
     assert_eq!(loops.feedback, Feedback::Motor);
     assert!(loops.current.is_none() && loops.velocity_time.is_none());
 }
@@ -129,16 +117,11 @@ fn what_the_file_says_arrives() {
 fn stiffnesses_stand_in_a_row() {
     let machine = try_load(LOOPS).unwrap();
     let servo = axis(&machine, "X").servo.as_deref().unwrap();
-    let ServoModel::Loops(loops) = &servo.model else {
-        panic!("{servo:?}")
-    };
+    let ServoModel::Loops(loops) = &servo.model else { panic!("{servo:?}") };
     let mechanics = loops.drive.mechanics();
     // 1/180e6 + 0.016²/(4π²·8000) = 5.555556e-9 + 8.105695e-10 m/N.
     let stiffness = mechanics.stiffness.unwrap();
-    assert!(
-        (stiffness / 1.570_814_3e8 - 1.0).abs() < 1e-7,
-        "{stiffness}"
-    );
+    assert!((stiffness / 1.570_814_3e8 - 1.0).abs() < 1e-7, "{stiffness}");
     // sqrt(1.5708143e8/450) = 590.821 rad/s.
     let frequency = mechanics.natural_frequency().unwrap();
     assert!((frequency - 590.821).abs() < 1e-3, "{frequency}");
@@ -161,13 +144,7 @@ fn a_file_that_extends_another_says_what_differs() {
     let ServoModel::Loops(loops) = &axis(&machine, "C").servo.as_ref().unwrap().model else {
         panic!()
     };
-    assert_eq!(
-        loops.drive,
-        Drive::Direct {
-            load: 2.0,
-            load_damping: 0.0
-        }
-    );
+    assert_eq!(loops.drive, Drive::Direct { load: 2.0, load_damping: 0.0 });
 }
 
 /// Parameters are names of the user's own: none stands in another's place.
@@ -176,10 +153,8 @@ fn a_parameter_takes_no_other_away() {
     let parent =
         format!("{BARE}{LOOPS}").replace("heavy = 450", "heavy = 450\ndirect = 2\nplane = 1");
     let text = "extends = \"parent\"\n[parameters]\ngear = 3\ndistance = 4\n[servo.X.loops.screw]\ntable_mass = \"direct * plane + gear + distance\"\n";
-    let machine = load(source("m.toml", text), &[], &mut |_| {
-        Ok(source("parent.toml", &parent))
-    })
-    .unwrap();
+    let machine =
+        load(source("m.toml", text), &[], &mut |_| Ok(source("parent.toml", &parent))).unwrap();
     let mut servo = axis(&machine, "X").servo.clone().unwrap();
     assert_eq!(servo.parameter("table_mass").copied(), Some(9.0));
 }
@@ -189,9 +164,7 @@ fn a_parameter_takes_no_other_away() {
 fn numbers_of_any_size_come_to_an_end() {
     let mut seed = 7_u64;
     let mut next = |most: u64| {
-        seed = seed
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (seed >> 33) % most
     };
     let mut loaded = 0;
@@ -225,18 +198,8 @@ fn numbers_of_any_size_come_to_an_end() {
 /// A change of [`LOOPS`] (or what stands in its place), the line of the fault, and words of what is said.
 const REFUSED: &[(&str, &str, &str, &[&str])] = &[
     ("kv = 50", "kv = 0", "", &["kv is 0; it must be above zero"]),
-    (
-        "kv = 50",
-        "kw = 50",
-        "",
-        &["there is no key `kw`", "did you mean `kv`"],
-    ),
-    (
-        "kv = 50",
-        "",
-        "[servo.X.loops]",
-        &["[servo.X.loops] lacks kv"],
-    ),
+    ("kv = 50", "kw = 50", "", &["there is no key `kw`", "did you mean `kv`"]),
+    ("kv = 50", "", "[servo.X.loops]", &["[servo.X.loops] lacks kv"]),
     (
         "velocity_feed_forward = 1",
         "velocity_feed_forward = 3",
@@ -250,43 +213,18 @@ const REFUSED: &[(&str, &str, &str, &[&str])] = &[
         &["the current loop of [servo.X.loops] lacks resistance"],
     ),
     ("lead = 16", "lead = -16", "", &["lead is -16"]),
-    (
-        "table_mass = \"heavy\"",
-        "",
-        "[servo.X.loops.screw]",
-        &["lacks table_mass"],
-    ),
-    (
-        "[servo.X.loops.screw]",
-        "[servo.X.loops.gear]",
-        "axial_damping = 8000",
-        &["there is no key"],
-    ),
+    ("table_mass = \"heavy\"", "", "[servo.X.loops.screw]", &["lacks table_mass"]),
+    ("[servo.X.loops.screw]", "[servo.X.loops.gear]", "axial_damping = 8000", &["there is no key"]),
     (
         "[servo.C.loops.gear]\nratio = 90\ngear_stiffness = 1.5e6\ngear_damping = 1500\ntable_inertia = 12\n",
         "",
         "[servo.C.loops]",
         &["what drives C, a rotary axis?", "gear and direct"],
     ),
-    (
-        "gear_stiffness = 1.5e6\n",
-        "",
-        "gear_damping = 1500",
-        &["gear_damping", "rigid"],
-    ),
-    (
-        "coulomb = 15",
-        "width = 1",
-        "[servo.C.friction]",
-        &["[servo.C.friction] lacks coulomb"],
-    ),
+    ("gear_stiffness = 1.5e6\n", "", "gear_damping = 1500", &["gear_damping", "rigid"]),
+    ("coulomb = 15", "width = 1", "[servo.C.friction]", &["[servo.C.friction] lacks coulomb"]),
     ("backlash = 0.002", "backlash = -1", "", &["backlash is -1"]),
-    (
-        "kv = 50",
-        "kv = 800",
-        "[servo.X.loops]",
-        &["not stable", "j", "a smaller kv"],
-    ),
+    ("kv = 50", "kv = 800", "[servo.X.loops]", &["not stable", "j", "a smaller kv"]),
     (
         "axial_stiffness = 180\ntorsional_stiffness = 8000",
         "axial_stiffness = 1e10",
@@ -299,12 +237,7 @@ const REFUSED: &[(&str, &str, &str, &[&str])] = &[
         "[servo.X.loops]",
         &["pole of", "10000000 are possible", "mH"],
     ),
-    (
-        "[servo.X.loops]",
-        "[servo.W.loops]",
-        "",
-        &["no axis W", "its axes are"],
-    ),
+    ("[servo.X.loops]", "[servo.W.loops]", "", &["no axis W", "its axes are"]),
 ];
 
 #[test]
@@ -313,17 +246,9 @@ fn slips_are_refused_by_their_line() {
         assert!(LOOPS.contains(text), "{text}");
         let faults = try_load(&LOOPS.replacen(text, instead, 1)).unwrap_err();
         let fault = &faults[0];
-        let told = format!(
-            "{} | {}",
-            fault.message,
-            fault.help.as_deref().unwrap_or("")
-        );
+        let told = format!("{} | {}", fault.message, fault.help.as_deref().unwrap_or(""));
         let line = if line.is_empty() { instead } else { line };
-        assert_eq!(
-            fault.place.as_ref().unwrap().text,
-            *line,
-            "{instead}: {told}"
-        );
+        assert_eq!(fault.place.as_ref().unwrap().text, *line, "{instead}: {told}");
         for words in *said {
             assert!(told.contains(words), "{instead}: {told}");
         }
@@ -332,10 +257,7 @@ fn slips_are_refused_by_their_line() {
 
 /// A servo of X, and words of the refusal.
 const OTHERS: &[(&str, &str)] = &[
-    (
-        "[servo.X]\nbacklash = 1",
-        "does not say how the servo behaves",
-    ),
+    ("[servo.X]\nbacklash = 1", "does not say how the servo behaves"),
     (
         "[servo.X.transfer]\nnumerator = [1]\ndenominator = [1, 1]\n[servo.X.pid]\nkp = 1",
         "more than one way",
@@ -345,14 +267,8 @@ const OTHERS: &[(&str, &str)] = &[
         "[servo.X.transfer]\nnumerator = [49]\ndenominator = [1, 50]",
         "at 0.98 of where it is commanded",
     ),
-    (
-        "[servo.X.transfer]\nnumerator = [1, 2, 1]\ndenominator = [0, 1, 1]",
-        "higher order",
-    ),
-    (
-        "[servo.X.transfer]\nnumerator = [1]\ndenominator = [1]",
-        "order 0",
-    ),
+    ("[servo.X.transfer]\nnumerator = [1, 2, 1]\ndenominator = [0, 1, 1]", "higher order"),
+    ("[servo.X.transfer]\nnumerator = [1]\ndenominator = [1]", "order 0"),
     (
         "[servo.X.transfer]\nnumerator = [1]\ndenominator = [1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]",
         "order 13",
@@ -362,14 +278,8 @@ const OTHERS: &[(&str, &str)] = &[
         "[servo.X.transfer]\nnumerator = [4]\ndenominator = [1, 0, 4]",
         "not stable: of its poles, 0 + 2j, 0 - 2j 1/s",
     ),
-    (
-        "[servo.X.transfer]\nnumerator = [0]\ndenominator = [1, 0]",
-        "not stable",
-    ),
-    (
-        "[servo.X.pid]\nkp = 1\nki = 1000\ngain = 1\ninertia = 1",
-        "not stable",
-    ),
+    ("[servo.X.transfer]\nnumerator = [0]\ndenominator = [1, 0]", "not stable"),
+    ("[servo.X.pid]\nkp = 1\nki = 1000\ngain = 1\ninertia = 1", "not stable"),
     (
         "[servo.X.transfer]\nnumerator = [1]\ndenominator = [1, 1]\n[servo.X.friction]\ncoulomb = 5",
         "no table is known",

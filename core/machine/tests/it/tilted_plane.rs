@@ -58,10 +58,7 @@ fn angles_of_every_convention_turn_back_into_their_frame() {
                 true => [found[0] + half, -found[1], found[2] + half],
                 false => [found[0] + half, half - found[1], found[2] + half],
             };
-            assert!(
-                (turned(order, other) - back).norm() < 1e-12,
-                "{convention:?}"
-            );
+            assert!((turned(order, other) - back).norm() < 1e-12, "{convention:?}");
         }
     }
 }

@@ -95,11 +95,6 @@ impl AxesPeaks {
 fn raise(peak: &mut Peak, value: f64, (time, at): (f64, &At)) {
     let value = value.abs();
     if value > peak.value {
-        *peak = Peak {
-            value,
-            time,
-            line: at.line,
-            ..Peak::default()
-        };
+        *peak = Peak { value, time, line: at.line, ..Peak::default() };
     }
 }

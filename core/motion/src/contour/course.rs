@@ -116,13 +116,7 @@ impl Course {
 
     fn asked(&self, foot: Foot, tool: &Pose) -> Asked {
         let tip = self.path.point(foot);
-        Asked {
-            at: self.path.at(foot),
-            tip,
-            distance: (tip - tool.tip).norm(),
-            foot,
-            way: 0.0,
-        }
+        Asked { at: self.path.at(foot), tip, distance: (tip - tool.tip).norm(), foot, way: 0.0 }
     }
 }
 

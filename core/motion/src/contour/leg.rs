@@ -53,11 +53,9 @@ impl Leg {
                 let [start, end] = [from, to].map(|pose| pose.tip + pose.axis * self.along);
                 start + (end - start) * t - axis * self.along
             }
-            Way::Arc {
-                centre,
-                normal,
-                sweep,
-            } => on_arc([from.tip, to.tip], *centre, *normal, *sweep, t),
+            Way::Arc { centre, normal, sweep } => {
+                on_arc([from.tip, to.tip], *centre, *normal, *sweep, t)
+            }
             Way::Spline(way) => way.at(t),
         };
         let edge = Vector3::zeros();

@@ -103,11 +103,7 @@ impl<'r> Contour<'r> {
         self.tasks += 1;
         if let Task::Move(go) = task {
             self.programmed.push(&Leg {
-                at: At {
-                    task: number,
-                    line: go.line,
-                    cuts: go.pace != Pace::Rapid,
-                },
+                at: At { task: number, line: go.line, cuts: go.pace != Pace::Rapid },
                 way: go.way.clone(),
                 from: go.from.pose,
                 to: go.to.pose,
@@ -146,8 +142,7 @@ impl<'r> Contour<'r> {
             let jumped = jumps.partition_point(|jump| jump.time <= time);
             let (now, later) = jumps.split_at(jumped);
             jumps = later;
-            self.axes
-                .take(axes, (time, &at), points.period, [joints, actual], now);
+            self.axes.take(axes, (time, &at), points.period, [joints, actual], now);
             self.report.seconds = time;
             let commanded = points.poses[place];
             let number = points.first + place as u64;
@@ -215,11 +210,7 @@ impl<'r> Contour<'r> {
         };
         // Two set-points at the end are no knots yet, but where the path ends.
         let behind = lead + if lead == 0 { 0 } else { 2 };
-        while self
-            .pending
-            .front()
-            .is_some_and(|first| first.number + behind <= last)
-        {
+        while self.pending.front().is_some_and(|first| first.number + behind <= last) {
             let Some(point) = self.pending.pop_front() else {
                 break;
             };
@@ -233,11 +224,7 @@ impl<'r> Contour<'r> {
         let nearest = self.path.nearest(&actual, commanded);
         let at = nearest.at;
         let axis = angle(&actual.axis, &nearest.axis);
-        let commanded = Pose {
-            tip: nearest.tip,
-            axis: nearest.axis,
-            edge: Vector3::zeros(),
-        };
+        let commanded = Pose { tip: nearest.tip, axis: nearest.axis, edge: Vector3::zeros() };
         let mut told = ContourPoint {
             time: point.time,
             at,
@@ -272,11 +259,7 @@ impl Contour<'_> {
         let mut most = Apart::default();
         for place in 0..self.path.passed.len() {
             let Passed { tip, axis, way } = self.path.passed[place];
-            let pose = Pose {
-                tip,
-                axis,
-                edge: Vector3::zeros(),
-            };
+            let pose = Pose { tip, axis, edge: Vector3::zeros() };
             left -= way;
             most = most.or(self.apart(&pose, way));
         }
@@ -309,9 +292,7 @@ impl Contour<'_> {
             (programmed.tip, programmed.axis) = (asked.tip, axis);
         }
         if let Some(reference) = &mut self.reference {
-            let program = self
-                .asked
-                .follow(&programmed, way, &mut || reference.next());
+            let program = self.asked.follow(&programmed, way, &mut || reference.next());
             apart.program = program.map(|program| program.distance);
         }
         apart

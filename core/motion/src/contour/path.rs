@@ -184,19 +184,11 @@ impl Path {
                     true => 0.0,
                     false => (wanted - length) / (next.length - length),
                 };
-                return Foot {
-                    knot,
-                    share,
-                    ..foot
-                };
+                return Foot { knot, share, ..foot };
             }
             knot += 1;
         }
-        Foot {
-            knot,
-            share: 0.0,
-            ..foot
-        }
+        Foot { knot, share: 0.0, ..foot }
     }
 
     /// What asks for a place: a piece is asked for by the knot at its end.
@@ -208,10 +200,7 @@ impl Path {
     /// The place where a set-point stands.
     fn place_of(&self, number: u64) -> Foot {
         let knot = self.knots.partition_point(|knot| knot.number <= number);
-        Foot {
-            knot: knot.saturating_sub(1),
-            ..Foot::default()
-        }
+        Foot { knot: knot.saturating_sub(1), ..Foot::default() }
     }
 
     /// The piece behind a knot; none behind the last.

@@ -31,10 +31,7 @@ pub(super) struct Five {
 impl Five {
     /// All of them stand here.
     pub fn all_at(point: &Vector3<f64>) -> Self {
-        Self {
-            last: *point,
-            ..Self::default()
-        }
+        Self { last: *point, ..Self::default() }
     }
 
     /// Takes the next one, and says the tangents at the middle one of the five that there are now.
@@ -53,10 +50,7 @@ impl Five {
         let [(third, square), (next, next_square)] = self.thirds;
         let bend = (clipped(third, next_square) + clipped(next, square)) * (1.0 / 12.0);
         let [before, behind, _] = self.chords;
-        [
-            held(before + half - bend, &before),
-            held(behind - half - bend, &behind),
-        ]
+        [held(before + half - bend, &before), held(behind - half - bend, &behind)]
     }
 }
 

@@ -50,12 +50,7 @@ pub struct Spread {
 
 impl Default for Spread {
     fn default() -> Self {
-        Self {
-            count: 0,
-            peak: Peak::default(),
-            squares: 0.0,
-            bins: vec![0; OCTAVES * PARTS],
-        }
+        Self { count: 0, peak: Peak::default(), squares: 0.0, bins: vec![0; OCTAVES * PARTS] }
     }
 }
 
@@ -114,24 +109,16 @@ mod tests {
     #[test]
     fn percentiles_are_too_large_by_a_sixteenth_at_most() {
         let mut spread = Spread::default();
-        let mut values: Vec<f64> = (1..=5000)
-            .map(|n| 1e-6 * libm::pow(1.002, f64::from(n)))
-            .collect();
+        let mut values: Vec<f64> =
+            (1..=5000).map(|n| 1e-6 * libm::pow(1.002, f64::from(n))).collect();
         for (place, value) in values.iter().enumerate() {
-            spread.take(Peak {
-                value: *value,
-                time: place as f64,
-                ..Peak::default()
-            });
+            spread.take(Peak { value: *value, time: place as f64, ..Peak::default() });
         }
         values.sort_by(f64::total_cmp);
         for share in [0.001, 0.1, 0.5, 0.9, 0.99, 0.999, 1.0] {
             let truth = values[(libm::ceil(5000.0 * share) as usize).max(1) - 1];
             let told = spread.percentile(share);
-            assert!(
-                truth <= told && told <= truth * (1.0 + 1.0 / 16.0),
-                "{share}: {truth} {told}"
-            );
+            assert!(truth <= told && told <= truth * (1.0 + 1.0 / 16.0), "{share}: {truth} {told}");
         }
         assert_eq!(spread.peak.time, 4999.0);
         let squares: f64 = values.iter().map(|value| value * value).sum();

@@ -24,9 +24,7 @@ const MOST: f64 = 1e4;
 /// Cosines of the multiples of 30 degrees.
 const COSINES: [f64; 12] = {
     let root = 0.866_025_403_784_438_6;
-    [
-        1.0, root, 0.5, 0.0, -0.5, -root, -1.0, -root, -0.5, 0.0, 0.5, root,
-    ]
+    [1.0, root, 0.5, 0.0, -0.5, -root, -1.0, -root, -0.5, 0.0, 0.5, root]
 };
 
 /// How much the value at each of the first four places has of each coefficient; those behind the middle have as much, of
@@ -56,15 +54,7 @@ const STEEPEST: [[f64; 3]; DEGREE + 1] = {
     while k <= DEGREE {
         let square = (k * k) as f64;
         let second = square * (square - 1.0) / 3.0;
-        steepest[k] = [
-            square,
-            second,
-            if k > 2 {
-                second * (square - 4.0) / 5.0
-            } else {
-                0.0
-            },
-        ];
+        steepest[k] = [square, second, if k > 2 { second * (square - 4.0) / 5.0 } else { 0.0 }];
         k += 1;
     }
     steepest

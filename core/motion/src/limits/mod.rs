@@ -139,18 +139,9 @@ pub fn of(task: &Move, limits: &AxisLimits) -> Result<MoveLimits, Unreachable> {
         found.tip_ends = [way; 2];
     }
     if !straight_axes || !straight_tip {
-        fit::over(
-            task,
-            coordinates(task, limits),
-            [!straight_axes, !straight_tip],
-            &mut found,
-        )?;
+        fit::over(task, coordinates(task, limits), [!straight_axes, !straight_tip], &mut found)?;
     }
-    if let Way::Arc {
-        centre,
-        normal,
-        sweep,
-    } = &task.way
+    if let Way::Arc { centre, normal, sweep } = &task.way
         && !turns
     {
         let (arm, _) = crate::path::arm_and_height(task.from.pose.tip, *centre, *normal);
@@ -162,10 +153,7 @@ pub fn of(task: &Move, limits: &AxisLimits) -> Result<MoveLimits, Unreachable> {
 
 /// The coordinates of the tip that stand for axes on this move; none on one whose axes are led by themselves.
 fn coordinates<'l>(task: &Move, limits: &'l AxisLimits) -> Option<&'l [Option<usize>; MAX_AXES]> {
-    limits
-        .programmed
-        .as_ref()
-        .filter(|_| task.keeps_tip && task.way != Way::Axes)
+    limits.programmed.as_ref().filter(|_| task.keeps_tip && task.way != Way::Axes)
 }
 
 /// How large what is limited gets for each place where the tip goes round an ellipse of these half-axes, the rotary axes
@@ -179,9 +167,7 @@ fn circle(
     let turns = task.solver.chain().turns(&from.joints);
     let place = |way: Vector3<f64>| {
         let mut joints = from.joints;
-        task.solver
-            .place(from.pose.tip + way, &mut joints, &turns)
-            .map(|()| joints)
+        task.solver.place(from.pose.tip + way, &mut joints, &turns).map(|()| joints)
     };
     // Where nothing turns the axes go linearly with the tip.
     let [rest, first_at, second_at] = [place(Vector3::zeros())?, place(first)?, place(second)?];

@@ -35,13 +35,8 @@ fn task(machine: &Machine, way: Way, tips: [[f64; 3]; 2], angles: [[f64; 2]; 2])
             joints[place] = angle.to_radians();
         }
         let turns = solver.chain().turns(&joints);
-        solver
-            .place(Vector3::from(tips[end]), &mut joints, &turns)
-            .unwrap();
-        Stance {
-            joints,
-            pose: solver.chain().forward(&joints),
-        }
+        solver.place(Vector3::from(tips[end]), &mut joints, &turns).unwrap();
+        Stance { joints, pose: solver.chain().forward(&joints) }
     });
     let [from, to] = stances;
     Move {
@@ -58,10 +53,7 @@ fn task(machine: &Machine, way: Way, tips: [[f64; 3]; 2], angles: [[f64; 2]; 2])
 
 /// What is limited at `t`, and the tip.
 fn at(task: &Move, limits: &AxisLimits, t: f64, near: &Joints) -> [f64; VALUES] {
-    let stance = task
-        .way
-        .stance_at(&task.solver, [&task.from, &task.to], t, near)
-        .unwrap();
+    let stance = task.way.stance_at(&task.solver, [&task.from, &task.to], t, near).unwrap();
     let mut values = [0.0; VALUES];
     values[..MAX_AXES].copy_from_slice(&stance.joints);
     values[MAX_AXES..].copy_from_slice(stance.pose.tip.as_slice());
@@ -89,10 +81,7 @@ fn dense(task: &Move, limits: &AxisLimits) -> ([[f64; VALUES]; 3], [[f64; VALUES
             near.copy_from_slice(&row[..MAX_AXES]);
         } else {
             let ends = [&task.from, &task.to];
-            near = task
-                .way
-                .joints_at(&task.solver, ends, place as f64 * step, &near)
-                .unwrap();
+            near = task.way.joints_at(&task.solver, ends, place as f64 * step, &near).unwrap();
         }
         rows.push(row);
     }
@@ -151,9 +140,7 @@ fn check(what: &str, machine: &Machine, task: &Move) {
                 assert!(most <= bound * 1.001 + noise, "{name}");
                 assert!(bound <= most * LOOSE[order] + noise, "{name}: too large");
             }
-            let tip = (0..3)
-                .map(|row| most[order][MAX_AXES + row])
-                .fold(0.0, f64::max);
+            let tip = (0..3).map(|row| most[order][MAX_AXES + row]).fold(0.0, f64::max);
             assert!(
                 tip <= found.tip[order] * 1.001 + noise,
                 "{what}: tip {} {tip}",
@@ -177,12 +164,7 @@ fn check(what: &str, machine: &Machine, task: &Move) {
 #[test]
 fn bounds_hold_along_every_way() {
     let tips = [[10.0, 20.0, 30.0], [40.0, -10.0, 55.0]];
-    for name in [
-        "ac-trunnion",
-        "head-head",
-        "nutating-table",
-        "head-table-bc",
-    ] {
+    for name in ["ac-trunnion", "head-head", "nutating-table", "head-table-bc"] {
         let machine = machine(name);
         for angles in [
             [[5.0, -10.0], [5.0, -10.0]],
@@ -201,10 +183,7 @@ fn bounds_hold_along_every_way() {
             let helix = task(
                 &machine,
                 circle,
-                [
-                    [45.0, 5.0, 30.0],
-                    [10.857_864_376_269_05, -9.142_135_623_730_95, 40.0],
-                ],
+                [[45.0, 5.0, 30.0], [10.857_864_376_269_05, -9.142_135_623_730_95, 40.0]],
                 angles,
             );
             check(&format!("{name} arc"), &machine, &helix);
@@ -227,11 +206,6 @@ fn bounds_hold_along_every_way() {
     }
     // On a great circle away from the pole, by the nearest solution.
     let machine = machine("ac-trunnion");
-    let vectors = task(
-        &machine,
-        Way::TipAndAxis,
-        tips,
-        [[20.0, -30.0], [60.0, -40.0]],
-    );
+    let vectors = task(&machine, Way::TipAndAxis, tips, [[20.0, -30.0], [60.0, -40.0]]);
     check("vectors", &machine, &vectors);
 }

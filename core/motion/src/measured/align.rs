@@ -92,22 +92,15 @@ pub fn align(
         return Err(Unaligned::Short(FEWEST));
     }
     let weighted = axes.iter();
-    let weighted: Vec<(usize, f64)> = weighted
-        .filter_map(|axis| Some((*axis, weight(predicted, log, *axis)?)))
-        .collect();
+    let weighted: Vec<(usize, f64)> =
+        weighted.filter_map(|axis| Some((*axis, weight(predicted, log, *axis)?))).collect();
     let moving: Vec<usize> = weighted.iter().map(|(axis, _)| *axis).collect();
     let began = log.begins - predicted.begins;
     let tried = shifts(predicted, log, &weighted);
-    let both = Both {
-        predicted,
-        axes: &moving,
-        step: predicted.period.max(log.period),
-    };
+    let both = Both { predicted, axes: &moving, step: predicted.period.max(log.period) };
     let rows = Rows::of(log, ROWS_COMPARED);
-    let tried: Vec<Settled> = tried
-        .into_iter()
-        .map(|shift| both.settled(&rows, zeros, began + shift))
-        .collect();
+    let tried: Vec<Settled> =
+        tried.into_iter().map(|shift| both.settled(&rows, zeros, began + shift)).collect();
     let (best, rival) = both.best(&rows, &tried).ok_or(Unaligned::Still)?;
     let fixed = both.needed(&rows, zeros, best.shift);
     let rows = Rows::of(log, ROWS_SETTLED);
@@ -150,9 +143,7 @@ impl Both<'_> {
     /// The shift that leaves least, and another one that leaves hardly more.
     fn best<'t>(&self, rows: &Rows, tried: &'t [Settled]) -> Option<(&'t Settled, Option<f64>)> {
         let spreads = self.spreads(tried);
-        let all = tried
-            .iter()
-            .map(|one| (one, self.left(rows, one, &spreads)));
+        let all = tried.iter().map(|one| (one, self.left(rows, one, &spreads)));
         let mut all: Vec<(&Settled, f64)> = all.collect();
         all.sort_by(|one, other| one.1.total_cmp(&other.1));
         let (best, least) = *all.first()?;
@@ -174,8 +165,7 @@ impl Both<'_> {
         let mut needed = *zeros;
         let free = |zeros: &[Option<f64>; MAX_AXES]| {
             let axes = self.axes.iter().copied();
-            axes.filter(|axis| zeros[*axis].is_none())
-                .collect::<Vec<usize>>()
+            axes.filter(|axis| zeros[*axis].is_none()).collect::<Vec<usize>>()
         };
         // All of them first: a zero of one axis may stand for that of another.
         let one_by_one = free(zeros).into_iter().map(|axis| vec![axis]);

@@ -111,11 +111,8 @@ pub(super) fn settled(
     shift: f64,
     step: f64,
 ) -> Settled {
-    let mut found = Settled {
-        shift,
-        deviation: f64::INFINITY,
-        levels: [AxisLevel::default(); MAX_AXES],
-    };
+    let mut found =
+        Settled { shift, deviation: f64::INFINITY, levels: [AxisLevel::default(); MAX_AXES] };
     for _ in 0..STEPS {
         let rows = off(predicted, rows, found.shift);
         let (mut slope, mut curve) = (0.0, 0.0);
@@ -153,10 +150,7 @@ pub(super) fn level(rows: &[Off], axis: usize, zero: Option<f64>) -> AxisLevel {
     for by in &mut by {
         *by = (*by - zero).abs();
     }
-    AxisLevel {
-        zero,
-        spread: (OF_MEDIAN * median(&mut by)).max(FINEST),
-    }
+    AxisLevel { zero, spread: (OF_MEDIAN * median(&mut by)).max(FINEST) }
 }
 
 /// Slope and curve of the squares over the shift, in standard deviations; a zero that is free goes along.
@@ -233,11 +227,7 @@ pub(super) fn likeness(rows: &[Off], axis: usize, level: AxisLevel) -> f64 {
     let log_variance = mean(&|row| (logged(row) - log_centre) * (logged(row) - log_centre));
     let covariance = mean(&|row| (predicted(row) - centre) * (logged(row) - log_centre));
     let variances = variance + log_variance;
-    if variances > 0.0 {
-        2.0 * covariance / variances
-    } else {
-        0.0
-    }
+    if variances > 0.0 { 2.0 * covariance / variances } else { 0.0 }
 }
 
 fn median(values: &mut [f64]) -> f64 {

@@ -86,11 +86,7 @@ impl Means {
             variance += so_far[1] / count.max(1) as f64;
             all.push(sums);
         }
-        Self {
-            values,
-            sums: all,
-            variance,
-        }
+        Self { values, sums: all, variance }
     }
 
     fn count(&self) -> usize {
@@ -137,10 +133,7 @@ fn products([predicted, log]: &[Means; 2]) -> Vec<[f64; 2]> {
             let [[a, b], [c, d]] = [both[place], both[(count - place) % count]];
             // Of p + i·l: P = (Z[k] + Z*[-k])/2, L = (Z[k] - Z*[-k])/(2i). P*·L, conjugated, so that forth is back.
             let [p, l] = [[a + c, b - d], [b + d, c - a]].map(|[re, im]| [re / 2.0, im / 2.0]);
-            *sum = [
-                sum[0] + p[0] * l[0] + p[1] * l[1],
-                sum[1] - (p[0] * l[1] - p[1] * l[0]),
-            ];
+            *sum = [sum[0] + p[0] * l[0] + p[1] * l[1], sum[1] - (p[0] * l[1] - p[1] * l[0])];
         }
     }
     transform(&mut sums, &turns);

@@ -12,11 +12,7 @@ const FOUND: [Option<f64>; MAX_AXES] = [None; MAX_AXES];
 fn path(time: f64) -> Joints {
     let time = time.clamp(0.0, 20.0);
     // It stands from 9 to 11.
-    let time = if time < 9.0 {
-        time
-    } else {
-        f64::max(time - 2.0, 9.0)
-    };
+    let time = if time < 9.0 { time } else { f64::max(time - 2.0, 9.0) };
     let mut joints = Joints::default();
     joints[0] = 40.0 * libm::sin(TAU * time / 2.5);
     joints[1] = 3.0 * time + libm::sin(TAU * time / 1.25);
@@ -27,11 +23,7 @@ fn path(time: f64) -> Joints {
 fn track(begins: f64, period: f64, seconds: f64, of: impl FnMut(f64) -> Joints) -> Track {
     let count = (seconds / period).round() as usize + 1;
     let times = (0..count).map(|place| begins + place as f64 * period);
-    Track {
-        begins,
-        period,
-        joints: times.map(of).collect(),
-    }
+    Track { begins, period, joints: times.map(of).collect() }
 }
 
 const AXES: [usize; 5] = [0, 1, 2, 3, 4];
@@ -49,17 +41,10 @@ fn log(shift: f64, from: f64, period: f64, seconds: f64, noise: f64) -> Track {
 }
 
 fn check(found: &Alignment, shift: f64, within: f64, zeros_within: f64) {
-    assert!(
-        (found.shift - shift).abs() < within,
-        "{} is not {shift}: {found:?}",
-        found.shift
-    );
+    assert!((found.shift - shift).abs() < within, "{} is not {shift}: {found:?}", found.shift);
     let zeros = [(0, 250.0), (1, -3.5), (4, 1.25 * TAU)];
     for (axis, zero) in zeros {
-        assert!(
-            (found.zeros[axis] - zero).abs() < zeros_within,
-            "axis {axis}: {found:?}"
-        );
+        assert!((found.zeros[axis] - zero).abs() < zeros_within, "axis {axis}: {found:?}");
     }
     assert_eq!(found.zeros[2], 0.0);
 }
@@ -67,19 +52,13 @@ fn check(found: &Alignment, shift: f64, within: f64, zeros_within: f64) {
 #[test]
 fn a_shift_is_found_between_the_samples() {
     let predicted = track(0.0, 0.001, 20.0, path);
-    for (shift, period) in [
-        (0.0, 0.001),
-        (12.345_678, 0.001),
-        (-3.210_04, 0.004),
-        (1_000.007_3, 0.015),
-    ] {
+    for (shift, period) in
+        [(0.0, 0.001), (12.345_678, 0.001), (-3.210_04, 0.004), (1_000.007_3, 0.015)]
+    {
         let log = log(shift, 0.0, period, 20.0, 0.0);
         let found = align(&predicted, &log, &AXES, &FOUND).unwrap();
         check(&found, shift, 1e-7, 1e-6);
-        assert!(
-            found.correlation > 0.999_999 && found.rival.is_none(),
-            "{found:?}"
-        );
+        assert!(found.correlation > 0.999_999 && found.rival.is_none(), "{found:?}");
     }
 }
 
@@ -90,15 +69,9 @@ fn noise_moves_it_as_far_as_is_told() {
     let found = align(&predicted, &log, &AXES, &FOUND).unwrap();
     check(&found, 5.004_3, 4.0 * found.shift_deviation, 0.005);
     // Half of even noise of ±0.05 is within ±0.025; of 1334 samples that is known to 0.001 (standard deviation).
-    assert!(
-        (found.left[0] - 1.4826 * 0.05 / 2.0).abs() < 4e-3,
-        "{found:?}"
-    );
+    assert!((found.left[0] - 1.4826 * 0.05 / 2.0).abs() < 4e-3, "{found:?}");
     // X swings at 100 mm/s, so a sample says when it is to 0.3 ms, and 1300 of them to 10 µs.
-    assert!(
-        found.shift_deviation > 1e-6 && found.shift_deviation < 2e-5,
-        "{found:?}"
-    );
+    assert!(found.shift_deviation > 1e-6 && found.shift_deviation < 2e-5, "{found:?}");
 }
 
 #[test]
@@ -107,11 +80,7 @@ fn what_is_early_here_and_late_there_moves_no_zero() {
     // 0.3 s slower from the 14th second on: the path stands where it would in 5.7 s.
     let log = track(2.0, 0.001, 20.0, |time| {
         let time = time - 2.0;
-        path(if time < 14.0 {
-            time
-        } else {
-            14.0 + (time - 14.0) * 0.95
-        })
+        path(if time < 14.0 { time } else { 14.0 + (time - 14.0) * 0.95 })
     });
     let found = align(&predicted, &log, &AXES, &FOUND).unwrap();
     assert_eq!(found.zeros, Joints::default(), "{found:?}");
@@ -133,10 +102,7 @@ fn a_log_that_waits_before_and_behind() {
     let found = align(&predicted, &log, &AXES, &FOUND).unwrap();
     check(&found, 30.001, 1e-5, 1e-4);
     let [from, to] = found.overlap;
-    assert!(
-        (from - 30.001).abs() < 0.003 && (to - 50.001).abs() < 0.003,
-        "{found:?}"
-    );
+    assert!((from - 30.001).abs() < 0.003 && (to - 50.001).abs() < 0.003, "{found:?}");
 }
 
 #[test]
@@ -164,25 +130,16 @@ fn what_swings_alone_has_rivals() {
 fn what_cannot_be_laid_over_is_refused() {
     let predicted = track(0.0, 0.001, 20.0, path);
     let still = track(0.0, 0.001, 20.0, |_| Joints::default());
-    assert_eq!(
-        align(&predicted, &still, &AXES, &FOUND),
-        Err(Unaligned::Still)
-    );
+    assert_eq!(align(&predicted, &still, &AXES, &FOUND), Err(Unaligned::Still));
     let short = track(0.0, 0.001, 0.003, path);
-    assert_eq!(
-        align(&predicted, &short, &AXES, &FOUND),
-        Err(Unaligned::Short(8))
-    );
+    assert_eq!(align(&predicted, &short, &AXES, &FOUND), Err(Unaligned::Short(8)));
     let other = track(0.0, 0.001, 20.0, |time| {
         let mut joints = Joints::default();
         joints[0] = libm::sin(97.0 * time * time);
         joints
     });
     let found = align(&predicted, &other, &AXES, &FOUND);
-    assert!(
-        matches!(&found, Err(Unaligned::Unlike(best)) if best.correlation < 0.5),
-        "{found:?}"
-    );
+    assert!(matches!(&found, Err(Unaligned::Unlike(best)) if best.correlation < 0.5), "{found:?}");
 }
 
 #[test]
@@ -199,10 +156,7 @@ fn samples_that_come_late_are_put_on_a_grid() {
         assert!((joints[0] - wanted[0]).abs() < 0.02, "{place}");
     }
     let exact: Vec<f64> = (0..1000).map(|place| 0.015 * f64::from(place)).collect();
-    assert_eq!(
-        Track::of_samples(&exact, &joints, 0.015).joints[..],
-        joints[..]
-    );
+    assert_eq!(Track::of_samples(&exact, &joints, 0.015).joints[..], joints[..]);
 }
 
 #[test]
@@ -318,11 +272,7 @@ fn random_shifts_are_found_or_said_to_be_one_of_several() {
             _ => between(1.0, 20.0),
         };
         let parts: [[f64; 3]; 4] = std::array::from_fn(|part| {
-            [
-                between(2.0, 30.0),
-                (part + 1) as f64 * TAU * cycles / seconds,
-                between(0.0, TAU),
-            ]
+            [between(2.0, 30.0), (part + 1) as f64 * TAU * cycles / seconds, between(0.0, TAU)]
         });
         let other = [between(1.0, 9.0), between(1.0, 9.0)];
         let motion = |time: f64| {

@@ -23,20 +23,14 @@ impl Track {
     /// cubic through their neighbours has there.
     pub fn of_samples(times: &[f64], joints: &[Joints], period: f64) -> Self {
         let Some((first, last)) = times.first().zip(times.last()) else {
-            return Self {
-                period,
-                ..Self::default()
-            };
+            return Self { period, ..Self::default() };
         };
         let count = libm::floor((last - first) / period + ON_GRID) as usize + 1;
         let time = |place: usize| first + place as f64 * period;
         let mut from = 0;
         let joints = (0..count).map(|place| {
             let time = time(place);
-            if times
-                .get(place)
-                .is_some_and(|sample| (sample - time).abs() <= ON_GRID * period)
-            {
+            if times.get(place).is_some_and(|sample| (sample - time).abs() <= ON_GRID * period) {
                 return joints[place];
             }
             while from + 2 < times.len() && times[from + 1] <= time {
@@ -44,11 +38,7 @@ impl Track {
             }
             between(times, joints, from, time)
         });
-        Self {
-            begins: *first,
-            period,
-            joints: joints.collect(),
-        }
+        Self { begins: *first, period, joints: joints.collect() }
     }
 
     /// Time of the one at `place`, s.

@@ -64,10 +64,7 @@ impl Way {
             return on_great_circle(ends, tip, t);
         }
         if !turns(chain, ends) {
-            return Pose {
-                tip,
-                ..ends[1].pose
-            };
+            return Pose { tip, ..ends[1].pose };
         }
         // Rotary axes alone say where the tool points.
         let pose = chain.forward(&joints_between(ends, t));
@@ -80,11 +77,7 @@ impl Way {
         Some(match self {
             Self::Axes => return None,
             Self::Tip | Self::TipAndAxis => from + (to - from) * t,
-            Self::Arc {
-                centre,
-                normal,
-                sweep,
-            } => on_arc([from, to], *centre, *normal, *sweep, t),
+            Self::Arc { centre, normal, sweep } => on_arc([from, to], *centre, *normal, *sweep, t),
             Self::Spline(way) => way.at(t),
         })
     }

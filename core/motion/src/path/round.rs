@@ -57,12 +57,7 @@ pub struct GreatCircle {
 impl GreatCircle {
     /// From one to the other.
     pub fn new(from: Vector3<f64>, to: Vector3<f64>) -> Self {
-        let mut circle = Self {
-            from,
-            to,
-            about: None,
-            angle: 0.0,
-        };
+        let mut circle = Self { from, to, about: None, angle: 0.0 };
         if from == to {
             return circle;
         }

@@ -30,16 +30,9 @@ impl Discrete {
     ) -> Option<Self> {
         let order = a.nrows();
         let mut whole = DMatrix::zeros(order + 3, order + 3);
-        whole
-            .view_mut((0, 0), (order, order))
-            .copy_from(&(a * step));
-        for (place, column) in [value * step, rate.clone(), force * step]
-            .iter()
-            .enumerate()
-        {
-            whole
-                .view_mut((0, order + place), (order, 1))
-                .copy_from(column);
+        whole.view_mut((0, 0), (order, order)).copy_from(&(a * step));
+        for (place, column) in [value * step, rate.clone(), force * step].iter().enumerate() {
+            whole.view_mut((0, order + place), (order, 1)).copy_from(column);
         }
         whole[(order, order + 1)] = 1.0;
         let sound = |part: &f64| libm::fabs(*part) < LARGEST;
@@ -126,11 +119,7 @@ impl<const N: usize> Stand<N> {
 /// Where a table stands that stood at `table` while the motor has gone to `motor`, with play between them.
 #[inline(always)]
 pub(super) fn play(table: f64, motor: f64, half_play: f64) -> f64 {
-    if half_play > 0.0 {
-        table.max(motor - half_play).min(motor + half_play)
-    } else {
-        motor
-    }
+    if half_play > 0.0 { table.max(motor - half_play).min(motor + half_play) } else { motor }
 }
 
 #[cfg(test)]

@@ -125,30 +125,20 @@ impl Follower {
                 "a period of set-points of {} s: above zero and up to {LONGEST_PERIOD} s are possible",
                 Short(period)
             );
-            return Err(Diagnostic::error("period", message)
-                .at(servo.place.clone())
-                .boxed());
+            return Err(Diagnostic::error("period", message).at(servo.place.clone()).boxed());
         }
         let space = StateSpace::of(servo);
-        let friction = servo
-            .friction
-            .is_some_and(|friction| friction.coulomb > 0.0);
+        let friction = servo.friction.is_some_and(|friction| friction.coulomb > 0.0);
         let play_inside = servo.backlash > 0.0 && servo.play_inside();
         let kernel = if friction || play_inside {
-            Stepped::new(servo, &space, period, output)
-                .map(Box::new)
-                .map(Kernel::SteppedEight)
+            Stepped::new(servo, &space, period, output).map(Box::new).map(Kernel::SteppedEight)
         } else {
             match space.order() {
-                0..=4 => Linear::new(servo, &space, period, output)
-                    .map(Box::new)
-                    .map(Kernel::Four),
-                5..=8 => Linear::new(servo, &space, period, output)
-                    .map(Box::new)
-                    .map(Kernel::Eight),
-                _ => Linear::new(servo, &space, period, output)
-                    .map(Box::new)
-                    .map(Kernel::Twelve),
+                0..=4 => Linear::new(servo, &space, period, output).map(Box::new).map(Kernel::Four),
+                5..=8 => {
+                    Linear::new(servo, &space, period, output).map(Box::new).map(Kernel::Eight)
+                }
+                _ => Linear::new(servo, &space, period, output).map(Box::new).map(Kernel::Twelve),
             }
         };
         let Some(kernel) = kernel else {

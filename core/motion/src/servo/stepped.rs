@@ -160,11 +160,7 @@ impl<const N: usize> Stepped<N> {
         for index in 0..count {
             let next = command(index);
             let change = next - self.stand.commanded;
-            add(
-                &mut self.stand.states,
-                &self.kink,
-                change - self.stand.last_change,
-            );
+            add(&mut self.stand.states, &self.kink, change - self.stand.last_change);
             let part = change / f64::from(self.count);
             for step in 0..self.count {
                 self.step(self.stand.commanded + part * f64::from(step), part);

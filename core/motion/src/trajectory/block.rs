@@ -19,10 +19,7 @@ pub(super) struct Block {
 
 impl Block {
     pub(super) fn ramp(&self) -> Ramp {
-        Ramp {
-            acceleration: self.acceleration,
-            jerk: self.jerk,
-        }
+        Ramp { acceleration: self.acceleration, jerk: self.jerk }
     }
 }
 

@@ -74,14 +74,9 @@ fn all<'a>(found: &'a MoveLimits, rules: &'a AxisLimits) -> impl Iterator<Item =
         velocity: f64::INFINITY,
         acceleration: rules.tip_acceleration,
         jerk: rules.tip_jerk,
-        by: [
-            TimeLimit::Feed,
-            TimeLimit::TipAcceleration,
-            TimeLimit::TipJerk,
-        ],
+        by: [TimeLimit::Feed, TimeLimit::TipAcceleration, TimeLimit::TipJerk],
     };
-    axes.chain([tip])
-        .filter(|limited| limited.derivatives.iter().any(|value| *value > 0.0))
+    axes.chain([tip]).filter(|limited| limited.derivatives.iter().any(|value| *value > 0.0))
 }
 
 impl Bounds {
@@ -144,12 +139,7 @@ impl Bounds {
             };
             least(change, by, along, acceleration);
             if second > 0.0 {
-                least(
-                    change,
-                    &mut bounds.by[1],
-                    hardest / (9.0 * second * rate),
-                    jerk,
-                );
+                least(change, &mut bounds.by[1], hardest / (9.0 * second * rate), jerk);
             }
             let spent = third * rate * rate * rate;
             let mixed = 3.0 * second * rate * bounds.acceleration;

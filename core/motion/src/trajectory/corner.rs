@@ -87,11 +87,7 @@ impl Junction {
             };
         };
         let rate = kink.rate(rules, blend);
-        let join = Self::Join {
-            ratio: kink.ratio,
-            rate,
-            jumps: kink.is_seen(),
-        };
+        let join = Self::Join { ratio: kink.ratio, rate, jumps: kink.is_seen() };
         let wanted = sides[0].whole.rate.min(sides[1].whole.rate / kink.ratio);
         let jerk = rules.limits_jerk();
         let Some(tolerance) = tolerance.filter(|_| rate < wanted || jerk && kink.is_seen()) else {
@@ -177,15 +173,10 @@ impl Junction {
 /// `rate`. Rates and lengths are those of the first move's parameter.
 fn around(sides: [Side; 2], ratio: f64, rate: f64, taken: f64) -> f64 {
     let half = |side: &Side, ratio: f64| {
-        let ramp = Ramp {
-            acceleration: side.whole.acceleration / ratio,
-            jerk: side.whole.jerk / ratio,
-        };
+        let ramp =
+            Ramp { acceleration: side.whole.acceleration / ratio, jerk: side.whole.jerk / ratio };
         let length = (0.5 / ratio - taken).max(0.0);
-        let top = ramp
-            .reach(rate, length)
-            .min(side.whole.rate / ratio)
-            .max(rate);
+        let top = ramp.reach(rate, length).min(side.whole.rate / ratio).max(rate);
         let level = (length - ramp.length(rate, top)).max(0.0);
         ramp.seconds(top - rate) + if top > 0.0 { level / top } else { 0.0 }
     };

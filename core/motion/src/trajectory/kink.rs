@@ -37,12 +37,7 @@ impl Kink {
         }
         let [out, into] = [sides[0].found.tip_ends[1], sides[1].found.tip_ends[0]];
         let tip = into * ratio - out;
-        Some(Self {
-            ratio,
-            change,
-            tip,
-            seen,
-        })
+        Some(Self { ratio, change, tip, seen })
     }
 
     /// More changes than rounding makes.
@@ -108,10 +103,7 @@ pub(super) fn of_axes(
     ratio: f64,
 ) -> Result<[Joints; 2], Unreachable> {
     let [out, into] = match rules.programmed {
-        None => [
-            [found[0].ends[1], found[0].bends[1]],
-            [found[1].ends[0], found[1].bends[0]],
-        ],
+        None => [[found[0].ends[1], found[0].bends[1]], [found[1].ends[0], found[1].bends[0]]],
         // What is limited are not the axes.
         Some(_) => [slopes(moves[0], true)?, slopes(moves[1], false)?],
     };
@@ -135,19 +127,14 @@ fn slopes(task: &Move, ends: bool) -> Result<[Joints; 2], Unreachable> {
     let mut near = stance.joints;
     let mut joints = |steps: f64| -> Result<Joints, Unreachable> {
         let stands = [&task.from, &task.to];
-        near = task
-            .way
-            .joints_at(&task.solver, stands, at + steps * sense, &near)?;
+        near = task.way.joints_at(&task.solver, stands, at + steps * sense, &near)?;
         Ok(near)
     };
     let points = [joints(0.0)?, joints(1.0)?, joints(2.0)?, joints(3.0)?];
     let weighed = |weights: [f64; 4], by: f64| {
         std::array::from_fn(|place| {
             let parts = weights.iter().zip(&points);
-            parts
-                .map(|(weight, joints)| weight * joints[place])
-                .sum::<f64>()
-                / by
+            parts.map(|(weight, joints)| weight * joints[place]).sum::<f64>() / by
         })
     };
     Ok([

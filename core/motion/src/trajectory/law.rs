@@ -77,10 +77,7 @@ pub(super) struct Law {
 impl Law {
     /// None yet; `programmed`: the programmed coordinates are limited, not the axes.
     pub fn new(programmed: bool) -> Self {
-        Self {
-            programmed,
-            ..Self::default()
-        }
+        Self { programmed, ..Self::default() }
     }
 
     /// Takes a move and says its number.
@@ -184,8 +181,7 @@ impl Law {
         let share = (covered / piece.length).clamp(0.0, 1.0);
         let task = self.task(piece.entry);
         let stand = |task: &Move, t: f64, near: &Joints| {
-            task.way
-                .stance_at(&task.solver, [&task.from, &task.to], t, near)
+            task.way.stance_at(&task.solver, [&task.from, &task.to], t, near)
         };
         match piece.span {
             Span::Along { from, to } => stand(task, from + (to - from) * share, near),

@@ -86,12 +86,7 @@ fn settle(ahead: &mut Envelope, done: usize, take: &mut dyn FnMut(Part)) {
         for (place, phase) in profile.phases().iter().enumerate() {
             let part =
                 usize::from(place >= counts[0]) + usize::from(place >= counts[0] + counts[1]);
-            take(Part {
-                block: ahead.first,
-                from,
-                phase: *phase,
-                why: whys[part],
-            });
+            take(Part { block: ahead.first, from, phase: *phase, why: whys[part] });
             from += phase.length(phase.seconds);
         }
         ahead.first += 1;
@@ -110,10 +105,7 @@ struct Corners {
 
 impl Corners {
     fn new(ahead: &Envelope) -> Self {
-        Self {
-            up: ahead.velocity == 0.0,
-            down: None,
-        }
+        Self { up: ahead.velocity == 0.0, down: None }
     }
 
     /// Why the ramp up, the cruise and the ramp down of the block at `place` are no faster.
@@ -131,9 +123,7 @@ impl Corners {
             self.down = None;
         }
         let downs = match down > 0 {
-            true => why(*self
-                .down
-                .get_or_insert_with(|| leads_to_corner(ahead, place))),
+            true => why(*self.down.get_or_insert_with(|| leads_to_corner(ahead, place))),
             false => Why::Change,
         };
         [ups, Why::Velocity, downs]

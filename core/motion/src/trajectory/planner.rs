@@ -121,11 +121,7 @@ impl Planner {
     fn push_wait(&mut self, task: u64, line: u64, seconds: f64) {
         self.stop();
         self.accounts.open(task, line, None, false);
-        let at = At {
-            task,
-            line,
-            cuts: false,
-        };
+        let at = At { task, line, cuts: false };
         match self.law.last_move() {
             Some(entry) => self.wait(entry, 1.0, seconds, at),
             None => self.early.push((seconds, at)),
@@ -150,18 +146,9 @@ impl Planner {
             by: [why; 3],
             border: None,
         });
-        let phase = Phase {
-            seconds,
-            ..Phase::default()
-        };
+        let phase = Phase { seconds, ..Phase::default() };
         self.run += 1;
-        self.law.push(Section {
-            run: self.run,
-            piece,
-            from: 0.0,
-            begins: self.clock,
-            phase,
-        });
+        self.law.push(Section { run: self.run, piece, from: 0.0, begins: self.clock, phase });
         self.clock += seconds;
         self.before = self.clock;
         self.accounts.spend(at.task, seconds, 0.0, why);
@@ -185,11 +172,7 @@ impl Planner {
             }
             return Ok(());
         }
-        let at = At {
-            task: number,
-            line: task.line,
-            cuts: asked.is_some(),
-        };
+        let at = At { task: number, line: task.line, cuts: asked.is_some() };
         let mut entry = self.entry(&task, found, asked, at);
         let junction = self.last.as_ref().map_or(Junction::Stop, |last| {
             let first = self.law.task(last.number);

@@ -192,20 +192,12 @@ impl Ramp {
             });
         }
         let (peak, held) = match change >= self.whole() {
-            true => (
-                self.acceleration,
-                (change - self.whole()) / self.acceleration,
-            ),
+            true => (self.acceleration, (change - self.whole()) / self.acceleration),
             false => ((change * self.jerk).sqrt(), 0.0),
         };
         let rise = peak / self.jerk;
         let step = sense * 0.5 * peak * rise;
-        take(Phase {
-            seconds: rise,
-            velocity: from,
-            acceleration: 0.0,
-            jerk: sense * self.jerk,
-        });
+        take(Phase { seconds: rise, velocity: from, acceleration: 0.0, jerk: sense * self.jerk });
         if held > 0.0 {
             take(Phase {
                 seconds: held,
@@ -260,12 +252,7 @@ impl Profile {
         if rest > 0.0 && peak > 0.0 {
             profile.add(
                 1,
-                Phase {
-                    seconds: rest / peak,
-                    velocity: peak,
-                    acceleration: 0.0,
-                    jerk: 0.0,
-                },
+                Phase { seconds: rest / peak, velocity: peak, acceleration: 0.0, jerk: 0.0 },
             );
         }
         down.phases(peak, to, |phase| profile.add(2, phase));

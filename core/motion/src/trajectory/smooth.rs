@@ -87,10 +87,11 @@ impl Work {
             };
             let gone = self.carry_out(ahead, count, take);
             self.kept.clear();
-            let rest = self.steps.drain(..).skip(count).map(|step| Step {
-                ends: step.ends.map(|place| place - gone),
-                ..step
-            });
+            let rest = self
+                .steps
+                .drain(..)
+                .skip(count)
+                .map(|step| Step { ends: step.ends.map(|place| place - gone), ..step });
             self.kept.extend(rest);
             if !all || ahead.blocks.is_empty() {
                 return;
@@ -123,9 +124,7 @@ impl Work {
         for place in 1..count {
             let last = self.knots[place - 1];
             let knot = &mut self.knots[place];
-            knot.velocity = knot
-                .velocity
-                .min(last.ramp.reach(last.velocity, last.length));
+            knot.velocity = knot.velocity.min(last.ramp.reach(last.velocity, last.length));
         }
         self.lay_hills(ahead);
         true

@@ -28,11 +28,7 @@ fn machine(frame: &Rotation3<f64>, turns: bool) -> Arc<Solver> {
     let mut free = Vec::new();
     if turns {
         free.push(joints.len());
-        joints.push(Joint {
-            rotary: true,
-            direction: frame * Point::x(),
-            point: Point::zeros(),
-        });
+        joints.push(Joint { rotary: true, direction: frame * Point::x(), point: Point::zeros() });
     }
     let chain = Chain::new(joints, Point::zeros(), Point::zeros(), frame * Point::z());
     Arc::new(Solver::new(chain, &free, Joints::default()).unwrap())
@@ -68,23 +64,9 @@ impl Reference for Legs {
 }
 
 fn leg(line: u64, way: Way, from: Point, to: Point) -> Leg {
-    let pose = |tip| Pose {
-        tip,
-        axis: Point::z(),
-        ..Pose::default()
-    };
-    let at = At {
-        line,
-        cuts: true,
-        task: 0,
-    };
-    Leg {
-        at,
-        way,
-        from: pose(from),
-        to: pose(to),
-        along: 0.0,
-    }
+    let pose = |tip| Pose { tip, axis: Point::z(), ..Pose::default() };
+    let at = At { line, cuts: true, task: 0 };
+    Leg { at, way, from: pose(from), to: pose(to), along: 0.0 }
 }
 
 fn run_axes(
@@ -114,10 +96,7 @@ fn run_against(
             let number = points.first as usize + points.len();
             points.joints.push(*commanded);
             points.poses.push(solver.chain().forward(commanded));
-            points.at.push(At {
-                cuts: !rapid(number),
-                ..At::default()
-            });
+            points.at.push(At { cuts: !rapid(number), ..At::default() });
         }
         let actual: Vec<Joints> = now.iter().map(|pair| pair[1]).collect();
         contour.take(&points, &actual, &mut |point| told.push(*point));
@@ -126,15 +105,9 @@ fn run_against(
     let report = contour.finish(&mut |point| told.push(*point));
     assert_eq!(told.len(), way.len(), "each set-point is told once");
     for (place, point) in told.iter().enumerate() {
-        assert!(
-            (point.time - place as f64 * period).abs() < 1e-9,
-            "in order"
-        );
+        assert!((point.time - place as f64 * period).abs() < 1e-9, "in order");
         let following = (point.commanded.tip - point.actual.tip).norm();
-        assert!(
-            point.distance <= following + 1e-9,
-            "no more than the following error"
-        );
+        assert!(point.distance <= following + 1e-9, "no more than the following error");
         assert!((point.error.norm() - point.distance).abs() < 1e-9);
     }
     (told, report)

@@ -53,11 +53,7 @@ fn samples(path: &dyn Path, parameters: &[f64], step: f64) -> Samples {
         let axes = path.axes(parameter);
         let values: Vec<f64> = axes.iter().map(|axis| axis[0]).collect();
         let derivatives: Vec<[f64; 3]> = axes.iter().map(|all| [all[1], all[2], all[3]]).collect();
-        samples.push(
-            parameter,
-            [first.into(), second.into(), [0.0; 3]],
-            &derivatives,
-        );
+        samples.push(parameter, [first.into(), second.into(), [0.0; 3]], &derivatives);
         samples.push_rates(&path.rates(&values));
     }
     samples
@@ -85,13 +81,7 @@ fn of_the_paper(x: bool) -> Servo {
 }
 
 fn plain(model: ServoModel) -> Servo {
-    Servo {
-        place: None,
-        rotary: false,
-        model,
-        friction: None,
-        backlash: 0.0,
-    }
+    Servo { place: None, rotary: false, model, friction: None, backlash: 0.0 }
 }
 
 /// The limit for these servos.
@@ -102,17 +92,12 @@ fn limit(servos: &[Servo], tolerance: f64, highest: f64) -> ContourError {
         .map(|response| {
             |frequency: f64| {
                 let answer = response.at(frequency);
-                Answer {
-                    real: answer.re,
-                    imaginary: answer.im,
-                }
+                Answer { real: answer.re, imaginary: answer.im }
             }
         })
         .collect();
-    let answers: Vec<&dyn Response> = answers
-        .iter()
-        .map(|answer| answer as &dyn Response)
-        .collect();
+    let answers: Vec<&dyn Response> =
+        answers.iter().map(|answer| answer as &dyn Response).collect();
     ContourError::new(&answers, tolerance, highest, Default::default())
 }
 
@@ -131,10 +116,8 @@ fn simulated(
     servos: &[Servo],
     period: f64,
 ) -> Vec<(f64, f64)> {
-    let mut followers: Vec<Follower> = servos
-        .iter()
-        .map(|servo| Follower::new(servo, period).unwrap())
-        .collect();
+    let mut followers: Vec<Follower> =
+        servos.iter().map(|servo| Follower::new(servo, period).unwrap()).collect();
     let start = path.axes(samples.parameter[0]);
     for (follower, axis) in followers.iter_mut().zip(&start) {
         follower.settle(axis[0]);
@@ -144,9 +127,7 @@ fn simulated(
     let mut take = |parameter: f64| {
         let commanded = path.axes(parameter);
         let each = followers.iter_mut().zip(&commanded);
-        let actual: Vec<f64> = each
-            .map(|(follower, axis)| follower.next(axis[0]))
-            .collect();
+        let actual: Vec<f64> = each.map(|(follower, axis)| follower.next(axis[0])).collect();
         let tip = path.tip(&actual);
         // From the nearest point before to where it is commanded: a narrow turn has more than one foot.
         let starts = even(nearest, parameter, 2).into_iter();

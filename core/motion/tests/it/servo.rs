@@ -13,20 +13,11 @@ use post_machine::servo::{
 use post_motion::servo::Follower;
 
 fn servo(rotary: bool, model: ServoModel) -> Servo {
-    Servo {
-        place: None,
-        rotary,
-        model,
-        friction: None,
-        backlash: 0.0,
-    }
+    Servo { place: None, rotary, model, friction: None, backlash: 0.0 }
 }
 
 fn transfer(numerator: &[f64], denominator: &[f64]) -> Servo {
-    let transfer = Transfer {
-        numerator: numerator.to_vec(),
-        denominator: denominator.to_vec(),
-    };
+    let transfer = Transfer { numerator: numerator.to_vec(), denominator: denominator.to_vec() };
     servo(false, ServoModel::Transfer(transfer))
 }
 
@@ -115,10 +106,7 @@ fn direct_loops(feed_forward: [f64; 2]) -> Loops {
         }),
         motor_inertia: 0.9,
         motor_damping: 0.5,
-        drive: Drive::Direct {
-            load: 1.5,
-            load_damping: 1.0,
-        },
+        drive: Drive::Direct { load: 1.5, load_damping: 1.0 },
     }
 }
 
@@ -156,7 +144,5 @@ fn followed(servo: &Servo, period: f64, command: &[f64]) -> Vec<f64> {
 fn apart(one: &[f64], other: &[f64]) -> f64 {
     assert_eq!(one.len(), other.len());
     let pairs = one.iter().zip(other);
-    pairs
-        .map(|(one, other)| (one - other).abs())
-        .fold(0.0, f64::max)
+    pairs.map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }

@@ -36,10 +36,7 @@ impl Linearise {
         self.take_back(0);
         let mut from = *whole.from;
         from.t = 0.0;
-        let whole = Move {
-            from: &from,
-            ..*whole
-        };
+        let whole = Move { from: &from, ..*whole };
         let judge = |_: &mut Self, piece: &Move<'_>| {
             let bound = piece.measured();
             Ok(if piece.tolerances.hold(bound) {
@@ -99,11 +96,7 @@ impl Linearise {
         self.stack.clear();
         self.stack.push(*whole.to);
         while let Some(to) = self.stack.pop() {
-            let piece = Move {
-                from: &from,
-                to: &to,
-                ..*whole
-            };
+            let piece = Move { from: &from, to: &to, ..*whole };
             let bound = match judge(self, &piece)? {
                 Verdict::Good(bound) => {
                     self.keep(to, bound);
@@ -140,11 +133,7 @@ fn stuck(piece: &Move<'_>) -> Option<Stuck> {
     let joint = (0..joints.len())
         .filter(|joint| joints[*joint].rotary)
         .max_by(|a, b| turn(a).total_cmp(&turn(b)))?;
-    Some(Stuck::Jump {
-        joint,
-        from: from.trace.joints[joint],
-        to: to.trace.joints[joint],
-    })
+    Some(Stuck::Jump { joint, from: from.trace.joints[joint], to: to.trace.joints[joint] })
 }
 
 /// The node at a share of a piece: on the exact inverse solution, unless the axes jump there. `holds` says whether
@@ -162,13 +151,11 @@ pub(super) fn put_in(
     let even = between(first, last, share);
     let straight = exact.as_ref().is_ok_and(|node| {
         let joints = placer.solver().chain().joints();
-        (0..joints.len())
-            .filter(|joint| joints[*joint].rotary)
-            .all(|joint| {
-                let turn = libm::fabs(last[joint] - first[joint]);
-                let off = libm::fabs(node.trace.joints[joint] - even[joint]);
-                off <= turn / 4.0 + placer.axis_rounding()
-            })
+        (0..joints.len()).filter(|joint| joints[*joint].rotary).all(|joint| {
+            let turn = libm::fabs(last[joint] - first[joint]);
+            let off = libm::fabs(node.trace.joints[joint] - even[joint]);
+            off <= turn / 4.0 + placer.axis_rounding()
+        })
     });
     if straight || !placer.solver().closed_form() {
         return exact;

@@ -53,12 +53,7 @@ pub fn quick(chain: &Chain, from: &Trace, to: &Trace, sweep: f64) -> Bend {
         turns += angle;
     }
     // A unit vector that turns at a rate of `turns` at most bends by its square at most.
-    Bend {
-        tip,
-        axis: turns * turns + sweep * sweep,
-        turn: turns * turns,
-        lead: 0.0,
-    }
+    Bend { tip, axis: turns * turns + sweep * sweep, turn: turns * turns, lead: 0.0 }
 }
 
 /// A bound that tends to the true second derivative as the block grows short.
@@ -154,11 +149,7 @@ impl Course {
 
 /// Two unit vectors across the unit vector `axis` and each other.
 pub fn across(axis: Vector3<f64>) -> [Vector3<f64>; 2] {
-    let beside = if libm::fabs(axis.x) < 0.8 {
-        Vector3::x()
-    } else {
-        Vector3::y()
-    };
+    let beside = if libm::fabs(axis.x) < 0.8 { Vector3::x() } else { Vector3::y() };
     let first = axis.cross(&beside).normalize();
     [first, axis.cross(&first)]
 }
@@ -239,11 +230,7 @@ fn fourth_derivatives(chain: &Chain, from: &Trace, to: &Trace) -> Bend {
         let rate = |trace: &Trace| joint.direction.cross(&trace.axes[index]);
         grow(&mut axis, rate(from), rate(to));
     }
-    Bend {
-        tip: tip[3],
-        axis: axis[3],
-        ..Bend::default()
-    }
+    Bend { tip: tip[3], axis: axis[3], ..Bend::default() }
 }
 
 /// The larger of two numbers. [`f64::max`] asks besides whether one of them is none, at three times the cost.

@@ -28,9 +28,8 @@ impl Linearise {
         };
         // Half of the tolerance for what a piece bows by, half for what the model misses.
         let needed = pieces(2.0 * judged.peak.tip / whole.tolerances.tip);
-        let made = self.equal(whole, needed.max(self.points + 1), |t| {
-            compensated(whole, curve, model, t)
-        });
+        let made =
+            self.equal(whole, needed.max(self.points + 1), |t| compensated(whole, curve, model, t));
         let good = made.is_ok_and(|good| good);
         self.overruled += u64::from(!good);
         good
@@ -50,8 +49,6 @@ fn compensated(
     let place = target.tip + strays;
     let t = whole.from.t * (1.0 - t) + whole.to.t * t;
     let mut node = Node::default();
-    whole
-        .placer
-        .settle_at(&mut node, target, place, t, &joints)?;
+    whole.placer.settle_at(&mut node, target, place, t, &joints)?;
     Ok(node)
 }

@@ -232,11 +232,7 @@ impl Move<'_> {
         }
         let tolerances = self.tolerances;
         let tip_bend = self.tip_bend(bend);
-        let axis_bend = if tolerances.axis.is_infinite() {
-            0.0
-        } else {
-            bend.axis.max(bend.lead)
-        };
+        let axis_bend = if tolerances.axis.is_infinite() { 0.0 } else { bend.axis.max(bend.lead) };
         let needed = (tip_bend / (8.0 * BLIND * tolerances.tip))
             .max(axis_bend / (8.0 * BLIND * tolerances.axis));
         let count = libm::ceil(libm::sqrt(needed)).clamp(1.0, MOST_SAMPLES);
@@ -276,10 +272,8 @@ impl Move<'_> {
     /// # Errors
     /// The model's own, if it cannot answer.
     pub fn fit(&self, model: &mut dyn ModelSession) -> Result<Curve, String> {
-        let tolerance = Tolerance {
-            tip: self.tolerances.tip,
-            axis: self.tolerances.axis.to_degrees(),
-        };
+        let tolerance =
+            Tolerance { tip: self.tolerances.tip, axis: self.tolerances.axis.to_degrees() };
         let path = self.path();
         model.fit(&tolerance, &mut |ts, out| {
             for (t, out) in ts.iter().zip(out) {
@@ -335,21 +329,14 @@ impl Path<'_> {
         let axis = self.axis.at(t);
         let mut turn = turned(axis, pose.axis);
         if let Some(heading) = &self.heading {
-            let wanted = Pose {
-                axis,
-                edge: heading.at(t),
-                ..Pose::default()
-            };
+            let wanted = Pose { axis, edge: heading.at(t), ..Pose::default() };
             let edge = turned(wanted.edge_across(), pose.edge);
             // Whichever of axis and edge is farther off.
             if edge.norm() > turn.norm() {
                 turn = edge;
             }
         }
-        Deviation {
-            tip: tip.into(),
-            axis: turn.into(),
-        }
+        Deviation { tip: tip.into(), axis: turn.into() }
     }
 }
 
@@ -390,26 +377,14 @@ struct Circle {
 impl Circle {
     fn new(from: Vector3<f64>, to: Vector3<f64>) -> Self {
         let sweep = angle(from, to);
-        Self {
-            from,
-            to,
-            sweep,
-            sine: libm::sin(sweep),
-        }
+        Self { from, to, sweep, sine: libm::sin(sweep) }
     }
 
     /// The unit vector at the share `t` of the way.
     fn at(&self, t: f64) -> Vector3<f64> {
-        let Self {
-            from,
-            to,
-            sweep,
-            sine,
-        } = *self;
+        let Self { from, to, sweep, sine } = *self;
         if sine < 1e-9 {
-            return (from * (1.0 - t) + to * t)
-                .try_normalize(1e-9)
-                .unwrap_or(from);
+            return (from * (1.0 - t) + to * t).try_normalize(1e-9).unwrap_or(from);
         }
         (from * libm::sin((1.0 - t) * sweep) + to * libm::sin(t * sweep)) / sine
     }

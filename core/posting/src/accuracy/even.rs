@@ -54,11 +54,7 @@ impl Linearise {
             } else {
                 place(f64::from(step) / f64::from(count)).inspect_err(|_| self.take_back(before))?
             };
-            let piece = Move {
-                from: &from,
-                to: &to,
-                ..*whole
-            };
+            let piece = Move { from: &from, to: &to, ..*whole };
             let bound = piece.certify();
             if !whole.tolerances.hold(bound) && (!self.trust_model || piece.goes_another_way()) {
                 self.take_back(before);

@@ -57,15 +57,7 @@ impl Linearise {
         model: &mut dyn ModelSession,
     ) -> Result<(), (usize, Stuck)> {
         let way = std::mem::take(&mut self.way);
-        let done = self.stride_along(
-            Stretch {
-                run,
-                way: &way,
-                end,
-            },
-            first,
-            model,
-        );
+        let done = self.stride_along(Stretch { run, way: &way, end }, first, model);
         self.way = way;
         done
     }
@@ -82,10 +74,7 @@ impl Linearise {
         let mut step = way[end] - way[first];
         while start.t < 1.0 || start.leg + 1 < end {
             if start.t >= 1.0 {
-                start = Spot {
-                    leg: start.leg + 1,
-                    t: 0.0,
-                };
+                start = Spot { leg: start.leg + 1, t: 0.0 };
                 from.t = 0.0;
             }
             match stretch.longest((&from, start), step) {
@@ -103,10 +92,7 @@ impl Linearise {
                     self.enter(reach - 1);
                     from = run.end(reach);
                     self.keep(from, bound);
-                    start = Spot {
-                        leg: reach - 1,
-                        t: 1.0,
-                    };
+                    start = Spot { leg: reach - 1, t: 1.0 };
                 }
                 None => {
                     // The axes jump here: the rest of the leg is bisected, which knows what to do close to a pole.
@@ -180,21 +166,11 @@ impl Stretch<'_> {
 
     /// Tries a block of `length` mm; none if there is no way to stand at its end.
     fn reach(&self, (from, start): (&Node, Spot), length: f64) -> Option<Tried> {
-        let Stretch {
-            run,
-            way,
-            end: last,
-        } = *self;
+        let Stretch { run, way, end: last } = *self;
         let begin = distance(way, start);
         let to_end = begin + length >= way[last] * (1.0 - 1e-12);
-        let end = if to_end {
-            Spot {
-                leg: last - 1,
-                t: 1.0,
-            }
-        } else {
-            run.spot(way, begin + length)
-        };
+        let end =
+            if to_end { Spot { leg: last - 1, t: 1.0 } } else { run.spot(way, begin + length) };
         let mut to = if to_end {
             run.end(last)
         } else {
@@ -222,33 +198,18 @@ impl Stretch<'_> {
         if shift > rounding {
             let (target, rotary) = (to.target, to.trace.joints);
             let place = target.tip - aside * shift;
-            run.placer
-                .settle_at(&mut to, target, place, end.t, &rotary)
-                .ok()?;
+            run.placer.settle_at(&mut to, target, place, end.t, &rotary).ok()?;
         } else {
             shift = 0.0;
         }
         let bound = run.along((from, start), (&to, end), way);
         let ahead = -from.off().dot(&aside);
         let allowed = SAFE * tolerance + (ahead + shift) / 2.0;
-        let by_tip = if size > 0.0 {
-            allowed / size
-        } else {
-            f64::INFINITY
-        };
+        let by_tip = if size > 0.0 { allowed / size } else { f64::INFINITY };
         // The tool axis bows with the square of the length too.
         let axis = passed.axis_error;
-        let by_axis = if axis > 0.0 {
-            SAFE * run.tolerances.axis / axis
-        } else {
-            f64::INFINITY
-        };
-        Some(Tried {
-            to,
-            end,
-            bound,
-            better: libm::sqrt(by_tip.min(by_axis).max(0.0)),
-        })
+        let by_axis = if axis > 0.0 { SAFE * run.tolerances.axis / axis } else { f64::INFINITY };
+        Some(Tried { to, end, bound, better: libm::sqrt(by_tip.min(by_axis).max(0.0)) })
     }
 }
 

@@ -80,10 +80,7 @@ pub(super) struct Judged {
 impl Linearise {
     /// Works as the machine file says. With `trust_model` the certificate only reports.
     pub fn new(accuracy: &Accuracy, trust_model: bool) -> Self {
-        let mut linearise = Self {
-            trust_model,
-            ..Self::default()
-        };
+        let mut linearise = Self { trust_model, ..Self::default() };
         linearise.set(accuracy);
         linearise
     }
@@ -193,11 +190,7 @@ impl Linearise {
 
     /// A piece is good.
     pub(super) fn keep(&mut self, to: Node, bound: Bound) {
-        self.pieces.push(Piece {
-            to,
-            leg: self.leg,
-            bound,
-        });
+        self.pieces.push(Piece { to, leg: self.leg, bound });
     }
 
     /// So many pieces are good; the others are taken back.
@@ -228,12 +221,7 @@ impl Linearise {
     ) -> Result<Judged, Stuck> {
         let tolerances = piece.tolerances;
         if tolerances.hold(bound) {
-            return Ok(Judged {
-                good: true,
-                bound,
-                curve: None,
-                peak: Bound::default(),
-            });
+            return Ok(Judged { good: true, bound, curve: None, peak: Bound::default() });
         }
         let curve = piece.fit(model).map_err(Stuck::Model)?;
         let peak = Bound {

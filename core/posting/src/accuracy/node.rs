@@ -122,9 +122,7 @@ impl Placer {
     ) -> Result<Self, Box<Diagnostic>> {
         let fault = |message: String| Diagnostic::error("machine-chain", message).boxed();
         let solver = |length: f64| {
-            machine
-                .solver_at(length, held)
-                .map_err(|lack| machine.unsolvable(&lack).boxed())
+            machine.solver_at(length, held).map_err(|lack| machine.unsolvable(&lack).boxed())
         };
         let tip = solver(length)?;
         let mut words = Words::new(machine, format);
@@ -133,11 +131,7 @@ impl Placer {
             fault("with every rotary axis at zero the linear axes do not span the space".to_owned())
         })?;
         let along = machine.control_point.along;
-        let solver = if along == 0.0 {
-            tip
-        } else {
-            solver(length - along)?
-        };
+        let solver = if along == 0.0 { tip } else { solver(length - along)? };
         Ok(Self::new(machine, solver, words))
     }
 
@@ -153,23 +147,15 @@ impl Placer {
                     // Angles are checked before they are rounded, linear positions after it.
                     axis.travel.map(|travel| Limit {
                         joint,
-                        travel: if rotary {
-                            words.printed_travel(joint, travel)
-                        } else {
-                            travel
-                        },
+                        travel: if rotary { words.printed_travel(joint, travel) } else { travel },
                     })
                 })
                 .collect()
         };
-        let cyclic = (0..machine.axes.len())
-            .filter(|joint| machine.axes[*joint].travel.is_none())
-            .collect();
+        let cyclic =
+            (0..machine.axes.len()).filter(|joint| machine.axes[*joint].travel.is_none()).collect();
         Self {
-            turning: Turning {
-                limits: limits(true),
-                cyclic,
-            },
+            turning: Turning { limits: limits(true), cyclic },
             linear: limits(false),
             shown: (0..machine.axes.len())
                 .filter(|joint| machine.axes[*joint].range.is_some())
@@ -193,19 +179,13 @@ impl Placer {
 
     /// What solves points inside a tilted plane, the rotary axes standing; none if the machine's words cannot.
     pub fn in_plane(&self, plane: TiltedPlane) -> Option<Self> {
-        Some(Self {
-            words: self.words.in_plane(plane)?,
-            ..self.clone()
-        })
+        Some(Self { words: self.words.in_plane(plane)?, ..self.clone() })
     }
 
     /// The same, leaving so much of the tolerance of the tip in cuts, mm, to who puts rounded points into blocks later: what
     /// rounding makes of such a point, but a fifth of the tolerance at most.
     pub(crate) fn leaving_room(&self, tolerance: f64) -> Self {
-        Self {
-            reserve: self.tip_rounding.min(0.2 * tolerance),
-            ..self.clone()
-        }
+        Self { reserve: self.tip_rounding.min(0.2 * tolerance), ..self.clone() }
     }
 
     /// What is left of the tolerance of the tip in cuts, mm.
@@ -238,18 +218,13 @@ impl Placer {
     pub fn place(&self, target: Pose, t: f64, last: &Joints) -> Result<Node, Refused> {
         let solver = &self.solver;
         if !solver.closed_form() {
-            let joints = solver
-                .search(&target, last, self.axis_tolerance)
-                .map_err(Refused::Unreachable)?;
+            let joints =
+                solver.search(&target, last, self.axis_tolerance).map_err(Refused::Unreachable)?;
             return self.settled(target, t, &joints);
         }
-        let branches = solver
-            .orient(&target, self.axis_tolerance)
-            .map_err(Refused::Unreachable)?;
+        let branches = solver.orient(&target, self.axis_tolerance).map_err(Refused::Unreachable)?;
         let tried = branches.count();
-        let choice = self
-            .turning
-            .nearest(solver, &branches, last, self.branch.get());
+        let choice = self.turning.nearest(solver, &branches, last, self.branch.get());
         match choice.joints {
             Ok(joints) => {
                 self.branch.set(choice.index);
@@ -308,15 +283,10 @@ impl Placer {
         if !solver.closed_form() {
             return self.place(target, t, first);
         }
-        let branches = solver
-            .orient(&target, self.axis_tolerance)
-            .map_err(Refused::Unreachable)?;
+        let branches = solver.orient(&target, self.axis_tolerance).map_err(Refused::Unreachable)?;
         match self.turning.between(solver, &branches, first, last) {
             Ok(joints) => self.settled(target, t, &joints),
-            Err(over) => Err(Refused::OverTravel {
-                over,
-                tried: branches.count(),
-            }),
+            Err(over) => Err(Refused::OverTravel { over, tried: branches.count() }),
         }
     }
 
@@ -357,18 +327,14 @@ impl Placer {
         self.words.print_rotary(joints, &mut node.words);
         node.trace.turns = chain.turns(joints);
         let along = self.control_point.along;
-        let printed = self
-            .words
-            .print_tip(place - target.axis * along, &mut node.words);
+        let printed = self.words.print_tip(place - target.axis * along, &mut node.words);
         let wanted = match printed {
             None => place,
             Some(tip) if along == 0.0 => tip,
             // The control keeps the tip there; the point above it goes where the tool really leans.
             Some(tip) => tip + chain.forward(joints).axis * along,
         };
-        self.solver
-            .place(wanted, joints, &node.trace.turns)
-            .map_err(Refused::Unreachable)?;
+        self.solver.place(wanted, joints, &node.trace.turns).map_err(Refused::Unreachable)?;
         if printed.is_none() {
             self.words.print_linear(joints, &mut node.words);
         }
@@ -381,24 +347,13 @@ impl Placer {
         node.tip = node.trace.pose.tip;
         node.measure();
         // The forward chain stands behind every node: what it misses by must be rounding.
-        let missed = if place == target.tip {
-            node.tip_error
-        } else {
-            (node.tip - place).norm()
-        };
+        let missed = if place == target.tip { node.tip_error } else { (node.tip - place).norm() };
         // What a rounded angle does to a point above the tip that the control keeps is not made up for.
-        let swung = if printed.is_some() {
-            along.abs() * node.axis_error
-        } else {
-            0.0
-        };
+        let swung = if printed.is_some() { along.abs() * node.axis_error } else { 0.0 };
         if missed <= self.tip_rounding + swung {
             Ok(())
         } else {
-            Err(Refused::Unverified {
-                tip: missed,
-                axis: node.axis_error,
-            })
+            Err(Refused::Unverified { tip: missed, axis: node.axis_error })
         }
     }
 
@@ -476,10 +431,7 @@ impl Placer {
                 reach += value;
             }
         }
-        Bound {
-            tip: ULPS * angle * reach,
-            axis: ULPS * angle,
-        }
+        Bound { tip: ULPS * angle * reach, axis: ULPS * angle }
     }
 
     /// The largest error of the tip that rounding can make, mm.

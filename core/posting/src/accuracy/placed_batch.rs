@@ -16,10 +16,7 @@ pub(crate) struct PlacedBatch {
     /// Where the linear axes bring the points.
     wanted: [Vector3<f64>; LANES],
     /// The nodes, boxed so that they change hands without being copied.
-    #[expect(
-        clippy::vec_box,
-        reason = "a node changes hands by its box; it is large"
-    )]
+    #[expect(clippy::vec_box, reason = "a node changes hands by its box; it is large")]
     nodes: Vec<Box<Node>>,
     /// Those that are solved; the others are left to [`Placer::settle`], which says why.
     settled: [bool; LANES],
@@ -160,10 +157,7 @@ mod tests {
                  [axis.X]\nlinear = [1, 0, 0]\ntravel = [-300, 300]\n[axis.Y]\nlinear = [0, 1, 0]\ntravel = [-300, 300]\n\
                  [axis.Z]\nlinear = [0, 0, 1]\ntravel = [-600, 300]\n[control]\ndialect = \"fanuc\"\ntcp = \"{tcp}\"\n"
             );
-            let source = Source {
-                name: "trunnion".to_owned(),
-                text,
-            };
+            let source = Source { name: "trunnion".to_owned(), text };
             let machine = load(source, &[], &mut |_| Err(String::new())).expect("a machine");
             let format = Format {
                 words: vec![3; 5],
@@ -182,14 +176,9 @@ mod tests {
                     let axis = Vector3::new(0.2 + 0.003 * t, 0.3 - 0.005 * t, 1.0).normalize();
                     // Some of them beyond the travel of X.
                     let tip = Vector3::new(5.5 * t, 3.0 - t, 0.3 * t);
-                    let pose = Pose {
-                        tip,
-                        axis,
-                        edge: Vector3::zeros(),
-                    };
-                    let joints = solver
-                        .inverse(&pose, &Joints::default(), 1e-9)
-                        .expect("a solution")[0];
+                    let pose = Pose { tip, axis, edge: Vector3::zeros() };
+                    let joints =
+                        solver.inverse(&pose, &Joints::default(), 1e-9).expect("a solution")[0];
                     (pose, joints)
                 })
                 .collect();

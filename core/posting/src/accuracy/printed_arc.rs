@@ -200,10 +200,8 @@ impl PrintedArc {
             let t = f64::from(step) / count;
             // The way between the centres in the frame that turns with the wanted arc.
             let (sine, cosine) = libm::sincos(wanted_from + self.sense * wanted.sweep * t);
-            let back = Vector2::new(
-                aside.x * cosine + aside.y * sine,
-                aside.y * cosine - aside.x * sine,
-            );
+            let back =
+                Vector2::new(aside.x * cosine + aside.y * sine, aside.y * cosine - aside.x * sine);
             let flat = first * (1.0 - t) + last * t + back;
             let upright = under * (1.0 - t) + over * t;
             most = most.max(libm::hypot(flat.norm(), upright));
@@ -245,10 +243,7 @@ impl PrintedArc {
         let peak = libm::ceil((low - FRAC_PI_2) / PI) * PI + FRAC_PI_2;
         let most = match peak <= high {
             true => 1.0,
-            false => ends
-                .map(|end| libm::fabs(libm::sin(end)))
-                .into_iter()
-                .fold(0.0, f64::max),
+            false => ends.map(|end| libm::fabs(libm::sin(end))).into_iter().fold(0.0, f64::max),
         };
         let largest = self.radii[0].max(self.radii[1]);
         plane.norm() * (largest * self.turn * most + self.mismatch())

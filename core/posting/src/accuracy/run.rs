@@ -44,18 +44,12 @@ impl<'a> Run<'a> {
 
     /// The CL point that a leg starts from.
     pub(super) fn start(&self, leg: usize) -> Node {
-        Node {
-            t: 0.0,
-            ..self.nodes[leg]
-        }
+        Node { t: 0.0, ..self.nodes[leg] }
     }
 
     /// The CL point that the last of `legs` legs ends in.
     pub(super) fn end(&self, legs: usize) -> Node {
-        Node {
-            t: 1.0,
-            ..self.nodes[legs]
-        }
+        Node { t: 1.0, ..self.nodes[legs] }
     }
 
     /// A leg from `start`, its CL point or one put into it.
@@ -103,11 +97,7 @@ impl<'a> Run<'a> {
         let after = way.partition_point(|end| *end <= at);
         let leg = after.clamp(1, self.legs()) - 1;
         let length = way[leg + 1] - way[leg];
-        let t = if length > 0.0 {
-            ((at - way[leg]) / length).clamp(0.0, 1.0)
-        } else {
-            1.0
-        };
+        let t = if length > 0.0 { ((at - way[leg]) / length).clamp(0.0, 1.0) } else { 1.0 };
         Spot { leg, t }
     }
 
@@ -117,10 +107,7 @@ impl<'a> Run<'a> {
         let start = self.start(at);
         let from = Spot { leg: at, t: 0.0 };
         let try_to = |reach: usize| {
-            let to = Spot {
-                leg: reach - 1,
-                t: 1.0,
-            };
+            let to = Spot { leg: reach - 1, t: 1.0 };
             self.along((&start, from), (&self.end(reach), to), way)
         };
         // Twice as far each time, then the half between what holds and what does not.
@@ -167,11 +154,7 @@ impl<'a> Run<'a> {
             let mut next = self.passed(from, to, even, target);
             // The share at which the tip is beside the CL point, not before or behind it; never before the share of
             // the CL point ahead of it, or the order of the path would not be proven.
-            let beside = if square > 0.0 {
-                even - next.off().dot(&chord) / square
-            } else {
-                even
-            };
+            let beside = if square > 0.0 { even - next.off().dot(&chord) / square } else { even };
             let share = beside.clamp(last.t, 1.0);
             if share != even {
                 next = self.passed(from, to, share, target);
@@ -186,20 +169,10 @@ impl<'a> Run<'a> {
     pub(super) fn passed(&self, from: &Node, to: &Node, share: f64, target: Pose) -> Node {
         let chain = self.placer.solver().chain();
         let joints = between(&from.trace.joints, &to.trace.joints, share);
-        let mut trace = Trace {
-            joints,
-            turns: chain.turns(&joints),
-            ..Trace::default()
-        };
+        let mut trace = Trace { joints, turns: chain.turns(&joints), ..Trace::default() };
         chain.trace(&mut trace);
         let tip = self.block(from, to).reached(&trace.pose, share);
-        let mut node = Node {
-            t: share,
-            target,
-            trace,
-            tip,
-            ..Node::default()
-        };
+        let mut node = Node { t: share, target, trace, tip, ..Node::default() };
         node.measure();
         node
     }
@@ -214,11 +187,7 @@ impl<'a> Run<'a> {
 fn share(way: &[f64], start: Spot, end: Spot, leg: usize) -> f64 {
     let place = |spot: Spot| distance(way, spot);
     let whole = place(end) - place(start);
-    if whole > 0.0 {
-        ((way[leg + 1] - place(start)) / whole).clamp(0.0, 1.0)
-    } else {
-        1.0
-    }
+    if whole > 0.0 { ((way[leg + 1] - place(start)) / whole).clamp(0.0, 1.0) } else { 1.0 }
 }
 
 /// Way of the tip from the start of the run to a spot, mm.

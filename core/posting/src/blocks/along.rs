@@ -65,11 +65,7 @@ impl ArcBlock {
 
 impl Following {
     pub(super) fn new(line: u64, curve: &Curve) -> Self {
-        Self {
-            line,
-            curve: Box::new(curve.clone()),
-            moves: Vec::new(),
-        }
+        Self { line, curve: Box::new(curve.clone()), moves: Vec::new() }
     }
 
     /// Line of the CL file that it is from.
@@ -126,10 +122,7 @@ impl Blocks<'_> {
         match &curve.course {
             Course::Arc(arc) => {
                 let wanted = arc.placed(|point| point + lift, |direction| direction);
-                let whole = Motion {
-                    tip: curve.end.tip + lift,
-                    ..curve.end
-                };
+                let whole = Motion { tip: curve.end.tip + lift, ..curve.end };
                 let Some(blocks) = self.arc_blocks(&placer, &frame, (&wanted, &whole)) else {
                     return false;
                 };
@@ -184,9 +177,7 @@ impl Blocks<'_> {
         if split != ArcSplit::Quadrant {
             // What is a turn but for rounding is one.
             let count = libm::ceil(arc.sweep / most - AT_ITS_END).max(1.0);
-            return (1..=count as u32)
-                .map(|piece| f64::from(piece) / count)
-                .collect();
+            return (1..=count as u32).map(|piece| f64::from(piece) / count).collect();
         }
         let radial = frame.direction(arc.radial);
         let (x, y) = (radial[(axis + 1) % 3], radial[(axis + 2) % 3]);
@@ -212,23 +203,16 @@ impl Blocks<'_> {
         let mut pieces: Vec<ArcBlock> = Vec::with_capacity(cuts.len());
         let mut from = 0.0;
         for &cut in cuts {
-            let before = pieces
-                .last()
-                .map(|piece| &*piece.node)
-                .or(self.last.as_deref())?;
+            let before = pieces.last().map(|piece| &*piece.node).or(self.last.as_deref())?;
             let tip = if cut == 1.0 { end.tip } else { arc.at(cut) };
             let target = pose(&Motion { tip, ..*end });
             let mut node = placer.settled(target, 1.0, &before.trace.joints).ok()?;
             self.steady(placer, before, &mut node);
-            let wanted = arc.piece(from, cut).placed(
-                |point| frame.point(point),
-                |direction| frame.direction(direction),
-            );
+            let wanted = arc
+                .piece(from, cut)
+                .placed(|point| frame.point(point), |direction| frame.direction(direction));
             let piece = self.arc_block(placer, frame, (axis, sense), &wanted, [before, &node])?;
-            pieces.push(ArcBlock {
-                share: cut - from,
-                ..piece
-            });
+            pieces.push(ArcBlock { share: cut - from, ..piece });
             from = cut;
         }
         Some(pieces)
@@ -297,10 +281,7 @@ impl Blocks<'_> {
         }
         let (length, rise) = (printed.length(), printed.rise());
         if !self.keeps.about(axis, rise != 0.0, self.in_plane())
-            || !printed
-                .radii
-                .iter()
-                .all(|radius| self.keeps.radius(*radius))
+            || !printed.radii.iter().all(|radius| self.keeps.radius(*radius))
             || printed.mismatch().max(mismatch) > MISMATCH
             || libm::hypot(length, rise) > FASTER * length
         {
@@ -326,11 +307,7 @@ impl Blocks<'_> {
         Some(ArcBlock {
             node,
             printed,
-            curve: PrintedCurve {
-                words,
-                between,
-                way: self.way_of_arc(frame, &printed),
-            },
+            curve: PrintedCurve { words, between, way: self.way_of_arc(frame, &printed) },
             minutes: self.arc_follow(frame, &printed),
             off,
             bound: Bound::default(),
@@ -377,14 +354,11 @@ impl Blocks<'_> {
     /// Axis values where some axis turns back along an arc, in order; none where one leaves its travel.
     fn arc_between(&self, frame: &WordFrame, printed: &PrintedArc) -> Option<Vec<Joints>> {
         let slides = frame.slides().iter();
-        let mut shares: Vec<f64> = slides
-            .flat_map(|(_, slide)| printed.turns_back(*slide))
-            .collect();
+        let mut shares: Vec<f64> =
+            slides.flat_map(|(_, slide)| printed.turns_back(*slide)).collect();
         shares.sort_by(f64::total_cmp);
-        let between: Vec<Joints> = shares
-            .into_iter()
-            .map(|share| frame.joints(printed.at(share)))
-            .collect();
+        let between: Vec<Joints> =
+            shares.into_iter().map(|share| frame.joints(printed.at(share))).collect();
         // What the two radii differ by moves the place where an axis turns back a little farther.
         let slack = printed.mismatch();
         let inside = |joints: &Joints| {
@@ -462,10 +436,7 @@ impl Blocks<'_> {
         for (joint, slide) in frame.slides() {
             let minutes = faster * printed.fastest(*slide) / self.machine.axes[*joint].max_feed;
             if minutes > follow.minutes {
-                follow = Follow {
-                    minutes,
-                    joint: *joint,
-                };
+                follow = Follow { minutes, joint: *joint };
             }
         }
         follow

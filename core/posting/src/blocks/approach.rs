@@ -55,18 +55,9 @@ impl Blocks<'_> {
         let stops = self.stops_above(placer, node);
         let mut last: Option<&Node> = None;
         for stop in &stops {
-            let motion = Motion {
-                tip: stop.target.tip,
-                pace: Pace::Rapid,
-                chord: 0.0,
-                ..*leg.motion
-            };
-            let over = Leg {
-                motion: &motion,
-                loose: true,
-                reason: Reason::Above,
-                ..*leg
-            };
+            let motion =
+                Motion { tip: stop.target.tip, pace: Pace::Rapid, chord: 0.0, ..*leg.motion };
+            let over = Leg { motion: &motion, loose: true, reason: Reason::Above, ..*leg };
             match last {
                 None => self.come(&over, stop, kind, to),
                 Some(last) => self.cut(placer, &over, last, stop, to),
@@ -81,10 +72,7 @@ impl Blocks<'_> {
             }
             // It is up there already.
             None => {
-                let leg = Leg {
-                    reason: Reason::AtOnce,
-                    ..*leg
-                };
+                let leg = Leg { reason: Reason::AtOnce, ..*leg };
                 self.come(&leg, node, kind, to);
             }
         }
@@ -217,9 +205,7 @@ impl Blocks<'_> {
         let mut rates = Joints::default();
         let mut further = *joints;
         if solver.closed_form()
-            && solver
-                .place(node.tip + line, &mut further, &node.trace.turns)
-                .is_ok()
+            && solver.place(node.tip + line, &mut further, &node.trace.turns).is_ok()
         {
             for (rate, (after, before)) in rates.iter_mut().zip(further.iter().zip(joints)) {
                 *rate = after - before;
@@ -240,11 +226,7 @@ impl Blocks<'_> {
     ) -> f64 {
         let limits = placer.linear_travel().filter_map(|(joint, [least, most])| {
             let (rate, stands) = (rates[joint], node.trace.joints[joint]);
-            let end = if rate > 0.0 {
-                most - stands
-            } else {
-                stands - least
-            };
+            let end = if rate > 0.0 { most - stands } else { stands - least };
             (libm::fabs(rate) > STANDS).then(|| (end - kept(end)) / libm::fabs(rate))
         });
         limits.fold(f64::INFINITY, f64::min)
@@ -254,11 +236,7 @@ impl Blocks<'_> {
     /// nobody has measured the tool.
     fn kept_free(&self, placer: &Placer, end: f64) -> f64 {
         let measured = placer.solver().chain().tip() != self.machine.gauge;
-        let room = if measured {
-            self.machine.frame.room
-        } else {
-            f64::INFINITY
-        };
+        let room = if measured { self.machine.frame.room } else { f64::INFINITY };
         room.min(end / 2.0)
     }
 
@@ -267,9 +245,12 @@ impl Blocks<'_> {
         let stands = joints[retract.depth];
         let to_retract = (retract.position - stands) * retract.up;
         let travel = self.machine.axes[retract.depth].travel;
-        let end = travel.map_or(retract.position, |[least, most]| {
-            if retract.up > 0.0 { most } else { least }
-        });
+        let end = travel.map_or(
+            retract.position,
+            |[least, most]| {
+                if retract.up > 0.0 { most } else { least }
+            },
+        );
         let to_end = (end - stands) * retract.up;
         to_retract.min(to_end - self.kept_free(placer, to_end))
     }

@@ -115,11 +115,7 @@ impl BetweenWords {
         for joint in kept.sliding() {
             let (first, last) = (from.trace.joints[joint], to.trace.joints[joint]);
             let chord = (last - first).abs();
-            let (low, high) = if first < last {
-                (first, last)
-            } else {
-                (last, first)
-            };
+            let (low, high) = if first < last { (first, last) } else { (last, first) };
             let goes_on = chord >= faster;
             let stays = bend <= 4.0 * UNSEEN
                 && machine.axes[joint]
@@ -178,10 +174,7 @@ impl BetweenWords {
                 }
             }
         }
-        Follow {
-            minutes: slides.minutes,
-            joint: slides.slowest,
-        }
+        Follow { minutes: slides.minutes, joint: slides.slowest }
     }
 }
 

@@ -73,10 +73,7 @@ impl Block {
     pub(crate) fn part(&self, share: f64) -> Self {
         Self {
             nominal: self.nominal.share(share),
-            follow: Follow {
-                minutes: self.follow.minutes * share,
-                ..self.follow
-            },
+            follow: Follow { minutes: self.follow.minutes * share, ..self.follow },
             ..*self
         }
     }

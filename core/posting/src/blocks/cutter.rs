@@ -42,10 +42,7 @@ impl Blocks<'_> {
             Tcp::Post => self.in_machine(placer, node),
         };
         let tilt = angle(axis, machine.tool_axis);
-        let turned = self
-            .last
-            .as_ref()
-            .is_some_and(|last| self.turn_between(last, node) > 0.0);
+        let turned = self.last.as_ref().is_some_and(|last| self.turn_between(last, node) > 0.0);
         let what = if tilt > 1e-3 {
             format!("the tool tilted by {:.3}°", tilt.to_degrees())
         } else if turned {

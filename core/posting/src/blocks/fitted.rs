@@ -53,11 +53,8 @@ impl Blocks<'_> {
         let mut at = 0;
         while at < legs.len() {
             // So many legs along which nothing turns.
-            let still = |node: &&Node| {
-                !self
-                    .kinds
-                    .turning(&nodes[at].trace.joints, &node.trace.joints)
-            };
+            let still =
+                |node: &&Node| !self.kinds.turning(&nodes[at].trace.joints, &node.trace.joints);
             let count = nodes[at + 1..].iter().take_while(still).count();
             let (legs, nodes) = (&legs[at..], &nodes[at..]);
             match self.laid(placer, &legs[..count], &nodes[..=count]) {
@@ -67,8 +64,7 @@ impl Blocks<'_> {
                 }
                 None => {
                     let turns = |pair: &&[Node]| {
-                        self.kinds
-                            .turning(&pair[0].trace.joints, &pair[1].trace.joints)
+                        self.kinds.turning(&pair[0].trace.joints, &pair[1].trace.joints)
                     };
                     let count = match count {
                         0 => nodes.windows(2).take_while(turns).count(),
@@ -96,10 +92,7 @@ impl Blocks<'_> {
             placer,
             legs,
             nodes,
-            wanted: nodes
-                .iter()
-                .map(|node| frame.point(node.target.tip))
-                .collect(),
+            wanted: nodes.iter().map(|node| frame.point(node.target.tip)).collect(),
             printed: printed.collect::<Option<_>>()?,
             tolerance: self.machine.accuracy.tolerance - first.motion.chord - margin.tip - edge,
             frame,
@@ -112,8 +105,7 @@ impl Blocks<'_> {
             let line = farthest(at, laid.legs.len(), |end| self.line(laid, at, end));
             let reach = line.as_ref().map_or(at + 1, |(reach, _)| *reach);
             let arc = farthest(reach, laid.legs.len(), |end| {
-                self.fitted_arc(laid, at, end)
-                    .map(|arc| Piece::Arc(Box::new(arc)))
+                self.fitted_arc(laid, at, end).map(|arc| Piece::Arc(Box::new(arc)))
             });
             let Some((end, piece)) = arc.or(line) else {
                 let ends = [&laid.nodes[at], &laid.nodes[at + 1]];
@@ -143,10 +135,7 @@ impl Blocks<'_> {
 
     /// A straight block over the legs from `at` to `end`.
     fn line(&self, laid: &Laid<'_>, at: usize, end: usize) -> Option<Piece> {
-        let off = arc_fit::off_line(
-            [laid.printed[at], laid.printed[end]],
-            &laid.wanted[at..=end],
-        );
+        let off = arc_fit::off_line([laid.printed[at], laid.printed[end]], &laid.wanted[at..=end]);
         self.bound_of(laid, at, end, off).map(Piece::Line)
     }
 
@@ -156,13 +145,7 @@ impl Blocks<'_> {
         let nodes = &laid.nodes[at..=end];
         let farthest = nodes.iter().map(|node| node.axis_error).fold(0.0, f64::max);
         let chord = laid.legs[at].motion.chord;
-        self.kept_bound(
-            laid.placer,
-            off,
-            farthest,
-            chord,
-            [&nodes[0], &nodes[nodes.len() - 1]],
-        )
+        self.kept_bound(laid.placer, off, farthest, chord, [&nodes[0], &nodes[nodes.len() - 1]])
     }
 
     /// An arc over the legs from `at` to `end`, in the first plane that has one.

@@ -32,10 +32,8 @@ impl Gathered {
         else {
             return false;
         };
-        let (first, second) = (
-            last.target.tip - before.target.tip,
-            node.target.tip - last.target.tip,
-        );
+        let (first, second) =
+            (last.target.tip - before.target.tip, node.target.tip - last.target.tip);
         self.legs.len() < MOST
             && motion.pace == leg.motion.pace
             && first.norm() > LEAST
@@ -132,12 +130,7 @@ impl Blocks<'_> {
         let legs: Vec<Leg<'_>> = gathered
             .legs
             .iter()
-            .map(|(line, motion)| Leg {
-                line: *line,
-                motion,
-                loose: false,
-                reason: Reason::Point,
-            })
+            .map(|(line, motion)| Leg { line: *line, motion, loose: false, reason: Reason::Point })
             .collect();
         match self.keeps.fits() {
             true => self.fit(&placer, &legs, &gathered.nodes, to),

@@ -68,11 +68,7 @@ impl Largest {
     #[inline]
     fn may_be_worst(&self, leg: &Leg<'_>, bound: Bound) -> bool {
         let tip = bound.tip + leg.motion.chord;
-        if leg.loose {
-            tip > self.rapid
-        } else {
-            tip > self.cut.tip || bound.axis > self.cut.axis
-        }
+        if leg.loose { tip > self.rapid } else { tip > self.cut.tip || bound.axis > self.cut.axis }
     }
 
     #[inline]
@@ -282,10 +278,9 @@ impl<'a> Blocks<'a> {
         if let Some(following) = &mut self.following {
             match next {
                 Flow::Point(Configured::Point(chosen)) => return following.push(chosen),
-                Flow::Command {
-                    command: Command::AlongEnd,
-                    ..
-                } => return self.go_along(true, placed, to),
+                Flow::Command { command: Command::AlongEnd, .. } => {
+                    return self.go_along(true, placed, to);
+                }
                 // Something has come between: by its moves.
                 _ => self.go_along(false, placed, to),
             }
@@ -367,11 +362,7 @@ impl<'a> Blocks<'a> {
             line: chosen.line,
             motion: &chosen.motion,
             loose: chosen.motion.pace == Pace::Rapid,
-            reason: if chosen.eased {
-                Reason::Eased
-            } else {
-                Reason::Point
-            },
+            reason: if chosen.eased { Reason::Eased } else { Reason::Point },
         };
         if chosen.arrives {
             self.counts.branch_changes += u64::from(chosen.changed && leg.loose);
@@ -387,8 +378,7 @@ impl<'a> Blocks<'a> {
                 Ok(()) => self.travel(&placer, &leg, node, to),
                 Err(refused) => {
                     self.spare = Some(node);
-                    to.findings
-                        .at(leg.line, refusal::refused(self.machine, &refused));
+                    to.findings.at(leg.line, refusal::refused(self.machine, &refused));
                 }
             }
         }
@@ -453,10 +443,7 @@ impl<'a> Blocks<'a> {
             if let Ok(stay) = stay
                 && self.turn_between(&last, &stay) + TURN < self.turn_between(&last, node)
             {
-                let leaving = Leg {
-                    reason: Reason::Leave,
-                    ..*leg
-                };
+                let leaving = Leg { reason: Reason::Leave, ..*leg };
                 self.cut(placer, &leaving, &last, &stay, to);
                 *last = stay;
             }
@@ -543,9 +530,7 @@ impl<'a> Blocks<'a> {
         let mut linearise = std::mem::take(&mut self.linearise);
         let (chord, loose) = (first.motion.chord, first.loose);
         let planned = Move::planned(self.machine, placer, chord, loose, [&nodes[0], &nodes[1]]);
-        let moves = nodes
-            .windows(2)
-            .any(|pair| self.wanted_way(&pair[0], &pair[1]) > STILL);
+        let moves = nodes.windows(2).any(|pair| self.wanted_way(&pair[0], &pair[1]) > STILL);
         let run = Run {
             placer,
             nodes,
@@ -571,11 +556,7 @@ impl<'a> Blocks<'a> {
                     let end = (piece.leg, piece.to.t);
                     let nominal = Nominal::between(&due, at, end);
                     let leg = Leg {
-                        reason: if on_point {
-                            legs[piece.leg].reason
-                        } else {
-                            Reason::PutIn
-                        },
+                        reason: if on_point { legs[piece.leg].reason } else { Reason::PutIn },
                         ..legs[piece.leg]
                     };
                     let ends = [&from, &piece.to];
@@ -638,10 +619,7 @@ impl<'a> Blocks<'a> {
             joints: node.trace.joints,
             tip: node.tip - node.trace.pose.axis * self.machine.control_point.along,
             axis: node.trace.pose.axis,
-            deviation: Bound {
-                tip: bound.tip + leg.motion.chord,
-                ..bound
-            },
+            deviation: Bound { tip: bound.tip + leg.motion.chord, ..bound },
             way: 0.0,
             nominal: Nominal::default(),
             follow: Follow::default(),

@@ -26,10 +26,7 @@ impl Nominal {
     /// A share of it.
     #[inline]
     pub(super) fn share(self, share: f64) -> Self {
-        Self {
-            minutes: self.minutes * share,
-            ..self
-        }
+        Self { minutes: self.minutes * share, ..self }
     }
 
     /// What is due between two places of a run, each a leg and a share of it; `legs` has that of each leg.
@@ -112,11 +109,8 @@ pub(crate) struct Travels {
 
 impl Kinds {
     pub(crate) fn new(machine: &Machine) -> Self {
-        let mut kinds = Self {
-            count: machine.axes.len(),
-            degree: [1.0; MAX_AXES],
-            ..Self::default()
-        };
+        let mut kinds =
+            Self { count: machine.axes.len(), degree: [1.0; MAX_AXES], ..Self::default() };
         for (rotary, axis) in kinds.rotary.iter_mut().zip(&machine.axes) {
             *rotary = axis.joint.rotary;
         }

@@ -117,26 +117,18 @@ impl Blocks<'_> {
         };
         let along = self.machine.control_point.along;
         let feed = self.machine.rewind.and_then(|rewind| rewind.retract_feed);
-        let by = |distance: &f64| Motion {
-            tip: stands.tip + stands.axis * *distance,
-            ..stands
-        };
+        let by = |distance: &f64| Motion { tip: stands.tip + stands.axis * *distance, ..stands };
         let rewind = self.machine.rewind.as_ref();
         let own = rewind.and_then(|rewind| stands.drawn_back(rewind, along));
         // A plane that lies below the tool has been passed.
         let passed = rewind.is_some() && own.is_none() && !self.on_part;
-        let first = own
-            .into_iter()
-            .chain(rewind.is_none().then(|| by(&LEAVE[0])));
+        let first = own.into_iter().chain(rewind.is_none().then(|| by(&LEAVE[0])));
         let shorter = LEAVE[1..].iter().map(by).filter(|_| !passed);
         let away: Vec<Motion> = first.chain(shorter).collect();
         // The rotary axes as they stand, an index axis among them; as far as the linear axes go.
         let mut refused = None;
         for (place, away) in away.into_iter().enumerate() {
-            let motion = Motion {
-                pace: Pace::feed_or_rapid(feed),
-                ..away
-            };
+            let motion = Motion { pace: Pace::feed_or_rapid(feed), ..away };
             let joints = &last.trace.joints;
             let placed = match placer.solver().closed_form() {
                 true => placer.settled(pose(&motion), 1.0, joints),
@@ -145,12 +137,7 @@ impl Blocks<'_> {
             };
             match placed {
                 Ok(node) => {
-                    let out = Leg {
-                        line,
-                        motion: &motion,
-                        loose: true,
-                        reason: Reason::Leave,
-                    };
+                    let out = Leg { line, motion: &motion, loose: true, reason: Reason::Leave };
                     self.cut(placer, &out, &last, &node, to);
                     // Cut short by the end of travel, it may still be in the part: from there it must not go sideways.
                     self.on_part &= place > 0;
@@ -238,22 +225,13 @@ impl Blocks<'_> {
             Pace::InverseTime(feed / farthest.to_degrees().max(1e-3))
         });
         let stops = [
-            (
-                away,
-                Pace::feed_or_rapid(rewind.retract_feed),
-                last.trace.joints,
-                true,
-            ),
+            (away, Pace::feed_or_rapid(rewind.retract_feed), last.trace.joints, true),
             (away, turn, *joints, true),
             (*leg.motion, back, *joints, false),
         ];
         let mut at = last;
         for (motion, pace, joints, loose) in stops {
-            let motion = Motion {
-                pace,
-                chord: 0.0,
-                ..motion
-            };
+            let motion = Motion { pace, chord: 0.0, ..motion };
             let leg = Leg {
                 motion: &motion,
                 loose: loose || pace == Pace::Rapid,
@@ -267,8 +245,7 @@ impl Blocks<'_> {
                     at = Box::new(node);
                 }
                 Err(refused) => {
-                    to.findings
-                        .at(leg.line, refusal::refused(self.machine, &refused));
+                    to.findings.at(leg.line, refusal::refused(self.machine, &refused));
                     break;
                 }
             }

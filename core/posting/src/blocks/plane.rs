@@ -35,13 +35,7 @@ pub(super) struct Planes {
 
 impl Planes {
     pub(super) fn new(format: &Format) -> Self {
-        Self {
-            format: format.clone(),
-            outside: None,
-            wanted: None,
-            stands: None,
-            axes: None,
-        }
+        Self { format: format.clone(), outside: None, wanted: None, stands: None, axes: None }
     }
 
     /// The rotary values of a point: in a plane those of the plane. What the choice held or turned early close to a pole
@@ -147,9 +141,7 @@ impl Blocks<'_> {
             .zip(&stands)
             .any(|(axis, value)| axis.joint.rotary && axis.reading(*value).abs() > 1e-9);
         let order = axis_words::order(machine);
-        let x = order
-            .into_iter()
-            .find(|joint| machine.axes[*joint].name == "X");
+        let x = order.into_iter().find(|joint| machine.axes[*joint].name == "X");
         // Upright under tool centre point control there is a plane too: a control has its cycles and its radius
         // compensation there.
         let told = turned || machine.control.tcp == Tcp::Control;
@@ -195,10 +187,7 @@ impl Blocks<'_> {
             return;
         }
         let mut steadied = *node;
-        if placer
-            .resettle(&mut steadied, node.tip + axes * shift)
-            .is_ok()
-        {
+        if placer.resettle(&mut steadied, node.tip + axes * shift).is_ok() {
             *node = steadied;
         }
     }

@@ -52,10 +52,7 @@ impl Blocks<'_> {
         to: &mut Surroundings<'_, '_>,
     ) -> bool {
         let end = &following.curve.end;
-        let motion = Motion {
-            tip: spline.end(),
-            ..*end
-        };
+        let motion = Motion { tip: spline.end(), ..*end };
         let Some(block) = self.spline_block(placer, frame, spline, &motion) else {
             return false;
         };
@@ -66,21 +63,14 @@ impl Blocks<'_> {
             Some(way)
         });
         let way: f64 = ways.sum();
-        let leg = Leg {
-            line: following.line,
-            motion: &motion,
-            loose: false,
-            reason: Reason::Point,
-        };
+        let leg =
+            Leg { line: following.line, motion: &motion, loose: false, reason: Reason::Point };
         // Whatever its direction, no axis goes faster than the tool.
         let mut follow = Follow::default();
         for (joint, slide) in frame.slides() {
             let minutes = way * slide.norm() / self.machine.axes[*joint].max_feed;
             if minutes > follow.minutes {
-                follow = Follow {
-                    minutes,
-                    joint: *joint,
-                };
+                follow = Follow { minutes, joint: *joint };
             }
         }
         let made = Block {
@@ -124,9 +114,8 @@ impl Blocks<'_> {
         words.extend_from_slice(&node.words[..placer.count()]);
         points.push(placer.printed(&node)?);
         let knots = wanted.knots().iter();
-        let knots: Option<Vec<f64>> = knots
-            .map(|knot| placer.printed_number(knot * LAST_KNOT))
-            .collect();
+        let knots: Option<Vec<f64>> =
+            knots.map(|knot| placer.printed_number(knot * LAST_KNOT)).collect();
         let printed = wanted.about(points).over(knots?)?;
         // Knot span by knot span both are cubics, whose difference lies in the hull of that of their control points.
         let cubics = printed.cubics().zip(wanted.cubics());

@@ -48,10 +48,8 @@ impl Blocks<'_> {
         let turned_at = at.target;
         for moving in excluded {
             if !leg.loose {
-                let names: Vec<&str> = moving
-                    .iter()
-                    .map(|joint| self.machine.axes[*joint].name.as_str())
-                    .collect();
+                let names: Vec<&str> =
+                    moving.iter().map(|joint| self.machine.axes[*joint].name.as_str()).collect();
                 to.findings.at(leg.line,
                     Diagnostic::error(
                         "exclusive",
@@ -87,16 +85,11 @@ impl Blocks<'_> {
         let settled = placer.settled(target, t, joints);
         match settled {
             Ok(node) => {
-                let leg = Leg {
-                    reason: Reason::Stage,
-                    ..*leg
-                };
+                let leg = Leg { reason: Reason::Stage, ..*leg };
                 self.cut(placer, &leg, at, &node, to);
                 *at = node;
             }
-            Err(refused) => to
-                .findings
-                .at(leg.line, refusal::refused(self.machine, &refused)),
+            Err(refused) => to.findings.at(leg.line, refusal::refused(self.machine, &refused)),
         }
     }
 }

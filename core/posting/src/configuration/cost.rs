@@ -13,16 +13,8 @@ pub(crate) struct Cost {
 const EQUAL: f64 = 1e-9;
 
 impl Cost {
-    pub(crate) const NONE: Self = Self {
-        rewinds: 0,
-        against: 0,
-        travel: 0.0,
-    };
-    pub(crate) const NO_WAY: Self = Self {
-        rewinds: 0,
-        against: 0,
-        travel: f64::INFINITY,
-    };
+    pub(crate) const NONE: Self = Self { rewinds: 0, against: 0, travel: 0.0 };
+    pub(crate) const NO_WAY: Self = Self { rewinds: 0, against: 0, travel: f64::INFINITY };
 
     /// There is a way.
     #[inline]
@@ -42,10 +34,7 @@ impl Cost {
 
     /// Goes on by a rewind.
     pub(crate) fn and_rewind(self, travel: f64) -> Self {
-        Self {
-            rewinds: self.rewinds + 1,
-            ..self.and(travel, 0)
-        }
+        Self { rewinds: self.rewinds + 1, ..self.and(travel, 0) }
     }
 
     /// What is left of it when every way has cost `base` so far.
@@ -74,8 +63,6 @@ impl Cost {
     /// Order for sorting.
     pub(crate) fn order(&self, other: &Self) -> std::cmp::Ordering {
         let key = |cost: &Self| (!cost.is_way(), cost.rewinds, cost.against);
-        key(self)
-            .cmp(&key(other))
-            .then(self.travel.total_cmp(&other.travel))
+        key(self).cmp(&key(other)).then(self.travel.total_cmp(&other.travel))
     }
 }

@@ -158,12 +158,7 @@ const AT_REST: (Joints, f64) = ([0.0; MAX_AXES], 0.0);
 impl<'a> Clock<'a> {
     /// Begins at `at`; how the axes came there is not known.
     pub(crate) fn new(drives: &'a Drives, at: Joints) -> Self {
-        Self {
-            drives,
-            at,
-            last: None,
-            seconds: 0.0,
-        }
+        Self { drives, at, last: None, seconds: 0.0 }
     }
 
     /// The machine comes to rest.

@@ -186,9 +186,7 @@ impl Route<'_> {
         let turned = value - last[pole];
         last[pole] = value;
         // The others come as near as they can, on the turns where they are.
-        let stand = trellis
-            .axes
-            .held(solver, &pose(&at.motion), &last, turned)?;
+        let stand = trellis.axes.held(solver, &pose(&at.motion), &last, turned)?;
         Some(stand.joints)
     }
 
@@ -242,8 +240,8 @@ impl Route<'_> {
 /// Time of a cut, minutes.
 fn minutes(trellis: &Trellis, layer: usize) -> f64 {
     let motion = &trellis.layers[layer].motion;
-    let way = layer.checked_sub(1).map_or(0.0, |before| {
-        (motion.tip - trellis.layers[before].motion.tip).norm()
-    });
+    let way = layer
+        .checked_sub(1)
+        .map_or(0.0, |before| (motion.tip - trellis.layers[before].motion.tip).norm());
     trellis::minutes(motion, way)
 }

@@ -30,11 +30,7 @@ impl Axes {
             let value = joints[joint];
             over(joint, axis.travel, value, 0.0)?;
             if axis.forbids(value) {
-                return Err(OverTravel {
-                    joint,
-                    value,
-                    limit: -axis.zero,
-                });
+                return Err(OverTravel { joint, value, limit: -axis.zero });
             }
         }
         Ok(joints)
@@ -42,11 +38,7 @@ impl Axes {
 
     /// Are two sets of joints the same, or, on one branch, the same but for full turns of endless axes?
     pub(crate) fn alike(&self, (a_branch, a): (u8, &Joints), (b_branch, b): (u8, &Joints)) -> bool {
-        let endless = if a_branch == b_branch {
-            self.endless
-        } else {
-            0
-        };
+        let endless = if a_branch == b_branch { self.endless } else { 0 };
         a.iter().zip(b).enumerate().all(|(joint, (a, b))| {
             let apart = (a - b).abs();
             apart < SAME
@@ -91,11 +83,8 @@ impl Axes {
     /// Calls `take` with the stand on the turns nearest to `last`, and with its first axis on every other turn
     /// inside travel; where a third axis turns against the first, on the nearest alone.
     pub(crate) fn unheld(&self, stand: &Stand, last: &Joints, take: &mut dyn FnMut(&Joints)) {
-        let turns: &[f64] = if self.turning.len() > 2 {
-            &[0.0]
-        } else {
-            &[0.0, -1.0, 1.0, -2.0, 2.0]
-        };
+        let turns: &[f64] =
+            if self.turning.len() > 2 { &[0.0] } else { &[0.0, -1.0, 1.0, -2.0, 2.0] };
         self.first_turned(stand, last, turns, take);
     }
 
@@ -120,11 +109,7 @@ impl Axes {
         for turn in turns {
             let mut joints = nearest;
             joints[first.joint] += TAU * turn;
-            if self
-                .turning
-                .iter()
-                .all(|axis| axis.allows(joints[axis.joint]))
-            {
+            if self.turning.iter().all(|axis| axis.allows(joints[axis.joint])) {
                 take(&joints);
             }
         }
@@ -193,8 +178,8 @@ impl Axes {
     /// The largest turn of a pointing axis, radians.
     #[inline]
     pub(crate) fn largest_turn(&self, from: &Joints, to: &Joints) -> f64 {
-        self.turning.iter().fold(0.0, |largest: f64, axis| {
-            largest.max((to[axis.joint] - from[axis.joint]).abs())
-        })
+        self.turning
+            .iter()
+            .fold(0.0, |largest: f64, axis| largest.max((to[axis.joint] - from[axis.joint]).abs()))
     }
 }

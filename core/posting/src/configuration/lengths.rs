@@ -65,9 +65,7 @@ impl Lengths {
         let compensated = match machine.length_axis {
             LengthAxis::None => {
                 let length = length.unwrap_or(0.0);
-                return self
-                    .once(tool, true)
-                    .or_else(|| self.measure(machine, length));
+                return self.once(tool, true).or_else(|| self.measure(machine, length));
             }
             LengthAxis::Said(place) => Some(place),
             LengthAxis::Dialect if self.writes.has(Capabilities::LENGTH_ALONG_DEPTH) => {

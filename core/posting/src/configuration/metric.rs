@@ -79,9 +79,9 @@ impl Measure {
 
     /// [`Measure::between`] of the rotary axes alone: nobody knows where the tool comes from.
     pub(crate) fn approach(&self, from: &Joints, to: &Joints) -> f64 {
-        let turn = self.drives().map_or(0.0, |drives| {
-            drives.rest_to_rest(from, to, 1.0, |place| self.rotary[place])
-        });
+        let turn = self
+            .drives()
+            .map_or(0.0, |drives| drives.rest_to_rest(from, to, 1.0, |place| self.rotary[place]));
         turn + self.weigh(from, to, false)
     }
 
@@ -115,11 +115,7 @@ impl Measure {
             Rule::LargestAxis => largest.to_degrees() + tie,
             Rule::Axis(place) => {
                 let way = (to[place] - from[place]).abs();
-                let unit = if self.rotary[place] {
-                    1f64.to_radians()
-                } else {
-                    1.0
-                };
+                let unit = if self.rotary[place] { 1f64.to_radians() } else { 1.0 };
                 way / unit + tie
             }
         }

@@ -151,10 +151,7 @@ impl<'a> Configuration<'a> {
             Waiting::Command(line, _) => Some(*line),
             Waiting::Points(_) => None,
         });
-        [command, self.route.first_line()]
-            .into_iter()
-            .flatten()
-            .min()
+        [command, self.route.first_line()].into_iter().flatten().min()
     }
 
     /// Takes a batch.
@@ -211,10 +208,7 @@ impl<'a> Configuration<'a> {
     /// From here on a point of the path is the control point of the tool.
     #[inline]
     fn guided(&self, motion: Motion) -> Motion {
-        Motion {
-            tip: self.control_point(motion.tip, motion.axis),
-            ..motion
-        }
+        Motion { tip: self.control_point(motion.tip, motion.axis), ..motion }
     }
 
     #[inline]
@@ -363,15 +357,9 @@ impl<'a> Configuration<'a> {
 
     /// The tool stands there: solutions near to it are wanted, but nothing moves.
     fn stand(&mut self, tip: Vector3<f64>, axis: Vector3<f64>) {
-        let pose = Pose {
-            tip: self.control_point(tip, axis),
-            axis,
-            edge: self.route.edge_at_rest(),
-        };
-        let placed = self
-            .route
-            .present()
-            .place(pose, 1.0, self.route.stands_at());
+        let pose =
+            Pose { tip: self.control_point(tip, axis), axis, edge: self.route.edge_at_rest() };
+        let placed = self.route.present().place(pose, 1.0, self.route.stands_at());
         if let Ok(node) = placed {
             self.route.begin_at(node.trace.joints);
         }
@@ -381,19 +369,14 @@ impl<'a> Configuration<'a> {
     fn measure(&mut self, tool: &Tool) {
         let table = || {
             let tools = &self.machine.tools;
-            tools
-                .iter()
-                .find(|(number, _)| *number == tool.number)
-                .map(|(_, length)| *length)
+            tools.iter().find(|(number, _)| *number == tool.number).map(|(_, length)| *length)
         };
         let given = [
             (self.told_length, LengthSource::Option),
             (table(), LengthSource::MachineFile),
             (tool.length, LengthSource::ClFile),
         ];
-        let mut given = given
-            .into_iter()
-            .filter_map(|(length, source)| Some((length?, source)));
+        let mut given = given.into_iter().filter_map(|(length, source)| Some((length?, source)));
         let known = given.next();
         self.length = known.map(|(length, _)| length);
         self.source = known.map_or(LengthSource::Unknown, |(_, source)| source);
@@ -411,8 +394,7 @@ impl<'a> Configuration<'a> {
             source: self.source,
         };
         if let Some(finding) =
-            self.lengths
-                .check(self.base, self.machine, (used.number, self.length))
+            self.lengths.check(self.base, self.machine, (used.number, self.length))
         {
             findings.at(line, finding);
         }
@@ -485,11 +467,7 @@ impl<'a> Configuration<'a> {
             return false;
         }
         let first_linear = machine.axes.iter().position(|axis| !axis.joint.rotary);
-        machine
-            .axes
-            .iter()
-            .skip(first_linear.unwrap_or(0))
-            .any(|axis| axis.joint.rotary)
+        machine.axes.iter().skip(first_linear.unwrap_or(0)).any(|axis| axis.joint.rotary)
     }
 }
 

@@ -37,9 +37,7 @@ impl Route<'_> {
             Ok(found) => found,
             Err(unreachable) => {
                 let refused = Refused::Unreachable(unreachable);
-                return Err(Lost::Point(
-                    refusal::refused(self.machine, &refused).boxed(),
-                ));
+                return Err(Lost::Point(refusal::refused(self.machine, &refused).boxed()));
             }
         };
         if kind != Kind::Cut {
@@ -170,10 +168,7 @@ impl Route<'_> {
         };
         let reaches = |joints: &Joints| placer.settled(pose(&back), 1.0, joints).is_ok();
         let mut stands = Vec::new();
-        let states: Vec<State> = self
-            .trellis
-            .states_of(self.trellis.layers.len() - 1)
-            .to_vec();
+        let states: Vec<State> = self.trellis.states_of(self.trellis.layers.len() - 1).to_vec();
         let mut added = Vec::new();
         for (place, state) in states.iter().enumerate() {
             if !state.cost.is_way() || !reaches(&state.joints) {
@@ -208,11 +203,7 @@ impl Route<'_> {
                 )),
                 joints,
                 from: state.from,
-                root: if self.mark + 1 == self.trellis.layers.len() {
-                    index
-                } else {
-                    state.root
-                },
+                root: if self.mark + 1 == self.trellis.layers.len() { index } else { state.root },
                 branch,
                 rewind: Some(self.rewound.len() - 1),
             });
@@ -225,10 +216,7 @@ impl Route<'_> {
 
     fn over_travel(&self, found: &Found) -> Box<Diagnostic> {
         let refused = match found.over {
-            Some(over) => Refused::OverTravel {
-                over,
-                tried: found.solutions,
-            },
+            Some(over) => Refused::OverTravel { over, tried: found.solutions },
             None if !self.machine.solution.require.is_empty() => {
                 return Diagnostic::error(
                     "over-travel",
@@ -258,11 +246,7 @@ impl Route<'_> {
         let tried: Vec<_> = stands
             .iter()
             .map(|stand| {
-                (
-                    axes.carried(stand, &from.joints),
-                    stand.branch == from.branch,
-                    stand.joints,
-                )
+                (axes.carried(stand, &from.joints), stand.branch == from.branch, stand.joints)
             })
             .collect();
         refusal::no_way(self.machine, &from.joints, &tried).boxed()

@@ -84,9 +84,7 @@ const MOST_SETTINGS: usize = 32;
 fn tries_positions(machine: &Machine) -> bool {
     machine.redundant().iter().any(|joint| {
         let indexed = &machine.axes[*joint].indexed;
-        indexed
-            .as_ref()
-            .is_some_and(|indexed| indexed.positions != Positions::Any)
+        indexed.as_ref().is_some_and(|indexed| indexed.positions != Positions::Any)
     })
 }
 
@@ -174,11 +172,7 @@ impl<'a> Route<'a> {
             mark: 0,
             near,
             rewound: Vec::new(),
-            judge: Trial {
-                machine,
-                linearise: Linearise::default(),
-                strict: false,
-            },
+            judge: Trial { machine, linearise: Linearise::default(), strict: false },
             tries_positions: tries_positions(machine),
             chosen: Vec::new(),
             way: Backtrace::default(),

@@ -60,21 +60,14 @@ impl Route<'_> {
             arrives: true,
             joints: state.joints,
             rewind: None,
-            changed: trellis.has_changed(
-                (before.branch, &before.joints),
-                (state.branch, &state.joints),
-            ),
+            changed: trellis
+                .has_changed((before.branch, &before.joints), (state.branch, &state.joints)),
             eased: false,
         });
         trellis.layers.swap_remove(0);
         trellis.layers[0].first = 0;
         trellis.states.clear();
-        trellis.states.push(State {
-            cost: Cost::NONE,
-            from: 0,
-            root: 0,
-            ..state
-        });
+        trellis.states.push(State { cost: Cost::NONE, from: 0, root: 0, ..state });
         self.mark = 0;
     }
 
@@ -134,12 +127,7 @@ impl Route<'_> {
     /// tool is drawn back on the way.
     fn exact(&mut self) -> Option<Trellis> {
         let layers = &self.trellis.layers;
-        if self
-            .trellis
-            .states
-            .iter()
-            .any(|state| state.rewind.is_some())
-        {
+        if self.trellis.states.iter().any(|state| state.rewind.is_some()) {
             return None;
         }
         let placer = &self.settings[layers[0].setting].1;
@@ -150,9 +138,7 @@ impl Route<'_> {
         for at in &layers[begun..] {
             let placer = &self.settings[at.setting].1;
             let (near, judge) = (&self.near, &mut self.judge);
-            exact
-                .push(at.line, &at.motion, at.setting, placer, near, judge)
-                .ok()?;
+            exact.push(at.line, &at.motion, at.setting, placer, near, judge).ok()?;
             if exact.layers.last()?.count == 0 {
                 return None;
             }
@@ -217,14 +203,8 @@ impl Route<'_> {
         }
         trellis.layers[0].first = 0;
         trellis.layers[0].count = 1;
-        trellis.states[0] = State {
-            cost: Cost::NONE,
-            joints,
-            from: 0,
-            root: 0,
-            branch,
-            rewind: None,
-        };
+        trellis.states[0] =
+            State { cost: Cost::NONE, joints, from: 0, root: 0, branch, rewind: None };
         self.anchored = true;
         self.mark = 0;
         if upto == last {

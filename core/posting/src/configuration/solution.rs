@@ -54,8 +54,7 @@ pub(super) struct Turning {
 impl Turning {
     #[inline]
     pub(super) fn forbids(&self, value: f64) -> bool {
-        self.require
-            .is_some_and(|side| wrong_side(value + self.zero, side))
+        self.require.is_some_and(|side| wrong_side(value + self.zero, side))
     }
 
     /// Inside travel, and on no side that is forbidden.
@@ -79,11 +78,7 @@ pub(crate) struct Found {
 impl Found {
     /// So many solutions of a chain without a closed form, whose poles are not known.
     pub(super) fn by_search(solutions: usize) -> Self {
-        Self {
-            latitude: (1.0, 0.0),
-            solutions,
-            over: None,
-        }
+        Self { latitude: (1.0, 0.0), solutions, over: None }
     }
 }
 
@@ -109,19 +104,13 @@ impl Axes {
         let pointing = machine.pointing();
         let side = |joint: usize| {
             let require = &machine.solution.require;
-            require
-                .iter()
-                .find(|(place, _)| *place == joint)
-                .map(|(_, side)| *side)
+            require.iter().find(|(place, _)| *place == joint).map(|(_, side)| *side)
         };
         let turning = pointing
             .iter()
             .map(|&joint| {
                 let axis = &machine.axes[joint];
-                let positions = axis
-                    .indexed
-                    .as_ref()
-                    .map(|indexed| indexed.positions.clone());
+                let positions = axis.indexed.as_ref().map(|indexed| indexed.positions.clone());
                 Turning {
                     joint,
                     travel: axis.travel.map(|travel| printed(joint, travel)),
@@ -177,16 +166,10 @@ impl Axes {
             return true;
         };
         // An angle is no smaller than its sine, and no smaller than what the cosine changes by.
-        let from_least = if least > AT_POLE {
-            sine > way || cosine < 0.0
-        } else {
-            cosine < least - way
-        };
-        let from_most = if most < -AT_POLE {
-            sine > way || cosine > 0.0
-        } else {
-            cosine > most + way
-        };
+        let from_least =
+            if least > AT_POLE { sine > way || cosine < 0.0 } else { cosine < least - way };
+        let from_most =
+            if most < -AT_POLE { sine > way || cosine > 0.0 } else { cosine > most + way };
         from_least && from_most
     }
 
@@ -233,11 +216,8 @@ impl Axes {
         going: [bool; 2],
         stands: &mut Vec<Stand>,
     ) -> Result<Found, Unreachable> {
-        let mut found = Found {
-            latitude: branches.latitude(),
-            solutions: branches.count(),
-            over: None,
-        };
+        let mut found =
+            Found { latitude: branches.latitude(), solutions: branches.count(), over: None };
         let mut flat = None;
         for index in (0..branches.count()).filter(|index| going[*index]) {
             let mut set = solver.angles(branches, index);
@@ -260,11 +240,7 @@ impl Axes {
                 self.keep_least(&mut found.over, over);
                 continue;
             }
-            stands.push(Stand {
-                joints,
-                branch: index as u8,
-                free: set.free,
-            });
+            stands.push(Stand { joints, branch: index as u8, free: set.free });
         }
         match flat {
             Some(unreachable) if stands.is_empty() && found.over.is_none() => Err(unreachable),
@@ -290,11 +266,7 @@ impl Axes {
         }
         self.at_rest(&mut set.joints).ok()?;
         let turns = solver.turns(&set);
-        let mut stand = Stand {
-            joints: set.joints,
-            branch,
-            free: 0,
-        };
+        let mut stand = Stand { joints: set.joints, branch, free: 0 };
         solver.place(pose.tip, &mut stand.joints, &turns).ok()?;
         if self.beyond(&stand.joints).is_some() {
             return None;
@@ -320,11 +292,7 @@ impl Axes {
                 Err(over) => Some(over),
             };
             match over {
-                None => stands.push(Stand {
-                    joints,
-                    branch: branch as u8,
-                    free: 0,
-                }),
+                None => stands.push(Stand { joints, branch: branch as u8, free: 0 }),
                 Some(over) => {
                     self.keep_least(&mut found.over, over);
                 }
@@ -347,11 +315,7 @@ impl Axes {
                     .min_by(|a, b| libm::fabs(a - value).total_cmp(&libm::fabs(b - value)))
                     .unwrap_or(value);
                 if libm::fabs(nearest - value) > self.axis_tolerance {
-                    return Err(OverTravel {
-                        joint,
-                        value,
-                        limit: nearest,
-                    });
+                    return Err(OverTravel { joint, value, limit: nearest });
                 }
                 joints[joint] = nearest;
             }
@@ -421,11 +385,7 @@ impl Axes {
             _ => 0.0,
         };
         let against = |joint: usize| {
-            if third == Some(joint) {
-                sense * turned
-            } else {
-                0.0
-            }
+            if third == Some(joint) { sense * turned } else { 0.0 }
         };
         for axis in &self.turning {
             if axis.joint != pole {
@@ -456,11 +416,7 @@ impl Axes {
         }
         let turns = solver.chain().turns(&joints);
         solver.place(pose.tip, &mut joints, &turns).ok()?;
-        let stand = Stand {
-            joints,
-            branch: 0,
-            free: 0,
-        };
+        let stand = Stand { joints, branch: 0, free: 0 };
         self.reaches(&joints).then_some(stand)
     }
 

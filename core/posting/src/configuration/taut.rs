@@ -121,10 +121,7 @@ mod tests {
     use super::*;
 
     fn gate(time: f64, low: f64, high: f64) -> Gate {
-        Gate {
-            time: Some(time),
-            range: [low, high],
-        }
+        Gate { time: Some(time), range: [low, high] }
     }
 
     fn wide(time: f64) -> Gate {
@@ -139,29 +136,19 @@ mod tests {
 
     #[test]
     fn it_holds_where_nothing_is_asked() {
-        assert_eq!(
-            taut(Some(2.0), &[wide(1.0), gate(1.0, -3.0, 3.0)]),
-            [2.0, 2.0]
-        );
+        assert_eq!(taut(Some(2.0), &[wide(1.0), gate(1.0, -3.0, 3.0)]), [2.0, 2.0]);
     }
 
     #[test]
     fn it_turns_early_where_it_may_jump() {
-        let jump = Gate {
-            time: None,
-            range: [f64::NEG_INFINITY, f64::INFINITY],
-        };
+        let jump = Gate { time: None, range: [f64::NEG_INFINITY, f64::INFINITY] };
         let gates = [wide(1.0), jump, wide(1.0), gate(1.0, 5.0, 5.0)];
         assert_eq!(taut(Some(0.0), &gates), [0.0, 5.0, 5.0, 5.0]);
     }
 
     #[test]
     fn it_kinks_at_the_gates_that_hold_it() {
-        let gates = [
-            gate(1.0, 2.0, 9.0),
-            gate(1.0, -9.0, 1.0),
-            gate(2.0, 1.0, 1.0),
-        ];
+        let gates = [gate(1.0, 2.0, 9.0), gate(1.0, -9.0, 1.0), gate(2.0, 1.0, 1.0)];
         assert_eq!(taut(Some(0.0), &gates), [2.0, 1.0, 1.0]);
     }
 

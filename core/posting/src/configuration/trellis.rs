@@ -145,11 +145,7 @@ pub(crate) struct Trellis {
 
 /// Where a point is wanted.
 pub(crate) fn pose(motion: &Motion) -> Pose {
-    Pose {
-        tip: motion.tip,
-        axis: motion.axis,
-        edge: motion.edge,
-    }
+    Pose { tip: motion.tip, axis: motion.axis, edge: motion.edge }
 }
 
 impl Trellis {
@@ -207,15 +203,10 @@ impl Trellis {
             (false, _) => Kind::Cut,
         };
         let target = pose(motion);
-        let before = self
-            .layers
-            .last()
-            .map(|layer| layer.first..layer.first + layer.count);
+        let before = self.layers.last().map(|layer| layer.first..layer.first + layer.count);
         if self.measure.drives().is_some() {
-            self.asked = [
-                self.asked_for(self.layers.len().saturating_sub(1)),
-                self.asked_next(motion),
-            ];
+            self.asked =
+                [self.asked_for(self.layers.len().saturating_sub(1)), self.asked_next(motion)];
         }
         let mut stands = std::mem::take(&mut self.stands);
         stands.clear();
@@ -233,8 +224,7 @@ impl Trellis {
             Ok(Found::by_search(1))
         } else {
             let going = |branches: &Branches| ways.going(&self.axes, branches);
-            self.axes
-                .stands(placer.solver(), &target, &last, &going, &mut stands)
+            self.axes.stands(placer.solver(), &target, &last, &going, &mut stands)
         };
         let found = match found {
             Ok(found) => found,
@@ -263,10 +253,8 @@ impl Trellis {
                 Kind::Rapid => self.turn(placer, &stands, range),
                 Kind::Cut => {
                     if placer.solver().closed_form() {
-                        let passage = Passage {
-                            meet: ways.meet(&self.axes, found.latitude),
-                            arc: ways.arc,
-                        };
+                        let passage =
+                            Passage { meet: ways.meet(&self.axes, found.latitude), arc: ways.arc };
                         self.go_on(placer, motion, &stands, &passage, range, judge);
                     }
                 }
@@ -312,9 +300,7 @@ impl Trellis {
         }
         let at = (&branches, state.branch);
         let way = 2.0 * ways.arc;
-        let joints = self
-            .axes
-            .carried_on(solver, &target, at, &state.joints, way)?;
+        let joints = self.axes.carried_on(solver, &target, at, &state.joints, way)?;
         self.states[0].joints = joints;
         let layer = &mut self.layers[0];
         layer.line = line;
@@ -333,12 +319,8 @@ impl Trellis {
     /// What the states of the newest layer can go on to.
     #[inline]
     fn ways(&self, target: &Pose, kind: Kind) -> Ways {
-        let mut ways = Ways {
-            alive: [true; 2],
-            latitude: (0.0, 0.0),
-            arc: 0.0,
-            reach: f64::INFINITY,
-        };
+        let mut ways =
+            Ways { alive: [true; 2], latitude: (0.0, 0.0), arc: 0.0, reach: f64::INFINITY };
         let Some(last) = self.layers.last().filter(|_| kind == Kind::Cut) else {
             return ways;
         };
@@ -436,8 +418,7 @@ impl Trellis {
             Some(state) if kind == Kind::Cut => (state.cost, self.way_on(state, &stand.joints)),
             Some(state) => (
                 state.cost,
-                self.measure
-                    .off_part(placer.solver().chain(), &state.joints, &stand.joints),
+                self.measure.off_part(placer.solver().chain(), &state.joints, &stand.joints),
             ),
             None => (Cost::NONE, self.measure.approach(near, &stand.joints)),
         };
@@ -457,12 +438,7 @@ impl Trellis {
     /// Every set of turns of a stand, come to from one state or from nowhere.
     fn reach(&mut self, placer: &Placer, stand: &Stand, from: Option<usize>, near: &Joints) {
         let chain = placer.solver().chain();
-        let Self {
-            axes,
-            measure,
-            states,
-            ..
-        } = self;
+        let Self { axes, measure, states, .. } = self;
         let before = from.map(|index| states[index]);
         let last = before.map_or(*near, |state| state.joints);
         axes.turned(stand, &last, &mut |joints| {
@@ -557,8 +533,7 @@ impl Trellis {
                 }
                 // Of the turns that the axes can come to, the nearest that they do come to.
                 let mut tried: Vec<Joints> = carried.into_iter().collect();
-                self.axes
-                    .other_turns(stand, &state.joints, &mut |joints| tried.push(*joints));
+                self.axes.other_turns(stand, &state.joints, &mut |joints| tried.push(*joints));
                 let from = (&from_pose, &state.joints);
                 let found = tried.into_iter().find_map(|mut joints| {
                     (self.axes.stand_still(&state.joints, &mut joints)
@@ -615,9 +590,9 @@ impl Trellis {
 
     /// The same for a point behind the newest layer.
     fn asked_next(&self, motion: &Motion) -> f64 {
-        self.layers.last().map_or(0.0, |last| {
-            60.0 * minutes(motion, (motion.tip - last.motion.tip).norm())
-        })
+        self.layers
+            .last()
+            .map_or(0.0, |last| 60.0 * minutes(motion, (motion.tip - last.motion.tip).norm()))
     }
 
     /// The state that stands at `joints` and comes from another.
@@ -625,9 +600,7 @@ impl Trellis {
     fn after(&self, from: usize, joints: Joints, branch: u8) -> State {
         let state = &self.states[from];
         State {
-            cost: state
-                .cost
-                .and(self.way_on(state, &joints), self.measure.against(&joints)),
+            cost: state.cost.and(self.way_on(state, &joints), self.measure.against(&joints)),
             joints,
             from,
             root: state.root,
@@ -641,8 +614,7 @@ impl Trellis {
     fn leave_pole(&mut self, stand: &Stand, from: usize, first: usize) {
         let state = self.states[from];
         let mut reached = Vec::new();
-        self.axes
-            .unheld(stand, &state.joints, &mut |joints| reached.push(*joints));
+        self.axes.unheld(stand, &state.joints, &mut |joints| reached.push(*joints));
         for mut joints in reached {
             if !self.axes.stand_still(&state.joints, &mut joints) {
                 continue;

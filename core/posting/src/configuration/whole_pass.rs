@@ -20,20 +20,14 @@ pub fn whole_pass(
     length: f64,
     path: &[Motion],
 ) -> Result<Vec<Joints>, Vec<Diagnostic>> {
-    let machine = Machine {
-        rewind: None,
-        ..machine.clone()
-    };
+    let machine = Machine { rewind: None, ..machine.clone() };
     let along = machine.control_point.along;
     let mut route = Route::new(&machine, format, length).map_err(|fault| vec![*fault])?;
     let mut faults = Vec::new();
     let mut found = vec![Joints::default(); path.len()];
     let mut chosen = Vec::new();
     for (index, motion) in path.iter().enumerate() {
-        let guided = Motion {
-            tip: motion.tip + motion.axis * along,
-            ..*motion
-        };
+        let guided = Motion { tip: motion.tip + motion.axis * along, ..*motion };
         if let Err(lost) = route.add(index as u64, &guided) {
             let (Lost::Point(fault) | Lost::Path(fault)) = lost;
             let message = format!("point {index}: {}", fault.message);

@@ -83,23 +83,13 @@ impl Emit<'_> {
         }
         self.leave(line);
         self.texts.tool(tool);
-        self.writer.push(
-            line,
-            Event::Offsets {
-                length: Some(tool.register),
-                radius: None,
-            },
-        );
+        self.writer.push(line, Event::Offsets { length: Some(tool.register), radius: None });
         true
     }
 
     /// A subprogram of the control; what it leaves in force nobody knows.
     pub(super) fn subprogram(&mut self, line: u64, number: u32, findings: &Findings) {
-        let event = Event::Subprogram {
-            number: Some(number),
-            times: 1,
-            name: "",
-        };
+        let event = Event::Subprogram { number: Some(number), times: 1, name: "" };
         if !self.writer.knows(Capabilities::SUBPROGRAM) {
             refuse(line, &event, "CALSUB", findings);
             return;

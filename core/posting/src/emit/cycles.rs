@@ -69,9 +69,7 @@ struct Native {
 /// The place of the word Z of the linear axis along which the cycles of a control drill.
 pub(super) fn z_word(machine: &Machine) -> Option<usize> {
     let order = axis_words::order(machine);
-    order
-        .iter()
-        .position(|joint| machine.axes[*joint].name == "Z")
+    order.iter().position(|joint| machine.axes[*joint].name == "Z")
 }
 
 /// The same, if the tool stands along that axis with every rotary axis at zero.
@@ -84,13 +82,7 @@ impl Emit<'_> {
     /// Takes a mark of a hole, or what comes while one is open.
     pub(super) fn drill(&mut self, next: &Flow<Block>, findings: &Findings) {
         let (line, mark) = match (next, &mut self.hole) {
-            (
-                Flow::Command {
-                    line,
-                    command: Command::Hole(mark),
-                },
-                _,
-            ) => (*line, mark),
+            (Flow::Command { line, command: Command::Hole(mark) }, _) => (*line, mark),
             (next, Some(hole)) => return hole.part().push(next.clone()),
             _ => return,
         };
@@ -106,10 +98,7 @@ impl Emit<'_> {
             }
             HoleMark::Into { point, axis } => {
                 if let Some(hole) = &mut self.hole {
-                    hole.at = Some(ToolPose {
-                        tip: (*point).into(),
-                        axis: (*axis).into(),
-                    });
+                    hole.at = Some(ToolPose { tip: (*point).into(), axis: (*axis).into() });
                 }
             }
             HoleMark::Done => {
@@ -218,13 +207,7 @@ impl Emit<'_> {
         }
         self.extremes.blocks += 1;
         let words = &native.words[..self.writer.words()];
-        self.writer.push(
-            hole.line,
-            Event::CyclePoint {
-                tool: hole.at,
-                words,
-            },
-        );
+        self.writer.push(hole.line, Event::CyclePoint { tool: hole.at, words });
     }
 
     /// Every block of the way to the next hole keeps to the level of the last one.
@@ -293,11 +276,7 @@ impl Emit<'_> {
                 return None;
             }
             self.words.print_tip(point.tip.into(), &mut words)?;
-            [
-                printed(lengths[0])?,
-                printed(lengths[1])?,
-                printed(lengths[2])?,
-            ]
+            [printed(lengths[0])?, printed(lengths[1])?, printed(lengths[2])?]
         };
         // The words across the tool differ from hole to hole.
         let mut stands = level.words;

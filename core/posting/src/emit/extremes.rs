@@ -60,11 +60,7 @@ impl Extremes {
         let deviation = &mut self.deviations[slot];
         // Of blocks that are equal but for rounding errors, the first is named.
         if value > deviation.value + EQUAL {
-            *deviation = Deviation {
-                value,
-                block: 0,
-                line,
-            };
+            *deviation = Deviation { value, block: 0, line };
             self.marks[slot] = Some(index);
         } else if value > deviation.value {
             deviation.value = value;

@@ -51,10 +51,7 @@ impl Emit<'_> {
         self.keep_tip(line, false);
         self.instead(line, TextPlace::Retract);
         let machine = self.machine;
-        self.go(line, &machine.frame.retract, |axes, words| Event::Retract {
-            axes,
-            words,
-        });
+        self.go(line, &machine.frame.retract, |axes, words| Event::Retract { axes, words });
         if std::mem::take(&mut self.plane_on) {
             self.writer.push(line, Event::PlaneOff);
         }
@@ -104,8 +101,7 @@ impl Emit<'_> {
             }
             self.last[joint] = value;
         }
-        self.writer
-            .push(line, event(axes, &words[..self.writer.words()]));
+        self.writer.push(line, event(axes, &words[..self.writer.words()]));
     }
 
     /// Axes to positions of the machine, the tool retracted: the rotary ones, those across the tool, and the depth last.
@@ -144,10 +140,7 @@ impl Emit<'_> {
             return;
         }
         let time = match axis.max_feed.is_finite() {
-            true => format!(
-                ", {:.1} min at its max_feed",
-                way / axis.max_feed.to_degrees()
-            ),
+            true => format!(", {:.1} min at its max_feed", way / axis.max_feed.to_degrees()),
             false => String::new(),
         };
         findings.at(
@@ -167,12 +160,7 @@ impl Emit<'_> {
     /// At the end an axis stands whole turns away from zero, and nothing turns it back.
     fn tell_wound(&self, line: u64, findings: &Findings) {
         for (joint, axis) in self.machine.axes.iter().enumerate() {
-            let parked = self
-                .machine
-                .frame
-                .park
-                .iter()
-                .any(|(place, _)| *place == joint);
+            let parked = self.machine.frame.park.iter().any(|(place, _)| *place == joint);
             let stands = axis.reading(self.last[joint]);
             if !axis.joint.rotary || axis.range.is_some() || parked || libm::fabs(stands) <= TURN {
                 continue;

@@ -215,10 +215,7 @@ impl<'a> Emit<'a> {
     #[inline]
     fn block(&mut self, block: &Block, findings: &Findings) {
         let line = block.line;
-        if self
-            .waits
-            .is_some_and(|first| cuts(block) || first.goes_in(block))
-        {
+        if self.waits.is_some_and(|first| cuts(block) || first.goes_in(block)) {
             self.wake(line, findings);
         }
         match block.kind {
@@ -295,12 +292,7 @@ impl<'a> Emit<'a> {
         }
         self.extremes.mark(block, self.writer.next());
         let event = match &curve.words {
-            CurveWords::Arc {
-                centre,
-                normal,
-                turn,
-                radius,
-            } => Event::Arc {
+            CurveWords::Arc { centre, normal, turn, radius } => Event::Arc {
                 tool: stands(block),
                 feed,
                 centre: *centre,
@@ -309,12 +301,7 @@ impl<'a> Emit<'a> {
                 radius: *radius,
                 words: &block.words[..self.writer.words()],
             },
-            CurveWords::Spline {
-                degree,
-                knots,
-                weights,
-                points,
-            } => Event::Spline {
+            CurveWords::Spline { degree, knots, weights, points } => Event::Spline {
                 feed,
                 degree: *degree,
                 knots: List(knots),
@@ -465,11 +452,7 @@ struct FirstPosition {
 
 impl FirstPosition {
     fn of(block: &Block) -> Self {
-        Self {
-            line: block.line,
-            tip: block.tip,
-            axis: block.axis,
-        }
+        Self { line: block.line, tip: block.tip, axis: block.axis }
     }
 
     /// A block of another line leads below it, along the tool: into a slot, it may be, at rapid.
@@ -483,17 +466,11 @@ const LOWER: f64 = 1e-6;
 
 /// At feed, from where the tool stands.
 fn cuts(block: &Block) -> bool {
-    matches!(
-        block.kind,
-        MotionKind::Linear | MotionKind::Arc | MotionKind::Spline
-    )
+    matches!(block.kind, MotionKind::Linear | MotionKind::Arc | MotionKind::Spline)
 }
 
 /// Where the tool stands at the end of a block.
 #[inline]
 fn stands(block: &Block) -> Option<ToolPose> {
-    Some(ToolPose {
-        tip: block.tip.into(),
-        axis: block.axis.into(),
-    })
+    Some(ToolPose { tip: block.tip.into(), axis: block.axis.into() })
 }

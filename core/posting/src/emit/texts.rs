@@ -39,17 +39,12 @@ impl<'a> Texts<'a> {
             tolerance: machine.accuracy.tolerance,
             axis_tolerance: machine.accuracy.axis_tolerance.to_degrees(),
             tools: ahead.map(|ahead| ahead.tools().into_iter().map(tool_facts).collect()),
-            extents: ahead
-                .and_then(|ahead| ahead.extents)
-                .map(|[min, max]| Extents { min, max }),
+            extents: ahead.and_then(|ahead| ahead.extents).map(|[min, max]| Extents { min, max }),
             time: ahead.and_then(|ahead| ahead.time_s),
         };
         Self {
             rules: &machine.program,
-            facts: Facts {
-                program,
-                ..Facts::default()
-            },
+            facts: Facts { program, ..Facts::default() },
             changes: ahead
                 .map(|ahead| ahead.changes.iter().map(|tool| tool.number).collect())
                 .unwrap_or_default(),
@@ -105,10 +100,8 @@ impl<'a> Texts<'a> {
     /// An operation begins, or none is open any more.
     pub(super) fn operation(&mut self, name: Option<&str>) {
         self.operations += u32::from(name.is_some());
-        self.facts.operation = name.map(|name| OperationFacts {
-            name: name.to_owned(),
-            number: self.operations,
-        });
+        self.facts.operation =
+            name.map(|name| OperationFacts { name: name.to_owned(), number: self.operations });
     }
 
     /// The warning that a text for operations was written nowhere, where the program has none.

@@ -123,9 +123,7 @@ impl<'a> Writer<'a> {
 
     /// Hands the batch to the dialect and its text to the output.
     pub(super) fn flush(&mut self, extremes: &mut Extremes, findings: &Findings) {
-        let Self {
-            batch, text, ends, ..
-        } = self;
+        let Self { batch, text, ends, .. } = self;
         if batch.is_empty() {
             if let Some(Places { events, lines }) = &mut self.places {
                 lines.extend(events.drain(..).map(|_| 0));

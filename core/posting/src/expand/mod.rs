@@ -119,10 +119,7 @@ impl Expand {
     pub(crate) fn take(&mut self, steps: &[(u64, Step)], out: &mut Out<'_>, findings: &Findings) {
         for (line, step) in steps {
             let line = *line;
-            let change = self
-                .planes
-                .as_mut()
-                .and_then(|planes| planes.change(line, step));
+            let change = self.planes.as_mut().and_then(|planes| planes.change(line, step));
             if let Some(still) = change {
                 self.command(line, Command::Still(still), out, findings);
             }
@@ -176,12 +173,7 @@ impl Expand {
         // Behind a hole the tool stands above the point that the arc begins on.
         let start = arc.at(0.0);
         if self.only_said || self.tip.is_some_and(|tip| (tip - start).norm() > APART) {
-            let to_start = Motion {
-                tip: start,
-                axis: step.start_axis,
-                chord: 0.0,
-                ..*end
-            };
+            let to_start = Motion { tip: start, axis: step.start_axis, chord: 0.0, ..*end };
             self.go(line, to_start, out, findings);
         }
         let turns = libm::ceil(arc.sweep / TAU - 1e-9).max(1.0);
@@ -197,11 +189,7 @@ impl Expand {
         }
         for place in 1..=turns as u32 {
             let [from, to] = [place - 1, place].map(|place| f64::from(place) / turns);
-            let arc = if turns == 1.0 {
-                *arc
-            } else {
-                arc.piece(from, to)
-            };
+            let arc = if turns == 1.0 { *arc } else { arc.piece(from, to) };
             let pace = match end.pace {
                 Pace::InverseTime(feed) => Pace::InverseTime(feed * turns),
                 pace => pace,
@@ -219,11 +207,7 @@ impl Expand {
 
     /// Chords, the tool axis turning evenly from start to end.
     fn chords(&mut self, line: u64, step: &ArcStep, out: &mut Out<'_>, findings: &Findings) {
-        let ArcStep {
-            arc,
-            end,
-            start_axis,
-        } = step;
+        let ArcStep { arc, end, start_axis } = step;
         let (count, chord) = arc.chords(self.chord_tolerance);
         if count > MOST_CHORDS {
             findings.at(line, self.too_many_chords("arc", &count.to_string()));
@@ -239,9 +223,7 @@ impl Expand {
             let axis = if *start_axis == end.axis {
                 end.axis
             } else {
-                (start_axis * (1.0 - t) + end.axis * t)
-                    .try_normalize(1e-9)
-                    .unwrap_or(end.axis)
+                (start_axis * (1.0 - t) + end.axis * t).try_normalize(1e-9).unwrap_or(end.axis)
             };
             let motion = Motion {
                 tip: if piece == count { end.tip } else { arc.at(t) },
@@ -269,18 +251,10 @@ impl Expand {
         let SplineStep { spline, end } = step;
         if self.only_said {
             let tip = spline.start();
-            let to_start = Motion {
-                tip,
-                chord: 0.0,
-                ..*end
-            };
+            let to_start = Motion { tip, chord: 0.0, ..*end };
             self.go(line, to_start, out, findings);
         }
-        let keeps = |count| {
-            self.keeps
-                .as_ref()
-                .is_some_and(|keeps| keeps.spline(end, count))
-        };
+        let keeps = |count| self.keeps.as_ref().is_some_and(|keeps| keeps.spline(end, count));
         let along = match spline.chords(self.chord_tolerance) {
             Some(count) if count <= MOST_CHORDS => keeps(count),
             count => {
@@ -307,20 +281,13 @@ impl Expand {
         let CycleStep { cycle, point } = *step;
         let native = cycle.native();
         let known = native.filter(|native| self.cycles.has(capability(native.kind)));
-        if let (Some(kind), None) = (
-            native
-                .filter(|native| native.alone)
-                .map(|native| native.kind),
-            known,
-        ) {
+        if let (Some(kind), None) =
+            (native.filter(|native| native.alone).map(|native| native.kind), known)
+        {
             findings.at(line, no_moves(kind));
             return;
         }
-        let rapid = |tip| Motion {
-            tip,
-            pace: Pace::Rapid,
-            ..point
-        };
+        let rapid = |tip| Motion { tip, pace: Pace::Rapid, ..point };
         if let Some(drilling) = known {
             let mark = Command::Hole(HoleMark::Above(drilling));
             self.command(line, mark, out, findings);
@@ -339,19 +306,14 @@ impl Expand {
                 }
             }
         }
-        let mut into = known.is_some().then_some(HoleMark::Into {
-            point: point.tip,
-            axis: point.axis,
-        });
+        let mut into =
+            known.is_some().then_some(HoleMark::Into { point: point.tip, axis: point.axis });
         cycle.legs(&mut |leg| {
             let at = |height: f64| point.tip + point.axis * height;
             match leg {
                 Leg::Rapid(height) => self.go(line, rapid(at(height)), out, findings),
                 Leg::Feed(height) => {
-                    let motion = Motion {
-                        tip: at(height),
-                        ..point
-                    };
+                    let motion = Motion { tip: at(height), ..point };
                     self.go(line, motion, out, findings);
                 }
                 Leg::Dwell(seconds) => {

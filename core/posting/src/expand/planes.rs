@@ -22,21 +22,14 @@ pub(super) struct Planes {
 
 impl Planes {
     pub(super) fn new(ahead: Arc<Ahead>) -> Self {
-        Self {
-            ahead,
-            next: 0,
-            axis: None,
-        }
+        Self { ahead, next: 0, axis: None }
     }
 
     /// The plane that begins ahead of a step from `line`, as the origin of its frame (that of the part, so that the work
     /// offset means what it means outside); none within if one ends. Nothing if all stays as it is.
     #[inline]
     pub(super) fn change(&mut self, line: u64, step: &Step) -> Option<Option<Vector3<f64>>> {
-        if !matches!(
-            step,
-            Step::Move(_) | Step::Arc(_) | Step::Spline(_) | Step::Cycle(_)
-        ) {
+        if !matches!(step, Step::Move(_) | Step::Arc(_) | Step::Spline(_) | Step::Cycle(_)) {
             return None;
         }
         let axis = self.at(line).map(|still| still.axis);
@@ -51,10 +44,7 @@ impl Planes {
 
     fn at(&mut self, line: u64) -> Option<&Still> {
         let stretches = &self.ahead.still;
-        while stretches
-            .get(self.next)
-            .is_some_and(|still| still.last < line)
-        {
+        while stretches.get(self.next).is_some_and(|still| still.last < line) {
             self.next += 1;
         }
         stretches.get(self.next).filter(|still| still.first <= line)

@@ -98,13 +98,11 @@ impl Tangential {
             return;
         }
         let from = self.at.replace([motion.tip, motion.axis]);
-        let way = from
-            .filter(|_| motion.pace != Pace::Rapid)
-            .and_then(|[from, axis]| {
-                let way = (motion.tip - from).try_normalize(SHORT)?;
-                let leads = |axis| across(way, axis, STRAIGHT_IN).is_some();
-                (leads(axis) && leads(motion.axis)).then_some(way)
-            });
+        let way = from.filter(|_| motion.pace != Pace::Rapid).and_then(|[from, axis]| {
+            let way = (motion.tip - from).try_normalize(SHORT)?;
+            let leads = |axis| across(way, axis, STRAIGHT_IN).is_some();
+            (leads(axis) && leads(motion.axis)).then_some(way)
+        });
         match way {
             Some(way) => {
                 self.settle(Some(way), out, findings);
@@ -149,10 +147,7 @@ impl Tangential {
 
     /// Settles what waits; the next cut goes along `go`.
     fn settle(&mut self, go: Option<Vector3<f64>>, out: &mut Out<'_>, findings: &Findings) {
-        let moves = self
-            .behind
-            .iter()
-            .any(|next| matches!(next, Flow::Point(_)));
+        let moves = self.behind.iter().any(|next| matches!(next, Flow::Point(_)));
         // Where no cut came before, the edge stands as the first cut wants it from the beginning.
         self.has_cut |= self.cut.is_some();
         let mut turned = !self.has_cut;
@@ -207,17 +202,12 @@ impl Tangential {
         out: &mut Out<'_>,
         findings: &Findings,
     ) {
-        let away = self
-            .rewind
-            .and_then(|rewind| Some((rewind, motion.drawn_back(&rewind, 0.0)?)));
+        let away = self.rewind.and_then(|rewind| Some((rewind, motion.drawn_back(&rewind, 0.0)?)));
         let angle = turn(self.edge, heading, motion.axis);
         let laid = across(heading, motion.axis, 1e-3);
         if let Some((rewind, away)) = away {
             self.rewinds += 1;
-            let away_from_part = Motion {
-                pace: Pace::feed_or_rapid(rewind.retract_feed),
-                ..away
-            };
+            let away_from_part = Motion { pace: Pace::feed_or_rapid(rewind.retract_feed), ..away };
             self.pass(line, away_from_part, None, out);
             let turn = Motion {
                 pace: rewind.turn_feed.map_or(Pace::Rapid, |feed| {
@@ -226,10 +216,8 @@ impl Tangential {
                 ..away
             };
             self.pass(line, turn, laid, out);
-            let back = Motion {
-                pace: rewind.plunge_feed.map_or(motion.pace, Pace::PerMinute),
-                ..motion
-            };
+            let back =
+                Motion { pace: rewind.plunge_feed.map_or(motion.pace, Pace::PerMinute), ..motion };
             self.pass(line, back, Some(heading), out);
         } else {
             if self.rewind.is_some() {
@@ -269,9 +257,7 @@ impl Tangential {
             heading.and_then(|heading| Some((heading.try_normalize(1e-9)?, laid(heading)?)));
         // Straight into the part there is no direction of travel: the edge stays as it is.
         let (heading, edge) = headed.unwrap_or_else(|| {
-            let edge = laid(self.edge)
-                .or_else(|| laid(Vector3::x()))
-                .unwrap_or_else(Vector3::y);
+            let edge = laid(self.edge).or_else(|| laid(Vector3::x())).unwrap_or_else(Vector3::y);
             (edge, edge)
         });
         self.edge = edge;

@@ -119,10 +119,7 @@ impl Account {
             })
             .collect();
         limits.sort_by(|one, other| other.time_s.total_cmp(&one.time_s));
-        PlanReport {
-            limits,
-            ..self.report.clone()
-        }
+        PlanReport { limits, ..self.report.clone() }
     }
 }
 

@@ -16,30 +16,19 @@ pub(super) fn contour_error(
     collocation: Collocation,
 ) -> Option<ContourError> {
     let servos = servo::Response::of_machine(machine);
-    let highest = servos
-        .iter()
-        .flatten()
-        .map(servo::Response::natural_frequency)
-        .reduce(f64::min)?;
+    let highest =
+        servos.iter().flatten().map(servo::Response::natural_frequency).reduce(f64::min)?;
     let answers: Vec<_> = servos
         .iter()
         .map(|servo| move |frequency: f64| answer(servo.as_ref(), frequency))
         .collect();
     let axes: Vec<&dyn Response> = answers.iter().map(|axis| axis as &dyn Response).collect();
-    Some(ContourError::new(
-        &axes,
-        tolerance,
-        highest.min(FASTEST),
-        collocation,
-    ))
+    Some(ContourError::new(&axes, tolerance, highest.min(FASTEST), collocation))
 }
 
 fn answer(servo: Option<&servo::Response>, frequency: f64) -> Answer {
     servo.map_or(Answer::EXACT, |servo| {
         let answer = servo.at(frequency);
-        Answer {
-            real: answer.re,
-            imaginary: answer.im,
-        }
+        Answer { real: answer.re, imaginary: answer.im }
     })
 }

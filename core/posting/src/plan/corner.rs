@@ -27,11 +27,8 @@ impl Corner {
             tip_jump: axes.tip_jump(),
             accelerations: axes.accelerations(),
             tip_acceleration: axes.tip_acceleration(),
-            tolerance: (rules.corner == CornerRule::Blend).then(|| {
-                rules
-                    .corner_tolerance
-                    .map_or(tolerance, |said| said.min(tolerance))
-            }),
+            tolerance: (rules.corner == CornerRule::Blend)
+                .then(|| rules.corner_tolerance.map_or(tolerance, |said| said.min(tolerance))),
             chord,
         }
     }
@@ -42,9 +39,7 @@ impl Corner {
     /// A curve that is a parabola over the length `l` leaves the corner by `l·|ΔP'|/8` and bends by `ΔQ'/l`.
     pub(super) fn allows(&self, before: &Place, behind: &Place, length: f64) -> f64 {
         let count = self.jumps.len();
-        let turn: f64 = norm(std::array::from_fn(|axis| {
-            behind.tip[0][axis] - before.tip[0][axis]
-        }));
+        let turn: f64 = norm(std::array::from_fn(|axis| behind.tip[0][axis] - before.tip[0][axis]));
         let kinks = (0..count).map(|axis| (behind.axes[axis][0] - before.axes[axis][0]).abs());
         let jump = kinks
             .clone()
@@ -61,10 +56,7 @@ impl Corner {
             .map(|(kink, most)| most * curve / kink)
             .fold(self.tip_acceleration * curve / turn, f64::min);
         let curvature = turn / curve;
-        let chord = self
-            .chord
-            .as_ref()
-            .map_or(f64::INFINITY, |chord| chord.feed(curvature));
+        let chord = self.chord.as_ref().map_or(f64::INFINITY, |chord| chord.feed(curvature));
         jumped.max(rounded.min(chord * chord))
     }
 }

@@ -110,10 +110,7 @@ impl Cutter<'_> {
         let along = placer.control_point().along;
         if self.machine.control.tcp == Tcp::Control {
             let tip = start.tip + (block.tip - start.tip) * t;
-            pose = Pose {
-                tip: tip + pose.axis * along,
-                ..pose
-            };
+            pose = Pose { tip: tip + pose.axis * along, ..pose };
         }
         let mut node = Node::default();
         placer.settle(&mut node, pose, t, &joints).ok()?;
@@ -122,10 +119,7 @@ impl Cutter<'_> {
             words: node.words,
             tip: node.tip - node.trace.pose.axis * along,
             t,
-            off: Bound {
-                tip: node.tip_error,
-                axis: node.axis_error,
-            },
+            off: Bound { tip: node.tip_error, axis: node.axis_error },
         })
     }
 
@@ -178,20 +172,13 @@ impl Cutter<'_> {
                 .into_iter()
                 .fold(0.0, f64::max),
         };
-        Bound {
-            tip: axis * arm,
-            axis,
-        }
+        Bound { tip: axis * arm, axis }
     }
 }
 
 /// How far the tip is from the farthest axis that turns it, mm.
 fn arm(chain: &Chain, joints: &Joints) -> f64 {
-    let mut trace = Trace {
-        joints: *joints,
-        turns: chain.turns(joints),
-        ..Trace::default()
-    };
+    let mut trace = Trace { joints: *joints, turns: chain.turns(joints), ..Trace::default() };
     chain.trace(&mut trace);
     let arms = trace.tip_rates.iter().map(|rate| rate.norm());
     arms.fold(0.0, f64::max)

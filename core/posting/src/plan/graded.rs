@@ -48,11 +48,7 @@ pub(super) fn graded(first: &Sample, rest: &[Sample], finest: f64, out: &mut Vec
 pub(super) fn at_least(count: usize, first: &Sample, samples: &mut Vec<Sample>) {
     while !samples.is_empty() && samples.len() < count {
         let from = |place: usize| {
-            if place == 0 {
-                first
-            } else {
-                &samples[place - 1]
-            }
+            if place == 0 { first } else { &samples[place - 1] }
         };
         let length = |place: &usize| samples[*place].at - from(*place).at;
         let longest = (0..samples.len()).max_by(|one, other| length(one).total_cmp(&length(other)));
@@ -99,9 +95,7 @@ fn halve(
 fn straight(from: &Sample, to: &Sample) -> bool {
     let step = to.at - from.at;
     let speed = size(&from.values[1]);
-    [from, to]
-        .iter()
-        .all(|sample| size(&sample.values[2]) * step <= STRAIGHT * speed)
+    [from, to].iter().all(|sample| size(&sample.values[2]) * step <= STRAIGHT * speed)
 }
 
 fn size(point: &Point) -> f64 {
@@ -115,10 +109,7 @@ fn halfway(from: &Sample, to: &Sample) -> Sample {
 /// The curve between two samples.
 fn on(from: &Sample, to: &Sample, at: f64) -> Sample {
     let step = to.at - from.at;
-    Sample {
-        at,
-        values: quintic::between(&from.values, &to.values, step, (at - from.at) / step),
-    }
+    Sample { at, values: quintic::between(&from.values, &to.values, step, (at - from.at) / step) }
 }
 
 #[cfg(test)]
@@ -154,12 +145,7 @@ mod tests {
         let mut from = first;
         for to in samples {
             let wanted = fifth(to.at);
-            for (found, wanted) in to
-                .values
-                .iter()
-                .flatten()
-                .zip(wanted.values.iter().flatten())
-            {
+            for (found, wanted) in to.values.iter().flatten().zip(wanted.values.iter().flatten()) {
                 assert!((found - wanted).abs() < 1e-12);
             }
             let linear = 0.5 * (from.values[2][1] + to.values[2][1]);
@@ -178,12 +164,7 @@ mod tests {
     #[test]
     fn a_straight_leg_has_samples_close_to_its_ends() {
         let mut out = Vec::new();
-        graded(
-            &sample(0.0, 0.0),
-            &[sample(20.0, 0.0), sample(40.0, 0.0)],
-            0.05,
-            &mut out,
-        );
+        graded(&sample(0.0, 0.0), &[sample(20.0, 0.0), sample(40.0, 0.0)], 0.05, &mut out);
         let places: Vec<f64> = out.iter().map(|sample| sample.at).collect();
         assert!(out.len() < 60, "{places:?}");
         let mut before: f64 = 0.0;
@@ -194,10 +175,7 @@ mod tests {
             before = *at;
         }
         assert_eq!(before, 40.0);
-        assert!(
-            places[0] <= 0.05 && 40.0 - places[places.len() - 2] <= 0.15,
-            "{places:?}"
-        );
+        assert!(places[0] <= 0.05 && 40.0 - places[places.len() - 2] <= 0.15, "{places:?}");
     }
 
     #[test]

@@ -21,10 +21,7 @@ pub(super) struct Axes {
 
 impl Axes {
     pub(super) fn new(machine: &Machine) -> Self {
-        Self {
-            limits: AxisLimits::new(machine),
-            count: machine.axes.len(),
-        }
+        Self { limits: AxisLimits::new(machine), count: machine.axes.len() }
     }
 
     /// The coordinates of the tip stand behind the axes.
@@ -79,52 +76,31 @@ pub fn limits(machine: &Machine, rules: &PlanRules) -> Vec<Box<dyn Limit>> {
     let axes = Axes::new(machine);
     let collocation = Collocation::Throughout;
     let finite = |all: &[f64]| all.iter().any(|one| one.is_finite());
-    let mut limits: Vec<Box<dyn Limit>> = vec![Box::new(Feed {
-        most: f64::INFINITY,
-        collocation,
-    })];
-    limits.push(Box::new(AxisVelocity {
-        limits: axes.each(&axes.limits.velocity),
-        collocation,
-    }));
+    let mut limits: Vec<Box<dyn Limit>> = vec![Box::new(Feed { most: f64::INFINITY, collocation })];
+    limits.push(Box::new(AxisVelocity { limits: axes.each(&axes.limits.velocity), collocation }));
     let accelerations = axes.accelerations();
     if finite(&accelerations) {
-        limits.push(Box::new(AxisAcceleration {
-            limits: accelerations,
-            collocation,
-        }));
+        limits.push(Box::new(AxisAcceleration { limits: accelerations, collocation }));
     }
     if axes.limits.tip_acceleration.is_finite() {
-        limits.push(Box::new(TipAcceleration {
-            limit: axes.limits.tip_acceleration,
-            collocation,
-        }));
+        limits.push(Box::new(TipAcceleration { limit: axes.limits.tip_acceleration, collocation }));
     }
     let jerks = axes.each(&axes.limits.jerk);
     if finite(&jerks) {
         limits.push(Box::new(AxisJerk { limits: jerks }));
     }
     if axes.limits.tip_jerk.is_finite() {
-        limits.push(Box::new(TipJerk {
-            limit: axes.limits.tip_jerk,
-        }));
+        limits.push(Box::new(TipJerk { limit: axes.limits.tip_jerk }));
     }
     let contour = |tolerance| {
         contour_error(machine, tolerance, collocation).map(|limit| Box::new(limit) as _)
     };
     limits.extend(rules.contour_error.and_then(contour));
     if let Some(tolerance) = rules.chord_error {
-        limits.push(Box::new(ChordError {
-            tolerance,
-            period: machine.motion.period,
-            collocation,
-        }));
+        limits.push(Box::new(ChordError { tolerance, period: machine.motion.period, collocation }));
     }
     if machine.motion.block_time > 0.0 {
-        limits.push(Box::new(BlockTime {
-            seconds: machine.motion.block_time,
-            collocation,
-        }));
+        limits.push(Box::new(BlockTime { seconds: machine.motion.block_time, collocation }));
     }
     limits
 }

@@ -199,11 +199,8 @@ impl<'a> Line<'a> {
             return Err(Unplanned);
         };
         let length = if due.legs == 1 { leg.length } else { due.way };
-        let said = Said {
-            feed: due.feed.unwrap_or(length / due.seconds),
-            length,
-            share: due.share,
-        };
+        let said =
+            Said { feed: due.feed.unwrap_or(length / due.seconds), length, share: due.share };
         let Some((first, rest)) = leg.samples.split_first() else {
             return Err(Unplanned);
         };
@@ -225,9 +222,7 @@ impl<'a> Line<'a> {
         if leg.begins {
             let place = self.place(first, due)?;
             if let Some(before) = self.sampler.last() {
-                let q = self
-                    .corner
-                    .allows(before, &place, self.length.min(leg.length));
+                let q = self.corner.allows(before, &place, self.length.min(leg.length));
                 // What servos make of a corner goes with the speed.
                 let q = q * said.share * said.share;
                 self.plan(queue, account, out)?;
@@ -297,9 +292,7 @@ impl<'a> Line<'a> {
         out: &mut dyn FnMut(Flow<Block>),
     ) -> Result<(), Unplanned> {
         self.plan(queue, account, out)?;
-        let found = self
-            .solver
-            .finish(&mut |step| self.feeds.settled(step, queue, account, out));
+        let found = self.solver.finish(&mut |step| self.feeds.settled(step, queue, account, out));
         found.map_err(|fault| self.refuse(&fault))?;
         queue.profile.clear();
         account.uncertain(self.solver.uncertain());
@@ -326,9 +319,9 @@ impl<'a> Line<'a> {
         let limits: Vec<&dyn Limit> = self.limits.iter().map(|limit| &**limit).collect();
         let found = match self.sampler.batch(&limits) {
             Ok(None) => return Ok(()),
-            Ok(Some(batch)) => self.solver.push(batch, &mut |step| {
-                self.feeds.settled(step, queue, account, out)
-            }),
+            Ok(Some(batch)) => {
+                self.solver.push(batch, &mut |step| self.feeds.settled(step, queue, account, out))
+            }
             Err(fault) => Err(fault),
         };
         self.sampler.next();
@@ -468,16 +461,11 @@ impl Feeds<'_> {
             }
         }
         let mut printed = 0.0;
-        let count = self
-            .cutter
-            .cut(block, start, &self.pieces, length, |piece, seconds| {
-                printed += seconds;
-                let planned = Planned {
-                    minutes: seconds / 60.0,
-                    limit,
-                };
-                out(Flow::Point(Block { planned, ..piece }));
-            });
+        let count = self.cutter.cut(block, start, &self.pieces, length, |piece, seconds| {
+            printed += seconds;
+            let planned = Planned { minutes: seconds / 60.0, limit };
+            out(Flow::Point(Block { planned, ..piece }));
+        });
         // What is written is never faster than the CL file asks for.
         account.block(count, asked, planned, printed.max(asked));
     }

@@ -253,17 +253,10 @@ impl<'a> Plan<'a> {
             return;
         }
         let way = std::mem::take(&mut self.way);
-        let end = Start {
-            joints: block.joints,
-            words: block.words,
-            tip: block.tip,
-            axis: block.axis,
-        };
+        let end =
+            Start { joints: block.joints, words: block.words, tip: block.tip, axis: block.axis };
         let start = self.stands.replace(end);
-        let cuts = matches!(
-            block.kind,
-            MotionKind::Linear | MotionKind::Arc | MotionKind::Spline
-        );
+        let cuts = matches!(block.kind, MotionKind::Linear | MotionKind::Arc | MotionKind::Spline);
         let planned = start.filter(|_| cuts && !self.in_hole && self.run.is_some());
         match planned {
             Some(start) => self.plan(block, &start, &end, &way, out, findings),
@@ -333,10 +326,7 @@ impl<'a> Plan<'a> {
         let mut failed = false;
         let (queue, account, line) = (&mut self.queue, &mut self.account, &mut run.line);
         let mut take = |leg: &fit::Leg<'_>| {
-            failed = failed
-                || line
-                    .leg(leg, queue, account, &mut |flow| out.push(flow))
-                    .is_err();
+            failed = failed || line.leg(leg, queue, account, &mut |flow| out.push(flow)).is_err();
         };
         for point in &places {
             run.fit.push(point, &mut take);
@@ -353,15 +343,10 @@ impl<'a> Plan<'a> {
             let (queue, account, line) = (&mut self.queue, &mut self.account, &mut run.line);
             let mut failed = false;
             run.fit.cut(&mut |leg| {
-                failed = failed
-                    || line
-                        .leg(leg, queue, account, &mut |flow| out.push(flow))
-                        .is_err();
+                failed =
+                    failed || line.leg(leg, queue, account, &mut |flow| out.push(flow)).is_err();
             });
-            failed = failed
-                || line
-                    .finish(queue, account, &mut |flow| out.push(flow))
-                    .is_err();
+            failed = failed || line.finish(queue, account, &mut |flow| out.push(flow)).is_err();
             self.moves = false;
             if failed {
                 self.fail(out, findings);
@@ -404,18 +389,10 @@ fn least_block(machine: &Machine, format: &Format) -> f64 {
 
 /// How far two points of the curve are apart, as its parameter counts.
 fn distance(from: &fit::Point, to: &fit::Point) -> f64 {
-    let ways = from
-        .iter()
-        .zip(to)
-        .enumerate()
-        .map(|(coordinate, (from, to))| {
-            let way = to - from;
-            if coordinate < 3 {
-                way
-            } else {
-                way * TURN_WEIGHT
-            }
-        });
+    let ways = from.iter().zip(to).enumerate().map(|(coordinate, (from, to))| {
+        let way = to - from;
+        if coordinate < 3 { way } else { way * TURN_WEIGHT }
+    });
     ways.map(|way| way * way).sum::<f64>().sqrt()
 }
 

@@ -79,11 +79,7 @@ impl Profile {
     pub(super) fn begin(&mut self) {
         let last = self.samples.last().copied();
         self.samples.clear();
-        self.samples.extend(last.map(|last| Sample {
-            at: 0.0,
-            seconds: 0.0,
-            ..last
-        }));
+        self.samples.extend(last.map(|last| Sample { at: 0.0, seconds: 0.0, ..last }));
     }
 
     /// The plan goes on.
@@ -192,9 +188,7 @@ impl Profile {
         let places = &self.places;
         let changes = |at: usize| {
             let around = [places[at - 1].1, places[at + 1].1];
-            around
-                .iter()
-                .any(|speed| (speed - places[at].1).abs() > 0.1 * STEP * places[at].1)
+            around.iter().any(|speed| (speed - places[at].1).abs() > 0.1 * STEP * places[at].1)
         };
         // A slow end may be shorter than the shortest piece, which then goes on into what is even.
         let near = |at: &usize| {
@@ -268,10 +262,7 @@ impl Profile {
     }
 
     fn piece(&self, from: usize, to: usize) -> Piece {
-        Piece {
-            end: self.places[to].0 / self.length(),
-            speed: self.speed(from, to),
-        }
+        Piece { end: self.places[to].0 / self.length(), speed: self.speed(from, to) }
     }
 
     /// The speed of a piece: the least between its ends, but for places where the tool nearly stands, which are left to
@@ -287,9 +278,7 @@ impl Profile {
         let places = &self.places[from..=to];
         let speed = |place: usize| places[place].1;
         let clock = |place: usize| self.clock[from + place];
-        let most = places
-            .iter()
-            .fold(0.0, |most: f64, place| most.max(place.1));
+        let most = places.iter().fold(0.0, |most: f64, place| most.max(place.1));
         let standing = |place: usize| speed(place) <= STANDING * most;
         let last = places.len() - 1;
         let (mut first, mut behind) = (0, last);
@@ -318,10 +307,7 @@ impl Profile {
 mod tests {
     use super::*;
 
-    const CUTTING: Cutting = Cutting {
-        saving: 0.001,
-        shortest: 0.005,
-    };
+    const CUTTING: Cutting = Cutting { saving: 0.001, shortest: 0.005 };
 
     fn profile(samples: &[(f64, f64)]) -> Profile {
         let mut profile = Profile::default();
@@ -348,10 +334,7 @@ mod tests {
     #[test]
     fn an_even_plan_is_one_piece() {
         let mut plan = profile(&[(0.0, 20.0), (4.0, 20.0), (10.0, 20.0)]);
-        let piece = Piece {
-            end: 1.0,
-            speed: 20.0,
-        };
+        let piece = Piece { end: 1.0, speed: 20.0 };
         assert_eq!(pieces(&mut plan), [piece]);
         assert_eq!(plan.whole(10.0), Some(piece));
     }
@@ -369,16 +352,9 @@ mod tests {
             let ends = [start, end].map(planned);
             let slower = ends[0].min(ends[1]);
             let at_rest = index == 0 || index + 1 == found.len();
-            let most = if at_rest {
-                ends[0].max(ends[1])
-            } else {
-                slower
-            };
+            let most = if at_rest { ends[0].max(ends[1]) } else { slower };
             assert!(piece.speed <= most + 1e-9, "{piece:?} {ends:?}");
-            assert!(
-                ends[0].max(ends[1]) <= 2.0 * piece.speed,
-                "{piece:?} {ends:?}"
-            );
+            assert!(ends[0].max(ends[1]) <= 2.0 * piece.speed, "{piece:?} {ends:?}");
             start = end;
         }
         assert_eq!(start, 50.0);
@@ -389,23 +365,13 @@ mod tests {
             seconds += 50.0 * (piece.end - from) / piece.speed;
             from = piece.end;
         }
-        assert!(
-            seconds < 1.05 * plan.seconds(),
-            "{seconds} {}",
-            plan.seconds()
-        );
+        assert!(seconds < 1.05 * plan.seconds(), "{seconds} {}", plan.seconds());
     }
 
     #[test]
     fn a_short_block_from_rest_to_rest_has_the_feed_of_its_height() {
         let mut plan = profile(&[(0.0, 0.0), (0.01, 10.0), (0.02, 0.0)]);
-        assert_eq!(
-            pieces(&mut plan),
-            [Piece {
-                end: 1.0,
-                speed: 10.0
-            }]
-        );
+        assert_eq!(pieces(&mut plan), [Piece { end: 1.0, speed: 10.0 }]);
         assert!((plan.seconds() - 0.004).abs() < 1e-12);
     }
 
@@ -415,12 +381,7 @@ mod tests {
         let least = plan.whole(10.0).map(|piece| piece.speed);
         assert_eq!(least, Some(10.0));
         let found = pieces(&mut plan);
-        let slowest = found
-            .iter()
-            .fold(f64::INFINITY, |least, piece| least.min(piece.speed));
-        assert!(
-            (slowest - 10.0).abs() < 1e-9 && found.len() >= 7,
-            "{found:?}"
-        );
+        let slowest = found.iter().fold(f64::INFINITY, |least, piece| least.min(piece.speed));
+        assert!((slowest - 10.0).abs() < 1e-9 && found.len() >= 7, "{found:?}");
     }
 }

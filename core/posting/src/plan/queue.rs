@@ -69,10 +69,7 @@ impl Queue {
 
     /// A block whose feed is planned.
     pub(super) fn open(&mut self, block: Block, start: Start) {
-        self.waiting.push_back(Waiting {
-            flow: Flow::Point(block),
-            open: Some(start),
-        });
+        self.waiting.push_back(Waiting { flow: Flow::Point(block), open: Some(start) });
     }
 
     /// The solver was handed a sample.
@@ -116,12 +113,7 @@ impl Queue {
             self.profile.halfway(mark.at, halfway, mark.stretch, rest);
         }
         self.seconds = seconds;
-        self.profile.push(Sample {
-            at: mark.at,
-            q: step.q,
-            stretch: mark.stretch,
-            seconds: rest,
-        });
+        self.profile.push(Sample { at: mark.at, q: step.q, stretch: mark.stretch, seconds: rest });
         mark.ends
     }
 

@@ -18,11 +18,7 @@ pub(super) struct FromRest {
 impl FromRest {
     pub(super) fn new(axes: &Axes) -> Self {
         let [velocity, acceleration, jerk] = axes.of_joints();
-        Self {
-            velocity,
-            acceleration,
-            jerk,
-        }
+        Self { velocity, acceleration, jerk }
     }
 
     /// Is a plan of `planned` s for a block of `asked` s slower than any control would be without one? It would at worst

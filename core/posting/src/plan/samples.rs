@@ -48,19 +48,12 @@ impl Place {
     /// For who looks on.
     pub(super) fn stand(&self) -> Stand {
         let [first, second, third] = self.tip;
-        Stand {
-            tip: [self.at, first, second, third],
-            course: self.course,
-        }
+        Stand { tip: [self.at, first, second, third], course: self.course }
     }
 
     /// Speed of the control point for that of the parameter.
     pub(super) fn stretch(&self) -> f64 {
-        self.tip[0]
-            .iter()
-            .map(|part| part * part)
-            .sum::<f64>()
-            .sqrt()
+        self.tip[0].iter().map(|part| part * part).sum::<f64>().sqrt()
     }
 }
 
@@ -97,9 +90,7 @@ pub(super) struct Sampler {
 impl Sampler {
     pub(super) fn new(placer: Rc<Placer>, axes: &Axes, held: &Joints) -> Self {
         let joints = placer.solver().chain().joints().iter().enumerate();
-        let rotary = joints
-            .filter(|(_, joint)| joint.rotary)
-            .map(|(place, _)| place);
+        let rotary = joints.filter(|(_, joint)| joint.rotary).map(|(place, _)| place);
         Self {
             rotary: rotary.collect(),
             placer,
@@ -107,10 +98,7 @@ impl Sampler {
             axes: axes.count,
             programmed: axes.programmed(),
             // The curve is a quintic.
-            samples: Samples {
-                smooth: true,
-                ..Samples::default()
-            },
+            samples: Samples { smooth: true, ..Samples::default() },
             problem: Problem::default(),
             last: None,
             at: 0.0,
@@ -150,9 +138,7 @@ impl Sampler {
                 course.joints[order][*place] = sample.values[order][3 + coordinate];
             }
         }
-        let tip = sample
-            .values
-            .map(|value| Vector3::new(value[0], value[1], value[2]));
+        let tip = sample.values.map(|value| Vector3::new(value[0], value[1], value[2]));
         self.placer.solver().course(&tip, &mut course)?;
         let mut place = Place {
             tip: [1, 2, 3].map(|order| tip[order].into()),

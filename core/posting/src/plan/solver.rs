@@ -44,10 +44,7 @@ impl Solver {
         match asked {
             PlanSolver::Reach => Self::Reach(Box::new(reach::Stream::new(stride, LOOK_AHEAD))),
             PlanSolver::Jerk => Self::Jerk {
-                stream: Box::new(jerk::Stream::new(
-                    LOOK_AHEAD_FOR_JERK,
-                    jerk::Settings::default(),
-                )),
+                stream: Box::new(jerk::Stream::new(LOOK_AHEAD_FOR_JERK, jerk::Settings::default())),
                 begun: false,
             },
         }
@@ -108,24 +105,14 @@ fn push(
 }
 
 fn step(settled: &Settled<'_>) -> Step {
-    Step {
-        q: settled.q,
-        halfway: None,
-        seconds: None,
-        source: settled.active().source,
-    }
+    Step { q: settled.q, halfway: None, seconds: None, source: settled.active().source }
 }
 
 fn handed_on(passed: &jerk::Passed<'_>, begun: &mut bool, sink: &mut dyn FnMut(Step)) {
     let at = |share: f64| passed.piece.at(share, passed.step)[0].max(0.0);
     let source = passed.active().source;
     if !std::mem::replace(begun, true) {
-        sink(Step {
-            q: at(0.0),
-            halfway: None,
-            seconds: None,
-            source,
-        });
+        sink(Step { q: at(0.0), halfway: None, seconds: None, source });
     }
     sink(Step {
         q: at(1.0),

@@ -57,9 +57,7 @@ impl Arc {
         };
         let (from, start_height) = split(start);
         let (to, end_height) = split(end);
-        let radial = from
-            .try_normalize(1e-9)
-            .ok_or("it starts at its own centre")?;
+        let radial = from.try_normalize(1e-9).ok_or("it starts at its own centre")?;
         if to.norm() < 1e-9 {
             return Err("it ends at its own centre");
         }
@@ -179,23 +177,11 @@ mod tests {
     #[test]
     fn equal_ends_are_a_whole_turn_and_heights_a_helix() {
         let start = point(10.0, 0.0, 0.0);
-        let arc = Arc::new(
-            start,
-            point(10.0, 0.0, 3.0),
-            Vector3::zeros(),
-            Vector3::z(),
-            1,
-        )
-        .unwrap();
+        let arc =
+            Arc::new(start, point(10.0, 0.0, 3.0), Vector3::zeros(), Vector3::z(), 1).unwrap();
         assert!((arc.at(0.5) - point(-10.0, 0.0, 1.5)).norm() < 1e-12);
-        let two = Arc::new(
-            start,
-            point(10.0, 0.0, 3.0),
-            Vector3::zeros(),
-            Vector3::z(),
-            2,
-        )
-        .unwrap();
+        let two =
+            Arc::new(start, point(10.0, 0.0, 3.0), Vector3::zeros(), Vector3::z(), 2).unwrap();
         assert!((two.at(0.5) - point(10.0, 0.0, 1.5)).norm() < 1e-12);
     }
 
@@ -204,9 +190,7 @@ mod tests {
         let start = point(10.0, 0.0, 0.0);
         let doubt = |end: Vector3<f64>, axis: f64| {
             let axis = Vector3::z() * axis;
-            Arc::new(start, end, Vector3::zeros(), axis, 1)
-                .unwrap()
-                .doubt(end)
+            Arc::new(start, end, Vector3::zeros(), axis, 1).unwrap().doubt(end)
         };
         let turn = doubt(point(10.0, 2e-4, 0.0), 1.0);
         assert!(matches!(turn, Some(ArcDoubt::Turn(ahead)) if (ahead - 2e-4).abs() < 1e-9));
@@ -235,10 +219,7 @@ mod tests {
             assert!(promised <= tolerance);
             let mut worst: f64 = 0.0;
             for piece in 0..count {
-                let (a, b) = (
-                    piece as f64 / count as f64,
-                    (piece + 1) as f64 / count as f64,
-                );
+                let (a, b) = (piece as f64 / count as f64, (piece + 1) as f64 / count as f64);
                 for step in 0..=20 {
                     let t = f64::from(step) / 20.0;
                     let chord = arc.at(a) * (1.0 - t) + arc.at(b) * t;

@@ -151,10 +151,7 @@ impl DrillCycle {
             ));
         }
         let bottom = -depth;
-        let retract = cycle
-            .retract
-            .map_or(clearance, |level| level * scale)
-            .max(clearance);
+        let retract = cycle.retract.map_or(clearance, |level| level * scale).max(clearance);
         let length = |step: Option<f64>| {
             let step = libm::fabs(step?) * scale;
             (step > 0.0).then_some(step)
@@ -216,10 +213,7 @@ impl DrillCycle {
     /// The cycle where its points are the bottoms of holes: `plane` is the height of the part that the tool goes to between
     /// them, `feed_from` that where its feed begins, mm.
     pub(crate) fn by_planes(self, plane: f64, feed_from: f64) -> Self {
-        Self {
-            planes: Some([plane, feed_from]),
-            ..self
-        }
+        Self { planes: Some([plane, feed_from]), ..self }
     }
 
     /// The cycle at a hole whose bottom is `point`, and the point above it that its heights count from; none if its points
@@ -251,12 +245,7 @@ impl DrillCycle {
                 Short(plane)
             ));
         }
-        let cycle = Self {
-            clearance,
-            retract,
-            planes: None,
-            ..*self
-        };
+        let cycle = Self { clearance, retract, planes: None, ..*self };
         Ok(Some((cycle, top)))
     }
 
@@ -305,10 +294,7 @@ impl DrillCycle {
 
     /// Moves do the same.
     fn expands(&self) -> bool {
-        matches!(
-            self.kind,
-            Cycle::Drill | Cycle::Deep | Cycle::BreakChip | Cycle::Ream
-        )
+        matches!(self.kind, Cycle::Drill | Cycle::Deep | Cycle::BreakChip | Cycle::Ream)
     }
 
     /// Level between the holes.
@@ -321,14 +307,12 @@ impl DrillCycle {
         let is = |kind: &str| cycle.kinds.iter().any(|word| word == kind);
         let angles = (cycle.diameter.or(cycle.angle).is_some() && !is("CSINK"))
             .then(|| "the diameter and the angle, which are those of CSINK".to_owned());
-        angles
-            .into_iter()
-            .chain(cycle.rest.iter().filter_map(|argument| match argument {
-                // CAMWorks states the level twice.
-                Argument::Word(word) if word == "G98" => None,
-                Argument::Word(word) => Some(word.clone()),
-                Argument::Number(_) => None,
-            }))
+        angles.into_iter().chain(cycle.rest.iter().filter_map(|argument| match argument {
+            // CAMWorks states the level twice.
+            Argument::Word(word) if word == "G98" => None,
+            Argument::Word(word) => Some(word.clone()),
+            Argument::Number(_) => None,
+        }))
     }
 
     /// Calls `emit` with the legs at one point, in order.
@@ -427,9 +411,7 @@ mod tests {
 
     fn legs(definition: &CycleDefinition, scale: f64) -> Vec<Leg> {
         let mut legs = Vec::new();
-        DrillCycle::new(definition, scale)
-            .unwrap()
-            .legs(&mut |leg| legs.push(leg));
+        DrillCycle::new(definition, scale).unwrap().legs(&mut |leg| legs.push(leg));
         legs
     }
 
@@ -466,10 +448,8 @@ mod tests {
             later_step: Some(2.0),
             ..CycleDefinition::default()
         };
-        let down: Vec<Leg> = legs(&definition, 1.0)
-            .into_iter()
-            .filter(|leg| matches!(leg, Leg::Feed(_)))
-            .collect();
+        let down: Vec<Leg> =
+            legs(&definition, 1.0).into_iter().filter(|leg| matches!(leg, Leg::Feed(_))).collect();
         assert_eq!(down, [Leg::Feed(-5.0), Leg::Feed(-7.0), Leg::Feed(-8.0)]);
     }
 

@@ -27,11 +27,7 @@ impl Frame {
     /// The frame of a part that sits turned about its Z by `turn`, radians, right-handed.
     pub(crate) fn new(apply_msys: bool, turn: f64) -> Self {
         let rotation = || Rotation3::from_axis_angle(&Vector3::z_axis(), turn).into_inner();
-        Self {
-            apply_msys,
-            clamped: (turn != 0.0).then(rotation),
-            ..Self::default()
-        }
+        Self { apply_msys, clamped: (turn != 0.0).then(rotation), ..Self::default() }
     }
 
     /// The part sits turned about its Z.
@@ -68,34 +64,20 @@ impl Frame {
     /// # Errors
     /// If no axis is named, or the angle is none.
     pub(crate) fn rotate(&mut self, rotate: &Rotate) -> Result<(char, f64), &'static str> {
-        let place = rotate
-            .axis
-            .and_then(|axis| "ABC".find(axis))
-            .ok_or("this index move names no axis")?;
-        let angle = if rotate.radians {
-            rotate.angle
-        } else {
-            rotate.angle.to_radians()
-        };
+        let place =
+            rotate.axis.and_then(|axis| "ABC".find(axis)).ok_or("this index move names no axis")?;
+        let angle = if rotate.radians { rotate.angle } else { rotate.angle.to_radians() };
         let angle = match rotate.sense {
             Some(Sense::Clockwise) => -angle,
             _ => angle,
         };
-        let angle = if rotate.incremental {
-            self.index[place] + angle
-        } else {
-            angle
-        };
+        let angle = if rotate.incremental { self.index[place] + angle } else { angle };
         if angle.abs() > MOST_DEGREES.to_radians() {
             return Err("this index move turns by more than a hundred turns");
         }
         let eighth = std::f64::consts::FRAC_PI_4;
         let near = (angle / eighth).round() * eighth;
-        self.index[place] = if (angle - near).abs() < NEAR {
-            near
-        } else {
-            angle
-        };
+        self.index[place] = if (angle - near).abs() < NEAR { near } else { angle };
         let turn = |k: Vector3<f64>, angle: f64| {
             Rotation3::from_axis_angle(&Unit::new_unchecked(k), angle)
         };

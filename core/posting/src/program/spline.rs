@@ -55,10 +55,7 @@ impl Spline {
     /// The same knots about other control points.
     pub(crate) fn about(&self, points: Vec<Vector3<f64>>) -> Self {
         debug_assert_eq!(points.len(), self.points.len());
-        Self {
-            knots: self.knots.clone(),
-            points,
-        }
+        Self { knots: self.knots.clone(), points }
     }
 
     /// All of its knots.
@@ -71,10 +68,7 @@ impl Spline {
         let rises = |knots: &[f64]| -> Vec<bool> {
             knots.windows(2).map(|pair| pair[0] < pair[1]).collect()
         };
-        (rises(&knots) == rises(&self.knots)).then(|| Self {
-            knots,
-            points: self.points.clone(),
-        })
+        (rises(&knots) == rises(&self.knots)).then(|| Self { knots, points: self.points.clone() })
     }
 
     /// Its control points.
@@ -85,9 +79,8 @@ impl Spline {
     /// It as cubics, each over one knot span from its start to its end: their control points (Bézier), in order. In the
     /// hull of its four points each of them lies.
     pub(crate) fn cubics(&self) -> impl Iterator<Item = [Vector3<f64>; DEGREE + 1]> {
-        (DEGREE..self.points.len())
-            .filter(|span| self.knots[span + 1] > self.knots[*span])
-            .map(|span| {
+        (DEGREE..self.points.len()).filter(|span| self.knots[span + 1] > self.knots[*span]).map(
+            |span| {
                 let (from, to) = (self.knots[span], self.knots[span + 1]);
                 // The blossom at the start so often, and at the end else.
                 [0, 1, 2, 3].map(|count| {
@@ -96,7 +89,8 @@ impl Spline {
                         std::array::from_fn(|level| if level < count { to } else { from }),
                     )
                 })
-            })
+            },
+        )
     }
 
     /// Where it begins.
@@ -236,9 +230,8 @@ mod tests {
             // Every point of a fine sampling lies within the tolerance of some chord.
             for step in 0..1000 {
                 let u = f64::from(step) / 1000.0;
-                let span = (DEGREE..spline.points.len())
-                    .find(|span| u < spline.knots[span + 1])
-                    .unwrap();
+                let span =
+                    (DEGREE..spline.points.len()).find(|span| u < spline.knots[span + 1]).unwrap();
                 let point = spline.at(span, u);
                 let nearest = ends
                     .windows(2)
@@ -261,13 +254,7 @@ mod tests {
             wave().flatten(tolerance, &mut |_, _| made += 1);
             assert_eq!(wave().chords(tolerance), Some(made));
         }
-        let points = vec![
-            Vector3::zeros(),
-            Vector3::x(),
-            Vector3::y(),
-            Vector3::z(),
-            Vector3::x(),
-        ];
+        let points = vec![Vector3::zeros(), Vector3::x(), Vector3::y(), Vector3::z(), Vector3::x()];
         for knot in [1e-300, 1e-320, 1e-200] {
             let spline = Spline::new(&[knot, 1.0], points.clone()).unwrap();
             assert_eq!(spline.chords(0.001), None, "{knot}");

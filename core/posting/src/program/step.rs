@@ -212,10 +212,7 @@ impl Motion {
         if distance <= 0.0 {
             return None;
         }
-        Some(Self {
-            tip: self.tip + self.axis * distance,
-            ..*self
-        })
+        Some(Self { tip: self.tip + self.axis * distance, ..*self })
     }
 }
 

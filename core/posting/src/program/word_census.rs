@@ -53,11 +53,7 @@ impl WordCensus {
         if self.counts.len() >= MOST_WORDS && MajorWord::find(word).is_none() {
             return false;
         }
-        let count = WordCount {
-            usage,
-            count: 1,
-            first: place(),
-        };
+        let count = WordCount { usage, count: 1, first: place() };
         self.counts.insert(word.to_owned(), count);
         true
     }
@@ -65,21 +61,14 @@ impl WordCensus {
     /// Counts a word at `place` that is not carried out because the user allows it; `instead` is what is done.
     pub(crate) fn allow(&mut self, word: &str, instead: &'static str, place: Place) {
         let count = self.allowed.entry((word.to_owned(), instead));
-        let count = count.or_insert(WordCount {
-            usage: Usage::Refused,
-            count: 0,
-            first: place,
-        });
+        let count = count.or_insert(WordCount { usage: Usage::Refused, count: 0, first: place });
         count.count += 1;
     }
 
     /// A warning for each word that the user took upon himself.
     pub(crate) fn allowed(&self) -> impl Iterator<Item = Diagnostic> {
         self.allowed.iter().map(|((word, instead), count)| {
-            let message = format!(
-                "{word}, met {}, {instead}, as --allow says",
-                times(count.count)
-            );
+            let message = format!("{word}, met {}, {instead}, as --allow says", times(count.count));
             Diagnostic::warning("allowed-word", message).at(Some(count.first.clone()))
         })
     }
@@ -161,12 +150,7 @@ fn known(word: &str) -> Option<&'static str> {
     if MajorWord::find(word).is_some() {
         return None;
     }
-    nearest(
-        word,
-        MajorWord::all()
-            .iter()
-            .flat_map(|row| row.spellings.iter().copied()),
-    )
+    nearest(word, MajorWord::all().iter().flat_map(|row| row.spellings.iter().copied()))
 }
 
 fn times(count: u64) -> String {

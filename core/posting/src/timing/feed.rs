@@ -79,12 +79,10 @@ impl FeedWriter {
                 FeedMode::PerMinute => None,
                 _ => format.inverse_time.map(|decimals| {
                     let most = format.most_inverse_time.unwrap_or(f64::INFINITY);
-                    Printed::new(decimals)
-                        .up_to(most)
-                        .per(match machine.control.inverse_time {
-                            InverseTime::Minutes => 1.0,
-                            InverseTime::Seconds => 60.0,
-                        })
+                    Printed::new(decimals).up_to(most).per(match machine.control.inverse_time {
+                        InverseTime::Minutes => 1.0,
+                        InverseTime::Seconds => 60.0,
+                    })
                 }),
             },
         })
@@ -116,11 +114,7 @@ impl FeedWriter {
             Tcp::Control => tip > SAME && (self.tcp_length == TcpFeedLength::Tip || !turning),
             Tcp::Post => !turning && self.square,
         } || matches!(block.kind, MotionKind::Arc | MotionKind::Spline);
-        let length = if plain {
-            tip / self.unit
-        } else {
-            self.measured(from, &block.joints, tip)
-        };
+        let length = if plain { tip / self.unit } else { self.measured(from, &block.joints, tip) };
         if let Pace::PerMinute(feed) = block.pace
             && block.nominal.moves
             && tip > STILL
@@ -136,10 +130,7 @@ impl FeedWriter {
     /// The feed of a way that nobody knows, but that the tool comes linearly, the rotary axes standing.
     pub(super) fn approach(&self, feed: f64) -> (Written, bool) {
         let allowed = feed.min(self.most);
-        (
-            self.per_minute(allowed / self.unit, 1.0),
-            allowed < feed * (1.0 - SAME),
-        )
+        (self.per_minute(allowed / self.unit, 1.0), allowed < feed * (1.0 - SAME))
     }
 
     /// A feed of `value` a minute along `length`; where none so low is printed, the time of it, if there is a word for
@@ -203,9 +194,7 @@ impl FeedWriter {
 /// ways is the way of the tool.
 fn square(machine: &Machine) -> bool {
     let axes = &machine.axes;
-    let sliding: Vec<usize> = (0..axes.len())
-        .filter(|index| !axes[*index].joint.rotary)
-        .collect();
+    let sliding: Vec<usize> = (0..axes.len()).filter(|index| !axes[*index].joint.rotary).collect();
     let between = match (sliding.first(), sliding.last()) {
         (Some(first), Some(last)) => axes[*first..*last].iter().any(|axis| axis.joint.rotary),
         _ => false,
@@ -250,12 +239,7 @@ struct Printed {
 impl Printed {
     fn new(decimals: u8) -> Self {
         let scale = (0..decimals).fold(1.0, |scale, _| scale * 10.0);
-        Self {
-            scale,
-            per_scale: 1.0 / scale,
-            most: f64::INFINITY,
-            per_minute: 1.0,
-        }
+        Self { scale, per_scale: 1.0 / scale, most: f64::INFINITY, per_minute: 1.0 }
     }
 
     /// One over a time of which a minute has so many.

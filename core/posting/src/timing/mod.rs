@@ -196,9 +196,8 @@ impl<'a> Timing<'a> {
     #[inline]
     fn cut(&mut self, block: &mut Block, findings: &Findings) {
         let (least, limit, needed) = self.least(block);
-        block.time.limit = limit
-            .filter(|_| least > block.asked() * (1.0 + 1e-9))
-            .map(|limit| limit.name(block));
+        block.time.limit =
+            limit.filter(|_| least > block.asked() * (1.0 + 1e-9)).map(|limit| limit.name(block));
         let written = self.feeds.write(block, &self.last, least);
         if written.capped {
             block.time.limit = Some("most_inverse_time");
@@ -234,12 +233,7 @@ impl<'a> Timing<'a> {
             return;
         };
         if self.low.count == 0 || lowest < self.low.lowest {
-            self.low = LowFeeds {
-                lowest,
-                line,
-                least: number(written.feed),
-                ..self.low
-            };
+            self.low = LowFeeds { lowest, line, least: number(written.feed), ..self.low };
         }
         self.low.count += 1;
     }
@@ -271,11 +265,7 @@ fn number(feed: Feed) -> f64 {
 
 /// A small number as people write it: no more than three digits behind the zeros.
 fn plain(value: f64) -> String {
-    let zeros = if value > 0.0 {
-        libm::floor(-libm::log10(value)).max(0.0)
-    } else {
-        0.0
-    };
+    let zeros = if value > 0.0 { libm::floor(-libm::log10(value)).max(0.0) } else { 0.0 };
     let text = format!("{value:.0$}", zeros.min(12.0) as usize + 3);
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

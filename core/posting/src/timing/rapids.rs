@@ -144,10 +144,7 @@ impl Rapids {
             let way = chain.way_of(joint, &block.joints);
             let coordinates = way.iter().zip(self.coordinates);
             let times = coordinates.filter(|(way, _)| libm::fabs(**way) > SAME);
-            fast |= times
-                .map(|(way, full)| libm::fabs(*way) * slow / full)
-                .sum::<f64>()
-                > OVER;
+            fast |= times.map(|(way, full)| libm::fabs(*way) * slow / full).sum::<f64>() > OVER;
         }
         fast.then(|| 1.0 / slowest)
     }
@@ -162,10 +159,7 @@ impl Rapids {
             return least;
         }
         let way = block.tip - self.tip;
-        let linear = way
-            .iter()
-            .zip(self.coordinates)
-            .map(|(way, slow)| way.abs() * slow);
+        let linear = way.iter().zip(self.coordinates).map(|(way, slow)| way.abs() * slow);
         let rotary = (0..MAX_AXES)
             .filter(|index| self.rotary[*index])
             .map(|index| (block.joints[index] - last[index]).abs() * self.slowness[index]);

@@ -58,16 +58,8 @@ fn given(rng: &mut Rng) -> Given {
         tables: rng.pick(3),
         usual: rng.pick(2) == 0,
         tcp: ["post", "control"][rng.pick(2)],
-        along: if pointed & 1 == 1 {
-            rng.range(-40.0, 80.0)
-        } else {
-            0.0
-        },
-        radius: if pointed & 2 == 2 {
-            rng.range(1.0, 40.0)
-        } else {
-            0.0
-        },
+        along: if pointed & 1 == 1 { rng.range(-40.0, 80.0) } else { 0.0 },
+        radius: if pointed & 2 == 2 { rng.range(1.0, 40.0) } else { 0.0 },
         decimals,
         tolerance: rng.order(if decimals == 3 { -2.0 } else { -2.5 }, -1.0),
         axis_tolerance: rng.order(-1.2, 0.0),
@@ -177,11 +169,7 @@ fn path(rng: &mut Rng, bench: &Bench, profile: Profile, count: usize) -> Vec<Sto
     let mut feed = Some(1000.0);
     let mut stops: Vec<Stop> = Vec::new();
     let even = rng.range(0.5, 4.0);
-    let beside = [
-        rng.order(-6.0, -1.5),
-        rng.order(-2.0, -0.5),
-        rng.range(-3.0, 3.0),
-    ];
+    let beside = [rng.order(-6.0, -1.5), rng.order(-2.0, -0.5), rng.range(-3.0, 3.0)];
     for index in 0..count {
         let mut joints = Joints::default();
         joints[c] = angles[0];
@@ -190,11 +178,7 @@ fn path(rng: &mut Rng, bench: &Bench, profile: Profile, count: usize) -> Vec<Sto
         if profile == Profile::Across {
             // Past the pole of a machine whose C is upright, close by.
             let share = index as f64 / (count - 1) as f64 - 0.5;
-            axis = leaned(
-                V::new(beside[0], beside[1] * share, 1.0).normalize(),
-                V::z(),
-                beside[2],
-            );
+            axis = leaned(V::new(beside[0], beside[1] * share, 1.0).normalize(), V::z(), beside[2]);
         }
         let mut next = stop(tip, axis, feed);
         if index == 0 {
@@ -253,11 +237,7 @@ fn path(rng: &mut Rng, bench: &Bench, profile: Profile, count: usize) -> Vec<Sto
 fn rounding(given: &Given) -> [f64; 2] {
     let half = 0.5 * libm::pow(10.0, -f64::from(given.decimals));
     let turn = 2.0 * half.to_radians() + 2e-8;
-    let swung = if given.tcp == "control" {
-        given.along.abs() * turn
-    } else {
-        0.0
-    };
+    let swung = if given.tcp == "control" { given.along.abs() * turn } else { 0.0 };
     [3.0 * half + 2e-6 + swung, turn]
 }
 
@@ -306,10 +286,7 @@ fn hold(
     let report = run.report.as_ref().expect("a program");
     let path = wanted(stops, given.along);
     let blocks = blocks(bench, run);
-    let (tip, axis) = (
-        report.tip_deviation_mm.value,
-        report.axis_deviation_deg.value.to_radians(),
-    );
+    let (tip, axis) = (report.tip_deviation_mm.value, report.axis_deviation_deg.value.to_radians());
     if tip > given.tolerance + 1e-9 {
         return Err(format!("certified {tip}, tolerance {}", given.tolerance));
     }
@@ -345,9 +322,7 @@ fn hold(
         }
         // A block that ends in a CL point that must be met leaves its legs behind.
         if lines.contains(&block.lines[1])
-            && blocks
-                .get(number + 1)
-                .is_none_or(|next| next.lines[1] != block.lines[1])
+            && blocks.get(number + 1).is_none_or(|next| next.lines[1] != block.lines[1])
             && !reduces
         {
             walk.leave((last + 1).min(path.len() - 2));
@@ -438,11 +413,7 @@ fn hold(
             _ => {}
         }
     }
-    Ok(Found {
-        blocks: blocks.len(),
-        time: report.cutting_time_s,
-        missed,
-    })
+    Ok(Found { blocks: blocks.len(), time: report.cutting_time_s, missed })
 }
 
 /// The circle of a cutting edge is near the circle that is wanted somewhere along the legs: none of its points is
@@ -511,11 +482,7 @@ max_feed = 1e7
 
 /// Head or trunnion with C upright and A level.
 fn usual(head: bool, tcp: &str, c: &str, more: &str) -> String {
-    let chain = if head {
-        "[w b X Y Z C A t]"
-    } else {
-        "[w C' A' b X Y Z t]"
-    };
+    let chain = if head { "[w b X Y Z C A t]" } else { "[w C' A' b X Y Z t]" };
     format!(
         "name = \"usual\"\nchain = \"{chain}\"\n[tool]\ngauge = [0, 0, 0]\n[axis.C]\nrotary = [0, 0, 1]\npoint = [0, 0, 0]\n{c}\nmax_feed = 1e7\n[axis.A]\nrotary = [1, 0, 0]\npoint = [0, 0, 200]\ncyclic = true\nmax_feed = 1e7\n{LINEAR}[control]\ndialect = \"recorder\"\ntcp = \"{tcp}\"\n{more}"
     )

@@ -49,18 +49,8 @@ pub(super) fn posted(
     let mut dialect = Recorder::new(&bench.machine, decimals);
     dialect.capabilities = writes;
     let mut printed = Printed::default();
-    let job = Job {
-        tool_length: Some(LENGTH),
-        ..Job::default()
-    };
-    let run = watched(
-        &bench.machine,
-        dialect,
-        cl,
-        job,
-        &mut Samples,
-        &mut [&mut printed],
-    );
+    let job = Job { tool_length: Some(LENGTH), ..Job::default() };
+    let run = watched(&bench.machine, dialect, cl, job, &mut Samples, &mut [&mut printed]);
     (run, printed.0)
 }
 
@@ -104,11 +94,7 @@ impl Controlled {
         } else if !clockwise && angle <= 0.0 {
             angle += TAU;
         }
-        assert!(
-            (angle.to_degrees() - arc.turn).abs() < 1e-6,
-            "{angle} {}",
-            arc.turn
-        );
+        assert!((angle.to_degrees() - arc.turn).abs() < 1e-6, "{angle} {}", arc.turn);
         Self {
             centre: start - arm,
             normal,
@@ -186,19 +172,11 @@ impl Wanted {
 
     pub(super) fn cl(&self) -> String {
         let six = |p: V, q: V| {
-            format!(
-                "{:.6},{:.6},{:.6},{:.9},{:.9},{:.9}",
-                p.x, p.y, p.z, q.x, q.y, q.z
-            )
+            format!("{:.6},{:.6},{:.6},{:.9},{:.9},{:.9}", p.x, p.y, p.z, q.x, q.y, q.z)
         };
         let radius = self.split(self.start).0.norm();
         let mut text = "UNITS/MM\nMULTAX/ON\nSPINDL/3000,RPM,CLW\nRAPID\n".to_owned();
-        writeln!(
-            text,
-            "GOTO/{}",
-            six(self.start + self.axis * 10.0, self.axis)
-        )
-        .unwrap();
+        writeln!(text, "GOTO/{}", six(self.start + self.axis * 10.0, self.axis)).unwrap();
         writeln!(text, "FEDRAT/600,MMPM\nGOTO/{}", six(self.start, self.axis)).unwrap();
         write!(text, "CIRCLE/{},{radius:.6}", six(self.centre, self.normal)).unwrap();
         if self.turns > 1 {
@@ -218,11 +196,8 @@ impl Wanted {
     }
 }
 
-pub(super) const CHAINS: [&str; 3] = [
-    "[w C' A' b Y X Z t]",
-    "[w C' b X Y Z A t]",
-    "[w b X Y Z C A t]",
-];
+pub(super) const CHAINS: [&str; 3] =
+    ["[w C' A' b Y X Z t]", "[w C' b X Y Z A t]", "[w b X Y Z C A t]"];
 
 fn list(v: V) -> String {
     format!("[{}, {}, {}]", v.x, v.y, v.z)
@@ -314,11 +289,7 @@ fn printed_arcs_are_as_near_as_certified() {
         let split = ["full", "half", "quadrant"][rng.pick(3)];
         let more = format!("arcs = {{ form = \"{form}\", split = \"{split}\" }}");
         let chain = CHAINS[rng.pick(3)];
-        let bench = Bench::new(
-            &machine(&mut rng, chain, tcp, units, &more),
-            decimals,
-            LENGTH,
-        );
+        let bench = Bench::new(&machine(&mut rng, chain, tcp, units, &more), decimals, LENGTH);
         let wanted = wanted(&mut rng, &bench, tcp);
         let cl = wanted.cl();
         let (run, blocks) = posted(&bench, decimals, ALL, &cl);
@@ -419,55 +390,15 @@ fn printed_arcs_are_as_near_as_certified() {
 fn real_files_have_fewer_blocks() {
     // File, machine, settings, blocks with chords, with arcs, and those of them that are arcs.
     let files = [
-        (
-            "nx_HumMan__3_PAZ_125_N2.cls",
-            "head-head",
-            &[][..],
-            [14980, 640, 300],
-        ),
-        (
-            "nx_HumMan__10_KONTUR_125_N2_162.cls",
-            "head-head",
-            &[],
-            [964, 12, 7],
-        ),
+        ("nx_HumMan__3_PAZ_125_N2.cls", "head-head", &[][..], [14980, 640, 300]),
+        ("nx_HumMan__10_KONTUR_125_N2_162.cls", "head-head", &[], [964, 12, 7]),
         ("nx_HumMan_cutcom.clsf", "vmc", &[], [6026, 566, 140]),
-        (
-            "creo3x_MichaHofft_profilfraesen_2.ncl",
-            "head-head",
-            &[],
-            [312, 52, 20],
-        ),
-        (
-            "creo3x_MichaHofft_schruppen_1.ncl",
-            "head-head",
-            &[],
-            [9582, 5590, 419],
-        ),
-        (
-            "camworks_neMoguta_UniSource.clt",
-            "ac-trunnion",
-            &[],
-            [1447, 376, 72],
-        ),
-        (
-            "swcam_aamorim_Interface-glue.clt",
-            "ac-trunnion",
-            &[],
-            [4012, 2125, 30],
-        ),
-        (
-            "swcam_aamorim_Teste-Metrologia.apt",
-            "ac-trunnion",
-            &[],
-            [3872, 479, 65],
-        ),
-        (
-            "swcam_aamorim_basemach.apt",
-            "vmc",
-            &[(-170.0, -75.0, 0.0)],
-            [4408, 2137, 304],
-        ),
+        ("creo3x_MichaHofft_profilfraesen_2.ncl", "head-head", &[], [312, 52, 20]),
+        ("creo3x_MichaHofft_schruppen_1.ncl", "head-head", &[], [9582, 5590, 419]),
+        ("camworks_neMoguta_UniSource.clt", "ac-trunnion", &[], [1447, 376, 72]),
+        ("swcam_aamorim_Interface-glue.clt", "ac-trunnion", &[], [4012, 2125, 30]),
+        ("swcam_aamorim_Teste-Metrologia.apt", "ac-trunnion", &[], [3872, 479, 65]),
+        ("swcam_aamorim_basemach.apt", "vmc", &[(-170.0, -75.0, 0.0)], [4408, 2137, 304]),
     ];
     for (name, machine, mount, expected) in files {
         let Some(path) = shared("data/cl") else {
@@ -482,9 +413,7 @@ fn real_files_have_fewer_blocks() {
         let settings: Vec<Setting> = mount
             .iter()
             .map(|(x, y, z)| Setting::Mount([*x, *y, *z]))
-            .chain([Setting::Written(
-                "control.compensation_on_centre=wear".to_owned(),
-            )])
+            .chain([Setting::Written("control.compensation_on_centre=wear".to_owned())])
             .collect();
         let machine = load(source(machine), &settings, &mut |name| Ok(source(name))).unwrap();
         let counts = [Capabilities::NONE, ALL].map(|writes| {
@@ -502,10 +431,7 @@ fn real_files_have_fewer_blocks() {
             };
             let run = watched(&machine, dialect, &text, job, &mut Samples, &mut []);
             let report = run.good(name).report.unwrap();
-            assert!(
-                report.tip_deviation_mm.value <= report.tolerance_mm,
-                "{name}"
-            );
+            assert!(report.tip_deviation_mm.value <= report.tolerance_mm, "{name}");
             [report.blocks, report.curves]
         });
         let [[chords, none], [blocks, arcs]] = counts;
@@ -565,9 +491,7 @@ fn traced(bench: &Bench, run: &Run, blocks: &[Block]) -> (Vec<V>, Vec<f64>) {
     let (mut curve, mut apart) = (Vec::new(), Vec::new());
     for (pair, block) in motions.windows(2).zip(&blocks[1..]) {
         let (from, to) = (pair[0], pair[1]);
-        let arc = to
-            .arc
-            .map(|arc| Controlled::new(&from.words, &to.words, &arc));
+        let arc = to.arc.map(|arc| Controlled::new(&from.words, &to.words, &arc));
         let looks = if arc.is_some() { LOOKS } else { 1 };
         for look in 0..=looks {
             let t = f64::from(look) / f64::from(looks);
@@ -670,9 +594,8 @@ fn fewest(path: &[V], tolerance: f64) -> usize {
                     return false;
                 }
                 let controlled = Controlled::new(&words(start), &words(end), &arc);
-                let curve: Vec<V> = (0..=48)
-                    .map(|look| point(&controlled.words(f64::from(look) / 48.0)))
-                    .collect();
+                let curve: Vec<V> =
+                    (0..=48).map(|look| point(&controlled.words(f64::from(look) / 48.0))).collect();
                 near(&curve, radius * turn * turn / (8.0 * 48.0 * 48.0))
             };
             let step = least[from].saturating_add(1);
@@ -707,10 +630,7 @@ fn no_choice_of_pieces_has_fewer() {
         let (run, _) = posted(&bench, 3, ALL, &cl);
         let pieces = run.good(&cl).report.unwrap().blocks as usize - 1;
         let least = fewest(&path, 0.02);
-        assert!(
-            pieces <= least + 1,
-            "round {round}: {pieces}, {least} are enough\n{cl}"
-        );
+        assert!(pieces <= least + 1, "round {round}: {pieces}, {least} are enough\n{cl}");
         ours += pieces;
         theirs += least;
         more += usize::from(pieces > least);
@@ -722,13 +642,7 @@ fn no_choice_of_pieces_has_fewer() {
 /// Half circles of points become half circles.
 #[test]
 fn points_of_arcs_become_arcs_again() {
-    let text = machine(
-        &mut post_testkit::seeded(3),
-        CHAINS[2],
-        "post",
-        "mm",
-        FITTED,
-    );
+    let text = machine(&mut post_testkit::seeded(3), CHAINS[2], "post", "mm", FITTED);
     let bench = Bench::new(&text, 3, LENGTH);
     let mut places = vec![V::new(0.0, 0.0, 10.0), V::zeros()];
     for wave in 0..6 {
@@ -741,15 +655,8 @@ fn points_of_arcs_become_arcs_again() {
     }
     let (cl, _) = path_text(&places, V::z());
     let report = posted(&bench, 3, ALL, &cl).0.good("points").report.unwrap();
-    assert_eq!(
-        (report.blocks, report.curves, report.points_dropped),
-        (8, 6, 594)
-    );
-    let report = posted(&bench, 3, Capabilities::NONE, &cl)
-        .0
-        .good("points")
-        .report
-        .unwrap();
+    assert_eq!((report.blocks, report.curves, report.points_dropped), (8, 6, 594));
+    let report = posted(&bench, 3, Capabilities::NONE, &cl).0.good("points").report.unwrap();
     assert_eq!((report.blocks, report.curves), (602, 0));
 }
 
@@ -768,9 +675,7 @@ fn spline_at(knots: &[f64], points: &[V], u: f64) -> V {
             + share(knots[index + 1], high, high - u) * basis(knots, index + 1, degree - 1, u)
     }
     let terms = points.iter().enumerate();
-    terms.fold(V::zeros(), |sum, (index, point)| {
-        sum + point * basis(knots, index, 3, u)
-    })
+    terms.fold(V::zeros(), |sum, (index, point)| sum + point * basis(knots, index, 3, u))
 }
 
 /// Splines of a real file stay splines: as the printed control points and knots have them, they are as near to those of
@@ -780,28 +685,9 @@ fn splines_stay_splines() {
     let mut rng = post_testkit::seeded(5);
     let text = machine(&mut rng, CHAINS[0], "post", "mm", "");
     let bench = Bench::new(&text, 3, LENGTH);
-    let knots = [
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.123_456_7,
-        0.4,
-        0.4,
-        0.777_777_7,
-        1.0,
-        1.0,
-        1.0,
-        1.0,
-    ];
+    let knots = [0.0, 0.0, 0.0, 0.0, 0.123_456_7, 0.4, 0.4, 0.777_777_7, 1.0, 1.0, 1.0, 1.0];
     let points: Vec<V> = (0..8)
-        .map(|index| {
-            V::new(
-                f64::from(index) * 7.0,
-                rng.range(-9.0, 9.0),
-                rng.range(-2.0, 2.0),
-            )
-        })
+        .map(|index| V::new(f64::from(index) * 7.0, rng.range(-9.0, 9.0), rng.range(-2.0, 2.0)))
         .map(|point| point.map(|x| libm::rint(x * 1e5) / 1e5))
         .collect();
     let first = points[0];

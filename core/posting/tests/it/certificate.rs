@@ -15,11 +15,7 @@ use post_testmachines::{Random, Reference, angle, between, blade, distance, sler
 /// The chain at the ends of a block.
 fn traces(chain: &Chain, from: &Joints, to: &Joints) -> [Trace; 2] {
     [from, to].map(|joints| {
-        let mut trace = Trace {
-            joints: *joints,
-            turns: chain.turns(joints),
-            ..Trace::default()
-        };
+        let mut trace = Trace { joints: *joints, turns: chain.turns(joints), ..Trace::default() };
         chain.trace(&mut trace);
         trace
     })
@@ -49,11 +45,7 @@ fn sampled(
         let (tip, axis) = reference.forward(&between(from, to, t));
         let chord = wanted[0].tip * (1.0 - t) + wanted[1].tip * t;
         let circle = slerp(wanted[0].axis, wanted[1].axis, t);
-        let deviations = [
-            (tip - chord).norm(),
-            (axis - circle).norm(),
-            angle(axis, circle),
-        ];
+        let deviations = [(tip - chord).norm(), (axis - circle).norm(), angle(axis, circle)];
         for (worst, deviation) in worst.iter_mut().zip(deviations) {
             *worst = worst.max(deviation);
         }
@@ -63,11 +55,7 @@ fn sampled(
 
 fn pose(reference: &Reference, q: &Joints) -> Pose {
     let (tip, axis) = reference.forward(q);
-    Pose {
-        tip,
-        axis,
-        ..Pose::default()
-    }
+    Pose { tip, axis, ..Pose::default() }
 }
 
 /// A block of a random machine; `turn` in degrees and `slide` in mm are the largest that an axis makes.
@@ -77,11 +65,7 @@ fn block(rng: &mut Rng, turn: f64, slide: f64) -> (Random, Joints, Joints) {
     let from = machine.values(rng);
     let mut to = from;
     for (index, joint) in machine.reference.joints.iter().enumerate() {
-        let most = if joint.rotary {
-            turn.to_radians()
-        } else {
-            slide
-        };
+        let most = if joint.rotary { turn.to_radians() } else { slide };
         to[index] += rng.range(-most, most);
     }
     (machine, from, to)
@@ -118,10 +102,7 @@ fn no_sample_exceeds_the_bounds() {
         let bends = bounds(&reference.chain(), &from, &to, wanted);
         for (which, bend) in bends.iter().enumerate() {
             let bound = deviation(ends[0], bend.tip);
-            assert!(
-                tip <= bound + 1e-10,
-                "round {round}, bound {which}: tip {tip} over {bound}"
-            );
+            assert!(tip <= bound + 1e-10, "round {round}, bound {which}: tip {tip} over {bound}");
             let bound = deviation(ends[1], bend.axis);
             assert!(
                 chord <= bound + 1e-13,
@@ -137,10 +118,7 @@ fn no_sample_exceeds_the_bounds() {
             }
         }
     }
-    println!(
-        "bound over sampled maximum, least: quick {}, tight {}",
-        least[0], least[1]
-    );
+    println!("bound over sampled maximum, least: quick {}, tight {}", least[0], least[1]);
 }
 
 /// On small moves `tight` is the sampled maximum to 5 %, wherever second-order terms do not cancel.
@@ -216,10 +194,7 @@ fn ends_off_the_path_count_against_the_bow() {
             sampled = sampled.max((reached - (wanted[0] * (1.0 - t) + wanted[1] * t)).norm());
         }
         let bound = course.tip(off);
-        assert!(
-            sampled <= bound + 1e-10,
-            "round {round}: {sampled} over {bound}"
-        );
+        assert!(sampled <= bound + 1e-10, "round {round}: {sampled} over {bound}");
         let simple = off[0].norm().max(off[1].norm())
             + course.bend(Vector3::z(), Vector3::z(), 0.0).tip / 8.0;
         assert!(
@@ -309,35 +284,24 @@ fn tight_tends_to_the_second_derivative() {
         let (first, last) = (pose(reference, &from), pose(reference, &to));
         let [_, bend] = bounds(&reference.chain(), &from, &to, [&first, &last]);
         let sweep = angle(first.axis, last.axis) / size;
-        let expected = [
-            second.0.norm(),
-            (second.1 + first.axis * sweep * sweep).norm(),
-        ];
+        let expected = [second.0.norm(), (second.1 + first.axis * sweep * sweep).norm()];
         for (which, (bend, expected)) in [bend.tip, bend.axis].into_iter().zip(expected).enumerate()
         {
             let error = (bend / (size * size) - expected).abs();
             // The terms are some hundred mm and some rad² long; the ends of the block differ by a share of its size.
             let scale = [1000.0, 1.0][which];
             worst[which] = worst[which].max(error / scale);
-            assert!(
-                error < 2e-3 * scale,
-                "round {round}: {which}: {error} off {expected}"
-            );
+            assert!(error < 2e-3 * scale, "round {round}: {which}: {error} off {expected}");
         }
     }
-    println!(
-        "second derivative: tip {:.1e} of a metre, axis {:.1e}",
-        worst[0], worst[1]
-    );
+    println!("second derivative: tip {:.1e} of a metre, axis {:.1e}", worst[0], worst[1]);
 }
 
 /// A machine of the workspace.
 fn machine_file(name: &str, settings: &[Setting]) -> post_machine::description::Machine {
     let path = repository().join("machines").join(name);
-    let source = Source {
-        name: name.to_owned(),
-        text: fs::read_to_string(path).expect("a machine file"),
-    };
+    let source =
+        Source { name: name.to_owned(), text: fs::read_to_string(path).expect("a machine file") };
     load(source, settings, &mut |_| Err(String::new())).expect("a machine")
 }
 
@@ -345,41 +309,32 @@ fn machine_file(name: &str, settings: &[Setting]) -> post_machine::description::
 /// machining", section 2.3): A -3.3528 to -2.1501 at C 90. Its largest deviation is at the middle and is Lm·Δ²/8.
 #[test]
 fn the_swing_head_move_of_the_parabolic_paper() {
-    for (swing, expected) in [
-        (100.0, 5.508),
-        (200.0, 11.016),
-        (300.0, 16.523),
-        (400.0, 22.031),
-        (312.0, 17.184),
-    ] {
-        let machine = machine_file(
-            "disc-cutter.toml",
-            &[Setting::Written(format!("Lm={swing}"))],
-        );
+    for (swing, expected) in
+        [(100.0, 5.508), (200.0, 11.016), (300.0, 16.523), (400.0, 22.031), (312.0, 17.184)]
+    {
+        let machine = machine_file("disc-cutter.toml", &[Setting::Written(format!("Lm={swing}"))]);
         let solver = machine.solver(0.0).unwrap();
-        let [from, to] = [
-            ([33.3881, 0.0, 8.1205], -3.3528f64),
-            ([36.2549, 0.0, 8.2580], -2.1501),
-        ]
-        .map(|(tip, a)| {
-            let (sine, cosine) = libm::sincos(a.to_radians());
-            // u = (sinA·sinC, -sinA·cosC, cosA) at C 90.
-            let pose = Pose {
-                tip: Vector3::from(tip),
-                axis: Vector3::new(sine, 0.0, cosine),
-                ..Pose::default()
-            };
-            let solutions = solver.inverse(&pose, &[0.0; 8], 1e-9).unwrap();
-            let wanted = |joints: &&Joints| {
-                (joints[4] - FRAC_PI_2).abs() < 1e-9 && (joints[5] - a.to_radians()).abs() < 1e-9
-            };
-            let joints = *solutions.iter().find(wanted).expect("the paper's angles");
-            // Eq. 11 with the signs of the Lm terms put right: the pivot is the tip plus Lm·u.
-            // With Z at zero the pivot stands 1200 mm over the table.
-            let pivot = Vector3::new(joints[1], joints[2], joints[3] + 1200.0);
-            assert!((pivot - (pose.tip + pose.axis * swing)).norm() < 1e-9);
-            (pose, joints)
-        });
+        let [from, to] = [([33.3881, 0.0, 8.1205], -3.3528f64), ([36.2549, 0.0, 8.2580], -2.1501)]
+            .map(|(tip, a)| {
+                let (sine, cosine) = libm::sincos(a.to_radians());
+                // u = (sinA·sinC, -sinA·cosC, cosA) at C 90.
+                let pose = Pose {
+                    tip: Vector3::from(tip),
+                    axis: Vector3::new(sine, 0.0, cosine),
+                    ..Pose::default()
+                };
+                let solutions = solver.inverse(&pose, &[0.0; 8], 1e-9).unwrap();
+                let wanted = |joints: &&Joints| {
+                    (joints[4] - FRAC_PI_2).abs() < 1e-9
+                        && (joints[5] - a.to_radians()).abs() < 1e-9
+                };
+                let joints = *solutions.iter().find(wanted).expect("the paper's angles");
+                // Eq. 11 with the signs of the Lm terms put right: the pivot is the tip plus Lm·u.
+                // With Z at zero the pivot stands 1200 mm over the table.
+                let pivot = Vector3::new(joints[1], joints[2], joints[3] + 1200.0);
+                assert!((pivot - (pose.tip + pose.axis * swing)).norm() < 1e-9);
+                (pose, joints)
+            });
         let chain = solver.chain();
         let at = |t: f64| {
             let tip = chain.forward(&between(&from.1, &to.1, t)).tip;
@@ -390,14 +345,8 @@ fn the_swing_head_move_of_the_parabolic_paper() {
         assert!((peak - 0.5).abs() < 2e-3, "the peak is at {peak}");
         assert!((at(0.5) - expected).abs() < 1e-3, "Lm {swing}: {}", at(0.5));
         let [quick, tight] = bounds(chain, &from.1, &to.1, [&from.0, &to.0]);
-        assert!(
-            at(0.5) <= 125.0 * tight.tip && 125.0 * tight.tip < 1.001 * at(0.5),
-            "{tight:?}"
-        );
-        assert!(
-            at(0.5) <= 125.0 * quick.tip && 125.0 * quick.tip < 1.001 * at(0.5),
-            "{quick:?}"
-        );
+        assert!(at(0.5) <= 125.0 * tight.tip && 125.0 * tight.tip < 1.001 * at(0.5), "{tight:?}");
+        assert!(at(0.5) <= 125.0 * quick.tip && 125.0 * quick.tip < 1.001 * at(0.5), "{quick:?}");
     }
 }
 
@@ -476,10 +425,7 @@ fn straight_blocks_have_no_deviation() {
                 to[index] = from[index];
             }
         }
-        let (first, last) = (
-            pose(&machine.reference, &from),
-            pose(&machine.reference, &to),
-        );
+        let (first, last) = (pose(&machine.reference, &from), pose(&machine.reference, &to));
         for bend in bounds(&machine.reference.chain(), &from, &to, [&first, &last]) {
             assert!(bend.tip == 0.0 && bend.axis < 1e-20, "{bend:?}");
         }

@@ -10,19 +10,14 @@ use post_testruns::posted::{Recorder, Run, Samples, watched};
 
 /// The machine `name` of the library, refined by `more`.
 fn machine(name: &str, more: &str) -> Machine {
-    let source = Source {
-        name: "mine.toml".to_owned(),
-        text: format!("extends = {name:?}\n{more}"),
-    };
+    let source =
+        Source { name: "mine.toml".to_owned(), text: format!("extends = {name:?}\n{more}") };
     load(source, &[], &mut library).unwrap_or_else(|faults| panic!("{faults:#?}"))
 }
 
 fn library(name: &str) -> Result<Source, String> {
     let path = repository().join(format!("machines/{name}.toml"));
-    Ok(Source {
-        text: fs::read_to_string(&path).unwrap(),
-        name: path.display().to_string(),
-    })
+    Ok(Source { text: fs::read_to_string(&path).unwrap(), name: path.display().to_string() })
 }
 
 /// Posts for a dialect that declares `writes`. `;` ends a line.
@@ -33,11 +28,7 @@ fn posted(machine: &Machine, writes: Capabilities, cl: &str) -> Run {
 fn posted_as(machine: &Machine, writes: Capabilities, cl: &str, facts: JobFacts) -> Run {
     let mut dialect = Recorder::new(machine, 3);
     dialect.capabilities = writes;
-    let job = Job {
-        tool_length: Some(100.0),
-        facts,
-        ..Job::default()
-    };
+    let job = Job { tool_length: Some(100.0), facts, ..Job::default() };
     let cl = format!("UNITS/MM;{cl};FINI;").replace(';', "\n");
     watched(machine, dialect, &cl, job, &mut Samples, &mut [])
 }
@@ -45,10 +36,8 @@ fn posted_as(machine: &Machine, writes: Capabilities, cl: &str, facts: JobFacts)
 /// The kinds of all events behind the first retract but the moves, in order.
 fn kinds(run: &Run) -> String {
     let asked = run.asked.iter().skip(2);
-    let kinds: Vec<&str> = asked
-        .map(|asked| asked.kind)
-        .filter(|kind| !matches!(*kind, "Linear" | "Rapid"))
-        .collect();
+    let kinds: Vec<&str> =
+        asked.map(|asked| asked.kind).filter(|kind| !matches!(*kind, "Linear" | "Rapid")).collect();
     kinds.join(" ")
 }
 
@@ -56,9 +45,7 @@ fn kinds(run: &Run) -> String {
 #[track_caller]
 fn event<'r>(run: &'r Run, kind: &str) -> &'r str {
     let asked = run.asked.iter().find(|asked| asked.kind == kind);
-    &asked
-        .unwrap_or_else(|| panic!("no {kind}: {} / {}", kinds(run), run.told()))
-        .event
+    &asked.unwrap_or_else(|| panic!("no {kind}: {} / {}", kinds(run), run.told())).event
 }
 
 const CUT: &str = "SPINDL/3000,RPM,CLW;RAPID;GOTO/0,0,50;FEDRAT/100,MMPM;GOTO/0,0,10;GOTO/9,0,10";
@@ -76,12 +63,7 @@ fn a_work_offset_comes_with_the_tool_retracted() {
         "ToolChange Retract WorkOffset Spindle Position Retract WorkOffset Position Retract Spindle End"
     );
     assert!(event(&run, "WorkOffset").contains("number: 1"));
-    assert!(
-        run.told()
-            .contains("travel was checked with the part where"),
-        "{}",
-        run.told()
-    );
+    assert!(run.told().contains("travel was checked with the part where"), "{}", run.told());
 
     // A control that has no such words gets none, and nobody is left in doubt.
     let run = posted(&vmc, Capabilities::NONE, &cl);
@@ -89,20 +71,9 @@ fn a_work_offset_comes_with_the_tool_retracted() {
     assert_eq!(run.findings[0].code, "refused-word");
     assert_eq!(run.findings[0].place.as_ref().unwrap().line, 3);
     // Is 55 the second offset, or the fifty-fifth?
-    for (word, why) in [
-        ("OFSETL/0", "counted from 1"),
-        ("SET/OFSETL,55", "it may be G55"),
-    ] {
-        let run = posted(
-            &vmc,
-            Capabilities::WORK_OFFSET,
-            &format!("LOADTL/1;{word};{CUT}"),
-        );
-        assert!(
-            run.report.is_none() && run.told().contains(why),
-            "{}",
-            run.told()
-        );
+    for (word, why) in [("OFSETL/0", "counted from 1"), ("SET/OFSETL,55", "it may be G55")] {
+        let run = posted(&vmc, Capabilities::WORK_OFFSET, &format!("LOADTL/1;{word};{CUT}"));
+        assert!(run.report.is_none() && run.told().contains(why), "{}", run.told());
     }
 }
 
@@ -130,10 +101,7 @@ fn what_the_control_keeps_ends_before_a_tool_change() {
     let of = kinds(&run);
     assert_eq!(of.matches(near).count(), 3, "{of}");
     assert_eq!(of.matches(away).count(), 3, "{of}");
-    assert!(
-        of.contains("Tcp Retract SmoothingOff Spindle ToolChange"),
-        "{of}"
-    );
+    assert!(of.contains("Tcp Retract SmoothingOff Spindle ToolChange"), "{of}");
     assert_eq!(
         event(&run, "Smoothing"),
         "Smoothing { tolerance: 0.01, axis_tolerance: Some(0.05) }"
@@ -144,12 +112,7 @@ fn what_the_control_keeps_ends_before_a_tool_change() {
         .filter(|asked| asked.kind == "Tcp")
         .map(|asked| asked.event.contains("true"))
         .collect();
-    assert!(
-        switched
-            .chunks(2)
-            .all(|pair| matches!(pair, [false, true] | [false])),
-        "{switched:?}"
-    );
+    assert!(switched.chunks(2).all(|pair| matches!(pair, [false, true] | [false])), "{switched:?}");
 }
 
 /// An operation that must be kept closer begins anew with its own tolerance, the tool retracted.
@@ -158,9 +121,7 @@ fn smoothing_goes_by_the_operation() {
     let more = "[program.smoothing]\noperations = { \"ROUGH*\" = 0.05, \"ROUGH_FINE\" = 0.02 }\n";
     let vmc = machine("vmc", more);
     let of = |name: &str| format!("TOOL PATH/{name},TOOL,T;{CUT};END-OF-PATH");
-    let names = ["rough_1", "ROUGH_2", "ROUGH_FINE", "FINISH"]
-        .map(of)
-        .join(";");
+    let names = ["rough_1", "ROUGH_2", "ROUGH_FINE", "FINISH"].map(of).join(";");
     let run =
         posted(&vmc, Capabilities::SMOOTHING, &format!("LOADTL/1;{names}")).good("rough and fine");
     let told: Vec<&str> = run
@@ -178,11 +139,7 @@ fn smoothing_goes_by_the_operation() {
             "SmoothingOff",
         ]
     );
-    assert!(
-        kinds(&run).contains("Retract SmoothingOff"),
-        "{}",
-        kinds(&run)
-    );
+    assert!(kinds(&run).contains("Retract SmoothingOff"), "{}", kinds(&run));
 }
 
 #[test]
@@ -199,15 +156,8 @@ fn another_register_is_no_tool_change_where_the_dialect_knows_registers() {
     let cl =
         format!("LOADTL/1;{CUT};LOADTL/1,ADJUST,21;RAPID;GOTO/0,0,50;FEDRAT/9,MMPM;GOTO/0,0,9");
     let run = posted(&vmc, Capabilities::OFFSETS, &cl).good("two registers");
-    assert!(
-        kinds(&run).contains("Position Retract Offsets Position"),
-        "{}",
-        kinds(&run)
-    );
-    assert_eq!(
-        event(&run, "Offsets"),
-        "Offsets { length: Some(21), radius: None }"
-    );
+    assert!(kinds(&run).contains("Position Retract Offsets Position"), "{}", kinds(&run));
+    assert_eq!(event(&run, "Offsets"), "Offsets { length: Some(21), radius: None }");
     let run = posted(&vmc, Capabilities::NONE, &cl).good("two registers");
     assert_eq!(kinds(&run).matches("ToolChange").count(), 2);
 }
@@ -227,15 +177,8 @@ fn behind_a_subprogram_all_is_said_again() {
     );
     assert!(event(&run, "Subprogram").contains("number: Some(1000), times: 1"));
     assert_eq!(run.findings.len(), 1, "{}", run.told());
-    assert!(
-        run.told()
-            .contains("what subprogram 1000 does is not checked")
-    );
-    assert!(
-        posted(&vmc, Capabilities::NONE, &cl)
-            .told()
-            .contains("no words for a subprogram")
-    );
+    assert!(run.told().contains("what subprogram 1000 does is not checked"));
+    assert!(posted(&vmc, Capabilities::NONE, &cl).told().contains("no words for a subprogram"));
 }
 
 /// On a mill SFM is that of the cutter's diameter; a spindle that turns the part keeps it, never without a limit.
@@ -245,65 +188,29 @@ fn a_cutting_speed_is_kept_where_the_spindle_turns_the_part() {
     let cut = "RAPID;GOTO/0,0,50;FEDRAT/100,MMPM;GOTO/0,0,10";
     let cl = |words: &str| format!("CUTTER/10;LOADTL/1;SPINDL/{words};{cut}");
     let run = posted(&mill, Capabilities::SURFACE_SPEED, &cl("SMM,100,CLW")).good("a mill");
-    assert!(
-        event(&run, "Spindle").contains("rpm: 3183.09"),
-        "{}",
-        event(&run, "Spindle")
-    );
-    let run = posted(
-        &mill,
-        Capabilities::SURFACE_SPEED,
-        &cl("SMM,100,MAXRPM,2000,CLW"),
-    )
-    .good("a mill");
-    assert!(
-        event(&run, "Spindle").contains("rpm: 2000.0"),
-        "{}",
-        event(&run, "Spindle")
-    );
+    assert!(event(&run, "Spindle").contains("rpm: 3183.09"), "{}", event(&run, "Spindle"));
+    let run =
+        posted(&mill, Capabilities::SURFACE_SPEED, &cl("SMM,100,MAXRPM,2000,CLW")).good("a mill");
+    assert!(event(&run, "Spindle").contains("rpm: 2000.0"), "{}", event(&run, "Spindle"));
 
     let more = "[spindle]\nsurface_speed = true\nmax_speed = 4000\n";
     let lathe = machine("vmc", more);
     for (words, told) in [
-        (
-            "SMM,100,CLW",
-            "speed: 100.0, most: Some(4000.0), sense: Clockwise",
-        ),
-        (
-            "SFM,500,CCLW,MAXRPM,2500",
-            "speed: 152.4, most: Some(2500.0), sense: CounterClockwise",
-        ),
+        ("SMM,100,CLW", "speed: 100.0, most: Some(4000.0), sense: Clockwise"),
+        ("SFM,500,CCLW,MAXRPM,2500", "speed: 152.4, most: Some(2500.0), sense: CounterClockwise"),
     ] {
         let run = posted(&lathe, Capabilities::SURFACE_SPEED, &cl(words)).good(words);
-        assert!(
-            event(&run, "SurfaceSpeed").contains(told),
-            "{}",
-            event(&run, "SurfaceSpeed")
-        );
+        assert!(event(&run, "SurfaceSpeed").contains(told), "{}", event(&run, "SurfaceSpeed"));
         // Off for the tool change, and on again as it was.
         assert!(!kinds(&run).contains("Spindle ToolChange"));
     }
     for (machine, words, writes, why) in [
-        (
-            &lathe,
-            "SMM,100",
-            Capabilities::NONE,
-            "no words for a constant cutting speed",
-        ),
-        (
-            &lathe,
-            "SMM,100,MAXRPM,5000",
-            Capabilities::SURFACE_SPEED,
-            "its largest speed is 4000",
-        ),
+        (&lathe, "SMM,100", Capabilities::NONE, "no words for a constant cutting speed"),
+        (&lathe, "SMM,100,MAXRPM,5000", Capabilities::SURFACE_SPEED, "its largest speed is 4000"),
         (&lathe, "SMM,-1", Capabilities::SURFACE_SPEED, "above zero"),
     ] {
         let run = posted(machine, writes, &cl(words));
-        assert!(
-            run.report.is_none() && run.told().contains(why),
-            "{words}: {}",
-            run.told()
-        );
+        assert!(run.report.is_none() && run.told().contains(why), "{words}: {}", run.told());
     }
     let endless = self::machine("router", "[spindle]\nsurface_speed = true\n");
     if endless.spindle.max.is_infinite() {
@@ -317,26 +224,12 @@ fn a_cutting_speed_is_kept_where_the_spindle_turns_the_part() {
 fn pprint_is_a_message_where_the_machine_file_says_so() {
     for (more, writes, kind) in [
         ("", Capabilities::MESSAGE, "Comment"),
-        (
-            "[control]\nprint = \"message\"\n",
-            Capabilities::MESSAGE,
-            "Message",
-        ),
-        (
-            "[control]\nprint = \"message\"\n",
-            Capabilities::NONE,
-            "Comment",
-        ),
+        ("[control]\nprint = \"message\"\n", Capabilities::MESSAGE, "Message"),
+        ("[control]\nprint = \"message\"\n", Capabilities::NONE, "Comment"),
     ] {
-        let run = posted(
-            &machine("vmc", more),
-            writes,
-            &format!("LOADTL/1;PPRINT TURN THE PART;{CUT}"),
-        );
-        assert_eq!(
-            event(&run, kind),
-            format!("{kind} {{ text: \"TURN THE PART\" }}")
-        );
+        let run =
+            posted(&machine("vmc", more), writes, &format!("LOADTL/1;PPRINT TURN THE PART;{CUT}"));
+        assert_eq!(event(&run, kind), format!("{kind} {{ text: \"TURN THE PART\" }}"));
     }
 }
 
@@ -359,25 +252,15 @@ preselect = true
 tolerance = 0.02
 "#;
     let vmc = machine("vmc", more);
-    let tool = |number| post_posting::program::Tool {
-        number,
-        register: number,
-        ..Default::default()
-    };
+    let tool =
+        |number| post_posting::program::Tool { number, register: number, ..Default::default() };
     let facts = JobFacts {
         program: "PART".to_owned(),
         cl_file: "part.cls".to_owned(),
-        ahead: Some(LookedAhead {
-            changes: vec![tool(3), tool(5)],
-            ..LookedAhead::default()
-        }),
+        ahead: Some(LookedAhead { changes: vec![tool(3), tool(5)], ..LookedAhead::default() }),
     };
     let of = |name: &str| format!("TOOL PATH/{name},TOOL,T;{CUT};END-OF-PATH");
-    let cl = format!(
-        "LOADTL/3;{};SELECT/TOOL,9;LOADTL/5;{}",
-        of("A"),
-        of("B) M30 (")
-    );
+    let cl = format!("LOADTL/3;{};SELECT/TOOL,9;LOADTL/5;{}", of("A"), of("B) M30 ("));
     let run = posted_as(&vmc, Capabilities::INSTEAD, &cl, facts).good("texts");
     let told: Vec<String> = run
         .asked
@@ -403,20 +286,13 @@ tolerance = 0.02
 /// What a template asks for and nobody knows is told with its place in the machine file, and there is no program.
 #[test]
 fn a_fact_that_nobody_knows_is_an_error() {
-    let vmc = machine(
-        "vmc",
-        "[program]\nafter_tool_change = \"G43 Z{{ tool.diameter }}\"\n",
-    );
+    let vmc = machine("vmc", "[program]\nafter_tool_change = \"G43 Z{{ tool.diameter }}\"\n");
     let run = posted(&vmc, Capabilities::NONE, &format!("LOADTL/3;{CUT}"));
     assert!(run.report.is_none());
     let fault = &run.findings[0];
     assert_eq!(fault.code, "program-text");
     assert_eq!(fault.place.as_ref().unwrap().file, "mine.toml");
-    assert!(
-        fault.message.contains("after_tool_change"),
-        "{}",
-        fault.message
-    );
+    assert!(fault.message.contains("after_tool_change"), "{}", fault.message);
 }
 
 #[test]
@@ -432,16 +308,8 @@ fn a_slip_in_a_template_is_shown_at_its_place() {
     for (line, at, why) in [
         ("header = \"({{ program.nme }})\"", 14..25, "undefined"),
         ("header = \"({{ tool.number }})\"", 14..25, "undefined"),
-        (
-            "footer = [\"(A)\", \"{{ program.name \"]",
-            18..36,
-            "syntax error",
-        ),
-        (
-            "between_tools = \"{% set x = 1 %}\"",
-            19..30,
-            "there is no `set` here",
-        ),
+        ("footer = [\"(A)\", \"{{ program.name \"]", 18..36, "syntax error"),
+        ("between_tools = \"{% set x = 1 %}\"", 19..30, "there is no `set` here"),
         ("smoothing_on = \"G187\"", 15..21, "no smoothing_off"),
     ] {
         let source = Source {
@@ -450,20 +318,9 @@ fn a_slip_in_a_template_is_shown_at_its_place() {
         };
         let faults = load(source, &[], &mut library).unwrap_err();
         let place = faults[0].place.clone().unwrap();
-        assert!(
-            faults[0].message.contains(why),
-            "{line}: {}",
-            faults[0].message
-        );
-        assert_eq!(
-            (place.line, place.file.as_str()),
-            (3, "mine.toml"),
-            "{line}"
-        );
+        assert!(faults[0].message.contains(why), "{line}: {}", faults[0].message);
+        assert_eq!((place.line, place.file.as_str()), (3, "mine.toml"), "{line}");
         let told = &place.span;
-        assert!(
-            told.start >= at.start && told.end <= at.end,
-            "{line}: {told:?}"
-        );
+        assert!(told.start >= at.start && told.end <= at.end, "{line}: {told:?}");
     }
 }

@@ -49,21 +49,13 @@ fn length(bench: &Bench, kind: &str, from: &Joints, to: &Joints, tip: f64) -> f6
             (rotary, if rotary { turn } else { way })
         })
         .collect();
-    let of = |rotary: bool| {
-        ways.iter()
-            .filter(move |way| way.0 == rotary)
-            .map(|way| way.1)
-    };
+    let of = |rotary: bool| ways.iter().filter(move |way| way.0 == rotary).map(|way| way.1);
     let root = |ways: &mut dyn Iterator<Item = f64>| ways.map(|way| way * way).sum::<f64>().sqrt();
     if bench.machine.control.tcp == Tcp::Control && kind == "combined" {
         return root(&mut of(true).chain([tip]));
     }
     if bench.machine.control.tcp == Tcp::Control {
-        return if tip > 1e-9 {
-            tip
-        } else {
-            of(true).fold(0.0, f64::max)
-        };
+        return if tip > 1e-9 { tip } else { of(true).fold(0.0, f64::max) };
     }
     let linear = root(&mut of(false));
     match kind {
@@ -150,18 +142,11 @@ fn made(rng: &mut Rng) -> Made {
             second = rng.direction();
         }
     }
-    let chain = [
-        "[w C' A' b Y X Z t]",
-        "[w C' b X Y Z A t]",
-        "[w b X Y Z C A t]",
-        "[w b X C Y Z A t]",
-    ][rng.pick(if usual { 3 } else { 4 })];
+    let chain =
+        ["[w C' A' b Y X Z t]", "[w C' b X Y Z A t]", "[w b X Y Z C A t]", "[w b X C Y Z A t]"]
+            [rng.pick(if usual { 3 } else { 4 })];
     let lean = [0.0, 0.0, 0.05][rng.pick(3)];
-    let along = if rng.pick(2) == 0 {
-        0.0
-    } else {
-        rng.range(-40.0, 80.0)
-    };
+    let along = if rng.pick(2) == 0 { 0.0 } else { rng.range(-40.0, 80.0) };
     let (tcp, kind) = [
         ("control", "linear"),
         ("control", "combined"),
@@ -237,17 +222,9 @@ fn path(rng: &mut Rng, along: f64) -> Vec<Stop> {
 
 /// The feed that is in force at each line of a CL file, and whether the line is a rapid.
 fn asked_feeds(stops: &[Stop], lines: &[u64]) -> impl Fn(u64) -> Option<f64> {
-    let feeds: Vec<(u64, Option<f64>)> = lines
-        .iter()
-        .copied()
-        .zip(stops.iter().map(|stop| stop.feed))
-        .collect();
-    move |line| {
-        feeds
-            .iter()
-            .find(|(at, _)| *at == line)
-            .and_then(|(_, feed)| *feed)
-    }
+    let feeds: Vec<(u64, Option<f64>)> =
+        lines.iter().copied().zip(stops.iter().map(|stop| stop.feed)).collect();
+    move |line| feeds.iter().find(|(at, _)| *at == line).and_then(|(_, feed)| *feed)
 }
 
 #[test]
@@ -265,18 +242,10 @@ fn no_axis_passes_its_largest_feed_between_the_words() {
         let Some(report) = &run.report else {
             // What cannot be shown is refused, and what cannot be printed slowly enough.
             let told = run.told();
-            let known = [
-                "out-of-reach",
-                "over-travel",
-                "low-feed",
-                "jump",
-                "rounding",
-                "kinematics",
-            ];
-            let kinds: Vec<&str> = told
-                .lines()
-                .map(|line| line.split(':').next().unwrap())
-                .collect();
+            let known =
+                ["out-of-reach", "over-travel", "low-feed", "jump", "rounding", "kinematics"];
+            let kinds: Vec<&str> =
+                told.lines().map(|line| line.split(':').next().unwrap()).collect();
             assert!(
                 kinds
                     .iter()
@@ -289,11 +258,8 @@ fn no_axis_passes_its_largest_feed_between_the_words() {
         let feed_at = asked_feeds(&stops, &lines);
         let linear = made.text.contains("rapid = \"linear\"");
         let mut minutes = 0.0;
-        let (mut least, mut most, mut way) = (
-            [f64::INFINITY; MAX_AXES],
-            [f64::NEG_INFINITY; MAX_AXES],
-            [0.0; MAX_AXES],
-        );
+        let (mut least, mut most, mut way) =
+            ([f64::INFINITY; MAX_AXES], [f64::NEG_INFINITY; MAX_AXES], [0.0; MAX_AXES]);
         for block in drive(&bench, &run, made.kind, 200) {
             for pair in block.places.windows(2) {
                 for place in 0..MAX_AXES {
@@ -346,11 +312,7 @@ fn no_axis_passes_its_largest_feed_between_the_words() {
                 // A rapid that is written as a feed move is as fast as the axes allow, but for the rounding of F.
                 None if linear => {
                     let rounded = block.minutes < 2e-3 || block.tip / block.minutes < 10.0;
-                    assert!(
-                        share > 0.98 || rounded,
-                        "round {round}, line {}: {share}",
-                        block.line
-                    );
+                    assert!(share > 0.98 || rounded, "round {round}, line {}: {share}", block.line);
                     fed += 1;
                 }
                 None => {}
@@ -366,11 +328,8 @@ fn no_axis_passes_its_largest_feed_between_the_words() {
         for range in &report.axes {
             let place = bench.place(&range.name);
             let axis = &bench.machine.axes[place];
-            let (low, high, all) = (
-                axis.reading(least[place]),
-                axis.reading(most[place]),
-                way[place] / axis.unit(),
-            );
+            let (low, high, all) =
+                (axis.reading(least[place]), axis.reading(most[place]), way[place] / axis.unit());
             // The first position is no block, and samples miss what lies between them.
             let slack = 2e-3 + 1e-4 * all;
             assert!(

@@ -39,26 +39,12 @@ impl Turned {
         let (angle, wider) = if rise == 0.0 {
             let angle = libm::atan2(normal.dot(&arm.cross(&last)), arm.dot(&last));
             let whole = std::f64::consts::TAU.copysign(arc.turn);
-            let angle = if angle * whole > 0.0 {
-                angle
-            } else {
-                angle + whole
-            };
+            let angle = if angle * whole > 0.0 { angle } else { angle + whole };
             (angle, last.norm() - arm.norm())
         } else {
-            (
-                (arc.turn * 1e5).round() * 1e-5 * std::f64::consts::PI / 180.0,
-                0.0,
-            )
+            ((arc.turn * 1e5).round() * 1e-5 * std::f64::consts::PI / 180.0, 0.0)
         };
-        Self {
-            centre: stands - arm,
-            normal,
-            arm,
-            angle,
-            wider,
-            rise,
-        }
+        Self { centre: stands - arm, normal, arm, angle, wider, rise }
     }
 
     fn at(&self, t: f64) -> V {
@@ -84,13 +70,8 @@ fn told_by_their_turn_they_are_as_near_as_certified() {
         let bench = Bench::new(&text, decimals, LENGTH);
         let helix = wanted(&mut rng, &bench, tcp);
         let middle = helix.normal * helix.normal.dot(&(helix.end - helix.centre)) + helix.centre;
-        let circle = Wanted {
-            centre: middle,
-            start: helix.end,
-            turns: 1,
-            ..helix.clone()
-        }
-        .written();
+        let circle =
+            Wanted { centre: middle, start: helix.end, turns: 1, ..helix.clone() }.written();
         let away = circle.end + (circle.end - middle) * 0.3;
         let round_it = circle.cl();
         let (_, round_it) = round_it.split_once("CIRCLE/").unwrap();
@@ -155,9 +136,8 @@ fn off(place: V, helix: &Wanted, circle: &Wanted, away: V) -> f64 {
     let along = |arc: &Wanted| {
         let looks = 64 * arc.turns;
         let shares = (0..=looks).map(|look| f64::from(look) / f64::from(looks));
-        let mut near: Vec<(f64, f64)> = shares
-            .map(|share| ((arc.at(share) - place).norm(), share))
-            .collect();
+        let mut near: Vec<(f64, f64)> =
+            shares.map(|share| ((arc.at(share) - place).norm(), share)).collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0));
         // A place of the next turn may be nearer than those looked at on its own.
         let nearest = near.iter().take(6);
@@ -170,8 +150,5 @@ fn off(place: V, helix: &Wanted, circle: &Wanted, away: V) -> f64 {
         (from + way * share - place).norm()
     };
     let down = line(helix.start + helix.axis * 10.0, helix.start);
-    along(helix)
-        .min(along(circle))
-        .min(line(circle.end, away))
-        .min(down)
+    along(helix).min(along(circle)).min(line(circle.end, away)).min(down)
 }

@@ -45,10 +45,7 @@ pub(crate) fn machine(chain: &str, axes: &str, control: &str) -> Machine {
         "name = \"test\"\nchain = \"{chain}\"\n[workpiece]\nmount = [3, 5, 60]\n[tool]\ngauge = [0, 0, 400]\naxis = [0, 0, 1]\n\
          [control]\ndialect = \"none\"\n{control}\n{axes}{LINEAR}"
     );
-    let source = Source {
-        name: "machine.toml".to_owned(),
-        text,
-    };
+    let source = Source { name: "machine.toml".to_owned(), text };
     load(source, &[], &mut |_| Err(String::new())).unwrap_or_else(|faults| panic!("{faults:#?}"))
 }
 
@@ -212,10 +209,7 @@ fn swept(acts: &[Act]) -> Vec<Swept> {
                     dwell: 0.0,
                 });
             }
-            if let Some(Swept::Hole {
-                air, bottom, end, ..
-            }) = swept.last_mut()
-            {
+            if let Some(Swept::Hole { air, bottom, end, .. }) = swept.last_mut() {
                 match rapid {
                     true if to[2] < cut => *air = air.min(to[2]),
                     true => {}
@@ -241,20 +235,8 @@ fn alike(one: &[Swept], other: &[Swept]) -> bool {
                 rapid == fast && (0..3).all(|place| near(to[place], b[place]))
             }
             (
-                Swept::Hole {
-                    at,
-                    air,
-                    bottom,
-                    end,
-                    dwell,
-                },
-                Swept::Hole {
-                    at: b,
-                    air: c,
-                    bottom: d,
-                    end: e,
-                    dwell: f,
-                },
+                Swept::Hole { at, air, bottom, end, dwell },
+                Swept::Hole { at: b, air: c, bottom: d, end: e, dwell: f },
             ) => {
                 near(at[0], b[0])
                     && near(at[1], b[1])
@@ -284,10 +266,7 @@ fn job(rng: &mut Rng, tilt: f64) -> String {
             0 => String::new(),
             _ => format!(",RTRCTO,{:.3}", clearance + rng.range(0.0, 20.0)),
         };
-        let kind = pick(
-            rng,
-            &["DRILL", "DEEP", "BRKCHP", "REAM", "BORE", "FACE", "CSINK"],
-        );
+        let kind = pick(rng, &["DRILL", "DEEP", "BRKCHP", "REAM", "BORE", "FACE", "CSINK"]);
         // No control waits at the bottom of a hole in pecks.
         let dwell = match kind {
             "DEEP" | "BRKCHP" => "",
@@ -337,16 +316,9 @@ fn a_cycle_of_the_control_sweeps_what_the_moves_sweep() {
         assert!(alike(&moved, &drilled), "{cl}\n{moved:#?}\n{drilled:#?}");
         let [slow, fast] = [&moves, &native].map(|run| run.report.as_ref().unwrap().time_s);
         assert!((slow - fast).abs() < 1e-6, "{slow} {fast}");
-        let points = native
-            .asked
-            .iter()
-            .filter(|asked| asked.kind == "CyclePoint");
+        let points = native.asked.iter().filter(|asked| asked.kind == "CyclePoint");
         assert_eq!(points.count(), 12, "{cl}\n{:#?}", native.asked);
-        cycles += native
-            .asked
-            .iter()
-            .filter(|asked| asked.kind == "Cycle")
-            .count();
+        cycles += native.asked.iter().filter(|asked| asked.kind == "Cycle").count();
         before += moves.motions().len();
         after += native.motions().len();
     }
@@ -382,45 +354,15 @@ max_feed = 9000
     let without_tcp = CYCLES.and(Capabilities::CYCLE_ANY_AXIS);
     for (name, machine, capabilities, cl, native) in [
         ("a mill", mill(), CYCLES, HOLE, true),
-        (
-            "drilling alone unknown",
-            mill(),
-            Capabilities::CYCLE_DEEP,
-            HOLE,
-            false,
-        ),
+        ("drilling alone unknown", mill(), Capabilities::CYCLE_DEEP, HOLE, false),
         ("a tilted table", trunnion("post"), CYCLES, &tilted, true),
-        (
-            "a tilted tool under TCP",
-            trunnion("control"),
-            CYCLES,
-            &tilted,
-            false,
-        ),
-        (
-            "the same, the control can",
-            trunnion("control"),
-            without_tcp,
-            &tilted,
-            true,
-        ),
+        ("a tilted tool under TCP", trunnion("control"), CYCLES, &tilted, false),
+        ("the same, the control can", trunnion("control"), without_tcp, &tilted, true),
         ("TCP", trunnion("control"), CYCLES, HOLE, true),
-        (
-            "TCP without cycles",
-            trunnion("control"),
-            Capabilities::CYCLE_DRILL,
-            HOLE,
-            false,
-        ),
+        ("TCP without cycles", trunnion("control"), Capabilities::CYCLE_DRILL, HOLE, false),
         ("an upright head", head(), CYCLES, HOLE, true),
         ("a head that leans", head(), without_tcp, &tilted, false),
-        (
-            "moves wanted",
-            machine("[w b Y X Z t]", "", "cycles = \"moves\""),
-            CYCLES,
-            HOLE,
-            false,
-        ),
+        ("moves wanted", machine("[w b Y X Z t]", "", "cycles = \"moves\""), CYCLES, HOLE, false),
     ] {
         let run = run(&machine, capabilities, cl).good(name);
         let kinds = kinds(&run);
@@ -434,140 +376,26 @@ max_feed = 9000
 #[test]
 fn the_kinds_of_the_cl_file_are_those_of_the_control() {
     for (text, kind, step, dwell, depth) in [
-        (
-            "DRILL,FEDTO,-10,RAPTO,2,MMPM,50",
-            Cycle::Drill,
-            None,
-            None,
-            10.0,
-        ),
-        (
-            "DRILL,FEDTO,-10,RAPTO,2,MMPM,50,DWELL,1",
-            Cycle::Drill,
-            None,
-            Some(1.0),
-            10.0,
-        ),
-        (
-            "FACE,FEDTO,-10,RAPTO,2,MMPM,50,DWELL,1",
-            Cycle::Drill,
-            None,
-            Some(1.0),
-            10.0,
-        ),
-        (
-            "DEEP,DEPTH,10,STEP,3,MMPM,50,CLEAR,1",
-            Cycle::Deep,
-            Some(3.0),
-            None,
-            10.0,
-        ),
-        (
-            "DEEP,DEPTH,10,STEP,30,MMPM,50,CLEAR,1",
-            Cycle::Drill,
-            None,
-            None,
-            10.0,
-        ),
-        (
-            "BRKCHP,DEPTH,10,STEP,3,MMPM,50,CLEAR,1",
-            Cycle::BreakChip,
-            Some(3.0),
-            None,
-            10.0,
-        ),
-        (
-            "CHIP,DEPTH,10,STEP,3,MMPM,50,CLEAR,1",
-            Cycle::BreakChip,
-            Some(3.0),
-            None,
-            10.0,
-        ),
-        (
-            "REAM,DEPTH,10,MMPM,50,CLEAR,1",
-            Cycle::Ream,
-            None,
-            None,
-            10.0,
-        ),
-        (
-            "BORE,DEPTH,10,MMPM,50,CLEAR,1",
-            Cycle::Ream,
-            None,
-            None,
-            10.0,
-        ),
-        (
-            "BORE,DRAG,DEPTH,10,MMPM,50,CLEAR,1",
-            Cycle::Bore,
-            None,
-            None,
-            10.0,
-        ),
-        (
-            "BORE,NODRAG,0.2,DEPTH,10,MMPM,50,CLEAR,1",
-            Cycle::BoreFine,
-            Some(0.2),
-            None,
-            10.0,
-        ),
-        (
-            "TAP,DEPTH,10,PITCH,1.5,CLEAR,3",
-            Cycle::Tap,
-            None,
-            None,
-            10.0,
-        ),
-        (
-            "TAP,DEPTH,10,MMPR,1.5,CLEAR,3",
-            Cycle::Tap,
-            None,
-            None,
-            10.0,
-        ),
-        (
-            "TAP,DEPTH,10,MMPM,750,CLEAR,3",
-            Cycle::Tap,
-            None,
-            None,
-            10.0,
-        ),
-        (
-            "CSINK,DIAMET,8,ANGLE,90,MMPM,50,CLEAR,1",
-            Cycle::Drill,
-            None,
-            None,
-            4.0,
-        ),
-        (
-            "CSINK,DEPTH,3,MMPM,50,CLEAR,1",
-            Cycle::Drill,
-            None,
-            None,
-            3.0,
-        ),
-        (
-            "THRU,DEPTH,10,MMPM,50,CLEAR,1",
-            Cycle::Drill,
-            None,
-            None,
-            10.0,
-        ),
-        (
-            "DRILL,DEPTH,10,THRU,2,MMPM,50,CLEAR,1",
-            Cycle::Drill,
-            None,
-            None,
-            12.0,
-        ),
+        ("DRILL,FEDTO,-10,RAPTO,2,MMPM,50", Cycle::Drill, None, None, 10.0),
+        ("DRILL,FEDTO,-10,RAPTO,2,MMPM,50,DWELL,1", Cycle::Drill, None, Some(1.0), 10.0),
+        ("FACE,FEDTO,-10,RAPTO,2,MMPM,50,DWELL,1", Cycle::Drill, None, Some(1.0), 10.0),
+        ("DEEP,DEPTH,10,STEP,3,MMPM,50,CLEAR,1", Cycle::Deep, Some(3.0), None, 10.0),
+        ("DEEP,DEPTH,10,STEP,30,MMPM,50,CLEAR,1", Cycle::Drill, None, None, 10.0),
+        ("BRKCHP,DEPTH,10,STEP,3,MMPM,50,CLEAR,1", Cycle::BreakChip, Some(3.0), None, 10.0),
+        ("CHIP,DEPTH,10,STEP,3,MMPM,50,CLEAR,1", Cycle::BreakChip, Some(3.0), None, 10.0),
+        ("REAM,DEPTH,10,MMPM,50,CLEAR,1", Cycle::Ream, None, None, 10.0),
+        ("BORE,DEPTH,10,MMPM,50,CLEAR,1", Cycle::Ream, None, None, 10.0),
+        ("BORE,DRAG,DEPTH,10,MMPM,50,CLEAR,1", Cycle::Bore, None, None, 10.0),
+        ("BORE,NODRAG,0.2,DEPTH,10,MMPM,50,CLEAR,1", Cycle::BoreFine, Some(0.2), None, 10.0),
+        ("TAP,DEPTH,10,PITCH,1.5,CLEAR,3", Cycle::Tap, None, None, 10.0),
+        ("TAP,DEPTH,10,MMPR,1.5,CLEAR,3", Cycle::Tap, None, None, 10.0),
+        ("TAP,DEPTH,10,MMPM,750,CLEAR,3", Cycle::Tap, None, None, 10.0),
+        ("CSINK,DIAMET,8,ANGLE,90,MMPM,50,CLEAR,1", Cycle::Drill, None, None, 4.0),
+        ("CSINK,DEPTH,3,MMPM,50,CLEAR,1", Cycle::Drill, None, None, 3.0),
+        ("THRU,DEPTH,10,MMPM,50,CLEAR,1", Cycle::Drill, None, None, 10.0),
+        ("DRILL,DEPTH,10,THRU,2,MMPM,50,CLEAR,1", Cycle::Drill, None, None, 12.0),
         // The CAMWorks files of the field: the first peck reaches the bottom.
-        (
-            "DRILL,G98,4,PECKING,5,2,MMPM,50,3,25",
-            Cycle::Drill,
-            None,
-            None,
-            4.0,
-        ),
+        ("DRILL,G98,4,PECKING,5,2,MMPM,50,3,25", Cycle::Drill, None, None, 4.0),
     ] {
         let cl = format!("UNITS/MM\nRAPID\nGOTO/0,0,100\nCYCLE/{text}\nGOTO/1,2,0\nCYCLE/OFF\n");
         let run = run(&mill(), CYCLES, &cl).good(text);
@@ -581,11 +409,7 @@ fn the_kinds_of_the_cl_file_are_those_of_the_control() {
             "{text}"
         );
         if kind == Cycle::Tap {
-            assert_eq!(
-                (told.pitch, told.feed),
-                (Some(1.5), Feed::PerMinute(750.0)),
-                "{text}"
-            );
+            assert_eq!((told.pitch, told.feed), (Some(1.5), Feed::PerMinute(750.0)), "{text}");
         }
     }
 }
@@ -606,52 +430,25 @@ fn a_thread_is_cut_by_a_cycle_that_fits_it_or_not_at_all() {
     };
     const RIGHT: &str = "SPINDL/RPM,500,CLW";
     const LEFT: &str = "SPINDL/RPM,500,CCLW";
-    assert_eq!(
-        tap(RIGHT, ",PITCH,1.5", CYCLES),
-        Ok(Some((Cycle::Tap, Some(1.5))))
-    );
-    assert_eq!(
-        tap(RIGHT, ",TPI,20", CYCLES),
-        Ok(Some((Cycle::Tap, Some(1.27))))
-    );
-    assert_eq!(
-        tap(LEFT, ",PITCH,1.5", CYCLES),
-        Ok(Some((Cycle::TapLeft, Some(1.5))))
-    );
-    assert_eq!(
-        tap(LEFT, ",PITCH,-1.5", CYCLES),
-        Ok(Some((Cycle::TapLeft, Some(1.5))))
-    );
-    assert_eq!(
-        tap(RIGHT, ",MMPM,600", CYCLES),
-        Ok(Some((Cycle::Tap, Some(1.2))))
-    );
+    assert_eq!(tap(RIGHT, ",PITCH,1.5", CYCLES), Ok(Some((Cycle::Tap, Some(1.5)))));
+    assert_eq!(tap(RIGHT, ",TPI,20", CYCLES), Ok(Some((Cycle::Tap, Some(1.27)))));
+    assert_eq!(tap(LEFT, ",PITCH,1.5", CYCLES), Ok(Some((Cycle::TapLeft, Some(1.5)))));
+    assert_eq!(tap(LEFT, ",PITCH,-1.5", CYCLES), Ok(Some((Cycle::TapLeft, Some(1.5)))));
+    assert_eq!(tap(RIGHT, ",MMPM,600", CYCLES), Ok(Some((Cycle::Tap, Some(1.2)))));
     for (spindle, words, capabilities, why) in [
         (RIGHT, ",PITCH,-1.5", CYCLES, "left-hand"),
         (RIGHT, ",PITCH,1.5,MMPM,600", CYCLES, "needs a feed of 750"),
         (RIGHT, ",PITCH,1.5,STEP,2", CYCLES, "pecks"),
         (RIGHT, ",PITCH,100", CYCLES, "max_feed"),
-        (
-            RIGHT,
-            ",PITCH,1.5",
-            Capabilities::CYCLE_DRILL,
-            "moves cannot",
-        ),
+        (RIGHT, ",PITCH,1.5", Capabilities::CYCLE_DRILL, "moves cannot"),
     ] {
         let refused = tap(spindle, words, capabilities);
-        assert!(
-            refused.as_ref().is_err_and(|told| told.contains(why)),
-            "{words}: {refused:?}"
-        );
+        assert!(refused.as_ref().is_err_and(|told| told.contains(why)), "{words}: {refused:?}");
     }
     // With a tilted tool under tool centre point control no thread can be cut.
     let cl = "UNITS/MM\nMULTAX/ON\nRAPID\nGOTO/0,0,100,0,0.6,0.8\nCYCLE/TAP,DEPTH,10,CLEAR,3,PITCH,1.5\nGOTO/1,2,0\n";
     let refused = run(&trunnion("control"), CYCLES, cl);
-    assert!(
-        refused.told().contains("must be the control's own"),
-        "{}",
-        refused.told()
-    );
+    assert!(refused.told().contains("must be the control's own"), "{}", refused.told());
 }
 
 /// Blocks of the real files with holes, as moves and as cycles.
@@ -675,13 +472,7 @@ fn real_files_need_fewer_blocks_with_cycles() {
         machine.control.compensation_on_centre = CompensationOnCentre::Wear;
         let moves = run_file(&machine, Capabilities::NONE, &cl, no_tools).good(file);
         let native = run_file(&machine, CYCLES, &cl, no_tools).good(file);
-        let count = |kind| {
-            native
-                .asked
-                .iter()
-                .filter(|asked| asked.kind == kind)
-                .count()
-        };
+        let count = |kind| native.asked.iter().filter(|asked| asked.kind == kind).count();
         println!(
             "{file}: {} blocks as moves, {} with {} cycles at {} points",
             moves.motions().len(),

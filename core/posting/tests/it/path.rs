@@ -66,11 +66,8 @@ fn model(kind: &str, tcp: bool, tilt: [f64; 2], settings: &[&str]) -> Model {
         direction: Vector3::from(direction).normalize(),
         point: Vector3::from(point),
     };
-    let slide = |direction: Vector3<f64>| Joint {
-        rotary: false,
-        direction,
-        point: Vector3::zeros(),
-    };
+    let slide =
+        |direction: Vector3<f64>| Joint { rotary: false, direction, point: Vector3::zeros() };
     let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()].map(slide);
     // Chain, the two rotary axes, gauge, tool length; then the same for the reference.
     let (chain, second, direction, point, gauge, length, joints, order): (
@@ -157,29 +154,16 @@ tcp = "{}"
 {LINEAR}"#,
         if tcp { "control" } else { "post" }
     );
-    let settings: Vec<Setting> = settings
-        .iter()
-        .map(|&setting| Setting::Written(setting.to_owned()))
-        .collect();
-    let machine = load(
-        Source {
-            name: kind.to_owned(),
-            text,
-        },
-        &settings,
-        &mut |_| Err(String::new()),
-    )
-    .unwrap_or_else(|faults| panic!("{faults:#?}"));
+    let settings: Vec<Setting> =
+        settings.iter().map(|&setting| Setting::Written(setting.to_owned())).collect();
+    let machine =
+        load(Source { name: kind.to_owned(), text }, &settings, &mut |_| Err(String::new()))
+            .unwrap_or_else(|faults| panic!("{faults:#?}"));
     let tip = Vector3::new(0.0, 0.0, gauge - length);
     let mount = Vector3::from(MOUNT);
     Model {
         machine,
-        reference: Reference {
-            joints,
-            mount,
-            tip,
-            axis: Vector3::z(),
-        },
+        reference: Reference { joints, mount, tip, axis: Vector3::z() },
         order: order.to_vec(),
         zero: mount - tip,
         tcp,
@@ -189,14 +173,7 @@ tcp = "{}"
 
 impl Model {
     fn run(&self, cl: &str) -> Run {
-        run(
-            &self.machine,
-            cl,
-            Job {
-                tool_length: Some(self.length),
-                ..Job::default()
-            },
-        )
+        run(&self.machine, cl, Job { tool_length: Some(self.length), ..Job::default() })
     }
 
     /// The place of an axis in the chain, by the order of the words.
@@ -278,9 +255,5 @@ fn words(model: &Model, cl: &str) -> Vec<Vec<f64>> {
 }
 
 fn near(words: &[f64], expected: &[f64]) -> bool {
-    words.len() == expected.len()
-        && words
-            .iter()
-            .zip(expected)
-            .all(|(a, b)| (a - b).abs() < 5.1e-4)
+    words.len() == expected.len() && words.iter().zip(expected).all(|(a, b)| (a - b).abs() < 5.1e-4)
 }

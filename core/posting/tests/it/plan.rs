@@ -41,19 +41,8 @@ fn machine(tcp: &str, more: &str) -> String {
 }
 
 fn run(bench: &Bench, text: &str, plans: bool) -> Run {
-    let job = Job {
-        tool_length: Some(LENGTH),
-        plans,
-        ..Job::default()
-    };
-    post(
-        &bench.machine,
-        3,
-        text,
-        job,
-        &mut post_testruns::posted::Samples,
-    )
-    .good(text)
+    let job = Job { tool_length: Some(LENGTH), plans, ..Job::default() };
+    post(&bench.machine, 3, text, job, &mut post_testruns::posted::Samples).good(text)
 }
 
 fn feed(asked: &Asked) -> f64 {
@@ -65,10 +54,7 @@ fn feed(asked: &Asked) -> f64 {
 
 /// Cuts of a program: all but its first position.
 fn cuts(run: &Run) -> Vec<&Asked> {
-    run.motions()
-        .into_iter()
-        .filter(|asked| asked.kind == "Linear")
-        .collect()
+    run.motions().into_iter().filter(|asked| asked.kind == "Linear").collect()
 }
 
 /// A circle of this radius, its chords so long, an upright tool.
@@ -100,10 +86,7 @@ fn a_circle_is_as_fast_as_its_acceleration_allows() {
         let wanted = 60.0 * (500.0 * radius).sqrt();
         let feeds = middle(&found);
         let mean = feeds.iter().sum::<f64>() / feeds.len() as f64;
-        assert!(
-            (mean / wanted - 1.0).abs() < 0.08,
-            "R {radius}: {mean} for {wanted}"
-        );
+        assert!((mean / wanted - 1.0).abs() < 0.08, "R {radius}: {mean} for {wanted}");
         let most = feeds.iter().fold(0.0, |most: f64, feed| most.max(*feed));
         // Where both axes share it the tool may go faster, by the fourth root of two.
         assert!(most < 1.19 * wanted, "R {radius}: {most} for {wanted}");
@@ -126,10 +109,7 @@ fn the_chord_error_of_a_period_limits_a_circle() {
 #[test]
 fn a_line_is_gone_from_rest_to_rest_in_steps() {
     let bench = Bench::new(&machine("post", ""), 3, LENGTH);
-    let points = [
-        point(V::zeros(), V::z(), true),
-        point(V::new(100.0, 0.0, 0.0), V::z(), false),
-    ];
+    let points = [point(V::zeros(), V::z(), true), point(V::new(100.0, 0.0, 0.0), V::z(), false)];
     let found = run(&bench, &cl(&points, 6000.0), true);
     let cuts = cuts(&found);
     assert!(cuts.len() > 8, "{}", cuts.len());
@@ -139,17 +119,10 @@ fn a_line_is_gone_from_rest_to_rest_in_steps() {
     let mut seconds = 0.0;
     for (index, cut) in cuts.iter().enumerate() {
         let to = cut.words[0];
-        let [slow, fast] = [
-            planned(from).min(planned(to)),
-            planned(from).max(planned(to)),
-        ];
+        let [slow, fast] = [planned(from).min(planned(to)), planned(from).max(planned(to))];
         let at_rest = index == 0 || index + 1 == cuts.len();
         let most = if at_rest { fast } else { slow };
-        assert!(
-            feed(cut) <= most * 1.02,
-            "{from} to {to}: {} over {most}",
-            feed(cut)
-        );
+        assert!(feed(cut) <= most * 1.02, "{from} to {to}: {} over {most}", feed(cut));
         seconds += 60.0 * (to - from) / feed(cut);
         from = to;
     }
@@ -163,12 +136,7 @@ fn path(rng: &mut Rng) -> String {
     let mut points = Vec::new();
     let (mut tip, mut heading, mut lean) = (rng.point(30.0), rng.direction(), 0.2);
     for index in 0..60 {
-        points.push((
-            tip,
-            lean,
-            0.02 * f64::from(index),
-            index == 0 || rng.pick(25) == 0,
-        ));
+        points.push((tip, lean, 0.02 * f64::from(index), index == 0 || rng.pick(25) == 0));
         if rng.pick(8) == 0 {
             heading = rng.direction();
         }
@@ -181,11 +149,7 @@ fn path(rng: &mut Rng) -> String {
         .into_iter()
         .map(|(tip, lean, turn, rapid)| {
             let (sine, cosine) = libm::sincos(turn);
-            let axis = V::new(
-                libm::sin(lean) * cosine,
-                libm::sin(lean) * sine,
-                libm::cos(lean),
-            );
+            let axis = V::new(libm::sin(lean) * cosine, libm::sin(lean) * sine, libm::cos(lean));
             point(tip, axis, rapid)
         })
         .collect();
@@ -204,10 +168,7 @@ fn a_plan_leaves_the_path_as_it_is_and_makes_no_block_faster() {
         let planned = run(&bench, &text, true);
         let report = planned.report.as_ref().unwrap();
         let plan = report.plan.as_ref().unwrap();
-        assert!(
-            report.tip_deviation_mm.value <= bench.machine.accuracy.tolerance,
-            "{text}"
-        );
+        assert!(report.tip_deviation_mm.value <= bench.machine.accuracy.tolerance, "{text}");
         assert_eq!(plan.blocks_unplanned, 0, "{}\n{text}", planned.told());
         pieces += plan.blocks_added;
         // Each CL point is come to by the same words as without a plan, blocks in between are on the way.
@@ -215,12 +176,9 @@ fn a_plan_leaves_the_path_as_it_is_and_makes_no_block_faster() {
         let last = |run: &Run| -> Vec<(u64, Vec<f64>)> {
             let motions = run.motions();
             let ends = motions.iter().enumerate().filter(|(index, asked)| {
-                motions
-                    .get(index + 1)
-                    .is_none_or(|next| next.line != asked.line)
+                motions.get(index + 1).is_none_or(|next| next.line != asked.line)
             });
-            ends.map(|(_, asked)| (asked.line, asked.words.clone()))
-                .collect()
+            ends.map(|(_, asked)| (asked.line, asked.words.clone())).collect()
         };
         let [with, without] = [last(&planned), last(&plain)];
         assert_eq!(with, without, "{text}");
@@ -269,24 +227,12 @@ fn points_a_micron_apart_keep_their_feed() {
         .collect();
     let text = cl(&points, 1200.0);
     let found = run(&bench, &text, true);
-    let plan = found
-        .report
-        .as_ref()
-        .unwrap()
-        .plan
-        .as_ref()
-        .unwrap()
-        .clone();
-    let slowest = cuts(&found)
-        .iter()
-        .map(|asked| feed(asked))
-        .fold(f64::INFINITY, f64::min);
+    let plan = found.report.as_ref().unwrap().plan.as_ref().unwrap().clone();
+    let slowest = cuts(&found).iter().map(|asked| feed(asked)).fold(f64::INFINITY, f64::min);
     println!("{plan:?}, slowest F{slowest}");
     assert!(slowest > 0.5, "F{slowest}");
     assert!(plan.planned_s < 3600.0, "{} s", plan.planned_s);
-    let told = found
-        .findings
-        .iter()
-        .any(|finding| finding.message.contains("slower than standing still"));
+    let told =
+        found.findings.iter().any(|finding| finding.message.contains("slower than standing still"));
     assert_eq!(told, plan.blocks_too_slow > 0);
 }

@@ -35,10 +35,7 @@ fn machines(tcp: &str) -> [(&'static str, Machine); 3] {
 
 fn job() -> Job {
     Job {
-        reading: Reading {
-            spindle: ToldSpindle::On(500.0),
-            ..Reading::default()
-        },
+        reading: Reading { spindle: ToldSpindle::On(500.0), ..Reading::default() },
         tool_length: Some(150.0),
         ..Job::default()
     }
@@ -55,10 +52,8 @@ struct Sides {
 }
 
 fn sides(rng: &mut Rng, axes: &[Vector3<f64>]) -> Sides {
-    let mut sides = Sides {
-        cl: "UNITS/MM\nMULTAX/ON\nFEDRAT/500,MMPM\n".to_owned(),
-        points: Vec::new(),
-    };
+    let mut sides =
+        Sides { cl: "UNITS/MM\nMULTAX/ON\nFEDRAT/500,MMPM\n".to_owned(), points: Vec::new() };
     for (tool, axis) in axes.iter().enumerate() {
         sides.cl += &format!("LOADTL/{}\n", tool + 1);
         let base = Vector3::from_fn(|_, _| rng.range(-40.0, 40.0)) + axis * 20.0;
@@ -185,17 +180,9 @@ fn a_plane_begins_and_ends_with_the_tool_clear_of_the_part() {
         let run = framed(&machine, recorder, &side.cl, job(), &mut Samples, &mut []).good(name);
         let kinds: Vec<_> = run.asked.iter().map(|asked| asked.kind).collect();
         // It returns to 0 for the tool change.
-        let park = if name == "table" {
-            &[][..]
-        } else {
-            &["Park"][..]
-        };
+        let park = if name == "table" { &[][..] } else { &["Park"][..] };
         // Under a head that leans it comes to a place on the line of the tool first, the plane's Z, and leaves along it.
-        let along = if name == "table" {
-            &[][..]
-        } else {
-            &["Rapid"][..]
-        };
+        let along = if name == "table" { &[][..] } else { &["Rapid"][..] };
         let expected = [
             &["Start", "Retract"][..],
             park,
@@ -207,10 +194,7 @@ fn a_plane_begins_and_ends_with_the_tool_clear_of_the_part() {
             &["Retract", "PlaneOff", "Spindle", "End"],
         ]
         .concat();
-        let kinds: Vec<_> = kinds
-            .into_iter()
-            .filter(|kind| *kind != "Comment")
-            .collect();
+        let kinds: Vec<_> = kinds.into_iter().filter(|kind| *kind != "Comment").collect();
         assert_eq!(kinds, expected, "{name}");
         if name == "table" {
             continue;
@@ -241,11 +225,7 @@ fn planes_are_told_where_they_are_wanted_and_possible() {
         ("upright", &table, can(&table), &upright, 0),
     ] {
         let run = run(machine, recorder, cl).good(name);
-        let told = run
-            .asked
-            .iter()
-            .filter(|asked| asked.kind == "Plane")
-            .count();
+        let told = run.asked.iter().filter(|asked| asked.kind == "Plane").count();
         assert_eq!(told, planes, "{name}");
     }
 }
@@ -264,21 +244,14 @@ fn holes_in_a_plane_are_cycles_along_its_normal() {
                     recorder.capabilities |= Capabilities::CYCLE_IN_PLANE;
                 }
                 let run = run(&machine, recorder, HOLES).good(name);
-                let points: Vec<_> = run
-                    .asked
-                    .iter()
-                    .filter(|asked| asked.kind == "CyclePoint")
-                    .collect();
+                let points: Vec<_> =
+                    run.asked.iter().filter(|asked| asked.kind == "CyclePoint").collect();
                 assert_eq!(points.len(), if in_plane { 2 } else { 0 }, "{name} {tcp}");
                 let Some(cycle) = run.asked.iter().find_map(|asked| asked.cycle) else {
                     continue;
                 };
                 assert!((cycle.depth - 10.0).abs() < 0.0011, "{cycle:?}");
-                let plane = run
-                    .asked
-                    .iter()
-                    .find_map(|asked| asked.plane.clone())
-                    .unwrap();
+                let plane = run.asked.iter().find_map(|asked| asked.plane.clone()).unwrap();
                 let told = frame(PlaneAngles::Zxz, &plane);
                 for (point, tip) in points.iter().zip([[1.0, 8.0, 6.0], [9.0, 8.0, 6.0]]) {
                     let words = Vector3::new(point.words[0], point.words[1], point.words[2]);
@@ -304,16 +277,11 @@ fn arcs_in_a_plane_are_laid_in_its_x_and_y() {
                     recorder.capabilities |= Capabilities::CYCLE_IN_PLANE;
                 }
                 let run = run(&machine, recorder, ARC).good(name);
-                let arcs: Vec<_> = run
-                    .asked
-                    .iter()
-                    .filter(|asked| asked.arc.is_some())
-                    .collect();
+                let arcs: Vec<_> = run.asked.iter().filter(|asked| asked.arc.is_some()).collect();
                 assert_eq!(arcs.len(), usize::from(in_plane), "{name} {tcp}");
-                let (Some(asked), Some(plane)) = (
-                    arcs.first(),
-                    run.asked.iter().find_map(|asked| asked.plane.clone()),
-                ) else {
+                let (Some(asked), Some(plane)) =
+                    (arcs.first(), run.asked.iter().find_map(|asked| asked.plane.clone()))
+                else {
                     continue;
                 };
                 let arc = asked.arc.unwrap();
@@ -337,11 +305,7 @@ fn constant_coordinates_of_a_plane_do_not_jitter() {
     let mut jitters = 0;
     for (name, machine) in machines("control") {
         let lean = Rotation3::from_euler_angles(0.3, 0.5, 0.2);
-        let (x, y, z) = (
-            lean * Vector3::x(),
-            lean * Vector3::y(),
-            lean * Vector3::z(),
-        );
+        let (x, y, z) = (lean * Vector3::x(), lean * Vector3::y(), lean * Vector3::z());
         let mut cl = "UNITS/MM\nMULTAX/ON\nLOADTL/1\nFEDRAT/500,MMPM\n".to_owned();
         let mut heights = Vec::new();
         for level in 0..40 {
@@ -358,10 +322,7 @@ fn constant_coordinates_of_a_plane_do_not_jitter() {
         let mut recorder = Recorder::new(&machine, 3);
         recorder.capabilities = Capabilities::PLANE;
         let done = run(&machine, recorder, &cl).good(name);
-        assert!(
-            done.asked.iter().any(|asked| asked.plane.is_some()),
-            "{name}"
-        );
+        assert!(done.asked.iter().any(|asked| asked.plane.is_some()), "{name}");
         let words: Vec<(i32, f64)> = done
             .motions()
             .iter()
@@ -375,11 +336,7 @@ fn constant_coordinates_of_a_plane_do_not_jitter() {
             .filter(|pair| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1)
             .count();
         let report = done.report.as_ref().unwrap();
-        assert!(
-            report.tip_deviation_mm.value < 0.0011,
-            "{name} {:?}",
-            report.tip_deviation_mm
-        );
+        assert!(report.tip_deviation_mm.value < 0.0011, "{name} {:?}", report.tip_deviation_mm);
     }
     assert_eq!(jitters, 0);
 }

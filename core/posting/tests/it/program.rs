@@ -32,11 +32,7 @@ impl Run {
             ToldSpindle::Unknown => ToldSpindle::Still,
             told => told,
         };
-        let reading = Reading {
-            chord_tolerance: 0.01,
-            spindle,
-            ..reading
-        };
+        let reading = Reading { chord_tolerance: 0.01, spindle, ..reading };
         let text = text.replace(';', "\n");
         let mut reader = Reader::new(text.as_bytes());
         let mut interpreter = Interpreter::new(reading.clone());
@@ -69,10 +65,7 @@ impl Run {
             .filter(|step| {
                 !matches!(
                     step,
-                    Flow::Command {
-                        command: Command::Index { .. } | Command::OperationEnd,
-                        ..
-                    }
+                    Flow::Command { command: Command::Index { .. } | Command::OperationEnd, .. }
                 )
             })
             .map(step)
@@ -90,10 +83,7 @@ impl Run {
     fn has_error(&self, code: &str, text: &str) {
         let named = |found: &&Diagnostic| found.code == code;
         assert!(
-            self.findings
-                .iter()
-                .filter(named)
-                .any(|found| found.severity == Severity::Error),
+            self.findings.iter().filter(named).any(|found| found.severity == Severity::Error),
             "no error {code:?} in {text:?}: {} / {}",
             self.steps(),
             self.findings()

@@ -103,15 +103,7 @@ impl Default for Given<'_> {
 }
 
 fn bench(class: &Class<'_>, given: &Given<'_>) -> Bench {
-    let Class {
-        name,
-        chain,
-        second,
-        direction,
-        point,
-        gauge,
-        length,
-    } = class;
+    let Class { name, chain, second, direction, point, gauge, length } = class;
     let Given {
         tcp,
         c,
@@ -123,11 +115,7 @@ fn bench(class: &Class<'_>, given: &Given<'_>) -> Bench {
         more,
         decimals,
     } = given;
-    let c = if c.is_empty() {
-        "cyclic = true".to_owned()
-    } else {
-        format!("travel = {c}")
-    };
+    let c = if c.is_empty() { "cyclic = true".to_owned() } else { format!("travel = {c}") };
     let [ax, ay, az, tilted, turned] = match accelerations {
         Some(values) => values.map(|value| format!("max_accel = {value}")),
         None => Default::default(),
@@ -189,11 +177,7 @@ fn cost(bench: &Bench, from: &Joints, to: &Joints, linear: bool) -> f64 {
             largest = largest.max(way.to_degrees());
         }
         if machine.solution.rule == Rule::Axis(place) {
-            named = if axis.joint.rotary {
-                way.to_degrees()
-            } else {
-                way
-            };
+            named = if axis.joint.rotary { way.to_degrees() } else { way };
         }
         if axis.joint.rotary || linear {
             time += way / axis.max_feed;
@@ -226,11 +210,7 @@ fn inside(bench: &Bench, joints: &Joints) -> bool {
 
 /// Every way to stand at a point: both branches, on every full turn inside travel.
 fn stands(bench: &Bench, solver: &Solver, target: &Point) -> Vec<Joints> {
-    let pose = Pose {
-        tip: target.tip,
-        axis: target.axis.normalize(),
-        ..Pose::default()
-    };
+    let pose = Pose { tip: target.tip, axis: target.axis.normalize(), ..Pose::default() };
     let Ok(solutions) = solver.inverse(&pose, &Joints::default(), 1e-9) else {
         return Vec::new();
     };
@@ -292,11 +272,7 @@ fn followed(
 fn short(rng: &mut Rng, class: &Class<'_>) -> Vec<Point> {
     let clear = |axis: Vector3<f64>| {
         let tilt = angle(axis, Vector3::z()).to_degrees();
-        let most = if class.name == "nutating head" {
-            80.0
-        } else {
-            150.0
-        };
+        let most = if class.name == "nutating head" { 80.0 } else { 150.0 };
         (12.0..most).contains(&tilt)
     };
     loop {
@@ -315,11 +291,7 @@ fn short(rng: &mut Rng, class: &Class<'_>) -> Vec<Point> {
                 _ => {
                     let axis = rng.direction();
                     // As tools stand mostly.
-                    if rng.pick(3) > 0 {
-                        Vector3::new(axis.x, axis.y, axis.z.abs())
-                    } else {
-                        axis
-                    }
+                    if rng.pick(3) > 0 { Vector3::new(axis.x, axis.y, axis.z.abs()) } else { axis }
                 }
             };
             let way_is_clear = |last: Vector3<f64>| {
@@ -352,10 +324,8 @@ fn left_travel(bench: &Bench, run: &Run) -> (f64, String) {
             if let Some([least, most]) = axis.travel {
                 let over = (least - joints[place]).max(joints[place] - most) / axis.unit();
                 if over > worst.0 + 1e-6 {
-                    worst = (
-                        over,
-                        format!("{} at CL line {}, {}", axis.name, asked.line, asked.kind),
-                    );
+                    worst =
+                        (over, format!("{} at CL line {}, {}", axis.name, asked.line, asked.kind));
                 }
             }
         }
@@ -365,17 +335,11 @@ fn left_travel(bench: &Bench, run: &Run) -> (f64, String) {
 
 /// The sum of all rotary ways over the blocks of a run, degrees.
 fn rotary_way(bench: &Bench, run: &Run) -> f64 {
-    let values: Vec<Joints> = run
-        .motions()
-        .iter()
-        .map(|asked| bench.joints(&asked.words))
-        .collect();
+    let values: Vec<Joints> =
+        run.motions().iter().map(|asked| bench.joints(&asked.words)).collect();
     let ways = values.windows(2).map(|pair| {
         let rotary = bench.rotary();
-        rotary
-            .iter()
-            .map(|place| (pair[1][*place] - pair[0][*place]).abs())
-            .sum::<f64>()
+        rotary.iter().map(|place| (pair[1][*place] - pair[0][*place]).abs()).sum::<f64>()
     });
     ways.sum::<f64>().to_degrees()
 }

@@ -69,11 +69,7 @@ pub(super) fn spindle_record(spindle: Spindle, out: &mut String) {
             let clockwise = matches!(spindle, Spindle::Clockwise(_));
             let _ = writeln!(out, ",{}", side(clockwise));
         }
-        Spindle::Surface {
-            speed,
-            most,
-            clockwise,
-        } => {
+        Spindle::Surface { speed, most, clockwise } => {
             out.push_str("SPINDL/SMM,");
             number::write(out, speed, LENGTH);
             if let Some(most) = most {
@@ -92,9 +88,7 @@ pub(super) fn is_nurbs(way: &SplineWay) -> bool {
     }
     let [first, last] = way.range();
     let clamped = way.knots[..4].iter().all(|knot| *knot == first)
-        && way.knots[way.poles.len()..]
-            .iter()
-            .all(|knot| *knot == last);
+        && way.knots[way.poles.len()..].iter().all(|knot| *knot == last);
     let inner = &way.knots[4..way.poles.len()];
     let rises = inner.windows(3).all(|three| three[0] < three[2])
         && inner.iter().all(|knot| first < *knot && *knot < last);

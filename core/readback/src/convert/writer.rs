@@ -198,9 +198,7 @@ impl ClWriter {
     fn settle(&mut self, tool: Tool, out: &mut String) {
         let waiting = std::mem::take(&mut self.waiting);
         // The last tool that came into the spindle cuts.
-        let change = waiting
-            .iter()
-            .rposition(|(_, told)| matches!(told, Told::ToolChange { .. }));
+        let change = waiting.iter().rposition(|(_, told)| matches!(told, Told::ToolChange { .. }));
         for (place, (_, told)) in waiting.into_iter().enumerate() {
             match told {
                 Told::ToolChange { .. } if Some(place) != change => {}
@@ -317,9 +315,8 @@ impl ClWriter {
         self.open_operation(name.as_deref().filter(|name| !name.is_empty()), out);
         self.end_cycle(out);
         let _ = write!(out, "LOADTL/{number}");
-        if let Some(register) = tool
-            .register
-            .filter(|register| *register != number && *register > 0)
+        if let Some(register) =
+            tool.register.filter(|register| *register != number && *register > 0)
         {
             let _ = write!(out, ",ADJUST,{register}");
         }
@@ -380,11 +377,9 @@ impl ClWriter {
         let stays = (piece.from.axis - piece.to.axis).norm() < SAME_DIRECTION;
         match &piece.curve {
             Curve::Straight => self.point(piece.kind, feed, &piece.to, out),
-            Curve::Arc {
-                centre,
-                normal,
-                sweep,
-            } if stays && self.arc_fits(piece, *centre, *normal) => {
+            Curve::Arc { centre, normal, sweep }
+                if stays && self.arc_fits(piece, *centre, *normal) =>
+            {
                 self.feed(piece.kind, feed, out);
                 self.arc(piece, (*centre, *normal, *sweep), out);
             }
@@ -400,8 +395,7 @@ impl ClWriter {
 
     /// A reader knows that the tool stands here.
     fn at(&self, pose: &Pose) -> bool {
-        self.stands
-            .is_some_and(|stands| (stands.tip - pose.tip).norm() < SAME_POINT)
+        self.stands.is_some_and(|stands| (stands.tip - pose.tip).norm() < SAME_POINT)
     }
 
     /// A `CIRCLE` says this arc: it starts where the tool stands, and both ends are equally far from its axis, or nearly.
@@ -437,10 +431,8 @@ impl ClWriter {
         out.push_str("NURBS\nKNOT/");
         let [first, last] = way.range();
         let inner = way.knots[way.degree + 1..way.poles.len()].iter();
-        let knots: Vec<f64> = inner
-            .map(|knot| (knot - first) / (last - first))
-            .chain([1.0])
-            .collect();
+        let knots: Vec<f64> =
+            inner.map(|knot| (knot - first) / (last - first)).chain([1.0]).collect();
         // A knot has no unit: all of its digits are written.
         for (place, knot) in knots.iter().enumerate() {
             let _ = write!(out, "{}{knot}", if place > 0 { "," } else { "" });
@@ -464,11 +456,9 @@ impl ClWriter {
             let strays = (0..count).any(|place| {
                 let [first, a, b, c, last] =
                     std::array::from_fn(|part| at(4 * place + part as u32, 4 * count).tip);
-                [(a, 0.25), (b, 0.5), (c, 0.75)]
-                    .iter()
-                    .any(|(point, share)| {
-                        (first + (last - first) * *share - point).norm() > self.chord
-                    })
+                [(a, 0.25), (b, 0.5), (c, 0.75)].iter().any(|(point, share)| {
+                    (first + (last - first) * *share - point).norm() > self.chord
+                })
             });
             if !strays {
                 break;
@@ -486,9 +476,8 @@ impl ClWriter {
 
     /// A straight way to a point; nothing if the tool stands there.
     fn point(&mut self, kind: MotionKind, feed: Option<f64>, to: &Pose, out: &mut String) {
-        let turns = self
-            .stands
-            .is_some_and(|stands| (stands.axis - to.axis).norm() >= SAME_DIRECTION);
+        let turns =
+            self.stands.is_some_and(|stands| (stands.axis - to.axis).norm() >= SAME_DIRECTION);
         if self.at(to) && !turns {
             return;
         }
@@ -546,10 +535,7 @@ impl ClWriter {
             out.push_str(&definition);
             self.cycle = Some(definition);
         }
-        let point = Pose {
-            tip: bottom.tip + bottom.axis * depth,
-            ..bottom
-        };
+        let point = Pose { tip: bottom.tip + bottom.axis * depth, ..bottom };
         self.goto(&point, out);
         self.stands = Some(up);
         Ok(())

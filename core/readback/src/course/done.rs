@@ -53,12 +53,7 @@ const RAPID_AXIS: f64 = 10.0 / 180.0 * std::f64::consts::PI;
 impl Chords {
     /// Cuts within `tip` mm and `axis` radians.
     pub fn within(tip: f64, axis: f64) -> Self {
-        Self {
-            tip,
-            axis,
-            rapid: (tip * RAPIDS).max(RAPID),
-            rapid_axis: RAPID_AXIS,
-        }
+        Self { tip, axis, rapid: (tip * RAPIDS).max(RAPID), rapid_axis: RAPID_AXIS }
     }
 }
 
@@ -141,13 +136,7 @@ impl<P: Program> DoneCourse<P> {
 
     fn hand_on(&mut self, item: Item) {
         match (&mut self.hole, &item) {
-            (
-                Some(_),
-                Item::Told {
-                    told: Told::CycleEnd,
-                    ..
-                },
-            ) => {
+            (Some(_), Item::Told { told: Told::CycleEnd, .. }) => {
                 let done = self.hole.take().unwrap_or_default();
                 let done = in_one_go(done);
                 self.waiting.append(&mut self.held);
@@ -157,13 +146,7 @@ impl<P: Program> DoneCourse<P> {
                 hole.push((self.latest.clone(), item));
                 return;
             }
-            (
-                None,
-                Item::Told {
-                    told: Told::Cycle(_),
-                    ..
-                },
-            ) => self.hole = Some(Vec::new()),
+            (None, Item::Told { told: Told::Cycle(_), .. }) => self.hole = Some(Vec::new()),
             (None, _) => {}
         }
         let leaves = match &item {
@@ -173,8 +156,7 @@ impl<P: Program> DoneCourse<P> {
         };
         let told = matches!(item, Item::Told { .. });
         if leaves {
-            self.held
-                .retain(|(_, held)| !matches!(held, Item::Reach(_)));
+            self.held.retain(|(_, held)| !matches!(held, Item::Reach(_)));
         }
         let next = (self.latest.clone(), item);
         if matches!(next.1, Item::Reach(_)) || (told && !leaves && !self.held.is_empty()) {
@@ -250,9 +232,8 @@ impl<P: Program> DoneCourse<P> {
             return false;
         };
         let held = self.held.iter_mut().rev();
-        let Some(Item::Reach(reach)) = held
-            .map(|(_, item)| item)
-            .find(|item| matches!(item, Item::Reach(_)))
+        let Some(Item::Reach(reach)) =
+            held.map(|(_, item)| item).find(|item| matches!(item, Item::Reach(_)))
         else {
             return false;
         };
@@ -264,12 +245,7 @@ impl<P: Program> DoneCourse<P> {
 
     /// The pieces of a motion.
     fn pieces(&mut self, motion: &Motion, feed: Option<f64>) {
-        let Chords {
-            tip,
-            axis,
-            rapid,
-            rapid_axis,
-        } = self.chords;
+        let Chords { tip, axis, rapid, rapid_axis } = self.chords;
         let (chord, angle) = match motion.kind {
             MotionKind::Rapid => (rapid, rapid_axis),
             MotionKind::Feed | MotionKind::Thread => (tip, axis),
@@ -282,11 +258,7 @@ impl<P: Program> DoneCourse<P> {
                 None
             }
             Way::Spline(way) => Some(Curve::Spline(Arc::clone(way))),
-            Way::Arc {
-                centre,
-                normal,
-                sweep,
-            } => Some(arc(*centre, *normal, sweep / count as f64)),
+            Way::Arc { centre, normal, sweep } => Some(arc(*centre, *normal, sweep / count as f64)),
             Way::Axes | Way::Tip | Way::TipAndAxis => None,
         };
         let mut from = motion.from.pose;
@@ -307,9 +279,7 @@ impl<P: Program> DoneCourse<P> {
             if count > 1 && motion.minutes > 0.0 && feed.is_some() {
                 // All axes linearly in time: the tip is faster on some pieces than on others.
                 let way = piece.length();
-                piece.feed = (way > NO_WAY)
-                    .then(|| way * count as f64 / motion.minutes)
-                    .or(feed);
+                piece.feed = (way > NO_WAY).then(|| way * count as f64 / motion.minutes).or(feed);
             }
             self.hand_on(Item::Piece(piece));
             from = to;
@@ -320,10 +290,7 @@ impl<P: Program> DoneCourse<P> {
 /// The tool comes from the changer, another head has another chain, a subprogram goes anywhere, and at the end nothing is
 /// left to do.
 fn leaves(told: &Told) -> bool {
-    matches!(
-        told,
-        Told::ToolChange { .. } | Told::Head(_) | Told::Subprogram(_) | Told::End
-    )
+    matches!(told, Told::ToolChange { .. } | Told::Head(_) | Told::Subprogram(_) | Told::End)
 }
 
 /// Arcs turn right-handed by an angle above zero.
@@ -332,11 +299,7 @@ fn arc(centre: nalgebra::Vector3<f64>, normal: nalgebra::Vector3<f64>, sweep: f6
         true => -normal,
         false => normal,
     };
-    Curve::Arc {
-        centre,
-        normal,
-        sweep: sweep.abs(),
-    }
+    Curve::Arc { centre, normal, sweep: sweep.abs() }
 }
 
 /// A hole without its pecks: the ways to where the feed begins, one down to the bottom, what is waited for there, and the
@@ -365,10 +328,7 @@ fn in_one_go(done: Vec<(Option<Arc<State>>, Item)>) -> Vec<(Option<Arc<State>>, 
             (last, bottom) = (place, piece.to);
         }
     }
-    let down = Piece {
-        to: bottom,
-        ..begin
-    };
+    let down = Piece { to: bottom, ..begin };
     let mut whole: Vec<_> = done[..first].to_vec();
     whole.push((done[first].0.clone(), Item::Piece(down)));
     whole.extend(done[last + 1..].iter().cloned());
@@ -378,10 +338,7 @@ fn in_one_go(done: Vec<(Option<Arc<State>>, Item)>) -> Vec<(Option<Arc<State>>, 
 /// Bits of the linear axes that go elsewhere.
 fn moved(motion: &Motion) -> u32 {
     let differs = |place: &usize| motion.from.joints[*place] != motion.to.joints[*place];
-    (0..MAX_AXES)
-        .filter(differs)
-        .fold(0, |bits, place| bits | 1 << place)
-        & linear(motion)
+    (0..MAX_AXES).filter(differs).fold(0, |bits, place| bits | 1 << place) & linear(motion)
 }
 
 /// Bits of the linear axes.

@@ -93,11 +93,9 @@ impl CourseFacts {
             Item::Told { line, told } => match told {
                 Told::Cycle(_) => self.holes += 1,
                 Told::ToolChange { number, .. } => *tool = *number,
-                Told::Operation(name) => self.operations.push(Operation {
-                    line: *line,
-                    name: name.clone(),
-                    tool: *tool,
-                }),
+                Told::Operation(name) => {
+                    self.operations.push(Operation { line: *line, name: name.clone(), tool: *tool })
+                }
                 _ => {}
             },
         }

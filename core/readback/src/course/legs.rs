@@ -22,11 +22,7 @@ impl<'c, C: Course> Legs<'c, C> {
     /// Those of `course`, whose guided point stands `along` above the tip, mm (`[tool] control_point`); what of it cannot
     /// be understood goes to `faults`, as far as the first fifty.
     pub fn new(course: C, along: f64, faults: &'c mut Vec<Diagnostic>) -> Self {
-        Self {
-            course,
-            along,
-            faults,
-        }
+        Self { course, along, faults }
     }
 }
 
@@ -53,23 +49,11 @@ impl<C: Course> Reference for Legs<'_, C> {
 fn leg(piece: Piece, along: f64) -> Leg {
     let way = match piece.curve {
         Curve::Straight => Way::TipAndAxis,
-        Curve::Arc {
-            centre,
-            normal,
-            sweep,
-        } => Way::Arc {
-            centre,
-            normal,
-            sweep,
-        },
+        Curve::Arc { centre, normal, sweep } => Way::Arc { centre, normal, sweep },
         Curve::Spline(way) => Way::Spline(way),
     };
     Leg {
-        at: At {
-            task: 0,
-            line: piece.line,
-            cuts: true,
-        },
+        at: At { task: 0, line: piece.line, cuts: true },
         way,
         from: piece.from,
         to: piece.to,

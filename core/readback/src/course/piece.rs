@@ -20,11 +20,9 @@ impl Piece {
                 let [start, end] = [from, to].map(|pose| pose.tip + pose.axis * along);
                 start + (end - start) * t - axis * along
             }
-            Curve::Arc {
-                centre,
-                normal,
-                sweep,
-            } => on_arc([from.tip, to.tip], *centre, *normal, *sweep, t),
+            Curve::Arc { centre, normal, sweep } => {
+                on_arc([from.tip, to.tip], *centre, *normal, *sweep, t)
+            }
             Curve::Spline(way) => way.at(t),
         };
         let edge = match from.edge == Vector3::zeros() || to.edge == Vector3::zeros() {
@@ -39,11 +37,7 @@ impl Piece {
         let ends = [self.from.tip, self.to.tip];
         match &self.curve {
             Curve::Straight => (ends[1] - ends[0]).norm(),
-            Curve::Arc {
-                centre,
-                normal,
-                sweep,
-            } => {
+            Curve::Arc { centre, normal, sweep } => {
                 let [from, to] = ends.map(|tip| arm_and_height(tip, *centre, *normal));
                 let rise = to.1 - from.1;
                 let radius = 0.5 * (from.0.norm() + to.0.norm());
@@ -56,10 +50,7 @@ impl Piece {
     /// The least and largest coordinates of the tip on it, mm. Of an arc the quarters count, of a spline its poles, between
     /// which it stays.
     pub fn extents(&self) -> [Vector3<f64>; 2] {
-        let mut box_of = [
-            self.from.tip.inf(&self.to.tip),
-            self.from.tip.sup(&self.to.tip),
-        ];
+        let mut box_of = [self.from.tip.inf(&self.to.tip), self.from.tip.sup(&self.to.tip)];
         let mut take = |tip: Vector3<f64>| {
             box_of = [box_of[0].inf(&tip), box_of[1].sup(&tip)];
         };

@@ -20,11 +20,7 @@ pub struct Window<C> {
 impl<C> Window<C> {
     /// What the lines of `course` ask for; without lines all of it.
     pub fn new(course: C, lines: Option<Range<u64>>) -> Self {
-        Self {
-            course,
-            lines,
-            moved: false,
-        }
+        Self { course, lines, moved: false }
     }
 }
 

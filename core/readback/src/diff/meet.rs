@@ -31,11 +31,7 @@ pub(super) fn meeting(
         }
         let [x, y, z] = cell(spot);
         for around in 0..27 {
-            let around = [
-                x + around % 3 - 1,
-                y + around / 3 % 3 - 1,
-                z + around / 9 - 1,
-            ];
+            let around = [x + around % 3 - 1, y + around / 3 % 3 - 1, z + around / 9 - 1];
             for other in cells.get(&around).into_iter().flatten() {
                 let fewer = best.is_none_or(|[old, new]| index + other < old + new);
                 if index + other > 0 && fewer && go_on_alike([old, new], [index, *other], near) {

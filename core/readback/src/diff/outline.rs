@@ -38,12 +38,7 @@ pub(super) struct Splitter {
 
 impl Splitter {
     pub fn new(by_name: bool) -> Self {
-        Self {
-            by_name,
-            number: 0,
-            cut: false,
-            at: Vector3::zeros(),
-        }
+        Self { by_name, number: 0, cut: false, at: Vector3::zeros() }
     }
 
     /// Where the tip is.
@@ -97,10 +92,7 @@ impl Outline {
         most_faults: usize,
         faults: &mut Vec<Diagnostic>,
     ) -> Self {
-        let mut outline = Self {
-            parts: vec![Part::default()],
-            ..Self::default()
-        };
+        let mut outline = Self { parts: vec![Part::default()], ..Self::default() };
         let mut splitter = Splitter::new(true);
         let mut done = Vec::new();
         loop {
@@ -136,13 +128,7 @@ impl Outline {
             self.parts.push(Part {
                 number,
                 tool,
-                by_name: !matches!(
-                    done,
-                    Done::Told {
-                        told: Told::ToolChange { .. },
-                        ..
-                    }
-                ),
+                by_name: !matches!(done, Done::Told { told: Told::ToolChange { .. }, .. }),
                 ..Part::default()
             });
         }

@@ -50,11 +50,7 @@ impl Spot {
     /// A share of the way to `other`.
     pub fn towards(&self, other: &Self, share: f64) -> Self {
         let part = |a: Vector3<f64>, b: Vector3<f64>| a + (b - a) * share;
-        let unit = |a, b| {
-            part(a, b)
-                .try_normalize(1e-12)
-                .unwrap_or_else(|| part(a, b))
-        };
+        let unit = |a, b| part(a, b).try_normalize(1e-12).unwrap_or_else(|| part(a, b));
         Self {
             pose: Pose {
                 tip: part(self.pose.tip, other.pose.tip),
@@ -271,11 +267,7 @@ impl<P: Program> Steps<P> {
                 self.cut(motion);
             }
             Done::Told { line, told } => {
-                if let Told::Dwell {
-                    time,
-                    revolutions: false,
-                } = told
-                {
+                if let Told::Dwell { time, revolutions: false } = told {
                     self.ready.push_back(Next::Minutes(time / 60.0));
                 }
                 if matches!(
@@ -332,14 +324,8 @@ impl<P: Program> Steps<P> {
             Leg::Down => {
                 // How the tool came there says something of the machine, and not of the part.
                 self.held.clear();
-                let to = Spot {
-                    pose: motion.to.pose,
-                    joints: motion.to.joints,
-                };
-                let step = Step {
-                    arrives: true,
-                    ..step(motion, to, to)
-                };
+                let to = Spot { pose: motion.to.pose, joints: motion.to.joints };
+                let step = Step { arrives: true, ..step(motion, to, to) };
                 return self.ready.push_back(Next::Step(Box::new(step)));
             }
         }
@@ -393,11 +379,7 @@ fn steps_of(motion: &Motion) -> u64 {
     let straight = motion.pieces(SAG, TURN);
     let curved = match &motion.way {
         Way::Axes | Way::Tip | Way::TipAndAxis => 1,
-        Way::Arc {
-            centre,
-            normal,
-            sweep,
-        } => {
+        Way::Arc { centre, normal, sweep } => {
             let arm = motion.from.pose.tip - centre;
             let radius = (arm - normal * normal.dot(&arm)).norm();
             // A chord over the angle a strays by r·a²/8.

@@ -460,14 +460,8 @@ fn facts(step: &Step, kind: MotionKind, one_control: bool) -> Vec<(&'static str,
         Spindle::Off => "off".to_owned(),
         Spindle::Clockwise(speed) => format!("clockwise {speed}"),
         Spindle::CounterClockwise(speed) => format!("counter-clockwise {speed}"),
-        Spindle::Surface {
-            speed, clockwise, ..
-        } => {
-            let sense = if clockwise {
-                "clockwise"
-            } else {
-                "counter-clockwise"
-            };
+        Spindle::Surface { speed, clockwise, .. } => {
+            let sense = if clockwise { "clockwise" } else { "counter-clockwise" };
             format!("{sense} {speed} m/min")
         }
         Spindle::Oriented => "oriented".to_owned(),
@@ -477,11 +471,7 @@ fn facts(step: &Step, kind: MotionKind, one_control: bool) -> Vec<(&'static str,
         (state.coolants.mist, "mist"),
         (state.coolants.other, "other"),
     ];
-    let flows: Vec<&str> = flows
-        .iter()
-        .filter(|(on, _)| *on)
-        .map(|(_, name)| *name)
-        .collect();
+    let flows: Vec<&str> = flows.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
     let coolant = match flows.is_empty() {
         true => "off".to_owned(),
         false => flows.join(", "),
@@ -573,10 +563,7 @@ fn events(old: &[Event], new: &[Event], slack: f64) -> Vec<EventDifference> {
 /// An event in words.
 fn named(event: &Event) -> String {
     match &event.told {
-        Told::Dwell {
-            time,
-            revolutions: true,
-        } => format!("a wait of {time} turns"),
+        Told::Dwell { time, revolutions: true } => format!("a wait of {time} turns"),
         Told::Dwell { time, .. } => format!("a wait of {time} s"),
         Told::Stop => "a stop".to_owned(),
         Told::OptionalStop => "an optional stop".to_owned(),
@@ -591,28 +578,18 @@ fn named(event: &Event) -> String {
 
 impl Difference {
     pub(super) fn new(unknown: [Vec<String>; 2]) -> Self {
-        Self {
-            unknown,
-            ..Self::default()
-        }
+        Self { unknown, ..Self::default() }
     }
 
     /// Sums over the operations, and whether anything is different.
     pub(super) fn sum_up(&mut self, rules: &Rules) {
         // An operation in which nothing moves is none, unless something happens there.
         self.operations.retain(|operation| {
-            let moves = operation
-                .sides
-                .iter()
-                .flatten()
-                .any(|side| side.motions > 0);
+            let moves = operation.sides.iter().flatten().any(|side| side.motions > 0);
             moves || !operation.events.is_empty()
         });
         for side in 0..2 {
-            let parts = self
-                .operations
-                .iter()
-                .filter_map(|operation| operation.sides[side]);
+            let parts = self.operations.iter().filter_map(|operation| operation.sides[side]);
             let mut sum = Side::default();
             for part in parts {
                 sum.lines[0] = match sum.lines[0] {

@@ -67,15 +67,7 @@ struct Path<'a, P> {
 
 impl<'a, P: Program> Path<'a, P> {
     fn new(source: &'a mut Steps<P>, there: bool, whole: bool, lengths: bool) -> Self {
-        Self {
-            source,
-            there,
-            whole,
-            lengths,
-            share: 0.0,
-            jumped: false,
-            events: Vec::new(),
-        }
+        Self { source, there, whole, lengths, share: 0.0, jumped: false, events: Vec::new() }
     }
 
     /// It says something of this control alone: a position of the machine, or of a tool whose length is not in force.
@@ -153,12 +145,7 @@ impl<'a, P: Program> Path<'a, P> {
 
     /// Way that is left of the first `count` steps, mm.
     fn way(&self, count: usize) -> f64 {
-        let all: f64 = self
-            .steps()
-            .iter()
-            .take(count)
-            .map(|step| step.length)
-            .sum();
+        let all: f64 = self.steps().iter().take(count).map(|step| step.length).sum();
         let behind = self.front().map_or(0.0, |step| step.length * self.share);
         if count == 0 { 0.0 } else { all - behind }
     }
@@ -244,10 +231,7 @@ impl<P: Program> Walk<'_, '_, '_, P> {
             return;
         };
         let shares = next_places([old, new], [self.old.share, self.new.share]);
-        let places = [
-            old.from.towards(&old.to, shares[0]),
-            new.from.towards(&new.to, shares[1]),
-        ];
+        let places = [old.from.towards(&old.to, shares[0]), new.from.towards(&new.to, shares[1])];
         self.rest = self.rest.saturating_sub(1);
         if self.rest == 0 && places[0].distance(&places[1]) > self.rules.apart {
             self.parted();
@@ -265,10 +249,7 @@ impl<P: Program> Walk<'_, '_, '_, P> {
             spot: step.from.towards(&step.to, to),
             way: step.length * (to - from),
         };
-        let places = [
-            place(old, self.old.share, shares[0]),
-            place(new, self.new.share, shares[1]),
-        ];
+        let places = [place(old, self.old.share, shares[0]), place(new, self.new.share, shares[1])];
         self.tally.both([old, new], places);
         self.old.go(shares[0]);
         self.new.go(shares[1]);
@@ -304,10 +285,7 @@ impl<P: Program> Walk<'_, '_, '_, P> {
     fn around(&mut self, counts: [usize; 2]) {
         let ways = [self.old.way(counts[0]), self.new.way(counts[1])];
         let longer = ways[0].max(ways[1]);
-        let kinds = [
-            kinds(self.old.steps(), counts[0]),
-            kinds(self.new.steps(), counts[1]),
-        ];
+        let kinds = [kinds(self.old.steps(), counts[0]), kinds(self.new.steps(), counts[1])];
         let moved = kinds[0] == kinds[1]
             && libm::fabs(ways[0] - ways[1]) <= ALIKE * longer + self.rules.apart;
         if !moved {

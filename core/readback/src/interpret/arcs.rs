@@ -56,11 +56,7 @@ impl Control {
             }
             told = true;
             let own = words.absolute & super::gathered::bit(letter) != 0;
-            centre[row] = if absolute || own {
-                value * unit
-            } else {
-                from[row] + value * unit
-            };
+            centre[row] = if absolute || own { value * unit } else { from[row] + value * unit };
         }
         let flat = |point: Vector3<f64>| [point[first], point[second]];
         let full_turns = self.further_turns(clockwise, words)?;
@@ -74,17 +70,9 @@ impl Control {
             return Err(self.refuse("nc-arc", "the arc has both a centre and a radius"));
         }
         let mut sweep = self.sweep([flat(from), flat(to), flat(centre)], clockwise)?;
-        sweep += if clockwise {
-            -full_turns * TAU
-        } else {
-            full_turns * TAU
-        };
+        sweep += if clockwise { -full_turns * TAU } else { full_turns * TAU };
         centre[third] = from[third];
-        Ok(Path::Arc {
-            centre,
-            normal: self.modal.plane.normal(),
-            sweep,
-        })
+        Ok(Path::Arc { centre, normal: self.modal.plane.normal(), sweep })
     }
 
     /// Full turns beside the arc's own: `TURN=2`, or P of RS-274/NGC, which counts the last part of a turn too.
@@ -142,10 +130,9 @@ impl Control {
         let (dx, dy) = (x1 - x0, y1 - y0);
         let chord = libm::hypot(dx, dy);
         if chord < 1e-9 {
-            return Err(self.refuse(
-                "nc-arc",
-                "an arc by its radius ends where it begins: it might be any",
-            ));
+            return Err(
+                self.refuse("nc-arc", "an arc by its radius ends where it begins: it might be any")
+            );
         }
         let half = 0.5 * chord;
         let size = libm::fabs(radius);
@@ -157,15 +144,8 @@ impl Control {
         }
         let height = (size * size - half * half).max(0.0).sqrt();
         // The centre of a short counter-clockwise arc lies to the left of its chord.
-        let side = if clockwise == (radius < 0.0) {
-            1.0
-        } else {
-            -1.0
-        };
+        let side = if clockwise == (radius < 0.0) { 1.0 } else { -1.0 };
         let (nx, ny) = (-dy / chord, dx / chord);
-        Ok([
-            0.5 * (x0 + x1) + side * height * nx,
-            0.5 * (y0 + y1) + side * height * ny,
-        ])
+        Ok([0.5 * (x0 + x1) + side * height * nx, 0.5 * (y0 + y1) + side * height * ny])
     }
 }

@@ -34,13 +34,13 @@ pub(super) fn take(
                 name.and_then(|name| Ok((name, variables.value(value)?)))
             }
             NcItem::Named { name, value } if variables.knows(name) => match value {
-                NcValue::Expression(value) => variables
-                    .value(value)
-                    .map(|value| (name.to_string(), value)),
+                NcValue::Expression(value) => {
+                    variables.value(value).map(|value| (name.to_string(), value))
+                }
                 NcValue::Text(text) => Ok((name.to_string(), Value::Text(text.clone()))),
-                other => variables
-                    .worth(other)
-                    .map(|number| (name.to_string(), Value::Number(number))),
+                other => {
+                    variables.worth(other).map(|number| (name.to_string(), Value::Number(number)))
+                }
             },
             _ => return true,
         };

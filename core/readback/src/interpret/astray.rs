@@ -11,9 +11,7 @@ pub(super) fn fault(message: &str) -> Box<Diagnostic> {
 
 /// A place that nothing stands at is gone to.
 pub(super) fn no_target(name: &str) -> Box<Diagnostic> {
-    fault(&format!(
-        "`{name}` is gone to, and it does not stand in this file"
-    ))
+    fault(&format!("`{name}` is gone to, and it does not stand in this file"))
 }
 
 /// A program in another file is called.

@@ -250,11 +250,7 @@ impl Control {
             }
             Sense::Means(meaning) => {
                 // `meant` takes ten times the number, as of G.
-                let code = if meaning == Meaning::CoolantOn {
-                    code * 10
-                } else {
-                    0
-                };
+                let code = if meaning == Meaning::CoolantOn { code * 10 } else { 0 };
                 self.meant(code, meaning, &mut Gathered::default(), asked)
             }
             Sense::Refused => Err(self.refuse(
@@ -273,14 +269,8 @@ impl Control {
     /// The word clamps an axis of the machine, or lets it go.
     fn clamps(&self, code: u16) -> bool {
         let own = |word: &str| m_number(word) == Some(code);
-        let clamps = self
-            .machine
-            .axes
-            .iter()
-            .filter_map(|axis| axis.clamp.as_ref());
-        clamps
-            .into_iter()
-            .any(|clamp| own(&clamp.on) || own(&clamp.off))
+        let clamps = self.machine.axes.iter().filter_map(|axis| axis.clamp.as_ref());
+        clamps.into_iter().any(|clamp| own(&clamp.on) || own(&clamp.off))
     }
 
     /// The word swaps a head in.
@@ -308,11 +298,8 @@ impl Control {
             self.dwell(words)?;
         }
         if let Some(feed) = words.take(b'F') {
-            let unit = if self.modal.feed_mode == FeedMode::Inverse {
-                1.0
-            } else {
-                self.modal.unit
-            };
+            let unit =
+                if self.modal.feed_mode == FeedMode::Inverse { 1.0 } else { self.modal.unit };
             if feed < 0.0 {
                 return Err(self.refuse("nc-feed", format!("F{feed} is no feed")));
             }
@@ -405,11 +392,7 @@ impl Control {
     /// A motion as the modal word says.
     #[inline]
     fn plain_motion(&mut self, words: &mut Gathered, rapid: bool) -> Result<(), Box<Diagnostic>> {
-        let mode = if rapid {
-            MotionMode::Rapid
-        } else {
-            self.modal.motion
-        };
+        let mode = if rapid { MotionMode::Rapid } else { self.modal.motion };
         let kind = match mode {
             MotionMode::Rapid => MotionKind::Rapid,
             MotionMode::Linear | MotionMode::Clockwise | MotionMode::CounterClockwise => {
@@ -417,10 +400,8 @@ impl Control {
             }
             MotionMode::Spline => return self.spline_block(words),
             MotionMode::None => {
-                return Err(self.refuse(
-                    "nc-motion",
-                    "words of axes without a word that says how they move",
-                ));
+                return Err(self
+                    .refuse("nc-motion", "words of axes without a word that says how they move"));
             }
         };
         if kind == MotionKind::Feed
@@ -465,12 +446,8 @@ impl Control {
             }
             let name = char::from(letter);
             if AXIS_LETTERS & bit(letter) != 0 {
-                let axes: Vec<&str> = self
-                    .machine
-                    .axes
-                    .iter()
-                    .map(|axis| axis.name.as_str())
-                    .collect();
+                let axes: Vec<&str> =
+                    self.machine.axes.iter().map(|axis| axis.name.as_str()).collect();
                 let message = format!(
                     "{name} is no axis of {}, which has {}, or says nothing in this block",
                     self.machine.name,
@@ -512,17 +489,9 @@ impl Control {
         target.vector = words.vector;
         let mut left = words.present & self.axes.mask;
         words.used |= left;
-        let incremental = if self.modal.incremental {
-            !words.absolute
-        } else {
-            words.incremental
-        };
+        let incremental = if self.modal.incremental { !words.absolute } else { words.incremental };
         let unit = self.modal.unit;
-        let point = if left & incremental != 0 {
-            self.point()
-        } else {
-            Default::default()
-        };
+        let point = if left & incremental != 0 { self.point() } else { Default::default() };
         if left & words.pointless != 0 {
             self.least_increments(words)?;
         }
@@ -547,11 +516,7 @@ impl Control {
                 let from = if way { point[row] } else { 0.0 };
                 target.point[row] = Some(from + value * unit);
             } else {
-                let from = if way {
-                    self.at.joints[place]
-                } else {
-                    self.zero[place]
-                };
+                let from = if way { self.at.joints[place] } else { self.zero[place] };
                 target.say(place, from + value * unit);
             }
         }
@@ -577,10 +542,7 @@ fn m_number(word: &str) -> Option<u16> {
 fn operation(remark: &str) -> Option<&str> {
     let (head, name) = remark.split_once([':', '='])?;
     let head = head.trim().to_ascii_uppercase();
-    let named = matches!(
-        head.as_str(),
-        "OPERATION" | "OPERATION NAME" | "OPER" | "OP"
-    );
+    let named = matches!(head.as_str(), "OPERATION" | "OPERATION NAME" | "OPER" | "OP");
     let name = name.trim();
     (named && !name.is_empty()).then_some(name)
 }

@@ -11,11 +11,7 @@ use crate::lexicon::Language;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Pending {
     /// The subprogram `O` of this number, so often, with these variables of its own where it is a macro.
-    Subprogram {
-        number: u64,
-        times: i64,
-        own: Option<Vec<(String, f64)>>,
-    },
+    Subprogram { number: u64, times: i64, own: Option<Vec<(String, f64)>> },
     /// The blocks from `N` of this number on.
     Local { number: u64, times: i64 },
     /// Back to the call, or to this block of the caller.
@@ -119,19 +115,10 @@ pub(super) fn take(
     let needed = || number.ok_or_else(|| fault("a subprogram is called without its number P"));
     let pending = match found {
         Code::Modal => {
-            return Err(fault(
-                "G66 calls a macro at every motion, and that is not run",
-            ));
+            return Err(fault("G66 calls a macro at every motion, and that is not run"));
         }
-        Code::Subprogram => Pending::Subprogram {
-            number: needed()?,
-            times,
-            own: None,
-        },
-        Code::Local => Pending::Local {
-            number: needed()?,
-            times,
-        },
+        Code::Subprogram => Pending::Subprogram { number: needed()?, times, own: None },
+        Code::Local => Pending::Local { number: needed()?, times },
         Code::Return => Pending::Return { to: number },
         Code::Macro => Pending::Subprogram {
             number: needed()?,
@@ -161,9 +148,7 @@ fn arguments(block: &NcBlock, variables: &Variables) -> Answer<Vec<(String, f64)
         if matches!(word.letter, b'G' | b'P' | b'L' | b'N' | b'O') {
             continue;
         }
-        let place = MACRO_LETTERS
-            .iter()
-            .position(|letter| *letter == word.letter);
+        let place = MACRO_LETTERS.iter().position(|letter| *letter == word.letter);
         let Some(place) = place else {
             continue;
         };

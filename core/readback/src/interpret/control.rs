@@ -64,9 +64,7 @@ impl Control {
         offsets: &Offsets,
         file: &str,
     ) -> Result<Self, Box<Diagnostic>> {
-        let solver = machine
-            .solver(0.0)
-            .map_err(|lack| machine.unsolvable(&lack).boxed())?;
+        let solver = machine.solver(0.0).map_err(|lack| machine.unsolvable(&lack).boxed())?;
         let solver = Arc::new(solver);
         let heads = machine.heads.iter();
         let heads = heads
@@ -186,11 +184,7 @@ impl Control {
     /// Something that was taken for granted.
     pub fn note(&mut self, note: Diagnostic) {
         if self.report.notes.len() < NOTES
-            && !self
-                .report
-                .notes
-                .iter()
-                .any(|known| known.message == note.message)
+            && !self.report.notes.iter().any(|known| known.message == note.message)
         {
             let note = self.placed(note);
             self.report.notes.push(note);
@@ -206,11 +200,7 @@ impl Control {
 
     /// A word that nobody knows and that moves nothing.
     pub fn unknown(&mut self, word: &str) {
-        let known = self
-            .report
-            .unknown
-            .iter_mut()
-            .find(|(name, ..)| name == word);
+        let known = self.report.unknown.iter_mut().find(|(name, ..)| name == word);
         if let Some((_, count, _)) = known {
             *count += 1;
         } else if self.report.unknown.len() < UNKNOWN {
@@ -266,11 +256,7 @@ impl Control {
         // An axis keeps its value where the other chain has one of its name.
         let mut joints = start(&machine);
         for (joint, axis) in joints.iter_mut().zip(&machine.axes) {
-            let before = self
-                .machine
-                .axes
-                .iter()
-                .position(|before| before.name == axis.name);
+            let before = self.machine.axes.iter().position(|before| before.name == axis.name);
             if let Some(before) = before {
                 *joint = self.at.joints[before];
             }
@@ -290,10 +276,7 @@ impl Control {
     pub fn stand(&mut self, joints: &Joints) {
         let chain = self.state.solver.chain();
         self.turns = chain.turns(joints);
-        self.at = Stance {
-            joints: *joints,
-            pose: chain.pose(joints, &self.turns),
-        };
+        self.at = Stance { joints: *joints, pose: chain.pose(joints, &self.turns) };
     }
 
     /// Where the axes stand that the words count from: the tip of the compensated tool on the part origin, rotary axes
@@ -336,9 +319,7 @@ impl Control {
         let chain = self.state.solver.chain();
         let turns = chain.turns(&self.origin);
         let rotary = self.machine.axes.iter().zip(shift.shift);
-        let upright = rotary
-            .clone()
-            .all(|(axis, shift)| !axis.joint.rotary || shift == 0.0);
+        let upright = rotary.clone().all(|(axis, shift)| !axis.joint.rotary || shift == 0.0);
         let origin = chain.forward(&self.origin).tip;
         if upright {
             return Frame::shifted(origin);
@@ -361,11 +342,7 @@ impl Control {
 impl Modal {
     fn new(language: Language, units: OutputUnits) -> Self {
         Self {
-            motion: if language == Language::Names {
-                MotionMode::Linear
-            } else {
-                MotionMode::None
-            },
+            motion: if language == Language::Names { MotionMode::Linear } else { MotionMode::None },
             plane: ArcPlane::Xy,
             incremental: false,
             centres_absolute: false,

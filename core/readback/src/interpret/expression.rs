@@ -171,9 +171,7 @@ impl Variables {
                 quotient.ok_or_else(|| fault(&format!("{left} is divided by zero")))? as f64
             }
             B::Power if left < 0.0 && libm::trunc(right) != right => {
-                return Err(fault(&format!(
-                    "{left} to the power of {right} is no number"
-                )));
+                return Err(fault(&format!("{left} to the power of {right} is no number")));
             }
             B::Power => libm::pow(left, right),
             B::Equal => truth(self.equal(left, right)?),
@@ -237,11 +235,7 @@ impl Variables {
         }
         let remainder = libm::fmod(left, right);
         if self.language() == Language::Rs274 {
-            return Ok(if remainder < 0.0 {
-                remainder + libm::fabs(right)
-            } else {
-                remainder
-            });
+            return Ok(if remainder < 0.0 { remainder + libm::fabs(right) } else { remainder });
         }
         if left < 0.0 || right < 0.0 {
             return Err(differ(&format!("the remainder of {left} by {right}")));
@@ -373,9 +367,7 @@ fn truth(holds: bool) -> f64 {
 pub(super) fn whole(value: f64, what: &str) -> Answer<i64> {
     let rounded = libm::round(value);
     if libm::fabs(value - rounded) > 1e-6 || libm::fabs(rounded) > 9e15 {
-        return Err(fault(&format!(
-            "{what} of {value}: it must be a whole number"
-        )));
+        return Err(fault(&format!("{what} of {value}: it must be a whole number")));
     }
     Ok(rounded as i64)
 }
@@ -392,25 +384,18 @@ fn fault(message: &str) -> Box<Diagnostic> {
 }
 
 fn differ(what: &str) -> Box<Diagnostic> {
-    Diagnostic::error(
-        "nc-expression",
-        format!("{what} is not the same on all controls"),
-    )
-    .help("write the number in its place")
-    .boxed()
+    Diagnostic::error("nc-expression", format!("{what} is not the same on all controls"))
+        .help("write the number in its place")
+        .boxed()
 }
 
 fn no_number(text: &str) -> Box<Diagnostic> {
-    fault(&format!(
-        "the text \"{text}\" stands where a number belongs"
-    ))
+    fault(&format!("the text \"{text}\" stands where a number belongs"))
 }
 
 fn no_function(name: &str, count: usize) -> Box<Diagnostic> {
     let values = if count == 1 { "value" } else { "values" };
-    fault(&format!(
-        "the function `{name}` of {count} {values} is not known"
-    ))
+    fault(&format!("the function `{name}` of {count} {values} is not known"))
 }
 
 #[cfg(test)]

@@ -26,11 +26,8 @@ impl Control {
             return (0.0, 0.0);
         };
         let tip = tip_length(way, from, to);
-        let mode = if kind == MotionKind::Thread {
-            FeedMode::PerRevolution
-        } else {
-            self.modal.feed_mode
-        };
+        let mode =
+            if kind == MotionKind::Thread { FeedMode::PerRevolution } else { self.modal.feed_mode };
         let minutes = match mode {
             FeedMode::Inverse => match self.machine.control.inverse_time {
                 InverseTime::Minutes => 1.0 / feed,
@@ -42,11 +39,7 @@ impl Control {
             }
             FeedMode::PerRevolution => return (0.0, 0.0),
         };
-        if minutes > 0.0 {
-            (tip / minutes, minutes)
-        } else {
-            (0.0, 0.0)
-        }
+        if minutes > 0.0 { (tip / minutes, minutes) } else { (0.0, 0.0) }
     }
 
     /// The length that F a minute counts along, mm, or degrees where rotary axes alone turn.
@@ -122,11 +115,7 @@ pub(super) fn tip_length(way: &Way, from: &Stance, to: &Stance) -> f64 {
     let chord = to.pose.tip - from.pose.tip;
     match way {
         Way::Axes | Way::Tip | Way::TipAndAxis => chord.norm(),
-        Way::Arc {
-            centre,
-            normal,
-            sweep,
-        } => {
+        Way::Arc { centre, normal, sweep } => {
             let arm = from.pose.tip - centre;
             let across: Vector3<f64> = arm - normal * normal.dot(&arm);
             let along = normal.dot(&chord);

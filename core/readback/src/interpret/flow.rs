@@ -52,27 +52,13 @@ enum Running {
     /// `WHILE`: its head is read again each time.
     While { name: Option<String>, head: NcMark },
     /// `FOR`.
-    For {
-        head: NcMark,
-        body: NcMark,
-        variable: String,
-        to: f64,
-    },
+    For { head: NcMark, body: NcMark, variable: String, to: f64 },
     /// `LOOP`.
     Loop { head: NcMark, body: NcMark },
     /// `REPEAT` or `do`.
-    Do {
-        name: Option<String>,
-        head: NcMark,
-        body: NcMark,
-    },
+    Do { name: Option<String>, head: NcMark, body: NcMark },
     /// `o1 repeat [n]`.
-    Times {
-        name: Option<String>,
-        head: NcMark,
-        body: NcMark,
-        left: i64,
-    },
+    Times { name: Option<String>, head: NcMark, body: NcMark, left: i64 },
 }
 
 /// Blocks in the order in which they are run.
@@ -214,15 +200,10 @@ impl<R: Read + Seek> Flow<R> {
     }
 
     fn ended(&mut self) -> Answer<bool> {
-        let inside = self
-            .running
-            .iter()
-            .any(|running| matches!(running, Running::Call { .. }));
+        let inside = self.running.iter().any(|running| matches!(running, Running::Call { .. }));
         self.running.clear();
         match inside {
-            true => Err(fault(
-                "the program ends inside a subprogram: nothing leads back from it",
-            )),
+            true => Err(fault("the program ends inside a subprogram: nothing leads back from it")),
             false => Ok(false),
         }
     }
@@ -241,9 +222,8 @@ impl<R: Read + Seek> Flow<R> {
             _ => true,
         });
         // A condition in front of them decides whether they are set.
-        let (conditions, flows): (Vec<_>, Vec<_>) = flows
-            .into_iter()
-            .partition(|flow| matches!(flow, NcFlow::Then(_)));
+        let (conditions, flows): (Vec<_>, Vec<_>) =
+            flows.into_iter().partition(|flow| matches!(flow, NcFlow::Then(_)));
         for condition in conditions {
             if !self.step(condition, variables)? {
                 block.items.clear();
@@ -286,11 +266,7 @@ impl<R: Read + Seek> Flow<R> {
                 }
                 Ok(false)
             }
-            NcFlow::Goto {
-                target,
-                direction,
-                condition,
-            } => {
+            NcFlow::Goto { target, direction, condition } => {
                 if let Some(condition) = condition
                     && !variables.holds(&condition)?
                 {
@@ -336,20 +312,12 @@ impl<R: Read + Seek> Flow<R> {
                 self.back(variables)?;
                 Ok(false)
             }
-            NcFlow::Call {
-                target,
-                repeat,
-                arguments,
-            } => {
+            NcFlow::Call { target, repeat, arguments } => {
                 self.call(&target, repeat.as_ref(), &arguments, variables)?;
                 Ok(false)
             }
             NcFlow::CallProgram(name) => Err(elsewhere(&name)),
-            NcFlow::RepeatFrom {
-                label,
-                until,
-                times,
-            } => {
+            NcFlow::RepeatFrom { label, until, times } => {
                 let times = match times {
                     Some(times) => whole(variables.number(&times)?, "a count of repeats")?,
                     None => 1,
@@ -363,9 +331,7 @@ impl<R: Read + Seek> Flow<R> {
 
     /// A label is passed.
     fn label(&mut self, name: &str) -> Answer<bool> {
-        if let Some(Running::Part {
-            until: Some(until), ..
-        }) = self.running.last()
+        if let Some(Running::Part { until: Some(until), .. }) = self.running.last()
             && until == name
         {
             self.pending = Some(Pending::PartEnd);
@@ -460,12 +426,7 @@ impl<R: Read + Seek> Flow<R> {
         }
         let back = self.reader.mark();
         let has_own = own.is_some();
-        self.push(Running::Call {
-            start,
-            back,
-            left: times - 1,
-            own: has_own,
-        })?;
+        self.push(Running::Call { start, back, left: times - 1, own: has_own })?;
         if let Some(own) = own {
             variables.enter(own);
         }
@@ -485,30 +446,17 @@ impl<R: Read + Seek> Flow<R> {
     }
 
     fn called(&self) -> bool {
-        self.running
-            .iter()
-            .any(|running| matches!(running, Running::Call { .. }))
+        self.running.iter().any(|running| matches!(running, Running::Call { .. }))
     }
 
     /// The innermost subprogram ends.
     fn back(&mut self, variables: &mut Variables) -> Answer<()> {
         while let Some(running) = self.running.pop() {
-            let Running::Call {
-                start,
-                back,
-                left,
-                own,
-            } = running
-            else {
+            let Running::Call { start, back, left, own } = running else {
                 continue;
             };
             if left > 0 {
-                self.running.push(Running::Call {
-                    start,
-                    back,
-                    left: left - 1,
-                    own,
-                });
+                self.running.push(Running::Call { start, back, left: left - 1, own });
                 return self.begin(start);
             }
             if own {
@@ -535,22 +483,13 @@ impl<R: Read + Seek> Flow<R> {
         let back = self.reader.mark();
         let start = self.find(&NcTarget::Label(label.clone()), Direction::Anywhere)?;
         let start = start.ok_or_else(|| no_target(&label))?;
-        self.push(Running::Part {
-            start,
-            by: here,
-            back,
-            until,
-            left: times - 1,
-        })?;
+        self.push(Running::Part { start, by: here, back, until, left: times - 1 })?;
         self.go_to(start)
     }
 
     /// The innermost part was run once.
     fn part_ends(&mut self) -> Answer<()> {
-        let Some(Running::Part {
-            start, back, left, ..
-        }) = self.running.last_mut()
-        else {
+        let Some(Running::Part { start, back, left, .. }) = self.running.last_mut() else {
             return Ok(());
         };
         if *left > 0 {
@@ -600,9 +539,7 @@ fn wanted(target: &NcExpression, variables: &Variables) -> Answer<NcTarget> {
         other => {
             let number = whole(variables.number(other)?, "the number of a block")?;
             let number = u64::try_from(number);
-            number
-                .map(NcTarget::Number)
-                .map_err(|_| fault("the number of a block is negative"))
+            number.map(NcTarget::Number).map_err(|_| fault("the number of a block is negative"))
         }
     }
 }

@@ -22,20 +22,12 @@ impl Default for Frame {
 impl Frame {
     /// A frame that is shifted alone, mm.
     pub fn shifted(origin: Vector3<f64>) -> Self {
-        Self {
-            axes: Matrix3::identity(),
-            origin,
-            upright: true,
-        }
+        Self { axes: Matrix3::identity(), origin, upright: true }
     }
 
     /// A frame with these directions.
     pub fn new(axes: Matrix3<f64>, origin: Vector3<f64>) -> Self {
-        Self {
-            upright: axes == Matrix3::identity(),
-            axes,
-            origin,
-        }
+        Self { upright: axes == Matrix3::identity(), axes, origin }
     }
 
     /// Its directions are those of the frame around it.
@@ -51,11 +43,7 @@ impl Frame {
     /// A point of this frame in the frame around it, mm.
     #[inline]
     pub fn out(&self, point: Vector3<f64>) -> Vector3<f64> {
-        if self.upright {
-            self.origin + point
-        } else {
-            self.origin + self.axes * point
-        }
+        if self.upright { self.origin + point } else { self.origin + self.axes * point }
     }
 
     /// A point of the frame around it in this frame, mm.
@@ -71,11 +59,7 @@ impl Frame {
     /// A direction of this frame in the frame around it.
     #[inline]
     pub fn out_direction(&self, direction: Vector3<f64>) -> Vector3<f64> {
-        if self.upright {
-            direction
-        } else {
-            self.axes * direction
-        }
+        if self.upright { direction } else { self.axes * direction }
     }
 
     /// The frame `inner`, which is given in this one, in the frame around this one.

@@ -51,10 +51,9 @@ fn taken(
     words.used |= others;
     for letter in b'A'..=b'Z' {
         if others & bit(letter) != 0 && words.get(letter) != Some(0.0) {
-            return Err(control.refuse(
-                "nc-frame",
-                format!("{what} of {} is not run", char::from(letter)),
-            ));
+            return Err(
+                control.refuse("nc-frame", format!("{what} of {} is not run", char::from(letter)))
+            );
         }
     }
     let unit = control.modal.unit;
@@ -112,10 +111,7 @@ fn table(control: &mut Control, words: &mut Gathered) -> Result<(), Box<Diagnost
             if !control.modal.incremental && control.lexicon.language() == Language::Macro =>
         {
             let length = length * control.modal.unit;
-            control
-                .offsets
-                .lengths
-                .retain(|(known, _)| *known != register);
+            control.offsets.lengths.retain(|(known, _)| *known != register);
             control.offsets.lengths.push((register, length));
             match control.tools.length_on {
                 true => control.length_changed(),
@@ -189,9 +185,7 @@ pub(super) fn name(
 
 fn shift(control: &Control, words: &mut Gathered) -> Result<Frame, Box<Diagnostic>> {
     let by = taken(control, words, "a shift")?;
-    Ok(Frame::shifted(Vector3::from(
-        by.map(Option::unwrap_or_default),
-    )))
+    Ok(Frame::shifted(Vector3::from(by.map(Option::unwrap_or_default))))
 }
 
 fn turn(control: &Control, words: &mut Gathered) -> Result<Frame, Box<Diagnostic>> {
@@ -203,8 +197,5 @@ fn turn(control: &Control, words: &mut Gathered) -> Result<Frame, Box<Diagnostic
             "ROT about several axes: their order is a parameter of the control",
         ));
     }
-    Ok(Frame::new(
-        rotation([0, 1, 2], angles.map(f64::to_radians)),
-        Vector3::zeros(),
-    ))
+    Ok(Frame::new(rotation([0, 1, 2], angles.map(f64::to_radians)), Vector3::zeros()))
 }

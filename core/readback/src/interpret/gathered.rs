@@ -132,9 +132,7 @@ impl Gathered {
         letter: u8,
         control: &Control,
     ) -> Result<Option<u32>, Box<Diagnostic>> {
-        self.get(letter)
-            .map(|value| which(letter, value, control))
-            .transpose()
+        self.get(letter).map(|value| which(letter, value, control)).transpose()
     }
 
     fn clear(&mut self) {
@@ -242,10 +240,9 @@ impl Control {
     fn code(&self, letter: u8, value: f64, codes: &mut Codes) -> Result<(), Box<Diagnostic>> {
         let whole = libm::rint(value);
         if !(0.0..65_535.0).contains(&whole) || libm::fabs(value - whole) > 1e-6 {
-            return Err(self.refuse(
-                "nc-word",
-                format!("there is no {}{value}", char::from(letter)),
-            ));
+            return Err(
+                self.refuse("nc-word", format!("there is no {}{value}", char::from(letter)))
+            );
         }
         if codes.count == CODES {
             return Err(self.refuse(
@@ -267,9 +264,6 @@ pub(super) fn which(letter: u8, value: f64, control: &Control) -> Result<u32, Bo
     }
     Err(control.refuse(
         "nc-word",
-        format!(
-            "{}{value} is no number of a register or tool",
-            char::from(letter)
-        ),
+        format!("{}{value} is no number of a register or tool", char::from(letter)),
     ))
 }

@@ -32,10 +32,7 @@ pub(super) struct Target {
 impl Target {
     /// A point of the program, all three coordinates, mm.
     pub fn point(point: Vector3<f64>) -> Self {
-        Self {
-            point: [Some(point.x), Some(point.y), Some(point.z)],
-            ..Self::default()
-        }
+        Self { point: [Some(point.x), Some(point.y), Some(point.z)], ..Self::default() }
     }
 
     /// Says the value of an axis.
@@ -120,11 +117,7 @@ impl Control {
             }
             Path::Straight if self.state.tcp => Way::Tip,
             Path::Straight => Way::Axes,
-            Path::Arc {
-                centre,
-                normal,
-                sweep,
-            } => self.arc(&from, *centre, *normal, *sweep)?,
+            Path::Arc { centre, normal, sweep } => self.arc(&from, *centre, *normal, *sweep)?,
             Path::Spline(way) => self.spline_way(&from, way),
         };
         self.moved(kind, way, from);
@@ -147,9 +140,8 @@ impl Control {
         self.fed = true;
         let unsaid = self.axes.cartesian.iter().flatten();
         let unsaid = unsaid.filter(|place| self.said & (1 << **place) == 0);
-        let names: Vec<&str> = unsaid
-            .map(|place| self.machine.axes[*place].name.as_str())
-            .collect();
+        let names: Vec<&str> =
+            unsaid.map(|place| self.machine.axes[*place].name.as_str()).collect();
         if !names.is_empty() {
             self.report.unsaid = Some((self.line, names.join(", ")));
         }
@@ -268,10 +260,7 @@ impl Control {
         if (self.at.pose.tip - tip).norm() > REACHED {
             return Err(self.refuse(
                 "nc-reach",
-                format!(
-                    "the axes miss the point by {:.4} mm",
-                    (self.at.pose.tip - tip).norm()
-                ),
+                format!("the axes miss the point by {:.4} mm", (self.at.pose.tip - tip).norm()),
             ));
         }
         // The word is what the control keeps: nothing adds up over blocks that do not say a coordinate.
@@ -288,11 +277,7 @@ impl Control {
         };
         let tip = self.to_part.out(told_over(self.point(), &target.point));
         self.take_said(target);
-        let pose = Pose {
-            tip,
-            axis,
-            edge: Vector3::zeros(),
-        };
+        let pose = Pose { tip, axis, edge: Vector3::zeros() };
         let last = self.at.joints;
         let cannot = || {
             let [x, y, z] = [vector.x, vector.y, vector.z];
@@ -301,11 +286,7 @@ impl Control {
                 format!("the axes cannot point the tool along ({x}, {y}, {z})"),
             )
         };
-        let found = self
-            .state
-            .solver
-            .inverse(&pose, &last, AIMED)
-            .map_err(|_| cannot())?;
+        let found = self.state.solver.inverse(&pose, &last, AIMED).map_err(|_| cannot())?;
         let mut best: Option<(f64, Joints)> = None;
         for solution in &found {
             let mut joints = *solution;
@@ -396,11 +377,7 @@ impl Control {
         let start = self.program_point_of(&from.joints);
         let [first, second, third] = [0, 1, 2].map(|row| ways[row]);
         // Where the three axes make a left-handed frame, a turn is seen from behind.
-        let handed = if first.cross(&second).dot(&third) < 0.0 {
-            -1.0
-        } else {
-            1.0
-        };
+        let handed = if first.cross(&second).dot(&third) < 0.0 { -1.0 } else { 1.0 };
         Ok(Way::Arc {
             centre: from.pose.tip + direction(self.to_work.out_direction(centre - start)),
             normal: direction(self.to_work.out_direction(normal)),

@@ -32,19 +32,13 @@ impl Control {
                 "machine coordinates are positions, and the words of this block are ways (G91)",
             ));
         }
-        let mode = if rapid {
-            MotionMode::Rapid
-        } else {
-            self.modal.motion
-        };
+        let mode = if rapid { MotionMode::Rapid } else { self.modal.motion };
         let kind = match mode {
             MotionMode::Rapid => MotionKind::Rapid,
             MotionMode::Linear => MotionKind::Feed,
             MotionMode::None => {
-                return Err(self.refuse(
-                    "nc-motion",
-                    "words of axes without a word that says how they move",
-                ));
+                return Err(self
+                    .refuse("nc-motion", "words of axes without a word that says how they move"));
             }
             MotionMode::Clockwise | MotionMode::CounterClockwise | MotionMode::Spline => {
                 return Err(self.refuse(
@@ -140,11 +134,7 @@ impl Control {
     /// The axis value (from the drawing's zero, mm or radians) of a machine coordinate in program units.
     pub(super) fn shown(&self, place: usize, value: f64) -> f64 {
         let axis = &self.machine.axes[place];
-        let value = if axis.joint.rotary {
-            value.to_radians()
-        } else {
-            value * self.modal.unit
-        };
+        let value = if axis.joint.rotary { value.to_radians() } else { value * self.modal.unit };
         value - axis.zero
     }
 
@@ -175,14 +165,7 @@ impl Control {
                 }
             }
         }
-        self.go(
-            MotionKind::Rapid,
-            &Path::Straight,
-            &Target {
-                vector: None,
-                ..target
-            },
-        )?;
+        self.go(MotionKind::Rapid, &Path::Straight, &Target { vector: None, ..target })?;
         let mut joints = self.at.joints;
         let mut stated = 0;
         for place in places {
@@ -235,11 +218,7 @@ impl Control {
         if tap {
             let left = matches!(self.state.spindle, Spindle::CounterClockwise(_));
             self.tell(Told::Cycle(CycleCall {
-                kind: if left {
-                    CycleKind::TapLeft
-                } else {
-                    CycleKind::Tap
-                },
+                kind: if left { CycleKind::TapLeft } else { CycleKind::Tap },
                 depth: (to - from).norm(),
                 feed: pitch,
                 per_revolution: true,

@@ -66,10 +66,7 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self {
-            blocks: 2_000_000,
-            depth: 32,
-        }
+        Self { blocks: 2_000_000, depth: 32 }
     }
 }
 
@@ -156,11 +153,7 @@ impl<R: Read + Seek> Interpreter<R> {
     /// What stands there that cannot be understood, or is not run, with its place.
     #[inline]
     pub fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>> {
-        let Self {
-            flow,
-            block,
-            runner,
-        } = self;
+        let Self { flow, block, runner } = self;
         if runner.control.ended {
             return Ok(false);
         }

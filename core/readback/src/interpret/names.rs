@@ -70,10 +70,7 @@ impl Control {
             return self.named_axis(place, value, words);
         }
         let worth = |control: &Self| {
-            control
-                .variables
-                .worth(value)
-                .map_err(|finding| control.placed(*finding).boxed())
+            control.variables.worth(value).map_err(|finding| control.placed(*finding).boxed())
         };
         let mut part = |row: usize| -> Result<(), Box<Diagnostic>> {
             words.vector.get_or_insert_default()[row] = worth(self)?;
@@ -131,16 +128,9 @@ impl Control {
             NcValue::Approached(approach, _) => Some(*approach),
             _ => None,
         };
-        let worth = self
-            .variables
-            .worth(value)
-            .map_err(|finding| self.placed(*finding).boxed())?;
+        let worth = self.variables.worth(value).map_err(|finding| self.placed(*finding).boxed())?;
         let rotary = self.axes.rotary & (1 << place) != 0;
-        let length = if rotary {
-            worth.to_radians()
-        } else {
-            worth * self.modal.unit
-        };
+        let length = if rotary { worth.to_radians() } else { worth * self.modal.unit };
         let way = match approach {
             Some(Approach::Incremental) => true,
             Some(_) => false,
@@ -203,11 +193,7 @@ impl Control {
         asked: &mut Asked,
     ) -> Result<(), Box<Diagnostic>> {
         let empty = arguments.iter().all(Option::is_none);
-        let sense = if empty {
-            self.lexicon.empty_call(name)
-        } else {
-            self.lexicon.name(name)
-        };
+        let sense = if empty { self.lexicon.empty_call(name) } else { self.lexicon.name(name) };
         match (name, sense) {
             ("MSG", _) => {
                 if let Some(Some(NcValue::Text(text))) = arguments.first() {

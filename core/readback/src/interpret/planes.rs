@@ -55,10 +55,8 @@ pub(super) fn begin(
     words: &mut Gathered,
 ) -> Result<(), Box<Diagnostic>> {
     if control.frames.plane.is_some() {
-        return Err(control.refuse(
-            "nc-plane",
-            "a tilted plane begins inside of another, which must end before",
-        ));
+        return Err(control
+            .refuse("nc-plane", "a tilted plane begins inside of another, which must end before"));
     }
     match code {
         2540 => {
@@ -67,10 +65,8 @@ pub(super) fn begin(
         }
         682 => {
             if words.take(b'P').is_some_and(|form| form != 0.0) {
-                return Err(control.refuse(
-                    "nc-plane",
-                    "G68.2 with P: only Euler angles (P0, or no P) are run",
-                ));
+                return Err(control
+                    .refuse("nc-plane", "G68.2 with P: only Euler angles (P0, or no P) are run"));
             }
             if control.modal.incremental {
                 return Err(control.refuse(
@@ -86,10 +82,8 @@ pub(super) fn begin(
         }
         _ => {
             let name = f64::from(code) / 10.0;
-            Err(control.refuse(
-                "nc-plane",
-                format!("G{name} is a form of a tilted plane that is not run"),
-            ))
+            Err(control
+                .refuse("nc-plane", format!("G{name} is a form of a tilted plane that is not run")))
         }
     }
 }
@@ -118,10 +112,7 @@ pub(super) fn turn(
 /// It ends: `G69`, `G255`, `CYCLE800()`.
 pub(super) fn end(control: &mut Control) -> Result<(), Box<Diagnostic>> {
     // G69 ends a turn in the plane too.
-    let letters = matches!(
-        control.lexicon.language(),
-        Language::Macro | Language::Rs274
-    );
+    let letters = matches!(control.lexicon.language(), Language::Macro | Language::Rs274);
     let turned = letters && !control.frames.inner.is_default();
     if turned {
         control.frames.inner = Frame::default();
@@ -153,10 +144,7 @@ pub(super) fn as_it_stands(control: &Control) -> Result<Frame, Box<Diagnostic>> 
     if !across {
         return Err(control.refuse("nc-plane", "X, Y and Z of this machine do not stand across one another as X, Y and Z of a frame do"));
     }
-    Ok(Frame::new(
-        control.to_part.axes.transpose() * axes,
-        Vector3::zeros(),
-    ))
+    Ok(Frame::new(control.to_part.axes.transpose() * axes, Vector3::zeros()))
 }
 
 /// The normal of the plane in force, unit vector, part frame.
@@ -216,9 +204,7 @@ fn solution(control: &Control, pick: Pick) -> Result<Joints, Box<Diagnostic>> {
         let way = |joints: &Joints, place: usize| libm::fabs(joints[place] - last[place]);
         let rotary: Vec<usize> = rotary(control).collect();
         let nearer = |one: &Joints, other: &Joints| {
-            rotary
-                .iter()
-                .all(|&place| way(one, place) <= way(other, place) + SAME)
+            rotary.iter().all(|&place| way(one, place) <= way(other, place) + SAME)
         };
         let best = inside.iter().position(|one| {
             inside.iter().all(|other| {
@@ -244,17 +230,9 @@ fn solution(control: &Control, pick: Pick) -> Result<Joints, Box<Diagnostic>> {
 /// All ways in which the rotary axes stand upright on the plane in force, next to where they stand and within travel.
 fn reachable(control: &Control) -> Result<Vec<Joints>, Box<Diagnostic>> {
     let last = control.at.joints;
-    let pose = Pose {
-        tip: control.at.pose.tip,
-        axis: normal(control),
-        edge: Vector3::zeros(),
-    };
+    let pose = Pose { tip: control.at.pose.tip, axis: normal(control), edge: Vector3::zeros() };
     let cannot = |_| control.refuse("nc-plane", "the rotary axes cannot turn to this plane");
-    let found = control
-        .state
-        .solver
-        .inverse(&pose, &last, UPRIGHT)
-        .map_err(cannot)?;
+    let found = control.state.solver.inverse(&pose, &last, UPRIGHT).map_err(cannot)?;
     let mut inside: Vec<Joints> = Vec::new();
     for solution in &found {
         let mut joints = last;
@@ -293,9 +271,7 @@ fn tilting(control: &Control) -> Option<usize> {
 /// What each of A, B, C shows where the axes stand upright on the plane, degrees: Q120 to Q122.
 pub(super) fn angles(control: &Control, joints: &Joints) -> [f64; 3] {
     [b'A', b'B', b'C'].map(|letter| {
-        control
-            .axis_of(letter)
-            .map_or(0.0, |place| shown(control, place, joints).to_degrees())
+        control.axis_of(letter).map_or(0.0, |place| shown(control, place, joints).to_degrees())
     })
 }
 
@@ -306,10 +282,8 @@ pub(super) fn call(
     arguments: &[Option<NcValue>],
 ) -> Result<(), Box<Diagnostic>> {
     if name != "CYCLE800" {
-        return Err(control.refuse(
-            "nc-plane",
-            format!("{name} is a form of a tilted plane that is not run"),
-        ));
+        return Err(control
+            .refuse("nc-plane", format!("{name} is a form of a tilted plane that is not run")));
     }
     if let Some(Some(NcValue::Text(record))) = arguments.get(1)
         && record.trim() == "0"
@@ -318,10 +292,9 @@ pub(super) fn call(
     }
     let number = |place: usize| -> Result<f64, Box<Diagnostic>> {
         match arguments.get(place) {
-            Some(Some(value)) => control
-                .variables
-                .worth(value)
-                .map_err(|finding| control.placed(*finding).boxed()),
+            Some(Some(value)) => {
+                control.variables.worth(value).map_err(|finding| control.placed(*finding).boxed())
+            }
             _ => Ok(0.0),
         }
     };
@@ -334,20 +307,15 @@ pub(super) fn call(
     }
     let status = number(2)?;
     if libm::fmod(libm::fabs(status), 10.0) >= 1.0 && control.frames.plane.is_some() {
-        return refuse(format!(
-            "_ST = {status} adds to the plane in force, which is not run"
-        ));
+        return refuse(format!("_ST = {status} adds to the plane in force, which is not run"));
     }
     let mode = number(3)?;
     let numbers = |from: usize| -> Result<[f64; 3], Box<Diagnostic>> {
         Ok([number(from)?, number(from + 1)?, number(from + 2)?])
     };
     let unit = control.modal.unit;
-    let (before, turns, behind) = (
-        Vector3::from(numbers(4)?) * unit,
-        numbers(7)?,
-        Vector3::from(numbers(10)?) * unit,
-    );
+    let (before, turns, behind) =
+        (Vector3::from(numbers(4)?) * unit, numbers(7)?, Vector3::from(numbers(10)?) * unit);
     let direction = number(13)?;
     // A plane that is in force is replaced.
     end(control)?;
@@ -361,14 +329,9 @@ pub(super) fn call(
                 format!("CYCLE800: _MODE = {mode} is no sequence of turns about axes"),
             ));
         };
-        Frame::new(
-            rotation(order, turns.map(f64::to_radians)),
-            Vector3::zeros(),
-        )
+        Frame::new(rotation(order, turns.map(f64::to_radians)), Vector3::zeros())
     };
-    let frame = Frame::shifted(before)
-        .around(&turned)
-        .around(&Frame::shifted(behind));
+    let frame = Frame::shifted(before).around(&turned).around(&Frame::shifted(behind));
     lay(control, frame)?;
     if direction != 0.0 && mode != 192.0 {
         // The axis whose sign it speaks of is told in the control's record of the head.
@@ -385,10 +348,7 @@ fn turns_of(mode: f64) -> Option<[usize; 3]> {
     }
     let bits = mode as usize;
     let order = [bits & 3, bits >> 2 & 3, bits >> 4 & 3];
-    order
-        .iter()
-        .all(|axis| *axis > 0)
-        .then(|| order.map(|axis| axis - 1))
+    order.iter().all(|axis| *axis > 0).then(|| order.map(|axis| axis - 1))
 }
 
 /// The rotary axes must stand where CYCLE800 names them: the first and second of the control's record, whose order the
@@ -398,9 +358,8 @@ fn stand_at(control: &Control, turns: [f64; 3]) -> Result<(), Box<Diagnostic>> {
         .map(|place| shown(control, place, &control.at.joints).to_degrees())
         .collect();
     for turn in &turns[..left.len().min(2)] {
-        let found = left
-            .iter()
-            .position(|angle| libm::fabs(libm::remainder(angle - turn, 360.0)) < 0.01);
+        let found =
+            left.iter().position(|angle| libm::fabs(libm::remainder(angle - turn, 360.0)) < 0.01);
         let Some(found) = found else {
             let message = format!(
                 "CYCLE800 turns a rotary axis to {turn}, where none stands: which is meant stands in the control's record of the head"

@@ -151,9 +151,6 @@ impl Control {
             let revolutions = meaning == Meaning::DwellTurns;
             return Ok(Told::Dwell { time, revolutions });
         }
-        Err(self.refuse(
-            "nc-dwell",
-            "the wait does not say how long in a way that is known",
-        ))
+        Err(self.refuse("nc-dwell", "the wait does not say how long in a way that is known"))
     }
 }

@@ -48,12 +48,7 @@ impl Gathering {
 
     /// The curve, in the coordinates of the program.
     fn way(self) -> SplineWay {
-        let Self {
-            even,
-            order,
-            poles,
-            mut knots,
-        } = self;
+        let Self { even, order, poles, mut knots } = self;
         if even {
             let spans = poles.len().saturating_sub(order) + 1;
             let last = poles.len().saturating_sub(1) + order;
@@ -61,11 +56,7 @@ impl Gathering {
             let even = (0..=last).map(|place| place.saturating_sub(order - 1).min(spans) as f64);
             knots = even.collect();
         }
-        SplineWay {
-            degree: order.saturating_sub(1),
-            knots,
-            poles,
-        }
+        SplineWay { degree: order.saturating_sub(1), knots, poles }
     }
 }
 
@@ -81,12 +72,8 @@ impl Control {
             return Err(self.refuse("nc-spline", "a spline under G91 is not run"));
         }
         self.motion(MotionMode::Spline);
-        let spline = self.spline.get_or_insert_with(|| {
-            Box::new(Gathering {
-                even,
-                ..Gathering::default()
-            })
-        });
+        let spline =
+            self.spline.get_or_insert_with(|| Box::new(Gathering { even, ..Gathering::default() }));
         match spline.even == even {
             true => Ok(()),
             false => Err(self.not_followed(code)),
@@ -113,10 +100,7 @@ impl Control {
             return Ok(());
         }
         self.spline = None;
-        Err(self.refuse(
-            "nc-spline",
-            "a spline is not at its end, and this is no part of it",
-        ))
+        Err(self.refuse("nc-spline", "a spline is not at its end, and this is no part of it"))
     }
 
     /// A block of a spline.
@@ -131,10 +115,7 @@ impl Control {
         let linear = bit(b'X') | bit(b'Y') | bit(b'Z');
         let others = words.present & self.axes.mask & !linear;
         if others != 0 || words.vector.is_some() || words.named_axes != 0 {
-            return Err(self.refuse(
-                "nc-spline",
-                "an axis besides X, Y and Z goes along a spline",
-            ));
+            return Err(self.refuse("nc-spline", "an axis besides X, Y and Z goes along a spline"));
         }
         if words.incremental != 0 {
             return Err(self.refuse("nc-spline", "a control point by ways is not run"));
@@ -183,10 +164,9 @@ impl Control {
                 Err(self.refuse("nc-spline", message))
             }
             Some(point) => self.pole(spline, point, weight.unwrap_or(1.0)),
-            None if weight.is_some() => Err(self.refuse(
-                "nc-spline",
-                "a weight of a spline without its control point",
-            )),
+            None if weight.is_some() => {
+                Err(self.refuse("nc-spline", "a weight of a spline without its control point"))
+            }
             None => Ok(()),
         }
     }
@@ -248,13 +228,8 @@ impl Control {
         if said.iter().all(Option::is_none) {
             return None;
         }
-        let last = spline
-            .poles
-            .last()
-            .map_or_else(|| self.point(), |last| last.0);
-        Some(Vector3::from_fn(|row, _| {
-            said[row].map_or(last[row], |value| value * unit)
-        }))
+        let last = spline.poles.last().map_or_else(|| self.point(), |last| last.0);
+        Some(Vector3::from_fn(|row, _| said[row].map_or(last[row], |value| value * unit)))
     }
 
     /// Goes along the spline that was told.
@@ -282,10 +257,7 @@ impl Control {
         way.poles[0].0 = from;
         let order = way.degree + 1;
         let ends = [&way.knots[..order], &way.knots[way.knots.len() - order..]];
-        if !ends
-            .iter()
-            .all(|knots| knots.iter().all(|knot| *knot == knots[0]))
-        {
+        if !ends.iter().all(|knots| knots.iter().all(|knot| *knot == knots[0])) {
             let message = "a spline that does not begin and end in its first and last control point, its knots there as many as the order, is not run";
             return Err(self.refuse("nc-spline", message));
         }

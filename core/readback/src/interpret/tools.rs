@@ -77,19 +77,12 @@ impl Control {
         if let Some(length) = self.tools.stated {
             return Ok(length);
         }
-        let register = if self.tools.by_tool {
-            None
-        } else {
-            self.state.length_register
-        };
+        let register = if self.tools.by_tool { None } else { self.state.length_register };
         if register == Some(0) {
             return Ok(0.0);
         }
-        let tool = if self.tools.by_tool || register.is_none() {
-            self.state.tool
-        } else {
-            register
-        };
+        let tool =
+            if self.tools.by_tool || register.is_none() { self.state.tool } else { register };
         // A register that holds 0 says nothing of how long the tool is.
         let registers: &[(u32, f64)] = match self.machine.length_axis {
             LengthAxis::None => &[],
@@ -103,11 +96,7 @@ impl Control {
             (None, Some(tool)) => format!("the length of tool {tool}"),
             (None, None) => "the length of the tool".to_owned(),
         };
-        let turned = self
-            .machine
-            .axes
-            .iter()
-            .any(|axis| axis.joint.rotary && !axis.carries_part);
+        let turned = self.machine.axes.iter().any(|axis| axis.joint.rotary && !axis.carries_part);
         let help = "state it by --offsets (a table [length] or [tool]), by --tool-length, or in [tools] of the machine file";
         if turned {
             let message = format!(
@@ -160,11 +149,7 @@ impl Control {
             along == place || direction(along).dot(&direction(place)) > 1.0 - 1e-6
         };
         // A tool that was measured leans a little, and so does what was measured with it.
-        if self
-            .machine
-            .lies_along()
-            .is_some_and(|(along, _)| beside(along, place))
-        {
+        if self.machine.lies_along().is_some_and(|(along, _)| beside(along, place)) {
             return exact;
         }
         let Some(mut zero) = self.machine.zero_of(0.0) else {
@@ -178,7 +163,5 @@ impl Control {
 /// The value of `wanted` in a table.
 fn find(list: &[(u32, f64)], wanted: Option<u32>) -> Option<f64> {
     let mut entries = list.iter();
-    entries
-        .find(|(number, _)| Some(*number) == wanted)
-        .map(|(_, length)| *length)
+    entries.find(|(number, _)| Some(*number) == wanted).map(|(_, length)| *length)
 }

@@ -32,11 +32,7 @@ pub(super) struct Variables {
 impl Variables {
     /// None is set.
     pub fn new(language: Language) -> Self {
-        Self {
-            language,
-            local: vec![BTreeMap::new()],
-            ..Self::default()
-        }
+        Self { language, local: vec![BTreeMap::new()], ..Self::default() }
     }
 
     /// Whose language it is.
@@ -130,10 +126,7 @@ impl Variables {
     /// A subprogram begins, with these variables of its own.
     pub fn enter(&mut self, own: impl IntoIterator<Item = (String, f64)>) {
         let own = own.into_iter();
-        self.local.push(
-            own.map(|(name, value)| (name, Value::Number(value)))
-                .collect(),
-        );
+        self.local.push(own.map(|(name, value)| (name, Value::Number(value))).collect());
     }
 
     /// A subprogram ends.
@@ -296,11 +289,7 @@ mod tests {
             (Language::Conversational, "QL120", true),
         ] {
             let mut variables = Variables::new(language);
-            assert_eq!(
-                variables.set(name, Value::Number(1.0)).is_ok(),
-                allowed,
-                "{name}"
-            );
+            assert_eq!(variables.set(name, Value::Number(1.0)).is_ok(), allowed, "{name}");
         }
     }
 

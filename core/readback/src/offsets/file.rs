@@ -32,12 +32,7 @@ impl Offsets {
     /// # Errors
     /// All that is wrong with it, each with its place.
     pub fn parse(text: &str, name: &str, machine: &Machine) -> Result<Self, Vec<Diagnostic>> {
-        let mut file = File {
-            name,
-            text,
-            machine,
-            faults: Vec::new(),
-        };
+        let mut file = File { name, text, machine, faults: Vec::new() };
         if text.len() > MOST_BYTES {
             let message =
                 format!("{name} is longer than {MOST_BYTES} bytes, which no table of offsets is");
@@ -88,11 +83,7 @@ impl Offsets {
                 }
             }
         }
-        if file.faults.is_empty() {
-            Ok(offsets)
-        } else {
-            Err(file.faults)
-        }
+        if file.faults.is_empty() { Ok(offsets) } else { Err(file.faults) }
     }
 }
 
@@ -146,17 +137,9 @@ impl File<'_> {
         let name = key.get_ref().as_ref();
         let place = self.machine.axes.iter().position(|axis| axis.name == name);
         if place.is_none() {
-            let axes: Vec<&str> = self
-                .machine
-                .axes
-                .iter()
-                .map(|axis| axis.name.as_str())
-                .collect();
-            let message = format!(
-                "{name} is no axis of {}, which has {}",
-                self.machine.name,
-                axes.join(" ")
-            );
+            let axes: Vec<&str> = self.machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+            let message =
+                format!("{name} is no axis of {}, which has {}", self.machine.name, axes.join(" "));
             self.fault(key.span(), &message, None);
         }
         place
@@ -164,11 +147,7 @@ impl File<'_> {
 
     fn work(&mut self, name: &str, axes: &DeTable<'_>) -> WorkOffset {
         let mut work = WorkOffset {
-            name: name
-                .split_whitespace()
-                .collect::<Vec<_>>()
-                .join(" ")
-                .to_ascii_uppercase(),
+            name: name.split_whitespace().collect::<Vec<_>>().join(" ").to_ascii_uppercase(),
             ..WorkOffset::default()
         };
         for (key, value) in axes {
@@ -248,22 +227,13 @@ mod tests {
         let text = "[work.G54]\nX = 10\nC = 90.0\n[work.\"G54.1 P3\"]\nZ = -2.5\n[length]\n1 = 120\n[radius]\n2 = 5.0\n[tool]\n7 = 80\n[reference.1]\nZ = 500\n";
         let machine = machine();
         let offsets = Offsets::parse(text, "o.toml", &machine).unwrap();
-        let place = |name: &str| {
-            machine
-                .axes
-                .iter()
-                .position(|axis| axis.name == name)
-                .unwrap()
-        };
+        let place = |name: &str| machine.axes.iter().position(|axis| axis.name == name).unwrap();
         assert_eq!(offsets.work[0].name, "G54");
         assert_eq!(offsets.work[0].shift[place("X")], 10.0);
         assert_eq!(offsets.work[0].shift[place("C")], 90f64.to_radians());
         assert_eq!(offsets.work[1].name, "G54.1 P3");
         assert_eq!(offsets.lengths, [(1, 120.0)]);
-        assert_eq!(
-            (offsets.radii, offsets.tools),
-            (vec![(2, 5.0)], vec![(7, 80.0)])
-        );
+        assert_eq!((offsets.radii, offsets.tools), (vec![(2, 5.0)], vec![(7, 80.0)]));
         assert_eq!(offsets.references[0].value, 500.0);
     }
 
@@ -276,17 +246,8 @@ mod tests {
             .map(|fault| (fault.place.as_ref().unwrap().line, fault.message.as_str()))
             .collect();
         assert_eq!(told.len(), 4, "{told:?}");
-        assert!(
-            told.contains(&(7, "one is no number of a register")),
-            "{told:?}"
-        );
-        assert!(
-            told.contains(&(4, "[lenght] is no table of offsets")),
-            "{told:?}"
-        );
-        assert!(
-            told.iter()
-                .any(|(line, text)| *line == 3 && text.starts_with("B is no axis"))
-        );
+        assert!(told.contains(&(7, "one is no number of a register")), "{told:?}");
+        assert!(told.contains(&(4, "[lenght] is no table of offsets")), "{told:?}");
+        assert!(told.iter().any(|(line, text)| *line == 3 && text.starts_with("B is no axis")));
     }
 }

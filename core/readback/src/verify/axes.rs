@@ -45,10 +45,7 @@ pub(crate) struct Axes {
 impl Axes {
     pub fn new(machine: &Machine) -> Self {
         let slowness = machine.slowness();
-        Self {
-            slowness,
-            limited: slowness.iter().any(|slowness| *slowness > 0.0),
-        }
+        Self { slowness, limited: slowness.iter().any(|slowness| *slowness > 0.0) }
     }
 
     /// An axis leaves its travel.
@@ -223,11 +220,7 @@ fn slides(motion: &Motion, slowness: &Joints, enough: f64) -> Option<Slides> {
         return None;
     }
     let trace = |joints: &Joints| {
-        let mut trace = Trace {
-            joints: *joints,
-            turns: chain.turns(joints),
-            ..Trace::default()
-        };
+        let mut trace = Trace { joints: *joints, turns: chain.turns(joints), ..Trace::default() };
         chain.trace(&mut trace);
         trace
     };
@@ -244,11 +237,7 @@ fn looked(motion: &Motion) -> impl Iterator<Item = Joints> + '_ {
             return Some(motion.to.joints);
         }
         let share = f64::from(look) / f64::from(looks);
-        let at = |near| {
-            motion
-                .way
-                .joints_at(&motion.state.solver, ends, share, near)
-        };
+        let at = |near| motion.way.joints_at(&motion.state.solver, ends, share, near);
         at(&motion.from.joints).ok()
     })
 }

@@ -75,12 +75,7 @@ pub(super) fn piece(piece: &Piece, along: f64, sag: &Bound, places: &mut Vec<Pla
         Curve::Arc { sweep, .. } => pieces_of(turn.max(sweep.abs())),
         Curve::Spline(way) => 2 * way.poles.len() + pieces_of(turn),
     };
-    chop(
-        |t| Place::new(&piece.at(t, along), along),
-        first,
-        sag,
-        places,
-    );
+    chop(|t| Place::new(&piece.at(t, along), along), first, sag, places);
 }
 
 fn pieces_of(turn: f64) -> usize {

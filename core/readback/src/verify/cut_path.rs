@@ -118,10 +118,7 @@ impl CutPath {
     }
 
     fn cube(&mut self, place: Vector3<f64>) -> u32 {
-        self.cubes.push(Cube {
-            children: [NONE; 8],
-            place,
-        });
+        self.cubes.push(Cube { children: [NONE; 8], place });
         (self.cubes.len() - 1) as u32
     }
 
@@ -159,10 +156,7 @@ impl CutPath {
     /// Cells of twice the edge.
     fn coarsen(&mut self) {
         let old = std::mem::take(&mut self.cubes);
-        let leaves = old
-            .iter()
-            .filter(|cube| cube.children == [NONE; 8])
-            .map(|cube| cube.place);
+        let leaves = old.iter().filter(|cube| cube.children == [NONE; 8]).map(|cube| cube.place);
         let leaves: Vec<Vector3<f64>> = leaves.collect();
         self.root = NONE;
         self.cell *= 2.0;
@@ -258,11 +252,7 @@ mod tests {
             }
             at = next;
         }
-        assert!(
-            path.cubes.len() <= MOST_CELLS + 16 && path.blur() < 40.0,
-            "{}",
-            path.blur()
-        );
+        assert!(path.cubes.len() <= MOST_CELLS + 16 && path.blur() < 40.0, "{}", path.blur());
         assert!(path.distance(at) <= path.blur());
     }
 }

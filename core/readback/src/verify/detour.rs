@@ -169,9 +169,7 @@ impl End {
         slack: f64,
     ) -> Option<Astray> {
         let ends = [&self.from, &self.joints];
-        let retracted = ends
-            .iter()
-            .all(|joints| retract::lacks(machine, joints, slack).is_none());
+        let retracted = ends.iter().all(|joints| retract::lacks(machine, joints, slack).is_none());
         let on_line = |pose: &Pose| {
             let way = self.pose.tip - pose.tip;
             let along = way.dot(&pose.axis);
@@ -198,11 +196,7 @@ impl End {
         slack: [f64; 2],
         lean: f64,
     ) -> Option<Astray> {
-        if !self.machine
-            && asked
-                .iter()
-                .any(|(_, pose)| self.on_the_line(pose, slack[0], lean))
-        {
+        if !self.machine && asked.iter().any(|(_, pose)| self.on_the_line(pose, slack[0], lean)) {
             return None;
         }
         // While the part turns or the head swings, the linear axes go round with it: but the depth goes no deeper than at all
@@ -297,7 +291,5 @@ impl End {
 fn span(asked: &[(Joints, Pose)], place: usize) -> [f64; 2] {
     let values = asked.iter().map(|(joints, _)| joints[place]);
     let ends = [f64::INFINITY, f64::NEG_INFINITY];
-    values.fold(ends, |[least, most], value| {
-        [least.min(value), most.max(value)]
-    })
+    values.fold(ends, |[least, most], value| [least.min(value), most.max(value)])
 }

@@ -44,9 +44,7 @@ impl<C: Course> Verifier<'_, C> {
         let mut stays = false;
         let due = self.track.get(index).is_some_and(|element| {
             // The end of the cut before, as it is rounded.
-            stays = [from, to]
-                .iter()
-                .all(|place| place.within(&element.from, &cut));
+            stays = [from, to].iter().all(|place| place.within(&element.from, &cut));
             let mut bound = bound;
             if element.from.axis != element.to.axis {
                 // How the axis goes from one end to the other is not asked for.

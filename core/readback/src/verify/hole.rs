@@ -68,21 +68,15 @@ impl Axis {
             true => way / depth,
             false => -element.from.axis,
         };
-        Self {
-            top: element.from,
-            down,
-            depth,
-        }
+        Self { top: element.from, down, depth }
     }
 
     /// How far down a place is, mm, and how far it is off.
     fn split(&self, place: &Place) -> (f64, Apart) {
         let offset = place.point - self.top.point;
         let depth = offset.dot(&self.down);
-        let apart = Apart {
-            point: (offset - self.down * depth).norm(),
-            axis: place.apart(&self.top).axis,
-        };
+        let apart =
+            Apart { point: (offset - self.down * depth).norm(), axis: place.apart(&self.top).axis };
         (depth, apart)
     }
 }
@@ -145,13 +139,7 @@ impl<C: Course> Verifier<'_, C> {
             let offset = places[0].point - axis.top.point;
             shift = offset - axis.down * offset.dot(&axis.down);
             let message = format!("a hole is {:.3} mm off its place", off.point);
-            self.fault(
-                "deviation",
-                message,
-                Some(motion),
-                Some(cl_line),
-                Some(off.point),
-            );
+            self.fault("deviation", message, Some(motion), Some(cl_line), Some(off.point));
         }
         if from > bound.point {
             let message =
@@ -252,13 +240,7 @@ impl<C: Course> Verifier<'_, C> {
                         "a rapid goes {:.3} mm into a hole that is cut {:.3} mm deep",
                         to, run.deepest
                     );
-                    self.fault(
-                        "hole",
-                        message,
-                        Some(motion),
-                        cl_line,
-                        Some(to - run.deepest),
-                    );
+                    self.fault("hole", message, Some(motion), cl_line, Some(to - run.deepest));
                 } else if to < from
                     && run.bottom
                     && from > bound.point
@@ -281,13 +263,7 @@ impl<C: Course> Verifier<'_, C> {
                         to,
                         axis.depth
                     );
-                    self.fault(
-                        "hole",
-                        message,
-                        Some(motion),
-                        cl_line,
-                        Some(to - axis.depth),
-                    );
+                    self.fault("hole", message, Some(motion), cl_line, Some(to - axis.depth));
                 }
                 run.deepest = run.deepest.max(to);
                 run.bottom |= run.deepest >= axis.depth - bound.point;
@@ -306,13 +282,7 @@ impl<C: Course> Verifier<'_, C> {
                     worst.point,
                     worst.axis.to_degrees()
                 );
-                self.fault(
-                    "deviation",
-                    message,
-                    Some(motion),
-                    cl_line,
-                    Some(worst.point),
-                );
+                self.fault("deviation", message, Some(motion), cl_line, Some(worst.point));
             } else {
                 self.note_deviation(worst, motion.line, element.line);
             }
@@ -320,10 +290,7 @@ impl<C: Course> Verifier<'_, C> {
                 self.compare_with(motion, &element);
                 self.compare_feed(motion, places, &at_the_speed_of(motion, &element));
             } else if run.bottom && asked.back == Some(MotionKind::Feed) {
-                let out = Element {
-                    feed: asked.out,
-                    ..element.clone()
-                };
+                let out = Element { feed: asked.out, ..element.clone() };
                 self.compare_feed(motion, places, &out);
             }
         }
@@ -418,38 +385,25 @@ impl<C: Course> Verifier<'_, C> {
         self.hole = None;
         self.next = Some(run.index + 1);
         self.apart = true;
-        self.reach
-            .iter_mut()
-            .for_each(|span| *span = super::place::Span::EMPTY);
+        self.reach.iter_mut().for_each(|span| *span = super::place::Span::EMPTY);
         let cl_line = Some(element.line);
         if !run.bottom {
             let message = format!(
                 "a hole is {:.3} mm deep, counted from where its feed begins, and the CL file asks for {depth:.3} mm",
                 run.deepest
             );
-            self.fault(
-                "hole",
-                message,
-                Some(motion),
-                cl_line,
-                Some(depth - run.deepest),
-            );
+            self.fault("hole", message, Some(motion), cl_line, Some(depth - run.deepest));
             return;
         }
         self.found.holes += 1;
-        let off = Apart {
-            point: libm::fabs(depth - run.deepest),
-            axis: 0.0,
-        };
+        let off = Apart { point: libm::fabs(depth - run.deepest), axis: 0.0 };
         self.note_deviation(off, motion.line, element.line);
         if let What::Hole(hole) = &element.what
             && let Some(dwell) = &hole.dwell
             && !run.dwelt
         {
-            let message = format!(
-                "{} at the bottom of a hole is left out",
-                state::event_name(dwell)
-            );
+            let message =
+                format!("{} at the bottom of a hole is left out", state::event_name(dwell));
             self.fault("event", message, Some(motion), cl_line, None);
         }
     }

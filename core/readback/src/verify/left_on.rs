@@ -36,10 +36,7 @@ impl Change {
     ) -> impl Iterator<Item = (&'static str, String)> {
         let turns = (spindle && turns(self.spindle)).then(|| {
             let name = spindle_name(self.spindle);
-            (
-                "spindle",
-                format!("the tool is changed while the spindle {name}"),
-            )
+            ("spindle", format!("the tool is changed while the spindle {name}"))
         });
         let flows = (coolants && self.coolants != Coolants::default()).then(|| {
             let name = coolant_name(self.coolants);
@@ -51,10 +48,7 @@ impl Change {
 
 /// A spindle that turns its tool.
 fn turns(spindle: Spindle) -> bool {
-    matches!(
-        spindle,
-        Spindle::Clockwise(_) | Spindle::CounterClockwise(_)
-    )
+    matches!(spindle, Spindle::Clockwise(_) | Spindle::CounterClockwise(_))
 }
 
 impl<C: Course> Verifier<'_, C> {
@@ -132,24 +126,12 @@ impl<C: Course> Verifier<'_, C> {
             let name = spindle_name(running.spindle);
             let message =
                 format!("the spindle {name} when the program is over, and nothing stops it");
-            self.fault_at(
-                "spindle",
-                message,
-                Some((running.lines[0], None)),
-                None,
-                None,
-            );
+            self.fault_at("spindle", message, Some((running.lines[0], None)), None, None);
         }
         if running.coolants != Coolants::default() {
             let name = coolant_name(running.coolants);
             let message = format!("{name} flows when the program is over, and nothing stops it");
-            self.fault_at(
-                "coolant",
-                message,
-                Some((running.lines[1], None)),
-                None,
-                None,
-            );
+            self.fault_at("coolant", message, Some((running.lines[1], None)), None, None);
         }
     }
 
@@ -157,12 +139,7 @@ impl<C: Course> Verifier<'_, C> {
         let known = &mut self.found.left_on;
         match known.iter_mut().find(|known| known.code == code) {
             Some(known) => known.count += 1,
-            None => known.push(super::LeftOn {
-                line,
-                code,
-                message,
-                count: 1,
-            }),
+            None => known.push(super::LeftOn { line, code, message, count: 1 }),
         }
     }
 }

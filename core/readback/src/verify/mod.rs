@@ -205,10 +205,7 @@ impl<'m, C: Course> Verifier<'m, C> {
         let widened = |mm: f64, angle: f64| {
             let bound = Bound::new(mm + COMPUTED, angle + COMPUTED);
             // Both sides are cut into pieces.
-            Bound {
-                point: bound.point + 2.0 * sag.point,
-                axis: bound.axis + 2.0 * sag.axis,
-            }
+            Bound { point: bound.point + 2.0 * sag.point, axis: bound.axis + 2.0 * sag.axis }
         };
         Self {
             machine,
@@ -296,11 +293,7 @@ impl<'m, C: Course> Verifier<'m, C> {
                 {
                     last.passing = true;
                 }
-                self.turned.push(Turned {
-                    spindle: *spindle,
-                    line,
-                    passing: false,
-                });
+                self.turned.push(Turned { spindle: *spindle, line, passing: false });
             }
             _ => {}
         }
@@ -379,11 +372,7 @@ impl<'m, C: Course> Verifier<'m, C> {
     }
 
     fn axis_fault(&mut self, motion: &Motion, (code, message, by): (&'static str, String, f64)) {
-        let key = message
-            .split(" would ")
-            .next()
-            .unwrap_or_default()
-            .to_owned();
+        let key = message.split(" would ").next().unwrap_or_default().to_owned();
         self.limit_fault(code, key, message, motion, 0, by);
     }
 

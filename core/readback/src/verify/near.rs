@@ -40,9 +40,7 @@ impl<C: Course> Verifier<'_, C> {
             self.fault("rapid", message, Some(motion), None, Some(by));
         } else {
             self.found.near_rapids += 1;
-            self.found
-                .nearest_rapid
-                .get_or_insert((motion.line, message));
+            self.found.nearest_rapid.get_or_insert((motion.line, message));
         }
     }
 

@@ -57,10 +57,8 @@ impl<C: Course> Verifier<'_, C> {
         let Some(index) = self.behind_events(next) else {
             return false;
         };
-        let due = self
-            .track
-            .get(index)
-            .is_some_and(|element| matches!(element.what, What::Hole(_)));
+        let due =
+            self.track.get(index).is_some_and(|element| matches!(element.what, What::Hole(_)));
         if due {
             self.next = Some(index);
         }
@@ -243,11 +241,7 @@ impl<C: Course> Verifier<'_, C> {
         let Some((factor, index, span)) = best else {
             return;
         };
-        let line = self
-            .track
-            .kept()
-            .get(index)
-            .map_or(0, |element| element.line);
+        let line = self.track.kept().get(index).map_or(0, |element| element.line);
         self.reach.clear();
         self.reach.resize(index + 1, Span::EMPTY);
         self.reach[index] = span;
@@ -293,10 +287,7 @@ impl<C: Course> Verifier<'_, C> {
             }
             index += 1;
         }
-        let message = format!(
-            "{} that the CL file does not ask for",
-            state::event_name(told)
-        );
+        let message = format!("{} that the CL file does not ask for", state::event_name(told));
         self.fault_at("event", message, place, None, None);
     }
 
@@ -320,11 +311,7 @@ impl<C: Course> Verifier<'_, C> {
         self.look_for_detours(None);
         let from = match self.next {
             Some(next) => next,
-            None => self
-                .reach
-                .iter()
-                .rposition(|span| !span.is_empty())
-                .unwrap_or(0),
+            None => self.reach.iter().rposition(|span| !span.is_empty()).unwrap_or(0),
         };
         let mut lines: [Option<[u64; 2]>; 2] = [None, None];
         let mut index = from;

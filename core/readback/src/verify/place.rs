@@ -46,11 +46,7 @@ const SHORT: f64 = 1e-12;
 impl Place {
     /// Of the point `along` mm above the tip, towards the holder.
     pub fn new(pose: &Pose, along: f64) -> Self {
-        Self {
-            point: pose.tip + pose.axis * along,
-            axis: pose.axis,
-            edge: pose.edge_across(),
-        }
+        Self { point: pose.tip + pose.axis * along, axis: pose.axis, edge: pose.edge_across() }
     }
 
     pub fn between(&self, other: &Self, share: f64) -> Self {
@@ -100,26 +96,17 @@ impl Bound {
 
     /// From `point` mm and `angle` radians.
     pub fn new(point: f64, angle: f64) -> Self {
-        Self {
-            point,
-            axis: 2.0 * libm::sin(0.5 * angle.min(std::f64::consts::PI)),
-        }
+        Self { point, axis: 2.0 * libm::sin(0.5 * angle.min(std::f64::consts::PI)) }
     }
 }
 
 impl Apart {
     pub fn larger(&self, other: &Self) -> Self {
-        Self {
-            point: self.point.max(other.point),
-            axis: self.axis.max(other.axis),
-        }
+        Self { point: self.point.max(other.point), axis: self.axis.max(other.axis) }
     }
 
     pub fn smaller(&self, other: &Self) -> Self {
-        Self {
-            point: self.point.min(other.point),
-            axis: self.axis.min(other.axis),
-        }
+        Self { point: self.point.min(other.point), axis: self.axis.min(other.axis) }
     }
 }
 
@@ -132,10 +119,7 @@ impl Span {
     }
 
     pub fn meet(&self, other: &Self) -> Self {
-        Self {
-            from: self.from.max(other.from),
-            to: self.to.min(other.to),
-        }
+        Self { from: self.from.max(other.from), to: self.to.min(other.to) }
     }
 }
 
@@ -148,12 +132,7 @@ pub(super) fn angle_of(chord: f64) -> f64 {
 #[inline]
 pub(super) fn free(place: &Place, a: &Place, b: &Place, bound: &Bound) -> Span {
     let mut span = Span::WHOLE;
-    narrow(
-        &mut span,
-        a.point - place.point,
-        b.point - a.point,
-        bound.point,
-    );
+    narrow(&mut span, a.point - place.point, b.point - a.point, bound.point);
     // Most pieces keep their tool axis, and lie on one that is kept.
     if !span.is_empty() && (a.axis != place.axis || b.axis != a.axis) {
         narrow(&mut span, a.axis - place.axis, b.axis - a.axis, bound.axis);
@@ -181,10 +160,7 @@ fn narrow(span: &mut Span, offset: Vector3<f64>, way: Vector3<f64>, most: f64) {
         return;
     }
     let half = (rest / square).sqrt();
-    *span = span.meet(&Span {
-        from: nearest - half,
-        to: nearest + half,
-    });
+    *span = span.meet(&Span { from: nearest - half, to: nearest + half });
 }
 
 /// How near the piece from `a` to `b` comes to `place` on `span` of it: point and directions each for itself.
@@ -206,8 +182,5 @@ pub(super) fn nearest(place: &Place, a: &Place, b: &Place, span: &Span) -> Apart
     if place.has_edge() && a.has_edge() {
         chord = chord.max(least(a.edge - place.edge, b.edge - a.edge));
     }
-    Apart {
-        point,
-        axis: angle_of(chord),
-    }
+    Apart { point, axis: angle_of(chord) }
 }

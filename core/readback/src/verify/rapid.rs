@@ -196,10 +196,7 @@ impl<C: Course> Verifier<'_, C> {
                         if span.is_empty() || span.to < least {
                             break;
                         }
-                        let span = span.meet(&Span {
-                            from: least,
-                            to: 1.0,
-                        });
+                        let span = span.meet(&Span { from: least, to: 1.0 });
                         let near = nearest(&element.to, &ends[0], &ends[1], &span);
                         least = span.from;
                         let (line, place) = (element.line, element.to);

@@ -71,11 +71,7 @@ pub struct Worst {
 impl Worst {
     pub(super) fn take(&mut self, value: f64, nc_line: u64, cl_line: u64) {
         if value > self.value {
-            *self = Self {
-                value,
-                nc_line,
-                cl_line,
-            };
+            *self = Self { value, nc_line, cl_line };
         }
     }
 }
@@ -112,9 +108,7 @@ impl Fault {
         if self.count > 1 {
             message.push_str(&format!("; so in {} places", self.count));
         }
-        let place = self
-            .nc_line
-            .map(|line| Place::new(file, line, text, 0..text.trim_end().len()));
+        let place = self.nc_line.map(|line| Place::new(file, line, text, 0..text.trim_end().len()));
         Diagnostic::error(self.code, message).at(place)
     }
 }

@@ -20,11 +20,7 @@ pub(super) fn lacks(machine: &Machine, joints: &Joints, slack: f64) -> Option<(u
         let away = machine.axes[*place].joint.direction.dot(&machine.tool_axis);
         let by = retract - joints[*place];
         // Where the file says how the tool leaves, its axes stand there, and nowhere beyond.
-        let by = if leaves {
-            libm::fabs(by)
-        } else {
-            away.signum() * by
-        };
+        let by = if leaves { libm::fabs(by) } else { away.signum() * by };
         (*place, by)
     });
     let short = lacks.filter(|(place, by)| {
@@ -47,8 +43,7 @@ fn off_change(machine: &Machine, joints: &Joints, slack: f64) -> Option<(usize, 
         }
         (*place, libm::fabs(apart) / axis.unit())
     });
-    off.filter(|(_, by)| *by > slack)
-        .max_by(|(_, one), (_, other)| one.total_cmp(other))
+    off.filter(|(_, by)| *by > slack).max_by(|(_, one), (_, other)| one.total_cmp(other))
 }
 
 impl<C: Course> Verifier<'_, C> {

@@ -50,9 +50,7 @@ impl<C: Course> Verifier<'_, C> {
         let on = |other: &&Element| {
             let free = |place: &Place| free(place, &other.from, &other.to, &self.bound);
             let forward = ahead.dot(&(other.to.point - other.from.point)) >= 0.0;
-            let whole = [first, middle, end]
-                .iter()
-                .all(|place| !free(place).is_empty());
+            let whole = [first, middle, end].iter().all(|place| !free(place).is_empty());
             other.is_cut() && forward && whole
         };
         let kept = self.track.kept().iter().take(last + 1);
@@ -63,9 +61,7 @@ impl<C: Course> Verifier<'_, C> {
     /// The element of the course that a motion follows: where all that it may follow ask for the same, any of them; else
     /// that at the middle of its way.
     fn element_of(&mut self, places: &[Place]) -> Option<Element> {
-        let bound = self
-            .bound
-            .times(self.stray.map_or(1.0, |stray| stray.factor));
+        let bound = self.bound.times(self.stray.map_or(1.0, |stray| stray.factor));
         let last = self.reach.iter().rposition(|span| !span.is_empty())?;
         let middle = match places.len() {
             2 => places[0].between(&places[1], 0.5),
@@ -282,13 +278,7 @@ impl<C: Course> Verifier<'_, C> {
                 }
             }
         };
-        self.fault(
-            "work-offset",
-            message,
-            Some(motion),
-            Some(element.line),
-            None,
-        );
+        self.fault("work-offset", message, Some(motion), Some(element.line), None);
     }
 
     /// What is compensated is the length that the tool has, as far as that is known.
@@ -298,20 +288,16 @@ impl<C: Course> Verifier<'_, C> {
         };
         let of = |known: &[(u32, f64)], wanted: u32| {
             let mut known = known.iter();
-            known
-                .find(|(number, _)| *number == wanted)
-                .map(|(_, length)| *length)
+            known.find(|(number, _)| *number == wanted).map(|(_, length)| *length)
         };
         let mut registers = self.rules.tool_registers.iter();
-        let register = registers
-            .find(|(number, _)| *number == tool)
-            .map_or(tool, |(_, register)| *register);
+        let register =
+            registers.find(|(number, _)| *number == tool).map_or(tool, |(_, register)| *register);
         let Some(offsets) = &self.rules.lengths else {
             return;
         };
-        let length = of(&offsets.tools, tool)
-            .or_else(|| of(&offsets.lengths, register))
-            .or(offsets.length);
+        let length =
+            of(&offsets.tools, tool).or_else(|| of(&offsets.lengths, register)).or(offsets.length);
         let has = motion.state.length;
         if let Some(length) = length
             && libm::fabs(has - length) > SHORT
@@ -330,9 +316,7 @@ impl<C: Course> Verifier<'_, C> {
         };
         let of_tool = || {
             let mut known = self.rules.tool_registers.iter();
-            known
-                .find(|(number, _)| *number == tool)
-                .map_or(tool, |(_, register)| *register)
+            known.find(|(number, _)| *number == tool).map_or(tool, |(_, register)| *register)
         };
         let wants = match self.rules.registers {
             Registers::None => return,
@@ -373,10 +357,7 @@ impl<C: Course> Verifier<'_, C> {
         let Some(asked) = element.feed else {
             return;
         };
-        let way: f64 = places
-            .windows(2)
-            .map(|ends| (ends[1].point - ends[0].point).norm())
-            .sum();
+        let way: f64 = places.windows(2).map(|ends| (ends[1].point - ends[0].point).norm()).sum();
         if way < SHORT {
             return;
         }
@@ -454,10 +435,7 @@ pub(super) fn event_name(told: &Told) -> String {
     match told {
         Told::Stop => "a stop".to_owned(),
         Told::OptionalStop => "an optional stop".to_owned(),
-        Told::Dwell {
-            time,
-            revolutions: true,
-        } => format!("a dwell of {time} turns"),
+        Told::Dwell { time, revolutions: true } => format!("a dwell of {time} turns"),
         Told::Dwell { time, .. } => format!("a dwell of {time} s"),
         other => format!("{other:?}"),
     }
@@ -466,13 +444,7 @@ pub(super) fn event_name(told: &Told) -> String {
 /// The program does what is asked, while the spindle turns as the course has it: turns of a dwell take their time.
 pub(super) fn same_event(asked: &Told, done: &Told, spindle: Spindle) -> bool {
     match (asked, done) {
-        (
-            Told::Dwell {
-                time: asked,
-                revolutions: turns,
-            },
-            Told::Dwell { time, revolutions },
-        ) => {
+        (Told::Dwell { time: asked, revolutions: turns }, Told::Dwell { time, revolutions }) => {
             let rpm = spindle.rpm().unwrap_or(0.0);
             let [asked, time] = match turns == revolutions {
                 true => [*asked, *time],
@@ -523,16 +495,8 @@ pub(super) fn same_spindle(has: Spindle, wants: Spindle) -> bool {
         | (Spindle::CounterClockwise(a), Spindle::CounterClockwise(b)) => same(a, b),
         (Spindle::Off | Spindle::Oriented, Spindle::Off | Spindle::Oriented) => true,
         (
-            Spindle::Surface {
-                speed: a,
-                most: most_a,
-                clockwise: sense_a,
-            },
-            Spindle::Surface {
-                speed: b,
-                most: most_b,
-                clockwise: sense_b,
-            },
+            Spindle::Surface { speed: a, most: most_a, clockwise: sense_a },
+            Spindle::Surface { speed: b, most: most_b, clockwise: sense_b },
         ) => {
             let bounded = match (most_a, most_b) {
                 (Some(a), Some(b)) => same(a, b),
@@ -551,9 +515,7 @@ pub(super) fn spindle_name(spindle: Spindle) -> String {
         Spindle::Oriented => "stands at an angle".to_owned(),
         Spindle::Clockwise(rpm) => format!("turns clockwise at {rpm}/min"),
         Spindle::CounterClockwise(rpm) => format!("turns counter-clockwise at {rpm}/min"),
-        Spindle::Surface {
-            speed, clockwise, ..
-        } => {
+        Spindle::Surface { speed, clockwise, .. } => {
             let sense = match clockwise {
                 true => "clockwise",
                 false => "counter-clockwise",
@@ -564,16 +526,9 @@ pub(super) fn spindle_name(spindle: Spindle) -> String {
 }
 
 pub(super) fn coolant_name(coolants: Coolants) -> String {
-    let names = [
-        (coolants.flood, "flood"),
-        (coolants.mist, "mist"),
-        (coolants.other, "another coolant"),
-    ];
-    let on: Vec<&str> = names
-        .iter()
-        .filter(|(on, _)| *on)
-        .map(|(_, name)| *name)
-        .collect();
+    let names =
+        [(coolants.flood, "flood"), (coolants.mist, "mist"), (coolants.other, "another coolant")];
+    let on: Vec<&str> = names.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
     match on.is_empty() {
         true => "no coolant".to_owned(),
         false => on.join(" and "),

@@ -151,12 +151,10 @@ impl<C: Course> Verifier<'_, C> {
             .reach
             .iter()
             .zip(kept)
-            .map(
-                |(span, element)| match span.is_empty() || !element.is_cut() {
-                    true => Span::EMPTY,
-                    false => span.meet(&free(place, &element.from, &element.to, &bound)),
-                },
-            )
+            .map(|(span, element)| match span.is_empty() || !element.is_cut() {
+                true => Span::EMPTY,
+                false => span.meet(&free(place, &element.from, &element.to, &bound)),
+            })
             .collect();
         if narrowed.iter().any(|span| !span.is_empty()) {
             self.reach = narrowed;
@@ -253,10 +251,7 @@ impl<C: Course> Verifier<'_, C> {
         reach: &[Span],
         out: &mut Vec<Span>,
     ) -> Column {
-        let mut column = Column {
-            here: None,
-            stopped: None,
-        };
+        let mut column = Column { here: None, stopped: None };
         let mut apart: Option<Apart> = None;
         // The element that the piece leads to, and how far its end is from it.
         let (mut line, mut off) = (0, f64::INFINITY);
@@ -294,28 +289,19 @@ impl<C: Course> Verifier<'_, C> {
                 if edge.from <= 0.0 && !edge.is_empty() {
                     below = match below.is_empty() {
                         true => edge,
-                        false => Span {
-                            from: 0.0,
-                            to: edge.to,
-                        },
+                        false => Span { from: 0.0, to: edge.to },
                     };
                 }
             }
             let right = free(to, &element.from, &element.to, &bound);
             let right = match below.is_empty() {
                 false => right,
-                true => right.meet(&Span {
-                    from: left.from,
-                    to: 1.0,
-                }),
+                true => right.meet(&Span { from: left.from, to: 1.0 }),
             };
             let top = free(&element.to, from, to, &bound);
             let top = match left.is_empty() {
                 false => top,
-                true => top.meet(&Span {
-                    from: below.from,
-                    to: 1.0,
-                }),
+                true => top.meet(&Span { from: below.from, to: 1.0 }),
             };
             if !right.is_empty() {
                 let near = nearest(to, &element.from, &element.to, &right);

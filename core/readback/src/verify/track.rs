@@ -113,10 +113,7 @@ const MOST_APPROACH: usize = 64;
 const MOST_FAULTS: usize = 50;
 
 /// Infinitely far.
-const FAR: Apart = Apart {
-    point: f64::INFINITY,
-    axis: f64::INFINITY,
-};
+const FAR: Apart = Apart { point: f64::INFINITY, axis: f64::INFINITY };
 
 impl<C: Course> Track<C> {
     pub fn new(course: C, along: f64, sag: Bound) -> Self {
@@ -343,20 +340,13 @@ impl<C: Course> Track<C> {
                 self.cycle = None;
             }
             Told::Dwell { .. } if self.hole.is_some() => {
-                if let Some(Element {
-                    what: What::Hole(hole),
-                    ..
-                }) = &mut self.hole
-                {
+                if let Some(Element { what: What::Hole(hole), .. }) = &mut self.hole {
                     hole.dwell = Some(told);
                 }
             }
             Told::Dwell { .. } | Told::Stop | Told::OptionalStop => {
                 self.end_hole();
-                let at = self
-                    .elements
-                    .back()
-                    .map_or_else(Place::default, |last| last.to);
+                let at = self.elements.back().map_or_else(Place::default, |last| last.to);
                 self.push(line, What::Event(told, false), (at, at), None);
             }
             _ => {}

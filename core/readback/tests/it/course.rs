@@ -17,16 +17,10 @@ use post_testmachines::Random;
 type V = Vector3<f64>;
 
 fn solver(joints: Vec<Joint>, mount: V, tip: V, axis: V) -> Arc<Solver> {
-    let rotary = (0..joints.len())
-        .filter(|place| joints[*place].rotary)
-        .collect();
+    let rotary = (0..joints.len()).filter(|place| joints[*place].rotary).collect();
     let chain = Chain::new(joints, mount, tip, axis);
-    let freedom = Freedom {
-        rotary,
-        still: Vec::new(),
-        held: Joints::default(),
-        seconds: Vec::new(),
-    };
+    let freedom =
+        Freedom { rotary, still: Vec::new(), held: Joints::default(), seconds: Vec::new() };
     Arc::new(Solver::with(chain, &freedom).unwrap())
 }
 
@@ -50,10 +44,7 @@ fn state(solver: &Arc<Solver>) -> Arc<State> {
 }
 
 fn motion(state: &Arc<State>, way: Way, from: Joints, to: Joints) -> Motion {
-    let stance = |joints: Joints| Stance {
-        joints,
-        pose: state.solver.chain().forward(&joints),
-    };
+    let stance = |joints: Joints| Stance { joints, pose: state.solver.chain().forward(&joints) };
     Motion {
         line: 1,
         number: None,
@@ -112,9 +103,8 @@ fn random_machines_go_where_matrices_say_and_chords_stay_near() {
         let motion = motion(&state, Way::Axes, from, to);
         for step in 0..=8 {
             let t = f64::from(step) / 8.0;
-            let between: Vec<f64> = (0..from.len())
-                .map(|place| from[place] + (to[place] - from[place]) * t)
-                .collect();
+            let between: Vec<f64> =
+                (0..from.len()).map(|place| from[place] + (to[place] - from[place]) * t).collect();
             let (tip, axis) = reference.forward(&between);
             let pose = motion.at(t);
             assert!((pose.tip - tip).norm() < 1e-9 * 1e3);
@@ -129,14 +119,8 @@ fn random_machines_go_where_matrices_say_and_chords_stay_near() {
             let piece = rng.pick(count as usize) as u64;
             let t = rng.range(0.0, 1.0);
             let (tip, turn) = strays(&motion, count, piece, t);
-            assert!(
-                tip <= chord * 1.000_001,
-                "{tip} mm of {chord} in {count} pieces"
-            );
-            assert!(
-                turn <= angle * 1.000_001,
-                "{turn} of {angle} in {count} pieces"
-            );
+            assert!(tip <= chord * 1.000_001, "{tip} mm of {chord} in {count} pieces");
+            assert!(turn <= angle * 1.000_001, "{turn} of {angle} in {count} pieces");
             closest = closest.max(tip / chord);
         }
     }
@@ -146,16 +130,8 @@ fn random_machines_go_where_matrices_say_and_chords_stay_near() {
 
 /// A table turned about Z, and three axes that carry the tool.
 fn turntable() -> Arc<State> {
-    let linear = |direction: V| Joint {
-        rotary: false,
-        direction,
-        point: V::zeros(),
-    };
-    let c = Joint {
-        rotary: true,
-        direction: V::z(),
-        point: V::zeros(),
-    };
+    let linear = |direction: V| Joint { rotary: false, direction, point: V::zeros() };
+    let c = Joint { rotary: true, direction: V::z(), point: V::zeros() };
     let joints = vec![c, linear(V::x()), linear(V::y()), linear(V::z())];
     state(&solver(joints, V::zeros(), V::zeros(), V::z()))
 }
@@ -169,12 +145,7 @@ fn at(c: f64, x: f64, y: f64, z: f64) -> Joints {
 #[test]
 fn a_table_that_turns_under_a_standing_tool_draws_a_circle() {
     let state = turntable();
-    let whole = motion(
-        &state,
-        Way::Axes,
-        at(0.0, 30.0, 0.0, 5.0),
-        at(TAU, 30.0, 0.0, 5.0),
-    );
+    let whole = motion(&state, Way::Axes, at(0.0, 30.0, 0.0, 5.0), at(TAU, 30.0, 0.0, 5.0));
     for step in 0..=16 {
         let t = f64::from(step) / 16.0;
         let tip = whole.at(t).tip;
@@ -187,13 +158,8 @@ fn a_table_that_turns_under_a_standing_tool_draws_a_circle() {
     assert!(sagitta(count as f64 * 0.9) > 0.01, "{count}");
     // The tool points where it did: its axis asks for no pieces.
     assert_eq!(
-        motion(
-            &state,
-            Way::Tip,
-            at(0.0, 30.0, 0.0, 5.0),
-            at(TAU, 30.0, 0.0, 5.0)
-        )
-        .pieces(0.01, 1e-3),
+        motion(&state, Way::Tip, at(0.0, 30.0, 0.0, 5.0), at(TAU, 30.0, 0.0, 5.0))
+            .pieces(0.01, 1e-3),
         1
     );
 }
@@ -201,27 +167,13 @@ fn a_table_that_turns_under_a_standing_tool_draws_a_circle() {
 #[test]
 fn arcs_splines_and_kept_tips_go_as_they_say() {
     let state = turntable();
-    let way = Way::Arc {
-        centre: V::new(0.0, 0.0, 9.0),
-        normal: -V::z(),
-        sweep: 0.75 * TAU,
-    };
-    let mut arc = motion(
-        &state,
-        way,
-        at(0.0, 10.0, 0.0, 0.0),
-        at(0.0, 0.0, 10.0, 3.0),
-    );
+    let way = Way::Arc { centre: V::new(0.0, 0.0, 9.0), normal: -V::z(), sweep: 0.75 * TAU };
+    let mut arc = motion(&state, way, at(0.0, 10.0, 0.0, 0.0), at(0.0, 0.0, 10.0, 3.0));
     assert!((arc.at(1.0 / 3.0).tip - V::new(0.0, -10.0, 1.0)).norm() < 1e-12);
     assert!((arc.at(2.0 / 3.0).tip - V::new(-10.0, 0.0, 2.0)).norm() < 1e-12);
     assert!((arc.at(1.0).tip - arc.to.pose.tip).norm() < 1e-12);
     // A cubic from the corners of a square is Bernstein's sum.
-    let corners = [
-        V::zeros(),
-        V::x() * 6.0,
-        V::new(6.0, 6.0, 0.0),
-        V::y() * 6.0,
-    ];
+    let corners = [V::zeros(), V::x() * 6.0, V::new(6.0, 6.0, 0.0), V::y() * 6.0];
     let way = Arc::new(SplineWay {
         degree: 3,
         knots: vec![0.0, 0.0, 0.0, 0.0, 2.0, 2.0, 2.0, 2.0],
@@ -252,11 +204,7 @@ fn arcs_splines_and_kept_tips_go_as_they_say() {
 
 #[test]
 fn a_control_point_above_the_tip_goes_straight() {
-    let pose = |tip: V, axis: V| Pose {
-        tip,
-        axis: axis.normalize(),
-        edge: V::zeros(),
-    };
+    let pose = |tip: V, axis: V| Pose { tip, axis: axis.normalize(), edge: V::zeros() };
     let piece = Piece {
         line: 1,
         kind: MotionKind::Feed,
@@ -291,12 +239,7 @@ impl Program for Blocks {
 }
 
 fn course(blocks: Vec<Vec<Done>>) -> Vec<Item> {
-    let chords = Chords {
-        tip: 0.001,
-        axis: 1e-3,
-        rapid: 0.5,
-        rapid_axis: 0.1,
-    };
+    let chords = Chords { tip: 0.001, axis: 1e-3, rapid: 0.5, rapid_axis: 0.1 };
     let mut course = DoneCourse::new(Blocks(blocks), chords);
     std::iter::from_fn(|| course.next().unwrap()).collect()
 }
@@ -313,12 +256,7 @@ fn rapid(state: &Arc<State>, from: Joints, to: Joints, machine: bool) -> Vec<Don
 fn what_only_the_first_machine_does_is_no_path_of_the_part() {
     let state = turntable();
     let told = |told: Told| vec![Done::Told { line: 1, told }];
-    let change = || {
-        told(Told::ToolChange {
-            number: Some(1),
-            name: None,
-        })
-    };
+    let change = || told(Told::ToolChange { number: Some(1), name: None });
     let zero = at(0.0, 0.0, 0.0, 0.0);
     let up = at(0.0, 0.0, 0.0, 400.0);
     let items = course(vec![
@@ -326,24 +264,9 @@ fn what_only_the_first_machine_does_is_no_path_of_the_part() {
         rapid(&state, zero, up, true),
         change(),
         rapid(&state, up, at(1.0, 0.0, 0.0, 400.0), false),
-        rapid(
-            &state,
-            at(1.0, 0.0, 0.0, 400.0),
-            at(1.0, 50.0, 20.0, 400.0),
-            false,
-        ),
-        rapid(
-            &state,
-            at(1.0, 50.0, 20.0, 400.0),
-            at(1.0, 50.0, 20.0, 10.0),
-            false,
-        ),
-        rapid(
-            &state,
-            at(1.0, 50.0, 20.0, 10.0),
-            at(1.0, 50.0, 20.0, 2.0),
-            false,
-        ),
+        rapid(&state, at(1.0, 0.0, 0.0, 400.0), at(1.0, 50.0, 20.0, 400.0), false),
+        rapid(&state, at(1.0, 50.0, 20.0, 400.0), at(1.0, 50.0, 20.0, 10.0), false),
+        rapid(&state, at(1.0, 50.0, 20.0, 10.0), at(1.0, 50.0, 20.0, 2.0), false),
         vec![Done::Motion(motion(
             &state,
             Way::Axes,
@@ -351,18 +274,8 @@ fn what_only_the_first_machine_does_is_no_path_of_the_part() {
             at(1.0, 60.0, 20.0, 2.0),
         ))],
         // Away, and nothing more.
-        rapid(
-            &state,
-            at(1.0, 60.0, 20.0, 2.0),
-            at(1.0, 60.0, 20.0, 400.0),
-            true,
-        ),
-        rapid(
-            &state,
-            at(1.0, 60.0, 20.0, 400.0),
-            at(0.0, 0.0, 0.0, 400.0),
-            false,
-        ),
+        rapid(&state, at(1.0, 60.0, 20.0, 2.0), at(1.0, 60.0, 20.0, 400.0), true),
+        rapid(&state, at(1.0, 60.0, 20.0, 400.0), at(0.0, 0.0, 0.0, 400.0), false),
     ]);
     let kinds: Vec<&str> = items
         .iter()
@@ -388,12 +301,7 @@ fn what_only_the_first_machine_does_is_no_path_of_the_part() {
 #[test]
 fn a_swing_of_the_table_at_feed_is_cut_into_chords_of_its_own_speed() {
     let state = turntable();
-    let swing = motion(
-        &state,
-        Way::Axes,
-        at(0.0, 30.0, 0.0, 5.0),
-        at(1.0, 60.0, 0.0, 5.0),
-    );
+    let swing = motion(&state, Way::Axes, at(0.0, 30.0, 0.0, 5.0), at(1.0, 60.0, 0.0, 5.0));
     let items = course(vec![vec![Done::Motion(swing.clone())]]);
     let pieces: Vec<&Piece> = items
         .iter()
@@ -404,10 +312,7 @@ fn a_swing_of_the_table_at_feed_is_cut_into_chords_of_its_own_speed() {
         .collect();
     assert!(pieces.len() > 20);
     // All of them together take as long as the block.
-    let minutes: f64 = pieces
-        .iter()
-        .map(|piece| piece.length() / piece.feed.unwrap())
-        .sum();
+    let minutes: f64 = pieces.iter().map(|piece| piece.length() / piece.feed.unwrap()).sum();
     assert!((minutes - swing.minutes).abs() < 1e-12);
     // Farther out the part passes faster.
     assert!(pieces[pieces.len() - 1].feed > pieces[0].feed);

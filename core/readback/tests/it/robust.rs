@@ -18,11 +18,7 @@ use crate::interpret::machine;
 const PROGRAMS: [(&str, &str, &str); 7] = [
     ("haas_umc750_dhanush_FinalToolPath.nc", "umc-750", "haas"),
     ("linuxcnc_boat-xyzac.ngc", "xyzac-trt", "linuxcnc"),
-    (
-        "linuxcnc_xyzac_switchkins_test_3.ngc",
-        "xyzac-trt",
-        "linuxcnc",
-    ),
+    ("linuxcnc_xyzac_switchkins_test_3.ngc", "xyzac-trt", "linuxcnc"),
     ("nxpost_dmc100_millplus_mm.ptp", "dmu50", "heidenhain"),
     ("nxpost_dmu70evo_840d_in.ptp", "nutating-head", "siemens"),
     ("nxpost_mori_nmv5000_out.txt", "bc-trunnion", "fanuc"),
@@ -82,10 +78,7 @@ fn lexicon(dialect: &str) -> Lexicon {
     let text = fs::read_to_string(path).expect("the vocabulary is there");
     let mut words = Vec::new();
     for line in text.lines() {
-        let mut columns = line
-            .split("  ")
-            .map(str::trim)
-            .filter(|column| !column.is_empty());
+        let mut columns = line.split("  ").map(str::trim).filter(|column| !column.is_empty());
         let (Some(word), Some(meaning), Some(_)) = (columns.next(), columns.next(), columns.next())
         else {
             continue;
@@ -102,14 +95,8 @@ fn lexicon(dialect: &str) -> Lexicon {
 
 /// Runs a text to its end.
 fn run(machine: &Machine, lexicon: &Lexicon, text: &[u8]) {
-    let limits = Limits {
-        blocks: 3_000,
-        depth: 8,
-    };
-    let offsets = Offsets {
-        length: Some(100.0),
-        ..Offsets::default()
-    };
+    let limits = Limits { blocks: 3_000, depth: 8 };
+    let offsets = Offsets { length: Some(100.0), ..Offsets::default() };
     let input = Cursor::new(text);
     let mut program = Interpreter::new(machine, lexicon, &offsets, limits, "p.nc", input)
         .expect("the machine is solved");
@@ -122,12 +109,7 @@ fn run(machine: &Machine, lexicon: &Lexicon, text: &[u8]) {
                 continue;
             };
             let tip = motion.to.pose.tip;
-            let finite = motion
-                .to
-                .joints
-                .iter()
-                .chain(tip.iter())
-                .all(|value| value.is_finite());
+            let finite = motion.to.joints.iter().chain(tip.iter()).all(|value| value.is_finite());
             assert!(finite, "line {}: {motion:?}", motion.line);
         }
         if matches!(more, Ok(false)) {
@@ -177,11 +159,7 @@ fn no_mutation_of_a_real_program_brings_the_interpreter_down() {
             let mut random = seeded(round);
             let text = mutated(&program, &mut random);
             let ran = catch_unwind(AssertUnwindSafe(|| run(&machine, &lexicon, &text)));
-            assert!(
-                ran.is_ok(),
-                "{file}, round {round}:\n{}",
-                String::from_utf8_lossy(&text)
-            );
+            assert!(ran.is_ok(), "{file}, round {round}:\n{}", String::from_utf8_lossy(&text));
         }
     }
 }

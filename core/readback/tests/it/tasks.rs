@@ -16,23 +16,15 @@ use crate::interpret::LETTERS;
 /// A machine of the library with a table of its own.
 fn machine(motion: &str) -> Machine {
     let vmc = std::fs::read_to_string(repository().join("machines/vmc.toml")).unwrap();
-    let source = |name: &str, text: String| Source {
-        name: name.to_owned(),
-        text,
-    };
+    let source = |name: &str, text: String| Source { name: name.to_owned(), text };
     let own = format!("extends = \"vmc\"\n{motion}");
-    load(source("own.toml", own), &[], &mut |_| {
-        Ok(source("vmc.toml", vmc.clone()))
-    })
-    .unwrap()
+    load(source("own.toml", own), &[], &mut |_| Ok(source("vmc.toml", vmc.clone()))).unwrap()
 }
 
 /// The tasks of a program, and what was taken for granted.
 fn tasks(machine: &Machine, program: &str) -> (Vec<Planned>, Vec<String>) {
-    let words: Vec<VocabularyWord> = LETTERS
-        .iter()
-        .map(|(word, meaning)| VocabularyWord::new(word, *meaning))
-        .collect();
+    let words: Vec<VocabularyWord> =
+        LETTERS.iter().map(|(word, meaning)| VocabularyWord::new(word, *meaning)).collect();
     let mut interpreter = Interpreter::new(
         machine,
         &Lexicon::new(&words),
@@ -96,10 +88,7 @@ fn a_control_stands_still_where_it_waits_and_at_rapids() {
     let Task::Move(cut) = &planned[2].task else {
         panic!("a cut");
     };
-    assert_eq!(
-        (cut.pace, &cut.way),
-        (Pace::Minutes(10.0 / 600.0), &Way::Axes)
-    );
+    assert_eq!((cut.pace, &cut.way), (Pace::Minutes(10.0 / 600.0), &Way::Axes));
     assert_eq!((planned[2].feed, planned[2].rapid), (600.0, false));
     assert_eq!((planned[1].feed, planned[1].rapid), (0.0, true));
 }
@@ -111,9 +100,7 @@ fn the_machine_file_says_what_a_program_leaves_open() {
     let motion = "[motion]\ncorner = \"path\"\ncorner_tolerance = 0.01\nrapids = \"blend\"\ntool_change = 6\nspindle = 1.5";
     let (planned, notes) = tasks(&machine(motion), program);
     let path = Ok(Corner::Path);
-    let within = Ok(Corner::Blend {
-        tolerance: Some(0.01),
-    });
+    let within = Ok(Corner::Blend { tolerance: Some(0.01) });
     let outline = outline(&planned);
     assert_eq!(
         outline,

@@ -29,19 +29,12 @@ impl Course for Written {
 
 fn machine() -> Machine {
     let text = include_str!("../../../../machines/vmc.toml");
-    let source = Source {
-        name: "vmc".to_owned(),
-        text: text.to_owned(),
-    };
+    let source = Source { name: "vmc".to_owned(), text: text.to_owned() };
     load(source, &[], &mut |_| Err(String::new())).unwrap()
 }
 
 fn pose(tip: V) -> Pose {
-    Pose {
-        tip,
-        axis: V::z(),
-        edge: V::zeros(),
-    }
+    Pose { tip, axis: V::z(), edge: V::zeros() }
 }
 
 fn v(x: f64, y: f64, z: f64) -> V {
@@ -62,13 +55,9 @@ impl Asks {
         self.line += 1;
         let feed = (kind != MotionKind::Rapid).then_some(500.0);
         let item = match self.at {
-            None => Item::Reach(Reach {
-                line: self.line,
-                kind,
-                to: pose(to),
-                feed,
-                hole: self.hole,
-            }),
+            None => {
+                Item::Reach(Reach { line: self.line, kind, to: pose(to), feed, hole: self.hole })
+            }
             Some(from) => Item::Piece(Piece {
                 line: self.line,
                 kind,
@@ -94,10 +83,7 @@ impl Asks {
 
     fn tell(mut self, told: Told) -> Self {
         self.line += 1;
-        self.items.push_back(Item::Told {
-            line: self.line,
-            told,
-        });
+        self.items.push_back(Item::Told { line: self.line, told });
         self
     }
 
@@ -150,12 +136,7 @@ impl Does {
             smoothing: None,
             corners: Corners::Unsaid,
         };
-        Self {
-            done: Vec::new(),
-            state: Arc::new(state),
-            at: v(x, y, z),
-            line: 0,
-        }
+        Self { done: Vec::new(), state: Arc::new(state), at: v(x, y, z), line: 0 }
     }
 
     fn go(mut self, kind: MotionKind, to: V) -> Self {
@@ -165,10 +146,7 @@ impl Does {
             let solver = &self.state.solver;
             let turns = solver.chain().turns(&joints);
             solver.place(tip, &mut joints, &turns).unwrap();
-            Stance {
-                joints,
-                pose: solver.chain().forward(&joints),
-            }
+            Stance { joints, pose: solver.chain().forward(&joints) }
         };
         let minutes = match kind {
             MotionKind::Rapid => 0.0,
@@ -203,10 +181,7 @@ impl Does {
 
     fn tell(mut self, told: Told) -> Self {
         self.line += 1;
-        self.done.push(Done::Told {
-            line: self.line,
-            told,
-        });
+        self.done.push(Done::Told { line: self.line, told });
         self
     }
 
@@ -218,10 +193,7 @@ impl Does {
 
 fn verify(does: &Does, asks: Asks) -> (Verification, Vec<BlockReport>) {
     let machine = machine();
-    let rules = Rules {
-        registers: Registers::OfTool,
-        ..Rules::of(&machine)
-    };
+    let rules = Rules { registers: Registers::OfTool, ..Rules::of(&machine) };
     let mut verifier = {
         let mut path = CutPath::new(0.0);
         asks.items.iter().for_each(|item| path.take(item));
@@ -239,11 +211,7 @@ fn verify(does: &Does, asks: Asks) -> (Verification, Vec<BlockReport>) {
 fn codes(does: &Does, asks: Asks) -> Vec<(&'static str, u64, u64)> {
     let (found, _) = verify(does, asks);
     let row = |fault: &post_readback::verify::Fault| {
-        (
-            fault.code,
-            fault.nc_line.unwrap_or(0),
-            fault.cl_line.unwrap_or(0),
-        )
+        (fault.code, fault.nc_line.unwrap_or(0), fault.cl_line.unwrap_or(0))
     };
     found.faults.iter().map(row).collect()
 }
@@ -297,21 +265,15 @@ fn what_is_off_is_told_once_with_both_places() {
     let (found, _) = verify(&does, square());
     assert_eq!(found.faults.len(), 1, "{:#?}", found.faults);
     let fault = &found.faults[0];
-    assert_eq!(
-        (fault.code, fault.nc_line, fault.cl_line),
-        ("deviation", Some(6), Some(5))
-    );
+    assert_eq!((fault.code, fault.nc_line, fault.cl_line), ("deviation", Some(6), Some(5)));
     let by = fault.by.unwrap();
     assert!((0.25..0.31).contains(&by), "{by}");
 }
 
 #[test]
 fn points_left_out_swapped_and_doubled_are_found() {
-    let left_out = begin()
-        .cut(20.0, 0.0, -2.0)
-        .cut(0.0, 20.0, -2.0)
-        .cut(0.0, 0.0, -2.0)
-        .rapid(0.0, 0.0, 10.0);
+    let left_out =
+        begin().cut(20.0, 0.0, -2.0).cut(0.0, 20.0, -2.0).cut(0.0, 0.0, -2.0).rapid(0.0, 0.0, 10.0);
     assert_eq!(codes(&left_out, square()), [("deviation", 6, 5)]);
     let swapped = begin()
         .cut(20.0, 20.0, -2.0)
@@ -413,18 +375,11 @@ fn strokes(down: &[f64], up: f64) -> Does {
 #[test]
 fn pecks_are_no_larger_than_asked_for() {
     let asks = |kind, pecks| {
-        Asks::default()
-            .rapid(0.0, 0.0, 2.0)
-            .pecked(12.0, kind, pecks)
-            .rapid(0.0, 0.0, 50.0)
+        Asks::default().rapid(0.0, 0.0, 2.0).pecked(12.0, kind, pecks).rapid(0.0, 0.0, 50.0)
     };
     let told = |does: &Does, kind, pecks| {
         let (found, _) = verify(does, asks(kind, pecks));
-        found
-            .faults
-            .iter()
-            .map(|fault| fault.code)
-            .collect::<Vec<_>>()
+        found.faults.iter().map(|fault| fault.code).collect::<Vec<_>>()
     };
     let none: [&str; 0] = [];
     use CycleKind::{BreakChip, Deep};
@@ -437,34 +392,15 @@ fn pecks_are_no_larger_than_asked_for() {
             &[0.0, -2.0, -4.0, -6.0, -8.0, -10.0],
         ] {
             assert_eq!(told(&strokes(down, 2.0), Deep, pecks), none, "{down:?}");
-            assert_eq!(
-                told(&strokes(down, 2.0), BreakChip, pecks),
-                none,
-                "{down:?}"
-            );
-            assert_eq!(
-                told(&strokes(down, -1.0), Deep, pecks),
-                ["hole"],
-                "{down:?}"
-            );
+            assert_eq!(told(&strokes(down, 2.0), BreakChip, pecks), none, "{down:?}");
+            assert_eq!(told(&strokes(down, -1.0), Deep, pecks), ["hole"], "{down:?}");
         }
-        for down in [
-            &[-10.0][..],
-            &[-5.0, -8.0, -10.0],
-            &[-2.0, -6.5, -10.0],
-            &[-4.0, -10.0],
-        ] {
+        for down in [&[-10.0][..], &[-5.0, -8.0, -10.0], &[-2.0, -6.5, -10.0], &[-4.0, -10.0]] {
             assert_eq!(told(&strokes(down, 2.0), Deep, pecks), ["hole"], "{down:?}");
         }
     }
-    assert_eq!(
-        told(&strokes(&[-4.0, -8.0, -10.0], 2.0), Deep, [4.0, 4.0]),
-        none
-    );
-    assert_eq!(
-        told(&strokes(&[-4.0, -8.0, -10.0], 2.0), Deep, [4.0, 3.0]),
-        ["hole"]
-    );
+    assert_eq!(told(&strokes(&[-4.0, -8.0, -10.0], 2.0), Deep, [4.0, 4.0]), none);
+    assert_eq!(told(&strokes(&[-4.0, -8.0, -10.0], 2.0), Deep, [4.0, 3.0]), ["hole"]);
     // Nobody asked for pecks.
     assert_eq!(told(&strokes(&[-10.0], 2.0), Deep, [0.0, 0.0]), none);
 }
@@ -519,15 +455,9 @@ fn holes_that_are_not_made_so_are_told() {
 fn what_holds_in_a_cut_is_compared() {
     let asks = || {
         let told = Asks::default()
-            .tell(Told::ToolChange {
-                number: Some(3),
-                name: None,
-            })
+            .tell(Told::ToolChange { number: Some(3), name: None })
             .tell(Told::Spindle(Spindle::Clockwise(8000.0)))
-            .tell(Told::Coolant(Coolants {
-                flood: true,
-                ..Coolants::default()
-            }));
+            .tell(Told::Coolant(Coolants { flood: true, ..Coolants::default() }));
         let mut square = square();
         for item in &mut square.items {
             match item {
@@ -536,10 +466,7 @@ fn what_holds_in_a_cut_is_compared() {
                 _ => {}
             }
         }
-        Asks {
-            items: told.items.into_iter().chain(square.items).collect(),
-            ..square
-        }
+        Asks { items: told.items.into_iter().chain(square.items).collect(), ..square }
     };
     let does = |change: fn(&mut State)| {
         let set = |state: &mut State| {
@@ -566,14 +493,8 @@ fn what_holds_in_a_cut_is_compared() {
         ((|state| state.tool = Some(4)) as fn(&mut State), "tool"),
         (|state| state.length_register = Some(4), "register"),
         (|state| state.spindle = Spindle::Off, "spindle"),
-        (
-            |state| state.spindle = Spindle::Clockwise(7000.0),
-            "spindle",
-        ),
-        (
-            |state| state.spindle = Spindle::CounterClockwise(8000.0),
-            "spindle",
-        ),
+        (|state| state.spindle = Spindle::Clockwise(7000.0), "spindle"),
+        (|state| state.spindle = Spindle::CounterClockwise(8000.0), "spindle"),
         (|state| state.coolants.flood = false, "coolant"),
         (|state| state.compensation = -1, "compensation"),
     ] {
@@ -584,27 +505,16 @@ fn what_holds_in_a_cut_is_compared() {
 
 /// A tool change with the spindle and the coolant as they are.
 fn changed(number: u32) -> Told {
-    Told::ToolChange {
-        number: Some(number),
-        name: None,
-    }
+    Told::ToolChange { number: Some(number), name: None }
 }
 
 #[test]
 fn nothing_runs_on_behind_the_end_of_a_program() {
-    let flood = Coolants {
-        flood: true,
-        ..Coolants::default()
-    };
-    let on = [
-        Told::Spindle(Spindle::Clockwise(8000.0)),
-        Told::Coolant(flood),
-    ];
+    let flood = Coolants { flood: true, ..Coolants::default() };
+    let on = [Told::Spindle(Spindle::Clockwise(8000.0)), Told::Coolant(flood)];
     let asks = || {
         let asks = Asks::default().tell(on[0].clone()).tell(on[1].clone());
-        asks.rapid(0.0, 0.0, 10.0)
-            .cut(0.0, 0.0, -2.0)
-            .rapid(0.0, 0.0, 10.0)
+        asks.rapid(0.0, 0.0, 10.0).cut(0.0, 0.0, -2.0).rapid(0.0, 0.0, 10.0)
     };
     let found = |ends: &[Told]| {
         let mut does = Does::at(0.0, 0.0, 15.0).with(|state| {
@@ -630,10 +540,7 @@ fn nothing_runs_on_behind_the_end_of_a_program() {
 
 #[test]
 fn a_tool_is_not_changed_while_something_runs_that_should_stand() {
-    let flood = Coolants {
-        flood: true,
-        ..Coolants::default()
-    };
+    let flood = Coolants { flood: true, ..Coolants::default() };
     let on = Told::Spindle(Spindle::Clockwise(8000.0));
     let asks = |before: &[Told]| {
         let mut asks = Asks::default().tell(changed(3)).tell(on.clone());
@@ -672,10 +579,7 @@ fn a_tool_is_not_changed_while_something_runs_that_should_stand() {
         does = does.cut(0.0, 0.0, -2.0).rapid(0.0, 0.0, 10.0);
         does.tell(Told::End)
     };
-    let off = [
-        Told::Spindle(Spindle::Off),
-        Told::Coolant(Coolants::default()),
-    ];
+    let off = [Told::Spindle(Spindle::Off), Told::Coolant(Coolants::default())];
     let found = |does: &Does, asks: Asks| {
         let (found, _) = verify(does, asks);
         let faults: Vec<&str> = found.faults.iter().map(|fault| fault.code).collect();
@@ -700,20 +604,14 @@ fn stops_and_dwells_stand_where_they_are_asked_for() {
         Asks::default()
             .rapid(0.0, 0.0, 0.0)
             .cut(10.0, 0.0, 0.0)
-            .tell(Told::Dwell {
-                time: 2.0,
-                revolutions: false,
-            })
+            .tell(Told::Dwell { time: 2.0, revolutions: false })
             .cut(20.0, 0.0, 0.0)
             .rapid(20.0, 0.0, 10.0)
             .tell(Told::Stop)
             .rapid(20.0, 0.0, 0.0)
             .cut(30.0, 0.0, 0.0)
     };
-    let wait = |time: f64| Told::Dwell {
-        time,
-        revolutions: false,
-    };
+    let wait = |time: f64| Told::Dwell { time, revolutions: false };
     let good = Does::at(0.0, 0.0, 10.0)
         .rapid(0.0, 0.0, 0.0)
         .cut(10.0, 0.0, 0.0)
@@ -742,30 +640,18 @@ fn stops_and_dwells_stand_where_they_are_asked_for() {
         .tell(Told::OptionalStop)
         .rapid(20.0, 0.0, 0.0)
         .cut(30.0, 0.0, 0.0);
-    assert_eq!(
-        codes(&elsewhere, asks()),
-        [("event", 3, 3), ("event", 7, 0)]
-    );
+    assert_eq!(codes(&elsewhere, asks()), [("event", 3, 3), ("event", 7, 0)]);
 }
 
 #[test]
 fn limits_of_the_axes_are_told_and_feeds_compared() {
-    let asks = || {
-        Asks::default()
-            .rapid(0.0, 0.0, 0.0)
-            .cut(600.0, 0.0, 0.0)
-            .rapid(0.0, 0.0, 0.0)
-    };
-    let does = Does::at(0.0, 0.0, 10.0)
-        .rapid(0.0, 0.0, 0.0)
-        .cut(600.0, 0.0, 0.0)
-        .rapid(0.0, 0.0, 0.0);
+    let asks = || Asks::default().rapid(0.0, 0.0, 0.0).cut(600.0, 0.0, 0.0).rapid(0.0, 0.0, 0.0);
+    let does =
+        Does::at(0.0, 0.0, 10.0).rapid(0.0, 0.0, 0.0).cut(600.0, 0.0, 0.0).rapid(0.0, 0.0, 0.0);
     assert_eq!(codes(&does, asks()), [("over-travel", 2, 0)]);
     for (minutes, code) in [(0.5, "feed"), (2.0, "feed"), (0.02, "max-feed")] {
-        let mut does = Does::at(0.0, 0.0, 10.0)
-            .rapid(0.0, 0.0, 0.0)
-            .cut(600.0, 0.0, 0.0)
-            .rapid(0.0, 0.0, 0.0);
+        let mut does =
+            Does::at(0.0, 0.0, 10.0).rapid(0.0, 0.0, 0.0).cut(600.0, 0.0, 0.0).rapid(0.0, 0.0, 0.0);
         if let Done::Motion(motion) = &mut does.done[1] {
             motion.minutes = minutes;
         }
@@ -782,9 +668,8 @@ fn strays_are_those_of_the_frechet_distance() {
     let (mut off, mut on) = (0, 0);
     for _ in 0..3000 {
         let count = 2 + random.pick(5);
-        let path: Vec<V> = (0..=count)
-            .map(|_| v(random.range(-1.0, 1.0), random.range(-1.0, 1.0), 0.0))
-            .collect();
+        let path: Vec<V> =
+            (0..=count).map(|_| v(random.range(-1.0, 1.0), random.range(-1.0, 1.0), 0.0)).collect();
         let size = 0.01 * libm::pow(10.0, random.range(-1.0, 0.5));
         let mut curve: Vec<V> = Vec::new();
         for (index, point) in path.iter().enumerate() {
@@ -848,10 +733,7 @@ fn a_rapid_that_comes_near_what_is_cut_is_told() {
             .rapid(10.0, 0.0, 50.0);
         let does = match through {
             // Below the first cut and out again.
-            true => does
-                .rapid(50.0, 0.0, 50.0)
-                .rapid(-20.0, 0.0, -30.0)
-                .rapid(40.0, 0.0, 50.0),
+            true => does.rapid(50.0, 0.0, 50.0).rapid(-20.0, 0.0, -30.0).rapid(40.0, 0.0, 50.0),
             false => does,
         };
         does.rapid(100.0, 0.0, 50.0)
@@ -859,11 +741,7 @@ fn a_rapid_that_comes_near_what_is_cut_is_told() {
             .cut(110.0, 0.0, 0.0)
             .rapid(110.0, 0.0, 50.0)
     };
-    assert!(
-        codes(&does(false), asks())
-            .iter()
-            .all(|found| found.0 == "over-travel")
-    );
+    assert!(codes(&does(false), asks()).iter().all(|found| found.0 == "over-travel"));
     let found = codes(&does(true), asks());
     assert!(found.contains(&("rapid", 5, 0)), "{found:?}");
 }

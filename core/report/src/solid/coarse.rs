@@ -60,9 +60,7 @@ impl Coarse {
         // What is no surface may be many triangles between few cells.
         let every = self.triangles.len().div_ceil(most.max(1)).max(1);
         let triangles = self.triangles.iter().step_by(every);
-        triangles
-            .map(|triangle| triangle.map(|cell| self.cells[&cell]))
-            .collect()
+        triangles.map(|triangle| triangle.map(|cell| self.cells[&cell])).collect()
     }
 
     fn cell(&self, corner: Corner) -> Cell {

@@ -23,9 +23,7 @@ pub(super) fn sharp(triangles: &[[Corner; 3]]) -> Vec<[Corner; 2]> {
             let (from, to) = (triangle[at], triangle[(at + 1) % 3]);
             let mut keys = [key(from), key(to)];
             keys.sort_unstable();
-            let (_, normals) = edges
-                .entry(keys)
-                .or_insert_with(|| ([from, to], Vec::new()));
+            let (_, normals) = edges.entry(keys).or_insert_with(|| ([from, to], Vec::new()));
             normals.push(normal);
         }
     }
@@ -50,11 +48,7 @@ pub(super) fn sharp(triangles: &[[Corner; 3]]) -> Vec<[Corner; 2]> {
 /// The unit vector across a triangle; none where it has no area.
 pub(super) fn normal([a, b, c]: &[Corner; 3]) -> Option<Corner> {
     let (u, v) = (minus(*b, *a), minus(*c, *a));
-    let across = [
-        u[1] * v[2] - u[2] * v[1],
-        u[2] * v[0] - u[0] * v[2],
-        u[0] * v[1] - u[1] * v[0],
-    ];
+    let across = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
     let length = dot(across, across).sqrt();
     (length > 0.0).then(|| across.map(|value| value / length))
 }

@@ -108,9 +108,7 @@ mod tests {
     }
 
     fn refused(file: &[u8]) -> String {
-        Solid::read(&mut Cursor::new(file), 100)
-            .unwrap_err()
-            .to_string()
+        Solid::read(&mut Cursor::new(file), 100).unwrap_err().to_string()
     }
 
     /// A box from the origin, 12 triangles.
@@ -119,14 +117,8 @@ mod tests {
             let side = |bit: usize, length: f64| if bits & bit == 0 { 0.0 } else { length };
             [side(1, x), side(2, y), side(4, z)]
         };
-        let sides = [
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-        ];
+        let sides =
+            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         sides
             .iter()
             .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
@@ -189,10 +181,7 @@ mod tests {
                 }
             }
             for at in 0..3 {
-                assert!(
-                    high[at] - low[at] > 2.0 * (radius - size),
-                    "{low:?} {high:?}"
-                );
+                assert!(high[at] - low[at] > 2.0 * (radius - size), "{low:?} {high:?}");
             }
         }
         assert_eq!(read(&file, 800), read(&file, 800));
@@ -219,25 +208,14 @@ mod tests {
         for corner in 0..8 {
             let wanted: Corner =
                 std::array::from_fn(|at| if corner >> at & 1 == 1 { 1000.0 } else { 0.0 });
-            assert!(
-                solid
-                    .triangles
-                    .iter()
-                    .flatten()
-                    .any(|place| *place == wanted),
-                "{wanted:?}"
-            );
+            assert!(solid.triangles.iter().flatten().any(|place| *place == wanted), "{wanted:?}");
         }
         // What is no surface stays something.
         let cloud: Vec<[Corner; 3]> = (0..5000)
             .map(|at| {
                 let place = |more: usize| {
                     let mixed = (at * 7919 + more * 104_729) % 1_000_003;
-                    [
-                        (mixed % 101) as f64,
-                        (mixed / 101 % 97) as f64,
-                        (mixed / 9797 % 89) as f64,
-                    ]
+                    [(mixed % 101) as f64, (mixed / 101 % 97) as f64, (mixed / 9797 % 89) as f64]
                 };
                 [place(0), place(1), place(2)]
             })
@@ -266,31 +244,16 @@ mod tests {
         };
         for (file, wanted) in [
             (Vec::new(), "is no STL file"),
-            (
-                b"PK\x03\x04 something else".to_vec(),
-                "is no STL file: it has 19 bytes",
-            ),
+            (b"PK\x03\x04 something else".to_vec(), "is no STL file: it has 19 bytes"),
             (b"solid nothing\nendsolid\n".to_vec(), "no triangle"),
-            (
-                binary(&[[[1.0, 2.0, 3.0]; 3]; 200]),
-                "no triangle with an area",
-            ),
-            (
-                binary(&cuboid(1e-3, 1e-3, 1e-3)),
-                "no triangle with an area",
-            ),
+            (binary(&[[[1.0, 2.0, 3.0]; 3]; 200]), "no triangle with an area"),
+            (binary(&cuboid(1e-3, 1e-3, 1e-3)), "no triangle with an area"),
             (good[..good.len() - 8].to_vec(), "ends before `endsolid`"),
             (lines[..5].join("\n").into_bytes(), "ends before `endsolid`"),
-            (
-                with(3, "vertex 0 zero 0"),
-                "line 4: `vertex` and three numbers",
-            ),
+            (with(3, "vertex 0 zero 0"), "line 4: `vertex` and three numbers"),
             (with(3, "vertex 0 0"), "line 4: "),
             (with(3, ""), "line 7: a facet has three corners"),
-            (
-                with(6, "vertex 0 0 0"),
-                "line 7: a facet has three corners, and this is a fourth",
-            ),
+            (with(6, "vertex 0 0 0"), "line 7: a facet has three corners, and this is a fourth"),
             (with(8, "color 1 0 0"), "line 9: no line of an STL file"),
             (with(3, "vertex 0 nan 0"), "corner of triangle 1 "),
             (with(3, "vertex 0 1e7 0"), "corner of triangle 1 "),

@@ -42,10 +42,9 @@ impl fmt::Display for StlFault {
         match self {
             Self::Io(error) => write!(out, "{error}"),
             Self::Cut => write!(out, "it was cut off: it ends before `endsolid`"),
-            Self::TooLong(bytes) => write!(
-                out,
-                "it has {bytes} bytes; at most {MOST_BYTES} are read for a picture"
-            ),
+            Self::TooLong(bytes) => {
+                write!(out, "it has {bytes} bytes; at most {MOST_BYTES} are read for a picture")
+            }
             Self::Empty => write!(
                 out,
                 "it holds no triangle with an area that is seen; coordinates are taken as mm"
@@ -99,10 +98,7 @@ pub(super) fn read(
             binary(file, u32::from_le_bytes(*triangles), &mut take)?;
         }
         // One that was cut off has the number of its triangles there, which is no text.
-        _ if header
-            .trim_ascii_start()
-            .to_ascii_lowercase()
-            .starts_with(b"solid")
+        _ if header.trim_ascii_start().to_ascii_lowercase().starts_with(b"solid")
             && !header.contains(&0) =>
         {
             file.rewind()?;

@@ -40,19 +40,17 @@ pub(crate) fn tlon(line: &Line<'_>) -> Read<Statement> {
         return Ok(other(line, false));
     }
     let arc = match items.as_slice() {
-        [curve, Item::Word(on), until] if on == "ON" => circle(curve, until)
-            .or_else(|| cylinder(curve, until))
-            .transpose(),
+        [curve, Item::Word(on), until] if on == "ON" => {
+            circle(curve, until).or_else(|| cylinder(curve, until)).transpose()
+        }
         _ => Ok(None),
     };
     match arc {
         Ok(Some(arc)) => Ok(Statement::AlongArc(arc)),
         Ok(None) => Ok(other(line, false)),
-        Err(message) => Err(SyntaxFault::new(
-            line.text,
-            line.word_span.end..line.text.len(),
-            message,
-        )),
+        Err(message) => {
+            Err(SyntaxFault::new(line.text, line.word_span.end..line.text.len(), message))
+        }
     }
 }
 
@@ -61,16 +59,9 @@ fn circle(curve: &Item, until: &Item) -> Option<Result<AlongArc, &'static str>> 
     let [x, y, z, radius] = numbers("CIRCLE", curve)?;
     let [from_x, from_y, from_z, ex, ey, ez] = numbers("LINE", until)?;
     if [from_x, from_y, from_z] != [x, y, z] {
-        return Some(Err(
-            "the line that ends the arc does not begin at the circle's centre",
-        ));
+        return Some(Err("the line that ends the arc does not begin at the circle's centre"));
     }
-    Some(Ok(AlongArc {
-        centre: [x, y, z],
-        axis: None,
-        radius,
-        end: [ex, ey, ez],
-    }))
+    Some(Ok(AlongArc { centre: [x, y, z], axis: None, radius, end: [ex, ey, ez] }))
 }
 
 /// `(CYLNDR/c,u,r),ON,(PLANE/PERPTO,(PLANE/(POINT/…),PERPTO,(VECTOR/…)),(POINT/c),(POINT/end))`.
@@ -85,28 +76,15 @@ fn cylinder(curve: &Item, until: &Item) -> Option<Result<AlongArc, &'static str>
         return None;
     }
     if along(normal, [i, j, k]) < PARALLEL {
-        return Some(Err(
-            "the plane that ends the arc does not stand along the cylinder's axis",
-        ));
+        return Some(Err("the plane that ends the arc does not stand along the cylinder's axis"));
     }
     let way = [through[0] - x, through[1] - y, through[2] - z];
-    let across_axis = [
-        way[1] * k - way[2] * j,
-        way[2] * i - way[0] * k,
-        way[0] * j - way[1] * i,
-    ];
+    let across_axis = [way[1] * k - way[2] * j, way[2] * i - way[0] * k, way[0] * j - way[1] * i];
     let off = size(across_axis) / size([i, j, k]);
     if off > 1e-3 * radius.abs().max(1.0) {
-        return Some(Err(
-            "the plane that ends the arc does not go through the cylinder's axis",
-        ));
+        return Some(Err("the plane that ends the arc does not go through the cylinder's axis"));
     }
-    Some(Ok(AlongArc {
-        centre: [x, y, z],
-        axis: Some([i, j, k]),
-        radius,
-        end,
-    }))
+    Some(Ok(AlongArc { centre: [x, y, z], axis: Some([i, j, k]), radius, end }))
 }
 
 /// Directions whose angle has a larger cosine are one: 0.1°.
@@ -116,11 +94,7 @@ const PARALLEL: f64 = 0.999_998;
 fn along(a: Direction, b: Direction) -> f64 {
     let dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let sizes = size(a) * size(b);
-    if sizes > 0.0 {
-        (dot / sizes).abs()
-    } else {
-        0.0
-    }
+    if sizes > 0.0 { (dot / sizes).abs() } else { 0.0 }
 }
 
 fn size(of: Direction) -> f64 {
@@ -163,10 +137,7 @@ fn numbers<const N: usize>(word: &str, item: &Item) -> Option<[f64; N]> {
 
 /// What stands between word and slash, in capitals and without blanks, and the items behind it.
 fn nested(line: &Line<'_>) -> Read<(String, Vec<Item>)> {
-    let text = line
-        .text
-        .split_once("$$")
-        .map_or(line.text, |(text, _)| text);
+    let text = line.text.split_once("$$").map_or(line.text, |(text, _)| text);
     let text = text.get(line.word_span.end..).unwrap_or_default();
     let mut code: String = text.split_whitespace().collect();
     code.make_ascii_uppercase();
@@ -232,35 +203,19 @@ mod tests {
         let round = "TLON,GOFWD/ (CIRCLE/ 1,2,3,$$ x";
         assert!(parse_record(round).is_err());
         for (line, known) in [
-            (
-                "TLON,GOFWD/ (CIRCLE/ 1,2,3, 10),ON,(LINE/ 1,2,3, 11,2,3)",
-                true,
-            ),
-            (
-                "tlon , gofwd / (circle/ 1,2,3, 10),on,(line/ 1,2,3, 11,2,3) $$ end",
-                true,
-            ),
+            ("TLON,GOFWD/ (CIRCLE/ 1,2,3, 10),ON,(LINE/ 1,2,3, 11,2,3)", true),
+            ("tlon , gofwd / (circle/ 1,2,3, 10),on,(line/ 1,2,3, 11,2,3) $$ end", true),
             (
                 "TLON,GOFWD/ (CYLNDR/ 0,0,0, 0,1,0, 5),ON,(PLANE/PERPTO,(PLANE/(POINT/0,0,0),PERPTO,(VECTOR/0,1,0)),(POINT/0,0,0),(POINT/5,0,0))",
                 true,
             ),
-            (
-                "TLON,GOFWD/ (CIRCLE/ 1,2,3, 10),ON,2,INTOF,(LINE/ 1,2,3, 11,2,3)",
-                false,
-            ),
-            (
-                "TLON,GOLFT/ (CIRCLE/ 1,2,3, 10),ON,(LINE/ 1,2,3, 11,2,3)",
-                false,
-            ),
+            ("TLON,GOFWD/ (CIRCLE/ 1,2,3, 10),ON,2,INTOF,(LINE/ 1,2,3, 11,2,3)", false),
+            ("TLON,GOLFT/ (CIRCLE/ 1,2,3, 10),ON,(LINE/ 1,2,3, 11,2,3)", false),
             ("TLON,GOFWD/ C1,ON,L1", false),
             ("TLLFT,GOLFT/ L1,PAST,L2", false),
         ] {
             let read = parse_record(line).unwrap();
-            assert_eq!(
-                matches!(read, Statement::AlongArc(_)),
-                known,
-                "{line}: {read:?}"
-            );
+            assert_eq!(matches!(read, Statement::AlongArc(_)), known, "{line}: {read:?}");
         }
         for line in [
             "TLON,GOFWD/ (CIRCLE/ 1,2,3, 10),ON,(LINE/ 0,2,3, 11,2,3)",

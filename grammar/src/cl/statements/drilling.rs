@@ -94,11 +94,7 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
         }
     }
     if cycle.kinds.is_empty() {
-        let span = items
-            .line
-            .items
-            .first()
-            .map_or_else(|| items.rest(), Item::span);
+        let span = items.line.items.first().map_or_else(|| items.rest(), Item::span);
         return Err(items.fault(span, "CYCLE needs the kind of cycle", FORM));
     }
     Ok(Statement::Cycle(Cycle::Define(Box::new(cycle))))

@@ -11,11 +11,7 @@ pub(crate) fn goto(items: &mut Items<'_, '_>) -> Read<Statement> {
         "GOTO/x,y,z, GOTO/x,y,z,i,j,k or, with the direction of an edge, GOTO/x,y,z,i,j,k,u,v,w";
     if items.line.items.len() == 9 {
         let [x, y, z, i, j, k, u, v, w] = items.array(FORM)?;
-        return Ok(Statement::GotoEdge {
-            point: [x, y, z],
-            axis: [i, j, k],
-            edge: [u, v, w],
-        });
+        return Ok(Statement::GotoEdge { point: [x, y, z], axis: [i, j, k], edge: [u, v, w] });
     }
     let (point, axis) = items.point_or("3, 6 or 9", FORM)?;
     Ok(Statement::Goto { point, axis })
@@ -61,22 +57,16 @@ pub(crate) fn multax(items: &mut Items<'_, '_>) -> Read<Statement> {
         [] => Ok(Statement::Multax(true)),
         [item] if word(item) == "ON" => Ok(Statement::Multax(true)),
         [item] if word(item) == "OFF" => Ok(Statement::Multax(false)),
-        _ => Err(items.fault(
-            items.rest(),
-            "MULTAX is on or off",
-            "MULTAX, MULTAX/ON or MULTAX/OFF",
-        )),
+        _ => {
+            Err(items.fault(items.rest(), "MULTAX is on or off", "MULTAX, MULTAX/ON or MULTAX/OFF"))
+        }
     }
 }
 
 pub(crate) fn msys(items: &mut Items<'_, '_>) -> Read<Statement> {
     let [ox, oy, oz, xi, xj, xk, yi, yj, yk] =
         items.array("MSYS/ origin, X direction, Y direction")?;
-    Ok(Statement::Msys {
-        origin: [ox, oy, oz],
-        x: [xi, xj, xk],
-        y: [yi, yj, yk],
-    })
+    Ok(Statement::Msys { origin: [ox, oy, oz], x: [xi, xj, xk], y: [yi, yj, yk] })
 }
 
 pub(crate) fn csys(items: &mut Items<'_, '_>) -> Read<Statement> {
@@ -106,10 +96,7 @@ pub(crate) fn circle(items: &mut Items<'_, '_>) -> Read<Statement> {
                 next => items.line.items[next - 1].span().end,
             };
             let fault = items.miscounted("6, 7 or 11", found, FORM);
-            return Err(SyntaxFault {
-                span: fault.span.start..end,
-                ..fault
-            });
+            return Err(SyntaxFault { span: fault.span.start..end, ..fault });
         }
     };
     let mut circle = Circle {
@@ -170,10 +157,7 @@ pub(crate) fn autops(items: &mut Items<'_, '_>) -> Read<Statement> {
 pub(crate) fn mcs(items: &mut Items<'_, '_>) -> Read<Statement> {
     let [xi, xj, xk, yi, yj, yk, zi, zj, zk, ox, oy, oz] =
         items.array("MCS/ X, Y and Z direction, origin")?;
-    Ok(Statement::Mcs {
-        axes: [[xi, xj, xk], [yi, yj, yk], [zi, zj, zk]],
-        origin: [ox, oy, oz],
-    })
+    Ok(Statement::Mcs { axes: [[xi, xj, xk], [yi, yj, yk], [zi, zj, zk]], origin: [ox, oy, oz] })
 }
 
 /// CAMWorks puts the number first, in radians, and each move is a step that is undone at the operation's end.
@@ -204,24 +188,14 @@ pub(crate) fn rotate(items: &mut Items<'_, '_>) -> Read<Statement> {
     }
     let Some(angle) = angle else {
         items.next = items.line.items.len();
-        return Err(items.fault(
-            items.rest(),
-            format!("{} needs an angle", items.line.word),
-            FORM,
-        ));
+        return Err(items.fault(items.rest(), format!("{} needs an angle", items.line.word), FORM));
     };
     if radians && !(axis.is_some() && member) {
         let message =
             "this may be degrees or radians: with the angle first, the axis and TABLE must follow";
         return Err(items.fault(items.rest(), message, FORM));
     }
-    Ok(Statement::Rotate(Rotate {
-        axis,
-        angle,
-        radians,
-        incremental,
-        sense: turning,
-    }))
+    Ok(Statement::Rotate(Rotate { axis, angle, radians, incremental, sense: turning }))
 }
 
 pub(crate) fn tlaxis(items: &mut Items<'_, '_>) -> Read<Statement> {

@@ -36,9 +36,7 @@ impl<'l, 't> Items<'l, 't> {
     /// The number that must follow `word`.
     pub(super) fn number(&mut self, word: &str, form: &str) -> Read<f64> {
         match self.peek() {
-            Some(Item {
-                value: Some(value), ..
-            }) => {
+            Some(Item { value: Some(value), .. }) => {
                 self.next += 1;
                 Ok(*value)
             }
@@ -60,8 +58,7 @@ impl<'l, 't> Items<'l, 't> {
     /// All items, as numbers, at least one.
     pub(super) fn numbers(&self, form: &str) -> Read<Vec<f64>> {
         let number = |item: &Item<'_>| {
-            item.value
-                .ok_or_else(|| self.unexpected(item, "a number is expected", form))
+            item.value.ok_or_else(|| self.unexpected(item, "a number is expected", form))
         };
         let numbers: Vec<f64> = self.line.items.iter().map(number).collect::<Read<_>>()?;
         if numbers.is_empty() {
@@ -126,10 +123,9 @@ impl<'l, 't> Items<'l, 't> {
     /// From the next item to the end of the last one; the place behind the word or the last item if none is left.
     pub(super) fn rest(&self) -> Range<usize> {
         let items = &self.line.items;
-        let end = items.last().map_or(
-            self.line.word_span.end + usize::from(self.line.slash),
-            |item| item.span().end,
-        );
+        let end = items
+            .last()
+            .map_or(self.line.word_span.end + usize::from(self.line.slash), |item| item.span().end);
         let end = end.min(self.line.text.len());
         self.peek().map_or(end, |item| item.start)..end
     }
@@ -153,10 +149,7 @@ impl<'l, 't> Items<'l, 't> {
 
     pub(super) fn miscounted(&self, expected: &str, found: usize, form: &str) -> SyntaxFault {
         let verb = if found == 1 { "is" } else { "are" };
-        let message = format!(
-            "{} takes {expected} numbers, {found} {verb} given",
-            self.line.word
-        );
+        let message = format!("{} takes {expected} numbers, {found} {verb} given", self.line.word);
         self.fault(self.line.items[0].start..self.rest().end, message, form)
     }
 }

@@ -23,10 +23,7 @@ pub(super) fn feed_unit(word: &str) -> Option<FeedUnit> {
 
 pub(crate) fn fedrat(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str = "FEDRAT/value, FEDRAT/unit,value or FEDRAT/value,unit with MMPM, MMPR, IPM, IPR, PERMIN, PERREV or INVERS; or FEDRAT/RAPID";
-    let mut feed = FeedRate {
-        value: None,
-        unit: None,
-    };
+    let mut feed = FeedRate { value: None, unit: None };
     while let Some(item) = items.take() {
         let name = word(item);
         if let (Some(value), None) = (item.value, feed.value) {

@@ -70,9 +70,7 @@ pub(crate) fn tldata(items: &mut Items<'_, '_>) -> Read<Statement> {
 pub(crate) fn cutter(items: &mut Items<'_, '_>) -> Read<Statement> {
     match items.peek() {
         Some(item) if item.value.is_none() && !item.text.is_empty() => items.other(),
-        _ => Ok(Statement::Cutter(
-            items.numbers("CUTTER/diameter,corner radius,...")?,
-        )),
+        _ => Ok(Statement::Cutter(items.numbers("CUTTER/diameter,corner radius,...")?)),
     }
 }
 

@@ -13,13 +13,7 @@ fn programs() -> [(&'static str, NcSyntax, usize, u64, u64); 7] {
         ("haas_umc750_dhanush_FinalToolPath.nc", hash(), 16_082, 5, 1),
         ("linuxcnc_boat-xyzac.ngc", hash(), 1_866, 0, 0),
         ("linuxcnc_xyzac_switchkins_test_3.ngc", hash(), 15, 0, 0),
-        (
-            "nxpost_dmc100_millplus_mm.ptp",
-            conversational(),
-            4_072,
-            0,
-            0,
-        ),
+        ("nxpost_dmc100_millplus_mm.ptp", conversational(), 4_072, 0, 0),
         ("nxpost_dmu70evo_840d_in.ptp", names(), 1_198, 0, 0),
         ("nxpost_mori_nmv5000_out.txt", hash(), 925, 6, 0),
         ("siemens_ElMoe_keychain.mpf", names(), 644, 0, 0),
@@ -36,21 +30,14 @@ fn every_program_of_others_is_read() {
         let mut reader = NcReader::new(File::open(folder.join(name)).unwrap(), syntax.clone());
         let mut block = NcBlock::default();
         let mut count = 0;
-        while reader
-            .next_block(&mut block)
-            .unwrap_or_else(|fault| panic!("{name}: {fault}"))
-        {
+        while reader.next_block(&mut block).unwrap_or_else(|fault| panic!("{name}: {fault}")) {
             count += 1;
         }
         let found = (count, reader.header_lines(), reader.trailer_lines());
         assert_eq!(found, (*blocks, *header, *trailer), "{name}");
     }
     let files = fs::read_dir(&folder).unwrap().count();
-    assert_eq!(
-        files,
-        programs.len(),
-        "a file that was added must be read, too"
-    );
+    assert_eq!(files, programs.len(), "a file that was added must be read, too");
 }
 
 #[test]
@@ -114,10 +101,7 @@ fn snapshots(folder: &Path) -> Vec<PathBuf> {
         let path = entry.expect("the entry is there").path();
         if path.is_dir() {
             found.extend(snapshots(&path));
-        } else if path
-            .extension()
-            .is_some_and(|extension| extension == "snap")
-        {
+        } else if path.extension().is_some_and(|extension| extension == "snap") {
             found.push(path);
         }
     }
@@ -136,10 +120,7 @@ fn program<'t>(path: &Path, text: &'t str) -> Option<(&'t str, NcSyntax)> {
     if told.contains("heidenhain") || begin("0 BEGIN PGM").is_some() {
         return Some((&body[begin("0 BEGIN PGM")?..], conversational()));
     }
-    if body
-        .lines()
-        .any(|line| line.contains("TRAFOOF") || line.contains("CYCLE800"))
-    {
+    if body.lines().any(|line| line.contains("TRAFOOF") || line.contains("CYCLE800")) {
         let from = begin(";").or(begin("N10 ")).or(begin("%_N_"))?;
         return Some((&body[from..], names()));
     }

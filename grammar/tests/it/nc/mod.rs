@@ -22,19 +22,12 @@ fn hash() -> NcSyntax {
 
 /// Siemens.
 fn names() -> NcSyntax {
-    NcSyntax {
-        enclosed_remarks: None,
-        hash_variables: false,
-        ..hash()
-    }
+    NcSyntax { enclosed_remarks: None, hash_variables: false, ..hash() }
 }
 
 /// Heidenhain.
 fn conversational() -> NcSyntax {
-    NcSyntax {
-        notation: Notation::Conversational,
-        ..names()
-    }
+    NcSyntax { notation: Notation::Conversational, ..names() }
 }
 
 /// All blocks of a text, and its faults.

@@ -22,9 +22,7 @@ fn line(found: Option<NcMark>) -> Option<u64> {
 #[test]
 fn a_mark_leads_back_however_far() {
     // Longer than any buffer.
-    let text: String = (0..40_000)
-        .map(|at| format!("N{at} G1 X{at}. Y{at}.5\r\n"))
-        .collect();
+    let text: String = (0..40_000).map(|at| format!("N{at} G1 X{at}. Y{at}.5\r\n")).collect();
     let mut reader = reader(&text, &hash());
     let mut block = NcBlock::default();
     let mut marks = Vec::new();
@@ -36,11 +34,7 @@ fn a_mark_leads_back_however_far() {
         marks.push((mark, block.clone()));
     }
     assert_eq!(marks.len(), 40_000);
-    for at in (0..marks.len())
-        .rev()
-        .step_by(37)
-        .chain([0, 39_999, 20_000, 20_001, 1])
-    {
+    for at in (0..marks.len()).rev().step_by(37).chain([0, 39_999, 20_000, 20_001, 1]) {
         let (mark, expected) = &marks[at];
         reader.go_to(*mark).unwrap();
         assert!(reader.next_block(&mut block).unwrap());
@@ -62,10 +56,7 @@ fn what_is_in_front_of_the_reader_is_not_the_programs() {
 
 #[test]
 fn numbers_are_found_forwards_backwards_and_around() {
-    let mut reader = reader(
-        "N10 X1\n/N020 X2\nX3 N30\nn 30 X4\nN10 X5\nN1000 X6\n",
-        &hash(),
-    );
+    let mut reader = reader("N10 X1\n/N020 X2\nX3 N30\nn 30 X4\nN10 X5\nN1000 X6\n", &hash());
     let target = NcTarget::Number;
     assert_eq!(next(&mut reader), Some(1));
     for (number, direction, expected) in [
@@ -82,47 +73,29 @@ fn numbers_are_found_forwards_backwards_and_around() {
     }
     // Looking moves nothing, and what was found once is not looked for again.
     let searched = reader.lines_searched();
-    assert_eq!(
-        line(reader.find(&target(20), Direction::Forward).unwrap()),
-        Some(2)
-    );
+    assert_eq!(line(reader.find(&target(20), Direction::Forward).unwrap()), Some(2));
     assert_eq!(reader.lines_searched(), searched);
     assert_eq!(next(&mut reader), Some(2));
-    let back = reader
-        .find(&target(10), Direction::Anywhere)
-        .unwrap()
-        .unwrap();
+    let back = reader.find(&target(10), Direction::Anywhere).unwrap().unwrap();
     reader.go_to(back).unwrap();
     assert_eq!(next(&mut reader), Some(5));
-    assert_eq!(
-        line(reader.find(&target(10), Direction::Back).unwrap()),
-        Some(5)
-    );
-    assert_eq!(
-        line(reader.find(&target(10), Direction::Anywhere).unwrap()),
-        Some(1)
-    );
+    assert_eq!(line(reader.find(&target(10), Direction::Back).unwrap()), Some(5));
+    assert_eq!(line(reader.find(&target(10), Direction::Anywhere).unwrap()), Some(1));
 }
 
 #[test]
 fn labels_programs_and_subprograms_are_found() {
     let text = "G0 X1\nN5 MARK1: G1\nMARK12: X1\n mark2 :\n;MARK3:\nPROC LAP\nPROC LAP2(INT A)\n";
     let mut reader = reader(text, &names());
-    for (name, expected) in [
-        ("MARK1", Some(2)),
-        ("MARK12", Some(3)),
-        ("MARK2", Some(4)),
-        ("MARK3", None),
-    ] {
-        let found = reader
-            .find(&NcTarget::Label(name.to_owned()), Direction::Anywhere)
-            .unwrap();
+    for (name, expected) in
+        [("MARK1", Some(2)), ("MARK12", Some(3)), ("MARK2", Some(4)), ("MARK3", None)]
+    {
+        let found = reader.find(&NcTarget::Label(name.to_owned()), Direction::Anywhere).unwrap();
         assert_eq!(line(found), expected, "{name}");
     }
     for (name, expected) in [("LAP", Some(6)), ("LAP2", Some(7)), ("LA", None)] {
-        let found = reader
-            .find(&NcTarget::Subprogram(name.to_owned()), Direction::Anywhere)
-            .unwrap();
+        let found =
+            reader.find(&NcTarget::Subprogram(name.to_owned()), Direction::Anywhere).unwrap();
         assert_eq!(line(found), expected, "{name}");
     }
 
@@ -145,79 +118,30 @@ fn labels_programs_and_subprograms_are_found() {
     let text =
         "0 BEGIN PGM A MM\n1 LBL 5\n2 L X+5\n3 LBL 0\n4 lbl \"Bohren\"\n5 LBL 50\n6 CALL LBL 5\n";
     let mut reader = self::reader(text, &conversational());
-    for (name, expected) in [
-        ("5", Some(2)),
-        ("50", Some(6)),
-        ("BOHREN", Some(5)),
-        ("BOHR", None),
-        ("6", None),
-    ] {
-        let found = reader
-            .find(&NcTarget::Label(name.to_owned()), Direction::Anywhere)
-            .unwrap();
+    for (name, expected) in
+        [("5", Some(2)), ("50", Some(6)), ("BOHREN", Some(5)), ("BOHR", None), ("6", None)]
+    {
+        let found = reader.find(&NcTarget::Label(name.to_owned()), Direction::Anywhere).unwrap();
         assert_eq!(line(found), expected, "{name}");
     }
-    assert_eq!(
-        line(
-            reader
-                .find(&NcTarget::Number(3), Direction::Forward)
-                .unwrap()
-        ),
-        Some(4)
-    );
+    assert_eq!(line(reader.find(&NcTarget::Number(3), Direction::Forward).unwrap()), Some(4));
 }
 
 #[test]
 fn listings_around_programs_are_skipped_and_counted() {
     for (text, syntax, lines, header, trailer) in [
-        (
-            "Listing of: me\n\n%\nO1\nX1\nM30\n%\nEnd of listing: 5\n\n",
-            hash(),
-            vec![4, 5, 6],
-            2,
-            2,
-        ),
+        ("Listing of: me\n\n%\nO1\nX1\nM30\n%\nEnd of listing: 5\n\n", hash(), vec![4, 5, 6], 2, 2),
         ("\u{FEFF}Listing: me\n%\nX1\n", hash(), vec![3], 1, 0),
         // A program that lacks its first `%` is no listing, nor is one with a fault in its second line.
         ("O1\nX1\nM30\n%\n", hash(), vec![1, 2, 3], 0, 0),
         ("=====\nX1\n%\n", hash(), vec![2], 0, 0),
         ("Part: one\nN1 G0\n%\n\n\n", hash(), vec![2], 0, 0),
         // Two programs of one tape.
-        (
-            "%\nO1\nM30\n%\nO2\nM30\n%\n",
-            hash(),
-            vec![2, 3, 4, 5, 6],
-            0,
-            0,
-        ),
-        (
-            "%\nO1\nM30\n%\nnext: tape\n%\nO2\n%",
-            hash(),
-            vec![2, 3, 4, 7],
-            0,
-            1,
-        ),
-        (
-            "Listing of: me\n%_N_A_MPF\n;$PATH=/_N_MPF_DIR\nX1\n",
-            names(),
-            vec![2, 3, 4],
-            1,
-            0,
-        ),
-        (
-            "Listing: me\n0 BEGIN PGM A MM\n1 L X+1\n",
-            conversational(),
-            vec![2, 3],
-            1,
-            0,
-        ),
-        (
-            "%\nOFinal ToolPath\nOther text\nX1\n%",
-            hash(),
-            vec![2, 3, 4],
-            0,
-            0,
-        ),
+        ("%\nO1\nM30\n%\nO2\nM30\n%\n", hash(), vec![2, 3, 4, 5, 6], 0, 0),
+        ("%\nO1\nM30\n%\nnext: tape\n%\nO2\n%", hash(), vec![2, 3, 4, 7], 0, 1),
+        ("Listing of: me\n%_N_A_MPF\n;$PATH=/_N_MPF_DIR\nX1\n", names(), vec![2, 3, 4], 1, 0),
+        ("Listing: me\n0 BEGIN PGM A MM\n1 L X+1\n", conversational(), vec![2, 3], 1, 0),
+        ("%\nOFinal ToolPath\nOther text\nX1\n%", hash(), vec![2, 3, 4], 0, 0),
         ("%\n\0\0\n  \t\nX1\n\x1A", hash(), vec![4], 0, 0),
     ] {
         let mut reader = reader(text, &syntax);
@@ -231,11 +155,7 @@ fn listings_around_programs_are_skipped_and_counted() {
             }
         }
         assert_eq!(found, lines, "{text:?}");
-        assert_eq!(
-            (reader.header_lines(), reader.trailer_lines()),
-            (header, trailer),
-            "{text:?}"
-        );
+        assert_eq!((reader.header_lines(), reader.trailer_lines()), (header, trailer), "{text:?}");
     }
 }
 

@@ -77,11 +77,7 @@ fn texts_made_to_be_slow_are_not() {
             for _ in 0..10 {
                 let _ = parse_block(&line, &syntax);
             }
-            assert!(
-                begin.elapsed() < PATIENCE,
-                "{pattern}: {:?}",
-                begin.elapsed()
-            );
+            assert!(begin.elapsed() < PATIENCE, "{pattern}: {:?}", begin.elapsed());
         }
     }
 }
@@ -93,14 +89,8 @@ fn what_is_too_much_is_refused() {
     let sum = format!("#1={}1", "1+".repeat(400));
     let remark = format!("({})", "A".repeat(20_000));
     for (line, message) in [
-        (
-            format!("X{digits}"),
-            "a number of 10000 characters, at most 40 are read",
-        ),
-        (
-            format!("N{digits}"),
-            "a number of 10000 characters, at most 40 are read",
-        ),
+        (format!("X{digits}"), "a number of 10000 characters, at most 40 are read"),
+        (format!("N{digits}"), "a number of 10000 characters, at most 40 are read"),
         (
             "N99999999999999999999 X1".to_owned(),
             "99999999999999999999 is too large for a number of a block",
@@ -148,21 +138,11 @@ impl Seek for Endless {
 #[test]
 fn a_line_without_end_is_not_kept() {
     for syntax in families() {
-        let mut input = Endless {
-            at: 0,
-            length: 200_000_000,
-            most_asked: 0,
-        };
+        let mut input = Endless { at: 0, length: 200_000_000, most_asked: 0 };
         let mut reader = NcReader::new(&mut input, syntax);
         let mut block = NcBlock::default();
-        let fault = reader
-            .next_block(&mut block)
-            .expect_err("this is no block")
-            .to_string();
-        assert!(
-            fault.contains("a block of more than 16384 bytes"),
-            "{fault}"
-        );
+        let fault = reader.next_block(&mut block).expect_err("this is no block").to_string();
+        assert!(fault.contains("a block of more than 16384 bytes"), "{fault}");
         assert!(!reader.next_block(&mut block).unwrap());
         drop(reader);
         assert!(input.most_asked <= 64 * 1024, "{}", input.most_asked);
@@ -180,12 +160,7 @@ fn real_lines() -> Vec<(Vec<u8>, NcSyntax)> {
         ("nxpost_dmc100_millplus_mm.ptp", conversational()),
         ("nxpost_dmu70evo_840d_in.ptp", names()),
     ]
-    .map(|(name, syntax)| {
-        (
-            fs::read(folder.join(name)).expect("the file is there"),
-            syntax,
-        )
-    })
+    .map(|(name, syntax)| (fs::read(folder.join(name)).expect("the file is there"), syntax))
     .into()
 }
 
@@ -250,10 +225,7 @@ fn small_helpings_change_nothing() {
         let program = &program[..program.len().min(6000)];
         let whole = read(program, syntax);
         for helping in 1..40 {
-            let input = Helpings {
-                input: Cursor::new(program),
-                helping,
-            };
+            let input = Helpings { input: Cursor::new(program), helping };
             let mut reader = NcReader::new(input, syntax.clone());
             let mut block = NcBlock::default();
             let mut blocks = Vec::new();

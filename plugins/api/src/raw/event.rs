@@ -79,21 +79,12 @@ mod tests {
         let mut given = Event::samples();
         assert_eq!(given.len(), EVENTS.len());
         let words = [1.0, -2.5];
-        for feed in [
-            Feed::PerMinute(100.0),
-            Feed::InverseTime(2.5),
-            Feed::PerRevolution(0.1),
-        ] {
+        for feed in [Feed::PerMinute(100.0), Feed::InverseTime(2.5), Feed::PerRevolution(0.1)] {
             given.push(Event::linear(&words, feed));
             given.push(Event::position(&words, Some(feed)));
         }
-        for coolant in [
-            Coolant::Off,
-            Coolant::Flood,
-            Coolant::Mist,
-            Coolant::Through,
-            Coolant::Air,
-        ] {
+        for coolant in [Coolant::Off, Coolant::Flood, Coolant::Mist, Coolant::Through, Coolant::Air]
+        {
             given.push(Event::Coolant(coolant));
         }
         for register in [0, u32::MAX] {
@@ -144,16 +135,10 @@ mod tests {
         assert_eq!(read(dwell, &[]), Event::Dwell { seconds: 0.0 });
         let rapid = Event::rapid(&[]).kind();
         let numbers = [1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 2.0, 10.0, 20.0, 99.0];
-        let tool = Some(ToolPose {
-            tip: [1.0, 2.0, 3.0],
-            axis: [0.0, 0.0, 1.0],
-        });
+        let tool = Some(ToolPose { tip: [1.0, 2.0, 3.0], axis: [0.0, 0.0, 1.0] });
         let words = &[10.0, 20.0];
         assert_eq!(read(rapid, &numbers), Event::Rapid { tool, words });
-        assert_eq!(
-            read(Event::tool_change(0, 0, "").kind(), &[5.0]),
-            Event::tool_change(5, 0, "")
-        );
+        assert_eq!(read(Event::tool_change(0, 0, "").kind(), &[5.0]), Event::tool_change(5, 0, ""));
     }
 
     #[test]
@@ -164,14 +149,8 @@ mod tests {
             (Event::Preselect { number: 1 }.kind(), &[-1.0]),
             (Event::Preselect { number: 1 }.kind(), &[f64::NAN]),
             // A list that says it is longer than it is, and a feed that is none.
-            (
-                Event::rapid(&[]).kind(),
-                &[f64::NAN, 0.0, 0.0, 0.0, 0.0, 0.0, 1e9, 1.0],
-            ),
-            (
-                Event::rapid(&[]).kind(),
-                &[f64::NAN, 0.0, 0.0, 0.0, 0.0, 0.0, f64::INFINITY],
-            ),
+            (Event::rapid(&[]).kind(), &[f64::NAN, 0.0, 0.0, 0.0, 0.0, 0.0, 1e9, 1.0]),
+            (Event::rapid(&[]).kind(), &[f64::NAN, 0.0, 0.0, 0.0, 0.0, 0.0, f64::INFINITY]),
             (Event::linear(&[], Feed::PerMinute(1.0)).kind(), &[]),
         ] {
             assert_eq!(read(kind, numbers), Event::Unknown { kind });

@@ -29,11 +29,8 @@ pub fn with_setup<R>(setup: &Setup<'_>, take: impl FnOnce(&PostSetup) -> R) -> R
             }
         })
         .collect();
-    let options: Vec<PostPair> = setup
-        .options
-        .iter()
-        .map(|(key, value)| PostPair::new(key, value))
-        .collect();
+    let options: Vec<PostPair> =
+        setup.options.iter().map(|(key, value)| PostPair::new(key, value)).collect();
     let or_nan = |number: Option<f64>| number.unwrap_or(f64::NAN);
     let ahead = setup.ahead.as_ref();
     let tools: Vec<PostTool> = ahead
@@ -149,10 +146,7 @@ impl PostSetup {
             options: &options,
             cl_file: unsafe { raw.cl_file.get() }?,
             accuracy: (raw.tip_tolerance > 0.0).then_some(Accuracy {
-                cut: Tolerance {
-                    tip: raw.tip_tolerance,
-                    axis: raw.axis_tolerance,
-                },
+                cut: Tolerance { tip: raw.tip_tolerance, axis: raw.axis_tolerance },
                 rapid: raw.rapid_tolerance,
             }),
             ahead: (raw.ahead != 0).then_some(Ahead {
@@ -193,9 +187,7 @@ impl PostFormat {
             plane_decimals: format.plane_decimals.into(),
             ..PostFormat::EMPTY
         };
-        raw.words
-            .get_mut(..format.words.len())?
-            .copy_from_slice(&format.words);
+        raw.words.get_mut(..format.words.len())?.copy_from_slice(&format.words);
         raw.extension
             .get_mut(..format.extension.len())?
             .copy_from_slice(format.extension.as_bytes());
@@ -233,12 +225,7 @@ mod tests {
     #[test]
     fn a_setup_comes_back_as_it_went_and_shorter_from_an_earlier_host() {
         let words = [
-            AxisWord {
-                name: "Z",
-                depth: true,
-                travel: Some([-5.0, 300.0]),
-                ..AxisWord::default()
-            },
+            AxisWord { name: "Z", depth: true, travel: Some([-5.0, 300.0]), ..AxisWord::default() },
             AxisWord {
                 name: "C",
                 rotary: true,
@@ -262,13 +249,7 @@ mod tests {
             words: &words,
             options: &[("a", Value::Integer(1))],
             cl_file: "p.cls",
-            accuracy: Some(Accuracy {
-                cut: Tolerance {
-                    tip: 0.005,
-                    axis: 0.05,
-                },
-                rapid: 0.5,
-            }),
+            accuracy: Some(Accuracy { cut: Tolerance { tip: 0.005, axis: 0.05 }, rapid: 0.5 }),
             ahead: Some(Ahead {
                 tools: &tools,
                 extents: Some([[0.0; 3], [1.0, 2.0, 3.0]]),
@@ -282,19 +263,13 @@ mod tests {
             // SAFETY: it was just made.
             let back = unsafe { PostSetup::with(raw, |setup| format!("{setup:?}")) };
             assert_eq!(back, Some(wanted));
-            let shorter = PostSetup {
-                size: std::mem::offset_of!(PostSetup, cl_file) as u64,
-                ..*raw
-            };
+            let shorter =
+                PostSetup { size: std::mem::offset_of!(PostSetup, cl_file) as u64, ..*raw };
             // SAFETY: it has no more than it says.
             let back = unsafe {
                 PostSetup::with(&shorter, |setup| {
                     assert_eq!((setup.program, setup.words.len()), ("p", 2));
-                    (
-                        setup.cl_file.is_empty(),
-                        setup.accuracy,
-                        setup.ahead.is_none(),
-                    )
+                    (setup.cl_file.is_empty(), setup.accuracy, setup.ahead.is_none())
                 })
             };
             assert_eq!(back, Some((true, None, true)));

@@ -26,34 +26,12 @@ impl Round {
             0.0 => HERE[place].midpoint(words[place]),
             _ => HERE[place],
         });
-        Round {
-            feed: SLOW,
-            centre,
-            normal,
-            turn: 180.0,
-            radius: None,
-            words,
-        }
+        Round { feed: SLOW, centre, normal, turn: 180.0, radius: None, words }
     }
 
     fn event(self) -> [Event<'static>; 1] {
-        let Round {
-            feed,
-            centre,
-            normal,
-            turn,
-            radius,
-            words,
-        } = self;
-        [Event::Arc {
-            tool: None,
-            feed,
-            centre,
-            normal,
-            turn,
-            radius,
-            words,
-        }]
+        let Round { feed, centre, normal, turn, radius, words } = self;
+        [Event::Arc { tool: None, feed, centre, normal, turn, radius, words }]
     }
 }
 
@@ -67,10 +45,7 @@ pub(super) fn arcs() -> Vec<Trial> {
         (Capabilities::ARC_YZ, "an arc in Y Z", x, ALONG_Y),
     ] {
         let half = Round::half(normal, words);
-        let back = Round {
-            turn: -180.0,
-            ..half
-        };
+        let back = Round { turn: -180.0, ..half };
         let straight = Event::linear(words, SLOW);
         trials.push(
             Trial::new(needs, what, half.event())
@@ -78,17 +53,10 @@ pub(super) fn arcs() -> Vec<Trial> {
                 .but("another feed", Round { feed: FAST, ..half }.event())
                 .but("a straight cut in its place", [straight]),
         );
-        let full = Round {
-            turn: 360.0,
-            words: HERE,
-            ..half
-        };
+        let full = Round { turn: 360.0, words: HERE, ..half };
         let mut larger = full;
         larger.centre[usize::from(normal == x)] += 0.5;
-        let back = Round {
-            turn: -360.0,
-            ..full
-        };
+        let back = Round { turn: -360.0, ..full };
         trials.push(
             Trial::new(needs, "a full circle", full.event())
                 .but("the other sense", back.event())
@@ -97,12 +65,7 @@ pub(super) fn arcs() -> Vec<Trial> {
         let by_radius = |radius: f64| {
             let turn = if radius < 0.0 { 240.0 } else { 120.0 };
             let radius = Some(radius);
-            Round {
-                turn,
-                radius,
-                ..half
-            }
-            .event()
+            Round { turn, radius, ..half }.event()
         };
         let needs = needs.and(Capabilities::ARC_RADIUS);
         trials.push(

@@ -21,23 +21,11 @@ struct Pair {
 }
 
 const fn pair(what: &'static str, one: Event<'static>, other: Event<'static>) -> Pair {
-    Pair {
-        what,
-        one,
-        other: Some(other),
-        away: false,
-        needed: true,
-    }
+    Pair { what, one, other: Some(other), away: false, needed: true }
 }
 
 const fn given(what: &'static str, one: Event<'static>) -> Pair {
-    Pair {
-        what,
-        one,
-        other: None,
-        away: false,
-        needed: true,
-    }
+    Pair { what, one, other: None, away: false, needed: true }
 }
 
 const fn away(pair: Pair) -> Pair {
@@ -45,10 +33,7 @@ const fn away(pair: Pair) -> Pair {
 }
 
 const fn lacking(pair: Pair) -> Pair {
-    Pair {
-        needed: false,
-        ..pair
-    }
+    Pair { needed: false, ..pair }
 }
 
 const fn turning(rpm: f64, sense: SpindleSense) -> Event<'static> {
@@ -72,11 +57,7 @@ const COMMANDS: &[Pair] = &[
     given("a line of the user's own", Event::Literal { text: LINE }),
     given("a line of the machine's own", Event::Word { text: LINE }),
     away(given("a tool change", Event::tool_change(2, 1, ""))),
-    away(pair(
-        "the number of a tool",
-        Event::tool_change(2, 1, ""),
-        Event::tool_change(3, 1, ""),
-    )),
+    away(pair("the number of a tool", Event::tool_change(2, 1, ""), Event::tool_change(3, 1, ""))),
     away(lacking(pair(
         "the tool that is made ready",
         Event::Preselect { number: 3 },
@@ -95,11 +76,7 @@ const COMMANDS: &[Pair] = &[
     given("the stop of the spindle", Event::Spindle(Spindle::Off)),
     lacking(given("an oriented stop", Event::Spindle(Spindle::Orient))),
     given("coolant", Event::Coolant(Coolant::Flood)),
-    pair(
-        "the end of coolant",
-        Event::Coolant(Coolant::Flood),
-        Event::Coolant(Coolant::Off),
-    ),
+    pair("the end of coolant", Event::Coolant(Coolant::Flood), Event::Coolant(Coolant::Off)),
     lacking(pair(
         "the kind of coolant, mist for flood,",
         Event::Coolant(Coolant::Mist),
@@ -123,17 +100,10 @@ const COMMANDS: &[Pair] = &[
     ),
     given("a stop", Event::Stop),
     given("an optional stop", Event::OptionalStop),
-    pair(
-        "an optional stop for a stop",
-        Event::Stop,
-        Event::OptionalStop,
-    ),
+    pair("an optional stop for a stop", Event::Stop, Event::OptionalStop),
     away(given(
         "a position of the machine",
-        Event::Park {
-            axes: 0b11,
-            words: &[-200.0, 150.0, 0.0, 0.0, 0.0],
-        },
+        Event::Park { axes: 0b11, words: &[-200.0, 150.0, 0.0, 0.0, 0.0] },
     )),
 ];
 
@@ -145,11 +115,7 @@ const COMPENSATION: &[Pair] = &[
         left(5),
         Event::Compensate(Compensation::Right { register: 5 }),
     )),
-    lacking(pair(
-        "the end of cutter compensation",
-        left(5),
-        Event::Compensate(Compensation::Off),
-    )),
+    lacking(pair("the end of cutter compensation", left(5), Event::Compensate(Compensation::Off))),
 ];
 
 /// Of those that are not in the control's own table.
@@ -159,11 +125,7 @@ const REGISTERS: &[Pair] = &[
         Event::tool_change(2, 5, ""),
         Event::tool_change(2, 6, ""),
     )),
-    lacking(pair(
-        "the register of a tool's radius, 6 for 5,",
-        left(5),
-        left(6),
-    )),
+    lacking(pair("the register of a tool's radius, 6 for 5,", left(5), left(6))),
 ];
 
 /// Runs all commands.
@@ -171,10 +133,7 @@ pub(super) fn commands(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault
     let writes = pen.capabilities()?;
     let compensates = !pen.setup.tcp || writes.has(Capabilities::COMPENSATE_TCP);
     let registers = !writes.has(Capabilities::TOOL_TABLE);
-    let pairs = COMMANDS
-        .iter()
-        .chain(COMPENSATION)
-        .chain(if registers { REGISTERS } else { &[] });
+    let pairs = COMMANDS.iter().chain(COMPENSATION).chain(if registers { REGISTERS } else { &[] });
     for pair in pairs {
         let compensation = matches!(pair.one, Event::Compensate(_));
         if pen.left_out.contains(&pair.one.name()) || compensation && !compensates {

@@ -8,34 +8,14 @@ use super::declared::{Events, Trial};
 pub(super) fn cycles() -> Vec<Trial> {
     const KINDS: [(Capabilities, &str, Cycle); 9] = [
         (Capabilities::CYCLE_DRILL, "a drilling cycle", Cycle::Drill),
-        (
-            Capabilities::CYCLE_DEEP,
-            "a deep drilling cycle",
-            Cycle::Deep,
-        ),
-        (
-            Capabilities::CYCLE_BREAK_CHIP,
-            "a chip breaking cycle",
-            Cycle::BreakChip,
-        ),
+        (Capabilities::CYCLE_DEEP, "a deep drilling cycle", Cycle::Deep),
+        (Capabilities::CYCLE_BREAK_CHIP, "a chip breaking cycle", Cycle::BreakChip),
         (Capabilities::CYCLE_TAP, "a tapping cycle", Cycle::Tap),
-        (
-            Capabilities::CYCLE_TAP_LEFT,
-            "a left-hand tapping cycle",
-            Cycle::TapLeft,
-        ),
+        (Capabilities::CYCLE_TAP_LEFT, "a left-hand tapping cycle", Cycle::TapLeft),
         (Capabilities::CYCLE_REAM, "a reaming cycle", Cycle::Ream),
         (Capabilities::CYCLE_BORE, "a boring cycle", Cycle::Bore),
-        (
-            Capabilities::CYCLE_BORE_FINE,
-            "a fine boring cycle",
-            Cycle::BoreFine,
-        ),
-        (
-            Capabilities::CYCLE_BORE_BACK,
-            "a back boring cycle",
-            Cycle::BoreBack,
-        ),
+        (Capabilities::CYCLE_BORE_FINE, "a fine boring cycle", Cycle::BoreFine),
+        (Capabilities::CYCLE_BORE_BACK, "a back boring cycle", Cycle::BoreBack),
     ];
     KINDS
         .into_iter()
@@ -43,54 +23,23 @@ pub(super) fn cycles() -> Vec<Trial> {
             let plain = Hole::of(cycle);
             let holes = |hole: Hole| hole.events(FIRST, SECOND);
             let mut trial = Trial::new(needs, what, holes(plain))
-                .but(
-                    "another depth",
-                    holes(Hole {
-                        depth: 12.5,
-                        ..plain
-                    }),
-                )
-                .but(
-                    "another clearance",
-                    holes(Hole {
-                        clearance: 3.0,
-                        ..plain
-                    }),
-                )
+                .but("another depth", holes(Hole { depth: 12.5, ..plain }))
+                .but("another clearance", holes(Hole { clearance: 3.0, ..plain }))
                 .but("another point", plain.events(FIRST, THIRD))
                 .but("a point less", plain.events(FIRST, FIRST));
             trial.under_tcp = Capabilities::CYCLE_TCP;
             if plain.pitch.is_none() {
-                trial = trial.but(
-                    "another feed",
-                    holes(Hole {
-                        feed: 310.0,
-                        ..plain
-                    }),
-                );
+                trial = trial.but("another feed", holes(Hole { feed: 310.0, ..plain }));
             } else {
                 // As many turns a minute.
-                let coarse = Hole {
-                    feed: 6000.0,
-                    pitch: Some(2.0),
-                    ..plain
-                };
+                let coarse = Hole { feed: 6000.0, pitch: Some(2.0), ..plain };
                 trial = trial.but("another pitch", holes(coarse));
             }
             if plain.step.is_some() {
-                trial = trial.but(
-                    "another step",
-                    holes(Hole {
-                        step: Some(4.0),
-                        ..plain
-                    }),
-                );
+                trial = trial.but("another step", holes(Hole { step: Some(4.0), ..plain }));
             }
             if cycle == Cycle::Drill {
-                let dwell = Hole {
-                    dwell: Some(2.0),
-                    ..plain
-                };
+                let dwell = Hole { dwell: Some(2.0), ..plain };
                 trial = trial.but("a dwell", holes(dwell));
             }
             trial
@@ -133,15 +82,7 @@ impl Hole {
 
     /// Two points, one if they are the same.
     fn events(self, first: &'static [f64], second: &'static [f64]) -> Events {
-        let Hole {
-            cycle,
-            feed,
-            depth,
-            clearance,
-            step,
-            dwell,
-            pitch,
-        } = self;
+        let Hole { cycle, feed, depth, clearance, step, dwell, pitch } = self;
         let point = |words| Event::CyclePoint { tool: None, words };
         let mut events = vec![Event::rapid(ABOVE)];
         if cycle == Cycle::TapLeft {

@@ -164,35 +164,19 @@ fn motion() -> Vec<Trial> {
     };
     const EVEN: &[f64] = &[1.0; 4];
     trials.push(
-        Trial::new(
-            Capabilities::SPLINE,
-            "a spline",
-            [spline(SLOW, POINTS, EVEN)],
-        )
-        .but("another point", [spline(SLOW, OTHERS, EVEN)])
-        .but(
-            "another weight",
-            [spline(SLOW, POINTS, &[1.0, 2.0, 1.0, 1.0])],
-        )
-        .but("another feed", [spline(FAST, POINTS, EVEN)]),
+        Trial::new(Capabilities::SPLINE, "a spline", [spline(SLOW, POINTS, EVEN)])
+            .but("another point", [spline(SLOW, OTHERS, EVEN)])
+            .but("another weight", [spline(SLOW, POINTS, &[1.0, 2.0, 1.0, 1.0])])
+            .but("another feed", [spline(FAST, POINTS, EVEN)]),
     );
-    let probe = |words, feed| Event::Probe {
-        tool: None,
-        feed,
-        words,
-    };
+    let probe = |words, feed| Event::Probe { tool: None, feed, words };
     trials.push(
         Trial::new(Capabilities::PROBE, "a probing move", [probe(DOWN, SLOW)])
             .but("another end", [probe(DEEPER, SLOW)])
             .but("another feed", [probe(DOWN, FAST)])
             .but("a cut in its place", [Event::linear(DOWN, SLOW)]),
     );
-    let surface = |normal, words| Event::Surface {
-        tool: Some(UPRIGHT),
-        feed: SLOW,
-        normal,
-        words,
-    };
+    let surface = |normal, words| Event::Surface { tool: Some(UPRIGHT), feed: SLOW, normal, words };
     trials.push(
         Trial::new(
             Capabilities::SURFACE,
@@ -205,28 +189,18 @@ fn motion() -> Vec<Trial> {
     trials
 }
 
-const UPRIGHT: ToolPose = ToolPose {
-    tip: [30.0, 20.0, 30.0],
-    axis: [0.0, 0.0, 1.0],
-};
+const UPRIGHT: ToolPose = ToolPose { tip: [30.0, 20.0, 30.0], axis: [0.0, 0.0, 1.0] };
 
 fn settings() -> Vec<Trial> {
     let operation = |name| Event::Operation { name };
     let message = |text| Event::Message { text };
-    let smoothing = |tolerance| Event::Smoothing {
-        tolerance,
-        axis_tolerance: Some(0.1),
-    };
+    let smoothing = |tolerance| Event::Smoothing { tolerance, axis_tolerance: Some(0.1) };
     let offset = |number| Event::WorkOffset { number, name: "" };
     let registers = |length, radius| Event::Offsets { length, radius };
     let speed = |speed, most, sense| Event::SurfaceSpeed { speed, most, sense };
     let clamp = |word, on| Event::Clamp { word, on };
     let space = |on, register| Event::Compensate3d { on, register };
-    let call = |number, times, name| Event::Subprogram {
-        number,
-        times,
-        name,
-    };
+    let call = |number, times, name| Event::Subprogram { number, times, name };
     let (right, left) = (SpindleSense::Clockwise, SpindleSense::CounterClockwise);
     vec![
         Trial::new(
@@ -237,13 +211,9 @@ fn settings() -> Vec<Trial> {
         .silent(),
         Trial::new(Capabilities::MESSAGE, "a message", [message("ALPHA")])
             .but("another text", [message("OMEGA")]),
-        Trial::new(
-            Capabilities::UNITS,
-            "a change of units",
-            [Event::Units(Units::Inch)],
-        )
-        .but("the other units", [Event::Units(Units::Millimetre)])
-        .away(),
+        Trial::new(Capabilities::UNITS, "a change of units", [Event::Units(Units::Inch)])
+            .but("the other units", [Event::Units(Units::Millimetre)])
+            .away(),
         Trial::new(Capabilities::WORK_OFFSET, "a work offset", [offset(2)])
             .but("another number", [offset(3)])
             .away(),
@@ -276,13 +246,9 @@ fn settings() -> Vec<Trial> {
             [space(true, 5), space(false, 0)],
         )
         .but("a cut without it", [Event::linear(XY, SLOW)]),
-        Trial::new(
-            Capabilities::SUBPROGRAM,
-            "a subprogram",
-            [call(Some(1234), 1, "")],
-        )
-        .but("another number", [call(Some(1235), 1, "")])
-        .but("how often", [call(Some(1234), 2, "")]),
+        Trial::new(Capabilities::SUBPROGRAM, "a subprogram", [call(Some(1234), 1, "")])
+            .but("another number", [call(Some(1235), 1, "")])
+            .but("how often", [call(Some(1234), 2, "")]),
     ]
 }
 
@@ -295,11 +261,7 @@ fn plane(angles: PlaneAngles) -> Trial {
                 origin: [x, 0.0, 0.0],
                 x: [1.0, 0.0, 0.0],
                 z: [0.0, 0.0, 1.0],
-                angles: if angles == PlaneAngles::Rotary {
-                    [0.0; 3]
-                } else {
-                    tilted
-                },
+                angles: if angles == PlaneAngles::Rotary { [0.0; 3] } else { tilted },
                 words: HERE,
             },
             Event::position(HERE, None),
@@ -341,9 +303,7 @@ fn instead(pen: &Pen<'_>, case: &mut Case, declares: Capabilities) -> Result<(),
     let (whole, own) = match (text(5, Some(LINES))?, text(5, None)?) {
         (Ok(with), Ok((_, plain))) => {
             // What it would have written stands in no line of its own.
-            let left = plain
-                .lines()
-                .filter(|line| !line.starts_with(['(', ';', '*']));
+            let left = plain.lines().filter(|line| !line.starts_with(['(', ';', '*']));
             let left: Vec<&str> = left.filter(|line| with.1.contains(line)).collect();
             if let [first, ..] = left.as_slice() {
                 case.wrong(format!(

@@ -65,11 +65,7 @@ pub(super) fn test(
     cases.push(same("one by one", &text, run(1)?));
     cases.push(same("by sevens", &text, run(7)?));
 
-    let pen = Pen {
-        plugin,
-        setup: &setup,
-        left_out: &left_out,
-    };
+    let pen = Pen { plugin, setup: &setup, left_out: &left_out };
     let mut case = Case::named("words and feeds");
     moves(&pen, &mut case)?;
     cases.push(case);
@@ -107,10 +103,9 @@ pub(super) fn test(
     cases.push(two_at_once(plugin, &setup)?);
     cases.push(two_threads(plugin, &setup, most)?);
 
-    for (name, tcp, units) in [
-        ("with TCP", true, Units::Millimetre),
-        ("in inches", false, Units::Inch),
-    ] {
+    for (name, tcp, units) in
+        [("with TCP", true, Units::Millimetre), ("in inches", false, Units::Inch)]
+    {
         setup.tcp = tcp;
         setup.units = units;
         let mut case = Case::named(name);
@@ -120,11 +115,7 @@ pub(super) fn test(
                 drop(opened);
                 let mut left_out = left_out.clone();
                 if program(plugin, &setup, &format, &mut left_out, &mut case)?.is_some() {
-                    let pen = Pen {
-                        plugin,
-                        setup: &setup,
-                        left_out: &left_out,
-                    };
+                    let pen = Pen { plugin, setup: &setup, left_out: &left_out };
                     if begin(&pen)? == plain {
                         case.wrong(format!(
                             "the program begins as it does without: it must say so to the control, or refuse to open ({})",
@@ -162,10 +153,7 @@ fn axis_names(pen: &Pen<'_>) -> Result<Case, PluginFault> {
     let mut case = Case::named("axis names");
     let mut setup = pen.setup.clone();
     setup.words[0].name = "X1".to_owned();
-    let pen = Pen {
-        setup: &setup,
-        ..*pen
-    };
+    let pen = Pen { setup: &setup, ..*pen };
     if pen.plugin.dialect(&setup).is_err() {
         return Ok(case);
     }
@@ -288,29 +276,16 @@ fn positions(format: &Format) -> Vec<[f64; 5]> {
 
 /// A program with all kinds of events that every dialect is sent.
 fn events<'a>(positions: &'a [[f64; 5]], left_out: &[&str]) -> Vec<Event<'a>> {
-    let words = |index: usize| {
-        positions
-            .get(index)
-            .map_or(&[] as &[f64], |it| it.as_slice())
-    };
+    let words = |index: usize| positions.get(index).map_or(&[] as &[f64], |it| it.as_slice());
     let last = positions.len().saturating_sub(1);
     let cut = |index: usize| {
-        let feed = if index.is_multiple_of(5) {
-            900.0
-        } else {
-            400.0
-        };
+        let feed = if index.is_multiple_of(5) { 900.0 } else { 400.0 };
         Event::linear(words(index), Feed::PerMinute(feed))
     };
     let mut events = vec![
         Event::Start,
-        Event::Retract {
-            axes: 0b100,
-            words: words(0),
-        },
-        Event::Comment {
-            text: "naïve (µ); % ~",
-        },
+        Event::Retract { axes: 0b100, words: words(0) },
+        Event::Comment { text: "naïve (µ); % ~" },
         Event::tool_change(1, 1, "ball 6"),
         TURNING,
         Event::Coolant(Coolant::Flood),
@@ -328,14 +303,8 @@ fn events<'a>(positions: &'a [[f64; 5]], left_out: &[&str]) -> Vec<Event<'a>> {
         Event::Literal { text: "M78" },
         Event::Coolant(Coolant::Off),
         Event::Spindle(Spindle::Off),
-        Event::Retract {
-            axes: 0b100,
-            words: words(0),
-        },
-        Event::Park {
-            axes: 0b11,
-            words: words(0),
-        },
+        Event::Retract { axes: 0b100, words: words(0) },
+        Event::Park { axes: 0b11, words: words(0) },
         Event::End,
     ]);
     events.retain(|event| !left_out.contains(&event.name()));

@@ -38,10 +38,7 @@ pub(super) fn test(
     }
     cases.push(repeated(&open)?);
     cases.push(transformed(&open, "turned", turned, &TOLERANCE)?);
-    let tolerance = Tolerance {
-        tip: 3.0 * TOLERANCE.tip,
-        axis: 3.0 * TOLERANCE.axis,
-    };
+    let tolerance = Tolerance { tip: 3.0 * TOLERANCE.tip, axis: 3.0 * TOLERANCE.axis };
     cases.push(transformed(&open, "scaled", |it| it * 3.0, &tolerance)?);
     Ok(cases)
 }
@@ -67,9 +64,7 @@ fn known(model: &mut OpenedModel, shape: &Shape) -> Case {
     let mut case = Case::named(shape.name);
     let (curve, asked) = fit(model, &shape.tolerance, &shape.at);
     if let Some(t) = asked.iter().find(|t| !(0.0..=1.0).contains(*t)) {
-        case.wrong(format!(
-            "it asks for the deviation at t = {t}, outside the move"
-        ));
+        case.wrong(format!("it asks for the deviation at t = {t}, outside the move"));
     }
     if asked.len() > MANY && shape.kind == Kind::Bow {
         case.note(format!(
@@ -86,10 +81,8 @@ fn known(model: &mut OpenedModel, shape: &Shape) -> Case {
     };
     let ts = (0..=PIECES).map(|step| f64::from(step) / f64::from(PIECES));
     let truth: Vec<(f64, Deviation)> = ts.map(|t| (t, (shape.at)(t))).collect();
-    let fitted: Vec<(f64, Deviation)> = truth
-        .iter()
-        .map(|(t, _)| (*t, model.value(&curve, *t)))
-        .collect();
+    let fitted: Vec<(f64, Deviation)> =
+        truth.iter().map(|(t, _)| (*t, model.value(&curve, *t))).collect();
     let there = [curve.tip_at, curve.axis_at].map(|t| model.value(&curve, t));
     if let Some(fault) = model.fault() {
         case.wrong(format!("no value of its curve: {fault}"));
@@ -101,13 +94,7 @@ fn known(model: &mut OpenedModel, shape: &Shape) -> Case {
             let off = *a - *b;
             length(part(&off))
         });
-        Peaks {
-            actual,
-            actual_at,
-            said,
-            said_at,
-            left: rests.fold(0.0, f64::max),
-        }
+        Peaks { actual, actual_at, said, said_at, left: rests.fold(0.0, f64::max) }
     };
     let figures = Figures {
         asked: asked.len(),
@@ -116,29 +103,10 @@ fn known(model: &mut OpenedModel, shape: &Shape) -> Case {
     };
     case.figures = Some(figures);
     let Tolerance { tip, axis } = shape.tolerance;
-    let own = [
-        largest(&fitted, |it| &it.tip),
-        largest(&fitted, |it| &it.axis),
-    ];
+    let own = [largest(&fitted, |it| &it.tip), largest(&fitted, |it| &it.axis)];
     let there = [length(&there[0].tip), length(&there[1].axis)];
-    judge(
-        &mut case,
-        shape.kind,
-        &TIP,
-        &figures.tip,
-        own[0],
-        there[0],
-        tip,
-    );
-    judge(
-        &mut case,
-        shape.kind,
-        &AXIS,
-        &figures.axis,
-        own[1],
-        there[1],
-        axis,
-    );
+    judge(&mut case, shape.kind, &TIP, &figures.tip, own[0], there[0], tip);
+    judge(&mut case, shape.kind, &AXIS, &figures.axis, own[1], there[1], axis);
     case
 }
 
@@ -150,17 +118,9 @@ struct Part {
     scale: f64,
 }
 
-const TIP: Part = Part {
-    name: "tip",
-    unit: "µm",
-    scale: 1e3,
-};
+const TIP: Part = Part { name: "tip", unit: "µm", scale: 1e3 };
 
-const AXIS: Part = Part {
-    name: "tool axis",
-    unit: "°",
-    scale: 1.0,
-};
+const AXIS: Part = Part { name: "tool axis", unit: "°", scale: 1.0 };
 
 /// Judges one part's peak against the truth and against the model's `own` largest value and the one `there`,
 /// where it says that the peak stands.
@@ -175,13 +135,7 @@ fn judge(
 ) {
     let Part { name, unit, scale } = part;
     let number = |value: f64| format!("{} {unit}", short(value * scale));
-    let Peaks {
-        actual,
-        actual_at,
-        said,
-        said_at,
-        left,
-    } = *peaks;
+    let Peaks { actual, actual_at, said, said_at, left } = *peaks;
     let slack = actual.max(tolerance);
     if kind != Kind::Rough && own > said + SHORT * slack {
         case.wrong(format!(
@@ -252,10 +206,7 @@ fn short(value: f64) -> String {
 /// Deviations that are no numbers: refused, or at least answered by numbers.
 fn no_number(model: &mut OpenedModel, name: &'static str, number: f64) -> Case {
     let mut case = Case::named(name);
-    let at = |_: f64| Deviation {
-        tip: [number; 3],
-        axis: [number; 3],
-    };
+    let at = |_: f64| Deviation { tip: [number; 3], axis: [number; 3] };
     match model.answer(&TOLERANCE, &mut |ts, out| {
         out.iter_mut().zip(ts).for_each(|(out, t)| *out = at(*t));
     }) {
@@ -293,10 +244,8 @@ fn repeated(open: Open<'_>) -> Result<Case, PluginFault> {
     for round in 1..=3 {
         for (index, shape) in shapes.iter().enumerate() {
             // A move that is refused may leave nothing behind either.
-            let _ = fit(&mut model, &TOLERANCE, &|_| Deviation {
-                tip: [f64::NAN; 3],
-                axis: [0.0; 3],
-            });
+            let _ =
+                fit(&mut model, &TOLERANCE, &|_| Deviation { tip: [f64::NAN; 3], axis: [0.0; 3] });
             let name = shape.name;
             let again = match fit(&mut model, &shape.tolerance, &shape.at).0 {
                 Ok(curve) => curve,
@@ -357,23 +306,10 @@ fn transformed(
                 continue;
             }
         };
-        let unit = by(Deviation {
-            tip: [1.0, 0.0, 0.0],
-            axis: [1.0, 0.0, 0.0],
-        });
+        let unit = by(Deviation { tip: [1.0, 0.0, 0.0], axis: [1.0, 0.0, 0.0] });
         let peaks = [
-            (
-                &TIP,
-                plain.tip_peak * length(&unit.tip),
-                other.tip_peak,
-                tolerance.tip,
-            ),
-            (
-                &AXIS,
-                plain.axis_peak * length(&unit.axis),
-                other.axis_peak,
-                tolerance.axis,
-            ),
+            (&TIP, plain.tip_peak * length(&unit.tip), other.tip_peak, tolerance.tip),
+            (&AXIS, plain.axis_peak * length(&unit.axis), other.axis_peak, tolerance.axis),
         ];
         for (part, due, found, tolerance) in peaks {
             if (found - due).abs() > SHORT * due.max(tolerance) {
@@ -417,8 +353,5 @@ fn turned(it: Deviation) -> Deviation {
             (-x + 2.0 * y + 2.0 * z) / 3.0,
         ]
     };
-    Deviation {
-        tip: turn(it.tip),
-        axis: turn(it.axis),
-    }
+    Deviation { tip: turn(it.tip), axis: turn(it.axis) }
 }

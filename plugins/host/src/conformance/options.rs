@@ -21,10 +21,7 @@ pub(super) fn options_of(pen: &Pen<'_>) -> Result<Case, PluginFault> {
             let mut setup = pen.setup.clone();
             setup.options.retain(|(key, _)| key != spec.key);
             setup.options.push((spec.key.to_owned(), value));
-            let pen = Pen {
-                setup: &setup,
-                ..*pen
-            };
+            let pen = Pen { setup: &setup, ..*pen };
             // A text has a meaning, which the kit cannot know; what is refused, is.
             let of_text = matches!(spec.kind, OptionKind::Text | OptionKind::Lines);
             match pen.plugin.dialect(&setup) {
@@ -42,14 +39,10 @@ pub(super) fn options_of(pen: &Pen<'_>) -> Result<Case, PluginFault> {
                 Ok(()) => plain_moves(&pen, &mut own)?,
             }
             let wrong = own.wrong.into_iter();
-            case.wrong
-                .extend(wrong.map(|sentence| format!("with {shown}: {sentence}")));
+            case.wrong.extend(wrong.map(|sentence| format!("with {shown}: {sentence}")));
         }
     }
-    case.facts.push(format!(
-        "{tried} values of {} options",
-        pen.plugin.options().len()
-    ));
+    case.facts.push(format!("{tried} values of {} options", pen.plugin.options().len()));
     Ok(case)
 }
 
@@ -60,10 +53,7 @@ fn program(pen: &Pen<'_>) -> Result<Result<(), String>, PluginFault> {
         program.push(Event::Comment { text: "ALPHA" });
         program.push(Event::Turn { words: &ELSEWHERE });
         program.push(Event::position(&ELSEWHERE, None));
-        program.push(Event::linear(
-            &[2.0, 4.0, 80.0, 5.0, 6.0],
-            Feed::PerMinute(500.0),
-        ));
+        program.push(Event::linear(&[2.0, 4.0, 80.0, 5.0, 6.0], Feed::PerMinute(500.0)));
         program.push(Event::Dwell { seconds: 1.5 });
         program.push(Event::Stop);
         program.push(Event::rapid(&ELSEWHERE));

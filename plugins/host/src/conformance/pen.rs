@@ -5,16 +5,12 @@ use post_plugin::{Batch, Capabilities, DialectSession, Event, Format, Spindle, S
 use crate::{Plugin, PluginFault, ProgramSetup};
 
 /// The spindle as every program of the kit has it.
-pub(super) const TURNING: Event<'static> = Event::Spindle(Spindle::On {
-    rpm: 3000.0,
-    sense: SpindleSense::Clockwise,
-});
+pub(super) const TURNING: Event<'static> =
+    Event::Spindle(Spindle::On { rpm: 3000.0, sense: SpindleSense::Clockwise });
 
 /// The depth axis to its end.
-pub(super) const RETRACT: Event<'static> = Event::Retract {
-    axes: 0b100,
-    words: &[0.0, 0.0, 500.0, 0.0, 0.0],
-};
+pub(super) const RETRACT: Event<'static> =
+    Event::Retract { axes: 0b100, words: &[0.0, 0.0, 500.0, 0.0, 0.0] };
 
 /// Whatever writes the programs of the kit.
 pub(super) struct Pen<'a> {
@@ -37,11 +33,8 @@ pub(super) type Text = Result<(String, String), String>;
 impl Pen<'_> {
     /// The text of the program that `fill` makes.
     pub fn write(&self, fill: &dyn Fn(&mut Program<'_>)) -> Result<Text, PluginFault> {
-        let mut program = Program {
-            left_out: self.left_out,
-            batch: Batch::default(),
-            looked_at: None,
-        };
+        let mut program =
+            Program { left_out: self.left_out, batch: Batch::default(), looked_at: None };
         fill(&mut program);
         let mut session = self.plugin.dialect(self.setup)?;
         let (mut out, mut ends) = (String::new(), Vec::new());

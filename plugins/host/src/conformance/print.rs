@@ -82,10 +82,7 @@ impl Kind {
     fn event(self, words: &[f64], feed: f64) -> Event<'_> {
         match self {
             Retract => Event::Retract { axes: 0b100, words },
-            Park => Event::Park {
-                axes: 0b1_1111,
-                words,
-            },
+            Park => Event::Park { axes: 0b1_1111, words },
             Turn => Event::Turn { words },
             Position => Event::position(words, None),
             PositionAtFeed => Event::position(words, Some(Feed::PerMinute(feed))),
@@ -135,11 +132,7 @@ pub(super) fn moves(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
 
 /// The text of a move of this kind.
 fn kind_alone(pen: &Pen<'_>, format: &Format, kind: Kind) -> Result<Text, PluginFault> {
-    let alone = Move {
-        kind,
-        words: rounded(PLACE, format),
-        feed: 500.0,
-    };
+    let alone = Move { kind, words: rounded(PLACE, format), feed: 500.0 };
     pen.write(&|program| {
         program.begin();
         if !kind.comes_first() {
@@ -168,9 +161,8 @@ pub(super) fn plain_moves(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFa
 /// Words where a digit more begins, where a rounding carries over, about zero and at the ends of what axes reach: each
 /// differs from both of its neighbours in the last declared decimal.
 pub(super) fn edges(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
-    const EDGES: [f64; 12] = [
-        0.0, 0.1, 0.3, 0.5, 1.0, 9.5, 10.0, 99.5, 100.0, 1000.0, 8191.75, 99_999.5,
-    ];
+    const EDGES: [f64; 12] =
+        [0.0, 0.1, 0.3, 0.5, 1.0, 9.5, 10.0, 99.5, 100.0, 1000.0, 8191.75, 99_999.5];
     let format = pen.format()?;
     let text = |word: usize, value: f64| {
         let mut words = rounded(PLACE, &format);
@@ -221,11 +213,7 @@ fn word_fault(
     let unit = unit(decimals);
     for value in if rotary { ROTARY } else { LINEAR } {
         let value = quantise(value, decimals);
-        let mut base = Move {
-            kind,
-            words: rounded(PLACE, format),
-            feed: 500.0,
-        };
+        let mut base = Move { kind, words: rounded(PLACE, format), feed: 500.0 };
         base.words[word] = value;
         let mut changes = vec![(value + unit, LAST_DECIMAL), (value - unit, LAST_DECIMAL)];
         if value != 0.0 {
@@ -260,11 +248,7 @@ fn feed_fault(pen: &Pen<'_>, format: &Format, kind: Kind) -> Result<Option<Strin
     let unit = unit(decimals);
     for value in FEEDS {
         let value = quantise(value, decimals).max(unit);
-        let base = Move {
-            kind,
-            words: rounded(PLACE, format),
-            feed: value,
-        };
+        let base = Move { kind, words: rounded(PLACE, format), feed: value };
         for before in befores(format, &base) {
             for changed in [value + unit, value - unit] {
                 let feed = quantise(changed, decimals);
@@ -295,13 +279,7 @@ fn befores(format: &Format, base: &Move) -> Vec<Option<Move>> {
     let kinds = kinds.into_iter().filter(|kind| !kind.comes_first());
     kinds
         .flat_map(|kind| {
-            let from = |words| {
-                Some(Move {
-                    kind,
-                    words,
-                    ..*base
-                })
-            };
+            let from = |words| Some(Move { kind, words, ..*base });
             [from(base.words), from(rounded(ELSEWHERE, format))]
         })
         .collect()

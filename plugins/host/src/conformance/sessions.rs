@@ -56,10 +56,7 @@ pub(super) fn two_at_once(plugin: &Plugin, setup: &ProgramSetup) -> Result<Case,
         }
         Ok(writer.out)
     });
-    let mut both = [
-        Writer::open(plugin, setup, 0.0)?,
-        Writer::open(plugin, setup, 7.0)?,
-    ];
+    let mut both = [Writer::open(plugin, setup, 0.0)?, Writer::open(plugin, setup, 7.0)?];
     for _ in 0..20 {
         for writer in &mut both {
             writer.write(10);
@@ -188,17 +185,11 @@ impl Writer {
             for (word, decimals) in words.iter_mut().zip(&self.decimals) {
                 *word = quantise(*word, *decimals);
             }
-            let feed = if self.step % 37.0 < 20.0 {
-                900.0
-            } else {
-                400.0
-            };
+            let feed = if self.step % 37.0 < 20.0 { 900.0 } else { 400.0 };
             batch.push(1, Event::linear(&words, Feed::PerMinute(feed)));
         }
         self.ends.clear();
-        let written = self
-            .session
-            .write_batch(&batch, &mut self.out, &mut self.ends);
+        let written = self.session.write_batch(&batch, &mut self.out, &mut self.ends);
         self.fault = written.err();
     }
 }

@@ -9,10 +9,7 @@ const TIP: f64 = 0.02;
 const AXIS: f64 = 0.2;
 
 /// What the cases must stay within, if they do not say otherwise.
-pub(super) const TOLERANCE: Tolerance = Tolerance {
-    tip: 0.005,
-    axis: 0.05,
-};
+pub(super) const TOLERANCE: Tolerance = Tolerance { tip: 0.005, axis: 0.05 };
 
 /// What a model must make of a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,19 +77,13 @@ pub(super) fn all() -> Vec<Shape> {
         shape(name, Kind::Smooth, Box::new(at))
     };
     let within = |shape: Shape, factor: f64| Shape {
-        tolerance: Tolerance {
-            tip: TIP * factor,
-            axis: AXIS * factor,
-        },
+        tolerance: Tolerance { tip: TIP * factor, axis: AXIS * factor },
         ..shape
     };
     vec![
         bow("none", 0.0, 0.0),
         bow("parabola", TIP, AXIS),
-        Shape {
-            kind: Kind::Bow,
-            ..smooth("half a sine", sine)
-        },
+        Shape { kind: Kind::Bow, ..smooth("half a sine", sine) },
         bow("tip alone", TIP, 0.0),
         bow("axis alone", 0.0, AXIS),
         within(bow("just over", TIP, AXIS), 1.0 / 1.1),
@@ -118,9 +109,6 @@ pub(super) fn all() -> Vec<Shape> {
                 axis: [0.0, 0.5 * AXIS * sine(2.0 * t), AXIS * parabola(t)],
             }),
         ),
-        Shape {
-            kind: Kind::Rough,
-            ..smooth("jump", |t| if t < 0.3 { 0.0 } else { 1.0 })
-        },
+        Shape { kind: Kind::Rough, ..smooth("jump", |t| if t < 0.3 { 0.0 } else { 1.0 }) },
     ]
 }

@@ -10,14 +10,8 @@ use crate::PluginFault;
 /// What a remark may hold, and what it is called in a message.
 const REMARKS: &[(&str, &str)] = &[
     ("an empty remark", ""),
-    (
-        "a remark with letters of other languages",
-        "Größe µ, 孔 直径, ø12 ±0,02, Ω",
-    ),
-    (
-        "a remark with brackets and signs",
-        "a) b ( c ] d [ ; e % / * \" ' # = <f> {g} ~ M30 \\",
-    ),
+    ("a remark with letters of other languages", "Größe µ, 孔 直径, ø12 ±0,02, Ω"),
+    ("a remark with brackets and signs", "a) b ( c ] d [ ; e % / * \" ' # = <f> {g} ~ M30 \\"),
     ("a remark that ends like a block", "G0 Z-500."),
     ("a remark of one bracket", ")"),
 ];

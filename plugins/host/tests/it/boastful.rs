@@ -11,131 +11,53 @@ use post_plugin::{
 
 /// What is wrong, and a part of the sentence that says so.
 pub const FAULTS: &[(&str, &str)] = &[
-    (
-        "one sense",
-        "declared: an arc in X Y: the other sense makes no difference",
-    ),
-    (
-        "one sense",
-        "declared: a full circle: the other sense makes no difference",
-    ),
+    ("one sense", "declared: an arc in X Y: the other sense makes no difference"),
+    ("one sense", "declared: a full circle: the other sense makes no difference"),
     (
         "one radius",
         "declared: an arc by its radius: a radius below zero, the long way, makes no difference",
     ),
-    (
-        "flat helix",
-        "declared: a helix: another depth of its end makes no difference",
-    ),
-    (
-        "arcs are cuts",
-        "declared: an arc in Z X: a straight cut in its place makes no difference",
-    ),
-    (
-        "no weights",
-        "declared: a spline: another weight makes no difference",
-    ),
-    (
-        "no circle",
-        "declared: it declares a full circle, and writes nothing",
-    ),
-    (
-        "one plane",
-        "declared: a tilted plane: another angle makes no difference",
-    ),
-    (
-        "one origin",
-        "declared: a tilted plane: another origin makes no difference",
-    ),
-    (
-        "one depth",
-        "declared: a drilling cycle: another depth makes no difference",
-    ),
-    (
-        "one hole",
-        "declared: a boring cycle: a point less makes no difference",
-    ),
-    (
-        "no step",
-        "declared: a deep drilling cycle: another step makes no difference",
-    ),
-    (
-        "no pitch",
-        "declared: a tapping cycle: another pitch makes no difference",
-    ),
-    (
-        "no dwell in holes",
-        "declared: a drilling cycle: a dwell makes no difference",
-    ),
+    ("flat helix", "declared: a helix: another depth of its end makes no difference"),
+    ("arcs are cuts", "declared: an arc in Z X: a straight cut in its place makes no difference"),
+    ("no weights", "declared: a spline: another weight makes no difference"),
+    ("no circle", "declared: it declares a full circle, and writes nothing"),
+    ("one plane", "declared: a tilted plane: another angle makes no difference"),
+    ("one origin", "declared: a tilted plane: another origin makes no difference"),
+    ("one depth", "declared: a drilling cycle: another depth makes no difference"),
+    ("one hole", "declared: a boring cycle: a point less makes no difference"),
+    ("no step", "declared: a deep drilling cycle: another step makes no difference"),
+    ("no pitch", "declared: a tapping cycle: another pitch makes no difference"),
+    ("no dwell in holes", "declared: a drilling cycle: a dwell makes no difference"),
     (
         "refuses clamps",
         "declared: it declares a clamp, and refuses it: dialect `boastful`, event Clamp: this dialect has no words for a clamp",
     ),
-    (
-        "no normals",
-        "declared: a cut with a surface normal: another normal makes no difference",
-    ),
-    (
-        "one subprogram",
-        "declared: a subprogram: how often makes no difference",
-    ),
+    ("no normals", "declared: a cut with a surface normal: another normal makes no difference"),
+    ("one subprogram", "declared: a subprogram: how often makes no difference"),
     (
         "no switch",
         "with TCP: it declares a switch of tool centre point control, and writes nothing",
     ),
-    (
-        "writes both",
-        "declared: lines in the place of a tool change: `ToolChange",
-    ),
-    (
-        "forgets the tool",
-        "the new tool's register is not in force behind them",
-    ),
+    ("writes both", "declared: lines in the place of a tool change: `ToolChange"),
+    ("forgets the tool", "the new tool's register is not in force behind them"),
     (
         "loses lines",
         "declared: lines in the place of a tool change: `M198` is not written letter for letter",
     ),
-    (
-        "drops a probe",
-        "every event: it takes Probe and writes nothing, without having declared it",
-    ),
-    (
-        "open remarks",
-        "remarks: a remark with brackets and signs ends before its line does",
-    ),
-    (
-        "short remarks",
-        "remarks: a remark of 10200 letters is refused",
-    ),
-    (
-        "seven digits",
-        "rounding edges: X 99999.499 and 99999.5 are written alike",
-    ),
-    (
-        "shares",
-        "two at once: a program is another one while a second is written",
-    ),
+    ("drops a probe", "every event: it takes Probe and writes nothing, without having declared it"),
+    ("open remarks", "remarks: a remark with brackets and signs ends before its line does"),
+    ("short remarks", "remarks: a remark of 10200 letters is refused"),
+    ("seven digits", "rounding edges: X 99999.499 and 99999.5 are written alike"),
+    ("shares", "two at once: a program is another one while a second is written"),
     (
         "clings to its thread",
         "two threads: within 8192 events from two threads in turn the program is another one",
     ),
-    (
-        "tires",
-        "two threads: after 0 events: dialect `boastful`, event Linear: it is tired",
-    ),
+    ("tires", "two threads: after 0 events: dialect `boastful`, event Linear: it is tired"),
     ("option without words", "options: with `bold = true`: "),
-    (
-        "option that rounds",
-        "options: with `bold = true`: a cut: with X ",
-    ),
-    (
-        "takes back",
-        "after a refusal: before an event that it refuses it leaves",
-    ),
-    (
-        "empty word",
-        "vocabulary: dialect `boastful`: its vocabulary has the word ``",
-    ),
+    ("option that rounds", "options: with `bold = true`: a cut: with X "),
+    ("takes back", "after a refusal: before an event that it refuses it leaves"),
+    ("empty word", "vocabulary: dialect `boastful`: its vocabulary has the word ``"),
 ];
 
 struct Boastful {
@@ -164,11 +86,7 @@ impl Dialect for Boastful {
     fn options() -> &'static [OptionSpec] {
         const OPTIONS: &[OptionSpec] = &[
             OptionSpec::text("fault", "", "What is wrong with it."),
-            OptionSpec::flag(
-                "bold",
-                false,
-                "Nothing, unless that is what is wrong with it.",
-            ),
+            OptionSpec::flag("bold", false, "Nothing, unless that is what is wrong with it."),
         ];
         OPTIONS
     }
@@ -180,11 +98,7 @@ impl Dialect for Boastful {
             bold: setup.flag("bold"),
             tcp: setup.tcp,
             instead: None,
-            register: if setup.units == post_plugin::Units::Inch {
-                1
-            } else {
-                0
-            },
+            register: if setup.units == post_plugin::Units::Inch { 1 } else { 0 },
             written: 0,
         })
     }
@@ -212,11 +126,7 @@ impl Dialect for Boastful {
     }
 
     fn vocabulary(&self) -> Vec<VocabularyWord> {
-        let word = if self.fault == "empty word" {
-            ""
-        } else {
-            "Linear"
-        };
+        let word = if self.fault == "empty word" { "" } else { "Linear" };
         vec![VocabularyWord::new(word, Meaning::Linear)]
     }
 
@@ -248,11 +158,7 @@ impl Boastful {
         match &mut event {
             Event::Arc { turn, .. } if fault == "one sense" => *turn = turn.abs(),
             Event::Arc { turn, .. } if fault == "no circle" && turn.abs() == 360.0 => return Ok(()),
-            Event::Arc {
-                radius: Some(radius),
-                turn,
-                ..
-            } if fault == "one radius" => {
+            Event::Arc { radius: Some(radius), turn, .. } if fault == "one radius" => {
                 (*radius, *turn) = (radius.abs(), 120.0);
             }
             Event::Arc { words, centre, .. } if fault == "flat helix" => {
@@ -266,12 +172,7 @@ impl Boastful {
             Event::Plane { origin, .. } if fault == "one origin" => *origin = [0.0; 3],
             Event::Cycle { depth, .. } if fault == "one depth" => *depth = 10.0,
             Event::Cycle { step, .. } if fault == "no step" => *step = None,
-            Event::Cycle {
-                pitch,
-                feed,
-                cycle: Cycle::Tap,
-                ..
-            } if fault == "no pitch" => {
+            Event::Cycle { pitch, feed, cycle: Cycle::Tap, .. } if fault == "no pitch" => {
                 (*pitch, *feed) = (None, post_plugin::Feed::PerMinute(1.0));
             }
             Event::Cycle { dwell, .. } if fault == "no dwell in holes" => *dwell = None,
@@ -301,11 +202,7 @@ impl Boastful {
             }
             Event::Comment { text } => out.push_str(&remark(text)),
             Event::Instead { text } => {
-                let text = if fault == "loses lines" {
-                    text.lines().next()
-                } else {
-                    Some(text)
-                };
+                let text = if fault == "loses lines" { text.lines().next() } else { Some(text) };
                 self.instead = Some(format!("{}\n", text.unwrap_or_default()));
                 return Ok(());
             }

@@ -18,10 +18,8 @@ fn stock(name: &str) -> Linked {
 }
 
 fn run(linked: Linked, options: &[(&str, GivenValue)]) -> Report {
-    let options: Vec<(String, GivenValue)> = options
-        .iter()
-        .map(|(key, value)| ((*key).to_owned(), value.clone()))
-        .collect();
+    let options: Vec<(String, GivenValue)> =
+        options.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect();
     conformance::test(&Plugin::linked(linked).unwrap(), &options).unwrap()
 }
 
@@ -47,10 +45,7 @@ fn the_stock_plugins_are_good() {
     let with_options = [
         run(stock("harmonic"), &[("order", number(2))]),
         run(stock("harmonic"), &[("order", number(3))]),
-        run(
-            stock("harmonic"),
-            &[("order", number(8)), ("samples", number(15))],
-        ),
+        run(stock("harmonic"), &[("order", number(8)), ("samples", number(15))]),
         run(stock("sampled"), &[("accuracy", GivenValue::Number(1e-4))]),
         faulty("nothing"),
     ];
@@ -80,10 +75,7 @@ fn what_a_model_may_miss_is_said_and_not_held_against_it() {
     };
     // Half a sine leaves 5.6 % of a parabola and the other way round; three places tell.
     let harmonic = run(stock("harmonic"), &[]);
-    for figures in [
-        figures(&harmonic, "parabola"),
-        figures(&parabolic, "half a sine"),
-    ] {
+    for figures in [figures(&harmonic, "parabola"), figures(&parabolic, "half a sine")] {
         assert_eq!(figures.asked, 3);
         assert!((figures.tip.left / figures.tip.actual - 0.056).abs() < 1e-4);
         assert!((figures.axis.left / figures.axis.actual - 0.056).abs() < 1e-4);
@@ -91,10 +83,7 @@ fn what_a_model_may_miss_is_said_and_not_held_against_it() {
     // Two half waves meet the two humps that one cannot see.
     let second = run(
         stock("harmonic"),
-        &[
-            ("order", GivenValue::Integer(2)),
-            ("samples", GivenValue::Integer(3)),
-        ],
+        &[("order", GivenValue::Integer(2)), ("samples", GivenValue::Integer(3))],
     );
     assert!(figures(&second, "two humps").tip.left < 1e-12);
 }
@@ -130,10 +119,7 @@ fn every_fault_is_found_where_it_is() {
                0.5, where it has 0.2000 °",
             ],
         ),
-        (
-            "flat",
-            &["parabola: its curve leaves 9.9970 µm of a plain bow of 20.0000 µm in the tip"],
-        ),
+        ("flat", &["parabola: its curve leaves 9.9970 µm of a plain bow of 20.0000 µm in the tip"]),
         (
             "grows",
             &[
@@ -144,10 +130,7 @@ fn every_fault_is_found_where_it_is() {
             "remembers",
             &["repeated: after `none` the curve of `parabola` has other values than before"],
         ),
-        (
-            "flattens",
-            &["turned: the curve of `parabola`, turned, is another one"],
-        ),
+        ("flattens", &["turned: the curve of `parabola`, turned, is another one"]),
         (
             "offset",
             &[
@@ -155,14 +138,8 @@ fn every_fault_is_found_where_it_is() {
                 "scaled: the curve of `none`, scaled, is another one",
             ],
         ),
-        (
-            "outside",
-            &["none: it asks for the deviation at t = 1.5, outside the move"],
-        ),
-        (
-            "timid",
-            &["huge: no answer: error model `faulty`: that is too far"],
-        ),
+        ("outside", &["none: it asks for the deviation at t = 1.5, outside the move"]),
+        ("timid", &["huge: no answer: error model `faulty`: that is too far"]),
         (
             "panics",
             &[
@@ -197,22 +174,14 @@ fn dialects_are_run_too() {
     assert_eq!(tiny.kind, Kind::Dialect);
     assert!(tiny.is_good(), "{tiny}");
     // What not every control has.
-    assert!(
-        tiny.table()
-            .contains("program: it refuses Preselect: dialect `tiny`")
-    );
+    assert!(tiny.table().contains("program: it refuses Preselect: dialect `tiny`"));
 
     let gcode = conformance::test(&example("gcode"), &[]).unwrap();
     assert!(gcode.is_good(), "{gcode}");
 
     let panics = conformance::test(&example("panics"), &[]).unwrap();
     let wrong: Vec<String> = panics.wrong().collect();
-    assert!(
-        wrong
-            .iter()
-            .any(|wrong| wrong.contains("the plugin panicked")),
-        "{panics}"
-    );
+    assert!(wrong.iter().any(|wrong| wrong.contains("the plugin panicked")), "{panics}");
 }
 
 /// What is declared is written with all of its numbers; sessions do not disturb one another.
@@ -224,10 +193,7 @@ fn what_is_declared_and_not_done_is_found() {
     };
     let good = boastful("");
     assert!(good.is_good(), "{good}");
-    assert!(
-        good.table().contains("two threads: 8192 events, "),
-        "{good}"
-    );
+    assert!(good.table().contains("two threads: 8192 events, "), "{good}");
     assert!(good.table().contains("vocabulary: 1 words"), "{good}");
     let mut missed = Vec::new();
     for (fault, sentence) in boastful::FAULTS {

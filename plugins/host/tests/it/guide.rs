@@ -21,21 +21,10 @@ fn the_guide_shows_the_examples() {
     let model = model.split("\n#[cfg(test)]").next().unwrap();
     for (name, page, source) in [
         ("error-model", page!("error-model"), model),
-        (
-            "dialect-in-rust",
-            page!("dialect-in-rust"),
-            include_str!("../../examples/post_tiny.rs"),
-        ),
-        (
-            "iso-table",
-            page!("iso-table"),
-            include_str!("../../examples/post_gcode.rs"),
-        ),
+        ("dialect-in-rust", page!("dialect-in-rust"), include_str!("../../examples/post_tiny.rs")),
+        ("iso-table", page!("iso-table"), include_str!("../../examples/post_gcode.rs")),
     ] {
-        assert!(
-            page.contains(source),
-            "{name}.md must show its example as it is"
-        );
+        assert!(page.contains(source), "{name}.md must show its example as it is");
     }
 }
 
@@ -86,16 +75,12 @@ fn fields() -> String {
     for line in table.lines().map(str::trim) {
         if let Some(text) = line.strip_prefix("/// ") {
             doc.push(text);
-        } else if let Some((name, _)) = line
-            .strip_prefix("pub ")
-            .and_then(|rest| rest.split_once(':'))
+        } else if let Some((name, _)) =
+            line.strip_prefix("pub ").and_then(|rest| rest.split_once(':'))
         {
             let doc = std::mem::take(&mut doc).join(" ");
             // Links of rustdoc lead nowhere here.
-            let doc = doc
-                .replace("[`", "`")
-                .replace("`]", "`")
-                .replace("crate::", "post_iso::");
+            let doc = doc.replace("[`", "`").replace("`]", "`").replace("crate::", "post_iso::");
             fields.push_str(&format!("| `{name}` | {doc} |\n"));
         }
     }
@@ -105,32 +90,20 @@ fn fields() -> String {
 #[test]
 fn the_guide_has_all_events_capabilities_and_fields_of_the_table() {
     for (name, page, marks) in [
-        (
-            "events",
-            page!("events"),
-            vec![("events", events()), ("capabilities", capabilities())],
-        ),
-        (
-            "iso-table",
-            page!("iso-table"),
-            vec![("iso-table", fields())],
-        ),
+        ("events", page!("events"), vec![("events", events()), ("capabilities", capabilities())]),
+        ("iso-table", page!("iso-table"), vec![("iso-table", fields())]),
     ] {
         let mut guide = page.to_owned();
         for (mark, table) in marks {
-            let (begin, end) = (
-                format!("<!-- {mark}: begin -->\n"),
-                format!("<!-- {mark}: end -->"),
-            );
+            let (begin, end) =
+                (format!("<!-- {mark}: begin -->\n"), format!("<!-- {mark}: end -->"));
             let (before, rest) = guide.split_once(&begin).unwrap();
             let (_, after) = rest.split_once(&end).unwrap();
             guide = format!("{before}{begin}{table}{end}{after}");
         }
         if std::env::var_os("UPDATE_GUIDE").is_some() {
             let pages = "../../docs/src/plugin-author";
-            let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-                .join(pages)
-                .join(format!("{name}.md"));
+            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(pages).join(format!("{name}.md"));
             std::fs::write(path, guide).unwrap();
             continue;
         }

@@ -19,10 +19,7 @@ fn five_axes() -> ProgramSetup {
 
 /// Five axes, and the options without which this dialect does not open.
 fn setup_of(plugin: &Plugin) -> ProgramSetup {
-    ProgramSetup {
-        options: needed(plugin.name()),
-        ..five_axes()
-    }
+    ProgramSetup { options: needed(plugin.name()), ..five_axes() }
 }
 
 fn job() -> Batch {
@@ -33,32 +30,18 @@ fn job() -> Batch {
         batch.push(line, event);
     };
     push(Event::Start);
-    push(Event::Comment {
-        text: "naïve (µ)"
-    });
+    push(Event::Comment { text: "naïve (µ)" });
     push(Event::tool_change(1, 2, "ball"));
-    push(Event::Spindle(Spindle::On {
-        rpm: 3000.0,
-        sense: SpindleSense::CounterClockwise,
-    }));
+    push(Event::Spindle(Spindle::On { rpm: 3000.0, sense: SpindleSense::CounterClockwise }));
     push(Event::Coolant(Coolant::Flood));
     push(Event::position(&[0.0, 0.0, 100.0, 0.0, 0.0], None));
     for step in 0..200 {
         let x = f64::from(step) / 8.0;
-        push(Event::linear(
-            &[x, -x, 3.0, x / 2.0, 10.0],
-            Feed::PerMinute(500.0),
-        ));
+        push(Event::linear(&[x, -x, 3.0, x / 2.0, 10.0], Feed::PerMinute(500.0)));
     }
     push(Event::Dwell { seconds: 0.25 });
-    push(Event::Retract {
-        axes: 0b100,
-        words: &[0.0, 0.0, 500.0, 0.0, 0.0],
-    });
-    push(Event::Park {
-        axes: 0b11,
-        words: &[-250.0, 200.0, 0.0, 0.0, 0.0],
-    });
+    push(Event::Retract { axes: 0b100, words: &[0.0, 0.0, 500.0, 0.0, 0.0] });
+    push(Event::Park { axes: 0b11, words: &[-250.0, 200.0, 0.0, 0.0, 0.0] });
     push(Event::End);
     batch
 }
@@ -111,9 +94,7 @@ fn a_stock_dialect_writes_the_same_from_a_file_and_linked_in() {
         for event in batch.iter() {
             let mut single = Batch::default();
             single.push(1, event);
-            session
-                .write_batch(&single, &mut out, &mut Vec::new())
-                .unwrap();
+            session.write_batch(&single, &mut out, &mut Vec::new()).unwrap();
         }
         assert_eq!(out, text);
     }
@@ -128,10 +109,7 @@ fn the_stock_error_model_answers_the_same_from_a_file_and_linked_in() {
         assert!(plugin.dialect(&five_axes()).is_err());
         let options = [("accuracy".to_owned(), GivenValue::Number(0.001))];
         let mut session = plugin.error_model(&options).unwrap();
-        let tolerance = Tolerance {
-            tip: 0.005,
-            axis: 0.05,
-        };
+        let tolerance = Tolerance { tip: 0.005, axis: 0.05 };
         let curve = session.fit(&tolerance, &mut |ts, out| {
             for (t, out) in ts.iter().zip(out) {
                 out.tip[0] = t * (1.0 - t);
@@ -152,14 +130,9 @@ fn the_stock_error_model_answers_the_same_from_a_file_and_linked_in() {
 fn a_panic_of_the_host_passes_through_a_model_unharmed() {
     let plugin = Plugin::open(&library(&deps(), "sampled")).unwrap();
     let mut session = plugin.error_model(&[]).unwrap();
-    let tolerance = Tolerance {
-        tip: 0.005,
-        axis: 0.05,
-    };
+    let tolerance = Tolerance { tip: 0.005, axis: 0.05 };
     let caught = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-        session.fit(&tolerance, &mut |_: &[f64], _: &mut [Deviation]| {
-            std::panic::panic_any("mine")
-        })
+        session.fit(&tolerance, &mut |_: &[f64], _: &mut [Deviation]| std::panic::panic_any("mine"))
     }));
     assert_eq!(caught.unwrap_err().downcast_ref::<&str>(), Some(&"mine"));
     assert!(session.fit(&tolerance, &mut |_, _| ()).is_ok());
@@ -174,15 +147,10 @@ fn a_small_dialect_of_rust() {
     let mut batch = Batch::default();
     batch.push(1, Event::tool_change(1, 11, ""));
     batch.push(2, Event::position(&[1.5, 50.0, 90.0], None));
-    batch.push(
-        3,
-        Event::linear(&[-2.0, 50.0, 90.0], Feed::PerMinute(250.0)),
-    );
+    batch.push(3, Event::linear(&[-2.0, 50.0, 90.0], Feed::PerMinute(250.0)));
     batch.push(4, Event::Spindle(Spindle::Orient));
     let (mut out, mut ends) = (String::new(), Vec::new());
-    let fault = session
-        .write_batch(&batch, &mut out, &mut ends)
-        .unwrap_err();
+    let fault = session.write_batch(&batch, &mut out, &mut ends).unwrap_err();
     assert_eq!(
         out,
         "T1 M6\nG0 X1.5000\nG0 G43 H11 Z50.0000\nG1 X-2.0000 Z50.0000 C90.000 F250.0\n"
@@ -214,15 +182,10 @@ fn a_dialect_in_c() {
     batch.push(3, Event::Unknown { kind: 4711 });
     let mut out = "before\n".to_owned();
     let mut ends = Vec::new();
-    let fault = session
-        .write_batch(&batch, &mut out, &mut ends)
-        .unwrap_err();
+    let fault = session.write_batch(&batch, &mut out, &mut ends).unwrap_err();
     assert_eq!(out, "before\nM0\nG0 X1.50 C90.00\n");
     assert_eq!(ends, [10, 26]);
-    assert_eq!(
-        fault.message,
-        "dialect `minimal`, event Unknown: it has no words for kind 4711"
-    );
+    assert_eq!(fault.message, "dialect `minimal`, event Unknown: it has no words for kind 4711");
     // It is good by the kit, which is asked through the contract.
     let report = post_host::conformance::test(&plugin, &[]).unwrap();
     assert!(report.is_good(), "{report}");
@@ -255,26 +218,14 @@ fn a_library_that_is_no_plugin_is_refused() {
         "it was built for version 10 of the plugin contract, this is version 2"
     );
     assert!(refusal("LAYOUT").starts_with("it was built against other structs"));
-    assert_eq!(
-        refusal("SIZE"),
-        "its PostPlugin has 4000000000 bytes, it can have at most 65632"
-    );
-    assert_eq!(
-        refusal("TABLE_SIZE"),
-        "its PostDialect has 32 bytes, it must have at least 40"
-    );
+    assert_eq!(refusal("SIZE"), "its PostPlugin has 4000000000 bytes, it can have at most 65632");
+    assert_eq!(refusal("TABLE_SIZE"), "its PostDialect has 32 bytes, it must have at least 40");
     assert_eq!(refusal("NULL_WRITE"), "its `write` is null");
     assert_eq!(refusal("NULL_TABLE"), "its `dialect` is null");
     assert_eq!(refusal("NULL_NAME"), "its `name` is null");
     assert_eq!(refusal("NAME"), "it calls itself `friendly`");
-    assert_eq!(
-        refusal("KIND"),
-        "its kind 77 is neither a dialect nor an error model"
-    );
-    assert_eq!(
-        refusal("SYMBOL"),
-        "it does not export `post_plugin_hostile`"
-    );
+    assert_eq!(refusal("KIND"), "its kind 77 is neither a dialect nor an error model");
+    assert_eq!(refusal("SYMBOL"), "it does not export `post_plugin_hostile`");
     assert!(refusal("DEFAULT").contains("7 is not between 0 and 1"));
 }
 
@@ -311,14 +262,9 @@ fn what_a_plugin_says_is_not_believed() {
         batch.push(1, Event::rapid(&[1.0]));
         batch.push(2, Event::rapid(&[1.0]));
         let mut out = "x".to_owned();
-        let written = open(flag)
-            .unwrap()
-            .write_batch(&batch, &mut out, &mut Vec::new());
+        let written = open(flag).unwrap().write_batch(&batch, &mut out, &mut Vec::new());
         let fault = written.unwrap_err().message;
-        assert!(
-            fault.starts_with("dialect `hostile`, event Rapid: "),
-            "{fault}"
-        );
+        assert!(fault.starts_with("dialect `hostile`, event Rapid: "), "{fault}");
         assert!(fault.contains(message), "{flag}: {fault}");
     }
 }
@@ -333,9 +279,7 @@ fn a_plugin_that_panics_does_not_take_the_host_with_it() {
     let (axes, words) = (1, &[0.0][..]);
     batch.push(2, Event::Park { axes, words });
     let (mut out, mut ends) = (String::new(), Vec::new());
-    let fault = session
-        .write_batch(&batch, &mut out, &mut ends)
-        .unwrap_err();
+    let fault = session.write_batch(&batch, &mut out, &mut ends).unwrap_err();
     assert_eq!(fault.index, 1);
     let message = &fault.message;
     assert!(
@@ -346,17 +290,13 @@ fn a_plugin_that_panics_does_not_take_the_host_with_it() {
     );
     assert_eq!(out, "half a line\n");
     // It is not asked again, and says why.
-    let again = session
-        .write_batch(&batch, &mut out, &mut ends)
-        .unwrap_err();
+    let again = session.write_batch(&batch, &mut out, &mut ends).unwrap_err();
     assert!(again.message.contains("the sky fell"), "{}", again.message);
 
     let mut batch = Batch::default();
     batch.push(1, Event::End);
     let mut session = plugin.dialect(&setup).unwrap();
-    let fault = session
-        .write_batch(&batch, &mut out, &mut ends)
-        .unwrap_err();
+    let fault = session.write_batch(&batch, &mut out, &mut ends).unwrap_err();
     assert!(fault.message.contains("without a message"));
 
     setup.program = "open".to_owned();
@@ -373,26 +313,15 @@ fn files_that_are_no_libraries_are_refused() {
     assert!(matches!(reason(&text), Reason::Open { .. }));
     let missing = library(folder.path(), "missing");
     assert!(matches!(reason(&missing), Reason::Open { .. }));
-    assert!(matches!(
-        reason(Path::new("/lib/libm.so.6")),
-        Reason::FileName { .. }
-    ));
-    assert!(matches!(
-        reason(&folder.path().join("../post_x")),
-        Reason::FileName { .. }
-    ));
+    assert!(matches!(reason(Path::new("/lib/libm.so.6")), Reason::FileName { .. }));
+    assert!(matches!(reason(&folder.path().join("../post_x")), Reason::FileName { .. }));
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn a_system_library_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let candidates = [
-        "/lib/x86_64-linux-gnu",
-        "/lib/aarch64-linux-gnu",
-        "/lib64",
-        "/lib",
-    ];
+    let candidates = ["/lib/x86_64-linux-gnu", "/lib/aarch64-linux-gnu", "/lib64", "/lib"];
     let libm = candidates
         .iter()
         .map(|place| Path::new(place).join("libm.so.6"))
@@ -402,27 +331,18 @@ fn a_system_library_is_refused() {
     std::fs::copy(libm, &copy).unwrap();
     assert_eq!(
         Plugin::open(&copy).unwrap_err().reason,
-        Reason::NoSymbol {
-            symbol: "post_plugin_m".to_owned()
-        }
+        Reason::NoSymbol { symbol: "post_plugin_m".to_owned() }
     );
 }
 
 #[test]
 fn a_name_is_looked_for_in_the_folders_and_then_among_the_linked_in() {
     let linked = vec![Plugin::linked(stock("fanuc")).unwrap()];
-    let mut finder = Finder {
-        folders: Vec::new(),
-        linked,
-    };
+    let mut finder = Finder { folders: Vec::new(), linked };
     assert_eq!(finder.find("fanuc").unwrap().path(), None);
     let fault = finder.find("fanuk").unwrap_err();
     assert_eq!(fault.to_string(), "plugin `fanuk`: there is no such plugin");
-    assert!(
-        fault.help().starts_with("there are fanuc"),
-        "{}",
-        fault.help()
-    );
+    assert!(fault.help().starts_with("there are fanuc"), "{}", fault.help());
     assert!(finder.find("../fanuc").is_err());
 
     let empty = tempfile::tempdir().unwrap();
@@ -441,14 +361,8 @@ fn promises_to_plugins_are_kept() {
         (Event::rapid(&[f64::NAN, 0.0]), "an axis word is NaN"),
         (Event::rapid(&[0.0]), "1 axis words instead of 2"),
         (Event::Dwell { seconds: -1.0 }, "its number is -1"),
-        (
-            Event::linear(&[0.0, 0.0], Feed::PerMinute(0.0)),
-            "the feed is 0",
-        ),
-        (
-            Event::linear(&[0.0, 0.0], Feed::InverseTime(1.0)),
-            "no inverse-time feed",
-        ),
+        (Event::linear(&[0.0, 0.0], Feed::PerMinute(0.0)), "the feed is 0"),
+        (Event::linear(&[0.0, 0.0], Feed::InverseTime(1.0)), "no inverse-time feed"),
     ];
     for (event, message) in bad {
         let mut session = plugin.dialect(&setup(&["X", "C"])).unwrap();
@@ -456,9 +370,7 @@ fn promises_to_plugins_are_kept() {
         batch.push(1, Event::Stop);
         batch.push(2, *event);
         let (mut out, mut ends) = (String::new(), Vec::new());
-        let fault = session
-            .write_batch(&batch, &mut out, &mut ends)
-            .unwrap_err();
+        let fault = session.write_batch(&batch, &mut out, &mut ends).unwrap_err();
         assert_eq!((fault.index, out.as_str()), (1, "0 M0\n"));
         assert!(fault.message.contains(message), "{}", fault.message);
     }
@@ -469,13 +381,8 @@ fn sessions_go_to_the_threads_that_use_them() {
     let plugin = Plugin::open(&library(&deps(), "fanuc")).unwrap();
     let batch = job();
     let texts: Vec<String> = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..4)
-            .map(|_| scope.spawn(|| write(&plugin, &batch).0))
-            .collect();
-        threads
-            .into_iter()
-            .map(|thread| thread.join().unwrap())
-            .collect()
+        let threads: Vec<_> = (0..4).map(|_| scope.spawn(|| write(&plugin, &batch).0)).collect();
+        threads.into_iter().map(|thread| thread.join().unwrap()).collect()
     });
     assert!(texts.windows(2).all(|pair| pair[0] == pair[1]));
 }

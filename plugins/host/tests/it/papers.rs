@@ -83,10 +83,7 @@ fn swing(lm: f64) -> impl Fn(f64) -> Vector {
     };
     let pivot = move |p: Vector, a: f64| minus(p, arm(a).map(|part| -part));
     move |t| {
-        let tip = minus(
-            between(pivot(p0, a0), pivot(p1, a1), t),
-            arm(a0 + t * (a1 - a0)),
-        );
+        let tip = minus(between(pivot(p0, a0), pivot(p1, a1), t), arm(a0 + t * (a1 - a0)));
         minus(tip, between(p0, p1, t))
     }
 }
@@ -112,17 +109,11 @@ fn fit(model: &str, options: &[(&str, i64)], deviation: impl Fn(f64) -> Vector) 
         .collect();
     let plugin = Plugin::linked(post_stock::plugin(model).unwrap()).unwrap();
     let mut session = plugin.error_model(&options).unwrap();
-    let tolerance = Tolerance {
-        tip: 1e-4,
-        axis: 0.05,
-    };
+    let tolerance = Tolerance { tip: 1e-4, axis: 0.05 };
     let curve = session
         .fit(&tolerance, &mut |ts, out| {
             for (t, out) in ts.iter().zip(out) {
-                *out = Deviation {
-                    tip: deviation(*t),
-                    axis: [0.0; 3],
-                };
+                *out = Deviation { tip: deviation(*t), axis: [0.0; 3] };
             }
         })
         .unwrap();
@@ -133,10 +124,7 @@ fn fit(model: &str, options: &[(&str, i64)], deviation: impl Fn(f64) -> Vector) 
     let mean = places.iter().map(|(a, _)| length(a)).sum::<f64>() / f64::from(PLACES);
     let square = |x: f64| x * x;
     let spread: f64 = places.iter().map(|(a, _)| square(length(a) - mean)).sum();
-    let rest: f64 = places
-        .iter()
-        .map(|(a, b)| square(length(a) - length(b)))
-        .sum();
+    let rest: f64 = places.iter().map(|(a, b)| square(length(a) - length(b))).sum();
     let largest = |sizes: &mut dyn Iterator<Item = f64>| sizes.fold(0.0, f64::max);
     Fit {
         peak: curve.tip_peak,
@@ -151,11 +139,7 @@ fn fit(model: &str, options: &[(&str, i64)], deviation: impl Fn(f64) -> Vector) 
 fn over_the_blade(model: &str, options: &[(&str, i64)], below: f64) -> [f64; 3] {
     let fits = (0..BLADE.len() - 1).map(|index| fit(model, options, blade(index, below)));
     fits.fold([0.0; 3], |[peak, actual, left], fit| {
-        [
-            peak.max(fit.peak),
-            actual.max(fit.actual),
-            left.max(fit.left),
-        ]
+        [peak.max(fit.peak), actual.max(fit.actual), left.max(fit.left)]
     })
 }
 
@@ -168,10 +152,7 @@ fn table_3_2_of_the_harmonic_paper() {
     let [peak, actual, left] = over_the_blade("harmonic", &[], 200.0);
     assert!(near(actual, 4.62e-3, 5e-6), "{actual}");
     assert!(near(peak, actual, 1e-6), "{peak}");
-    assert!(
-        near(left, 0.26e-3, 5e-6) && near(left / actual, 0.056, 6e-4),
-        "{left}"
-    );
+    assert!(near(left, 0.26e-3, 5e-6) && near(left / actual, 0.056, 6e-4), "{left}");
 
     let [peak, _, left] = over_the_blade("parabolic", &[], 200.0);
     assert!(near(peak, actual, 1e-6), "{peak}");

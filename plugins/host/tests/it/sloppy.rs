@@ -14,55 +14,22 @@ pub const FAULTS: &[(&str, &str)] = &[
         "decimals",
         "words and feeds: a rapid: with X 0.0001 instead of 0 (the last declared decimal) its text is the same",
     ),
-    (
-        "rapid without A",
-        "words and feeds: a rapid: with A 0.001 instead of 0",
-    ),
-    (
-        "cut without C",
-        "words and feeds: a cut: with C 0.001 instead of 0",
-    ),
-    (
-        "rapid without what moves alone",
-        "words and feeds: a rapid: with A ",
-    ),
-    (
-        "position without Y",
-        "words and feeds: a first position: with Y ",
-    ),
+    ("rapid without A", "words and feeds: a rapid: with A 0.001 instead of 0"),
+    ("cut without C", "words and feeds: a cut: with C 0.001 instead of 0"),
+    ("rapid without what moves alone", "words and feeds: a rapid: with A "),
+    ("position without Y", "words and feeds: a first position: with Y "),
     ("one height", "words and feeds: a retract: with Z "),
-    (
-        "turn without C",
-        "words and feeds: a turn of the rotary axes: with C ",
-    ),
-    (
-        "park without X",
-        "words and feeds: a position of the machine: with X ",
-    ),
-    (
-        "timed cut without Y",
-        "words and feeds: a cut in inverse time: with Y ",
-    ),
-    (
-        "one turn",
-        "words and feeds: a cut: with C 360 instead of 0 (a turn)",
-    ),
-    (
-        "no sign",
-        "words and feeds: a cut: with Y -12.346 instead of 12.346 (the other sign)",
-    ),
-    (
-        "eight digits",
-        "words and feeds: a rapid: with X 2345.68 instead of 2345.679",
-    ),
+    ("turn without C", "words and feeds: a turn of the rotary axes: with C "),
+    ("park without X", "words and feeds: a position of the machine: with X "),
+    ("timed cut without Y", "words and feeds: a cut in inverse time: with Y "),
+    ("one turn", "words and feeds: a cut: with C 360 instead of 0 (a turn)"),
+    ("no sign", "words and feeds: a cut: with Y -12.346 instead of 12.346 (the other sign)"),
+    ("eight digits", "words and feeds: a rapid: with X 2345.68 instead of 2345.679"),
     (
         "whole feeds",
         "words and feeds: a cut: with the feed 0.2 instead of 0.1 (the last declared decimal)",
     ),
-    (
-        "one feed",
-        "words and feeds: a cut: with the feed 0.2 instead of 0.1",
-    ),
+    ("one feed", "words and feeds: a cut: with the feed 0.2 instead of 0.1"),
     (
         "whole inverse time",
         "words and feeds: a cut in inverse time: with the feed 0.002 instead of 0.001",
@@ -71,34 +38,13 @@ pub const FAULTS: &[(&str, &str)] = &[
         "position at rapid",
         "words and feeds: a first position at a feed: with the feed 0.2 instead of 0.1",
     ),
-    (
-        "no dwell",
-        "commands: a dwell makes no difference to the text",
-    ),
-    (
-        "one dwell",
-        "commands: the time of a dwell, 2 s for 1 s, makes no difference",
-    ),
-    (
-        "one speed",
-        "commands: the speed of the spindle, 3001 for 3000, makes no difference",
-    ),
-    (
-        "no speed",
-        "commands: the speed of the spindle, 3001 for 3000, makes no difference",
-    ),
-    (
-        "one sense",
-        "commands: the sense of the spindle makes no difference",
-    ),
-    (
-        "spindle stays on",
-        "commands: the stop of the spindle makes no difference",
-    ),
-    (
-        "one tool",
-        "commands: the number of a tool makes no difference",
-    ),
+    ("no dwell", "commands: a dwell makes no difference to the text"),
+    ("one dwell", "commands: the time of a dwell, 2 s for 1 s, makes no difference"),
+    ("one speed", "commands: the speed of the spindle, 3001 for 3000, makes no difference"),
+    ("no speed", "commands: the speed of the spindle, 3001 for 3000, makes no difference"),
+    ("one sense", "commands: the sense of the spindle makes no difference"),
+    ("spindle stays on", "commands: the stop of the spindle makes no difference"),
+    ("one tool", "commands: the number of a tool makes no difference"),
     (
         "one length register",
         "commands: the register of a tool's length, 6 for 5, makes no difference",
@@ -107,41 +53,20 @@ pub const FAULTS: &[(&str, &str)] = &[
         "one radius register",
         "commands: the register of a tool's radius, 6 for 5, makes no difference",
     ),
-    (
-        "one side",
-        "commands: the side of cutter compensation makes no difference",
-    ),
+    ("one side", "commands: the side of cutter compensation makes no difference"),
     ("no coolant", "commands: coolant makes no difference"),
     ("no stop", "commands: a stop makes no difference"),
-    (
-        "every stop is optional",
-        "commands: an optional stop for a stop makes no difference",
-    ),
-    (
-        "no park",
-        "commands: a position of the machine makes no difference",
-    ),
+    ("every stop is optional", "commands: an optional stop for a stop makes no difference"),
+    ("no park", "commands: a position of the machine makes no difference"),
     ("no remark", "commands: a remark makes no difference"),
-    (
-        "capitals",
-        "commands: a line of the machine's own is not written letter for letter",
-    ),
-    (
-        "inches ignored",
-        "in inches: the program begins as it does without",
-    ),
-    (
-        "tcp ignored",
-        "with TCP: the program begins as it does without",
-    ),
+    ("capitals", "commands: a line of the machine's own is not written letter for letter"),
+    ("inches ignored", "in inches: the program begins as it does without"),
+    ("tcp ignored", "with TCP: the program begins as it does without"),
     (
         "refuses stops",
         "program: it refuses Stop, which programs need: dialect `sloppy`, event Stop: this dialect has no words for a stop",
     ),
-    (
-        "refuses lines",
-        "program: it refuses Word, which programs need",
-    ),
+    ("refuses lines", "program: it refuses Word, which programs need"),
     (
         "refuses feeds ahead",
         "a first position at a feed is refused: dialect `sloppy`, event Position: it comes at rapid",
@@ -157,10 +82,7 @@ struct Plain;
 impl Control for Plain {
     const TABLE: &'static Table = &Table {
         tcp: Tcp::Length("G43.4"),
-        axes: AxisNames {
-            numbered: true,
-            ..AxisNames::ISO
-        },
+        axes: AxisNames { numbered: true, ..AxisNames::ISO },
         ..Table::ISO
     };
 
@@ -310,19 +232,17 @@ impl Sloppy {
             | ("no stop", Event::Stop)
             | ("no park", Event::Park { .. })
             | ("no remark", Event::Comment { .. }) => return Ok(()),
-            ("one height", Event::Retract { axes, .. }) => Event::Retract {
-                axes,
-                words: &[0.0, 0.0, 100.0, 0.0, 0.0],
-            },
+            ("one height", Event::Retract { axes, .. }) => {
+                Event::Retract { axes, words: &[0.0, 0.0, 100.0, 0.0, 0.0] }
+            }
             ("turn without C", Event::Turn { words }) => {
                 self.take(words);
                 self.words[4] = 0.0;
                 return self.inner.write(&Event::Turn { words: &self.words }, out);
             }
-            ("park without X", Event::Park { axes, words }) => Event::Park {
-                axes: axes & !1,
-                words,
-            },
+            ("park without X", Event::Park { axes, words }) => {
+                Event::Park { axes: axes & !1, words }
+            }
             ("refuses stops", Event::Stop) | ("refuses lines", Event::Word { .. }) => {
                 return Err(event.refusal());
             }

@@ -44,22 +44,10 @@ fn no_letter_that_ends_or_hides_a_line_reaches_a_program() {
     for (flag, message) in [
         ("CR", "its line `(x)\\rG0 Z-50` holds the character U+000D"),
         ("CR_CR", "its line `G0 X1\\r\\r` holds the character U+000D"),
-        (
-            "NEL",
-            "its line `(x)\\u{85}G0 Z-50` holds the character U+0085",
-        ),
-        (
-            "SEPARATOR",
-            "its line `(x)\\u{2028}G0 Z-50` holds the character U+2028",
-        ),
-        (
-            "FEED",
-            "its line `(x)\\u{c}G0 Z-50` holds the character U+000C",
-        ),
-        (
-            "BACKWARD",
-            "its line `(\\u{202e})G0 Z-50` holds the character U+202E",
-        ),
+        ("NEL", "its line `(x)\\u{85}G0 Z-50` holds the character U+0085"),
+        ("SEPARATOR", "its line `(x)\\u{2028}G0 Z-50` holds the character U+2028"),
+        ("FEED", "its line `(x)\\u{c}G0 Z-50` holds the character U+000C"),
+        ("BACKWARD", "its line `(\\u{202e})G0 Z-50` holds the character U+202E"),
         ("NUL", "its line `G0\\u{0}X1` holds the character U+0000"),
     ] {
         let fault = written(&mut session(folder.path(), flag)).unwrap_err();
@@ -78,20 +66,11 @@ fn what_a_library_writes_in_one_call_is_bounded() {
     for (flag, message) in [
         // A hundred gigabytes, of which no more than the bound is kept.
         ("FLOOD", "it wrote more than 16777216 bytes in one call"),
-        (
-            "HUGE_TEXT",
-            "it handed over 4611686018427387903 bytes of text at once",
-        ),
-        (
-            "NULL_TEXT",
-            "it handed over 100 bytes of text at a null pointer",
-        ),
+        ("HUGE_TEXT", "it handed over 4611686018427387903 bytes of text at once"),
+        ("NULL_TEXT", "it handed over 100 bytes of text at a null pointer"),
     ] {
         let fault = written(&mut session(folder.path(), flag)).unwrap_err();
-        assert_eq!(
-            fault.message,
-            format!("dialect `hostile`, event Rapid: {message}")
-        );
+        assert_eq!(fault.message, format!("dialect `hostile`, event Rapid: {message}"));
     }
 }
 
@@ -109,22 +88,10 @@ fn a_message_is_one_line_of_plain_letters() {
 fn what_a_library_declares_is_bounded_and_stands_where_it_can() {
     let folder = tempfile::tempdir().unwrap();
     for (flag, message) in [
-        (
-            "TABLE_HUGE",
-            "its PostDialect has 4000000000 bytes, it can have at most 65576",
-        ),
-        (
-            "ALIGN",
-            "its `dialect` is at an address that no table can have",
-        ),
-        (
-            "VERSION",
-            "its version `1.0\\u{1b}[2J` holds a character that no line has",
-        ),
-        (
-            "LONG_VERSION",
-            "its version has 9223372036854775812 bytes, at most 200 are taken",
-        ),
+        ("TABLE_HUGE", "its PostDialect has 4000000000 bytes, it can have at most 65576"),
+        ("ALIGN", "its `dialect` is at an address that no table can have"),
+        ("VERSION", "its version `1.0\\u{1b}[2J` holds a character that no line has"),
+        ("LONG_VERSION", "its version has 9223372036854775812 bytes, at most 200 are taken"),
         ("MANY", "it declares more than 1000 options"),
         ("TWICE", "it declares the option `speed` twice"),
         (
@@ -135,18 +102,12 @@ fn what_a_library_declares_is_bounded_and_stands_where_it_can() {
             "NO_CHOICES",
             "an option it declares has a choice that is at a null pointer, or one that is not aligned (`speed`)",
         ),
-        (
-            "KEY",
-            "an option it declares has the key `a\\nb`, which is no name",
-        ),
+        ("KEY", "an option it declares has the key `a\\nb`, which is no name"),
         (
             "LONG",
             "an option it declares has a key that has 9223372036854775812 bytes, at most 200 are taken",
         ),
-        (
-            "HELP",
-            "an option it declares has a help that is null (`speed`)",
-        ),
+        ("HELP", "an option it declares has a help that is null (`speed`)"),
         ("UNALIGNED", "an option it declares is not aligned"),
         ("NOTHING", "an option it declares is null"),
     ] {
@@ -174,15 +135,9 @@ fn a_library_of_the_first_days_of_this_contract_is_taken() {
 fn a_vocabulary_is_bounded_and_of_known_meaning() {
     let folder = tempfile::tempdir().unwrap();
     let mut good = session(folder.path(), "GOOD");
-    assert_eq!(
-        good.vocabulary().unwrap(),
-        [VocabularyWord::new("G0", Meaning::Rapid)]
-    );
+    assert_eq!(good.vocabulary().unwrap(), [VocabularyWord::new("G0", Meaning::Rapid)]);
     for (flag, message) in [
-        (
-            "MEANING",
-            "its vocabulary has `G1` mean 99999, which this version does not know",
-        ),
+        ("MEANING", "its vocabulary has `G1` mean 99999, which this version does not know"),
         ("NO_WORD", "a word of its vocabulary is null"),
         ("LONG_WORD", "bytes, at most 200 are taken"),
         ("MANY_WORDS", "its vocabulary has more than 1000 words"),
@@ -236,10 +191,7 @@ fn a_model_is_answered_with_the_rounding_of_the_host() {
     let flags = ["-DFAULT_ROUND"];
     let path = compile(folder.path(), "hostile_model.c", "hostile_model", &flags);
     let mut model = Plugin::open(&path).unwrap().error_model(&[]).unwrap();
-    let tolerance = Tolerance {
-        tip: 0.005,
-        axis: 0.05,
-    };
+    let tolerance = Tolerance { tip: 0.005, axis: 0.05 };
     let mut asked = f64::NAN;
     let curve = model.fit(&tolerance, &mut |_: &[f64], out: &mut [Deviation]| {
         asked = third();
@@ -254,20 +206,11 @@ fn a_model_is_answered_with_the_rounding_of_the_host() {
 
 #[test]
 fn a_model_that_asks_for_what_cannot_be_is_refused() {
-    let tolerance = Tolerance {
-        tip: 0.005,
-        axis: 0.05,
-    };
+    let tolerance = Tolerance { tip: 0.005, axis: 0.05 };
     for (flag, message) in [
-        (
-            "COUNT",
-            "it asks for 2305843009213693951 deviations at once",
-        ),
+        ("COUNT", "it asks for 2305843009213693951 deviations at once"),
         ("NULL", "it asks for deviations by a null pointer"),
-        (
-            "ALIGN",
-            "it asks for deviations by a pointer that is not aligned",
-        ),
+        ("ALIGN", "it asks for deviations by a pointer that is not aligned"),
     ] {
         let folder = tempfile::tempdir().unwrap();
         let flag = format!("-DFAULT_{flag}");
@@ -295,10 +238,7 @@ fn the_hash_is_that_of_what_was_loaded() {
     // Another library takes the name: the system would hand out the one that is open.
     let other = hostile(folder.path(), "CR");
     fs::rename(&other, &path).unwrap();
-    assert_eq!(
-        open_fault(&path),
-        "it is open already, and its file was changed since"
-    );
+    assert_eq!(open_fault(&path), "it is open already, and its file was changed since");
     fs::write(&path, &bytes).unwrap();
     assert_eq!(Plugin::open(&path).unwrap().hash(), plugin.hash());
 }
@@ -323,9 +263,7 @@ fn a_library_whose_symbol_is_in_another_one_is_refused_before_it_runs() {
     assert!(done.unwrap().success());
     assert_eq!(
         Plugin::open(&shell).unwrap_err().reason,
-        Reason::NoSymbol {
-            symbol: "post_plugin_hostile".to_owned()
-        }
+        Reason::NoSymbol { symbol: "post_plugin_hostile".to_owned() }
     );
 }
 
@@ -341,10 +279,7 @@ fn a_library_for_another_processor_is_refused_by_its_name() {
     bytes[18] = 43;
     fs::write(&path, bytes).unwrap();
     let fault = open_fault(&path);
-    assert!(
-        fault.starts_with("it is built for another processor ("),
-        "{fault}"
-    );
+    assert!(fault.starts_with("it is built for another processor ("), "{fault}");
 }
 
 #[test]
@@ -397,15 +332,11 @@ fn all_plugins_are_listed_without_being_opened() {
     let linked = ["fanuc", "sampled"].map(|name| post_stock::plugin(name).unwrap());
     let finder = Finder {
         folders: vec![folder.path().to_owned()],
-        linked: linked
-            .map(|linked| Plugin::linked(linked).unwrap())
-            .to_vec(),
+        linked: linked.map(|linked| Plugin::linked(linked).unwrap()).to_vec(),
     };
     let listed = finder.list().unwrap();
-    let rows: Vec<(&str, bool, bool)> = listed
-        .iter()
-        .map(|row| (row.name.as_str(), row.path.is_some(), row.hidden))
-        .collect();
+    let rows: Vec<(&str, bool, bool)> =
+        listed.iter().map(|row| (row.name.as_str(), row.path.is_some(), row.hidden)).collect();
     assert_eq!(
         rows,
         [

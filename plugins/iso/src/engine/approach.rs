@@ -35,8 +35,7 @@ impl Engine {
             } else if length_first {
                 self.motion.line(&std::mem::take(&mut length), out);
             }
-            self.motion
-                .line(&self.tcp_on.replace("{h}", &self.h()), out);
+            self.motion.line(&self.tcp_on.replace("{h}", &self.h()), out);
         }
         if keeps_tip && self.table.tcp_at_rapid && feed.is_some() && !length.is_empty() {
             let length = std::mem::take(&mut length);

@@ -49,9 +49,7 @@ impl Engine {
         let work_offset = text(setup, "work_offset", "G54");
         if !(table.offset.known)(&work_offset) {
             let range = table.offset.range;
-            return Err(format!(
-                "the work offset is `{work_offset}`, must be {range}"
-            ));
+            return Err(format!("the work offset is `{work_offset}`, must be {range}"));
         }
         let feeds = FeedDecimals {
             per_minute: integer(setup, "feed_decimals", 1) as u8 + u8::from(inch),
@@ -147,9 +145,7 @@ fn title(table: &Table, setup: &Setup<'_>) -> String {
     match table.title {
         Some((letter, digits)) => {
             let number = integer(setup, "program_number", 1000);
-            format!("{letter}{number:0digits$} {name}")
-                .trim_end()
-                .to_owned()
+            format!("{letter}{number:0digits$} {name}").trim_end().to_owned()
         }
         None => name,
     }

@@ -19,9 +19,7 @@ fn tools_and_what_stands_between_them() {
 
 #[test]
 fn five_axes_of_grblhal() {
-    let bench = bench()
-        .with("hal", Value::Flag(true))
-        .with("change", Value::Text("M6"));
+    let bench = bench().with("hal", Value::Flag(true)).with("change", Value::Text("M6"));
     let mut job = post_kit::job(true);
     job.retain(|event| !matches!(event, Event::Compensate(_)));
     insta::assert_snapshot!(bench.write(&job).unwrap());

@@ -27,10 +27,7 @@ fn options_change_what_they_say() {
         .with("preset", Value::Integer(-1))
         .with("rotary_way", Value::Text("M126"))
         .with("retract", Value::Text("L Z-1 R0 FMAX M91"))
-        .with(
-            "tcp_on",
-            Value::Text("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"),
-        )
+        .with("tcp_on", Value::Text("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"))
         .with("tcp_off", Value::Text("FUNCTION RESET TCPM"));
     let events = [
         Event::Start,
@@ -64,10 +61,7 @@ fn own_tool_calls_get_the_speed_and_nothing_behind_them() {
         bench().write(&events)
     };
     let written = own("TOOL CALL 1 Z DL+0.1 DR-0.05 ; worn").unwrap();
-    assert!(
-        written.contains(" TOOL CALL 1 Z S3000 DL+0.1 DR-0.05 ; worn\n"),
-        "{written}"
-    );
+    assert!(written.contains(" TOOL CALL 1 Z S3000 DL+0.1 DR-0.05 ; worn\n"), "{written}");
     assert_eq!(written.matches("TOOL CALL").count(), 1, "{written}");
     let written = own("TOOL CALL 1 Z S3000").unwrap();
     assert_eq!(written.matches("TOOL CALL").count(), 1, "{written}");
@@ -83,15 +77,7 @@ fn own_tool_calls_get_the_speed_and_nothing_behind_them() {
 #[test]
 fn nothing_retracts_along_a_tool_that_was_not_called() {
     let bench = bench().with("retract", Value::Text("L M140 MB MAX"));
-    let events = [
-        Event::Start,
-        TOP,
-        TOOL,
-        turning(1000.0),
-        at(P1),
-        TOP,
-        Event::End,
-    ];
+    let events = [Event::Start, TOP, TOOL, turning(1000.0), at(P1), TOP, Event::End];
     let text = bench.write(&events).unwrap();
     let (before, _) = text.split_once("TOOL CALL").unwrap();
     assert!(!before.contains("M140"), "{text}");
@@ -112,20 +98,11 @@ fn what_cannot_be_written_is_refused() {
     assert!(refused(&[cycle(Cycle::Tap, None, None), hole(P1)]).contains("no spindle turns"));
     assert!(refused(&[cycle(Cycle::BoreBack, None, None), hole(P1)]).contains("back boring"));
     assert!(refused(&[arc([0.0; 3], [0.0, 1.0, 0.0], 90.0, P1)]).contains("X Y"));
-    let speed = Event::SurfaceSpeed {
-        speed: 100.0,
-        most: None,
-        sense: SpindleSense::Clockwise,
-    };
+    let speed = Event::SurfaceSpeed { speed: 100.0, most: None, sense: SpindleSense::Clockwise };
     assert!(refused(&[speed]).contains("constant cutting speed"));
     let named = bench().with("tool_names", Value::Flag(true));
     let long = Event::tool_change(1, 1, "a name of more than thirty-two characters");
-    assert!(
-        named
-            .write(&[long, turning(1.0)])
-            .unwrap_err()
-            .contains("tool_names")
-    );
+    assert!(named.write(&[long, turning(1.0)]).unwrap_err().contains("tool_names"));
     let text = named.write(&[TOOL, turning(1.0)]).unwrap();
     assert!(text.contains("TOOL CALL \"BALL_D10__R5_\" Z S1"), "{text}");
 }
@@ -176,13 +153,8 @@ fn arcs_and_cycles() {
         Event::Start,
         TOP,
         TOOL,
-        Event::Operation {
-            name: "Tasche ~ links",
-        },
-        Event::Smoothing {
-            tolerance: 0.02,
-            axis_tolerance: None,
-        },
+        Event::Operation { name: "Tasche ~ links" },
+        Event::Smoothing { tolerance: 0.02, axis_tolerance: None },
         turning(3000.0),
         TOP,
         turn(Q0),
@@ -271,23 +243,12 @@ fn a_tilted_plane_and_other_datums() {
         turning(4000.0),
         TOP,
         Event::PlaneOff,
-        Event::WorkOffset {
-            number: 3,
-            name: "",
-        },
+        Event::WorkOffset { number: 3, name: "" },
         turn(P3),
         at(P3),
         TOP,
-        Event::Subprogram {
-            number: Some(5),
-            times: 2,
-            name: "",
-        },
-        Event::Subprogram {
-            number: None,
-            times: 1,
-            name: "wenden.h",
-        },
+        Event::Subprogram { number: Some(5), times: 2, name: "" },
+        Event::Subprogram { number: None, times: 1, name: "wenden.h" },
         Event::End,
     ];
     insta::assert_snapshot!(bench().tcp().write(&events).unwrap());
@@ -307,25 +268,15 @@ fn a_tilted_plane_and_other_datums() {
 /// SPA, then SPB, then SPC about the fixed axes X, Y, Z: the frame is that of the turns about the moving Z, Y, X.
 #[test]
 fn spatial_angles_lead_back_to_the_plane() {
-    for angles in [
-        [12.5, 33.25, -140.125],
-        [0.0, 90.0, 45.0],
-        [179.5, -90.0, 0.0],
-        [-90.0, 0.0, 30.0],
-    ] {
+    for angles in
+        [[12.5, 33.25, -140.125], [0.0, 90.0, 45.0], [179.5, -90.0, 0.0], [-90.0, 0.0, 30.0]]
+    {
         let wanted = jobs::frame(PlaneAngles::Zyx, angles);
-        let plane = Event::Plane {
-            origin: [0.0; 3],
-            x: wanted[0],
-            z: wanted[2],
-            angles,
-            words: P1,
-        };
+        let plane =
+            Event::Plane { origin: [0.0; 3], x: wanted[0], z: wanted[2], angles, words: P1 };
         let text = bench().write(&[plane]).unwrap();
         let angle = |word: &str| -> f64 {
-            let mut found = text
-                .split_whitespace()
-                .filter_map(|found| found.strip_prefix(word));
+            let mut found = text.split_whitespace().filter_map(|found| found.strip_prefix(word));
             found.find_map(|angle| angle.parse().ok()).unwrap()
         };
         let printed = ["SPA", "SPB", "SPC"].map(angle);
@@ -348,10 +299,7 @@ fn spatial_angles_lead_back_to_the_plane() {
 #[test]
 fn the_jobs_of_every_dialect() {
     let bench = bench();
-    insta::assert_snapshot!(
-        "three_axes",
-        bench.write_declared(&jobs::three_axes()).unwrap()
-    );
+    insta::assert_snapshot!("three_axes", bench.write_declared(&jobs::three_axes()).unwrap());
     insta::assert_snapshot!("tilted", bench.write_declared(&jobs::tilted()).unwrap());
     insta::assert_snapshot!("tools", bench.write_declared(&jobs::tools()).unwrap());
 }
@@ -363,17 +311,9 @@ fn vectors_of_tool_and_surface() {
         Some(ToolPose { tip, axis })
     };
     let feed = Feed::PerMinute(500.0);
-    let to = |words, axis| Event::Linear {
-        tool: tool(axis),
-        feed,
-        words,
-    };
-    let surface = |words, axis| Event::Surface {
-        tool: tool(axis),
-        feed,
-        normal: [0.0, 0.0, 1.0],
-        words,
-    };
+    let to = |words, axis| Event::Linear { tool: tool(axis), feed, words };
+    let surface =
+        |words, axis| Event::Surface { tool: tool(axis), feed, normal: [0.0, 0.0, 1.0], words };
     let events = [
         turning(3000.0),
         turn(P1),
@@ -400,16 +340,8 @@ fn vectors_of_tool_and_surface() {
 /// Lines in the place of a retract stand for its way alone: TCP is off ahead of them.
 #[test]
 fn lines_in_the_place_of_an_event_are_numbered_like_any_other() {
-    let events = [
-        turning(3000.0),
-        at(P1),
-        Event::Instead {
-            text: "L M140 MB MAX",
-        },
-        TOP,
-        TOP,
-        at(P1),
-    ];
+    let events =
+        [turning(3000.0), at(P1), Event::Instead { text: "L M140 MB MAX" }, TOP, TOP, at(P1)];
     let text = bench().tcp().write(&events).unwrap();
     let tail: Vec<&str> = text.lines().skip(8).collect();
     assert_eq!(
@@ -430,28 +362,17 @@ fn lines_in_the_place_of_an_event_are_numbered_like_any_other() {
 /// A machine without rotary axes, with what a first pass over the file knows.
 #[test]
 fn three_axes_with_a_stock_and_tools_by_name() {
-    let words = ["X", "Y", "Z"].map(|name| AxisWord {
-        name,
-        depth: name == "Z",
-        ..AxisWord::default()
-    });
+    let words =
+        ["X", "Y", "Z"].map(|name| AxisWord { name, depth: name == "Z", ..AxisWord::default() });
     let declared = post_heidenhain::plugin().options();
-    let mut options: Vec<_> = declared
-        .iter()
-        .map(|spec| (spec.key, spec.default))
-        .collect();
+    let mut options: Vec<_> = declared.iter().map(|spec| (spec.key, spec.default)).collect();
     for (key, value) in &mut options {
         if ["blk_form", "tool_names"].contains(key) {
             *value = Value::Flag(true);
         }
     }
-    let tools = [Tool {
-        number: 4,
-        name: "BOHRER_8.5",
-        length: None,
-        diameter: None,
-        corner_radius: None,
-    }];
+    let tools =
+        [Tool { number: 4, name: "BOHRER_8.5", length: None, diameter: None, corner_radius: None }];
     let setup = Setup {
         program: "platte",
         words: &words,
@@ -477,13 +398,8 @@ fn three_axes_with_a_stock_and_tools_by_name() {
     for (line, event) in (1..).zip(events) {
         batch.push(line, event);
     }
-    let promise = Promise {
-        words: 3,
-        inverse_time: true,
-    };
+    let promise = Promise { words: 3, inverse_time: true };
     let (mut out, mut ends) = (String::new(), Vec::new());
-    dialect
-        .write(&batch, &promise, &mut out, &mut ends)
-        .unwrap();
+    dialect.write(&batch, &promise, &mut out, &mut ends).unwrap();
     insta::assert_snapshot!(out);
 }

@@ -41,11 +41,7 @@ fn commands(program: &str, kind: &str) -> Option<Vec<Vec<f64>>> {
     let found = text.lines().filter_map(|line| {
         let (_, rest) = line.split_once(&format!("{kind}("))?;
         let numbers = rest.trim_end_matches(')').split(',');
-        Some(
-            numbers
-                .filter_map(|number| number.trim().parse().ok())
-                .collect(),
-        )
+        Some(numbers.filter_map(|number| number.trim().parse().ok()).collect())
     });
     Some(found.collect())
 }

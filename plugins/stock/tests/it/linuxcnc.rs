@@ -26,9 +26,7 @@ fn options_change_what_they_say() {
         .with("retract", Value::Text("G53 G0 Z-1."));
     let events = [
         Event::Start,
-        Event::Comment {
-            text: " msg, (stop it)",
-        },
+        Event::Comment { text: " msg, (stop it)" },
         at(P1),
         cut(P3, 12.25),
         Event::End,

@@ -13,10 +13,7 @@ fn three_axes_with_arcs_and_cycles() {
 #[test]
 fn tools_and_what_stands_between_them() {
     insta::assert_snapshot!(
-        bench()
-            .with("clamps", Value::Text("C M10 M11"))
-            .write_declared(&jobs::tools())
-            .unwrap()
+        bench().with("clamps", Value::Text("C M10 M11")).write_declared(&jobs::tools()).unwrap()
     );
 }
 

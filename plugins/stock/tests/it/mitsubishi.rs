@@ -42,14 +42,8 @@ fn five_axes_with_tcp() {
 fn taps_are_synchronous() {
     let rigid = bench().write_declared(&jobs::three_axes()).unwrap();
     let taps: Vec<&str> = rigid.lines().filter(|line| line.contains("G84 ")).collect();
-    assert!(
-        !taps.is_empty() && taps.iter().all(|tap| tap.ends_with(" ,R1")),
-        "{rigid}"
-    );
+    assert!(!taps.is_empty() && taps.iter().all(|tap| tap.ends_with(" ,R1")), "{rigid}");
     let floating = bench().with("tapping", Value::Text("floating"));
     let floating = floating.write_declared(&jobs::three_axes()).unwrap();
-    assert!(
-        floating.contains("G84 ") && !floating.contains(",R"),
-        "{floating}"
-    );
+    assert!(floating.contains("G84 ") && !floating.contains(",R"), "{floating}");
 }

@@ -71,10 +71,7 @@ fn arcs_and_cycles() {
         Event::Operation { name: "Tasche" },
         TOOL,
         turning(3000.0),
-        Event::Smoothing {
-            tolerance: 0.02,
-            axis_tolerance: None,
-        },
+        Event::Smoothing { tolerance: 0.02, axis_tolerance: None },
         TOP,
         turn(Q0),
         at(Q0),
@@ -121,16 +118,12 @@ fn arcs_and_cycles() {
         TOP,
         Event::End,
     ];
-    let bench = bench()
-        .with("bore_lift_x", Value::Number(-0.2))
-        .with("messages", Value::Flag(true));
+    let bench =
+        bench().with("bore_lift_x", Value::Number(-0.2)).with("messages", Value::Flag(true));
     insta::assert_snapshot!(bench.write(&events).unwrap());
     let floating = bench.with("tapping", Value::Text("floating"));
     let text = floating.write(&events).unwrap();
-    assert!(
-        text.contains("MCALL CYCLE840(10,0,2,-12.5,,0,0,3,0,,1.25)"),
-        "{text}"
-    );
+    assert!(text.contains("MCALL CYCLE840(10,0,2,-12.5,,0,0,3,0,,1.25)"), "{text}");
 }
 
 #[test]
@@ -139,34 +132,15 @@ fn arcs_off_the_plane_of_the_length_are_an_option() {
         at(Q0),
         down(&[0.0, 0.0, 0.0, 0.0, 0.0]),
         // From X to Z about -Y: clockwise, seen against +Y.
-        arc(
-            [-5.0, 0.0, 0.0],
-            [0.0, -1.0, 0.0],
-            90.0,
-            &[-5.0, 0.0, 5.0, 0.0, 0.0],
-        ),
+        arc([-5.0, 0.0, 0.0], [0.0, -1.0, 0.0], 90.0, &[-5.0, 0.0, 5.0, 0.0, 0.0]),
         // From Y to Z about X.
-        arc(
-            [-5.0, -5.0, 5.0],
-            [1.0, 0.0, 0.0],
-            90.0,
-            &[-5.0, -5.0, 10.0, 0.0, 0.0],
-        ),
+        arc([-5.0, -5.0, 5.0], [1.0, 0.0, 0.0], 90.0, &[-5.0, -5.0, 10.0, 0.0, 0.0]),
         TOP,
         at(Q0),
     ];
-    let text = bench()
-        .with("arcs_off_xy", Value::Flag(true))
-        .write(&events)
-        .unwrap();
-    assert!(
-        text.contains("G18 G2 X-5.000 Z5.000 I-5.000 K0.000\n"),
-        "{text}"
-    );
-    assert!(
-        text.contains("G19 G3 Y-5.000 Z10.000 J-5.000 K0.000\n"),
-        "{text}"
-    );
+    let text = bench().with("arcs_off_xy", Value::Flag(true)).write(&events).unwrap();
+    assert!(text.contains("G18 G2 X-5.000 Z5.000 I-5.000 K0.000\n"), "{text}");
+    assert!(text.contains("G19 G3 Y-5.000 Z10.000 J-5.000 K0.000\n"), "{text}");
     assert!(text.contains("G17\n"), "{text}");
 }
 
@@ -247,16 +221,11 @@ fn angles_of_every_mode_lead_back_to_the_plane() {
         ("ZXY", PlaneAngles::Zxy),
         ("ZYX", PlaneAngles::Zyx),
     ] {
-        let bench = bench()
-            .with("swivel", Value::Flag(true))
-            .with("swivel_mode", Value::Text(name));
+        let bench =
+            bench().with("swivel", Value::Flag(true)).with("swivel_mode", Value::Text(name));
         for round in 0..200 {
             // The middle turn at a right angle is the pole of every order.
-            let middle = if round == 0 {
-                90.0
-            } else {
-                180.0 * random() - 90.0
-            };
+            let middle = if round == 0 { 90.0 } else { 180.0 * random() - 90.0 };
             let rounded = |angle: f64| (angle * 1e5).round() / 1e5;
             let angles = [360.0 * random() - 180.0, middle, 360.0 * random() - 180.0].map(rounded);
             let wanted = jobs::frame(angles_of, angles);
@@ -300,13 +269,8 @@ fn turned(vector: [f64; 3], about: usize, degrees: f64) -> [f64; 3] {
 
 #[test]
 fn the_jobs_of_every_dialect() {
-    let bench = bench()
-        .with("swivel", Value::Flag(true))
-        .with("arcs_off_xy", Value::Flag(true));
-    insta::assert_snapshot!(
-        "three_axes",
-        bench.write_declared(&jobs::three_axes()).unwrap()
-    );
+    let bench = bench().with("swivel", Value::Flag(true)).with("arcs_off_xy", Value::Flag(true));
+    insta::assert_snapshot!("three_axes", bench.write_declared(&jobs::three_axes()).unwrap());
     insta::assert_snapshot!("tilted", bench.write_declared(&jobs::tilted()).unwrap());
     insta::assert_snapshot!("tools", bench.write_declared(&jobs::tools()).unwrap());
 }
@@ -314,10 +278,7 @@ fn the_jobs_of_every_dialect() {
 #[test]
 fn tool_vectors_in_the_place_of_rotary_words() {
     let to = |words, axis| Event::Linear {
-        tool: Some(ToolPose {
-            tip: [0.0; 3],
-            axis,
-        }),
+        tool: Some(ToolPose { tip: [0.0; 3], axis }),
         feed: Feed::PerMinute(500.0),
         words,
     };
@@ -345,56 +306,29 @@ fn tools_offsets_messages_calls_and_stops() {
         Event::Start,
         TOP,
         Event::tool_change(3, 3, "Fräser \"D10\""),
-        Event::SurfaceSpeed {
-            speed: 120.0,
-            most: Some(8000.0),
-            sense: SpindleSense::Clockwise,
-        },
+        Event::SurfaceSpeed { speed: 120.0, most: Some(8000.0), sense: SpindleSense::Clockwise },
         TOP,
         turn(P1),
         at(P1),
         cut(P3, 850.0),
         turning(2000.0),
         Event::Stop,
-        Event::Message {
-            text: "Spannen \"links\"",
-        },
+        Event::Message { text: "Spannen \"links\"" },
         Event::Message { text: "" },
         TOP,
-        Event::WorkOffset {
-            number: 2,
-            name: "",
-        },
+        Event::WorkOffset { number: 2, name: "" },
         turn(P1),
         at(P1),
         TOP,
-        Event::WorkOffset {
-            number: 12,
-            name: "",
-        },
+        Event::WorkOffset { number: 12, name: "" },
         turn(P1),
         at(P1),
-        Event::Smoothing {
-            tolerance: 0.01,
-            axis_tolerance: Some(0.1),
-        },
-        Event::Probe {
-            tool: None,
-            feed: Feed::PerMinute(100.0),
-            words: P3,
-        },
+        Event::Smoothing { tolerance: 0.01, axis_tolerance: Some(0.1) },
+        Event::Probe { tool: None, feed: Feed::PerMinute(100.0), words: P3 },
         rapid(P3),
         TOP,
-        Event::Subprogram {
-            number: Some(123),
-            times: 2,
-            name: "",
-        },
-        Event::Subprogram {
-            number: None,
-            times: 1,
-            name: "WENDEN_2",
-        },
+        Event::Subprogram { number: Some(123), times: 2, name: "" },
+        Event::Subprogram { number: None, times: 1, name: "WENDEN_2" },
         TOP,
         Event::Spindle(Spindle::Orient),
         Event::End,
@@ -410,42 +344,20 @@ fn tools_offsets_messages_calls_and_stops() {
 #[test]
 fn smoothing_as_the_software_has_it() {
     let smooth = |bench: Bench, tolerance, axis_tolerance| {
-        let events = [
-            Event::Smoothing {
-                tolerance,
-                axis_tolerance,
-            },
-            Event::SmoothingOff,
-        ];
-        bench
-            .with("block_numbers", Value::Text("none"))
-            .write(&events)
-            .unwrap()
+        let events = [Event::Smoothing { tolerance, axis_tolerance }, Event::SmoothingOff];
+        bench.with("block_numbers", Value::Text("none")).write(&events).unwrap()
     };
-    assert_eq!(
-        smooth(bench(), 0.01, None),
-        "CYCLE832(0.01,1,1)\nCYCLE832()\n"
-    );
-    assert_eq!(
-        smooth(bench(), 0.05, Some(0.5)),
-        "CYCLE832(0.05,13,0.5)\nCYCLE832()\n"
-    );
-    assert_eq!(
-        smooth(bench().inch(), 0.0254, None),
-        "CYCLE832(0.001,2,1)\nCYCLE832()\n"
-    );
+    assert_eq!(smooth(bench(), 0.01, None), "CYCLE832(0.01,1,1)\nCYCLE832()\n");
+    assert_eq!(smooth(bench(), 0.05, Some(0.5)), "CYCLE832(0.05,13,0.5)\nCYCLE832()\n");
+    assert_eq!(smooth(bench().inch(), 0.0254, None), "CYCLE832(0.001,2,1)\nCYCLE832()\n");
     let compressor = bench().with("smoothing_by", Value::Text("COMPCAD"));
     assert_eq!(
         smooth(compressor, 0.01, Some(0.1)),
         "COMPCAD CTOL=0.01 OTOL=0.1\nCOMPOF CTOL=-1 OTOL=-1\n"
     );
-    let old = bench()
-        .with("software", Value::Text("2"))
-        .with("smoothing_code", Value::Integer(112_101));
-    assert_eq!(
-        smooth(old, 0.01, Some(0.1)),
-        "CYCLE832(0.01,112101)\nCYCLE832()\n"
-    );
+    let old =
+        bench().with("software", Value::Text("2")).with("smoothing_code", Value::Integer(112_101));
+    assert_eq!(smooth(old, 0.01, Some(0.1)), "CYCLE832(0.01,112101)\nCYCLE832()\n");
 }
 
 /// The control would go from 350 to 10 degrees through 180 without it.
@@ -459,16 +371,9 @@ fn wrapped_axes_take_the_shorter_way() {
         ..AxisWord::default()
     });
     let declared = post_siemens::plugin().options();
-    let options: Vec<_> = declared
-        .iter()
-        .map(|spec| (spec.key, spec.default))
-        .collect();
-    let setup = Setup {
-        units: Units::Millimetre,
-        words: &words,
-        options: &options,
-        ..Setup::default()
-    };
+    let options: Vec<_> = declared.iter().map(|spec| (spec.key, spec.default)).collect();
+    let setup =
+        Setup { units: Units::Millimetre, words: &words, options: &options, ..Setup::default() };
     let mut dialect = post_siemens::plugin().open(&setup).unwrap().unwrap();
     let mut batch = Batch::default();
     batch.push(1, Event::Start);
@@ -476,14 +381,9 @@ fn wrapped_axes_take_the_shorter_way() {
     batch.push(3, turn(&[0.0, 0.0, 10.0]));
     // A machine that shows -180 to 180: the words of a modulo axis lie from 0 to 359.999 all the same.
     batch.push(4, turn(&[0.0, 0.0, -100.0]));
-    let promise = Promise {
-        words: 3,
-        inverse_time: true,
-    };
+    let promise = Promise { words: 3, inverse_time: true };
     let (mut out, mut ends) = (String::new(), Vec::new());
-    dialect
-        .write(&batch, &promise, &mut out, &mut ends)
-        .unwrap();
+    dialect.write(&batch, &promise, &mut out, &mut ends).unwrap();
     assert!(
         out.contains("G0 C=DC(350.000)\n")
             && out.contains(" C=DC(10.000)\n")
@@ -504,10 +404,7 @@ fn endless_axes_stay_within_a_turn() {
     });
     let written = |endless: &'static str, angles: &[f64], cut: bool| {
         let declared = post_siemens::plugin().options();
-        let mut options: Vec<_> = declared
-            .iter()
-            .map(|spec| (spec.key, spec.default))
-            .collect();
+        let mut options: Vec<_> = declared.iter().map(|spec| (spec.key, spec.default)).collect();
         for (key, value) in &mut options {
             if *key == "endless" {
                 *value = Value::Text(endless);
@@ -532,20 +429,14 @@ fn endless_axes_stay_within_a_turn() {
                 },
             );
         }
-        let promise = Promise {
-            words: 3,
-            inverse_time: true,
-        };
+        let promise = Promise { words: 3, inverse_time: true };
         let (mut out, mut ends) = (String::new(), Vec::new());
         let done = dialect.write(&batch, &promise, &mut out, &mut ends);
         done.map(|()| out)
     };
     let angles = [-80.0, 10.0, 200.0, 10.0, 170.0, 359.9999];
     let out = written("modulo", &angles, false).unwrap();
-    let found: Vec<&str> = out
-        .split_whitespace()
-        .filter(|word| word.starts_with("C="))
-        .collect();
+    let found: Vec<&str> = out.split_whitespace().filter(|word| word.starts_with("C=")).collect();
     assert_eq!(
         found,
         [
@@ -558,11 +449,7 @@ fn endless_axes_stay_within_a_turn() {
         ],
         "{out}"
     );
-    assert!(
-        written("counted", &angles, false)
-            .unwrap()
-            .contains("C-80.000")
-    );
+    assert!(written("counted", &angles, false).unwrap().contains("C-80.000"));
     assert!(written("modulo", &[0.0, 400.0], true).is_err());
 }
 
@@ -573,16 +460,9 @@ fn what_cannot_be_written_is_refused() {
         refused(&[cycle(Cycle::Tap, 100.0, None, None), hole(P1)]).contains("no spindle turns")
     );
     assert!(refused(&[hole(P1)]).contains("without its cycle"));
-    let offset = Event::WorkOffset {
-        number: 100,
-        name: "",
-    };
+    let offset = Event::WorkOffset { number: 100, name: "" };
     assert!(refused(&[offset]).contains("G505 to G599"));
-    let call = Event::Subprogram {
-        number: None,
-        times: 1,
-        name: "1; M30",
-    };
+    let call = Event::Subprogram { number: None, times: 1, name: "1; M30" };
     assert!(refused(&[call]).contains("two letters first"));
     assert!(refused(&[arc([0.0; 3], [0.6, 0.0, 0.8], 90.0, P1)]).contains("G17, G18, G19"));
     assert!(refused(&[Event::Unknown { kind: 99 }]).contains("99"));

@@ -43,19 +43,14 @@ impl Clock {
     /// # Errors
     /// A gap.
     pub fn of(times: &mut [f64], resolution: f64) -> Result<Self, Gap> {
-        let mut steps: Vec<f64> = times
-            .windows(STEPS + 1)
-            .map(|rows| (rows[STEPS] - rows[0]) / STEPS as f64)
-            .collect();
+        let mut steps: Vec<f64> =
+            times.windows(STEPS + 1).map(|rows| (rows[STEPS] - rows[0]) / STEPS as f64).collect();
         let middle = steps.len() / 2;
         let (_, usual, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
         let usual = *usual;
         let gap = |pair: &[f64]| pair[1] - pair[0] > GAP * usual;
         if let Some(row) = times.windows(2).position(gap) {
-            return Err(Gap {
-                row: row + 1,
-                usual,
-            });
+            return Err(Gap { row: row + 1, usual });
         }
         let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
         let missing: usize = steps
@@ -87,11 +82,8 @@ impl Clock {
         };
         // What is left of that line.
         let beside = |row: usize, time: f64| time - (first + places[row] * period);
-        let beside: Vec<f64> = times
-            .iter()
-            .enumerate()
-            .map(|(row, time)| beside(row, *time))
-            .collect();
+        let beside: Vec<f64> =
+            times.iter().enumerate().map(|(row, time)| beside(row, *time)).collect();
         let mean = beside.iter().sum::<f64>() / count;
         let squares = beside.iter().map(|one| (one - mean) * (one - mean));
         let jitter = libm::sqrt(squares.sum::<f64>() / count);
@@ -102,12 +94,7 @@ impl Clock {
                 *time = first + mean + place * period;
             }
         }
-        Ok(Self {
-            period,
-            missing,
-            jitter: if rounded { 0.0 } else { jitter },
-            rounded,
-        })
+        Ok(Self { period, missing, jitter: if rounded { 0.0 } else { jitter }, rounded })
     }
 }
 
@@ -119,10 +106,8 @@ mod tests {
     fn rounded_times_become_even_and_missing_rows_are_counted() {
         let kept = |row: &usize| !matches!(row, 100 | 101 | 777);
         let round = |time: f64| libm::rint(time * 1e3) / 1e3;
-        let mut times: Vec<f64> = (0..2000)
-            .filter(kept)
-            .map(|row| round(5.0 + 0.0025 * row as f64))
-            .collect();
+        let mut times: Vec<f64> =
+            (0..2000).filter(kept).map(|row| round(5.0 + 0.0025 * row as f64)).collect();
         let clock = Clock::of(&mut times, 1e-3).ok().unwrap();
         assert!((clock.period - 0.0025).abs() < 1e-6, "{clock:?}");
         assert_eq!((clock.missing, clock.rounded), (3, true));
@@ -130,12 +115,7 @@ mod tests {
             assert!((time - 5.0 - 0.0025 * row as f64).abs() < 6e-4, "{row}");
         }
         let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
-        assert!(
-            steps
-                .skip(1)
-                .take(90)
-                .all(|step| (step - clock.period).abs() < 1e-12)
-        );
+        assert!(steps.skip(1).take(90).all(|step| (step - clock.period).abs() < 1e-12));
     }
 
     #[test]
@@ -144,10 +124,7 @@ mod tests {
             .map(|row| 0.01 * f64::from(row) + if row % 2 == 0 { 1e-3 } else { -1e-3 })
             .collect();
         let clock = Clock::of(&mut times, 1e-6).ok().unwrap();
-        assert!(
-            (clock.jitter - 1e-3).abs() < 1e-5 && !clock.rounded,
-            "{clock:?}"
-        );
+        assert!((clock.jitter - 1e-3).abs() < 1e-5 && !clock.rounded, "{clock:?}");
         assert_eq!(clock.missing, 0);
         for time in &mut times[500..] {
             *time += 0.1;

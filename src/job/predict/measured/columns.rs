@@ -58,10 +58,7 @@ pub fn column_names(text: &str) -> Result<ColumnNames, String> {
                 names.push((content.to_owned(), column.to_owned()));
             }
             _ => {
-                return Err(format!(
-                    "`{}` is not of the form CONTENT=COLUMN",
-                    part.trim()
-                ));
+                return Err(format!("`{}` is not of the form CONTENT=COLUMN", part.trim()));
             }
         }
     }
@@ -130,11 +127,7 @@ impl Columns {
             None => known(machine, head.names),
         };
         if even {
-            if names.is_some()
-                && contents
-                    .iter()
-                    .any(|(_, content)| *content == Content::Time)
-            {
+            if names.is_some() && contents.iter().any(|(_, content)| *content == Content::Time) {
                 let message = "--columns names the time, and --log-period says that rows lie at even distances in time";
                 let help = "keep one of both";
                 return Err(Diagnostic::error("log-columns", message).help(help).boxed());
@@ -178,10 +171,7 @@ impl Columns {
         let read: Vec<Column> = read.collect::<Result<_, Box<Diagnostic>>>()?;
         let names = head.names.iter().enumerate();
         let unread = names.filter(|(place, _)| read.iter().all(|column| column.place != *place));
-        Ok(Self {
-            unread: unread.map(|(_, name)| name.clone()).collect(),
-            read,
-        })
+        Ok(Self { unread: unread.map(|(_, name)| name.clone()).collect(), read })
     }
 }
 
@@ -222,10 +212,8 @@ fn told(
             (1..=head.count).contains(&number).then(|| number - 1)
         };
         let Some(place) = named.or_else(numbered) else {
-            let message = format!(
-                "--columns: the log has no column `{column}`; it has {}",
-                head.count
-            );
+            let message =
+                format!("--columns: the log has no column `{column}`; it has {}", head.count);
             return Err(asks_for_columns(message, machine, head));
         };
         contents.push((place, content));

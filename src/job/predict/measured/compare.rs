@@ -99,10 +99,8 @@ impl<'a> Compared<'a> {
     /// Positions at the same time.
     fn positions(&mut self) {
         let (overlay, shift) = (self.overlay, self.alignment.shift);
-        let pairs = [
-            (&overlay.log.commanded, &overlay.commanded),
-            (&overlay.log.actual, &overlay.actual),
-        ];
+        let pairs =
+            [(&overlay.log.commanded, &overlay.commanded), (&overlay.log.actual, &overlay.actual)];
         for (which, (log, predicted)) in pairs.into_iter().enumerate() {
             for (place, joints) in log.joints.iter().enumerate() {
                 let time = log.time(place);
@@ -225,10 +223,6 @@ impl<'a> Compared<'a> {
     /// What is left of the contour error.
     pub fn contour(&self) -> Option<ContourLaid> {
         let [measured, predicted, difference] = self.contours.map(|sum| Left::of(&sum, 1.0));
-        Some(ContourLaid {
-            measured: measured?,
-            predicted: predicted?,
-            difference: difference?,
-        })
+        Some(ContourLaid { measured: measured?, predicted: predicted?, difference: difference? })
     }
 }

@@ -68,8 +68,7 @@ pub fn fitted(machine: &Machine, log: &Log, names: &[String]) -> Result<Vec<Axis
         }
     }
     let axes = axes.into_iter();
-    axes.map(|(place, keys)| axis(machine, log, place, &keys))
-        .collect()
+    axes.map(|(place, keys)| axis(machine, log, place, &keys)).collect()
 }
 
 fn axis(machine: &Machine, log: &Log, place: usize, keys: &[&str]) -> Result<AxisFitted, Failure> {
@@ -80,10 +79,8 @@ fn axis(machine: &Machine, log: &Log, place: usize, keys: &[&str]) -> Result<Axi
         return Err(Diagnostic::error("fit", message).into());
     };
     if !log.both().contains(&place) {
-        let message = format!(
-            "--fit: the log does not have {} both commanded and actual",
-            axis.name
-        );
+        let message =
+            format!("--fit: the log does not have {} both commanded and actual", axis.name);
         let help = "--columns says which columns they are";
         return Err(Diagnostic::error("fit", message).help(help).into());
     }
@@ -94,11 +91,7 @@ fn axis(machine: &Machine, log: &Log, place: usize, keys: &[&str]) -> Result<Axi
     let measured = log.actual.joints.iter().map(|joints| joints[place]);
     let measured: Vec<f64> = measured.collect();
     let moves = (log.commanded.joints[1][place] - log.commanded.joints[0][place]).abs() > MOVES;
-    let lead = if moves {
-        UNKNOWN / log.commanded.period
-    } else {
-        0.0
-    };
+    let lead = if moves { UNKNOWN / log.commanded.period } else { 0.0 };
     let found = fit::fit(
         servo,
         keys,
@@ -149,12 +142,7 @@ fn lines(axis: &str, fitted: &[Fitted]) -> String {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "[servo.{axis}{dot}{table}]");
         for number in fitted.iter().filter(|number| number.table == table) {
-            let Fitted {
-                name,
-                value,
-                before,
-                ..
-            } = number;
+            let Fitted { name, value, before, .. } = number;
             let _ = match number.determined {
                 true => writeln!(
                     text,
@@ -163,11 +151,9 @@ fn lines(axis: &str, fitted: &[Fitted]) -> String {
                     short(number.deviation),
                     Short(*before)
                 ),
-                false => writeln!(
-                    text,
-                    "# {name} = {}  # not determined by this log",
-                    Short(*before)
-                ),
+                false => {
+                    writeln!(text, "# {name} = {}  # not determined by this log", Short(*before))
+                }
             };
         }
     }
@@ -177,8 +163,7 @@ fn lines(axis: &str, fitted: &[Fitted]) -> String {
 /// A deviation, three digits of it.
 pub(super) fn short(deviation: f64) -> String {
     let text = format!("{deviation:.2e}");
-    text.parse::<f64>()
-        .map_or(text, |value| Short(value).to_string())
+    text.parse::<f64>().map_or(text, |value| Short(value).to_string())
 }
 
 /// A number with two digits beyond the first of its deviation, and no more than nine.
@@ -189,6 +174,5 @@ pub(super) fn rounded(value: f64, deviation: f64) -> String {
     let digits = (digits + 2.0).clamp(3.0, 9.0) as usize;
     let text = format!("{value:.*e}", digits - 1);
     // Written as TOML has it, without an exponent where that is short.
-    text.parse::<f64>()
-        .map_or(text, |value| Short(value).to_string())
+    text.parse::<f64>().map_or(text, |value| Short(value).to_string())
 }

@@ -66,10 +66,7 @@ impl Log {
             bytes.clear();
             let mut line = (&mut input).take(LONGEST_LINE);
             let read = line.read_until(b'\n', &mut bytes);
-            let read = read.map_err(|error| FileFault::Read {
-                name: name.to_owned(),
-                error,
-            })?;
+            let read = read.map_err(|error| FileFault::Read { name: name.to_owned(), error })?;
             if read == 0 {
                 return Ok(rows.finish()?);
             }

@@ -62,11 +62,7 @@ impl<'a> LoggedPath<'a> {
         row: MeasuredPoint,
     ) {
         let mut chain = self.chain;
-        while self
-            .chains
-            .get(chain + 1)
-            .is_some_and(|(from, _)| *from <= time)
-        {
+        while self.chains.get(chain + 1).is_some_and(|(from, _)| *from <= time) {
             chain += 1;
         }
         if chain != self.chain {
@@ -77,16 +73,11 @@ impl<'a> LoggedPath<'a> {
         let Some((_, solver)) = self.chains.get(chain) else {
             return;
         };
-        let points = self
-            .points
-            .get_or_insert_with(|| SetPoints::new(Arc::clone(solver), self.period));
+        let points =
+            self.points.get_or_insert_with(|| SetPoints::new(Arc::clone(solver), self.period));
         points.joints.push(commanded);
         points.poses.push(solver.chain().forward(&commanded));
-        points.at.push(At {
-            task: 0,
-            line: row.line,
-            cuts: row.cuts,
-        });
+        points.at.push(At { task: 0, line: row.line, cuts: row.cuts });
         self.actual[0].push(measured);
         self.actual[1].push(predicted);
         self.rows.push_back(row);
@@ -131,9 +122,6 @@ impl<'a> LoggedPath<'a> {
         }
         let row = self.rows.pop_front()?;
         let [measured, predicted] = &mut self.errors;
-        Some(MeasuredPoint {
-            contour: [measured.pop_front()?, predicted.pop_front()?],
-            ..row
-        })
+        Some(MeasuredPoint { contour: [measured.pop_front()?, predicted.pop_front()?], ..row })
     }
 }

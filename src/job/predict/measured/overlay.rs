@@ -47,18 +47,8 @@ pub struct Overlay {
 impl Overlay {
     /// Of a prediction every `period` seconds that is still to come.
     pub fn new(log: Log, zeros: [Option<f64>; MAX_AXES], period: f64) -> Self {
-        let track = || Track {
-            begins: 0.0,
-            period,
-            joints: Vec::new(),
-        };
-        Self {
-            log,
-            zeros,
-            commanded: track(),
-            actual: track(),
-            runs: Vec::new(),
-        }
+        let track = || Track { begins: 0.0, period, joints: Vec::new() };
+        Self { log, zeros, commanded: track(), actual: track(), runs: Vec::new() }
     }
 
     /// Takes the next set-point of the prediction.
@@ -78,10 +68,7 @@ impl Overlay {
             let help = "--period: a longer time from one to the next";
             return Err(Diagnostic::error("log", message).help(help).into());
         }
-        let at = At {
-            task: 0,
-            ..sample.at
-        };
+        let at = At { task: 0, ..sample.at };
         if self.runs.last().is_none_or(|(_, last)| *last != at) {
             self.runs.push((place, at));
         }
@@ -159,11 +146,7 @@ impl Overlay {
 
     /// What is carried out at the set-point `place`, looked for from the run `run` on.
     pub(super) fn at(&self, place: usize, run: &mut usize) -> At {
-        while self
-            .runs
-            .get(*run + 1)
-            .is_some_and(|(from, _)| *from <= place)
-        {
+        while self.runs.get(*run + 1).is_some_and(|(from, _)| *from <= place) {
             *run += 1;
         }
         self.runs.get(*run).map_or_else(At::default, |(_, at)| *at)

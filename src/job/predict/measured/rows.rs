@@ -224,9 +224,7 @@ impl<'a> Rows<'a> {
     /// Whether the rows begin with this line; else it is of the head.
     fn begins(&mut self, text: &str) -> Result<bool, Box<Diagnostic>> {
         let line = text.trim();
-        let comment = line
-            .starts_with('#')
-            .then(|| line.trim_start_matches('#').trim());
+        let comment = line.starts_with('#').then(|| line.trim_start_matches('#').trim());
         let separator = Separator::of(comment.unwrap_or(line));
         let fields = separator.fields(text);
         if comment.is_some() || !separator.is_row(&fields) {
@@ -248,12 +246,7 @@ impl<'a> Rows<'a> {
         }
         let count = fields.len();
         let columns = self.columns(count, text)?;
-        self.form = Some(Form {
-            separator,
-            columns,
-            count,
-            first: self.line,
-        });
+        self.form = Some(Form { separator, columns, count, first: self.line });
         Ok(true)
     }
 
@@ -276,20 +269,10 @@ impl<'a> Rows<'a> {
             .flatten()
             .map(|unit| unit.trim_matches(['[', ']', '-']).to_owned())
             .collect();
-        let head = Head {
-            names: named.map_or(&[], |names| &names.names),
-            units: &bare,
-            count,
-        };
+        let head = Head { names: named.map_or(&[], |names| &names.names), units: &bare, count };
         let asked = self.asked;
         let even = asked.period.is_some();
-        let found = Columns::find(
-            self.machine,
-            asked.columns.as_ref(),
-            asked.units,
-            head,
-            even,
-        );
+        let found = Columns::find(self.machine, asked.columns.as_ref(), asked.units, head, even);
         found.map_err(|mut fault| {
             let (line, shown) = match (names, named) {
                 (Some(names), None) => {
@@ -324,15 +307,9 @@ impl<'a> Rows<'a> {
             return Err(self.fault(message, "").help(help).boxed());
         };
         let unit = |column: &&Column| column.content == Content::Time;
-        let time_unit = form
-            .columns
-            .read
-            .iter()
-            .find(unit)
-            .map_or(1.0, |column| column.unit.size);
-        let resolution = self
-            .decimals
-            .map_or(0.0, |digits| libm::exp10(-f64::from(digits)) * time_unit);
+        let time_unit = form.columns.read.iter().find(unit).map_or(1.0, |column| column.unit.size);
+        let resolution =
+            self.decimals.map_or(0.0, |digits| libm::exp10(-f64::from(digits)) * time_unit);
         let clock = Clock::of(&mut self.times, resolution).map_err(|gap| {
             let [from, to] = [self.times[gap.row - 1], self.times[gap.row]];
             let message = format!(

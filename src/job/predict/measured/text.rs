@@ -15,17 +15,9 @@ pub fn text(found: &MeasuredFound) -> String {
     positions(&mut text, &found.axes);
     let unit = |axis: &AxisLaid| Shown::of_axis(axis.unit);
     let following = found.axes.iter().filter_map(|axis| {
-        let errors = [
-            axis.following_measured,
-            axis.following_predicted,
-            axis.following,
-        ];
+        let errors = [axis.following_measured, axis.following_predicted, axis.following];
         let [measured, predicted, left] = errors;
-        Some((
-            axis.name.clone(),
-            unit(axis),
-            [measured?, predicted?, left?],
-        ))
+        Some((axis.name.clone(), unit(axis), [measured?, predicted?, left?]))
     });
     errors(&mut text, "following error", following.collect());
     if let Some(contour) = &found.contour {
@@ -62,16 +54,10 @@ fn head(text: &mut String, found: &MeasuredFound) {
         row("  missing", format!("{missing} rows, interpolated"));
     }
     if found.rounded_times {
-        row(
-            "  times",
-            "rounded; rows are taken to lie at even distances".to_owned(),
-        );
+        row("  times", "rounded; rows are taken to lie at even distances".to_owned());
     } else if found.jitter_s > SEEN_JITTER * found.period_s {
         let jitter = ms(found.jitter_s);
-        row(
-            "  times",
-            format!("beside even distances by {jitter} ms (RMS)"),
-        );
+        row("  times", format!("beside even distances by {jitter} ms (RMS)"));
     }
     if found.turns > 0 {
         let turns = found.turns;
@@ -112,10 +98,7 @@ fn head(text: &mut String, found: &MeasuredFound) {
         "  taken off",
         match zeros.is_empty() {
             true => "nothing: the log counts from the zeros of the prediction".to_owned(),
-            false => format!(
-                "{}, by which the log counts more (--log-zeros)",
-                zeros.join(", ")
-            ),
+            false => format!("{}, by which the log counts more (--log-zeros)", zeros.join(", ")),
         },
     );
 }
@@ -134,14 +117,7 @@ fn signed(value: f64) -> String {
 
 /// Where axes are at the same time.
 fn positions(text: &mut String, axes: &[AxisLaid]) {
-    let head = [
-        "position, predicted minus measured",
-        "",
-        "most",
-        "at s",
-        "RMS",
-        "mean",
-    ];
+    let head = ["position, predicted minus measured", "", "most", "at s", "RMS", "mean"];
     let mut lines = vec![head.map(str::to_owned)];
     for axis in axes {
         for (what, left) in [("commanded", axis.commanded), ("actual", axis.actual)] {
@@ -200,30 +176,17 @@ struct Shown {
 impl Shown {
     /// An error of an axis whose unit in the JSON is this.
     fn of_axis(unit: &str) -> Self {
-        Self {
-            unit: if unit == "deg" { "0.001°" } else { "µm" },
-            scale: 1e3,
-            decimals: 2,
-        }
+        Self { unit: if unit == "deg" { "0.001°" } else { "µm" }, scale: 1e3, decimals: 2 }
     }
 
     /// A position of it: what is early or late is off by millimetres.
     fn of_position(unit: &'static str) -> Self {
-        Self {
-            unit,
-            scale: 1.0,
-            decimals: 4,
-        }
+        Self { unit, scale: 1.0, decimals: 4 }
     }
 
     fn cells(&self, left: &Left) -> [String; 4] {
         let size = |value: f64| number(value * self.scale, self.decimals);
-        [
-            size(left.most),
-            number(left.most_at_s, 3),
-            size(left.rms),
-            size(left.mean),
-        ]
+        [size(left.most), number(left.most_at_s, 3), size(left.rms), size(left.mean)]
     }
 }
 

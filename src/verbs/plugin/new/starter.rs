@@ -33,10 +33,7 @@ pub struct File {
 }
 
 fn file(path: &str, text: impl Into<String>) -> File {
-    File {
-        path: path.to_owned(),
-        text: text.into(),
-    }
+    File { path: path.to_owned(), text: text.into() }
 }
 
 /// What builds the library, tests it and posts the sample, in the folder.
@@ -58,20 +55,14 @@ pub fn files(form: Form, name: &str) -> Vec<File> {
     let named = |text: &str| text.replace("NAME", name);
     let mut files = vec![
         file("README.md", read_me(form, name)),
-        file(
-            "machine.toml",
-            named(include_str!("templates/machine.toml")),
-        ),
+        file("machine.toml", named(include_str!("templates/machine.toml"))),
         file("sample.cls", include_str!("templates/sample.cls")),
         file(".gitignore", "/target\n*.so\n*.dylib\n*.dll\nsample.nc\n"),
     ];
     if form == Form::C {
         let source = examples::MINIMAL_C.replace("minimal", name);
         files.extend([
-            file(
-                "dialect.c",
-                source.replace(&format!("{name}.c"), "dialect.c"),
-            ),
+            file("dialect.c", source.replace(&format!("{name}.c"), "dialect.c")),
             file("post_plugin.h", raw::HEADER),
             file("Makefile", named(include_str!("templates/Makefile"))),
         ]);
@@ -81,10 +72,8 @@ pub fn files(form: Form, name: &str) -> Vec<File> {
         Form::Iso => (examples::GCODE, "gcode"),
         _ => (examples::TINY, "tiny"),
     };
-    let source = example.replace(
-        &format!("export_dialect!({exported}, "),
-        &format!("export_dialect!({name}, "),
-    );
+    let source = example
+        .replace(&format!("export_dialect!({exported}, "), &format!("export_dialect!({name}, "));
     files.extend([
         file("src/lib.rs", source),
         file("tests/job.rs", named(include_str!("templates/job.rs"))),
@@ -135,14 +124,8 @@ fn vendor(krate: &str, sources: &[(&str, &str)], files: &mut Vec<File>) {
     let folder = format!("vendor/{krate}");
     files.extend([
         file(&format!("{folder}/Cargo.toml"), manifest),
-        file(
-            &format!("{folder}/LICENSE-MIT"),
-            include_str!("../../../../LICENSE-MIT"),
-        ),
-        file(
-            &format!("{folder}/LICENSE-APACHE"),
-            include_str!("../../../../LICENSE-APACHE"),
-        ),
+        file(&format!("{folder}/LICENSE-MIT"), include_str!("../../../../LICENSE-MIT")),
+        file(&format!("{folder}/LICENSE-APACHE"), include_str!("../../../../LICENSE-APACHE")),
     ]);
     let sources = sources.iter();
     files.extend(sources.map(|(path, text)| file(&format!("{folder}/{path}"), *text)));
@@ -153,10 +136,7 @@ fn read_me(form: Form, name: &str) -> String {
     let own: &[[&str; 2]] = match form {
         Form::C => &[
             ["`dialect.c`", "the dialect"],
-            [
-                "`post_plugin.h`",
-                "the contract, with all events and what they carry",
-            ],
+            ["`post_plugin.h`", "the contract, with all events and what they carry"],
             ["`Makefile`", "builds the library; `make test` tries it"],
         ],
         Form::Rust | Form::Iso => &[
@@ -170,16 +150,11 @@ fn read_me(form: Form, name: &str) -> String {
         ],
     };
     let rows = own.iter();
-    let rows: String = rows
-        .map(|[path, what]| format!("| {path} | {what} |\n"))
-        .collect();
+    let rows: String = rows.map(|[path, what]| format!("| {path} | {what} |\n")).collect();
     include_str!("templates/README.md")
         .replace("BUILD", &build)
         .replace("post plugin test LIBRARY", &test)
-        .replace(
-            "post --plugins FOLDER --machine machine.toml sample.cls",
-            &post,
-        )
+        .replace("post --plugins FOLDER --machine machine.toml sample.cls", &post)
         .replace("SOURCES", &rows)
         .replace("NAME", name)
 }

@@ -86,11 +86,7 @@ impl Share {
         } else {
             (0.0, tolerance)
         };
-        Bound {
-            speed,
-            rate: (late + self.short) / rest,
-            push: self.push / rest,
-        }
+        Bound { speed, rate: (late + self.short) / rest, push: self.push / rest }
     }
 }
 
@@ -113,8 +109,7 @@ impl Across {
             let part = dot(rate, unit);
             let across: [f64; 3] = std::array::from_fn(|place| rate[place] - part * unit[place]);
             let (first, second) = (axis.first[sample], axis.second[sample]);
-            self.axes
-                .push([first, second].map(|by| across.map(|value| value * by)));
+            self.axes.push([first, second].map(|by| across.map(|value| value * by)));
             let square = dot(rate, rate);
             speed += square * first * first;
             both += square * first * second;
@@ -161,11 +156,7 @@ impl Across {
 
     /// The bound for a contour error of `tolerance` mm: the largest speed up to which every speed keeps it.
     pub(super) fn bound(&self, lags: &Lags, tolerance: f64) -> Bound {
-        let free = Bound {
-            speed: f64::INFINITY,
-            rate: 0.0,
-            push: 0.0,
-        };
+        let free = Bound { speed: f64::INFINITY, rate: 0.0, push: 0.0 };
         if self.turning == 0.0 {
             return free;
         }

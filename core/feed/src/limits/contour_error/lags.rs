@@ -61,12 +61,7 @@ impl Lags {
                 });
             }
         }
-        Self {
-            frequencies,
-            each,
-            axes: axes.len(),
-            alike,
-        }
+        Self { frequencies, each, axes: axes.len(), alike }
     }
 
     /// Number of axes.

@@ -21,27 +21,15 @@ fn wild(seed: u64, count: usize, dimensions: usize, scale: f64) -> Vec<Point> {
             all.push(point);
             continue;
         }
-        let bend = if random.range(0.0, 1.0) < 0.03 {
-            2.0
-        } else {
-            0.15
-        };
+        let bend = if random.range(0.0, 1.0) < 0.03 { 2.0 } else { 0.15 };
         for value in &mut direction[..dimensions] {
             *value += random.range(-bend, bend);
         }
-        let size = direction
-            .iter()
-            .map(|value| value * value)
-            .sum::<f64>()
-            .sqrt();
+        let size = direction.iter().map(|value| value * value).sum::<f64>().sqrt();
         direction = direction.map(|value| value / size);
         for (axis, value) in point[..dimensions].iter_mut().enumerate() {
             let step = length * direction[axis];
-            *value += if axis < 3 {
-                step
-            } else {
-                0.01 * step / scale.max(1.0)
-            };
+            *value += if axis < 3 { step } else { 0.01 * step / scale.max(1.0) };
         }
         all.push(point);
     }
@@ -102,11 +90,7 @@ fn points_that_are_no_numbers_are_refused() {
         point[0] = x;
         fit.push(&point, &mut |leg| {
             assert!(
-                leg.samples
-                    .iter()
-                    .flat_map(|sample| sample.values)
-                    .flatten()
-                    .all(f64::is_finite)
+                leg.samples.iter().flat_map(|sample| sample.values).flatten().all(f64::is_finite)
             );
             legs += 1;
         })

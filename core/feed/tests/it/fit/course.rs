@@ -84,9 +84,7 @@ pub fn checked(rules: &Rules, points: &[Point]) -> (Vec<Leg>, Vec<f64>) {
     let mut stands = points.first().copied().unwrap_or([0.0; MOST]);
     for (index, leg) in legs.iter().enumerate() {
         // A piece ends where the last of those legs leads.
-        let standing = legs[index + 1..]
-            .iter()
-            .take_while(|leg| leg.samples.is_empty());
+        let standing = legs[index + 1..].iter().take_while(|leg| leg.samples.is_empty());
         let next = points[index + 1 + if leg.ends { standing.count() } else { 0 }];
         if leg.samples.is_empty() {
             assert!(leg.length == 0.0 && !leg.begins && !leg.ends);
@@ -99,10 +97,7 @@ pub fn checked(rules: &Rules, points: &[Point]) -> (Vec<Leg>, Vec<f64>) {
         assert!((end.at - leg.length).abs() <= 1e-9 * leg.length.max(1.0));
         let same = |sample: &Sample, point: &Point| {
             let far = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9 * (1.0 + b.abs());
-            assert!(
-                sample.values[0].iter().zip(point).all(far),
-                "{sample:?} {point:?}"
-            );
+            assert!(sample.values[0].iter().zip(point).all(far), "{sample:?} {point:?}");
         };
         if leg.begins {
             same(first, &stands);
@@ -111,10 +106,7 @@ pub fn checked(rules: &Rules, points: &[Point]) -> (Vec<Leg>, Vec<f64>) {
                 let scale: f64 = last.values[order].iter().map(|value| value.abs()).sum();
                 for axis in 0..rules.dimensions {
                     let off = (last.values[order][axis] - first.values[order][axis]).abs();
-                    assert!(
-                        off <= 1e-7 * (1.0 + scale),
-                        "leg {index} order {order}: {off}"
-                    );
+                    assert!(off <= 1e-7 * (1.0 + scale), "leg {index} order {order}: {off}");
                 }
             }
         }
@@ -144,10 +136,7 @@ pub fn checked(rules: &Rules, points: &[Point]) -> (Vec<Leg>, Vec<f64>) {
     }
     assert!(!open || legs.is_empty(), "the last piece has an end");
     let worst = all.iter().copied().fold(0.0, f64::max);
-    assert!(
-        worst <= told.max(1e-3) * 1.002,
-        "off by {worst}, told {told}"
-    );
+    assert!(worst <= told.max(1e-3) * 1.002, "off by {worst}, told {told}");
     assert!(worst <= 1.003, "off by {worst} tolerances");
     (legs, all)
 }

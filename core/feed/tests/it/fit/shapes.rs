@@ -41,21 +41,14 @@ fn circles_with_rounded_points_have_their_curvature() {
                     point(&[radius * cos, radius * sin].map(|value| rounded(value, 0.001)))
                 })
                 .collect();
-            let rules = Rules {
-                corner: 1.0,
-                ..Rules::default()
-            };
+            let rules = Rules { corner: 1.0, ..Rules::default() };
             let (legs, off) = checked(&rules, &points);
             let most = off.iter().copied().fold(0.0, f64::max);
             let [median, largest] =
                 errors(&legs, |values| (curvature(values) * radius - 1.0).abs());
             println!("{radius:5} {step:5} {count:5} {most:5.2} {median:8.5} {largest:8.5}");
             // Chords that stray by more than the tolerance are no circle any more.
-            let limits = if sagitta > 0.01 {
-                [0.1, 0.5]
-            } else {
-                [0.01, 0.05]
-            };
+            let limits = if sagitta > 0.01 { [0.1, 0.5] } else { [0.01, 0.05] };
             assert!(median < limits[0] && largest < limits[1]);
         }
     }
@@ -104,12 +97,7 @@ fn a_line_beside_short_chords_stays_a_line() {
         for step in 0..=8 {
             let values = between([&pair[0], &pair[1]], 0.125 * f64::from(step));
             if values[0][0] < -5.0 {
-                assert!(
-                    curvature(&values) < 1e-4,
-                    "{} at {}",
-                    curvature(&values),
-                    values[0][0]
-                );
+                assert!(curvature(&values) < 1e-4, "{} at {}", curvature(&values), values[0][0]);
             }
             // It does not swing: the curvature never turns the other way by much.
             assert!(values[2][1] > -0.02, "{values:?}");
@@ -131,21 +119,13 @@ fn what_is_straight_stays_straight() {
             x += scale * length;
             points.push(point(&[0.6 * x, 0.8 * x, 0.0, 1e-5 * x]));
         }
-        let rules = Rules {
-            dimensions: 4,
-            tolerance: 0.01 * scale,
-            ..Rules::default()
-        };
+        let rules = Rules { dimensions: 4, tolerance: 0.01 * scale, ..Rules::default() };
         let (legs, off) = checked(&rules, &points);
         assert!(off.iter().all(|off| *off < 1e-3));
         for sample in legs.iter().flat_map(|leg| &leg.samples) {
             let speed = libm::hypot(sample.values[1][0], sample.values[1][1]);
             assert!((speed - 1.0).abs() < 1e-6);
-            assert!(
-                sample.values[2]
-                    .iter()
-                    .all(|value| value.abs() * scale < 1e-5)
-            );
+            assert!(sample.values[2].iter().all(|value| value.abs() * scale < 1e-5));
         }
     }
 }
@@ -154,15 +134,9 @@ fn what_is_straight_stays_straight() {
 #[test]
 fn turns_alone_have_length() {
     let values = [0.0, 0.1, 0.2, 0.3, 0.2, 0.1];
-    let points: Vec<Point> = values
-        .iter()
-        .map(|&turn| point(&[1.0, 2.0, 3.0, 0.0, turn]))
-        .collect();
-    let rules = Rules {
-        dimensions: 5,
-        turn_weight: 30.0,
-        ..Rules::default()
-    };
+    let points: Vec<Point> =
+        values.iter().map(|&turn| point(&[1.0, 2.0, 3.0, 0.0, turn])).collect();
+    let rules = Rules { dimensions: 5, turn_weight: 30.0, ..Rules::default() };
     let (legs, _) = checked(&rules, &points);
     assert!(legs.iter().all(|leg| (leg.length - 3.0).abs() < 1e-12));
     let ends: Vec<usize> = (0..legs.len()).filter(|&leg| legs[leg].ends).collect();
@@ -190,11 +164,7 @@ fn rotary_axes_have_their_derivatives() {
             values
         })
         .collect();
-    let rules = Rules {
-        dimensions: 5,
-        turn_weight: 1e-3,
-        ..Rules::default()
-    };
+    let rules = Rules { dimensions: 5, turn_weight: 1e-3, ..Rules::default() };
     let (legs, _) = checked(&rules, &points);
     let second = 0.4 / 225.0;
     let [median, largest] = errors(&legs, |values| {

@@ -17,10 +17,7 @@ fn at(index: usize) -> Point {
 
 #[test]
 fn a_hundred_thousand_points_wait_a_few_hundred_at_most() {
-    let rules = Rules {
-        dimensions: 5,
-        ..Rules::default()
-    };
+    let rules = Rules { dimensions: 5, ..Rules::default() };
     let mut fit = Fit::new(rules);
     let mut handed = 0;
     let mut waited = 0;

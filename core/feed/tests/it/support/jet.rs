@@ -10,9 +10,7 @@ const FACTORIALS: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
 
 impl Jet {
     pub fn from_derivatives(values: [f64; 4]) -> Self {
-        Self(std::array::from_fn(|order| {
-            values[order] / FACTORIALS[order]
-        }))
+        Self(std::array::from_fn(|order| values[order] / FACTORIALS[order]))
     }
 
     pub fn derivatives(self) -> [f64; 4] {
@@ -80,8 +78,6 @@ impl Neg for Jet {
 impl Mul for Jet {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        Self(std::array::from_fn(|n| {
-            (0..=n).map(|k| self.0[k] * other.0[n - k]).sum()
-        }))
+        Self(std::array::from_fn(|n| (0..=n).map(|k| self.0[k] * other.0[n - k]).sum()))
     }
 }

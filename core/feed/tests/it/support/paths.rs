@@ -13,18 +13,12 @@ fn json(name: &str) -> Option<Value> {
 }
 
 fn numbers(value: &Value) -> Vec<f64> {
-    value
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|value| value.as_f64().unwrap())
-        .collect()
+    value.as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect()
 }
 
 fn points<const D: usize>(value: &Value) -> Vec<[f64; D]> {
     let each = value.as_array().unwrap().iter();
-    each.map(|point| numbers(point).try_into().unwrap())
-        .collect()
+    each.map(|point| numbers(point).try_into().unwrap()).collect()
 }
 
 /// The butterfly curve, its size times `scale`.
@@ -35,15 +29,7 @@ pub fn butterfly(scale: f64) -> Option<Curve<2>> {
         *point = point.map(|value| value * scale);
     }
     let degree = value["degree"].as_u64().unwrap() as usize;
-    Some(
-        Curve::new(
-            degree,
-            numbers(&value["knots"]),
-            points,
-            numbers(&value["weights"]),
-        )
-        .unwrap(),
-    )
+    Some(Curve::new(degree, numbers(&value["knots"]), points, numbers(&value["weights"])).unwrap())
 }
 
 /// A plane curve at these parameters, its two coordinates being axes.
@@ -112,13 +98,7 @@ pub struct Dual {
 pub fn dual() -> Option<Dual> {
     let value = json("dual_bspline_jcde2022.json")?;
     let curve = |name: &str| {
-        Curve::new(
-            3,
-            numbers(&value["knots"]),
-            points(&value[name]),
-            Vec::new(),
-        )
-        .unwrap()
+        Curve::new(3, numbers(&value["knots"]), points(&value[name]), Vec::new()).unwrap()
     };
     let limits = |kind: &str| -> Vec<f64> {
         let of = |axis: &str| value["limits"][axis][kind].as_f64().unwrap();

@@ -11,11 +11,7 @@ pub fn samples(random: &mut Rng, axes: usize, count: usize, length: f64) -> Samp
     let waves: Vec<[[f64; 3]; 3]> = (0..axes)
         .map(|_| {
             std::array::from_fn(|_| {
-                [
-                    random.range(0.5, 6.0),
-                    random.range(0.05, 0.8),
-                    random.range(0.0, 6.3),
-                ]
+                [random.range(0.5, 6.0), random.range(0.05, 0.8), random.range(0.0, 6.3)]
             })
         })
         .collect();
@@ -27,16 +23,14 @@ pub fn samples(random: &mut Rng, axes: usize, count: usize, length: f64) -> Samp
             .iter()
             .zip(&straight)
             .map(|(waves, straight)| {
-                waves
-                    .iter()
-                    .fold([*straight, 0.0, 0.0], |sum, [size, rate, phase]| {
-                        let (sin, cos) = libm::sincos(rate * s + phase);
-                        [
-                            sum[0] + size * rate * cos,
-                            sum[1] - size * rate * rate * sin,
-                            sum[2] - size * rate * rate * rate * cos,
-                        ]
-                    })
+                waves.iter().fold([*straight, 0.0, 0.0], |sum, [size, rate, phase]| {
+                    let (sin, cos) = libm::sincos(rate * s + phase);
+                    [
+                        sum[0] + size * rate * cos,
+                        sum[1] - size * rate * rate * sin,
+                        sum[2] - size * rate * rate * rate * cos,
+                    ]
+                })
             })
             .collect();
         let tip = std::array::from_fn(|order| {
@@ -71,21 +65,12 @@ pub struct Limits {
 impl Limits {
     pub fn new(random: &mut Rng, axes: usize, collocation: Collocation) -> Self {
         let limits = (0..axes).map(|_| random.range(20.0, 120.0)).collect();
-        let velocity = AxisVelocity {
-            limits,
-            collocation,
-        };
+        let velocity = AxisVelocity { limits, collocation };
         let limits = (0..axes).map(|_| random.range(50.0, 2000.0)).collect();
         Self {
             velocity,
-            acceleration: AxisAcceleration {
-                limits,
-                collocation,
-            },
-            feed: Feed {
-                most: random.range(30.0, 200.0),
-                collocation,
-            },
+            acceleration: AxisAcceleration { limits, collocation },
+            feed: Feed { most: random.range(30.0, 200.0), collocation },
         }
     }
 
@@ -109,15 +94,8 @@ pub fn monotone(seed: u64, count: usize) -> Problem {
     let stride = 3;
     let rows = (0..stride * (count - 1))
         .map(|_| {
-            let sign = if random.range(0.0, 1.0) < 0.5 {
-                -1.0
-            } else {
-                1.0
-            };
-            Row {
-                here: -sign * random.range(0.0, 1.0),
-                next: sign * random.range(0.0, 1.0),
-            }
+            let sign = if random.range(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
+            Row { here: -sign * random.range(0.0, 1.0), next: sign * random.range(0.0, 1.0) }
         })
         .collect();
     Problem::from_rows(vec![1.0; count - 1], upper, stride, rows)
@@ -133,11 +111,7 @@ pub fn any(seed: u64, count: usize) -> Problem {
         Row {
             here: size * random.range(-1.0, 1.0),
             // One in ten bounds its own sample alone.
-            next: if random.range(0.0, 1.0) < 0.1 {
-                0.0
-            } else {
-                size * random.range(-1.0, 1.0)
-            },
+            next: if random.range(0.0, 1.0) < 0.1 { 0.0 } else { size * random.range(-1.0, 1.0) },
         }
     };
     let rows = (0..stride * (count - 1)).map(|_| row()).collect();

@@ -37,12 +37,7 @@ impl Pid {
             [self.integral, self.proportional, self.derivative].map(|gain| self.drive * gain);
         Transfer {
             numerator: vec![integral, proportional, derivative],
-            denominator: vec![
-                integral,
-                proportional,
-                self.damping + derivative,
-                self.inertia,
-            ],
+            denominator: vec![integral, proportional, self.damping + derivative, self.inertia],
         }
     }
 }
@@ -52,10 +47,7 @@ impl Response for Transfer {
         let [a, b] = polynomial(&self.numerator, frequency);
         let [c, d] = polynomial(&self.denominator, frequency);
         let square = c * c + d * d;
-        Answer {
-            real: (a * c + b * d) / square,
-            imaginary: (b * c - a * d) / square,
-        }
+        Answer { real: (a * c + b * d) / square, imaginary: (b * c - a * d) / square }
     }
 }
 

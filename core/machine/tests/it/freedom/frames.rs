@@ -61,11 +61,8 @@ fn three_rotary_axes_follow_a_tool_frame() {
                     assert!(!held || *value == machine.held[index]);
                 }
             }
-            let k: Vec<Vector3<f64>> = machine
-                .free
-                .iter()
-                .map(|index| reference.direction(&q, *index))
-                .collect();
+            let k: Vec<Vector3<f64>> =
+                machine.free.iter().map(|index| reference.direction(&q, *index)).collect();
             if Matrix3::from_columns(&k).determinant().abs() < 0.05 {
                 continue;
             }
@@ -84,10 +81,7 @@ fn three_rotary_axes_follow_a_tool_frame() {
     assert!(poses > 10_000 && regular > 8_000);
     assert!(counts[0] == 0 && counts[2] > poses / 2);
     assert!(tip < 1e-9, "tip off by {tip}");
-    assert!(
-        axis < 1e-9 && edge < 1e-9,
-        "axis off by {axis}, edge by {edge}"
-    );
+    assert!(axis < 1e-9 && edge < 1e-9, "axis off by {axis}, edge by {edge}");
 }
 
 /// A frame is reached exactly when the first two axes can bring the third one to where the frame wants it, and
@@ -104,11 +98,8 @@ fn frames_out_of_reach_are_refused_by_what_the_third_axis_misses() {
         let solver = Solver::new(chain, &machine.free, machine.held).expect("a closed form");
         let wanted =
             Rotation3::from_axis_angle(&Unit::new_normalize(rng.direction()), rng.range(-PI, PI));
-        let pose = Pose {
-            axis: wanted * reference.axis,
-            edge: wanted * leading,
-            ..Pose::default()
-        };
+        let pose =
+            Pose { axis: wanted * reference.axis, edge: wanted * leading, ..Pose::default() };
         // The third axis turns with the tool, so the tool's frame says where it goes: seen from the tool it lies
         // still. What stands behind it is held.
         let [first, second, third] = [machine.free[0], machine.free[1], machine.free[2]];
@@ -119,26 +110,14 @@ fn frames_out_of_reach_are_refused_by_what_the_third_axis_misses() {
             }
             reference.rotation(&q).inverse() * reference.direction(&q, third)
         };
-        let least = nearest(
-            reference,
-            &machine.held,
-            [first, second],
-            at_zero,
-            wanted * at_zero,
-        );
+        let least = nearest(reference, &machine.held, [first, second], at_zero, wanted * at_zero);
         match solver.orient(&pose, 1e-9) {
             Ok(_) => {
-                assert!(
-                    least < 1e-6,
-                    "round {round}: accepted, but a scan misses by {least}"
-                );
+                assert!(least < 1e-6, "round {round}: accepted, but a scan misses by {least}");
                 reached += 1;
             }
             Err(Unreachable::Axis { miss }) => {
-                assert!(
-                    least > 1e-6,
-                    "round {round}: refused by {miss}, but a scan reaches it"
-                );
+                assert!(least > 1e-6, "round {round}: refused by {miss}, but a scan reaches it");
                 worst = worst.max((miss - least).abs());
                 refused += 1;
             }

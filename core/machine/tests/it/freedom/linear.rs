@@ -5,11 +5,7 @@ use super::*;
 /// Directions of the linear joints at `q`, part frame.
 fn ways(machine: &Random, q: &Joints) -> Vec<(usize, Vector3<f64>)> {
     let reference = &machine.reference;
-    reference
-        .linear()
-        .into_iter()
-        .map(|index| (index, reference.direction(q, index)))
-        .collect()
+    reference.linear().into_iter().map(|index| (index, reference.direction(q, index))).collect()
 }
 
 /// The volume that three of four linear axes span; axis `extra` is left out, and `beside` goes along `along`.
@@ -70,12 +66,8 @@ fn a_fourth_linear_axis_that_is_held_stands_still() {
         let (machine, quill, beside) = four(&mut rng, round);
         let mut held = machine.held;
         held[quill] = rng.range(-SIZE, SIZE);
-        let freedom = Freedom {
-            rotary: machine.free.clone(),
-            still: vec![quill],
-            held,
-            seconds: Vec::new(),
-        };
+        let freedom =
+            Freedom { rotary: machine.free.clone(), still: vec![quill], held, seconds: Vec::new() };
         let solver = Solver::with(machine.reference.chain(), &freedom).expect("a closed form");
         for _ in 0..3 {
             let mut q = machine.values(&mut rng);
@@ -84,11 +76,8 @@ fn a_fourth_linear_axis_that_is_held_stands_still() {
                 continue;
             }
             poses += 1;
-            let machine = Random {
-                reference: machine.reference.clone(),
-                free: machine.free.clone(),
-                held,
-            };
+            let machine =
+                Random { reference: machine.reference.clone(), free: machine.free.clone(), held };
             let (found, worst) = solutions(&solver, &machine, &q);
             tip = tip.max(worst);
             assert!(found.iter().all(|solution| solution[quill] == held[quill]));
@@ -141,10 +130,7 @@ fn a_quill_takes_its_share() {
         }
     }
     println!("{poses} poses with a shared quill: tip {tip:.1e} mm, share off by {shares:.1e} mm");
-    assert!(
-        poses > 4_000 && tip < 1e-9 && shares < 1e-9,
-        "{poses} {tip} {shares}"
-    );
+    assert!(poses > 4_000 && tip < 1e-9 && shares < 1e-9, "{poses} {tip} {shares}");
 }
 
 #[test]
@@ -154,10 +140,7 @@ fn a_quill_in_reserve_moves_where_the_other_ends() {
     for round in rounds {
         let (machine, quill, beside) = four(&mut rng, round);
         let middle = rng.range(-200.0, 200.0);
-        let travel = [
-            middle - rng.range(0.0, 300.0),
-            middle + rng.range(0.0, 300.0),
-        ];
+        let travel = [middle - rng.range(0.0, 300.0), middle + rng.range(0.0, 300.0)];
         let freedom = Freedom {
             rotary: machine.free.clone(),
             held: machine.held,
@@ -181,17 +164,11 @@ fn a_quill_in_reserve_moves_where_the_other_ends() {
             tip = tip.max(worst);
             // With the other branch the way of each may be another; that of the values themselves is known.
             let own = found.iter().find(|solution| {
-                machine
-                    .free
-                    .iter()
-                    .all(|joint| turned(solution[*joint], q[*joint]).abs() < 1e-6)
+                machine.free.iter().all(|joint| turned(solution[*joint], q[*joint]).abs() < 1e-6)
             });
             for solution in &found {
                 let end = solution[beside];
-                assert!(
-                    (travel[0]..=travel[1]).contains(&end),
-                    "round {round}: {end} {travel:?}"
-                );
+                assert!((travel[0]..=travel[1]).contains(&end), "round {round}: {end} {travel:?}");
                 assert!(
                     solution[quill] == 0.0 || end == travel[0] || end == travel[1],
                     "round {round}: {solution:?} {travel:?}"
@@ -203,11 +180,7 @@ fn a_quill_in_reserve_moves_where_the_other_ends() {
                 assert!(own[quill].abs() < 1e-9 || (own[beside] - q[beside]).abs() < 1e-6);
             } else {
                 beyond += 1;
-                let end = if q[beside] > travel[1] {
-                    travel[1]
-                } else {
-                    travel[0]
-                };
+                let end = if q[beside] > travel[1] { travel[1] } else { travel[0] };
                 assert_eq!(own[beside], end, "round {round}");
                 assert!(own[quill] != 0.0);
             }

@@ -12,27 +12,17 @@ fn inclined(rng: &mut Rng, direction: Vector3<f64>, by: f64) -> Vector3<f64> {
 /// radians, both lines off by some hundredths.
 fn measured(rng: &mut Rng, class: usize, incline: f64, second: f64) -> Random {
     use post_machine::kinematics::Joint;
-    let slide = |direction: Vector3<f64>| Joint {
-        rotary: false,
-        direction,
-        point: Vector3::zeros(),
-    };
+    let slide =
+        |direction: Vector3<f64>| Joint { rotary: false, direction, point: Vector3::zeros() };
     let xyz = [Vector3::x(), Vector3::y(), Vector3::z()].map(slide);
-    let tilted = [
-        Vector3::x(),
-        Vector3::x(),
-        Vector3::y(),
-        Vector3::new(0.0, 1.0, 1.0).normalize(),
-    ][class];
+    let tilted =
+        [Vector3::x(), Vector3::x(), Vector3::y(), Vector3::new(0.0, 1.0, 1.0).normalize()][class];
     let mut turn = |direction: Vector3<f64>, by: f64, height: f64| Joint {
         rotary: true,
         direction: inclined(rng, direction, by),
         point: Vector3::new(0.0, 0.0, height) + rng.point(0.02),
     };
-    let (c, a) = (
-        turn(Vector3::z(), incline, 0.0),
-        turn(tilted, second, 250.0),
-    );
+    let (c, a) = (turn(Vector3::z(), incline, 0.0), turn(tilted, second, 250.0));
     // Table-table AC, head-head CA, head-table B over C, a nutating head over a C table.
     let (joints, free) = match class {
         0 => (vec![c, a, xyz[0], xyz[1], xyz[2]], [0, 1]),
@@ -56,26 +46,13 @@ fn measured(rng: &mut Rng, class: usize, incline: f64, second: f64) -> Random {
 fn let_through(machine: &Random, wanted: Vector3<f64>, tolerance: f64, what: &str) -> (f64, f64) {
     let reference = &machine.reference;
     let [first, second] = [machine.free[0], machine.free[1]];
-    let least = nearest(
-        reference,
-        &machine.held,
-        [first, second],
-        reference.axis,
-        wanted,
-    );
+    let least = nearest(reference, &machine.held, [first, second], reference.axis, wanted);
     let solver = Solver::new(reference.chain(), &machine.free, machine.held).expect("a form");
-    let pose = Pose {
-        tip: Vector3::new(5.0, 6.0, 7.0),
-        axis: wanted,
-        ..Pose::default()
-    };
+    let pose = Pose { tip: Vector3::new(5.0, 6.0, 7.0), axis: wanted, ..Pose::default() };
     let mut over = 0.0f64;
     match solver.inverse(&pose, &machine.held, tolerance) {
         Ok(found) => {
-            assert!(
-                least <= tolerance.max(POLE) + 1e-9,
-                "{what}: {least} let through"
-            );
+            assert!(least <= tolerance.max(POLE) + 1e-9, "{what}: {least} let through");
             for solution in &found {
                 let (tip, axis) = reference.forward(solution);
                 assert!((tip - pose.tip).norm() < 1e-9, "{what}: the tip is off");
@@ -83,10 +60,7 @@ fn let_through(machine: &Random, wanted: Vector3<f64>, tolerance: f64, what: &st
             }
         }
         Err(fault) => {
-            assert!(
-                least > tolerance - 1e-9,
-                "{what}: {least} refused: {fault:?}"
-            );
+            assert!(least > tolerance - 1e-9, "{what}: {least} refused: {fault:?}");
             let Unreachable::Axis { miss } = fault else {
                 panic!("{what}: {fault:?}");
             };
@@ -105,11 +79,7 @@ fn as_measured_the_upright_tool_is_let_through() {
     for round in rounds {
         let class = round % 4;
         let incline = rng.range(1e-5, 1e-4);
-        let second = if round % 8 < 4 {
-            0.0
-        } else {
-            rng.range(1e-5, 1e-4)
-        };
+        let second = if round % 8 < 4 { 0.0 } else { rng.range(1e-5, 1e-4) };
         let machine = measured(&mut rng, class, incline, second);
         // Exactly upright, and a hair beside it.
         let wanted = if round % 3 == 0 {
@@ -178,14 +148,11 @@ fn a_tool_frame_at_the_edge_of_reach_is_let_through() {
         let incline = rng.range(1e-5, 1e-4);
         let mut machine = measured(&mut rng, round % 2, incline, 0.0);
         let behind = machine.reference.joints.len();
-        machine
-            .reference
-            .joints
-            .push(post_machine::kinematics::Joint {
-                rotary: true,
-                direction: inclined(&mut rng, Vector3::z(), incline),
-                point: Vector3::zeros(),
-            });
+        machine.reference.joints.push(post_machine::kinematics::Joint {
+            rotary: true,
+            direction: inclined(&mut rng, Vector3::z(), incline),
+            point: Vector3::zeros(),
+        });
         machine.free.push(behind);
         let reference = &machine.reference;
         let leading = Vector3::y().cross(&reference.axis).normalize();
@@ -203,13 +170,8 @@ fn a_tool_frame_at_the_edge_of_reach_is_let_through() {
         let zero =
             Matrix3::from_columns(&[reference.axis, leading, reference.axis.cross(&leading)]);
         let knife = reference.joints[behind].direction;
-        let least = nearest(
-            reference,
-            &machine.held,
-            free,
-            knife,
-            wanted * zero.transpose() * knife,
-        );
+        let least =
+            nearest(reference, &machine.held, free, knife, wanted * zero.transpose() * knife);
         if least < 3.0 * POLE {
             continue;
         }
@@ -220,15 +182,9 @@ fn a_tool_frame_at_the_edge_of_reach_is_let_through() {
                 for solution in &found {
                     let reached = reference.forward(solution);
                     assert!((reached.0 - pose.tip).norm() < 1e-9);
-                    assert!(
-                        angle(reached.1, pose.axis) < 1.01 * least + POLE,
-                        "round {round}"
-                    );
+                    assert!(angle(reached.1, pose.axis) < 1.01 * least + POLE, "round {round}");
                     let edge = reference.taken(solution, leading);
-                    assert!(
-                        angle(edge, pose.edge) < 1.01 * least + POLE,
-                        "round {round}"
-                    );
+                    assert!(angle(edge, pose.edge) < 1.01 * least + POLE, "round {round}");
                 }
             }
             Err(fault) => panic!("round {round}: {least} refused: {fault:?}"),

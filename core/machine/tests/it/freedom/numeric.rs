@@ -30,12 +30,9 @@ fn chains_without_a_closed_form_are_solved_and_verified() {
             let machine = Random::of(&mut rng, &kinds);
             let reference = &machine.reference;
             let leading = edged.then(|| across(&mut rng, reference.axis));
-            let solver = Solver::new(
-                reference.chain().with_edge(leading),
-                &machine.free,
-                machine.held,
-            )
-            .expect("a numeric form");
+            let solver =
+                Solver::new(reference.chain().with_edge(leading), &machine.free, machine.held)
+                    .expect("a numeric form");
             assert!(!solver.closed_form());
             assert!(solver.orient(&Pose::default(), 1.0).is_err());
             for _ in 0..2 {
@@ -43,11 +40,7 @@ fn chains_without_a_closed_form_are_solved_and_verified() {
                 let q = machine.values(&mut rng);
                 let (wanted_tip, axis) = reference.forward(&q);
                 let edge = leading.map_or_else(Vector3::zeros, |edge| reference.taken(&q, edge));
-                let pose = Pose {
-                    tip: wanted_tip,
-                    axis,
-                    edge,
-                };
+                let pose = Pose { tip: wanted_tip, axis, edge };
                 let mut holds = |solution: &Joints| {
                     let reached = reference.forward(solution);
                     tip = tip.max((reached.0 - wanted_tip).norm() / reach(solution));
@@ -78,9 +71,7 @@ fn chains_without_a_closed_form_are_solved_and_verified() {
                     solutions.iter().for_each(&mut holds);
                     found += 1;
                     own += usize::from(
-                        solutions
-                            .iter()
-                            .any(|solution| apart(&machine, &q, solution) < 0.1),
+                        solutions.iter().any(|solution| apart(&machine, &q, solution) < 0.1),
                     );
                 }
             }
@@ -123,11 +114,7 @@ fn a_walk_of_six_rotary_axes_is_followed() {
             }
             let (wanted, axis) = reference.forward(&q);
             let edge = reference.taken(&q, edge_at_zero);
-            let pose = Pose {
-                tip: wanted,
-                axis,
-                edge,
-            };
+            let pose = Pose { tip: wanted, axis, edge };
             steps += 1;
             let Ok(solution) = solver.search(&pose, &last, 1e-9) else {
                 refused += 1;
@@ -162,11 +149,8 @@ fn a_numeric_chain_refuses_what_it_cannot_reach() {
             let solver = Solver::new(machine.reference.chain(), &machine.free, machine.held)
                 .expect("a numeric form");
             // No arm of these machines is longer than seven diagonals of the cube that their lines lie in.
-            let pose = Pose {
-                tip: rng.direction() * 100_000.0,
-                axis: rng.direction(),
-                ..Pose::default()
-            };
+            let pose =
+                Pose { tip: rng.direction() * 100_000.0, axis: rng.direction(), ..Pose::default() };
             match solver.inverse(&pose, &machine.held, 1e-9) {
                 Err(Unreachable::Numeric { miss }) => {
                     assert!((85_000.0..101_000.0).contains(&miss), "{miss}");
@@ -177,12 +161,9 @@ fn a_numeric_chain_refuses_what_it_cannot_reach() {
     }
     // A knife on a portal without Z: two linear axes along X and Y, three rotary ones whose lines meet the tip's
     // plane. Poses a hair above what the arms reach are refused, a hair below they are not.
-    let joint =
-        |rotary: bool, direction: Vector3<f64>, point: [f64; 3]| post_machine::kinematics::Joint {
-            rotary,
-            direction,
-            point: Vector3::from(point),
-        };
+    let joint = |rotary: bool, direction: Vector3<f64>, point: [f64; 3]| {
+        post_machine::kinematics::Joint { rotary, direction, point: Vector3::from(point) }
+    };
     let machine = Random {
         reference: post_testmachines::Reference {
             joints: vec![
@@ -206,11 +187,8 @@ fn a_numeric_chain_refuses_what_it_cannot_reach() {
         // The upper arm, 100 mm, hangs from Z 100 at any angle; the tool, 50 mm, has the angle that is wanted.
         let lowest = -50.0 * libm::cos(tilt);
         for (above, reached) in [(0.5, true), (20.0, true), (-0.01, false), (-5.0, false)] {
-            let pose = Pose {
-                tip: Vector3::new(30.0, 40.0, lowest + above),
-                axis,
-                ..Pose::default()
-            };
+            let pose =
+                Pose { tip: Vector3::new(30.0, 40.0, lowest + above), axis, ..Pose::default() };
             match solver.inverse(&pose, &machine.held, 1e-9) {
                 Ok(found) => {
                     assert!(reached, "{tilt} {above}: {found:?}");

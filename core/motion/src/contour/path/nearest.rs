@@ -31,11 +31,7 @@ struct Within {
 
 impl Within {
     fn all(reach: f64) -> Self {
-        Self {
-            ahead: reach,
-            back: reach,
-            gain: 0.0,
-        }
+        Self { ahead: reach, back: reach, gain: 0.0 }
     }
 }
 
@@ -89,14 +85,7 @@ impl Path {
         let way = (self.length(tied) - self.length(self.foot)).max(0.0);
         self.pass(tied);
         self.stand(tied);
-        Nearest {
-            way,
-            tip,
-            axis,
-            distance: foot.distance,
-            at,
-            missed,
-        }
+        Nearest { way, tip, axis, distance: foot.distance, at, missed }
     }
 
     /// The place nearest to a tool, from `start` on downhill, and further back than `back` mm along the path no other
@@ -118,10 +107,7 @@ impl Path {
     /// are looked for at all: the end of an earlier cut may be near as well.
     pub fn seek_anew(&self, tool: &Pose) -> Foot {
         let first = (self.point(self.foot) - tool.tip).norm();
-        let left = Foot {
-            distance: first,
-            ..self.foot
-        };
+        let left = Foot { distance: first, ..self.foot };
         let ahead = self.among(tool, left, 0.0, first);
         let near = self.descend(&tool.tip, self.foot);
         let back = self.among(tool, near, REACH * ahead.distance, first);
@@ -132,11 +118,7 @@ impl Path {
     }
 
     fn among(&self, tool: &Pose, found: Foot, back: f64, first: f64) -> Foot {
-        let within = Within {
-            ahead: REACH * first,
-            back,
-            gain: TIE,
-        };
+        let within = Within { ahead: REACH * first, back, gain: TIE };
         self.least(&tool.tip, found, within)
     }
 
@@ -152,10 +134,7 @@ impl Path {
     /// A place a period later.
     fn further(&self, foot: Foot) -> Foot {
         match foot.knot + 1 < self.knots.len() {
-            true => Foot {
-                knot: foot.knot + 1,
-                ..foot
-            },
+            true => Foot { knot: foot.knot + 1, ..foot },
             false => foot,
         }
     }
@@ -287,10 +266,7 @@ impl Path {
     /// The piece of a place bends so much that it may come nearer once more.
     fn bends(&self, found: Foot) -> bool {
         self.cubic(found.knot).is_some_and(|cubic| {
-            let bend = cubic
-                .bend(0.0)
-                .norm_squared()
-                .max(cubic.bend(1.0).norm_squared());
+            let bend = cubic.bend(0.0).norm_squared().max(cubic.bend(1.0).norm_squared());
             let slope = cubic.slope(found.share).norm_squared();
             4.0 * bend * found.distance * found.distance > slope * slope
         })
@@ -322,11 +298,7 @@ impl Path {
         let mut best: Option<Foot> = None;
         for start in [along, 0.125, 0.375, 0.625, 0.875] {
             let share = lowest(cubic, from, start);
-            let foot = Foot {
-                knot: piece,
-                share,
-                distance: (cubic.at(share) - from).norm(),
-            };
+            let foot = Foot { knot: piece, share, distance: (cubic.at(share) - from).norm() };
             if foot.distance < best.map_or(distance, |best| best.distance) {
                 best = Some(foot);
             }

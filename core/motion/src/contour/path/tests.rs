@@ -88,11 +88,7 @@ fn nothing_is_nearer_close_by() {
             off += rng.point(size * 0.2);
             off *= (size / off.norm()).min(1.0);
             let late = (number as f64 - lag).max(0.0) as usize;
-            let actual = Pose {
-                tip: points[late] + off,
-                axis: Vector3::z(),
-                ..Pose::default()
-            };
+            let actual = Pose { tip: points[late] + off, axis: Vector3::z(), ..Pose::default() };
             let found = path.nearest(&actual, (number as u64, &points[number]));
             asked += 1;
             assert!((path.point(path.foot) - actual.tip).norm() <= found.distance + TIE);
@@ -114,10 +110,7 @@ fn nothing_is_nearer_close_by() {
             assert!(found.distance <= (points[number] - actual.tip).norm() + 1e-12);
         }
     }
-    assert!(
-        asked > 10_000 && moved > 20,
-        "{asked} asked, {moved} corners"
-    );
+    assert!(asked > 10_000 && moved > 20, "{asked} asked, {moved} corners");
 }
 
 /// A spline goes no further along a chord than its ends, and no further off than a path of such bends does.
@@ -157,21 +150,14 @@ fn a_tool_that_goes_on_beyond_a_turn_is_on_a_way_ahead() {
             }
         }
         let mut path = path(&points);
-        let mut tool = Pose {
-            axis: Vector3::z(),
-            ..Pose::default()
-        };
+        let mut tool = Pose { axis: Vector3::z(), ..Pose::default() };
         let mut went = 0.0;
         for (number, point) in points.iter().enumerate() {
             let last = tool.tip;
             tool.tip += (point - tool.tip) / late;
             went += (tool.tip - last).norm();
             let found = path.nearest(&tool, (number as u64, point));
-            assert!(
-                found.distance < 1e-9,
-                "{late}, {number}: {}",
-                found.distance
-            );
+            assert!(found.distance < 1e-9, "{late}, {number}: {}", found.distance);
         }
         assert!(went > 1.0, "{went}");
     }
@@ -185,11 +171,7 @@ fn a_tool_that_is_where_it_is_commanded_has_no_error() {
         let points = wandering(&mut rng, 400);
         let mut path = path(&points);
         for (number, point) in points.iter().enumerate() {
-            let tool = Pose {
-                tip: *point,
-                axis: Vector3::z(),
-                ..Pose::default()
-            };
+            let tool = Pose { tip: *point, axis: Vector3::z(), ..Pose::default() };
             let found = path.nearest(&tool, (number as u64, point));
             assert!(found.distance < 1e-12, "{number}: {}", found.distance);
         }

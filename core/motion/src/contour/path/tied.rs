@@ -36,11 +36,7 @@ impl Path {
                 if off >= least {
                     break;
                 }
-                let tied = Foot {
-                    knot: place,
-                    share: 0.0,
-                    distance: foot.distance,
-                };
+                let tied = Foot { knot: place, share: 0.0, distance: foot.distance };
                 (best, least) = ((tied, here.axis), off);
                 knot = place.checked_add_signed(way);
             }
@@ -60,11 +56,7 @@ impl Path {
             if !(share > 0.0 && share < 1.0) {
                 continue;
             }
-            let place = Foot {
-                knot: piece,
-                share,
-                distance: foot.distance,
-            };
+            let place = Foot { knot: piece, share, distance: foot.distance };
             let axis = self.axis(place);
             let off = (axis - actual.axis).norm_squared();
             if off < least && equal(&self.point(place)) {

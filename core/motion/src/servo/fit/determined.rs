@@ -24,13 +24,7 @@ impl Search<'_> {
         let along: Vec<f64> = decomposed
             .singular_values
             .iter()
-            .map(|value| {
-                if *value > SMALLEST * largest {
-                    spread / value
-                } else {
-                    ENDLESS
-                }
-            })
+            .map(|value| if *value > SMALLEST * largest { spread / value } else { ENDLESS })
             .collect();
         let directions: Vec<DVector<f64>> = decomposed
             .v_t
@@ -63,11 +57,7 @@ impl Search<'_> {
                     name: self.names[index],
                     before: self.value(&self.start, index),
                     value,
-                    deviation: if self.by_factor[index] {
-                        deviation * value
-                    } else {
-                        deviation
-                    },
+                    deviation: if self.by_factor[index] { deviation * value } else { deviation },
                     determined: deviation <= LARGEST_DEVIATION,
                     correlated,
                 }
@@ -93,18 +83,12 @@ impl Search<'_> {
     fn direction(&self, direction: &DVector<f64>, along: f64) -> Direction {
         // The largest share is 1.
         let largest = direction.iter().copied().fold(0.0, |largest: f64, share| {
-            if libm::fabs(share) > libm::fabs(largest) {
-                share
-            } else {
-                largest
-            }
+            if libm::fabs(share) > libm::fabs(largest) { share } else { largest }
         });
         let shares = self.names.iter().zip(direction.iter());
         let shares = shares.map(|(name, share)| (*name, share / largest));
         Direction {
-            shares: shares
-                .filter(|(_, share)| libm::fabs(*share) > SMALL_SHARE)
-                .collect(),
+            shares: shares.filter(|(_, share)| libm::fabs(*share) > SMALL_SHARE).collect(),
             deviation: told_deviation(along * libm::fabs(largest)),
         }
     }
@@ -112,9 +96,5 @@ impl Search<'_> {
 
 /// Without end, where the log says nothing.
 fn told_deviation(deviation: f64) -> f64 {
-    if deviation < ENDLESS * SMALL_SHARE * SMALL_SHARE {
-        deviation
-    } else {
-        f64::INFINITY
-    }
+    if deviation < ENDLESS * SMALL_SHARE * SMALL_SHARE { deviation } else { f64::INFINITY }
 }

@@ -50,10 +50,7 @@ impl<'a> Search<'a> {
         log: Log<'a>,
     ) -> Result<Self, Box<Diagnostic>> {
         let fault = |message: String, help: String| {
-            Err(Diagnostic::error("fit", message)
-                .at(servo.place.clone())
-                .help(help)
-                .boxed())
+            Err(Diagnostic::error("fit", message).at(servo.place.clone()).help(help).boxed())
         };
         let compared = log.measured.len().saturating_sub(log.lead);
         if log.commanded.len() != log.steps * log.measured.len()
@@ -104,11 +101,7 @@ impl<'a> Search<'a> {
                 let help = format!("give {name} a value in the machine file, or leave it out here");
                 return fault(message, help);
             }
-            search.start[place] = if by_factor {
-                libm::log(*number.value)
-            } else {
-                *number.value
-            };
+            search.start[place] = if by_factor { libm::log(*number.value) } else { *number.value };
             search.names.push(number.name);
             search.tables.push(number.table);
             search.by_factor.push(by_factor);
@@ -128,20 +121,13 @@ impl<'a> Search<'a> {
     }
 
     pub(super) fn value(&self, place: &DVector<f64>, index: usize) -> f64 {
-        if self.by_factor[index] {
-            libm::exp(place[index])
-        } else {
-            place[index]
-        }
+        if self.by_factor[index] { libm::exp(place[index]) } else { place[index] }
     }
 
     fn follower(&self, place: &DVector<f64>) -> Result<Follower, Box<Diagnostic>> {
         let servo = self.servo_at(place);
-        let mut follower = Follower::with(
-            &servo,
-            self.log.period / self.log.steps as f64,
-            Output::Measured,
-        )?;
+        let mut follower =
+            Follower::with(&servo, self.log.period / self.log.steps as f64, Output::Measured)?;
         follower.settle(self.log.commanded.first().copied().unwrap_or_default());
         Ok(follower)
     }
@@ -155,13 +141,7 @@ impl<'a> Search<'a> {
     /// Measured minus predicted, of what is compared.
     pub(super) fn errors(&self, place: &DVector<f64>) -> Result<Vec<f64>, Box<Diagnostic>> {
         let mut follower = self.follower(place)?;
-        let Log {
-            steps,
-            commanded,
-            measured,
-            lead,
-            ..
-        } = self.log;
+        let Log { steps, commanded, measured, lead, .. } = self.log;
         let mut errors = Vec::with_capacity(measured.len() - lead);
         follower.run(
             commanded.len(),
@@ -194,13 +174,7 @@ impl<'a> Search<'a> {
                 followers.push(self.follower(&moved)?);
             }
         }
-        let Log {
-            steps,
-            commanded,
-            measured,
-            lead,
-            ..
-        } = self.log;
+        let Log { steps, commanded, measured, lead, .. } = self.log;
         let mut triangle = DMatrix::zeros(count + 1, count + 1);
         let mut predicted = vec![[0.0; BLOCK]; followers.len()];
         let starts = (0..measured.len()).step_by(BLOCK);
@@ -280,11 +254,7 @@ impl<'a> Search<'a> {
                     f64::NEG_INFINITY
                 };
                 let length = (&next - &place).amax();
-                let there = if gain > 0.0 {
-                    self.triangle(&next)?
-                } else {
-                    None
-                };
+                let there = if gain > 0.0 { self.triangle(&next)? } else { None };
                 if let Some(there) = there {
                     moved = true;
                     damping = (damping / 10.0).max(1e-12);
@@ -304,21 +274,13 @@ impl<'a> Search<'a> {
                 break;
             }
         }
-        Ok(Found {
-            place,
-            triangle,
-            converged,
-        })
+        Ok(Found { place, triangle, converged })
     }
 
     /// Feed-forward stays from 0 to 2, as in the machine file.
     fn inside(&self, place: &DVector<f64>) -> DVector<f64> {
         DVector::from_fn(place.len(), |index, _| {
-            if self.by_factor[index] {
-                place[index]
-            } else {
-                place[index].clamp(0.0, 2.0)
-            }
+            if self.by_factor[index] { place[index] } else { place[index].clamp(0.0, 2.0) }
         })
     }
 }
@@ -342,9 +304,5 @@ fn step(triangle: &DMatrix<f64>, back: &DVector<f64>, draw: f64, damping: f64) -
     let solved = matrix.svd(true, true).solve(&wanted, f64::MIN_POSITIVE);
     let step = solved.unwrap_or_else(|_| DVector::zeros(count));
     let length = step.amax();
-    if length > LONGEST {
-        step * (LONGEST / length)
-    } else {
-        step
-    }
+    if length > LONGEST { step * (LONGEST / length) } else { step }
 }

@@ -92,10 +92,7 @@ impl Planner {
         let found = entries.map(|entry| &entry.found);
         let [change, bend] = kink::of_axes(moves, found, &self.limits, ratio)?;
         let scale = entries[0].scale;
-        Ok([
-            change.map(|change| change / scale),
-            bend.map(|bend| bend / (scale * scale)),
-        ])
+        Ok([change.map(|change| change / scale), bend.map(|bend| bend / (scale * scale))])
     }
 
     /// The last move up to its corner, which takes the share `out`.
@@ -132,10 +129,7 @@ impl Planner {
         let joined = !last.begins && last.taken == 0.0;
         let piece = Piece {
             entry: last.number,
-            span: Span::Along {
-                from: last.taken,
-                to: 1.0 - out,
-            },
+            span: Span::Along { from: last.taken, to: 1.0 - out },
             length: block.length,
             at: last.at,
             second: last.at.task,
@@ -154,19 +148,9 @@ impl Planner {
                 if self.jerk {
                     block.acceleration = block.acceleration.min(change);
                 } else if change < block.acceleration * (1.0 - 1e-9) && seconds > 0.0 {
-                    let phase = Phase {
-                        seconds,
-                        velocity: 0.0,
-                        acceleration: change,
-                        jerk: 0.0,
-                    };
+                    let phase = Phase { seconds, velocity: 0.0, acceleration: change, jerk: 0.0 };
                     begun = [phase.velocity(seconds), phase.length(seconds)];
-                    self.take(Part {
-                        block: number,
-                        from: 0.0,
-                        phase,
-                        why: Why::Corner,
-                    });
+                    self.take(Part { block: number, from: 0.0, phase, why: Why::Corner });
                 }
             }
             self.ahead.begin(number, begun[0], begun[1]);
@@ -187,10 +171,7 @@ impl Planner {
         }
         self.law.push_piece(Piece {
             entry: last.number,
-            span: Span::Corner {
-                shares: round.shares,
-                curve: round.curve,
-            },
+            span: Span::Corner { shares: round.shares, curve: round.curve },
             length,
             at: last.at,
             second: next.at.task,

@@ -43,8 +43,7 @@ impl Planner {
                 false => (piece.second, 2.0 * shares[1]),
             },
         };
-        self.accounts
-            .spend(task, phase.seconds, share * whole, reason);
+        self.accounts.spend(task, phase.seconds, share * whole, reason);
         if let Some(border) = piece.border.filter(|_| self.bordered < Some(part.block)) {
             let place = border * piece.length;
             if border == 0.0 || from + covered >= place {

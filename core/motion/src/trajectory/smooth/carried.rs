@@ -70,10 +70,7 @@ impl Work {
                     take(Part {
                         block: ahead.first + place as u64,
                         from: begun,
-                        phase: Phase {
-                            seconds,
-                            ..step.phase
-                        },
+                        phase: Phase { seconds, ..step.phase },
                         why: step.why,
                     });
                 }

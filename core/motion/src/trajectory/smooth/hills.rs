@@ -67,11 +67,7 @@ impl Work {
             return None;
         }
         let first = self.up_to(ahead, *knot, place);
-        let middle = Knot {
-            place,
-            velocity: ahead.squares[place].sqrt(),
-            ..Knot::default()
-        };
+        let middle = Knot { place, velocity: ahead.squares[place].sqrt(), ..Knot::default() };
         let mut middle = self.up_to(ahead, middle, next.place);
         let reached = [
             first.ramp.reach(first.velocity, first.length),

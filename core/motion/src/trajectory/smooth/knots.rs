@@ -28,10 +28,7 @@ impl Default for Knot {
             place: 0,
             velocity: 0.0,
             length: 0.0,
-            ramp: Ramp {
-                acceleration: f64::INFINITY,
-                jerk: f64::INFINITY,
-            },
+            ramp: Ramp { acceleration: f64::INFINITY, jerk: f64::INFINITY },
             top: 0.0,
             corner: false,
         }

@@ -16,33 +16,21 @@ fn the_tool_is_held_against_the_path_that_is_asked_for() {
         let (sine, cosine) = libm::sincos(angle);
         Point::new(radius * cosine, radius * sine, rise * angle)
     };
-    let arc = |sweep| Way::Arc {
-        centre: Point::zeros(),
-        normal: Point::z(),
-        sweep,
-    };
+    let arc = |sweep| Way::Arc { centre: Point::zeros(), normal: Point::z(), sweep };
     let far = Point::new(80.0, 30.0, -5.0);
     let turn = 1.5 * TAU;
     let legs = vec![
         leg(7, arc(TAU), on(0.0, 20.0, 0.0), on(0.0, 20.0, 0.0)),
         leg(8, arc(TAU), on(0.0, 20.0, 0.0), on(0.0, 20.0, 0.0)),
         leg(11, Way::Tip, far, far + Point::x() * 40.0),
-        leg(
-            12,
-            Way::Tip,
-            far + Point::x() * 40.0,
-            far + Point::new(40.0, 40.0, 0.0),
-        ),
+        leg(12, Way::Tip, far + Point::x() * 40.0, far + Point::new(40.0, 40.0, 0.0)),
         leg(20, arc(turn), on(0.0, 20.0, 2.0), on(turn, 20.0, 2.0)),
     ];
     let (program, off) = (0.004, 0.03);
     let mut way = Vec::new();
     let mut lines = Vec::new();
     let mut push = |line: u64, commanded: Point, actual: Point| {
-        if lines
-            .last()
-            .is_some_and(|last| *last > 0 && *last < line && line != 12 && line != 8)
-        {
+        if lines.last().is_some_and(|last| *last > 0 && *last < line && line != 12 && line != 8) {
             // At rapid to the next cut.
             let [last, _]: [Joints; 2] = way[way.len() - 1];
             let last = Point::new(last[0], last[1], last[2]);
@@ -58,11 +46,7 @@ fn the_tool_is_held_against_the_path_that_is_asked_for() {
     for n in 0..1600 {
         let angle = 2.0 * TAU * f64::from(n) / 1600.0;
         let line = if angle < TAU { 7 } else { 8 };
-        push(
-            line,
-            on(angle, 20.0 + program, 0.0),
-            on(angle - 0.01, 20.0 - off, 0.0),
-        );
+        push(line, on(angle, 20.0 + program, 0.0), on(angle - 0.01, 20.0 - off, 0.0));
     }
     for n in 0..400 {
         let at = far + Point::new(0.1 * f64::from(n), program, 0.0);
@@ -74,11 +58,7 @@ fn the_tool_is_held_against_the_path_that_is_asked_for() {
     }
     for n in 0..1600 {
         let angle = turn * f64::from(n) / 1600.0;
-        push(
-            20,
-            on(angle, 20.0 + program, 2.0),
-            on(angle - 0.01, 20.0 - off, 2.0),
-        );
+        push(20, on(angle, 20.0 + program, 2.0), on(angle - 0.01, 20.0 - off, 2.0));
     }
     let solver = machine(&Rotation3::identity(), false);
     let (told, report) = run_against(0.001, solver, &way, legs, &|number| lines[number] == 0);
@@ -95,16 +75,8 @@ fn the_tool_is_held_against_the_path_that_is_asked_for() {
             continue;
         };
         assert_eq!(asked.at.line, lines[number], "set-point {number}");
-        assert!(
-            (asked.distance - off).abs() < 1e-6,
-            "set-point {number}: {}",
-            asked.distance
-        );
-        assert!(
-            (asked.program - program).abs() < 1e-6,
-            "set-point {number}: {}",
-            asked.program
-        );
+        assert!((asked.distance - off).abs() < 1e-6, "set-point {number}: {}", asked.distance);
+        assert!((asked.program - program).abs() < 1e-6, "set-point {number}: {}", asked.program);
         let bent = (asked.error + (point.nearest.tip - point.actual.tip)).norm();
         assert!((bent - program).abs() < 1e-4);
         assert!(asked.distance <= asked.program + point.interpolation + point.distance + 1e-9);

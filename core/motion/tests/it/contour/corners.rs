@@ -39,10 +39,8 @@ fn what_overshoots_a_corner_is_off_by_that() {
             let way: Vec<_> = path.iter().map(|point| (*point, past(point))).collect();
             let (told, report) = run(period, &Rotation3::identity(), &way);
             assert!(report.cuts.peak.value < over + 1e-9);
-            let standing: Vec<_> = told
-                .iter()
-                .filter(|point| point.commanded.tip == Point::zeros())
-                .collect();
+            let standing: Vec<_> =
+                told.iter().filter(|point| point.commanded.tip == Point::zeros()).collect();
             assert!(standing.len() > 2);
             for point in standing {
                 assert!((point.distance - over).abs() < 1e-9, "period {period}");
@@ -98,11 +96,7 @@ fn a_tool_that_cuts_a_corner_passes_from_leg_to_leg() {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     assert!((report.cuts.peak.value - round * (1.0 - half)).abs() < 0.002);
     let corner = round * (2.0 * half - 1.0);
-    assert!(
-        (report.missed.value - corner).abs() < 0.02,
-        "{}",
-        report.missed.value
-    );
+    assert!((report.missed.value - corner).abs() < 0.02, "{}", report.missed.value);
 }
 
 /// A needle: out and back on nearly the same way. The tool is held against the way that it goes.
@@ -110,11 +104,7 @@ fn a_tool_that_cuts_a_corner_passes_from_leg_to_leg() {
 fn out_and_back_are_told_apart() {
     let slope = 0.02;
     let at = |way: f64| {
-        Point::new(
-            20.0 - way.abs(),
-            (20.0 - way.abs()) * if way < 0.0 { 0.0 } else { slope },
-            0.0,
-        )
+        Point::new(20.0 - way.abs(), (20.0 - way.abs()) * if way < 0.0 { 0.0 } else { slope }, 0.0)
     };
     let shifted = |way: f64| {
         let point = at(way);
@@ -154,11 +144,7 @@ fn pecks_are_gone_along_in_order() {
         .collect();
     let (told, _) = run(0.001, &Rotation3::identity(), &way);
     for (number, point) in told.iter().enumerate().skip(5) {
-        assert!(
-            point.distance < 1e-3,
-            "set-point {number}: {}",
-            point.distance
-        );
+        assert!(point.distance < 1e-3, "set-point {number}: {}", point.distance);
     }
     let last = told[told.len() - 200];
     assert!((last.nearest.tip - last.actual.tip).norm() < 1e-6);

@@ -95,12 +95,7 @@ fn the_spline_is_of_the_fourth_order() {
     let largest = |count: i32| {
         let step = 8.0 / f64::from(count);
         let way: Vec<_> = (0..count)
-            .map(|n| {
-                (
-                    curve(step * f64::from(n)),
-                    curve(step * (f64::from(n) - 0.5)),
-                )
-            })
+            .map(|n| (curve(step * f64::from(n)), curve(step * (f64::from(n) - 0.5))))
             .collect();
         let (told, _) = run(0.001, &Rotation3::identity(), &way);
         off(&told, count as usize / 20, 0.0)

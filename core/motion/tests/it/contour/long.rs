@@ -21,9 +21,7 @@ fn a_circle_many_times_is_off_by_the_same() {
         joints(tip, 0.0)
     };
     let commanded: Vec<_> = (0..TURN).map(|place| at(place, 0.0, 16.0)).collect();
-    let actual: Vec<_> = (0..TURN)
-        .map(|place| at(place, 7.3, 16.0 - 0.003))
-        .collect();
+    let actual: Vec<_> = (0..TURN).map(|place| at(place, 7.3, 16.0 - 0.003)).collect();
     let mut points = SetPoints::new(Arc::clone(&solver), 1e-3);
     let mut contour = Contour::new();
     let (mut told, mut turn, mut apart) = (0_usize, Vec::new(), 0.0_f64);
@@ -39,18 +37,9 @@ fn a_circle_many_times_is_off_by_the_same() {
     for _ in 0..TURNS {
         points.joints.clone_from(&commanded);
         points.poses.clear();
-        let poses = commanded
-            .iter()
-            .map(|joints| solver.chain().forward(joints));
+        let poses = commanded.iter().map(|joints| solver.chain().forward(joints));
         points.poses.extend(poses);
-        points.at = vec![
-            At {
-                task: 0,
-                line: 1,
-                cuts: true
-            };
-            TURN
-        ];
+        points.at = vec![At { task: 0, line: 1, cuts: true }; TURN];
         contour.take(&points, &actual, &mut listen);
         points.clear();
     }
@@ -59,10 +48,7 @@ fn a_circle_many_times_is_off_by_the_same() {
     assert!(turn.iter().all(|distance| (distance - 0.003).abs() < 1e-7));
     assert!(apart < 1e-9, "{apart}");
     let half = report.cuts.percentile(0.5) / 0.003;
-    assert!(
-        (1.0 - 1e-4..1.0 + 1.0 / 16.0 + 1e-4).contains(&half),
-        "{half}"
-    );
+    assert!((1.0 - 1e-4..1.0 + 1.0 / 16.0 + 1e-4).contains(&half), "{half}");
     // Chords of so many set-points, by differences: v = 2·r·sin(π/N)/T at most.
     let speed = 2.0 * 16.0 * libm::sin(TAU / 2.0 / TURN as f64) / 1e-3;
     assert!((report.axes[0].velocity.value / speed - 1.0).abs() < 1e-5);

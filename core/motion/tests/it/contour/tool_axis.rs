@@ -14,10 +14,7 @@ fn a_tool_that_turns_about_its_tip_has_no_contour_error() {
             let late = n - 40;
             // Rounding of a control: the tip does not quite stand.
             let shake = Point::new(0.0, 1e-7 * libm::sin(f64::from(n)), 0.0);
-            [
-                joints(place(n) + shake, turn(n)),
-                joints(place(late), turn(late)),
-            ]
+            [joints(place(n) + shake, turn(n)), joints(place(late), turn(late))]
         })
         .collect();
     let (told, report) = run_axes(0.001, machine(&Rotation3::identity(), true), &way);

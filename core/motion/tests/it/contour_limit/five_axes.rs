@@ -35,20 +35,11 @@ impl Waves {
         let wave = |rng: &mut Rng, rotary: bool| {
             let most = if rotary { 0.15 } else { 30.0 };
             let number = 1.0 + rng.range(0.0, 4.0);
-            [
-                rng.range(0.0, most) / number,
-                6.0 * number,
-                rng.range(-3.0, 3.0),
-            ]
+            [rng.range(0.0, most) / number, 6.0 * number, rng.range(-3.0, 3.0)]
         };
-        let waves = joints
-            .iter()
-            .map(|joint| (0..4).map(|_| wave(rng, joint.rotary)).collect())
-            .collect();
-        Self {
-            chain: machine.reference.chain(),
-            waves,
-        }
+        let waves =
+            joints.iter().map(|joint| (0..4).map(|_| wave(rng, joint.rotary)).collect()).collect();
+        Self { chain: machine.reference.chain(), waves }
     }
 }
 
@@ -125,15 +116,10 @@ fn outcome(path: &Waves, samples: &Samples, servos: &[Servo]) -> Outcome {
         .map(|servo| Response::new(servo).natural_frequency())
         .fold(f64::INFINITY, f64::min);
     let collocation = Collocation::default();
-    let feed = Feed {
-        most: 100.0,
-        collocation,
-    };
+    let feed = Feed { most: 100.0, collocation };
     let rotary = path.chain.joints().iter().map(|joint| joint.rotary);
     let acceleration = AxisAcceleration {
-        limits: rotary
-            .map(|rotary| if rotary { 2.0 } else { 1000.0 })
-            .collect(),
+        limits: rotary.map(|rotary| if rotary { 2.0 } else { 1000.0 }).collect(),
         collocation,
     };
     let contour: ContourError = limit(servos, TOLERANCE, highest);

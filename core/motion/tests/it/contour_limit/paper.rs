@@ -23,9 +23,7 @@ struct Plane(Curve<2>);
 impl Path for Plane {
     fn axes(&self, parameter: f64) -> Vec<[f64; 4]> {
         let [value, one, two, three] = self.0.derivatives(parameter.clamp(0.0, 1.0));
-        (0..2)
-            .map(|axis| [value[axis], one[axis], two[axis], three[axis]])
-            .collect()
+        (0..2).map(|axis| [value[axis], one[axis], two[axis], three[axis]]).collect()
     }
 
     fn tip(&self, axes: &[f64]) -> Vector3<f64> {
@@ -71,10 +69,7 @@ fn by_formula(samples: &Samples, plan: &[f64], servos: &[Servo]) -> f64 {
     let responses: Vec<servo::Response> = servos.iter().map(servo::Response::new).collect();
     let answer = |response: &servo::Response, frequency: f64| {
         let answer = response.at(frequency);
-        Answer {
-            real: answer.re,
-            imaginary: answer.im,
-        }
+        Answer { real: answer.re, imaginary: answer.im }
     };
     let x = |frequency: f64| answer(&responses[0], frequency);
     let y = |frequency: f64| answer(&responses[1], frequency);
@@ -123,33 +118,15 @@ impl Case {
             samples.rates.clear();
         }
         let servos = vec![of_the_paper(true), of_the_paper(false)];
-        Self {
-            contour: limit(&servos, TOLERANCE, 49.8),
-            path,
-            samples,
-            servos,
-        }
+        Self { contour: limit(&servos, TOLERANCE, 49.8), path, samples, servos }
     }
 
     fn run(&self, with: bool) -> Outcome {
         let collocation = Collocation::default();
-        let feed = Feed {
-            most: 50.0,
-            collocation,
-        };
-        let velocity = AxisVelocity {
-            limits: vec![50.0; 2],
-            collocation,
-        };
-        let acceleration = AxisAcceleration {
-            limits: vec![200.0; 2],
-            collocation,
-        };
-        let chord = ChordError {
-            tolerance: 0.0005,
-            period: 0.004,
-            collocation,
-        };
+        let feed = Feed { most: 50.0, collocation };
+        let velocity = AxisVelocity { limits: vec![50.0; 2], collocation };
+        let acceleration = AxisAcceleration { limits: vec![200.0; 2], collocation };
+        let chord = ChordError { tolerance: 0.0005, period: 0.004, collocation };
         let mut limits: Vec<&dyn Limit> = vec![&feed, &velocity, &acceleration, &chord];
         if with {
             limits.push(&self.contour);
@@ -201,10 +178,7 @@ impl Case {
 
 #[test]
 fn without_the_limit_the_contour_error_peaks_above_it_and_with_it_the_formula_keeps_it() {
-    let curves = [
-        ("butterfly", butterfly()),
-        ("rosette of 100 control points", Some(rosette())),
-    ];
+    let curves = [("butterfly", butterfly()), ("rosette of 100 control points", Some(rosette()))];
     for (name, path) in curves {
         let Some(path) = path else { continue };
         let mut case = Case::new(path, false);

@@ -9,9 +9,7 @@ use super::{all_loops, apart, followed, of_loops, screw_loops, servo, transfer};
 /// From 0 at a speed of 40 mm/s, standing again from 0.25 s on.
 fn ramp_and_stand(period: f64) -> Vec<f64> {
     let count = (0.5 / period).round() as usize;
-    (0..=count)
-        .map(|k| (40.0 * period * k as f64).min(10.0))
-        .collect()
+    (0..=count).map(|k| (40.0 * period * k as f64).min(10.0)).collect()
 }
 
 /// That of a servo whose answer to a ramp of 1 mm/s is `ramp`.
@@ -78,10 +76,7 @@ fn rigid_loops_reduce_to_second_order() {
         current: None,
         motor_inertia: 5.0,
         motor_damping: 0.0,
-        drive: Drive::Direct {
-            load: 3.0,
-            load_damping: 0.0,
-        },
+        drive: Drive::Direct { load: 3.0, load_damping: 0.0 },
     };
     let servo = servo(false, ServoModel::Loops(Box::new(loops)));
     let frequency = sqrt(kv * gain / mass);
@@ -150,10 +145,7 @@ fn the_period_changes_nothing() {
             last = *value;
             assert!((one - other).abs() < 1e-12 * 120.0, "{one} {other}");
             for (one, other) in coarse.states().iter().zip(fine.states()) {
-                let size = coarse
-                    .states()
-                    .iter()
-                    .fold(0.0, |most: f64, x| most.max(x.abs()));
+                let size = coarse.states().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
                 assert!((one - other).abs() < 1e-12 * size, "{one} {other} {size}");
             }
         }

@@ -80,15 +80,9 @@ fn an_endless_axis_does_not_creep() {
         let behind = commanded - found;
         // Some tens of the last place of the command itself.
         let allowed = 1e-12 + commanded * 2e-14;
-        assert!(
-            (behind - 0.5 * speed / 50.0).abs() < allowed,
-            "{thousand}: {behind}"
-        );
+        assert!((behind - 0.5 * speed / 50.0).abs() < allowed, "{thousand}: {behind}");
         let velocity = velocity(&space, &follower, commanded, speed);
-        assert!(
-            (velocity - speed).abs() < 1e3 * allowed,
-            "{thousand}: {velocity}"
-        );
+        assert!((velocity - speed).abs() < 1e3 * allowed, "{thousand}: {velocity}");
     }
 }
 
@@ -117,10 +111,7 @@ fn a_gear_does_not_creep() {
         let lag = lag(&StateSpace::of(&servo), 0.0);
         assert!(lag > 1.0 / 35.0);
         let (position, velocity) = to_and_fro(&servo, 1.5, 2500, lag);
-        assert!(
-            position < 1e-12 && velocity < 1e-10,
-            "{position} {velocity}"
-        );
+        assert!(position < 1e-12 && velocity < 1e-10, "{position} {velocity}");
     }
 }
 

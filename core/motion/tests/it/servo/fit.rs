@@ -59,13 +59,7 @@ fn fitted(
         *start.parameter(name).unwrap() *= factor;
     }
     let names: Vec<&str> = wrong.iter().map(|(name, _)| *name).collect();
-    let log = Log {
-        period: PERIOD,
-        steps: 1,
-        commanded,
-        measured,
-        lead,
-    };
+    let log = Log { period: PERIOD, steps: 1, commanded, measured, lead };
     fit(&start, &names, log).unwrap()
 }
 
@@ -93,10 +87,7 @@ fn the_true_numbers_come_back() {
         (&gear, &[("kv", 1.4), ("velocity_gain", 0.6)]),
         (&direct, &[("load", 2.0), ("velocity_time", 0.7)]),
         (&rubbing, &[("coulomb", 0.4), ("kv", 1.1)]),
-        (
-            &feedrate_paper(),
-            &[("kp", 1.2), ("ki", 0.5), ("damping", 2.0)],
-        ),
+        (&feedrate_paper(), &[("kp", 1.2), ("ki", 0.5), ("damping", 2.0)]),
     ];
     let commanded = lively();
     for (servo, wrong) in cases {
@@ -106,15 +97,9 @@ fn the_true_numbers_come_back() {
         assert!(fit.after < 1e-4 * fit.before, "{fit:?}");
         for number in &fit.fitted {
             let truth = truth_of(servo, number.name);
-            assert!(
-                (number.value / truth - 1.0).abs() < 1e-3,
-                "{number:?} {truth}"
-            );
+            assert!((number.value / truth - 1.0).abs() < 1e-3, "{number:?} {truth}");
             assert!(number.determined && number.before != number.value);
-            assert_eq!(
-                *fit.servo.clone().parameter(number.name).unwrap(),
-                number.value
-            );
+            assert_eq!(*fit.servo.clone().parameter(number.name).unwrap(), number.value);
         }
     }
 }
@@ -125,11 +110,7 @@ fn the_true_numbers_come_back() {
 #[test]
 fn deviations_are_as_stated() {
     let truth = of_loops(screw_loops(Feedback::Scale, [0.9, 0.0]));
-    let wrong = [
-        ("kv", 0.8),
-        ("velocity_feed_forward", 1.05),
-        ("table_mass", 1.2),
-    ];
+    let wrong = [("kv", 0.8), ("velocity_feed_forward", 1.05), ("table_mass", 1.2)];
     let commanded = lively();
     let spread = 2e-3;
     let mut mean_deviations = Vec::new();
@@ -166,48 +147,23 @@ fn what_the_log_does_not_determine_is_said() {
     let truth = of_loops(screw_loops(Feedback::Scale, [0.6, 0.0]));
     let commanded = even();
     let noisy = measured(&truth, &commanded, 1e-3, 7);
-    let fit = fitted(
-        &truth,
-        &[("kv", 0.8), ("table_mass", 1.3)],
-        &commanded,
-        &noisy,
-        800,
-    );
-    let [kv, mass] = fit.fitted.as_slice() else {
-        panic!("{fit:?}")
-    };
-    assert!(
-        kv.determined && (kv.value - 50.0).abs() < 4.0 * kv.deviation,
-        "{kv:?}"
-    );
+    let fit = fitted(&truth, &[("kv", 0.8), ("table_mass", 1.3)], &commanded, &noisy, 800);
+    let [kv, mass] = fit.fitted.as_slice() else { panic!("{fit:?}") };
+    assert!(kv.determined && (kv.value - 50.0).abs() < 4.0 * kv.deviation, "{kv:?}");
     assert!(!mass.determined && mass.deviation > mass.value, "{mass:?}");
     assert!((mass.value / mass.before - 1.0).abs() < 0.02, "{mass:?}");
-    let [direction] = fit.undetermined.as_slice() else {
-        panic!("{fit:?}")
-    };
+    let [direction] = fit.undetermined.as_slice() else { panic!("{fit:?}") };
     assert_eq!(direction.shares.len(), 1);
     assert_eq!(direction.shares[0].0, "table_mass");
 
     let wrong = [("kv", 0.8), ("velocity_feed_forward", 1.1)];
     let fit = fitted(&truth, &wrong, &commanded, &noisy, 800);
-    assert!(
-        fit.fitted.iter().all(|number| !number.determined),
-        "{fit:?}"
-    );
+    assert!(fit.fitted.iter().all(|number| !number.determined), "{fit:?}");
     assert!(fit.fitted[0].correlated.unwrap().1.abs() > 0.99, "{fit:?}");
-    let [direction] = fit.undetermined.as_slice() else {
-        panic!("{fit:?}")
-    };
+    let [direction] = fit.undetermined.as_slice() else { panic!("{fit:?}") };
     assert_eq!(direction.shares.len(), 2);
     // Kv·e^s with (1 - k - δ)/(Kv·e^s) the same: δ = -(1 - k)·s.
-    let share = |name: &str| {
-        direction
-            .shares
-            .iter()
-            .find(|(own, _)| *own == name)
-            .unwrap()
-            .1
-    };
+    let share = |name: &str| direction.shares.iter().find(|(own, _)| *own == name).unwrap().1;
     let k = fit.fitted[1].value;
     let ratio = share("velocity_feed_forward") / share("kv");
     assert!((ratio + (1.0 - k)).abs() < 0.01, "{ratio} {k}");
@@ -241,13 +197,8 @@ fn a_log_that_begins_in_motion_needs_a_lead() {
 fn what_cannot_be_fitted_is_refused() {
     let servo = of_loops(screw_loops(Feedback::Scale, [0.9, 0.0]));
     let commanded = lively();
-    let log = Log {
-        period: PERIOD,
-        steps: 1,
-        commanded: &commanded,
-        measured: &commanded,
-        lead: 0,
-    };
+    let log =
+        Log { period: PERIOD, steps: 1, commanded: &commanded, measured: &commanded, lead: 0 };
     let said = |names: &[&str], log: Log<'_>| {
         let fault = fit(&servo, names, log).unwrap_err();
         format!("{} | {}", fault.message, fault.help.unwrap_or_default())
@@ -257,17 +208,11 @@ fn what_cannot_be_fitted_is_refused() {
     assert!(said(&["kv", "kv"], log).contains("twice"));
     let short = Log { lead: 1495, ..log };
     assert!(said(&["kv"], short).contains("5 of them compared"));
-    let uneven = Log {
-        measured: &commanded[1..],
-        ..log
-    };
+    let uneven = Log { measured: &commanded[1..], ..log };
     assert!(said(&["kv"], uneven).contains("1499 measured"));
     assert!(said(&[], log).contains("nothing to fit"));
     let mut holed = commanded.clone();
     holed[700] = f64::NAN;
-    let holed = Log {
-        measured: &holed,
-        ..log
-    };
+    let holed = Log { measured: &holed, ..log };
     assert!(said(&["kv"], holed).contains("no number"));
 }

@@ -54,10 +54,7 @@ fn block_diagram(loops: &Loops, s: Number) -> Number {
                 None => real(current.gain),
             };
             let winding = s * current.inductance * 1e-3 + current.resistance + controller;
-            (
-                controller / winding,
-                s * current.back_emf * current.torque_constant / winding,
-            )
+            (controller / winding, s * current.back_emf * current.torque_constant / winding)
         }
     };
     let angle = share * of_command / (impedance + braking + share * of_angle);
@@ -117,12 +114,7 @@ fn a_sine_comes_out_as_the_block_diagram_says() {
 #[test]
 fn the_feedrate_papers_gains() {
     let response = Response::new(&feedrate_paper());
-    for (omega, gain) in [
-        (1.0, 1.00010),
-        (5.0, 1.00321),
-        (10.0, 1.01462),
-        (20.0, 1.04902),
-    ] {
+    for (omega, gain) in [(1.0, 1.00010), (5.0, 1.00321), (10.0, 1.01462), (20.0, 1.04902)] {
         let found = response.gain(omega);
         assert!((found - gain).abs() < 6e-6, "{omega}: {found}");
     }
@@ -131,16 +123,8 @@ fn the_feedrate_papers_gains() {
     let peak = (1..20_000)
         .map(|k| f64::from(k) * 0.01)
         .map(|omega| (response.gain(omega), omega))
-        .fold(
-            (0.0, 0.0),
-            |most, next| {
-                if next.0 > most.0 { next } else { most }
-            },
-        );
-    assert!(
-        (peak.0 - 1.09963).abs() < 1e-5 && (peak.1 - 49.66).abs() < 0.02,
-        "{peak:?}"
-    );
+        .fold((0.0, 0.0), |most, next| if next.0 > most.0 { next } else { most });
+    assert!((peak.0 - 1.09963).abs() < 1e-5 && (peak.1 - 49.66).abs() < 0.02, "{peak:?}");
     // By the transfer function alone: it falls through 1 at 113.2 rad/s.
     assert!(response.gain(113.1) > 1.0 && response.gain(113.3) < 1.0);
 }
@@ -156,10 +140,7 @@ fn how_far_a_gain_holds() {
         let found = first.faithful_up_to(share);
         assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
     }
-    assert_eq!(
-        Response::new(&transfer(&[0.9, 50.0], &[1.0, 50.0])).bandwidth(),
-        f64::INFINITY
-    );
+    assert_eq!(Response::new(&transfer(&[0.9, 50.0], &[1.0, 50.0])).bandwidth(), f64::INFINITY);
     // The feedrate paper's: |G| rises to 1.0996 first, so 0.05 holds up to a little above 20 rad/s, where it is 0.04902,
     // and 0.2 until |G| has fallen to 0.8.
     let paper = Response::new(&feedrate_paper());

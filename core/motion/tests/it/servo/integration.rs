@@ -73,15 +73,7 @@ fn derivative(
         None => {
             let load = travel * (drive.damping * v + dry);
             let rate = (motor_torque - loss - load) / inertia;
-            [
-                speed,
-                rate,
-                v,
-                travel * rate,
-                error,
-                current_rate,
-                current_error,
-            ]
+            [speed, rate, v, travel * rate, error, current_rate, current_error]
         }
     }
 }
@@ -94,18 +86,10 @@ fn integrated(
     count: usize,
     command: impl Fn(usize, f64) -> Command,
 ) -> Vec<f64> {
-    let ServoModel::Loops(loops) = &servo.model else {
-        panic!("loops")
-    };
-    let friction = servo.friction.unwrap_or(Friction {
-        coulomb: 0.0,
-        width: 1.0,
-    });
+    let ServoModel::Loops(loops) = &servo.model else { panic!("loops") };
+    let friction = servo.friction.unwrap_or(Friction { coulomb: 0.0, width: 1.0 });
     let metres = if servo.rotary { 1.0 } else { 1e-3 };
-    let friction = Friction {
-        width: friction.width * metres * servo.unit(),
-        ..friction
-    };
+    let friction = Friction { width: friction.width * metres * servo.unit(), ..friction };
     let play = servo.backlash * servo.unit() * metres;
     let travel = loops.drive.mechanics().travel;
     let start = command(0, 0.0)[0];
@@ -164,24 +148,13 @@ fn loops_are_the_papers_differential_equations() {
         let scale = metres(&servo);
         let straight = |k: usize, share: f64| {
             let change = command[k + 1] - command[k];
-            [
-                (command[k] + change * share) * scale,
-                change / period * scale,
-                0.0,
-            ]
+            [(command[k] + change * share) * scale, change / period * scale, 0.0]
         };
         let expected = integrated(&servo, period, 100, 400, straight);
         let mut follower = Follower::new(&servo, period).unwrap();
         follower.settle(command[0]);
-        let found: Vec<f64> = command
-            .iter()
-            .map(|value| follower.next(*value) * scale)
-            .collect();
-        assert!(
-            apart(&found, &expected) < 1e-8 * scale,
-            "{}",
-            apart(&found, &expected)
-        );
+        let found: Vec<f64> = command.iter().map(|value| follower.next(*value) * scale).collect();
+        assert!(apart(&found, &expected) < 1e-8 * scale, "{}", apart(&found, &expected));
         assert!(apart(&found, &expected) > 0.0);
     }
 }
@@ -214,28 +187,20 @@ fn a_smooth_command_is_met_with_the_square_of_the_period() {
             let steps = (period / 2e-5).round() as usize;
             let expected = integrated(&servo, period, steps, count, command);
             let mut follower = Follower::new(&servo, period).unwrap();
-            let found: Vec<f64> = (0..=count)
-                .map(|k| follower.next(smooth(k as f64 * period)[0]) * scale)
-                .collect();
+            let found: Vec<f64> =
+                (0..=count).map(|k| follower.next(smooth(k as f64 * period)[0]) * scale).collect();
             apart(&found, &expected) / scale
         };
         let (coarse, fine) = (error(1e-3, 400), error(0.25e-3, 1600));
         assert!(coarse < 2e-4, "{coarse}");
-        assert!(
-            fine < coarse / 12.0 && fine > coarse / 20.0,
-            "{coarse} {fine}"
-        );
+        assert!(fine < coarse / 12.0 && fine > coarse / 20.0, "{coarse} {fine}");
     }
 }
 
 fn sine(time: f64) -> Command {
     let omega = 8.0;
     let (sine, cosine) = (libm::sin(omega * time), libm::cos(omega * time));
-    [
-        5.0 * (1.0 - cosine),
-        5.0 * omega * sine,
-        5.0 * omega * omega * cosine,
-    ]
+    [5.0 * (1.0 - cosine), 5.0 * omega * sine, 5.0 * omega * omega * cosine]
 }
 
 /// Set-points on a sine, straight in between, for both; the largest distance, in units of the axis.
@@ -245,11 +210,7 @@ fn against_integration(servo: &Servo, steps: usize) -> f64 {
     let at = |k: usize| sine(k as f64 * period)[0];
     let command = |k: usize, share: f64| {
         let change = at(k + 1) - at(k);
-        [
-            (at(k) + change * share) * scale,
-            change / period * scale,
-            0.0,
-        ]
+        [(at(k) + change * share) * scale, change / period * scale, 0.0]
     };
     let expected = integrated(servo, period, steps, count, command);
     let mut follower = Follower::new(servo, period).unwrap();
@@ -280,16 +241,10 @@ fn friction_is_that_of_the_differential_equations() {
 fn play_is_that_of_the_differential_equations() {
     for feedback in [Feedback::Scale, Feedback::Motor] {
         let bare = of_loops(screw_loops(feedback, [1.0, 0.0]));
-        let servo = Servo {
-            backlash: 0.02,
-            ..with_friction(bare.clone(), 100.0, 1.0)
-        };
+        let servo = Servo { backlash: 0.02, ..with_friction(bare.clone(), 100.0, 1.0) };
         let error = against_integration(&servo, 400);
         assert!(error < 1e-3, "{error} mm");
-        let without = Servo {
-            backlash: 0.0,
-            ..servo.clone()
-        };
+        let without = Servo { backlash: 0.0, ..servo.clone() };
         let command: Vec<f64> = (0..800).map(|k| sine(f64::from(k) * 1e-3)[0]).collect();
         let change = apart(
             &super::followed(&without, 1e-3, &command),
@@ -309,11 +264,7 @@ fn the_table_sticks_until_friction_is_passed() {
     let travel = loops.drive.mechanics().travel;
     let newtons = |mm: f64| loops.kv * loops.velocity_gain / (travel * travel) * mm * 1e-3;
     let servo = with_friction(of_loops(loops.clone()), 400.0, 0.0);
-    for (mm, moves) in [
-        (0.0, false),
-        (350.0 / newtons(1.0), false),
-        (450.0 / newtons(1.0), true),
-    ] {
+    for (mm, moves) in [(0.0, false), (350.0 / newtons(1.0), false), (450.0 / newtons(1.0), true)] {
         let mut follower = Follower::new(&servo, 1e-3).unwrap();
         let mut found = 0.0;
         for _ in 0..3000 {
@@ -333,10 +284,7 @@ fn the_table_sticks_until_friction_is_passed() {
 /// Behind rigid loops the table lags by half the play, either way.
 #[test]
 fn play_behind_the_loops_is_half_on_either_side() {
-    let servo = Servo {
-        backlash: 0.01,
-        ..super::transfer(&[1000.0], &[1.0, 1000.0])
-    };
+    let servo = Servo { backlash: 0.01, ..super::transfer(&[1000.0], &[1.0, 1000.0]) };
     let mut follower = Follower::new(&servo, 1e-3).unwrap();
     let mut last = 0.0;
     for (to, expected) in [(5.0, 4.995), (4.995, 4.995), (0.0, 0.005), (0.004, 0.005)] {

@@ -23,10 +23,7 @@ denominator = [1, 30]
 numerator = [50]
 denominator = [1, 50]
 "#;
-    let source = Source {
-        name: "m.toml".to_owned(),
-        text: text.to_owned(),
-    };
+    let source = Source { name: "m.toml".to_owned(), text: text.to_owned() };
     load(source, &[], &mut |name| Err(name.to_owned())).unwrap()
 }
 
@@ -113,13 +110,8 @@ fn numbers_are_named_by_axis_and_key() {
 fn whatever_is_stable_can_be_followed() {
     let mut seed = 3_u64;
     let mut factor = |most: f64| {
-        seed = seed
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        libm::pow(
-            10.0,
-            most * ((seed >> 33) as f64 / (1_u64 << 30) as f64 - 1.0),
-        )
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        libm::pow(10.0, most * ((seed >> 33) as f64 / (1_u64 << 30) as f64 - 1.0))
     };
     let mut followed = 0;
     for round in 0..180 {

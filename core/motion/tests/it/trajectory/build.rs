@@ -11,10 +11,7 @@ use post_motion::{Corner, Move, Pace, SetPoints, Task};
 
 /// A machine from the text of its file.
 pub fn machine(text: &str) -> Machine {
-    let source = Source {
-        name: "test".to_owned(),
-        text: text.to_owned(),
-    };
+    let source = Source { name: "test".to_owned(), text: text.to_owned() };
     let settings: [Setting; 0] = [];
     load(source, &settings, &mut |_| Err(String::new()))
         .unwrap_or_else(|faults| panic!("{faults:?}"))
@@ -53,11 +50,7 @@ impl Program {
     /// Begins with the tip on `tip` and all rotary axes at zero.
     pub fn new(machine: &Machine, tip: [f64; 3]) -> Self {
         let solver = Arc::new(machine.solver(0.0).expect("a solver"));
-        let mut program = Self {
-            solver,
-            here: Stance::default(),
-            tasks: Vec::new(),
-        };
+        let mut program = Self { solver, here: Stance::default(), tasks: Vec::new() };
         program.here = program.stance(tip, &Joints::default());
         program
     }
@@ -67,13 +60,8 @@ impl Program {
         let mut joints = *joints;
         let chain = self.solver.chain();
         let turns = chain.turns(&joints);
-        self.solver
-            .place(Vector3::from(tip), &mut joints, &turns)
-            .expect("the axes reach it");
-        Stance {
-            joints,
-            pose: chain.forward(&joints),
-        }
+        self.solver.place(Vector3::from(tip), &mut joints, &turns).expect("the axes reach it");
+        Stance { joints, pose: chain.forward(&joints) }
     }
 
     pub fn go(&mut self, way: Way, to: Stance, pace: Pace, corner: Corner) {

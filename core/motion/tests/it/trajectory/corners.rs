@@ -43,21 +43,13 @@ fn corners_are_blended_within_their_tolerance() {
         );
         let tolerance = rng.order(-3.0, 0.0);
         let turn = rng.range(0.1, 3.1);
-        let corner = Corner::Blend {
-            tolerance: Some(tolerance),
-        };
+        let corner = Corner::Blend { tolerance: Some(tolerance) };
         let (program, [a, b, c]) = square(&machine, turn, corner, rng.order(3.0, 4.3));
         let run = run(&machine, &program.tasks, &program.solver, 1000);
-        let strays = run
-            .points
-            .poses
-            .iter()
-            .map(|pose| off(pose.tip, [a, b]).min(off(pose.tip, [b, c])));
+        let strays =
+            run.points.poses.iter().map(|pose| off(pose.tip, [a, b]).min(off(pose.tip, [b, c])));
         let most = strays.fold(0.0, f64::max);
-        assert!(
-            most <= tolerance * (1.0 + 1e-9),
-            "{blend} {turn}: {most}, tolerance {tolerance}"
-        );
+        assert!(most <= tolerance * (1.0 + 1e-9), "{blend} {turn}: {most}, tolerance {tolerance}");
         // The tolerance is used where it is what bounds the corner.
         let nearest = run.points.poses.iter().map(|pose| (pose.tip - b).norm());
         let nearest = nearest.fold(f64::INFINITY, f64::min);
@@ -79,17 +71,8 @@ fn where_a_standstill_is_asked_for_the_end_is_reached() {
         for _ in 0..50 {
             let tip = program.here.pose.tip + rng.point(20.0);
             let to = program.stance([tip.x, tip.y, tip.z], &program.here.joints);
-            program.go(
-                Way::Tip,
-                to,
-                Pace::Minutes(0.001),
-                Corner::Blend { tolerance: None },
-            );
-            let wait = Task::Wait {
-                line: 0,
-                seconds: 0.01,
-                why: Waiting::Dwell,
-            };
+            program.go(Way::Tip, to, Pace::Minutes(0.001), Corner::Blend { tolerance: None });
+            let wait = Task::Wait { line: 0, seconds: 0.01, why: Waiting::Dwell };
             program.tasks.push(wait);
             ends.push(to);
         }
@@ -109,26 +92,18 @@ fn where_a_standstill_is_asked_for_the_end_is_reached() {
 
 #[test]
 fn a_tangent_is_passed_at_full_speed_and_a_corner_is_not() {
-    let machine = trunnion(
-        "max_feed = 30000, max_accel = 2000",
-        "max_feed = 7200, max_accel = 600",
-        "",
-    );
+    let machine =
+        trunnion("max_feed = 30000, max_accel = 2000", "max_feed = 7200, max_accel = 600", "");
     for (turn, fast) in [(0.0, true), (0.001, true), (1.0, false)] {
         let (program, _) = square(&machine, turn, Corner::Path, 6000.0);
         let run = run(&machine, &program.tasks, &program.solver, 1000);
         let seconds: f64 = run.times.iter().map(|time| time.seconds).sum();
         // A ramp between 0 and 100 mm/s costs 100 / 2a; the second way lies askew to the axes.
-        let [first, second]: [f64; 2] = [
-            2000.0,
-            2000.0 / libm::fmax(libm::cos(turn), libm::sin(turn)),
-        ];
+        let [first, second]: [f64; 2] =
+            [2000.0, 2000.0 / libm::fmax(libm::cos(turn), libm::sin(turn))];
         let [first, second] = [first, second].map(|acceleration| 50.0 / acceleration);
         let due = 0.7 + first + second + if fast { 0.0 } else { first + second };
-        assert!(
-            libm::fabs(seconds - due) < 0.003,
-            "{turn}: {seconds} s, not {due} s"
-        );
+        assert!(libm::fabs(seconds - due) < 0.003, "{turn}: {seconds} s, not {due} s");
     }
 }
 
@@ -142,22 +117,13 @@ fn a_corner_is_slowed_down_for_until_no_axis_jumps_by_more_than_a_period_makes()
     let (program, [_, corner, _]) = square(&machine, 1.2, Corner::Path, 6000.0);
     let run = run(&machine, &program.tasks, &program.solver, 1000);
     let tips: Vec<_> = run.points.poses.iter().map(|pose| pose.tip).collect();
-    let speeds = tips.windows(2).map(|pair| {
-        (
-            (pair[1] - pair[0]).norm() / 0.001,
-            (pair[0] - corner).norm(),
-        )
-    });
-    let slowest = speeds
-        .filter(|(_, off)| *off < 1.0)
-        .map(|(speed, _)| speed)
-        .fold(f64::INFINITY, f64::min);
+    let speeds =
+        tips.windows(2).map(|pair| ((pair[1] - pair[0]).norm() / 0.001, (pair[0] - corner).norm()));
+    let slowest =
+        speeds.filter(|(_, off)| *off < 1.0).map(|(speed, _)| speed).fold(f64::INFINITY, f64::min);
     // Y jumps by v·sin 1.2 in all, by 2000 mm/s² · 1 ms at most.
     let due = 2.0 / libm::sin(1.2);
-    assert!(
-        slowest >= due * 0.999 && slowest < due + 2.1,
-        "{slowest} mm/s, not {due}"
-    );
+    assert!(slowest >= due * 0.999 && slowest < due + 2.1, "{slowest} mm/s, not {due}");
 }
 
 /// Between two moves, before a wait and at the end: three times so long.
@@ -167,11 +133,7 @@ fn a_stop_takes_as_long_as_axes_need_to_be_in_position() {
         let limits = "max_feed = 30000, max_accel = 2000";
         let machine = trunnion(limits, limits, motion);
         let (mut program, _) = square(&machine, 1.0, Corner::Stop, 3000.0);
-        program.tasks.push(Task::Wait {
-            line: 9,
-            seconds: 1.0,
-            why: Waiting::Dwell,
-        });
+        program.tasks.push(Task::Wait { line: 9, seconds: 1.0, why: Waiting::Dwell });
         let to = program.stance([0.0; 3], &program.here.joints);
         program.go(Way::Tip, to, Pace::Minutes(0.01), Corner::Stop);
         let run = run(&machine, &program.tasks, &program.solver, 100);

@@ -13,11 +13,8 @@ fn machine(rng: &mut Rng, jerk: bool, motion: &str) -> Machine {
     let jump = [None, Some(rng.order(-2.0, 3.0))][rng.pick(2)];
     let mut axis = |size: f64| {
         let [feed, acceleration] = [rng.order(2.0, 4.6), rng.order(0.0, 5.0)];
-        let mut keys = format!(
-            "max_feed = {:?}, max_accel = {:?}",
-            size * feed,
-            size * acceleration
-        );
+        let mut keys =
+            format!("max_feed = {:?}, max_accel = {:?}", size * feed, size * acceleration);
         if jerk {
             let jerk = size * acceleration * rng.order(-1.0, 3.0);
             keys += &format!(", max_jerk = {jerk:?}");
@@ -40,10 +37,8 @@ fn kinked(
 ) -> Program {
     let mut program = Program::new(machine, [10.0, 20.0, 30.0]);
     let turning = machine.axes.iter().enumerate();
-    let turning: Vec<usize> = turning
-        .filter(|(_, axis)| axis.joint.rotary)
-        .map(|(place, _)| place)
-        .collect();
+    let turning: Vec<usize> =
+        turning.filter(|(_, axis)| axis.joint.rotary).map(|(place, _)| place).collect();
     let mut way = [rng.point(1.0), rng.point(0.02)];
     for _ in 0..count {
         let kink = [0.0, rng.order(-6.0, 0.0), 1.0][rng.pick(3)];
@@ -116,9 +111,7 @@ fn seconds(machine: &Machine, program: &Program) -> f64 {
 }
 
 fn blend(rng: &mut Rng) -> Corner {
-    Corner::Blend {
-        tolerance: [None, Some(rng.order(-4.0, 0.0))][rng.pick(2)],
-    }
+    Corner::Blend { tolerance: [None, Some(rng.order(-4.0, 0.0))][rng.pick(2)] }
 }
 
 fn any_corner(rng: &mut Rng) -> Corner {
@@ -157,9 +150,7 @@ fn a_corner_is_rounded_and_not_jumped_at_where_that_costs_no_time() {
         // Ways of 5 to 30 mm that turn by up to a degree: slow enough for a curve within the tolerance at full feed.
         let mut program = Program::new(&machine, [0.0; 3]);
         let mut way = rng.point(1.0).normalize();
-        let corner = Corner::Blend {
-            tolerance: Some(0.1),
-        };
+        let corner = Corner::Blend { tolerance: Some(0.1) };
         for _ in 0..20 {
             way = (way + rng.point(0.01)).normalize();
             let tip = program.here.pose.tip + way * rng.range(5.0, 30.0);
@@ -170,10 +161,7 @@ fn a_corner_is_rounded_and_not_jumped_at_where_that_costs_no_time() {
         let run = run(&machine, &program.tasks, &program.solver, 1000);
         assert!(run.points.jumps.is_empty(), "{round}");
         let ratios = ratios(&run.points, &machine);
-        assert!(
-            ratios.iter().all(|ratio| *ratio <= 1.0 + 1e-6),
-            "{round}: {ratios:?}"
-        );
+        assert!(ratios.iter().all(|ratio| *ratio <= 1.0 + 1e-6), "{round}: {ratios:?}");
         // Nothing but the two ends costs time.
         let beyond = |time: &post_motion::trajectory::TaskTime| time.seconds - time.asked;
         for time in &run.times[1..19] {

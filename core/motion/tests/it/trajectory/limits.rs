@@ -25,9 +25,7 @@ impl Drawn {
             };
             [velocity, acceleration, jerk]
         };
-        Self {
-            limits: [axis(1.0), axis(0.5)],
-        }
+        Self { limits: [axis(1.0), axis(0.5)] }
     }
 
     fn machine(&self, motion: &str, faster: f64) -> Machine {
@@ -72,11 +70,7 @@ fn moves(
         let corner = corner(rng);
         program.go(way.clone(), to, pace, corner);
         if rng.pick(8) == 0 {
-            program.tasks.push(Task::Wait {
-                line: 0,
-                seconds: 0.0123,
-                why: Waiting::Dwell,
-            });
+            program.tasks.push(Task::Wait { line: 0, seconds: 0.0123, why: Waiting::Dwell });
         }
     }
     program
@@ -117,10 +111,7 @@ fn moves_with_a_standstill_behind_each_keep_all_limits() {
         let program = moves(&mut rng, &machine, 30, &way, |_| Corner::Stop);
         let run = run(&machine, &program.tasks, &program.solver, 100);
         let ratios = ratios(&run.points, &machine);
-        assert!(
-            ratios.iter().all(|ratio| *ratio < SLACK),
-            "{round} {way:?}: {ratios:?}"
-        );
+        assert!(ratios.iter().all(|ratio| *ratio < SLACK), "{round} {way:?}: {ratios:?}");
         for time in &run.times {
             assert!(time.seconds >= time.asked * (1.0 - 1e-9), "{time:?}");
         }
@@ -138,10 +129,7 @@ fn a_path_that_is_kept_keeps_all_limits_but_for_its_jumps() {
         });
         let run = run(&machine, &program.tasks, &program.solver, 100);
         let own = jumps::ratios(&run.points, &machine);
-        assert!(
-            own.iter().all(|ratio| *ratio <= 1.0 + 1e-6),
-            "{round}: {own:?}"
-        );
+        assert!(own.iter().all(|ratio| *ratio <= 1.0 + 1e-6), "{round}: {own:?}");
     }
 }
 
@@ -153,9 +141,7 @@ fn overlapping_and_rounded_moves_keep_velocities_and_accelerations() {
         let blend = ["overlap", "round"][usize::from(round % 2)];
         let machine = drawn.machine(&format!("period = 0.0005\nblend = \"{blend}\""), 1.0);
         let tolerance = [None, Some(0.01), Some(0.5)][rng.pick(3)];
-        let program = moves(&mut rng, &machine, 60, &Way::Axes, |_| Corner::Blend {
-            tolerance,
-        });
+        let program = moves(&mut rng, &machine, 60, &Way::Axes, |_| Corner::Blend { tolerance });
         let run = run(&machine, &program.tasks, &program.solver, 100);
         let [velocity, acceleration, _, jump] = jumps::ratios(&run.points, &machine);
         // Where a move that must end as it is programmed is overlapped, LinuxCNC's own motion passes limits so too.
@@ -165,10 +151,7 @@ fn overlapping_and_rounded_moves_keep_velocities_and_accelerations() {
         };
         assert!(jump <= 1.0 + 1e-9, "{round} {blend}: {jump}");
         assert!(velocity < most[0], "{round} {blend}: {velocity}");
-        assert!(
-            acceleration < most[1],
-            "{round} {blend} {tolerance:?}: {acceleration}"
-        );
+        assert!(acceleration < most[1], "{round} {blend} {tolerance:?}: {acceleration}");
     }
 }
 
@@ -180,21 +163,14 @@ fn larger_limits_are_never_slower() {
         let motion = ["blend = \"overlap\"", "blend = \"round\""][usize::from(round % 2)];
         let machine = drawn.machine(motion, 1.0);
         let program = moves(&mut rng, &machine, 60, &Way::Axes, |rng| {
-            [
-                Corner::Path,
-                Corner::Stop,
-                Corner::Blend { tolerance: None },
-            ][rng.pick(3)]
+            [Corner::Path, Corner::Stop, Corner::Blend { tolerance: None }][rng.pick(3)]
         });
         let mut last = f64::INFINITY;
         for faster in [1.0, 1.1, 1.7, 3.0] {
             let machine = drawn.machine(motion, faster);
             let run = run(&machine, &program.tasks, &program.solver, 1000);
             let seconds: f64 = run.times.iter().map(|time| time.seconds).sum();
-            assert!(
-                seconds <= last * (1.0 + 1e-9),
-                "{round}: {seconds} s, not {last} s"
-            );
+            assert!(seconds <= last * (1.0 + 1e-9), "{round}: {seconds} s, not {last} s");
             last = seconds;
         }
     }
@@ -208,19 +184,12 @@ fn it_does_not_matter_how_many_set_points_are_asked_for_at_once() {
         let machine = drawn.machine("look_ahead = 7", 1.0);
         let way = [Way::Axes, Way::Tip][rng.pick(2)].clone();
         let program = moves(&mut rng, &machine, 40, &way, |rng| {
-            [
-                Corner::Path,
-                Corner::Stop,
-                Corner::Blend { tolerance: None },
-            ][rng.pick(3)]
+            [Corner::Path, Corner::Stop, Corner::Blend { tolerance: None }][rng.pick(3)]
         });
         let [one, many] =
             [1, 1000].map(|chunk| run(&machine, &program.tasks, &program.solver, chunk));
         assert!(one.points.joints == many.points.joints, "{round}");
-        assert!(
-            one.points.at == many.points.at && one.times == many.times,
-            "{round}"
-        );
+        assert!(one.points.at == many.points.at && one.times == many.times, "{round}");
         assert_eq!(one.times.len(), program.tasks.len());
         // Tasks follow one another without a gap, and the last set-point stands at the end.
         let mut time = 0.0;

@@ -19,9 +19,7 @@ fn rows() -> Option<Vec<Vec<f64>>> {
     };
     let text = String::from_utf8(unpacked.stdout).expect("text");
     let numbers = |line: &str| -> Vec<f64> {
-        line.split_whitespace()
-            .map(|field| field.parse().expect("a number"))
-            .collect()
+        line.split_whitespace().map(|field| field.parse().expect("a number")).collect()
     };
     Some(text.lines().map(numbers).collect())
 }
@@ -59,19 +57,12 @@ fn overlapping_moves_go_as_those_of_linuxcnc() {
     go(&mut program, [10.0, 20.0, 30.0, 0.0, 0.0], Some(3000.0));
     go(&mut program, [30.0, -10.0, 25.0, -20.0, 40.0], Some(3000.0));
     go(&mut program, [35.0, -15.0, 22.0, -30.0, 55.0], Some(3000.0));
-    program.tasks.push(Task::Wait {
-        line: 7,
-        seconds: 0.2,
-        why: Waiting::Dwell,
-    });
+    program.tasks.push(Task::Wait { line: 7, seconds: 0.2, why: Waiting::Dwell });
     go(&mut program, [0.0, 0.0, 60.0, 0.0, 0.0], Some(3000.0));
     let ours = run(&machine, &program.tasks, &program.solver, 1000);
     let moves = |row: usize| rows[row][5..10] != rows[row - 1][5..10];
     let begins = (1..rows.len()).find(|row| moves(*row)).expect("moves") - 1;
-    let ends = (1..rows.len())
-        .rev()
-        .find(|row| moves(*row))
-        .expect("moves");
+    let ends = (1..rows.len()).rev().find(|row| moves(*row)).expect("moves");
     let cycle = (ends - begins) as f64 * 0.001;
     let own = (ours.points.len() - 1) as f64 * ours.points.period;
     println!("cycle time {own} s, LinuxCNC {cycle} s");
@@ -86,10 +77,7 @@ fn overlapping_moves_go_as_those_of_linuxcnc() {
         [pose.tip.x, pose.tip.y, pose.tip.z + TOOL, a, c]
     };
     let apart = |one: &[f64], other: &[f64]| {
-        let squares = one
-            .iter()
-            .zip(other)
-            .map(|(one, other)| (one - other) * (one - other));
+        let squares = one.iter().zip(other).map(|(one, other)| (one - other) * (one - other));
         squares.sum::<f64>().sqrt()
     };
     for range in [(1.0, stands), (goes, own * 1000.0 - 2.0)] {

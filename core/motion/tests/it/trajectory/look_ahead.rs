@@ -30,23 +30,16 @@ fn seconds(machine: &Machine, program: &Program) -> f64 {
 #[test]
 fn velocities_are_bounded_by_the_way_to_every_slower_place() {
     let (rounds, mut rng) = randomised(60u16, 11);
-    let machine = trunnion(
-        "max_feed = 12000, max_accel = 800",
-        ROTARY,
-        "look_ahead = 1000",
-    );
+    let machine = trunnion("max_feed = 12000, max_accel = 800", ROTARY, "look_ahead = 1000");
     let a = 800.0;
     for _ in rounds {
         let count = 2 + rng.pick(200);
-        let blocks: Vec<[f64; 2]> = (0..count)
-            .map(|_| [rng.order(-2.0, 1.3), rng.order(1.0, 4.3)])
-            .collect();
+        let blocks: Vec<[f64; 2]> =
+            (0..count).map(|_| [rng.order(-2.0, 1.3), rng.order(1.0, 4.3)]).collect();
         let own = seconds(&machine, &straight(&machine, &blocks));
         // Another way to the same: each place against each bound, no pass.
-        let velocities: Vec<f64> = blocks
-            .iter()
-            .map(|[_, feed]| feed.min(12000.0) / 60.0)
-            .collect();
+        let velocities: Vec<f64> =
+            blocks.iter().map(|[_, feed]| feed.min(12000.0) / 60.0).collect();
         let places: Vec<f64> = blocks
             .iter()
             .scan(0.0, |x, [length, _]| {
@@ -97,27 +90,22 @@ fn looking_further_ahead_is_never_slower_and_not_at_all_stands_still() {
     let mut rng = seeded(12);
     for jerk in ["", ", max_jerk = 40000"] {
         let linear = format!("max_feed = 12000, max_accel = 1000{jerk}");
-        let blocks: Vec<[f64; 2]> = (0..400)
-            .map(|_| [rng.order(-1.0, 0.5), rng.order(2.5, 4.0)])
-            .collect();
+        let blocks: Vec<[f64; 2]> =
+            (0..400).map(|_| [rng.order(-1.0, 0.5), rng.order(2.5, 4.0)]).collect();
         let mut last = f64::INFINITY;
         for depth in [1, 2, 4, 10, 50, 200, 1000] {
             let machine = trunnion(&linear, ROTARY, &format!("look_ahead = {depth}"));
             let own = seconds(&machine, &straight(&machine, &blocks));
             println!("{depth} blocks: {own} s");
             if depth == 1 {
-                let alone = blocks
-                    .iter()
-                    .map(|block| seconds(&machine, &straight(&machine, &[*block])));
+                let alone =
+                    blocks.iter().map(|block| seconds(&machine, &straight(&machine, &[*block])));
                 let alone: f64 = alone.sum();
                 assert!(libm::fabs(own - alone) < 1e-9 * alone);
             }
             // With jerk limits knots lie elsewhere for every depth: a percent.
             let slack = if jerk.is_empty() { 1e-9 } else { 0.01 };
-            assert!(
-                own <= last * (1.0 + slack),
-                "{depth} blocks: {own} s, fewer {last} s"
-            );
+            assert!(own <= last * (1.0 + slack), "{depth} blocks: {own} s, fewer {last} s");
             last = own;
         }
     }
@@ -136,20 +124,11 @@ fn no_jerk_limit_is_passed_however_many_blocks_a_ramp_spans() {
         );
         let scatter = rng.range(0.0, 0.8);
         let blocks: Vec<[f64; 2]> = (0..300)
-            .map(|_| {
-                [
-                    rng.order(-2.0, 0.0),
-                    rng.order(3.5 - scatter, 3.5 + scatter),
-                ]
-            })
+            .map(|_| [rng.order(-2.0, 0.0), rng.order(3.5 - scatter, 3.5 + scatter)])
             .collect();
         let program = straight(&machine, &blocks);
         let run = run(&machine, &program.tasks, &program.solver, 1000);
-        let x = machine
-            .axes
-            .iter()
-            .position(|axis| axis.name == "X")
-            .expect("X");
+        let x = machine.axes.iter().position(|axis| axis.name == "X").expect("X");
         let values: Vec<f64> = run.points.joints.iter().map(|joints| joints[x]).collect();
         let h = run.points.period;
         for four in values.windows(4) {
@@ -157,14 +136,8 @@ fn no_jerk_limit_is_passed_however_many_blocks_a_ramp_spans() {
             let acceleration = (p3 - 2.0 * p2 + p1) / (h * h);
             let jerk = (p3 - 3.0 * p2 + 3.0 * p1 - p0) / (h * h * h);
             assert!(p3 >= p2 - 1e-12);
-            assert!(
-                libm::fabs(acceleration) < a * 1.0001,
-                "{round}: {acceleration}, limit {a}"
-            );
-            assert!(
-                libm::fabs(jerk) < j * 1.0001 + 0.1,
-                "{round}: {jerk}, limit {j}"
-            );
+            assert!(libm::fabs(acceleration) < a * 1.0001, "{round}: {acceleration}, limit {a}");
+            assert!(libm::fabs(jerk) < j * 1.0001 + 0.1, "{round}: {jerk}, limit {j}");
         }
         for (time, [length, feed]) in run.times.iter().zip(&blocks) {
             assert!(time.seconds >= 60.0 * length / feed * (1.0 - 1e-9));
@@ -198,9 +171,6 @@ fn a_curve_of_many_blocks_is_gone_round_at_its_feed() {
         run.times.iter().map(|time| time.asked).sum(),
         run.times.iter().map(|time| time.seconds).sum(),
     ];
-    println!(
-        "{taken} s, {asked} s asked, {:.0} ns a set-point",
-        cost * 1e9
-    );
+    println!("{taken} s, {asked} s asked, {:.0} ns a set-point", cost * 1e9);
     assert!(taken < asked * 1.05, "{taken} s, {asked} s asked");
 }

@@ -39,16 +39,10 @@ fn from_rest_to_rest_it_takes_the_time_of_the_textbook() {
             0 => f64::INFINITY,
             _ => rng.order(0.0, 7.0),
         };
-        let ramp = Ramp {
-            acceleration: a,
-            jerk: j,
-        };
+        let ramp = Ramp { acceleration: a, jerk: j };
         let profile = Profile::new(length, [0.0, 0.0], v, ramp, ramp);
         let (own, due) = (profile.seconds(), textbook(length, v, a, j));
-        assert!(
-            libm::fabs(own - due) <= 1e-9 * due,
-            "{length} {v} {a} {j}: {own}, not {due}"
-        );
+        assert!(libm::fabs(own - due) <= 1e-9 * due, "{length} {v} {a} {j}: {own}, not {due}");
     }
 }
 
@@ -119,10 +113,7 @@ fn profiles_keep_their_limits_and_end_where_and_as_they_should() {
         let step = 1e-6 * profile.seconds();
         let [before, at, after] = [-step, 0.0, step].map(|off| profile.at(middle + off));
         let slope = (after[0] - before[0]) / (2.0 * step);
-        assert!(
-            libm::fabs(slope - at[1]) <= 1e-4 * top.max(at[1]),
-            "{slope} {at:?}"
-        );
+        assert!(libm::fabs(slope - at[1]) <= 1e-4 * top.max(at[1]), "{slope} {at:?}");
     }
 }
 
@@ -137,13 +128,7 @@ fn a_ramp_reaches_what_its_length_allows() {
         let covered = ramp.length(from, to);
         // Where hardly anything is gained, the velocity says nothing of the length any more.
         let gained = (to - from) > 1e-9 * from;
-        assert!(
-            covered <= length * (1.0 + 1e-7) || !gained,
-            "{ramp:?} {from} {length}: {to}"
-        );
-        assert!(
-            covered >= length * (1.0 - 1e-6) || !gained,
-            "{ramp:?} {from} {length}: {to}"
-        );
+        assert!(covered <= length * (1.0 + 1e-7) || !gained, "{ramp:?} {from} {length}: {to}");
+        assert!(covered >= length * (1.0 - 1e-6) || !gained, "{ramp:?} {from} {length}: {to}");
     }
 }

@@ -37,9 +37,7 @@ fn step(rng: &mut Rng, program: &mut Program, count: usize) {
         0 => Corner::Stop,
         1 => Corner::Path,
         2 => Corner::Blend { tolerance: None },
-        _ => Corner::Blend {
-            tolerance: Some(rng.order(-4.0, 1.0)),
-        },
+        _ => Corner::Blend { tolerance: Some(rng.order(-4.0, 1.0)) },
     };
     let way = match rng.pick(6) {
         0 => Way::Axes,
@@ -53,11 +51,7 @@ fn step(rng: &mut Rng, program: &mut Program, count: usize) {
             let end = centre + turned;
             assert!((on_arc([here.pose.tip, end], centre, normal, sweep, 1.0) - end).norm() < 1e-9);
             let to = program.stance([end.x, end.y, end.z], &joints);
-            let way = Way::Arc {
-                centre,
-                normal,
-                sweep,
-            };
+            let way = Way::Arc { centre, normal, sweep };
             return program.go(way, to, pace, corner);
         }
         _ => Way::Tip,
@@ -103,11 +97,7 @@ fn whatever_is_asked_for_nothing_jumps_and_all_of_it_is_done() {
         joints[1] = 0.6;
         program.here = program.stance([100.0, 0.0, 0.0], &joints);
         if rng.pick(3) == 0 {
-            program.tasks.push(Task::Wait {
-                line: 0,
-                seconds: 0.01,
-                why: Waiting::Spindle,
-            });
+            program.tasks.push(Task::Wait { line: 0, seconds: 0.01, why: Waiting::Spindle });
         }
         for count in 0..30 {
             step(&mut rng, &mut program, count);
@@ -124,10 +114,7 @@ fn whatever_is_asked_for_nothing_jumps_and_all_of_it_is_done() {
         let mut time = 0.0;
         for (place, task) in run.times.iter().enumerate() {
             assert_eq!(task.task, place as u64);
-            assert!(
-                libm::fabs(task.begins - time) < 1e-9,
-                "{round} {task:?} {time}"
-            );
+            assert!(libm::fabs(task.begins - time) < 1e-9, "{round} {task:?} {time}");
             let sane = task.seconds >= -1e-12 && task.seconds.is_finite();
             assert!(sane, "{round} {task:?}\n{motion}");
             time = task.begins + task.seconds;
@@ -154,11 +141,7 @@ fn whatever_is_asked_for_nothing_jumps_and_all_of_it_is_done() {
         }
         let last = run.points.joints.last().expect("some");
         for (own, due) in last.iter().zip(&program.here.joints) {
-            assert!(
-                libm::fabs(own - due) < 1e-6,
-                "{round}: {last:?} {:?}",
-                program.here.joints
-            );
+            assert!(libm::fabs(own - due) < 1e-6, "{round}: {last:?} {:?}", program.here.joints);
         }
     }
 }

@@ -85,26 +85,17 @@ impl Interpreter {
             SpindleUnit::SurfaceInch => speed * 0.3048,
             _ => speed,
         };
-        let wrong = [Some(metres), most]
-            .into_iter()
-            .flatten()
-            .find(|value| *value <= 0.0);
+        let wrong = [Some(metres), most].into_iter().flatten().find(|value| *value <= 0.0);
         if let Some(wrong) = wrong {
-            let message = format!(
-                "a constant cutting speed with {}: it must be above zero",
-                Short(wrong)
-            );
+            let message =
+                format!("a constant cutting speed with {}: it must be above zero", Short(wrong));
             self.fault(record, "spindle", message, "SPINDL/SMM,speed,MAXRPM,limit");
             return;
         }
         let most = most.or(self.surface_speed.and_then(|(_, most)| most));
         self.rpm = None;
         self.surface_speed = Some((metres, most));
-        emit(Step::Command(Command::SurfaceSpeed {
-            speed: metres,
-            most,
-            sense: self.sense,
-        }));
+        emit(Step::Command(Command::SurfaceSpeed { speed: metres, most, sense: self.sense }));
     }
 
     /// Other tolerances of the control from here on; none: it keeps the path as it does by default.

@@ -110,11 +110,7 @@ impl Interpreter {
         let arc = arc.placed(shift, turn);
         let start_axis = turn(start_axis);
         self.arrive(end);
-        emit(Step::Arc(Box::new(ArcStep {
-            arc,
-            start_axis,
-            end: self.motion(end, pace),
-        })));
+        emit(Step::Arc(Box::new(ArcStep { arc, start_axis, end: self.motion(end, pace) })));
     }
 
     pub(super) fn spline_data(&mut self, record: &Record<'_>) {
@@ -124,12 +120,7 @@ impl Interpreter {
             _ => Vector3::zeros(),
         };
         let Some(Pending::Spline { knots, points }) = &mut self.pending else {
-            self.fault(
-                record,
-                "spline",
-                "there is no NURBS before it".to_owned(),
-                "",
-            );
+            self.fault(record, "spline", "there is no NURBS before it".to_owned(), "");
             return;
         };
         if knots.len().max(points.len()) > MOST_SPLINE_NUMBERS {
@@ -174,17 +165,11 @@ impl Interpreter {
                 let end = spline.end();
                 self.arrive(end);
                 let spline = spline.placed(|point| self.frame.to_part(point, Vector3::zeros()).0);
-                emit(Step::Spline(Box::new(SplineStep {
-                    spline,
-                    end: self.motion(end, pace),
-                })));
+                emit(Step::Spline(Box::new(SplineStep { spline, end: self.motion(end, pace) })));
             }
-            Err(message) => self.fault(
-                record,
-                "spline",
-                format!("the NURBS before this: {message}"),
-                "",
-            ),
+            Err(message) => {
+                self.fault(record, "spline", format!("the NURBS before this: {message}"), "")
+            }
         }
     }
 }

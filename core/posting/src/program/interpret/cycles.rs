@@ -38,12 +38,7 @@ impl Interpreter {
             Ok(Some(above)) => above,
             Ok(None) => (drill, point),
             Err(message) => {
-                self.fault(
-                    record,
-                    "cycle",
-                    message,
-                    "let the CAM system write it as moves",
-                );
+                self.fault(record, "cycle", message, "let the CAM system write it as moves");
                 return;
             }
         };
@@ -56,10 +51,7 @@ impl Interpreter {
         };
         // Behind it the tool stands at the level between the holes.
         self.arrive(point + self.axis * drill.retract());
-        emit(Step::Cycle(Box::new(CycleStep {
-            cycle: drill,
-            point: self.motion(point, feed),
-        })));
+        emit(Step::Cycle(Box::new(CycleStep { cycle: drill, point: self.motion(point, feed) })));
     }
 
     /// A thread with its pitch, which is what the tool goes in one turn of the spindle, and the feed that makes it at the speed
@@ -198,35 +190,26 @@ impl Interpreter {
             );
         }
         let plane = plane * self.scale;
-        drill.by_planes(
-            plane,
-            plane - definition.rapid_to.unwrap_or(0.0) * self.scale,
-        )
+        drill.by_planes(plane, plane - definition.rapid_to.unwrap_or(0.0) * self.scale)
     }
 
     pub(super) fn define_cycle(&mut self, record: &Record<'_>, definition: &CycleDefinition) {
-        let drill = self
-            .written(record, definition)
-            .and_then(|()| DrillCycle::new(definition, self.scale));
+        let drill =
+            self.written(record, definition).and_then(|()| DrillCycle::new(definition, self.scale));
         let drill = match drill {
             Ok(drill) => self.with_heights(record, drill, definition),
             Err(message) => {
                 self.cycle = None;
                 self.cycle_lost = true;
-                self.fault(
-                    record,
-                    "cycle",
-                    message,
-                    "let the CAM system write it as moves",
-                );
+                self.fault(record, "cycle", message, "let the CAM system write it as moves");
                 return;
             }
         };
         let feed = match definition.feed {
             // A thread's feed follows from its pitch where nobody gives one.
-            None if drill.taps() && drill.pitch().is_some() => drill
-                .pitch()
-                .map(|pitch| FeedWord::PerRevolution(libm::fabs(pitch))),
+            None if drill.taps() && drill.pitch().is_some() => {
+                drill.pitch().map(|pitch| FeedWord::PerRevolution(libm::fabs(pitch)))
+            }
             Some(feed) => self.feed_word(record, feed),
             None => self.feed.or_else(|| self.told_feed()),
         };
@@ -235,10 +218,7 @@ impl Interpreter {
             self.warn(
                 record,
                 "cycle",
-                format!(
-                    "of this cycle is left out: {}",
-                    excerpt(&left.join(", "), SHOWN_NAME)
-                ),
+                format!("of this cycle is left out: {}", excerpt(&left.join(", "), SHOWN_NAME)),
             );
         }
         let Some(feed) = feed.filter(|feed| *feed != FeedWord::Pace(Pace::Rapid)) else {

@@ -20,9 +20,7 @@ impl Interpreter {
         } else if ends_in_comma(last) {
             Some("the file ends in a comma: what follows it is missing".to_owned())
         } else if let Some(path) = &self.path {
-            Some(format!(
-                "the file ends within the operation {path}: no END-OF-PATH follows"
-            ))
+            Some(format!("the file ends within the operation {path}: no END-OF-PATH follows"))
         } else if self.wants_fini {
             Some(
                 "the file has no FINI, with which the system that wrote it ends every file"

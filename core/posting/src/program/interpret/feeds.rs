@@ -16,9 +16,9 @@ impl Interpreter {
         }
         match (feed, self.rpm) {
             (FeedWord::Pace(pace), _) => Some(pace),
-            (FeedWord::PerRevolution(feed), Some(rpm)) if rpm > 0.0 => self
-                .in_range(record, (feed * rpm, FEEDS, "mm/min"))
-                .map(Pace::PerMinute),
+            (FeedWord::PerRevolution(feed), Some(rpm)) if rpm > 0.0 => {
+                self.in_range(record, (feed * rpm, FEEDS, "mm/min")).map(Pace::PerMinute)
+            }
             (FeedWord::PerRevolution(_), _) => {
                 let (message, help) = match self.surface_speed {
                     Some(_) => (

@@ -153,10 +153,7 @@ const SHOWN_NAME: usize = 80;
 enum Pending {
     Arc(Circle),
     Turned(ArcMove),
-    Spline {
-        knots: Vec<f64>,
-        points: Vec<Vector3<f64>>,
-    },
+    Spline { knots: Vec<f64>, points: Vec<Vector3<f64>> },
 }
 
 impl Interpreter {
@@ -291,11 +288,9 @@ impl Interpreter {
                 ),
             }
         }
-        self.findings
-            .extend(self.census.unknown(self.reading.unknown));
+        self.findings.extend(self.census.unknown(self.reading.unknown));
         self.findings.extend(self.census.allowed());
-        self.findings
-            .extend(self.census.slips(&self.reading.allowed));
+        self.findings.extend(self.census.slips(&self.reading.allowed));
     }
 
     fn other(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
@@ -303,11 +298,7 @@ impl Interpreter {
             if !matches!(record.statement, Statement::Remark(_) | Statement::Fini) {
                 self.count("FINI", record, Usage::Used);
                 if self.census.times("FINI") == 2 {
-                    self.warn(
-                        record,
-                        "after-fini",
-                        "records behind FINI are left out".to_owned(),
-                    );
+                    self.warn(record, "after-fini", "records behind FINI are left out".to_owned());
                 }
             }
             return;
@@ -616,10 +607,7 @@ impl Interpreter {
             self.fault(
                 record,
                 "dwell",
-                format!(
-                    "a dwell of {} s: from 0 to {LONGEST_DWELL} s is possible",
-                    Short(seconds)
-                ),
+                format!("a dwell of {} s: from 0 to {LONGEST_DWELL} s is possible", Short(seconds)),
                 "let the CAM system write another; a stop is OPSTOP or STOP",
             );
             return;
@@ -629,9 +617,7 @@ impl Interpreter {
 
     fn count(&mut self, word: &str, record: &Record<'_>, usage: Usage) {
         let file = &self.reading.file;
-        let counted = self
-            .census
-            .count(word, usage, || record_place(file, record));
+        let counted = self.census.count(word, usage, || record_place(file, record));
         if !counted {
             self.fault(
                 record,
@@ -664,8 +650,7 @@ impl Interpreter {
     #[cold]
     fn warn(&mut self, record: &Record<'_>, code: &'static str, message: String) {
         let place = self.place(record);
-        self.findings
-            .push(Diagnostic::warning(code, message).at(place));
+        self.findings.push(Diagnostic::warning(code, message).at(place));
     }
 }
 

@@ -172,12 +172,6 @@ impl Interpreter {
         } else {
             self.frame.direction_to_part(self.edge)
         };
-        Motion {
-            tip,
-            axis,
-            edge,
-            pace,
-            chord: 0.0,
-        }
+        Motion { tip, axis, edge, pace, chord: 0.0 }
     }
 }

@@ -41,10 +41,7 @@ impl Interpreter {
             self.spindle_said = true;
             self.may_cut = true;
             self.rpm = Some(rpm);
-            emit(Step::Command(Command::Spindle(Spindle::On {
-                rpm,
-                sense: self.sense,
-            })));
+            emit(Step::Command(Command::Spindle(Spindle::On { rpm, sense: self.sense })));
         }
         self.due = false;
     }

@@ -25,12 +25,7 @@ impl Interpreter {
         let step = match self.spindle_meant(record, spindle) {
             SpindleWord::Off => Spindle::Off,
             SpindleWord::Orient => Spindle::Orient,
-            SpindleWord::On {
-                speed,
-                unit,
-                sense,
-                most,
-            } => {
+            SpindleWord::On { speed, unit, sense, most } => {
                 if let Some(sense) = sense {
                     self.sense = match sense {
                         Sense::Clockwise => SpindleSense::Clockwise,
@@ -39,9 +34,9 @@ impl Interpreter {
                 }
                 let kept = match speed {
                     Some(speed) => Some((speed, unit)).filter(|_| unit != SpindleUnit::Rpm),
-                    None => self
-                        .surface_speed
-                        .map(|(speed, _)| (speed, SpindleUnit::SurfaceMetric)),
+                    None => {
+                        self.surface_speed.map(|(speed, _)| (speed, SpindleUnit::SurfaceMetric))
+                    }
                 };
                 if let Some((speed, unit)) = kept.filter(|_| self.reading.surface_speed) {
                     self.may_cut = true;
@@ -76,10 +71,7 @@ impl Interpreter {
                 // Whatever is wrong with it, that it does not turn is not said too.
                 self.may_cut = true;
                 // CAM systems write 0 where nobody gave a speed.
-                self.rpm = self
-                    .rpm
-                    .filter(|rpm| *rpm > 0.0)
-                    .or(self.reading.spindle.speed());
+                self.rpm = self.rpm.filter(|rpm| *rpm > 0.0).or(self.reading.spindle.speed());
                 let Some(rpm) = self.rpm else {
                     self.fault(
                         record,
@@ -89,10 +81,7 @@ impl Interpreter {
                     );
                     return;
                 };
-                Spindle::On {
-                    rpm,
-                    sense: self.sense,
-                }
+                Spindle::On { rpm, sense: self.sense }
             }
         };
         emit(Step::Command(Command::Spindle(step)));
@@ -101,12 +90,7 @@ impl Interpreter {
     /// Autodesk's stock APT posts stop the spindle by `SPINDL/ON` and start it by `SPINDL/OFF`: the two are exchanged in the
     /// posts' own table.
     fn spindle_meant(&mut self, record: &Record<'_>, spindle: SpindleWord) -> SpindleWord {
-        let on = SpindleWord::On {
-            speed: None,
-            unit: SpindleUnit::Rpm,
-            sense: None,
-            most: None,
-        };
+        let on = SpindleWord::On { speed: None, unit: SpindleUnit::Rpm, sense: None, most: None };
         let meant = match spindle {
             SpindleWord::Off if self.writer.autodesk => on,
             spindle if self.writer.autodesk && spindle == on => SpindleWord::Off,
@@ -209,10 +193,7 @@ impl Interpreter {
             Some(_) => None,
         };
         if let Some(number) = told.or(self.cutter_due) {
-            let tool = LoadTool {
-                number,
-                ..LoadTool::default()
-            };
+            let tool = LoadTool { number, ..LoadTool::default() };
             self.load(record, &tool, emit);
             self.cutter_due = None;
         }
@@ -245,10 +226,7 @@ impl Interpreter {
             self.fault(
                 record,
                 "tool",
-                format!(
-                    "the file loads tool {} itself, --tool says {told}",
-                    tool.number
-                ),
+                format!("the file loads tool {} itself, --tool says {told}", tool.number),
                 "leave --tool out: it is for a file that loads none",
             );
         }
@@ -306,11 +284,7 @@ impl Interpreter {
             self.fault(record, "cutter", message, "");
             return;
         }
-        let cutter = Described {
-            length,
-            numbers: numbers.to_vec(),
-            name: self.tool_name.clone(),
-        };
+        let cutter = Described { length, numbers: numbers.to_vec(), name: self.tool_name.clone() };
         // Files that load their tools describe the cutter just before or after that.
         let other = self.described.as_ref().is_some_and(|before| {
             if before.length == length {
@@ -388,12 +362,12 @@ impl Interpreter {
             self.check_on_centre(record, register);
         }
         match side {
-            Some(Side::Left) => emit(Step::Command(Command::Compensate(Compensation::Left {
-                register,
-            }))),
-            Some(Side::Right) => emit(Step::Command(Command::Compensate(Compensation::Right {
-                register,
-            }))),
+            Some(Side::Left) => {
+                emit(Step::Command(Command::Compensate(Compensation::Left { register })))
+            }
+            Some(Side::Right) => {
+                emit(Step::Command(Command::Compensate(Compensation::Right { register })))
+            }
             // CAMWorks switches it ON first and names the side in the next record.
             Some(Side::Off) | None => {}
         }

@@ -56,14 +56,8 @@ impl WaysRound {
             (off <= most && turns > 0).then_some(turns)
         };
         match closed {
-            true => Self {
-                forth: turns(0.0),
-                back: turns(0.0),
-            },
-            false => Self {
-                forth: turns(swept),
-                back: turns(TAU - swept),
-            },
+            true => Self { forth: turns(0.0), back: turns(0.0) },
+            false => Self { forth: turns(swept), back: turns(TAU - swept) },
         }
     }
 }
@@ -179,10 +173,9 @@ impl Interpreter {
             self.no_arc(record, "it begins at the last point, and there is none");
             return;
         };
-        let (Some(centre), Some(end)) = (
-            self.point(record, along.centre),
-            self.point(record, along.end),
-        ) else {
+        let (Some(centre), Some(end)) =
+            (self.point(record, along.centre), self.point(record, along.end))
+        else {
             return;
         };
         let Some(axis) = direction(Vector3::from(along.axis.unwrap_or([0.0, 0.0, 1.0]))) else {

@@ -51,9 +51,7 @@ impl Interpreter {
         }
         self.count(word, record, usage);
         if usage == Usage::Unknown && self.reading.unknown == Unknown::Pass {
-            emit(Step::Command(Command::Comment(as_remark(
-                record.text().into_owned(),
-            ))));
+            emit(Step::Command(Command::Comment(as_remark(record.text().into_owned()))));
         }
     }
 
@@ -112,11 +110,8 @@ impl Interpreter {
         arguments: &[Argument],
         emit: &mut impl FnMut(Step),
     ) -> bool {
-        let fitting = self
-            .reading
-            .rules
-            .iter()
-            .filter_map(|rule| Some((rule.fits(word, arguments)?, rule)));
+        let fitting =
+            self.reading.rules.iter().filter_map(|rule| Some((rule.fits(word, arguments)?, rule)));
         let Some((_, rule)) = fitting.max_by_key(|(words, _)| *words) else {
             return false;
         };

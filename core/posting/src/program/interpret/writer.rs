@@ -46,10 +46,9 @@ impl Writer {
     /// A word without a meaning of its own.
     pub(super) fn word(&mut self, word: &str) {
         // Found only in the files of CAMWorks and SolidWorks CAM.
-        self.camworks |= matches!(
-            word,
-            "BOX" | "MOVE_ATTRIB" | "OPFEATSTART" | "OPFEATEND" | "TRNTYP"
-        ) || word.starts_with("CSI_");
+        self.camworks |=
+            matches!(word, "BOX" | "MOVE_ATTRIB" | "OPFEATSTART" | "OPFEATEND" | "TRNTYP")
+                || word.starts_with("CSI_");
     }
 
     /// It is CAMWorks or SolidWorks CAM.

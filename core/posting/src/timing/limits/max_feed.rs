@@ -15,9 +15,7 @@ pub(super) struct MaxFeed {
 
 impl MaxFeed {
     pub(super) fn new(machine: &Machine) -> Self {
-        Self {
-            slowness: machine.slowness(),
-        }
+        Self { slowness: machine.slowness() }
     }
 }
 

@@ -24,8 +24,5 @@ pub trait Limit: std::fmt::Debug {
 
 /// The limits that hold on a machine.
 pub fn of(machine: &Machine) -> Vec<Box<dyn Limit>> {
-    vec![
-        Box::new(max_feed::MaxFeed::new(machine)),
-        Box::new(planned::PlannedFeed),
-    ]
+    vec![Box::new(max_feed::MaxFeed::new(machine)), Box::new(planned::PlannedFeed)]
 }

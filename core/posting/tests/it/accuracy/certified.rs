@@ -25,10 +25,7 @@ fn every_block_stays_within_what_is_certified() {
     for round in rounds.clone() {
         let profile = PROFILES[round % PROFILES.len()];
         let given = given(&mut rng);
-        let given = Given {
-            usual: given.usual || profile == Profile::Across,
-            ..given
-        };
+        let given = Given { usual: given.usual || profile == Profile::Across, ..given };
         let machine = machine(&mut rng, &given);
         let samples = if round % 40 == 0 { 10_000 } else { 60 };
         let count = if samples > 100 { 5 } else { 24 };
@@ -74,12 +71,7 @@ fn every_block_stays_within_what_is_certified() {
         println!("{config:?}: {sum} blocks");
     }
     println!("missed {missed} of the tolerance");
-    assert!(
-        faults.is_empty(),
-        "{} faults\n{}",
-        faults.len(),
-        faults.join("\n")
-    );
+    assert!(faults.is_empty(), "{} faults\n{}", faults.len(), faults.join("\n"));
     assert!(skipped * 5 < rounds.end, "{skipped}");
 }
 
@@ -111,10 +103,8 @@ fn the_certificate_is_close() {
         let blocks = blocks(&bench, &run);
         assert_eq!(blocks.len(), 1);
         let [tip, axis] = strays(&bench, &blocks[0], &path);
-        let certified = [
-            report.tip_deviation_mm.value,
-            report.axis_deviation_deg.value.to_radians(),
-        ];
+        let certified =
+            [report.tip_deviation_mm.value, report.axis_deviation_deg.value.to_radians()];
         assert!(tip <= certified[0] + 1e-8, "{tip} over {certified:?}");
         assert!(axis <= certified[1] + 1e-9, "{axis} over {certified:?}");
         let turns = (0..bench.reference.joints.len())
@@ -131,10 +121,7 @@ fn the_certificate_is_close() {
         }
     }
     println!("certified at most {worst:?} of the sampled, {counted} small moves");
-    assert!(
-        worst[0] < 1.05 && worst[1] < 1.05 && counted > 50,
-        "{worst:?}"
-    );
+    assert!(worst[0] < 1.05 && worst[1] < 1.05 && counted > 50, "{worst:?}");
 }
 
 /// Where the control keeps the tip, the point above it swings with the tool axis, which may bend more than any
@@ -166,11 +153,7 @@ fn a_point_above_a_tip_that_the_control_keeps_is_bounded() {
         let turns = [rng.range(0.0, 0.1), rng.range(0.0, 0.1)];
         let stops = [
             stop(V::zeros(), lean(a, c), None),
-            stop(
-                V::new(3.0, 1.0, 0.0),
-                lean(a + turns[0], c + turns[1]),
-                Some(100.0),
-            ),
+            stop(V::new(3.0, 1.0, 0.0), lean(a + turns[0], c + turns[1]), Some(100.0)),
         ];
         let run = bench.run(&text(&stops).0).good("a lean");
         let certified = run.report.as_ref().unwrap().tip_deviation_mm.value;
@@ -262,11 +245,7 @@ fn a_leading_edge_stays_within_what_is_certified() {
             let run = bench.run_with(&cl, &mut Shape::Fine, false).good(config);
             let report = run.report.as_ref().unwrap();
             if config.contains("reduce") && bend < 0.02 {
-                assert!(
-                    report.points_dropped > 20,
-                    "{config}: {}",
-                    report.points_dropped
-                );
+                assert!(report.points_dropped > 20, "{config}: {}", report.points_dropped);
             }
             let (bound, turn) = (
                 report.tip_deviation_mm.value + 1e-5,

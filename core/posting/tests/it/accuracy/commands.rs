@@ -7,11 +7,7 @@ fn arc(from: usize, count: usize) -> Vec<Stop> {
     (from..from + count)
         .map(|index| {
             let (sine, cosine) = libm::sincos(index as f64 * 1e-3);
-            stop(
-                V::new(50.0 * cosine, 50.0 * sine, 0.0),
-                V::z(),
-                Some(1000.0),
-            )
+            stop(V::new(50.0 * cosine, 50.0 * sine, 0.0), V::z(), Some(1000.0))
         })
         .collect()
 }
@@ -51,9 +47,7 @@ fn under_cutter_compensation_every_point_stays() {
         stops[100].before = "CUTCOM/LEFT,11\n".to_owned();
         stops[200].before = "CUTCOM/OFF\n".to_owned();
         let (cl, lines) = text(&stops);
-        let run = bench
-            .run_with(&cl, &mut Shape::Fine, false)
-            .good("compensated");
+        let run = bench.run_with(&cl, &mut Shape::Fine, false).good("compensated");
         for index in 99..200 {
             let of: Vec<_> = run
                 .motions()
@@ -63,15 +57,11 @@ fn under_cutter_compensation_every_point_stays() {
                 .collect();
             assert_eq!(of.len(), 1, "{config}: point {index}");
             let tip = V::new(of[0].words[0], of[0].words[1], of[0].words[2]);
-            assert!(
-                (tip - stops[index].tip).norm() < 2e-4,
-                "{config}: point {index}"
-            );
+            assert!((tip - stops[index].tip).norm() < 2e-4, "{config}: point {index}");
         }
         // The words that switch it stand between the same points as in the CL file.
-        let places: Vec<usize> = (0..run.asked.len())
-            .filter(|place| run.asked[*place].kind == "Compensate")
-            .collect();
+        let places: Vec<usize> =
+            (0..run.asked.len()).filter(|place| run.asked[*place].kind == "Compensate").collect();
         assert_eq!(places.len(), 2);
         for (place, index) in places.iter().zip([100, 200]) {
             assert_eq!(run.asked[place - 1].line, lines[index - 1], "{config}");
@@ -112,16 +102,11 @@ fn commands_stay_between_their_points() {
                     asked.words.is_empty() && asked.line == lines[77] - 1
                 })
                 .unwrap_or_else(|| panic!("{command} is not carried out"));
-            let before = run.asked[..place]
-                .iter()
-                .rfind(|asked| !asked.words.is_empty());
+            let before = run.asked[..place].iter().rfind(|asked| !asked.words.is_empty());
             let before = before.expect("a motion");
             assert_eq!(before.line, lines[76], "{command}, {config}");
             let tip = V::new(before.words[0], before.words[1], before.words[2]);
-            assert!(
-                (tip - stops[76].tip).norm() < 2e-4,
-                "{command}, {config}: {tip}"
-            );
+            assert!((tip - stops[76].tip).norm() < 2e-4, "{command}, {config}: {tip}");
             assert!(
                 run.asked[place..]
                     .iter()
@@ -151,12 +136,7 @@ fn moves_with_a_time_of_their_own_keep_it() {
     };
     for _ in rounds {
         let machine = machine(&mut rng, &given);
-        let stops = path(
-            &mut rng,
-            &bench_of(&machine, &given, ""),
-            Profile::Smooth,
-            12,
-        );
+        let stops = path(&mut rng, &bench_of(&machine, &given, ""), Profile::Smooth, 12);
         let (cl, lines) = text(&stops);
         let cl = cl.replace("FEDRAT/1000,MMPM", "FEDRAT/INVERS,4");
         for config in CONFIGS {
@@ -238,14 +218,8 @@ fn pieces_of_a_short_move_are_paced_as_the_move_is() {
         "placement = \"fewest\"",
         "method = \"compensate\"",
     ] {
-        let run = Bench::new(&format!("{machine}{config}\n"), 3, 100.0)
-            .run(cl)
-            .good(config);
-        times.push(
-            run.report
-                .as_ref()
-                .map_or(0.0, |report| report.cutting_time_s),
-        );
+        let run = Bench::new(&format!("{machine}{config}\n"), 3, 100.0).run(cl).good(config);
+        times.push(run.report.as_ref().map_or(0.0, |report| report.cutting_time_s));
     }
     for time in &times {
         assert!((time - times[0]).abs() < 0.05, "{times:?}");

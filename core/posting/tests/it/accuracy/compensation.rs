@@ -26,10 +26,7 @@ fn same_share(bench: &Bench, run: &Run, path: &[(V, V)], lines: &[u64]) -> Vec<f
     let made = blocks(bench, run);
     (1..path.len())
         .map(|index| {
-            let of: Vec<_> = made
-                .iter()
-                .filter(|block| block.lines[1] == lines[index])
-                .collect();
+            let of: Vec<_> = made.iter().filter(|block| block.lines[1] == lines[index]).collect();
             let mut most = 0.0f64;
             for (place, block) in of.iter().enumerate() {
                 for step in 0..=20 {
@@ -62,31 +59,22 @@ fn compensation_leaves_what_the_model_misses() {
     let peaks = same_share(&plain, &before, &path, &lines);
     let worst = most(&before, &plain);
     assert!((worst - 4.62).abs() < 0.005, "{worst}");
-    for (shape, expected, slack) in [
-        (Shape::Sine, 0.26, 0.006),
-        (Shape::Parabola, 0.006, 0.002),
-        (Shape::Fine, 0.0, 0.001),
-    ] {
+    for (shape, expected, slack) in
+        [(Shape::Sine, 0.26, 0.006), (Shape::Parabola, 0.006, 0.002), (Shape::Fine, 0.0, 0.001)]
+    {
         let bench = dual_table("post", 1e-5, "method = \"compensate\"\npoints = 199");
-        let run = bench
-            .run_with(&cl, &mut { shape }, true)
-            .good("compensated");
+        let run = bench.run_with(&cl, &mut { shape }, true).good("compensated");
         let after = most(&run, &bench);
         println!("{shape:?}: {worst} to {after} µm");
         assert!((after - expected).abs() < slack, "{shape:?}: {after}");
     }
     // Eq. 3.4 word for word: a point stands where the straight line of the axes leads, less the model's curve.
     let bench = dual_table("post", 0.0035, "method = \"compensate\"\npoints = 4");
-    let run = bench
-        .run_with(&cl, &mut Shape::Sine, true)
-        .good("compensated");
+    let run = bench.run_with(&cl, &mut Shape::Sine, true).good("compensated");
     let made = blocks(&bench, &run);
     let mut touched = 0;
     for (index, old) in blocks(&plain, &before).iter().enumerate() {
-        let of: Vec<_> = made
-            .iter()
-            .filter(|block| block.lines[1] == lines[index + 1])
-            .collect();
+        let of: Vec<_> = made.iter().filter(|block| block.lines[1] == lines[index + 1]).collect();
         let middle = old.at(&plain, 0.5).0 - (path[index].0 + path[index + 1].0) / 2.0;
         if middle.norm() <= 0.0035 - 1e-6 {
             // Within tolerance, and left as it is.
@@ -128,9 +116,7 @@ fn a_compensated_program_is_certified_and_untouched_moves_stay() {
             for points in [1, 3, 9, 50] {
                 let more = format!("method = \"compensate\"\npoints = {points}");
                 let bench = dual_table("post", tolerance, &more);
-                let run = bench
-                    .run_with(&cl, &mut { shape }, false)
-                    .good("compensated");
+                let run = bench.run_with(&cl, &mut { shape }, false).good("compensated");
                 let certified = run.report.as_ref().unwrap().tip_deviation_mm.value;
                 assert!(certified <= tolerance);
                 let given = Given {

@@ -44,10 +44,7 @@ fn off(bench: &Bench, stops: &[Stop], lines: &[u64], run: &Run) -> (f64, f64) {
     let edge = bench.machine.edge.expect("an edge");
     let mut most = 0.0f64;
     for block in blocks(bench, run).iter().filter(|block| !block.rapid) {
-        let leg = lines
-            .partition_point(|known| *known < block.lines[1])
-            .max(1)
-            - 1;
+        let leg = lines.partition_point(|known| *known < block.lines[1]).max(1) - 1;
         let (first, last) = (&stops[leg], &stops[leg + 1]);
         let way = last.tip - first.tip;
         let (from, to) = (block.at(bench, 0.0).0, block.at(bench, 1.0).0);

@@ -34,9 +34,7 @@ fn curve(bench: &Bench, blocks: &[Block]) -> (Vec<V>, Vec<f64>) {
         let [from, to] = pair else { continue };
         assert_ne!(to.kind, MotionKind::Position);
         let at = |t: f64| {
-            let (mut tip, axis) = bench
-                .reference
-                .forward(&between(&from.joints, &to.joints, t));
+            let (mut tip, axis) = bench.reference.forward(&between(&from.joints, &to.joints, t));
             if keeps {
                 tip = from.tip * (1.0 - t) + to.tip * t;
             }
@@ -60,31 +58,15 @@ fn curve(bench: &Bench, blocks: &[Block]) -> (Vec<V>, Vec<f64>) {
 /// The order of a program's blocks against a path; an error says by how much the whole is farther off than certified.
 fn in_order(bench: &Bench, stops: &[Stop], cl: &str, decimals: u8) -> Result<usize, String> {
     let mut seen = Seen::default();
-    let length = if bench.place("X") < bench.place("A") {
-        120.0
-    } else {
-        0.0
-    };
-    let job = Job {
-        tool_length: Some(length),
-        ..Job::default()
-    };
+    let length = if bench.place("X") < bench.place("A") { 120.0 } else { 0.0 };
+    let job = Job { tool_length: Some(length), ..Job::default() };
     let dialect = Recorder::new(&bench.machine, decimals);
-    let run = watched(
-        &bench.machine,
-        dialect,
-        cl,
-        job,
-        &mut Shape::Fine,
-        &mut [&mut seen],
-    );
+    let run = watched(&bench.machine, dialect, cl, job, &mut Shape::Fine, &mut [&mut seen]);
     let Some(report) = &run.report else {
         return Ok(0);
     };
-    let path: Vec<V> = wanted(stops, bench.machine.control_point.along)
-        .into_iter()
-        .map(|(tip, _)| tip)
-        .collect();
+    let path: Vec<V> =
+        wanted(stops, bench.machine.control_point.along).into_iter().map(|(tip, _)| tip).collect();
     let (curve, certified) = curve(bench, &seen.0);
     if keeps_within(&curve, &certified, &path) {
         return Ok(seen.0.len());
@@ -103,11 +85,7 @@ fn winding(rng: &mut Rng, tolerance: f64) -> Vec<Stop> {
     let mut tip = rng.point(20.0);
     let mut way = V::x();
     let (mut axis, about) = (rng.direction() * 0.3 + V::z(), rng.direction());
-    let leans = if rng.pick(2) == 0 {
-        0.0
-    } else {
-        rng.order(-4.0, -2.0)
-    };
+    let leans = if rng.pick(2) == 0 { 0.0 } else { rng.order(-4.0, -2.0) };
     let turn = rng.range(0.0, 3.2);
     let backs = 1 + rng.pick(4);
     (0..14)
@@ -156,12 +134,7 @@ fn the_certificate_keeps_the_order_of_the_path() {
         }
     }
     println!("blocks {blocks:?}");
-    assert!(
-        faults.is_empty(),
-        "{} faults\n{}",
-        faults.len(),
-        faults.join("\n")
-    );
+    assert!(faults.is_empty(), "{} faults\n{}", faults.len(), faults.join("\n"));
 }
 
 /// Forward to 9.67 and back to 7.326: whatever goes forward alone is 1.172 mm off somewhere.

@@ -26,10 +26,7 @@ fn fewest_needs_no_more_blocks_than_bisect() {
         stops.truncate(2);
         let (cl, _) = text(&stops);
         let path = wanted(&stops, 0.0);
-        let whole = Given {
-            tolerance: 100.0,
-            ..given.clone()
-        };
+        let whole = Given { tolerance: 100.0, ..given.clone() };
         let loose = machine.replace("tolerance = 0.0005\n", "tolerance = 100\n");
         let loose = bench_of(&loose, &whole, CONFIGS[0]);
         let whole = loose.run_with(&cl, &mut Shape::Fine, false).good("whole");
@@ -49,10 +46,7 @@ fn fewest_needs_no_more_blocks_than_bisect() {
         if (asked - libm::rint(asked)).abs() > 0.05 && asked > 1.0 {
             let asked = (libm::ceil(asked) as usize).max(2);
             exact[usize::from(even == asked)] += 1;
-            assert!(
-                even >= asked,
-                "round {round}: {even} pieces, {asked} asked for"
-            );
+            assert!(even >= asked, "round {round}: {even} pieces, {asked} asked for");
         }
     }
     println!("bisect, even, fewest: {sums:?}; even more than asked, as asked: {exact:?}");
@@ -115,16 +109,10 @@ fn points_of_a_circle_are_reduced_to_what_the_sagitta_allows() {
             let report = run.report.clone().unwrap();
             let made = blocks(&bench, &run);
             let theory = 6.0 * RADIUS / libm::sqrt(8.0 * bow * tolerance * RADIUS);
-            println!(
-                "{config}, {tolerance}: {} blocks, theory {theory}",
-                made.len()
-            );
+            println!("{config}, {tolerance}: {} blocks, theory {theory}", made.len());
             assert!((made.len() as f64) < theory * 1.12 + 24.0, "{}", made.len());
             // The number of points adds up.
-            assert_eq!(
-                report.moves + report.points_added - report.points_dropped,
-                report.blocks
-            );
+            assert_eq!(report.moves + report.points_added - report.points_dropped, report.blocks);
             let given = Given {
                 tables: 0,
                 usual: true,
@@ -175,14 +163,8 @@ fn what_is_left_out_whole_is_certified() {
     for placement in ["bisect", "fewest"] {
         let text = format!("{machine}placement = \"{placement}\"\n");
         let run = Bench::new(&text, 4, 100.0).run(&cl).good(placement);
-        let certified = run
-            .report
-            .as_ref()
-            .map(|report| report.tip_deviation_mm.value);
+        let certified = run.report.as_ref().map(|report| report.tip_deviation_mm.value);
         let certified = certified.unwrap_or_default();
-        assert!(
-            (1.99 * radius..=0.1).contains(&certified),
-            "{placement}: {certified}"
-        );
+        assert!((1.99 * radius..=0.1).contains(&certified), "{placement}: {certified}");
     }
 }

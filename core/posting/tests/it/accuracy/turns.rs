@@ -82,18 +82,12 @@ fn a_turn_on_the_spot_keeps_its_pace() {
     for config in CONFIGS {
         let more = format!("[accuracy]\ntolerance = 0.02\naxis_tolerance = 5\n{config}");
         let bench = Bench::new(&usual(true, "post", "cyclic = true", &more), 4, 100.0);
-        let run = bench
-            .run_with(&text(&stops).0, &mut Shape::Fine, false)
-            .good(config);
+        let run = bench.run_with(&text(&stops).0, &mut Shape::Fine, false).good(config);
         let a = bench.place("A");
         for block in &blocks(&bench, &run) {
             let turn = (block.to[a] - block.from[a]).abs().to_degrees();
             if let (Some(Feed::InverseTime(feed)), true) = (block.feed, turn > 0.0) {
-                assert!(
-                    turn * feed <= 100.0,
-                    "{config}: {} degrees a minute",
-                    turn * feed
-                );
+                assert!(turn * feed <= 100.0, "{config}: {} degrees a minute", turn * feed);
             }
         }
         times.push(run.report.unwrap().cutting_time_s);
@@ -120,9 +114,7 @@ fn a_turn_in_tiny_steps_keeps_its_pace() {
         for config in CONFIGS {
             let more = format!("[accuracy]\ntolerance = 0.2\naxis_tolerance = 5\n{config}");
             let bench = Bench::new(&usual(true, tcp, "cyclic = true", &more), 4, 100.0);
-            let run = bench
-                .run_with(&text(&stops).0, &mut Shape::Fine, false)
-                .good(config);
+            let run = bench.run_with(&text(&stops).0, &mut Shape::Fine, false).good(config);
             times.push(run.report.unwrap().cutting_time_s);
         }
         for time in &times {
@@ -190,12 +182,7 @@ fn a_pass_through_a_pole_is_made_by_every_placement() {
             }
         }
     }
-    assert!(
-        refused.is_empty(),
-        "{} refused\n{}",
-        refused.len(),
-        refused.join("\n")
-    );
+    assert!(refused.is_empty(), "{} refused\n{}", refused.len(), refused.join("\n"));
 }
 
 /// Where the control keeps the tip it measures the tip's words, not the way of the point above it: on the spot the
@@ -218,10 +205,7 @@ fn a_turn_on_the_spot_is_told_in_what_the_control_measures() {
             let (sine, cosine) = libm::sincos(degrees.to_radians());
             V::new(0.0, -sine, cosine)
         };
-        let stops = [
-            stop(V::zeros(), lean(10.0), None),
-            stop(V::zeros(), lean(10.3), Some(100.0)),
-        ];
+        let stops = [stop(V::zeros(), lean(10.0), None), stop(V::zeros(), lean(10.3), Some(100.0))];
         let run = bench.run(&text(&stops).0).good("a turn");
         let made = blocks(&bench, &run);
         let turn: f64 = made[0].to[bench.place("A")] - made[0].from[bench.place("A")];
@@ -262,10 +246,8 @@ fn an_axis_shown_over_one_turn_never_goes_the_other_way() {
             "[solution]\npole = \"{}\"\n{prefer}[accuracy]\ntolerance = 0.01\naxis_tolerance = 0.1\nrapid_tolerance = 0.5\ncorner = {}\n{config}",
             given.pole, given.corner
         );
-        let c = [
-            "cyclic = true\nrange = [0, 360]",
-            "cyclic = true\nrange = [-180, 180]",
-        ][rng.pick(2)];
+        let c =
+            ["cyclic = true\nrange = [0, 360]", "cyclic = true\nrange = [-180, 180]"][rng.pick(2)];
         let bench = Bench::new(&usual(rng.pick(2) == 0, given.tcp, c, &more), 4, 100.0);
         let mut tip = V::zeros();
         let mut azimuth = rng.range(-3.0, 3.0);
@@ -293,10 +275,5 @@ fn an_axis_shown_over_one_turn_never_goes_the_other_way() {
         }
     }
     println!("{programs} programs");
-    assert!(
-        faults.is_empty(),
-        "{} faults\n{}",
-        faults.len(),
-        faults.join("\n")
-    );
+    assert!(faults.is_empty(), "{} faults\n{}", faults.len(), faults.join("\n"));
 }

@@ -74,10 +74,7 @@ fn a_fork_swings_its_depth_axis() {
     let report = run.report.expect("a good run");
     assert_eq!(report.blocks_limited, 1);
     let z = report.axes.iter().find(|axis| axis.name == "Z").unwrap();
-    assert!(
-        (z.max - z.min - 7.596).abs() < 1e-3 && (z.way - 15.192).abs() < 2e-3,
-        "{z:?}"
-    );
+    assert!((z.max - z.min - 7.596).abs() < 1e-3 && (z.way - 15.192).abs() < 2e-3, "{z:?}");
     // The tip lies 500 mm below the head's turning point: Z is at its highest with the fork upright, 60 mm of the tip
     // and the end of travel at 50.
     let run = bench.run(&swing(100.0, 55.0, "FEDRAT/8000,MMPM"));
@@ -87,21 +84,13 @@ fn a_fork_swings_its_depth_axis() {
                   the control keeps the tip on its line while B turns from -10.000° to 10.000°";
     assert!(told.contains(wanted), "{told}");
     // No rotary axis turns the part: the mount that brings Z to its end is known, a little more for the bound.
-    let mut helps = run
-        .findings
-        .iter()
-        .filter_map(|finding| finding.help.as_ref());
+    let mut helps = run.findings.iter().filter_map(|finding| finding.help.as_ref());
     assert!(
         helps.any(|help| help.starts_with("--mount 0,0,-5.001 brings Z to this limit")),
         "{:?}",
         run.findings
     );
-    assert!(
-        bench
-            .run(&swing(100.0, 49.9, "FEDRAT/8000,MMPM"))
-            .report
-            .is_some()
-    );
+    assert!(bench.run(&swing(100.0, 49.9, "FEDRAT/8000,MMPM")).report.is_some());
 }
 
 /// A disc's centre 100 mm above the tip: the feed is the tip's, and the axes are judged by what the control makes of
@@ -185,11 +174,7 @@ fn a_feed_below_the_least_printed_is_not_raised_in_silence() {
                   the lowest would be F0.00001, on CL line 7";
     assert!(run.told().contains(wanted), "{}", run.told());
     let report = run.report.unwrap();
-    assert!(
-        (report.cutting_time_s - 60_000.0).abs() < 1e-6,
-        "{}",
-        report.cutting_time_s
-    );
+    assert!((report.cutting_time_s - 60_000.0).abs() < 1e-6, "{}", report.cutting_time_s);
 }
 
 /// Nobody knows how the tool comes to the first position: no axis may be too fast, whatever the direction.
@@ -250,16 +235,10 @@ fn a_dialect_says_that_joints_may_be_too_fast_in_a_rapid() {
         let bench = Bench::new(machine, 4, 0.0);
         let mut recorder = Recorder::new(&bench.machine, 4);
         recorder.capabilities = Capabilities::TCP_RAPIDS_PASS;
-        let job = Job {
-            tool_length: Some(0.0),
-            ..Job::default()
-        };
+        let job = Job { tool_length: Some(0.0), ..Job::default() };
         let cl = swing(1.0, -10.0, "RAPID");
         let run = watched(&bench.machine, recorder, &cl, job, &mut Samples, &mut []);
-        (
-            run.motions().last().unwrap().kind,
-            run.report.unwrap().fast_rapids.count,
-        )
+        (run.motions().last().unwrap().kind, run.report.unwrap().fast_rapids.count)
     };
     assert_eq!(last(&fork("control", "")), ("Linear", 0));
     assert_eq!(last(&fork("control", "rapid = \"rapid\"")), ("Rapid", 1));
@@ -273,10 +252,7 @@ fn a_dialect_says_that_joints_may_be_too_fast_in_a_rapid() {
 #[test]
 fn rapids_are_fed_where_every_axis_has_a_largest_feed_alone() {
     let text = fork("control", "rapid = \"linear\"").replace("max_feed = 2000\n", "");
-    let source = Source {
-        name: "machine.toml".to_owned(),
-        text,
-    };
+    let source = Source { name: "machine.toml".to_owned(), text };
     let faults = load(source, &[], &mut |_| Err(String::new())).expect_err("no feed for Z");
     assert!(
         faults.iter().any(
@@ -295,29 +271,13 @@ fn a_dialect_says_along_what_a_feed_counts() {
         let bench = Bench::new(&text, 4, 0.0);
         let mut recorder = Recorder::new(&bench.machine, 4);
         recorder.capabilities = writes;
-        let job = Job {
-            tool_length: Some(0.0),
-            ..Job::default()
-        };
+        let job = Job { tool_length: Some(0.0), ..Job::default() };
         let cl = swing(10.0, -10.0, "FEDRAT/300,MMPM");
-        feed_of(&watched(
-            &bench.machine,
-            recorder,
-            &cl,
-            job,
-            &mut Samples,
-            &mut [],
-        ))
+        feed_of(&watched(&bench.machine, recorder, &cl, job, &mut Samples, &mut []))
     };
     let linear = feed("", Capabilities::NONE);
     let combined = feed("", Capabilities::FEED_ALL_AXES);
     assert!(combined > linear + 1.0, "{combined} {linear}");
-    assert_eq!(
-        combined,
-        feed("feed_length = \"combined\"", Capabilities::NONE)
-    );
-    assert_eq!(
-        linear,
-        feed("feed_length = \"linear\"", Capabilities::FEED_ALL_AXES)
-    );
+    assert_eq!(combined, feed("feed_length = \"combined\"", Capabilities::NONE));
+    assert_eq!(linear, feed("feed_length = \"linear\"", Capabilities::FEED_ALL_AXES));
 }

@@ -8,11 +8,10 @@ fn trace(model: &Model, run: &Run) -> Vec<Vector3<f64>> {
     let mut points = Vec::new();
     for pair in motions.windows(2) {
         if pair[1].kind == "Linear" {
-            points.extend((0..=16).map(|step| {
-                model
-                    .at(&pair[0].words, &pair[1].words, f64::from(step) / 16.0)
-                    .0
-            }));
+            points
+                .extend((0..=16).map(|step| {
+                    model.at(&pair[0].words, &pair[1].words, f64::from(step) / 16.0).0
+                }));
         }
     }
     points
@@ -37,13 +36,9 @@ fn arcs_are_within_tolerance() {
                     turned += post_testmachines::turned(at(&pair[0]), at(&pair[1])).to_degrees();
                 }
                 for point in &points {
-                    let off = (libm::hypot(point.x, point.y) - 60.0)
-                        .abs()
-                        .max((point.z - 5.0).abs());
-                    assert!(
-                        off <= 0.005 + 1e-9,
-                        "{kind} {tcp} {sense} {end_axis}: {off}"
-                    );
+                    let off =
+                        (libm::hypot(point.x, point.y) - 60.0).abs().max((point.z - 5.0).abs());
+                    assert!(off <= 0.005 + 1e-9, "{kind} {tcp} {sense} {end_axis}: {off}");
                 }
                 assert!((turned - sweep).abs() < 0.01, "{kind}: {turned}");
                 assert!((points[points.len() - 1] - Vector3::new(0.0, 60.0, 5.0)).norm() < 0.0015);
@@ -69,9 +64,7 @@ fn spline(knots: &[f64], points: &[Vector3<f64>], u: f64) -> Vector3<f64> {
     points
         .iter()
         .enumerate()
-        .fold(Vector3::zeros(), |sum, (index, point)| {
-            sum + point * basis(knots, index, 3, u)
-        })
+        .fold(Vector3::zeros(), |sum, (index, point)| sum + point * basis(knots, index, 3, u))
 }
 
 #[test]
@@ -108,10 +101,7 @@ fn splines_are_within_tolerance() {
     };
     let (there, back) = (far(&traced, &curve), far(&curve, &traced));
     println!("spline: {there} mm from the curve, the curve {back} mm from it");
-    assert!(
-        there <= 0.005 + 1e-5 && back <= 0.005 + 1e-5,
-        "{there} {back}"
-    );
+    assert!(there <= 0.005 + 1e-5 && back <= 0.005 + 1e-5, "{there} {back}");
 }
 
 /// A cycle becomes moves along the tool axis, in the order in which it drills.
@@ -122,12 +112,7 @@ fn cycles_are_drilled_in_order() {
         run.asked
             .iter()
             .filter(|asked| ["Rapid", "Linear", "Dwell"].contains(&asked.kind))
-            .map(|asked| {
-                (
-                    asked.kind,
-                    asked.words.get(2).copied().unwrap_or(asked.value),
-                )
-            })
+            .map(|asked| (asked.kind, asked.words.get(2).copied().unwrap_or(asked.value)))
             .collect()
     };
     let text = "UNITS/MM\nRAPID\nGOTO/0,0,50\nCYCLE/DEEP,DEPTH,3.5,STEP,2.0,MMPM,50,CLEAR,1\nGOTO/10,20,0\nGOTO/30,20,0\nCYCLE/OFF\nRAPID\nGOTO/30,20,50\n";
@@ -143,11 +128,7 @@ fn cycles_are_drilled_in_order() {
     // Aside at the height where the tool stands, and only then down.
     let expected: Vec<_> = [&[("Rapid", 50.0)], &hole[..], &hole[..], &[("Rapid", 50.0)]].concat();
     assert_eq!(heights(&run_deep), expected);
-    let feeds: Vec<_> = run_deep
-        .asked
-        .iter()
-        .filter_map(|asked| asked.feed)
-        .collect();
+    let feeds: Vec<_> = run_deep.asked.iter().filter_map(|asked| asked.feed).collect();
     assert_eq!(feeds, [Feed::PerMinute(50.0); 4]);
 
     let text = "UNITS/MM\nRAPID\nGOTO/0,0,50\nCYCLE/DRILL,RAPTO,3,FEDTO,-10,RTRCTO,25,MMPM,250,DWELL,0.5\nGOTO/10,20,0\nCYCLE/OFF\n";
@@ -168,10 +149,7 @@ fn cycles_are_drilled_in_order() {
     let text = "UNITS/MM\nMULTAX/ON\nRAPID\nGOTO/0,30,40,0,0.6,0.8\nCYCLE/DRILL,RAPTO,5,FEDTO,-10,MMPM,250\nGOTO/0,0,0\nCYCLE/OFF\n";
     let tips = words(&model, text);
     for (words, height) in tips[1..].iter().zip([5.0, -10.0, 5.0]) {
-        assert!(
-            near(&words[..3], &[0.0, 0.6 * height, 0.8 * height]),
-            "{tips:?}"
-        );
+        assert!(near(&words[..3], &[0.0, 0.6 * height, 0.8 * height]), "{tips:?}");
     }
     assert_eq!(tips.len(), 4);
 }

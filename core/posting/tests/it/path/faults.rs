@@ -27,16 +27,11 @@ fn faults_say_where_what_and_how_much() {
             (6, "axis", "GOTO/2,0,0,0,0,0"),
         ]
     );
-    for (finding, words) in run.findings.iter().zip([
-        ["X", "95.000 mm", "90.000 mm"],
-        ["A", "150.000°", "100.000°"],
-    ]) {
+    for (finding, words) in
+        run.findings.iter().zip([["X", "95.000 mm", "90.000 mm"], ["A", "150.000°", "100.000°"]])
+    {
         for word in words {
-            assert!(
-                finding.message.contains(word),
-                "{word}: {}",
-                finding.message
-            );
+            assert!(finding.message.contains(word), "{word}: {}", finding.message);
         }
         assert!(finding.help.is_some());
     }
@@ -45,18 +40,11 @@ fn faults_say_where_what_and_how_much() {
     let nutating = self::model("nutating", false, WIDE, &[]);
     let run = nutating.run("UNITS/MM\nGOTO/0,0,0,0,0,-1\n");
     assert_eq!(run.findings[0].code, "out-of-reach");
-    assert!(
-        run.findings[0].message.contains("90.0000°"),
-        "{}",
-        run.findings[0].message
-    );
+    assert!(run.findings[0].message.contains("90.0000°"), "{}", run.findings[0].message);
 
     let run = nutating.run("UNITS/MM\nGOTO/0,0,0,0,0,1\nGOTO/1,0,0\n");
     assert_eq!(
-        (
-            run.findings[0].code,
-            run.findings[0].place.as_ref().unwrap().line
-        ),
+        (run.findings[0].code, run.findings[0].place.as_ref().unwrap().line),
         ("no-feed", 3)
     );
 }
@@ -67,9 +55,7 @@ fn faults_say_where_what_and_how_much() {
 fn no_numbers_make_it_stumble() {
     let (rounds, mut rng) = randomised(150, 9);
     // The further on, the worse.
-    let odd = [
-        0.0, 1.0, -1.0, 0.5, 1e-7, -0.0, 1e-12, 1e3, 1e9, 1e30, 1e300,
-    ];
+    let odd = [0.0, 1.0, -1.0, 0.5, 1e-7, -0.0, 1e-12, 1e3, 1e9, 1e30, 1e300];
     let (mut good, mut bad) = (0, 0);
     for kind in ["trunnion", "head", "nutating"] {
         for tcp in [false, true] {
@@ -123,15 +109,10 @@ fn the_first_fault_of_a_file_is_told_first() {
         text += &format!("GOTO/1,2,{letters}\n");
     }
     let run = model.run(&text);
-    let errors: Vec<_> = run
-        .findings
-        .iter()
-        .filter(|finding| finding.severity == Severity::Error)
-        .collect();
+    let errors: Vec<_> =
+        run.findings.iter().filter(|finding| finding.severity == Severity::Error).collect();
     assert_eq!(errors.len(), MOST_FAULTS);
     assert_eq!(errors[0].code, "over-travel", "{}", run.told());
-    let lines = errors
-        .iter()
-        .map(|finding| finding.place.as_ref().map(|place| place.line));
+    let lines = errors.iter().map(|finding| finding.place.as_ref().map(|place| place.line));
     assert!(lines.is_sorted());
 }

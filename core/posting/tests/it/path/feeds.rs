@@ -92,18 +92,12 @@ fn fastest(tcp: bool) -> f64 {
 #[test]
 fn feeds_are_those_of_the_tip_and_no_axis_is_too_fast() {
     let fastest = fastest(false);
-    assert!(
-        fastest <= 1.0 + 1e-6,
-        "an axis at {fastest} of its largest feed"
-    );
+    assert!(fastest <= 1.0 + 1e-6, "an axis at {fastest} of its largest feed");
 }
 
 /// The same where the control keeps the tip: it divides the way between the printed tips by F.
 #[test]
 fn feeds_are_those_of_the_tip_and_no_axis_is_too_fast_under_tcp() {
     let fastest = fastest(true);
-    assert!(
-        fastest <= 1.0 + 1e-6,
-        "an axis at {fastest} of its largest feed"
-    );
+    assert!(fastest <= 1.0 + 1e-6, "an axis at {fastest} of its largest feed");
 }

@@ -29,10 +29,7 @@ impl Seen {
 
 /// A job with a tool of so many mm.
 fn job(length: f64) -> Job {
-    Job {
-        tool_length: Some(length),
-        ..Job::default()
-    }
+    Job { tool_length: Some(length), ..Job::default() }
 }
 
 #[test]
@@ -58,9 +55,7 @@ fn observers_see_the_blocks_that_the_dialect_is_asked_for() {
             for (block, asked) in written.iter().zip(&motions) {
                 assert_eq!(block.words[..asked.words.len()], asked.words[..]);
                 assert_eq!((block.line, block.time.feed), (asked.line, asked.feed));
-                let tool = asked
-                    .tool
-                    .expect("a motion that says where the tool stands");
+                let tool = asked.tool.expect("a motion that says where the tool stands");
                 assert_eq!(tool.tip, <[f64; 3]>::from(block.tip));
                 // By isometries: the printed words bring the tool there.
                 let (tip, axis) = model.reference.forward(&model.positions(&asked.words));
@@ -94,15 +89,7 @@ fn commands_stand_where_they_stood() {
     let mut seen = Seen::default();
     let recorder = Recorder::new(&model.machine, 3);
     let job = job(model.length);
-    watched(
-        &model.machine,
-        recorder,
-        text,
-        job,
-        &mut Samples,
-        &mut [&mut seen],
-    )
-    .good("a job");
+    watched(&model.machine, recorder, text, job, &mut Samples, &mut [&mut seen]).good("a job");
     let lines: Vec<(u64, bool)> = seen
         .0
         .iter()

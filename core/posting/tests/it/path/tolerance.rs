@@ -64,11 +64,7 @@ fn judge(model: &Model, points: &[Point], run: &Run) -> Worst {
             line(index),
             tip - target.tip
         );
-        assert!(
-            angle(axis, to_axis).to_degrees() < 0.05,
-            "line {}",
-            line(index)
-        );
+        assert!(angle(axis, to_axis).to_degrees() < 0.05, "line {}", line(index));
     }
     worst
 }
@@ -104,10 +100,8 @@ fn check(what: &str, model: &Model, points: &[Point]) -> Worst {
         panic!("{what}: {:#?}", run.findings);
     };
     let worst = judge(model, points, &run);
-    for (mark, kind) in [
-        (report.tip_deviation_mm, "Linear"),
-        (report.rapid_deviation_mm, "Rapid"),
-    ] {
+    for (mark, kind) in [(report.tip_deviation_mm, "Linear"), (report.rapid_deviation_mm, "Rapid")]
+    {
         // The recorder writes one line an event.
         if mark.block > 0 {
             let block = &run.asked[mark.block as usize - 1];
@@ -116,20 +110,12 @@ fn check(what: &str, model: &Model, points: &[Point]) -> Worst {
     }
     for range in &report.axes {
         let place = model.place(&range.name);
-        let unit = if model.reference.joints[place].rotary {
-            1f64.to_degrees()
-        } else {
-            1.0
-        };
-        let values: Vec<f64> = passed(model, &run)
-            .iter()
-            .map(|words| model.positions(words)[place] * unit)
-            .collect();
+        let unit = if model.reference.joints[place].rotary { 1f64.to_degrees() } else { 1.0 };
+        let values: Vec<f64> =
+            passed(model, &run).iter().map(|words| model.positions(words)[place] * unit).collect();
         let (least, most) = values
             .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-                (a.min(*x), b.max(*x))
-            });
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
         // Under TCP the control brings the axes to where the rounded tip wants them.
         let rounding = if model.tcp { 2e-3 } else { 1e-6 };
         assert!(
@@ -144,10 +130,7 @@ fn check(what: &str, model: &Model, points: &[Point]) -> Worst {
         report.tip_deviation_mm.value <= 0.005 && report.rapid_deviation_mm.value <= 0.5,
         "{what}: {report:?}"
     );
-    assert!(
-        report.axis_deviation_deg.value <= 0.05,
-        "{what}: {report:?}"
-    );
+    assert!(report.axis_deviation_deg.value <= 0.05, "{what}: {report:?}");
     assert!(
         worst.tip <= report.tip_deviation_mm.value + 1e-9,
         "{what}: {worst:?} {:?}",
@@ -222,11 +205,7 @@ fn pass(beside: f64, count: usize, turned: f64) -> Vec<Point> {
                 1.0,
             );
             let axis = Rotation3::from_axis_angle(&Vector3::z_axis(), turned) * axis;
-            point(
-                Vector3::new(40.0 * s, 10.0, 5.0 * s * s),
-                axis.normalize(),
-                false,
-            )
+            point(Vector3::new(40.0 * s, 10.0, 5.0 * s * s), axis.normalize(), false)
         })
         .collect()
 }
@@ -242,14 +221,9 @@ fn cuts_over_and_beside_the_pole_are_within_tolerance() {
             for (tilt, beside) in [(WIDE, 6), ([-120.0, 0.0], 6), ([0.0, 120.0], 5)] {
                 let model = model(kind, tcp, tilt, &[]);
                 for beside in &BESIDE[..beside] {
-                    for (count, turned) in [
-                        (1, 0.0),
-                        (1, 0.7),
-                        (4, 0.0),
-                        (5, 0.7),
-                        (200, 0.0),
-                        (200, 0.7),
-                    ] {
+                    for (count, turned) in
+                        [(1, 0.0), (1, 0.7), (4, 0.0), (5, 0.7), (200, 0.0), (200, 0.7)]
+                    {
                         let what = format!(
                             "{kind}, tcp {tcp}, tilt {tilt:?}, {beside}° beside, {count} cuts, turned {turned}"
                         );
@@ -268,12 +242,7 @@ fn a_hair_beside_the_pole_is_not_over_travel() {
     for kind in ["trunnion", "head", "nutating"] {
         for tilt in [[-120.0, 0.0], [0.0, 120.0]] {
             let model = model(kind, false, tilt, &[]);
-            for axis in [
-                "0.0000002,0,1",
-                "-0.0000002,0,1",
-                "0,0.0000002,1",
-                "0,-0.0000002,1",
-            ] {
+            for axis in ["0.0000002,0,1", "-0.0000002,0,1", "0,0.0000002,1", "0,-0.0000002,1"] {
                 let run = model.run(&format!("UNITS/MM\nGOTO/1,2,3,{axis}\n"));
                 assert!(
                     run.report.is_some(),

@@ -38,31 +38,11 @@ fn depths_of_either_sign_go_down() {
     const DRILLED: &str = "R 0,0,2; R 0,0,2; F50 0,0,-5; R 0,0,2";
     const PECKED: &str = "R 0,0,2; R 0,0,2; F50 0,0,-3; R 0,0,2; R 0,0,-2.5; F50 0,0,-5; R 0,0,2";
     table(&[
-        (
-            "CYCLE/DRILL,FEDTO,-5,RAPTO,2,MMPM,50;GOTO/0,0,0",
-            DRILLED,
-            "",
-        ),
-        (
-            "CYCLE/DRILL,FEDTO,5,RAPTO,2,MMPM,50;GOTO/0,0,0",
-            DRILLED,
-            "",
-        ),
-        (
-            "CYCLE/DRILL,5,IPM,2,2;GOTO/0,0,0",
-            &DRILLED.replace("F50", "F50.8"),
-            "",
-        ),
-        (
-            "CYCLE/DEEP,FEDTO,-5,STEP,3,RAPTO,2,MMPM,50;GOTO/0,0,0",
-            PECKED,
-            "",
-        ),
-        (
-            "CYCLE/DEEP,FEDTO,5,STEP,-3,RAPTO,2,MMPM,50;GOTO/0,0,0",
-            PECKED,
-            "",
-        ),
+        ("CYCLE/DRILL,FEDTO,-5,RAPTO,2,MMPM,50;GOTO/0,0,0", DRILLED, ""),
+        ("CYCLE/DRILL,FEDTO,5,RAPTO,2,MMPM,50;GOTO/0,0,0", DRILLED, ""),
+        ("CYCLE/DRILL,5,IPM,2,2;GOTO/0,0,0", &DRILLED.replace("F50", "F50.8"), ""),
+        ("CYCLE/DEEP,FEDTO,-5,STEP,3,RAPTO,2,MMPM,50;GOTO/0,0,0", PECKED, ""),
+        ("CYCLE/DEEP,FEDTO,5,STEP,-3,RAPTO,2,MMPM,50;GOTO/0,0,0", PECKED, ""),
         (
             "CYCLE/DRILL,FEDTO,5,RAPTO,2,MMPM,50;GOTO/0,0,0,1,0,0",
             "R 2,0,0 @1,0,0; R 2,0,0 @1,0,0; F50 -5,0,0 @1,0,0; R 2,0,0 @1,0,0",

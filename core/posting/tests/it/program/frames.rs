@@ -10,16 +10,11 @@ fn nothing_starts_from_a_point_that_was_left() {
     for (before, left) in [("", ""), ("LOADTL/2", "T2/2"), ("GOHOME", "home")] {
         let (text, steps) = match left {
             "" => (String::new(), String::new()),
-            _ => (
-                format!("LOADTL/1;GOTO/10,0,0;{before};"),
-                format!("T1/1; F100 10,0,0; {left}"),
-            ),
+            _ => (format!("LOADTL/1;GOTO/10,0,0;{before};"), format!("T1/1; F100 10,0,0; {left}")),
         };
-        for (word, code) in [
-            ("GODLTA/1,0,0", "error godlta"),
-            ("GODLTA/5", "error godlta"),
-            (ARC, "error arc"),
-        ] {
+        for (word, code) in
+            [("GODLTA/1,0,0", "error godlta"), ("GODLTA/5", "error godlta"), (ARC, "error arc")]
+        {
             let text = format!("{text}{word}");
             let run = run(&text);
             assert_eq!(run.findings(), code, "{text}");
@@ -27,16 +22,8 @@ fn nothing_starts_from_a_point_that_was_left() {
         }
     }
     table(&[
-        (
-            "LOADTL/1;GOTO/10,0,0;LOADTL/1;GODLTA/1,2,3",
-            "T1/1; F100 10,0,0; F100 11,2,3",
-            "",
-        ),
-        (
-            "LOADTL/1;FROM/1,1,1;GODLTA/5",
-            "T1/1; from 1,1,1; F100 1,1,6",
-            "",
-        ),
+        ("LOADTL/1;GOTO/10,0,0;LOADTL/1;GODLTA/1,2,3", "T1/1; F100 10,0,0; F100 11,2,3", ""),
+        ("LOADTL/1;FROM/1,1,1;GODLTA/5", "T1/1; from 1,1,1; F100 1,1,6", ""),
         ("GOHOME/5,5,5;GODLTA/1,0,0", "R 5,5,5; F100 6,5,5", ""),
     ]);
 }
@@ -52,21 +39,9 @@ fn index_moves_turn_points_and_axes() {
         // CAMWorks states the angle anew: it is no step.
         (&format!("{A};{A};{GOTO}"), A_STEPS, ""),
         (&format!("ROTABL/AAXIS,90;{GOTO}"), A_STEPS, ""),
-        (
-            &format!("ROTABL/AAXIS,INCR,45;ROTABL/AAXIS,INCR,45;{GOTO}"),
-            A_STEPS,
-            "",
-        ),
-        (
-            &format!("ROTABL/1.570796,AAXIS,TABLE,CLW;{GOTO}"),
-            "F100 1,3,-2 @0,1,0",
-            "",
-        ),
-        (
-            &format!("ROTABL/1.570796,BAXIS,TABLE,CCLW;{GOTO}"),
-            "F100 3,2,-1 @1,0,0",
-            "",
-        ),
+        (&format!("ROTABL/AAXIS,INCR,45;ROTABL/AAXIS,INCR,45;{GOTO}"), A_STEPS, ""),
+        (&format!("ROTABL/1.570796,AAXIS,TABLE,CLW;{GOTO}"), "F100 1,3,-2 @0,1,0", ""),
+        (&format!("ROTABL/1.570796,BAXIS,TABLE,CCLW;{GOTO}"), "F100 3,2,-1 @1,0,0", ""),
         (&format!("{A};GOTO/1,2,3,1,0,0"), "F100 1,-3,2 @1,0,0", ""),
         (&format!("{A};GOTO/1,2,3,0,1,0"), "F100 1,-3,2", ""),
         (
@@ -75,11 +50,7 @@ fn index_moves_turn_points_and_axes() {
             "",
         ),
         // A before B, as the chain of the table has them.
-        (
-            &format!("{A};ROTABL/1.570796,BAXIS,TABLE,CCLW;{GOTO}"),
-            "F100 3,1,2 @1,0,0",
-            "",
-        ),
+        (&format!("{A};ROTABL/1.570796,BAXIS,TABLE,CCLW;{GOTO}"), "F100 3,1,2 @1,0,0", ""),
         (&format!("TLAXIS/0,-1,0;{A};{GOTO}"), A_STEPS, ""),
         (&format!("{A};TLAXIS/0,-2,0;{GOTO}"), A_STEPS, ""),
         (
@@ -92,11 +63,7 @@ fn index_moves_turn_points_and_axes() {
             "F100 1,-2.607,2.491 @0,-0.985,0.174",
             "error rotabl",
         ),
-        (
-            &format!("ROTABL/ATANGL,90;{GOTO}"),
-            "F100 1,2,3",
-            "error rotabl",
-        ),
+        (&format!("ROTABL/ATANGL,90;{GOTO}"), "F100 1,2,3", "error rotabl"),
         ("TLAXIS/0,-1,0;GOTO/1,2,3", "F100 1,2,3 @0,-1,0", ""),
     ]);
 }
@@ -106,10 +73,7 @@ fn index_moves_turn_points_and_axes() {
 #[test]
 fn nothing_starts_from_a_point_of_another_index() {
     const INDEX: &str = "GOTO/10,0,20;ROTABL/1.570796,AAXIS,TABLE,CCLW";
-    for (word, code) in [
-        ("GODLTA/1,0,0", "godlta"),
-        ("CIRCLE/0,0,20,0,0,1;GOTO/0,10,20", "arc"),
-    ] {
+    for (word, code) in [("GODLTA/1,0,0", "godlta"), ("CIRCLE/0,0,20,0,0,1;GOTO/0,10,20", "arc")] {
         let text = format!("{INDEX};{word}");
         run(&text).has_error(code, &text);
     }
@@ -137,10 +101,7 @@ fn msys_takes_points_and_axes_when_told_to() {
         (true, "UNITS/MM", "R 2,-1,3 @0,-1,0", ""),
         (true, "UNITS/INCH", "R 50.8,-25.4,76.2 @0,-1,0", ""),
     ] {
-        let reading = Reading {
-            apply_msys: apply,
-            ..Reading::default()
-        };
+        let reading = Reading { apply_msys: apply, ..Reading::default() };
         let run = Run::of(reading, &format!("{text};{MSYS};GOTO/11,22,33,1,0,0"));
         assert_eq!(run.steps(), steps, "{apply} {text}");
         assert_eq!(run.findings(), findings, "{apply} {text}");

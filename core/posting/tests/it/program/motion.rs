@@ -68,11 +68,7 @@ fn arcs_go_the_way_that_their_form_says() {
 fn rapid_is_for_one_move_and_as_a_feed_until_the_next_feed() {
     table(&[
         ("RAPID;GOTO/1,0,0;GOTO/2,0,0", "R 1,0,0; F100 2,0,0", ""),
-        (
-            "RAPID;FEDRAT/50;GOTO/1,0,0;GOTO/2,0,0",
-            "R 1,0,0; F50 2,0,0",
-            "",
-        ),
+        ("RAPID;FEDRAT/50;GOTO/1,0,0;GOTO/2,0,0", "R 1,0,0; F50 2,0,0", ""),
         ("RAPID;GOHOME;GOTO/1,0,0", "home; F100 1,0,0", ""),
         ("GOHOME/5,5,5;GOTO/1,0,0", "R 5,5,5; F100 1,0,0", ""),
         ("RAPID;GOHOME/5,5,5;GOTO/1,0,0", "R 5,5,5; F100 1,0,0", ""),
@@ -81,11 +77,7 @@ fn rapid_is_for_one_move_and_as_a_feed_until_the_next_feed() {
             "R 1,0,0; R 2,0,0; F50 3,0,0",
             "",
         ),
-        (
-            "FEDRAT/RAPID;RAPID;GOTO/1,0,0;FEDRAT/50;GOTO/2,0,0",
-            "R 1,0,0; F50 2,0,0",
-            "",
-        ),
+        ("FEDRAT/RAPID;RAPID;GOTO/1,0,0;FEDRAT/50;GOTO/2,0,0", "R 1,0,0; F50 2,0,0", ""),
         (
             "CYCLE/DRILL,FEDTO,-1,RAPTO,2,MMPM,50;RAPID;GOTO/0,0,0;CYCLE/OFF;GOTO/1,0,0",
             "R 0,0,2; R 0,0,2; F50 0,0,-1; R 0,0,2; F100 1,0,0",
@@ -94,10 +86,7 @@ fn rapid_is_for_one_move_and_as_a_feed_until_the_next_feed() {
     ]);
     let text = "UNITS/MM;GOTO/1,0,0;GOTO/2,0,0";
     let run = Run::of(Reading::default(), text);
-    assert_eq!(
-        (run.steps().as_str(), run.findings().as_str()),
-        ("R 1,0,0", "error no-feed")
-    );
+    assert_eq!((run.steps().as_str(), run.findings().as_str()), ("R 1,0,0", "error no-feed"));
 }
 
 /// A feed in the wrong unit is 25.4 times or a thousand times too fast: the cutter breaks.
@@ -147,11 +136,7 @@ fn a_feed_per_revolution_goes_with_the_speed_at_the_move() {
             "S1000; F100 1,0,0; S200; F20 2,0,0",
             "",
         ),
-        (
-            "CUTTER/10;FEDRAT/MMPR,0.1;SPINDL/SMM,31.4159265;GOTO/1,0,0",
-            "S1000; F100 1,0,0",
-            "",
-        ),
+        ("CUTTER/10;FEDRAT/MMPR,0.1;SPINDL/SMM,31.4159265;GOTO/1,0,0", "S1000; F100 1,0,0", ""),
         (
             "CYCLE/DRILL,FEDTO,-1,RAPTO,2,MMPR,0.1;SPINDL/RPM,500;GOTO/0,0,0",
             "S500; R 0,0,2; R 0,0,2; F50 0,0,-1; R 0,0,2",
@@ -189,10 +174,7 @@ fn overridden_units_take_the_declared_feed_words_with_them() {
         (Units::Inch, "FEDRAT/MMPM,10", "F10 25.4,0,0"),
     ];
     for (units, text, steps) in cases {
-        let reading = Reading {
-            units: Some(units),
-            ..Reading::default()
-        };
+        let reading = Reading { units: Some(units), ..Reading::default() };
         let run = Run::of(reading, &format!("{text};GOTO/1,0,0"));
         assert_eq!(run.steps(), steps, "{units:?} {text}");
         assert_eq!(run.findings(), "", "{units:?} {text}");
@@ -202,17 +184,10 @@ fn overridden_units_take_the_declared_feed_words_with_them() {
 /// Half a file in mm and half in inches: the second half is cut 25.4 times too large, or too small.
 #[test]
 fn units_come_before_what_is_read_in_them() {
-    let told = |units| Reading {
-        units,
-        ..Reading::default()
-    };
+    let told = |units| Reading { units, ..Reading::default() };
     for (units, text, findings) in [
         (None, "UNITS/INCH;GOTO/1,0,0", ""),
-        (
-            None,
-            "UNITS/INCH;FROM/0,0,0;RAPID;GOTO/1,0,0;UNITS/INCH",
-            "",
-        ),
+        (None, "UNITS/INCH;FROM/0,0,0;RAPID;GOTO/1,0,0;UNITS/INCH", ""),
         (None, "GOTO/1,0,0;UNITS/MM", ""),
         (None, "GOTO/1,0,0;UNITS/INCH", "error units"),
         (None, "FROM/1,0,0;UNITS/INCH", "error units"),

@@ -13,11 +13,7 @@ fn tools_and_registers() {
         ("LOADTL/3,OSETNO,0", "", "error tool"),
         // CATIA writes a register behind the number, others pockets: nothing of it goes without a word.
         ("LOADTL/3,5;GOTO/1,0,0", "T3/3; F100 1,0,0", "warning tool"),
-        (
-            "LOADTL/3,IN,4;GOTO/1,0,0",
-            "T3/3; F100 1,0,0",
-            "warning tool",
-        ),
+        ("LOADTL/3,IN,4;GOTO/1,0,0", "T3/3; F100 1,0,0", "warning tool"),
         (
             "LOADTL/3;GOTO/1,0,0;LOADTL/3;GOTO/2,0,0;LOADTL/3,ADJUST,3",
             "T3/3; F100 1,0,0; F100 2,0,0",
@@ -42,10 +38,7 @@ fn the_told_tool_is_loaded_before_anything_that_needs_it() {
             "T5/5; S1000; Coolant(Flood); F100 1,2,3; F100 2,2,3",
         ),
         ("GOTO/1,2,3", "T5/5; F100 1,2,3"),
-        (
-            "LOADTL/5;SPINDL/RPM,1000;GOTO/1,2,3",
-            "T5/5; S1000; F100 1,2,3",
-        ),
+        ("LOADTL/5;SPINDL/RPM,1000;GOTO/1,2,3", "T5/5; S1000; F100 1,2,3"),
     ] {
         assert_eq!(with_tool(text), (steps.to_owned(), String::new()), "{text}");
     }
@@ -63,10 +56,7 @@ fn the_told_tool_is_loaded_before_compensation() {
 
 /// Steps and findings with tool 5 told.
 fn with_tool(text: &str) -> (String, String) {
-    let reading = Reading {
-        tool: Some(5),
-        ..Reading::default()
-    };
+    let reading = Reading { tool: Some(5), ..Reading::default() };
     let run = Run::of(reading, &format!("UNITS/MM;FEDRAT/100;{text}"));
     (run.steps(), run.findings())
 }
@@ -125,24 +115,14 @@ fn compensation_on_the_tools_centre_is_wear_or_refused() {
         ("MOVE_ATTRIB/LEADIN", Wear, "warning compensation"),
         ("MOVE_ATTRIB/LEADIN", Contour, ""),
     ] {
-        let reading = Reading {
-            compensation_on_centre: on_centre,
-            ..Reading::default()
-        };
+        let reading = Reading { compensation_on_centre: on_centre, ..Reading::default() };
         let text = format!("UNITS/MM;FEDRAT/100;LOADTL/1;{before};{cut}");
         let run = Run::of(reading.clone(), &text);
         assert_eq!(run.findings(), findings, "{before}");
-        assert_eq!(
-            run.steps(),
-            "T1/1; G41 7; F100 1,0,0; G40; F100 2,0,0; G42 7; F100 3,0,0"
-        );
+        assert_eq!(run.steps(), "T1/1; G41 7; F100 1,0,0; G40; F100 2,0,0; G42 7; F100 3,0,0");
         // It says whose register, and names the option.
         if let [told] = run.findings.as_slice() {
-            let text = format!(
-                "{}; {}",
-                told.message,
-                told.help.clone().unwrap_or_default()
-            );
+            let text = format!("{}; {}", told.message, told.help.clone().unwrap_or_default());
             assert!(text.contains("register 7"), "{text}");
             let names_it = text.contains("compensation_on_centre = \"wear\"");
             assert_eq!(names_it, on_centre != Wear, "{text}");
@@ -158,32 +138,17 @@ fn compensation_on_the_tools_centre_is_wear_or_refused() {
 #[test]
 fn a_second_cutter_without_a_tool_change_is_refused() {
     for (text, findings) in [
-        (
-            "CUTTER/10;LOADTL/1;GOTO/1,0,0;CUTTER/6;GOTO/2,0,0",
-            "error cutter",
-        ),
+        ("CUTTER/10;LOADTL/1;GOTO/1,0,0;CUTTER/6;GOTO/2,0,0", "error cutter"),
         (
             "CUTTER/10;LOADTL/1;GOTO/1,0,0;CUTTER/6;GOTO/2,0,0;GOTO/3,0,0;CUTTER/4;GOTO/4,0,0",
             "error cutter; error cutter",
         ),
         // The same diameter, and a ball.
-        (
-            "CUTTER/10,0;GOTO/1,0,0;CUTTER/10,5;GOTO/2,0,0",
-            "error cutter",
-        ),
-        (
-            "CUTTER/10;GOTO/1,0,0;TLDATA/MILL,6,0;GOTO/2,0,0",
-            "error cutter",
-        ),
+        ("CUTTER/10,0;GOTO/1,0,0;CUTTER/10,5;GOTO/2,0,0", "error cutter"),
+        ("CUTTER/10;GOTO/1,0,0;TLDATA/MILL,6,0;GOTO/2,0,0", "error cutter"),
         ("CUTTER/10;LOADTL/1;GOTO/1,0,0;CUTTER/10;GOTO/2,0,0", ""),
-        (
-            "CUTTER/10;LOADTL/1;GOTO/1,0,0;CUTTER/6;LOADTL/2;GOTO/2,0,0",
-            "",
-        ),
-        (
-            "CUTTER/10;LOADTL/1;GOTO/1,0,0;LOADTL/2;CUTTER/6;GOTO/2,0,0",
-            "",
-        ),
+        ("CUTTER/10;LOADTL/1;GOTO/1,0,0;CUTTER/6;LOADTL/2;GOTO/2,0,0", ""),
+        ("CUTTER/10;LOADTL/1;GOTO/1,0,0;LOADTL/2;CUTTER/6;GOTO/2,0,0", ""),
         ("LOADTL/1;CUTTER/10;CUTTER/6;GOTO/2,0,0", ""),
     ] {
         assert_eq!(run(text).findings(), findings, "{text}");

@@ -25,11 +25,7 @@ fn words_that_move_the_tool_are_refused() {
     ] {
         let run = run(&format!("{word};GOTO/1,0,0"));
         assert_eq!(run.findings(), "error refused-word", "{word}");
-        assert!(
-            run.findings[0]
-                .message
-                .contains(word.split('/').next().unwrap())
-        );
+        assert!(run.findings[0].message.contains(word.split('/').next().unwrap()));
         assert_eq!(run.findings[0].place.as_ref().unwrap().line, 3, "{word}");
     }
 }
@@ -37,16 +33,11 @@ fn words_that_move_the_tool_are_refused() {
 /// A word that is known, in a form that is not: dropped without a sign, the part is not turned, the coolant is off.
 #[test]
 fn known_words_in_unknown_forms_are_reported() {
-    let silent: Vec<&str> = [
-        "ROTABL/FROB,90",
-        "COOLNT/SUPER",
-        "TLAXIS/FROB",
-        "LOAD/FROB,3",
-        "CUTCOM/FROB",
-    ]
-    .into_iter()
-    .filter(|text| run(text).findings.is_empty())
-    .collect();
+    let silent: Vec<&str> =
+        ["ROTABL/FROB,90", "COOLNT/SUPER", "TLAXIS/FROB", "LOAD/FROB,3", "CUTCOM/FROB"]
+            .into_iter()
+            .filter(|text| run(text).findings.is_empty())
+            .collect();
     assert!(silent.is_empty(), "nothing is said about {silent:?}");
 }
 
@@ -58,17 +49,10 @@ fn unknown_words_go_by_the_policy() {
         (Unknown::Error, "F100 1,0,0", "error unknown-word"),
         (Unknown::Known, "F100 1,0,0", "error unknown-word"),
         (Unknown::Warn, "F100 1,0,0", "warning unknown-word"),
-        (
-            Unknown::Pass,
-            "# FROBN/1,UP; F100 1,0,0; # FROBN/2",
-            "warning unknown-word",
-        ),
+        (Unknown::Pass, "# FROBN/1,UP; F100 1,0,0; # FROBN/2", "warning unknown-word"),
     ];
     for (unknown, steps, findings) in cases {
-        let reading = || Reading {
-            unknown,
-            ..Reading::default()
-        };
+        let reading = || Reading { unknown, ..Reading::default() };
         let run = Run::of(reading(), TEXT);
         assert_eq!(run.steps(), steps, "{unknown:?}");
         assert_eq!(run.findings(), findings, "{unknown:?}");
@@ -77,9 +61,6 @@ fn unknown_words_go_by_the_policy() {
         assert_eq!(told.place.as_ref().unwrap().line, 3, "{unknown:?}");
         // A directive is meant for another program.
         let run = Run::of(reading(), "UNITS/MM;$$-> FROBN / 1;PAINT/PATH;GOTO/1,0,0");
-        assert_eq!(
-            (run.steps().as_str(), run.findings().as_str()),
-            ("R 1,0,0", "")
-        );
+        assert_eq!((run.steps().as_str(), run.findings().as_str()), ("R 1,0,0", ""));
     }
 }

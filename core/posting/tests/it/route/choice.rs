@@ -16,10 +16,7 @@ pub(super) fn close(a: [f64; 2], b: [f64; 2]) -> bool {
 
 /// The line of B in a head inclined so that B 45 and B -45 lay the tool 160° apart about C.
 pub(super) fn inclined() -> String {
-    let (tan_10, tan_22) = (
-        libm::tan(10f64.to_radians()),
-        libm::tan(22.5f64.to_radians()),
-    );
+    let (tan_10, tan_22) = (libm::tan(10f64.to_radians()), libm::tan(22.5f64.to_radians()));
     let tilt = libm::acos(tan_10 / tan_22);
     format!("[0, {}, {}]", libm::sin(tilt), libm::cos(tilt))
 }
@@ -29,16 +26,8 @@ pub(super) fn inclined() -> String {
 #[test]
 fn the_four_measures_choose_as_published() {
     let direction = inclined();
-    let class = Class {
-        direction: &direction,
-        ..CLASSES[3]
-    };
-    for (rule, set) in [
-        ("travel", 1),
-        ("largest-axis", 1),
-        ("time", 2),
-        ("axis:B", 2),
-    ] {
+    let class = Class { direction: &direction, ..CLASSES[3] };
+    for (rule, set) in [("travel", 1), ("largest-axis", 1), ("time", 2), ("axis:B", 2)] {
         let given = Given {
             feeds: [10_000.0; 5],
             more: format!("[solution]\nrule = \"{rule}\"\nstart = {{ C = 20, B = -45 }}"),
@@ -54,11 +43,7 @@ fn the_four_measures_choose_as_published() {
         let run = run.good(rule);
         let stands = angles(&bench, &run, line(0));
         let moves = [stands[0] - 20.0, stands[1] + 45.0];
-        let expected = if set == 1 {
-            [50.0, 90.0]
-        } else {
-            [-110.0, 0.0]
-        };
+        let expected = if set == 1 { [50.0, 90.0] } else { [-110.0, 0.0] };
         assert!(close(moves, expected), "{rule}: moves by {moves:?}");
     }
 }
@@ -69,32 +54,12 @@ fn sides_are_chosen_as_heidenhain_s_table_has_it() {
     let tool = Rotation3::from_axis_angle(&Vector3::y_axis(), 45f64.to_radians()) * Vector3::z();
     let table = [
         ("", [-120.0, 120.0], Some([90.0, 45.0])),
-        (
-            "prefer = { A = \"positive\" }",
-            [-120.0, 120.0],
-            Some([90.0, 45.0]),
-        ),
-        (
-            "prefer = { A = \"negative\" }",
-            [-120.0, 120.0],
-            Some([-90.0, -45.0]),
-        ),
-        (
-            "require = { A = \"negative\" }",
-            [-120.0, 120.0],
-            Some([-90.0, -45.0]),
-        ),
-        (
-            "require = { A = \"positive\" }",
-            [-120.0, 120.0],
-            Some([90.0, 45.0]),
-        ),
+        ("prefer = { A = \"positive\" }", [-120.0, 120.0], Some([90.0, 45.0])),
+        ("prefer = { A = \"negative\" }", [-120.0, 120.0], Some([-90.0, -45.0])),
+        ("require = { A = \"negative\" }", [-120.0, 120.0], Some([-90.0, -45.0])),
+        ("require = { A = \"positive\" }", [-120.0, 120.0], Some([90.0, 45.0])),
         ("", [-90.0, 10.0], Some([-90.0, -45.0])),
-        (
-            "prefer = { A = \"positive\" }",
-            [-90.0, 10.0],
-            Some([-90.0, -45.0]),
-        ),
+        ("prefer = { A = \"positive\" }", [-90.0, 10.0], Some([-90.0, -45.0])),
         ("require = { A = \"positive\" }", [-90.0, 10.0], None),
     ];
     for (side, travel, expected) in table {
@@ -110,10 +75,7 @@ fn sides_are_chosen_as_heidenhain_s_table_has_it() {
                 Some(expected) => {
                     let run = run.good(side);
                     let stands = angles(&bench, &run, line(0));
-                    assert!(
-                        close(stands, expected),
-                        "{side} {travel:?} {rule}: {stands:?}"
-                    );
+                    assert!(close(stands, expected), "{side} {travel:?} {rule}: {stands:?}");
                 }
                 None => {
                     assert!(run.report.is_none());
@@ -142,9 +104,7 @@ fn a_preferred_side_is_soft() {
     };
     let bench = bench(&CLASSES[0], &given);
     let run = bench.run(&cl(&points, 1000.0)).good("prefer");
-    let tilts: Vec<f64> = (0..5)
-        .map(|index| angles(&bench, &run, line(index))[1])
-        .collect();
+    let tilts: Vec<f64> = (0..5).map(|index| angles(&bench, &run, line(index))[1]).collect();
     for (tilt, expected) in tilts.iter().zip([45.0, 20.0, 20.0, -20.0, -25.0]) {
         assert!((tilt - expected).abs() < 2e-3, "{tilts:?}");
     }
@@ -157,12 +117,7 @@ fn a_preferred_side_is_soft() {
     };
     let refused = self::bench(&CLASSES[0], &given).run(&cl(&points, 1000.0));
     assert!(refused.report.is_none());
-    assert_eq!(
-        refused.findings[0].code,
-        "over-travel",
-        "{}",
-        refused.told()
-    );
+    assert_eq!(refused.findings[0].code, "over-travel", "{}", refused.told());
 }
 
 /// The axes go to the solution nearest to where they start, on the turn where they start.
@@ -198,22 +153,10 @@ fn looking_ahead_is_better_than_taking_the_nearest() {
     let mut points = vec![point(Vector3::zeros(), leaning(45.0, 85.0), true)];
     for step in 1..=6 {
         let x = 5.0 * f64::from(step);
-        points.push(point(
-            Vector3::new(x, 0.0, 0.0),
-            leaning(45.0, 85.0 + f64::from(step)),
-            false,
-        ));
+        points.push(point(Vector3::new(x, 0.0, 0.0), leaning(45.0, 85.0 + f64::from(step)), false));
     }
-    points.push(point(
-        Vector3::new(30.0, 0.0, 80.0),
-        leaning(70.0, 91.0),
-        true,
-    ));
-    points.push(point(
-        Vector3::new(40.0, 0.0, 0.0),
-        leaning(72.0, 91.0),
-        false,
-    ));
+    points.push(point(Vector3::new(30.0, 0.0, 80.0), leaning(70.0, 91.0), true));
+    points.push(point(Vector3::new(40.0, 0.0, 0.0), leaning(72.0, 91.0), false));
     let way = |look_ahead: u32, second: [f64; 2], points: &[Point]| {
         let given = Given {
             second,
@@ -226,15 +169,9 @@ fn looking_ahead_is_better_than_taking_the_nearest() {
         (way, run)
     };
     let (greedy, run) = way(1, [-120.0, 50.0], &points);
-    assert_eq!(
-        run.good("greedy").report.expect("a report").branch_changes,
-        1
-    );
+    assert_eq!(run.good("greedy").report.expect("a report").branch_changes, 1);
     let (ahead, run) = way(2000, [-120.0, 50.0], &points);
-    assert_eq!(
-        run.good("ahead").report.expect("a report").branch_changes,
-        0
-    );
+    assert_eq!(run.good("ahead").report.expect("a report").branch_changes, 0);
     let (greedy, ahead) = (greedy.expect("a way"), ahead.expect("a way"));
     println!("rotary way: {greedy:.1}° taking the nearest, {ahead:.1}° looking ahead");
     assert!(ahead < 40.0 && greedy > 250.0, "{greedy} {ahead}");
@@ -257,20 +194,12 @@ fn the_knife_is_posted_looking_ahead() {
     let read = |path: &str| {
         std::fs::read_to_string(repository().join(path)).expect("a file of the repository")
     };
-    let (machine, text) = (
-        read("machines/ac-trunnion.toml"),
-        read("tests/samples/knife.ncl"),
-    );
+    let (machine, text) = (read("machines/ac-trunnion.toml"), read("tests/samples/knife.ncl"));
     for (look_ahead, possible) in [(1, false), (50, true), (2000, true)] {
         let machine = format!("{machine}\n[solution]\nlook_ahead = {look_ahead}\n");
         let bench = Bench::new(&machine, 3, 0.0);
         let run = bench.run(&text);
-        assert_eq!(
-            run.report.is_some(),
-            possible,
-            "{look_ahead}: {}",
-            run.told()
-        );
+        assert_eq!(run.report.is_some(), possible, "{look_ahead}: {}", run.told());
         if let Some(report) = &run.report {
             println!(
                 "knife, look_ahead {look_ahead}: {} blocks, rotary way {:.0}°, {} branch changes",

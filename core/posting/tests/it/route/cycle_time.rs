@@ -12,10 +12,7 @@ use super::*;
 #[test]
 fn the_cycle_time_chooses_by_the_slowest_axis_and_its_acceleration() {
     let direction = inclined();
-    let class = Class {
-        direction: &direction,
-        ..CLASSES[3]
-    };
+    let class = Class { direction: &direction, ..CLASSES[3] };
     for (rule, of_c, expected) in [
         ("cycle-time", 600.0, [-110.0, 0.0]),
         ("cycle-time", 100.0, [50.0, 90.0]),

@@ -75,14 +75,7 @@ fn exhaustive(seed: u64, sides: bool) {
     let mut worst = 0.0f64;
     let mut faults: Vec<String> = Vec::new();
     for class in &CLASSES {
-        for rule in [
-            "time",
-            "travel",
-            "largest-axis",
-            "axis:C",
-            "axis:second",
-            "axis:X",
-        ] {
+        for rule in ["time", "travel", "largest-axis", "axis:C", "axis:second", "axis:X"] {
             for round in rounds.clone() {
                 let tilt = match rng.pick(3) {
                     0 => [-175.0, 175.0],
@@ -90,10 +83,7 @@ fn exhaustive(seed: u64, sides: bool) {
                     _ => [-rng.range(0.0, 30.0), rng.range(60.0, 200.0)].map(f64::round),
                 };
                 let c = turns(&mut rng);
-                let start = [
-                    rng.range(c[0], c[1]).round(),
-                    rng.range(tilt[0], tilt[1]).round(),
-                ];
+                let start = [rng.range(c[0], c[1]).round(), rng.range(tilt[0], tilt[1]).round()];
                 let require = match rng.pick(6) {
                     0 => format!("require = {{ {} = \"negative\" }}\n", class.second),
                     1 => "require = { C = \"positive\" }\n".to_owned(),
@@ -132,10 +122,7 @@ fn exhaustive(seed: u64, sides: bool) {
                     bench: &bench,
                     solver: &solver,
                     points: &points,
-                    stands: points
-                        .iter()
-                        .map(|point| stands(&bench, &solver, point))
-                        .collect(),
+                    stands: points.iter().map(|point| stands(&bench, &solver, point)).collect(),
                     best: f64::INFINITY,
                     careless: f64::INFINITY,
                 };

@@ -90,21 +90,13 @@ fn close_to_the_pole_axes_are_spared_within_tolerance() {
     let mut paths: Vec<(String, f64, Vec<Point>)> = Vec::new();
     for beside in [0.0, 0.01, 0.1, 1.0] {
         for (grain, count) in [("coarse", 5), ("fine", 200)] {
-            let name = if beside == 0.0 {
-                "through".to_owned()
-            } else {
-                format!("at {beside}°")
-            };
+            let name = if beside == 0.0 { "through".to_owned() } else { format!("at {beside}°") };
             paths.push((format!("{name}, {grain}"), beside, pass(beside, count)));
         }
     }
     for beside in [0.01, 0.1] {
         for (grain, count) in [("coarse", 12), ("fine", 180)] {
-            paths.push((
-                format!("round at {beside}°, {grain}"),
-                beside,
-                circle(beside, count),
-            ));
+            paths.push((format!("round at {beside}°, {grain}"), beside, circle(beside, count)));
         }
     }
     let mut faults = Vec::new();
@@ -348,25 +340,17 @@ fn walk(rounds: Range<usize>, mut rng: Rng) -> Faults {
         }
         faults.runs += 1;
         let accuracy = &bench.machine.accuracy;
-        let (off, axis) = if run
-            .report
-            .as_ref()
-            .is_some_and(|report| report.rewinds == 0)
-        {
+        let (off, axis) = if run.report.as_ref().is_some_and(|report| report.rewinds == 0) {
             strays(&bench, &points, &run)
         } else {
             (0.0, 0.0)
         };
         if off > accuracy.tolerance + 1e-6 || axis > accuracy.axis_tolerance.to_degrees() + 1e-6 {
-            faults
-                .tolerance
-                .push(format!("{what}: tip {off}, axis {axis}"));
+            faults.tolerance.push(format!("{what}: tip {off}, axis {axis}"));
         }
         let over = left_travel(&bench, &run);
         if over.0 > 1e-6 {
-            faults
-                .travel
-                .push(format!("{what}: outside travel {over:?}"));
+            faults.travel.push(format!("{what}: outside travel {over:?}"));
         }
     }
     eprintln!("{} walks posted, {refused} refused", faults.runs);
@@ -422,30 +406,20 @@ fn full_turns_of_an_endless_axis_are_one_way() {
         );
         posted += u32::from(endless.report.is_some());
     }
-    assert!(
-        exits > 500 && posted > 150,
-        "{exits} exits, {posted} posted"
-    );
+    assert!(exits > 500 && posted > 150, "{exits} exits, {posted} posted");
 }
 
 /// Cuts across the pole and beside it, points far apart and close, some of them within what blending takes up.
 pub(super) fn over(rng: &mut Rng) -> Vec<Point> {
     let (sine, cosine) = libm::sincos(rng.range(-3.0, 3.0));
-    let beside = if rng.pick(2) == 0 {
-        0.0
-    } else {
-        rng.order(-5.0, -2.0)
-    };
+    let beside = if rng.pick(2) == 0 { 0.0 } else { rng.order(-5.0, -2.0) };
     let mut along = rng.range(0.2, 0.7);
     let mut tip = Vector3::new(0.0, 0.0, 10.0);
     let count = 3 + rng.pick(5);
     (0..count)
         .map(|index| {
-            let axis = Vector3::new(
-                cosine * along - sine * beside,
-                sine * along + cosine * beside,
-                1.0,
-            );
+            let axis =
+                Vector3::new(cosine * along - sine * beside, sine * along + cosine * beside, 1.0);
             let next = point(tip, axis.normalize(), index == 0);
             tip += Vector3::new(rng.order(-0.5, 1.5), rng.range(-1.0, 1.0), 0.0);
             along -= rng.order(-2.5, -0.1);
@@ -472,10 +446,7 @@ fn blending_refuses_nothing_that_can_be_met_exactly() {
                 both += usize::from(exact.is_ok());
                 blended += usize::from(outcome.eased > 0);
                 if outcome.axis > 0.05 + 1e-6 || outcome.tip > 0.005 + 1e-6 {
-                    faults.push(format!(
-                        "round {round}: {} mm, {}°",
-                        outcome.tip, outcome.axis
-                    ));
+                    faults.push(format!("round {round}: {} mm, {}°", outcome.tip, outcome.axis));
                 }
             }
             _ => {}
@@ -497,11 +468,6 @@ fn blending_refuses_nothing_that_can_be_met_exactly() {
         }
     }
     println!("{both} by both, {blended} of them eased");
-    assert!(
-        faults.is_empty(),
-        "{} faults\n{}",
-        faults.len(),
-        faults.join("\n")
-    );
+    assert!(faults.is_empty(), "{} faults\n{}", faults.len(), faults.join("\n"));
     assert!(both > 40 && blended > 5, "{both}, {blended}");
 }

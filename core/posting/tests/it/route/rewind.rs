@@ -28,18 +28,13 @@ fn a_rapid_turns_the_axis_back() {
             };
             let bench = bench(class, &given);
             // Off the part between 300° and 305°, and on round to 700°.
-            let points = orbit(30.0, 0, 700, |step| {
-                step == 0 || (300..=305).contains(&step)
-            });
+            let points = orbit(30.0, 0, 700, |step| step == 0 || (300..=305).contains(&step));
             let what = format!("{}, {tcp}", class.name);
             let run = bench.run(&cl(&points, 1000.0)).good(&what);
             let report = run.report.as_ref().expect("a report");
             assert_eq!((report.branch_changes, report.rewinds), (1, 0), "{what}");
             let (tip, axis) = strays(&bench, &points, &run);
-            assert!(
-                tip < 0.005 + 1e-9 && axis < 0.05 + 1e-9,
-                "{what}: {tip} {axis}"
-            );
+            assert!(tip < 0.005 + 1e-9 && axis < 0.05 + 1e-9, "{what}: {tip} {axis}");
             let c: Vec<f64> = run
                 .motions()
                 .iter()
@@ -48,10 +43,7 @@ fn a_rapid_turns_the_axis_back() {
             assert!(c.iter().all(|c| (-200.0..=400.0).contains(c)), "{what}");
             // The large turn is made in rapids alone.
             for (pair, c) in run.motions().windows(2).zip(c.windows(2)) {
-                assert!(
-                    pair[1].kind == "Rapid" || (c[1] - c[0]).abs() < 10.0,
-                    "{what}"
-                );
+                assert!(pair[1].kind == "Rapid" || (c[1] - c[0]).abs() < 10.0, "{what}");
             }
         }
     }
@@ -69,9 +61,7 @@ fn a_rapid_turn_stays_inside_travel() {
                 ..Given::default()
             };
             let bench = bench(class, &given);
-            let points = orbit(30.0, 0, 700, |step| {
-                step == 0 || (300..=305).contains(&step)
-            });
+            let points = orbit(30.0, 0, 700, |step| step == 0 || (300..=305).contains(&step));
             let run = bench.run(&cl(&points, 1000.0)).good(class.name);
             let (over, axis) = left_travel(&bench, &run);
             assert!(over < 1e-6, "{}, {tcp}: {axis} by {over}", class.name);
@@ -83,11 +73,8 @@ fn a_rapid_turn_stays_inside_travel() {
 #[test]
 fn without_a_rewind_the_cut_is_refused_and_says_why() {
     for class in &CLASSES {
-        let given = Given {
-            c: "[-200, 400]".to_owned(),
-            second: [-1.0, 120.0],
-            ..Given::default()
-        };
+        let given =
+            Given { c: "[-200, 400]".to_owned(), second: [-1.0, 120.0], ..Given::default() };
         let bench = bench(class, &given);
         let points = orbit(30.0, 0, 700, |step| step == 0);
         let run = bench.run(&cl(&points, 1000.0));
@@ -103,35 +90,19 @@ fn without_a_rewind_the_cut_is_refused_and_says_why() {
         let index = ((place.line - line(0)) / 2) as usize;
         assert_eq!(place.line, line(index));
         let passes = libm::remainder(ahead + index as f64 - 401.0, 360.0);
-        assert!(
-            passes.abs() < 1.0,
-            "{told}: at point {index}, C ahead by {ahead}"
-        );
-        for word in [
-            "C to 40",
-            "travel -200.000° to 400.000°",
-            "cannot go on from",
-        ] {
+        assert!(passes.abs() < 1.0, "{told}: at point {index}, C ahead by {ahead}");
+        for word in ["C to 40", "travel -200.000° to 400.000°", "cannot go on from"] {
             assert!(told.contains(word), "{told}");
         }
         assert!(told.contains(class.second), "{told}");
-        assert!(
-            finding
-                .help
-                .as_ref()
-                .is_some_and(|help| help.contains("[rewind]"))
-        );
+        assert!(finding.help.as_ref().is_some_and(|help| help.contains("[rewind]")));
     }
 }
 
 /// One cause, one error: behind it the path goes on as if it began there.
 #[test]
 fn a_refused_cut_is_told_once() {
-    let given = Given {
-        c: "[-200, 400]".to_owned(),
-        second: [-1.0, 120.0],
-        ..Given::default()
-    };
+    let given = Given { c: "[-200, 400]".to_owned(), second: [-1.0, 120.0], ..Given::default() };
     let bench = bench(&CLASSES[0], &given);
     let run = bench.run(&cl(&orbit(30.0, 0, 700, |step| step == 0), 1000.0));
     assert_eq!(run.findings.len(), 1, "{}", run.told());
@@ -160,10 +131,7 @@ fn a_rewind_draws_back_turns_and_returns() {
     for class in &CLASSES {
         for tcp in ["post", "control"] {
             for (retract, plane) in [("distance = 25", None), ("plane = 90", Some(90.0))] {
-                for feeds in [
-                    "",
-                    "retract_feed = 4000\nturn_feed = 1800\nplunge_feed = 300",
-                ] {
+                for feeds in ["", "retract_feed = 4000\nturn_feed = 1800\nplunge_feed = 300"] {
                     let given = Given {
                         tcp,
                         c: "[-200, 400]".to_owned(),
@@ -223,11 +191,7 @@ fn a_rewind_turns_at_its_feed() {
             let rewind = "distance = 25\nretract_feed = 4000\nturn_feed = 1800\nplunge_feed = 300";
             let (bench, points, run) = rewinding(class, tcp, rewind);
             let feed = rewound(class.name, &bench, &points, &run, None, true);
-            assert!(
-                (1700.0..1810.0).contains(&feed),
-                "{}, {tcp}: {feed}",
-                class.name
-            );
+            assert!((1700.0..1810.0).contains(&feed), "{}, {tcp}: {feed}", class.name);
         }
     }
 }
@@ -244,11 +208,7 @@ fn rewound(
     let motions = run.motions();
     let rotary = |words: &[f64]| -> Vec<f64> {
         let joints = bench.joints(words);
-        bench
-            .rotary()
-            .iter()
-            .map(|place| joints[*place].to_degrees())
-            .collect()
+        bench.rotary().iter().map(|place| joints[*place].to_degrees()).collect()
     };
     let turn = |from: &[f64], to: &[f64]| -> f64 {
         let (from, to) = (rotary(from), rotary(to));
@@ -264,9 +224,8 @@ fn rewound(
         })
         .unwrap_or_else(|| panic!("{what}: no rewind"));
     let (tip, axis) = (points[index].tip, points[index].axis.normalize());
-    let blocks: Vec<usize> = (0..motions.len())
-        .filter(|place| motions[*place].line == line(index))
-        .collect();
+    let blocks: Vec<usize> =
+        (0..motions.len()).filter(|place| motions[*place].line == line(index)).collect();
     let at = |place: usize| bench.at(&motions[place].words, &motions[place].words, 0.0);
     let first = blocks
         .iter()
@@ -274,15 +233,9 @@ fn rewound(
         .find(|place| (at(*place).0 - tip).norm() > 10.0)
         .expect("the way out");
     let begin = first - 1;
-    assert!(
-        (at(begin).0 - tip).norm() < 0.002,
-        "{what}: it does not begin at the point"
-    );
+    assert!((at(begin).0 - tip).norm() < 0.002, "{what}: it does not begin at the point");
     let last = *blocks.last().expect("blocks");
-    assert!(
-        (at(last).0 - tip).norm() < 0.002,
-        "{what}: it does not end at the point"
-    );
+    assert!((at(last).0 - tip).norm() < 0.002, "{what}: it does not end at the point");
     assert!(angle(at(last).1, axis).to_degrees() < 0.05, "{what}");
     // As far as it is drawn back.
     let away = match plane {
@@ -309,18 +262,10 @@ fn rewound(
     let mut strayed = [0.0f64; 3];
     for place in first..=last {
         let (from, to) = (motions[place - 1], motions[place]);
-        let stage = if place < turn_first {
-            0
-        } else {
-            usize::from(place > turn_last) + 1
-        };
+        let stage = if place < turn_first { 0 } else { usize::from(place > turn_last) + 1 };
         assert_eq!(
             to.kind,
-            if feeds || stage == 2 {
-                "Linear"
-            } else {
-                "Rapid"
-            },
+            if feeds || stage == 2 { "Linear" } else { "Rapid" },
             "{what} stage {stage}"
         );
         time[stage] += minutes(bench, from, to).unwrap_or(0.0);
@@ -335,27 +280,15 @@ fn rewound(
             strayed[stage] = strayed[stage].max(off);
         }
     }
-    assert!(
-        lowest > -0.002,
-        "{what}: the tip goes below its start by {lowest}"
-    );
+    assert!(lowest > -0.002, "{what}: the tip goes below its start by {lowest}");
     // Off the part the tolerance of a rapid will do; back it comes as a cut does.
-    assert!(
-        strayed[0] < 0.5 + 1e-6 && strayed[1] < 0.5 + 1e-6,
-        "{what}: {strayed:?}"
-    );
+    assert!(strayed[0] < 0.5 + 1e-6 && strayed[1] < 0.5 + 1e-6, "{what}: {strayed:?}");
     assert!(strayed[2] < 0.005 + 1e-6, "{what}: {strayed:?}");
     way[1] = whole;
     let feed = [0, 1, 2].map(|stage| way[stage] / time[stage]);
-    eprintln!(
-        "{what}: {} blocks, strays {strayed:.3?} mm, feeds {feed:.0?}",
-        last - begin
-    );
-    let asked = if feeds {
-        [4000.0, f64::INFINITY, 300.0]
-    } else {
-        [f64::INFINITY, f64::INFINITY, 1000.0]
-    };
+    eprintln!("{what}: {} blocks, strays {strayed:.3?} mm, feeds {feed:.0?}", last - begin);
+    let asked =
+        if feeds { [4000.0, f64::INFINITY, 300.0] } else { [f64::INFINITY, f64::INFINITY, 1000.0] };
     for stage in [0, 2] {
         if asked[stage] < f64::INFINITY {
             assert!(

@@ -43,16 +43,9 @@ fn an_endless_axis_turns_on_and_on() {
             assert_eq!((report.branch_changes, report.rewinds), (0, 0));
             if sway < 18.0 {
                 assert_eq!(report.points_eased, 0);
-                assert!(
-                    short.asked == long.asked,
-                    "{}: 200 and 2000 differ",
-                    class.name
-                );
+                assert!(short.asked == long.asked, "{}: 200 and 2000 differ", class.name);
             } else {
-                assert!(
-                    (short_way / long_way - 1.0).abs() < 1e-3,
-                    "{short_way} {long_way}"
-                );
+                assert!((short_way / long_way - 1.0).abs() < 1e-3, "{short_way} {long_way}");
             }
         }
     }
@@ -67,16 +60,9 @@ fn long_cuts_arrive_where_the_axes_come_to() {
     let mut far = 0;
     for round in rounds {
         let class = &CLASSES[round % 4];
-        let given = Given {
-            tcp: ["post", "control"][rng.pick(2)],
-            ..Given::default()
-        };
+        let given = Given { tcp: ["post", "control"][rng.pick(2)], ..Given::default() };
         let bench = bench(class, &given);
-        let most = if class.name == "nutating head" {
-            85.0
-        } else {
-            160.0
-        };
+        let most = if class.name == "nutating head" { 85.0 } else { 160.0 };
         let clear =
             |axis: Vector3<f64>| (4.0..most).contains(&angle(axis, Vector3::z()).to_degrees());
         let (from, to) = loop {
@@ -87,10 +73,7 @@ fn long_cuts_arrive_where_the_axes_come_to() {
                 break (from, to);
             }
         };
-        let points = [
-            point(rng.point(50.0), from, true),
-            point(rng.point(50.0), to, false),
-        ];
+        let points = [point(rng.point(50.0), from, true), point(rng.point(50.0), to, false)];
         let run = bench.run(&cl(&points, 1000.0));
         faults.runs += 1;
         let what = format!(
@@ -119,15 +102,10 @@ fn long_cuts_arrive_where_the_axes_come_to() {
             .collect();
         let mut at = begin;
         for pair in steps.windows(2) {
-            at = followed(&bench, &solver, (&pair[0], &at), &pair[1])
-                .expect("a way")
-                .0;
+            at = followed(&bench, &solver, (&pair[0], &at), &pair[1]).expect("a way").0;
         }
-        let off = bench
-            .rotary()
-            .iter()
-            .map(|place| (at[*place] - end[*place]).abs())
-            .fold(0.0, f64::max);
+        let off =
+            bench.rotary().iter().map(|place| (at[*place] - end[*place]).abs()).fold(0.0, f64::max);
         let turn = bench
             .rotary()
             .iter()
@@ -143,9 +121,7 @@ fn long_cuts_arrive_where_the_axes_come_to() {
         }
         let (tip, axis) = strays(&bench, &points, &run);
         if tip > 0.005 + 1e-6 || axis > 0.05 + 1e-6 {
-            faults
-                .tolerance
-                .push(format!("{what}: tip {tip}, axis {axis}"));
+            faults.tolerance.push(format!("{what}: tip {tip}, axis {axis}"));
         }
     }
     println!(
@@ -175,9 +151,7 @@ fn a_side_whose_travel_ends_between_two_points_is_not_taken() {
                 ..Given::default()
             };
             let bench = bench(&CLASSES[0], &given);
-            let run = bench
-                .run(&cl(&points, 1000.0))
-                .good(&format!("{start}, {tcp}"));
+            let run = bench.run(&cl(&points, 1000.0)).good(&format!("{start}, {tcp}"));
             let (over, axis) = left_travel(&bench, &run);
             assert!(over < 1e-6, "{start}, {tcp}: {axis} by {over}");
         }
@@ -200,19 +174,14 @@ fn an_axis_shown_over_one_turn_goes_the_way_that_is_meant() {
             ..Given::default()
         };
         let plain = bench(class, &given);
-        let shown = plain.text.replace(
-            "cyclic = true",
-            &format!("cyclic = true\nrange = {range:?}"),
-        );
+        let shown =
+            plain.text.replace("cyclic = true", &format!("cyclic = true\nrange = {range:?}"));
         let bench = Bench::new(&shown, 3, class.length);
         let points = short(&mut rng, class);
         let text = cl(&points, 1000.0);
         let (endless, run) = (plain.run(&text), bench.run(&text));
         if endless.report.is_some() != run.report.is_some() {
-            let at = run
-                .findings
-                .iter()
-                .find_map(|finding| finding.place.as_ref());
+            let at = run.findings.iter().find_map(|finding| finding.place.as_ref());
             let line = at.map_or(0, |place| place.line);
             refused.push(format!(
                 "round {round}, {}, {}, {range:?}, refused at line {line}: {}\n{:?} to {:?} on an endless axis\n{text}",
@@ -227,35 +196,21 @@ fn an_axis_shown_over_one_turn_goes_the_way_that_is_meant() {
         if run.report.is_none() {
             continue;
         }
-        let place = bench
-            .order
-            .iter()
-            .position(|place| *place == bench.place("C"))
-            .expect("C");
+        let place = bench.order.iter().position(|place| *place == bench.place("C")).expect("C");
         let motions = run.motions();
         let mut c = endless.motions()[0].words[place];
         for (index, asked) in motions.iter().enumerate() {
             let word = asked.words[place];
             assert!(word >= range[0] && word < range[1], "{word} {range:?}");
             if index > 0 {
-                let way = turned(
-                    motions[index - 1].words[place].to_radians(),
-                    word.to_radians(),
-                );
+                let way = turned(motions[index - 1].words[place].to_radians(), word.to_radians());
                 assert!(way.abs().to_degrees() < 179.0, "{way}");
                 c += way.to_degrees();
             }
             // Counted by the shorter ways, C is at every CL point where the endless one is.
-            if motions
-                .get(index + 1)
-                .is_none_or(|next| next.line != asked.line)
-            {
+            if motions.get(index + 1).is_none_or(|next| next.line != asked.line) {
                 let meant = endless.arrival(asked.line).expect("a position")[place];
-                assert!(
-                    (c - meant).abs() < 0.01,
-                    "round {round}, {}: {c} for {meant}",
-                    class.name
-                );
+                assert!((c - meant).abs() < 0.01, "round {round}, {}: {c} for {meant}", class.name);
             }
         }
         stages += motions.len() - endless.motions().len().min(motions.len());
@@ -276,9 +231,8 @@ fn cheapest(bench: &Bench, solver: &Solver, points: &[Point]) -> f64 {
             }
         } else if target.rapid {
             for joints in stands(bench, solver, target) {
-                let ways = states
-                    .iter()
-                    .map(|(so_far, at)| so_far + cost(bench, at, &joints, true));
+                let ways =
+                    states.iter().map(|(so_far, at)| so_far + cost(bench, at, &joints, true));
                 next.push((ways.fold(f64::INFINITY, f64::min), joints));
             }
         } else {
@@ -291,10 +245,7 @@ fn cheapest(bench: &Bench, solver: &Solver, points: &[Point]) -> f64 {
         }
         states = next;
     }
-    states
-        .iter()
-        .map(|(cost, _)| *cost)
-        .fold(f64::INFINITY, f64::min)
+    states.iter().map(|(cost, _)| *cost).fold(f64::INFINITY, f64::min)
 }
 
 /// Longer paths and short windows: what is chosen hangs together at every point, looking ahead over the whole path
@@ -431,23 +382,17 @@ rapid_tolerance = 0.5
         faults.runs += 1;
         if run.report.is_none() {
             refused += 1;
-            faults
-                .needless
-                .push(format!("round {round}: {}", run.told()));
+            faults.needless.push(format!("round {round}: {}", run.told()));
             continue;
         }
         posted += 1;
         let (tip, axis) = strays(&bench, &points, &run);
         if tip > 0.01 + 1e-6 || axis > 0.05 + 1e-6 {
-            faults
-                .tolerance
-                .push(format!("round {round}: tip {tip}, axis {axis}"));
+            faults.tolerance.push(format!("round {round}: tip {tip}, axis {axis}"));
         }
         let (over, axis) = left_travel(&bench, &run);
         if over > 1e-6 {
-            faults
-                .tolerance
-                .push(format!("round {round}: {axis} outside travel by {over}"));
+            faults.tolerance.push(format!("round {round}: {axis} outside travel by {over}"));
         }
     }
     println!("without a closed form: {posted} posted, {refused} refused");

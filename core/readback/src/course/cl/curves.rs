@@ -61,10 +61,8 @@ impl Modal {
                 self.end_spline(record, out)?;
                 match self.stands {
                     Some(from) => {
-                        self.pending = Some(Pending::Spline {
-                            knots: Vec::new(),
-                            poles: vec![from.tip],
-                        });
+                        self.pending =
+                            Some(Pending::Spline { knots: Vec::new(), poles: vec![from.tip] });
                         Ok(())
                     }
                     None => faulty("NURBS begins where the tool stands, and nobody knows where"),
@@ -137,11 +135,7 @@ impl Modal {
             false => angle,
         };
         sweep += TAU * f64::from(circle.turns.unwrap_or(1).max(1) - 1);
-        let curve = Curve::Arc {
-            centre,
-            normal,
-            sweep,
-        };
+        let curve = Curve::Arc { centre, normal, sweep };
         let pace = self.pace(&curve, to);
         self.go(record.line, pace, curve, to, false, out);
         Ok(())
@@ -162,10 +156,7 @@ impl Modal {
         };
         let way = way(&knots, poles)
             .map_err(|why| self.fault(record, format!("the NURBS that ends before this: {why}")))?;
-        let to = Pose {
-            tip: way.at(1.0),
-            ..from
-        };
+        let to = Pose { tip: way.at(1.0), ..from };
         let curve = Curve::Spline(Arc::new(way));
         let pace = self.pace_behind(&curve, to);
         self.go(record.line, pace, curve, to, false, out);

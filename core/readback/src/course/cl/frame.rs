@@ -25,12 +25,7 @@ pub(super) struct Frames {
 impl Frames {
     pub(super) fn new(turn: f64) -> Self {
         let about_z = || *Rotation3::from_axis_angle(&Vector3::z_axis(), turn).matrix();
-        Self {
-            index: [0.0; 3],
-            turned: None,
-            msys: None,
-            sits: (turn != 0.0).then(about_z),
-        }
+        Self { index: [0.0; 3], turned: None, msys: None, sits: (turn != 0.0).then(about_z) }
     }
 
     /// The part sits turned about its Z.
@@ -121,10 +116,7 @@ impl Frames {
     /// A direction of the file in the part frame.
     pub(super) fn direction(&self, mut direction: Vector3<f64>) -> Vector3<f64> {
         let msys = self.msys.as_ref().map(|(_, into)| into);
-        for turn in [self.turned.as_ref(), msys, self.sits.as_ref()]
-            .into_iter()
-            .flatten()
-        {
+        for turn in [self.turned.as_ref(), msys, self.sits.as_ref()].into_iter().flatten() {
             direction = turn * direction;
         }
         direction

@@ -36,15 +36,11 @@ impl Hole {
     /// # Errors
     /// What it does not say or says wrongly, as a sentence.
     pub(super) fn new(cycle: &CycleDefinition, scale: f64) -> Result<Self, String> {
-        let clearance = cycle
-            .clearance
-            .ok_or("the cycle does not say where its feed begins (RAPTO, CLEAR)")?
-            * scale;
+        let clearance =
+            cycle.clearance.ok_or("the cycle does not say where its feed begins (RAPTO, CLEAR)")?
+                * scale;
         if clearance < 0.0 {
-            return Err(format!(
-                "the feed of the cycle begins {} mm below the point",
-                -clearance
-            ));
+            return Err(format!("the feed of the cycle begins {} mm below the point", -clearance));
         }
         let dwell = cycle.dwell.unwrap_or(0.0);
         if !(0.0..=LONGEST_DWELL).contains(&dwell) {
@@ -82,16 +78,10 @@ impl Hole {
     /// The kind of a cycle that goes in pecks and says none.
     pub(super) fn without_pecks(cycle: &CycleDefinition) -> Option<&str> {
         let pecked = |kind: &&String| {
-            matches!(
-                kind.as_str(),
-                "DEEP" | "DEEP2" | "DEEPHL" | "BRKCHP" | "CHIP"
-            )
+            matches!(kind.as_str(), "DEEP" | "DEEP2" | "DEEPHL" | "BRKCHP" | "CHIP")
         };
         let kind = cycle.kinds.iter().find(pecked)?;
-        cycle
-            .step
-            .is_none_or(|step| step == 0.0)
-            .then_some(kind.as_str())
+        cycle.step.is_none_or(|step| step == 0.0).then_some(kind.as_str())
     }
 
     /// It cuts a thread.
@@ -131,9 +121,10 @@ fn depth(cycle: &CycleDefinition) -> Result<f64, String> {
             let slope = libm::tan(angle.to_radians() / 2.0);
             Ok(libm::fabs(diameter) / (2.0 * slope) + through)
         }
-        (Some(_), _) => Err(
-            "the diameter of a countersink says how deep only with the cutter's angle".to_owned(),
-        ),
+        (Some(_), _) => {
+            Err("the diameter of a countersink says how deep only with the cutter's angle"
+                .to_owned())
+        }
         (None, _) => Err("the cycle does not say how deep".to_owned()),
     }
 }
@@ -171,11 +162,11 @@ fn kind(cycle: &CycleDefinition) -> Result<CycleKind, String> {
 /// The turns of `DWELL,REV,2`.
 fn turns(cycle: &CycleDefinition) -> f64 {
     let said = cycle.rest.windows(3).find_map(|three| match three {
-        [
-            Argument::Word(dwell),
-            Argument::Word(turns),
-            Argument::Number(count),
-        ] if dwell == "DWELL" && turns == "REV" => Some(*count),
+        [Argument::Word(dwell), Argument::Word(turns), Argument::Number(count)]
+            if dwell == "DWELL" && turns == "REV" =>
+        {
+            Some(*count)
+        }
         _ => None,
     });
     said.unwrap_or(0.0)

@@ -82,14 +82,7 @@ impl Modal {
         let [level, clearance] = planes.map(|height| height - at.tip.z);
         let upright = bottom.axis.z > 1.0 - 1e-9;
         match upright && clearance >= 0.0 && level >= clearance {
-            true => Ok((
-                Hole {
-                    level,
-                    clearance,
-                    ..hole
-                },
-                at,
-            )),
+            true => Ok((Hole { level, clearance, ..hole }, at)),
             false => {
                 let message =
                     "the planes of this cycle do not lie above its hole, or the tool leans";
@@ -128,10 +121,7 @@ impl Modal {
             return Err(self.fault(record, message.to_owned()));
         }
         let line = record.line;
-        let height = |height: f64| Pose {
-            tip: at.tip + at.axis * height,
-            ..at
-        };
+        let height = |height: f64| Pose { tip: at.tip + at.axis * height, ..at };
         let rapid = (MotionKind::Rapid, None);
         // To the level above the hole: up before aside, aside before down.
         if let Some(from) = self.stands {
@@ -152,14 +142,7 @@ impl Modal {
         self.go(line, rapid, Curve::Straight, height(hole.level), true, out);
         self.tell(record, Told::Cycle(hole.call(feed.unwrap_or(0.0))), out);
         if hole.level - hole.clearance > NONE {
-            self.go(
-                line,
-                rapid,
-                Curve::Straight,
-                height(hole.clearance),
-                true,
-                out,
-            );
+            self.go(line, rapid, Curve::Straight, height(hole.clearance), true, out);
         }
         let kind = match hole.taps() {
             true => MotionKind::Thread,
@@ -174,14 +157,7 @@ impl Modal {
             self.tell(record, Told::Dwell { time, revolutions }, out);
         }
         if hole.out_at_feed() {
-            self.go(
-                line,
-                pace,
-                Curve::Straight,
-                height(hole.clearance),
-                true,
-                out,
-            );
+            self.go(line, pace, Curve::Straight, height(hole.clearance), true, out);
         }
         if !hole.out_at_feed() || hole.level - hole.clearance > NONE {
             self.go(line, rapid, Curve::Straight, height(hole.level), true, out);

@@ -321,9 +321,7 @@ impl Modal {
                 self.finished = true;
                 self.end_spline(record, out)
             }
-            Statement::Other {
-                word, arguments, ..
-            } => self.other(record, word, arguments),
+            Statement::Other { word, arguments, .. } => self.other(record, word, arguments),
         }
     }
 
@@ -335,9 +333,7 @@ impl Modal {
     /// The machine file has lines for the word.
     pub(super) fn has_lines(&self, word: &str, arguments: &[Argument]) -> bool {
         let rules = &self.settings.rules;
-        rules
-            .iter()
-            .any(|rule| rule.fits(word, arguments).is_some())
+        rules.iter().any(|rule| rule.fits(word, arguments).is_some())
     }
 
     /// Nobody knows where the tool stands from here on.
@@ -443,22 +439,8 @@ impl Modal {
         self.strange.moved = true;
         let known = !(self.only_said && curve == Curve::Straight);
         let item = match self.stands.filter(|_| known) {
-            Some(from) => Item::Piece(Piece {
-                line,
-                kind,
-                curve,
-                from,
-                to,
-                feed,
-                hole,
-            }),
-            None => Item::Reach(Reach {
-                line,
-                kind,
-                to,
-                feed,
-                hole,
-            }),
+            Some(from) => Item::Piece(Piece { line, kind, curve, from, to, feed, hole }),
+            None => Item::Reach(Reach { line, kind, to, feed, hole }),
         };
         self.stands = Some(to);
         self.only_said = false;
@@ -549,20 +531,14 @@ impl Modal {
     fn coolant(&mut self, record: &Record<'_>, word: Coolant, out: &mut Out) -> Meant {
         self.load_due(record, out)?;
         let none = Coolants::default();
-        let flood = Coolants {
-            flood: true,
-            ..none
-        };
+        let flood = Coolants { flood: true, ..none };
         let coolants = match word {
             Coolant::Off => none,
             Coolant::On if self.coolant == none => flood,
             Coolant::On => self.coolant,
             Coolant::Flood => flood,
             Coolant::Mist => Coolants { mist: true, ..none },
-            Coolant::Through | Coolant::Air => Coolants {
-                other: true,
-                ..none
-            },
+            Coolant::Through | Coolant::Air => Coolants { other: true, ..none },
         };
         // ON means the kind before, through an OFF.
         if coolants != none {
@@ -643,10 +619,7 @@ impl Modal {
         if point.amax() <= FARTHEST {
             return Ok(());
         }
-        let message = format!(
-            "a coordinate of {:e} mm, which no machine reaches",
-            point.amax()
-        );
+        let message = format!("a coordinate of {:e} mm, which no machine reaches", point.amax());
         Err(self.fault(record, message))
     }
 

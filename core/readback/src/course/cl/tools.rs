@@ -108,10 +108,7 @@ impl Modal {
         let Some(number) = told.or(self.tools.due.take()) else {
             return Ok(());
         };
-        let tool = LoadTool {
-            number,
-            ..LoadTool::default()
-        };
+        let tool = LoadTool { number, ..LoadTool::default() };
         self.load(record, &tool, out)
     }
 
@@ -171,11 +168,7 @@ impl Modal {
             self.tell(record, Told::Compensation { side, register }, out);
         }
         self.forget_register();
-        let known = self
-            .tools
-            .all
-            .iter()
-            .any(|known| known.number == tool.number);
+        let known = self.tools.all.iter().any(|known| known.number == tool.number);
         if !known {
             if self.tools.all.len() >= MOST_TOOLS {
                 let message = format!("more than {MOST_TOOLS} tools");
@@ -231,12 +224,7 @@ impl Modal {
         self.load_due(record, out)?;
         self.tools.said = true;
         // Autodesk's posts write ON where the spindle stops, and OFF where it starts.
-        let on = SpindleWord::On {
-            speed: None,
-            unit: SpindleUnit::Rpm,
-            sense: None,
-            most: None,
-        };
+        let on = SpindleWord::On { speed: None, unit: SpindleUnit::Rpm, sense: None, most: None };
         let word = match word {
             SpindleWord::Off if self.strange.autodesk => on,
             word if self.strange.autodesk && word == on => SpindleWord::Off,
@@ -251,12 +239,7 @@ impl Modal {
                 self.tell(record, Told::Spindle(self.tools.spindle), out);
                 return Ok(());
             }
-            SpindleWord::On {
-                speed,
-                unit,
-                sense,
-                most,
-            } => (speed, unit, sense, most),
+            SpindleWord::On { speed, unit, sense, most } => (speed, unit, sense, most),
         };
         if let Some(sense) = sense {
             self.tools.counter = sense == Sense::CounterClockwise;
@@ -272,11 +255,7 @@ impl Modal {
             self.tools.surface = Some((metres, most));
             self.tools.rpm = None;
             let clockwise = !self.tools.counter;
-            self.tools.spindle = Spindle::Surface {
-                speed: metres,
-                most,
-                clockwise,
-            };
+            self.tools.spindle = Spindle::Surface { speed: metres, most, clockwise };
             self.tell(record, Told::Spindle(self.tools.spindle), out);
             return Ok(());
         }

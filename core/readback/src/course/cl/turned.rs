@@ -89,10 +89,7 @@ impl Modal {
                 ));
             }
             (false, false) => {
-                return no(format!(
-                    "{}° do not lead from its start to its end",
-                    arc.degrees
-                ));
+                return no(format!("{}° do not lead from its start to its end", arc.degrees));
             }
         };
         // Whole turns beyond the one that ends at the pose.
@@ -124,10 +121,7 @@ impl Modal {
         let Some(axis) = axis.try_normalize(1e-9) else {
             return no("its axis has no direction");
         };
-        if self
-            .surface
-            .is_some_and(|normal| libm::fabs(normal.dot(&axis)) < 0.999_999)
-        {
+        if self.surface.is_some_and(|normal| libm::fabs(normal.dot(&axis)) < 0.999_999) {
             return no("it does not lie in the plane that AUTOPS or PSIS names");
         }
         let to = self.pose(record, along.end)?;

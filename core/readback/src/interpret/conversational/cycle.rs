@@ -32,25 +32,16 @@ pub(super) fn define(control: &mut Control, said: &Said<'_>, words: &mut Gathere
         },
         (9, _) => {
             // `CYCL DEF 9.1 DWELL 0.5`, in the language of the dialogue.
-            let mut times = said
-                .block
-                .items
-                .iter()
-                .skip(2)
-                .filter_map(|item| match item {
-                    NcItem::Number(number) => Some(number.value),
-                    NcItem::Named {
-                        value: post_grammar::nc::NcValue::Number(number),
-                        ..
-                    } => Some(number.value),
-                    _ => None,
-                });
+            let mut times = said.block.items.iter().skip(2).filter_map(|item| match item {
+                NcItem::Number(number) => Some(number.value),
+                NcItem::Named { value: post_grammar::nc::NcValue::Number(number), .. } => {
+                    Some(number.value)
+                }
+                _ => None,
+            });
             match times.next() {
                 Some(time) => {
-                    control.tell(Told::Dwell {
-                        time,
-                        revolutions: false,
-                    });
+                    control.tell(Told::Dwell { time, revolutions: false });
                     Ok(())
                 }
                 None => Err(control.refuse("nc-cycle", "CYCL DEF 9 does not say how long")),
@@ -67,9 +58,7 @@ pub(super) fn define(control: &mut Control, said: &Said<'_>, words: &mut Gathere
         }
         (19, _) => plane::cycle_19(control, said, words),
         (32, 1) => {
-            let tolerance = words
-                .take(b'T')
-                .map(|tolerance| tolerance * control.modal.unit);
+            let tolerance = words.take(b'T').map(|tolerance| tolerance * control.modal.unit);
             let tolerance = tolerance.filter(|tolerance| *tolerance > 0.0);
             control.smooth(tolerance);
             control.leaves_corners(0, tolerance);
@@ -100,10 +89,7 @@ fn remember(control: &mut Control, cycle: u32, said: &Said<'_>) -> Answer<()> {
         let NcItem::Named { name, value } = item else {
             continue;
         };
-        let Some(number) = name
-            .strip_prefix('Q')
-            .and_then(|digits| digits.parse().ok())
-        else {
+        let Some(number) = name.strip_prefix('Q').and_then(|digits| digits.parse().ok()) else {
             continue;
         };
         let value = match value {
@@ -165,11 +151,7 @@ fn shift(control: &mut Control, by: Shift) -> Answer<()> {
     if inside && !control.frames.outer.is_default() {
         return Err(control.refuse("nc-frame", "a datum shift inside a tilted plane and one outside of it: how they add up is not settled"));
     }
-    let frame = if inside {
-        &mut control.frames.inner
-    } else {
-        &mut control.frames.outer
-    };
+    let frame = if inside { &mut control.frames.inner } else { &mut control.frames.outer };
     let mut origin = frame.origin;
     for (own, said) in origin.iter_mut().zip(by) {
         match said {
@@ -199,11 +181,7 @@ fn turn(control: &mut Control, said: &Said<'_>) -> Answer<()> {
         return Err(control.refuse("nc-cycle", "CYCL DEF 10 without ROT, or by a way"));
     };
     let inside = control.frames.plane.is_some();
-    let frame = if inside {
-        &mut control.frames.inner
-    } else {
-        &mut control.frames.outer
-    };
+    let frame = if inside { &mut control.frames.inner } else { &mut control.frames.outer };
     let (sine, cosine) = libm::sincos(angle.to_radians());
     let axes = match angle == 0.0 {
         true => Matrix3::identity(),

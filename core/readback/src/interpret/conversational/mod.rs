@@ -88,11 +88,7 @@ pub(super) fn run(control: &mut Control, block: &NcBlock, words: &mut Gathered) 
 
 /// mm/min in a unit of F: in a program in inches it counts tenths of an inch a minute.
 pub(super) fn feed_unit(control: &Control) -> f64 {
-    if control.modal.unit == 1.0 {
-        1.0
-    } else {
-        0.1 * control.modal.unit
-    }
+    if control.modal.unit == 1.0 { 1.0 } else { 0.1 * control.modal.unit }
 }
 
 fn begin(control: &mut Control, said: &Said<'_>) -> Answer<()> {
@@ -178,10 +174,7 @@ impl Said<'_> {
 }
 
 fn worth(control: &Control, value: &NcValue) -> Answer<f64> {
-    control
-        .variables
-        .worth(value)
-        .map_err(|finding| control.placed(*finding).boxed())
+    control.variables.worth(value).map_err(|finding| control.placed(*finding).boxed())
 }
 
 /// What the M functions of a block ask for beyond what all controls have.
@@ -205,10 +198,8 @@ fn functions(control: &mut Control, words: &Gathered, asked: &mut Asked) -> Answ
             89 => control.cycles.at_each = true,
             91 => functions.machine = true,
             92 => {
-                return Err(control.refuse(
-                    "nc-machine",
-                    "M92 counts from a point that stands in the control",
-                ));
+                return Err(control
+                    .refuse("nc-machine", "M92 counts from a point that stands in the control"));
             }
             // The display of a rotary axis is brought within a turn: the axis stands where it stood.
             94 => plane::within_a_turn(control, words)?,

@@ -11,9 +11,7 @@ use crate::interpret::go::{self, Target};
 use crate::interpret::state::{ArcPlane, Control};
 
 /// Names that may stand in a block of the path.
-const NAMES: &[&str] = &[
-    "R0", "RL", "RR", "FMAX", "FAUTO", "DR+", "DR-", "MB MAX", "MAX",
-];
+const NAMES: &[&str] = &["R0", "RL", "RR", "FMAX", "FAUTO", "DR+", "DR-", "MB MAX", "MAX"];
 
 /// Points nearer than this share a coordinate, mm.
 const SHARED: f64 = 1e-6;
@@ -31,10 +29,8 @@ pub(super) fn alone(control: &mut Control, said: &Said<'_>, words: &mut Gathered
     said.no_number(control)?;
     said.only(control, NAMES, &["MB"])?;
     if words.present & control.axes.mask != 0 && !words.m.has(94) {
-        return Err(control.refuse(
-            "nc-conversational",
-            "words of axes without the name of a path function",
-        ));
+        return Err(control
+            .refuse("nc-conversational", "words of axes without the name of a path function"));
     }
     let kind = modes(control, said, words)?;
     straight(control, kind, said, words, None)
@@ -98,11 +94,7 @@ fn travel(control: &mut Control, kind: MotionKind, path: &go::Path, target: &Tar
     let to = control.point();
     control.path.heading = match path {
         go::Path::Straight => (to - from).try_normalize(SHARED),
-        go::Path::Arc {
-            centre,
-            normal,
-            sweep,
-        } => {
+        go::Path::Arc { centre, normal, sweep } => {
             let tangent = normal.cross(&(to - centre)) * if *sweep < 0.0 { -1.0 } else { 1.0 };
             tangent.try_normalize(SHARED)
         }
@@ -118,11 +110,7 @@ pub(super) fn pole(control: &mut Control, said: &Said<'_>, words: &mut Gathered)
     let mut any = false;
     for (row, letter) in [b'X', b'Y', b'Z'].into_iter().enumerate() {
         if let Some(value) = words.take(letter) {
-            let from = if words.incremental & bit(letter) != 0 {
-                here[row]
-            } else {
-                0.0
-            };
+            let from = if words.incremental & bit(letter) != 0 { here[row] } else { 0.0 };
             control.path.pole[row] = Some(from + value * control.modal.unit);
             any = true;
         }
@@ -155,10 +143,9 @@ pub(super) fn curve(
     };
     let radius = words.take(b'R').map(|radius| radius * control.modal.unit);
     if words.present & control.axes.mask & !(bit(b'X') | bit(b'Y') | bit(b'Z')) != 0 {
-        return Err(control.refuse(
-            "nc-arc",
-            "a rotary axis turns along this curve, which is not followed",
-        ));
+        return Err(
+            control.refuse("nc-arc", "a rotary axis turns along this curve, which is not followed")
+        );
     }
     let from = control.point();
     let mut target = control.target(words)?;
@@ -172,14 +159,7 @@ pub(super) fn curve(
             let clockwise = turn()?;
             let [x, y] =
                 control.centre_by_radius([from.x, from.y], [end.x, end.y], radius, clockwise)?;
-            arc(
-                control,
-                ArcPlane::Xy,
-                from,
-                end,
-                Vector3::new(x, y, from.z),
-                clockwise,
-            )?
+            arc(control, ArcPlane::Xy, from, end, Vector3::new(x, y, from.z), clockwise)?
         }
         "CT" => tangential(control, from, end)?,
         _ => {
@@ -237,11 +217,7 @@ fn arc(
     let flat = |point: Vector3<f64>| [point[first], point[second]];
     let sweep = control.sweep([flat(from), flat(to), flat(centre)], clockwise)?;
     centre[third] = from[third];
-    Ok(go::Path::Arc {
-        centre,
-        normal: plane.normal(),
-        sweep,
-    })
+    Ok(go::Path::Arc { centre, normal: plane.normal(), sweep })
 }
 
 /// On from where the last motion led, without a corner.
@@ -308,20 +284,9 @@ impl Polar {
             if by != 0.0 && (by < 0.0) != clockwise {
                 return Err(control.refuse("nc-arc", "CP turns the other way than DR says"));
             }
-            return Ok(go::Path::Arc {
-                centre: self.centre,
-                normal: Vector3::z(),
-                sweep: by,
-            });
+            return Ok(go::Path::Arc { centre: self.centre, normal: Vector3::z(), sweep: by });
         }
-        arc(
-            control,
-            ArcPlane::Xy,
-            from,
-            self.end,
-            self.centre,
-            clockwise,
-        )
+        arc(control, ArcPlane::Xy, from, self.end, self.centre, clockwise)
     }
 }
 

@@ -42,10 +42,8 @@ pub(super) fn plane(
         ],
     )?;
     if !control.frames.inner.is_default() {
-        return Err(control.refuse(
-            "nc-plane",
-            "a shift or turn inside of the tilted plane must end before it",
-        ));
+        return Err(control
+            .refuse("nc-plane", "a shift or turn inside of the tilted plane must end before it"));
     }
     let kind = match (said.has("FMAX"), words.take(b'F')) {
         (_, Some(feed)) => {
@@ -79,10 +77,7 @@ pub(super) fn plane(
         }
     };
     planes::lay(control, frame)?;
-    let pick = match (
-        said.has("SEQ+") || said.has("SYM+"),
-        said.has("SEQ-") || said.has("SYM-"),
-    ) {
+    let pick = match (said.has("SEQ+") || said.has("SYM+"), said.has("SEQ-") || said.has("SYM-")) {
         (true, _) => Pick::Plus,
         (_, true) => Pick::Minus,
         _ => Pick::Nearest,
@@ -99,9 +94,7 @@ fn turned(control: &mut Control, how: Turn, pick: Pick, kind: MotionKind) -> Ans
     }
     // Where it is not plain they stay unknown: whoever reads them is refused.
     if let Ok(to) = to {
-        for (name, angle) in ["Q120", "Q121", "Q122"]
-            .into_iter()
-            .zip(planes::angles(control, &to))
+        for (name, angle) in ["Q120", "Q121", "Q122"].into_iter().zip(planes::angles(control, &to))
         {
             let put = control.variables.put(name, Value::Number(angle));
             put.map_err(|finding| control.placed(*finding).boxed())?;
@@ -149,10 +142,9 @@ fn vectors(control: &Control, said: &Said<'_>) -> Answer<Frame> {
     let z = normal.try_normalize(1e-9);
     let x = z.and_then(|z| (base - z * z.dot(&base)).try_normalize(1e-9));
     match (x, z) {
-        (Some(x), Some(z)) => Ok(Frame::new(
-            Matrix3::from_columns(&[x, z.cross(&x), z]),
-            Vector3::zeros(),
-        )),
+        (Some(x), Some(z)) => {
+            Ok(Frame::new(Matrix3::from_columns(&[x, z.cross(&x), z]), Vector3::zeros()))
+        }
         _ => Err(control.refuse("nc-plane", "the vectors of the plane do not span it")),
     }
 }
@@ -185,10 +177,7 @@ pub(super) fn cycle_19(control: &mut Control, said: &Said<'_>, words: &mut Gathe
         return Ok(());
     }
     let [a, b, c] = angles;
-    planes::lay(
-        control,
-        Frame::new(rotation([2, 1, 0], [c, b, a]), Vector3::zeros()),
-    )?;
+    planes::lay(control, Frame::new(rotation([2, 1, 0], [c, b, a]), Vector3::zeros()))?;
     turned(control, Turn::Stay, Pick::Nearest, MotionKind::Rapid)
 }
 
@@ -196,14 +185,7 @@ pub(super) fn cycle_19(control: &mut Control, said: &Said<'_>, words: &mut Gathe
 pub(super) fn keep_tip(control: &mut Control, said: &Said<'_>) -> Answer<()> {
     said.only(
         control,
-        &[
-            "F TCP",
-            "F CONT",
-            "AXIS POS",
-            "PATHCTRL AXIS",
-            "PATHCTRL VECTOR",
-            "REFPNT TIP-TIP",
-        ],
+        &["F TCP", "F CONT", "AXIS POS", "PATHCTRL AXIS", "PATHCTRL VECTOR", "REFPNT TIP-TIP"],
         &[],
     )?;
     control.set_tcp(true, 0, false);
@@ -217,9 +199,7 @@ pub(super) fn keep_tip(control: &mut Control, said: &Said<'_>) -> Answer<()> {
 /// `M140 MB MAX`, `M140 MB50`: back along the tool, to the end of the travel or by a way.
 pub(super) fn retract(control: &mut Control, kind: MotionKind, said: &Said<'_>) -> Answer<()> {
     let far = said.has("MB MAX") || said.has("MAX");
-    let way = said
-        .named(control, "MB")?
-        .map(|way| way * control.modal.unit);
+    let way = said.named(control, "MB")?.map(|way| way * control.modal.unit);
     let way = match (way, far) {
         (Some(way), false) => way,
         _ => farthest(control)?,
@@ -228,16 +208,10 @@ pub(super) fn retract(control: &mut Control, kind: MotionKind, said: &Said<'_>) 
     let tip = control.at.pose.tip + axis * way;
     let mut joints = control.at.joints;
     let turns = control.turns;
-    if control
-        .state
-        .solver
-        .place(tip, &mut joints, &turns)
-        .is_err()
-    {
-        return Err(control.refuse(
-            "nc-reach",
-            "the linear axes cannot draw the tool back along its axis",
-        ));
+    if control.state.solver.place(tip, &mut joints, &turns).is_err() {
+        return Err(
+            control.refuse("nc-reach", "the linear axes cannot draw the tool back along its axis")
+        );
     }
     // What the rapid at F99999 is for.
     let kind = if far { MotionKind::Rapid } else { kind };
@@ -252,9 +226,7 @@ fn farthest(control: &Control) -> Answer<f64> {
     let (mut here, mut there) = (control.at.joints, control.at.joints);
     let tip = control.at.pose.tip;
     let placed = solver.place(tip, &mut here, &turns).is_ok()
-        && solver
-            .place(tip + control.at.pose.axis, &mut there, &turns)
-            .is_ok();
+        && solver.place(tip + control.at.pose.axis, &mut there, &turns).is_ok();
     let mut most = f64::INFINITY;
     for (place, axis) in control.machine.axes.iter().enumerate() {
         let rate = there[place] - here[place];

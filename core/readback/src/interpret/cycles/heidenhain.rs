@@ -28,14 +28,11 @@ pub(crate) struct Parameters<'a> {
 impl Parameters<'_> {
     fn given(&self, number: u32) -> Option<f64> {
         let mut values = self.values.iter().rev();
-        values
-            .find(|(given, _)| *given == number)
-            .map(|(_, value)| *value)
+        values.find(|(given, _)| *given == number).map(|(_, value)| *value)
     }
 
     fn needed(&self, number: u32) -> Result<f64, Box<Diagnostic>> {
-        self.given(number)
-            .ok_or_else(|| self.refuse(&format!("Q{number} is not given")))
+        self.given(number).ok_or_else(|| self.refuse(&format!("Q{number} is not given")))
     }
 
     fn length(&self, number: u32) -> Result<f64, Box<Diagnostic>> {
@@ -44,8 +41,7 @@ impl Parameters<'_> {
 
     /// A length that older software does not have.
     fn length_or(&self, number: u32, otherwise: f64) -> f64 {
-        self.given(number)
-            .map_or(otherwise, |value| value * self.unit)
+        self.given(number).map_or(otherwise, |value| value * self.unit)
     }
 
     fn feed(&self, number: u32) -> Result<f64, Box<Diagnostic>> {
@@ -97,10 +93,7 @@ pub(crate) fn hole(parameters: &Parameters<'_>) -> Result<Option<Hole>, Box<Diag
             "the depth Q201 is {depth}: a hole upwards is a parameter of the machine"
         )));
     }
-    if parameters
-        .given(395)
-        .is_some_and(|reference| reference != 0.0)
-    {
+    if parameters.given(395).is_some_and(|reference| reference != 0.0) {
         return Err(parameters.refuse(
             "Q395 counts the depth from the cylinder of the drill, and its point is not known",
         ));
@@ -165,12 +158,7 @@ fn made(
         205 => deep(parameters, hole, depth)?,
         206 => {
             let feed = parameters.feed(206)?;
-            Hole {
-                kind: CycleKind::Tap,
-                feed,
-                out: Out::Thread(feed),
-                ..hole
-            }
+            Hole { kind: CycleKind::Tap, feed, out: Out::Thread(feed), ..hole }
         }
         207 | 209 => thread(parameters, hole, depth)?,
         _ => {
@@ -179,10 +167,7 @@ fn made(
                     "Q343 counts by the diameter, and the point of the tool is not known",
                 ));
             }
-            Hole {
-                feed: parameters.feed(206)?,
-                ..hole
-            }
+            Hole { feed: parameters.feed(206)?, ..hole }
         }
     })
 }
@@ -223,11 +208,7 @@ fn universal(
     let step = parameters.length_or(202, depth);
     let out = parameters.out(feed);
     // After so many breaks the tool comes out; with none after each.
-    let out_after = if breaks > 0.0 {
-        libm::fmin(libm::round(breaks), 1e6) as u32
-    } else {
-        1
-    };
+    let out_after = if breaks > 0.0 { libm::fmin(libm::round(breaks), 1e6) as u32 } else { 1 };
     let least = parameters.length_or(205, 0.0);
     Ok(Hole {
         kind: match (step < depth, out_after > 1) {
@@ -270,11 +251,7 @@ fn deep(parameters: &Parameters<'_>, hole: Hole, depth: f64) -> Result<Hole, Box
     let feed = parameters.feed(206)?;
     let breaking = breaks > 0.0 && breaks < depth && step >= depth;
     Ok(Hole {
-        kind: if breaking {
-            CycleKind::BreakChip
-        } else {
-            CycleKind::Deep
-        },
+        kind: if breaking { CycleKind::BreakChip } else { CycleKind::Deep },
         feed,
         out: parameters.out(feed),
         pecks: pecks(
@@ -338,12 +315,7 @@ fn pecks(
         return Err(parameters.refuse(&format!("the plunging depth is {step}")));
     }
     let less = parameters.length_or(212, 0.0);
-    Ok(Some(Pecks {
-        first: step,
-        less,
-        least: if less == 0.0 { step } else { least },
-        ..pecks
-    }))
+    Ok(Some(Pecks { first: step, less, least: if less == 0.0 { step } else { least }, ..pecks }))
 }
 
 #[cfg(test)]
@@ -352,13 +324,7 @@ mod tests {
     use super::*;
 
     fn strokes(cycle: u32, values: &[(u32, f64)]) -> Vec<Stroke> {
-        let parameters = Parameters {
-            cycle,
-            values,
-            unit: 1.0,
-            feed_unit: 1.0,
-            speed: 500.0,
-        };
+        let parameters = Parameters { cycle, values, unit: 1.0, feed_unit: 1.0, speed: 500.0 };
         hole(&parameters).unwrap().unwrap().strokes(50.0).unwrap()
     }
 
@@ -411,29 +377,16 @@ mod tests {
     #[test]
     fn a_thread_goes_by_its_pitch() {
         use Stroke::{Rapid, Thread};
-        let wanted = [
-            Rapid(3.0),
-            Thread(-19.0, 625.0),
-            Thread(3.0, 625.0),
-            Rapid(11.0),
-        ];
-        assert_eq!(
-            strokes(207, &[&LEVELS[..], &[(239, -1.25)]].concat()),
-            wanted
-        );
+        let wanted = [Rapid(3.0), Thread(-19.0, 625.0), Thread(3.0, 625.0), Rapid(11.0)];
+        assert_eq!(strokes(207, &[&LEVELS[..], &[(239, -1.25)]].concat()), wanted);
     }
 
     #[test]
     fn what_hangs_on_the_tools_point_is_refused() {
         let refused = |cycle: u32, more: &[(u32, f64)]| {
             let values = [&LEVELS[..], more].concat();
-            let parameters = Parameters {
-                cycle,
-                values: &values,
-                unit: 1.0,
-                feed_unit: 1.0,
-                speed: 500.0,
-            };
+            let parameters =
+                Parameters { cycle, values: &values, unit: 1.0, feed_unit: 1.0, speed: 500.0 };
             hole(&parameters).is_err()
         };
         assert!(refused(240, &[(206, 12.0), (343, 1.0)]));

@@ -72,10 +72,7 @@ pub(crate) struct Wait {
 impl Wait {
     /// So many seconds.
     pub fn seconds(time: f64) -> Self {
-        Self {
-            time,
-            revolutions: false,
-        }
+        Self { time, revolutions: false }
     }
 }
 
@@ -129,16 +126,10 @@ impl Hole {
         CycleCall {
             kind: self.kind,
             depth: libm::fabs(self.clearance - self.bottom),
-            clearance: self
-                .surface
-                .map_or(0.0, |surface| libm::fabs(self.clearance - surface)),
+            clearance: self.surface.map_or(0.0, |surface| libm::fabs(self.clearance - surface)),
             peck: self.pecks.map_or(0.0, |pecks| pecks.first),
             later_peck: 0.0,
-            dwell: if self.wait.revolutions {
-                0.0
-            } else {
-                self.wait.time
-            },
+            dwell: if self.wait.revolutions { 0.0 } else { self.wait.time },
             feed: self.feed,
             per_revolution: self.per_revolution,
         }
@@ -153,10 +144,7 @@ impl Hole {
         if libm::fabs(from - self.clearance) > SAME {
             strokes.push(Stroke::Rapid(self.clearance));
         }
-        if self
-            .pecks
-            .is_some_and(|pecks| pecks.first < self.depth() - SAME)
-        {
+        if self.pecks.is_some_and(|pecks| pecks.first < self.depth() - SAME) {
             self.in_pecks(&mut strokes)?;
         } else {
             let feed = self.feed * self.first_share.unwrap_or(1.0);
@@ -200,11 +188,7 @@ impl Hole {
     }
 
     fn out_level(&self) -> f64 {
-        if self.out_all {
-            self.away
-        } else {
-            self.clearance
-        }
+        if self.out_all { self.away } else { self.clearance }
     }
 
     fn depth(&self) -> f64 {
@@ -219,11 +203,7 @@ impl Hole {
 
     /// 1 where the hole goes up, else -1.
     fn sign(&self) -> f64 {
-        if self.bottom > self.clearance {
-            1.0
-        } else {
-            -1.0
-        }
+        if self.bottom > self.clearance { 1.0 } else { -1.0 }
     }
 
     fn down(&self, level: f64, feed: f64) -> Stroke {
@@ -291,11 +271,7 @@ impl Hole {
             } else if pecks.back > 0.0 {
                 let back = level - sign * pecks.back;
                 // Not out of the hole.
-                let back = if (back - self.clearance) * sign > 0.0 {
-                    back
-                } else {
-                    self.clearance
-                };
+                let back = if (back - self.clearance) * sign > 0.0 { back } else { self.clearance };
                 strokes.push(match pecks.thread {
                     true => Stroke::Thread(back, feed),
                     false => Stroke::Rapid(back),
@@ -331,13 +307,7 @@ mod tests {
     #[test]
     fn pecks_come_out_or_break_the_chip() {
         use Stroke::{Feed, Rapid};
-        let out = Pecks {
-            first: 5.0,
-            least: 5.0,
-            out_after: 1,
-            ahead: 0.5,
-            ..Pecks::default()
-        };
+        let out = Pecks { first: 5.0, least: 5.0, out_after: 1, ahead: 0.5, ..Pecks::default() };
         let strokes = [
             Rapid(2.0),
             Feed(-3.0, 100.0),
@@ -350,12 +320,7 @@ mod tests {
             Rapid(20.0),
         ];
         assert_eq!(drilled(Some(out)), strokes);
-        let breaks = Pecks {
-            first: 5.0,
-            least: 5.0,
-            back: 1.0,
-            ..Pecks::default()
-        };
+        let breaks = Pecks { first: 5.0, least: 5.0, back: 1.0, ..Pecks::default() };
         let strokes = [
             Rapid(2.0),
             Feed(-3.0, 100.0),
@@ -373,11 +338,7 @@ mod tests {
         let hole = Hole {
             bottom: -100.0,
             feed: 1.0,
-            pecks: Some(Pecks {
-                first: 5.0,
-                less: 1.0,
-                ..Pecks::default()
-            }),
+            pecks: Some(Pecks { first: 5.0, less: 1.0, ..Pecks::default() }),
             ..Hole::default()
         };
         assert!(hole.strokes(0.0).is_err());

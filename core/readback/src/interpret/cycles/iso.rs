@@ -51,11 +51,7 @@ pub(super) fn hole(
     let here = control.point();
     let before = control.cycles.iso;
     let mut running = match (meaning, before) {
-        (Some(meaning), Some(before)) => Running {
-            code,
-            meaning,
-            ..before
-        },
+        (Some(meaning), Some(before)) => Running { code, meaning, ..before },
         (Some(meaning), None) => Running {
             code,
             meaning,
@@ -73,10 +69,9 @@ pub(super) fn hole(
     let incremental = control.modal.incremental;
     let refused = words.incremental & (bit(letter(axis)) | bit(b'R'));
     if refused != 0 {
-        return Err(control.refuse(
-            "nc-cycle",
-            "a level of this cycle is incremental by a word of its own",
-        ));
+        return Err(
+            control.refuse("nc-cycle", "a level of this cycle is incremental by a word of its own")
+        );
     }
     if let Some(level) = words.take(b'R') {
         running.clearance = level * unit + if incremental { running.start } else { 0.0 };
@@ -118,11 +113,8 @@ pub(super) fn hole(
     let hidden = words.present & bit(letter(axis));
     words.present &= !bit(letter(axis));
     let made = (0..count).try_for_each(|turn| {
-        let mut target = if turn == 0 || incremental {
-            control.target(words)?
-        } else {
-            Target::default()
-        };
+        let mut target =
+            if turn == 0 || incremental { control.target(words)? } else { Target::default() };
         let hole = levels(control, &running)?;
         if control.lexicon.language() == Language::Rs274 {
             // Straight to R where the cycles began under it; else from under it on the way to the hole to the level of
@@ -202,11 +194,7 @@ fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnost
         away,
         feed,
         // G81 has no wait: a P beside it says nothing.
-        wait: Wait::seconds(if running.code == 810 {
-            0.0
-        } else {
-            running.dwell
-        }),
+        wait: Wait::seconds(if running.code == 810 { 0.0 } else { running.dwell }),
         // LinuxCNC feeds all the way out, but for G85.
         out_all: control.lexicon.language() == Language::Rs274 && running.code != 850,
         ..Hole::default()
@@ -232,48 +220,22 @@ fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnost
         if feed <= 0.0 {
             return Err(control.refuse("nc-cycle", "a thread without a feed"));
         }
-        Ok(Hole {
-            kind,
-            out: Out::Thread(feed),
-            ..hole
-        })
+        Ok(Hole { kind, out: Out::Thread(feed), ..hole })
     };
     Ok(match running.meaning {
         M::CycleDrill => hole,
         M::CycleDeep | M::CycleBreakChip if running.step <= 0.0 => {
             return Err(control.refuse("nc-cycle", "a cycle in pecks without Q"));
         }
-        M::CycleDeep => Hole {
-            kind: CycleKind::Deep,
-            pecks: Some(pecks(1)),
-            ..hole
-        },
-        M::CycleBreakChip => Hole {
-            kind: CycleKind::BreakChip,
-            pecks: Some(pecks(0)),
-            ..hole
-        },
+        M::CycleDeep => Hole { kind: CycleKind::Deep, pecks: Some(pecks(1)), ..hole },
+        M::CycleBreakChip => Hole { kind: CycleKind::BreakChip, pecks: Some(pecks(0)), ..hole },
         M::CycleTap => thread(CycleKind::Tap, hole)?,
         M::CycleTapLeft => thread(CycleKind::TapLeft, hole)?,
-        M::CycleReam => Hole {
-            kind: CycleKind::Ream,
-            out: Out::Feed(feed),
-            ..hole
-        },
-        M::CycleBore => Hole {
-            kind: CycleKind::Bore,
-            ..hole
-        },
+        M::CycleReam => Hole { kind: CycleKind::Ream, out: Out::Feed(feed), ..hole },
+        M::CycleBore => Hole { kind: CycleKind::Bore, ..hole },
         // G88, and G87 of some: the operator draws it out.
-        M::CycleOther => Hole {
-            kind: CycleKind::Bore,
-            stop: true,
-            ..hole
-        },
-        M::CycleBoreFine => Hole {
-            kind: CycleKind::BoreFine,
-            ..hole
-        },
+        M::CycleOther => Hole { kind: CycleKind::Bore, stop: true, ..hole },
+        M::CycleBoreFine => Hole { kind: CycleKind::BoreFine, ..hole },
         M::CycleBoreBack => Hole {
             kind: CycleKind::BoreBack,
             away: libm::fmax(running.start, running.bottom),

@@ -180,9 +180,7 @@ fn drill(control: &mut Control, hole: &Hole) -> Result<(), Box<Diagnostic>> {
     }
     let axis = control.modal.plane.coordinates()[2];
     let from = control.point();
-    let strokes = hole
-        .strokes(from[axis])
-        .map_err(|finding| control.placed(*finding).boxed())?;
+    let strokes = hole.strokes(from[axis]).map_err(|finding| control.placed(*finding).boxed())?;
     let [in_it, behind] = hole.turning.map_or([None; 2], |turning| turning.map(Some));
     if let Some(turning) = in_it {
         control.turn_spindle(turning);
@@ -227,10 +225,7 @@ fn made(control: &mut Control, stroke: &Stroke) -> Result<(), Box<Diagnostic>> {
             MotionKind::Rapid
         }
         Stroke::Wait(wait) => {
-            control.tell(Told::Dwell {
-                time: wait.time,
-                revolutions: wait.revolutions,
-            });
+            control.tell(Told::Dwell { time: wait.time, revolutions: wait.revolutions });
             return Ok(());
         }
         Stroke::Stop => {

@@ -48,10 +48,8 @@ impl Arguments<'_> {
         relative: usize,
         what: &str,
     ) -> Result<Option<f64>, Box<Diagnostic>> {
-        let (absolute, relative) = (
-            self.given(absolute),
-            self.given(relative).filter(|way| *way != 0.0),
-        );
+        let (absolute, relative) =
+            (self.given(absolute), self.given(relative).filter(|way| *way != 0.0));
         let absolute = absolute.map(|level| level * self.unit);
         let relative = relative.map(|way| reference - libm::fabs(way) * self.unit);
         match (absolute, relative) {
@@ -65,10 +63,7 @@ impl Arguments<'_> {
     /// A wait: seconds, or turns of the spindle where it is negative.
     fn wait(&self, place: usize) -> Wait {
         let time = self.number(place);
-        Wait {
-            time: libm::fabs(time),
-            revolutions: time < 0.0,
-        }
+        Wait { time: libm::fabs(time), revolutions: time < 0.0 }
     }
 }
 
@@ -91,11 +86,7 @@ pub(crate) fn hole(
     values: &[Option<f64>],
     around: &Around,
 ) -> Result<Hole, Box<Diagnostic>> {
-    let arguments = Arguments {
-        name,
-        values,
-        unit: around.unit,
-    };
+    let arguments = Arguments { name, values, unit: around.unit };
     let reference = arguments.length(2);
     let bottom = arguments.depth(reference, 4, 5, "the depth")?;
     let bottom = bottom.ok_or_else(|| arguments.refuse("no depth is given"))?;
@@ -103,11 +94,7 @@ pub(crate) fn hole(
     let up = bottom > reference;
     let away = arguments.length(1);
     let hole = Hole {
-        clearance: if up {
-            reference - clear
-        } else {
-            reference + clear
-        },
+        clearance: if up { reference - clear } else { reference + clear },
         surface: Some(reference),
         bottom,
         away,
@@ -128,20 +115,11 @@ pub(crate) fn hole(
 fn made(arguments: &Arguments<'_>, hole: Hole, around: &Around) -> Result<Hole, Box<Diagnostic>> {
     let hole = match arguments.name {
         "CYCLE81" => hole,
-        "CYCLE82" => Hole {
-            wait: arguments.wait(6),
-            ..hole
-        },
+        "CYCLE82" => Hole { wait: arguments.wait(6), ..hole },
         "CYCLE83" => deep(arguments, hole)?,
         "CYCLE84" => {
-            let speed = arguments
-                .given(11)
-                .filter(|speed| *speed != 0.0)
-                .unwrap_or(around.speed);
-            let back = arguments
-                .given(12)
-                .filter(|speed| *speed != 0.0)
-                .unwrap_or(speed);
+            let speed = arguments.given(11).filter(|speed| *speed != 0.0).unwrap_or(around.speed);
+            let back = arguments.given(12).filter(|speed| *speed != 0.0).unwrap_or(speed);
             let hole = thread(arguments, hole, 9, [speed, back])?;
             let turning = match hole.kind {
                 CycleKind::TapLeft => Turning::CounterClockwise,
@@ -159,10 +137,7 @@ fn made(arguments: &Arguments<'_>, hole: Hole, around: &Around) -> Result<Hole, 
                 CycleKind::TapLeft => Turning::CounterClockwise,
                 _ => Turning::Clockwise,
             };
-            Hole {
-                turning: behind(arguments, 8).map(|behind| [turning, behind]),
-                ..hole
-            }
+            Hole { turning: behind(arguments, 8).map(|behind| [turning, behind]), ..hole }
         }
         "CYCLE85" => Hole {
             kind: CycleKind::Ream,
@@ -183,17 +158,8 @@ fn made(arguments: &Arguments<'_>, hole: Hole, around: &Around) -> Result<Hole, 
                 ..hole
             }
         }
-        "CYCLE87" => Hole {
-            kind: CycleKind::Bore,
-            stop: true,
-            ..hole
-        },
-        "CYCLE88" => Hole {
-            kind: CycleKind::Bore,
-            wait: arguments.wait(6),
-            stop: true,
-            ..hole
-        },
+        "CYCLE87" => Hole { kind: CycleKind::Bore, stop: true, ..hole },
+        "CYCLE88" => Hole { kind: CycleKind::Bore, wait: arguments.wait(6), stop: true, ..hole },
         "CYCLE89" => Hole {
             kind: CycleKind::Ream,
             wait: arguments.wait(6),
@@ -285,11 +251,7 @@ fn deep(arguments: &Arguments<'_>, hole: Hole) -> Result<Hole, Box<Diagnostic>> 
         pecks: Some(Pecks {
             first: libm::fabs(first - reference),
             less,
-            least: if less == 0.0 {
-                libm::fabs(first - reference)
-            } else {
-                least
-            },
+            least: if less == 0.0 { libm::fabs(first - reference) } else { least },
             halved: less != 0.0,
             out_after: u32::from(swarf),
             back: if swarf { 0.0 } else { back },
@@ -349,11 +311,7 @@ mod tests {
     use super::super::hole::Stroke;
     use super::*;
 
-    const AROUND: Around = Around {
-        unit: 1.0,
-        feed: 120.0,
-        speed: 500.0,
-    };
+    const AROUND: Around = Around { unit: 1.0, feed: 120.0, speed: 500.0 };
 
     fn strokes(name: &str, values: &[Option<f64>]) -> Vec<Stroke> {
         hole(name, values, &AROUND).unwrap().strokes(100.0).unwrap()
@@ -363,16 +321,10 @@ mod tests {
     fn levels_are_absolute() {
         use Stroke::{Feed, Rapid};
         let levels = [Some(10.0), Some(1.5), Some(2.0), Some(-11.0)];
-        assert_eq!(
-            strokes("CYCLE81", &levels),
-            [Rapid(3.5), Feed(-11.0, 120.0), Rapid(10.0)]
-        );
+        assert_eq!(strokes("CYCLE81", &levels), [Rapid(3.5), Feed(-11.0, 120.0), Rapid(10.0)]);
         // Depth from the reference plane, without a sign.
         let levels = [Some(10.0), Some(1.5), Some(2.0), None, Some(12.5)];
-        assert_eq!(
-            strokes("CYCLE81", &levels),
-            [Rapid(3.5), Feed(-11.0, 120.0), Rapid(10.0)]
-        );
+        assert_eq!(strokes("CYCLE81", &levels), [Rapid(3.5), Feed(-11.0, 120.0), Rapid(10.0)]);
     }
 
     #[test]
@@ -384,20 +336,7 @@ mod tests {
     #[test]
     fn pecks_count_from_the_reference_plane() {
         use Stroke::{Feed, Rapid};
-        let values = [
-            2.0,
-            0.0,
-            2.0,
-            -20.0,
-            f64::NAN,
-            f64::NAN,
-            6.0,
-            0.0,
-            0.0,
-            0.0,
-            1.0,
-            1.0,
-        ];
+        let values = [2.0, 0.0, 2.0, -20.0, f64::NAN, f64::NAN, 6.0, 0.0, 0.0, 0.0, 1.0, 1.0];
         let values = values.map(|value: f64| (!value.is_nan()).then_some(value));
         let wanted = [
             Rapid(2.0),
@@ -439,19 +378,7 @@ mod tests {
     #[test]
     fn fine_boring_is_lifted_off_the_wall() {
         use Stroke::{Aside, Feed, Rapid};
-        let values = [
-            10.0,
-            0.0,
-            2.0,
-            -12.5,
-            f64::NAN,
-            0.0,
-            3.0,
-            -0.2,
-            0.0,
-            0.0,
-            0.0,
-        ];
+        let values = [10.0, 0.0, 2.0, -12.5, f64::NAN, 0.0, 3.0, -0.2, 0.0, 0.0, 0.0];
         let values = values.map(|value: f64| (!value.is_nan()).then_some(value));
         let wanted = [
             Rapid(2.0),

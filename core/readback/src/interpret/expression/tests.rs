@@ -21,11 +21,7 @@ fn of(name: &str, arguments: &[f64]) -> E {
 }
 
 fn binary(operator: B, left: f64, right: f64) -> E {
-    E::Binary(
-        operator,
-        Box::new(E::Number(left)),
-        Box::new(E::Number(right)),
-    )
+    E::Binary(operator, Box::new(E::Number(left)), Box::new(E::Number(right)))
 }
 
 /// A random expression, and its value by a stack machine of its own: the tree is never asked.
@@ -44,10 +40,7 @@ fn random(random: &mut Rng, depth: u32, program: &mut Vec<Step>) -> E {
         1 => {
             let inner = self::random(random, depth - 1, program);
             program.push(Step::Sine);
-            E::Function {
-                name: "SIN".to_owned(),
-                arguments: vec![inner],
-            }
+            E::Function { name: "SIN".to_owned(), arguments: vec![inner] }
         }
         which => {
             let operator =
@@ -140,10 +133,7 @@ fn functions_answer_in_degrees() {
     ];
     for (language, name, arguments, expected) in cases {
         let found = variables(language).number(&of(name, arguments)).unwrap();
-        assert!(
-            (found - expected).abs() < 1e-4,
-            "{name} of {arguments:?}: {found}"
-        );
+        assert!((found - expected).abs() < 1e-4, "{name} of {arguments:?}: {found}");
     }
 }
 
@@ -151,29 +141,16 @@ fn functions_answer_in_degrees() {
 fn what_controls_answer_differently_is_refused() {
     let refused =
         |language: Language, expression: &E| variables(language).number(expression).is_err();
-    assert!(
-        refused(Language::Macro, &of("ATAN", &[-1.0, 2.0])),
-        "0 to 360 or -180 to 180"
-    );
+    assert!(refused(Language::Macro, &of("ATAN", &[-1.0, 2.0])), "0 to 360 or -180 to 180");
     assert!(refused(Language::Names, &binary(B::Remainder, -5.0, 3.0)));
     assert!(!refused(Language::Names, &binary(B::Remainder, 5.0, 3.0)));
     // 0.1 + 0.2 against 0.3: equal on a control with twelve digits, not in doubles.
-    let sum = E::Binary(
-        B::Equal,
-        Box::new(binary(B::Add, 0.1, 0.2)),
-        Box::new(E::Number(0.3)),
-    );
+    let sum = E::Binary(B::Equal, Box::new(binary(B::Add, 0.1, 0.2)), Box::new(E::Number(0.3)));
     assert!(refused(Language::Macro, &sum));
-    assert_eq!(
-        variables(Language::Rs274).number(&sum).ok(),
-        Some(1.0),
-        "within 0.0001 there"
-    );
+    assert_eq!(variables(Language::Rs274).number(&sum).ok(), Some(1.0), "within 0.0001 there");
     assert!(
         refused(Language::Macro, &of("ROUND", &[-2.5]))
-            || variables(Language::Macro)
-                .number(&of("ROUND", &[-2.5]))
-                .is_ok()
+            || variables(Language::Macro).number(&of("ROUND", &[-2.5])).is_ok()
     );
 }
 
@@ -215,31 +192,21 @@ fn nesting_has_a_bound() {
 #[test]
 fn variables_are_found_by_number_too() {
     let names = variables(Language::Names);
-    let indexed = E::Indexed {
-        name: "R".to_owned(),
-        index: Box::new(E::Number(2.0)),
-    };
+    let indexed = E::Indexed { name: "R".to_owned(), index: Box::new(E::Number(2.0)) };
     assert_eq!(names.number(&indexed).ok(), Some(-4.0));
     assert_eq!(names.number(&E::Variable("R01".to_owned())).ok(), Some(2.5));
-    let broken = E::Indexed {
-        name: "R".to_owned(),
-        index: Box::new(E::Number(1.5)),
-    };
+    let broken = E::Indexed { name: "R".to_owned(), index: Box::new(E::Number(1.5)) };
     assert!(names.number(&broken).is_err());
     let hash = variables(Language::Macro);
-    let indexed = E::Indexed {
-        name: "#".to_owned(),
-        index: Box::new(binary(B::Multiply, 50.0, 2.0)),
-    };
+    let indexed =
+        E::Indexed { name: "#".to_owned(), index: Box::new(binary(B::Multiply, 50.0, 2.0)) };
     assert_eq!(hash.number(&indexed).ok(), Some(12.0));
 }
 
 #[test]
 fn logic_is_of_bits_with_fanuc_alone() {
     let worth = |language, operator, left, right| {
-        variables(language)
-            .number(&binary(operator, left, right))
-            .ok()
+        variables(language).number(&binary(operator, left, right)).ok()
     };
     assert_eq!(worth(Language::Macro, B::And, 6.0, 3.0), Some(2.0));
     assert_eq!(worth(Language::Rs274, B::And, 6.0, 3.0), Some(1.0));

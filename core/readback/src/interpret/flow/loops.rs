@@ -49,19 +49,12 @@ impl<R: Read + Seek> Flow<R> {
                     self.skip_loop(None, Kind::For)?;
                 } else {
                     let body = self.reader.mark();
-                    self.push(Running::For {
-                        head,
-                        body,
-                        variable: name,
-                        to,
-                    })?;
+                    self.push(Running::For { head, body, variable: name, to })?;
                 }
             }
             NcFlow::EndFor => {
                 let found = self.unwind(|running| match running {
-                    Running::For {
-                        body, variable, to, ..
-                    } => Some((*body, variable.clone(), *to)),
+                    Running::For { body, variable, to, .. } => Some((*body, variable.clone(), *to)),
                     _ => None,
                 });
                 let (body, name, to) =
@@ -105,12 +98,7 @@ impl<R: Read + Seek> Flow<R> {
                 let left = whole(variables.number(&times)?, "a count of repeats")?;
                 if left > 0 {
                     let body = self.reader.mark();
-                    self.push(Running::Times {
-                        name,
-                        head,
-                        body,
-                        left,
-                    })?;
+                    self.push(Running::Times { name, head, body, left })?;
                 } else {
                     self.skip_loop(name.as_deref(), Kind::Times)?;
                 }
@@ -138,9 +126,7 @@ impl<R: Read + Seek> Flow<R> {
     /// `o1 endrepeat`.
     pub(super) fn again(&mut self, name: Option<&str>) -> Answer<()> {
         let body = self.unwind(|running| match running {
-            Running::Times {
-                name: own, body, ..
-            } if own.as_deref() == name => Some(*body),
+            Running::Times { name: own, body, .. } if own.as_deref() == name => Some(*body),
             _ => None,
         });
         let body = body.ok_or_else(|| fault("a loop ends here that has not begun"))?;
@@ -183,9 +169,7 @@ impl<R: Read + Seek> Flow<R> {
 
     fn close_do(&mut self, name: Option<&str>) -> Option<NcMark> {
         self.unwind(|running| match running {
-            Running::Do {
-                name: own, body, ..
-            } if own.as_deref() == name => Some(*body),
+            Running::Do { name: own, body, .. } if own.as_deref() == name => Some(*body),
             _ => None,
         })
     }
@@ -230,12 +214,7 @@ impl<R: Read + Seek> Flow<R> {
             let flow = self.skip(
                 name,
                 |flow| matches!(flow, NcFlow::If { .. }),
-                |flow| {
-                    matches!(
-                        flow,
-                        NcFlow::ElseIf { .. } | NcFlow::Else(_) | NcFlow::EndIf(_)
-                    )
-                },
+                |flow| matches!(flow, NcFlow::ElseIf { .. } | NcFlow::Else(_) | NcFlow::EndIf(_)),
                 |flow| matches!(flow, NcFlow::EndIf(_)),
             )?;
             match flow {
@@ -251,14 +230,12 @@ impl<R: Read + Seek> Flow<R> {
                 |flow| matches!(flow, NcFlow::While { .. }),
                 |flow| matches!(flow, NcFlow::EndWhile(_)),
             ),
-            Kind::For => (
-                |flow| matches!(flow, NcFlow::For { .. }),
-                |flow| matches!(flow, NcFlow::EndFor),
-            ),
-            Kind::Loop => (
-                |flow| matches!(flow, NcFlow::Loop),
-                |flow| matches!(flow, NcFlow::EndLoop),
-            ),
+            Kind::For => {
+                (|flow| matches!(flow, NcFlow::For { .. }), |flow| matches!(flow, NcFlow::EndFor))
+            }
+            Kind::Loop => {
+                (|flow| matches!(flow, NcFlow::Loop), |flow| matches!(flow, NcFlow::EndLoop))
+            }
             Kind::Do => (
                 |flow| matches!(flow, NcFlow::Do(_)),
                 |flow| matches!(flow, NcFlow::Until(_) | NcFlow::While { .. }),

@@ -91,10 +91,8 @@ impl Ran {
 
 /// Runs a program.
 pub fn ran(machine: &Machine, words: &[(&'static str, M)], offsets: &Offsets, text: &str) -> Ran {
-    let words: Vec<VocabularyWord> = words
-        .iter()
-        .map(|(word, meaning)| VocabularyWord::new(word, *meaning))
-        .collect();
+    let words: Vec<VocabularyWord> =
+        words.iter().map(|(word, meaning)| VocabularyWord::new(word, *meaning)).collect();
     let lexicon = Lexicon::new(&words);
     let input = Cursor::new(text.as_bytes());
     let limits = Limits::default();

@@ -9,11 +9,9 @@ use super::{LETTERS, NAMES, Ran, letters, machine, ran};
 #[test]
 fn units_and_ways_are_modal() {
     let machine = machine("vmc");
-    let done = letters(
-        &machine,
-        "G21 G0 X0 Y0 Z0\nG20 G1 X1. F10.\nG91 X1. Y-.5\nG21 X2.\nG90 X2.\n",
-    )
-    .whole();
+    let done =
+        letters(&machine, "G21 G0 X0 Y0 Z0\nG20 G1 X1. F10.\nG91 X1. Y-.5\nG21 X2.\nG90 X2.\n")
+            .whole();
     let ways: Vec<[f64; 2]> = done
         .motions
         .iter()
@@ -23,10 +21,7 @@ fn units_and_ways_are_modal() {
             [tip.x, tip.y].map(|value| (value * 1e9).round() / 1e9)
         })
         .collect();
-    assert_eq!(
-        ways,
-        [[25.4, 0.0], [50.8, -12.7], [52.8, -12.7], [2.0, -12.7]]
-    );
+    assert_eq!(ways, [[25.4, 0.0], [50.8, -12.7], [52.8, -12.7], [2.0, -12.7]]);
     // F10 is ten inches a minute.
     assert!((done.motions[1].minutes - 0.1).abs() < 1e-12);
     assert!((done.motions[1].feed - 254.0).abs() < 1e-9);
@@ -50,16 +45,8 @@ fn time_is_what_the_feed_word_says() {
         10.0 * std::f64::consts::PI / 100.0,
     );
     // A rapid by its slowest axis.
-    let max_feed = machine
-        .axes
-        .iter()
-        .find(|axis| axis.name == "C")
-        .unwrap()
-        .max_feed;
-    close(
-        minutes(&format!("{start}G0 C90.\n")),
-        90f64.to_radians() / max_feed,
-    );
+    let max_feed = machine.axes.iter().find(|axis| axis.name == "C").unwrap().max_feed;
+    close(minutes(&format!("{start}G0 C90.\n")), 90f64.to_radians() / max_feed);
     // Without F nothing is said.
     close(minutes(&format!("{start}G1 X30.\n")), 0.0);
 }
@@ -71,16 +58,10 @@ fn what_may_move_the_machine_is_refused_by_its_line() {
         ("G0 X0 Y0 Z0\nG777 X5.\n", "G777"),
         ("G0 X0 Y0 Z0\nB5.\n", "B is no axis"),
         ("G0 X0 Y0 Z0\nG1 X5. I3. F100.\n", "I says nothing"),
-        (
-            "G0 X0 Y0 Z0\nG2 X5. F100.\n",
-            "neither a centre nor a radius",
-        ),
+        ("G0 X0 Y0 Z0\nG2 X5. F100.\n", "neither a centre nor a radius"),
         ("G0 X0 Y0 Z0\nG2 X5. I9. F100.\n", "from its centre"),
         ("G0 X0 Y0 Z0\nG2 X50. R5. F100.\n", "does not reach"),
-        (
-            "G0 X0 Y0 Z0\nG91 G53 Z5.\n",
-            "machine coordinates are positions",
-        ),
+        ("G0 X0 Y0 Z0\nG91 G53 Z5.\n", "machine coordinates are positions"),
         ("G0 X0 Y0 Z0\nG51 X5.\n", "G51"),
         ("G0 X0 Y0 Z0\nG31 Z-5. F100.\n", "G31"),
         ("G0 X0 Y0 Z0\nX5. X6.\n", "X stands twice"),
@@ -118,44 +99,25 @@ fn what_moves_nothing_is_counted_by_name() {
 
 #[test]
 fn a_length_that_matters_must_be_known() {
-    let [head, table] = ["head-head", "ac-trunnion"].map(|name| Machine {
-        tools: Vec::new(),
-        ..machine(name)
-    });
+    let [head, table] =
+        ["head-head", "ac-trunnion"].map(|name| Machine { tools: Vec::new(), ..machine(name) });
     let text = "T7 M6\nG43 H7\nG0 X0 Y0 Z100.\n";
     let done = letters(&head, text);
     assert_eq!(done.refused.len(), 1, "{:#?}", done.refused);
     assert!(done.refused[0].message.contains("H7"));
     // On a table nothing of the tip hangs on it.
     let done = letters(&table, text).whole();
-    assert!(
-        done.report
-            .notes
-            .iter()
-            .any(|note| note.message.contains("H7"))
-    );
+    assert!(done.report.notes.iter().any(|note| note.message.contains("H7")));
     assert!((done.last().to.pose.tip.z - 100.0).abs() < 1e-9);
     // By register, then by the tool of that number.
-    let offsets = Offsets {
-        lengths: vec![(7, 50.0)],
-        tools: vec![(7, 60.0)],
-        ..Offsets::default()
-    };
+    let offsets =
+        Offsets { lengths: vec![(7, 50.0)], tools: vec![(7, 60.0)], ..Offsets::default() };
     let done = ran(&head, LETTERS, &offsets, text).whole();
     assert_eq!(done.last().state.length, 50.0);
-    assert_eq!(
-        (done.last().state.tool, done.last().state.length_register),
-        (Some(7), Some(7))
-    );
+    assert_eq!((done.last().state.tool, done.last().state.length_register), (Some(7), Some(7)));
     let done = ran(&head, NAMES, &offsets, "T7\nM6\nD1\nG0 X0 Y0 Z100\n").whole();
     assert_eq!(done.last().state.length, 60.0);
-    let done = ran(
-        &head,
-        NAMES,
-        &offsets,
-        "T7\nM6\nD1\nG0 X0 Y0 Z100\nSUPA D0 Z0\n",
-    )
-    .whole();
+    let done = ran(&head, NAMES, &offsets, "T7\nM6\nD1\nG0 X0 Y0 Z100\nSUPA D0 Z0\n").whole();
     assert_eq!(done.last().state.length, 0.0);
 }
 
@@ -164,50 +126,28 @@ fn what_happens_besides_motion_is_told_in_order() {
     let machine = machine("vmc");
     let text = "T1 M6\n(OPERATION: ROUGH)\nS3000 M3\nM8\nT2\nG54\nG0 X0 Y0 Z50.\nG41 D1 X5.\nG1 Z0 F100. M9\nG4 P500\nG4 X1.5\nG40 X0 M5\nM1\nM30\nX99.\n";
     let done = letters(&machine, text).whole();
-    let coolants = |flood| post_readback::Coolants {
-        flood,
-        ..Default::default()
-    };
+    let coolants = |flood| post_readback::Coolants { flood, ..Default::default() };
     assert_eq!(
         done.told,
         [
-            Told::ToolChange {
-                number: Some(1),
-                name: None
-            },
+            Told::ToolChange { number: Some(1), name: None },
             Told::Operation("ROUGH".to_owned()),
             Told::Spindle(Spindle::Clockwise(3000.0)),
             Told::Coolant(coolants(true)),
             Told::Preselect(2),
             Told::WorkOffset("G54".to_owned()),
-            Told::Compensation {
-                side: -1,
-                register: Some(1)
-            },
+            Told::Compensation { side: -1, register: Some(1) },
             Told::Coolant(coolants(false)),
-            Told::Dwell {
-                time: 0.5,
-                revolutions: false
-            },
-            Told::Dwell {
-                time: 1.5,
-                revolutions: false
-            },
-            Told::Compensation {
-                side: 0,
-                register: None
-            },
+            Told::Dwell { time: 0.5, revolutions: false },
+            Told::Dwell { time: 1.5, revolutions: false },
+            Told::Compensation { side: 0, register: None },
             Told::Spindle(Spindle::Off),
             Told::OptionalStop,
             Told::End,
         ]
     );
     // What ends spindle or coolant does so behind the motion of its block.
-    let down = done
-        .motions
-        .iter()
-        .find(|motion| motion.kind == MotionKind::Feed)
-        .unwrap();
+    let down = done.motions.iter().find(|motion| motion.kind == MotionKind::Feed).unwrap();
     assert!(down.state.coolants.flood);
     assert_eq!(done.last().state.spindle, Spindle::Clockwise(3000.0));
     // Nothing behind the end is run.
@@ -218,11 +158,8 @@ fn what_happens_besides_motion_is_told_in_order() {
 fn words_beside_a_code_say_what_it_does() {
     let machine = machine("vmc");
     let done = letters(&machine, "G0 X0 Y0 Z0\nG187 P3 E0.02\nX1.\nG187\nX2.\n").whole();
-    let smoothing: Vec<Option<f64>> = done
-        .motions
-        .iter()
-        .map(|motion| motion.state.smoothing)
-        .collect();
+    let smoothing: Vec<Option<f64>> =
+        done.motions.iter().map(|motion| motion.state.smoothing).collect();
     assert_eq!(smoothing, [None, Some(0.02), None]);
     assert!(done.report.unknown.is_empty(), "{:?}", done.report.unknown);
 }
@@ -230,9 +167,7 @@ fn words_beside_a_code_say_what_it_does() {
 /// What holds at the end of each motion, and whether the motion says so itself.
 fn corners(done: &Ran) -> Vec<(Corners, bool)> {
     let motions = done.motions.iter();
-    motions
-        .map(|motion| (motion.state.corners, motion.stops))
-        .collect()
+    motions.map(|motion| (motion.state.corners, motion.stops)).collect()
 }
 
 #[test]
@@ -246,15 +181,7 @@ fn words_say_how_corners_are_passed() {
     let once = (blend(None).0, true);
     assert_eq!(
         corners(&letters(&machine, program).whole()),
-        [
-            unsaid,
-            said(Corner::Stop),
-            blend(None),
-            once,
-            blend(None),
-            blend(Some(0.02)),
-            unsaid
-        ]
+        [unsaid, said(Corner::Stop), blend(None), once, blend(None), blend(Some(0.02)), unsaid]
     );
     // An inch program states its tolerance in inches.
     let inch = letters(&machine, "G20 G1 F50. X1.\nG187 P3 E0.001\nX2.\n").whole();
@@ -278,26 +205,13 @@ fn words_say_how_corners_are_passed() {
 #[test]
 fn reference_positions_are_approached_by_way_of_the_point() {
     let machine = machine("ac-trunnion");
-    let z = machine
-        .axes
-        .iter()
-        .position(|axis| axis.name == "Z")
-        .unwrap();
+    let z = machine.axes.iter().position(|axis| axis.name == "Z").unwrap();
     let done = letters(&machine, "G0 X0 Y0 Z10.\nG91 G28 Z5.\nG90\n").whole();
-    let ends: Vec<f64> = done
-        .motions
-        .iter()
-        .map(|motion| motion.to.joints[z])
-        .collect();
+    let ends: Vec<f64> = done.motions.iter().map(|motion| motion.to.joints[z]).collect();
     assert!((ends[1] - ends[0] - 5.0).abs() < 1e-9);
     assert!((machine.axes[z].reading(ends[2])).abs() < 1e-9);
     assert!(done.motions[2].machine);
-    assert!(
-        done.report
-            .notes
-            .iter()
-            .any(|note| note.message.contains("reference positions"))
-    );
+    assert!(done.report.notes.iter().any(|note| note.message.contains("reference positions")));
 }
 
 #[test]
@@ -315,10 +229,7 @@ fn the_length_that_a_control_counts_while_it_keeps_the_tip() {
     let mut machine = machine("ac-trunnion");
     let start = "G43.4 H1\nG1 X0 Y0 Z50. A-10. C0 F1000.\n";
     let close = |machine: &Machine, text: &str, wanted: f64| {
-        let table = Offsets {
-            lengths: vec![(1, 100.0)],
-            ..Offsets::default()
-        };
+        let table = Offsets { lengths: vec![(1, 100.0)], ..Offsets::default() };
         let done = ran(machine, LETTERS, &table, &format!("{start}{text}")).whole();
         let minutes = done.last().minutes;
         assert!((minutes - wanted).abs() < 1e-9, "{text} {minutes} {wanted}");

@@ -23,11 +23,7 @@ fn reference(machine: &Machine, length: f64) -> Reference {
 }
 
 fn place(machine: &Machine, name: &str) -> usize {
-    machine
-        .axes
-        .iter()
-        .position(|axis| axis.name == name)
-        .unwrap()
+    machine.axes.iter().position(|axis| axis.name == name).unwrap()
 }
 
 /// Five-axis machines of all kinds: tables, heads, both, nutating, one whose zeros are shifted.
@@ -63,10 +59,7 @@ fn machine_coordinates_are_what_the_axes_show() {
             let motion = done.last();
             let (tip, axis) = reference(&machine, 0.0).forward(&joints[..machine.axes.len()]);
             assert!((motion.to.pose.tip - tip).norm() < 1e-6, "{name}: {words}");
-            assert!(
-                (motion.to.pose.axis - axis).norm() < 1e-9,
-                "{name}: {words}"
-            );
+            assert!((motion.to.pose.axis - axis).norm() < 1e-9, "{name}: {words}");
             assert!(motion.machine);
         }
     }
@@ -76,10 +69,7 @@ fn machine_coordinates_are_what_the_axes_show() {
 fn words_of_axes_count_from_where_the_tip_stands_on_the_part() {
     for name in MACHINES {
         let machine = machine(name);
-        let offsets = Offsets {
-            lengths: vec![(3, 87.5)],
-            ..Offsets::default()
-        };
+        let offsets = Offsets { lengths: vec![(3, 87.5)], ..Offsets::default() };
         let text = "T3 M6\nG43 H3\nG0 X0 Y0 Z0\n";
         let rotary: String = machine
             .axes
@@ -93,16 +83,10 @@ fn words_of_axes_count_from_where_the_tip_stands_on_the_part() {
         // From there on every axis goes by what its word says.
         let turned = format!("{text}G0{rotary}\nG1 F100 X12.5 Y-7.25 Z30");
         let done = ran(&machine, LETTERS, &offsets, &turned).whole();
-        let [from, to] = [
-            done.motions[done.motions.len() - 2].to.joints,
-            done.last().to.joints,
-        ];
+        let [from, to] = [done.motions[done.motions.len() - 2].to.joints, done.last().to.joints];
         for (axis, way) in [("X", 12.5), ("Y", -7.25), ("Z", 30.0)] {
             let place = place(&machine, axis);
-            assert!(
-                (to[place] - from[place] - way).abs() < SAME,
-                "{name} {axis}"
-            );
+            assert!((to[place] - from[place] - way).abs() < SAME, "{name} {axis}");
         }
     }
 }
@@ -111,20 +95,14 @@ fn words_of_axes_count_from_where_the_tip_stands_on_the_part() {
 fn where_the_control_keeps_the_tip_words_are_the_tip() {
     for name in MACHINES {
         let machine = machine(name);
-        let offsets = Offsets {
-            lengths: vec![(3, 87.5)],
-            ..Offsets::default()
-        };
+        let offsets = Offsets { lengths: vec![(3, 87.5)], ..Offsets::default() };
         let (rounds, mut rng) = randomised(20, 12);
         for _ in rounds {
             let tip = Vector3::from_fn(|_, _| (rng.range(-40.0, 40.0) * 1e3_f64).round() / 1e3);
             let mut words = format!("X{:.3} Y{:.3} Z{:.3}", tip.x, tip.y, tip.z);
             let mut turns = Vec::new();
-            for (place, axis) in machine
-                .axes
-                .iter()
-                .enumerate()
-                .filter(|(_, axis)| axis.joint.rotary)
+            for (place, axis) in
+                machine.axes.iter().enumerate().filter(|(_, axis)| axis.joint.rotary)
             {
                 let [least, most] = axis.travel.unwrap_or([-3.0, 3.0]);
                 let shown = axis.reading(rng.range(least, most)).round();
@@ -136,10 +114,7 @@ fn where_the_control_keeps_the_tip_words_are_the_tip() {
             let motion = done.last();
             assert_eq!(motion.way, Way::Tip, "{name}");
             for (place, value) in turns {
-                assert!(
-                    (motion.to.joints[place] - value).abs() < 1e-12,
-                    "{name}: {words}"
-                );
+                assert!((motion.to.joints[place] - value).abs() < 1e-12, "{name}: {words}");
             }
             // The axes that it leads to bring the tip there.
             let joints = &motion.to.joints[..machine.axes.len()];
@@ -158,10 +133,7 @@ fn where_the_control_keeps_the_tip_words_are_the_tip() {
 fn a_vector_points_the_tool_and_the_axes_go_the_shorter_way() {
     let machine = machine("ac-trunnion");
     let text = "TRAFOOF\nG1 F500 X0 Y0 Z50 A0 C0\nTRAORI\nORIVECT\nX10 Y5 Z3 A3=0 B3=0.6 C3=0.8\n";
-    let offsets = Offsets {
-        length: Some(100.0),
-        ..Offsets::default()
-    };
+    let offsets = Offsets { length: Some(100.0), ..Offsets::default() };
     let done = ran(&machine, NAMES, &offsets, text).whole();
     let pose = done.last().to.pose;
     assert!((pose.axis - Vector3::new(0.0, 0.6, 0.8)).norm() < SAME);
@@ -177,17 +149,10 @@ fn a_vector_points_the_tool_and_the_axes_go_the_shorter_way() {
 fn work_offsets_shift_and_turn_the_program() {
     let machine = machine("ac-trunnion");
     let (x, c) = (place(&machine, "X"), place(&machine, "C"));
-    let mut work = WorkOffset {
-        name: "G55".to_owned(),
-        ..WorkOffset::default()
-    };
+    let mut work = WorkOffset { name: "G55".to_owned(), ..WorkOffset::default() };
     work.shift[x] = 10.0;
     work.shift[c] = 90f64.to_radians();
-    let offsets = Offsets {
-        work: vec![work],
-        length: Some(100.0),
-        ..Offsets::default()
-    };
+    let offsets = Offsets { work: vec![work], length: Some(100.0), ..Offsets::default() };
     // Axis positions: the plain zero, and all of it on top.
     let text = "G54 G43 H1\nG0 X0 Y0 Z0 A0 C0\nX5\nG55\nX5 C0\n";
     let done = ran(&machine, LETTERS, &offsets, text).whole();
@@ -212,10 +177,7 @@ fn work_offsets_shift_and_turn_the_program() {
 fn rotary_words_turn_as_they_are_told() {
     let machine = machine("bc-trunnion");
     let c = place(&machine, "C");
-    let offsets = Offsets {
-        length: Some(0.0),
-        ..Offsets::default()
-    };
+    let offsets = Offsets { length: Some(0.0), ..Offsets::default() };
     let turns = |text: &str| {
         let done = ran(&machine, NAMES, &offsets, text).whole();
         let [from, to] = [done.last().from.joints[c], done.last().to.joints[c]];
@@ -235,11 +197,7 @@ fn rotary_words_turn_as_they_are_told() {
 #[test]
 fn a_head_that_is_swapped_in_is_the_chain_from_there_on() {
     let machine = machine("head-change");
-    let done = letters(
-        &machine,
-        "M61\nG0 G53 X0 Y0 Z-100. C0\nM62\nG53 X10. C90.\n",
-    )
-    .whole();
+    let done = letters(&machine, "M61\nG0 G53 X0 Y0 Z-100. C0\nM62\nG53 X10. C90.\n").whole();
     let angle = &machine.head("ANGLE").unwrap().machine;
     let motion = done.last();
     let (tip, axis) = reference(angle, 0.0).forward(&motion.to.joints[..angle.axes.len()]);
@@ -251,26 +209,18 @@ fn a_head_that_is_swapped_in_is_the_chain_from_there_on() {
 #[test]
 fn arcs_of_axis_positions_lie_as_the_axes_do_on_the_part() {
     let machine = machine("xyzac-trt");
-    for plane in [
-        "G17 G3 X20. Y10. I10. J0",
-        "G18 G2 X20. Z10. I10. K0",
-        "G19 G3 Y20. Z10. J10. K0",
-    ] {
+    for plane in
+        ["G17 G3 X20. Y10. I10. J0", "G18 G2 X20. Z10. I10. K0", "G19 G3 Y20. Z10. J10. K0"]
+    {
         let text = format!(
             "G0 X0 Y0 Z0 A-25. C40.\nX10. Y10. Z10.\nG1 F100 X0 Y0 Z0\nG0 X0 Y10. Z10.\nG0 {}\n{plane}\n",
-            if plane.starts_with("G19") {
-                "Y0"
-            } else {
-                "Y10."
-            }
+            if plane.starts_with("G19") { "Y0" } else { "Y10." }
         );
         let done = letters(&machine, &text).whole();
         let motion = done.last();
         assert!(matches!(motion.way, Way::Arc { .. }));
         // Along the arc the tip is where the axes, going round in their own plane, bring it.
-        let Way::Arc { sweep, .. } = motion.way else {
-            unreachable!()
-        };
+        let Way::Arc { sweep, .. } = motion.way else { unreachable!() };
         let names = match &plane[..3] {
             "G17" => ["X", "Y"],
             "G18" => ["X", "Z"],

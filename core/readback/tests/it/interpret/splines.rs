@@ -42,11 +42,7 @@ fn macros(machine: &Machine, text: &str) -> Ran {
 
 /// A control of the family of RS-274/NGC.
 fn even(text: &str) -> Ran {
-    let own = [
-        ("G38.2", M::Probe),
-        ("G5.2", M::Spline),
-        ("G5.3", M::Nothing),
-    ];
+    let own = [("G38.2", M::Probe), ("G5.2", M::Spline), ("G5.3", M::Nothing)];
     let words = [LETTERS, &own].concat();
     ran(&machine("vmc"), &words, &Offsets::default(), text)
 }
@@ -91,13 +87,7 @@ fn positions_of_axes_lie_as_the_axes_do() {
     let text = CUBIC.replace("G1 X1 Y2 Z3", "G1 X1 Y2 Z3 A30 C90");
     let ran = macros(&machine, &text).whole();
     let (motion, _) = spline(&ran);
-    let place = |name: &str| {
-        machine
-            .axes
-            .iter()
-            .position(|axis| axis.name == name)
-            .unwrap()
-    };
+    let place = |name: &str| machine.axes.iter().position(|axis| axis.name == name).unwrap();
     let axes = ["X", "Y", "Z"].map(place);
     for place in 0..=20 {
         let t = f64::from(place) / 20.0;
@@ -140,11 +130,7 @@ fn what_is_no_spline_is_refused() {
         ("K1\nK1\nK1\nK1", "K1\nK1\nK1\nK0", "no spline"),
         ("K0 X1 Y2 Z3", "K0 X1 Y3 Z3", "from where the tool stands"),
         ("R2\nK0 X17", "R0\nK0 X17", "weight 0"),
-        (
-            "K1\nK1\nK1\nK1",
-            "K1\nK1 R2\nK1\nK1",
-            "without its control point",
-        ),
+        ("K1\nK1\nK1\nK1", "K1\nK1 R2\nK1\nK1", "without its control point"),
         ("K1\nK1\nK1\nK1", "K1\nK1 X3\nK1\nK1", "behind the first"),
         ("G90 G21", "G93 G21", "inverse time"),
         ("G6.2", "G91 G6.2", "G91"),

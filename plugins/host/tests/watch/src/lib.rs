@@ -12,10 +12,7 @@ struct Watch {
 
 impl Dialect for Watch {
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
-        Ok(Watch {
-            words: setup.words.len(),
-            order: Order::default(),
-        })
+        Ok(Watch { words: setup.words.len(), order: Order::default() })
     }
 
     fn format(&self) -> Format {

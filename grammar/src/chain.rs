@@ -15,7 +15,7 @@ struct Grammar;
 pub struct Link {
     /// What it is.
     pub kind: LinkKind,
-    /// Where it stands in the code, in bytes.
+    /// Bytes of the code at which the member stands.
     pub span: Range<usize>,
 }
 

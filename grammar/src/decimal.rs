@@ -35,7 +35,7 @@ fn near_the_end(text: &[u8]) -> Option<(f64, usize)> {
     short_number(&window, 0)
 }
 
-/// As [`number`], but only a number of up to seven digits on either side of the point, with neither `+` nor
+/// Reads as [`number`] does, but only a number of up to seven digits on either side of the point, with neither `+` nor
 /// exponent, and not at the very end of the text: without a loop, and without a branch on its sign and length.
 #[inline(always)]
 pub(crate) fn short_number(text: &[u8], at: usize) -> Option<(f64, usize)> {
@@ -43,13 +43,13 @@ pub(crate) fn short_number(text: &[u8], at: usize) -> Option<(f64, usize)> {
     (!is_exponent(text[short.end])).then_some((short.value, short.end))
 }
 
-/// A number without an exponent: what stands behind it is no concern of its.
+/// A number without an exponent; what follows it is not looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Decimal {
     pub(crate) value: f64,
-    /// It has a decimal point.
+    /// Whether a decimal point is written.
     pub(crate) point: bool,
-    /// Where it ends.
+    /// Byte at which the number ends.
     pub(crate) end: usize,
 }
 
@@ -62,7 +62,7 @@ pub(crate) fn decimal(text: &[u8], at: usize) -> Option<Decimal> {
     }
 }
 
-/// As [`decimal`], for a number that is long, near the end of the text, or has a `+`.
+/// Reads as [`decimal`] does, a number that is long, near the end of the text, or has a `+`.
 #[inline(never)]
 fn long_decimal(text: &[u8], at: usize) -> Option<Decimal> {
     let rest = text.get(at..)?;
@@ -74,7 +74,7 @@ fn long_decimal(text: &[u8], at: usize) -> Option<Decimal> {
     })
 }
 
-/// As [`decimal`], without the long ones.
+/// Reads as [`decimal`] does, without the long numbers.
 #[inline(always)]
 fn short(text: &[u8], at: usize) -> Option<Decimal> {
     let window: &[u8; 17] = text.get(at..at + 17)?.try_into().ok()?;
@@ -126,10 +126,10 @@ fn general(text: &[u8]) -> Option<(f64, usize)> {
 
 /// A number without its exponent.
 struct Mantissa {
-    /// Its digits as one number, if there are no more than [`MOST_DIGITS`].
+    /// Digits as one number, if there are no more than [`MOST_DIGITS`].
     digits: u64,
     count: usize,
-    /// Those behind the point; none if there is no point.
+    /// Count of digits after the point; none if there is no point.
     decimals: Option<usize>,
     end: usize,
 }
@@ -150,7 +150,7 @@ fn mantissa(text: &[u8]) -> Option<Mantissa> {
 }
 
 impl Mantissa {
-    /// Its value, which the number in `text` begins with, where a double holds its digits exactly.
+    /// The value where a double holds the digits exactly; `text` begins with the number.
     fn exact(&self, text: &[u8]) -> Option<f64> {
         if self.count > MOST_DIGITS || self.digits >= 1 << 53 {
             return None;
@@ -223,7 +223,7 @@ mod tests {
     use super::*;
     use post_testkit::randomised;
 
-    /// With what stands behind it in a file, or at the end of the text.
+    /// Checks the number with what follows it in a file, and at the end of the text.
     fn assert_like_std(text: &str) {
         let expected: f64 = text.parse().expect(text);
         for behind in [

@@ -308,7 +308,7 @@ impl Expression {
 }
 
 impl Function {
-    /// Not finite where there is no value: the root of -1, the tangent of 90°.
+    /// The function's value; not finite where there is none: the root of -1, the tangent of 90°.
     fn value(self, arguments: &[f64]) -> f64 {
         let x = arguments[0];
         match self {

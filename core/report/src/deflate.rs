@@ -4,11 +4,11 @@ use miniz_oxide::deflate::core::{
     CompressorOxide, TDEFLFlush, compress_to_output, create_comp_flags_from_zip_params,
 };
 
-/// How hard it looks for repetitions, 0 to 10. Differences hardly repeat: what counts is the code, and more looking costs
-/// time and gains nothing.
+/// How hard it looks for repetitions, 0 to 10. Differences hardly repeat: what counts is the code, and more looking
+/// costs time and gains nothing.
 const NUMBERS: i32 = 4;
 
-/// The same for texts that go as they are.
+/// Level for texts that go as they are.
 const TEXTS: i32 = 6;
 
 /// A packer that is used again and again.
@@ -18,12 +18,12 @@ pub struct Deflate {
 }
 
 impl Deflate {
-    /// For columns of numbers.
+    /// Packer for columns of numbers.
     pub fn of_numbers() -> Self {
         Self::new(NUMBERS)
     }
 
-    /// For texts.
+    /// Packer for texts.
     pub fn of_texts() -> Self {
         Self::new(TEXTS)
     }

@@ -1,12 +1,12 @@
 //! A column of integers as bytes: its differences, their signs folded in, byte plane by byte plane.
 //!
 //! A column is one byte for the order of the differences (0, 1 or 2), one for the number of planes, and the planes, the
-//! least bytes first, each as long as the column. Before the first value there are zeros. Where the order has 16 more, all
-//! values are a first one and multiples of a step besides (words that are printed with fewer decimals than the column has):
-//! behind the number of planes stand the first one as a float of 64 bits and the step as an integer of 32, least byte first,
-//! and the planes are those of the multiples.
+//! least bytes first, each as long as the column. Before the first value there are zeros. Where the order has 16 more,
+//! all values are a first one and multiples of a step besides (words that are printed with fewer decimals than the
+//! column has): behind the number of planes stand the first one as a float of 64 bits and the step as an integer of 32,
+//! least byte first, and the planes are those of the multiples.
 
-/// In the byte of the order: values are multiples of a step.
+/// Flag in the byte of the order: values are multiples of a step.
 const STEPS: u8 = 16;
 
 /// Adds `values` to `out` by the differences that are smallest. Values and their second differences keep within 2^53.

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-/// Counted up where a page of before could not show what is written now.
+/// Version of the format, counted up where an older page could not show what is written now.
 pub const FORMAT: u32 = 1;
 
-/// All of it. The keys are those of the page.
+/// Everything the page is told. The keys are those of the page.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Meta {
     /// [`FORMAT`].
@@ -32,7 +32,7 @@ pub struct Meta {
     pub excludes: Vec<String>,
     /// Places worth looking at, in the order of the blocks.
     pub events: Vec<Event>,
-    /// More events were found than are listed: so many.
+    /// Number of events found beyond those that are listed.
     pub events_left_out: u64,
     /// Names for the column `limit`.
     pub limits: Vec<String>,
@@ -44,7 +44,7 @@ pub struct Meta {
     pub heads: Vec<MachineMeta>,
     /// Row of the table of blocks from which another head is in use, and its number in [`Meta::heads`] from 1; 0: none.
     pub head_rows: Vec<[u64; 2]>,
-    /// From the gauge point to the tip, mm; of several tools the first.
+    /// Length from the gauge point to the tip, mm; of several tools the first.
     pub tool_length: f64,
     /// Poses with all their digits.
     pub checks: Vec<Check>,
@@ -52,7 +52,7 @@ pub struct Meta {
     pub parts_left_out: Vec<String>,
     /// The tables of the document.
     pub tables: Vec<TableMeta>,
-    /// Its texts.
+    /// Texts of the document.
     pub texts: Vec<TextMeta>,
 }
 
@@ -90,7 +90,7 @@ pub struct Maximum {
     pub name: String,
     /// How large.
     pub value: f64,
-    /// Its unit.
+    /// Unit of the value.
     pub unit: &'static str,
     /// What it must keep.
     pub limit: Option<f64>,
@@ -105,7 +105,7 @@ pub struct Maximum {
 /// What of an axis is used.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct AxisUsed {
-    /// Its address.
+    /// Address of the axis.
     pub name: String,
     /// `mm` or `deg`.
     pub unit: &'static str,
@@ -113,7 +113,7 @@ pub struct AxisUsed {
     pub min: f64,
     /// Largest position.
     pub max: f64,
-    /// Its travel; none if it is endless.
+    /// Travel; none if it is endless.
     pub travel: Option<[f64; 2]>,
     /// The sum of its moves; none where nobody added them up.
     pub way: Option<f64>,
@@ -124,7 +124,7 @@ pub struct AxisUsed {
 pub struct Warning {
     /// `error`, `warning` or `note`.
     pub severity: &'static str,
-    /// Its code.
+    /// Code of the message.
     pub code: String,
     /// What.
     pub text: String,
@@ -150,22 +150,22 @@ pub struct Event {
 /// Tolerances in force.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Tolerances {
-    /// Of the tip in cuts, mm.
+    /// Tolerance of the tip in cuts, mm.
     pub tip: f64,
-    /// Of the tool axis, degrees.
+    /// Tolerance of the tool axis, degrees.
     pub axis: f64,
-    /// Of the tip in rapids, mm.
+    /// Tolerance of the tip in rapids, mm.
     pub rapid: f64,
 }
 
 /// The chain, all axes at zero, machine frame, mm.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct MachineMeta {
-    /// Its name.
+    /// Name of the machine.
     pub name: String,
     /// `mm`.
     pub unit: &'static str,
-    /// From the workpiece to the tool; the column of an axis' positions is `q.NAME`.
+    /// Axes from the workpiece to the tool; the column of an axis' positions is `q.NAME`.
     pub axes: Vec<AxisMeta>,
     /// The part frame in the machine frame, row by row.
     pub mount: [[f64; 4]; 4],
@@ -185,7 +185,7 @@ pub struct MachineMeta {
 /// An axis of the chain.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct AxisMeta {
-    /// Its address.
+    /// Address of the axis.
     pub name: String,
     /// `rotary` or `linear`.
     pub kind: &'static str,
@@ -197,7 +197,7 @@ pub struct AxisMeta {
     pub carries: &'static str,
     /// Travel as the control shows it, mm or degrees; none if it is endless.
     pub travel: Option<[f64; 2]>,
-    /// It turns without end.
+    /// Whether the axis turns without end.
     pub cyclic: bool,
     /// What the control shows with the axis at zero, mm or degrees: a position less this is how far it has moved.
     pub zero: f64,
@@ -214,7 +214,7 @@ pub struct Check {
     pub row: u64,
     /// Axis values in chain order, as the control shows them.
     pub joints: Vec<f64>,
-    /// From the gauge point to the tip.
+    /// Length from the gauge point to the tip, mm.
     pub tool_length: f64,
     /// The tip, part frame.
     pub tip: [f64; 3],
@@ -225,11 +225,11 @@ pub struct Check {
 /// What the page must know of a table.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct TableMeta {
-    /// Its name.
+    /// Name of the table.
     pub name: &'static str,
-    /// Its rows.
+    /// Number of rows.
     pub rows: u64,
-    /// Its columns, in the order of a chunk.
+    /// Columns, in the order of a chunk.
     pub columns: Vec<ColumnMeta>,
     /// Bytes in the document.
     pub bytes: u64,
@@ -238,16 +238,16 @@ pub struct TableMeta {
 /// What the page must know of a column.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct ColumnMeta {
-    /// Its name.
+    /// Name of the column.
     pub name: String,
-    /// Its unit.
+    /// Unit of the values.
     pub unit: &'static str,
     /// Decimals: a value is an integer over a power of ten.
     pub decimals: u8,
     /// What it is told against: `chain`, where tip and tool axis are by the axis values of the row; `tips`, where the
-    /// linear axes are by its tip and its rotary axes; `t1`, that of the row before; `way`, that of the row before and what a straight
-    /// way takes at the feed; `tip`, evenly between the tips of the
-    /// block; `blocks`, the tip of the block that comes from the same line. None: it is told as it is.
+    /// linear axes are by its tip and its rotary axes; `t1`, that of the row before; `way`, that of the row before and
+    /// what a straight way takes at the feed; `tip`, evenly between the tips of the block; `blocks`, the tip of the
+    /// block that comes from the same line. None: it is told as it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from: Option<&'static str>,
 }
@@ -255,9 +255,9 @@ pub struct ColumnMeta {
 /// What the page must know of a text.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct TextMeta {
-    /// Its name.
+    /// Name of the text.
     pub name: &'static str,
-    /// Its lines.
+    /// Number of lines.
     pub lines: u64,
     /// Bytes in the document.
     pub bytes: u64,

@@ -1,6 +1,6 @@
 //! Scripts and styles without what is for readers of the sources alone: comments, indentation, blanks between words and
-//! signs, semicolons before braces, and that a name never changes. Strings, templates and patterns stay letter for letter,
-//! and so does the end of a line where it may end a statement.
+//! signs, semicolons before braces, and that a name never changes. Strings, templates and patterns stay letter for
+//! letter, and so does the end of a line where it may end a statement.
 //!
 //! A part of the build script, and of the crate for its tests.
 
@@ -27,7 +27,7 @@ struct Script<'a> {
 }
 
 impl Script<'_> {
-    /// To the end of the text, or behind the brace that ends what stands in a template.
+    /// Goes to the end of the text, or past the brace that ends what stands in a template.
     fn statements(&mut self, inner: bool) {
         let mut depth = 0;
         while let Some(first) = self.rest.chars().next() {
@@ -117,7 +117,7 @@ impl Script<'_> {
         }
     }
 
-    /// So many bytes as they are.
+    /// Takes `length` bytes as they are.
     fn take(&mut self, length: usize) {
         let (token, rest) = self.rest.split_at(length);
         self.out.push_str(token);

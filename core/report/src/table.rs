@@ -12,7 +12,7 @@ const CHUNK: usize = 1 << 15;
 /// A column of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// Its name.
+    /// Name of the column.
     pub name: String,
     /// What it is counted in, `mm`; empty for bare numbers.
     pub unit: &'static str,
@@ -28,7 +28,7 @@ impl Column {
         Self { name: name.into(), unit, decimals, from: None }
     }
 
-    /// The same, told against what the page derives.
+    /// The column, told against what the page derives.
     pub fn from(mut self, what: &'static str) -> Self {
         self.from = Some(what);
         self

@@ -1,16 +1,17 @@
 //! Lines of a text as templates, and columns of the numbers in them.
 //!
-//! A number is an optional minus, digits without needless zeros in front, and a point with digits behind it or none. What is
-//! written otherwise (`-0.0`, `007`, `.5`, seventeen digits) stays a part of the template. Numbers of the same address go
-//! into one column, whatever template they stand in: the letter ahead of them and how often it came in the line; behind a
-//! slash (CL words) the text up to it and how many numbers came since.
+//! A number is an optional minus, digits without needless zeros in front, and a point with digits behind it or none.
+//! What is written otherwise (`-0.0`, `007`, `.5`, seventeen digits) stays a part of the template. Numbers of the same
+//! address go into one column, whatever template they stand in: the letter ahead of them and how often it came in the
+//! line; behind a slash (CL words) the text up to it and how many numbers came since.
 //!
-//! A chunk is: the number of templates (32 bits), each with its length (32 bits) and its bytes, where a zero byte stands for
-//! a number; the number of columns (32 bits); for each template and number the place of its column (32 bits); the column of
-//! the templates of the lines; and of each column its number of rows (32 bits), a byte for how its numbers are written, and
-//! the column of the numbers without their points. That byte is the number of decimals that all of them have; 32 more: at
-//! most so many, without zeros at the end; 64 more: each has its own, in a column behind. Numbers are then those of the most
-//! decimals. Integers lie as in [`crate::integers`], 32 bits with the least byte first.
+//! A chunk is: the number of templates (32 bits), each with its length (32 bits) and its bytes, where a zero byte
+//! stands for a number; the number of columns (32 bits); for each template and number the place of its column (32
+//! bits); the column of the templates of the lines; and of each column its number of rows (32 bits), a byte for how its
+//! numbers are written, and the column of the numbers without their points. That byte is the number of decimals that
+//! all of them have; 32 more: at most so many, without zeros at the end; 64 more: each has its own, in a column behind.
+//! Numbers are then those of the most decimals. Integers lie as in [`crate::integers`], 32 bits with the least byte
+//! first.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -34,7 +35,7 @@ const SHARE: usize = 6;
 /// A number of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Number {
-    /// Without its point.
+    /// Digits without the point.
     digits: i64,
     decimals: u8,
 }
@@ -45,8 +46,8 @@ struct Column {
     numbers: Vec<Number>,
 }
 
-/// The lines of `text` (each with its line feed, the last perhaps without) as templates and columns; none if they are not of
-/// that kind.
+/// The lines of `text` (each with its line feed, the last perhaps without) as templates and columns; none if they are
+/// not of that kind.
 pub fn encode(text: &[u8]) -> Option<Vec<u8>> {
     if text.contains(&0) {
         return None;
@@ -210,7 +211,7 @@ fn slots(
 }
 
 impl Column {
-    /// None if its numbers do not fit one scale.
+    /// Writes the column; none if its numbers do not fit one scale.
     fn encode(&self, out: &mut Vec<u8>) -> Option<()> {
         let decimals = || self.numbers.iter().map(|number| number.decimals);
         let (least, most) = (decimals().min().unwrap_or(0), decimals().max().unwrap_or(0));
@@ -239,8 +240,8 @@ impl Column {
     }
 }
 
-/// The text of so many lines that was packed as `bytes`; none if they are damaged. What is written is read again before it
-/// is believed.
+/// The text of so many lines that was packed as `bytes`; none if they are damaged. What is written is read again before
+/// it is believed.
 pub fn decode(bytes: &[u8], lines: usize) -> Option<Vec<u8>> {
     let mut at = 0;
     let count = word(bytes, &mut at)?;

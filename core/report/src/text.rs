@@ -19,7 +19,7 @@ pub struct TextWriter<W> {
     in_chunk: u64,
     chunk: Vec<u8>,
     bytes: u64,
-    /// For chunks that go as they are, and for templates.
+    /// Packer for chunks that go as they are, and for templates.
     deflate: Deflate,
     numbers: Deflate,
     packed: Vec<u8>,

@@ -2,10 +2,10 @@
 
 use super::line::number_of;
 
-/// So many lines at the beginning of a file are looked at.
+/// Lines at the beginning of a file that are looked at.
 const LOOKED_AT: usize = 40;
 
-/// So many of them must look like blocks of a program.
+/// Lines that must look like blocks of a program for the file to be taken for one.
 const ENOUGH: usize = 3;
 
 /// What the file is that begins so, if it is no cutter-location file.

@@ -50,16 +50,16 @@ fn is_directive(word: &[u8], rest: &[u8]) -> bool {
 /// Longest major word, in bytes. What is longer is none, and each that is not known is counted by its name.
 pub(super) const LONGEST_WORD: usize = 64;
 
-/// So much of an item is told in a message.
+/// Characters of an item that a message shows.
 pub(crate) const SHOWN: usize = 60;
 
 /// One item behind the slash.
 pub(crate) struct Item<'t> {
-    /// As written; empty where two commas follow each other.
+    /// Text as written; empty where two commas follow each other.
     pub text: &'t str,
     /// Where in the line it begins, in bytes.
     pub start: usize,
-    /// Its value, if it is a number.
+    /// Value of the item, if it is a number.
     pub value: Option<f64>,
     /// Only blanks part it from the item before.
     pub comma_missing: bool,
@@ -84,9 +84,9 @@ pub(crate) struct Line<'t> {
     pub text: &'t str,
     /// The major word in capitals.
     pub word: Cow<'static, str>,
-    /// Its row, if it has one.
+    /// Row of the vocabulary, if the word has one.
     pub known: Option<&'static MajorWord>,
-    /// Where it stands.
+    /// Bytes of the text at which the word stands.
     pub word_span: Range<usize>,
     /// A slash stands behind it.
     pub slash: bool,

@@ -25,7 +25,7 @@ const CHUNK: usize = 256 * 1024;
 /// Longest record, in bytes of the file. Anything longer is not a cutter-location file.
 const LONGEST: usize = 1024 * 1024;
 
-/// So much of the beginning says what a file is.
+/// Bytes of the beginning that say what a file is.
 const HEAD: usize = 4096;
 
 /// UTF-8 for U+FEFF, which some editors put before a text.

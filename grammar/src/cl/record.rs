@@ -92,18 +92,18 @@ pub enum Statement {
     Milling,
     /// `MCS/`: the frame of an operation (CAMplete).
     Mcs {
-        /// Its X, Y and Z directions.
+        /// Directions of X, Y and Z.
         axes: [Direction; 3],
-        /// Its origin.
+        /// Origin of the frame.
         origin: Point,
     },
     /// `MSYS/`: the frame of the operation (NX).
     Msys {
-        /// Its origin.
+        /// Origin of the frame.
         origin: Point,
-        /// Its X direction.
+        /// Direction of X.
         x: Direction,
-        /// Its Y direction.
+        /// Direction of Y.
         y: Direction,
     },
     /// `CSYS/` and `$$-> CSYS /`: a frame as a 3 × 4 matrix, row by row.
@@ -114,8 +114,8 @@ pub enum Statement {
     ArcMove(ArcMove),
     /// `INDIRV/tx,ty,tz`: where the tool sets out along the next curve.
     SetOut(Direction),
-    /// `AUTOPS` (none) and `PSIS/(PLANE/…)`: normal of the plane in which the tip stays along the next curve; of `AUTOPS`
-    /// it is Z.
+    /// `AUTOPS` (none) and `PSIS/(PLANE/…)`: normal of the plane in which the tip stays along the next curve; of
+    /// `AUTOPS` it is Z.
     PartSurface(Option<Direction>),
     /// `TLON,GOFWD/…`: the tool goes along an arc to its end.
     AlongArc(AlongArc),
@@ -132,9 +132,9 @@ pub enum Statement {
     },
     /// `SET/OFSETL,n`, `OFSETL/n`: the work offset of that number holds from here on.
     WorkOffset {
-        /// From 1.
+        /// Number of the offset, from 1.
         number: u32,
-        /// It stands behind `SET`.
+        /// Whether `SET` stands in front.
         set: bool,
     },
     /// `CALSUB/n`: a subprogram of the control runs.
@@ -184,7 +184,7 @@ pub enum Statement {
         word: Cow<'static, str>,
         /// What stands behind the slash.
         arguments: Vec<Argument>,
-        /// It stood behind `$$->` or `REMARK ->`: meant for a program, but a remark to others.
+        /// Whether `$$->` or `REMARK ->` stood in front: meant for a program, but a remark to others.
         directive: bool,
     },
 }
@@ -296,11 +296,11 @@ pub enum FeedUnit {
 /// `SPINDL/`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spindle {
-    /// On; a value that is not given stays as it was.
+    /// The spindle turns; a value that is not given stays as it was.
     On {
         /// The speed.
         speed: Option<f64>,
-        /// Its unit, `RPM` if no word is given.
+        /// Unit of the speed, `RPM` if no word is given.
         unit: SpindleUnit,
         /// Sense of turning, seen from the spindle to the part.
         sense: Option<Sense>,
@@ -359,15 +359,15 @@ pub struct LoadTool {
     pub register: Option<u32>,
     /// Length from the gauge line (`LENGTH,l`), in the file's units.
     pub length: Option<f64>,
-    /// It is `TOOLNO`, which in CATIA's files describes a tool that `LOADTL` loads.
+    /// Whether the word is `TOOLNO`, which in CATIA's files describes a tool that `LOADTL` loads.
     pub described: bool,
     /// Any further words, as written.
     pub rest: Vec<Argument>,
 }
 
 impl LoadTool {
-    /// Offset register (0: none) and length of the tool's body, as `LOADTL/number,0,length,register` has them: the form of
-    /// Autodesk's stock APT posts.
+    /// Offset register (0: none) and length of the tool's body, as `LOADTL/number,0,length,register` has them: the form
+    /// of Autodesk's stock APT posts.
     pub fn of_autodesk(&self) -> Option<(u32, f64)> {
         match *self.rest.as_slice() {
             [Argument::Number(0.0), Argument::Number(length), Argument::Number(register)] => {
@@ -426,8 +426,8 @@ pub struct Circle {
     pub turns: Option<u32>,
 }
 
-/// `MOVARC/cx,cy,cz,i,j,k,r,ANGLE,degrees`: an arc that ends at the next `GOTO`. Whether the axis tells which way it goes
-/// depends on who wrote it.
+/// `MOVARC/cx,cy,cz,i,j,k,r,ANGLE,degrees`: an arc that ends at the next `GOTO`. Whether the axis tells which way it
+/// goes depends on who wrote it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArcMove {
     /// The centre.
@@ -436,12 +436,12 @@ pub struct ArcMove {
     pub axis: Direction,
     /// The radius.
     pub radius: f64,
-    /// From its start to its end, degrees, above zero.
+    /// Angle from start to end, degrees, above zero.
     pub degrees: f64,
 }
 
-/// `TLON,GOFWD/ (CIRCLE/…),ON,(LINE/…)` and `TLON,GOFWD/ (CYLNDR/…),ON,(PLANE/…)`: an arc from where the tool stands, set out
-/// on as `INDIRV` says.
+/// `TLON,GOFWD/ (CIRCLE/…),ON,(LINE/…)` and `TLON,GOFWD/ (CYLNDR/…),ON,(PLANE/…)`: an arc from where the tool stands,
+/// set out on as `INDIRV` says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AlongArc {
     /// The centre, or a point of the cylinder's axis.
@@ -450,7 +450,7 @@ pub struct AlongArc {
     pub axis: Option<Direction>,
     /// The radius.
     pub radius: f64,
-    /// Where it ends.
+    /// End of the arc.
     pub end: Point,
 }
 
@@ -490,11 +490,11 @@ pub struct CycleDefinition {
     pub pitch: Option<f64>,
     /// A thread's turns an inch (`TPI`).
     pub turns_per_inch: Option<f64>,
-    /// So much deeper, out on the other side of the part (a number behind the option `THRU`).
+    /// Depth to add, out on the other side of the part (a number after the option `THRU`).
     pub break_through: Option<f64>,
-    /// Of a countersink at the point's height, in the place of a depth (`DIAMET`).
+    /// Diameter of a countersink at the point's height, in place of a depth (`DIAMET`).
     pub diameter: Option<f64>,
-    /// Between the cutter's sides, degrees (`ANGLE`, `TLANGL`).
+    /// Angle between the cutter's sides, degrees (`ANGLE`, `TLANGL`).
     pub angle: Option<f64>,
     /// A fine boring tool's way off the wall before it goes out (a number behind `NODRAG`, `ORIENT`).
     pub shift: Option<f64>,
@@ -537,7 +537,7 @@ pub struct Rotate {
     pub axis: Option<char>,
     /// The angle as written.
     pub angle: f64,
-    /// Its unit: CAMWorks (number first, then `AAXIS,TABLE`) writes radians.
+    /// Whether the angle is in radians: CAMWorks (number first, then `AAXIS,TABLE`) writes those.
     pub radians: bool,
     /// A step from the present angle (`INCR`). CAMWorks' form is none: it states the angle at the start of every
     /// operation, and turns back only after some.

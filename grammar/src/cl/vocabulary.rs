@@ -25,14 +25,14 @@ use super::statements::{ReadGeometry, ReadItems, ReadText};
 /// What `post` does with a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Usage {
-    /// It has its effect on the program.
+    /// The word has its effect on the program.
     Used,
-    /// Its text goes into the program.
+    /// The word's text goes into the program.
     Passed,
-    /// It says nothing that an NC program could hold (display, names of features, the CAM system's own data).
+    /// The word says nothing that an NC program could hold (display, names of features, the CAM system's own data).
     Ignored,
-    /// It changes where or whether metal is cut, and `post` does not know how: the file is refused, unless the user
-    /// takes it upon himself.
+    /// The word changes where or whether metal is cut, and `post` does not know how: the file is refused, unless the
+    /// user takes it upon himself.
     Refused,
     /// Nobody's word, or one that a program can do without: `post` does nothing with it, and says so; a file with a
     /// nobody's word is refused unless the user lets it pass.
@@ -40,7 +40,7 @@ pub enum Usage {
 }
 
 impl Usage {
-    /// As tables have it.
+    /// The name that tables show.
     pub fn name(self) -> &'static str {
         match self {
             Self::Used => "used",
@@ -81,7 +81,7 @@ pub struct MajorWord {
     pub(super) behind: Behind,
     /// What becomes of it in a form that is not known: refused where the tool would end up in the wrong place.
     otherwise: Usage,
-    /// It moves the tool, or says which records do: whatever its form, it is never left out.
+    /// Whether the word moves the tool, or says which records do: whatever its form, it is never left out.
     pub moves: bool,
     /// Lines that a machine file has for it go before its meaning, which not every control has words for.
     pub by_rule: bool,
@@ -191,15 +191,15 @@ impl Statement {
     }
 }
 
-/// So many numbers may be a point.
+/// Numbers that may be a point.
 const POINT: usize = 3;
 
 /// Why a record that has no meaning here may carry a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnknownPath {
-    /// Its word is one of those that move the tool.
+    /// The word is one of those that move the tool.
     Word,
-    /// Nobody knows its word, and it has numbers enough for a point.
+    /// The word is not known, and has numbers enough for a point.
     Numbers,
 }
 
@@ -241,7 +241,7 @@ const fn ignored(spellings: &'static [&'static str], why: &'static str) -> Major
     row(spellings, Usage::Ignored, Behind::Kept, ["", why])
 }
 
-/// As [`ignored`], but the record is read.
+/// Row of a word that is ignored, though its record is read.
 const fn ignored_as(
     spellings: &'static [&'static str],
     behind: Behind,

@@ -38,11 +38,11 @@ pub struct NcBlock {
     pub line: u64,
     /// `/` stands in front: left out where the operator's switch says so.
     pub skipped: bool,
-    /// Its number: `N812`, or the number in front of a conversational block.
+    /// Number of the block: `N812`, or the number in front of a conversational block.
     pub number: Option<u64>,
     /// What it says, in the order written.
     pub items: Vec<NcItem>,
-    /// Its remarks, without what begins and ends them.
+    /// Remarks, without what begins and ends them.
     pub remarks: Vec<String>,
 }
 
@@ -72,24 +72,24 @@ pub enum NcItem {
     /// A longer name and its value: `A3=0.5`, `CR=5`, `T1="D10"` is not (that is a word), `SPA+30`, `DIST50`, `Q200=2`
     /// within a cycle's definition.
     Named {
-        /// In capitals.
+        /// Name in capitals.
         name: Cow<'static, str>,
-        /// Its value.
+        /// Value that is set.
         value: NcValue,
     },
     /// A variable gets a value: `#1=5`, `R1=R2+1`, `_Z_HOME=610.`, `Q1 = +5`, `FN 0: Q1 = +5`.
     Assign {
         /// The variable, and of an array its index: in capitals, `#1` as `#1`, `R1` as `R1`.
         variable: Box<NcExpression>,
-        /// Its value.
+        /// Value that is set.
         value: Box<NcExpression>,
     },
-    /// A call with parentheses: `CYCLE81(50,0,2,-10)`, `MSG("TEXT")`; `MCALL` in front of one is a [`NcItem::Name`] of its
-    /// own.
+    /// A call with parentheses: `CYCLE81(50,0,2,-10)`, `MSG("TEXT")`; `MCALL` in front of one is a [`NcItem::Name`] of
+    /// its own.
     Call {
-        /// In capitals.
+        /// Name in capitals.
         name: String,
-        /// Its arguments; none where a place between commas is empty.
+        /// Arguments; none where a place between commas is empty.
         arguments: Vec<Option<NcValue>>,
     },
     /// A name alone: `TRAORI`, `MCALL`, `ROT`, `FMAX`, `R0`, `DR-`, `L`, `CC`, `TOOL CALL`, `CYCL DEF`, `PLANE SPATIAL`
@@ -108,9 +108,9 @@ pub enum NcItem {
 pub struct NcWord {
     /// The letter, a capital.
     pub letter: u8,
-    /// It is a way from where the tool stands: `IX` (conversational), `X=IC(5)` (Siemens).
+    /// Whether the value is a way from where the tool stands: `IX` (conversational), `X=IC(5)` (Siemens).
     pub incremental: bool,
-    /// Its value.
+    /// Value of the word.
     pub value: NcValue,
 }
 
@@ -119,7 +119,7 @@ pub struct NcWord {
 pub enum NcValue {
     /// A number as written.
     Number(NcNumber),
-    /// To be worked out: `[#1+2]`, `R1*2`, `+Q120`.
+    /// An expression: `[#1+2]`, `R1*2`, `+Q120`.
     Expression(Box<NcExpression>),
     /// A text in quotation marks, without them.
     Text(String),
@@ -145,16 +145,17 @@ pub enum Approach {
 /// A number as written.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NcNumber {
-    /// Its value.
+    /// Value as a number.
     pub value: f64,
-    /// It is written with a decimal point: without one, some controls count in their least increment.
+    /// Whether a decimal point is written: without one, some controls count in their least increment.
     pub point: bool,
 }
 
 /// What leads the program elsewhere.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NcFlow {
-    /// A place to go to: `MARK1:` (Siemens), `LBL 500` (conversational), `O1001` at the head of a subprogram is one too.
+    /// A place to go to: `MARK1:` (Siemens), `LBL 500` (conversational), `O1001` at the head of a subprogram is one
+    /// too.
     Label(String),
     /// `LBL 0`, `M99` is a word; a subprogram's end that is no word.
     LabelEnd,
@@ -163,9 +164,9 @@ pub enum NcFlow {
     Goto {
         /// The label, or the number of the block.
         target: NcExpression,
-        /// Where it is looked for.
+        /// Direction in which the target is looked for.
         direction: Direction,
-        /// It is gone to only if this holds.
+        /// Condition that must hold for the jump.
         condition: Option<NcExpression>,
     },
     /// `IF [..] THEN` of one block: what follows in this block holds only if this does.
@@ -174,14 +175,14 @@ pub enum NcFlow {
     If {
         /// The name.
         name: Option<String>,
-        /// Its condition.
+        /// Condition of the branch.
         condition: NcExpression,
     },
     /// `o1 elseif [..]`.
     ElseIf {
         /// The name.
         name: Option<String>,
-        /// Its condition.
+        /// Condition of the loop.
         condition: NcExpression,
     },
     /// `ELSE`.
@@ -192,7 +193,7 @@ pub enum NcFlow {
     While {
         /// The name: `1` of `DO1`.
         name: Option<String>,
-        /// Its condition.
+        /// Condition of the loop.
         condition: NcExpression,
     },
     /// `ENDWHILE`, `END1`, `o1 endwhile`.
@@ -201,9 +202,9 @@ pub enum NcFlow {
     For {
         /// The variable.
         variable: NcExpression,
-        /// Its first value.
+        /// First value of the counter.
         from: NcExpression,
-        /// Its last value.
+        /// Last value of the counter.
         to: NcExpression,
     },
     /// `ENDFOR`.
@@ -244,7 +245,7 @@ pub enum NcFlow {
         target: String,
         /// How often: `REP 2` means twice more.
         repeat: Option<NcExpression>,
-        /// Its arguments.
+        /// Arguments of the call.
         arguments: Vec<NcExpression>,
     },
     /// `CALL PGM name`, `o<name> call` of another file: not here.
@@ -260,10 +261,10 @@ pub enum NcFlow {
 /// Where a jump looks for its target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Direction {
-    /// From here to the end, then from the beginning.
+    /// Searches from here to the end, then from the beginning.
     Anywhere,
-    /// From here to the end (`GOTOF`).
+    /// Searches from here to the end (`GOTOF`).
     Forward,
-    /// From here to the beginning (`GOTOB`).
+    /// Searches from here to the beginning (`GOTOB`).
     Back,
 }

@@ -194,7 +194,7 @@ impl Builder<'_> {
         Ok(NcValue::Expression(Box::new(expression)))
     }
 
-    /// The same as an expression.
+    /// Reads the same words as an expression.
     fn expression_of(&self, pair: Pair<'_, Rule>) -> Answer<NcExpression> {
         Ok(match self.value(pair)? {
             NcValue::Number(number) => NcExpression::Number(number.value),

@@ -22,9 +22,9 @@ pub enum NcExpression {
     Binary(BinaryOperator, Box<NcExpression>, Box<NcExpression>),
     /// `SIN[x]`, `ATAN[y]/[x]` with two arguments, `MOD`.
     Function {
-        /// In capitals.
+        /// Name in capitals.
         name: String,
-        /// Its arguments.
+        /// Arguments of the function.
         arguments: Vec<NcExpression>,
     },
 }

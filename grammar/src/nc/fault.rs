@@ -42,7 +42,7 @@ impl Unreadable {
     }
 }
 
-/// So much of a long block is shown, bytes.
+/// Bytes of a long block that are shown.
 const SHOWN: usize = 400;
 
 /// The part of a long block in which `span` begins, and where that is in it.

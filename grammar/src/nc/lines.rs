@@ -65,7 +65,7 @@ pub(super) struct Physical {
     end: usize,
     /// Where the next line begins.
     next: usize,
-    /// It is too long: `end` is that of its beginning, and `next` says nothing.
+    /// Whether the line is too long: `end` is that of its beginning, and `next` says nothing.
     pub(super) overlong: bool,
 }
 

@@ -11,7 +11,7 @@ pub(super) fn number(text: &str) -> Result<NcNumber, Unreadable> {
     Ok(NcNumber { value: value(text)?, point: text.contains('.') })
 }
 
-/// Its value.
+/// Value of a number as written.
 pub(super) fn value(text: &str) -> Result<f64, Unreadable> {
     check(text)?;
     let parsed = match text.split_once("EX") {
@@ -40,7 +40,7 @@ fn check(text: &str) -> Result<(), Unreadable> {
 }
 
 impl NcNumber {
-    /// With a minus in front where `negative`.
+    /// The number, with a minus in front where `negative`.
     pub(super) fn signed(self, negative: bool) -> Self {
         let value = if negative { -self.value } else { self.value };
         Self { value, ..self }

@@ -1,7 +1,7 @@
 //! Bytes of a file to blocks, in one buffer that is used again and again.
 //!
-//! A line ends at LF, CR LF or CR. What stands in front of the first `%`, and behind one that ends a program, is skipped
-//! and counted if its first line cannot be read as a block: it is a listing of whatever wrote the file.
+//! A line ends at LF, CR LF or CR. What stands in front of the first `%`, and behind one that ends a program, is
+//! skipped and counted if its first line cannot be read as a block: it is a listing of whatever wrote the file.
 
 use std::borrow::Cow;
 use std::io::{Read, Seek};
@@ -45,9 +45,9 @@ pub struct NcReader<R> {
 /// Room for one block, continuations joined.
 #[derive(Debug, Default)]
 struct Scratch {
-    /// As written.
+    /// Text as written.
     text: String,
-    /// In capitals, remarks blanked out.
+    /// Text in capitals, remarks blanked out.
     code: String,
 }
 
@@ -82,8 +82,8 @@ impl<R: Read + Seek> NcReader<R> {
         self.lines.mark()
     }
 
-    /// The text of the line of this number, which is that at `mark` or one behind it: for messages about a block that was
-    /// just read. None if it is no longer at hand.
+    /// The text of the line of this number, which is that at `mark` or one behind it: for messages about a block that
+    /// was just read. None if it is no longer at hand.
     pub fn text(&self, mark: NcMark, line: u64) -> Option<Cow<'_, str>> {
         self.lines.kept(mark, line).map(decode)
     }
@@ -245,7 +245,7 @@ impl<R: Read + Seek> NcReader<R> {
         Ok(self.lines.go_to(start)?)
     }
 
-    /// Behind a `%`: whether blocks of another program follow one that ended. A listing is passed over.
+    /// Reads on after a `%`: whether blocks of another program follow one that ended. A listing is passed over.
     fn percent(&mut self) -> Result<bool, ReadError> {
         self.behind_percent = true;
         if !std::mem::take(&mut self.began) {

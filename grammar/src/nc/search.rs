@@ -120,7 +120,7 @@ impl<R: Read + Seek> NcReader<R> {
 struct Line<'t>(&'t [u8]);
 
 impl<'t> Line<'t> {
-    /// It begins the block, label or program that `target` means.
+    /// Whether the line begins the block, label or program that `target` means.
     fn is(self, target: &NcTarget, syntax: &NcSyntax) -> bool {
         let conversational = syntax.notation == Notation::Conversational;
         let line = self.after_skip();
@@ -169,7 +169,7 @@ impl<'t> Line<'t> {
         }
     }
 
-    /// Behind the number of the block, if it has one.
+    /// The text after the number of the block, if it has one.
     fn after_number(self, letter: &[u8]) -> Self {
         let behind = self.after(letter).and_then(Line::whole);
         behind.map_or(self, |(_, rest)| rest)

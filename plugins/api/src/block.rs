@@ -76,7 +76,7 @@ impl Block {
         self
     }
 
-    /// The same; `front` is the address with its blank, if that is short enough.
+    /// Writes the number after `front`, the address with its blank, if that is short enough.
     #[inline]
     fn number_behind(
         &mut self,
@@ -164,13 +164,13 @@ struct Axis {
     front: Option<Front>,
     group: Group,
     decimals: u8,
-    /// Its words lie within one turn.
+    /// Whether the words of the axis lie within one turn.
     wrapped: bool,
     /// Rotary, without ends, and its words count turns.
     endless: bool,
-    /// Its words say the place within one turn, and the way there.
+    /// How a word says the place within one turn, and the way there; none: as it is.
     modulo: Option<Box<Modulo>>,
-    /// Behind the number.
+    /// Text after the number.
     behind: &'static str,
     last: Modal<f64>,
 }
@@ -178,7 +178,7 @@ struct Axis {
 /// A word of a control that knows the places of one turn alone.
 #[derive(Clone, Debug)]
 struct Modulo {
-    /// In front of the number: by the shorter way, the positive, the negative.
+    /// Text in front of the number: by the shorter way, the positive, the negative.
     ways: [String; 3],
     /// The value written last, whole turns counted.
     at: Option<f64>,
@@ -225,16 +225,16 @@ impl Axes {
         Axes { axes: axes.collect(), style }
     }
 
-    /// Words of wrapped axes say that the control takes the shorter way, and the place from 0 to below 360, whatever the
-    /// machine shows: `C=DC(260.000)` for -100 with `=DC(` and `)`.
+    /// Words of wrapped axes say that the control takes the shorter way, and the place from 0 to below 360, whatever
+    /// the machine shows: `C=DC(260.000)` for -100 with `=DC(` and `)`.
     pub fn shorter_way(&mut self, open: &str, close: &'static str) {
         for axis in self.axes.iter_mut().filter(|axis| axis.wrapped) {
             axis.within_turn([open; 3], close);
         }
     }
 
-    /// Words of endless axes say the place within one turn and the way there: `C=DC(280.000)`, or where that is no shorter
-    /// `C=ACP(280.000)` and `C=ACN(280.000)`, with these in front of the number and `close` behind it.
+    /// Words of endless axes say the place within one turn and the way there: `C=DC(280.000)`, or where that is no
+    /// shorter `C=ACP(280.000)` and `C=ACN(280.000)`, with these in front of the number and `close` behind it.
     pub fn modulo(&mut self, ways: [&str; 3], close: &'static str) {
         for axis in self.axes.iter_mut().filter(|axis| axis.endless) {
             axis.within_turn(ways, close);
@@ -344,7 +344,7 @@ impl Axes {
 }
 
 impl Axis {
-    /// Its words say the place within a turn, behind one of `ways`.
+    /// Has the words say the place within a turn, after one of `ways`.
     fn within_turn(&mut self, ways: [&str; 3], close: &'static str) {
         let name = self.name.trim_end_matches('=');
         self.modulo =

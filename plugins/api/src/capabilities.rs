@@ -15,7 +15,7 @@ pub struct Capabilities(u64);
 /// A capability as the contract has it.
 #[derive(Clone, Copy, Debug)]
 pub struct CapabilitySpec {
-    /// Its name, in C behind `POST_WRITES_`.
+    /// Name of the capability, in C behind `POST_WRITES_`.
     pub name: &'static str,
     /// The set with it alone.
     pub set: Capabilities,
@@ -127,8 +127,8 @@ capabilities! {
     39 LENGTH_ALONG_DEPTH;
     /// No length is put on: it is in the work offset.
     40 LENGTH_IN_OFFSET;
-    /// `Arc` that ends off the plane of its start is told by its turn, to 0.00001 degrees: it ends as far from the centre
-    /// as it begins.
+    /// `Arc` that ends off the plane of its start is told by its turn, to 0.00001 degrees: it ends as far from the
+    /// centre as it begins.
     41 HELIX_BY_TURN;
     /// A feed a minute without tool centre point control counts along all axes together, degrees as millimetres; else
     /// along the linear ones.
@@ -142,15 +142,15 @@ capabilities! {
 }
 
 impl Capabilities {
-    /// None of them.
+    /// No capability.
     pub const NONE: Capabilities = Capabilities(0);
 
-    /// All of `others` are in it.
+    /// Whether all of `others` are in the set.
     pub const fn has(self, others: Capabilities) -> bool {
         self.0 & others.0 == others.0
     }
 
-    /// It and `others`, in a constant; elsewhere `|` does the same.
+    /// The set and `others`, in a constant; elsewhere `|` does the same.
     pub const fn and(self, others: Capabilities) -> Capabilities {
         Capabilities(self.0 | others.0)
     }

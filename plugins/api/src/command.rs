@@ -121,7 +121,7 @@ pub enum Spindle {
 }
 
 impl Spindle {
-    /// Those of turning are the codes of [`SpindleSense`].
+    /// Codes of the commands; those of turning are the codes of [`SpindleSense`].
     pub(crate) const CODES: Codes = Codes {
         name: "SPINDLE",
         codes: &[
@@ -195,11 +195,11 @@ codes! {
 codes! {
     /// Kinds of cycles.
     Cycle "CYCLE" {
-        /// In one go (G81), with a dwell where one is given (G82).
+        /// A hole in one go (G81), with a dwell where one is given (G82).
         Drill = 1 "DRILL",
-        /// In steps, out of the hole after each (G83).
+        /// A hole in steps, out of the hole after each (G83).
         Deep = 2 "DEEP",
-        /// In steps, drawn back a little after each (G73).
+        /// A hole in steps, drawn back a little after each (G73).
         BreakChip = 3 "BREAK_CHIP",
         /// A thread with the spindle turning right (G84).
         Tap = 4 "TAP",
@@ -211,7 +211,7 @@ codes! {
         Bore = 7 "BORE",
         /// Oriented, drawn off the wall and out (G76).
         BoreFine = 8 "BORE_FINE",
-        /// From below (G87).
+        /// Boring from below (G87).
         BoreBack = 9 "BORE_BACK",
     }
 }

@@ -15,7 +15,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 const STEPS: usize = 16;
 
 impl Deviation {
-    /// Between `self` at t = 0 and `end` at t = 1, linearly.
+    /// The deviation between `self` at t = 0 and `end` at t = 1, linearly.
     pub fn lerp(self, end: Deviation, t: f64) -> Deviation {
         self * (1.0 - t) + end * t
     }

@@ -88,7 +88,7 @@ pub trait DialectSession {
 /// An event that could not be written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WriteFault {
-    /// Its place in the batch.
+    /// Place of the event in the batch, from 0.
     pub index: usize,
     /// Why, as a sentence.
     pub message: String,

@@ -5,28 +5,30 @@ use crate::{Cycle, Event, Feed};
 /// The fields of an [`Event::Cycle`], with what follows from them. Lengths are in program units, along the tool axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drilling {
-    /// Its kind.
+    /// Kind of the cycle.
     pub cycle: Cycle,
-    /// Its feed.
+    /// Feed of the cycle.
     pub feed: Feed,
-    /// From the point down to the bottom.
+    /// Depth from the point down to the bottom.
     pub depth: f64,
-    /// From the point up to where the feed begins.
+    /// Distance from the point up to where the feed begins.
     pub clearance: f64,
-    /// From the point up to where the tool goes on the way to the next one.
+    /// Distance from the point up to where the tool goes on the way to the next one.
     pub retract: f64,
     /// Into the part in one go: the whole depth if the event tells none.
     pub step: f64,
-    /// At the bottom, seconds; 0 if it does not wait.
+    /// Wait at the bottom, seconds; 0 if there is none.
     pub dwell: f64,
     /// A thread's way a turn, where the event tells it.
     pub pitch: Option<f64>,
 }
 
 impl Drilling {
-    /// The same hole as controls take it whose cycles need a depth below the surface, and its point raised by so much.
+    /// The same hole for controls whose cycles need a depth below the surface, and how far its point is raised for
+    /// that.
     ///
-    /// A CL file may have the bottom at the point itself or above it: such a hole is counted from where its feed begins.
+    /// A CL file may have the bottom at the point itself or above it: such a hole is counted from where its feed
+    /// begins.
     pub fn below_its_point(self) -> (Self, f64) {
         if self.depth > 0.0 {
             return (self, 0.0);
@@ -43,7 +45,7 @@ impl Drilling {
         (counted, raised)
     }
 
-    /// None of another event.
+    /// The fields of a cycle; none of another event.
     pub fn of(event: &Event<'_>) -> Option<Self> {
         match *event {
             Event::Cycle { cycle, feed, depth, clearance, retract, step, dwell, pitch } => {
@@ -62,12 +64,12 @@ impl Drilling {
         }
     }
 
-    /// It cuts a thread: its pitch is its feed.
+    /// Whether the cycle cuts a thread: its pitch is its feed.
     pub fn is_thread(&self) -> bool {
         matches!(self.cycle, Cycle::Tap | Cycle::TapLeft)
     }
 
-    /// Its feed, program units a minute, with the spindle at `rpm`; none if that is not known.
+    /// Feed, program units a minute, with the spindle at `rpm`; none if that is not known.
     pub fn feed_per_minute(&self, rpm: Option<f64>) -> Option<f64> {
         match self.feed {
             Feed::PerMinute(feed) => Some(feed),

@@ -11,24 +11,24 @@ use crate::setup::Units;
 /// A kind of event as the contract has it.
 #[derive(Clone, Copy, Debug)]
 pub struct EventSpec {
-    /// Its number.
+    /// Number of the kind.
     pub kind: u32,
-    /// Its name in C, without `POST_EVENT_`.
+    /// Name in C, without `POST_EVENT_`.
     pub c_name: &'static str,
-    /// Its name in Rust.
+    /// Name in Rust.
     pub name: &'static str,
     /// What it is, with its article.
     pub what: &'static str,
     /// What a dialect does with it.
     pub doc: &'static str,
-    /// Its fields, in the order of its numbers and texts.
+    /// Fields, in the order of their numbers and texts.
     pub fields: &'static [FieldSpec],
 }
 
 /// A field of an event.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldSpec {
-    /// Its name.
+    /// Name of the field.
     pub name: &'static str,
     /// What it takes up.
     pub shape: Shape,
@@ -226,9 +226,9 @@ events! { <'a>
         feed: Option<Feed>,
         /// The words of the plane move the tool across, that of the depth along the spindle, and nothing else: the
         /// plane comes first, the depth last. Else (in a tilted plane under a head that leans; under tool centre point
-        /// control where the tool leans, the part is turned or the control has no block of its own that begins it; where
-        /// the machine file says how the tool leaves) all linear words stand in one block. It leads to a point clear of the
-        /// part, from which the next moves come in along the tool.
+        /// control where the tool leans, the part is turned or the control has no block of its own that begins it;
+        /// where the machine file says how the tool leaves) all linear words stand in one block. It leads to a point
+        /// clear of the part, from which the next moves come in along the tool.
         plane_first: bool,
         /// All axis words, in the order of [`Setup::words`](crate::Setup::words).
         words: &'a [f64],
@@ -471,8 +471,8 @@ events! { <'a>
         words: &'a [f64],
     };
     /// Lines of the user's own in the place of those that the event behind this one would write, under `INSTEAD`. What
-    /// that event puts in force is in force all the same. In front of a [`Event::Retract`] they stand for the way alone:
-    /// what the control must cancel is cancelled around them.
+    /// that event puts in force is in force all the same. In front of a [`Event::Retract`] they stand for the way
+    /// alone: what the control must cancel is cancelled around them.
     42 INSTEAD "lines in the place of an event's" Instead {
         /// One or more lines, each ended by a line feed but the last.
         text: &'a str,
@@ -522,7 +522,7 @@ impl<'a> Event<'a> {
         }
     }
 
-    /// Its text moves axes: no word of it may be anything but a number.
+    /// Whether the text moves axes: no word of it may be anything but a number.
     pub const fn moves(&self) -> bool {
         matches!(
             self,

@@ -1,4 +1,4 @@
-//! From the safe traits to the C contract: what the export lines expand to.
+//! The way from the safe traits to the C contract: what the export lines expand to.
 //!
 //! Every entry catches panics, since none may cross the border; its message is kept for `last_error`.
 
@@ -62,13 +62,13 @@ pub trait LinkedDialect: Send {
 }
 
 impl Linked {
-    /// For the export line of a dialect.
+    /// Linked plugin of the export line of a dialect.
     #[doc(hidden)]
     pub const fn dialect<D: Dialect>(exported: &'static Exported, name: &'static str) -> Self {
         Linked { exported, name, options: D::options, open: Some(open_linked::<D>) }
     }
 
-    /// For the export line of an error model.
+    /// Linked plugin of the export line of an error model.
     #[doc(hidden)]
     pub const fn model<M: ErrorModel>(exported: &'static Exported, name: &'static str) -> Self {
         Linked { exported, name, options: M::options, open: None }
@@ -79,12 +79,12 @@ impl Linked {
         &self.exported.0
     }
 
-    /// Its name, as in a machine file.
+    /// Name of the plugin, as in a machine file.
     pub fn name(self) -> &'static str {
         self.name
     }
 
-    /// It is an error model, else a dialect.
+    /// Whether the plugin is an error model, else a dialect.
     pub fn is_model(self) -> bool {
         self.open.is_none()
     }
@@ -328,7 +328,7 @@ struct Context<T> {
     value: T,
     error: String,
     text: String,
-    /// After a panic the value may be half-changed, so it is not used again.
+    /// Whether a call has panicked: the value may be half-changed, so it is not used again.
     broken: bool,
 }
 

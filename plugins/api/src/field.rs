@@ -11,7 +11,7 @@ pub(crate) const MAX_TEXTS: usize = 2;
 /// What a field takes up, for the C header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
-    /// So many numbers.
+    /// Numbers, and how many.
     Numbers(usize),
     /// A number that says how many follow, and those.
     List,
@@ -332,7 +332,7 @@ macro_rules! codes {
         }
 
         impl $name {
-            /// Its numbers in the contract.
+            /// Numbers of the words in the contract.
             pub(crate) const CODES: Codes = Codes {
                 name: $upper,
                 codes: &[$(($c, $code)),*],

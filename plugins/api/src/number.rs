@@ -15,7 +15,7 @@ const POWERS: [u64; 16] = {
     powers
 };
 
-/// The same as `f64`.
+/// [`POWERS`] as `f64`.
 const POWERS_F: [f64; 16] = {
     let mut powers = [1.0; 16];
     let mut index = 0;
@@ -252,7 +252,7 @@ fn count(value: f64, decimals: u8) -> Option<u64> {
     count_exactly(value, POWERS[usize::from(decimals)])
 }
 
-/// The same for any number, by its bits.
+/// Counts any number by its bits.
 #[cold]
 fn count_exactly(value: f64, power: u64) -> Option<u64> {
     let bits = value.abs().to_bits();

@@ -8,7 +8,7 @@ codes! {
     /// SPATIAL` turns about the machine's A, then B, then C, which is [`PlaneAngles::Zyx`] with SPC, SPB, SPA.
     #[derive(Default)]
     PlaneAngles "PLANE" {
-        /// None: the plane is where the rotary words have turned it (G254).
+        /// No angles: the plane is where the rotary words have turned it (G254).
         #[default]
         Rotary = 0 "ROTARY",
         /// Euler angles: Z, then X, then Z (G68.2 I J K).

@@ -24,8 +24,8 @@ pub use setup::with_setup;
 pub const MAGIC: u64 = u64::from_le_bytes(*b"POSTPLUG");
 
 /// Version of the contract. It changes when a struct of [`LAYOUTS`] or the meaning of a call does. What may grow
-/// without a new one: tables of functions, [`PostPlugin`], [`PostSetup`] and [`PostFormat`] at their end, events (more kinds; more
-/// numbers and texts behind those of a kind), capabilities.
+/// without a new one: tables of functions, [`PostPlugin`], [`PostSetup`] and [`PostFormat`] at their end, events (more
+/// kinds; more numbers and texts behind those of a kind), capabilities.
 pub const ABI: u32 = 2;
 
 /// [`PostPlugin::kind`] of a dialect.
@@ -92,9 +92,9 @@ pub const OPTION_LINES: u32 = 6;
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct PostPair {
-    /// Its key.
+    /// Key of the option.
     pub key: PostText,
-    /// Its value.
+    /// Value of the option.
     pub value: PostValue,
 }
 
@@ -102,7 +102,7 @@ pub struct PostPair {
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct PostOption {
-    /// Its key in the machine file.
+    /// Key in the machine file.
     pub key: PostText,
     /// One sentence on what it does, with its unit.
     pub help: PostText,
@@ -114,7 +114,7 @@ pub struct PostOption {
     pub min: f64,
     /// Largest value of an integer or a number.
     pub max: f64,
-    /// Its value where the machine file gives none.
+    /// Value where the machine file gives none.
     pub default_value: PostValue,
     /// The texts of a choice.
     pub choices: *const PostText,
@@ -126,7 +126,7 @@ pub struct PostOption {
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct PostAxisWord {
-    /// Its address.
+    /// Address of the axis.
     pub name: PostText,
     /// 1 for a rotary axis (degrees), 2 for one whose words lie within one turn, so that the control must take
     /// the shorter way, 0 for a linear one.
@@ -147,17 +147,17 @@ pub struct PostAxisWord {
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct PostTool {
-    /// Its name.
+    /// Name of the tool.
     pub name: PostText,
     /// Tool number.
     pub number: u32,
     /// 0.
     pub reserved: u32,
-    /// From the gauge point to the tip, mm.
+    /// Length from the gauge point to the tip, mm.
     pub length: f64,
-    /// Of the cutter, mm.
+    /// Diameter of the cutter, mm.
     pub diameter: f64,
-    /// Of the cutter's corner, mm.
+    /// Radius of the cutter's corner, mm.
     pub corner_radius: f64,
 }
 
@@ -213,17 +213,17 @@ pub struct PostSetup {
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct PostEvent {
-    /// Its kind. One that the plugin does not know must be refused.
+    /// Kind of the event. One that the plugin does not know must be refused.
     pub kind: u32,
     /// Number of texts.
     pub texts_len: u32,
     /// Line of the CL file.
     pub line: u64,
-    /// Its numbers, finite but where NaN stands for one that is not given.
+    /// Numbers of the event, finite but where NaN stands for one that is not given.
     pub numbers: *const f64,
     /// Number of numbers.
     pub numbers_len: usize,
-    /// Its texts.
+    /// Texts of the event.
     pub texts: *const PostText,
 }
 

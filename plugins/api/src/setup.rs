@@ -31,9 +31,9 @@ pub struct Setup<'a> {
 /// What a program is certified to keep against the CL path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// Of a cut.
+    /// Tolerance of a cut.
     pub cut: Tolerance,
-    /// Of a rapid's tip, mm.
+    /// Tolerance of a rapid's tip, mm.
     pub rapid: f64,
 }
 
@@ -53,13 +53,13 @@ pub struct Ahead<'a> {
 pub struct Tool<'a> {
     /// Tool number.
     pub number: u32,
-    /// Its name, empty if not known.
+    /// Name of the tool, empty if not known.
     pub name: &'a str,
-    /// From the gauge point to the tip, mm; none if not known.
+    /// Length from the gauge point to the tip, mm; none if not known.
     pub length: Option<f64>,
-    /// Of the cutter, mm; none if not known.
+    /// Diameter of the cutter, mm; none if not known.
     pub diameter: Option<f64>,
-    /// Of the cutter's corner, mm; none if not known.
+    /// Radius of the cutter's corner, mm; none if not known.
     pub corner_radius: Option<f64>,
 }
 
@@ -126,7 +126,7 @@ impl<'a> Setup<'a> {
 /// One axis word.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AxisWord<'a> {
-    /// Its address: `X`, `C`, …
+    /// Address: `X`, `C`, …
     pub name: &'a str,
     /// A rotary axis (degrees), else linear.
     pub rotary: bool,
@@ -180,11 +180,11 @@ impl fmt::Display for Value<'_> {
 /// An option that a plugin accepts in `[control.<dialect>]` or `[accuracy.<model>]`.
 #[derive(Clone, Copy, Debug)]
 pub struct OptionSpec {
-    /// Its key.
+    /// Key of the option.
     pub key: &'static str,
     /// What it takes.
     pub kind: OptionKind,
-    /// Its value where the machine file does not give it.
+    /// Value where the machine file does not give it.
     pub default: Value<'static>,
     /// One sentence: what it does, with its unit.
     pub help: &'static str,

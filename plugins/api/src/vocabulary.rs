@@ -7,22 +7,23 @@ use crate::field::{Codes, codes};
 /// A word, or several that stand together, and what it means.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VocabularyWord {
-    /// As the control reads it, without the number that goes with it: `G43.4`, `TRAORI`, `CYCL DEF 32`, `F`. A name stands
-    /// without `=` and parentheses, `CYCLE800()` says that nothing stands between them; `G4 P` is P beside G4.
+    /// The word as the control reads it, without the number that goes with it: `G43.4`, `TRAORI`, `CYCL DEF 32`, `F`. A
+    /// name stands without `=` and parentheses, `CYCLE800()` says that nothing stands between them; `G4 P` is P beside
+    /// G4.
     pub word: Cow<'static, str>,
     /// What it means.
     pub meaning: Meaning,
 }
 
 impl VocabularyWord {
-    /// One for the table of a dialect: `VocabularyWord::new("G0", Meaning::Rapid)`.
+    /// A word for the table of a dialect: `VocabularyWord::new("G0", Meaning::Rapid)`.
     pub const fn new(word: &'static str, meaning: Meaning) -> Self {
         VocabularyWord { word: Cow::Borrowed(word), meaning }
     }
 }
 
 impl Meaning {
-    /// Its number in the contract.
+    /// Number of the meaning in the contract.
     pub const fn number(self) -> u32 {
         self.code()
     }
@@ -32,7 +33,7 @@ impl Meaning {
         Meaning::of(number)
     }
 
-    /// Its name in C, behind `POST_MEANING_`.
+    /// Name in C, behind `POST_MEANING_`.
     pub fn name(self) -> &'static str {
         let mut codes = Meaning::CODES.codes.iter();
         let own = codes.find(|(_, code)| *code == self.code());
@@ -47,7 +48,7 @@ codes! {
         Remark = 1 "REMARK",
         /// Begins a remark that another word ends: `(`.
         RemarkOpen = 2 "REMARK_OPEN",
-        /// Ends it: `)`.
+        /// Ends a remark: `)`.
         RemarkClose = 3 "REMARK_CLOSE",
         /// Stands before the number of a block: `N`.
         BlockNumber = 4 "BLOCK_NUMBER",
@@ -77,15 +78,15 @@ codes! {
         ArcCounterClockwise = 23 "ARC_COUNTER_CLOCKWISE",
         /// Centre of an arc, from its start, along X, Y, Z: I.
         CentreX = 24 "CENTRE_X",
-        /// J.
+        /// Centre of an arc along Y: J.
         CentreY = 25 "CENTRE_Y",
-        /// K.
+        /// Centre of an arc along Z: K.
         CentreZ = 26 "CENTRE_Z",
         /// Radius of an arc: R, CR.
         Radius = 27 "RADIUS",
         /// A spline: G6.2, BSPLINE.
         Spline = 28 "SPLINE",
-        /// This block in machine coordinates: G53, SUPA, M91.
+        /// The positions of this block are machine coordinates: G53, SUPA, M91.
         MachineCoordinates = 29 "MACHINE_COORDINATES",
         /// The feed's address: F.
         Feed = 30 "FEED",
@@ -95,55 +96,55 @@ codes! {
         InverseTime = 32 "INVERSE_TIME",
         /// Feed a revolution: G95.
         FeedPerRevolution = 33 "FEED_PER_REVOLUTION",
-        /// This block at rapid: FMAX.
+        /// This block goes at rapid: FMAX.
         RapidBlock = 34 "RAPID_BLOCK",
         /// Length compensation on: G43.
         LengthOn = 40 "LENGTH_ON",
-        /// And off: G49.
+        /// Length compensation off: G49.
         LengthOff = 41 "LENGTH_OFF",
-        /// Its register: H.
+        /// Register of the length: H.
         LengthRegister = 42 "LENGTH_REGISTER",
         /// Radius compensation off: G40.
         CompensationOff = 43 "COMPENSATION_OFF",
-        /// To the left: G41.
+        /// Compensation to the left: G41.
         CompensationLeft = 44 "COMPENSATION_LEFT",
-        /// To the right: G42.
+        /// Compensation to the right: G42.
         CompensationRight = 45 "COMPENSATION_RIGHT",
-        /// Its register: D.
+        /// Register of the radius: D.
         RadiusRegister = 46 "RADIUS_REGISTER",
         /// Tool centre point control on: G43.4, TRAORI, M128.
         TcpOn = 47 "TCP_ON",
-        /// And off: TRAFOOF, M129.
+        /// Tool centre point control off: TRAFOOF, M129.
         TcpOff = 48 "TCP_OFF",
         /// A tilted plane: G68.2, CYCLE800, PLANE SPATIAL.
         TiltedPlane = 50 "TILTED_PLANE",
-        /// The axes turn to it: G53.1.
+        /// The axes turn to the tilted plane: G53.1.
         TiltedPlaneTurn = 51 "TILTED_PLANE_TURN",
-        /// It ends: G69, PLANE RESET.
+        /// End of the tilted plane: G69, PLANE RESET.
         TiltedPlaneOff = 52 "TILTED_PLANE_OFF",
         /// A work offset: G54.
         WorkOffset = 53 "WORK_OFFSET",
         /// The control may leave the path: G64, CYCLE832, G187.
         Smoothing = 54 "SMOOTHING",
-        /// It keeps it: G61.
+        /// End of smoothing: G61.
         SmoothingOff = 55 "SMOOTHING_OFF",
         /// The tool's number: T.
         Tool = 60 "TOOL",
-        /// It is changed: M6.
+        /// Change of the tool: M6.
         ToolChange = 61 "TOOL_CHANGE",
         /// The spindle's speed: S.
         SpindleSpeed = 62 "SPINDLE_SPEED",
-        /// Clockwise: M3.
+        /// Spindle clockwise: M3.
         SpindleClockwise = 63 "SPINDLE_CLOCKWISE",
-        /// Counter-clockwise: M4.
+        /// Spindle counter-clockwise: M4.
         SpindleCounterClockwise = 64 "SPINDLE_COUNTER_CLOCKWISE",
-        /// Off: M5.
+        /// Spindle off: M5.
         SpindleOff = 65 "SPINDLE_OFF",
-        /// Oriented: M19.
+        /// Spindle oriented: M19.
         SpindleOrient = 66 "SPINDLE_ORIENT",
         /// Coolant of any kind on: M7, M8.
         CoolantOn = 67 "COOLANT_ON",
-        /// Off: M9.
+        /// Coolant off: M9.
         CoolantOff = 68 "COOLANT_OFF",
         /// A wait: G4.
         Dwell = 70 "DWELL",
@@ -159,21 +160,21 @@ codes! {
         Probe = 75 "PROBE",
         /// A drilling cycle in one go, with or without a dwell: G81, G82.
         CycleDrill = 80 "CYCLE_DRILL",
-        /// In steps, out of the hole after each: G83.
+        /// Drilling in steps, out of the hole after each: G83.
         CycleDeep = 81 "CYCLE_DEEP",
-        /// In steps, drawn back a little: G73.
+        /// Drilling in steps, drawn back a little: G73.
         CycleBreakChip = 82 "CYCLE_BREAK_CHIP",
         /// A thread: G84.
         CycleTap = 83 "CYCLE_TAP",
         /// A left-hand thread: G74.
         CycleTapLeft = 84 "CYCLE_TAP_LEFT",
-        /// Out at feed: G85, G89.
+        /// Boring, out at feed: G85, G89.
         CycleReam = 85 "CYCLE_REAM",
-        /// Out at rapid, the spindle stopped: G86.
+        /// Boring, out at rapid, the spindle stopped: G86.
         CycleBore = 86 "CYCLE_BORE",
-        /// Out at rapid, drawn off the wall: G76.
+        /// Boring, out at rapid, drawn off the wall: G76.
         CycleBoreFine = 87 "CYCLE_BORE_FINE",
-        /// From below: G87.
+        /// Boring from below: G87.
         CycleBoreBack = 88 "CYCLE_BORE_BACK",
         /// No cycle any more: G80.
         CycleOff = 89 "CYCLE_OFF",
@@ -181,15 +182,15 @@ codes! {
         ReturnStart = 90 "RETURN_START",
         /// A cycle returns to where the feed begins: G99.
         ReturnClearance = 91 "RETURN_CLEARANCE",
-        /// To the reference position, over the point that the block names: G28.
+        /// A way to the reference position, over the point that the block names: G28.
         ReferenceReturn = 100 "REFERENCE_RETURN",
-        /// To another position that the control keeps: G30, G75.
+        /// A way to another position that the control keeps: G30, G75.
         OtherReferenceReturn = 101 "OTHER_REFERENCE_RETURN",
-        /// Away from the part along the tool axis: M140.
+        /// A way from the part along the tool axis: M140.
         Retract = 102 "RETRACT",
-        /// This block in coordinates from a point that the builder has set: M92.
+        /// The positions of this block count from a point that the builder has set: M92.
         BuilderCoordinates = 103 "BUILDER_COORDINATES",
-        /// This block ends with the axes at rest: G9.
+        /// The axes come to rest at the end of this block: G9.
         ExactStop = 104 "EXACT_STOP",
         /// A cut tied to the spindle: G33, G331.
         Thread = 105 "THREAD",
@@ -199,15 +200,15 @@ codes! {
         ThreadBack = 107 "THREAD_BACK",
         /// The program's zero is shifted by what the block names, from the work offset: G52, TRANS, CYCL DEF 7.
         LocalOffset = 110 "LOCAL_OFFSET",
-        /// From where it is now: ATRANS.
+        /// The program's zero is shifted from where it is now: ATRANS.
         LocalOffsetAdded = 111 "LOCAL_OFFSET_ADDED",
-        /// Not any more: TRANS DATUM RESET.
+        /// The program's zero is shifted no more: TRANS DATUM RESET.
         LocalOffsetOff = 112 "LOCAL_OFFSET_OFF",
         /// Where the tool stands is called what the block names: G92.
         SetPosition = 113 "SET_POSITION",
-        /// Not any more: G92.1, G92.2.
+        /// Positions count again as before that: G92.1, G92.2.
         SetPositionOff = 114 "SET_POSITION_OFF",
-        /// Again as before that: G92.3.
+        /// Positions count once more as `SetPosition` said: G92.3.
         SetPositionAgain = 115 "SET_POSITION_AGAIN",
         /// No work offset: G500.
         WorkOffsetOff = 116 "WORK_OFFSET_OFF",
@@ -215,43 +216,43 @@ codes! {
         WorkOffsetBlock = 117 "WORK_OFFSET_BLOCK",
         /// The words of the block go to a table of the control, nothing moves: G10.
         TableData = 118 "TABLE_DATA",
-        /// Not any more: G11.
+        /// Words go to the table no more: G11.
         TableDataOff = 119 "TABLE_DATA_OFF",
         /// Coordinates are turned: G68, ROT, CYCL DEF 10.
         Rotation = 120 "ROTATION",
-        /// From how they are turned now: AROT.
+        /// Coordinates are turned from how they are turned now: AROT.
         RotationAdded = 121 "ROTATION_ADDED",
-        /// Not any more: G69 where nothing else is meant by it.
+        /// Coordinates are turned no more: G69 where nothing else is meant by it.
         RotationOff = 122 "ROTATION_OFF",
         /// Coordinates are multiplied: G51, SCALE, CYCL DEF 11.
         Scale = 123 "SCALE",
-        /// Not any more: G50.
+        /// Coordinates are multiplied no more: G50.
         ScaleOff = 124 "SCALE_OFF",
         /// Coordinates are mirrored: G51.1, MIRROR, CYCL DEF 8.
         Mirror = 125 "MIRROR",
-        /// Not any more: G50.1.
+        /// Coordinates are mirrored no more: G50.1.
         MirrorOff = 126 "MIRROR_OFF",
         /// Positions are a radius and an angle: G16.
         Polar = 130 "POLAR",
-        /// Not any more: G15.
+        /// Positions are polar no more: G15.
         PolarOff = 131 "POLAR_OFF",
         /// A rotary axis replaces a linear one on an end face: G12.1, TRANSMIT.
         FaceTransformation = 132 "FACE_TRANSFORMATION",
-        /// Not any more: G13.1.
+        /// The rotary axis is itself again: G13.1.
         FaceTransformationOff = 133 "FACE_TRANSFORMATION_OFF",
         /// A rotary axis replaces a linear one on a cylinder: G7.1, TRACYL.
         CylinderTransformation = 134 "CYLINDER_TRANSFORMATION",
         /// Centres of arcs are positions: G90.1.
         CentreAbsolute = 135 "CENTRE_ABSOLUTE",
-        /// They count from the start of the arc: G91.1.
+        /// Centres of arcs count from the start of the arc: G91.1.
         CentreIncremental = 136 "CENTRE_INCREMENTAL",
         /// X is a diameter: G7 of LinuxCNC, DIAMON.
         Diameter = 137 "DIAMETER",
-        /// It is a radius: G8 of LinuxCNC, DIAMOF.
+        /// X is a radius: G8 of LinuxCNC, DIAMOF.
         DiameterOff = 138 "DIAMETER_OFF",
         /// Rotary axes go the shorter way: M126.
         RotaryShortest = 139 "ROTARY_SHORTEST",
-        /// They go to the number that is written: M127.
+        /// Rotary axes go to the number that is written: M127.
         RotaryAsWritten = 140 "ROTARY_AS_WRITTEN",
         /// Tool centre point control, the tool axis a vector in the block: G43.5.
         TcpVectorOn = 141 "TCP_VECTOR_ON",
@@ -265,23 +266,23 @@ codes! {
         LengthNegative = 145 "LENGTH_NEGATIVE",
         /// The tool axis along X, from the tip to the spindle: A3, TX.
         ToolAxisX = 146 "TOOL_AXIS_X",
-        /// Along Y: B3, TY.
+        /// The tool axis along Y: B3, TY.
         ToolAxisY = 147 "TOOL_AXIS_Y",
-        /// Along Z: C3, TZ.
+        /// The tool axis along Z: C3, TZ.
         ToolAxisZ = 148 "TOOL_AXIS_Z",
         /// The normal of the surface along X: NX.
         NormalX = 149 "NORMAL_X",
-        /// Along Y: NY.
+        /// The normal of the surface along Y: NY.
         NormalY = 150 "NORMAL_Y",
-        /// Along Z: NZ.
+        /// The normal of the surface along Z: NZ.
         NormalZ = 151 "NORMAL_Z",
         /// The tool axis is interpolated against the part: ORIWKS.
         OrientationPart = 152 "ORIENTATION_PART",
-        /// Against the machine: ORIMKS.
+        /// The tool axis is interpolated against the machine: ORIMKS.
         OrientationMachine = 153 "ORIENTATION_MACHINE",
-        /// By its rotary axes, linearly: ORIAXES.
+        /// The tool axis goes by the rotary axes, linearly: ORIAXES.
         OrientationAxes = 154 "ORIENTATION_AXES",
-        /// On the great circle: ORIVECT.
+        /// The tool axis goes on the great circle: ORIVECT.
         OrientationVector = 155 "ORIENTATION_VECTOR",
         /// How angles of the tool axis are read: ORIEULER, ORIRPY.
         OrientationAngles = 156 "ORIENTATION_ANGLES",
@@ -289,17 +290,17 @@ codes! {
         Preselect = 160 "PRESELECT",
         /// The spindle clockwise and coolant: M13.
         SpindleClockwiseCoolant = 161 "SPINDLE_CLOCKWISE_COOLANT",
-        /// Counter-clockwise and coolant: M14.
+        /// The spindle counter-clockwise and coolant: M14.
         SpindleCounterClockwiseCoolant = 162 "SPINDLE_COUNTER_CLOCKWISE_COOLANT",
         /// The spindle's word is a speed of the surface: G96.
         SurfaceSpeed = 163 "SURFACE_SPEED",
-        /// It is revolutions a minute: G97.
+        /// The spindle's word is revolutions a minute: G97.
         SurfaceSpeedOff = 164 "SURFACE_SPEED_OFF",
         /// The spindle turns no faster: LIMS.
         SpeedLimit = 165 "SPEED_LIMIT",
         /// A rotary axis is clamped: M10.
         Clamp = 166 "CLAMP",
-        /// And loosened: M11.
+        /// A rotary axis is loosened: M11.
         Unclamp = 167 "UNCLAMP",
         /// A subprogram ends: M99, M17, RTS.
         SubprogramEnd = 170 "SUBPROGRAM_END",
@@ -307,13 +308,13 @@ codes! {
         LocalSubprogram = 171 "LOCAL_SUBPROGRAM",
         /// A macro is called with arguments: G65.
         Macro = 172 "MACRO",
-        /// After each motion from here on: G66.
+        /// A macro is called after each motion from here on: G66.
         MacroModal = 173 "MACRO_MODAL",
-        /// Not any more: G67.
+        /// A macro is called no more: G67.
         MacroOff = 174 "MACRO_OFF",
         /// The cycle that was defined works here: CYCL CALL, M99 of Heidenhain.
         CycleCall = 175 "CYCLE_CALL",
-        /// And at the end of each motion from here on: M89, MCALL.
+        /// The cycle works at the end of each motion from here on too: M89, MCALL.
         CycleCallModal = 176 "CYCLE_CALL_MODAL",
         /// A cycle that moves in a way of its own: pockets, patterns, G12 of Haas.
         CycleOther = 177 "CYCLE_OTHER",
@@ -321,9 +322,9 @@ codes! {
         ReturnLevel = 178 "RETURN_LEVEL",
         /// The time of a wait in seconds: G4 F.
         DwellSeconds = 180 "DWELL_SECONDS",
-        /// In milliseconds if written without a decimal point, else in seconds: G4 P of Fanuc.
+        /// The time of a wait in milliseconds if written without a decimal point, else in seconds: G4 P of Fanuc.
         DwellMilliseconds = 181 "DWELL_MILLISECONDS",
-        /// In turns of the spindle: G4 S.
+        /// The time of a wait in turns of the spindle: G4 S.
         DwellTurns = 182 "DWELL_TURNS",
         /// An arc through a point: CIP.
         ArcThrough = 183 "ARC_THROUGH",
@@ -335,7 +336,7 @@ codes! {
         ArcAngle = 186 "ARC_ANGLE",
         /// Feeds of rotary axes are lengths: M116.
         RotaryFeedLength = 187 "ROTARY_FEED_LENGTH",
-        /// They are angles: M117.
+        /// Feeds of rotary axes are angles: M117.
         RotaryFeedAngle = 188 "ROTARY_FEED_ANGLE",
         /// Lengths in inches, feeds as before: G70 of Siemens.
         InchLengths = 189 "INCH_LENGTHS",

@@ -8,7 +8,7 @@ use crate::{Heidenhain, SIGNED};
 const ANGLE: u8 = 5;
 
 impl Heidenhain {
-    /// By its centre (`CC` and `C`, a helix as `CC` and `CP`), or by its radius (`CR`).
+    /// Writes an arc by its centre (`CC` and `C`, a helix as `CC` and `CP`), or by its radius (`CR`).
     pub(crate) fn arc(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
         let (&Event::Arc { feed, centre, normal, turn, radius, words, .. }, Some([x, y, z])) =
             (event, self.linear)

@@ -124,7 +124,7 @@ impl Heidenhain {
         self.frame("END", out);
     }
 
-    /// After a line of the user's own nothing is known to be in force.
+    /// Forgets what is in force: after a line of the user's own nothing is known of it.
     pub(crate) fn forget(&mut self) {
         self.speed.forget();
         self.feed.forget();

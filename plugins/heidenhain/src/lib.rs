@@ -40,7 +40,7 @@ struct Heidenhain {
     rotary: bool,
     /// The transformations of a program that came before are cancelled.
     reset: bool,
-    /// In the place of a retract in machine coordinates; empty: none.
+    /// Block in the place of a retract in machine coordinates; empty: none.
     retract: String,
     tcp_on: String,
     tcp_off: String,
@@ -63,7 +63,7 @@ struct Heidenhain {
     drilling: Option<Drilling>,
     /// The definition of the cycle in force.
     defined: String,
-    /// In a tilted plane the control keeps no tip.
+    /// Whether a tilted plane is in force: the control keeps no tip in it.
     tilted: bool,
     /// The tool's vector as it was written last, in units of its last decimal.
     vector: Option<[f64; 3]>,

@@ -2,7 +2,7 @@
 
 use post_plugin::{OptionKind, OptionSpec, Value};
 
-/// Of a coolant with an end of its own.
+/// Help of an option for a coolant with an end of its own.
 const END: &str = "M codes that end it; empty: those of coolant_off.";
 
 const fn choice(

@@ -29,8 +29,8 @@ impl Heidenhain {
     }
 }
 
-/// All of them; `tcp_on` and `tcp_off` are lines of the options, `coolant` the words that they name for coolants, what
-/// ends one of them first.
+/// Words of the control; `tcp_on` and `tcp_off` are lines of the options, `coolant` the words that they name for
+/// coolants, what ends one of them first.
 pub(crate) fn vocabulary<'a>(
     tcp_on: &'a str,
     tcp_off: &'a str,

@@ -15,7 +15,7 @@ use crate::table::{CycleCode, Rigid, Table};
 pub(crate) struct Cycles {
     codes: &'static [CycleCode],
     rigid: Option<Rigid>,
-    /// Off the wall, program units; 0: fine boring is not written.
+    /// Way off the wall, program units; 0: fine boring is not written.
     shift: f64,
     running: Option<Running>,
 }
@@ -32,14 +32,14 @@ struct Running {
     step: Option<f64>,
     dwell: Option<f64>,
     pitch: Option<f64>,
-    /// No point has been written under it.
+    /// Whether no point has been written under the cycle.
     first: bool,
     bottom: Modal<f64>,
     plane: Modal<f64>,
     level: Modal<&'static str>,
 }
 
-/// What each kind is declared by.
+/// Capability that declares each kind.
 const KINDS: [(Cycle, Capabilities); 9] = [
     (Cycle::Drill, Capabilities::CYCLE_DRILL),
     (Cycle::Deep, Capabilities::CYCLE_DEEP),
@@ -52,7 +52,7 @@ const KINDS: [(Cycle, Capabilities); 9] = [
     (Cycle::BoreBack, Capabilities::CYCLE_BORE_BACK),
 ];
 
-/// It draws the tool off the wall.
+/// Whether the cycle draws the tool off the wall.
 const fn shifts(kind: Cycle) -> bool {
     matches!(kind, Cycle::BoreFine | Cycle::BoreBack)
 }
@@ -61,7 +61,7 @@ const fn taps(kind: Cycle) -> bool {
     matches!(kind, Cycle::Tap | Cycle::TapLeft)
 }
 
-/// It goes down in steps.
+/// Whether the cycle goes down in steps.
 const fn pecks(kind: Cycle) -> bool {
     matches!(kind, Cycle::Deep | Cycle::BreakChip)
 }
@@ -81,7 +81,7 @@ impl Cycles {
         }
     }
 
-    /// Its cycles that the options leave.
+    /// Cycles of the control that the options leave.
     pub(crate) fn codes(&self) -> impl Iterator<Item = &'static CycleCode> {
         let shift = self.shift;
         let codes = self.codes.iter();

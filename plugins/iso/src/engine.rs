@@ -48,9 +48,9 @@ pub struct Engine {
     pub(crate) tcp: bool,
     work_offset: String,
     cancel: String,
-    /// It waits for the length to be off.
+    /// Whether the cancelling words wait for the length to be off.
     cancel_due: bool,
-    /// In the place of a retract in machine coordinates; empty: none.
+    /// Words in the place of a retract in machine coordinates; empty: none.
     retract: String,
     tcp_on: String,
     /// Empty: nothing is written about it.
@@ -59,7 +59,7 @@ pub struct Engine {
     coolant_codes: [String; 5],
     /// What ends each of them.
     coolant_ends: [String; 5],
-    /// Of the tool in use.
+    /// Register of the tool in use.
     pub(crate) register: Option<u32>,
     offset_active: Modal<bool>,
     /// A line of the user's own has named a work offset: which one is in force is the user's from there on.
@@ -440,7 +440,7 @@ impl Engine {
         self.wait_by(address, seconds);
     }
 
-    /// The same, by another address.
+    /// Writes the word of a wait by another address.
     pub(crate) fn wait_by(&mut self, address: &str, seconds: f64) {
         let (value, decimals) = match self.table.dwell {
             // A dwell too short to be written waits the least.
@@ -508,7 +508,7 @@ impl Engine {
         }
     }
 
-    /// After a line of the user's own nothing is known to be in force.
+    /// Forgets what is in force: after a line of the user's own nothing is known of it.
     pub fn forget(&mut self) {
         self.motion.forget();
         self.offset_active.forget();

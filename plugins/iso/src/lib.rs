@@ -27,8 +27,8 @@ pub use table::{
     Subprogram, SurfaceSpeed, Table, Tcp, is_offset_beyond_six, offset_beyond_six, offset_of_six,
 };
 
-/// Refuses words that lie within one turn, where the control would not go the shorter way between them; `why` says what it
-/// does.
+/// Refuses words that lie within one turn, where the control would not go the shorter way between them; `why` says what
+/// it does.
 ///
 /// # Errors
 /// The sentence for the user, about the first axis with such words.
@@ -79,7 +79,7 @@ pub trait Control: Sized + Send + 'static {
         engine
     }
 
-    /// Its words and what they mean, where they are others than the table's.
+    /// Words of the control and what they mean, where they are others than the table's.
     fn vocabulary(&self, engine: Vec<VocabularyWord>) -> Vec<VocabularyWord> {
         engine
     }

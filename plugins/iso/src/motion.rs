@@ -1,7 +1,7 @@
 //! Moves in G-code.
 //!
-//! Rapids, cuts, the three feed modes, compensation, arcs and the way a tool comes to the part. A word that is in force is
-//! not written again, and a move that changes no word is not written at all.
+//! Rapids, cuts, the three feed modes, compensation, arcs and the way a tool comes to the part. A word that is in force
+//! is not written again, and a move that changes no word is not written at all.
 
 use post_plugin::{
     Axes, Block, Compensation, Feed, Format, Group, Modal, NumberStyle, Setup, quantise,
@@ -31,7 +31,7 @@ pub struct Motion {
     length: Option<String>,
     /// The plane of arcs.
     plane: Modal<&'static str>,
-    /// It is another one than that of X and Y.
+    /// Whether the plane is another one than that of X and Y.
     other_plane: bool,
     /// Words of the last move; empty where nobody knows where the axes stand.
     at: Vec<f64>,
@@ -53,11 +53,11 @@ struct Vector {
 /// Decimals of the three kinds of feed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FeedDecimals {
-    /// Of a feed a minute.
+    /// Decimals of a feed a minute.
     pub per_minute: u8,
-    /// Of an inverse-time feed.
+    /// Decimals of an inverse-time feed.
     pub inverse_time: u8,
-    /// Of a feed a revolution.
+    /// Decimals of a feed a revolution.
     pub per_revolution: u8,
 }
 
@@ -315,15 +315,15 @@ impl Motion {
         words.any(|(place, part)| part.abs() > MEASURED && self.axes.is_plane(place))
     }
 
-    /// These words with the word of rapid in front of them, in a block that moves nothing.
+    /// Writes `words` after the word of rapid, in a block that moves nothing.
     pub(crate) fn at_rapid(&mut self, words: &str, out: &mut String) {
         self.motion.forget();
         self.motion(self.codes.motion[0]);
         self.block.word(words).end(out);
     }
 
-    /// The words of the plane at rapid, each of them, with `length` (`G43.4 H1`); with the tool's `axis` where its vector is
-    /// written.
+    /// The words of the plane at rapid, each of them, with `length` (`G43.4 H1`); with the tool's `axis` where its
+    /// vector is written.
     pub(crate) fn across(
         &mut self,
         words: &[f64],
@@ -344,8 +344,8 @@ impl Motion {
         self.block.end(out);
     }
 
-    /// What is left of the way to `words`, with `length` (`G43 H1`), at `feed` or at rapid; with the tool's `axis` where
-    /// its vector is written.
+    /// What is left of the way to `words`, with `length` (`G43 H1`), at `feed` or at rapid; with the tool's `axis`
+    /// where its vector is written.
     pub fn arrive(
         &mut self,
         words: &[f64],
@@ -500,8 +500,8 @@ impl Motion {
     /// An arc or a helix.
     ///
     /// # Errors
-    /// If the control cannot be told it: a plane that is none of the three, a start that nobody knows, more than a turn,
-    /// an arc that would be read as a whole circle, the first move of a cutter compensation.
+    /// If the control cannot be told it: a plane that is none of the three, a start that nobody knows, more than a
+    /// turn, an arc that would be read as a whole circle, the first move of a cutter compensation.
     pub fn arc(&mut self, arc: &Arc<'_>, feed: Feed, out: &mut String) -> Result<(), String> {
         let (plane, sense) = arc.plane()?;
         let across = PLANES[plane];
@@ -572,7 +572,7 @@ pub struct Arc<'a> {
     pub normal: [f64; 3],
     /// Degrees, to the left seen against the normal.
     pub turn: f64,
-    /// To be written in the place of the centre.
+    /// Radius to be written in the place of the centre.
     pub radius: Option<f64>,
     /// All axis words at its end.
     pub words: &'a [f64],

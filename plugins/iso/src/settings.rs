@@ -16,7 +16,7 @@ pub(crate) struct Settings {
     smoothing_off: String,
     /// Words of the smoothing in force.
     smoothing: Option<String>,
-    /// Those that wait for the length to be off.
+    /// Words that wait for the length to be off.
     waiting: Option<String>,
     clamps: Vec<Clamp>,
     /// Places of the words' names.
@@ -98,7 +98,7 @@ impl Settings {
         }
     }
 
-    /// It ends, if it is in force.
+    /// Ends the smoothing, if it is in force.
     pub(crate) fn end_smoothing(&mut self, motion: &mut Motion, out: &mut String) {
         self.waiting = None;
         if self.smoothing.take().is_some() {
@@ -222,7 +222,7 @@ impl Engine {
         Ok(())
     }
 
-    /// Under another level, or once the length is off where the control asks for that.
+    /// Sets the smoothing to another level, or once the length is off where the control asks for that.
     fn smooth(&mut self, words: String, out: &mut String) {
         if self.table.smoothing_anywhere || !self.length_active.is(true) {
             self.line(&words, out);

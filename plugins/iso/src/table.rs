@@ -36,8 +36,8 @@ pub struct Table {
     /// A block behind it that cancels what shifts, turns, scales or mirrors, and moves nothing; may be empty. Option
     /// `cancel`.
     pub cancel: &'static str,
-    /// It stands behind the end of the length compensation, which comes with the first retract: ahead of that the control
-    /// would refuse it.
+    /// Whether the cancelling block follows the end of the length compensation, which comes with the first retract:
+    /// before that the control would refuse it.
     pub cancel_behind_length: bool,
     /// A feed a minute without tool centre point control counts along all axes together, degrees as millimetres; else
     /// along the linear ones.
@@ -57,7 +57,7 @@ pub struct Table {
     /// Tool centre point control is switched on at rapid: ahead of a first move at feed its word stands behind one of
     /// rapid, in a block of its own.
     pub tcp_at_rapid: bool,
-    /// In front of positions in machine coordinates, at rapid: `G53 G0`.
+    /// Words in front of positions in machine coordinates, at rapid: `G53 G0`.
     pub machine: &'static str,
     /// The order in which the tool retracts and what is in force is cancelled.
     pub leave: &'static [Leave],
@@ -65,7 +65,7 @@ pub struct Table {
     pub stops: Stops,
     /// A wait.
     pub dwell: Dwell,
-    /// Behind `T1`: the change of the tool. Option `change`.
+    /// Change of the tool, after `T1`. Option `change`.
     pub change: &'static str,
     /// Cycles that the control has.
     pub cycles: &'static [CycleCode],
@@ -133,11 +133,12 @@ pub struct Codes {
 pub struct Offset {
     /// Is it one of the control's?
     pub known: fn(&str) -> bool,
-    /// Those that are, for a message.
+    /// Offsets that the control has, for a message.
     pub range: &'static str,
     /// The words of the n-th, from 1; none if the control has no such offset.
     pub word: fn(u32) -> Option<String>,
-    /// It stands in the first block; else in one of its own before the first position behind a tool change.
+    /// Whether the offset stands in the first block; else in one of its own before the first position after a tool
+    /// change.
     pub at_start: bool,
 }
 
@@ -180,14 +181,15 @@ pub enum Leave {
     Retract,
     /// The length compensation is cancelled.
     Length,
-    /// The depth goes to its end again, where the length was cancelled before: a parameter decides whether that moves it.
+    /// The depth goes to its end again, where the length was cancelled before: a parameter decides whether that moves
+    /// it.
     Again,
     /// The tool centre point control is switched off, where blocks of its own do that.
     Tcp,
 }
 
-/// What a stop of the program (M0, M1) switches off. It is switched on again before the next cut: where the control or its
-/// builder has left it on, that does nothing.
+/// What a stop of the program (M0, M1) switches off. It is switched on again before the next cut: where the control or
+/// its builder has left it on, that does nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stops {
     /// The spindle.
@@ -208,11 +210,11 @@ pub enum Dwell {
 /// A cycle's code.
 #[derive(Clone, Copy, Debug)]
 pub struct CycleCode {
-    /// Its kind.
+    /// Kind of the cycle.
     pub kind: Cycle,
-    /// Without a dwell at the bottom; empty where the control has none.
+    /// Code without a dwell at the bottom; empty where the control has none.
     pub plain: &'static str,
-    /// With one; empty where the control has none.
+    /// Code with a dwell; empty where the control has none.
     pub waits: &'static str,
 }
 
@@ -240,18 +242,18 @@ pub enum Plane {
     None,
     /// Told by origin and Euler angles: X Y Z I J K.
     Euler {
-        /// In front of them: `G68.2`.
+        /// Word in front of the angles: `G68.2`.
         on: &'static str,
         /// The block behind it that has the machine turn to it: `G53.1`.
         turn: &'static str,
-        /// It ends.
+        /// Block that ends the plane.
         off: &'static str,
     },
     /// Where the rotary words have turned the part: the work offset turns with it. There is none where a head turns.
     Turned {
-        /// It begins: `G254`.
+        /// Block that begins the plane: `G254`.
         on: &'static str,
-        /// It ends.
+        /// Block that ends the plane.
         off: &'static str,
     },
 }
@@ -282,7 +284,7 @@ pub enum Splines {
 /// Constant cutting speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SurfaceSpeed {
-    /// It begins, and a fixed speed again: `G96`, `G97`.
+    /// Codes of a constant cutting speed, and of a fixed speed again: `G96`, `G97`.
     pub codes: [&'static str; 2],
     /// The largest speed: `G92 S` in a block ahead, or `D` in the same.
     pub most: &'static str,
@@ -291,11 +293,11 @@ pub struct SurfaceSpeed {
 /// Calls of subprograms: `{}` stands for number or name; empty where the control has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Subprogram {
-    /// By number: `M98 P{}`.
+    /// Call by number: `M98 P{}`.
     pub number: &'static str,
-    /// By name.
+    /// Call by name.
     pub name: &'static str,
-    /// Behind it, how often: ` L`; empty: it is called so often.
+    /// Address of how often, after the call: ` L`; empty: the call is written so often.
     pub times: &'static str,
 }
 
@@ -329,7 +331,8 @@ impl CycleCode {
     }
 }
 
-/// As most controls have them. Fine boring and boring from below are written where the machine file gives their shift.
+/// Codes that most controls have. Fine boring and boring from below are written where the machine file gives their
+/// shift.
 pub const CYCLES: &[CycleCode] = &[
     CycleCode::new(Cycle::Drill, "G81", "G82"),
     CycleCode::new(Cycle::Deep, "G83", ""),
@@ -343,7 +346,7 @@ pub const CYCLES: &[CycleCode] = &[
 ];
 
 impl Codes {
-    /// As most controls have them.
+    /// Words that most controls have.
     pub const ISO: Codes = Codes {
         units: ["G21", "G20"],
         motion: ["G0", "G1"],

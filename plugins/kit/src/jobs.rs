@@ -10,9 +10,9 @@ use post_plugin::{
 
 use crate::{TOOL, TOP, at, cut, rapid, turn, turning};
 
-/// Above the part.
+/// Words of a point above the part.
 pub const OVER: &[f64] = &[10.0, -20.0, 50.0, 0.0, 0.0];
-/// On its face.
+/// Words of a point on the part's face.
 pub const FACE: &[f64] = &[10.0, -20.0, -2.0, 0.0, 0.0];
 
 const FEED: Feed = Feed::PerMinute(850.0);
@@ -23,7 +23,7 @@ pub const fn arc(centre: [f64; 3], normal: [f64; 3], turn: f64, words: &[f64]) -
     Event::Arc { tool: None, feed: FEED, centre, normal, turn, radius: None, words }
 }
 
-/// The same in inverse time, or by its radius.
+/// An arc in inverse time, or by its radius.
 const fn arc_by(feed: Feed, radius: Option<f64>, turn: f64, words: &[f64]) -> Event<'_> {
     Event::Arc { tool: None, feed, centre: [10.0, -20.0, -2.0], normal: UP, turn, radius, words }
 }
@@ -151,7 +151,7 @@ pub fn frame(angles: PlaneAngles, degrees: [f64; 3]) -> [[f64; 3]; 3] {
     frame
 }
 
-/// By their series: this crate stands on no mathematics of a platform.
+/// Sine and cosine by their series: this crate stands on no mathematics of a platform.
 fn sine_and_cosine(degrees: f64) -> (f64, f64) {
     let angle = (degrees % 360.0).to_radians();
     let (mut sine, mut cosine) = (0.0, 0.0);

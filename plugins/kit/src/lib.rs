@@ -25,7 +25,7 @@ pub struct Bench {
     plugin: Linked,
     units: Units,
     tcp: bool,
-    /// So many of the words.
+    /// Number of the axis words that the dialect is told of.
     axes: usize,
     given: Vec<(&'static str, Value<'static>)>,
 }

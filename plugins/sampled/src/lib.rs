@@ -42,7 +42,7 @@ struct Place {
     deviation: Deviation,
     /// The piece that begins here is not settled.
     open: bool,
-    /// It halves a piece that has not been judged since.
+    /// Whether the place halves a piece that has not been judged since.
     fresh: bool,
 }
 

@@ -1,11 +1,11 @@
-//! What it writes beyond straight moves, by the machine and its options.
+//! What the dialect writes beyond straight moves, by the machine and its options.
 
 use post_plugin::Capabilities;
 
 use crate::Siemens;
 
 impl Siemens {
-    /// All of them. Arcs and cycles lie across Z.
+    /// Capabilities of the control with these options. Arcs and cycles lie across Z.
     pub(crate) fn declared(&self) -> Capabilities {
         use Capabilities as C;
         let upright = self.linear.is_some();

@@ -54,9 +54,9 @@ struct Siemens {
     /// The plane across the tool, along whose third axis D puts the length.
     across: &'static str,
     tcp_active: Modal<bool>,
-    /// In a tilted plane there is no transformation.
+    /// Whether a tilted plane is in force: there is no transformation in it.
     tilted: bool,
-    /// Of the tool, in units of its last decimal.
+    /// Vector of the tool, in units of its last decimal.
     vector: Modal<[f64; 3]>,
     turning: Option<Turning>,
     /// The speed is one of cutting.
@@ -153,8 +153,8 @@ impl Control for Siemens {
     }
 }
 
-/// The plane across the tool where the words are axis positions. Under a transformation the control turns the length with
-/// the tool.
+/// The plane across the tool where the words are axis positions. Under a transformation the control turns the length
+/// with the tool.
 fn across(setup: &Setup<'_>) -> &'static str {
     let lies = |name| setup.words.iter().any(|word| word.name == name && word.depth);
     match (setup.tcp, lies("X"), lies("Y")) {

@@ -31,7 +31,7 @@ impl Siemens {
         }
     }
 
-    /// After a tool change, which may have come with a safe state.
+    /// Forgets what a tool change may have undone: it may have come with a safe state.
     pub(crate) fn changed(&mut self) {
         self.length.forget();
         if self.across != "G17" {
@@ -39,7 +39,7 @@ impl Siemens {
         }
     }
 
-    /// After a line of the user's own.
+    /// Forgets what is in force, after a line of the user's own.
     pub(crate) fn forget(&mut self) {
         self.tcp_active.forget();
         self.plane.forget();

@@ -103,7 +103,7 @@ pub(crate) struct Smoothing {
     /// Empty: CYCLE832.
     compressor: String,
     mode: String,
-    /// None: three arguments.
+    /// Packed digits; none: three arguments.
     packed: Option<i64>,
     scale: f64,
 }

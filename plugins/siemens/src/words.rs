@@ -2,7 +2,7 @@
 
 use post_plugin::{Meaning, VocabularyWord};
 
-/// All of them; `tcp_on` and `tcp_off` are lines of the options.
+/// Words of the control; `tcp_on` and `tcp_off` are lines of the options.
 pub(crate) fn vocabulary(tcp_on: &str, tcp_off: &str) -> Vec<VocabularyWord> {
     let word = |word: &str, meaning| VocabularyWord { word: word.to_owned().into(), meaning };
     // ORIMKS behind TRAORI says how, not that.

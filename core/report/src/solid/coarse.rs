@@ -1,4 +1,4 @@
-//! Many triangles as few: corners in one cell of a grid become one.
+//! Fewer triangles in place of many: the corners in one cell of a grid become one.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +10,7 @@ const CELLS: f64 = 256.0;
 /// Triangles that are kept while more come: beyond them the grid is made wider at once.
 const MOST_KEPT: usize = 200_000;
 
-/// By how much wider, step by step.
+/// Factor by which the cells are made wider, step by step.
 const WIDER: f64 = 1.2;
 
 type Cell = [i16; 3];
@@ -20,7 +20,7 @@ pub(super) struct Coarse {
     low: Corner,
     middle: Corner,
     size: f64,
-    /// Of the corners in a cell the one that is farthest from the middle of the box: edges and corners of a body stay.
+    /// The corner of each cell that is farthest from the middle of the box: edges and corners of a body stay.
     cells: BTreeMap<Cell, Corner>,
     triangles: BTreeSet<[Cell; 3]>,
 }
@@ -48,7 +48,7 @@ impl Coarse {
         }
     }
 
-    /// At most so many triangles, and one at least if there are any.
+    /// At most `most` triangles, and at least one if there are any.
     pub(super) fn triangles(mut self, most: usize) -> Vec<[Corner; 3]> {
         while self.triangles.len() > most {
             let wider = self.wider();
@@ -67,7 +67,7 @@ impl Coarse {
         std::array::from_fn(|at| ((corner[at] - self.low[at]) / self.size) as i16)
     }
 
-    /// The same on a grid whose cells are wider.
+    /// The same triangles on a grid whose cells are wider.
     fn wider(&self) -> Self {
         let mut wider = Self {
             size: self.size * WIDER,

@@ -23,15 +23,16 @@ const SCALE: f64 = 100.0;
 /// A shape as it is drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solid {
-    /// Its faces.
+    /// Faces of the shape.
     pub triangles: Vec<[Corner; 3]>,
-    /// Where it is bent sharply or ends, the longest first.
+    /// Edges at which the shape is bent sharply or ends, the longest first.
     pub edges: Vec<[Corner; 2]>,
 }
 
 impl Solid {
-    /// Reads an STL file, binary or text. More triangles than `most` become fewer: corners that are close together become
-    /// one of them, and triangles that have shrunk to a line go. Memory grows with what is kept and not with the file.
+    /// Reads an STL file, binary or text. More triangles than `most` become fewer: corners that are close together
+    /// become one of them, and triangles that have shrunk to a line go. Memory grows with what is kept and not with the
+    /// file.
     ///
     /// # Errors
     /// What is read is no STL file, or cannot be read.

@@ -1,8 +1,9 @@
 //! Triangles of an STL file, one behind the other.
 //!
 //! A binary file is known by its length, as the header of many begins with `solid` like a text: 80 bytes, the number of
-//! triangles (32 bits, least byte first), and for each 50 bytes (the normal, three corners, two more bytes; numbers of 32 bits).
-//! Of a text the lines `vertex x y z` count, three to a facet. Normals are not looked at: they follow from the corners.
+//! triangles (32 bits, least byte first), and for each 50 bytes (the normal, three corners, two more bytes; numbers of
+//! 32 bits). Of a text the lines `vertex x y z` count, three to a facet. Normals are not looked at: they follow from
+//! the corners.
 
 use std::fmt;
 use std::io::{self, BufRead, Read as _, Seek, SeekFrom};
@@ -21,11 +22,11 @@ const MOST_BYTES: u64 = 1 << 30;
 /// Why a file is no shape.
 #[derive(Debug)]
 pub enum StlFault {
-    /// It cannot be read.
+    /// The file cannot be read.
     Io(io::Error),
-    /// It is too long.
+    /// The file is too long.
     TooLong(u64),
-    /// It holds no triangle that has an area.
+    /// The file holds no triangle that has an area.
     Empty,
     /// A text ends before its end.
     Cut,

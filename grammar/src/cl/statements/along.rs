@@ -1,4 +1,5 @@
-//! CATIA's arcs: where the tool sets out, the surface it stays on, and the curve that it goes along, nested in parentheses.
+//! CATIA's arcs: where the tool sets out, the surface it stays on, and the curve that it goes along, nested in
+//! parentheses.
 
 use super::{Read, other};
 use crate::cl::line::{Line, number_of};
@@ -119,7 +120,7 @@ fn behind<'i>(word: &str, item: &'i Item) -> Option<&'i [Item]> {
     }
 }
 
-/// So many numbers behind the word, and nothing else.
+/// The `N` numbers after the word; a fault if anything else stands there.
 fn numbers<const N: usize>(word: &str, item: &Item) -> Option<[f64; N]> {
     let items = behind(word, item)?;
     let mut numbers = [0.0; N];

@@ -120,7 +120,7 @@ impl<'l, 't> Items<'l, 't> {
         Ok(other(self.line, false))
     }
 
-    /// From the next item to the end of the last one; the place behind the word or the last item if none is left.
+    /// Bytes from the next item to the end of the last one; the place after the word or the last item if none is left.
     pub(super) fn rest(&self) -> Range<usize> {
         let items = &self.line.items;
         let end = items

@@ -114,7 +114,7 @@ mod tests {
         round(&given, |index, event| assert_eq!(event, given[index]));
     }
 
-    /// The same event with other numbers.
+    /// Reads an event of `kind` with these numbers.
     fn read(kind: u32, numbers: &[f64]) -> Event<'_> {
         let raw = PostEvent {
             kind,

@@ -11,7 +11,7 @@ use crate::{Curve, Deviation, Tolerance};
 /// Size, alignment and fields of a shared struct, as the C header must have them.
 #[derive(Clone, Copy, Debug)]
 pub struct Layout {
-    /// Its name in C.
+    /// Name of the struct in C.
     pub name: &'static str,
     /// Bytes.
     pub size: usize,

@@ -6,8 +6,8 @@ use super::Engine;
 use crate::table::Tcp;
 
 impl Engine {
-    /// From where the tool is retracted to `words`: the plane first, where the words of the plane move the tool across, and
-    /// the depth last; nothing comes in by the depth while another axis has still to move by the length.
+    /// Goes from where the tool is retracted to `words`: the plane first, where the words of the plane move the tool
+    /// across, and the depth last; nothing comes in by the depth while another axis has still to move by the length.
     pub(super) fn position(
         &mut self,
         words: &[f64],

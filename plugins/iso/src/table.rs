@@ -36,8 +36,8 @@ pub struct Table {
     /// A block behind it that cancels what shifts, turns, scales or mirrors, and moves nothing; may be empty. Option
     /// `cancel`.
     pub cancel: &'static str,
-    /// Whether the cancelling block follows the end of the length compensation, which comes with the first retract:
-    /// before that the control would refuse it.
+    /// It stands behind the end of the length compensation, which comes with the first retract: ahead of that the control
+    /// would refuse it.
     pub cancel_behind_length: bool,
     /// A feed a minute without tool centre point control counts along all axes together, degrees as millimetres; else
     /// along the linear ones.
@@ -57,7 +57,7 @@ pub struct Table {
     /// Tool centre point control is switched on at rapid: ahead of a first move at feed its word stands behind one of
     /// rapid, in a block of its own.
     pub tcp_at_rapid: bool,
-    /// Words in front of positions in machine coordinates, at rapid: `G53 G0`.
+    /// In front of positions in machine coordinates, at rapid: `G53 G0`.
     pub machine: &'static str,
     /// The order in which the tool retracts and what is in force is cancelled.
     pub leave: &'static [Leave],
@@ -65,7 +65,7 @@ pub struct Table {
     pub stops: Stops,
     /// A wait.
     pub dwell: Dwell,
-    /// Change of the tool, after `T1`. Option `change`.
+    /// Behind `T1`: the change of the tool. Option `change`.
     pub change: &'static str,
     /// Cycles that the control has.
     pub cycles: &'static [CycleCode],

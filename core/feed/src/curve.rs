@@ -21,23 +21,23 @@ pub struct Curve<const D: usize> {
 pub enum CurveFault {
     /// The degree is 0 or above [`MAX_DEGREE`].
     Degree,
-    /// There are fewer control points than the degree and one.
+    /// Fewer control points than the degree and one.
     Points,
-    /// There are not as many knots as control points and degree and one together.
+    /// Not as many knots as control points and degree and one together.
     Knots,
-    /// This knot is smaller than the one before, or not finite, or ends an empty parameter range.
+    /// A knot that is smaller than the one before, or not finite, or ends an empty parameter range.
     Order {
-        /// Its index.
+        /// Index of the knot.
         knot: usize,
     },
-    /// There are not as many weights as control points, or this one is not positive.
+    /// Not as many weights as control points, or one that is not positive.
     Weight {
-        /// Its index.
+        /// Index of the control point.
         point: usize,
     },
-    /// This control point is not finite.
+    /// A control point that is not finite.
     Point {
-        /// Its index.
+        /// Index of the control point.
         point: usize,
     },
 }

@@ -16,8 +16,8 @@ pub struct FeedSpline {
 }
 
 impl FeedSpline {
-    /// Of a plan whose `q` is linear between samples: each corner of it is rounded by the parabola that touches both
-    /// sides half the shorter step off the sample.
+    /// Makes the spline of a plan whose `q` is linear between samples: each corner of it is rounded by the parabola
+    /// that touches both sides half the shorter step off the sample.
     ///
     /// The parabola stays inside the corner, so what is a limit of `q` and its slope *at the sample* is kept; beside it
     /// both are by a term of first order in the step. [`FeedSpline::slow`] makes up for it where it counts.
@@ -62,7 +62,7 @@ impl FeedSpline {
         *at = to;
     }
 
-    /// Of a plan with jerk limits, whose law is such a spline, over the samples that it was made for.
+    /// Makes the spline of a plan with jerk limits, whose law is such a spline, over the samples that it was made for.
     ///
     /// # Panics
     /// If there is not one sample more than pieces.
@@ -85,7 +85,7 @@ impl FeedSpline {
         self.pieces[piece].at(share, self.knots[piece + 1] - self.knots[piece])
     }
 
-    /// The same at a parameter.
+    /// Evaluates `q` and its derivatives at a parameter.
     #[must_use]
     pub fn at(&self, parameter: f64) -> [f64; 3] {
         let piece = self.piece(parameter);
@@ -234,7 +234,7 @@ mod tests {
         }
     }
 
-    /// Off from rest with constant jerk, then evenly: `q` and its slope meet at the inner knot.
+    /// Leaves rest with constant jerk, then goes evenly: `q` and its slope meet at the inner knot.
     #[test]
     fn beyond_a_start_with_jerk_the_b_spline_counts_from_the_inner_knot_on() {
         let (q1, slope) = (6.0, 4.0 / 3.0 * 6.0 / 2.0);

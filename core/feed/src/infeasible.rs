@@ -22,12 +22,12 @@ pub enum Infeasible {
     },
     /// A limit came out negative or not finite.
     NotANumber {
-        /// There, or between it and the next.
+        /// Sample, or the first of the two that it lies between.
         sample: usize,
         /// Which limit.
         source: Source,
     },
-    /// From the given start, even by the hardest braking, the speed is above a bound further on.
+    /// The speed is above a bound further on, even by the hardest braking from the given start.
     TooFastStart {
         /// Where the bound is first broken.
         sample: usize,
@@ -80,7 +80,7 @@ impl Infeasible {
         self.sample_mut().copied()
     }
 
-    /// The same fault of a part of a path that begins with sample `first` of the whole.
+    /// Shifts the fault of a part of a path that begins with sample `first` of the whole.
     pub(crate) fn shifted(mut self, first: usize) -> Self {
         if let Some(sample) = self.sample_mut() {
             *sample += first;

@@ -25,7 +25,7 @@ pub struct Optimum {
     pub objective: f64,
     /// What no plan can exceed, proven.
     pub bound: f64,
-    /// Of the interior-point method.
+    /// Iterations of the interior-point method.
     pub iterations: usize,
 }
 

@@ -317,7 +317,7 @@ impl Problem {
 pub struct Usage {
     /// Value over limit.
     pub share: f64,
-    /// At this sample, or between it and the next.
+    /// Sample, or the first of the two that it lies between.
     pub sample: usize,
     /// Which limit.
     pub source: Source,

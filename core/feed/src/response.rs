@@ -2,7 +2,7 @@
 
 /// A drive's steady answer to a sine of one.
 pub trait Response {
-    /// At `frequency` rad/s.
+    /// Answer at `frequency` rad/s.
     fn at(&self, frequency: f64) -> Answer;
 }
 
@@ -16,14 +16,14 @@ impl<F: Fn(f64) -> Answer> Response for F {
 /// A complex number: the answer's size and phase against what was asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Answer {
-    /// In phase with what was asked.
+    /// Part in phase with what was asked.
     pub real: f64,
     /// A quarter turn ahead of it.
     pub imaginary: f64,
 }
 
 impl Answer {
-    /// Of a drive that is where it is commanded.
+    /// Answer of a drive that is where it is commanded.
     pub const EXACT: Self = Self { real: 1.0, imaginary: 0.0 };
 
     /// `|G|`.
@@ -32,7 +32,7 @@ impl Answer {
         libm::hypot(self.real, self.imaginary)
     }
 
-    /// By how much it is ahead of another, rad, in half a turn to either side.
+    /// Angle by which it is ahead of another, rad, in half a turn to either side.
     #[must_use]
     pub fn phase_from(self, other: Self) -> f64 {
         let real = self.real * other.real + self.imaginary * other.imaginary;

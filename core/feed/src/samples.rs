@@ -43,7 +43,7 @@ pub struct Samples {
     pub smooth: bool,
 }
 
-/// Below this speed of the tip per unit of parameter speed, mm, the tip counts as standing still: rotary axes alone
+/// Least speed of the tip per unit of parameter speed, mm, below which it counts as standing still: rotary axes alone
 /// turn, and what is left of `|P'|` is rounding.
 const STILL: f64 = 1e-9;
 
@@ -66,7 +66,7 @@ impl Samples {
         self.len().saturating_sub(1)
     }
 
-    /// From sample `interval` to the next, in units of the parameter.
+    /// Step from sample `interval` to the next, in units of the parameter.
     #[must_use]
     pub fn step(&self, interval: usize) -> f64 {
         self.parameter[interval + 1] - self.parameter[interval]

@@ -30,7 +30,7 @@ impl Row {
 /// What a [`Limit`](crate::limits::Limit) writes its bounds and rows into.
 pub struct Table<'a> {
     pub(crate) limit: u16,
-    /// Its first row of an interval, of `stride` rows of all limits.
+    /// First of its rows of an interval, of `stride` rows of all limits.
     pub(crate) first: usize,
     pub(crate) stride: usize,
     pub(crate) upper: &'a mut [f64],

@@ -44,7 +44,7 @@ pub struct AheadPass {
 }
 
 impl AheadPass {
-    /// For a file that is to be read so, on this machine.
+    /// Makes the pass for a file that is to be read so, on this machine.
     pub fn new(machine: &Machine, reading: Reading) -> Self {
         Self { interpreter: Interpreter::new(reading.on(machine)), still: StillAxes::default() }
     }

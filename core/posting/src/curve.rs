@@ -14,7 +14,7 @@ use crate::program::{Arc, Motion, Pace, Spline};
 /// A curve of the CL file that may stay one: the tool axis stands along it, and it is cut at a feed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Its course in the part frame; the tip goes along it.
+    /// Shape of the curve in the part frame; the tip goes along it.
     pub course: Course,
     /// The move to its end, whose pace is that of the whole curve.
     pub end: Motion,
@@ -32,7 +32,7 @@ pub enum Course {
 /// What is printed of the next block, which goes along a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrintedCurve {
-    /// Its words.
+    /// Words of the block.
     pub words: CurveWords,
     /// Axis values where some axis turns back on the way, in order.
     pub between: Vec<Joints>,

@@ -61,14 +61,14 @@ struct Repeat {
 struct Kind {
     severity: Severity,
     code: &'static str,
-    /// Of a limit.
+    /// Key of a limit; none for all other findings.
     key: Option<u64>,
-    /// Of all others: the sentence, each number in it as one sign.
+    /// Sentence of a finding that is no limit, each number in it as one sign.
     sentence: String,
 }
 
 impl Repeat {
-    /// So often it may be found.
+    /// Number of times that it may be found.
     fn most(&self) -> u64 {
         match self.extreme {
             Some(_) => MOST_BEYOND,
@@ -183,7 +183,7 @@ impl Findings {
         self.inner.borrow().faults > 0
     }
 
-    /// So many faults that reading on would only repeat them.
+    /// Whether there are so many faults that reading on would only repeat them.
     #[inline]
     pub(crate) fn too_many(&self) -> bool {
         let inner = self.inner.borrow();

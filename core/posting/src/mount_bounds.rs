@@ -15,7 +15,7 @@ pub struct MountBounds<'m> {
     machine: &'m Machine,
     /// The machine with the head in use.
     head: &'m Machine,
-    /// By machine: that without a swapped head first.
+    /// Room of each machine: that without a swapped head first.
     rooms: Vec<(&'m Machine, Room)>,
     /// Which of them is in use.
     at: usize,
@@ -24,7 +24,7 @@ pub struct MountBounds<'m> {
 }
 
 impl<'m> MountBounds<'m> {
-    /// For a machine as its file describes it, its travel not opened.
+    /// Makes the bounds for a machine as its file describes it, its travel not opened.
     ///
     /// # Errors
     /// What its chain lacks.
@@ -46,12 +46,12 @@ impl<'m> MountBounds<'m> {
         })
     }
 
-    /// See [`Room::bounds`].
+    /// Whether the room bounds the mount: see [`Room::bounds`].
     pub fn bounds(&self) -> bool {
         self.rooms.iter().any(|(_, room)| room.bounds())
     }
 
-    /// See [`Room::goes_evenly`].
+    /// Whether the room goes evenly: see [`Room::goes_evenly`].
     pub fn goes_evenly(&self) -> bool {
         self.rooms.iter().all(|(_, room)| room.goes_evenly())
     }

@@ -64,7 +64,7 @@ impl<'a> Observers<'a> {
         !self.all.borrow().is_empty()
     }
 
-    /// Those to be shown cuts; none if nobody looks on.
+    /// Observers that are shown cuts; none if there are no observers.
     pub(crate) fn audience(&self) -> Option<&dyn Audience> {
         self.any().then_some(self)
     }

@@ -301,7 +301,7 @@ impl<'a> Post<'a> {
         }
     }
 
-    /// So many faults that reading on would only repeat them.
+    /// Whether there are so many faults that reading on would only repeat them.
     #[inline]
     pub fn gave_up(&self) -> bool {
         self.findings.too_many()

@@ -23,7 +23,7 @@ pub struct Report {
     pub moves: u64,
     /// Blocks with a motion in the NC program.
     pub blocks: u64,
-    /// Those of them that are arcs or splines.
+    /// Blocks among them that are arcs or splines.
     pub curves: u64,
     /// Lines of the NC program.
     pub nc_lines: u64,
@@ -59,7 +59,7 @@ pub struct Report {
     /// Time of cuts, rapids and dwells as the control understands the printed feeds, s; first approaches, retracts and
     /// tool changes not among it.
     pub time_s: f64,
-    /// Of it, in cuts, s.
+    /// Time in cuts, s.
     pub cutting_time_s: f64,
     /// Blocks slowed down because an axis would have gone faster than its `max_feed`.
     pub blocks_limited: u64,
@@ -85,7 +85,7 @@ pub struct FastRapids {
     pub count: u64,
     /// The axis that passes it farthest; empty if there is none.
     pub axis: String,
-    /// Its speed there over its `max_feed`.
+    /// Speed of that axis over its `max_feed`.
     pub factor: f64,
     /// Line of the CL file.
     pub line: u64,
@@ -105,22 +105,22 @@ pub struct Deviation {
 /// Range of an axis.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct AxisRange {
-    /// Its address.
+    /// Address of the axis.
     pub name: String,
     /// Least axis position, mm or degrees; between the words too where the control keeps the tip.
     pub min: f64,
     /// Largest axis position, mm or degrees, likewise.
     pub max: f64,
-    /// Its travel; none for a cyclic axis.
+    /// Travel of the axis; none for a cyclic axis.
     pub travel: Option<[f64; 2]>,
-    /// Its way over all blocks, mm or degrees; between the words too where the control keeps the tip.
+    /// Way of the axis over all blocks, mm or degrees; between the words too where the control keeps the tip.
     pub way: f64,
 }
 
 /// A tool that was worked with.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ToolUse {
-    /// Its number; none if the CL file loads no tool.
+    /// Tool number; none if the CL file loads no tool.
     pub number: Option<u32>,
     /// The length that was assumed, mm from the gauge point to the tip.
     pub length_mm: f64,
@@ -145,9 +145,9 @@ pub enum LengthSource {
 /// A plugin that took part.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PluginUse {
-    /// Its name.
+    /// Name of the plugin.
     pub name: String,
-    /// Its version.
+    /// Version of the plugin.
     pub version: String,
     /// The library it was opened from; none if it is linked in.
     pub path: Option<String>,

@@ -24,13 +24,13 @@ pub struct PathPoint {
     pub cuts: bool,
     /// The tool has left the part since the point before.
     pub begins: bool,
-    /// It may be moved.
+    /// The point may be moved.
     pub moves: bool,
 }
 
 /// Says by how much points are moved.
 pub trait PathShift {
-    /// By how much the next point is moved, mm, part frame: every point of the path is asked for, in order, those that may
+    /// Shift of the next point, mm, part frame: every point of the path is asked for, in order, those that may
     /// not be moved too.
     fn next(&mut self, point: &PathPoint) -> Vector3<f64>;
 }
@@ -38,7 +38,7 @@ pub trait PathShift {
 /// The stage.
 pub(crate) struct Shift<'a> {
     by: &'a mut dyn PathShift,
-    /// mm.
+    /// Largest shift, mm.
     bound: f64,
     begins: bool,
     hole: bool,

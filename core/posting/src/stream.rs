@@ -24,7 +24,7 @@ pub enum Flow<P> {
 }
 
 impl<P> Flow<P> {
-    /// It says where the moves of a hole stand.
+    /// Whether this is a mark that says where the moves of a hole stand.
     #[inline]
     pub(crate) fn marks_hole(&self) -> bool {
         matches!(self, Self::Command { command: Command::Hole(_), .. })

@@ -13,11 +13,11 @@ use nalgebra::Vector3;
 pub struct TightPlace {
     /// Line of the CL file.
     pub line: u64,
-    /// Its middle: the tip, mm, part frame.
+    /// Middle of the piece: the tip, mm, part frame.
     pub tip: [f32; 3],
-    /// It reaches so far around, mm.
+    /// Reach of the piece around its middle, mm.
     pub reach: f32,
-    /// Of the limit, above 0 and up to 1.
+    /// Share of the limit, above 0 and up to 1.
     pub share: f32,
 }
 
@@ -94,14 +94,14 @@ impl Tightening {
     }
 }
 
-/// Those of a line, of places sorted by line.
+/// Places on a line of the CL file, of places sorted by line.
 fn on(places: &[TightPlace], line: u64) -> &[TightPlace] {
     let first = places.partition_point(|place| place.line < line);
     let count = places[first..].partition_point(|place| place.line == line);
     &places[first..first + count]
 }
 
-/// Of a point from the straight way between two others, mm.
+/// Distance of a point from the straight way between two others, mm.
 fn distance(point: &Vector3<f64>, from: &Vector3<f64>, to: &Vector3<f64>) -> f64 {
     let way = to - from;
     let length = way.norm_squared();

@@ -11,7 +11,7 @@ pub(crate) struct Window {
     lines: Range<u64>,
     /// What was said last before the range, of each kind.
     state: Vec<Command>,
-    /// Of it what was said of spindle and coolant before the tool came: another tool's, until this one cuts without a
+    /// Commands among them for spindle and coolant before the tool came: another tool's, until this one cuts without a
     /// word of its own.
     before_tool: Vec<Command>,
     /// The plane that points lie in, if the file names one.
@@ -92,7 +92,7 @@ impl Window {
     }
 }
 
-/// Of the spindle, and of the coolant.
+/// Places of the commands of spindle and coolant in that order.
 const SPINDLE: u8 = 7;
 const COOLANT: u8 = 8;
 

@@ -19,7 +19,7 @@ pub(super) struct Basis {
 }
 
 impl Basis {
-    /// Of the span in the middle of `2 * DEGREE` knots; it is not empty.
+    /// Makes the B-splines of the span in the middle of `2 * DEGREE` knots; it is not empty.
     pub(super) fn new(around: &[f64]) -> Self {
         let mut knots = [0.0; 2 * DEGREE];
         knots.copy_from_slice(&around[..2 * DEGREE]);
@@ -75,7 +75,7 @@ impl Basis {
         next
     }
 
-    /// From values of one degree to the derivative, of the order that is missing, of the full one.
+    /// Turns values of one degree into the derivative, of the order that is missing, of the full one.
     fn differentiated(&self, mut values: Row, degree: usize) -> Row {
         for degree in degree..DEGREE {
             let mut next = [0.0; ORDER];

@@ -16,7 +16,7 @@ pub(super) struct Pull<'a, const W: usize> {
 /// The equations of some coordinates for what is added to the control points of the reference.
 #[derive(Debug, Default)]
 pub(super) struct Equations<const W: usize> {
-    /// Of the data alone.
+    /// Matrix of the data alone.
     data: Band<ORDER>,
     pulls: Vec<[f64; W]>,
     band: Band<ORDER>,

@@ -16,7 +16,7 @@ pub(super) fn norm<const W: usize>(values: &[f64; W]) -> f64 {
 pub(super) struct Hull<const W: usize>([[f64; W]; ORDER]);
 
 impl<const W: usize> Hull<W> {
-    /// From what the spline is at both ends of an interval, where the polyline has this slope.
+    /// Makes the hull from what the spline is at both ends of an interval, where the polyline has this slope.
     pub(super) fn new(before: &Jet<W>, behind: &Jet<W>, slope: &[f64; W], width: f64) -> Self {
         let degree = DEGREE as f64;
         let side = |jet: &Jet<W>, width: f64| -> [[f64; W]; 3] {

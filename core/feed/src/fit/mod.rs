@@ -41,7 +41,7 @@ pub struct Rules {
     pub dimensions: usize,
     /// The curve stays this close to the polyline: Euclidean over the first three coordinates, mm.
     pub tolerance: f64,
-    /// The same for each of the others, rad.
+    /// Tolerance of each of the others, rad.
     pub turn_tolerance: f64,
     /// Legs whose directions differ by more, rad, meet in a corner; the path is cut there.
     pub corner: f64,
@@ -151,7 +151,7 @@ impl Fit {
         }
     }
 
-    /// By how many tolerances the curve was off the polyline at most, as a bound. It is at or below 1; more would say
+    /// Largest distance of the curve from the polyline in tolerances, as a bound. It is at or below 1; more would say
     /// that even eight times as many knots at bends did not do, and by how much.
     #[must_use]
     pub fn worst(&self) -> f64 {
@@ -244,7 +244,7 @@ impl Fit {
         libm::acos(cosine.clamp(-1.0, 1.0)) > self.rules.corner
     }
 
-    /// From one point to another, each coordinate in mm.
+    /// Way from one point to another, each coordinate in mm.
     fn way(&self, from: &Point, to: &Point) -> Point {
         std::array::from_fn(|axis| {
             let way = to[axis] - from[axis];

@@ -57,7 +57,7 @@ pub(super) struct Smoother<const W: usize> {
     forces: Vec<[[f64; W]; ORDER]>,
     /// What is added to the control points of the reference.
     deltas: Vec<[f64; W]>,
-    /// The same where the tolerance was missed by least.
+    /// Values of `deltas` where the tolerance was missed by least.
     best: Vec<[f64; W]>,
     equations: Equations<W>,
 }

@@ -62,12 +62,12 @@ const RULE: [[f64; 2]; GAUSS] =
 #[derive(Debug, Default)]
 pub(super) struct Track {
     pub(super) vertices: Vec<Vertex>,
-    /// Those that have knots.
+    /// Legs that have knots.
     pub(super) legs: Vec<Leg>,
     /// Knot `DEGREE` is where the first span begins.
     pub(super) knots: Vec<f64>,
     pub(super) sites: Vec<Site>,
-    /// Those whose B-splines are known.
+    /// Spans whose B-splines are known.
     pub(super) spans: Vec<Span>,
     /// Sites with rows.
     pub(super) ready: usize,

@@ -176,9 +176,9 @@ struct Measure {
     /// Sum of the products of slacks and multipliers.
     gap: f64,
     cost: f64,
-    /// By how much a row is missed most.
+    /// Largest amount by which a row is missed.
     primal: f64,
-    /// By how much the cost could be off for want of a gradient that is 0.
+    /// Largest amount by which the cost could be off for want of a gradient that is 0.
     dual: f64,
 }
 

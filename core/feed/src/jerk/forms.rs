@@ -71,7 +71,8 @@ pub(super) fn leaving_acceleration(channel: &Channel, step: f64) -> f64 {
     largest(&[push * p0, push * p1 + 0.5 * c0, push * p2 + c1])
 }
 
-/// The same for the third derivative and `q1^(3/2)`: `2/9 Q' / step² + 2 Q'' * share / step + Q''' * share²`.
+/// What `q1^(3/2)` is multiplied with, at most, to give the third derivative:
+/// `2/9 Q' / step² + 2 Q'' * share / step + Q''' * share²`.
 pub(super) fn leaving_jerk(channel: &Channel, step: f64) -> f64 {
     let (first, second) = (channel.first(step), channel.second(step));
     let [t0, t1, t2] = channel.third;
@@ -84,7 +85,7 @@ pub(super) fn leaving_jerk(channel: &Channel, step: f64) -> f64 {
     largest(&at)
 }
 
-/// The same function with the parameter running the other way.
+/// Reverses the function: its parameter runs the other way.
 pub(super) fn reversed(channel: &Channel) -> Channel {
     let [f0, f1] = channel.first;
     let [c0, c1] = channel.second;
@@ -118,8 +119,8 @@ fn quadratic_times_q([a, b, c]: [f64; 3]) -> Quartic<Form> {
     ]
 }
 
-/// In the coefficient of this index of a cubic times a linear function: the share of the cubic's own coefficient of that
-/// index with the one end of the function, and that of the one before it with the other end.
+/// Shares in the coefficient of this index of a cubic times a linear function: that of the cubic's own coefficient of
+/// that index with the one end of the function, and that of the one before it with the other end.
 fn linear_parts(index: usize) -> [f64; 2] {
     let before = 0.25 * index as f64;
     [1.0 - before, before]
@@ -139,7 +140,7 @@ mod tests {
     use super::*;
     use crate::limits::Order;
 
-    /// By the scheme of de Casteljau.
+    /// Evaluates by the scheme of de Casteljau.
     fn bernstein(coefficients: &[f64], t: f64) -> f64 {
         match coefficients {
             [value] => *value,

@@ -5,9 +5,9 @@
 pub enum Piece {
     /// A quadratic, by its three Bernstein coefficients.
     Quadratic([f64; 3]),
-    /// Off from rest to this `q` at the interval's end, with constant jerk along the path: `q * share^(4/3)`.
+    /// Leaves rest for this `q` at the interval's end, with constant jerk along the path: `q * share^(4/3)`.
     Leave(f64),
-    /// To rest from this `q` at its beginning.
+    /// Comes to rest from this `q` at its beginning.
     Arrive(f64),
 }
 
@@ -103,7 +103,7 @@ impl Law {
 mod tests {
     use super::*;
 
-    /// With 60 mm/s³ from rest, after half a second: 1.25 mm, 7.5 mm/s, 30 mm/s².
+    /// Leaves rest with 60 mm/s³: after half a second 1.25 mm, 7.5 mm/s, 30 mm/s².
     #[test]
     fn leaving_rest_is_a_motion_of_constant_jerk() {
         let piece = Piece::Leave(7.5 * 7.5);

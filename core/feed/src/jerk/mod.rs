@@ -58,18 +58,18 @@ impl Default for Settings {
 pub struct Plan {
     /// The feed at every point of the path.
     pub law: Law,
-    /// Its time, s.
+    /// Time of the plan, s.
     pub seconds: f64,
     /// The time of the plan without jerk limits by reachability analysis, which no plan with them is below but for
     /// the difference of the laws between samples.
     pub bound: f64,
     /// Rounds of the convex-concave procedure, and iterations of the interior-point method in all of them.
     pub rounds: usize,
-    /// See `rounds`.
+    /// Iterations of the interior-point method in all rounds.
     pub iterations: usize,
 }
 
-/// By how much a step is longer than the one nearer to rest.
+/// Factor by which a step is longer than the one nearer to rest.
 const GROWTH: f64 = 1.03;
 
 /// The step beside rest, as a share of the longest.

@@ -16,9 +16,9 @@ const TOLERANCE: f64 = 1e-7;
 /// enough that the unknowns are of the order of 1.
 const ABOVE: f64 = 2.0;
 
-/// By which share of a limit rows are drawn in where a stretch begins in motion, or another goes on from within it. What
-/// the iteration's tolerance leaves can then not break a limit, and what goes on has this much room: with a hundredth of
-/// it, windows along a straight line found no plan from where they were left.
+/// Share of a limit by which rows are drawn in where a stretch begins in motion, or another goes on from within it.
+/// What the iteration's tolerance leaves can then not break a limit, and what goes on has this much room: with a
+/// hundredth of it, windows along a straight line found no plan from where they were left.
 pub(super) const ROOM: f64 = 1e-4;
 
 /// A part of a path without a stop on the way.
@@ -34,7 +34,7 @@ pub(super) struct Stretch<'a> {
     pub(super) start: State,
     /// `q` at its end.
     pub(super) end: f64,
-    /// By which share of a limit rows are drawn in.
+    /// Share of a limit by which rows are drawn in.
     pub(super) room: f64,
 }
 
@@ -126,7 +126,7 @@ impl Stretch<'_> {
         self.fast.iter().copied().fold(f64::MIN_POSITIVE, f64::max)
     }
 
-    /// Of each unknown: what reachability analysis has there.
+    /// Scale of each unknown: what reachability analysis has there.
     fn scale(&self, spline: &Spline, middles: &[f64]) -> Vec<f64> {
         let mut scale = vec![self.most(); spline.count()];
         for (middle, &unknown) in middles.iter().zip(&spline.unknowns[1..]) {

@@ -41,7 +41,7 @@ pub(super) struct Rules {
 }
 
 impl Rules {
-    /// Of every interval of the spline.
+    /// Makes the rules of every interval of the spline.
     pub(super) fn new(spline: &Spline, steps: &[f64], channels: &Channels<'_>) -> Self {
         let mut all = Vec::new();
         let mut offsets = vec![0];
@@ -79,7 +79,7 @@ impl Rules {
         self.all.len()
     }
 
-    /// Those of an interval.
+    /// Rules of an interval.
     pub(super) fn of(&self, interval: usize) -> &[Rule] {
         &self.all[self.offsets[interval]..self.offsets[interval + 1]]
     }

@@ -12,7 +12,7 @@ pub(super) struct State {
 }
 
 impl State {
-    /// With this speed and no acceleration along the path.
+    /// State with this speed and no acceleration along the path.
     pub(super) fn even(q: f64) -> Self {
         Self { q, middle: q }
     }
@@ -36,7 +36,7 @@ pub(super) struct Spline {
 }
 
 impl Spline {
-    /// Over these intervals; `corners` has a value for each sample.
+    /// Makes the spline over these intervals; `corners` has a value for each sample.
     pub(super) fn new(
         steps: &[f64],
         corners: &[bool],

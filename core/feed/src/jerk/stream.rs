@@ -26,7 +26,7 @@ const RESERVE: usize = 4;
 /// A part of a path.
 #[derive(Clone, Copy)]
 pub struct Batch<'a> {
-    /// Its samples; the first is the last of the batch before, with the derivatives behind it.
+    /// Samples of the part; the first is the last of the batch before, with the derivatives after it.
     pub samples: &'a Samples,
     /// What it keeps.
     pub limits: &'a [&'a dyn Limit],
@@ -41,7 +41,7 @@ pub struct Batch<'a> {
 pub struct Passed<'a> {
     /// The number of its first sample, counted from the beginning of the path.
     pub sample: usize,
-    /// Its length, in units of the parameter.
+    /// Length of the interval, in units of the parameter.
     pub step: f64,
     /// `q` over it.
     pub piece: Piece,

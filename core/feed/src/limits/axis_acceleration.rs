@@ -9,7 +9,7 @@ use crate::table::{Row, Table};
 /// both. Where a row is kept is told by [`Collocation`]; [`Collocation::Start`] is eq. 23 as it is printed.
 #[derive(Clone, Debug)]
 pub struct AxisAcceleration {
-    /// Of each axis, in its unit per second squared.
+    /// Largest acceleration of each axis, in its unit per second squared.
     pub limits: Vec<f64>,
     /// Where along an interval the limit is kept.
     pub collocation: Collocation,

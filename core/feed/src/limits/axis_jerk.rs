@@ -10,7 +10,7 @@ use crate::table::Table;
 /// It ties three neighbours and is not convex: `crate::jerk` keeps it; the solvers without jerk do not know it.
 #[derive(Clone, Debug)]
 pub struct AxisJerk {
-    /// Of each axis, in its unit per second cubed.
+    /// Largest jerk of each axis, in its unit per second cubed.
     pub limits: Vec<f64>,
 }
 

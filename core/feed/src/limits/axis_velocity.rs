@@ -7,9 +7,9 @@ use crate::table::Table;
 /// `|Q'| * ds/dt <= v` of each axis, so `q <= (v / |Q'|)^2`.
 #[derive(Clone, Debug)]
 pub struct AxisVelocity {
-    /// Of each axis, in its unit per second.
+    /// Largest velocity of each axis, in its unit per second.
     pub limits: Vec<f64>,
-    /// At samples, or between them too.
+    /// Where the limit is kept: at samples, or between them too.
     pub collocation: Collocation,
 }
 

@@ -10,7 +10,7 @@ use crate::table::Table;
 pub struct BlockTime {
     /// Least time of a block, s.
     pub seconds: f64,
-    /// At samples, or between them too: only then a block that ends between two samples bounds both.
+    /// Where the limit is kept: only between samples too does a block that ends between two of them bound both.
     pub collocation: Collocation,
 }
 

@@ -20,7 +20,7 @@ pub enum Order {
 /// A function of the path parameter between two samples, with a limit on a derivative by time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Channel {
-    /// Its first derivative by the parameter, at both samples.
+    /// First derivative by the parameter, at both samples.
     pub first: [f64; 2],
     /// The second.
     pub second: [f64; 2],
@@ -28,7 +28,7 @@ pub struct Channel {
     pub third: [f64; 3],
     /// Which derivative by time is limited.
     pub order: Order,
-    /// To at most this, in both directions.
+    /// Largest value of that derivative, in both directions.
     pub limit: f64,
     /// The axis it is, if it is one.
     pub axis: Option<u16>,
@@ -64,8 +64,8 @@ impl Channel {
         quintic::first(self.first, self.second(step), step)
     }
 
-    /// Of the derivatives at two samples, the second one `step` behind the first, on a path whose third derivative is
-    /// `smooth` or jumps at samples. In between it is on the whole what the second one gains.
+    /// Makes a channel from the derivatives at two samples, the second `step` after the first, on a path whose third
+    /// derivative is `smooth` or jumps at samples. In between it is on the whole what the second one gains.
     fn between(
         first: [f64; 2],
         second: [f64; 2],
@@ -115,7 +115,8 @@ static PLANE: LazyLock<Directions> = LazyLock::new(|| Directions::plane(8));
 static SPACE: LazyLock<Directions> = LazyLock::new(Directions::icosahedron);
 
 impl Directions {
-    /// Those that an interval needs: eight if it stays in a plane parallel to XY, else the 31 axes of an icosahedron.
+    /// Directions that an interval needs: eight if it stays in a plane parallel to XY, else the 31 axes of an
+    /// icosahedron.
     fn of(samples: &Samples, interval: usize) -> &'static Self {
         let ends = [interval, interval + 1];
         let flat = |vectors: &Vec<[f64; 3]>| ends.iter().all(|&at| vectors[at][2] == 0.0);

@@ -12,7 +12,7 @@ pub struct ChordError {
     pub tolerance: f64,
     /// `T`, s.
     pub period: f64,
-    /// At samples, or between them too.
+    /// Where the limit is kept: at samples, or between them too.
     pub collocation: Collocation,
 }
 

@@ -16,7 +16,7 @@ const STEPS: usize = 4096;
 /// The lowest frequency of the table, as a share of the highest.
 const LOWEST: f64 = 1e-6;
 
-/// By how much deviations are rounded up, as a share, for what lies between two frequencies of the table.
+/// Share by which deviations are rounded up, for what lies between two frequencies of the table.
 const MARGIN: f64 = 4e-6;
 
 /// A path that is straighter than this has this curvature, 1/mm: an arc of a kilometre.
@@ -45,7 +45,7 @@ const STRAIGHT: f64 = 1e-6;
 /// [`Answer::EXACT`]: crate::response::Answer::EXACT
 #[derive(Clone, Debug)]
 pub struct ContourError {
-    /// mm.
+    /// Largest contour error, mm.
     tolerance: f64,
     collocation: Collocation,
     /// Frequencies, rad/s, evenly spaced on a logarithmic scale.
@@ -56,7 +56,7 @@ pub struct ContourError {
 }
 
 impl ContourError {
-    /// For these axes, in the order of [`Samples::axes`], and a tolerance in mm, up to `highest` rad/s.
+    /// Makes the limit for these axes, in the order of [`Samples::axes`], and a tolerance in mm, up to `highest` rad/s.
     #[must_use]
     pub fn new(
         axes: &[&dyn Response],
@@ -162,7 +162,7 @@ impl ContourError {
     }
 }
 
-/// The same as functions of the path whose second derivative by time is limited: both signs.
+/// Channels that keep the bounds at both ends of an interval, one for each sign.
 fn channels(first: &Bound, last: &Bound) -> [Channel; 2] {
     [1.0, -1.0].map(|sign| Channel {
         first: [sign * first.push, sign * last.push],
@@ -184,7 +184,7 @@ fn rows(first: &Bound, last: &Bound, step: f64) -> [Row; 4] {
     [row(first, false, 1.0), row(first, false, -1.0), row(last, true, 1.0), row(last, true, -1.0)]
 }
 
-/// By how much of its radius the steady path of the axes strays from a circle that is gone with `frequency` rad/s.
+/// Share of its radius by which the steady path of the axes strays from a circle that is gone with `frequency` rad/s.
 #[must_use]
 pub fn deviation(axes: &[&dyn Response], frequency: f64) -> f64 {
     let answers: Vec<_> = axes.iter().map(|axis| axis.at(frequency)).collect();

@@ -10,9 +10,9 @@ use crate::table::Table;
 /// feed counts by the parameter, `ds/dt <= feed`.
 #[derive(Clone, Copy, Debug)]
 pub struct Feed {
-    /// mm/s; infinite where the feeds of the blocks alone count.
+    /// Largest feed, mm/s; infinite where the feeds of the blocks alone count.
     pub most: f64,
-    /// At samples, or between them too: only then a block that ends between two samples bounds both.
+    /// Where the limit is kept: only between samples too does a block that ends between two of them bound both.
     pub collocation: Collocation,
 }
 

@@ -54,14 +54,14 @@ pub trait Limit {
 /// Where along an interval a limit is kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Collocation {
-    /// At each sample with the acceleration of the interval behind it: the feedrate paper (eqs. 22, 23), and what
+    /// Each sample with the acceleration of the interval after it: the feedrate paper (eqs. 22, 23), and what
     /// reachability analysis calls collocation. At the end of an interval a limit may be exceeded by a term of first
     /// order in the step.
     Start,
-    /// At both ends of each interval: what reachability analysis calls interpolation. Between samples a limit may be
+    /// Both ends of each interval: what reachability analysis calls interpolation. Between samples a limit may be
     /// exceeded by a term of second order in the step.
     Ends,
-    /// At every point between samples: where an axis follows a cubic between them (its first and second derivatives at
+    /// Every point between samples: where an axis follows a cubic between them (its first and second derivatives at
     /// both ends are those of one cubic), its velocity and acceleration keep the limit everywhere, proven by the
     /// convex hull of Bernstein coefficients. On other paths what is left is of the size of the fourth derivative.
     /// Curvature is taken to be largest at a sample.

@@ -18,7 +18,7 @@ const PAIRS: usize = 8;
 /// of it goes across: nothing is lost there, and at most 1.9 % (`1 - cos(π/16)`) in between.
 #[derive(Clone, Copy, Debug)]
 pub struct TipAcceleration {
-    /// mm/s².
+    /// Largest acceleration of the tip, mm/s².
     pub limit: f64,
     /// Where along an interval the limit is kept.
     pub collocation: Collocation,

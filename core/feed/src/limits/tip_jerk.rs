@@ -11,7 +11,7 @@ use crate::table::Table;
 /// others. A solver without jerk does not know it.
 #[derive(Clone, Copy, Debug)]
 pub struct TipJerk {
-    /// mm/s³.
+    /// Largest jerk of the tip, mm/s³.
     pub limit: f64,
 }
 

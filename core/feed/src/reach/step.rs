@@ -11,7 +11,7 @@ use crate::problem::Row;
 /// an instant (a zero-inertia point).
 const FLAT: f64 = 1e-200;
 
-/// By how much a root is drawn into the allowed side, so that rounding does not put it outside.
+/// Amount by which a root is drawn into the allowed side, so that rounding does not put it outside.
 const INSIDE: f64 = 1e-15;
 
 /// Newton's method meets each pair of lines once; rounding may make it meet one again.

@@ -19,12 +19,12 @@ const WINDOW: usize = 4;
 /// A sample whose speed is settled.
 #[derive(Clone, Copy, Debug)]
 pub struct Settled<'a> {
-    /// Its number, counted from the beginning of the path.
+    /// Number of the sample, counted from the beginning of the path.
     pub sample: usize,
     /// The squared speed of the parameter there, `(ds/dt)²`.
     pub q: f64,
     window: &'a Problem,
-    /// Its number in the window.
+    /// Number of the sample in the window.
     place: usize,
     /// `q` of the samples before and behind, where they are in the window.
     neighbours: [Option<f64>; 2],

@@ -23,9 +23,9 @@ const LIKELY: f64 = 3.0;
 
 /// What was found of a piece.
 enum Verdict {
-    /// It needs no further point.
+    /// The piece needs no further point.
     Good(Bound),
-    /// It needs one; with its bound, if that was worked out.
+    /// The piece needs one; with its bound, if that was worked out.
     Over(Option<Bound>),
 }
 

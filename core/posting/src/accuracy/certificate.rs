@@ -19,13 +19,13 @@ use post_machine::kinematics::{Chain, MAX_AXES, Trace};
 /// Bounds on the second derivative along one block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bend {
-    /// Of the tip's deviation, mm.
+    /// Bound for the tip's deviation, mm.
     pub tip: f64,
-    /// Of the tool axis' deviation, as a difference of unit vectors.
+    /// Bound for the tool axis' deviation, as a difference of unit vectors.
     pub axis: f64,
-    /// Of the tool axis itself, whatever axis is wanted: what a point above a tip that the control keeps bends by.
+    /// Bound for the tool axis itself, whatever axis is wanted: the bow of a point above a tip that the control keeps.
     pub turn: f64,
-    /// Of the deviation of a leading edge, as a difference of unit vectors; zero for a tool that turns.
+    /// Bound for the deviation of a leading edge, as a difference of unit vectors; zero for a tool that turns.
     pub lead: f64,
 }
 
@@ -75,7 +75,7 @@ pub fn tight(
 pub struct Course {
     /// Second derivative of the tip at both ends, mm.
     pub tip: [Vector3<f64>; 2],
-    /// Of the tool axis.
+    /// Second derivative of the tool axis at both ends.
     pub axis: [Vector3<f64>; 2],
     /// Bounds on the fourth derivatives.
     pub fourth: Bend,
@@ -85,7 +85,7 @@ pub struct Course {
 const PIECES: u32 = 16;
 
 impl Course {
-    /// Of a block.
+    /// Works out the derivatives of a block.
     pub fn new(chain: &Chain, from: &Trace, to: &Trace) -> Self {
         let first = second_derivatives(chain, from, from, to);
         let last = second_derivatives(chain, to, from, to);

@@ -314,12 +314,12 @@ impl Move<'_> {
 struct Path<'a> {
     block: &'a Move<'a>,
     axis: Circle,
-    /// Of a tool with a leading edge.
+    /// Great circle of the heading of a tool with a leading edge.
     heading: Option<Circle>,
 }
 
 impl Path<'_> {
-    /// See [`Move::deviation`].
+    /// Deviation at the share `t`: see [`Move::deviation`].
     fn deviation(&self, t: f64) -> Deviation {
         let (from, to) = (self.block.from, self.block.to);
         let joints = between(&from.trace.joints, &to.trace.joints, t);

@@ -29,7 +29,7 @@ const SHORTEST: f64 = 1.0 / 4096.0;
 struct Tried {
     to: Node,
     end: Spot,
-    /// Its bound, if it is within tolerance.
+    /// Bound on the block's deviation, if it is within tolerance.
     bound: Option<Bound>,
     /// How long it should be, as a share of what it is.
     better: f64,
@@ -40,7 +40,7 @@ struct Tried {
 struct Stretch<'a> {
     run: &'a Run<'a>,
     way: &'a [f64],
-    /// Its last CL point.
+    /// Last CL point of the section.
     end: usize,
 }
 

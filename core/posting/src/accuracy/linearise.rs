@@ -39,9 +39,9 @@ pub enum Stuck {
     Jump {
         /// The joint that turns farthest.
         joint: usize,
-        /// From this value, radians.
+        /// Value that it turns from, radians.
         from: f64,
-        /// To this value.
+        /// Value that it turns to, radians.
         to: f64,
     },
     /// The model cannot answer.
@@ -183,7 +183,7 @@ impl Linearise {
         self.halve(&leg, model)
     }
 
-    /// From here on pieces end in this leg.
+    /// Sets the leg that pieces end in from here on.
     pub(super) fn enter(&mut self, leg: usize) {
         self.leg = leg;
     }
@@ -193,7 +193,7 @@ impl Linearise {
         self.pieces.push(Piece { to, leg: self.leg, bound });
     }
 
-    /// So many pieces are good; the others are taken back.
+    /// Keeps the first `count` pieces, and takes the others back.
     pub(super) fn take_back(&mut self, count: usize) {
         self.pieces.truncate(count);
     }

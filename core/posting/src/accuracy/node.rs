@@ -81,9 +81,9 @@ pub enum Refused {
     },
     /// A solution does not stand up to the forward product.
     Unverified {
-        /// By how much the tip misses, mm.
+        /// Distance by which the tip misses, mm.
         tip: f64,
-        /// By how much the tool axis misses, radians.
+        /// Angle by which the tool axis misses, radians.
         axis: f64,
     },
 }
@@ -110,7 +110,7 @@ pub struct Placer {
 }
 
 impl Placer {
-    /// For a machine with a tool of `length` mm in it, its redundant axes held at the values of `held`.
+    /// Makes the placer of a machine with a tool of `length` mm in it, its redundant axes held at the values of `held`.
     ///
     /// # Errors
     /// What the machine lacks for being solved.
@@ -135,7 +135,7 @@ impl Placer {
         Ok(Self::new(machine, solver, words))
     }
 
-    /// For a machine with the tool of `solver` in it.
+    /// Makes the placer of a machine with the tool of `solver` in it.
     pub fn new(machine: &Machine, solver: Solver, words: Words) -> Self {
         let limits = |rotary: bool| {
             machine
@@ -182,8 +182,8 @@ impl Placer {
         Some(Self { words: self.words.in_plane(plane)?, ..self.clone() })
     }
 
-    /// The same, leaving so much of the tolerance of the tip in cuts, mm, to who puts rounded points into blocks later: what
-    /// rounding makes of such a point, but a fifth of the tolerance at most.
+    /// Copies the placer, leaving so much of the tolerance of the tip in cuts, mm, to the stage that puts rounded
+    /// points into blocks: what rounding makes of such a point, but a fifth of the tolerance at most.
     pub(crate) fn leaving_room(&self, tolerance: f64) -> Self {
         Self { reserve: self.tip_rounding.min(0.2 * tolerance), ..self.clone() }
     }
@@ -404,7 +404,7 @@ impl Placer {
         self.words.len()
     }
 
-    /// See [`Words::printed_point`].
+    /// Rounds a point to the words' decimals: see [`Words::printed_point`].
     pub(crate) fn printed_point(&self, point: Vector3<f64>) -> Option<([f64; 3], Vector3<f64>)> {
         self.words.printed_point(point)
     }

@@ -18,7 +18,7 @@ pub(crate) struct PlacedBatch {
     /// The nodes, boxed so that they change hands without being copied.
     #[expect(clippy::vec_box, reason = "a node changes hands by its box; it is large")]
     nodes: Vec<Box<Node>>,
-    /// Those that are solved; the others are left to [`Placer::settle`], which says why.
+    /// Points that are solved; the others are left to [`Placer::settle`], which says why.
     settled: [bool; LANES],
 }
 
@@ -35,7 +35,7 @@ impl Default for PlacedBatch {
 }
 
 impl PlacedBatch {
-    /// So many points fit in.
+    /// Largest number of points in a batch.
     pub(crate) const MOST: usize = LANES;
 
     /// Takes the node of point `lane` out, in the place of `spare`; false if it is not solved.

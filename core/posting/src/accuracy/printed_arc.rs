@@ -30,15 +30,15 @@ pub(crate) struct PrintedArc {
     pub axis: usize,
     /// 1.0: counter-clockwise seen against that axis; -1.0: clockwise.
     pub sense: f64,
-    /// On the level of the start.
+    /// Centre on the level of the start.
     pub centre: Vector3<f64>,
     /// Angle of the start about the axis, from the direction behind the axis in X, Y, Z, X, radians.
     pub from: f64,
-    /// Radians, above zero.
+    /// Angle that it turns by, radians, above zero.
     pub turn: f64,
     /// Distances of start and end from the centre.
     pub radii: [f64; 2],
-    /// Of start and end along the axis.
+    /// Heights of start and end along the axis.
     heights: [f64; 2],
 }
 
@@ -64,8 +64,8 @@ pub(super) fn least_turn(angle: f64) -> f64 {
 }
 
 impl PrintedArc {
-    /// From `start` to `end` about `centre`; ends that are one in the plane are a whole turn apart. None where an end lies on
-    /// the centre.
+    /// Lays an arc from `start` to `end` about `centre`; ends that are one in the plane are a whole turn apart. None
+    /// where an end lies on the centre.
     pub(crate) fn new(
         (axis, sense): (usize, f64),
         [start, end]: [Vector3<f64>; 2],
@@ -92,7 +92,7 @@ impl PrintedArc {
         })
     }
 
-    /// The same told by its turn alone, the tool standing at `start`: it keeps its distance from the centre.
+    /// Makes it an arc given by its turn alone, the tool standing at `start`: it keeps its distance from the centre.
     pub(crate) fn by_turn(self, start: Vector3<f64>) -> Self {
         let arm = in_plane(self.axis, start - self.centre);
         Self {
@@ -124,7 +124,7 @@ impl PrintedArc {
         Some(centre)
     }
 
-    /// By how much its ends differ in their distance from the centre.
+    /// Difference of its ends in their distance from the centre.
     pub(crate) fn mismatch(&self) -> f64 {
         libm::fabs(self.radii[1] - self.radii[0])
     }
@@ -134,7 +134,7 @@ impl PrintedArc {
         self.heights[1] - self.heights[0]
     }
 
-    /// Its length in the plane.
+    /// Length of the arc in the plane.
     pub(crate) fn length(&self) -> f64 {
         let radius = (self.radii[0] + self.radii[1]) / 2.0;
         libm::hypot(radius * self.turn, self.mismatch())

@@ -183,7 +183,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// At which share of a block from `start` to `end` the CL point behind `leg` is passed.
+/// Share of a block from `start` to `end` at which the CL point behind `leg` is passed.
 fn share(way: &[f64], start: Spot, end: Spot, leg: usize) -> f64 {
     let place = |spot: Spot| distance(way, spot);
     let whole = place(end) - place(start);

@@ -23,7 +23,7 @@ pub(crate) struct WordFrame {
     turn: Matrix3<f64>,
     /// Axis values there.
     joints: Joints,
-    /// For each linear joint how it goes with the words, mm a mm.
+    /// Linear joints, each with how it goes with the words, mm a mm.
     slides: Vec<(usize, Vector3<f64>)>,
 }
 
@@ -86,7 +86,7 @@ impl WordFrame {
         self.at + self.turn.transpose() * (place - self.words)
     }
 
-    /// For each linear joint how it goes with the words, mm a mm.
+    /// Linear joints, each with how it goes with the words, mm a mm.
     pub(crate) fn slides(&self) -> &[(usize, Vector3<f64>)] {
         &self.slides
     }

@@ -27,7 +27,7 @@ const BY_RADIUS: f64 = 2.792_526_803_190_927;
 /// Words and places that differ by less are one, mm.
 const SAME: f64 = 1e-7;
 
-/// Behind a helix that ended beside its words an arc turns by no more than this, radians: a whole circle would be one of
+/// Largest turn, radians, of an arc after a helix that ended beside its words: a whole circle would be one of
 /// nothing where its start lies ahead of its end.
 const ALMOST_WHOLE: f64 = TAU - 0.01;
 
@@ -57,7 +57,7 @@ pub(super) struct ArcBlock {
 }
 
 impl ArcBlock {
-    /// With what is proven of it.
+    /// Adds what is proven of the block.
     pub(super) fn proven(self, bound: Bound) -> Self {
         Self { bound, ..self }
     }

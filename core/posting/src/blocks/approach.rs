@@ -15,8 +15,8 @@ use crate::stream::Flow;
 /// A shorter way in or down is none, mm.
 const LEAST: f64 = 1.0;
 
-/// So far out on its line a tool stands that wins no height there, mm: as far as one that leans is drawn back when it
-/// leaves the part.
+/// Distance along its line at which a tool stands that wins no height there, mm: as far as one that leans is drawn back
+/// when it leaves the part.
 const OUT: f64 = 100.0;
 
 /// An axis that moves by a smaller share of the tool's way stands.
@@ -78,7 +78,7 @@ impl Blocks<'_> {
         }
     }
 
-    /// From wherever the tool stands to `node`.
+    /// Moves from wherever the tool stands to `node`.
     fn come(&self, leg: &Leg<'_>, node: &Node, kind: MotionKind, to: &mut Surroundings<'_, '_>) {
         let block = self.block(leg, node, Bound::default());
         to.out.push(Flow::Point(Block {

@@ -2,7 +2,7 @@
 
 use crate::accuracy::Move;
 
-/// Those who look on, whatever they borrow.
+/// Observers of cuts, whatever they borrow.
 pub(crate) trait Audience {
     /// A cut between two CL points, before any point is put in.
     fn cut(&self, line: u64, cut: &Move<'_>);

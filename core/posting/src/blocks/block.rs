@@ -82,11 +82,11 @@ impl Block {
 /// How the tool comes to the end of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionKind {
-    /// From wherever it stands, clear of the part: the first position after the start or a tool change.
+    /// A position, from wherever the tool stands, clear of the part: the first one after the start or a tool change.
     Position,
     /// As [`MotionKind::Position`], the tool retracted ahead of it: an index axis turns on the way.
     Reference,
-    /// At rapid traverse.
+    /// A move at rapid traverse.
     Rapid,
     /// All axes linear in time.
     Linear,
@@ -99,9 +99,9 @@ pub enum MotionKind {
 /// Why a block is there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
-    /// It ends on a CL point.
+    /// Ends on a CL point.
     Point,
-    /// It ends on a CL point close to a pole, a rotary axis held or turned early within the tolerance of the tool axis.
+    /// Ends on a CL point close to a pole, a rotary axis held or turned early within the tolerance of the tool axis.
     Eased,
     /// Error control put its end in.
     PutIn,
@@ -115,7 +115,7 @@ pub enum Reason {
     Feed,
     /// A first position is come to from there, along the tool's own line, or that place along the depth axis.
     Above,
-    /// It ends on a CL point, a first position with nothing above it: all words stand in one block.
+    /// Ends on a CL point, a first position with nothing above it: all words stand in one block.
     AtOnce,
 }
 

@@ -16,7 +16,7 @@ use crate::accuracy::{Bound, Node, Placer, PrintedArc, WordFrame, arc_fit};
 /// Largest bulge (tangent of a quarter of the angle) of an arc: 340°, half a turn and a quarter.
 const BULGES: [f64; 3] = [11.430_052_302_761_343, 1.000_001, 0.414_213_562_373_095_1];
 
-/// The same of an arc by its radius: 160°.
+/// Largest bulge of an arc that is printed by its radius: 160°.
 const BULGE_BY_RADIUS: f64 = 0.839_099_631_177_28;
 
 /// An angle so near to the end of a quadrant is there, radians.

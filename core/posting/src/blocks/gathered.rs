@@ -42,7 +42,7 @@ impl Gathered {
     }
 }
 
-/// It moves where another axis ends.
+/// Whether an axis moves only where another one ends.
 fn in_reserve(axis: &Axis) -> bool {
     matches!(axis.second, Some(Second::Reserve { .. }))
 }

@@ -20,7 +20,7 @@ pub(super) enum Lie {
 }
 
 impl Lie {
-    /// Of a direction to the way of an axis, both unit vectors.
+    /// Compares a direction with the way of an axis, both unit vectors.
     pub(super) fn of(direction: &Vector3<f64>, way: &Vector3<f64>) -> Self {
         if way.cross(direction).norm() <= MEASURED {
             Self::Along

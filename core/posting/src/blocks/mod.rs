@@ -50,7 +50,7 @@ const LEAST_TOGETHER: usize = 4;
 struct Leg<'m> {
     line: u64,
     motion: &'m Motion,
-    /// Off the part: the tolerance of a rapid is enough.
+    /// Leg off the part: the tolerance of a rapid is enough.
     loose: bool,
     /// Why it is gone, if not to come to its CL point.
     reason: Reason,
@@ -146,7 +146,7 @@ pub(crate) struct Blocks<'a> {
     compensates: bool,
     /// Cutter radius compensation is in force.
     compensating: bool,
-    /// It was switched on or off, and no block has moved since: that is no block along a curve.
+    /// Cutter compensation was switched on or off, and no block has moved since: that is no block along a curve.
     compensation_due: bool,
     /// Set once the fault that compensation cannot be was given.
     told_compensation: bool,

@@ -45,7 +45,7 @@ impl Nominal {
         }
     }
 
-    /// Of a move in which the tip goes `length` mm.
+    /// Time of a move in which the tip goes `length` mm.
     #[inline]
     pub(crate) fn of(pace: Pace, length: f64, travels: impl FnOnce() -> Travels) -> Self {
         let moves = length > STILL;

@@ -7,7 +7,7 @@ use super::trellis::Trellis;
 /// The way that was walked back.
 #[derive(Debug, Default)]
 pub(super) struct Backtrace {
-    /// Of each layer the state that it goes through.
+    /// States that it goes through, one a layer.
     pub(super) states: Vec<usize>,
     /// Layers where the axes are eased, in order, and where they stand there.
     pub(super) eased: Vec<(usize, Joints)>,

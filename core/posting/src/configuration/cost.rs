@@ -5,7 +5,7 @@
 pub(crate) struct Cost {
     rewinds: u32,
     against: u32,
-    /// See [`super::metric::Measure`]; infinite where there is no way.
+    /// Travel as [`super::metric::Measure`] counts it; infinite where there is no way.
     travel: f64,
 }
 
@@ -16,7 +16,7 @@ impl Cost {
     pub(crate) const NONE: Self = Self { rewinds: 0, against: 0, travel: 0.0 };
     pub(crate) const NO_WAY: Self = Self { rewinds: 0, against: 0, travel: f64::INFINITY };
 
-    /// There is a way.
+    /// Whether there is a way.
     #[inline]
     pub(crate) fn is_way(&self) -> bool {
         self.travel < f64::INFINITY
@@ -46,7 +46,7 @@ impl Cost {
         }
     }
 
-    /// It is less than `other`, and not by rounding alone.
+    /// Whether it is less than `other`, and not by rounding alone.
     #[inline]
     pub(crate) fn less(&self, other: &Self) -> bool {
         if !self.is_way() || !other.is_way() {

@@ -1,4 +1,4 @@
-//! About how long the axes take: the measure of the rule `cycle-time`.
+//! Estimate of how long the axes take: the measure of the rule `cycle-time`.
 //!
 //! A rapid goes from rest to rest, and as long as the axis takes that needs longest, with its feed, acceleration and jerk: the
 //! closed form of a double S (Biagiotti, Melchiorri: Trajectory Planning for Automatic Machines and Robots, 2008, section
@@ -25,7 +25,7 @@ pub(crate) struct Drives {
     rapid_tolerance: f64,
     /// Points are put into the middle: as many pieces as a power of two.
     halves: bool,
-    /// So long the machine waits where it stands still, s.
+    /// Time that the machine waits where it stands still, s.
     in_position: f64,
 }
 
@@ -148,7 +148,7 @@ pub(crate) struct Clock<'a> {
     at: Joints,
     /// The last step: ways of the axes, and how long it took; none if it is not known.
     last: Option<(Joints, f64)>,
-    /// So far.
+    /// Time so far.
     pub(crate) seconds: f64,
 }
 
@@ -252,7 +252,7 @@ mod tests {
         }
     }
 
-    /// By hand: without jerk limits `way / v + v / a`, or `2·√(way / a)` where the velocity is not reached.
+    /// Calculated by hand: without jerk limits `way / v + v / a`, or `2·√(way / a)` where the velocity is not reached.
     #[test]
     fn without_jerk_limits_it_is_a_trapezoid() {
         let limits = [150.0, 600.0, f64::INFINITY];

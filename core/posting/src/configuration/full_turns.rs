@@ -162,7 +162,7 @@ impl Axes {
         }
     }
 
-    /// In a cut indexed axes stay where they are; false if they would have to move by more than the decimals of
+    /// Leaves indexed axes where they are in a cut; false if they would have to move by more than the decimals of
     /// a CL file make them.
     #[inline]
     pub(crate) fn stand_still(&self, from: &Joints, to: &mut Joints) -> bool {

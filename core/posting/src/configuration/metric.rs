@@ -22,11 +22,11 @@ pub(crate) struct Measure {
     prefer: Vec<(usize, Side)>,
     /// What the control shows at zero of each axis.
     zero: Joints,
-    /// Under `cycle-time`: what the time is made of.
+    /// Drives that times are worked out with, under `cycle-time`.
     drives: Option<Box<Drives>>,
 }
 
-/// Of times that are the same, that counts more in which the axes travel less: so much of the travel is added.
+/// Share of the time of a move that is added to the other measures: it decides between ways that are equal in them.
 const TIE: f64 = 1e-6;
 
 impl Measure {

@@ -55,7 +55,7 @@ pub(crate) enum Configured {
 /// What is not decided yet.
 #[derive(Debug)]
 enum Waiting {
-    /// So many points.
+    /// A number of points.
     Points(u64),
     /// A command, with its line.
     Command(u64, Command),
@@ -205,7 +205,7 @@ impl<'a> Configuration<'a> {
         }
     }
 
-    /// From here on a point of the path is the control point of the tool.
+    /// Moves a point of the path to the control point of the tool.
     #[inline]
     fn guided(&self, motion: Motion) -> Motion {
         Motion { tip: self.control_point(motion.tip, motion.axis), ..motion }

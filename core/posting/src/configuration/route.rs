@@ -34,7 +34,7 @@ pub(crate) struct Chosen {
     pub arrives: bool,
     /// Rotary values; the linear ones follow from their printed values.
     pub joints: Joints,
-    /// At this point the tool is drawn back, turned to these values, and brought back.
+    /// Values to which the tool is turned at this point, drawn back before and brought back after.
     pub rewind: Option<Box<Joints>>,
     /// Branch or full turn differ from what going on would have given.
     pub changed: bool,
@@ -71,9 +71,9 @@ pub(crate) struct Route<'a> {
 /// A point that is left out.
 #[derive(Debug)]
 pub(crate) enum Lost {
-    /// It cannot be reached; the path goes on from the point before.
+    /// The point cannot be reached; the path goes on from the point before.
     Point(Box<Diagnostic>),
-    /// It can be reached, but the path cannot go on to it; the next point begins a path anew.
+    /// The point can be reached, but the path cannot go on to it; the next point begins a path anew.
     Path(Box<Diagnostic>),
 }
 
@@ -337,7 +337,7 @@ impl<'a> Route<'a> {
         )
     }
 
-    /// There is a way to stand at the newest point.
+    /// Whether there is a way to stand at the newest point.
     #[inline]
     pub(super) fn alive(&self) -> bool {
         let newest = self.trellis.layers.last();
@@ -350,7 +350,7 @@ impl<'a> Route<'a> {
         std::mem::swap(&mut self.chosen, chosen);
     }
 
-    /// There are such points.
+    /// Whether there are such points.
     #[inline]
     pub(crate) fn has_chosen(&self) -> bool {
         !self.chosen.is_empty()

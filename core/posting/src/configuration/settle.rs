@@ -71,7 +71,7 @@ impl Route<'_> {
         self.mark = 0;
     }
 
-    /// From here on every state knows which state of the newest layer it comes from.
+    /// Marks the newest layer: from here on every state knows from which of its states it comes.
     fn set_mark(&mut self) {
         let last = self.trellis.layers.len() - 1;
         self.mark = last;

@@ -24,7 +24,7 @@ pub(crate) struct Stand {
 #[derive(Clone, Debug)]
 pub(crate) struct Axes {
     pub(super) turning: Vec<Turning>,
-    /// Those of them whose full turns are nothing to the machine, one bit each: they have no travel, and no side of
+    /// Axes among them whose full turns are nothing to the machine, one bit each: they have no travel, and no side of
     /// zero counts.
     pub(super) endless: u8,
     linear: Vec<Limit>,
@@ -33,7 +33,7 @@ pub(crate) struct Axes {
     pub(super) axis_tolerance: f64,
     /// What a pole joint may be off by, as an angle of the tool axis, radians.
     freedom: f64,
-    /// See [`Solver::band`]; and the cosines of the two.
+    /// Band of [`Solver::band`]; and the cosines of the two.
     band: Option<[f64; 2]>,
     cosines: Option<[f64; 2]>,
 }
@@ -47,7 +47,7 @@ pub(super) struct Turning {
     /// What the control shows must lie on this side, and what it shows at zero.
     pub(super) require: Option<Side>,
     pub(super) zero: f64,
-    /// It is the pole joint.
+    /// Whether this is the pole joint.
     pub(super) first: bool,
 }
 
@@ -67,7 +67,7 @@ impl Turning {
 /// What was found at a point beside the stands themselves.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Found {
-    /// See [`Branches::latitude`].
+    /// Sine and cosine of [`Branches::latitude`].
     pub latitude: (f64, f64),
     /// Solutions, inside travel or not.
     pub solutions: usize,
@@ -76,7 +76,7 @@ pub(crate) struct Found {
 }
 
 impl Found {
-    /// So many solutions of a chain without a closed form, whose poles are not known.
+    /// Records so many solutions of a chain without a closed form, whose poles are not known.
     pub(super) fn by_search(solutions: usize) -> Self {
         Self { latitude: (1.0, 0.0), solutions, over: None }
     }
@@ -360,7 +360,7 @@ impl Axes {
         None
     }
 
-    /// With the pole joint where `last` has it: the stand that misses the wanted axis least.
+    /// Holds the pole joint where `last` has it: the solution that misses the wanted axis least.
     /// `turned` is how far that joint was turned from where the others of `last` belong to it, radians.
     pub(crate) fn held(
         &self,

@@ -22,7 +22,7 @@ pub(crate) struct Layer {
     pub kind: Kind,
     /// Which placer solves it.
     pub setting: usize,
-    /// Its states.
+    /// First of its states.
     pub first: usize,
     pub count: usize,
     /// Sine and cosine of the angle between the tool axis and the pole.
@@ -32,7 +32,7 @@ pub(crate) struct Layer {
 /// How a point is come to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// From nowhere: the first position after a start or a tool change.
+    /// Arrival from nowhere: the first position after a start or a tool change.
     First,
     Rapid,
     Cut,
@@ -67,18 +67,18 @@ const WORTH: f64 = 0.034_906_585_039_886_59;
 struct Ways {
     /// Branches that have a state.
     alive: [bool; 2],
-    /// Of the point before.
+    /// Latitude of the point before.
     latitude: (f64, f64),
-    /// So far the tool axis goes, and can get on the way, radians.
+    /// Angles that the tool axis goes, and can get on the way, radians.
     arc: f64,
     reach: f64,
 }
 
 /// What is known of a cut before its states go on.
 struct Passage {
-    /// It leads past where the branches meet.
+    /// Whether it leads past where the branches meet.
     meet: bool,
-    /// So far the tool axis goes, radians.
+    /// Angle that the tool axis goes, radians.
     arc: f64,
 }
 
@@ -138,8 +138,8 @@ pub(crate) struct Trellis {
     pub cone: f64,
     /// What a pole joint may be off by, as an angle of the tool axis, radians.
     pub freedom: f64,
-    /// Under the rule `cycle-time`: what the program asks for the cut to the newest layer and for the one that is being pushed,
-    /// s.
+    /// Time under the rule `cycle-time` that the program asks for the cut to the newest layer and for the one that is
+    /// being pushed, s.
     asked: [f64; 2],
 }
 
@@ -153,7 +153,7 @@ impl Trellis {
         Self::close_to_poles(machine, placer, machine.solution.pole)
     }
 
-    /// With poles met in this way, whatever the machine file says.
+    /// Makes a trellis that meets poles in this way, whatever the machine file says.
     pub(crate) fn close_to_poles(machine: &Machine, placer: &Placer, pole: Pole) -> Self {
         let freedom = match pole {
             Pole::Blend => {
@@ -311,7 +311,7 @@ impl Trellis {
         Some(joints)
     }
 
-    /// So close to the pole that its joint has room.
+    /// Whether a point is so close to the pole that its joint has room.
     pub(super) fn eased(&self, sine: f64) -> bool {
         sine * WORTH < self.freedom || sine <= self.cone
     }
@@ -366,7 +366,7 @@ impl Trellis {
         }
     }
 
-    /// On the pole the pole joint stands where it stood. Where the tip cannot be reached so, it is turned by
+    /// Holds the pole joint on the pole where it stood. Where the tip cannot be reached so, it is turned by
     /// quarter turns.
     fn hold(
         &mut self,
@@ -457,7 +457,7 @@ impl Trellis {
         });
     }
 
-    /// Off the part every state can be reached from every other.
+    /// Connects every state with every other, off the part.
     fn turn(&mut self, placer: &Placer, stands: &[Stand], before: std::ops::Range<usize>) {
         let first = self.states.len();
         let mut begun = false;
@@ -487,7 +487,7 @@ impl Trellis {
         }
     }
 
-    /// In a cut each state goes on by itself; to the other branch only where the two meet.
+    /// Continues each state by itself, in a cut; to the other branch only where the two meet.
     #[inline]
     fn go_on(
         &mut self,
@@ -588,7 +588,7 @@ impl Trellis {
         }
     }
 
-    /// The same for a point behind the newest layer.
+    /// Time that is asked for a move to a point after the newest layer.
     fn asked_next(&self, motion: &Motion) -> f64 {
         self.layers
             .last()
@@ -609,7 +609,7 @@ impl Trellis {
         }
     }
 
-    /// From a held pole joint every stand can be gone to: that joint is turned while it turns nothing, the others
+    /// Connects a held pole joint with every solution: that joint is turned while it turns nothing, the others
     /// go on from where they are.
     fn leave_pole(&mut self, stand: &Stand, from: usize, first: usize) {
         let state = self.states[from];
@@ -624,7 +624,7 @@ impl Trellis {
         }
     }
 
-    /// In a cut without a closed form each state goes on to the solution next to it. From states that differ by
+    /// Continues each state to the solution next to it, in a cut without a closed form. From states that differ by
     /// full turns that is the same but for these turns.
     fn search_on(&mut self, placer: &Placer, target: &Pose, before: std::ops::Range<usize>) {
         let first = self.states.len();

@@ -8,7 +8,7 @@ use super::Emit;
 use crate::findings::Findings;
 use crate::program::Tool;
 
-/// mm in a foot.
+/// Millimetres in a foot.
 const FOOT: f64 = 304.8;
 
 impl Emit<'_> {
@@ -133,7 +133,7 @@ impl Emit<'_> {
         self.set_spindle(line, Some(event), event);
     }
 
-    /// Out of the part, and nothing in force that a tool change, a reference or another offset would disturb.
+    /// Retracts the tool, and cancels what would disturb a tool change, a reference or another offset.
     pub(super) fn leave(&mut self, line: u64) {
         self.retract(line);
         if self.smoothed.take().is_some() {

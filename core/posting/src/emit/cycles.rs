@@ -26,9 +26,9 @@ pub(super) struct Hole {
     drilling: Drilling,
     /// The point that its heights count from, and the tool axis, part frame; none before the tool stands above it.
     at: Option<ToolPose>,
-    /// To the retract level above it.
+    /// Moves to the retract level above it.
     above: Vec<Flow<Block>>,
-    /// Into it and back to that level.
+    /// Moves into it and back to that level.
     into: Vec<Flow<Block>>,
 }
 
@@ -62,7 +62,7 @@ struct Native {
     cycle: InForce,
     /// All axis words with the tip on the point.
     words: WordValues,
-    /// So much farther off the CL path than the moves are, mm.
+    /// Distance by which it is farther off the CL path than the moves are, mm.
     drift: f64,
 }
 
@@ -72,7 +72,7 @@ pub(super) fn z_word(machine: &Machine) -> Option<usize> {
     order.iter().position(|joint| machine.axes[*joint].name == "Z")
 }
 
-/// The same, if the tool stands along that axis with every rotary axis at zero.
+/// Finds that axis if the tool stands along it with every rotary axis at zero.
 pub(super) fn depth_word(machine: &Machine) -> Option<usize> {
     let joint = |place: usize| axis_words::order(machine)[place];
     z_word(machine).filter(|place| axis_words::depth(machine) == Some(joint(*place)))

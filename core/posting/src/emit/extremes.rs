@@ -17,7 +17,7 @@ const RAPID: usize = 2;
 pub(crate) struct Extremes {
     /// Blocks with a motion.
     pub blocks: u64,
-    /// Those of them that go along a curve.
+    /// Blocks among them that go along a curve.
     pub curves: u64,
     /// Cuts: tip (mm), tool axis (radians); rapids: tip (mm).
     pub deviations: [Deviation; 3],

@@ -157,7 +157,7 @@ impl Emit<'_> {
         );
     }
 
-    /// At the end an axis stands whole turns away from zero, and nothing turns it back.
+    /// Warns of an axis that stands whole turns away from zero at the end where nothing turns it back.
     fn tell_wound(&self, line: u64, findings: &Findings) {
         for (joint, axis) in self.machine.axes.iter().enumerate() {
             let parked = self.machine.frame.park.iter().any(|(place, _)| *place == joint);

@@ -80,7 +80,7 @@ pub(crate) struct Emit<'a> {
     told_mount: bool,
     /// Set once it was told that nobody checks what a subprogram does.
     told_subprogram: bool,
-    /// By how much the control is to leave the path, and what it was told.
+    /// Smoothing that is due, and what the control was told.
     smoothing: Option<Smoothing>,
     smoothed: Option<Smoothing>,
     /// What a dialect was told that switches the keeping of the tip by itself.
@@ -194,7 +194,7 @@ impl<'a> Emit<'a> {
         self.writer.flush(&mut self.extremes, findings);
     }
 
-    /// From here on it is noted on which line each block ends.
+    /// Notes from here on which line each block ends on.
     pub(crate) fn watch(&mut self) {
         self.writer.watch();
     }
@@ -464,7 +464,7 @@ impl FirstPosition {
 /// A tool that goes less far along its axis stays where it is, mm.
 const LOWER: f64 = 1e-6;
 
-/// At feed, from where the tool stands.
+/// Whether a block goes at feed, from where the tool stands.
 fn cuts(block: &Block) -> bool {
     matches!(block.kind, MotionKind::Linear | MotionKind::Arc | MotionKind::Spline)
 }

@@ -124,7 +124,7 @@ impl<'a> Texts<'a> {
         )
     }
 
-    /// By how much the control may leave the path from here on.
+    /// Takes by how much the control may leave the path from here on.
     pub(super) fn smoothing(&mut self, smoothing: Option<Smoothing>) {
         self.facts.tolerance = smoothing.map(|smoothing| smoothing.tolerance);
         self.facts.axis_tolerance = smoothing.and_then(|smoothing| smoothing.axis_tolerance);

@@ -29,9 +29,9 @@ pub(super) struct Writer<'a> {
 /// Where blocks stand in the program.
 #[derive(Default)]
 struct Places {
-    /// Of each block of the batch the index of the event that it ends on, if it has one.
+    /// Indices of the events that the blocks of the batch end on; none for a block without one.
     events: Vec<Option<usize>>,
-    /// Of the blocks before them the line of the program; zero where there is none.
+    /// Lines of the program that the blocks before them end on; zero where there is none.
     lines: Vec<u64>,
 }
 
@@ -51,7 +51,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// From here on it is noted where the blocks stand.
+    /// Notes from here on where the blocks stand.
     pub(super) fn watch(&mut self) {
         self.places.get_or_insert_default();
     }
@@ -102,7 +102,7 @@ impl<'a> Writer<'a> {
         self.batch.len()
     }
 
-    /// It is time to flush.
+    /// Whether it is time to flush.
     #[inline]
     pub(super) fn is_full(&self) -> bool {
         self.batch.len() >= BATCH

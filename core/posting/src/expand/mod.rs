@@ -42,7 +42,7 @@ pub(crate) struct Expand {
     tip: Option<Vector3<f64>>,
     /// The CL file says that it stands there (`FROM`), and no move has brought it there.
     only_said: bool,
-    /// For a tool with a leading edge.
+    /// Tangential control of a tool with a leading edge.
     tangential: Option<Tangential>,
     /// Which curves may stay curves; none if none may.
     keeps: Option<Keeps>,
@@ -81,7 +81,8 @@ const APART: f64 = 1e-6;
 type Out<'o> = Outlet<'o, Flow<Line>>;
 
 impl Expand {
-    /// For a machine and a dialect that declares what it `writes`; `ahead` where the control is to be told planes.
+    /// Makes the stage for a machine and a dialect that declares what it `writes`; `ahead` where the control is to be
+    /// told planes.
     pub(crate) fn new(
         machine: &Machine,
         chord_tolerance: f64,

@@ -41,7 +41,7 @@ const MOST_HELD: usize = 1024;
 #[derive(Debug)]
 pub(super) struct Tangential {
     source: EdgeSource,
-    /// Radians.
+    /// Largest angle that is no corner, radians.
     corner: f64,
     rewind: Option<Rewind>,
     /// The edge in use, across the tool axis.
@@ -50,7 +50,7 @@ pub(super) struct Tangential {
     at: Option<[Vector3<f64>; 2]>,
     /// The last cut with a direction, and that direction, of length one.
     cut: Option<(u64, Motion, Vector3<f64>)>,
-    /// There was such a cut since the tool came.
+    /// Whether there was such a cut since the tool came.
     has_cut: bool,
     /// What came behind it: moves without a direction (rapids, straight in and out), and commands.
     behind: VecDeque<Flow<Line>>,

@@ -17,13 +17,13 @@ pub struct PlanReport {
     pub blocks_added: u64,
     /// Blocks that have the feed of the CL file although a plan was asked for: too short, or not to be planned.
     pub blocks_unplanned: u64,
-    /// Those of them whose plan was slower than standing still at both of their ends.
+    /// Blocks among them whose plan was slower than standing still at both of their ends.
     pub blocks_too_slow: u64,
     /// Time of the planned blocks at the feed that the CL file asks for, s, as if the tool never had to slow down.
     pub asked_s: f64,
-    /// By the plan, s.
+    /// Time by the plan, s.
     pub planned_s: f64,
-    /// At the feeds that stand in the program, s: each block at the least that is planned on it.
+    /// Time at the feeds that stand in the program, s: each block at the least that is planned on it.
     pub printed_s: f64,
     /// Samples of the path whose speed might have been higher with a longer look-ahead.
     pub look_ahead_short: u64,
@@ -31,7 +31,7 @@ pub struct PlanReport {
     pub limits: Vec<LimitShare>,
 }
 
-/// For how long a limit is the one that is used most.
+/// Time for which a limit is the one that is used most.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LimitShare {
     /// Which limit.
@@ -48,7 +48,7 @@ pub struct LimitShare {
 pub(super) struct Account {
     report: PlanReport,
     times: BTreeMap<(&'static str, Option<u16>), f64>,
-    /// Of the block in hand.
+    /// Shares of the block in hand.
     pending: Vec<((&'static str, Option<u16>), f64)>,
 }
 
@@ -67,7 +67,7 @@ impl Account {
         report.printed_s += printed;
     }
 
-    /// So many blocks go on without a plan.
+    /// Counts blocks that go on without a plan.
     pub(super) fn give_up(&mut self, count: usize) {
         self.report.blocks_unplanned += count as u64;
         self.pending.clear();
@@ -103,7 +103,7 @@ impl Account {
         }
     }
 
-    /// So many samples of a path, all told, might have been faster.
+    /// Counts samples of a path, all told, that might have been faster.
     pub(super) fn uncertain(&mut self, samples: usize) {
         self.report.look_ahead_short = samples as u64;
     }

@@ -13,7 +13,7 @@ pub(super) struct Corner {
     tip_jump: f64,
     accelerations: Vec<f64>,
     tip_acceleration: f64,
-    /// By how much the curve may leave the path, mm; none where there is no curve.
+    /// Distance by which the curve may leave the path, mm; none where there is no curve.
     tolerance: Option<f64>,
     chord: Option<ChordError>,
 }

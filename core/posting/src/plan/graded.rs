@@ -11,7 +11,7 @@ const STRAIGHT: f64 = 1e-3;
 /// of the largest of the three.
 const UNEVEN: f64 = 0.05;
 
-/// So often a way is halved at most.
+/// Largest number of times that a way is halved.
 const MOST_HALVED: usize = 3;
 
 /// Samples are as far apart as this share of the way to the nearer end of their leg.
@@ -125,7 +125,7 @@ mod tests {
         Sample { at, values }
     }
 
-    /// Of `y = s⁵ / 20`, whose second derivative is a cubic.
+    /// Sample of `y = s⁵ / 20`, whose second derivative is a cubic.
     fn fifth(at: f64) -> Sample {
         let mut values = [[0.0; fit::MOST]; 4];
         (values[0][0], values[1][0]) = (at, 1.0);

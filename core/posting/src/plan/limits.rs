@@ -15,7 +15,7 @@ use super::contour::contour_error;
 #[derive(Clone, Debug)]
 pub(super) struct Axes {
     limits: AxisLimits,
-    /// Of the axes of the chain.
+    /// Number of axes of the chain.
     pub(super) count: usize,
 }
 

@@ -1,4 +1,4 @@
-//! From legs of the curve to feeds of blocks: samples, limits, solver, pieces.
+//! Makes feeds of blocks from legs of the curve: samples, limits, solver, pieces.
 
 use std::collections::VecDeque;
 use std::rc::Rc;

@@ -13,7 +13,7 @@ const STEP: f64 = 0.05;
 /// Places between two samples at most.
 const MOST: f64 = 64.0;
 
-/// So many places beside those where the speed changes may be ends of pieces.
+/// Number of places beside those where the speed changes that may be ends of pieces.
 const AROUND: usize = 5;
 
 /// Places at which a block may be cut, at most.
@@ -33,20 +33,20 @@ pub(super) struct Cutting {
 pub(super) struct Piece {
     /// Where it ends, as a share of the block.
     pub end: f64,
-    /// Its speed: of the tip, mm/s, or of the parameter, per second.
+    /// Speed of the tip, mm/s, or of the parameter, per second.
     pub speed: f64,
 }
 
 /// The plan at a sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
-    /// From the start of the block, in units of the parameter.
+    /// Parameter from the start of the block.
     pub at: f64,
     /// Squared speed of the parameter.
     pub q: f64,
     /// Speed of the tip for that of the parameter.
     pub stretch: f64,
-    /// From the sample before, s.
+    /// Time from the sample before, s.
     pub seconds: f64,
 }
 
@@ -56,13 +56,13 @@ pub(super) struct Profile {
     samples: Vec<Sample>,
     /// The speed is that of the tip, which the curve passes the block with; else that of the parameter.
     by_tip: bool,
-    /// The same, closer where the speed changes: place and speed.
+    /// Samples and places between them, closer where the speed changes: place and speed.
     places: Vec<(f64, f64)>,
     /// What the plan takes up to each of them, s.
     clock: Vec<f64>,
     /// The way as speeds count for that of the parameter.
     scale: f64,
-    /// So long the tool may be left to the control when it comes from rest, or to it, s.
+    /// Time that the tool may be left to the control when it comes from rest, or to it, s.
     leaving: f64,
     /// Places where pieces may end, and the cheapest way to each: its cost, and the end before.
     ends: Vec<usize>,

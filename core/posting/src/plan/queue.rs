@@ -17,7 +17,7 @@ use crate::stream::Flow;
 pub(super) struct Start {
     pub joints: Joints,
     pub words: WordValues,
-    /// mm, part frame.
+    /// Tip, mm, part frame.
     pub tip: Vector3<f64>,
     /// The tool axis, unit vector, part frame.
     pub axis: Vector3<f64>,
@@ -27,20 +27,20 @@ pub(super) struct Start {
 #[derive(Debug)]
 struct Waiting {
     flow: Flow<Block>,
-    /// Of a block whose feed is planned.
+    /// Start of a block whose feed is planned.
     open: Option<Start>,
 }
 
 /// A sample of the path that the solver has.
 #[derive(Clone, Debug)]
 struct Mark {
-    /// From the start of its block.
+    /// Parameter from the start of its block.
     at: f64,
     /// Speed of the tip for that of the parameter.
     stretch: f64,
     /// The block ends with it.
     ends: bool,
-    /// For who looks on: how the path comes there, and how it leaves if that is another way.
+    /// Path as observers see it: how it comes there, and how it leaves if that is another way.
     stand: Option<Box<Stand>>,
     leaves: Option<Box<Stand>>,
 }
@@ -52,7 +52,7 @@ pub(super) struct Queue {
     marks: VecDeque<Mark>,
     /// The plan along the first open block, as far as it is settled.
     pub(super) profile: Profile,
-    /// From the sample before to the one settled last, s.
+    /// Time from the sample before to the one settled last, s.
     pub(super) seconds: f64,
     /// Somebody looks on.
     pub(super) watched: bool,

@@ -26,7 +26,7 @@ pub(super) type Derivatives = [[f64; 3]; MOST];
 pub(super) struct Place {
     /// First to third derivative of the control point, mm, part frame.
     pub tip: [[f64; 3]; 3],
-    /// Of each axis, mm or radians.
+    /// Derivatives of each axis, mm or radians.
     pub axes: Derivatives,
     /// How each axis moves the control point.
     rates: [[f64; 3]; MOST],
@@ -45,7 +45,7 @@ pub(super) struct Stand {
 }
 
 impl Place {
-    /// For who looks on.
+    /// Makes the sample that observers see.
     pub(super) fn stand(&self) -> Stand {
         let [first, second, third] = self.tip;
         Stand { tip: [self.at, first, second, third], course: self.course }
@@ -203,7 +203,7 @@ impl Sampler {
         self.last = Some((*place, said));
     }
 
-    /// There are so many that the solver should have them.
+    /// Whether there are so many that the solver should have them.
     pub(super) fn is_full(&self) -> bool {
         self.samples.len() > BATCH
     }

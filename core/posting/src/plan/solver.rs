@@ -9,7 +9,7 @@ use post_machine::description::PlanSolver;
 /// Samples that are looked ahead at least.
 const LOOK_AHEAD: usize = 1024;
 
-/// The same for jerk, whose windows cost far more.
+/// Look-ahead for jerk, whose windows cost far more.
 const LOOK_AHEAD_FOR_JERK: usize = 256;
 
 /// A sample whose speed is settled.
@@ -17,9 +17,9 @@ const LOOK_AHEAD_FOR_JERK: usize = 256;
 pub(super) struct Step {
     /// Squared speed of the parameter.
     pub q: f64,
-    /// The same halfway from the sample before, where that is not halfway between the two.
+    /// Squared speed halfway from the sample before, where that is not halfway between the two.
     pub halfway: Option<f64>,
-    /// From the sample before, s; none where the squared speed is linear.
+    /// Time from the sample before, s; none where the squared speed is linear.
     pub seconds: Option<f64>,
     /// The limit that is used most.
     pub source: Source,
@@ -39,7 +39,7 @@ pub(super) enum Solver {
 }
 
 impl Solver {
-    /// For problems of `stride` rows an interval.
+    /// Makes the solver for problems of `stride` rows an interval.
     pub(super) fn new(asked: PlanSolver, stride: usize) -> Self {
         match asked {
             PlanSolver::Reach => Self::Reach(Box::new(reach::Stream::new(stride, LOOK_AHEAD))),

@@ -10,7 +10,7 @@ pub struct PlannedPoint<'p> {
     pub machine: &'p Machine,
     /// Line of the CL file of its block.
     pub line: u64,
-    /// From the place before, in units of the parameter.
+    /// Step from the place before, in units of the parameter.
     pub step: f64,
     /// What the plan takes between the two places of an interval, s; told with each of them.
     pub seconds: f64,

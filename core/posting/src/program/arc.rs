@@ -11,15 +11,15 @@ use super::limits::direction;
 pub struct Arc {
     /// Where heights count from, mm.
     pub(crate) centre: Vector3<f64>,
-    /// About which it turns right-handed, unit vector.
+    /// Axis about which it turns right-handed, unit vector.
     pub(crate) axis: Vector3<f64>,
-    /// From the centre to the start, in the plane, unit vector.
+    /// Direction from the centre to the start, in the plane, unit vector.
     pub(crate) radial: Vector3<f64>,
-    /// Of its start and its end, mm.
+    /// Radii of its start and its end, mm.
     pub(crate) radii: [f64; 2],
-    /// Of its start and its end above the centre along the axis, mm.
+    /// Heights of its start and its end above the centre along the axis, mm.
     pub(crate) heights: [f64; 2],
-    /// Radians, above zero.
+    /// Angle that it turns by, radians, above zero.
     pub(crate) sweep: f64,
 }
 
@@ -32,9 +32,9 @@ const ROUNDED: f64 = 1e-7;
 /// An arc whose end lies so little ahead of its start that the other reading may be meant: by how much, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ArcDoubt {
-    /// It is made as the short arc between them.
+    /// The arc is made as the short one between them.
     Short(f64),
-    /// It is made as a whole turn.
+    /// The arc is made as a whole turn.
     Turn(f64),
 }
 
@@ -79,7 +79,7 @@ impl Arc {
         })
     }
 
-    /// The same arc where `turn` takes directions and `shift` points: a rotation and what goes with it.
+    /// Places the arc elsewhere: `turn` takes directions and `shift` points, a rotation and what goes with it.
     pub fn placed(
         &self,
         shift: impl Fn(Vector3<f64>) -> Vector3<f64>,
@@ -93,7 +93,7 @@ impl Arc {
         }
     }
 
-    /// By how much the distances of its ends from the centre differ, mm.
+    /// Difference of the distances of its ends from the centre, mm.
     pub fn mismatch(&self) -> f64 {
         libm::fabs(self.radii[1] - self.radii[0])
     }

@@ -21,11 +21,11 @@ pub struct DrillCycle {
     retract: f64,
     /// Depth of one peck.
     peck: Option<Peck>,
-    /// At the bottom, s.
+    /// Dwell at the bottom, s.
     dwell: f64,
     /// A thread's way a turn, negative for a left-hand thread.
     pitch: Option<f64>,
-    /// Off the wall before the tool goes out (fine boring).
+    /// Way off the wall before the tool goes out (fine boring).
     shift: Option<f64>,
     /// The point is the bottom of the hole, and these heights are the part's: where the tool goes between the holes, and
     /// where the feed begins.
@@ -36,9 +36,9 @@ pub struct DrillCycle {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Peck {
     step: f64,
-    /// Of those behind the first.
+    /// Depth of the pecks after the first.
     later: f64,
-    /// Out of the hole after each (`DEEP`), or back by a little to break the chip (`BRKCHP`, `CHIP`).
+    /// Retracts out of the hole after each (`DEEP`), or back by a little to break the chip (`BRKCHP`, `CHIP`).
     full: bool,
 }
 
@@ -47,15 +47,15 @@ struct Peck {
 pub struct Drilling {
     /// The control's cycle.
     pub kind: Cycle,
-    /// From the point down to the bottom, mm.
+    /// Distance from the point down to the bottom, mm.
     pub depth: f64,
-    /// From the point up to where the feed begins, mm.
+    /// Distance from the point up to where the feed begins, mm.
     pub clearance: f64,
-    /// From the point up to where the tool goes between the holes, mm.
+    /// Distance from the point up to where the tool goes between the holes, mm.
     pub retract: f64,
-    /// Into the part in one go, mm; of fine boring the way off the wall.
+    /// Way into the part in one go, mm; of fine boring the way off the wall.
     pub step: Option<f64>,
-    /// At the bottom, s.
+    /// Dwell at the bottom, s.
     pub dwell: Option<f64>,
     /// A thread's way a turn, mm, above zero.
     pub pitch: Option<f64>,
@@ -66,9 +66,9 @@ pub struct Drilling {
 /// One leg of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Leg {
-    /// At rapid traverse to this height.
+    /// Goes at rapid traverse to this height.
     Rapid(f64),
-    /// At the cycle's feed to this height.
+    /// Goes at the cycle's feed to this height.
     Feed(f64),
     /// Wait, s.
     Dwell(f64),
@@ -105,7 +105,7 @@ const KINDS: [(&str, Cycle); 22] = [
 /// Kinds that go in pecks.
 const PECKED: [&str; 5] = ["DEEP", "DEEP2", "DEEPHL", "BRKCHP", "CHIP"];
 
-/// Above the last depth a peck begins at feed, and a chip is broken by going back so far: mm.
+/// Distance above the last depth at which a peck begins at feed, and by which a chip is broken: mm.
 const GAP: f64 = 0.5;
 
 impl DrillCycle {
@@ -249,7 +249,7 @@ impl DrillCycle {
         Ok(Some((cycle, top)))
     }
 
-    /// It cuts a thread: the feed follows from the spindle.
+    /// Whether it cuts a thread: the feed follows from the spindle.
     pub(crate) fn taps(&self) -> bool {
         self.kind == Cycle::Tap
     }

@@ -1,4 +1,4 @@
-//! From the frame that a CL file is written in to that of the part: index moves, `MSYS`, and how the part sits.
+//! Turns the frame that a CL file is written in into that of the part: index moves, `MSYS`, and how the part sits.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use post_grammar::{Rotate, Sense};

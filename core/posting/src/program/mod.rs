@@ -1,4 +1,4 @@
-//! From what a CL file says to what it means: records become steps.
+//! Settles what a CL file means: records become steps.
 
 mod arc;
 mod cycle;

@@ -44,7 +44,7 @@ impl Spline {
         Ok(Self { knots: all, points })
     }
 
-    /// The same spline where `shift` takes points: a rotation and a shift.
+    /// Places the spline elsewhere: `shift` takes points, by a rotation and a shift.
     pub fn placed(mut self, shift: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Self {
         for point in &mut self.points {
             *point = shift(*point);
@@ -52,7 +52,7 @@ impl Spline {
         self
     }
 
-    /// The same knots about other control points.
+    /// Makes a spline with the same knots and other control points.
     pub(crate) fn about(&self, points: Vec<Vector3<f64>>) -> Self {
         debug_assert_eq!(points.len(), self.points.len());
         Self { knots: self.knots.clone(), points }
@@ -63,7 +63,8 @@ impl Spline {
         &self.knots
     }
 
-    /// The same control points over other knots; none where these do not follow one another as its own do.
+    /// Makes a spline with the same control points and other knots; none where these do not follow one another as its
+    /// own do.
     pub(crate) fn over(&self, knots: Vec<f64>) -> Option<Self> {
         let rises = |knots: &[f64]| -> Vec<bool> {
             knots.windows(2).map(|pair| pair[0] < pair[1]).collect()
@@ -71,13 +72,13 @@ impl Spline {
         (rises(&knots) == rises(&self.knots)).then(|| Self { knots, points: self.points.clone() })
     }
 
-    /// Its control points.
+    /// Control points of the spline.
     pub(crate) fn points(&self) -> &[Vector3<f64>] {
         &self.points
     }
 
-    /// It as cubics, each over one knot span from its start to its end: their control points (Bézier), in order. In the
-    /// hull of its four points each of them lies.
+    /// Splits it into cubics, each over one knot span from its start to its end: their control points (Bézier), in
+    /// order. In the hull of its four points each of them lies.
     pub(crate) fn cubics(&self) -> impl Iterator<Item = [Vector3<f64>; DEGREE + 1]> {
         (DEGREE..self.points.len()).filter(|span| self.knots[span + 1] > self.knots[*span]).map(
             |span| {
@@ -153,7 +154,7 @@ impl Spline {
         self.blossom(span, [u; DEGREE])
     }
 
-    /// Its blossom in the knot span `span` (de Boor, each level with a place of its own).
+    /// Blossom in the knot span `span` (de Boor, each level with a place of its own).
     fn blossom(&self, span: usize, places: [f64; DEGREE]) -> Vector3<f64> {
         let mut work = [Vector3::zeros(); DEGREE + 1];
         work.copy_from_slice(&self.points[span - DEGREE..=span]);

@@ -45,7 +45,7 @@ pub enum Command {
     Index {
         /// `A`, `B` or `C`.
         axis: char,
-        /// Radians, from the part's own frame.
+        /// Angle from the part's own frame, radians.
         angle: f64,
     },
     /// Another head (`HEAD`).
@@ -56,11 +56,11 @@ pub enum Command {
     Spindle(Spindle),
     /// The spindle turns at a constant cutting speed.
     SurfaceSpeed {
-        /// m/min.
+        /// Cutting speed, m/min.
         speed: f64,
         /// Revolutions a minute that it must not exceed, if the CL file says so.
         most: Option<f64>,
-        /// Its sense.
+        /// Sense of rotation.
         sense: SpindleSense,
     },
     /// Coolant.
@@ -110,7 +110,7 @@ pub enum Command {
 /// Where the moves of a hole stand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HoleMark {
-    /// Those to the retract level above the hole follow.
+    /// Moves to the retract level above the hole follow.
     Above(Drilling),
     /// The tool stands there: those into the hole and back to that level follow.
     Into {
@@ -160,7 +160,7 @@ pub struct Motion {
 /// An arc, a helix, or a spiral between two radii.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArcStep {
-    /// Its course in the part frame.
+    /// Shape of the arc in the part frame.
     pub arc: Arc,
     /// The move to its end, whose pace is that of the whole arc.
     pub end: Motion,
@@ -171,7 +171,7 @@ pub struct ArcStep {
 /// A spline that begins where the tool stands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SplineStep {
-    /// Its course in the part frame.
+    /// Shape of the spline in the part frame.
     pub spline: Spline,
     /// The move to its end.
     pub end: Motion,
@@ -189,7 +189,7 @@ pub struct CycleStep {
 /// A plane that stays for an operation, the tool standing upright on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneStep {
-    /// Its X, Y and Z axes as unit vectors of the part frame.
+    /// X, Y and Z axes of the plane as unit vectors of the part frame.
     pub axes: [Vector3<f64>; 3],
 }
 
@@ -243,10 +243,10 @@ pub struct Tool {
     pub register: u32,
     /// Length from the gauge point to the tip, mm, if the CL file gives it.
     pub length: Option<f64>,
-    /// Of its cutter, mm, if the CL file describes it before it loads the tool.
+    /// Diameter of its cutter, mm, if the CL file describes it before it loads the tool.
     pub diameter: Option<f64>,
-    /// Of the cutter's corner, mm, likewise.
+    /// Corner radius of the cutter, mm, likewise.
     pub corner_radius: Option<f64>,
-    /// Its name, empty if not known.
+    /// Name of the tool, empty if not known.
     pub name: String,
 }

@@ -232,7 +232,7 @@ struct Printed {
     per_scale: f64,
     /// The largest of them.
     most: f64,
-    /// So many of the units that F counts, of those that it is one over, in a minute.
+    /// Units that F counts, of those that it is one over, in a minute.
     per_minute: f64,
 }
 

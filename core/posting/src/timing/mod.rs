@@ -39,13 +39,13 @@ pub(crate) struct Timing<'a> {
 /// Sums of times, minutes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Durations {
-    /// Of cuts.
+    /// Time of cuts.
     pub cutting: f64,
-    /// Of rapids and dwells.
+    /// Time of rapids and dwells.
     pub other: f64,
     /// Blocks slowed down by a limit.
     pub limited: u64,
-    /// Those of them that are slowed down because the control takes no larger F by time.
+    /// Blocks among them that are slowed down because the control takes no larger F by time.
     pub capped: u64,
 }
 
@@ -55,7 +55,7 @@ struct LowFeeds {
     count: u64,
     /// The lowest, as it would be printed.
     lowest: f64,
-    /// Its line of the CL file.
+    /// Line of the CL file with the lowest.
     line: u64,
     /// What is written instead.
     least: f64,

@@ -25,7 +25,7 @@ pub(crate) struct Rapids {
     mode: Rapid,
     /// Minutes that each axis needs for one mm or radian at its largest feed.
     slowness: Joints,
-    /// The same for the axes called X, Y and Z.
+    /// Minutes for the axes called X, Y and Z.
     coordinates: [f64; 3],
     rotary: [bool; MAX_AXES],
     names: Vec<String>,
@@ -77,7 +77,7 @@ impl Rapids {
         self.tip = tip;
     }
 
-    /// Those found so far that are left to the control.
+    /// Rapids found so far that are left to the control.
     pub(crate) fn found(&self) -> &FastRapids {
         &self.found
     }
@@ -129,8 +129,8 @@ impl Rapids {
         None
     }
 
-    /// The same of the place above it, which is come to from anywhere: whichever way that is, no axis goes faster than
-    /// the tip. How fast the axes are then is told of the way down.
+    /// Feed to the place above a first position, which is come to from anywhere: whichever way that is, no axis goes
+    /// faster than the tip. How fast the axes are then is told of the way down.
     fn feed_across(&self, block: &Block) -> Option<f64> {
         let (Rapid::Linear, Some((chain, _))) = (self.mode, &self.down) else {
             return None;

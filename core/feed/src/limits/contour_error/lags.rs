@@ -33,7 +33,7 @@ pub(super) struct Lags {
 }
 
 impl Lags {
-    /// Of these axes, up to `highest` rad/s.
+    /// Works out the lags of these axes, up to `highest` rad/s.
     pub(super) fn new(axes: &[&dyn Response], highest: f64) -> Self {
         let ratio = libm::log(1.0 / LOWEST) / STEPS as f64;
         // From the top, so that the highest is exact.

@@ -169,8 +169,8 @@ impl Interpreter {
         Ok(())
     }
 
-    /// In the stock APT posts of Autodesk the depth counts from the stock down to the point, which is the bottom, and the
-    /// clearance plane is a height of the part.
+    /// Takes heights as the stock APT posts of Autodesk do: the depth counts from the stock down to the point, which is
+    /// the bottom, and the clearance plane is a height of the part.
     fn with_heights(
         &mut self,
         record: &Record<'_>,

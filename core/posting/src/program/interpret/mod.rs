@@ -38,7 +38,7 @@ pub struct Interpreter {
     reading: Reading,
     /// Units that the file names.
     units: Option<Units>,
-    /// mm in one unit of the file.
+    /// Millimetres in one unit of the file.
     scale: f64,
     /// Some feed word names a metric or an inch unit.
     feed_units: Option<Units>,
@@ -73,7 +73,7 @@ pub struct Interpreter {
     coolant: Coolant,
     /// The work offset that the file named last.
     offset: Option<u32>,
-    /// By how much the control may leave the path.
+    /// Tolerance by which the control may leave the path.
     smoothing: Option<Smoothing>,
     side: Option<Side>,
     /// Number, register and length (as written) of the tool in the spindle.
@@ -117,7 +117,7 @@ pub struct Interpreter {
     path: Option<String>,
     /// Some operation was begun (NX).
     paths: bool,
-    /// Of a system that ends every file with FINI.
+    /// Whether the file is of a system that ends every file with FINI.
     wants_fini: bool,
     /// Diameter and corner radius of the cutter described since the last tool was loaded, mm.
     cutter: [Option<f64>; 2],
@@ -141,11 +141,11 @@ struct Described {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum FeedWord {
     Pace(Pace),
-    /// mm.
+    /// Feed a revolution, mm.
     PerRevolution(f64),
 }
 
-/// So much of a name or a text of the file is told in a message, in bytes.
+/// Largest part of a name or a text of the file that is shown in a message, in bytes.
 const SHOWN_NAME: usize = 80;
 
 /// A curve that is not yet complete.
@@ -226,7 +226,7 @@ impl Interpreter {
         std::mem::take(&mut self.findings)
     }
 
-    /// There are findings.
+    /// Whether there are findings.
     #[inline]
     pub fn has_findings(&self) -> bool {
         !self.findings.is_empty()
@@ -660,7 +660,7 @@ pub(crate) fn record_place(file: &str, record: &Record<'_>) -> Place {
     Place::new(file, record.line, &text, 0..text.len())
 }
 
-/// mm in one unit.
+/// Millimetres in one unit.
 fn millimetres(units: Units) -> f64 {
     match units {
         Units::Millimetre => 1.0,

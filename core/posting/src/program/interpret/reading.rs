@@ -47,7 +47,7 @@ pub struct Reading {
     pub print: Print,
     /// The spindle turns the part: `SFM` and `SMM` are constant cutting speeds.
     pub surface_speed: bool,
-    /// By how much the control may leave the path, by operation.
+    /// Tolerances by which the control may leave the path, by operation.
     pub smoothing: SmoothingRules,
 }
 
@@ -57,9 +57,9 @@ pub enum ToldSpindle {
     /// Nobody said: a cut is refused.
     #[default]
     Unknown,
-    /// It stands still, and the tool cuts so.
+    /// The spindle stands still, and the tool cuts so.
     Still,
-    /// It turns at so many revolutions a minute.
+    /// The spindle turns at so many revolutions a minute.
     On(f64),
 }
 
@@ -74,7 +74,7 @@ impl ToldSpindle {
 }
 
 impl Reading {
-    /// With what the machine's file says of it.
+    /// Adds what the machine's file says of it.
     pub(crate) fn on(mut self, machine: &Machine) -> Self {
         // Half of the tolerance goes to chords of arcs and splines, half is left for the axes.
         self.chord_tolerance = machine.accuracy.tolerance / 2.0;

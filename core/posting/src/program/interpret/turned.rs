@@ -33,9 +33,9 @@ pub(super) enum ArcAxes {
     /// Nothing: each of them would be the same either way.
     #[default]
     Open,
-    /// They are turned over for arcs that go clockwise: each arc goes right-handed about its own.
+    /// Axes are turned over for arcs that go clockwise: each arc goes right-handed about its own.
     TurnedOver,
-    /// They are those of the plane: they do not tell which way an arc goes.
+    /// Axes are those of the plane: they do not tell which way an arc goes.
     OfThePlane,
 }
 

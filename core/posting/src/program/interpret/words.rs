@@ -15,7 +15,7 @@ pub(super) struct Suspect {
     place: Place,
 }
 
-/// So many of them are told of.
+/// Largest number of suspects that are told of.
 const MOST_SUSPECTS: usize = 100;
 
 impl Interpreter {

@@ -1,6 +1,6 @@
 //! What a file shows of the system that wrote it, where the same word means something else in another.
 
-/// Of the writer of a file.
+/// Signs of the system that wrote a file.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Writer {
     /// `$$*CATIA0`, `$$ CATIA APT VERSION`: CATIA's aptsource.
@@ -21,7 +21,7 @@ pub(super) struct Writer {
 /// What the points are under `CUTCOM`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CutPoints {
-    /// Those of the contour, or nobody says otherwise.
+    /// Points of the contour, or nobody says otherwise.
     Contour,
     /// The tool's centre; the file says so in the words of this text.
     Centre(&'static str),
@@ -51,7 +51,7 @@ impl Writer {
                 || word.starts_with("CSI_");
     }
 
-    /// It is CAMWorks or SolidWorks CAM.
+    /// Whether it is CAMWorks or SolidWorks CAM.
     pub(super) fn is_camworks(&self) -> bool {
         self.camworks
     }

@@ -10,7 +10,7 @@ use crate::blocks::Block;
 
 /// A limit of the machine.
 pub trait Limit: std::fmt::Debug {
-    /// Its name for a block that it limits, as the machine file has it.
+    /// Name of the limit for a block that it limits, as the machine file has it.
     fn name(&self, block: &Block) -> &'static str;
 
     /// An axis cannot do more; else it is a wish that the least feed that is printed may pass.

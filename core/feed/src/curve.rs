@@ -125,7 +125,7 @@ impl<const D: usize> Curve<D> {
         inner.iter().copied().filter(move |&knot| before.replace(knot) != Some(knot))
     }
 
-    /// Value and derivatives at `parameter`, which is moved into the range. At a knot they are those behind it.
+    /// Value and derivatives at `parameter`, which is moved into the range. At a knot they are those after it.
     #[must_use]
     pub fn derivatives(&self, parameter: f64) -> Derivatives<D> {
         let [first, last] = self.range();

@@ -112,7 +112,7 @@ impl FeedSpline {
         }
     }
 
-    /// The share of a piece that is reached so many seconds behind another, at most its end.
+    /// The share of a piece that is reached `seconds` after another, at most its end.
     #[must_use]
     pub fn share_after(&self, piece: usize, from: f64, seconds: f64) -> f64 {
         let (mut low, mut high) = (from, 1.0);

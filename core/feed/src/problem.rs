@@ -103,8 +103,8 @@ impl Problem {
         self.check()
     }
 
-    /// A problem from numbers alone, at rest at both ends: one limit, called `bound`, is behind all bounds, another,
-    /// called `row`, behind all rows.
+    /// A problem from numbers alone, at rest at both ends: one limit, called `bound`, makes all bounds, another,
+    /// called `row`, all rows.
     #[must_use]
     pub fn from_rows(steps: Vec<f64>, upper: Vec<f64>, stride: usize, rows: Vec<Row>) -> Self {
         let row = Source { limit: 1, axis: None };

@@ -3,7 +3,7 @@
 /// Value, first, second and third derivative of each coordinate at a place.
 pub type Jet<const N: usize> = [[f64; N]; 4];
 
-/// The quintic from `from` to `to`, `step` behind it, at a share of the way. Where the two are of one quintic it is that
+/// The quintic from `from` to `to`, `step` after it, at a share of the way. Where the two are of one quintic it is that
 /// one; else its third derivative is theirs at both ends, and so are all others.
 #[must_use]
 pub fn between<const N: usize>(from: &Jet<N>, to: &Jet<N>, step: f64, share: f64) -> Jet<N> {

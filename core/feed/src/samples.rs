@@ -8,7 +8,7 @@ pub struct AxisSamples {
     pub first: Vec<f64>,
     /// Second derivative.
     pub second: Vec<f64>,
-    /// Third derivative; where it jumps (at the knots of a cubic spline, which then must be samples), the one behind.
+    /// Third derivative; where it jumps (at the knots of a cubic spline, which then must be samples), the one after.
     pub third: Vec<f64>,
 }
 
@@ -25,21 +25,21 @@ pub struct Samples {
     pub curvature: Vec<f64>,
     /// The machine's axes.
     pub axes: Vec<AxisSamples>,
-    /// Length of the block of the program that goes on behind each sample, in units of the parameter; empty where
+    /// Length of the block of the program that goes on after each sample, in units of the parameter; empty where
     /// there are no blocks.
     pub blocks: Vec<f64>,
-    /// Largest feed of the block of the program that goes on behind each sample (at the last sample: of the one before
+    /// Largest feed of the block of the program that goes on after each sample (at the last sample: of the one before
     /// it), mm/s; infinite where the program sets none, empty where there are no blocks.
     pub feeds: Vec<f64>,
     /// How the tip goes in the part frame per unit of each axis: of each axis, at each sample, mm/mm or mm/rad. Empty
-    /// where it is not known. There may be fewer than [`Samples::axes`]: what stands behind them there, coordinates with
+    /// where it is not known. There may be fewer than [`Samples::axes`]: what stands after them there, coordinates with
     /// limits of their own, moves no tip.
     pub rates: Vec<Vec<[f64; 3]>>,
     /// Share of the tolerance of the contour error that may be used at each sample, above 0 and up to 1; empty: all
     /// of it.
     pub contour_share: Vec<f64>,
     /// Third derivatives are continuous at the samples, as those of a quintic spline are; else each sample has the one
-    /// behind it, and the one ahead of it follows from the second, which is exact where the path is cubic.
+    /// after it, and the one ahead of it follows from the second, which is exact where the path is cubic.
     pub smooth: bool,
 }
 

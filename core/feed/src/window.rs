@@ -60,7 +60,7 @@ impl Window {
         Ok(joint)
     }
 
-    /// Appends an interval of the batch and the sample behind it.
+    /// Appends an interval of the batch and the sample after it.
     pub(crate) fn append(&mut self, batch: &Problem, interval: usize, joint: &Joint) {
         let problem = &mut self.problem;
         problem.steps.push(batch.steps[interval]);

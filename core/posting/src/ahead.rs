@@ -12,7 +12,7 @@ use post_machine::description::Machine;
 
 use crate::program::{Command, Interpreter, Motion, Pace, Reading, Step};
 
-/// Stretches that are remembered; of a file with more, the ones behind are not known.
+/// Stretches that are remembered; of a file with more, the ones after are not known.
 pub const MOST_STRETCHES: usize = 65_536;
 
 /// Tool axes that differ by less are one, as unit vectors.

@@ -2,7 +2,7 @@
 //!
 //! A curve that may stay one goes from `expand` to `blocks` as the moves that it would be otherwise, between two
 //! commands. So the choice of axis values sees all of its way, and what cannot be kept is made of those moves, as if
-//! nobody had tried. What `blocks` keeps is one block or several, each behind a command with what was printed of it.
+//! it had not been tried. What `blocks` keeps is one block or several, each after a command with what was printed of it.
 
 use nalgebra::Vector3;
 use post_machine::description::{Arcs, Machine, Tcp};
@@ -118,7 +118,7 @@ impl Keeps {
         self.writes.has(Capabilities::HELIX_BY_TURN)
     }
 
-    /// A spline of the CL file may be kept that would be so many chords.
+    /// Whether a spline of the CL file may be kept that would be this many chords.
     pub(crate) fn spline(&self, end: &Motion, chords: u64) -> bool {
         let needs = match self.tcp {
             true => Capabilities::SPLINE | Capabilities::ARC_TCP,
@@ -142,7 +142,7 @@ impl Keeps {
         self.arcs.fit && self.writes(true)
     }
 
-    /// An arc of the CL file may be kept that would be so many chords; `planes` if the control may have been told a tilted
+    /// Whether an arc of the CL file may be kept that would be this many chords; `planes` if the control may have a tilted
     /// plane.
     pub(crate) fn arc(&self, arc: &Arc, end: &Motion, chords: u64, planes: bool) -> bool {
         self.arcs.keep

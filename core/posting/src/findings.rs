@@ -17,7 +17,7 @@ pub const MOST_FAULTS: usize = 20;
 /// Warnings of one run that are told; of the others how many there are.
 pub const MOST_WARNINGS: usize = 100;
 
-/// Points at which one limit is passed before reading stops: the farthest of so many is as good as any.
+/// Points at which one limit is passed before reading stops: the farthest of this many is as good as any.
 const MOST_BEYOND: u64 = 100_000;
 
 /// Faults of one kind without such a limit before reading stops: each may have taken a search.

@@ -23,7 +23,7 @@ pub struct LookedAhead {
     pub changes: Vec<Tool>,
     /// Least and largest tip at the end of a block, mm, part frame; none without a move.
     pub extents: Option<[[f64; 3]; 2]>,
-    /// Without tool changes, s; none if nobody filled it in.
+    /// Time without tool changes, s; none if it was not filled in.
     pub time_s: Option<f64>,
     /// Lines of the CL file on which an operation begins.
     pub operations: Vec<u64>,

@@ -13,7 +13,7 @@
 //! | `emit` | blocks | the dialect's events, whose text goes to an [`Output`] |
 //!
 //! [`Post`] joins them. [`accuracy`] is the mathematics of error control that `configuration` and `blocks` stand on.
-//! What never happens here: input or output, unsafe code, a dialect's name, a CL keyword behind `program`, memory
+//! What never happens here: input or output, unsafe code, a dialect's name, a CL keyword after `program`, memory
 //! that grows with the file.
 
 pub mod accuracy;

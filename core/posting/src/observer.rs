@@ -1,4 +1,4 @@
-//! Who looks on while a program is made, and where its text goes.
+//! Observers of a program while it is made, and where its text goes.
 
 use std::cell::RefCell;
 
@@ -15,7 +15,7 @@ pub trait Output {
     fn write(&mut self, text: &[u8]) -> Result<(), String>;
 }
 
-/// Looks on while a program is made. Each method does nothing unless it is written.
+/// Observes a program while it is made. Each method does nothing unless it is written.
 pub trait Observer {
     /// A cut between two CL points, before any point is put in. Chords of arcs, splines and cycles come one by
     /// one. Where `reduce` gathers CL points, cuts go by unseen.
@@ -36,7 +36,7 @@ pub trait Observer {
     }
 }
 
-/// All who look on.
+/// All observers of a run.
 #[derive(Default)]
 pub(crate) struct Observers<'a> {
     all: RefCell<Vec<&'a mut dyn Observer>>,

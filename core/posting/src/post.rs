@@ -61,7 +61,7 @@ pub struct Post<'a> {
     last_line: u64,
 }
 
-/// The stages behind the interpreter, and the batches between them.
+/// The stages after the interpreter, and the batches between them.
 struct Stages<'a> {
     expand: Expand,
     shift: Option<Shift<'a>>,
@@ -288,7 +288,7 @@ impl<'a> Post<'a> {
         self.findings.unreadable(fault);
     }
 
-    /// The input has ended; `line_end` says whether a line end stands behind its last line. Of a file that was cut off
+    /// The input has ended; `line_end` says whether a line end stands after its last line. Of a file that was cut off
     /// no program is made.
     pub fn ended(&mut self, line_end: bool) {
         if self.records == 0 {

@@ -13,7 +13,7 @@ pub struct Report {
     pub machine: String,
     /// Name of the dialect.
     pub dialect: String,
-    /// Who keeps the tip on its path: `control` or `post`.
+    /// What keeps the tip on its path: `control` or `post`.
     pub tcp: String,
     /// Name of the error model.
     pub model: String,
@@ -117,18 +117,18 @@ pub struct AxisRange {
     pub way: f64,
 }
 
-/// A tool that was worked with.
+/// A tool that was used.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ToolUse {
     /// Tool number; none if the CL file loads no tool.
     pub number: Option<u32>,
     /// The length that was assumed, mm from the gauge point to the tip.
     pub length_mm: f64,
-    /// Who gave it.
+    /// Source of the length.
     pub source: LengthSource,
 }
 
-/// Who gave the length of a tool.
+/// Source of the length of a tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LengthSource {
@@ -138,7 +138,7 @@ pub enum LengthSource {
     MachineFile,
     /// `LOADTL/…,LENGTH`, or with `tool_length = "cl"` the cutter.
     ClFile,
-    /// Nobody: 0 was taken.
+    /// Not given: 0 was taken.
     Unknown,
 }
 

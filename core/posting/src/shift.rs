@@ -1,8 +1,7 @@
 //! Points of the path are moved by a little, so that the servos bring the tool where the CL file wants it.
 //!
-//! What is moved is the path behind `expand`: points of the CL file, and those that stand for its arcs and splines. Rapids,
-//! holes, and what the control offsets by the cutter's radius stay. No point moves by more than the machine file allows,
-//! whoever asks for it.
+//! What is moved is the path after `expand`: points of the CL file, and those that stand for its arcs and splines. Rapids,
+//! holes, and what the control offsets by the cutter's radius stay. No point moves by more than the machine file allows.
 
 use nalgebra::Vector3;
 use post_plugin::Compensation;

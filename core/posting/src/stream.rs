@@ -62,7 +62,7 @@ impl<'o, T> Outlet<'o, T> {
         }
     }
 
-    /// Hands on a batch as it is, behind what there is; it is empty then.
+    /// Hands on a batch as it is, after what there is; it is empty then.
     pub(crate) fn pass(&mut self, batch: &mut Vec<T>) {
         self.flush();
         (self.next)(batch);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::program::{Command, Pace, Step};
 
-/// Lets through what lies in a range of lines, behind the last that the lines before it said of tool, spindle, coolant
+/// Lets through what lies in a range of lines, after the last that the lines before it said of tool, spindle, coolant
 /// and the like. What the lines before it move is not made; what is modal in them the interpreter has read.
 #[derive(Debug)]
 pub(crate) struct Window {
@@ -75,7 +75,7 @@ impl Window {
     }
 
     /// Keeps a command that holds until another of its kind, the tool first: a change of it says nothing of what is
-    /// switched behind it.
+    /// switched after it.
     fn keep(&mut self, command: Command) {
         let Some(kind) = kind(&command) else { return };
         self.said_anew(&command);

@@ -49,7 +49,7 @@ impl<const W: usize> Hull<W> {
         halves[0].max(halves[1])
     }
 
-    /// What lies before and behind a share of the interval.
+    /// What lies before and after a share of the interval.
     fn cut(&self, share: f64) -> [Self; 2] {
         let mut left = self.0;
         let mut right = self.0;

@@ -26,7 +26,7 @@ pub const MOST: usize = 12;
 /// Tip in mm, then the rotary axes in rad, then zeros.
 pub type Point = [f64; MOST];
 
-/// Spans that are kept back, so that what comes behind them no longer moves what is handed on.
+/// Spans that are kept back, so that what comes after them no longer moves what is handed on.
 const OVERLAP: usize = 96;
 /// Spans that are fitted at once.
 const WINDOW: usize = 352;

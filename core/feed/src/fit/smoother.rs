@@ -17,7 +17,7 @@ const ROUNDS: usize = 10;
 const WIDENING: usize = 3;
 /// And for the tolerance.
 const HOLDING: usize = 24;
-/// Spans at the end of a window whose fit still lacks what comes behind.
+/// Spans at the end of a window whose fit still lacks what comes after.
 const BLURRED: usize = OVERLAP / 2;
 
 /// A place between sites where the tolerance was in danger.
@@ -42,7 +42,7 @@ pub(super) struct Smoother<const W: usize> {
     lengths: Vec<f64>,
     /// Spans whose length was settled by the window before.
     settled: usize,
-    /// Spans that are looked at; what comes behind is known too little of.
+    /// Spans that are looked at; what comes after is known too little of.
     active: usize,
     /// The lengths of the window before in distances of knots, in the mean.
     pace: f64,
@@ -349,7 +349,7 @@ impl<const W: usize> Smoother<W> {
         worst
     }
 
-    /// Presses the spline towards the polyline at a quarter behind a site.
+    /// Presses the spline towards the polyline at a quarter after a site.
     fn press(&mut self, track: &Track, site: usize, quarter: usize, off: f64) {
         let [start, end] = [&track.sites[site], &track.sites[site + 1]];
         let span = start.span;

@@ -31,7 +31,7 @@ pub(super) struct Leg {
 #[derive(Clone, Debug)]
 pub(super) struct Site {
     pub(super) at: f64,
-    /// The span that it lies on, and its leg; between two of them, those behind.
+    /// The span that it lies on, and its leg; between two of them, those after.
     pub(super) span: usize,
     pub(super) leg: usize,
     /// Where the polyline is.

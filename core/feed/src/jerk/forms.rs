@@ -151,7 +151,7 @@ mod tests {
         }
     }
 
-    /// `Q = s³ - 2 s² + 5 s` and so many `s⁵`, on `1..=1.5`.
+    /// `Q = s³ - 2 s² + 5 s` and a multiple of `s⁵`, on `1..=1.5`.
     fn channel(fifth: f64) -> (Channel, impl Fn(f64) -> [f64; 3]) {
         let at = move |s: f64| {
             let first = 3.0 * s * s - 4.0 * s + 5.0 + 5.0 * fifth * s * s * s * s;

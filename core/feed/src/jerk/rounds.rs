@@ -160,7 +160,7 @@ impl Stretch<'_> {
         Ok(bounds)
     }
 
-    /// Bounds `q` behind the first interval and before the last, where they are at rest.
+    /// Bounds `q` after the first interval and before the last, where they are at rest.
     fn cap_ends(&self, spline: &Spline, bounds: &mut [[f64; 2]]) {
         let last = spline.intervals() - 1;
         for (interval, neighbour) in [(0, 2), (last, last)] {

@@ -22,10 +22,10 @@ impl State {
     }
 }
 
-/// The spline's coefficients: one an interval, and one fixed before and behind them. Where the path has a corner the
+/// The spline's coefficients: one an interval, and one fixed before and after them. Where the path has a corner the
 /// coefficients of both intervals beside it are the same unknown: there is no acceleration along the path there.
 pub(super) struct Spline {
-    /// Lengths of the intervals, as far as the spline is concerned; those before and behind have none.
+    /// Lengths of the intervals, as far as the spline is concerned; those before and after have none.
     pub(super) widths: Vec<f64>,
     /// Whether the stretch begins and ends at rest.
     pub(super) rest: [bool; 2],

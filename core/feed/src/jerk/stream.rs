@@ -20,7 +20,7 @@ use crate::window::Window;
 /// Look-aheads that a window is long.
 const WINDOW: usize = 4;
 
-/// Intervals that a plan needs between two stops: as many are left behind the stop at a window's end.
+/// Intervals that a plan needs between two stops: as many are left after the stop at a window's end.
 const RESERVE: usize = 4;
 
 /// A part of a path.
@@ -78,7 +78,7 @@ impl Passed<'_> {
 /// **The look-ahead** should hold the way to a stop from the highest feed.
 ///
 /// **Corners.** At a corner between two batches the speed is one, at most the lower bound of the two, and the
-/// acceleration along the path is 0: what the axes have before it and behind it is then bounded by the rows of both
+/// acceleration along the path is 0: what the axes have before it and after it is then bounded by the rows of both
 /// sides. The speed there is an unknown as any other, so a corner never makes a path infeasible.
 ///
 /// **Short pieces.** Between two stops there must be four intervals, between a stop and a corner two; between two
@@ -253,7 +253,7 @@ impl Stream {
         self.settle(last, 0.0, last.min((WINDOW - 1) * self.lookahead), sink)
     }
 
-    /// Plans the window's first `last` intervals with `end` behind them, and hands `count` of them on; or, if there is
+    /// Plans the window's first `last` intervals with `end` after them, and hands `count` of them on; or, if there is
     /// no plan, the next part of the plan before.
     fn settle(
         &mut self,

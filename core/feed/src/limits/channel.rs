@@ -77,7 +77,7 @@ impl Channel {
     ) -> Self {
         let third = match smooth {
             true => quintic::third(second, third, step),
-            // The second sample has the one behind it: what it is ahead of it follows.
+            // The second sample has the one after it: what it is ahead of it follows.
             false => {
                 let mean = (second[1] - second[0]) / step;
                 [third[0], mean, 2.0 * mean - third[0]]

@@ -28,7 +28,7 @@ const STRAIGHT: f64 = 1e-6;
 /// lags that all axes share are no contour error; differences of lags and what is missing of the accelerations are, as
 /// far as they move the tip across its path. What each frequency leaves is derived in `contour_error/across.rs`:
 /// `L ṡ + S q + C |s̈| <= tolerance`, which bounds `q`, and where axes answer differently is a row between neighbours
-/// too. The axes are then the first of [`Samples::axes`], and what stands behind them there moves no tip; one without a
+/// too. The axes are then the first of [`Samples::axes`], and what stands after them there moves no tip; one without a
 /// servo answers [`Answer::EXACT`].
 ///
 /// **Where it is not known** the axes are those that lead the tip, and a local arc of radius `ρ` is gone with

@@ -58,7 +58,7 @@ mod tests {
         // Two millimetres of the tip for one of the parameter.
         let at_samples = [[15.0; 4].as_slice(), &[5.0; 6]].concat();
         assert_eq!(speeds(&samples, Collocation::Start), Ok(at_samples));
-        // The slower block may begin anywhere behind sample 3.
+        // The slower block may begin anywhere after sample 3.
         let throughout = [[15.0; 3].as_slice(), &[5.0; 7]].concat();
         assert_eq!(speeds(&samples, Collocation::Throughout), Ok(throughout.clone()));
         // And the same backwards.

@@ -78,7 +78,7 @@ pub(super) fn highest_before(rows: &[Row], upper: f64, low: f64, high: f64) -> O
         }
         x = (x - gap / slope) * (1.0 - INSIDE);
         if x <= 0.0 {
-            // At rest both before and behind, every row is kept.
+            // At rest both before and after, every row is kept.
             return (low <= 0.0).then_some(0.0);
         }
     }

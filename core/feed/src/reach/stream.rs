@@ -26,7 +26,7 @@ pub struct Settled<'a> {
     window: &'a Problem,
     /// Number of the sample in the window.
     place: usize,
-    /// `q` of the samples before and behind, where they are in the window.
+    /// `q` of the samples before and after, where they are in the window.
     neighbours: [Option<f64>; 2],
     /// What the interval before the window used most.
     arrived: Usage,
@@ -49,7 +49,7 @@ impl Settled<'_> {
 /// Plans a path that comes in batches, and hands on `q` sample by sample as soon as the look-ahead allows.
 ///
 /// **Corners.** Batches may meet at a corner: the first ends with the derivatives before it, the next begins at the same
-/// sample with those behind it, so that each interval's rows are of one side. The speed there is one, and its bound the
+/// sample with those after it, so that each interval's rows are of one side. The speed there is one, and its bound the
 /// lower of the two batches'; what a corner itself allows the caller puts into one of them by [`Problem::lower`].
 ///
 /// **Faults.** A batch that is refused leaves nothing in the stream: another may take its place.
@@ -105,7 +105,7 @@ impl Stream {
         self.uncertain == 0
     }
 
-    /// Samples handed on whose controllable set depended on what lies behind the look-ahead.
+    /// Samples handed on whose controllable set depended on what lies after the look-ahead.
     #[must_use]
     pub fn uncertain(&self) -> usize {
         self.uncertain

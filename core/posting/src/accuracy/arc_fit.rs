@@ -9,7 +9,7 @@ use nalgebra::{Vector2, Vector3};
 
 use super::printed_arc::{PrintedArc, in_plane};
 
-/// A piece of an arc along one leg is looked at in so many places.
+/// A piece of an arc along one leg is checked at this many places.
 const LOOKS: u32 = 4;
 
 /// The bulges no larger than `most` of the arcs through `ends` about an axis that pass every one of `points` within

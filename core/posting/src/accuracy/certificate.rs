@@ -161,7 +161,7 @@ pub fn longest_around(a: Vector3<f64>, b: Vector3<f64>) -> f64 {
     libm::sqrt((aa + bb + difference) / 2.0)
 }
 
-/// Takes first and second derivative of what lies behind a rotary joint over it: `rate` is how it goes with the
+/// Takes first and second derivative of what lies beyond a rotary joint over it: `rate` is how it goes with the
 /// joint before that has turned, `step` the joint's turn over the block.
 #[inline]
 fn advance(
@@ -206,7 +206,7 @@ fn second_derivatives(
 
 /// Bounds on the fourth derivatives, by Leibniz' rule joint by joint.
 fn fourth_derivatives(chain: &Chain, from: &Trace, to: &Trace) -> Bend {
-    // Bounds on the first to fourth derivative of what the joints behind this one do.
+    // Bounds on the first to fourth derivative of what the joints beyond this one do.
     let mut tip = [0.0; 4];
     let mut axis = [0.0; 4];
     for index in (0..chain.joints().len().min(MAX_AXES)).rev() {

@@ -28,7 +28,7 @@ pub struct Node {
     pub words: WordValues,
     /// The chain at the printed words.
     pub trace: Trace,
-    /// Where the tip comes to stand: by the chain, or by the control that keeps it.
+    /// Where the tip stands at the end: by the chain, or by the control that keeps it.
     pub tip: Vector3<f64>,
     /// How far the tip is off its target by rounding, mm.
     pub tip_error: f64,
@@ -346,7 +346,7 @@ impl Placer {
         chain.trace(&mut node.trace);
         node.tip = node.trace.pose.tip;
         node.measure();
-        // The forward chain stands behind every node: what it misses by must be rounding.
+        // The forward chain checks every node: what it misses by must be rounding.
         let missed = if place == target.tip { node.tip_error } else { (node.tip - place).norm() };
         // What a rounded angle does to a point above the tip that the control keeps is not made up for.
         let swung = if printed.is_some() { along.abs() * node.axis_error } else { 0.0 };

@@ -152,7 +152,7 @@ impl<'a> Run<'a> {
             let target = self.nodes[leg + 1].target;
             let even = share(way, start, end, leg);
             let mut next = self.passed(from, to, even, target);
-            // The share at which the tip is beside the CL point, not before or behind it; never before the share of
+            // The share at which the tip is beside the CL point, not before or after it; never before the share of
             // the CL point ahead of it, or the order of the path would not be proven.
             let beside = if square > 0.0 { even - next.off().dot(&chord) / square } else { even };
             let share = beside.clamp(last.t, 1.0);
@@ -183,7 +183,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Share of a block from `start` to `end` at which the CL point behind `leg` is passed.
+/// Share of a block from `start` to `end` at which the CL point after `leg` is passed.
 fn share(way: &[f64], start: Spot, end: Spot, leg: usize) -> f64 {
     let place = |spot: Spot| distance(way, spot);
     let whole = place(end) - place(start);

@@ -83,7 +83,7 @@ impl Blocks<'_> {
         let block = self.block(leg, node, Bound::default());
         to.out.push(Flow::Point(Block {
             kind,
-            // Nobody knows the way: the feed is that of a millimetre.
+            // The way is not known: the feed is that of a millimetre.
             way: 1.0,
             nominal: Nominal::of(leg.motion.pace, 1.0, Travels::default),
             ..block
@@ -179,7 +179,7 @@ impl Blocks<'_> {
         Some((out, way))
     }
 
-    /// The axis that retracts the tool; none where nobody says how far it goes.
+    /// The axis that retracts the tool; none where its position is not given.
     fn retract(&self) -> Option<Retract> {
         let depth = axis_words::depth(self.base)?;
         let mut retract = self.machine.frame.retract.iter();
@@ -233,7 +233,7 @@ impl Blocks<'_> {
     }
 
     /// How far an axis stays from an end of travel that is `end` mm away: half of the way where there is less, and where
-    /// nobody has measured the tool.
+    /// the tool is not measured.
     fn kept_free(&self, placer: &Placer, end: f64) -> f64 {
         let measured = placer.solver().chain().tip() != self.machine.gauge;
         let room = if measured { self.machine.frame.room } else { f64::INFINITY };

@@ -1,4 +1,4 @@
-//! Who is shown cuts before anything is done about them.
+//! Observers that are shown cuts before anything is done about them.
 
 use crate::accuracy::Move;
 

@@ -1,4 +1,4 @@
-//! A block of the program: a motion as it will be printed, with all that anyone behind may want to know of it.
+//! A block of the program: a motion as it will be printed, with all that later stages may need.
 
 use nalgebra::Vector3;
 use post_machine::axis_words::WordValues;
@@ -29,7 +29,7 @@ pub struct Block {
     pub words: WordValues,
     /// Axis values at its end, as printed: mm, radians.
     pub joints: Joints,
-    /// Where the tip comes to stand, mm, part frame.
+    /// Where the tip stands at its end, mm, part frame.
     pub tip: Vector3<f64>,
     /// The tool axis there, unit vector, part frame.
     pub axis: Vector3<f64>,

@@ -22,7 +22,7 @@ const BULGE_BY_RADIUS: f64 = 0.839_099_631_177_28;
 /// An angle so near to the end of a quadrant is there, radians.
 const AT_QUADRANT: f64 = 1e-6;
 
-/// A piece of a run: the leg behind it, and how it goes.
+/// A piece of a run: the leg after it, and how it goes.
 enum Piece {
     Line(Bound),
     Arc(Box<ArcBlock>),
@@ -52,7 +52,7 @@ impl Blocks<'_> {
     ) {
         let mut at = 0;
         while at < legs.len() {
-            // So many legs along which nothing turns.
+            // Legs along which nothing turns.
             let still =
                 |node: &&Node| !self.kinds.turning(&nodes[at].trace.joints, &node.trace.joints);
             let count = nodes[at + 1..].iter().take_while(still).count();

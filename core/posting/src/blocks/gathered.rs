@@ -1,4 +1,4 @@
-//! CL points that wait for what comes behind them: along one stretch of path some of them may be needless.
+//! CL points that wait for what comes after them: along one stretch of path some of them may be needless.
 
 use super::{Blocks, Leg, Reason, STILL, Surroundings};
 use crate::accuracy::{Node, Placer};

@@ -88,9 +88,9 @@ pub(crate) struct Surroundings<'s, 'o> {
     pub out: &'s mut Outlet<'o, Flow<Block>>,
     /// Where faults go.
     pub findings: &'s Findings,
-    /// Who looks on, if anybody does.
+    /// Observers of cuts, if there are any.
     pub audience: Option<&'s dyn Audience>,
-    /// Where the placer is put that blocks from here on are made with, if anybody behind asks for it.
+    /// Where the placer that makes blocks from here on is put, if a later stage asks for it.
     pub placer: Option<&'s RefCell<Option<Rc<Placer>>>>,
 }
 
@@ -122,11 +122,11 @@ pub(crate) struct Blocks<'a> {
     linearise: Linearise,
     kinds: Kinds,
     between: BetweenWords,
-    /// CL points that wait for those behind them.
+    /// CL points that wait for those after them.
     gathered: Gathered,
     /// Which curves are kept.
     keeps: Keeps,
-    /// Feeds are planned behind this stage: curves tell their way.
+    /// Feeds are planned after this stage: curves tell their way.
     plans: bool,
     /// A curve whose end has not come yet.
     following: Option<Following>,
@@ -192,7 +192,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Feeds are planned behind this stage.
+    /// Feeds are planned after this stage.
     pub(crate) fn plans(&mut self) {
         self.plans = true;
     }
@@ -202,7 +202,7 @@ impl<'a> Blocks<'a> {
         if let Some(told) = to.placer {
             to.out.flush();
             told.borrow_mut().clone_from(&placer);
-            // Blocks may be cut behind this stage, at rounded points.
+            // Blocks may be cut after this stage, at rounded points.
             let tolerance = self.machine.accuracy.tolerance;
             self.placer = placer.map(|placer| Rc::new(placer.leaving_room(tolerance)));
             return;
@@ -225,7 +225,7 @@ impl<'a> Blocks<'a> {
         self.linearise.overruled()
     }
 
-    /// Line of the first point that waits for those behind it.
+    /// Line of the first point that waits for those after it.
     pub(crate) fn first_line(&self) -> Option<u64> {
         let following = self.following.as_ref().map(Following::line);
         self.gathered.first_line().or(following)
@@ -316,7 +316,7 @@ impl<'a> Blocks<'a> {
             Command::Tool(_) | Command::Home | Command::WorkOffset(_) | Command::Smoothing(_) => {
                 self.depart(line, to)
             }
-            // Nobody knows where the tool stands behind it.
+            // Where the tool stands after it is not known.
             Command::Subprogram(_) => {
                 self.last = None;
                 self.on_part = false;

@@ -180,7 +180,7 @@ impl Blocks<'_> {
                     format!("{name} stands at {now:.3} mm, and [control] retract = {then:.3} mm would bring the tool down"),
                 )
                 .help("put the retract beyond what the program reaches"),
-                // Whoever names a position answers for the way to it.
+                // The machine file names the position and answers for the way to it.
                 true => continue,
                 false => Diagnostic::error(
                     "retract",

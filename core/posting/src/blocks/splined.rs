@@ -21,7 +21,7 @@ struct SplineBlock {
     bound: Bound,
 }
 
-/// Places between the ends by which a feed is planned: so many a knot span.
+/// Places between the ends by which a feed is planned: this many a knot span.
 const PLACES: u32 = 16;
 
 /// Places along a spline between its ends, mm, part frame.

@@ -1,4 +1,4 @@
-//! What a way through the trellis costs: first what should not be at all, then how far the axes travel.
+//! Cost of a path through the trellis: first what should not be at all, then how far the axes travel.
 
 /// Costs are compared place by place: rewinds, points on a side that is not preferred, travel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,7 +22,7 @@ impl Cost {
         self.travel < f64::INFINITY
     }
 
-    /// Goes on by so much travel, and stands on so many sides that are not preferred.
+    /// Adds `travel`, and the number of axes on a side that is not preferred.
     #[inline]
     pub(crate) fn and(self, travel: f64, against: u32) -> Self {
         Self {

@@ -29,7 +29,7 @@ impl Route<'_> {
                 self.ease_fastest(way, run.clone(), pole);
             } else {
                 self.ease_run(way, run.clone(), pole, 1.0);
-                // The point behind the run is come to from it.
+                // The point after the run is come to from it.
                 let end = (run.end + 1).min(self.trellis.layers.len());
                 if !self.comes_through(way, run.start.max(1)..end) {
                     way.eased.retain(|(layer, _)| *layer < run.start);
@@ -62,7 +62,7 @@ impl Route<'_> {
         let trellis = &self.trellis;
         let layers = &trellis.layers;
         let state = |way: &Backtrace, layer: usize| trellis.states[way.states[layer]];
-        // The point behind the run, if there is one, is where the string must arrive.
+        // The point after the run, if there is one, is where the string must arrive.
         let behind = (run.end < layers.len()).then_some(run.end);
         let gates: Vec<Gate> = run
             .clone()
@@ -116,7 +116,7 @@ impl Route<'_> {
         }
     }
 
-    /// How long the machine takes about over a run of points and to the next two behind it, with the points put in that this
+    /// How long the machine takes about over a run of points and to the next two after it, with the points put in that this
     /// needs, s; none where it does not come through.
     fn seconds(&mut self, way: &Backtrace, run: &std::ops::Range<usize>) -> Option<f64> {
         let (trellis, judge) = (&self.trellis, &mut self.judge);

@@ -5,7 +5,7 @@ use post_machine::kinematics::{Chain, Joints, MAX_AXES};
 
 use super::cycle_time::Drives;
 
-/// An axis without `max_feed` counts as one with so many mm/min or degrees/min.
+/// An axis without `max_feed` counts as one with this many mm/min or degrees/min.
 const USUAL_FEED: f64 = 10_000.0;
 
 /// Axis values this close to zero lie on both sides, mm or radians.
@@ -77,7 +77,7 @@ impl Measure {
         self.weigh(from, to, true)
     }
 
-    /// [`Measure::between`] of the rotary axes alone: nobody knows where the tool comes from.
+    /// [`Measure::between`] of the rotary axes alone: where the tool comes from is not known.
     pub(crate) fn approach(&self, from: &Joints, to: &Joints) -> f64 {
         let turn = self
             .drives()

@@ -88,7 +88,7 @@ pub(crate) struct Configuration<'a> {
     length: Option<f64>,
     /// Where the length comes from.
     source: LengthSource,
-    /// The tools that were worked with, each with the length that was assumed.
+    /// The tools that were used, each with the length that was assumed.
     tools: Vec<ToolUse>,
     /// The tool, with the head and the length that it has now, is among them.
     in_use: bool,
@@ -249,7 +249,7 @@ impl<'a> Configuration<'a> {
         self.chosen = chosen;
     }
 
-    /// A point that is decided, behind what solves it.
+    /// A point that is decided, after what solves it.
     #[inline]
     fn hand_on(&mut self, next: Chosen, out: &mut Out<'_>) {
         if self.setting != Some(next.setting) {
@@ -260,7 +260,7 @@ impl<'a> Configuration<'a> {
         out.push(Flow::Point(Configured::Point(next)));
     }
 
-    /// One more point is decided: the commands behind it follow.
+    /// One more point is decided: the commands after it follow.
     #[inline]
     fn arrived(&mut self, out: &mut Out<'_>, findings: &Findings) {
         match self.waiting.front_mut() {
@@ -323,7 +323,7 @@ impl<'a> Configuration<'a> {
                     Err(finding) => findings.at(line, *finding),
                 }
             }
-            // The tool is retracted before and behind: nothing is turned early on its behalf.
+            // The tool is retracted before and after: nothing is turned early on its behalf.
             Command::Still(_) => self.route.leave(),
             Command::Spindle(Spindle::On { rpm, .. }) => {
                 self.speed = Some(*rpm);
@@ -335,7 +335,7 @@ impl<'a> Configuration<'a> {
         out.command(line, command);
     }
 
-    /// The tool is retracted and axes are sent to positions of the machine: what comes behind begins there.
+    /// The tool is retracted and axes are sent to positions of the machine: what comes after begins there.
     fn park(&mut self, positions: &[(usize, f64)]) {
         let mut near = *self.route.stands_at();
         let frame = &self.machine.frame;
@@ -384,7 +384,7 @@ impl<'a> Configuration<'a> {
     }
 
     /// The first move with a tool: which length is assumed is kept for the summary; where the axis positions depend on a
-    /// length that nobody gave, there is no program.
+    /// length that is not given, there is no program.
     #[cold]
     fn take_into_use(&mut self, line: u64, findings: &Findings) {
         self.in_use = true;
@@ -471,7 +471,7 @@ impl<'a> Configuration<'a> {
     }
 }
 
-/// Nobody gave the length of a tool; `matters` if the axis positions of the program depend on it, else travel alone is
+/// The length of a tool is not given; `matters` if the axis positions of the program depend on it, else travel alone is
 /// checked with it.
 fn unknown_length(number: Option<u32>, matters: bool) -> Diagnostic {
     let tool = match number {

@@ -47,7 +47,7 @@ impl Route<'_> {
             return Ok(());
         }
         let fault = self.no_way(motion, &found);
-        // Behind the fault the path begins anew, so that what follows is checked too.
+        // After the fault the path begins anew, so that what follows is checked too.
         self.settle_all();
         self.leave();
         Err(Lost::Path(fault))

@@ -1,7 +1,7 @@
 //! Which of several solutions is taken at each point, decided over whole passes.
 //!
 //! Points come in one by one; a trellis keeps the cheapest way to every way of standing at the newest. What is
-//! decided comes out: as soon as one state is left, at the latest when so many points wait as the machine's
+//! decided comes out: as soon as one state is left, at the latest when as many points wait as the machine's
 //! `look_ahead` says. So the memory is bounded, and the choice is the best that can be known by then.
 //!
 //! In a cut the axes go on from where they are; another branch or another full turn is taken off the part, in a
@@ -201,7 +201,7 @@ impl<'a> Route<'a> {
         chain.forward(self.stands_at()).edge
     }
 
-    /// Where the axes stand behind the last decided point.
+    /// Where the axes stand after the last decided point.
     pub(crate) fn stands_at(&self) -> &Joints {
         match self.trellis.layers.first() {
             Some(_) if self.anchored => &self.trellis.states_of(0)[0].joints,

@@ -100,7 +100,7 @@ impl Route<'_> {
             self.trellis.layers = exact.layers;
             self.trellis.states = exact.states;
             best = self.walk_back(&mut way).unwrap_or(best);
-            // What lies behind the newest point came from the way that is not gone.
+            // What lies after the newest point came from the way that is not taken.
             upto = count - 1;
         }
         self.hand_out(&way, upto);
@@ -190,7 +190,7 @@ impl Route<'_> {
                 }
             }
         }
-        // One state is left of the settled layer; those behind it move up. A state that came from another one
+        // One state is left of the settled layer; those after it move up. A state that came from another one
         // of it leads nowhere: its cost is infinite where the ways end.
         let shift = trellis.layers[upto].first + trellis.layers[upto].count - 1;
         trellis.layers.drain(..upto);

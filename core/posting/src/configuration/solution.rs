@@ -76,7 +76,7 @@ pub(crate) struct Found {
 }
 
 impl Found {
-    /// Records so many solutions of a chain without a closed form, whose poles are not known.
+    /// Records the number of solutions of a chain without a closed form, whose poles are not known.
     pub(super) fn by_search(solutions: usize) -> Self {
         Self { latitude: (1.0, 0.0), solutions, over: None }
     }

@@ -87,7 +87,7 @@ impl Emit<'_> {
         true
     }
 
-    /// A subprogram of the control; what it leaves in force nobody knows.
+    /// A subprogram of the control; what it leaves in force is not known.
     pub(super) fn subprogram(&mut self, line: u64, number: u32, findings: &Findings) {
         let event = Event::Subprogram { number: Some(number), times: 1, name: "" };
         if !self.writer.knows(Capabilities::SUBPROGRAM) {

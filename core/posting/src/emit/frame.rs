@@ -71,7 +71,7 @@ impl Emit<'_> {
     /// Cutter compensation ends while the tool still cuts: on the way out the control would go aside, into what stands
     /// there, or stop with an alarm.
     fn tell_compensation(&mut self, findings: &Findings) {
-        // Behind another fault nothing is written, and ways are missing: it may end there.
+        // After another fault nothing is written, and ways are missing: it may end there.
         if let Some(line) = self.left_compensating.take().filter(|_| !findings.failed()) {
             findings.at(
                 line,
@@ -128,7 +128,7 @@ impl Emit<'_> {
         }
     }
 
-    /// An axis that turns back by whole turns takes its time: nobody shall wonder why.
+    /// An axis that turns back by whole turns takes its time: the program says why.
     fn tell_unwinding(&self, line: u64, joint: usize, value: f64, findings: &Findings) {
         let axis = &self.machine.axes[joint];
         if !axis.joint.rotary || axis.range.is_some() {
@@ -176,7 +176,7 @@ impl Emit<'_> {
         }
     }
 
-    /// The spindle and the coolant stand still while nobody cuts; what the CL file wants is on again at the next first
+    /// The spindle and the coolant stand still while nothing is cut; what the CL file wants is on again at the next first
     /// position.
     fn rest(&mut self, line: u64) {
         if std::mem::take(&mut self.turning) {
@@ -302,13 +302,13 @@ impl Emit<'_> {
         self.retract(line);
         self.tell_compensation(findings);
         if self.changed && self.commanded.is_some() && block.pace == Pace::Rapid {
-            // The tool's own speed may stand behind its first position.
+            // The tool's own speed may stand after its first position.
             self.waits = Some(FirstPosition::of(block));
         } else {
             self.wake(line, findings);
         }
         let words = &block.words[..self.writer.words()];
-        // Nobody knows whether they are clamped.
+        // Whether they are clamped is not known.
         self.free = 0;
         for joint in 0..self.machine.axes.len() {
             self.set_clamp(line, joint, false, true);
@@ -361,7 +361,7 @@ impl Emit<'_> {
         }
     }
 
-    /// The words behind it are those of a plane, or of none: what the control was told before ends, the tool clear of the
+    /// The words after it are those of a plane, or of none: what the control was told before ends, the tool clear of the
     /// part.
     pub(super) fn set_plane(&mut self, line: u64, plane: Option<Box<TiltedPlane>>) {
         if self.plane_on {

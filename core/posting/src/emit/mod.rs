@@ -34,7 +34,7 @@ pub(crate) struct Emit<'a> {
     writer: Writer<'a>,
     texts: Texts<'a>,
     extremes: Extremes,
-    /// Where the axes stand behind the last block.
+    /// Where the axes stand after the last block.
     last: Joints,
     /// Axes that are known to be clamped, one bit each.
     clamped: u8,
@@ -78,7 +78,7 @@ pub(crate) struct Emit<'a> {
     offset: Option<u32>,
     /// Set once it was told which mount travel was checked with.
     told_mount: bool,
-    /// Set once it was told that nobody checks what a subprogram does.
+    /// Whether it was reported that what a subprogram does is not checked.
     told_subprogram: bool,
     /// Smoothing that is due, and what the control was told.
     smoothing: Option<Smoothing>,
@@ -93,7 +93,7 @@ pub(crate) struct Emit<'a> {
     compensation: Option<Compensation>,
     /// Cutter compensation is on.
     compensating: bool,
-    /// Where the tool left the part with it on: nobody has been told yet.
+    /// Where the tool left the part with it on: not reported yet.
     left_compensating: Option<u64>,
 }
 
@@ -337,7 +337,7 @@ impl<'a> Emit<'a> {
             Command::Compensate(compensation) => return self.compensate(line, *compensation),
             Command::Comment(text) => Event::Comment { text },
             Command::Literal(text) => {
-                // Nobody knows what it does.
+                // What it does is not known.
                 self.clear = false;
                 if self.waits.is_some() {
                     self.wake(line, findings);

@@ -74,7 +74,7 @@ impl<'a> Texts<'a> {
         }
     }
 
-    /// The next tool is made ready behind each change.
+    /// The next tool is made ready after each change.
     pub(super) fn preselects(&self) -> bool {
         self.rules.preselect
     }
@@ -92,7 +92,7 @@ impl<'a> Texts<'a> {
         self.facts.tool.is_some()
     }
 
-    /// The tool behind the one that has come, if another comes.
+    /// The tool after the one that has come, if another comes.
     pub(super) fn next_tool(&self) -> Option<u32> {
         self.facts.next_tool
     }

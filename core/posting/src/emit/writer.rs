@@ -22,7 +22,7 @@ pub(super) struct Writer<'a> {
     tool_known: bool,
     /// The dialect refused an event, or the output text: no more is made.
     broken: bool,
-    /// Where the blocks stand, if somebody wants to know.
+    /// Where the blocks stand, if an observer asks for it.
     places: Option<Places>,
 }
 
@@ -165,7 +165,7 @@ impl<'a> Writer<'a> {
 }
 
 impl Places {
-    /// The batch is written as `text`, its events up to `ends`, behind `lines` lines.
+    /// The batch is written as `text`, its events up to `ends`, after `lines` lines.
     fn written(&mut self, mut lines: u64, text: &[u8], ends: &[usize]) {
         let mut counted = 0;
         for event in self.events.drain(..) {

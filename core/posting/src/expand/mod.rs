@@ -33,12 +33,12 @@ pub struct Line {
     pub motion: Motion,
 }
 
-/// The first stage behind the interpreter.
+/// The first stage after the interpreter.
 #[derive(Debug)]
 pub(crate) struct Expand {
     /// How far chords may stray from arcs and splines, mm.
     chord_tolerance: f64,
-    /// Where the tool stands, mm, part frame; none if nobody knows.
+    /// Where the tool stands, mm, part frame; none if it is not known.
     tip: Option<Vector3<f64>>,
     /// The CL file says that it stands there (`FROM`), and no move has brought it there.
     only_said: bool,
@@ -171,7 +171,7 @@ impl Expand {
     /// An arc. One that may stay an arc goes turn by turn, its moves between the commands that say so.
     fn arc(&mut self, line: u64, step: &ArcStep, out: &mut Out<'_>, findings: &Findings) {
         let ArcStep { arc, end, .. } = step;
-        // Behind a hole the tool stands above the point that the arc begins on.
+        // After a hole the tool stands above the point that the arc begins on.
         let start = arc.at(0.0);
         if self.only_said || self.tip.is_some_and(|tip| (tip - start).norm() > APART) {
             let to_start = Motion { tip: start, axis: step.start_axis, chord: 0.0, ..*end };

@@ -2,7 +2,7 @@
 //! second vector of the CL points.
 //!
 //! A heading is a direction of the path, not yet laid across the tool axis: that is done at each instant, with the axis
-//! of that instant. Along a path the heading at a point lies between the directions of the moves before and behind it,
+//! of that instant. Along a path the heading at a point lies between the directions of the moves before and after it,
 //! so that the edge turns steadily. At a corner it must be turned on the spot: drawn back first, if the machine has
 //! `[rewind]`.
 
@@ -52,7 +52,7 @@ pub(super) struct Tangential {
     cut: Option<(u64, Motion, Vector3<f64>)>,
     /// Whether there was such a cut since the tool came.
     has_cut: bool,
-    /// What came behind it: moves without a direction (rapids, straight in and out), and commands.
+    /// What came after it: moves without a direction (rapids, straight in and out), and commands.
     behind: VecDeque<Flow<Line>>,
     /// Corners that the tool was drawn back at.
     pub(super) rewinds: u64,
@@ -133,7 +133,7 @@ impl Tangential {
         out.command(line, command);
     }
 
-    /// What waits has nothing behind it.
+    /// What waits has nothing after it.
     pub(super) fn finish(&mut self, out: &mut Out<'_>, findings: &Findings) {
         self.settle(None, out, findings);
     }

@@ -53,7 +53,7 @@ pub(super) struct Account {
 }
 
 impl Account {
-    /// A block became so many.
+    /// Counts the pieces that a block became.
     pub(super) fn block(&mut self, count: usize, asked: f64, planned: f64, printed: f64) {
         for (limit, seconds) in self.pending.drain(..) {
             *self.times.entry(limit).or_default() += seconds;
@@ -96,7 +96,7 @@ impl Account {
         )
     }
 
-    /// A limit is used most for so long.
+    /// Adds the time for which a limit is used most.
     pub(super) fn limited(&mut self, limit: &'static str, axis: Option<u16>, seconds: f64) {
         if seconds.is_finite() {
             self.pending.push(((limit, axis), seconds));
@@ -123,7 +123,7 @@ impl Account {
     }
 }
 
-/// The name of an axis of `machine` by its place in the chain; behind them stand X, Y and Z of the programmed tip.
+/// The name of an axis of `machine` by its place in the chain; after them stand X, Y and Z of the programmed tip.
 pub fn axis_name(machine: &Machine, place: u16) -> &str {
     let place = usize::from(place);
     let programmed = || ["X", "Y", "Z"][(place - machine.axes.len()).min(2)];

@@ -77,7 +77,7 @@ impl Cutter<'_> {
                 false => self
                     .reach(block, start, piece.end)
                     .filter(|to| self.holds(block, to, bow))
-                    // No word of the piece, or of what is left behind it, would change.
+                    // No word of the piece, or of what is left after it, would change.
                     .filter(|to| to.words != from.words && to.words != end.words),
             };
             let Some(to) = to else {

@@ -17,7 +17,7 @@ const MOST_HALVED: usize = 3;
 /// Samples are as far apart as this share of the way to the nearer end of their leg.
 const GRADE: f64 = 0.5;
 
-/// The samples of a leg behind its first, with more of them where it goes straight: `finest` apart at its ends.
+/// The samples of a leg after its first, with more of them where it goes straight: `finest` apart at its ends.
 pub(super) fn graded(first: &Sample, rest: &[Sample], finest: f64, out: &mut Vec<Sample>) {
     out.clear();
     let Some(end) = rest.last().map(|last| last.at) else {
@@ -44,7 +44,7 @@ pub(super) fn graded(first: &Sample, rest: &[Sample], finest: f64, out: &mut Vec
     }
 }
 
-/// As many samples behind the first as that, by halving the longest ways.
+/// As many samples after the first as that, by halving the longest ways.
 pub(super) fn at_least(count: usize, first: &Sample, samples: &mut Vec<Sample>) {
     while !samples.is_empty() && samples.len() < count {
         let from = |place: usize| {

@@ -24,7 +24,7 @@ impl Axes {
         Self { limits: AxisLimits::new(machine), count: machine.axes.len() }
     }
 
-    /// The coordinates of the tip stand behind the axes.
+    /// The coordinates of the tip stand after the axes.
     pub(super) fn programmed(&self) -> bool {
         self.limits.programmed.is_some()
     }
@@ -35,7 +35,7 @@ impl Axes {
         [&limits.velocity, &limits.acceleration, &limits.jerk].map(|of| of[..self.count].to_vec())
     }
 
-    /// Limits by place in the chain, those of the coordinates behind them.
+    /// Limits by place in the chain, those of the coordinates after them.
     fn each(&self, of: &[f64]) -> Vec<f64> {
         let mut each = of[..self.count].to_vec();
         if let Some(coordinates) = &self.limits.programmed {

@@ -29,7 +29,7 @@ use crate::blocks::{Block, Planned, STILL};
 use crate::stream::Flow;
 use crate::tightening::Tightening;
 
-/// Samples behind the first of a leg next to a stop or corner, where jerk is planned.
+/// Samples after the first of a leg next to a stop or corner, where jerk is planned.
 const LEAST_FOR_JERK: usize = 4;
 
 /// No samples are closer for the sake of accelerations, mm.
@@ -182,7 +182,7 @@ impl<'a> Line<'a> {
         (self.come, self.way) = (0, 0.0);
     }
 
-    /// A block follows that comes in so many legs.
+    /// Takes what the next block demands, which comes in `legs` legs.
     pub(super) fn due(&mut self, due: Due, legs: usize) {
         self.due.push_back(Due { legs, ..due });
     }

@@ -64,7 +64,7 @@ const STANDS: f64 = 1.001e-3;
 /// Where the placer is told that blocks are made with.
 pub(crate) type PlacerCell = Rc<RefCell<Option<Rc<Placer>>>>;
 
-/// Who looks on while feeds are planned.
+/// The observer of a plan, shared by what plans.
 type Watching<'a> = Rc<RefCell<&'a mut dyn PlanWatch>>;
 
 /// The stage that plans feeds.
@@ -78,7 +78,7 @@ pub(crate) struct Plan<'a> {
     run: Option<Run<'a>>,
     queue: Queue,
     account: Account,
-    /// Where the axes stand; none where nobody knows.
+    /// Where the axes stand; none where it is not known.
     stands: Option<Start>,
     /// Where the last leg of the curve ends.
     point: fit::Point,
@@ -237,7 +237,7 @@ impl<'a> Plan<'a> {
                     self.run = None;
                 }
             }
-            // Nobody knows where the tool stands behind it.
+            // Where the tool stands after it is not known.
             Command::Subprogram(_) => {
                 self.stop(out, findings);
                 self.stands = None;
@@ -295,7 +295,7 @@ impl<'a> Plan<'a> {
         }
         let tolerance = STANDS * self.machine.plan.smoothing;
         if distance(&self.point, &last) < tolerance {
-            // Too short for the curve: it is gone at the feed of the CL file, whatever comes before and behind it.
+            // Too short for the curve: it keeps the feed of the CL file, whatever comes before and after it.
             self.queue.push(Flow::Point(block));
             self.account.give_up(1);
             return;

@@ -54,7 +54,7 @@ pub(super) struct Queue {
     pub(super) profile: Profile,
     /// Time from the sample before to the one settled last, s.
     pub(super) seconds: f64,
-    /// Somebody looks on.
+    /// Whether there is an observer.
     pub(super) watched: bool,
     /// The sample settled last, as the path comes there, and as it leaves a corner.
     pub(super) stand: Option<Box<Stand>>,

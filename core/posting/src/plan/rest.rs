@@ -4,7 +4,7 @@ use post_machine::kinematics::Joints;
 
 use super::limits::Axes;
 
-/// A plan may keep errors that moving from rest to rest does not: only one that takes so many times longer is no plan.
+/// A plan may keep errors that moving from rest to rest does not: only one that takes this many times longer is discarded.
 const FAR_SLOWER: f64 = 1e4;
 
 /// The limits of the axes, by place in the chain.

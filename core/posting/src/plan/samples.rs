@@ -12,7 +12,7 @@ use post_machine::kinematics::{Course, Joints, MAX_AXES, ORDERS, Unreachable};
 use super::limits::Axes;
 use crate::accuracy::Placer;
 
-/// Axes of the chain, and the coordinates of the tip behind them.
+/// Axes of the chain, and the coordinates of the tip after them.
 pub(super) const MOST: usize = MAX_AXES + 3;
 
 /// Samples that are handed to the solver together.
@@ -36,7 +36,7 @@ pub(super) struct Place {
     course: Course,
 }
 
-/// A sample as those see it who look on.
+/// A sample as observers see it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stand {
     /// The control point and its derivatives.

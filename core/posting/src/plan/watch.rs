@@ -1,4 +1,4 @@
-//! Who looks on while feeds are planned.
+//! Observers of planned feeds.
 
 use post_machine::description::Machine;
 use post_machine::kinematics::{Course, ORDERS};
@@ -22,11 +22,11 @@ pub struct PlannedPoint<'p> {
     pub q: [f64; 3],
     /// The limit that is used most.
     pub limit: &'static str,
-    /// Place in the chain of the axis that it is of; behind them X, Y and Z of the tip.
+    /// Place in the chain of the axis that it is of; after them X, Y and Z of the tip.
     pub axis: Option<u16>,
 }
 
-/// Looks on while feeds are planned.
+/// Observes the feeds that are planned.
 pub trait PlanWatch {
     /// The next place, in order along the path.
     fn planned(&mut self, point: &PlannedPoint<'_>);

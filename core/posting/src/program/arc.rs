@@ -98,7 +98,7 @@ impl Arc {
         libm::fabs(self.radii[1] - self.radii[0])
     }
 
-    /// What else may be meant where the end lies just ahead of the start; an end just behind it is nearly a whole turn
+    /// What else may be meant where the end lies just ahead of the start; an end just after it is nearly a whole turn
     /// either way. `end` is the point that the file gives, in the frame of the arc.
     pub fn doubt(&self, end: Vector3<f64>) -> Option<ArcDoubt> {
         let ahead = self.axis.cross(&self.radial).dot(&(end - self.centre));
@@ -196,7 +196,7 @@ mod tests {
         assert!(matches!(turn, Some(ArcDoubt::Turn(ahead)) if (ahead - 2e-4).abs() < 1e-9));
         let short = doubt(point(10.0, 4e-3, 1.0), 1.0);
         assert!(matches!(short, Some(ArcDoubt::Short(ahead)) if (ahead - 4e-3).abs() < 1e-9));
-        // The start itself, an end behind it, an arc, and a half turn are what they are.
+        // The start itself, an end after it, an arc, and a half turn are what they are.
         assert_eq!(doubt(start, 1.0), None);
         assert_eq!(doubt(point(10.0, 2e-4, 0.0), -1.0), None);
         assert_eq!(doubt(point(10.0, 4e-3, 0.0), -1.0), None);

@@ -39,7 +39,7 @@ pub const MOST_WORDS: usize = 1_000;
 /// Different tools of one file, and different cutters of one that loads none.
 pub const MOST_TOOLS: usize = 1_000;
 
-/// A direction of any usual length made one; none if it has none: null, or so long or short that its square is lost.
+/// Normalises a direction; none if its length is zero, or so large or small that its square is lost.
 #[inline]
 pub(crate) fn direction(vector: Vector3<f64>) -> Option<Vector3<f64>> {
     (vector.amax() < 1e9).then(|| vector.try_normalize(1e-9)).flatten()

@@ -77,7 +77,7 @@ pub enum Command {
     Message(String),
     /// The work offset of this number holds from here on, the tool retracted: from 1.
     WorkOffset(u32),
-    /// A subprogram of the control runs, by its number. Where the tool stands behind it nobody knows.
+    /// A subprogram of the control runs, by its number. Where the tool stands after it is not known.
     Subprogram(u32),
     /// The tool comes near anew, and the control may leave the path by other tolerances from there on; none: as it does
     /// by default.
@@ -101,7 +101,7 @@ pub enum Command {
     /// The tool axis stays from here on until the next of these, and the control is to be told a tilted plane for it,
     /// with this origin (mm, part frame); none: no plane.
     Still(Option<Vector3<f64>>),
-    /// The words behind it are those of this tilted plane, the tool having left the part; none: of no plane.
+    /// The words after it are those of this tilted plane, the tool having left the part; none: of no plane.
     Plane(Option<Box<TiltedPlane>>),
     /// The moves from here on are those of a hole, which the control may have a cycle for.
     Hole(HoleMark),
@@ -124,7 +124,7 @@ pub enum HoleMark {
 }
 
 impl Command {
-    /// The tool leaves the part: what comes behind begins anew.
+    /// The tool leaves the part: what comes after begins anew.
     pub(crate) fn leaves(&self) -> bool {
         matches!(
             self,

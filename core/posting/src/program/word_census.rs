@@ -124,7 +124,7 @@ impl WordCensus {
             })
     }
 
-    /// A warning for each word of `--allow` that nobody knows and the file does not have: a slip.
+    /// A warning for each word of `--allow` that is not known and that the file does not have: a slip.
     pub(crate) fn slips(&self, allowed: &[String]) -> impl Iterator<Item = Diagnostic> {
         let slip = |word: &&String| {
             MajorWord::find(word).is_none()

@@ -127,7 +127,7 @@ impl FeedWriter {
         self.per_minute(length / minutes, length)
     }
 
-    /// The feed of a way that nobody knows, but that the tool comes linearly, the rotary axes standing.
+    /// The feed of a way of which only this is known: the tool comes linearly, the rotary axes standing.
     pub(super) fn approach(&self, feed: f64) -> (Written, bool) {
         let allowed = feed.min(self.most);
         (self.per_minute(allowed / self.unit, 1.0), allowed < feed * (1.0 - SAME))
@@ -224,7 +224,7 @@ fn most(machine: &Machine) -> f64 {
     speeds.fold(f64::INFINITY, f64::min)
 }
 
-/// Numbers with so many decimals.
+/// Numbers with a fixed number of decimals.
 #[derive(Clone, Copy, Debug)]
 struct Printed {
     /// Ten to the number of decimals.
@@ -242,7 +242,7 @@ impl Printed {
         Self { scale, per_scale: 1.0 / scale, most: f64::INFINITY, per_minute: 1.0 }
     }
 
-    /// One over a time of which a minute has so many.
+    /// Takes the number as one over a time of which a minute has `per_minute`.
     fn per(self, per_minute: f64) -> Self {
         Self { per_minute, ..self }
     }

@@ -166,7 +166,7 @@ impl<'a> Timing<'a> {
         self.rapids.stand(block.tip);
     }
 
-    /// A time for a way that nobody knows has no meaning; without a feed a minute the way is made at rapid.
+    /// A time for a way that is not known has no meaning; without a feed a minute the way is made at rapid.
     fn approach(&mut self, block: &mut Block) {
         if let Pace::PerMinute(feed) = block.pace {
             let (written, limited) = self.feeds.approach(feed);
@@ -263,7 +263,7 @@ fn number(feed: Feed) -> f64 {
     }
 }
 
-/// A small number as people write it: no more than three digits behind the zeros.
+/// A small number as people write it: no more than three digits after the zeros.
 fn plain(value: f64) -> String {
     let zeros = if value > 0.0 { libm::floor(-libm::log10(value)).max(0.0) } else { 0.0 };
     let text = format!("{value:.0$}", zeros.min(12.0) as usize + 3);

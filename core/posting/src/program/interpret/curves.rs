@@ -153,7 +153,7 @@ impl Interpreter {
             return;
         };
         self.refuse_suspects();
-        // The RAPID that may stand behind the spline is meant for the record that ends it.
+        // The RAPID that may stand after the spline is meant for the record that ends it.
         let rapid = std::mem::take(&mut self.rapid);
         let pace = self.pace(record);
         self.rapid = rapid;

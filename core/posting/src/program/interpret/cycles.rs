@@ -49,7 +49,7 @@ impl Interpreter {
                 None => return,
             },
         };
-        // Behind it the tool stands at the level between the holes.
+        // After it the tool stands at the level between the holes.
         self.arrive(point + self.axis * drill.retract());
         emit(Step::Cycle(Box::new(CycleStep { cycle: drill, point: self.motion(point, feed) })));
     }
@@ -206,7 +206,7 @@ impl Interpreter {
             }
         };
         let feed = match definition.feed {
-            // A thread's feed follows from its pitch where nobody gives one.
+            // A thread's feed follows from its pitch where none is given.
             None if drill.taps() && drill.pitch().is_some() => {
                 drill.pitch().map(|pitch| FeedWord::PerRevolution(libm::fabs(pitch)))
             }

@@ -6,7 +6,7 @@ use post_machine::diagnostic::Diagnostic;
 use super::Interpreter;
 
 impl Interpreter {
-    /// What is wrong with the end of a file whose last record is `last`; `line_end` says whether a line end stands behind
+    /// What is wrong with the end of a file whose last record is `last`; `line_end` says whether a line end stands after
     /// it. The finding has no place yet.
     pub(crate) fn cut_off(&self, last: &str, line_end: bool) -> Option<Diagnostic> {
         if self.finished {

@@ -56,7 +56,7 @@ impl Interpreter {
     pub(super) fn feed_word(&mut self, record: &Record<'_>, feed: FeedRate) -> Option<FeedWord> {
         let value = feed.value.unwrap_or(0.0);
         if value <= 0.0 {
-            // CAM systems write 0 where nobody gave a feed.
+            // CAM systems write 0 where no feed was given.
             let told = self.told_feed().filter(|_| value == 0.0);
             if told.is_none() {
                 self.fault(

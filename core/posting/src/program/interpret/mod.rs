@@ -84,7 +84,7 @@ pub struct Interpreter {
     measured: bool,
     /// Some move was read.
     moved: bool,
-    /// Records behind a move that may carry a path, and that nobody here knows: none may be left out where a further
+    /// Records after a move that may carry a path, and are not known here: none may be left out where a further
     /// move follows.
     suspects: Vec<Suspect>,
     /// Some move was read since the last tool was loaded.
@@ -377,7 +377,7 @@ impl Interpreter {
                 self.load_told(record, emit);
                 self.spindle(record, *spindle, emit);
             }
-            // The kind stands in the record behind it.
+            // The kind stands in the record after it.
             Statement::Coolant(CoolantWord::On) if self.writer.autodesk => {}
             Statement::Coolant(word) => {
                 let coolant = match word {

@@ -154,7 +154,7 @@ impl Interpreter {
         self.resolved(record, feed)
     }
 
-    /// The tool comes to stand at `tip`.
+    /// Takes `tip` as where the tool stands.
     #[inline]
     pub(super) fn arrive(&mut self, tip: Vector3<f64>) {
         self.tip = Some(tip);

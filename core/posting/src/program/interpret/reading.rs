@@ -1,4 +1,4 @@
-//! How a file is to be read: what the user says of it, and what the machine file does.
+//! How a file is read: what the user and the machine file say of it.
 
 use post_grammar::{MajorWord, Units};
 use post_machine::description::{
@@ -7,7 +7,7 @@ use post_machine::description::{
 
 use crate::program::Unknown;
 
-/// How a file is to be read.
+/// How a file is read.
 #[derive(Clone, Debug, Default)]
 pub struct Reading {
     /// The file's name in messages.
@@ -54,12 +54,12 @@ pub struct Reading {
 /// What the spindle does where the file does not say.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ToldSpindle {
-    /// Nobody said: a cut is refused.
+    /// Not known: a cut is refused.
     #[default]
     Unknown,
     /// The spindle stands still, and the tool cuts so.
     Still,
-    /// The spindle turns at so many revolutions a minute.
+    /// The spindle turns at this speed, revolutions a minute.
     On(f64),
 }
 

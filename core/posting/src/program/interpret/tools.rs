@@ -70,7 +70,7 @@ impl Interpreter {
                 }
                 // Whatever is wrong with it, that it does not turn is not said too.
                 self.may_cut = true;
-                // CAM systems write 0 where nobody gave a speed.
+                // CAM systems write 0 where no speed was given.
                 self.rpm = self.rpm.filter(|rpm| *rpm > 0.0).or(self.reading.spindle.speed());
                 let Some(rpm) = self.rpm else {
                     self.fault(

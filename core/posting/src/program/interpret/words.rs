@@ -55,7 +55,7 @@ impl Interpreter {
         }
     }
 
-    /// A record that may carry a path and that nobody here knows; false if it may be left out all the same, since the
+    /// A record that may carry a path and is not known here; false if it may be left out all the same, since the
     /// tool has not moved yet.
     fn carries_path(&mut self, record: &Record<'_>, word: &str) -> bool {
         if record.statement.unknown_path() == Some(UnknownPath::Word) {
@@ -89,7 +89,7 @@ impl Interpreter {
         }
     }
 
-    /// The file ends: no move follows, so that the records are as any other that nobody knows.
+    /// The file ends: no move follows, so that the records are as any other that is not known.
     pub(super) fn clear_suspects(&mut self) {
         for Suspect { word, place } in std::mem::take(&mut self.suspects) {
             match self.reading.allows(&word) {

@@ -7,7 +7,7 @@ pub(super) struct Writer {
     pub(super) catia: bool,
     /// `MODE/MILL`.
     pub(super) milling: bool,
-    /// `LOADTL` with four numbers behind `MODE/MILL`: a stock APT post of Autodesk.
+    /// `LOADTL` with four numbers after `MODE/MILL`: a stock APT post of Autodesk.
     pub(super) autodesk: bool,
     /// What it means by `SPINDL/ON` was told.
     pub(super) told_spindle: bool,
@@ -21,7 +21,7 @@ pub(super) struct Writer {
 /// What the points are under `CUTCOM`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CutPoints {
-    /// Points of the contour, or nobody says otherwise.
+    /// Points of the contour, or nothing says otherwise.
     Contour,
     /// The tool's centre; the file says so in the words of this text.
     Centre(&'static str),

@@ -123,7 +123,7 @@ impl Scaled {
                     }
                 }
                 let size = a[0].abs().max(a[1].abs());
-                // A row that no `q` of the sets can break is none.
+                // A row that no `q` of the sets can break is left out.
                 if a[0].abs() + a[1].abs() + shift.abs() < 1.0 || size == 0.0 {
                     continue;
                 }

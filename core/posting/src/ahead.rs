@@ -1,6 +1,6 @@
 //! What of a CL file is known before its program is written: a first pass over its records, where it can be read twice.
 //!
-//! Nothing is posted by it: the interpreter settles what is modal, and what comes of it is looked at, not kept. Memory
+//! Nothing is posted by it: the interpreter settles what is modal, and its steps are examined, not kept. Memory
 //! does not grow with the file beyond [`MOST_STRETCHES`].
 //!
 //! [`AheadPass`] takes the records and hands every step to the parts of what is to be known; [`Ahead`] is what they
@@ -55,7 +55,7 @@ impl AheadPass {
         let still = &mut self.still;
         self.interpreter.record(record, &mut |step| still.step(record.line, &step));
         if self.interpreter.has_findings() {
-            // They are told when the program is made.
+            // They are reported when the program is made.
             self.interpreter.take_findings();
         }
     }

@@ -113,7 +113,7 @@ impl Keeps {
             && self.writes.has(Capabilities::ARC_RADIUS)
     }
 
-    /// A helix is told by its turn alone.
+    /// A helix is given by its turn alone.
     pub(crate) fn by_turn(&self) -> bool {
         self.writes.has(Capabilities::HELIX_BY_TURN)
     }
@@ -130,7 +130,7 @@ impl Keeps {
             && (2..=MOST_CHORDS).contains(&chords)
     }
 
-    /// Some arc may be written; `planes` if the control may have been told a tilted plane.
+    /// Whether some arc may be written; `planes` if the control may have a tilted plane.
     fn writes(&self, planes: bool) -> bool {
         let possible =
             |axis| self.about(axis, false, false) || planes && self.about(axis, false, true);

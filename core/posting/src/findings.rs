@@ -1,7 +1,7 @@
-//! What is found wrong on the way, complete at birth: every finding that has a line gets its file and the line's
+//! What is found wrong on the way, complete where it is made: every finding that has a line gets its file and the line's
 //! text when it is made.
 //!
-//! What is found a thousand times is told once, where it was found first, with how often; of a limit that is passed also
+//! What is found a thousand times is reported once, where it was found first, with how often; of a limit that is passed also
 //! how far.
 
 use std::cell::RefCell;
@@ -11,10 +11,10 @@ use post_machine::diagnostic::{Diagnostic, Extreme, Place, Severity, unreadable}
 
 use crate::source_buffer::SourceBuffer;
 
-/// Faults of one run that are told, those found first; what comes after is most likely more of the same.
+/// Faults of one run that are reported, those found first; what comes after is most likely more of the same.
 pub const MOST_FAULTS: usize = 20;
 
-/// Warnings of one run that are told; of the others how many there are.
+/// Warnings of one run that are reported; of the others how many there are.
 pub const MOST_WARNINGS: usize = 100;
 
 /// Points at which one limit is passed before reading stops: the farthest of this many is as good as any.
@@ -39,7 +39,7 @@ struct Inner {
     repeats: Vec<Repeat>,
     /// Faults, repeated ones counted once.
     faults: usize,
-    /// Warnings beyond those that are told.
+    /// Warnings beyond those that are reported.
     untold: u64,
     /// Some fault was found so often that reading stops.
     enough: bool,
@@ -56,7 +56,7 @@ struct Repeat {
     extreme: Option<(Extreme, u64)>,
 }
 
-/// Findings of one kind are told once: of the same limit, or whose sentences differ in their numbers alone.
+/// Findings of one kind are reported once: of the same limit, or whose sentences differ in their numbers alone.
 #[derive(Debug, PartialEq, Eq)]
 struct Kind {
     severity: Severity,

@@ -61,7 +61,7 @@ pub(crate) fn no_way_off(machine: &Machine) -> Option<Diagnostic> {
     })
 }
 
-/// A control whose zero of the machine is the builder's, or a switch, is told by the machine file where to retract.
+/// A control whose zero of the machine is the builder's, or a switch, gets from the machine file where to retract.
 pub(crate) fn retract_not_said(machine: &Machine, writes: Capabilities) -> Option<Diagnostic> {
     let lacks = writes.has(Capabilities::RETRACT_SAID) && !machine.frame.retract_said;
     let (joint, end) = machine.frame.retract.first().filter(|_| lacks)?;
@@ -346,7 +346,7 @@ pub(crate) fn no_smoothing(machine: &Machine, writes: Capabilities) -> Option<Di
     })
 }
 
-/// Tolerances below what the words round off, told before anything is made: pieces without end would go in, and none
+/// Tolerances below what the words round off, reported before anything is made: pieces without end would go in, and none
 /// of them help.
 pub(crate) fn too_fine(machine: &Machine, format: &Format) -> Option<Diagnostic> {
     let heads = machine.heads.iter().map(|head| &head.machine);

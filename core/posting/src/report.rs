@@ -48,7 +48,7 @@ pub struct Report {
     pub axis_tolerance_deg: f64,
     /// What of each axis was used.
     pub axes: Vec<AxisRange>,
-    /// The tools that were worked with, each with the length that travel was checked with.
+    /// The tools that were used, each with the length that travel was checked with.
     pub tools: Vec<ToolUse>,
     /// Times that another branch of the solution or another full turn was taken, off the part.
     pub branch_changes: u64,

@@ -19,7 +19,7 @@ pub struct PathPoint {
     pub tip: Vector3<f64>,
     /// Tool axis, unit vector, part frame.
     pub axis: Vector3<f64>,
-    /// The tool comes to it at feed.
+    /// The tool reaches it at feed.
     pub cuts: bool,
     /// The tool has left the part since the point before.
     pub begins: bool,

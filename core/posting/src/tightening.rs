@@ -29,7 +29,7 @@ impl TightPlace {
     }
 }
 
-/// The places that are to be gone through with less contour error than the limit allows.
+/// The places that are to have less contour error than the limit allows.
 ///
 /// What several rounds have found multiplies; where places of one round overlap, the smallest share counts.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -141,7 +141,7 @@ mod tests {
         let rounds = [0.0, 2.0, 5.0].map(|x| tightening.rounds_at(7, &at(x)));
         assert_eq!(rounds, [2, 1, 0]);
         assert_eq!(tightening.places(), 4);
-        // A round that has found nothing is none.
+        // A round that has found nothing is not kept.
         tightening.push(Vec::new());
         assert_eq!(tightening.share(7, &at(0.0)), 0.25);
     }

@@ -42,7 +42,7 @@ pub(super) struct Smoother<const W: usize> {
     lengths: Vec<f64>,
     /// Spans whose length was settled by the window before.
     settled: usize,
-    /// Spans that are looked at; what comes after is known too little of.
+    /// Spans that are smoothed; of what comes after too little is known.
     active: usize,
     /// The lengths of the window before in distances of knots, in the mean.
     pace: f64,
@@ -216,7 +216,7 @@ impl<const W: usize> Smoother<W> {
         for span in self.lengths.len()..track.spans.len() {
             self.lengths.push(pace * Self::width(track, span));
         }
-        // An end that is none would bend the curve straight as far as smoothing reaches.
+        // A false end would bend the curve straight as far as smoothing reaches.
         if !ends && let Some(last) = self.lengths.last_mut() {
             *last = last.min(track.spans[track.spans.len() - 1].width);
         }

@@ -27,7 +27,7 @@ pub(super) struct Leg {
     carried: f64,
 }
 
-/// A place where the spline is held against the polyline.
+/// A place where the spline is compared with the polyline.
 #[derive(Clone, Debug)]
 pub(super) struct Site {
     pub(super) at: f64,

@@ -208,7 +208,7 @@ impl Stretch<'_> {
         };
         for (interval, &tangent) in tangents.iter().enumerate() {
             let first = spline.first(interval);
-            // The rows of an interval that begins with the same unknown are told together.
+            // The rows of an interval that begins with the same unknown go together.
             while program.offsets.len() <= first {
                 program.offsets.push(program.rows.len());
             }

@@ -138,7 +138,7 @@ impl Spline {
         weights
     }
 
-    /// What a form of an interval comes to.
+    /// Value of a form of an interval.
     pub(super) fn value(&self, interval: usize, form: Form, unknowns: &[f64]) -> f64 {
         let place = &self.unknowns[interval..interval + 3];
         form.iter().zip(place).map(|(a, &at)| a * unknowns[at]).sum()

@@ -6,7 +6,7 @@ use crate::samples::Samples;
 use crate::table::{Row, Table};
 
 /// `|Q' * s̈ + Q'' * q| <= a` of each axis, with `s̈ = (q[i + 1] - q[i]) / (2 * step)` between two samples: linear in
-/// both. Where a row is kept is told by [`Collocation`]; [`Collocation::Start`] is eq. 23 as it is printed.
+/// both. [`Collocation`] says where a row is kept; [`Collocation::Start`] is eq. 23 as it is printed.
 #[derive(Clone, Debug)]
 pub struct AxisAcceleration {
     /// Largest acceleration of each axis, in its unit per second squared.

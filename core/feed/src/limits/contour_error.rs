@@ -31,7 +31,7 @@ const STRAIGHT: f64 = 1e-6;
 /// too. The axes are then the first of [`Samples::axes`], and what stands after them there moves no tip; one without a
 /// servo answers [`Answer::EXACT`].
 ///
-/// **Where it is not known** the axes are those that lead the tip, and a local arc of radius `ρ` is gone with
+/// **Where it is not known** the axes are those that lead the tip, and a local arc of radius `ρ` is followed at
 /// `ω = f / ρ`. The steady path of the axes strays from it by at most `ρ * D(ω)`, so `f <= ρ * ω0` with the largest `ω0`
 /// for which `D <= tolerance / ρ` up to it. `D = |1 - |G||` where all axes have the same response `G` (eqs. 6, 7). Where
 /// two differ it is the largest `|1 - |G||` of them plus half the largest difference of their phases in radians: one
@@ -184,7 +184,7 @@ fn rows(first: &Bound, last: &Bound, step: f64) -> [Row; 4] {
     [row(first, false, 1.0), row(first, false, -1.0), row(last, true, 1.0), row(last, true, -1.0)]
 }
 
-/// Share of its radius by which the steady path of the axes strays from a circle that is gone with `frequency` rad/s.
+/// Share of its radius by which the steady path of the axes strays from a circle that is followed at `frequency` rad/s.
 #[must_use]
 pub fn deviation(axes: &[&dyn Response], frequency: f64) -> f64 {
     let answers: Vec<_> = axes.iter().map(|axis| axis.at(frequency)).collect();
@@ -213,7 +213,7 @@ impl Limit for ContourError {
             if samples.rates.len() >= self.lags.axes() {
                 return self.through_axes(samples, table);
             }
-            // Of axes that nothing is known of no bound can be told.
+            // No bound is known for axes of which nothing is known.
             return (0..samples.len()).for_each(|sample| table.lower(sample, f64::NAN, None));
         }
         let moving = Place::all(samples, self.collocation).filter(|place| !place.is_still());

@@ -140,7 +140,7 @@ impl Place {
 
     /// Bounds the speed of the parameter there.
     pub(crate) fn bound(&self, table: &mut Table<'_>, speed: f64) {
-        // A speed below 0 is none, and must not become one by being squared.
+        // A speed below 0 is invalid, and must not become valid by being squared.
         let bound = if speed >= 0.0 { speed * speed } else { f64::NAN };
         for sample in self.samples.clone() {
             table.lower(sample, bound, None);

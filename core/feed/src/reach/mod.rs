@@ -1,7 +1,7 @@
 //! Reachability analysis: the fastest plan in linear time, two passes.
 //!
 //! Backwards, the *controllable set* of each sample is found: the interval of `q` from which the rest of the path can
-//! be gone without breaking a limit. Forwards, the largest `q` is taken at each sample that the one before allows and
+//! be followed without breaking a limit. Forwards, the largest `q` is taken at each sample that the one before allows and
 //! that stays in the controllable set. So the plan keeps every limit at zero-inertia points too, and where limits are
 //! not monotone: the forward pass cannot run into a place that has no way on (Pham and Pham, *A new approach to
 //! time-optimal path parameterization based on reachability analysis*, 2018).
@@ -22,7 +22,7 @@ pub use stream::{Settled, Stream};
 /// Controllable sets, and the plan through them; its memory is used again from problem to problem.
 #[derive(Clone, Debug, Default)]
 pub struct Reach {
-    /// Smallest `q` of each sample from which the rest of the path can be gone.
+    /// Smallest `q` of each sample from which the rest of the path can be followed.
     low: Vec<f64>,
     /// The largest.
     high: Vec<f64>,
@@ -77,7 +77,7 @@ impl Reach {
         Ok(())
     }
 
-    /// The smallest and largest `q` of each sample from which the rest of the path can be gone, as
+    /// The smallest and largest `q` of each sample from which the rest of the path can be followed, as
     /// [`Reach::controllable`] found them.
     #[must_use]
     pub fn sets(&self) -> (&[f64], &[f64]) {

@@ -18,7 +18,7 @@ const SHORTEST: f64 = 1.0 / (1u64 << 22) as f64;
 /// Points put in may use so much of the tool axis' tolerance.
 const ROOM: f64 = 0.9;
 
-/// A piece whose quick bound is over by this factor is most likely over: its middle is looked at first.
+/// A piece whose quick bound is over by this factor is most likely over: its middle is tried first.
 const LIKELY: f64 = 3.0;
 
 /// What was found of a piece.

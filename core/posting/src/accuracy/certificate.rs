@@ -81,7 +81,7 @@ pub struct Course {
     pub fourth: Bend,
 }
 
-/// The curve of a course is looked at in this many pieces.
+/// The curve of a course is bounded in this many pieces.
 const PIECES: u32 = 16;
 
 impl Course {

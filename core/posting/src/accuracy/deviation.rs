@@ -114,7 +114,7 @@ impl Move<'_> {
     /// Is the middle of the block so far off that no bound can clear it? Cheaper than any bound that is worth more
     /// than the quick one; what stands within tolerance in the middle may still be over elsewhere.
     ///
-    /// A leading edge is not looked at.
+    /// A leading edge is not counted.
     pub(super) fn over_halfway(&self) -> bool {
         let (from, to) = (self.from, self.to);
         let pose = self.placer.solver().chain().halfway(&from.trace, &to.trace);

@@ -9,7 +9,7 @@ use post_machine::kinematics::Pose;
 use post_machine::kinematics::orientation::angle;
 
 /// A bound on the second derivative of the wanted edge over a piece between two wanted poses; infinite where the
-/// heading may come to lie along the tool axis, for there the edge turns round.
+/// heading may lie along the tool axis, for there the edge turns round.
 ///
 /// With `u` the tool axis, `h` the heading, `w` the wanted edge, `v = u×w`: `h = c·u + s·w`, s the sine of the angle
 /// between heading and axis. Along their great circles u turns by at most `a` and h by at most `b` in all. The frame

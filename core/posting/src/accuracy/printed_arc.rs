@@ -1,7 +1,7 @@
 //! An arc as a control makes it of the printed words, and how far it is from the arc of the CL file.
 //!
 //! The control turns evenly about the centre from the printed start to the printed end; where these differ in their
-//! distance from the centre, that goes evenly from one to the other, as the height does. A helix that is told by its turn
+//! distance from the centre, that goes evenly from one to the other, as the height does. A helix that is given by its turn
 //! stays at its first distance: it ends beside the words. All in the frame of the linear words, in mm.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -53,7 +53,7 @@ fn toward(angle: f64) -> Vector2<f64> {
     Vector2::new(cosine, sine)
 }
 
-/// An angle as it is told, radians: to 0.00001 degrees.
+/// An angle as it is printed, radians: to 0.00001 degrees.
 fn told(angle: f64) -> f64 {
     (libm::rint(angle.to_degrees() * 1e5) / 1e5).to_radians()
 }

@@ -1,6 +1,6 @@
 //! A run: CL points that follow one another without a corner, a change of feed or anything between them.
 //!
-//! A block may go along several legs of a run. It is held against each of them: where the axes stand when the block
+//! A block may go along several legs of a run. It is compared with each of them: where the axes stand when the block
 //! passes a CL point is put beside that point, and between two such places the block is a move like any other, so
 //! that the same bounds hold. Which share of the block belongs to which CL point is free as long as the shares never
 //! decrease; the one at which the tip is beside the CL point is taken. So the bound is one on the Fréchet distance: tip

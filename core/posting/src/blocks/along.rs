@@ -80,7 +80,7 @@ impl Following {
 }
 
 impl Blocks<'_> {
-    /// The curve that is on its way has come to its end, or is broken off: it is kept or gone by its moves. Nothing is
+    /// The curve that is on its way has come to its end, or is broken off: it is kept or made by its moves. Nothing is
     /// solved ahead in `placed`.
     pub(super) fn go_along(
         &mut self,
@@ -247,7 +247,7 @@ impl Blocks<'_> {
     ) -> Option<ArcBlock> {
         let mut ends = [placer.printed(from)?, placer.printed(node)?];
         let (axis, sense) = about;
-        // A helix may have ended beside its words: the next arc begins there, and one told by its turn turns as much as
+        // A helix may have ended beside its words: the next arc begins there, and one given by its turn turns as much as
         // words say.
         let stands = frame.point(from.tip);
         let beside = self.keeps.by_turn() && (stands - ends[0]).norm() > SAME;

@@ -12,7 +12,7 @@ use crate::accuracy::{Bound, Node, Placer};
 use crate::program::{Motion, Pace};
 use crate::stream::Flow;
 
-/// A shorter way in or down is none, mm.
+/// Least way in or down; a shorter one is left out, mm.
 const LEAST: f64 = 1.0;
 
 /// Distance along its line at which a tool stands that wins no height there, mm: as far as one that leans is drawn back

@@ -1,7 +1,7 @@
 //! Where the control keeps the tip, the machine's own linear axes leave the straight line between the words: how far
 //! they go on the way, and how fast.
 //!
-//! A cheap bound clears nearly all blocks; the others are looked into ([`KeptTip`]).
+//! A cheap bound clears nearly all blocks; the others are worked out ([`KeptTip`]).
 
 use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
@@ -16,7 +16,7 @@ use crate::refusal::{self, FINDS_A_MOUNT};
 /// No control resolves less, mm: an axis may pass the end of its travel by this between the words.
 const RESOLVED: f64 = 1e-4;
 
-/// What range and way of an axis may be off by in a block without its being looked into, mm.
+/// What range and way of an axis may be off by in a block without its being worked out, mm.
 const UNSEEN: f64 = 1e-3;
 
 /// The least time of a block in which the linear axes keep up.
@@ -35,7 +35,7 @@ pub(crate) struct BetweenWords {
     keeps: bool,
     /// Minutes that each axis needs for one mm or radian at its largest feed.
     slowness: Joints,
-    /// Least and largest values in the blocks that were looked into, mm.
+    /// Least and largest values in the blocks that were worked out, mm.
     least: Joints,
     most: Joints,
     /// What each axis goes beside the way from word to word, mm.

@@ -113,7 +113,7 @@ pub enum Reason {
     Rewind,
     /// The planned feed changes there.
     Feed,
-    /// A first position is come to from there, along the tool's own line, or that place along the depth axis.
+    /// A first position is reached from there, along the tool's own line, or that place along the depth axis.
     Above,
     /// Ends on a CL point, a first position with nothing above it: all words stand in one block.
     AtOnce,

@@ -59,7 +59,7 @@ impl Blocks<'_> {
         );
     }
 
-    /// Told once a program.
+    /// Reported once a program.
     fn refuse_compensation(&mut self, line: u64, why: &str, help: &str, findings: &Findings) {
         if std::mem::replace(&mut self.told_compensation, true) {
             return;

@@ -1,5 +1,5 @@
 //! Runs of points as the fewest arcs and lines that stay within the tolerance of the path, each certified. The rotary axes
-//! stand along them; a leg in which one turns is gone as it is.
+//! stand along them; a leg in which one turns stays as it is.
 //!
 //! From each point the piece that reaches farthest is taken. Where every part of a piece that is near enough is near
 //! enough itself, no choice has fewer.
@@ -163,7 +163,7 @@ impl Blocks<'_> {
         let wanted = &laid.wanted[at..=end];
         [2, 1, 0].into_iter().find_map(|axis| {
             let rise = ends[1][axis] - ends[0][axis];
-            // Where a helix ends that is told by its turn, no leg begins.
+            // Where a helix ends that is given by its turn, no leg begins.
             let helix = rise != 0.0;
             if helix && self.keeps.by_turn() || !self.keeps.about(axis, helix, self.in_plane()) {
                 return None;

@@ -52,7 +52,7 @@ struct Leg<'m> {
     motion: &'m Motion,
     /// Leg off the part: the tolerance of a rapid is enough.
     loose: bool,
-    /// Why it is gone, if not to come to its CL point.
+    /// Why it is there, if not to reach its CL point.
     reason: Reason,
 }
 
@@ -321,7 +321,7 @@ impl<'a> Blocks<'a> {
                 self.last = None;
                 self.on_part = false;
             }
-            // Its place is told where it begins.
+            // Its place is reported where it begins.
             Command::Still(origin) => return self.still(line, *origin, to),
             Command::Head(name) => {
                 self.depart(line, to);

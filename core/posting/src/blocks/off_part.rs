@@ -23,7 +23,7 @@ const AWAY: f64 = 1e-3;
 /// A way across the tool axis is one but for so much.
 const SIDEWAYS: f64 = 1e-6;
 
-/// What a way is cut short by must be more to be told, mm.
+/// Least shortening of a way that is reported, mm.
 const SHORT: f64 = 1e-3;
 
 /// How far a tool that leans is drawn back where the machine has no `[rewind]`, mm: the first that travel allows.

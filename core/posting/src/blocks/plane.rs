@@ -29,7 +29,7 @@ pub(super) struct Planes {
     wanted: Option<Vector3<f64>>,
     /// Where the rotary axes stand in the present one, or where none is needed, as printed.
     stands: Option<Joints>,
-    /// Axes of the plane that was told as columns, part frame, while one is in force.
+    /// Axes of the plane that was printed, as columns, part frame, while one is in force.
     axes: Option<Matrix3<f64>>,
 }
 

@@ -29,7 +29,7 @@ pub(crate) struct Drives {
     in_position: f64,
 }
 
-/// More pieces than this of one rapid are not told apart.
+/// Most pieces of one rapid; more count as this many.
 const MOST_PIECES: f64 = 1024.0;
 
 impl Drives {

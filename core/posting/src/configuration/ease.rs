@@ -29,7 +29,7 @@ impl Route<'_> {
                 self.ease_fastest(way, run.clone(), pole);
             } else {
                 self.ease_run(way, run.clone(), pole, 1.0);
-                // The point after the run is come to from it.
+                // The point after the run is reached from it.
                 let end = (run.end + 1).min(self.trellis.layers.len());
                 if !self.comes_through(way, run.start.max(1)..end) {
                     way.eased.retain(|(layer, _)| *layer < run.start);

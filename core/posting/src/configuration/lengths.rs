@@ -7,7 +7,7 @@ use post_machine::diagnostic::{Diagnostic, Short};
 use post_machine::kinematics::Joints;
 use post_plugin::Capabilities;
 
-/// What the control does with lengths, and what was told of it.
+/// What the control does with lengths, and what was reported of it.
 #[derive(Debug)]
 pub(super) struct Lengths {
     writes: Capabilities,
@@ -20,7 +20,7 @@ pub(super) struct Lengths {
     /// Tools whose length in the control is 0, and those whose length it has.
     zero: Vec<u32>,
     whole: Vec<u32>,
-    /// Heads of which it was told that their tool lies along another axis.
+    /// Heads of which it was reported that their tool lies along another axis.
     told: Vec<String>,
 }
 
@@ -45,7 +45,7 @@ impl Lengths {
         self.offset = Some(number);
     }
 
-    /// What is to be told before tool `tool`, of `length` mm, is used, with the head of `machine`; `base` is the machine as
+    /// What is to be reported before tool `tool`, of `length` mm, is used, with the head of `machine`; `base` is the machine as
     /// the dialect knows it. Where the words are axis positions they count from where the tip of the tool stands on the
     /// part origin: the control must shift the same axis by the length as they do.
     pub(super) fn check(

@@ -92,7 +92,7 @@ pub(crate) struct Configuration<'a> {
     tools: Vec<ToolUse>,
     /// The tool, with the head and the length that it has now, is among them.
     in_use: bool,
-    /// The speed that the spindle was told last, rpm.
+    /// The last speed of the spindle, rpm.
     speed: Option<f64>,
     /// The tool in use.
     tool: Option<Tool>,
@@ -139,7 +139,7 @@ impl<'a> Configuration<'a> {
         self.moves
     }
 
-    /// The tools that were worked with, in the order in which they came.
+    /// The tools that were used, in the order in which they came.
     pub(crate) fn tools(&self) -> &[ToolUse] {
         &self.tools
     }

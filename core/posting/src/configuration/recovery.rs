@@ -15,7 +15,7 @@ use post_machine::kinematics::{Joints, Unreachable};
 const MOST_POSITIONS: usize = 720;
 
 impl Route<'_> {
-    /// The newest point cannot be gone to. Finds a way, or says why there is none.
+    /// Finds a way where the newest point cannot be reached, or says why there is none.
     #[cold]
     pub(super) fn find_way(
         &mut self,

@@ -29,7 +29,7 @@ pub(crate) struct Layer {
     pub latitude: (f64, f64),
 }
 
-/// How a point is come to.
+/// How the tool arrives at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// Arrival from nowhere: the first position after a start or a tool change.
@@ -48,7 +48,7 @@ pub(crate) struct State {
     /// Which state of the marked point this one comes from.
     pub root: usize,
     pub branch: u8,
-    /// The point is come to with the values of this state of the trellis's `rewound`; there the tool is drawn
+    /// The tool arrives at the point with the values of this state of the trellis's `rewound`; there the tool is drawn
     /// back, turned to the values here, and brought back.
     pub rewind: Option<usize>,
 }
@@ -328,7 +328,7 @@ impl Trellis {
         for state in &self.states[last.first..last.first + last.count] {
             match ways.alive.get_mut(usize::from(state.branch)) {
                 Some(alive) => *alive = true,
-                // From a held joint every branch can be gone to.
+                // From a held joint every branch can be reached.
                 None => ways.alive = [true; 2],
             }
         }
@@ -352,7 +352,7 @@ impl Trellis {
     /// back by the turns between the two, is a way on from the cheaper one, each of its moves costs the same, and
     /// the whole stays cheaper by what the states differ by here.
     ///
-    /// If only states with the same turns were held against each other, a path that comes and goes at a pole would
+    /// If only states with the same turns were compared, a path that comes and goes at a pole would
     /// add a turn to either side each time, until there are [`MOST_STATES`] at every point.
     fn keep(&mut self, first: usize, state: State) {
         let axes = &self.axes;
@@ -435,7 +435,7 @@ impl Trellis {
         );
     }
 
-    /// Every set of turns of a stand, come to from one state or from nowhere.
+    /// Adds every set of turns of a solution, reached from one state or from nowhere.
     fn reach(&mut self, placer: &Placer, stand: &Stand, from: Option<usize>, near: &Joints) {
         let chain = placer.solver().chain();
         let Self { axes, measure, states, .. } = self;
@@ -531,7 +531,7 @@ impl Trellis {
                     }
                     continue;
                 }
-                // Of the turns that the axes can come to, the nearest that they do come to.
+                // Of the turns that the axes can reach, the nearest that they do reach.
                 let mut tried: Vec<Joints> = carried.into_iter().collect();
                 self.axes.other_turns(stand, &state.joints, &mut |joints| tried.push(*joints));
                 let from = (&from_pose, &state.joints);
@@ -558,7 +558,7 @@ impl Trellis {
         }
     }
 
-    /// How long that takes, with what is lost where the velocities change. (How a state was come to counts as it is cheapest
+    /// How long that takes, with what is lost where the velocities change. (How a state was reached counts as it is cheapest
     /// so far; a dearer way that would have gone on more smoothly is not known any more. And how the tool came to the first
     /// layer is not known at all.)
     #[cold]

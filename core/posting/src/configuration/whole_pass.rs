@@ -13,7 +13,7 @@ use crate::program::Motion;
 /// a fault.
 ///
 /// # Errors
-/// What the machine lacks, or every point that it cannot come to, by its place in `path` counted from 0.
+/// What the machine lacks, or every point that it cannot reach, by its place in `path` counted from 0.
 pub fn whole_pass(
     machine: &Machine,
     format: &Format,

@@ -168,7 +168,7 @@ impl Emit<'_> {
         }
     }
 
-    /// The control keeps the tip from here on, or no longer; for a dialect that is told so by itself.
+    /// The control keeps the tip from here on, or no longer; for a dialect that gets an event for it.
     pub(super) fn keep_tip(&mut self, line: u64, on: bool) {
         let switches =
             self.machine.control.tcp == Tcp::Control && self.writer.knows(Capabilities::TCP_SWITCH);

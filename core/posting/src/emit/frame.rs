@@ -11,7 +11,7 @@ use crate::blocks::{Block, Reason};
 use crate::findings::Findings;
 use crate::program::{Pace, Tool};
 
-/// Full turns that an axis may stand away from its park position before somebody is told, degrees.
+/// Full turns that an axis may stand away from its park position without a warning, degrees.
 const TURN: f64 = 360.0;
 
 /// What an axis does for the tool on its way to the part.
@@ -361,7 +361,7 @@ impl Emit<'_> {
         }
     }
 
-    /// The words after it are those of a plane, or of none: what the control was told before ends, the tool clear of the
+    /// The words after it are those of a plane, or of none: the plane before it ends, the tool clear of the
     /// part.
     pub(super) fn set_plane(&mut self, line: u64, plane: Option<Box<TiltedPlane>>) {
         if self.plane_on {

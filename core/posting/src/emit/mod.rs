@@ -50,7 +50,7 @@ pub(crate) struct Emit<'a> {
     commanded: Option<Event<'static>>,
     /// The tool was changed since.
     changed: bool,
-    /// The first position that the tool has come to without a speed of its own: the spindle stands until it has one, or
+    /// The first position that the tool has reached without a speed of its own: the spindle stands until it has one, or
     /// goes in.
     waits: Option<FirstPosition>,
     /// What the CL file last said of coolant.
@@ -61,7 +61,7 @@ pub(crate) struct Emit<'a> {
     curve: Option<Box<PrintedCurve>>,
     /// The tilted plane of the words.
     plane: Option<Box<TiltedPlane>>,
-    /// The control was told it.
+    /// Whether the control got it.
     plane_on: bool,
     /// The hole whose moves are coming.
     hole: Option<Box<Hole>>,
@@ -76,18 +76,18 @@ pub(crate) struct Emit<'a> {
     tool: Option<u32>,
     /// The work offset that the CL file names; none before it names one.
     offset: Option<u32>,
-    /// Set once it was told which mount travel was checked with.
+    /// Whether the mount that travel was checked with was reported.
     told_mount: bool,
     /// Whether it was reported that what a subprogram does is not checked.
     told_subprogram: bool,
-    /// Smoothing that is due, and what the control was told.
+    /// Smoothing that is due, and that which the control has.
     smoothing: Option<Smoothing>,
     smoothed: Option<Smoothing>,
-    /// What a dialect was told that switches the keeping of the tip by itself.
+    /// Last event of a dialect that has one for keeping the tip.
     keeps_tip: Option<bool>,
     /// The head in use, by its place among the machine's, once the CL file has named one.
     head: Option<usize>,
-    /// The head that the tool has worked with last came to the part with its own or the program's work offset.
+    /// The head that the tool was used with last came to the part with its own or the program's work offset.
     worked: bool,
     /// Cutter compensation that begins once the tool is at the part.
     compensation: Option<Compensation>,
@@ -442,7 +442,7 @@ fn across(machine: &Machine) -> Vec<usize> {
         .collect()
 }
 
-/// Where a tool has come to, and of which line of the CL file.
+/// Where a tool has arrived, and by which line of the CL file.
 #[derive(Clone, Copy, Debug)]
 struct FirstPosition {
     line: u64,

@@ -48,7 +48,7 @@ pub(crate) struct Expand {
     keeps: Option<Keeps>,
     /// The cycles that the dialect has words for, as far as the machine file wants them.
     cycles: Capabilities,
-    /// Where the tool axis stays, if the control is to be told planes.
+    /// Where the tool axis stays, if the control is to get planes.
     planes: Option<Planes>,
 }
 
@@ -347,7 +347,7 @@ fn capability(kind: Cycle) -> Capabilities {
     }
 }
 
-/// A cycle that no moves can do, and the control is not told.
+/// A cycle that no moves can do, and that the control does not get.
 fn no_moves(kind: Cycle) -> Diagnostic {
     let refused = Diagnostic::error(
         "cycle",

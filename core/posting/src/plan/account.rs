@@ -103,7 +103,7 @@ impl Account {
         }
     }
 
-    /// Counts samples of a path, all told, that might have been faster.
+    /// Sets the number of samples of a path that might have been faster.
     pub(super) fn uncertain(&mut self, samples: usize) {
         self.report.look_ahead_short = samples as u64;
     }

@@ -1,4 +1,4 @@
-//! How fast a corner of the path may be gone through.
+//! How fast the tool may go through a corner of the path.
 
 use post_feed::limits::ChordError;
 use post_machine::description::{CornerRule, Machine};

@@ -300,7 +300,7 @@ impl<'a> Line<'a> {
         Ok(())
     }
 
-    /// What is waiting is given up: why, if that was not told yet.
+    /// Gives up what is waiting: why, if that was not reported yet.
     pub(super) fn give_up(&mut self) -> Option<Diagnostic> {
         self.solver.clear();
         self.sampler.end();

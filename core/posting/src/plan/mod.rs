@@ -61,7 +61,7 @@ const SPACING: f64 = 2.0;
 /// What the fit takes for no way at all, in tolerances.
 const STANDS: f64 = 1.001e-3;
 
-/// Where the placer is told that blocks are made with.
+/// The placer that blocks are made with, from the stage that makes them.
 pub(crate) type PlacerCell = Rc<RefCell<Option<Rc<Placer>>>>;
 
 /// The observer of a plan, shared by what plans.
@@ -89,7 +89,7 @@ pub(crate) struct Plan<'a> {
     /// What the next block passes on its way.
     way: Vec<Vector3<f64>>,
     refused: bool,
-    /// What the machine cannot keep was told.
+    /// Whether what the machine cannot keep was reported.
     warned: bool,
     /// The control takes no block for shorter than this, s.
     least_block: f64,

@@ -7,7 +7,7 @@ pub(super) const STANDING: f64 = 0.02;
 /// No piece is slower than this share of its mean speed by the plan.
 const SLOWEST: f64 = 0.3;
 
-/// A plan is looked at wherever its speed has changed by this share.
+/// A plan is evaluated wherever its speed has changed by this share.
 const STEP: f64 = 0.05;
 
 /// Places between two samples at most.

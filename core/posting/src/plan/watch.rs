@@ -12,7 +12,7 @@ pub struct PlannedPoint<'p> {
     pub line: u64,
     /// Step from the place before, in units of the parameter.
     pub step: f64,
-    /// What the plan takes between the two places of an interval, s; told with each of them.
+    /// What the plan takes between the two places of an interval, s; the same at each of them.
     pub seconds: f64,
     /// The control point and its first three derivatives by the parameter, mm, part frame.
     pub tip: &'p [[f64; 3]; ORDERS],

@@ -42,7 +42,7 @@ struct Peck {
     full: bool,
 }
 
-/// A cycle at one hole as a control is told it.
+/// A cycle at one hole as the control gets it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drilling {
     /// The control's cycle.
@@ -268,7 +268,7 @@ impl DrillCycle {
         }
     }
 
-    /// As a control is told it; none if it has no words for it: pecks of two depths, or a first peck that differs.
+    /// The cycle as the control gets it; none if it has no words for it: pecks of two depths, or a first peck that differs.
     pub fn native(&self) -> Option<Drilling> {
         let step = match self.peck {
             // In one go all the same.

@@ -62,7 +62,7 @@ impl Frame {
     /// axis (`A`, `B`, `C`) and where it stands, radians.
     ///
     /// # Errors
-    /// If no axis is named, or the angle is none.
+    /// Fails if no axis is named, or the angle is not one.
     pub(crate) fn rotate(&mut self, rotate: &Rotate) -> Result<(char, f64), &'static str> {
         let place =
             rotate.axis.and_then(|axis| "ABC".find(axis)).ok_or("this index move names no axis")?;

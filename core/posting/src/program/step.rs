@@ -98,7 +98,7 @@ pub enum Command {
     AlongEnd,
     /// What is printed of the next block, which goes along a curve.
     Curve(Box<PrintedCurve>),
-    /// The tool axis stays from here on until the next of these, and the control is to be told a tilted plane for it,
+    /// The tool axis stays from here on until the next of these, and the control is to get a tilted plane for it,
     /// with this origin (mm, part frame); none: no plane.
     Still(Option<Vector3<f64>>),
     /// The words after it are those of this tilted plane, the tool having left the part; none: of no plane.

@@ -100,7 +100,7 @@ impl Rapids {
         false
     }
 
-    /// A first position is come to from above, by the depth axis alone: the feed, mm/min, if that is to be written as a
+    /// A first position is reached from above, by the depth axis alone: the feed, mm/min, if that is to be written as a
     /// feed move. If it is left to the control and the axis would be too fast, that is noted.
     pub(super) fn feed_down(&mut self, block: &Block) -> Option<f64> {
         if let Reason::Above | Reason::AtOnce = block.reason {
@@ -129,8 +129,8 @@ impl Rapids {
         None
     }
 
-    /// Feed to the place above a first position, which is come to from anywhere: whichever way that is, no axis goes
-    /// faster than the tip. How fast the axes are then is told of the way down.
+    /// Feed to the place above a first position, which is reached from anywhere: whichever way that is, no axis goes
+    /// faster than the tip. How fast the axes are then is reported of the way down.
     fn feed_across(&self, block: &Block) -> Option<f64> {
         let (Rapid::Linear, Some((chain, _))) = (self.mode, &self.down) else {
             return None;

@@ -25,7 +25,7 @@
 //! - Two straight axes that differ, on a circle: `L ṡ` is half of `ρ (δ_x - δ_y)` times the sine of twice the direction,
 //!   so the largest over the circle is the rule that [`super::deviation`] states for all directions together.
 //!
-//! **Frequency.** The path of the axes is looked at as a local circle: `ω = c ṡ`, where `c = |v ∧ w| / |v|²` is the speed
+//! **Frequency.** The path of the axes is taken as a local circle: `ω = c ṡ`, where `c = |v ∧ w| / |v|²` is the speed
 //! times the curvature of the path whose coordinates are those of the axes in mm at the tip, `v_k = |J_k| Q'_k` and
 //! `w_k = |J_k| Q''_k`; with three straight axes `ω = κ f`. As in eq. 11 it is at most the highest frequency.
 //!

@@ -12,7 +12,7 @@ use crate::program::{CycleStep, DrillCycle, Pace, Step};
 /// Pitch and feed a turn agree but for so much: a feed a minute is written without decimals.
 const SAME_PITCH: f64 = 0.01;
 
-/// The speed that the control is told, rpm: S has no decimals.
+/// The speed that the control gets, rpm: S has no decimals.
 fn printed_speed(rpm: f64) -> f64 {
     libm::round(rpm).max(1.0)
 }

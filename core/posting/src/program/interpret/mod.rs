@@ -102,7 +102,7 @@ pub struct Interpreter {
     register: Option<u32>,
     /// What the file has shown of who wrote it.
     writer: Writer,
-    /// Set once it was told what becomes of `CUTCOM` on points of the tool's centre.
+    /// Whether it was reported what becomes of `CUTCOM` on points of the tool's centre.
     told_on_centre: bool,
     /// `INDIRV`, unit vector, frame of the file.
     set_out: Option<Vector3<f64>>,

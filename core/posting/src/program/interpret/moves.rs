@@ -81,7 +81,7 @@ impl Interpreter {
         }
     }
 
-    /// Takes the axis of a six-number point; false if it is none.
+    /// Takes the axis of a six-number point; false if it is not an axis.
     #[inline]
     pub(super) fn set_axis(&mut self, record: &Record<'_>, axis: Option<[f64; 3]>) -> bool {
         let Some(axis) = axis else {

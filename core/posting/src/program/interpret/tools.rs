@@ -374,7 +374,7 @@ impl Interpreter {
     }
 
     /// Points of the tool's centre are already off the contour by its radius: a register that holds the radius would
-    /// add it once more. Told once a file.
+    /// add it once more. Reported once a file.
     fn check_on_centre(&mut self, record: &Record<'_>, register: u32) {
         let option = self.reading.compensation_on_centre;
         let (why, presumed) = match self.writer.points() {

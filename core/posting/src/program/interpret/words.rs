@@ -15,7 +15,7 @@ pub(super) struct Suspect {
     place: Place,
 }
 
-/// Largest number of suspects that are told of.
+/// Largest number of suspects that are reported.
 const MOST_SUSPECTS: usize = 100;
 
 impl Interpreter {

@@ -9,9 +9,9 @@ pub(super) struct Writer {
     pub(super) milling: bool,
     /// `LOADTL` with four numbers after `MODE/MILL`: a stock APT post of Autodesk.
     pub(super) autodesk: bool,
-    /// What it means by `SPINDL/ON` was told.
+    /// Whether it was reported what it means by `SPINDL/ON`.
     pub(super) told_spindle: bool,
-    /// What it means by the heights of cycles was told.
+    /// Whether it was reported what it means by the heights of cycles.
     pub(super) told_heights: bool,
     camworks: bool,
     /// What the file says of its points: those of the tool's centre, or of the contour.

@@ -6,6 +6,7 @@ mod failure;
 mod files;
 mod job;
 pub mod library;
+mod session;
 mod terminal;
 mod verbs;
 
@@ -13,26 +14,27 @@ use clap::Parser;
 
 use failure::Failure;
 use job::plugin_finder;
-use post_host::PluginFault;
+use session::Session;
+use terminal::Terminal;
 use verbs::CommandLine;
 
 /// Runs the command with the arguments of the process, to its end.
 pub fn run() -> ! {
     files::delete_on_signals();
-    let _watch = post_host::watch_for_exit(ended_by_a_plugin);
+    let session = Session::new(Terminal);
+    // A plugin that ends the process would else look like a command that has done its work.
+    let told = session.clone();
+    let _watch = post_host::watch_for_exit(move |fault| {
+        files::delete_temporary_files();
+        told.findings(&[plugin_finder::diagnostic(fault, &[], None)]);
+    });
     let done = CommandLine::try_parse()
         .map_err(|fault| Failure::Usage(verbs::misspelt().unwrap_or(fault)))
-        .and_then(CommandLine::run)
-        .and_then(|()| terminal::all_printed());
+        .and_then(|line| line.run(&session))
+        .and_then(|()| terminal::all_printed(&session));
     let code = done.as_ref().map_or_else(Failure::exit_code, |()| 0);
     if let Err(failure) = done {
-        terminal::explain(failure);
+        terminal::explain(&session, failure);
     }
     post_host::leave(code)
-}
-
-/// A plugin that ends the process would else look like a command that has done its work.
-fn ended_by_a_plugin(fault: &PluginFault) {
-    files::delete_temporary_files();
-    terminal::findings(&[plugin_finder::diagnostic(fault, &[], None)]);
 }

@@ -1,12 +1,11 @@
 //! Work that needs no Python: the interpreter's lock is released, and what goes wrong becomes an exception.
 
 use std::any::Any;
-use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::rc::Rc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use post_command::library::{Refused, stoppable};
+use post_command::library::{Refused, Stop};
 use post_machine::diagnostic::Diagnostic;
 use pyo3::prelude::*;
 
@@ -15,28 +14,37 @@ use crate::refusal;
 /// So long nobody asks whether the user has pressed Ctrl-C: asking takes the interpreter's lock.
 const BETWEEN: Duration = Duration::from_millis(50);
 
+/// When Python was asked last whether to go on, and what it said against it.
+struct Asking {
+    last: Instant,
+    raised: Option<PyErr>,
+}
+
+impl Asking {
+    fn is_stopped(&mut self) -> bool {
+        if self.raised.is_none() && self.last.elapsed() >= BETWEEN {
+            self.last = Instant::now();
+            self.raised = Python::attach(|py| py.check_signals()).err();
+        }
+        self.raised.is_some()
+    }
+}
+
+fn locked(asking: &Mutex<Asking>) -> std::sync::MutexGuard<'_, Asking> {
+    asking.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// Does `job` while other threads run Python. Ctrl-C ends it at the next piece of its CL file that is read.
 pub fn apart<T: Send>(
     py: Python<'_>,
-    job: impl FnOnce() -> Result<T, Refused> + Send,
+    job: impl FnOnce(&Stop) -> Result<T, Refused> + Send,
 ) -> PyResult<T> {
     let (done, raised) = py.detach(|| {
-        let raised = Rc::new(RefCell::new(None));
-        let (noted, asked) = (Rc::clone(&raised), Cell::new(Instant::now()));
-        let stop = move || {
-            if noted.borrow().is_some() {
-                return true;
-            }
-            if asked.get().elapsed() < BETWEEN {
-                return false;
-            }
-            asked.set(Instant::now());
-            let signals = Python::attach(|py| py.check_signals());
-            *noted.borrow_mut() = signals.err();
-            noted.borrow().is_some()
-        };
-        let job = AssertUnwindSafe(|| stoppable(Rc::new(stop), job));
-        (catch_unwind(job), raised.take())
+        let asking = Arc::new(Mutex::new(Asking { last: Instant::now(), raised: None }));
+        let asked = Arc::clone(&asking);
+        let stop: Stop = Arc::new(move || locked(&asked).is_stopped());
+        let done = catch_unwind(AssertUnwindSafe(|| job(&stop)));
+        (done, locked(&asking).raised.take())
     });
     match (raised, done) {
         (Some(raised), _) => Err(raised),
@@ -58,5 +66,5 @@ fn broken(panic: &(dyn Any + Send)) -> Diagnostic {
 /// A job that dies of a fault of our own, for the tests.
 #[pyfunction]
 pub fn fail(py: Python<'_>) -> PyResult<()> {
-    apart(py, || panic!("asked for"))
+    apart(py, |_| panic!("asked for"))
 }

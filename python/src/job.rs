@@ -43,12 +43,12 @@ impl Job {
 
     /// What was found when it is read back: JSON, and warnings.
     fn verify(&self, py: Python<'_>) -> PyResult<(String, Vec<Told>)> {
-        apart(py, || self.made.verify()).map(given)
+        apart(py, |stop| self.made.verify(stop)).map(given)
     }
 
     /// What is predicted: JSON, and warnings.
     fn predict(&self, py: Python<'_>, period: Option<f64>) -> PyResult<(String, Vec<Told>)> {
-        apart(py, || self.made.predict(period)).map(given)
+        apart(py, |stop| self.made.predict(stop, period)).map(given)
     }
 
     /// Writes its page.
@@ -61,7 +61,7 @@ impl Job {
         most_megabytes: u64,
     ) -> PyResult<()> {
         let told = ReportTold { verify, predict, most_megabytes };
-        apart(py, || self.made.report(&page, told))
+        apart(py, |stop| self.made.report(stop, &page, told))
     }
 
     /// Its blocks as columns, if they were kept: arrays, names of axes, and what numbers of kinds, reasons and limits mean.

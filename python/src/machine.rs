@@ -46,7 +46,7 @@ impl Machine {
         plugins: Vec<PathBuf>,
     ) -> PyResult<Self> {
         let told = MachineTold { name, set, mount, turn, tool_length, machines, plugins };
-        let loaded = apart(py, || LoadedMachine::load(told))?;
+        let loaded = apart(py, |stop| LoadedMachine::load(stop, told))?;
         Ok(Self { loaded })
     }
 
@@ -80,7 +80,7 @@ impl Machine {
         let mut axis = Array2::zeros((q.shape()[0], 3));
         let q = q.as_slice()?;
         if let (Some(tip), Some(axis)) = (tip.as_slice_mut(), axis.as_slice_mut()) {
-            apart(py, || {
+            apart(py, |_| {
                 self.loaded.kinematics().forward(q, tip, axis);
                 Ok(())
             })?;
@@ -107,7 +107,7 @@ impl Machine {
         let near = near.as_slice()?;
         let kinematics = self.loaded.kinematics();
         let Solutions { width, q, counts } =
-            apart(py, || kinematics.inverse(&wanted, near, within_travel))?;
+            apart(py, |_| kinematics.inverse(&wanted, near, within_travel))?;
         let q = shaped(Array3::from_shape_vec((points, width, kinematics.count()), q))?;
         Ok((q.into_pyarray(py), Array1::from(counts).into_pyarray(py)))
     }
@@ -128,7 +128,7 @@ impl Machine {
             edge: edge.as_ref().map(|edge| edge.as_slice()).transpose()?,
         };
         let cut = cut.as_slice()?;
-        let q = apart(py, || self.loaded.route(&wanted, cut))?;
+        let q = apart(py, |stop| self.loaded.route(stop, &wanted, cut))?;
         let count = self.loaded.kinematics().count();
         Ok(shaped(Array2::from_shape_vec((points, count), q))?.into_pyarray(py))
     }
@@ -141,7 +141,7 @@ impl Machine {
         options: Vec<(String, Option<String>)>,
         keep_blocks: bool,
     ) -> PyResult<Job> {
-        let made = apart(py, || self.loaded.post(&input, &options, keep_blocks))?;
+        let made = apart(py, |stop| self.loaded.post(stop, &input, &options, keep_blocks))?;
         Ok(Job { made })
     }
 
@@ -156,7 +156,7 @@ impl Machine {
         let (moves, places) = (q0.shape()[0], shares.shape()[0]);
         let (from, to, shares) = (q0.as_slice()?, q1.as_slice()?, shares.as_slice()?);
         let Deviations { tip, axis } =
-            apart(py, || Ok(self.loaded.kinematics().deviation([from, to], shares)))?;
+            apart(py, |_| Ok(self.loaded.kinematics().deviation([from, to], shares)))?;
         let tip = shaped(Array3::from_shape_vec((moves, places, 3), tip))?;
         let axis = shaped(Array2::from_shape_vec((moves, places), axis))?;
         Ok((tip.into_pyarray(py), axis.into_pyarray(py)))

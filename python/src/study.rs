@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 
 use numpy::{IntoPyArray, PyArray1};
-use post_command::library::{Refused, StudyJobs, StudyPart, Values};
+use post_command::library::{Refused, Stop, StudyJobs, StudyPart, Values};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
@@ -52,12 +52,12 @@ impl Study {
     fn with<T: Send>(
         &self,
         py: Python<'_>,
-        job: impl FnOnce(&mut StudyJobs) -> Result<T, Refused> + Send,
+        job: impl FnOnce(&Stop, &mut StudyJobs) -> Result<T, Refused> + Send,
     ) -> PyResult<T> {
-        apart(py, || {
+        apart(py, |stop| {
             // What a job that panicked left undone is done again.
             let mut jobs = self.jobs.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            job(&mut jobs)
+            job(stop, &mut jobs)
         })
     }
 }
@@ -71,23 +71,23 @@ impl Study {
         flags: Vec<String>,
         journal: Option<PathBuf>,
     ) -> PyResult<Self> {
-        let jobs = apart(py, || StudyJobs::new(lines, &flags, journal.as_deref()))?;
+        let jobs = apart(py, |stop| StudyJobs::new(stop, lines, &flags, journal.as_deref()))?;
         Ok(Self { jobs: Mutex::new(jobs) })
     }
 
     /// How many jobs there are.
     fn count(&self, py: Python<'_>) -> PyResult<usize> {
-        self.with(py, |jobs| Ok(jobs.count()))
+        self.with(py, |_, jobs| Ok(jobs.count()))
     }
 
     /// The numbers of those that are not done.
     fn open(&self, py: Python<'_>) -> PyResult<Vec<usize>> {
-        self.with(py, |jobs| Ok(jobs.open()))
+        self.with(py, |_, jobs| Ok(jobs.open()))
     }
 
     /// CL file and line of each of these jobs.
     fn lines(&self, py: Python<'_>, numbers: Vec<usize>) -> PyResult<Vec<(String, String)>> {
-        self.with(py, |jobs| {
+        self.with(py, |_, jobs| {
             let lines = numbers.iter().filter_map(|number| jobs.job(*number));
             Ok(lines.map(|(file, line)| (file.to_owned(), line)).collect())
         })
@@ -95,7 +95,7 @@ impl Study {
 
     /// The texts of all machines, to be handed over.
     fn machines(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |jobs| Ok(jobs.machines()))
+        self.with(py, |_, jobs| Ok(jobs.machines()))
     }
 
     /// Does what is not done on so many threads.
@@ -106,26 +106,26 @@ impl Study {
         told: Option<Py<PyAny>>,
     ) -> PyResult<()> {
         let mut looks = Looks { told, fault: None };
-        let done =
-            self.with(py, |jobs| jobs.run(threads, &mut |done, refused| looks.look(done, refused)));
+        let done = self
+            .with(py, |_, jobs| jobs.run(threads, &mut |done, refused| looks.look(done, refused)));
         looks.heard()?;
         done.map(drop)
     }
 
     /// Takes what `run_part` gave of these jobs; how many of them are not written.
     fn take(&self, py: Python<'_>, numbers: Vec<usize>, outcomes: Vec<String>) -> PyResult<usize> {
-        self.with(py, |jobs| jobs.take(&numbers, &outcomes))
+        self.with(py, |_, jobs| jobs.take(&numbers, &outcomes))
     }
 
     /// A job was lost with the process that did it.
     fn lost(&self, py: Python<'_>, number: usize, code: &str, message: &str) -> PyResult<()> {
-        self.with(py, |jobs| jobs.lost(number, code, message))
+        self.with(py, |_, jobs| jobs.lost(number, code, message))
     }
 
     /// The columns: numbers as float64, nan where there is none; counts as int64, or as float64 if one is missing; texts as
     /// lists with None.
     fn columns(&self, py: Python<'_>) -> PyResult<Vec<(String, Py<PyAny>)>> {
-        let table = self.with(py, |jobs| Ok(jobs.table()))?;
+        let table = self.with(py, |_, jobs| Ok(jobs.table()))?;
         let columns = table.columns.into_iter().map(|column| {
             let values = match column.values {
                 Values::Numbers(numbers) => floats(py, numbers.into_iter()),
@@ -147,13 +147,13 @@ impl Study {
 
     /// The bytes of the table as a file whose name ends so.
     fn bytes<'py>(&self, py: Python<'py>, ending: &str) -> PyResult<Option<Bound<'py, PyBytes>>> {
-        let bytes = self.with(py, |jobs| Ok(jobs.table().bytes(ending)))?;
+        let bytes = self.with(py, |_, jobs| Ok(jobs.table().bytes(ending)))?;
         Ok(bytes.map(|bytes| PyBytes::new(py, &bytes)))
     }
 
     /// Writes the table.
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        self.with(py, |jobs| jobs.write(&path))
+        self.with(py, |stop, jobs| jobs.write(stop, &path))
     }
 }
 
@@ -173,8 +173,8 @@ pub fn run_part(
     threads: Option<NonZeroUsize>,
 ) -> PyResult<Vec<String>> {
     let mut looks = Looks { told: None, fault: None };
-    let outcomes = apart(py, || {
-        let part = StudyPart::new(lines, &flags, files, machines)?;
+    let outcomes = apart(py, |stop| {
+        let part = StudyPart::new(stop, lines, &flags, files, machines)?;
         part.run(threads, &mut |done, refused| looks.look(done, refused))
     });
     looks.heard()?;

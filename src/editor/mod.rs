@@ -40,6 +40,7 @@ use std::path::PathBuf;
 use post_machine::diagnostic::Diagnostic;
 
 use crate::failure::Failure;
+use crate::session::Session;
 
 /// What the server is started with. What an editor sends later never names folders of plugins: a workspace may be a
 /// stranger's.
@@ -59,9 +60,9 @@ pub struct Options {
 ///
 /// # Errors
 /// What comes in is no Language Server Protocol, or the streams fail.
-pub fn serve(options: Options) -> Result<(), Failure> {
+pub fn serve(session: &Session, options: Options) -> Result<(), Failure> {
     let (connection, transport) = transport::open().map_err(|fault| failed(&fault.to_string()))?;
-    let served = server::run(&connection, options);
+    let served = server::run(session, &connection, options);
     // The writing thread ends when nothing can be sent any more.
     drop(connection);
     transport.end().map_err(|fault| failed(&fault.to_string()))?;

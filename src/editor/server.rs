@@ -24,12 +24,13 @@ use super::document::{Document, Kind, Snapshot};
 use super::machine::library::Library;
 use super::tiers::{self, Shown};
 use super::{Options, announced, answers, cl, commands, uri};
+use crate::session::Session;
 
 /// Serves an editor until it says that it ends, or is gone.
 ///
 /// # Errors
 /// What comes in is no protocol.
-pub fn run(connection: &Connection, options: Options) -> Result<(), String> {
+pub fn run(session: &Session, connection: &Connection, options: Options) -> Result<(), String> {
     let (id, params) = connection.initialize_start().map_err(|fault| fault.to_string())?;
     let about = json!({
         "capabilities": announced::capabilities(),
@@ -43,6 +44,7 @@ pub fn run(connection: &Connection, options: Options) -> Result<(), String> {
         shown: started.clone(),
         started,
         library: Library {
+            session: session.clone(),
             machines: options.machines,
             plugins: options.plugins,
             open: BTreeMap::new(),

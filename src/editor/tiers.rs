@@ -98,8 +98,8 @@ impl Work {
             Some(Err(faults)) => return self.tell(&faults, Keep::Nothing),
             Some(Ok(machine)) => machine,
         };
-        let (length, plugins) = (self.shown.tool_length, &self.library.plugins);
-        match cl::post(&self.of, machine, length, plugins, &self.token) {
+        let length = self.shown.tool_length;
+        match cl::post(&self.of, machine, length, &self.library, &self.token) {
             None => {}
             Some(Err(faults)) => self.tell(&faults, Keep::Nothing),
             Some(Ok((posted, found))) => {
@@ -120,8 +120,8 @@ impl Work {
             Some(Err(faults)) => return self.tell(&faults, Keep::Nothing),
             Some(Ok(machine)) => machine,
         };
-        let (length, plugins) = (self.shown.tool_length, &self.library.plugins);
-        match nc::read(&self.of, machine, length, plugins, &self.token) {
+        let length = self.shown.tool_length;
+        match nc::read(&self.of, machine, length, &self.library, &self.token) {
             None => {}
             Some(Err(faults)) => self.tell(&faults, Keep::Nothing),
             Some(Ok((program, found))) => self.tell(&found, Keep::Program(program)),

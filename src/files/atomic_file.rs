@@ -10,10 +10,11 @@ use post_posting::Output;
 
 use super::file_id::folder;
 use super::naming::{self, Unnamed};
-use super::outcome::{self, Became};
+use super::outcome::Became;
 use super::target::{Place, Role, Target, refuse_losses};
 use super::temporary::Temporary;
 use super::{FileFault, PathArg, rights, standard};
+use crate::session::Session;
 
 /// A text in the making. Dropped before [`AtomicFile::finish`], it leaves nothing behind, nor if the command is
 /// interrupted.
@@ -27,15 +28,15 @@ impl AtomicFile {
     ///
     /// # Errors
     /// One of them cannot be written, or would take the place of a file that is read, or of another one.
-    pub fn create(targets: &[(Role, &PathArg)]) -> Result<Vec<Self>, FileFault> {
+    pub fn create(session: &Session, targets: &[(Role, &PathArg)]) -> Result<Vec<Self>, FileFault> {
         let targets: Vec<Target> = targets
             .iter()
             .map(|(role, named)| Target::find(*role, named))
             .collect::<Result<_, _>>()?;
         for target in targets.iter().filter(|target| target.replaces) {
-            outcome::note(&target.name, Became::Kept);
+            session.texts().note(&target.name, Became::Kept);
         }
-        refuse_losses(&targets.iter().collect::<Vec<_>>())?;
+        refuse_losses(session, &targets.iter().collect::<Vec<_>>())?;
         targets.into_iter().map(Self::begin).collect()
     }
 
@@ -108,9 +109,9 @@ impl AtomicFile {
 
     /// Puts the texts in their places: all of them, or none. What can be taken back comes last: first all texts are on
     /// the disk, then pipes and devices are written to, then files take their names.
-    pub fn finish(texts: Vec<Self>) -> Result<(), FileFault> {
+    pub fn finish(session: &Session, texts: Vec<Self>) -> Result<(), FileFault> {
         // A file may have been made since, and more be read.
-        refuse_losses(&texts.iter().map(|text| &text.target).collect::<Vec<_>>())?;
+        refuse_losses(session, &texts.iter().map(|text| &text.target).collect::<Vec<_>>())?;
         let mut streams = Vec::new();
         let mut files = Vec::new();
         let mut names = Vec::new();
@@ -129,9 +130,9 @@ impl AtomicFile {
             }
         }
         for (file, path, name) in streams {
-            deliver(file, path.as_deref(), &name)?;
+            deliver(session, file, path.as_deref(), &name)?;
         }
-        name_all(files, &names)
+        name_all(session, files, &names)
     }
 }
 
@@ -161,7 +162,11 @@ impl Output for NullSink {
 }
 
 /// Files take their names.
-fn name_all(mut files: Vec<(Temporary, PathBuf)>, names: &[String]) -> Result<(), FileFault> {
+fn name_all(
+    session: &Session,
+    mut files: Vec<(Temporary, PathBuf)>,
+    names: &[String],
+) -> Result<(), FileFault> {
     let mut folders: Vec<PathBuf> = files.iter().map(|(_, path)| folder(path).to_owned()).collect();
     folders.sort();
     folders.dedup();
@@ -176,7 +181,7 @@ fn name_all(mut files: Vec<(Temporary, PathBuf)>, names: &[String]) -> Result<()
         Err(unnamed) => unnamed.stuck.iter().map(|(index, _)| *index).collect(),
     };
     for index in stuck {
-        outcome::note(&names[index], Became::Written);
+        session.texts().note(&names[index], Became::Written);
     }
     for folder in &folders {
         // A new name is safe once its folder is on the disk.
@@ -200,7 +205,12 @@ fn lock(folder: &fs::File) {
 }
 
 /// Writes a text to a pipe or a device; without a path to standard output.
-fn deliver(mut file: Temporary, path: Option<&Path>, name: &str) -> Result<(), FileFault> {
+fn deliver(
+    session: &Session,
+    mut file: Temporary,
+    path: Option<&Path>,
+    name: &str,
+) -> Result<(), FileFault> {
     let mut begun = false;
     let copied = open(path).and_then(|mut to| copy(&mut file, &mut to, &mut begun));
     let became = match copied {
@@ -209,7 +219,7 @@ fn deliver(mut file: Temporary, path: Option<&Path>, name: &str) -> Result<(), F
         Err(_) => None,
     };
     if let Some(became) = became {
-        outcome::note(name, became);
+        session.texts().note(name, became);
     }
     copied.map_err(|error| match error.kind() {
         io::ErrorKind::BrokenPipe => FileFault::ReaderGone(name.to_owned()),

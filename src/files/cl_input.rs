@@ -4,7 +4,8 @@ use std::fs::File;
 use std::io::{self, Read};
 
 use super::file_id::FileId;
-use super::{FileFault, PathArg, interruption, read_files};
+use super::{FileFault, PathArg};
+use crate::session::Session;
 
 /// A CL file that is read, and what is known of it.
 pub struct ClInput {
@@ -18,10 +19,10 @@ pub struct ClInput {
 
 impl ClInput {
     /// Opens a CL file. Nothing is written to it from here on.
-    pub fn open(source: &PathArg) -> Result<Self, FileFault> {
+    pub fn open(session: &Session, source: &PathArg) -> Result<Self, FileFault> {
         let (Some(path), Some(named)) = (source.absolute(), source.path()) else {
             if let Some(id) = FileId::of_standard_input() {
-                read_files::note_id(id, "the CL file on standard input".to_owned());
+                session.read_files().note_id(id, "the CL file on standard input".to_owned());
             }
             return Ok(Self {
                 name: "standard input".to_owned(),
@@ -40,11 +41,11 @@ impl ClInput {
         if metadata.is_file()
             && let Ok(id) = FileId::of(path)
         {
-            read_files::note_id(id, format!("the CL file {name}"));
+            session.read_files().note_id(id, format!("the CL file {name}"));
         }
         Ok(Self {
             name,
-            bytes: interruption::watched(Box::new(file)),
+            bytes: session.stoppable(file),
             length: metadata.is_file().then_some(metadata.len()),
         })
     }

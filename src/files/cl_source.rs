@@ -6,9 +6,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::temporary::Temporary;
 use super::{ClInput, FileFault, PathArg};
+use crate::session::Session;
 
 /// Where a CL file is read from, as often as it takes.
 pub struct ClSource {
+    session: Session,
     argument: PathArg,
     /// What a pipe or standard input held.
     copy: Option<Temporary>,
@@ -51,13 +53,18 @@ impl Read for HeldReader {
 
 impl ClSource {
     /// Of an argument; what is no file is read to its end if `again` says that it will be read more than once.
-    pub fn new(argument: &PathArg, again: bool) -> Result<Self, FileFault> {
-        let mut source =
-            Self { argument: argument.clone(), copy: None, held: None, name: String::new() };
+    pub fn new(session: &Session, argument: &PathArg, again: bool) -> Result<Self, FileFault> {
+        let mut source = Self {
+            session: session.clone(),
+            argument: argument.clone(),
+            copy: None,
+            held: None,
+            name: String::new(),
+        };
         if !again {
             return Ok(source);
         }
-        let mut input = ClInput::open(argument)?;
+        let mut input = ClInput::open(session, argument)?;
         if input.length.is_some() {
             return Ok(source);
         }
@@ -79,6 +86,7 @@ impl ClSource {
     /// # Errors
     /// There is no place for it, or what `make` fails with.
     pub fn of_text<T>(
+        session: &Session,
         name: String,
         make: impl FnOnce(&mut dyn FnMut(&[u8]) -> Result<(), FileFault>) -> Result<T, FileFault>,
     ) -> Result<(Self, T), FileFault> {
@@ -91,14 +99,21 @@ impl ClSource {
         let mut copy = BufWriter::new(Temporary::private(&folder).map_err(fault)?);
         let made = make(&mut |text| copy.write_all(text).map_err(fault))?;
         let copy = copy.into_inner().map_err(|error| fault(error.into_error()))?;
-        let source = Self { argument: PathArg::Standard, copy: Some(copy), held: None, name };
+        let source = Self {
+            session: session.clone(),
+            argument: PathArg::Standard,
+            copy: Some(copy),
+            held: None,
+            name,
+        };
         Ok((source, made))
     }
 
     /// Of a text in the memory that the user knows as the file `argument`.
-    pub fn of_held(argument: &PathArg, text: HeldText) -> Self {
+    pub fn of_held(session: &Session, argument: &PathArg, text: HeldText) -> Self {
         let name = argument.path().map(|path| path.display().to_string());
         Self {
+            session: session.clone(),
             argument: argument.clone(),
             copy: None,
             held: Some(text),
@@ -122,7 +137,7 @@ impl ClSource {
             return Ok(input);
         }
         let Some(copy) = &self.copy else {
-            return ClInput::open(&self.argument);
+            return ClInput::open(&self.session, &self.argument);
         };
         let name = self.name.clone();
         match copy.reopen() {
@@ -137,7 +152,7 @@ impl ClSource {
             return Ok(input);
         }
         let Some(copy) = &mut self.copy else {
-            return ClInput::open(&self.argument);
+            return ClInput::open(&self.session, &self.argument);
         };
         let name = self.name.clone();
         let again = || -> io::Result<ClInput> {

@@ -1,9 +1,6 @@
 //! What a run did to the user's files, for the last line of its messages.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
-
-use super::read_files;
+use std::io;
 
 /// What became of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,39 +13,34 @@ pub enum Became {
     Written,
 }
 
-/// Texts by their names, of the whole run.
-static TEXTS: Mutex<Vec<(String, Became)>> = Mutex::new(Vec::new());
-
-fn texts() -> MutexGuard<'static, Vec<(String, Became)>> {
-    // A list is whole whatever a thread died of.
-    TEXTS.lock().unwrap_or_else(PoisonError::into_inner)
+/// Texts of a run, and what was printed for people.
+#[derive(Default)]
+pub struct Texts {
+    /// By their names.
+    became: Vec<(String, Became)>,
+    printed: bool,
+    /// Why a result could not be printed: the first fault of the run.
+    pub unprinted: Option<io::Error>,
 }
 
-/// Notes what became of the text that is called `name`.
-pub fn note(name: &str, became: Became) {
-    // Inside another program there is no run to say it of, and the list would grow with every job.
-    if read_files::is_apart() {
-        return;
+impl Texts {
+    /// Notes what became of the text that is called `name`.
+    pub fn note(&mut self, name: &str, became: Became) {
+        match self.became.iter_mut().find(|(known, _)| known == name) {
+            Some((_, old)) => *old = became,
+            None => self.became.push((name.to_owned(), became)),
+        }
     }
-    let mut texts = texts();
-    match texts.iter_mut().find(|(known, _)| known == name) {
-        Some((_, old)) => *old = became,
-        None => texts.push((name.to_owned(), became)),
+
+    /// Notes that something was printed for people, which is no text of its own.
+    pub fn note_printed(&mut self) {
+        self.printed = true;
     }
-}
 
-/// Something was printed for people.
-static PRINTED: AtomicBool = AtomicBool::new(false);
-
-/// Notes that something was printed for people, which is no text of its own.
-pub fn printed() {
-    PRINTED.store(true, Ordering::Relaxed);
-}
-
-/// What was written and what was not, as a sentence without its stop; none of a run that has printed what it is for.
-pub fn sentence() -> Option<String> {
-    let texts = texts();
-    (!texts.is_empty() || !PRINTED.load(Ordering::Relaxed)).then(|| say(&texts))
+    /// What was written and what was not, as a sentence without its stop; none of a run that has printed what it is for.
+    pub fn sentence(&self) -> Option<String> {
+        (!self.became.is_empty() || !self.printed).then(|| say(&self.became))
+    }
 }
 
 fn say(texts: &[(String, Became)]) -> String {

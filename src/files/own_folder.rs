@@ -7,10 +7,12 @@ use std::path::{Path, PathBuf};
 use post_machine::diagnostic::Diagnostic;
 
 use super::{AtomicFile, FileFault, PathArg, Role};
+use crate::session::Session;
 
 /// A folder whose files have known names: of what an earlier run left there nothing stays that would be taken for the
 /// result of this one, and nothing is overwritten that is not of such a run.
 pub struct OwnFolder<'a> {
+    session: &'a Session,
     folder: &'a PathArg,
     role: Role,
     /// The files that there can be.
@@ -24,6 +26,7 @@ impl<'a> OwnFolder<'a> {
     /// # Errors
     /// It is no folder, or files in it have those names and are of no such run.
     pub fn open(
+        session: &'a Session,
         folder: &'a PathArg,
         role: Role,
         mark: (&'static str, &str),
@@ -33,7 +36,7 @@ impl<'a> OwnFolder<'a> {
         if !names.contains(&mark.0) {
             names.push(mark.0);
         }
-        let own = Self { folder, role, names };
+        let own = Self { session, folder, role, names };
         own.refuse_strangers(mark)?;
         Ok(own)
     }
@@ -80,7 +83,7 @@ impl<'a> OwnFolder<'a> {
         fs::create_dir_all(place).map_err(|error| FileFault::write(self.folder, error))?;
         let paths: Vec<PathArg> = files.iter().map(|(name, _)| self.path(name)).collect();
         let targets: Vec<(Role, &PathArg)> = paths.iter().map(|path| (self.role, path)).collect();
-        let mut made = AtomicFile::create(&targets)?;
+        let mut made = AtomicFile::create(self.session, &targets)?;
         for (file, (_, text)) in made.iter_mut().zip(files) {
             file.write_bytes(text.as_bytes())?;
         }
@@ -92,7 +95,7 @@ impl<'a> OwnFolder<'a> {
     pub fn tidy(&self, files: &[(&'static str, String)]) -> Result<(), FileFault> {
         let written = |name: &str| files.iter().any(|(known, _)| *known == name);
         for name in self.names.iter().filter(|name| !written(name)) {
-            super::remove(self.role, &self.path(name))?;
+            super::remove(self.session, self.role, &self.path(name))?;
         }
         Ok(())
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use super::file_id::FileId;
-use super::read_files;
+use crate::session::Session;
 
 /// Standard output as it was, once what libraries print is kept out of it.
 static RESULTS: OnceLock<Option<File>> = OnceLock::new();
@@ -49,8 +49,8 @@ pub fn id() -> Option<FileId> {
 }
 
 /// What it is of what the run reads, which would be spoilt by what is printed: `the CL file part.cls`.
-pub fn is_read() -> Option<String> {
-    id().as_ref().and_then(read_files::what)
+pub fn is_read(session: &Session) -> Option<String> {
+    id().and_then(|id| session.read_files().what(&id))
 }
 
 /// Somebody reads it on a screen.

@@ -5,7 +5,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::file_id::{FileId, followed};
-use super::{FileFault, PathArg, read_files, standard};
+use super::{FileFault, PathArg, standard};
+use crate::session::Session;
 
 /// What a text is to the user.
 #[derive(Clone, Copy, Debug)]
@@ -87,15 +88,15 @@ impl Target {
 }
 
 /// Refuses targets that are files which the run reads, or one another.
-pub fn refuse_losses(targets: &[&Target]) -> Result<(), FileFault> {
-    if let Some(read) = standard::is_read()
+pub fn refuse_losses(session: &Session, targets: &[&Target]) -> Result<(), FileFault> {
+    if let Some(read) = standard::is_read(session)
         && targets.iter().all(|target| target.place != Place::Standard)
     {
         return Err(FileFault::PrintedOverRead(read));
     }
     for (index, target) in targets.iter().enumerate() {
         let id = target.id();
-        if let Some(read) = id.as_ref().and_then(read_files::what) {
+        if let Some(read) = id.as_ref().and_then(|id| session.read_files().what(id)) {
             return Err(FileFault::OverRead { role: target.role, name: target.name.clone(), read });
         }
         if target.place == Place::Stream(PathBuf::from("/dev/null")) {

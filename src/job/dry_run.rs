@@ -12,12 +12,14 @@ use super::plugin_finder;
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{ClInput, NullSink};
+use crate::session::Session;
 
 /// Decimals that leave axis values as they are solved: a millionth of a micrometre.
 const EXACT: u8 = 9;
 
 /// A CL file and how it is looked at.
 pub struct DryRun<'a> {
+    session: &'a Session,
     arguments: &'a JobArguments,
     /// The CL file, as the user named it.
     pub name: String,
@@ -29,6 +31,7 @@ pub struct DryRun<'a> {
 impl<'a> DryRun<'a> {
     /// Of the CL file and the machine of the command line, for the verb of that name.
     pub fn new(
+        session: &'a Session,
         verb: &'static str,
         arguments: &'a JobArguments,
         exact: bool,
@@ -40,16 +43,17 @@ impl<'a> DryRun<'a> {
                 .into());
         };
         Ok(Self {
+            session,
             arguments,
             name: path.display().to_string(),
-            finder: plugin_finder::finder(&arguments.plugins)?,
+            finder: plugin_finder::finder(session, &arguments.plugins)?,
             exact,
         })
     }
 
     /// The machine of the command line with `more` set.
     pub fn machine(&self, more: &[Setting]) -> Result<Machine, Failure> {
-        super::machine(self.arguments, more)
+        super::machine(self.session, self.arguments, more)
     }
 
     /// Posts the file, and throws the text away.
@@ -62,7 +66,7 @@ impl<'a> DryRun<'a> {
         let program = super::program_name(source, None);
         let (dialect, _) = plugin_finder::dialect(&self.finder, machine, &program, Some(source))?;
         let (mut model, _) = plugin_finder::model(&self.finder, machine)?;
-        let input = ClInput::open(source)?;
+        let input = ClInput::open(self.session, source)?;
         let mut posting = super::posting(self.arguments, &input.name);
         if posting.reading.spindle == ToldSpindle::Unknown {
             // Nothing is written: how fast the spindle turns is nobody's business.
@@ -77,7 +81,7 @@ impl<'a> DryRun<'a> {
         if let Some(watch) = watch {
             post.watch(watch);
         }
-        super::read(input, &mut post)?;
+        super::read(self.session, input, &mut post)?;
         match post.finish() {
             (Some(report), findings) => Ok((report, findings)),
             (None, findings) => Err(findings.into()),

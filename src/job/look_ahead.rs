@@ -11,10 +11,12 @@ use super::plugin_finder;
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{ClSource, NullSink};
+use crate::session::Session;
 
 /// Posts the file, or these lines of it, once without text of one's own, and throws the program away. What is refused then would be refused
 /// again.
 pub fn look_ahead(
+    session: &Session,
     arguments: &JobArguments,
     machine: &Machine,
     finder: &Finder,
@@ -34,7 +36,7 @@ pub fn look_ahead(
     let mut post = Post::new(&plain, job, &mut dialect, &mut model, &mut sink)
         .map_err(|finding: Box<Diagnostic>| *finding)?;
     post.watch(&mut ahead);
-    super::read(input, &mut post)?;
+    super::read(session, input, &mut post)?;
     let time = match post.finish() {
         (Some(report), _) => report.time_s,
         (None, findings) => return Err(findings.into()),

@@ -10,19 +10,25 @@ use post_machine::description::{self, MOST_BYTES, Machine, Reading, Setting, Sou
 use post_machine::diagnostic::{Diagnostic, nearest};
 
 use crate::failure::Failure;
-use crate::files::read_files;
+use crate::session::Session;
 
 /// Names and texts of the machines built in.
 const BUILT_IN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/machines.rs"));
 
 /// Loads the machine `name` from the folders that the user `named`, the usual ones, or those built in, with
 /// `settings` over it.
-pub fn load(name: &str, named: &[PathBuf], settings: &[Setting]) -> Result<Machine, Failure> {
+pub fn load(
+    session: &Session,
+    name: &str,
+    named: &[PathBuf],
+    settings: &[Setting],
+) -> Result<Machine, Failure> {
+    let read = |path: &Path| read(session, path);
     let source = source(name, named, &read)?;
     let machine = examine(source, named, settings, &read)?.machine?;
     let heads = machine.heads.iter().map(|head| &head.machine);
     for solid in std::iter::once(&machine).chain(heads).flat_map(|machine| &machine.solids) {
-        read_files::note("the solid", &solid.file);
+        session.read_files().note("the solid", &solid.file);
     }
     Ok(machine)
 }
@@ -138,8 +144,8 @@ fn located(name: &str, folders: &[PathBuf]) -> Option<PathBuf> {
     std::iter::once(name.into()).chain(beside).find(|path| path.is_file())
 }
 
-fn find(name: &str, folders: &[PathBuf]) -> Result<Source, Missing> {
-    find_reading(name, folders, &read)
+fn find(session: &Session, name: &str, folders: &[PathBuf]) -> Result<Source, Missing> {
+    find_reading(name, folders, &|path| read(session, path))
 }
 
 fn find_reading(name: &str, folders: &[PathBuf], read: ReadText<'_>) -> Result<Source, Missing> {
@@ -185,14 +191,14 @@ fn check_extended(name: &str, folders: &[PathBuf]) -> Result<(), String> {
 }
 
 /// Reads a machine file from the disk.
-pub fn read(path: &Path) -> Result<Source, Missing> {
+pub fn read(session: &Session, path: &Path) -> Result<Source, Missing> {
     let fault = |why: String| Missing { message: format!("{}: {why}", path.display()), help: None };
     let bytes = read_bounded(path).map_err(|error| fault(error.to_string()))?;
     if bytes.len() > MOST_BYTES {
         let why = format!("longer than {MOST_BYTES} bytes, which no machine file is");
         return Err(fault(why));
     }
-    read_files::note("the machine file", path);
+    session.read_files().note("the machine file", path);
     let text = String::from_utf8(bytes)
         .map_err(|_| fault("a machine file is UTF-8 text, this is not".to_owned()))?;
     Ok(Source { name: path.display().to_string(), text })
@@ -220,9 +226,9 @@ pub struct Listed {
 ///
 /// # Errors
 /// A folder that is not there.
-pub fn list(named: &[PathBuf]) -> Result<Vec<Listed>, Failure> {
+pub fn list(session: &Session, named: &[PathBuf]) -> Result<Vec<Listed>, Failure> {
     let listed = names(&folders(named)?).into_iter().map(|(name, path)| {
-        let machine = load(&name, named, &[]);
+        let machine = load(session, &name, named, &[]);
         Listed { name, path, machine }
     });
     Ok(listed.collect())
@@ -232,12 +238,12 @@ pub fn list(named: &[PathBuf]) -> Result<Vec<Listed>, Failure> {
 ///
 /// # Errors
 /// There is no such machine.
-pub fn text(name: &str, named: &[PathBuf]) -> Result<String, Failure> {
+pub fn text(session: &Session, name: &str, named: &[PathBuf]) -> Result<String, Failure> {
     if is_file(name) {
         let message = format!("{name} names a file, and a machine is printed by its bare name");
         return Err(Diagnostic::error("machine", message).into());
     }
-    Ok(find(name, &folders(named)?).map_err(Diagnostic::from)?.text)
+    Ok(find(session, name, &folders(named)?).map_err(Diagnostic::from)?.text)
 }
 
 /// The bare names that find a machine from the folder of the file `beside`, and the files of those that are not built in.

@@ -22,16 +22,21 @@ use crate::job::plugin_finder;
 use crate::job::predict::{self, Against, Asked, Predicted};
 use crate::job::read_back::{self, Held, Reading};
 use crate::job::report::PredictedParts;
+use crate::session::Session;
 
 /// The machine of the command line, its program so numbered if a number is given.
-pub fn numbered(arguments: &JobArguments, number: Option<i64>) -> Result<Machine, Failure> {
-    let machine = super::machine(arguments, &[])?;
+pub fn numbered(
+    session: &Session,
+    arguments: &JobArguments,
+    number: Option<i64>,
+) -> Result<Machine, Failure> {
+    let machine = super::machine(session, arguments, &[])?;
     let Some(number) = number else {
         return Ok(machine);
     };
     let dialect = machine.control.dialect;
     let setting = Setting::Written(format!("control.{dialect}.program_number={number}"));
-    super::machine(arguments, &[setting])
+    super::machine(session, arguments, &[setting])
 }
 
 /// Where a program goes: to `output`, else beside the CL file, with the ending of the machine or of its dialect.
@@ -71,6 +76,7 @@ impl Part {
     /// A file that cannot be read.
     pub fn read_back(
         &self,
+        session: &Session,
         arguments: &JobArguments,
         finder: &Finder,
         (moved, planned): (bool, bool),
@@ -82,6 +88,7 @@ impl Part {
         let bound = accuracy.servo_compensation.filter(|_| moved);
         let moved = bound.map(|bound| accuracy.tolerance + bound);
         let reading = Reading {
+            session,
             arguments,
             machine: &self.machine,
             finder,
@@ -105,6 +112,7 @@ impl Part {
     /// A file that cannot be read, or a machine that cannot be used.
     pub fn predict(
         &self,
+        session: &Session,
         arguments: &JobArguments,
         finder: &Finder,
         period: Option<f64>,
@@ -112,6 +120,7 @@ impl Part {
         (name, text): (String, impl Read + Seek),
     ) -> Result<Predicted, Failure> {
         let asked = Asked {
+            session,
             arguments,
             machine: &self.machine,
             finder,

@@ -20,6 +20,7 @@ pub mod predict;
 pub mod read_back;
 pub mod report;
 pub mod summary;
+pub mod text;
 pub mod unused_options;
 
 use std::path::Path;
@@ -39,21 +40,31 @@ use crate::arguments::JobArguments;
 use crate::arguments::flag_values::Msys;
 use crate::failure::Failure;
 use crate::files::{ClInput, ClSource, FileFault, NullSink, PathArg};
-use crate::terminal::Progress;
+use crate::session::Session;
 pub use dry_run::DryRun;
 pub use look_ahead::look_ahead;
 
 /// The machine with all settings of the command line, and `more` after them.
-pub fn machine(arguments: &JobArguments, more: &[Setting]) -> Result<Machine, Failure> {
+pub fn machine(
+    session: &Session,
+    arguments: &JobArguments,
+    more: &[Setting],
+) -> Result<Machine, Failure> {
     let mut settings = arguments.settings();
     settings.extend_from_slice(more);
-    machine_files::load(arguments.machine(), &arguments.machines, &settings)
+    machine_files::load(session, arguments.machine(), &arguments.machines, &settings)
 }
 
 /// Says once what of the machine file has no effect: what `--dialect` leaves behind, and options that no plugin takes.
-pub fn say_what_is_left(arguments: &JobArguments, machine: &Machine, finder: &Finder) {
-    unused_options::warn(machine, finder);
+pub fn say_what_is_left(
+    session: &Session,
+    arguments: &JobArguments,
+    machine: &Machine,
+    finder: &Finder,
+) {
+    unused_options::warn(session, machine, finder);
     other_dialect::say_what_is_left(
+        session,
         arguments.dialect.as_deref(),
         arguments.machine(),
         &arguments.machines,
@@ -149,8 +160,8 @@ pub fn program_name(source: &PathArg, target: Option<&PathArg>) -> String {
 }
 
 /// Reads a CL file to its end, or until there are so many faults that it is given up.
-pub fn read(input: ClInput, post: &mut Post<'_>) -> Result<(), FileFault> {
-    let mut progress = Progress::new(input.length);
+pub fn read(session: &Session, input: ClInput, post: &mut Post<'_>) -> Result<(), FileFault> {
+    let mut progress = session.progress(input.length);
     let mut reader = Reader::new(input.bytes);
     while !post.gave_up() {
         match reader.next_record() {

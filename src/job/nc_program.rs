@@ -14,7 +14,8 @@ use post_readback::{FedRapids, Offsets, turns_the_spindle};
 use super::{machine_files, plugin_finder, unused_options};
 use crate::arguments::ProgramArguments;
 use crate::failure::Failure;
-use crate::files::{FileFault, PathArg, read_files};
+use crate::files::{FileFault, PathArg};
+use crate::session::Session;
 
 /// Longest file of offsets that is read, bytes.
 const MOST_OFFSETS: u64 = 1 << 20;
@@ -37,13 +38,17 @@ pub struct NcControl {
 
 impl NcControl {
     /// As the flags say.
-    pub fn new(arguments: &ProgramArguments) -> Result<Self, Failure> {
-        let machine =
-            machine_files::load(&arguments.machine, &arguments.machines, &arguments.settings())?;
-        let finder = plugin_finder::finder(&arguments.plugins)?;
-        unused_options::warn(&machine, &finder);
+    pub fn new(session: &Session, arguments: &ProgramArguments) -> Result<Self, Failure> {
+        let machine = machine_files::load(
+            session,
+            &arguments.machine,
+            &arguments.machines,
+            &arguments.settings(),
+        )?;
+        let finder = plugin_finder::finder(session, &arguments.plugins)?;
+        unused_options::warn(session, &machine, &finder);
         let mut offsets = match &arguments.offsets {
-            Some(file) => offsets(file, &machine)?,
+            Some(file) => offsets(session, file, &machine)?,
             None => Offsets::default(),
         };
         offsets.length = arguments.tool_length;
@@ -123,8 +128,8 @@ pub fn spoken(finder: &Finder, machine: &Machine) -> Result<Spoken, Failure> {
 }
 
 /// The file of offsets.
-pub fn offsets(source: &PathArg, machine: &Machine) -> Result<Offsets, Failure> {
-    let (name, file) = open(source)?;
+pub fn offsets(session: &Session, source: &PathArg, machine: &Machine) -> Result<Offsets, Failure> {
+    let (name, file) = open(session, source)?;
     let mut text = String::new();
     let read = file.take(MOST_OFFSETS + 1).read_to_string(&mut text);
     read.map_err(|error| FileFault::Read { name: name.clone(), error })?;
@@ -144,12 +149,16 @@ pub fn not_both_standard(
 }
 
 /// Opens a file that can be gone back in, with its name for messages: standard input and pipes are copied first.
-pub fn open(source: &PathArg) -> Result<(String, File), FileFault> {
-    open_as("the NC program", source)
+pub fn open(session: &Session, source: &PathArg) -> Result<(String, File), FileFault> {
+    open_as(session, "the NC program", source)
 }
 
 /// The same of another text, which messages call `what`.
-pub fn open_as(what: &'static str, source: &PathArg) -> Result<(String, File), FileFault> {
+pub fn open_as(
+    session: &Session,
+    what: &'static str,
+    source: &PathArg,
+) -> Result<(String, File), FileFault> {
     let (Some(path), Some(named)) = (source.absolute(), source.path()) else {
         let name = "standard input".to_owned();
         let copied = copied(&mut io::stdin().lock());
@@ -166,7 +175,7 @@ pub fn open_as(what: &'static str, source: &PathArg) -> Result<(String, File), F
     }
     let name = named.display().to_string();
     if metadata.is_file() {
-        read_files::note(what, path);
+        session.read_files().note(what, path);
         return Ok((name, file));
     }
     Ok((name, copied(&mut file).map_err(fault)?))

@@ -14,10 +14,13 @@ use super::plugin_finder;
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{ClSource, PathArg};
+use crate::session::Session;
 
 /// What one program is made of.
 #[derive(Clone)]
 pub struct OneProgram<'a> {
+    /// The run.
+    pub session: &'a Session,
     /// The command line of the job.
     pub arguments: &'a JobArguments,
     /// The machine with its settings.
@@ -57,15 +60,24 @@ impl OneProgram<'_> {
         file: &mut dyn Output,
         beside: Beside<'_, '_, '_>,
     ) -> Result<(Option<Report>, Vec<Diagnostic>), Failure> {
-        let Self { arguments, machine, finder, target, lines, trust_model, plans, tightening } =
-            self;
+        let Self {
+            session,
+            arguments,
+            machine,
+            finder,
+            target,
+            lines,
+            trust_model,
+            plans,
+            tightening,
+        } = self;
         let cl_file = arguments.input();
         let program = super::program_name(cl_file, Some(target));
         // Of a part of the file other tools and extents are known than of the whole.
         let part_ahead = match &lines {
             Some(lines) if machine.program.looks_ahead => {
                 let lines = Some(lines.clone());
-                Some(super::look_ahead(arguments, machine, finder, source, lines)?)
+                Some(super::look_ahead(session, arguments, machine, finder, source, lines)?)
             }
             _ => None,
         };
@@ -102,7 +114,7 @@ impl OneProgram<'_> {
         if let Some(observer) = beside.observer {
             post.watch(observer);
         }
-        super::read(input, &mut post)?;
+        super::read(session, input, &mut post)?;
         let (mut report, findings) = post.finish();
         if let Some(report) = &mut report {
             report.plugins = vec![dialect_use, model_use];

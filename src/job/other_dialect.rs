@@ -6,11 +6,12 @@ use post_machine::description::{GivenOption, Setting};
 use post_machine::diagnostic::Diagnostic;
 
 use super::machine_files;
-use crate::terminal;
+use crate::session::Session;
 
 /// Says what of the machine file does not go over to the dialect that the command line names. The machine is looked at
 /// once more, with the other `settings` alone; what is wrong with it is said where it is used.
 pub fn say_what_is_left(
+    session: &Session,
     dialect: Option<&str>,
     machine: &str,
     folders: &[PathBuf],
@@ -20,7 +21,7 @@ pub fn say_what_is_left(
     let others = settings.iter();
     let others = others.filter(|setting| !matches!(setting, Setting::Dialect(_)));
     let others: Vec<Setting> = others.cloned().collect();
-    let Ok(machine) = machine_files::load(machine, folders, &others) else {
+    let Ok(machine) = machine_files::load(session, machine, folders, &others) else {
         return;
     };
     let (own, options) = (&machine.control.dialect, &machine.control.options);
@@ -37,7 +38,7 @@ pub fn say_what_is_left(
             keys(options)
         ),
     };
-    terminal::findings(&[Diagnostic::warning("dialect", message).help(lines)]);
+    session.findings(&[Diagnostic::warning("dialect", message).help(lines)]);
 }
 
 fn keys(options: &[GivenOption]) -> String {

@@ -81,6 +81,7 @@ fn outcome(
         return Ok(None);
     }
     let asked = Asked {
+        session: program.session,
         arguments: program.arguments,
         machine: program.machine,
         finder: program.finder,

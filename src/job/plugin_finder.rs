@@ -15,18 +15,18 @@ use post_posting::LookedAhead;
 use post_posting::report::PluginUse;
 
 use super::plugin_folders;
-use crate::files::{PathArg, read_files, standard};
-use crate::terminal;
+use crate::files::{PathArg, standard};
+use crate::session::Session;
 
 /// The finder for a run, with the folders that the user `named`. Once a library may be opened, results are kept apart
 /// from what it prints.
-pub fn finder(named: &[PathBuf]) -> Result<Finder, Vec<Diagnostic>> {
-    let folders = plugin_folders::named(named)?;
+pub fn finder(session: &Session, named: &[PathBuf]) -> Result<Finder, Vec<Diagnostic>> {
+    let folders = plugin_folders::named(session, named)?;
     for folder in &folders {
-        read_files::note_libraries(folder);
+        session.read_files().note_libraries(folder);
     }
     // Inside another program standard output is not ours to keep.
-    if !folders.is_empty() && !terminal::is_gathering() {
+    if !folders.is_empty() && session.owns_output() {
         standard::keep_apart();
     }
     let linked = post_stock::plugins()
@@ -39,14 +39,18 @@ pub fn finder(named: &[PathBuf]) -> Result<Finder, Vec<Diagnostic>> {
 }
 
 /// The plugin that is called so, or the library at this path.
-pub fn by_name_or_file(plugin: &Path, named: &[PathBuf]) -> Result<Plugin, Vec<Diagnostic>> {
+pub fn by_name_or_file(
+    session: &Session,
+    plugin: &Path,
+    named: &[PathBuf],
+) -> Result<Plugin, Vec<Diagnostic>> {
     let text = plugin.to_string_lossy();
     let is_file = plugin.components().count() > 1 || text.ends_with(DLL_SUFFIX);
     let found = if is_file {
         standard::keep_apart();
         Plugin::open(plugin)
     } else {
-        finder(named)?.find(&text)
+        finder(session, named)?.find(&text)
     };
     found.map_err(|fault| vec![diagnostic(&fault, &[], None)])
 }

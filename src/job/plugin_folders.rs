@@ -8,13 +8,13 @@ use std::path::{Path, PathBuf};
 
 use post_machine::diagnostic::Diagnostic;
 
-use crate::terminal;
+use crate::session::Session;
 
 /// Where further folders are named.
 const VARIABLE: &str = "POST_PLUGINS";
 
 /// The folders that the user `named`, and those of the environment. Each can be read.
-pub fn named(named: &[PathBuf]) -> Result<Vec<PathBuf>, Vec<Diagnostic>> {
+pub fn named(session: &Session, named: &[PathBuf]) -> Result<Vec<PathBuf>, Vec<Diagnostic>> {
     let mut folders = Vec::new();
     let mut faults = Vec::new();
     let mut warnings = Vec::new();
@@ -39,7 +39,7 @@ pub fn named(named: &[PathBuf]) -> Result<Vec<PathBuf>, Vec<Diagnostic>> {
     if !faults.is_empty() {
         return Err(faults);
     }
-    terminal::findings(&warnings);
+    session.findings(&warnings);
     Ok(folders)
 }
 

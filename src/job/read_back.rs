@@ -21,11 +21,14 @@ use super::{nc_program, plugin_finder};
 use crate::arguments::JobArguments;
 use crate::arguments::flag_values::Msys;
 use crate::failure::Failure;
+use crate::files::Watched;
 use crate::files::{ClSource, FileFault};
-use crate::terminal::{Progress, Watched};
+use crate::session::Session;
 
 /// What a program is read with.
 pub struct Reading<'a> {
+    /// The run.
+    pub session: &'a Session,
     /// The command line of the job.
     pub arguments: &'a JobArguments,
     /// The machine with its settings.
@@ -292,7 +295,7 @@ pub fn hold<C: Course, R: Read + Seek>(
         BufReader::new(watched),
     )
     .map_err(|fault| *fault)?;
-    let mut progress = Progress::new(Some(length));
+    let mut progress = reading.session.progress(Some(length));
     let mut done = Vec::new();
     let mut unread = 0;
     loop {

@@ -9,8 +9,8 @@ use serde::Serialize;
 
 use crate::files::PathArg;
 use crate::job::predict::Prediction;
+use crate::job::text::{at_most, clock, number};
 use crate::job::{compensate, plan_rounds};
-use crate::terminal::{at_most, clock, number};
 
 /// What the summary tells as JSON.
 #[derive(Serialize)]

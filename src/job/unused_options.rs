@@ -6,11 +6,11 @@ use post_machine::diagnostic::{Diagnostic, meant};
 use post_stock::plugin;
 
 use super::plugin_finder::built_in;
-use crate::terminal;
+use crate::session::Session;
 
 /// Warns of tables whose plugin is not there, and of options that a plugin of the command does not have.
-pub fn warn(machine: &Machine, finder: &Finder) {
-    terminal::findings(&found(machine, finder));
+pub fn warn(session: &Session, machine: &Machine, finder: &Finder) {
+    session.findings(&found(machine, finder));
 }
 
 /// What is warned of.

@@ -7,8 +7,9 @@ use post_plugin::DialectSession as _;
 use post_posting::program::{Motion, Pace};
 use post_posting::whole_pass;
 
-use super::{Kinematics, MadeProgram, OptionTold, Refused, Wanted, quietly};
+use super::{Kinematics, MadeProgram, OptionTold, Refused, Stop, Wanted, quietly};
 use crate::job::{machine_files, plugin_finder};
+use crate::session::Session;
 
 /// Decimals that leave axis values as they are solved: a millionth of a micrometre.
 const EXACT: u8 = 9;
@@ -57,9 +58,11 @@ impl LoadedMachine {
     ///
     /// # Errors
     /// There is none of that name, its file is refused, or its chain cannot be solved.
-    pub fn load(told: MachineTold) -> Result<Self, Refused> {
-        let load = || machine_files::load(&told.name, &told.machines, &told.settings());
-        let (machine, _) = quietly(load)?;
+    pub fn load(stop: &Stop, told: MachineTold) -> Result<Self, Refused> {
+        let load = |session: &Session| {
+            machine_files::load(session, &told.name, &told.machines, &told.settings())
+        };
+        let (machine, _) = quietly(stop, load)?;
         let kinematics = Kinematics::new(&machine, told.tool_length.unwrap_or(0.0))?;
         Ok(Self { told, machine, kinematics })
     }
@@ -86,11 +89,12 @@ impl LoadedMachine {
     /// Why it is refused.
     pub fn post(
         &self,
+        stop: &Stop,
         input: &Path,
         options: &[OptionTold],
         keep_blocks: bool,
     ) -> Result<MadeProgram, Refused> {
-        MadeProgram::post(&self.told, input, options, keep_blocks)
+        MadeProgram::post(stop, &self.told, input, options, keep_blocks)
     }
 
     /// Axis values for a path, chosen over the whole of it as posting does: by point and axis. `cut` says of each point
@@ -98,7 +102,12 @@ impl LoadedMachine {
     ///
     /// # Errors
     /// A point that is none or cannot be reached, or where a cut cannot go on.
-    pub fn route(&self, wanted: &Wanted<'_>, cut: &[bool]) -> Result<Vec<f64>, Refused> {
+    pub fn route(
+        &self,
+        stop: &Stop,
+        wanted: &Wanted<'_>,
+        cut: &[bool],
+    ) -> Result<Vec<f64>, Refused> {
         let poses = wanted.poses(self.kinematics.has_edge())?;
         let path: Vec<Motion> = poses
             .iter()
@@ -115,15 +124,15 @@ impl LoadedMachine {
             })
             .collect();
         let machine = &self.machine;
-        let open = || {
-            let finder = plugin_finder::finder(&self.told.plugins)?;
+        let open = |session: &Session| {
+            let finder = plugin_finder::finder(session, &self.told.plugins)?;
             let (dialect, _) = plugin_finder::dialect(&finder, machine, "ROUTE", None)?;
             let mut format = dialect.format().clone();
             // Axis values are wanted as they are solved.
             format.words.fill(EXACT);
             Ok(format)
         };
-        let (format, _) = quietly(open)?;
+        let (format, _) = quietly(stop, open)?;
         let length = self.told.tool_length.unwrap_or(0.0);
         let found = whole_pass(machine, &format, length, &path)?;
         let count = self.kinematics.count();

@@ -10,13 +10,14 @@ mod loaded_machine;
 mod program;
 mod study;
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use post_machine::diagnostic::Diagnostic;
 
 use crate::failure::Failure;
-use crate::files::read_files;
-use crate::terminal;
+use crate::files::Texts;
+use crate::session::{Face, Session};
 
-pub use crate::files::interruption::{Stop, stoppable};
 pub use blocks::{Blocks, KINDS, REASONS};
 pub use kinematics::{AxisFacts, Deviations, Kinematics, Solutions, Wanted};
 pub use loaded_machine::{LoadedMachine, MachineTold};
@@ -26,9 +27,35 @@ pub use study::{Column, Progressed, StudyJobs, StudyPart, StudyTable, Values};
 /// Why a job was not done: findings, an error among them.
 pub type Refused = Vec<Diagnostic>;
 
-/// Does a job of the command by itself: what it would print is gathered and comes back with what it gives.
-fn quietly<T>(job: impl FnOnce() -> Result<T, Failure>) -> Result<(T, Vec<Diagnostic>), Refused> {
-    let (done, mut findings) = terminal::gathered(|| read_files::apart(job));
+/// Says that a job shall end; it is asked as its CL file is read.
+pub type Stop = Arc<dyn Fn() -> bool + Send + Sync>;
+
+/// A face that keeps findings for whoever called.
+struct Gathering {
+    stop: Stop,
+    found: Arc<Mutex<Vec<Diagnostic>>>,
+}
+
+impl Face for Gathering {
+    fn findings(&self, findings: &[Diagnostic], _: &Texts) {
+        // A list is whole whatever a thread died of.
+        let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
+        found.extend_from_slice(findings);
+    }
+
+    fn is_stopped(&self) -> bool {
+        (self.stop)()
+    }
+}
+
+/// Does a job in a session of its own: what it finds on the way comes back with what it gives.
+fn quietly<T>(
+    stop: &Stop,
+    job: impl FnOnce(&Session) -> Result<T, Failure>,
+) -> Result<(T, Vec<Diagnostic>), Refused> {
+    let found = Arc::default();
+    let done = job(&Session::new(Gathering { stop: Arc::clone(stop), found: Arc::clone(&found) }));
+    let mut findings = std::mem::take(&mut *found.lock().unwrap_or_else(PoisonError::into_inner));
     match done {
         Ok(given) => Ok((given, findings)),
         Err(failure) => {

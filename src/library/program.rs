@@ -11,7 +11,7 @@ use post_posting::report::Report;
 use post_posting::{LookedAhead, Observer, Output};
 
 use super::blocks::BlockColumns;
-use super::{Blocks, MachineTold, Refused, quietly};
+use super::{Blocks, MachineTold, Refused, Stop, quietly};
 use crate::arguments::{JobArguments, MakingArguments};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
@@ -20,6 +20,7 @@ use crate::job::one_program::{Beside, OneProgram};
 use crate::job::report::{self, BlockRows, ClWindow, Made, PredictedParts};
 use crate::job::summary::{self, Told};
 use crate::job::{self, compensate, plan_rounds, plugin_finder, read_back};
+use crate::session::Session;
 
 /// An option of the command without its hyphens, and its value if it has one.
 pub type OptionTold = (String, Option<String>);
@@ -145,14 +146,16 @@ impl JobLine {
     }
 
     /// Opens what the program is made of.
-    fn bench(&self) -> Result<Bench, Failure> {
+    fn bench(&self, session: &Session) -> Result<Bench, Failure> {
         let arguments = &self.job;
-        let machine = making::numbered(arguments, self.making.number.map(i64::from))?;
-        let finder = plugin_finder::finder(&arguments.plugins)?;
-        job::say_what_is_left(arguments, &machine, &finder);
-        let mut source = ClSource::new(arguments.input(), true)?;
+        let machine = making::numbered(session, arguments, self.making.number.map(i64::from))?;
+        let finder = plugin_finder::finder(session, &arguments.plugins)?;
+        job::say_what_is_left(session, arguments, &machine, &finder);
+        let mut source = ClSource::new(session, arguments.input(), true)?;
         let ahead = match machine.program.looks_ahead {
-            true => Some(job::look_ahead(arguments, &machine, &finder, &mut source, None)?),
+            true => {
+                Some(job::look_ahead(session, arguments, &machine, &finder, &mut source, None)?)
+            }
             false => None,
         };
         let target = making::target(arguments, self.output.as_ref(), &machine, &finder)?;
@@ -162,11 +165,13 @@ impl JobLine {
     /// Makes it; `observer` sees its blocks.
     fn make(
         &self,
+        session: &Session,
         bench: &mut Bench,
         observer: Option<&mut dyn Observer>,
     ) -> Result<Came, Failure> {
         let Bench { part, finder, source, ahead } = bench;
         let program = OneProgram {
+            session,
             arguments: &self.job,
             machine: &part.machine,
             finder,
@@ -202,25 +207,26 @@ impl MadeProgram {
     /// # Errors
     /// Why it is refused.
     pub(super) fn post(
+        stop: &Stop,
         machine: &MachineTold,
         input: &Path,
         options: &[OptionTold],
         keep_blocks: bool,
     ) -> Result<Self, Refused> {
-        let made = quietly(|| {
+        let made = quietly(stop, |session| {
             let line = JobLine::new(machine, input, options)?;
-            let mut bench = line.bench()?;
+            let mut bench = line.bench(session)?;
             let targets = line.output.as_ref().map(|target| (Role::PROGRAM, target));
             let targets: Vec<_> = targets.into_iter().collect();
-            let mut files = AtomicFile::create(&targets)?;
+            let mut files = AtomicFile::create(session, &targets)?;
             let machine = bench.part.machine.clone();
             let mut columns = keep_blocks.then(|| BlockColumns::new(&machine));
             let observer = columns.as_mut().map(|columns| columns as &mut dyn Observer);
-            let came = line.make(&mut bench, observer)?;
+            let came = line.make(session, &mut bench, observer)?;
             for file in &mut files {
                 file.write_bytes(&came.text)?;
             }
-            AtomicFile::finish(files)?;
+            AtomicFile::finish(session, files)?;
             let summary = files::json(&Told {
                 report: &came.report,
                 verification: None,
@@ -271,11 +277,11 @@ impl MadeProgram {
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn verify(&self) -> Result<Found, Refused> {
-        let held = quietly(|| {
-            let finder = plugin_finder::finder(&self.line.job.plugins)?;
-            let mut source = ClSource::new(self.line.job.input(), true)?;
-            let held = self.held(&finder, &mut source, &self.text)?;
+    pub fn verify(&self, stop: &Stop) -> Result<Found, Refused> {
+        let held = quietly(stop, |session| {
+            let finder = plugin_finder::finder(session, &self.line.job.plugins)?;
+            let mut source = ClSource::new(session, self.line.job.input(), true)?;
+            let held = self.held(session, &finder, &mut source, &self.text)?;
             Ok((files::json(&held.found), held.findings))
         });
         let ((json, found), mut findings) = held?;
@@ -285,13 +291,14 @@ impl MadeProgram {
 
     fn held(
         &self,
+        session: &Session,
         finder: &Finder,
         source: &mut ClSource,
         text: &[u8],
     ) -> Result<read_back::Held, Failure> {
         let how = (self.moved, self.is_planned());
         let text = (self.name(), Cursor::new(text));
-        let held = self.part.read_back(&self.line.job, finder, how, source, text)?;
+        let held = self.part.read_back(session, &self.line.job, finder, how, source, text)?;
         match held.is_wrong() {
             true => Err(held.findings.into()),
             false => Ok(held),
@@ -303,14 +310,14 @@ impl MadeProgram {
     ///
     /// # Errors
     /// The machine cannot be predicted.
-    pub fn predict(&self, period: Option<f64>) -> Result<Found, Refused> {
-        let predicted = quietly(|| {
-            let finder = plugin_finder::finder(&self.line.job.plugins)?;
-            let mut source = ClSource::new(self.line.job.input(), true)?;
+    pub fn predict(&self, stop: &Stop, period: Option<f64>) -> Result<Found, Refused> {
+        let predicted = quietly(stop, |session| {
+            let finder = plugin_finder::finder(session, &self.line.job.plugins)?;
+            let mut source = ClSource::new(session, self.line.job.input(), true)?;
             let text = (self.name(), Cursor::new(&self.text));
             let told = (&mut source, None);
             let job = &self.line.job;
-            let predicted = self.part.predict(job, &finder, period, told, text)?;
+            let predicted = self.part.predict(session, job, &finder, period, told, text)?;
             Ok((files::json(&predicted.found), predicted.findings))
         });
         let ((json, found), mut findings) = predicted?;
@@ -322,23 +329,23 @@ impl MadeProgram {
     ///
     /// # Errors
     /// The page cannot be written, or what it shall tell is refused.
-    pub fn report(&self, page: &Path, told: ReportTold) -> Result<(), Refused> {
-        let written = quietly(|| {
-            let mut bench = self.line.bench()?;
+    pub fn report(&self, stop: &Stop, page: &Path, told: ReportTold) -> Result<(), Refused> {
+        let written = quietly(stop, |session| {
+            let mut bench = self.line.bench(session)?;
             let page = PathArg::from(match page.as_os_str() == "-" {
                 true => Path::new("./-").to_owned(),
                 false => page.to_owned(),
             });
-            let mut files = AtomicFile::create(&[(Role::REPORT, &page)])?;
+            let mut files = AtomicFile::create(session, &[(Role::REPORT, &page)])?;
             let machine = &self.part.machine;
             let input = bench.source.open_beside()?;
             let settings = read_back::course_settings(&self.line.job, machine, &input.name);
             let cl = ClWindow::new(machine, settings, input.bytes)?;
             let mut rows = BlockRows::new(machine, cl, told.predict)?;
-            let mut came = self.line.make(&mut bench, Some(&mut rows))?;
+            let mut came = self.line.make(session, &mut bench, Some(&mut rows))?;
             let (finder, source) = (&bench.finder, &mut bench.source);
             let held = match told.verify {
-                true => Some(self.held(finder, source, &came.text)?.found),
+                true => Some(self.held(session, finder, source, &came.text)?.found),
                 false => None,
             };
             let mut heard = None;
@@ -348,11 +355,12 @@ impl MadeProgram {
                 let text = (self.name(), Cursor::new(&came.text));
                 let with = (&mut *source, heard.as_mut());
                 let job = &self.line.job;
-                let predicted = self.part.predict(job, finder, None, with, text)?;
+                let predicted = self.part.predict(session, job, finder, None, with, text)?;
                 came.findings.extend(predicted.findings);
                 prediction = Some(predicted.found);
             }
             let made = Made {
+                session,
                 machine,
                 cl: report::name_of(self.line.job.input()),
                 program: &self.part.target,
@@ -374,7 +382,7 @@ impl MadeProgram {
                 let texts = (&mut *source, name.as_str(), text);
                 made.write((rows, heard), texts, most, file)?;
             }
-            Ok(AtomicFile::finish(files)?)
+            Ok(AtomicFile::finish(session, files)?)
         });
         written.map(|_| ())
     }

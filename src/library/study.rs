@@ -5,10 +5,11 @@ use std::path::Path;
 
 use clap::Parser;
 
-use super::{Refused, quietly, refused};
+use super::{Refused, Stop, quietly, refused};
 use crate::failure::Failure;
 use crate::files::{self, PathArg, Role};
-use crate::job::batch::{self, Inputs, JobLine, Journal, Outcome, Stop, Study, StudyArguments};
+use crate::job::batch::{self, Inputs, JobLine, Journal, Outcome, Study, StudyArguments};
+use crate::session::Session;
 
 pub use crate::job::batch::{Column, Table as StudyTable, Values};
 
@@ -45,17 +46,23 @@ impl StudyJobs {
     ///
     /// # Errors
     /// A line that is no job, a flag that is none, or a journal that cannot be read.
-    pub fn new(lines: &str, flags: &[String], journal: Option<&Path>) -> Result<Self, Refused> {
+    pub fn new(
+        stop: &Stop,
+        lines: &str,
+        flags: &[String],
+        journal: Option<&Path>,
+    ) -> Result<Self, Refused> {
         let jobs = JobLine::read("the jobs", lines)?;
         let options = options(flags).map_err(refused)?;
-        let ((study, inputs), _) = quietly(|| Study::new(jobs, options))?;
+        let ((study, inputs), _) = quietly(stop, |session| Study::new(session, jobs, options))?;
         let journal = journal
             .map(|path| Journal::open(path, true))
             .transpose()
             .map_err(|fault| refused(fault.into()))?;
+        let session = Session::quiet();
         let outcomes = study.jobs.iter().map(|job| {
             let journal = journal.as_ref()?;
-            batch::known(&study, job, &inputs, journal)
+            batch::known(&session, &study, job, &inputs, journal)
         });
         Ok(Self { outcomes: outcomes.collect(), study, inputs, journal })
     }
@@ -99,7 +106,7 @@ impl StudyJobs {
             batch::run(&self.study, &self.inputs, &open, threads, journal, &mut |done| {
                 match progressed(done.jobs, done.refused) {
                     true => Ok(()),
-                    false => Err(Stop),
+                    false => Err(batch::Stop),
                 }
             });
         let Some(outcomes) = outcomes.map_err(refused)? else {
@@ -156,7 +163,7 @@ impl StudyJobs {
     ///
     /// # Errors
     /// Another ending, or it cannot be written.
-    pub fn write(&self, path: &Path) -> Result<(), Refused> {
+    pub fn write(&self, stop: &Stop, path: &Path) -> Result<(), Refused> {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         let Some(bytes) = self.table().bytes(&ending) else {
             let message = format!(
@@ -166,7 +173,8 @@ impl StudyJobs {
             return Err(super::option(message));
         };
         let target = PathArg::from(path.to_owned());
-        let written = quietly(|| Ok(files::write_bytes(RESULTS, &target, &bytes)?));
+        let written =
+            quietly(stop, |session| Ok(files::write_bytes(session, RESULTS, &target, &bytes)?));
         written.map(drop)
     }
 }
@@ -184,6 +192,7 @@ impl StudyPart {
     /// # Errors
     /// What of them is none.
     pub fn new(
+        stop: &Stop,
         lines: &str,
         flags: &[String],
         files: Vec<(String, Vec<u8>)>,
@@ -192,7 +201,7 @@ impl StudyPart {
         let jobs = JobLine::read("the jobs", lines)?;
         let options = options(flags).map_err(refused)?;
         Ok(Self {
-            study: quietly(|| Study::part(jobs, options))?.0,
+            study: quietly(stop, |session| Study::part(session, jobs, options))?.0,
             inputs: Inputs::handed_over(files.into_iter(), machines).map_err(super::option)?,
         })
     }
@@ -210,7 +219,7 @@ impl StudyPart {
         let (study, inputs) = (&self.study, &self.inputs);
         let mut look = |done: batch::Done| match progressed(done.jobs, done.refused) {
             true => Ok(()),
-            false => Err(Stop),
+            false => Err(batch::Stop),
         };
         let outcomes = batch::run(study, inputs, &numbers, threads, None, &mut look);
         let outcomes = outcomes.map_err(refused)?;

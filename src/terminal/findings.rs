@@ -6,18 +6,13 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use post_grammar::text::escaped;
 use post_machine::diagnostic::{Diagnostic, Place, Severity};
 
-use super::gathering::gather;
-use crate::files::outcome;
+use crate::files::Texts;
 
 /// Findings of one severity that are told; of the others how many there are.
 const MOST_TOLD: usize = 120;
 
-/// Writes findings to standard error, warnings first, and how many errors there were; or hands them to whoever gathers
-/// them.
-pub fn findings(findings: &[Diagnostic]) {
-    if gather(findings) {
-        return;
-    }
+/// Writes findings to standard error, warnings first, and how many errors there were.
+pub fn findings(findings: &[Diagnostic], texts: &Texts) {
     let mut stderr = std::io::stderr().lock();
     let renderer = if stderr.is_terminal() { Renderer::styled() } else { Renderer::plain() };
     let of = |severity| findings.iter().filter(move |finding| finding.severity == severity);
@@ -39,8 +34,7 @@ pub fn findings(findings: &[Diagnostic]) {
         } else {
             ""
         };
-        let outcome =
-            outcome::sentence().map_or_else(String::new, |outcome| format!("; {outcome}"));
+        let outcome = texts.sentence().map_or_else(String::new, |outcome| format!("; {outcome}"));
         let _ = writeln!(stderr, "{errors} error{plural}{more}{outcome}");
     }
 }

@@ -2,26 +2,20 @@
 
 mod codes;
 mod findings;
-mod gathering;
 mod progress;
-mod quantity;
-mod table;
 
 use std::borrow::Cow;
-use std::io::{self, Write as _};
-use std::sync::{Mutex, PoisonError};
+use std::io::{self, IsTerminal as _, Write as _};
 
 use post_grammar::text::escaped;
+use post_machine::diagnostic::Diagnostic;
 
 pub use codes::{CODES, Code, CodeGroup};
-pub use findings::findings;
-pub use gathering::{gathered, is_gathering};
-pub use progress::{JobsProgress, Progress, Watched};
-pub use quantity::{at_most, clock, number};
-pub use table::table;
+pub use progress::JobsProgress;
 
 use crate::failure::Failure;
-use crate::files::{FileFault, outcome, standard};
+use crate::files::{FileFault, Texts, standard};
+use crate::session::{Bar, Face, Session};
 
 /// Lines of text in which names and texts from files, plugins and the command line cannot switch the terminal: what it
 /// would obey is written as an escape.
@@ -29,14 +23,28 @@ fn printable(text: &str) -> Cow<'_, str> {
     escaped(text, &['\n', '\t'])
 }
 
-/// Why a result could not be printed: the first fault of the run.
-static UNPRINTED: Mutex<Option<io::Error>> = Mutex::new(None);
+/// The face of the command: findings and bars go to standard error.
+pub struct Terminal;
+
+impl Face for Terminal {
+    fn findings(&self, findings: &[Diagnostic], texts: &Texts) {
+        findings::findings(findings, texts);
+    }
+
+    fn bar(&self, bytes: Option<u64>) -> Option<Box<dyn Bar>> {
+        io::stderr().is_terminal().then(|| Box::new(progress::bytes(bytes)) as Box<dyn Bar>)
+    }
+
+    fn owns_output(&self) -> bool {
+        true
+    }
+}
 
 /// Prints a result to standard output. A reader that has seen enough closes the pipe; any other fault is told by
 /// [`all_printed`] at the end.
-pub fn print(text: &str) {
+pub fn print(session: &Session, text: &str) {
     // Whoever writes a file has been refused before that.
-    if standard::is_read().is_some() {
+    if standard::is_read(session).is_some() {
         return;
     }
     let printed = standard::open().and_then(|mut out| {
@@ -44,23 +52,21 @@ pub fn print(text: &str) {
         out.flush()
     });
     match printed {
-        Ok(()) => outcome::printed(),
+        Ok(()) => session.texts().note_printed(),
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {}
         Err(error) => {
-            // The error is whole whatever a thread died of.
-            let mut unprinted = UNPRINTED.lock().unwrap_or_else(PoisonError::into_inner);
-            unprinted.get_or_insert(error);
+            session.texts().unprinted.get_or_insert(error);
         }
     }
 }
 
 /// All results were printed.
-pub fn all_printed() -> Result<(), Failure> {
-    if let Some(read) = standard::is_read() {
+pub fn all_printed(session: &Session) -> Result<(), Failure> {
+    if let Some(read) = standard::is_read(session) {
         return Err(FileFault::PrintedOverRead(read).into());
     }
-    let mut unprinted = UNPRINTED.lock().unwrap_or_else(PoisonError::into_inner);
-    match unprinted.take() {
+    let unprinted = session.texts().unprinted.take();
+    match unprinted {
         Some(error) => Err(FileFault::write_named("standard output", error).into()),
         None => Ok(()),
     }
@@ -74,7 +80,7 @@ pub fn tell(text: &str) {
 }
 
 /// Says why a verb failed.
-pub fn explain(failure: Failure) {
+pub fn explain(session: &Session, failure: Failure) {
     match failure {
         Failure::Usage(error) => {
             let plain = error.render().to_string();
@@ -87,6 +93,6 @@ pub fn explain(failure: Failure) {
             }
         }
         Failure::Different => {}
-        other => findings(&other.findings()),
+        other => session.findings(&other.findings()),
     }
 }

@@ -4,6 +4,7 @@ use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 
 use crate::failure::Failure;
+use crate::session::Session;
 use crate::terminal;
 
 /// Prints what a shell reads to complete the verbs and flags of post.
@@ -19,9 +20,13 @@ pub struct CompletionsArguments {
 }
 
 /// Prints it.
-pub fn run(arguments: &CompletionsArguments, mut command: Command) -> Result<(), Failure> {
+pub fn run(
+    session: &Session,
+    arguments: &CompletionsArguments,
+    mut command: Command,
+) -> Result<(), Failure> {
     let mut text = Vec::new();
     generate(arguments.shell, &mut command, "post", &mut text);
-    terminal::print(&String::from_utf8_lossy(&text));
+    terminal::print(session, &String::from_utf8_lossy(&text));
     Ok(())
 }

@@ -5,6 +5,7 @@ use clap::error::ErrorKind;
 use post_machine::diagnostic::nearest;
 
 use crate::failure::Failure;
+use crate::session::Session;
 use crate::terminal::{CODES, Code, CodeGroup, print};
 
 /// Explains the codes of messages: what is found, and what helps; without a code all of them
@@ -15,7 +16,7 @@ pub struct ExplainArguments {
 }
 
 /// Prints what is known of a code.
-pub fn run(arguments: &ExplainArguments) -> Result<(), Failure> {
+pub fn run(session: &Session, arguments: &ExplainArguments) -> Result<(), Failure> {
     let wanted = arguments.code.as_deref().map(bare);
     let is_wanted = |code: &&Code| wanted.is_none_or(|wanted| wanted == code.name);
     let mut text = String::new();
@@ -28,7 +29,7 @@ pub fn run(arguments: &ExplainArguments) -> Result<(), Failure> {
     match (wanted, text.is_empty()) {
         (Some(wanted), true) => Err(unknown(wanted)),
         _ => {
-            print(&text);
+            print(session, &text);
             Ok(())
         }
     }

@@ -9,6 +9,7 @@ use post_machine::description::Machine;
 use crate::failure::Failure;
 use crate::job;
 use crate::job::machine_files::{self, Listed};
+use crate::session::Session;
 use crate::terminal;
 
 /// Lists the machines that a bare name finds: class, axes, dialect and file.
@@ -27,16 +28,16 @@ pub struct MachinesArguments {
 }
 
 /// Lists them, or prints one.
-pub fn run(arguments: &MachinesArguments) -> Result<(), Failure> {
+pub fn run(session: &Session, arguments: &MachinesArguments) -> Result<(), Failure> {
     if let Some(name) = &arguments.print {
-        let text = machine_files::text(name, &arguments.machines)?;
+        let text = machine_files::text(session, name, &arguments.machines)?;
         // Line ends as everywhere in what is printed.
-        terminal::print(&text.replace("\r\n", "\n"));
+        terminal::print(session, &text.replace("\r\n", "\n"));
         return Ok(());
     }
     let mut rows = vec![["name", "axes", "dialect", "from", "class"].map(str::to_owned)];
-    rows.extend(machine_files::list(&arguments.machines)?.into_iter().map(row));
-    terminal::print(&terminal::table(&rows, rows[0].len()));
+    rows.extend(machine_files::list(session, &arguments.machines)?.into_iter().map(row));
+    terminal::print(session, &crate::job::text::table(&rows, rows[0].len()));
     Ok(())
 }
 

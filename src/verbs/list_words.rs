@@ -10,6 +10,7 @@ use post_posting::program::limits::MOST_WORDS;
 
 use crate::failure::Failure;
 use crate::files::{ClInput, FileFault, PathArg};
+use crate::session::Session;
 use crate::terminal::print;
 
 /// Prints every word of a CL file: how often, and what becomes of it; without a file every word that is known.
@@ -30,12 +31,12 @@ pub struct WordsArguments {
 }
 
 /// Prints the table.
-pub fn run(arguments: &WordsArguments) -> Result<(), Failure> {
+pub fn run(session: &Session, arguments: &WordsArguments) -> Result<(), Failure> {
     let Some(file) = &arguments.file else {
-        print_all();
+        print_all(session);
         return Ok(());
     };
-    let input = ClInput::open(file)?;
+    let input = ClInput::open(session, file)?;
     let name = input.name;
     let mut reader = Reader::new(input.bytes);
     let mut words: BTreeMap<String, (u64, u64, Usage)> = BTreeMap::new();
@@ -82,12 +83,12 @@ pub fn run(arguments: &WordsArguments) -> Result<(), Failure> {
         let becomes = usage.name();
         line(&mut text, &format!("{word:<26} {count:>9}  {becomes:<10} {first}"));
     }
-    print(&text);
+    print(session, &text);
     if faults.is_empty() { Ok(()) } else { Err(faults.into()) }
 }
 
 /// Prints every word that is known, with its spellings.
-fn print_all() {
+fn print_all(session: &Session) {
     let mut text = String::new();
     line(&mut text, &format!("{:<32} {:<10} {}", "word", "becomes", "meaning"));
     for word in MajorWord::all() {
@@ -95,7 +96,7 @@ fn print_all() {
         let becomes = word.usage.name();
         line(&mut text, &format!("{spellings:<32} {becomes:<10} {}", word.meaning));
     }
-    print(&text);
+    print(session, &text);
 }
 
 fn line(text: &mut String, line: &str) {

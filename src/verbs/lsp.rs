@@ -7,6 +7,7 @@ use clap::Args;
 use crate::arguments::flag_values::length;
 use crate::editor::{self, Options};
 use crate::failure::Failure;
+use crate::session::Session;
 
 /// Serves an editor: faults, completion and explanations in machine files, axis values in CL files and programs.
 ///
@@ -36,7 +37,7 @@ pub struct LspArguments {
 }
 
 /// Serves.
-pub fn run(arguments: LspArguments) -> Result<(), Failure> {
+pub fn run(session: &Session, arguments: LspArguments) -> Result<(), Failure> {
     let LspArguments { machine, tool_length, machines, plugins, stdio: _ } = arguments;
-    editor::serve(Options { machine, tool_length, machines, plugins })
+    editor::serve(session, Options { machine, tool_length, machines, plugins })
 }

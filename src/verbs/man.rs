@@ -8,6 +8,7 @@ use clap_mangen::Man;
 
 use crate::failure::Failure;
 use crate::files::{FileFault, PathArg, Role};
+use crate::session::Session;
 use crate::{files, terminal};
 
 /// What a page is to the files of a run.
@@ -22,7 +23,11 @@ pub struct ManArguments {
 }
 
 /// Writes them.
-pub fn run(arguments: &ManArguments, mut command: Command) -> Result<(), Failure> {
+pub fn run(
+    session: &Session,
+    arguments: &ManArguments,
+    mut command: Command,
+) -> Result<(), Failure> {
     command.build();
     let mut pages = Vec::new();
     collect(&command, &mut pages);
@@ -40,8 +45,8 @@ pub fn run(arguments: &ManArguments, mut command: Command) -> Result<(), Failure
     }
     let written: Vec<_> =
         texts.iter().map(|(target, text)| (PAGE, target, text.as_str())).collect();
-    files::write(&written)?;
-    terminal::print(&format!("{} manual pages\n", written.len()));
+    files::write(session, &written)?;
+    terminal::print(session, &format!("{} manual pages\n", written.len()));
     Ok(())
 }
 

@@ -30,6 +30,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use post_machine::diagnostic::nearest;
 
 use crate::failure::Failure;
+use crate::session::Session;
 use batch::BatchArguments;
 use check::CheckArguments;
 use complete::CompletionsArguments;
@@ -123,38 +124,41 @@ enum Verb {
 
 impl CommandLine {
     /// Does what the command line says.
-    pub fn run(self) -> Result<(), Failure> {
+    pub fn run(self, session: &Session) -> Result<(), Failure> {
         match self.verb {
-            None => post::run(&self.post),
-            Some(Verb::Words(arguments)) => list_words::run(&arguments),
-            Some(Verb::Machines(arguments)) => list_machines::run(&arguments),
-            Some(Verb::Schema(arguments)) => print_schema::run(&arguments),
-            Some(Verb::Batch(arguments)) => batch::run(&arguments),
-            Some(Verb::Check(arguments)) => check::run(&arguments),
-            Some(Verb::Convert(arguments)) => convert::run(&arguments),
-            Some(Verb::Diff(arguments)) => diff::run(&arguments),
-            Some(Verb::New(arguments)) => new::run(&arguments),
-            Some(Verb::Study(arguments)) => study::run(&arguments),
-            Some(Verb::Place(arguments)) => place::run(&arguments),
-            Some(Verb::Plan(arguments)) => plan::run(&arguments),
-            Some(Verb::Predict(arguments)) => predict::run(&arguments),
-            Some(Verb::Verify(arguments)) => verify::run(&arguments),
-            Some(Verb::Plugin(arguments)) => plugin::run(&arguments),
-            Some(Verb::Read(arguments)) => read::run(&arguments),
-            Some(Verb::View(arguments)) => view(&arguments),
-            Some(Verb::Explain(arguments)) => explain::run(&arguments),
-            Some(Verb::Lsp(arguments)) => lsp::run(arguments),
-            Some(Verb::Completions(arguments)) => complete::run(&arguments, Self::command()),
-            Some(Verb::Man(arguments)) => man::run(&arguments, Self::command()),
+            None => post::run(session, &self.post),
+            Some(Verb::Words(arguments)) => list_words::run(session, &arguments),
+            Some(Verb::Machines(arguments)) => list_machines::run(session, &arguments),
+            Some(Verb::Schema(arguments)) => print_schema::run(session, &arguments),
+            Some(Verb::Batch(arguments)) => batch::run(session, &arguments),
+            Some(Verb::Check(arguments)) => check::run(session, &arguments),
+            Some(Verb::Convert(arguments)) => convert::run(session, &arguments),
+            Some(Verb::Diff(arguments)) => diff::run(session, &arguments),
+            Some(Verb::New(arguments)) => new::run(session, &arguments),
+            Some(Verb::Study(arguments)) => study::run(session, &arguments),
+            Some(Verb::Place(arguments)) => place::run(session, &arguments),
+            Some(Verb::Plan(arguments)) => plan::run(session, &arguments),
+            Some(Verb::Predict(arguments)) => predict::run(session, &arguments),
+            Some(Verb::Verify(arguments)) => verify::run(session, &arguments),
+            Some(Verb::Plugin(arguments)) => plugin::run(session, &arguments),
+            Some(Verb::Read(arguments)) => read::run(session, &arguments),
+            Some(Verb::View(arguments)) => view(session, &arguments),
+            Some(Verb::Explain(arguments)) => explain::run(session, &arguments),
+            Some(Verb::Lsp(arguments)) => lsp::run(session, arguments),
+            Some(Verb::Completions(arguments)) => {
+                complete::run(session, &arguments, Self::command())
+            }
+            Some(Verb::Man(arguments)) => man::run(session, &arguments, Self::command()),
         }
     }
 }
 
 /// Runs another command line with a report, and opens that.
-fn view(arguments: &ViewArguments) -> Result<(), Failure> {
+fn view(session: &Session, arguments: &ViewArguments) -> Result<(), Failure> {
     let view = View::new(arguments)?;
-    let done =
-        CommandLine::try_parse_from(&view.line).map_err(Failure::Usage).and_then(CommandLine::run);
+    let done = CommandLine::try_parse_from(&view.line)
+        .map_err(Failure::Usage)
+        .and_then(|line| line.run(session));
     // A program that is not as it should be is worth a look too.
     let shown = view.show();
     done.and(shown)

@@ -4,6 +4,7 @@ use clap::Args;
 
 use crate::failure::Failure;
 use crate::job::machine_schema;
+use crate::session::Session;
 use crate::terminal;
 
 /// Prints the JSON Schema of machine files, by which an editor completes and checks them; the options of the plugins
@@ -12,7 +13,7 @@ use crate::terminal;
 pub struct SchemaArguments {}
 
 /// Prints it.
-pub fn run(_: &SchemaArguments) -> Result<(), Failure> {
-    terminal::print(&format!("{:#}\n", machine_schema::schema()));
+pub fn run(session: &Session, _: &SchemaArguments) -> Result<(), Failure> {
+    terminal::print(session, &format!("{:#}\n", machine_schema::schema()));
     Ok(())
 }

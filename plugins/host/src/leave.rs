@@ -14,7 +14,9 @@ use crate::call::LoadedLibrary;
 use crate::call::at_work;
 
 /// What tells the user.
-static TELL: OnceLock<fn(&PluginFault)> = OnceLock::new();
+type Tell = Box<dyn Fn(&PluginFault) + Send + Sync>;
+
+static TELL: OnceLock<Tell> = OnceLock::new();
 
 /// The program itself ends, and not a library.
 static OURS: AtomicBool = AtomicBool::new(false);
@@ -38,8 +40,8 @@ impl Drop for ExitWatch {
 /// process ends with exit code 1. The program itself ends by [`leave`].
 ///
 /// What goes past the C library's `exit` is not seen: `_exit`, a signal.
-pub fn watch_for_exit(tell: fn(&PluginFault)) -> ExitWatch {
-    if TELL.set(tell).is_ok() {
+pub fn watch_for_exit(tell: impl Fn(&PluginFault) + Send + Sync + 'static) -> ExitWatch {
+    if TELL.set(Box::new(tell)).is_ok() {
         register();
     }
     ExitWatch(())

@@ -5,7 +5,7 @@ use post_grammar::{MajorWord, Reader};
 use super::{Posted, posted};
 use crate::editor::document::Snapshot;
 use crate::editor::readings;
-use crate::terminal::{at_most, number};
+use crate::job::text::{at_most, number};
 
 /// Lines over which a record may be parted that is looked at.
 const MOST_PARTS: usize = 50;

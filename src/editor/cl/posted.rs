@@ -9,6 +9,7 @@ use post_posting::{Block, Flow, Job, Observer, Post};
 use super::EVERY;
 use crate::editor::background::{Token, Worked};
 use crate::editor::document::Snapshot;
+use crate::editor::machine::library::Library;
 use crate::files::NullSink;
 use crate::job::plugin_finder;
 
@@ -54,10 +55,10 @@ pub fn post(
     of: &Snapshot,
     machine: Machine,
     tool_length: Option<f64>,
-    plugins: &[std::path::PathBuf],
+    library: &Library,
     token: &Token,
 ) -> Worked<Posted> {
-    let finder = match plugin_finder::finder(plugins) {
+    let finder = match plugin_finder::finder(&library.session, &library.plugins) {
         Ok(finder) => finder,
         Err(faults) => return Some(Err(faults)),
     };

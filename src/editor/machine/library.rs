@@ -8,10 +8,13 @@ use post_machine::description::Source;
 
 use crate::editor::document::Snapshot;
 use crate::job::machine_files::{self, Missing};
+use crate::session::Session;
 
 /// Folders of machines and plugins, and the texts that are open.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 pub struct Library {
+    /// The run that serves the editor.
+    pub session: Session,
     /// Folders of machine files, as the command line names them.
     pub machines: Vec<PathBuf>,
     /// Folders of plugin libraries, as the command line names them.
@@ -26,7 +29,7 @@ impl Library {
         let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         match self.open.get(&absolute) {
             Some(open) => Ok(Source { name: path.display().to_string(), text: open.text.clone() }),
-            None => machine_files::read(path),
+            None => machine_files::read(&self.session, path),
         }
     }
 

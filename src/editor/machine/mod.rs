@@ -57,7 +57,7 @@ pub fn findings(of: &Snapshot, library: &Library) -> Vec<Diagnostic> {
         Ok(machine) => machine,
         Err(faults) => return faults,
     };
-    let finder = match plugin_finder::finder(&library.plugins) {
+    let finder = match plugin_finder::finder(&library.session, &library.plugins) {
         Ok(finder) => finder,
         Err(faults) => return faults,
     };

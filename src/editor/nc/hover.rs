@@ -8,7 +8,7 @@ use super::map::Map;
 use super::program::ProgramLine;
 use crate::editor::document::Snapshot;
 use crate::editor::readings;
-use crate::terminal::at_most;
+use crate::job::text::at_most;
 
 /// What is said of a line, counted from 0, and of the word at `column`, bytes of the line; in Markdown.
 pub fn text(

@@ -1,7 +1,6 @@
 //! A program read back on the chosen machine: what each line does, and what holds there.
 
 use std::io::Cursor;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use post_machine::description::Machine;
@@ -13,6 +12,7 @@ use post_readback::{Done, MotionKind, Offsets, State, Told};
 
 use crate::editor::background::{Token, Worked};
 use crate::editor::document::Snapshot;
+use crate::editor::machine::library::Library;
 use crate::job::{nc_program, plugin_finder};
 
 /// Blocks between two looks whether the work is given up.
@@ -67,10 +67,10 @@ pub fn read(
     of: &Snapshot,
     machine: Machine,
     tool_length: Option<f64>,
-    plugins: &[PathBuf],
+    library: &Library,
     token: &Token,
 ) -> Worked<Program> {
-    let finder = match plugin_finder::finder(plugins) {
+    let finder = match plugin_finder::finder(&library.session, &library.plugins) {
         Ok(finder) => finder,
         Err(faults) => return Some(Err(faults)),
     };

@@ -10,8 +10,9 @@ use post_machine::diagnostic::Diagnostic;
 use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
-use crate::files::{FileFault, PathArg, read_files};
+use crate::files::{FileFault, PathArg};
 use crate::job::machine_files;
+use crate::session::Session;
 
 /// A CL file as it was when it was read.
 #[derive(Debug)]
@@ -42,8 +43,9 @@ pub enum MachineTexts {
 }
 
 impl MachineTexts {
-    fn find(machine: &str, folders: &[PathBuf]) -> Self {
-        let source = match machine_files::source(machine, folders, &machine_files::read) {
+    fn find(session: &Session, machine: &str, folders: &[PathBuf]) -> Self {
+        let read = |path: &Path| machine_files::read(session, path);
+        let source = match machine_files::source(machine, folders, &read) {
             Ok(source) => source,
             Err(failure) => {
                 let findings = failure.findings().into_iter();
@@ -54,7 +56,7 @@ impl MachineTexts {
         let (name, text) = (source.name.clone(), source.text.clone());
         // What is wrong with it, each job says of its own settings.
         let _ = load(source, &[], &mut |parent| {
-            let found = machine_files::parent(&name, parent, folders, &machine_files::read);
+            let found = machine_files::parent(&name, parent, folders, &read);
             let kept = found.clone().map(|source| (source.name, source.text));
             parents.insert(parent.to_owned(), kept);
             found
@@ -97,11 +99,15 @@ pub struct Inputs {
 
 impl Inputs {
     /// Those of the machines with these names are read at once: what they are does not change under the study.
-    pub fn new<'m>(machines: impl Iterator<Item = &'m str>, folders: &[PathBuf]) -> Self {
+    pub fn new<'m>(
+        session: &Session,
+        machines: impl Iterator<Item = &'m str>,
+        folders: &[PathBuf],
+    ) -> Self {
         let mut inputs = Self::default();
         for machine in machines {
             if !inputs.machines.contains_key(machine) {
-                let texts = MachineTexts::find(machine, folders);
+                let texts = MachineTexts::find(session, machine, folders);
                 inputs.machines.insert(machine.to_owned(), Arc::new(texts));
             }
         }
@@ -146,7 +152,7 @@ impl Inputs {
     ///
     /// # Errors
     /// It cannot be read.
-    pub fn cl(&self, file: &str) -> Result<Arc<ClText>, Failure> {
+    pub fn cl(&self, session: &Session, file: &str) -> Result<Arc<ClText>, Failure> {
         if let Some(text) = self.given.get(file) {
             return Ok(Arc::clone(text));
         }
@@ -166,7 +172,7 @@ impl Inputs {
             return Err(FileFault::ReadFolder(named.to_owned()).into());
         }
         let bytes = fs::read(path).map_err(|error| FileFault::read(named, error))?;
-        read_files::note("the CL file", path);
+        session.read_files().note("the CL file", path);
         let text = ClText::new(bytes);
         read.insert(file.to_owned(), Arc::downgrade(&text));
         Ok(text)

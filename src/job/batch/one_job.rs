@@ -25,6 +25,7 @@ use crate::job::one_program::{Beside, OneProgram};
 use crate::job::predict::{self, Against, Asked, Prediction};
 use crate::job::read_back::{self, Reading};
 use crate::job::{self, plugin_finder, unused_options};
+use crate::session::Session;
 
 /// What came of a job, and whether the journal knew it.
 pub struct Did {
@@ -34,6 +35,7 @@ pub struct Did {
 
 /// Does a job, whatever comes; none if it was given up.
 pub fn run(
+    session: &Session,
     study: &Study,
     job: &JobLine,
     inputs: &Inputs,
@@ -41,7 +43,8 @@ pub fn run(
     stop: &Arc<AtomicBool>,
 ) -> Option<Did> {
     // What a job had in its hands is dropped with it: nothing of it is seen again.
-    let did = catch_unwind(AssertUnwindSafe(|| attempt(study, job, inputs, journal, stop)));
+    let did =
+        catch_unwind(AssertUnwindSafe(|| attempt(session, study, job, inputs, journal, stop)));
     if stop.load(Ordering::Relaxed) {
         return None;
     }
@@ -80,11 +83,16 @@ struct Prepared {
 }
 
 impl Prepared {
-    fn new(study: &Study, job: &JobLine, inputs: &Inputs) -> Result<Self, Failure> {
+    fn new(
+        session: &Session,
+        study: &Study,
+        job: &JobLine,
+        inputs: &Inputs,
+    ) -> Result<Self, Failure> {
         let arguments = job
             .arguments(&study.options.reading)
             .map_err(|fault| Diagnostic::error("job", fault))?;
-        let cl = inputs.cl(&job.file)?;
+        let cl = inputs.cl(session, &job.file)?;
         let texts = inputs.machine(arguments.machine());
         let machine = texts.load(&arguments.settings())?;
         Ok(Self {
@@ -98,27 +106,34 @@ impl Prepared {
 }
 
 /// What the journal knows of a job.
-pub fn known(study: &Study, job: &JobLine, inputs: &Inputs, journal: &Journal) -> Option<Outcome> {
+pub fn known(
+    session: &Session,
+    study: &Study,
+    job: &JobLine,
+    inputs: &Inputs,
+    journal: &Journal,
+) -> Option<Outcome> {
     // What is wrong with the job is found again when it is done.
-    let prepared = catch_unwind(AssertUnwindSafe(|| Prepared::new(study, job, inputs)));
+    let prepared = catch_unwind(AssertUnwindSafe(|| Prepared::new(session, study, job, inputs)));
     journal.known(prepared.ok()?.ok()?.key.as_ref()?)
 }
 
 /// Does a job, or takes from the journal what came of it before.
 fn attempt(
+    session: &Session,
     study: &Study,
     job: &JobLine,
     inputs: &Inputs,
     journal: Option<&Journal>,
     stop: &Arc<AtomicBool>,
 ) -> Result<Did, Failure> {
-    let Prepared { arguments, machine, cl, key } = Prepared::new(study, job, inputs)?;
+    let Prepared { arguments, machine, cl, key } = Prepared::new(session, study, job, inputs)?;
     let known = journal.zip(key.as_ref()).and_then(|(journal, key)| journal.known(key));
     if let Some(outcome) = known {
         return Ok(Did { outcome, known: true });
     }
     let begun = std::time::Instant::now();
-    let one = OneJob { study, arguments: &arguments, machine: &machine, cl: &cl, stop };
+    let one = OneJob { session, study, arguments: &arguments, machine: &machine, cl: &cl, stop };
     let mut outcome = match one.make() {
         Ok(outcome) => outcome,
         Err(Failure::Refused(findings)) => Outcome::not_written(REFUSED, &findings),
@@ -134,6 +149,7 @@ fn attempt(
 
 /// A job whose machine is loaded.
 struct OneJob<'a> {
+    session: &'a Session,
     study: &'a Study,
     arguments: &'a JobArguments,
     machine: &'a Machine,
@@ -151,6 +167,7 @@ impl OneJob<'_> {
         let ahead = self.ahead(&mut source)?;
         let target = self.arguments.input().map(|path| path.with_extension("nc"));
         let program = OneProgram {
+            session: self.session,
             arguments: self.arguments,
             machine: self.machine,
             finder,
@@ -195,7 +212,7 @@ impl OneJob<'_> {
 
     fn source(&self) -> ClSource {
         let text = HeldText { bytes: Arc::clone(&self.cl.bytes), stop: Arc::clone(self.stop) };
-        ClSource::of_held(self.arguments.input(), text)
+        ClSource::of_held(self.session, self.arguments.input(), text)
     }
 
     fn ahead(&self, source: &mut ClSource) -> Result<Option<LookedAhead>, Failure> {
@@ -203,7 +220,7 @@ impl OneJob<'_> {
             return Ok(None);
         }
         let finder = &self.study.finder;
-        job::look_ahead(self.arguments, self.machine, finder, source, None).map(Some)
+        job::look_ahead(self.session, self.arguments, self.machine, finder, source, None).map(Some)
     }
 
     fn read_back(
@@ -213,6 +230,7 @@ impl OneJob<'_> {
         text: &ProgramText,
     ) -> Result<read_back::Held, Failure> {
         let reading = Reading {
+            session: self.session,
             arguments: self.arguments,
             machine: self.machine,
             finder: &self.study.finder,
@@ -238,6 +256,7 @@ impl OneJob<'_> {
         text: &ProgramText,
     ) -> Result<predict::Predicted, Failure> {
         let asked = Asked {
+            session: self.session,
             arguments: self.arguments,
             machine: self.machine,
             finder: &self.study.finder,

@@ -12,6 +12,7 @@ use super::job_line::JobLine;
 use crate::arguments::ReadingArguments;
 use crate::failure::Failure;
 use crate::job::plugin_finder;
+use crate::session::Session;
 
 /// What is asked of every job.
 #[derive(Clone, Debug, Default, Args)]
@@ -90,17 +91,21 @@ impl Study {
     ///
     /// # Errors
     /// No job, or a folder of plugins that cannot be looked into.
-    pub fn new(jobs: Vec<JobLine>, options: StudyArguments) -> Result<(Self, Inputs), Failure> {
+    pub fn new(
+        session: &Session,
+        jobs: Vec<JobLine>,
+        options: StudyArguments,
+    ) -> Result<(Self, Inputs), Failure> {
         if jobs.is_empty() {
             return Err(Diagnostic::error("batch", "there is no job to do")
                 .help("name CL files, or a list of jobs that ends in .jsonl")
                 .into());
         }
         let machines = jobs.iter().filter_map(|job| job.machine.as_deref());
-        let inputs = Inputs::new(machines, &options.machines);
+        let inputs = Inputs::new(session, machines, &options.machines);
         let study = Self {
             columns: columns::columns(&jobs, &options, &inputs),
-            finder: plugin_finder::finder(&options.plugins)?,
+            finder: plugin_finder::finder(session, &options.plugins)?,
             jobs,
             options,
         };
@@ -111,10 +116,14 @@ impl Study {
     ///
     /// # Errors
     /// A folder of plugins that cannot be looked into.
-    pub fn part(jobs: Vec<JobLine>, options: StudyArguments) -> Result<Self, Failure> {
+    pub fn part(
+        session: &Session,
+        jobs: Vec<JobLine>,
+        options: StudyArguments,
+    ) -> Result<Self, Failure> {
         Ok(Self {
             columns: Vec::new(),
-            finder: plugin_finder::finder(&options.plugins)?,
+            finder: plugin_finder::finder(session, &options.plugins)?,
             jobs,
             options,
         })

@@ -15,8 +15,7 @@ use super::journal::Journal;
 use super::one_job::{self, Did};
 use super::outcome::Outcome;
 use crate::failure::Failure;
-use crate::files::read_files;
-use crate::terminal;
+use crate::session::Session;
 
 /// As much as the first thread of a process mostly has.
 const STACK: usize = 8 << 20;
@@ -66,13 +65,16 @@ pub fn run(
             let send = send.clone();
             let (next, stop) = (&next, &stop);
             let jobs = move || {
+                // What a job would print beside its row is in the row; bars of several threads would cross each other.
+                let session = Session::quiet();
                 while !stop.load(Ordering::Relaxed) {
                     let place = next.fetch_add(1, Ordering::Relaxed);
                     let Some(number) = numbers.get(place) else {
                         return;
                     };
                     let job = &study.jobs[*number];
-                    let Some(did) = one_job::run(study, job, inputs, journal, stop) else {
+                    let Some(did) = one_job::run(&session, study, job, inputs, journal, stop)
+                    else {
                         return;
                     };
                     if send.send((place, did)).is_err() {
@@ -80,10 +82,8 @@ pub fn run(
                     }
                 }
             };
-            // What a job would print beside its row is in the row; bars of several threads would cross each other.
-            let work = || read_files::apart(|| terminal::gathered(jobs));
             let thread = thread::Builder::new().name("batch".to_owned()).stack_size(STACK);
-            if let Err(error) = thread.spawn_scoped(scope, move || drop(work())) {
+            if let Err(error) = thread.spawn_scoped(scope, jobs) {
                 let message = format!("no thread can be started: {error}");
                 fault =
                     Some(Failure::from(Diagnostic::error("batch", message).help("fewer --jobs")));

@@ -211,8 +211,9 @@ impl Tried<'_, '_> {
         path: &Recorded,
         errors: &mut Errors,
     ) -> Result<Stray, Failure> {
-        let OneProgram { arguments, machine, finder, lines, .. } = self.program;
+        let OneProgram { session, arguments, machine, finder, lines, .. } = self.program;
         let asked = Asked {
+            session,
             arguments,
             machine,
             finder,

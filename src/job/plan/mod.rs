@@ -30,7 +30,8 @@ use post_machine::diagnostic::Diagnostic;
 use super::nc_program;
 use crate::failure::Failure;
 use crate::files::{FileFault, PathArg};
-use crate::terminal::number;
+use crate::job::text::number;
+use crate::session::Session;
 use curve_file::{CurveFile, GivenPath, Pointing, Splines};
 use found::SplineFound;
 use gauges::{Gauges, PlanPoint};
@@ -69,10 +70,11 @@ impl Curve {
     /// # Errors
     /// The file cannot be read, or what is wrong with it.
     pub fn read(
+        session: &Session,
         source: &PathArg,
         machine: Option<Machine>,
     ) -> Result<(Self, Vec<Diagnostic>), Failure> {
-        let (name, input) = nc_program::open_as("the curve file", source)?;
+        let (name, input) = nc_program::open_as(session, "the curve file", source)?;
         let mut text = String::new();
         let read = input.take(curve_file::MOST_BYTES + 1).read_to_string(&mut text);
         read.map_err(|error| FileFault::Read { name: name.clone(), error })?;

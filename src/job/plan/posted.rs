@@ -13,7 +13,7 @@ use super::path::Station;
 use super::pictures::PlanRooms;
 use super::walk::{LimitFound, Tally};
 use crate::files;
-use crate::terminal::number;
+use crate::job::text::number;
 
 /// The file that tells in numbers what the pictures show, and how it begins.
 pub const MARK: (&str, &str) = ("plan.json", "{\n  \"program\": ");

@@ -184,8 +184,9 @@ impl Tried<'_, '_> {
         if report.is_none() {
             return Err(findings.into());
         }
-        let OneProgram { arguments, machine, finder, lines, .. } = self.program;
+        let OneProgram { session, arguments, machine, finder, lines, .. } = self.program;
         let asked = Asked {
+            session,
             arguments,
             machine,
             finder,

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{Found, Round};
-use crate::terminal::number;
+use crate::job::text::number;
 
 /// As a table.
 pub fn text(found: &Found) -> String {

@@ -22,9 +22,11 @@ use super::stages::Stages;
 use super::{cl_path, found};
 use crate::arguments::JobArguments;
 use crate::failure::Failure;
+use crate::files::Watched;
 use crate::files::{ClSource, FileFault};
+use crate::job::text::number;
 use crate::job::{nc_program, read_back};
-use crate::terminal::{Progress, Watched, number};
+use crate::session::Session;
 
 /// Set-points of a batch.
 const BATCH: usize = 256;
@@ -37,6 +39,8 @@ const OTHER_PART: f64 = 1.0;
 
 /// What a program is predicted with.
 pub struct Asked<'a> {
+    /// The run.
+    pub session: &'a Session,
     /// The command line of the job.
     pub arguments: &'a JobArguments,
     /// The machine with its settings.
@@ -126,7 +130,7 @@ pub fn predict<R: Read + Seek>(
     let mut points: Option<SetPoints> = None;
     let mut times = Vec::new();
     let mut chains: Vec<(f64, Arc<Solver>)> = Vec::new();
-    let mut progress = Progress::new(Some(length));
+    let mut progress = asked.session.progress(Some(length));
     loop {
         progress.record(|| position.get());
         let filled = match &mut points {

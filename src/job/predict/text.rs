@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::measured;
 use super::prediction::{AxisFound, Extreme, LimitTime, Prediction, Spread};
-use crate::terminal::{clock, number, table};
+use crate::job::text::{clock, number, table};
 
 /// So many limits and operations are listed; the JSON has all of them.
 const MOST_ROWS: usize = 12;

@@ -12,9 +12,11 @@ use super::{BlockRows, Parts, PredictedParts};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
 use crate::job::predict::Prediction;
+use crate::session::Session;
 
 /// What is known of a program that is made.
 pub struct Made<'a> {
+    pub session: &'a Session,
     pub machine: &'a Machine,
     /// What the CL file is called.
     pub cl: String,
@@ -65,7 +67,7 @@ impl Made<'_> {
                 meta.verdict.word = "Within tolerance, predicted beyond a limit".to_owned();
             }
         }
-        let mut parts = Parts::of(self.machine, &mut meta)?;
+        let mut parts = Parts::of(self.session, self.machine, &mut meta)?;
         if let Some(predicted) = predicted {
             predicted.finish(&mut parts)?;
         }

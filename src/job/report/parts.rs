@@ -12,7 +12,7 @@ use post_report::text::TextWriter;
 use super::solids;
 use crate::failure::Failure;
 use crate::files::{AtomicFile, FileFault, Scratch};
-use crate::terminal;
+use crate::session::Session;
 
 /// What messages call a scratch file.
 const NAME: &str = "the report";
@@ -46,10 +46,10 @@ impl Parts {
     ///
     /// # Errors
     /// They cannot be kept.
-    pub fn of(machine: &Machine, meta: &mut Meta) -> Result<Self, Failure> {
+    pub fn of(session: &Session, machine: &Machine, meta: &mut Meta) -> Result<Self, Failure> {
         let mut parts = Self::default();
         let faults = solids::add(machine, meta, &mut parts)?;
-        terminal::findings(&faults);
+        session.findings(&faults);
         // Their places are lines of the machine file, which the page does not show.
         let told = faults.into_iter().map(|fault| fault.at(None));
         let told = super::warnings(&told.collect::<Vec<_>>(), "");

@@ -4,7 +4,7 @@ use post_machine::description::Machine;
 use post_report::meta::Maximum;
 
 use crate::job::predict::Prediction;
-use crate::terminal::{clock, number};
+use crate::job::text::{clock, number};
 
 /// The largest errors, velocities and accelerations.
 pub fn predicted_maxima(machine: &Machine, found: &Prediction) -> Vec<Maximum> {

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::files::PathArg;
 use crate::job::batch::{FAILED, REFUSED, Table, Values, WRITTEN};
-use crate::terminal::clock;
+use crate::job::text::clock;
 
 /// So many codes are told.
 const MOST_CODES: usize = 6;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::files::svg::{self, label, line, upright};
 use crate::job::batch::{Table, Values, WRITTEN};
-use crate::terminal::number;
+use crate::job::text::number;
 
 /// Room for the numbers beside and below a map, px.
 const LEFT: f64 = 86.0;

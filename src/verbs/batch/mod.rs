@@ -11,10 +11,11 @@ use clap::Args;
 use post_machine::diagnostic::Diagnostic;
 
 use crate::failure::Failure;
-use crate::files::{self, AtomicFile, FileFault, PathArg, Role, read_files};
+use crate::files::{self, AtomicFile, FileFault, PathArg, Role};
 use crate::job::batch::{
     self, Grid, JobLine, Journal, Shard, Study, StudyArguments, Table, Written,
 };
+use crate::session::Session;
 use crate::terminal::{self, JobsProgress};
 use map_picture::Map;
 
@@ -165,19 +166,19 @@ fn mounts(text: &str) -> Result<Mounts, String> {
 }
 
 /// Does the study as the arguments say.
-pub fn run(arguments: &BatchArguments) -> Result<(), Failure> {
+pub fn run(session: &Session, arguments: &BatchArguments) -> Result<(), Failure> {
     let ending = ending(&arguments.output)?;
-    let jobs = jobs(arguments)?;
-    let (study, inputs) = Study::new(jobs, arguments.study.clone())?;
+    let jobs = jobs(session, arguments)?;
+    let (study, inputs) = Study::new(session, jobs, arguments.study.clone())?;
     let map = map(arguments, &study)?;
     for job in &study.jobs {
-        read_files::note("the CL file", job.file.as_ref());
+        session.read_files().note("the CL file", job.file.as_ref());
     }
-    let journal = journal(arguments)?;
+    let journal = journal(session, arguments)?;
     let mut targets = vec![(RESULTS, &arguments.output)];
     targets.extend(arguments.svg.iter().map(|svg| (Role::PICTURE, svg)));
     // All are opened before the work begins.
-    let mut texts = AtomicFile::create(&targets)?;
+    let mut texts = AtomicFile::create(session, &targets)?;
     let numbers = study.numbers(arguments.shard);
     let progress = JobsProgress::new(numbers.len() as u64);
     let mut done = batch::Done::default();
@@ -194,13 +195,13 @@ pub fn run(arguments: &BatchArguments) -> Result<(), Failure> {
         file.write_bytes(map.draw(&table).as_bytes())?;
     }
     let taken = texts.iter().any(AtomicFile::is_standard);
-    AtomicFile::finish(texts)?;
+    AtomicFile::finish(session, texts)?;
     if !arguments.quiet {
         let text = batch_text::text(&table, done.known, &arguments.output);
         if taken {
             terminal::tell(&text);
         } else {
-            terminal::print(&text);
+            terminal::print(session, &text);
         }
     }
     Ok(())
@@ -225,7 +226,7 @@ fn ending(output: &PathArg) -> Result<String, Failure> {
 }
 
 /// The jobs of the files and lists, the grid laid over them.
-fn jobs(arguments: &BatchArguments) -> Result<Vec<JobLine>, Failure> {
+fn jobs(session: &Session, arguments: &BatchArguments) -> Result<Vec<JobLine>, Failure> {
     let mut seeds = Vec::new();
     for file in &arguments.files {
         if file.extension().is_none_or(|ending| ending != "jsonl") {
@@ -233,7 +234,7 @@ fn jobs(arguments: &BatchArguments) -> Result<Vec<JobLine>, Failure> {
             continue;
         }
         let text = std::fs::read_to_string(file).map_err(|error| FileFault::read(file, error))?;
-        read_files::note("the list of jobs", file);
+        session.read_files().note("the list of jobs", file);
         seeds.extend(JobLine::read(&file.display().to_string(), &text)?);
     }
     let values = |flag: &Option<Listed>| -> Vec<Written> {
@@ -260,7 +261,7 @@ fn jobs(arguments: &BatchArguments) -> Result<Vec<JobLine>, Failure> {
 }
 
 /// The journal: where the user says, or beside the table; none of a table that goes to standard output or a device.
-fn journal(arguments: &BatchArguments) -> Result<Option<Journal>, Failure> {
+fn journal(session: &Session, arguments: &BatchArguments) -> Result<Option<Journal>, Failure> {
     let beside = || {
         let path = arguments.output.absolute()?;
         let is_file = !path.exists() || path.is_file();
@@ -284,7 +285,7 @@ fn journal(arguments: &BatchArguments) -> Result<Option<Journal>, Failure> {
     let target = PathArg::from(path.clone());
     let mut targets = vec![(JOURNAL, &target), (RESULTS, &arguments.output)];
     targets.extend(arguments.svg.iter().map(|svg| (Role::PICTURE, svg)));
-    files::check_targets(&targets)?;
+    files::check_targets(session, &targets)?;
     Ok(Some(Journal::open(&path, arguments.resume.is_some())?))
 }
 

@@ -20,6 +20,7 @@ use super::CheckArguments;
 use crate::failure::Failure;
 use crate::files::{self, PathArg, Role};
 use crate::job::plugin_finder;
+use crate::session::Session;
 use crate::terminal::print;
 
 /// A remark longer than this is no longer read whole on a control's screen.
@@ -27,6 +28,7 @@ const REMARK: usize = 58;
 
 /// Writes the program.
 pub fn write(
+    session: &Session,
     arguments: &CheckArguments,
     machine: &Machine,
     finder: &Finder,
@@ -56,13 +58,16 @@ pub fn write(
     dialect
         .write_batch(&writer.batch, &mut text, &mut ends)
         .map_err(|fault| Diagnostic::error("dialect", fault.message))?;
-    let taken = files::write(&[(Role::PROGRAM, &target, &text)])?;
+    let taken = files::write(session, &[(Role::PROGRAM, &target, &text)])?;
     if let Some(path) = target.path().filter(|_| !taken) {
-        print(&format!(
-            "{}: {} moves, one axis each. Run it without a part, with a hand on the feed override.\n",
-            path.display(),
-            plan.trials.len()
-        ));
+        print(
+            session,
+            &format!(
+                "{}: {} moves, one axis each. Run it without a part, with a hand on the feed override.\n",
+                path.display(),
+                plan.trials.len()
+            ),
+        );
     }
     Ok(())
 }

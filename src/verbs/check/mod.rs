@@ -15,7 +15,8 @@ use crate::arguments::flag_values;
 use crate::failure::Failure;
 use crate::files::{self, PathArg, Role};
 use crate::job::{self, machine_files, other_dialect, plugin_finder, report, unused_options};
-use crate::terminal::{self, print};
+use crate::session::Session;
+use crate::terminal::print;
 
 /// Prints what was derived from a machine file: chain, class, signs, reach, travel, solutions.
 ///
@@ -88,22 +89,22 @@ pub struct CheckArguments {
 }
 
 /// Checks as the arguments say.
-pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
-    let machine = machine(arguments)?;
-    let finder = plugin_finder::finder(&arguments.plugins)?;
-    unused_options::warn(&machine, &finder);
+pub fn run(session: &Session, arguments: &CheckArguments) -> Result<(), Failure> {
+    let machine = machine(session, arguments)?;
+    let finder = plugin_finder::finder(session, &arguments.plugins)?;
+    unused_options::warn(session, &machine, &finder);
     if arguments.commission {
-        return commission_program::write(arguments, &machine, &finder);
+        return commission_program::write(session, arguments, &machine, &finder);
     }
     job::try_opening(&machine, &finder, arguments.tool_length)?;
     match &arguments.nominal {
-        Some(nominal) => with_nominal(arguments, &machine, nominal),
-        None => alone(arguments, &machine),
+        Some(nominal) => with_nominal(session, arguments, &machine, nominal),
+        None => alone(session, arguments, &machine),
     }
 }
 
 /// What one machine file means.
-fn alone(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failure> {
+fn alone(session: &Session, arguments: &CheckArguments, machine: &Machine) -> Result<(), Failure> {
     let mut check = job::derive(machine, arguments.tool_length)?;
     let mut findings = check.findings();
     let solids = report::solids::faults(machine);
@@ -112,45 +113,52 @@ fn alone(arguments: &CheckArguments, machine: &Machine) -> Result<(), Failure> {
     findings.extend(solids);
     let picture = arguments.svg.as_ref().map(|_| reach_picture::draw(&check));
     let json = arguments.json.as_ref().map(|_| files::json(&check));
-    let taken = write(arguments, picture, json)?;
-    terminal::findings(&findings);
+    let taken = write(session, arguments, picture, json)?;
+    session.findings(&findings);
     if taken {
         return Ok(());
     }
-    print(&check_text::check(&check));
+    print(session, &check_text::check(&check));
     if !machine.heads.is_empty() {
         let heads = machine.heads.iter().map(|head| head.name.as_str());
         let heads: Vec<&str> = heads.collect();
-        print(&format!("further heads, see --head: {}\n", heads.join(", ")));
+        print(session, &format!("further heads, see --head: {}\n", heads.join(", ")));
     }
     Ok(())
 }
 
 /// How far two machine files are apart.
 fn with_nominal(
+    session: &Session,
     arguments: &CheckArguments,
     machine: &Machine,
     nominal: &str,
 ) -> Result<(), Failure> {
     let mount: Vec<Setting> = arguments.mount.map(Setting::Mount).into_iter().collect();
-    let nominal = machine_files::load(nominal, &arguments.machines, &mount)?;
+    let nominal = machine_files::load(session, nominal, &arguments.machines, &mount)?;
     let compared =
         compare(machine, &nominal, arguments.tool_length).map_err(|fault| differing(&fault))?;
     let json = arguments.json.as_ref().map(|_| files::json(&compared));
-    if !write(arguments, None, json)? {
-        print(&check_text::comparison(&compared));
+    if !write(session, arguments, None, json)? {
+        print(session, &check_text::comparison(&compared));
     }
     Ok(())
 }
 
 /// The machine that is checked, with its settings and the head that is asked for.
-fn machine(arguments: &CheckArguments) -> Result<Machine, Failure> {
+fn machine(session: &Session, arguments: &CheckArguments) -> Result<Machine, Failure> {
     let mut settings = arguments.set.clone();
     settings.extend(arguments.mount.map(Setting::Mount));
     settings.extend(arguments.dialect.clone().map(Setting::Dialect));
-    let machine = machine_files::load(&arguments.machine, &arguments.machines, &settings)?;
+    let machine = machine_files::load(session, &arguments.machine, &arguments.machines, &settings)?;
     let dialect = arguments.dialect.as_deref();
-    other_dialect::say_what_is_left(dialect, &arguments.machine, &arguments.machines, &settings);
+    other_dialect::say_what_is_left(
+        session,
+        dialect,
+        &arguments.machine,
+        &arguments.machines,
+        &settings,
+    );
     match &arguments.head {
         Some(name) => with_head(machine, name),
         None => Ok(machine),
@@ -193,6 +201,7 @@ fn differing(fault: &Differing) -> Diagnostic {
 /// Writes picture and JSON, those that are asked for: both or none. True if standard output is taken by one of them, so that
 /// nothing else is printed there.
 fn write(
+    session: &Session,
     arguments: &CheckArguments,
     picture: Option<String>,
     json: Option<String>,
@@ -203,5 +212,5 @@ fn write(
     let texts = [of(Role::PICTURE, &arguments.svg, picture), of(Role::JSON, &arguments.json, json)];
     let texts = texts.iter().flatten();
     let texts: Vec<_> = texts.map(|(role, target, text)| (*role, target, text.as_str())).collect();
-    Ok(files::write(&texts)?)
+    Ok(files::write(session, &texts)?)
 }

@@ -24,8 +24,10 @@ use crate::job::nc_to_cl::{self, Tools};
 use crate::job::one_program::{Beside, OneProgram};
 use crate::job::read_back::{self, Against, Held, Reading};
 use crate::job::report::{self, BlockRows, ClWindow, Made};
+use crate::job::text::{clock, number, table};
 use crate::job::{self, plugin_finder};
-use crate::terminal::{self, clock, number, table};
+use crate::session::Session;
+use crate::terminal;
 
 /// Moves an NC program to another machine.
 ///
@@ -143,14 +145,14 @@ const CHORDS: f64 = 0.1;
 const FINER: f64 = 0.1;
 
 /// Converts as the arguments say.
-pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
-    let from = NcControl::new(&arguments.first())?;
-    let (name, input) = nc_program::open(&arguments.input)?;
+pub fn run(session: &Session, arguments: &ConvertArguments) -> Result<(), Failure> {
+    let from = NcControl::new(session, &arguments.first())?;
+    let (name, input) = nc_program::open(session, &arguments.input)?;
     let run = || -> Result<_, Failure> {
         from.run_with_rapids(&name, || Ok(nc_program::again(&name, &input)?))
     };
     let job = arguments.second();
-    let asked = job::machine(&job, &[])?;
+    let asked = job::machine(session, &job, &[])?;
     for machine in [&from.machine, &asked] {
         if machine.turn != 0.0 {
             let message = format!(
@@ -172,14 +174,14 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
             value: axis_tolerance.to_degrees() * left,
         },
     ];
-    let machine = job::machine(&job, &more)?;
-    let finder = plugin_finder::finder(&job.plugins)?;
-    job::say_what_is_left(&job, &machine, &finder);
+    let machine = job::machine(session, &job, &more)?;
+    let finder = plugin_finder::finder(session, &job.plugins)?;
+    job::say_what_is_left(session, &job, &machine, &finder);
 
     let mut targets = vec![(Role::PROGRAM, &arguments.output)];
     targets.extend(arguments.cl.iter().map(|cl| (Role::CL, cl)));
     targets.extend(arguments.report.report.iter().map(|page| (Role::REPORT, page)));
-    let mut files = AtomicFile::create(&targets)?;
+    let mut files = AtomicFile::create(session, &targets)?;
     let page = arguments.report.report.as_ref().and_then(|_| files.pop());
     let (program, cl_file) = files.split_at_mut(1);
     let program = &mut program[0];
@@ -187,7 +189,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
     let chords = Chords::within(tolerance * CHORDS, axis_tolerance * CHORDS);
     let part = arguments.input.stem().unwrap_or_default();
     let mut course = DoneCourse::new(run()?, chords);
-    let (mut source, written) = ClSource::of_text(format!("{name} as CL file"), |copy| {
+    let (mut source, written) = ClSource::of_text(session, format!("{name} as CL file"), |copy| {
         nc_to_cl::write(
             &mut course,
             &part,
@@ -211,10 +213,11 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
     }
 
     let ahead = match machine.program.looks_ahead {
-        true => Some(job::look_ahead(&job, &machine, &finder, &mut source, None)?),
+        true => Some(job::look_ahead(session, &job, &machine, &finder, &mut source, None)?),
         false => None,
     };
     let one = OneProgram {
+        session,
         arguments: &job,
         machine: &machine,
         finder: &finder,
@@ -255,6 +258,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         cut_path: Some(cut_path),
     };
     let reading = Reading {
+        session,
         arguments: &job,
         machine: &machine,
         finder: &finder,
@@ -281,6 +285,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         let [name, target] = [&arguments.input, &arguments.output].map(report::name_of);
         let summed = summary(&name, &from.machine, (&machine, &target), &report, &held, &facts);
         let made = Made {
+            session,
             machine: &machine,
             cl: format!("{} as CL file", report::name_of(&arguments.input)),
             program: &arguments.output,
@@ -301,15 +306,15 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), Failure> {
         files.push(page);
     }
     let taken = files.iter().any(AtomicFile::is_standard);
-    AtomicFile::finish(files)?;
-    terminal::findings(&notes);
+    AtomicFile::finish(session, files)?;
+    session.findings(&notes);
     if !arguments.quiet {
         let text = summary(&name, &from.machine, (&machine, &told), &report, &held, &facts);
         let text = table(&text, 2);
         if taken {
             terminal::tell(&text);
         } else {
-            terminal::print(&text);
+            terminal::print(session, &text);
         }
     }
     Ok(())

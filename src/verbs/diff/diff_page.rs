@@ -10,10 +10,12 @@ use std::fs::File;
 use crate::failure::Failure;
 use crate::files::{AtomicFile, PathArg};
 use crate::job::report::{self, Besides, MotionRows, OldPath, Parts};
-use crate::terminal::{clock, number};
+use crate::job::text::{clock, number};
+use crate::session::Session;
 
 /// What was compared.
 pub struct Shown<'a> {
+    pub session: &'a Session,
     /// The machine of the new program.
     pub machine: &'a Machine,
     pub found: &'a Difference,
@@ -51,7 +53,7 @@ impl Shown<'_> {
         meta.verdict = self.verdict();
         meta.maxima = self.maxima();
         meta.facts = self.facts();
-        let mut parts = Parts::of(self.machine, &mut meta)?;
+        let mut parts = Parts::of(self.session, self.machine, &mut meta)?;
         let besides = Besides { other: true, ..Besides::default() };
         let rows = MotionRows::new(self.machine, new, None, besides)?;
         let rows = rows.against(OldPath::new(self.machine, old)?);

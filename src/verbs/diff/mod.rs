@@ -18,6 +18,7 @@ use crate::arguments::{ProgramArguments, ReportArguments, flag_values};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, FileFault, PathArg, Role};
 use crate::job::nc_program::{self, NcControl};
+use crate::session::Session;
 use crate::terminal;
 use along::Along;
 
@@ -102,8 +103,8 @@ struct Side {
 }
 
 impl Side {
-    fn open(source: &PathArg) -> Result<Self, Failure> {
-        let (name, file) = nc_program::open(source)?;
+    fn open(session: &Session, source: &PathArg) -> Result<Self, Failure> {
+        let (name, file) = nc_program::open(session, source)?;
         Ok(Self { name, file })
     }
 
@@ -130,9 +131,12 @@ impl Side {
 }
 
 /// Does as the arguments say.
-pub fn run(arguments: &DiffArguments) -> Result<(), Failure> {
-    let controls = [NcControl::new(&arguments.program)?, NcControl::new(&of_new(arguments))?];
-    let sides = [Side::open(&arguments.old)?, Side::open(&arguments.new)?];
+pub fn run(session: &Session, arguments: &DiffArguments) -> Result<(), Failure> {
+    let controls = [
+        NcControl::new(session, &arguments.program)?,
+        NcControl::new(session, &of_new(arguments))?,
+    ];
+    let sides = [Side::open(session, &arguments.old)?, Side::open(session, &arguments.new)?];
     let [old, new] = &controls;
     let rules = rules(arguments, [old, new]);
     let mut along = Along::new(rules.tip);
@@ -158,12 +162,13 @@ pub fn run(arguments: &DiffArguments) -> Result<(), Failure> {
     let mut targets: Vec<(Role, &PathArg)> =
         texts.iter().map(|(role, target, _)| (*role, *target)).collect();
     targets.extend(arguments.report.report.iter().map(|page| (Role::REPORT, page)));
-    let mut written = AtomicFile::create(&targets)?;
+    let mut written = AtomicFile::create(session, &targets)?;
     for (file, (_, _, text)) in written.iter_mut().zip(&texts) {
         file.write_bytes(text.as_bytes())?;
     }
     if let (Some(_), Some(page)) = (&arguments.report.report, written.last_mut()) {
         let shown = diff_page::Shown {
+            session,
             machine: &new.machine,
             found: &found,
             rules: &rules,
@@ -177,13 +182,13 @@ pub fn run(arguments: &DiffArguments) -> Result<(), Failure> {
         shown.write(programs, [first?, second?], arguments.report.most(), page)?;
     }
     let taken = written.iter().any(AtomicFile::is_standard);
-    AtomicFile::finish(written)?;
-    warn(&found.unknown);
+    AtomicFile::finish(session, written)?;
+    warn(session, &found.unknown);
     let text = diff_text::text(names, machines, &rules, &found);
     if taken {
         terminal::tell(&text);
     } else {
-        terminal::print(&text);
+        terminal::print(session, &text);
     }
     match found.same {
         true => Ok(()),
@@ -230,7 +235,7 @@ fn rules(arguments: &DiffArguments, [old, new]: [&NcControl; 2]) -> Rules {
 }
 
 /// Words that are not understood may make a difference that is not seen.
-fn warn(unknown: &[Vec<String>; 2]) {
+fn warn(session: &Session, unknown: &[Vec<String>; 2]) {
     let mut words: Vec<&str> = unknown.iter().flatten().map(String::as_str).collect();
     words.sort_unstable();
     words.dedup();
@@ -238,5 +243,5 @@ fn warn(unknown: &[Vec<String>; 2]) {
         return;
     }
     let message = format!("what {} does is not known, and not compared", words.join(", "));
-    terminal::findings(&[Diagnostic::warning("nc-unknown", message)]);
+    session.findings(&[Diagnostic::warning("nc-unknown", message)]);
 }

@@ -14,6 +14,7 @@ use crate::arguments::flag_values::{self, TcpWord, UnitsWord, finite, word};
 use crate::failure::Failure;
 use crate::files::{self, Role};
 use crate::job::{self, plugin_finder};
+use crate::session::Session;
 use crate::terminal;
 use template::Class;
 
@@ -128,7 +129,7 @@ pub struct Choices {
 }
 
 /// Writes the file.
-pub fn run(arguments: &NewArguments) -> Result<(), Failure> {
+pub fn run(session: &Session, arguments: &NewArguments) -> Result<(), Failure> {
     let path = file(&arguments.name)?;
     refuse_existing(arguments, &path)?;
     let choices = choices(arguments, &path)?;
@@ -146,19 +147,22 @@ pub fn run(arguments: &NewArguments) -> Result<(), Failure> {
     let stranger = plugin_finder::not_built_in(&machine.control.dialect);
     if stranger.is_none() {
         // Nor what `post check` would refuse.
-        job::try_opening(&machine, &plugin_finder::finder(&[])?, 0.0)?;
+        job::try_opening(&machine, &plugin_finder::finder(session, &[])?, 0.0)?;
     }
     // Answers take their time.
     refuse_existing(arguments, &path)?;
-    files::write(&[(MACHINE, &path.clone().into(), &text)])?;
-    terminal::findings(&checked.findings());
-    terminal::findings(stranger.as_slice());
-    terminal::print(&format!(
-        "{}: {}\nMeasure what its remarks ask for, then: post check {}\n",
-        path.display(),
-        checked.class.name,
-        path.display()
-    ));
+    files::write(session, &[(MACHINE, &path.clone().into(), &text)])?;
+    session.findings(&checked.findings());
+    session.findings(stranger.as_slice());
+    terminal::print(
+        session,
+        &format!(
+            "{}: {}\nMeasure what its remarks ask for, then: post check {}\n",
+            path.display(),
+            checked.class.name,
+            path.display()
+        ),
+    );
     Ok(())
 }
 

@@ -12,6 +12,7 @@ use crate::arguments::flag_values::{not_negative, positive};
 use crate::failure::Failure;
 use crate::files::{self, PathArg, Role};
 use crate::job;
+use crate::session::Session;
 use crate::terminal;
 use search::Search;
 use trial::Trials;
@@ -73,21 +74,21 @@ fn step(text: &str) -> Result<f64, String> {
 }
 
 /// Places as the arguments say.
-pub fn run(arguments: &PlaceArguments) -> Result<(), Failure> {
-    let mut trials = Trials::new(arguments)?;
-    job::say_what_is_left(&arguments.job, &trials.machine()?, trials.finder());
+pub fn run(session: &Session, arguments: &PlaceArguments) -> Result<(), Failure> {
+    let mut trials = Trials::new(session, arguments)?;
+    job::say_what_is_left(session, &arguments.job, &trials.machine()?, trials.finder());
     let found = Search::new(arguments, &mut trials)?.run()?;
     let mut taken = false;
     if let Some(target) = &arguments.svg {
-        taken = files::write(&[(Role::PICTURE, target, &travel_picture::draw(&found))])?;
+        taken = files::write(session, &[(Role::PICTURE, target, &travel_picture::draw(&found))])?;
     }
-    terminal::findings(&found.best.findings);
+    session.findings(&found.best.findings);
     let text = place_text::text(arguments, &found);
     // Standard output is for the picture, alone there.
     if taken {
         terminal::tell(&text);
     } else {
-        terminal::print(&text);
+        terminal::print(session, &text);
     }
     Ok(())
 }

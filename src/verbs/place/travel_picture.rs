@@ -6,7 +6,7 @@ use post_posting::report::AxisRange;
 
 use super::search::{Found, mount_text};
 use crate::files::svg::{self, label};
-use crate::terminal::number;
+use crate::job::text::number;
 
 const WIDTH: f64 = 760.0;
 const TOP: f64 = 84.0;

@@ -12,6 +12,7 @@ use post_posting::report::Report;
 use super::{Least, PlaceArguments};
 use crate::failure::Failure;
 use crate::job::DryRun;
+use crate::session::Session;
 
 /// Where a part sits.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,9 +64,9 @@ pub struct Trials<'a> {
 }
 
 impl<'a> Trials<'a> {
-    pub fn new(arguments: &'a PlaceArguments) -> Result<Self, Failure> {
+    pub fn new(session: &'a Session, arguments: &'a PlaceArguments) -> Result<Self, Failure> {
         Ok(Self {
-            dry_run: DryRun::new("place", &arguments.job, false)?,
+            dry_run: DryRun::new(session, "place", &arguments.job, false)?,
             least: arguments.least,
             runs: 0,
             most: arguments.runs,

@@ -12,6 +12,7 @@ use crate::failure::Failure;
 use crate::files::{self, AtomicFile, OwnFolder, PathArg, Role};
 use crate::job::machine_files;
 use crate::job::plan::{self, Asked, Curve, Over, Solver, pictures};
+use crate::session::Session;
 use crate::terminal;
 
 /// Plans the fastest feed along a curve that keeps the limits of machine, servos and control.
@@ -159,26 +160,26 @@ const PICTURES: Role = Role { what: "plan", remedy: "name another folder with --
 const MARK: (&str, &str) = ("plan.json", "{\n  \"curve\": ");
 
 /// Plans as the arguments say.
-pub fn run(arguments: &PlanArguments) -> Result<(), Failure> {
+pub fn run(session: &Session, arguments: &PlanArguments) -> Result<(), Failure> {
     let machine = match &arguments.machine {
         Some(name) => {
             let mut settings = arguments.set.clone();
             settings.extend(arguments.mount.map(Setting::Mount));
-            Some(machine_files::load(name, &arguments.machines, &settings)?)
+            Some(machine_files::load(session, name, &arguments.machines, &settings)?)
         }
         None => None,
     };
     let folder = match &arguments.pictures {
         Some(folder) => {
-            let folder = OwnFolder::open(folder, PICTURES, MARK, &pictures::NAMES);
+            let folder = OwnFolder::open(session, folder, PICTURES, MARK, &pictures::NAMES);
             Some(folder.map_err(|fault| *fault)?)
         }
         None => None,
     };
-    let (curve, findings) = Curve::read(&arguments.curve, machine)?;
+    let (curve, findings) = Curve::read(session, &arguments.curve, machine)?;
     let targets: Vec<(Role, &PathArg)> =
         arguments.output.iter().map(|target| (PLAN, target)).collect();
-    let mut texts = AtomicFile::create(&targets)?;
+    let mut texts = AtomicFile::create(session, &targets)?;
     let samples = match arguments.solver {
         Solver::Reach | Solver::Interior => 20_000,
         Solver::Lp | Solver::Jerk => 2000,
@@ -214,18 +215,18 @@ pub fn run(arguments: &PlanArguments) -> Result<(), Failure> {
         let mut files = planned.rooms.files(&planned.note);
         files.push((MARK.0, json));
         folder.add(&files, &mut texts)?;
-        AtomicFile::finish(texts)?;
+        AtomicFile::finish(session, texts)?;
         folder.tidy(&files)?;
     } else {
-        AtomicFile::finish(texts)?;
+        AtomicFile::finish(session, texts)?;
     }
-    terminal::findings(&findings);
+    session.findings(&findings);
     if !arguments.quiet {
         let text = plan::text(found);
         if taken {
             terminal::tell(&text);
         } else {
-            terminal::print(&text);
+            terminal::print(session, &text);
         }
     }
     Ok(())

@@ -10,7 +10,8 @@ use post_plugin::raw::ABI;
 use crate::failure::Failure;
 use crate::job::origin;
 use crate::job::plugin_finder::{diagnostic, finder};
-use crate::terminal::{self, print};
+use crate::session::Session;
+use crate::terminal::print;
 
 /// Lists the plugins that a machine file can name: those of the folders and those built in.
 ///
@@ -23,8 +24,8 @@ pub struct ListArguments {
 }
 
 /// Does as the arguments say.
-pub fn run(arguments: &ListArguments) -> Result<(), Failure> {
-    let finder = finder(&arguments.plugins)?;
+pub fn run(session: &Session, arguments: &ListArguments) -> Result<(), Failure> {
+    let finder = finder(session, &arguments.plugins)?;
     let listed = finder.list().map_err(|(folder, error)| {
         let message = format!("{} cannot be read: {error}", folder.display());
         Diagnostic::error("plugin", message)
@@ -59,8 +60,8 @@ pub fn run(arguments: &ListArguments) -> Result<(), Failure> {
             }
         }
     }
-    terminal::findings(&warnings);
-    print(&text);
+    session.findings(&warnings);
+    print(session, &text);
     Ok(())
 }
 

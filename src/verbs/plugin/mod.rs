@@ -9,6 +9,7 @@ use clap::{Args, Subcommand};
 use post_host::Plugin;
 
 use crate::failure::Failure;
+use crate::session::Session;
 use list::ListArguments;
 use new::NewArguments;
 use show::ShowArguments;
@@ -30,12 +31,12 @@ enum PluginCommand {
 }
 
 /// Does as the arguments say.
-pub fn run(arguments: &PluginArguments) -> Result<(), Failure> {
+pub fn run(session: &Session, arguments: &PluginArguments) -> Result<(), Failure> {
     match &arguments.command {
-        PluginCommand::List(arguments) => list::run(arguments),
-        PluginCommand::New(arguments) => new::run(arguments),
-        PluginCommand::Show(arguments) => show::run(arguments),
-        PluginCommand::Test(arguments) => test::run(arguments),
+        PluginCommand::List(arguments) => list::run(session, arguments),
+        PluginCommand::New(arguments) => new::run(session, arguments),
+        PluginCommand::Show(arguments) => show::run(session, arguments),
+        PluginCommand::Test(arguments) => test::run(session, arguments),
     }
 }
 

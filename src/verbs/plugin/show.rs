@@ -10,6 +10,7 @@ use post_plugin::{CAPABILITIES, CODES, DialectSession, Format};
 use super::title;
 use crate::failure::Failure;
 use crate::job::plugin_finder::by_name_or_file;
+use crate::session::Session;
 use crate::terminal::print;
 
 /// Prints the options of a plugin, and what a dialect writes.
@@ -29,8 +30,8 @@ pub struct ShowArguments {
 }
 
 /// Does as the arguments say.
-pub fn run(arguments: &ShowArguments) -> Result<(), Failure> {
-    let plugin = by_name_or_file(&arguments.plugin, &arguments.plugins)?;
+pub fn run(session: &Session, arguments: &ShowArguments) -> Result<(), Failure> {
+    let plugin = by_name_or_file(session, &arguments.plugin, &arguments.plugins)?;
     let mut text = format!("{}\n", title(&plugin));
     if !plugin.about().is_empty() {
         text.push_str(&format!("{}\n", plugin.about()));
@@ -50,7 +51,7 @@ pub fn run(arguments: &ShowArguments) -> Result<(), Failure> {
     } else if arguments.vocabulary {
         text.push_str("\nOnly a dialect has a vocabulary.\n");
     }
-    print(&text);
+    print(session, &text);
     Ok(())
 }
 

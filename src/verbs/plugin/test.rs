@@ -9,6 +9,7 @@ use post_machine::diagnostic::Diagnostic;
 use super::title;
 use crate::failure::Failure;
 use crate::job::plugin_finder::{by_name_or_file, diagnostic};
+use crate::session::Session;
 use crate::terminal::print;
 
 /// Runs a plugin on cases whose answer is known, and says what it gets wrong.
@@ -46,14 +47,14 @@ pub struct TestArguments {
 }
 
 /// Does as the arguments say.
-pub fn run(arguments: &TestArguments) -> Result<(), Failure> {
-    let plugin = by_name_or_file(&arguments.plugin, &arguments.plugins)?;
+pub fn run(session: &Session, arguments: &TestArguments) -> Result<(), Failure> {
+    let plugin = by_name_or_file(session, &arguments.plugin, &arguments.plugins)?;
     let report = conformance::test_long(&plugin, &arguments.option, arguments.events)
         .map_err(|fault| diagnostic(&fault, &[], None))?;
-    print(&format!("{}\n\n{}", title(&plugin), report.table()));
+    print(session, &format!("{}\n\n{}", title(&plugin), report.table()));
     if report.is_good() {
         let cases = report.cases.len();
-        print(&format!("\nNothing is wrong in {cases} cases.\n"));
+        print(session, &format!("\nNothing is wrong in {cases} cases.\n"));
         return Ok(());
     }
     let wrong = report.wrong();

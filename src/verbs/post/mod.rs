@@ -20,6 +20,7 @@ use crate::job::one_program::{Beside, OneProgram};
 use crate::job::report::{self, BlockRows, ClWindow, Made, PredictedParts};
 use crate::job::summary::{self, Told};
 use crate::job::{self, compensate, plan_rounds, plugin_finder, predict, read_back};
+use crate::session::Session;
 use crate::terminal;
 use parts::Split;
 use shown::ShownArguments;
@@ -76,11 +77,11 @@ pub struct PostArguments {
 }
 
 /// Posts as the arguments say.
-pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
+pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> {
     let making = &arguments.making;
-    let machine = making::numbered(&arguments.job, making.number.map(i64::from))?;
-    let finder = plugin_finder::finder(&arguments.job.plugins)?;
-    job::say_what_is_left(&arguments.job, &machine, &finder);
+    let machine = making::numbered(session, &arguments.job, making.number.map(i64::from))?;
+    let finder = plugin_finder::finder(session, &arguments.job.plugins)?;
+    job::say_what_is_left(session, &arguments.job, &machine, &finder);
     let looks_ahead =
         machine.program.looks_ahead || arguments.split.is_some() || arguments.setup_sheet.is_some();
     let twice = making.compensate_servo
@@ -90,14 +91,16 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         || arguments.verify
         || arguments.report.report.is_some()
         || arguments.predict.is_some();
-    let mut source = ClSource::new(arguments.job.input(), twice)?;
+    let mut source = ClSource::new(session, arguments.job.input(), twice)?;
     let ahead = match looks_ahead {
-        true => Some(job::look_ahead(&arguments.job, &machine, &finder, &mut source, None)?),
+        true => {
+            Some(job::look_ahead(session, &arguments.job, &machine, &finder, &mut source, None)?)
+        }
         false => None,
     };
-    let parts = the_parts(arguments, machine, &finder, ahead.as_ref())?;
+    let parts = the_parts(session, arguments, machine, &finder, ahead.as_ref())?;
     let places = arguments.shown.places(arguments.split, parts.len());
-    let folders = places.folders()?;
+    let folders = places.folders(session)?;
     let mut targets: Vec<(Role, &PathArg)> =
         parts.iter().map(|part| (Role::PROGRAM, &part.target)).collect();
     targets.extend(places.maps.iter().map(|map| (shown::MAP, map)));
@@ -108,7 +111,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     let prediction = arguments.predict.iter().flatten();
     targets.extend(prediction.map(|target| (PREDICTION, target)));
     // All are opened before the work begins: a program without its summary would be half a result.
-    let mut files = AtomicFile::create(&targets)?;
+    let mut files = AtomicFile::create(session, &targets)?;
     let mut reports = Vec::new();
     let mut verifications = Vec::new();
     let mut predictions = Vec::new();
@@ -123,6 +126,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     let mut pages = pages.iter_mut();
     for (part, file) in parts.iter().zip(programs) {
         let program = OneProgram {
+            session,
             arguments: &arguments.job,
             machine: &part.machine,
             finder: &finder,
@@ -175,7 +179,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
         if arguments.verify {
             let text = (file.name().to_owned(), file.reread()?);
             let how = (moved, making.plan);
-            let held = part.read_back(&arguments.job, &finder, how, &mut source, text)?;
+            let held = part.read_back(session, &arguments.job, &finder, how, &mut source, text)?;
             if held.is_wrong() {
                 findings.extend(held.findings);
                 return Err(findings.into());
@@ -189,12 +193,13 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             }
             let text = (file.name().to_owned(), file.reread()?);
             let told = (&mut source, heard.as_mut());
-            let predicted = part.predict(&arguments.job, &finder, None, told, text)?;
+            let predicted = part.predict(session, &arguments.job, &finder, None, told, text)?;
             findings.extend(predicted.findings);
             predictions.push(predicted.found);
         }
         if let (Some(page), Some(rows), Some(report)) = (page, rows, reports.last()) {
             let made = Made {
+                session,
                 machine: &part.machine,
                 cl: report::name_of(arguments.job.input()),
                 program: &part.target,
@@ -253,12 +258,12 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
     for (folder, pictures) in folders.iter().zip(&drawn) {
         folder.add(pictures, &mut files)?;
     }
-    AtomicFile::finish(files)?;
+    AtomicFile::finish(session, files)?;
     for (folder, pictures) in folders.iter().zip(&drawn) {
         folder.tidy(pictures)?;
     }
     debug_assert!(findings.iter().all(|finding| finding.severity == Severity::Warning));
-    terminal::findings(&findings);
+    session.findings(&findings);
     if !arguments.quiet {
         let name = arguments.job.input().path();
         let name = name.map_or("standard input".to_owned(), |path| path.display().to_string());
@@ -277,7 +282,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
             if taken {
                 terminal::tell(&text);
             } else {
-                terminal::print(&text);
+                terminal::print(session, &text);
             }
         }
     }
@@ -286,6 +291,7 @@ pub fn run(arguments: &PostArguments) -> Result<(), Failure> {
 
 /// The programs of the run: one, or as many as the CL file has operations or tools.
 fn the_parts(
+    session: &Session,
     arguments: &PostArguments,
     machine: Machine,
     finder: &Finder,
@@ -315,7 +321,7 @@ fn the_parts(
             Ok(Part {
                 lines: Some(lines),
                 target: parts::target(&target, index + 1, count),
-                machine: making::numbered(&arguments.job, number)?,
+                machine: making::numbered(session, &arguments.job, number)?,
             })
         })
         .collect()

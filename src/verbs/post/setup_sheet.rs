@@ -8,7 +8,7 @@ use post_posting::program::Tool;
 use post_posting::report::{LengthSource, Report};
 
 use crate::files::PathArg;
-use crate::terminal::{clock, number};
+use crate::job::text::{clock, number};
 
 /// A table of the sheet.
 struct Section {

@@ -10,6 +10,7 @@ use crate::files::{AtomicFile, FileFault, JsonRows, OwnFolder, PathArg, Role};
 use crate::job::plan::map::{LimitMap, MapRow};
 use crate::job::plan::pictures;
 use crate::job::plan::posted::{Along, Limited, MARK};
+use crate::session::Session;
 
 const PICTURES: Role = Role { what: "plan", remedy: "name another folder with --plan-pictures" };
 
@@ -54,10 +55,10 @@ impl Places {
     ///
     /// # Errors
     /// Something stands in the place of one, or files in it are no pictures of a plan.
-    pub fn folders(&self) -> Result<Vec<OwnFolder<'_>>, Failure> {
+    pub fn folders<'a>(&'a self, session: &'a Session) -> Result<Vec<OwnFolder<'a>>, Failure> {
         let mut opened = Vec::with_capacity(self.folders.len());
         for folder in &self.folders {
-            let folder = OwnFolder::open(folder, PICTURES, MARK, &pictures::NAMES);
+            let folder = OwnFolder::open(session, folder, PICTURES, MARK, &pictures::NAMES);
             opened.push(folder.map_err(|fault| *fault)?);
         }
         Ok(opened)

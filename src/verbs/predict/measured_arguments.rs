@@ -10,6 +10,7 @@ use crate::job::predict::measured::{
     self, AxisFitted, ColumnNames, Log, LogForm, LogUnits, LogZeros, Overlay, column_names,
     log_units, log_zeros,
 };
+use crate::session::Session;
 use post_machine::description::Machine;
 
 /// A recorded log, and how it is written.
@@ -54,7 +55,12 @@ impl MeasuredArguments {
     }
 
     /// The log, to be laid over a prediction every `period` seconds.
-    pub fn overlay(&self, machine: &Machine, period: f64) -> Result<Option<Overlay>, Failure> {
+    pub fn overlay(
+        &self,
+        session: &Session,
+        machine: &Machine,
+        period: f64,
+    ) -> Result<Option<Overlay>, Failure> {
         let Some(file) = &self.measured else {
             return Ok(None);
         };
@@ -65,7 +71,7 @@ impl MeasuredArguments {
         };
         let zeros = self.log_zeros.clone().unwrap_or_default();
         let zeros = zeros.by_axis(machine).map_err(|fault| *fault)?;
-        let (name, input) = nc_program::open_as("the log", file)?;
+        let (name, input) = nc_program::open_as(session, "the log", file)?;
         let log = Log::read(machine, &form, &name, input)?;
         Ok(Some(Overlay::new(log, zeros, period)))
     }

@@ -8,7 +8,7 @@ use super::pictures::{File, MICRO, file_name};
 use crate::files::chart::{DASHED, Draw, Envelope, GREY, Look, Panel, Panels, Series};
 use crate::job::predict::Prediction;
 use crate::job::predict::measured::{MeasuredFound, MeasuredPoint};
-use crate::terminal::number;
+use crate::job::text::number;
 
 /// Its name in the folder.
 pub const NAME: &str = "measured.svg";

@@ -21,6 +21,7 @@ use crate::job::predict::measured::MeasuredPoint;
 use crate::job::predict::{self, Against, Predicted, Sample};
 use crate::job::report::{Again, Besides, MotionRows, PredictedLines};
 use crate::job::{self, nc_program, plugin_finder};
+use crate::session::Session;
 use crate::terminal;
 use measured_arguments::MeasuredArguments;
 use measured_pictures::MeasuredRoom;
@@ -111,10 +112,10 @@ const PICTURES: Role = Role { what: "prediction", remedy: "name another folder w
 const MARK: (&str, &str) = ("prediction.json", "{\n  \"program\": ");
 
 /// Predicts as the arguments say.
-pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
-    let machine = job::machine(&arguments.job, &[])?;
-    let finder = plugin_finder::finder(&arguments.job.plugins)?;
-    job::say_what_is_left(&arguments.job, &machine, &finder);
+pub fn run(session: &Session, arguments: &PredictArguments) -> Result<(), Failure> {
+    let machine = job::machine(session, &arguments.job, &[])?;
+    let finder = plugin_finder::finder(session, &arguments.job.plugins)?;
+    job::say_what_is_left(session, &arguments.job, &machine, &finder);
     let named = arguments.program.as_ref().unwrap_or(&PathArg::Standard);
     let against = arguments.job.input.as_ref();
     nc_program::not_both_standard(named, against)?;
@@ -126,26 +127,27 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
     }
     let folder = match &arguments.pictures {
         Some(folder) => {
-            let folder = OwnFolder::open(folder, PICTURES, MARK, &pictures::NAMES);
+            let folder = OwnFolder::open(session, folder, PICTURES, MARK, &pictures::NAMES);
             Some(folder.map_err(|fault| *fault)?)
         }
         None => None,
     };
-    let (name, program) = nc_program::open(named)?;
+    let (name, program) = nc_program::open(session, named)?;
     let offsets = match &arguments.offsets {
-        Some(file) => Some(nc_program::offsets(file, &machine)?),
+        Some(file) => Some(nc_program::offsets(session, file, &machine)?),
         None => None,
     };
     let period = arguments.period.unwrap_or(machine.motion.period);
-    let mut overlay = arguments.measured.overlay(&machine, period)?;
+    let mut overlay = arguments.measured.overlay(session, &machine, period)?;
     let mut targets: Vec<(Role, &PathArg)> = Vec::new();
     targets.extend(arguments.csv.iter().map(|target| (SET_POINTS, target)));
     targets.extend(arguments.summary.iter().map(|target| (Role::SUMMARY, target)));
     targets.extend(arguments.report.report.iter().map(|page| (Role::REPORT, page)));
-    let mut texts = AtomicFile::create(&targets)?;
+    let mut texts = AtomicFile::create(session, &targets)?;
     let page = arguments.report.report.as_ref().and_then(|_| texts.pop());
     let again = nc_program::again(&name, &program)?;
     let asked = predict::Asked {
+        session,
         arguments: &arguments.job,
         machine: &machine,
         finder: &finder,
@@ -155,7 +157,7 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
         lines: None,
     };
     let mut source = match against {
-        Some(file) => Some(files::ClSource::new(file, true)?),
+        Some(file) => Some(files::ClSource::new(session, file, true)?),
         None => None,
     };
     let mut page = match page {
@@ -226,6 +228,7 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
     }
     if let Some((mut page, rows, lines)) = page {
         let shown = predict_page::Shown {
+            session,
             machine: &machine,
             found: &found,
             findings: &findings,
@@ -243,18 +246,18 @@ pub fn run(arguments: &PredictArguments) -> Result<(), Failure> {
         files.extend(measured_picture);
         files.push((MARK.0, json));
         folder.add(&files, &mut texts)?;
-        AtomicFile::finish(texts)?;
+        AtomicFile::finish(session, texts)?;
         folder.tidy(&files)?;
     } else {
-        AtomicFile::finish(texts)?;
+        AtomicFile::finish(session, texts)?;
     }
-    terminal::findings(&findings);
+    session.findings(&findings);
     if !arguments.quiet {
         let text = predict::text(&found);
         if taken {
             terminal::tell(&text);
         } else {
-            terminal::print(&text);
+            terminal::print(session, &text);
         }
     }
     Ok(())

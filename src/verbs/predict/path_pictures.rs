@@ -7,7 +7,7 @@ use super::trail::Spot;
 use crate::files::svg::{self, label};
 use crate::files::{PlanView, round_step};
 use crate::job::predict::Prediction;
-use crate::terminal::number;
+use crate::job::text::number;
 
 const WIDTH: f64 = 760.0;
 const LEFT: f64 = 72.0;

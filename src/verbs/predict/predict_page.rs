@@ -10,10 +10,12 @@ use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
 use crate::job::predict::Prediction;
 use crate::job::report::{self, MotionRows, Parts, PredictedLines};
-use crate::terminal::clock;
+use crate::job::text::clock;
+use crate::session::Session;
 
 /// What is known of a program that was predicted.
 pub struct Shown<'a> {
+    pub session: &'a Session,
     pub machine: &'a Machine,
     pub found: &'a Prediction,
     pub findings: &'a [Diagnostic],
@@ -48,7 +50,7 @@ impl Shown<'_> {
         meta.facts = report::predicted_facts(self.found);
         meta.warnings = report::warnings(self.findings, name);
         meta.excludes.clone_from(&self.found.assumed);
-        let mut parts = Parts::of(self.machine, &mut meta)?;
+        let mut parts = Parts::of(self.session, self.machine, &mut meta)?;
         lines.finish(&mut rows, &mut parts)?;
         rows.finish(&mut parts, &mut meta)?;
         parts.text("nc", name, &mut { program })?;

@@ -18,6 +18,7 @@ use crate::failure::Failure;
 use crate::files::{AtomicFile, PathArg, Role};
 use crate::job::nc_program::{self, NcControl};
 use crate::job::nc_to_cl::{self, Tools};
+use crate::session::Session;
 use crate::terminal;
 use beyond_travel::BeyondTravel;
 use motions_csv::MotionsCsv;
@@ -83,14 +84,14 @@ const CHORDS: f64 = 0.1;
 const MOTIONS: Role = Role { what: "table of motions", remedy: "name another file with --csv" };
 
 /// Does as the arguments say.
-pub fn run(arguments: &ReadArguments) -> Result<(), Failure> {
-    let control = NcControl::new(&arguments.program)?;
-    let (name, input) = nc_program::open(&arguments.input)?;
+pub fn run(session: &Session, arguments: &ReadArguments) -> Result<(), Failure> {
+    let control = NcControl::new(session, &arguments.program)?;
+    let (name, input) = nc_program::open(session, &arguments.input)?;
     let mut program = control.run(&name, nc_program::again(&name, &input)?)?;
     let mut targets: Vec<(Role, &PathArg)> = Vec::new();
     targets.extend(arguments.csv.iter().map(|target| (MOTIONS, target)));
     targets.extend(arguments.cl.iter().map(|target| (Role::CL, target)));
-    let mut files = AtomicFile::create(&targets)?;
+    let mut files = AtomicFile::create(session, &targets)?;
     let (tables, cl_files) = files.split_at_mut(usize::from(arguments.csv.is_some()));
     let mut csv = tables.first_mut().map(|file| MotionsCsv::new(&control.machine, file));
     let mut survey = Survey::new(&control.machine);
@@ -127,7 +128,7 @@ pub fn run(arguments: &ReadArguments) -> Result<(), Failure> {
     }
     if let (Some(file), true) = (cl_files.first_mut(), refused.is_empty()) {
         let program = control.run_with_rapids(&name, || Ok(nc_program::again(&name, &input)?))?;
-        write_cl(arguments, &control, program, file, &mut refused)?;
+        write_cl(session, arguments, &control, program, file, &mut refused)?;
     }
     if !refused.is_empty() {
         // A path with gaps is none.
@@ -135,20 +136,21 @@ pub fn run(arguments: &ReadArguments) -> Result<(), Failure> {
     }
     refused.extend(beyond.findings(&name));
     let taken = files.iter().any(AtomicFile::is_standard);
-    AtomicFile::finish(files)?;
+    AtomicFile::finish(session, files)?;
     let report = program.report();
-    terminal::findings(&report.notes);
+    session.findings(&report.notes);
     let text = read_text::text(&control.machine, &survey, report, refused.len());
     if taken {
         terminal::tell(&text);
     } else {
-        terminal::print(&text);
+        terminal::print(session, &text);
     }
     if refused.is_empty() { Ok(()) } else { Err(refused.into()) }
 }
 
 /// Runs the program once more, and writes its path.
 fn write_cl(
+    session: &Session,
     arguments: &ReadArguments,
     control: &NcControl,
     program: FedRapids<Interpreter<File>>,
@@ -174,8 +176,8 @@ fn write_cl(
         Tools { length: arguments.program.tool_length, edges: control.lexicon.tools_have_edges() };
     let written =
         nc_to_cl::write(&mut course, &part, tip, tools, &mut |text| file.write_bytes(text))?;
-    terminal::findings(&written.notes);
-    terminal::findings(nc_to_cl::fed(course.program().left()).as_slice());
+    session.findings(&written.notes);
+    session.findings(nc_to_cl::fed(course.program().left()).as_slice());
     refused.extend(written.faults);
     Ok(())
 }

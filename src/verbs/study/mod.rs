@@ -23,6 +23,7 @@ use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{AtomicFile, OwnFolder, PathArg, Role};
 use crate::job::{self, DryRun, plugin_finder};
+use crate::session::Session;
 use crate::terminal;
 use sweep::{Sweep, Swept};
 
@@ -121,14 +122,14 @@ pub struct Models {
 }
 
 /// Studies as the arguments say.
-pub fn run(arguments: &StudyArguments) -> Result<(), Failure> {
-    let dry_run = DryRun::new("study", &arguments.job, arguments.exact)?;
+pub fn run(session: &Session, arguments: &StudyArguments) -> Result<(), Failure> {
+    let dry_run = DryRun::new(session, "study", &arguments.job, arguments.exact)?;
     let machine = self::machine(&dry_run, &[])?;
-    job::say_what_is_left(&arguments.job, &machine, &dry_run.finder);
+    job::say_what_is_left(session, &arguments.job, &machine, &dry_run.finder);
     let folder = folder(arguments);
     let names = [&study_csv::NAMES[..], &pictures::NAMES[..]].concat();
     let mark = ("moves.csv", study_csv::BEGIN);
-    let own = OwnFolder::open(&folder, STUDY, mark, &names).map_err(|fault| *fault)?;
+    let own = OwnFolder::open(session, &folder, STUDY, mark, &names).map_err(|fault| *fault)?;
     let (names, mut models) = models(&dry_run, &machine)?;
     let (surveyed, findings) = survey(&dry_run, &machine, &names, &mut models)?;
     let Surveyed { rows, pieces, spreads } = surveyed;
@@ -150,15 +151,15 @@ pub fn run(arguments: &StudyArguments) -> Result<(), Failure> {
         spreads,
         focus,
     };
-    terminal::findings(&findings);
+    session.findings(&findings);
     let mut files = study_csv::files(&study);
     files.extend(pictures::files(&study, &mut models));
     let mut texts = Vec::new();
     own.add(&files, &mut texts)?;
-    AtomicFile::finish(texts)?;
+    AtomicFile::finish(session, texts)?;
     own.tidy(&files)?;
     let shown = folder.path().unwrap_or(Path::new("."));
-    terminal::print(&study_text::text(&study, shown, &files));
+    terminal::print(session, &study_text::text(&study, shown, &files));
     Ok(())
 }
 

@@ -13,6 +13,7 @@ use crate::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
 use crate::job::read_back::{self, Reading};
 use crate::job::report::{Again, Besides, Hears as _, MotionRows};
 use crate::job::{self, nc_program, plugin_finder};
+use crate::session::Session;
 use crate::terminal;
 
 /// Holds an NC program against a CL file: does the machine do what was asked?
@@ -106,26 +107,27 @@ enum Ignored {
 const MAP: Role = Role { what: "map", remedy: "name another file with --map" };
 
 /// Verifies as the arguments say.
-pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
-    let machine = job::machine(&arguments.job, &[])?;
-    let finder = plugin_finder::finder(&arguments.job.plugins)?;
-    job::say_what_is_left(&arguments.job, &machine, &finder);
+pub fn run(session: &Session, arguments: &VerifyArguments) -> Result<(), Failure> {
+    let machine = job::machine(session, &arguments.job, &[])?;
+    let finder = plugin_finder::finder(session, &arguments.job.plugins)?;
+    job::say_what_is_left(session, &arguments.job, &machine, &finder);
     let named = arguments.program.as_ref().unwrap_or(&PathArg::Standard);
     nc_program::not_both_standard(named, Some(arguments.job.input()))?;
-    let (name, program) = nc_program::open(named)?;
+    let (name, program) = nc_program::open(session, named)?;
     let offsets = match &arguments.offsets {
-        Some(file) => Some(nc_program::offsets(file, &machine)?),
+        Some(file) => Some(nc_program::offsets(session, file, &machine)?),
         None => None,
     };
-    let mut source = ClSource::new(arguments.job.input(), true)?;
+    let mut source = ClSource::new(session, arguments.job.input(), true)?;
     let mut targets: Vec<(Role, &PathArg)> = Vec::new();
     targets.extend(arguments.map.iter().map(|map| (MAP, map)));
     targets.extend(arguments.summary.iter().map(|summary| (Role::SUMMARY, summary)));
     targets.extend(arguments.report.report.iter().map(|page| (Role::REPORT, page)));
-    let mut texts = AtomicFile::create(&targets)?;
+    let mut texts = AtomicFile::create(session, &targets)?;
     let page = arguments.report.report.as_ref().and_then(|_| texts.pop());
     let again = nc_program::again(&name, &program)?;
     let reading = Reading {
+        session,
         arguments: &arguments.job,
         machine: &machine,
         finder: &finder,
@@ -179,6 +181,7 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     }
     if let (Some(mut page), Some(rows)) = (page, rows) {
         let shown = verify_page::Shown {
+            session,
             machine: &machine,
             held: &held,
             names: [named, arguments.job.input()],
@@ -189,18 +192,18 @@ pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
         texts.push(page);
     }
     let taken = texts.iter().any(AtomicFile::is_standard);
-    AtomicFile::finish(texts)?;
+    AtomicFile::finish(session, texts)?;
     if !arguments.quiet {
         let text = verify_text::text(&held, &machine, &name, reading.tolerances);
         if taken {
             terminal::tell(&text);
         } else {
-            terminal::print(&text);
+            terminal::print(session, &text);
         }
     }
     if held.is_wrong() {
         return Err(held.findings.into());
     }
-    terminal::findings(&held.findings);
+    session.findings(&held.findings);
     Ok(())
 }

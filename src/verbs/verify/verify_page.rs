@@ -10,7 +10,8 @@ use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
 use crate::job::read_back::Held;
 use crate::job::report::{self, Heard, MotionRows, Parts};
-use crate::terminal::clock;
+use crate::job::text::clock;
+use crate::session::Session;
 
 /// What was found of a line.
 pub fn heard(row: &BlockReport) -> Heard {
@@ -24,6 +25,7 @@ pub fn heard(row: &BlockReport) -> Heard {
 
 /// What is known of a program that was held against its CL file.
 pub struct Shown<'a> {
+    pub session: &'a Session,
     pub machine: &'a Machine,
     pub held: &'a Held,
     /// The program and the CL file.
@@ -90,7 +92,7 @@ impl Shown<'_> {
             }
         }
         meta.excludes = report::excludes();
-        let mut parts = Parts::of(self.machine, &mut meta)?;
+        let mut parts = Parts::of(self.session, self.machine, &mut meta)?;
         rows.finish(&mut parts, &mut meta)?;
         parts.text("nc", name, &mut { program })?;
         let mut cl = source.open()?;

@@ -6,7 +6,7 @@ use post_machine::description::Machine;
 use post_readback::verify::Worst;
 
 use crate::job::read_back::Held;
-use crate::terminal::{clock, number};
+use crate::job::text::{clock, number};
 
 /// The table of a verification of the program called `name`.
 pub fn text(held: &Held, machine: &Machine, name: &str, tolerances: [Option<f64>; 2]) -> String {

@@ -8,9 +8,10 @@ mod cl;
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::sync::Arc;
 
 use nalgebra::Vector3;
-use post_command::library::{LoadedMachine, MachineTold, OptionTold};
+use post_command::library::{LoadedMachine, MachineTold, OptionTold, Stop};
 use post_testkit::Rng;
 
 use crate::common::root;
@@ -149,15 +150,16 @@ impl RightJob {
                 .find(|finding| finding.severity == post_machine::diagnostic::Severity::Error);
             error.map_or(String::new(), |error| format!("{}: {}", error.code, error.message))
         };
-        let machine = match LoadedMachine::load(told) {
+        let stop: Stop = Arc::new(|| false);
+        let machine = match LoadedMachine::load(&stop, told) {
             Ok(machine) => machine,
             Err(findings) => return Outcome::Refused(refused(findings)),
         };
-        let made = match machine.post(&path, &self.options, false) {
+        let made = match machine.post(&stop, &path, &self.options, false) {
             Ok(made) => made,
             Err(findings) => return Outcome::Refused(refused(findings)),
         };
-        match made.verify() {
+        match made.verify(&stop) {
             Ok(_) => Outcome::Good,
             Err(findings) => {
                 let errors = findings.iter().filter(|finding| {

@@ -12,7 +12,7 @@ use super::log::Which;
 use super::overlay::{MOVES, Overlay};
 use super::units::UNITS;
 use crate::failure::Failure;
-use crate::terminal::number;
+use crate::job::text::number;
 
 /// An axis of a log is doubtful if it is less alike.
 const DOUBTFUL: f64 = 0.9;

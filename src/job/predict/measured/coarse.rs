@@ -7,7 +7,7 @@ use post_machine::kinematics::MAX_AXES;
 use post_motion::measured::Difference;
 
 use super::log::{Log, Which};
-use crate::terminal::number;
+use crate::job::text::number;
 
 /// So many set-points are put between two rows at most.
 const MOST_STEPS: f64 = 64.0;

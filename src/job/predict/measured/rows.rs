@@ -316,7 +316,7 @@ impl<'a> Rows<'a> {
                 "a gap in the log: {to} s behind {from} s in line {}, {:.0} times the usual {} s",
                 self.lines[gap.row - 1],
                 (to - from) / gap.usual,
-                crate::terminal::number(gap.usual, 6)
+                crate::job::text::number(gap.usual, 6)
             );
             let place = Place::new(self.name, self.lines[gap.row], "", 0..0);
             let help = "what happened between is not known; take the part before it or behind it";

@@ -6,7 +6,7 @@ use super::fitting::{AxisFitted, rounded, short};
 use super::report::{AxisLaid, Left, MeasuredFound};
 use post_machine::diagnostic::Short;
 
-use crate::terminal::{clock, number, table};
+use crate::job::text::{clock, number, table};
 
 /// The tables of a log.
 pub fn text(found: &MeasuredFound) -> String {

@@ -11,6 +11,7 @@ use post_machine::diagnostic::Diagnostic;
 
 use crate::failure::Failure;
 use crate::job::plugin_finder::built_in;
+use crate::session::Session;
 use crate::terminal::print;
 use starter::{File, Form};
 
@@ -51,7 +52,7 @@ pub struct NewArguments {
 }
 
 /// Does as the arguments say.
-pub fn run(arguments: &NewArguments) -> Result<(), Failure> {
+pub fn run(session: &Session, arguments: &NewArguments) -> Result<(), Failure> {
     let folder = &arguments.name;
     let name = name(folder)?;
     let form = match (arguments.rust, arguments.iso) {
@@ -70,10 +71,13 @@ pub fn run(arguments: &NewArguments) -> Result<(), Failure> {
         return Err(Diagnostic::error("new", message).into());
     }
     let commands = starter::commands(form, name).join("\n  ");
-    print(&format!(
-        "{}: a dialect to start from; its README.md says what is what. In it:\n  {commands}\n",
-        folder.display()
-    ));
+    print(
+        session,
+        &format!(
+            "{}: a dialect to start from; its README.md says what is what. In it:\n  {commands}\n",
+            folder.display()
+        ),
+    );
     Ok(())
 }
 

@@ -1,0 +1,146 @@
+//! One run of jobs: what it reads and writes, and the face through which it speaks. It is passed; nothing of a run is a static.
+
+use std::fmt;
+use std::io::{self, Read};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use post_machine::diagnostic::Diagnostic;
+
+use crate::files::{ReadFiles, Texts};
+
+/// Records, blocks or batches between two looks at the clock.
+const EVERY: u64 = 4096;
+
+/// Whoever a run speaks to: the command prints, a library gathers, the jobs of a batch are quiet.
+pub trait Face: Send + Sync {
+    /// Takes findings at once, in their order; `texts` says what the run has done to the user's files by then.
+    fn findings(&self, findings: &[Diagnostic], texts: &Texts);
+
+    /// Shows how far reading has come, of so many bytes if that is known; none: nobody looks.
+    fn bar(&self, bytes: Option<u64>) -> Option<Box<dyn Bar>> {
+        let _ = bytes;
+        None
+    }
+
+    /// Says that the run shall end; it is asked as CL files are read.
+    fn is_stopped(&self) -> bool {
+        false
+    }
+
+    /// Says that standard output is the run's own, for results alone.
+    fn owns_output(&self) -> bool {
+        false
+    }
+}
+
+/// A bar that shows how far reading has come. Dropped, it is taken away.
+pub trait Bar {
+    /// So many bytes are read.
+    fn set(&self, position: u64);
+}
+
+/// A face for jobs whose outcome says all: nothing else is heard of them.
+pub struct Quiet;
+
+impl Face for Quiet {
+    fn findings(&self, _: &[Diagnostic], _: &Texts) {}
+}
+
+/// A run. Clones are the same run.
+#[derive(Clone)]
+pub struct Session(Arc<Run>);
+
+struct Run {
+    read: Mutex<ReadFiles>,
+    texts: Mutex<Texts>,
+    face: Box<dyn Face>,
+}
+
+impl fmt::Debug for Session {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Session")
+    }
+}
+
+impl Session {
+    /// A run that has read and written nothing yet.
+    pub fn new(face: impl Face + 'static) -> Self {
+        Self(Arc::new(Run {
+            read: Mutex::default(),
+            texts: Mutex::default(),
+            face: Box::new(face),
+        }))
+    }
+
+    /// A run that is not heard.
+    pub fn quiet() -> Self {
+        Self::new(Quiet)
+    }
+
+    /// The files that it reads, none of which is written to.
+    pub fn read_files(&self) -> MutexGuard<'_, ReadFiles> {
+        // A list is whole whatever a thread died of.
+        self.0.read.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What it has done to the user's files.
+    pub fn texts(&self) -> MutexGuard<'_, Texts> {
+        self.0.texts.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Tells findings at once.
+    pub fn findings(&self, findings: &[Diagnostic]) {
+        self.0.face.findings(findings, &self.texts());
+    }
+
+    /// Shows how far reading has come, of so many bytes if that is known.
+    pub fn progress(&self, bytes: Option<u64>) -> Progress {
+        Progress { bar: self.0.face.bar(bytes), records: 0 }
+    }
+
+    /// Says that standard output is the run's own, for results alone.
+    pub fn owns_output(&self) -> bool {
+        self.0.face.owns_output()
+    }
+
+    /// What reads `bytes`, and fails once the run shall end.
+    pub fn stoppable(&self, bytes: impl Read + 'static) -> Box<dyn Read> {
+        Box::new(Stoppable { bytes, session: self.clone() })
+    }
+}
+
+struct Stoppable<R> {
+    bytes: R,
+    session: Session,
+}
+
+impl<R: Read> Read for Stoppable<R> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        if self.session.0.face.is_stopped() {
+            return Err(io::Error::other("interrupted"));
+        }
+        self.bytes.read(into)
+    }
+}
+
+/// How far reading has come.
+pub struct Progress {
+    bar: Option<Box<dyn Bar>>,
+    records: u64,
+}
+
+impl Progress {
+    /// Counts one more record; `position` bytes of the input are read.
+    #[inline]
+    pub fn record(&mut self, position: impl FnOnce() -> u64) {
+        self.records += 1;
+        if let Some(bar) = &self.bar
+            && self.records.is_multiple_of(EVERY)
+        {
+            bar.set(position());
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(self) {}
+}

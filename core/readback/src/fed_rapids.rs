@@ -12,7 +12,7 @@ use post_machine::diagnostic::Diagnostic;
 
 use crate::interpret::Interpreter;
 use crate::verify::Axes;
-use crate::{Done, Motion, MotionKind, Spindle, Way, course, diff};
+use crate::{Done, Motion, MotionKind, Program, Spindle, Way};
 
 /// A rapid at feed may take so much longer than its axes need: feeds are rounded down.
 const SLOW: f64 = 0.1;
@@ -144,17 +144,11 @@ pub fn turns_the_spindle<R: Read + Seek>(program: &mut Interpreter<R>) -> bool {
     }
 }
 
-impl<R: Read + Seek> course::done::Program for FedRapids<Interpreter<R>> {
+impl<R: Read + Seek> Program for FedRapids<Interpreter<R>> {
     fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>> {
         let known = done.len();
         let more = Interpreter::next(&mut self.program, done);
         self.look(&mut done[known..]);
         more
-    }
-}
-
-impl<R: Read + Seek> diff::Program for FedRapids<Interpreter<R>> {
-    fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>> {
-        course::done::Program::next(self, done)
     }
 }

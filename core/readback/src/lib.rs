@@ -24,6 +24,7 @@ pub mod interpret;
 pub mod lexicon;
 mod motion;
 mod offsets;
+mod run;
 pub mod tasks;
 mod told;
 pub mod verify;
@@ -33,6 +34,7 @@ pub use fed_rapids::{FedRapids, turns_the_spindle};
 pub use motion::{Motion, MotionKind};
 pub use offsets::{Offsets, Reference, WorkOffset};
 pub use post_motion::path::{SplineWay, Stance, Way};
+pub use run::{MOST_FAULTS, Program, Run};
 pub use told::{Coolants, CycleCall, CycleKind, Spindle, Told};
 
 use std::sync::Arc;

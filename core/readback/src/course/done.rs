@@ -6,7 +6,6 @@
 //! no place of the part, and rapids are left out until each has one; then the tool [reaches](Item::Reach) where it is.
 
 use std::collections::VecDeque;
-use std::io::{Read, Seek};
 use std::sync::Arc;
 
 use post_machine::diagnostic::Diagnostic;
@@ -14,23 +13,7 @@ use post_machine::kinematics::{Joints, MAX_AXES, Pose};
 
 use super::descent::{Descent, descends};
 use super::{Course, Curve, Item, Piece, Reach};
-use crate::interpret::Interpreter;
-use crate::{Done, Motion, MotionKind, State, Told, Way};
-
-/// A program that is run block by block.
-pub trait Program {
-    /// Runs the next block and puts what it did behind what `done` holds; false at the end.
-    ///
-    /// # Errors
-    /// What stands there that cannot be understood, with its place.
-    fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>>;
-}
-
-impl<R: Read + Seek> Program for Interpreter<R> {
-    fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>> {
-        Interpreter::next(self, done)
-    }
-}
+use crate::{Done, Motion, MotionKind, Program, State, Told, Way};
 
 /// How near a course stays to a program whose tip goes on curves that no piece has.
 #[derive(Clone, Copy, Debug, PartialEq)]

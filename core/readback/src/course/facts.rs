@@ -3,11 +3,8 @@
 use nalgebra::Vector3;
 
 use super::{Course, Item};
-use crate::{MotionKind, Told};
+use crate::{MOST_FAULTS, MotionKind, Told};
 use post_machine::diagnostic::Diagnostic;
-
-/// So many faults are kept.
-const MOST_FAULTS: usize = 50;
 
 /// What a course is about.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -5,10 +5,7 @@ use post_motion::At;
 use post_motion::contour::{Leg, Reference};
 
 use super::{Course, Curve, Item, Piece};
-use crate::{MotionKind, Way};
-
-/// So many faults of a course are kept.
-const MOST_FAULTS: usize = 50;
+use crate::{MOST_FAULTS, MotionKind, Way};
 
 /// The cuts of a course.
 #[derive(Debug)]

@@ -18,33 +18,15 @@ mod steps;
 mod tally;
 mod walk;
 
-use std::io::{Read, Seek};
-
 use post_machine::diagnostic::Diagnostic;
 
-use crate::Done;
-use crate::interpret::Interpreter;
+use crate::{Program, Run};
 use outline::Outline;
 use steps::Steps;
 pub use tally::{
     Difference, EventDifference, FeedWorst, Operation, Sample, Side, StateDifference, Stretch,
     Worst,
 };
-
-/// A program, block by block.
-pub trait Program {
-    /// Puts what the next block did behind what `done` holds; false at the end. It can be called again after an error.
-    ///
-    /// # Errors
-    /// What stands there that cannot be understood, with its place.
-    fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>>;
-}
-
-impl<R: Read + Seek> Program for Interpreter<R> {
-    fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>> {
-        Interpreter::next(self, done)
-    }
-}
 
 /// What makes a difference.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,8 +47,6 @@ pub struct Rules {
     pub axes: Vec<String>,
     /// Which axes are rotary, in chain order.
     pub rotary: Vec<bool>,
-    /// So many blocks of a program that cannot be read are told; then it is given up.
-    pub most_faults: usize,
 }
 
 /// Differences below this, mm and degrees, come of the last digit that is printed.
@@ -105,11 +85,11 @@ pub fn compare<P: Program, E>(
     listen: &mut dyn FnMut(&Sample),
 ) -> Result<(Difference, Unread), E> {
     let mut unread = Unread::default();
-    let old = Outline::of(&mut open(false)?, rules.most_faults, &mut unread.old);
-    let new = Outline::of(&mut open(true)?, rules.most_faults, &mut unread.new);
+    let old = Outline::of(Run::new(open(false)?), &mut unread.old);
+    let new = Outline::of(Run::new(open(true)?), &mut unread.new);
     let pairs = outline::align(old, new);
-    let old = Steps::new(open(false)?, rules.most_faults, pairs.by_name);
-    let new = Steps::new(open(true)?, rules.most_faults, pairs.by_name);
+    let old = Steps::new(Run::new(open(false)?), pairs.by_name);
+    let new = Steps::new(Run::new(open(true)?), pairs.by_name);
     let difference = walk::all(rules, pairs, old, new, listen);
     Ok((difference, unread))
 }

@@ -3,8 +3,7 @@
 use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 
-use super::Program;
-use crate::{Done, Motion, MotionKind, Told};
+use crate::{Done, Motion, MotionKind, Program, Run, Told};
 
 /// More operations than this are not aligned but compared one after the other.
 const MOST: usize = 1000;
@@ -87,33 +86,15 @@ pub(super) struct Outline {
 
 impl Outline {
     /// Reads a program to its end; what cannot be read goes to `faults`.
-    pub fn of(
-        program: &mut impl Program,
-        most_faults: usize,
-        faults: &mut Vec<Diagnostic>,
-    ) -> Self {
+    pub fn of(mut run: Run<impl Program>, faults: &mut Vec<Diagnostic>) -> Self {
         let mut outline = Self { parts: vec![Part::default()], ..Self::default() };
         let mut splitter = Splitter::new(true);
-        let mut done = Vec::new();
-        loop {
-            done.clear();
-            match program.next(&mut done) {
-                Ok(true) => {}
-                Ok(false) => break,
-                Err(fault) => {
-                    faults.push(*fault);
-                    if faults.len() >= most_faults {
-                        break;
-                    }
-                }
-            }
-            for done in &done {
+        while let Some(done) = run.block() {
+            for done in done {
                 outline.take(done, &mut splitter);
             }
         }
-        for done in &done {
-            outline.take(done, &mut splitter);
-        }
+        *faults = run.into_faults();
         outline
     }
 

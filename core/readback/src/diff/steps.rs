@@ -6,10 +6,9 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use post_machine::kinematics::{Joints, Pose};
 
-use super::Program;
 use super::outline::Splitter;
 use crate::course::descent::{Descent, descends};
-use crate::{Done, Motion, MotionKind, State, Told, Way};
+use crate::{Done, Motion, MotionKind, Program, Run, State, Told, Way};
 
 /// Steps stray from the way by no more: mm, radians.
 const SAG: f64 = 0.000_1;
@@ -134,9 +133,8 @@ enum Leg {
 /// The steps of a program, operation by operation.
 #[derive(Debug)]
 pub(super) struct Steps<P> {
-    program: P,
-    faults: usize,
-    most_faults: usize,
+    /// What cannot be read of it was told when its outline was made.
+    run: Run<P>,
     splitter: Splitter,
     done: Vec<Done>,
     ready: VecDeque<Next>,
@@ -159,11 +157,9 @@ pub(super) struct Steps<P> {
 }
 
 impl<P: Program> Steps<P> {
-    pub fn new(program: P, most_faults: usize, by_name: bool) -> Self {
+    pub fn new(run: Run<P>, by_name: bool) -> Self {
         Self {
-            program,
-            faults: 0,
-            most_faults,
+            run,
             splitter: Splitter::new(by_name),
             done: Vec::new(),
             ready: VecDeque::new(),
@@ -236,16 +232,12 @@ impl<P: Program> Steps<P> {
             self.ended = true;
             return;
         }
-        self.done.clear();
-        match self.program.next(&mut self.done) {
-            Ok(true) => {}
-            Ok(false) => self.over = true,
-            Err(_) => {
-                // Told when its outline was made.
-                self.faults += 1;
-                self.over = self.faults >= self.most_faults;
-            }
-        }
+        let Some(done) = self.run.block() else {
+            self.over = true;
+            self.release();
+            return;
+        };
+        std::mem::swap(done, &mut self.done);
         let done = std::mem::take(&mut self.done);
         for done in &done {
             if let Some(number) = self.splitter.take(done) {
@@ -255,9 +247,6 @@ impl<P: Program> Steps<P> {
             self.take(done);
         }
         self.done = done;
-        if self.over {
-            self.release();
-        }
     }
 
     fn take(&mut self, done: &Done) {

@@ -11,8 +11,8 @@ use super::meet::{LOOK, meeting};
 use super::outline::{Pairs, Part};
 use super::steps::{Spot, Step, Steps};
 use super::tally::{Difference, Place, Tally};
-use super::{Of, Program, Rules, Sample};
-use crate::MotionKind;
+use super::{Of, Rules, Sample};
+use crate::{MotionKind, Program};
 
 /// Compares operation by operation.
 pub(super) fn all<P: Program>(

@@ -5,17 +5,14 @@ use post_machine::diagnostic::Diagnostic;
 
 use super::chop;
 use super::place::{Bound, Place};
-use crate::MotionKind;
 use crate::course::{Course, Item};
+use crate::{MOST_FAULTS, MotionKind};
 
 /// Edge of the cells that a path is first put into, mm.
 const FINEST: f64 = 0.05;
 
 /// Cells that are kept; of a longer path they are made larger.
 const MOST_CELLS: usize = 400_000;
-
-/// So many faults of a course are kept.
-const MOST_FAULTS: usize = 50;
 
 /// No child, no cell.
 const NONE: u32 = u32::MAX;

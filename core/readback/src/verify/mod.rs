@@ -37,7 +37,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 
 use crate::course::Course;
-use crate::{CycleKind, Done, Motion, MotionKind, Offsets, Spindle, Told};
+use crate::{CycleKind, Done, MOST_FAULTS, Motion, MotionKind, Offsets, Spindle, Told};
 pub(crate) use axes::Axes;
 pub use axes::over_travel;
 pub use cut_path::CutPath;
@@ -124,7 +124,7 @@ impl Rules {
             coolants: true,
             own: false,
             solutions: false,
-            most_faults: 50,
+            most_faults: MOST_FAULTS,
         }
     }
 }

@@ -10,7 +10,7 @@ use post_machine::diagnostic::Diagnostic;
 use super::chop;
 use super::place::{Apart, Bound, Place};
 use crate::course::{Course, Item, Piece};
-use crate::{Coolants, CycleCall, CycleKind, MotionKind, Spindle, Told};
+use crate::{Coolants, CycleCall, CycleKind, MOST_FAULTS, MotionKind, Spindle, Told};
 
 /// What a course asks to hold while the tool cuts.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -108,9 +108,6 @@ pub(super) const MOST_SPEEDS: usize = 64;
 
 /// So many rapids towards one hole are kept.
 const MOST_APPROACH: usize = 64;
-
-/// So many faults of a course are kept.
-const MOST_FAULTS: usize = 50;
 
 /// Infinitely far.
 const FAR: Apart = Apart { point: f64::INFINITY, axis: f64::INFINITY };

@@ -6,10 +6,11 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Chain, Freedom, Joint, Joints, Pose, Solver};
-use post_readback::course::done::{Chords, DoneCourse, Program};
+use post_readback::course::done::{Chords, DoneCourse};
 use post_readback::course::{Course, Curve, Item, Piece};
 use post_readback::{
-    Coolants, Corners, Done, Motion, MotionKind, Spindle, SplineWay, Stance, State, Told, Way,
+    Coolants, Corners, Done, Motion, MotionKind, Program, Spindle, SplineWay, Stance, State, Told,
+    Way,
 };
 use post_testkit::{randomised, seeded};
 use post_testmachines::Random;

@@ -10,6 +10,7 @@ use post_plugin::DialectSession as _;
 use post_posting::report::Report;
 use post_posting::{LookedAhead, Output};
 use post_readback::interpret::Limits;
+use post_readback::verify::BlockReport;
 
 use crate::arguments::{JobArguments, MakingArguments};
 use crate::failure::Failure;
@@ -19,7 +20,7 @@ use crate::job::one_program::{Beside, OneProgram};
 use crate::job::plan_rounds;
 use crate::job::plan_worth;
 use crate::job::plugin_finder;
-use crate::job::predict::{self, Against, Asked, Predicted};
+use crate::job::predict::{self, Against, Asked, Predicted, Sample};
 use crate::job::read_back::{self, Held, Reading};
 use crate::job::report::PredictedParts;
 use crate::session::Session;
@@ -103,7 +104,7 @@ impl Part {
             own: true,
             lines: self.lines.clone(),
         };
-        read_back::verify(&reading, source, &name, text, &mut |_| {})
+        read_back::verify(&reading, source, &name, text, &mut |_: &BlockReport| {})
     }
 
     /// Predicts what the program `name` does; `period` between set-points, s, over the machine file's.
@@ -129,7 +130,7 @@ impl Part {
             period,
             lines: self.lines.clone(),
         };
-        predict::predict(&asked, Against::Cl(source), &name, text, &mut |sample| {
+        predict::predict(&asked, Against::Cl(source), &name, text, &mut |sample: &Sample| {
             if let Some(heard) = &mut heard {
                 heard.take(sample);
             }

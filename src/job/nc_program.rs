@@ -1,15 +1,16 @@
 //! An NC program that is read back: the machine that runs it, the words of its control, and what stands in its tables.
 
 use std::fs::File;
-use std::io::{self, Read as _, Seek, SeekFrom};
+use std::io::{self, Read, Seek, SeekFrom};
 
 use post_host::Finder;
 use post_machine::description::{Machine, Rapid};
-use post_machine::diagnostic::Diagnostic;
-use post_plugin::{Capabilities, DialectSession as _, VocabularyWord};
-use post_readback::interpret::{Interpreter, Limits};
+use post_machine::diagnostic::{Diagnostic, Place};
+use post_plugin::{Capabilities, DialectSession as _, Meaning, VocabularyWord};
+use post_readback::interpret::{Interpreter, Limits, ReadReport};
 use post_readback::lexicon::Lexicon;
-use post_readback::{FedRapids, Offsets, turns_the_spindle};
+use post_readback::verify::Registers;
+use post_readback::{FedRapids, MOST_FAULTS, Offsets, Run, turns_the_spindle};
 
 use super::{machine_files, plugin_finder, unused_options};
 use crate::arguments::ProgramArguments;
@@ -20,23 +21,36 @@ use crate::session::Session;
 /// Longest file of offsets that is read, bytes.
 const MOST_OFFSETS: u64 = 1 << 20;
 
-/// What is needed to run NC programs of a machine.
+/// A control that runs NC programs of a machine.
 #[derive(Debug)]
 pub struct NcControl {
-    /// The machine.
+    /// The machine, as its file says.
     pub machine: Machine,
-    /// The words of its control.
+    /// The machine as the control's programs count: where lengths are in the work offset, from the tip of the tool.
+    pub counted: Machine,
+    /// What its dialect tells of them.
+    pub spoken: Spoken,
+    /// Its words.
     pub lexicon: Lexicon,
     /// What stands in its tables.
     pub offsets: Offsets,
-    /// How far a program may go.
-    pub limits: Limits,
-    /// Rapids may stand in its programs as feed moves at the highest feed of the axes; true: where the control keeps the
-    /// tip alone.
-    pub fed_rapids: Option<bool>,
+    limits: Limits,
 }
 
 impl NcControl {
+    /// That of a machine, with `offsets` in its tables; `limits` say how far a program may go.
+    pub fn of(machine: &Machine, spoken: Spoken, offsets: Offsets, limits: Limits) -> Self {
+        let mut counted = machine.clone();
+        let first = offsets.tools.first().map(|(_, length)| *length);
+        if spoken.lengths_in_the_offset()
+            && let Some(length) = offsets.length.or(first)
+        {
+            counted.gauge -= machine.tool_axis * length;
+        }
+        let lexicon = Lexicon::new(&spoken.words);
+        Self { machine: machine.clone(), counted, spoken, lexicon, offsets, limits }
+    }
+
     /// As the flags say.
     pub fn new(session: &Session, arguments: &ProgramArguments) -> Result<Self, Failure> {
         let machine = machine_files::load(
@@ -53,38 +67,68 @@ impl NcControl {
         };
         offsets.length = arguments.tool_length;
         let spoken = spoken(&finder, &machine)?;
-        Ok(Self {
-            lexicon: Lexicon::new(&spoken.words),
-            fed_rapids: fed_rapids(&machine, spoken.rapids_pass),
-            machine,
-            offsets,
-            limits: Limits { blocks: arguments.most_blocks, ..Limits::default() },
-        })
+        let limits = Limits { blocks: arguments.most_blocks, ..Limits::default() };
+        Ok(Self::of(&machine, spoken, offsets, limits))
     }
 
-    /// The program in `file`, which messages call `name`, from where it stands.
-    pub fn run(&self, name: &str, file: File) -> Result<Interpreter<File>, Failure> {
-        let Self { machine, lexicon, offsets, limits, .. } = self;
-        Interpreter::new(machine, lexicon, offsets, *limits, name, file)
-            .map_err(|fault| Failure::from(*fault))
-    }
-
-    /// The same, its rapids at feed told from cuts. `again` gives the file from its beginning.
-    pub fn run_with_rapids(
+    /// The program in `input`, which messages call `name`, from where it stands.
+    ///
+    /// # Errors
+    /// The machine cannot be solved.
+    pub fn run<R: Read + Seek>(
         &self,
         name: &str,
-        mut again: impl FnMut() -> Result<File, Failure>,
+        input: R,
+    ) -> Result<Run<Interpreter<R>>, Box<Diagnostic>> {
+        self.program(name, input).map(Run::new)
+    }
+
+    fn program<R: Read + Seek>(
+        &self,
+        name: &str,
+        input: R,
+    ) -> Result<Interpreter<R>, Box<Diagnostic>> {
+        let Self { counted, lexicon, offsets, limits, .. } = self;
+        Interpreter::new(counted, lexicon, offsets, *limits, name, input)
+    }
+
+    /// The program in `file` from its beginning, its rapids at feed told from cuts.
+    ///
+    /// # Errors
+    /// The file cannot be read again, or the machine not be solved.
+    pub fn program_with_rapids(
+        &self,
+        name: &str,
+        file: &File,
     ) -> Result<FedRapids<Interpreter<File>>, Failure> {
-        let Some(kept) = self.fed_rapids else {
-            return Ok(FedRapids::none(self.run(name, again()?)?));
+        let program = || -> Result<_, Failure> {
+            Ok(self.program(name, again(name, file)?).map_err(|fault| *fault)?)
         };
-        let turns = turns_the_spindle(&mut self.run(name, again()?)?);
-        let program = self.run(name, again()?)?;
-        Ok(FedRapids::new(program, &self.machine, kept, turns))
+        let Some(kept) = fed_rapids(&self.machine, self.spoken.rapids_pass) else {
+            return Ok(FedRapids::none(program()?));
+        };
+        let turns = turns_the_spindle(&mut program()?);
+        Ok(FedRapids::new(program()?, &self.machine, kept, turns))
     }
 }
 
+/// What is told behind the faults of a program that was given up.
+pub fn given_up() -> Diagnostic {
+    let message = format!("{MOST_FAULTS} blocks were refused; the rest of the program is not read");
+    Diagnostic::error("nc-refused", message)
+}
+
+/// Words of the program `name` that are not known: warnings.
+pub fn unknown_words(name: &str, report: &ReadReport) -> impl Iterator<Item = Diagnostic> {
+    report.unknown.iter().take(MOST_FAULTS).map(move |(word, count, line)| {
+        let message = format!("{word} is not known and is taken to move nothing; {count} times");
+        let place = Place::new(name, *line, "", 0..0);
+        Diagnostic::warning("nc-unknown", message).at(Some(place))
+    })
+}
+
 /// What a dialect tells of the programs that its control reads.
+#[derive(Debug)]
 pub struct Spoken {
     /// The words.
     pub words: Vec<VocabularyWord>,
@@ -94,6 +138,35 @@ pub struct Spoken {
     pub feed_decimals: u8,
     /// A joint may pass its largest feed in a rapid under tool centre point control.
     pub rapids_pass: bool,
+}
+
+impl Spoken {
+    /// The operator changes the tool at a stop: the control knows no lengths, and the work offset is set with the tool in the
+    /// spindle.
+    pub fn lengths_in_the_offset(&self) -> bool {
+        let means = |word: &VocabularyWord, meaning: Meaning| {
+            let mut words = self.words.iter();
+            words.any(|other| other.word == word.word && other.meaning == meaning)
+        };
+        let mut changes = self.words.iter().filter(|word| word.meaning == Meaning::ToolChange);
+        changes.any(|change| means(change, Meaning::Stop))
+    }
+
+    /// Which register a length is compensated by.
+    pub fn registers(&self) -> Registers {
+        let has = |letter: &str, meaning: Meaning| self.has_letter(letter, meaning);
+        match (has("H", Meaning::LengthRegister), has("D", Meaning::LengthOn)) {
+            (true, _) => Registers::OfTool,
+            (false, true) => Registers::Edges,
+            (false, false) => Registers::None,
+        }
+    }
+
+    /// A word of it is `letter`, and means that.
+    pub fn has_letter(&self, letter: &str, meaning: Meaning) -> bool {
+        let mut words = self.words.iter();
+        words.any(|word| word.meaning == meaning && word.word == letter)
+    }
 }
 
 /// Whether rapids stand at feed in programs of a machine, and whether only where the control keeps the tip: which of them
@@ -189,20 +262,6 @@ pub fn again(name: &str, file: &File) -> Result<File, FileFault> {
         Ok(again)
     };
     again().map_err(|error| FileFault::Read { name: name.to_owned(), error })
-}
-
-/// The open file `name` from its beginning, to be read beside another reader that is not done yet: its place in the file is
-/// its own.
-pub fn reopened(name: &str, file: &File) -> Result<File, FileFault> {
-    let copied = || -> io::Result<File> {
-        let mut from = file.try_clone()?;
-        let at = from.stream_position()?;
-        from.seek(SeekFrom::Start(0))?;
-        let copy = copied(&mut from);
-        from.seek(SeekFrom::Start(at))?;
-        copy
-    };
-    copied().map_err(|error| FileFault::Read { name: name.to_owned(), error })
 }
 
 /// What `input` gives, in a file without a name.

@@ -2,18 +2,16 @@
 
 use post_machine::diagnostic::Diagnostic;
 use post_motion::Corner;
-use post_readback::Corners;
 use post_readback::convert::{ClWriter, Tool};
 use post_readback::course::Course;
-use post_readback::course::done::{DoneCourse, Program};
+use post_readback::course::done::DoneCourse;
+use post_readback::{Corners, MOST_FAULTS, Program};
 
+use super::nc_program;
 use crate::files::FileFault;
 
 /// So many bytes are written at once.
 const BUFFER: usize = 1 << 16;
-
-/// So many blocks that are refused are told; then the rest of the program is not read.
-const MOST_REFUSED: usize = 50;
 
 /// What came of it.
 #[derive(Debug, Default)]
@@ -69,11 +67,8 @@ pub fn write<P: Program>(
         };
         if let Err(fault) = done {
             written.faults.push(*fault);
-            if written.faults.len() == MOST_REFUSED {
-                let message = format!(
-                    "{MOST_REFUSED} blocks were refused; the rest of the program is not read"
-                );
-                written.faults.push(Diagnostic::error("nc-refused", message));
+            if written.faults.len() == MOST_FAULTS {
+                written.faults.push(nc_program::given_up());
                 break;
             }
         }

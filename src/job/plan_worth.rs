@@ -11,7 +11,7 @@ use post_readback::interpret::Limits;
 use super::one_program::{Beside, OneProgram};
 use crate::failure::Failure;
 use crate::files::{ClSource, Scratch};
-use crate::job::predict::{self, Against, Asked};
+use crate::job::predict::{self, Against, Asked, Sample};
 
 /// Shares of time and error that differ by less are the same.
 const SAME: f64 = 1e-3;
@@ -92,7 +92,8 @@ fn outcome(
     };
     let text = text.reread()?;
     let name = "a program that is tried";
-    let Ok(predicted) = predict::predict(&asked, Against::Cl(source), name, text, &mut |_| Ok(()))
+    let Ok(predicted) =
+        predict::predict(&asked, Against::Cl(source), name, text, &mut |_: &Sample| Ok(()))
     else {
         return Ok(None);
     };

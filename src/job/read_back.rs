@@ -6,18 +6,18 @@ use std::ops::Range;
 use post_host::Finder;
 use post_machine::description::{Machine, OutputUnits, Rapid, TextPlace};
 use post_machine::diagnostic::{Diagnostic, Place, Severity};
-use post_plugin::{Meaning, VocabularyWord};
+use post_plugin::Meaning;
 use post_posting::program::{ToldSpindle, Unknown};
-use post_readback::Offsets;
 use post_readback::course::cl::{ClCourse, ClTool, Settings};
 use post_readback::course::{Course, Window};
-use post_readback::interpret::{Interpreter, Limits};
-use post_readback::lexicon::Lexicon;
+use post_readback::interpret::Limits;
 use post_readback::verify::{
     BlockReport, CutPath, Fault, Registers, Rules, Verification, Verifier,
 };
+use post_readback::{Done, Offsets};
 
-use super::{nc_program, plugin_finder};
+use super::nc_program::{self, NcControl, Spoken};
+use super::plugin_finder;
 use crate::arguments::JobArguments;
 use crate::arguments::flag_values::Msys;
 use crate::failure::Failure;
@@ -74,48 +74,10 @@ impl Held {
     }
 }
 
-/// The operator changes the tool at a stop: the control knows no lengths, and the work offset is set with the tool in the
-/// spindle.
-fn lengths_in_the_offset(words: &[VocabularyWord]) -> bool {
-    let means = |word: &VocabularyWord, meaning: Meaning| {
-        let mut words = words.iter();
-        words.any(|other| other.word == word.word && other.meaning == meaning)
-    };
-    let mut changes = words.iter().filter(|word| word.meaning == Meaning::ToolChange);
-    changes.any(|change| means(change, Meaning::Stop))
-}
-
-/// The machine as programs of its control count: where lengths are in the work offset, from the tip of the tool.
-pub fn as_counted(machine: &Machine, words: &[VocabularyWord], offsets: &Offsets) -> Machine {
-    let mut machine = machine.clone();
-    let first = offsets.tools.first().map(|(_, length)| *length);
-    if lengths_in_the_offset(words)
-        && let Some(length) = offsets.length.or(first)
-    {
-        machine.gauge -= machine.tool_axis * length;
-    }
-    machine
-}
-
-/// Which register a length is compensated by.
-fn registers(words: &[VocabularyWord]) -> Registers {
-    let has = |letter: &str, meaning: Meaning| has_letter(words, letter, meaning);
-    match (has("H", Meaning::LengthRegister), has("D", Meaning::LengthOn)) {
-        (true, _) => Registers::OfTool,
-        (false, true) => Registers::Edges,
-        (false, false) => Registers::None,
-    }
-}
-
-fn has_letter(words: &[VocabularyWord], letter: &str, meaning: Meaning) -> bool {
-    let mut words = words.iter();
-    words.any(|word| word.meaning == meaning && word.word == letter)
-}
-
 /// The work offset that posting writes where the CL file names none: the dialect's option, as the machine file has it or as
 /// it is by default. None where lines of the machine file name one, its words of CL files may, or the operator chooses it.
-fn work_offset(finder: &Finder, machine: &Machine, words: &[VocabularyWord]) -> Option<String> {
-    let offsets = words.iter().filter(|word| word.meaning == Meaning::WorkOffset);
+fn work_offset(finder: &Finder, machine: &Machine, spoken: &Spoken) -> Option<String> {
+    let offsets = spoken.words.iter().filter(|word| word.meaning == Meaning::WorkOffset);
     let offsets: Vec<&str> = offsets.map(|word| word.word.as_ref()).collect();
     let mut lines = machine.program.own_words();
     if !machine.word_rules.is_empty() || lines.any(|word| offsets.contains(&word.as_str())) {
@@ -185,7 +147,7 @@ pub fn verify<R: Read + Seek>(
     source: &mut ClSource,
     name: &str,
     input: R,
-    listen: &mut dyn FnMut(&BlockReport),
+    watch: &mut dyn VerifyWatch,
 ) -> Result<Held, Failure> {
     let Reading { arguments, machine, .. } = reading;
     // What the tools are called and how long they are stands anywhere in the CL file.
@@ -202,9 +164,29 @@ pub fn verify<R: Read + Seek>(
         tools,
         cut_path: Some(cut_path),
     };
-    let held = hold(reading, against, name, input, listen)?;
+    let held = hold(reading, against, name, input, watch)?;
     findings.extend(held.findings);
     Ok(Held { findings, ..held })
+}
+
+/// Who looks on while a program is held against a course.
+pub trait VerifyWatch {
+    /// What the program did next, before it is judged.
+    fn done(&mut self, _done: &Done) {}
+
+    /// A line of the program is judged; all that it did was told before.
+    fn line(&mut self, line: &BlockReport);
+
+    /// The program strays too often, and nothing more of it is judged: whether it is to be run on all the same.
+    fn runs_on(&mut self) -> bool {
+        false
+    }
+}
+
+impl<F: FnMut(&BlockReport)> VerifyWatch for F {
+    fn line(&mut self, line: &BlockReport) {
+        self(line);
+    }
 }
 
 /// What a program is held against.
@@ -228,14 +210,11 @@ pub fn hold<C: Course, R: Read + Seek>(
     against: Against<C>,
     name: &str,
     mut input: R,
-    listen: &mut dyn FnMut(&BlockReport),
+    watch: &mut dyn VerifyWatch,
 ) -> Result<Held, Failure> {
     let machine = reading.machine;
     let Against { course, name: cl_name, tools, cut_path } = against;
     let spoken = nc_program::spoken(reading.finder, machine)?;
-    let in_the_offset = lengths_in_the_offset(&spoken.words);
-    let lexicon = Lexicon::new(&spoken.words);
-    let mut findings = Vec::new();
     let offsets = match &reading.offsets {
         Some(offsets) => Offsets {
             // Of tools whose length stands in no table.
@@ -244,83 +223,29 @@ pub fn hold<C: Course, R: Read + Seek>(
         },
         None => offsets(reading.arguments, machine, &tools),
     };
-    let machine = &as_counted(machine, &spoken.words, &offsets);
-    let [tolerance, axis_tolerance] = reading.tolerances;
-    let standard = Rules::of(machine);
-    let rules = Rules {
-        tolerance: tolerance.unwrap_or(standard.tolerance),
-        axis_tolerance: axis_tolerance.unwrap_or(standard.axis_tolerance),
-        registers: match in_the_offset {
-            true => Registers::None,
-            false => registers(&spoken.words),
-        },
-        work_offsets: reading.offsets.as_ref().is_some_and(|offsets| !offsets.work.is_empty()),
-        // What stands in the control's tables is one thing, how long the tools are another.
-        lengths: (!in_the_offset).then(|| match reading.arguments.tool_length {
-            Some(length) => Offsets { length: Some(length), ..Offsets::default() },
-            None => offsets.clone(),
-        }),
-        radius_registers: has_letter(&spoken.words, "D", Meaning::RadiusRegister),
-        work_offset: match reading.any_work_offset {
-            true => None,
-            false => work_offset(reading.finder, machine, &spoken.words),
-        },
-        first_preset: plugin_finder::integer(reading.finder, machine, "preset")
-            .and_then(|row| u32::try_from(row).ok())
-            .map_or(1, |row| row.max(1)),
-        solutions: reading.solutions,
-        planned: reading.planned,
-        coolants: !reading.any_coolant,
-        // A retract by lines of the user's own leads where they say.
-        own: reading.own && machine.program.text(TextPlace::Retract).is_none(),
-        feed_place: feed_place(machine, spoken.feed_decimals),
-        linear_rapids: machine.rapid(spoken.rapids_pass) == Rapid::Linear,
-        least_minutes: spoken.most_inverse_time.map_or(0.0, |most| 1.0 / most),
-        tool_registers: tools.iter().map(|tool| (tool.number, tool.register)).collect(),
-        ..standard
-    };
-    let mut verifier = Verifier::new(machine, rules, course);
+    let control = NcControl::of(machine, spoken, offsets, reading.limits);
+    let mut verifier = Verifier::new(&control.counted, rules(reading, &control, &tools), course);
     if let Some(cut_path) = cut_path {
         verifier = verifier.near(cut_path);
     }
     let unreadable = |error| FileFault::Read { name: name.to_owned(), error };
     let (watched, length) = Watched::new(&mut input).map_err(unreadable)?;
     let position = watched.position();
-    let mut program = Interpreter::new(
-        machine,
-        &lexicon,
-        &offsets,
-        reading.limits,
-        name,
-        BufReader::new(watched),
-    )
-    .map_err(|fault| *fault)?;
+    let mut run = control.run(name, BufReader::new(watched)).map_err(|fault| *fault)?;
     let mut progress = reading.session.progress(Some(length));
-    let mut done = Vec::new();
-    let mut unread = 0;
-    loop {
-        done.clear();
-        match program.next(&mut done) {
-            Ok(true) => {}
-            Ok(false) => break,
-            Err(fault) => {
-                findings.push(*fault);
-                unread += 1;
-                if unread >= MOST_UNREAD {
-                    break;
-                }
-            }
-        }
+    while let Some(done) = run.block() {
         progress.record(|| position.get());
-        for done in &done {
-            verifier.take(done, listen);
+        for done in done {
+            watch.done(done);
+            verifier.take(done, &mut |line| watch.line(line));
         }
         if verifier.found().gave_up {
             break;
         }
     }
     progress.finish();
-    let report = program.report();
+    let mut findings = run.faults().to_vec();
+    let report = run.program().report();
     findings.extend(report.notes.iter().cloned());
     if let Some((line, axes)) = &report.unsaid {
         let message = format!(
@@ -329,14 +254,15 @@ pub fn hold<C: Course, R: Read + Seek>(
         let place = Place::new(name, *line, "", 0..0);
         findings.push(Diagnostic::error("missing", message).at(Some(place)));
     }
-    for (word, count, line) in report.unknown.iter().take(MOST_UNREAD) {
-        let message = format!("{word} is not known and is taken to move nothing; {count} times");
-        let place = Place::new(name, *line, "", 0..0);
-        findings.push(Diagnostic::warning("nc-unknown", message).at(Some(place)));
-    }
+    findings.extend(nc_program::unknown_words(name, report));
     let blocks = report.blocks;
-    drop(program);
-    let found = verifier.finish(listen);
+    let found = verifier.finish(&mut |line| watch.line(line));
+    if found.gave_up && watch.runs_on() {
+        while let Some(done) = run.block() {
+            done.iter().for_each(|done| watch.done(done));
+        }
+    }
+    drop(run);
     if let Some((line, message)) = &found.nearest_rapid {
         let more = match found.near_rapids {
             1 => String::new(),
@@ -363,8 +289,45 @@ pub fn hold<C: Course, R: Read + Seek>(
     Ok(Held { found, findings, blocks })
 }
 
-/// So many blocks that cannot be read are told.
-const MOST_UNREAD: usize = 50;
+/// What a program is held to.
+fn rules(reading: &Reading<'_>, control: &NcControl, tools: &[ClTool]) -> Rules {
+    let NcControl { counted: machine, spoken, offsets, .. } = control;
+    let in_the_offset = spoken.lengths_in_the_offset();
+    let [tolerance, axis_tolerance] = reading.tolerances;
+    let standard = Rules::of(machine);
+    Rules {
+        tolerance: tolerance.unwrap_or(standard.tolerance),
+        axis_tolerance: axis_tolerance.unwrap_or(standard.axis_tolerance),
+        registers: match in_the_offset {
+            true => Registers::None,
+            false => spoken.registers(),
+        },
+        work_offsets: reading.offsets.as_ref().is_some_and(|offsets| !offsets.work.is_empty()),
+        // What stands in the control's tables is one thing, how long the tools are another.
+        lengths: (!in_the_offset).then(|| match reading.arguments.tool_length {
+            Some(length) => Offsets { length: Some(length), ..Offsets::default() },
+            None => offsets.clone(),
+        }),
+        radius_registers: spoken.has_letter("D", Meaning::RadiusRegister),
+        work_offset: match reading.any_work_offset {
+            true => None,
+            false => work_offset(reading.finder, machine, spoken),
+        },
+        first_preset: plugin_finder::integer(reading.finder, machine, "preset")
+            .and_then(|row| u32::try_from(row).ok())
+            .map_or(1, |row| row.max(1)),
+        solutions: reading.solutions,
+        planned: reading.planned,
+        coolants: !reading.any_coolant,
+        // A retract by lines of the user's own leads where they say.
+        own: reading.own && machine.program.text(TextPlace::Retract).is_none(),
+        feed_place: feed_place(machine, spoken.feed_decimals),
+        linear_rapids: machine.rapid(spoken.rapids_pass) == Rapid::Linear,
+        least_minutes: spoken.most_inverse_time.map_or(0.0, |most| 1.0 / most),
+        tool_registers: tools.iter().map(|tool| (tool.number, tool.register)).collect(),
+        ..standard
+    }
+}
 
 /// The texts of the lines that faults name.
 fn lines_of(

@@ -338,9 +338,7 @@ impl MadeProgram {
             });
             let mut files = AtomicFile::create(session, &[(Role::REPORT, &page)])?;
             let machine = &self.part.machine;
-            let input = bench.source.open_beside()?;
-            let settings = read_back::course_settings(&self.line.job, machine, &input.name);
-            let cl = ClWindow::new(machine, settings, input.bytes)?;
+            let cl = ClWindow::of(&self.line.job, machine, &bench.source)?;
             let mut rows = BlockRows::new(machine, cl, told.predict)?;
             let mut came = self.line.make(session, &mut bench, Some(&mut rows))?;
             let (finder, source) = (&bench.finder, &mut bench.source);

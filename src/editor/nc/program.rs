@@ -6,23 +6,20 @@ use std::sync::Arc;
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 use post_plugin::VocabularyWord;
-use post_readback::interpret::{Interpreter, Limits};
-use post_readback::lexicon::Lexicon;
+use post_readback::interpret::Limits;
 use post_readback::{Done, MotionKind, Offsets, State, Told};
 
 use crate::editor::background::{Token, Worked};
 use crate::editor::document::Snapshot;
 use crate::editor::machine::library::Library;
-use crate::job::{nc_program, plugin_finder};
+use crate::job::nc_program::{self, NcControl};
+use crate::job::plugin_finder;
 
 /// Blocks between two looks whether the work is given up.
 const EVERY: u64 = 256;
 
 /// Lines that are kept.
 const MOST_LINES: usize = 500_000;
-
-/// Faults that are told.
-const MOST_FAULTS: usize = 100;
 
 /// Blocks that are run once more: an editor does not wait for a loop.
 const MOST_BLOCKS: u64 = 100_000;
@@ -78,50 +75,42 @@ pub fn read(
         Ok(spoken) => spoken,
         Err(refused) => return Some(Err(refused.findings())),
     };
-    let lexicon = Lexicon::new(&spoken.words);
     let offsets = Offsets { length: tool_length, ..Offsets::default() };
     let limits = Limits { blocks: MOST_BLOCKS, ..Limits::default() };
-    let input = Cursor::new(of.text.as_bytes());
-    let opened = Interpreter::new(&machine, &lexicon, &offsets, limits, &of.name, input);
-    let mut program = match opened {
-        Ok(program) => program,
+    let control = NcControl::of(&machine, spoken, offsets, limits);
+    let mut run = match control.run(&of.name, Cursor::new(of.text.as_bytes())) {
+        Ok(run) => run,
         Err(fault) => return Some(Err(vec![*fault])),
     };
-    let mut found = Vec::new();
-    let mut done = Vec::new();
     let mut lines = Lines::default();
     let mut blocks = 0_u64;
-    while found.len() < MOST_FAULTS {
+    while let Some(done) = run.block() {
         blocks += 1;
         if blocks.is_multiple_of(EVERY) && token.is_given_up() {
             return None;
         }
-        match program.next(&mut done) {
-            Ok(true) => {}
-            Ok(false) => break,
-            Err(fault) => {
-                // Beyond the limits the same fault would come without end.
-                let again = found.last() == Some(&*fault);
-                found.push(*fault);
-                if again {
-                    break;
-                }
-            }
-        }
         for one in done.drain(..) {
             lines.take(one);
         }
-        let (line, state) = program.stand();
+        // Beyond the limits the same fault would come without end.
+        if let [.., before, last] = run.faults()
+            && before == last
+        {
+            break;
+        }
+        let (line, state) = run.program().stand();
         lines.hold(line, state);
     }
-    found.extend(program.report().notes.iter().cloned());
+    let notes = run.program().report().notes.clone();
+    let mut found = run.into_faults();
+    found.extend(notes);
     let mut lines = lines.run;
     // A loop runs its lines again: the last time counts.
     lines.sort_by_key(|run| run.line);
     lines.reverse();
     lines.dedup_by_key(|run| run.line);
     lines.reverse();
-    let program = Program { machine: Box::new(machine), words: spoken.words, lines };
+    let program = Program { machine: Box::new(machine), words: control.spoken.words, lines };
     Some(Ok((program, found)))
 }
 

@@ -10,6 +10,7 @@ use post_machine::diagnostic::{Diagnostic, Severity};
 use post_posting::report::Report;
 use post_posting::{LookedAhead, Output};
 use post_readback::interpret::Limits;
+use post_readback::verify::BlockReport;
 
 use super::Study;
 use super::inputs::{ClText, Inputs};
@@ -22,7 +23,7 @@ use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{ClSource, HeldText, PathArg};
 use crate::job::one_program::{Beside, OneProgram};
-use crate::job::predict::{self, Against, Asked, Prediction};
+use crate::job::predict::{self, Against, Asked, Prediction, Sample};
 use crate::job::read_back::{self, Reading};
 use crate::job::{self, plugin_finder, unused_options};
 use crate::session::Session;
@@ -246,7 +247,7 @@ impl OneJob<'_> {
             lines: None,
         };
         let name = plugin_finder::cl_name(target);
-        read_back::verify(&reading, source, &name, self.reread(text), &mut |_| {})
+        read_back::verify(&reading, source, &name, self.reread(text), &mut |_: &BlockReport| {})
     }
 
     fn predict(
@@ -267,7 +268,7 @@ impl OneJob<'_> {
         };
         let name = plugin_finder::cl_name(target);
         let against = Against::Cl(source);
-        predict::predict(&asked, against, &name, self.reread(text), &mut |_| Ok(()))
+        predict::predict(&asked, against, &name, self.reread(text), &mut |_: &Sample| Ok(()))
     }
 
     fn reread<'t>(&self, text: &'t ProgramText) -> Stoppable<'t> {

@@ -2,6 +2,7 @@
 
 use post_machine::diagnostic::Diagnostic;
 use post_motion::contour::Reference;
+use post_readback::MOST_FAULTS;
 use post_readback::course::cl::{ClCourse, ClTool};
 use post_readback::course::{Course, Legs, Window};
 
@@ -9,9 +10,6 @@ use super::Asked;
 use crate::failure::Failure;
 use crate::files::ClSource;
 use crate::job::read_back;
-
-/// So many faults of a CL file are told.
-const MOST_FAULTS: usize = 50;
 
 /// The tools of a CL file: what they are called and how long they are stands anywhere in it.
 ///

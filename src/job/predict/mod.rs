@@ -12,6 +12,6 @@ mod text;
 mod times;
 
 pub use prediction::Prediction;
-pub use run::{Against, Asked, Predicted, predict};
+pub use run::{Against, Asked, PredictWatch, Predicted, predict};
 pub use sample::Sample;
 pub use text::text;

@@ -11,10 +11,9 @@ use post_machine::diagnostic::{Diagnostic, Place};
 use post_machine::kinematics::{Solver, Unreachable};
 use post_motion::trajectory::{Filled, Planner};
 use post_motion::{SetPoints, Task};
-use post_readback::interpret::{Interpreter, Limits, ReadReport};
-use post_readback::lexicon::Lexicon;
+use post_readback::interpret::{Interpreter, Limits};
 use post_readback::tasks::{Planned, Tasks};
-use post_readback::{Done, Offsets, Told};
+use post_readback::{Done, Offsets, Run, Told};
 
 use super::prediction::Prediction;
 use super::sample::Sample;
@@ -24,15 +23,13 @@ use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::Watched;
 use crate::files::{ClSource, FileFault};
+use crate::job::nc_program::{self, NcControl};
+use crate::job::read_back;
 use crate::job::text::number;
-use crate::job::{nc_program, read_back};
 use crate::session::Session;
 
 /// Set-points of a batch.
 const BATCH: usize = 256;
-
-/// So many blocks that cannot be read are told.
-const MOST_UNREAD: usize = 50;
 
 /// A tool that strays by more from a CL file, mm, hardly cuts its part.
 const OTHER_PART: f64 = 1.0;
@@ -72,6 +69,24 @@ pub enum Against<'a> {
     Cl(&'a mut ClSource),
 }
 
+/// Who looks on while a program is predicted.
+pub trait PredictWatch {
+    /// What the program does next, before its set-points.
+    fn done(&mut self, _done: &Done) {}
+
+    /// The next set-point.
+    ///
+    /// # Errors
+    /// What is made of it cannot be kept.
+    fn sample(&mut self, sample: &Sample) -> Result<(), Failure>;
+}
+
+impl<F: FnMut(&Sample) -> Result<(), Failure>> PredictWatch for F {
+    fn sample(&mut self, sample: &Sample) -> Result<(), Failure> {
+        self(sample)
+    }
+}
+
 /// What came of it.
 pub struct Predicted {
     /// What was found.
@@ -91,11 +106,10 @@ pub fn predict<R: Read + Seek>(
     against: Against<'_>,
     name: &str,
     input: R,
-    listen: &mut dyn FnMut(&Sample) -> Result<(), Failure>,
+    watch: &mut dyn PredictWatch,
 ) -> Result<Predicted, Failure> {
     let period = asked.period();
-    let words = nc_program::spoken(asked.finder, asked.machine)?.words;
-    let lexicon = Lexicon::new(&words);
+    let spoken = nc_program::spoken(asked.finder, asked.machine)?;
     let mut tools = Vec::new();
     // The file was read once before: what is wrong with it is known.
     let mut faults = Vec::new();
@@ -111,18 +125,16 @@ pub fn predict<R: Read + Seek>(
         None => read_back::offsets(asked.arguments, asked.machine, &tools),
     };
     // The control's own period stays: it says how corners are passed, and not how closely we look.
-    let machine = &read_back::as_counted(asked.machine, &words, &offsets);
+    let control = NcControl::of(asked.machine, spoken, offsets, asked.limits);
+    let machine = &control.counted;
     let unreadable = |error| FileFault::Read { name: name.to_owned(), error };
     let (input, length) = Watched::new(input).map_err(unreadable)?;
     let position = input.position();
     let input = BufReader::new(input);
-    let mut program = Interpreter::new(machine, &lexicon, &offsets, asked.limits, name, input)
-        .map_err(|fault| *fault)?;
     let mut reading = Reading {
+        run: control.run(name, input).map_err(|fault| *fault)?,
         tasks: Tasks::new(machine),
-        done: Vec::new(),
         planned: Vec::new(),
-        unread: Vec::new(),
         ended: false,
     };
     let mut stages = Stages::new(machine, period, path)?;
@@ -151,17 +163,14 @@ pub fn predict<R: Read + Seek>(
             {
                 chains.push((points.time(0), Arc::clone(&points.solver)));
             }
-            stages.batch(points, listen)?;
+            stages.batch(points, &mut |sample| watch.sample(sample))?;
             points.clear();
         }
         match filled {
             Filled::Full => {}
             Filled::Ended => break,
             Filled::Wants => {
-                reading.more(&mut program, name);
-                if reading.unread.len() >= MOST_UNREAD {
-                    break;
-                }
+                reading.more(watch, name);
                 for planned in reading.planned.drain(..) {
                     if let (None, Task::Move(first)) = (&points, &planned.task) {
                         points = Some(SetPoints::new(Arc::clone(&first.solver), period));
@@ -184,9 +193,9 @@ pub fn predict<R: Read + Seek>(
         }
     }
     progress.finish();
-    if !reading.unread.is_empty() {
+    if !reading.run.faults().is_empty() {
         // What stands behind a block that is not run counts from elsewhere.
-        return Err(reading.unread.into());
+        return Err(reading.run.into_faults().into());
     }
     let mut findings = reading.tasks.notes();
     if points.is_none() {
@@ -198,9 +207,11 @@ pub fn predict<R: Read + Seek>(
         let finding = Diagnostic::warning("no-motion", message).help(help);
         findings.push(finding.at(Some(place)));
     }
-    told(name, program.report(), &mut findings);
+    let report = reading.run.program().report();
+    findings.extend(report.notes.iter().cloned());
+    findings.extend(nc_program::unknown_words(name, report));
     found::warn(machine, &mut findings);
-    let found = stages.finish(machine, name, program.report().blocks, listen)?;
+    let found = stages.finish(machine, name, report.blocks, &mut |sample| watch.sample(sample))?;
     if let Some(file) = &found.against
         && found.contour.tip_mm.largest > OTHER_PART
     {
@@ -217,45 +228,43 @@ pub fn predict<R: Read + Seek>(
 }
 
 /// A program on the way to tasks.
-struct Reading {
+struct Reading<R> {
+    run: Run<Interpreter<R>>,
     tasks: Tasks,
-    done: Vec<Done>,
     planned: Vec<Planned>,
-    /// Blocks that cannot be read.
-    unread: Vec<Diagnostic>,
     ended: bool,
 }
 
-impl Reading {
+impl<R: Read + Seek> Reading<R> {
     /// Runs blocks until there is a task, or the program ends.
-    fn more<R: Read + Seek>(&mut self, program: &mut Interpreter<R>, name: &str) {
-        while self.planned.is_empty() && !self.ended && self.unread.len() < MOST_UNREAD {
-            match program.next(&mut self.done) {
-                Ok(true) => {
-                    self.unread.extend(self.head(name));
-                    self.tasks.take(&mut self.done, &mut self.planned);
-                }
-                Ok(false) => {
-                    self.tasks.end(&mut self.planned);
-                    self.ended = true;
-                }
-                Err(fault) => self.unread.push(*fault),
+    fn more(&mut self, watch: &mut dyn PredictWatch, name: &str) {
+        while self.planned.is_empty() && !self.ended {
+            let Some(done) = self.run.block() else {
+                self.tasks.end(&mut self.planned);
+                self.ended = true;
+                return;
+            };
+            done.iter().for_each(|done| watch.done(done));
+            let head = head(done, name);
+            self.tasks.take(done, &mut self.planned);
+            if let Some(head) = head {
+                self.run.refuse(head);
             }
         }
     }
+}
 
-    /// A head was swapped in: from here on the axes are others.
-    fn head(&self, name: &str) -> Option<Diagnostic> {
-        self.done.iter().find_map(|done| match done {
-            Done::Told { line, told: Told::Head(head) } => {
-                let message = format!("head {head} is swapped in: other axes move from here on");
-                let help = "predict the programs of its heads one by one (post --split tools)";
-                let place = Place::new(name, *line, "", 0..0);
-                Some(Diagnostic::error("head", message).help(help).at(Some(place)))
-            }
-            _ => None,
-        })
-    }
+/// A head was swapped in: from here on the axes are others.
+fn head(done: &[Done], name: &str) -> Option<Diagnostic> {
+    done.iter().find_map(|done| match done {
+        Done::Told { line, told: Told::Head(head) } => {
+            let message = format!("head {head} is swapped in: other axes move from here on");
+            let help = "predict the programs of its heads one by one (post --split tools)";
+            let place = Place::new(name, *line, "", 0..0);
+            Some(Diagnostic::error("head", message).help(help).at(Some(place)))
+        }
+        _ => None,
+    })
 }
 
 /// The axes cannot follow a move.
@@ -274,14 +283,4 @@ fn unreachable(fault: Unreachable, name: &str, line: u64) -> Diagnostic {
     let place = Place::new(name, line, "", 0..0);
     let help = "tool lengths and work offsets may be others: --tool-length, --offsets, --mount";
     Diagnostic::error("motion-unreachable", message).help(help).at(Some(place))
-}
-
-/// What the reading of the program has to say.
-fn told(name: &str, report: &ReadReport, findings: &mut Vec<Diagnostic>) {
-    findings.extend(report.notes.iter().cloned());
-    for (word, count, line) in report.unknown.iter().take(MOST_UNREAD) {
-        let message = format!("{word} is not known and is taken to move nothing; {count} times");
-        let place = Place::new(name, *line, "", 0..0);
-        findings.push(Diagnostic::warning("nc-unknown", message).at(Some(place)));
-    }
 }

@@ -12,7 +12,10 @@ use post_readback::course::{Course, Curve, Item, Piece};
 
 use super::cl_points::{self, Points};
 use super::parts::Parts;
+use crate::arguments::JobArguments;
 use crate::failure::Failure;
+use crate::files::ClSource;
+use crate::job::read_back;
 
 /// Chords of a curve at most.
 const MOST_CHORDS: f64 = 4096.0;
@@ -54,6 +57,20 @@ pub struct ClWindow {
 }
 
 impl ClWindow {
+    /// That of the CL file of a job, on the machine with its settings.
+    ///
+    /// # Errors
+    /// The file cannot be read, or there is no place for its table.
+    pub fn of(
+        arguments: &JobArguments,
+        machine: &Machine,
+        source: &ClSource,
+    ) -> Result<Self, Failure> {
+        let input = source.open_beside()?;
+        let settings = read_back::course_settings(arguments, machine, &input.name);
+        Self::new(machine, settings, input.bytes)
+    }
+
     /// Of a CL file, read as posting reads it.
     ///
     /// # Errors

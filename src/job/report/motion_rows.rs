@@ -1,13 +1,11 @@
-//! The motions of a program that is read back, row by row, and what others have found out about its lines.
+//! The motions of a program that is run, row by row, and what is found out about its lines meanwhile.
 
 use std::collections::VecDeque;
-use std::fs::File;
 
 use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 use post_motion::path::Way;
-use post_readback::interpret::Interpreter;
 use post_readback::{Done, Motion, MotionKind, Told};
 use post_report::meta::{AxisUsed, Event, Meta};
 use post_report::table::{Column, TableWriter};
@@ -24,12 +22,6 @@ use super::path_rows::PathRows;
 use super::predicted_rows;
 use crate::failure::Failure;
 use crate::files::Scratch;
-
-/// A line that somebody tells of is looked for so many motions ahead.
-const AHEAD: usize = 4096;
-
-/// So many blocks that cannot be read are passed over: whoever reads the program for its own sake tells of them.
-const MOST_FAULTS: u32 = 100;
 
 /// Places on a curve at most.
 const MOST_PLACES: f64 = 512.0;
@@ -49,12 +41,6 @@ pub struct Heard {
     pub peaks: [Joints; 2],
     /// Largest contour error, mm.
     pub contour: f64,
-}
-
-/// Somebody who is told what is known of the lines of a program, in the order in which they are carried out.
-pub trait Hears {
-    /// All rows of `line` get what was heard of it; those before it that nobody told of stay as they are.
-    fn hear(&mut self, line: u64, heard: &Heard);
 }
 
 /// What rows tell besides.
@@ -80,15 +66,16 @@ struct Waiting {
     middle: Option<Vector3<f64>>,
 }
 
-/// Reads a program and packs a row of each motion.
+/// Takes what a program does, and packs a row of each motion.
 pub struct MotionRows<'m> {
     /// The machine with the head in use.
     machine: &'m Machine,
     base: &'m Machine,
     /// Names of the axes of all heads, in the order of their columns.
     axes: Vec<(String, bool)>,
-    program: Interpreter<File>,
     besides: Besides,
+    /// Somebody tells of lines: rows wait for that.
+    told_of: bool,
     table: TableWriter<Scratch>,
     path: PathRows,
     derived: Derived<'m>,
@@ -105,7 +92,6 @@ pub struct MotionRows<'m> {
     /// Line of the CL file of the row before.
     last_cl: u64,
     waiting: VecDeque<Waiting>,
-    done: Vec<Done>,
     came: u64,
     time: f64,
     operation: String,
@@ -116,20 +102,17 @@ pub struct MotionRows<'m> {
     left_out: u64,
     /// First row of each line that is largest in something, and what: tip, axis, contour error.
     largest: [(f64, u64, u64); 3],
-    faults: u32,
-    ended: bool,
     fault: Option<Failure>,
     used: Vec<AxisUsed>,
 }
 
 impl<'m> MotionRows<'m> {
-    /// Of a program at its beginning; `cl` is the path that it is held against.
+    /// For a program; `cl` is the path that it is held against.
     ///
     /// # Errors
     /// There is no place for the rows.
     pub fn new(
         machine: &'m Machine,
-        program: Interpreter<File>,
         cl: Option<ClWindow>,
         besides: Besides,
     ) -> Result<Self, Failure> {
@@ -167,7 +150,7 @@ impl<'m> MotionRows<'m> {
             machine,
             base: machine,
             axes,
-            program,
+            told_of: besides.deviations || besides.predicted,
             besides,
             table: TableWriter::new("blocks", columns, Parts::scratch()?),
             path: PathRows::new(machine)?,
@@ -180,7 +163,6 @@ impl<'m> MotionRows<'m> {
             ends: Points::new()?,
             last_cl: 0,
             waiting: VecDeque::new(),
-            done: Vec::new(),
             came: 0,
             time: 0.0,
             operation: String::new(),
@@ -190,8 +172,6 @@ impl<'m> MotionRows<'m> {
             events: Vec::new(),
             left_out: 0,
             largest: [(0.0, 0, 0); 3],
-            faults: 0,
-            ended: false,
             fault: None,
             used: Vec::new(),
         })
@@ -202,20 +182,12 @@ impl<'m> MotionRows<'m> {
         Self { old: Some(old), ..self }
     }
 
-    /// Reads the rest; the tables go to `parts`, and what was seen to `meta`, whose maxima learn their rows.
+    /// All has come: the tables go to `parts`, and what was seen to `meta`, whose maxima learn their rows.
     ///
     /// # Errors
     /// They could not be kept.
     pub fn finish(mut self, parts: &mut Parts, meta: &mut Meta) -> Result<(), Failure> {
-        loop {
-            while self.waiting.is_empty() && !self.ended {
-                self.read();
-            }
-            if self.waiting.is_empty() {
-                break;
-            }
-            self.write(None);
-        }
+        self.alone();
         if let Some(fault) = self.fault {
             return Err(fault);
         }
@@ -241,31 +213,46 @@ impl<'m> MotionRows<'m> {
         parts.table(self.table)
     }
 
-    fn read(&mut self) {
-        let mut done = std::mem::take(&mut self.done);
-        done.clear();
-        match self.program.next(&mut done) {
-            Ok(true) => {}
-            Ok(false) => self.ended = true,
-            Err(_) => {
-                self.faults += 1;
-                self.ended = self.faults > MOST_FAULTS;
+    /// What the program does next.
+    pub fn take(&mut self, done: &Done) {
+        match done {
+            Done::Motion(motion) => {
+                self.motion(motion);
+                if !self.told_of {
+                    self.write(None);
+                }
             }
-        }
-        for next in &done {
-            match next {
-                Done::Motion(motion) => self.motion(motion),
-                Done::Told { told, .. } => self.told(told),
-                Done::State(state) => {
-                    let operation = state.operation.as_deref().unwrap_or_default();
-                    if operation != self.operation {
-                        self.operation = operation.to_owned();
-                        self.event("operation", operation.to_owned());
-                    }
+            Done::Told { told, .. } => self.told(told),
+            Done::State(state) => {
+                let operation = state.operation.as_deref().unwrap_or_default();
+                if operation != self.operation {
+                    self.operation = operation.to_owned();
+                    self.event("operation", operation.to_owned());
                 }
             }
         }
-        self.done = done;
+    }
+
+    /// All that is done on `line` gets what was heard of it; what came before, and nobody told of, stays as it is.
+    pub fn hear(&mut self, line: u64, heard: &Heard) {
+        let Some(place) = self.waiting.iter().position(|row| row.nc == line) else {
+            return;
+        };
+        for _ in 0..place {
+            self.write(None);
+        }
+        // A hole has many motions on its line.
+        while self.waiting.front().is_some_and(|row| row.nc == line) {
+            self.write(Some(heard));
+        }
+    }
+
+    /// From here on nobody tells of lines.
+    pub fn alone(&mut self) {
+        self.told_of = false;
+        while !self.waiting.is_empty() {
+            self.write(None);
+        }
     }
 
     fn motion(&mut self, motion: &Motion) {
@@ -467,33 +454,6 @@ impl<'m> MotionRows<'m> {
             self.events.push(Event { row, kind, text });
         } else {
             self.left_out += 1;
-        }
-    }
-}
-
-impl Hears for MotionRows<'_> {
-    fn hear(&mut self, line: u64, heard: &Heard) {
-        let at = |waiting: &VecDeque<Waiting>| waiting.iter().position(|row| row.nc == line);
-        let mut place = at(&self.waiting);
-        while place.is_none() && !self.ended && self.waiting.len() < AHEAD {
-            self.read();
-            place = at(&self.waiting);
-        }
-        let Some(place) = place else {
-            return;
-        };
-        for _ in 0..place {
-            self.write(None);
-        }
-        // All motions of the line: a hole has many.
-        loop {
-            while self.waiting.len() < 2 && !self.ended {
-                self.read();
-            }
-            match self.waiting.front() {
-                Some(first) if first.nc == line => self.write(Some(heard)),
-                _ => return,
-            }
         }
     }
 }

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_motion::path::Way;
 use post_readback::interpret::Interpreter;
-use post_readback::{Done, MotionKind};
+use post_readback::{Done, MotionKind, Run};
 use post_report::table::TableWriter;
 
 use super::cl_points;
@@ -16,9 +16,6 @@ use super::cl_window::Segment;
 use super::parts::{Parts, fault};
 use crate::failure::Failure;
 use crate::files::Scratch;
-
-/// So many blocks that cannot be read are passed over: whoever compares the programs tells of them.
-const MOST_FAULTS: u32 = 100;
 
 /// How far chords of a path may stray that is only looked at, mm.
 const CHORD: f64 = 0.001;
@@ -37,14 +34,13 @@ const APART: f64 = 10.0;
 
 /// Reads the old program as far as it is asked for.
 pub struct OldPath {
-    program: Interpreter<File>,
+    run: Run<Interpreter<File>>,
     table: TableWriter<Scratch>,
     segments: VecDeque<Segment>,
     /// Segments that stand behind the place that was found last.
     behind: usize,
     last: Option<Vector3<f64>>,
     done: Vec<Done>,
-    faults: u32,
     ended: bool,
     fault: Option<Failure>,
 }
@@ -54,16 +50,15 @@ impl OldPath {
     ///
     /// # Errors
     /// There is no place for its table.
-    pub fn new(machine: &Machine, program: Interpreter<File>) -> Result<Self, Failure> {
+    pub fn new(machine: &Machine, run: Run<Interpreter<File>>) -> Result<Self, Failure> {
         let columns = cl_points::columns(machine, false);
         Ok(Self {
-            program,
+            run,
             table: TableWriter::new("cl", columns, Parts::scratch()?),
             segments: VecDeque::new(),
             behind: 0,
             last: None,
             done: Vec::new(),
-            faults: 0,
             ended: false,
             fault: None,
         })
@@ -120,16 +115,12 @@ impl OldPath {
     }
 
     fn read(&mut self) {
-        let mut done = std::mem::take(&mut self.done);
-        done.clear();
-        match self.program.next(&mut done) {
-            Ok(true) => {}
-            Ok(false) => self.ended = true,
-            Err(_) => {
-                self.faults += 1;
-                self.ended = self.faults > MOST_FAULTS;
-            }
-        }
+        let Some(done) = self.run.block() else {
+            self.ended = true;
+            return;
+        };
+        std::mem::swap(done, &mut self.done);
+        let done = std::mem::take(&mut self.done);
         for next in &done {
             let Done::Motion(motion) = next else {
                 continue;

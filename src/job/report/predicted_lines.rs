@@ -5,7 +5,7 @@ use post_machine::kinematics::{Joints, MAX_AXES};
 use post_report::table::{Column, TableWriter};
 
 use super::block_rows::decimals;
-use super::motion_rows::{Heard, Hears};
+use super::motion_rows::Heard;
 use super::parts::{Parts, fault};
 use crate::failure::Failure;
 use crate::files::Scratch;
@@ -45,8 +45,8 @@ impl PredictedLines {
         })
     }
 
-    /// The next set-point; what is known of the line before goes to `rows`.
-    pub fn take(&mut self, sample: &Sample, rows: &mut dyn Hears) {
+    /// The next set-point; where it is the first of a line, what is known of the line before.
+    pub fn take(&mut self, sample: &Sample) -> Option<(u64, Heard)> {
         let point = &sample.point;
         let time = point.time;
         let cl = sample.cl_line().unwrap_or(0);
@@ -57,10 +57,10 @@ impl PredictedLines {
         if let Err(error) = self.table.row(&[time, sample.feed, error]) {
             self.fault.get_or_insert(fault(error));
         }
+        let mut before = None;
         if sample.at.line != self.line {
-            self.end(rows);
-            self.line = sample.at.line;
-            self.heard = Heard { cl, times: Some([time, time]), ..Heard::default() };
+            let heard = Heard { cl, times: Some([time, time]), ..Heard::default() };
+            before = self.line(sample.at.line, heard);
         }
         if let Some([_, to]) = &mut self.heard.times {
             *to = time + self.period;
@@ -81,23 +81,25 @@ impl PredictedLines {
             velocity = Some(now);
         }
         self.last = Some((joints, velocity));
+        before
     }
 
-    /// All set-points have come: the series goes to `parts`.
+    /// All set-points have come: the series goes to `parts`; what is known of the last line.
     ///
     /// # Errors
     /// It could not be kept.
-    pub fn finish(mut self, rows: &mut dyn Hears, parts: &mut Parts) -> Result<(), Failure> {
-        self.end(rows);
+    pub fn finish(mut self, parts: &mut Parts) -> Result<Option<(u64, Heard)>, Failure> {
+        let last = self.line(0, Heard::default());
         match self.fault {
             Some(fault) => Err(fault),
-            None => parts.table(self.table),
+            None => parts.table(self.table).map(|()| last),
         }
     }
 
-    fn end(&mut self, rows: &mut dyn Hears) {
-        if self.line > 0 {
-            rows.hear(self.line, &self.heard);
-        }
+    /// Another line is carried out: what is known of the one before.
+    fn line(&mut self, line: u64, heard: Heard) -> Option<(u64, Heard)> {
+        let before = std::mem::replace(&mut self.line, line);
+        let known = std::mem::replace(&mut self.heard, heard);
+        (before > 0).then_some((before, known))
     }
 }

@@ -32,7 +32,9 @@ impl<'m> PredictedParts<'m> {
 
     /// The next set-point.
     pub fn take(&mut self, sample: &Sample) {
-        self.series.take(sample, &mut self.rows);
+        if let Some((line, heard)) = self.series.take(sample) {
+            self.rows.hear(line, heard);
+        }
     }
 
     /// All set-points have come: they go to `parts`.
@@ -40,7 +42,9 @@ impl<'m> PredictedParts<'m> {
     /// # Errors
     /// They could not be kept.
     pub fn finish(mut self, parts: &mut Parts) -> Result<(), Failure> {
-        self.series.finish(&mut self.rows, parts)?;
+        if let Some((line, heard)) = self.series.finish(parts)? {
+            self.rows.hear(line, heard);
+        }
         self.rows.finish(parts)
     }
 }

@@ -7,7 +7,7 @@ use post_machine::description::Machine;
 use post_report::table::{Column, TableWriter};
 
 use super::block_rows::{decimals, packed};
-use super::motion_rows::{Heard, Hears};
+use super::motion_rows::Heard;
 use super::parts::{Parts, fault};
 use crate::failure::Failure;
 use crate::files::Scratch;
@@ -110,10 +110,9 @@ impl<'m> PredictedRows<'m> {
             self.fault.get_or_insert(fault(error));
         }
     }
-}
 
-impl Hears for PredictedRows<'_> {
-    fn hear(&mut self, line: u64, heard: &Heard) {
+    /// All rows of `line` get what was heard of it; those before it that nobody told of stay as they are.
+    pub fn hear(&mut self, line: u64, mut heard: Heard) {
         let place = loop {
             let place = self.waiting.iter().position(|row| *row == line);
             if place.is_some() || self.waiting.len() >= AHEAD || !self.read() {
@@ -123,7 +122,6 @@ impl Hears for PredictedRows<'_> {
         for _ in 0..place.unwrap_or(0) {
             self.write(&Heard::default());
         }
-        let mut heard = heard.clone();
         while place.is_some() {
             if self.waiting.is_empty() && !self.read() {
                 return;

@@ -11,7 +11,7 @@ use post_readback::course::CourseFacts;
 use post_readback::course::cl::{ClCourse, Settings};
 use post_readback::course::done::{Chords, DoneCourse};
 use post_readback::interpret::Limits;
-use post_readback::verify::CutPath;
+use post_readback::verify::{BlockReport, CutPath};
 
 use crate::arguments::flag_values::{
     TcpWord, feed, length, point, positive, setting, spindle, word,
@@ -148,9 +148,7 @@ const FINER: f64 = 0.1;
 pub fn run(session: &Session, arguments: &ConvertArguments) -> Result<(), Failure> {
     let from = NcControl::new(session, &arguments.first())?;
     let (name, input) = nc_program::open(session, &arguments.input)?;
-    let run = || -> Result<_, Failure> {
-        from.run_with_rapids(&name, || Ok(nc_program::again(&name, &input)?))
-    };
+    let run = || from.program_with_rapids(&name, &input);
     let job = arguments.second();
     let asked = job::machine(session, &job, &[])?;
     for machine in [&from.machine, &asked] {
@@ -274,7 +272,7 @@ pub fn run(session: &Session, arguments: &ConvertArguments) -> Result<(), Failur
     };
     let told = program.name().to_owned();
     let text = program.reread()?;
-    let held = read_back::hold(&reading, against, &told, text, &mut |_| {})?;
+    let held = read_back::hold(&reading, against, &told, text, &mut |_: &BlockReport| {})?;
     if held.is_wrong() {
         notes.extend(held.findings);
         return Err(notes.into());

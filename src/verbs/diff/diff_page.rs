@@ -1,14 +1,13 @@
 //! `--report`: what was compared, as a page: the new program in the place of the program, the path of the old one in the
 //! place of the CL path.
 
-use post_machine::description::Machine;
 use post_readback::diff::{Difference, Rules};
-use post_readback::interpret::Interpreter;
 use post_report::meta::{Maximum, Names, Tolerances, Verdict};
-use std::fs::File;
 
+use super::Side;
 use crate::failure::Failure;
 use crate::files::{AtomicFile, PathArg};
+use crate::job::nc_program::NcControl;
 use crate::job::report::{self, Besides, MotionRows, OldPath, Parts};
 use crate::job::text::{clock, number};
 use crate::session::Session;
@@ -16,8 +15,8 @@ use crate::session::Session;
 /// What was compared.
 pub struct Shown<'a> {
     pub session: &'a Session,
-    /// The machine of the new program.
-    pub machine: &'a Machine,
+    /// Those of the old program and the new one.
+    pub controls: [&'a NcControl; 2],
     pub found: &'a Difference,
     pub rules: &'a Rules,
     /// The old program and the new one.
@@ -31,20 +30,20 @@ impl Shown<'_> {
     /// A program cannot be read again, or the report not be written.
     pub fn write(
         &self,
-        [old, new]: [Interpreter<File>; 2],
-        mut texts: [(&str, File); 2],
+        sides: &[Side; 2],
         most: u64,
         page: &mut AtomicFile,
     ) -> Result<(), Failure> {
+        let machine = &self.controls[1].machine;
         let [old_name, new_name] = self.names.map(report::name_of);
         let title = format!("{new_name} against {old_name}");
         let names = Names {
             nc: Some(new_name),
             cl: None,
             nc2: Some(old_name),
-            machine: self.machine.name.clone(),
+            machine: machine.name.clone(),
         };
-        let mut meta = report::about("diff", self.machine, title, names);
+        let mut meta = report::about("diff", machine, title, names);
         meta.tolerances = Tolerances {
             tip: self.rules.tip,
             axis: self.rules.axis.to_degrees(),
@@ -53,13 +52,22 @@ impl Shown<'_> {
         meta.verdict = self.verdict();
         meta.maxima = self.maxima();
         meta.facts = self.facts();
-        let mut parts = Parts::of(self.session, self.machine, &mut meta)?;
+        let mut parts = Parts::of(self.session, machine, &mut meta)?;
         let besides = Besides { other: true, ..Besides::default() };
-        let rows = MotionRows::new(self.machine, new, None, besides)?;
-        let rows = rows.against(OldPath::new(self.machine, old)?);
+        let run = |place: usize| -> Result<_, Failure> {
+            let side = &sides[place];
+            let run = self.controls[place].run(&side.name, side.text()?);
+            Ok(run.map_err(|fault| *fault)?)
+        };
+        let (old, mut new) = (run(0)?, run(1)?);
+        let rows = MotionRows::new(machine, None, besides)?;
+        let mut rows = rows.against(OldPath::new(machine, old)?);
+        while let Some(done) = new.block() {
+            done.iter().for_each(|done| rows.take(done));
+        }
         rows.finish(&mut parts, &mut meta)?;
-        for (part, (name, text)) in ["nc2", "nc"].into_iter().zip(&mut texts) {
-            parts.text(part, name, text)?;
+        for (part, side) in ["nc2", "nc"].into_iter().zip(sides) {
+            parts.text(part, &side.name, &mut side.text()?)?;
         }
         parts.write(meta, most, page)
     }

@@ -6,13 +6,10 @@ mod diff_picture;
 mod diff_text;
 
 use std::fs::File;
-use std::io::{Seek as _, SeekFrom};
 
 use clap::Args;
 use post_machine::diagnostic::Diagnostic;
-use post_readback::FedRapids;
 use post_readback::diff::{Rules, Unread, compare};
-use post_readback::interpret::Interpreter;
 
 use crate::arguments::{ProgramArguments, ReportArguments, flag_values};
 use crate::failure::Failure;
@@ -21,9 +18,6 @@ use crate::job::nc_program::{self, NcControl};
 use crate::session::Session;
 use crate::terminal;
 use along::Along;
-
-/// So many blocks of a program that cannot be read are told; then it is given up.
-const MOST_UNREAD: usize = 20;
 
 /// Compares what two NC programs make the machine do, not their texts.
 ///
@@ -108,25 +102,9 @@ impl Side {
         Ok(Self { name, file })
     }
 
-    /// From its beginning, beside whoever else reads it.
-    fn copied(&self, control: &NcControl) -> Result<Interpreter<File>, Failure> {
-        let file = nc_program::reopened(&self.name, &self.file)?;
-        control.run(&self.name, file)
-    }
-
-    /// From its beginning.
-    fn read(&self, control: &NcControl) -> Result<FedRapids<Interpreter<File>>, Failure> {
-        let again = || {
-            let mut file = self.file.try_clone()?;
-            file.seek(SeekFrom::Start(0))?;
-            Ok(file)
-        };
-        control.run_with_rapids(&self.name, || {
-            again().map_err(|error| {
-                let name = self.name.clone();
-                Failure::from(FileFault::Read { name, error })
-            })
-        })
+    /// Its text from the beginning.
+    fn text(&self) -> Result<File, FileFault> {
+        nc_program::again(&self.name, &self.file)
     }
 }
 
@@ -140,7 +118,10 @@ pub fn run(session: &Session, arguments: &DiffArguments) -> Result<(), Failure> 
     let [old, new] = &controls;
     let rules = rules(arguments, [old, new]);
     let mut along = Along::new(rules.tip);
-    let opened = |new: bool| sides[usize::from(new)].read(&controls[usize::from(new)]);
+    let opened = |new: bool| {
+        let (control, side) = (&controls[usize::from(new)], &sides[usize::from(new)]);
+        control.program_with_rapids(&side.name, &side.file)
+    };
     let (found, unread) = compare(&rules, opened, &mut |sample| along.take(sample))?;
     let Unread { old: mut refused, new: more } = unread;
     refused.extend(more);
@@ -169,17 +150,12 @@ pub fn run(session: &Session, arguments: &DiffArguments) -> Result<(), Failure> 
     if let (Some(_), Some(page)) = (&arguments.report.report, written.last_mut()) {
         let shown = diff_page::Shown {
             session,
-            machine: &new.machine,
+            controls: [old, new],
             found: &found,
             rules: &rules,
             names: [&arguments.old, &arguments.new],
         };
-        let programs = [sides[0].copied(old)?, sides[1].copied(new)?];
-        let texts = [&sides[0], &sides[1]].map(|side| -> Result<_, Failure> {
-            Ok((side.name.as_str(), nc_program::again(&side.name, &side.file)?))
-        });
-        let [first, second] = texts;
-        shown.write(programs, [first?, second?], arguments.report.most(), page)?;
+        shown.write(&sides, arguments.report.most(), page)?;
     }
     let taken = written.iter().any(AtomicFile::is_standard);
     AtomicFile::finish(session, written)?;
@@ -230,7 +206,6 @@ fn rules(arguments: &DiffArguments, [old, new]: [&NcControl; 2]) -> Rules {
         one_control: one_machine && old.machine.control.dialect == new.machine.control.dialect,
         axes,
         rotary,
-        most_faults: MOST_UNREAD,
     }
 }
 

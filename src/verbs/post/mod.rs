@@ -19,7 +19,7 @@ use crate::job::making::{self, Part, Ready};
 use crate::job::one_program::{Beside, OneProgram};
 use crate::job::report::{self, BlockRows, ClWindow, Made, PredictedParts};
 use crate::job::summary::{self, Told};
-use crate::job::{self, compensate, plan_rounds, plugin_finder, predict, read_back};
+use crate::job::{self, compensate, plan_rounds, plugin_finder, predict};
 use crate::session::Session;
 use crate::terminal;
 use parts::Split;
@@ -143,10 +143,7 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
         let page = pages.next();
         let mut rows = match page {
             Some(_) => {
-                let input = source.open_beside()?;
-                let settings =
-                    read_back::course_settings(&arguments.job, &part.machine, &input.name);
-                let cl = ClWindow::new(&part.machine, settings, input.bytes)?;
+                let cl = ClWindow::of(&arguments.job, &part.machine, &source)?;
                 let predicted = arguments.predict.is_some();
                 Some(BlockRows::new(&part.machine, cl, predicted)?)
             }

@@ -11,15 +11,16 @@ mod trail;
 
 use clap::Args;
 use post_machine::diagnostic::Diagnostic;
+use post_readback::Done;
 use post_readback::interpret::Limits;
 
 use crate::arguments::flag_values;
 use crate::arguments::{JobArguments, ReportArguments};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, OwnFolder, PathArg, Role};
-use crate::job::predict::measured::MeasuredPoint;
-use crate::job::predict::{self, Against, Predicted, Sample};
-use crate::job::report::{Again, Besides, MotionRows, PredictedLines};
+use crate::job::predict::measured::{MeasuredPoint, Overlay};
+use crate::job::predict::{self, Against, PredictWatch, Predicted, Sample};
+use crate::job::report::{Besides, ClWindow, MotionRows, PredictedLines};
 use crate::job::{self, nc_program, plugin_finder};
 use crate::session::Session;
 use crate::terminal;
@@ -111,6 +112,40 @@ const PICTURES: Role = Role { what: "prediction", remedy: "name another folder w
 /// The file by which a folder of pictures is known, and how it begins.
 const MARK: (&str, &str) = ("prediction.json", "{\n  \"program\": ");
 
+/// What is made of set-points as they come.
+struct Watch<'a, 'm, 'f> {
+    overlay: Option<&'a mut Overlay>,
+    rooms: Option<Rooms>,
+    rows: Option<(MotionRows<'m>, PredictedLines)>,
+    csv: Option<SetPointsCsv<'m, 'f>>,
+}
+
+impl PredictWatch for Watch<'_, '_, '_> {
+    fn done(&mut self, done: &Done) {
+        if let Some((rows, _)) = &mut self.rows {
+            rows.take(done);
+        }
+    }
+
+    fn sample(&mut self, sample: &Sample) -> Result<(), Failure> {
+        if let Some(overlay) = &mut self.overlay {
+            overlay.take(sample)?;
+        }
+        if let Some(rooms) = &mut self.rooms {
+            rooms.take(sample);
+        }
+        if let Some((rows, lines)) = &mut self.rows
+            && let Some((line, heard)) = lines.take(sample)
+        {
+            rows.hear(line, &heard);
+        }
+        match &mut self.csv {
+            Some(csv) => Ok(csv.take(sample)?),
+            None => Ok(()),
+        }
+    }
+}
+
 /// Predicts as the arguments say.
 pub fn run(session: &Session, arguments: &PredictArguments) -> Result<(), Failure> {
     let machine = job::machine(session, &arguments.job, &[])?;
@@ -160,24 +195,12 @@ pub fn run(session: &Session, arguments: &PredictArguments) -> Result<(), Failur
         Some(file) => Some(files::ClSource::new(session, file, true)?),
         None => None,
     };
-    let mut page = match page {
-        Some(page) => {
-            let once_more = Again {
-                arguments: &arguments.job,
-                machine: &machine,
-                finder: &finder,
-                offsets: asked.offsets.as_ref(),
-                limits: asked.limits,
-            };
-            let read = nc_program::reopened(&name, &program)?;
-            let read = once_more.program(source.as_ref(), &name, read)?;
-            let cl = match &source {
-                Some(source) => Some(once_more.cl(source)?),
-                None => None,
-            };
+    let rows = match &page {
+        Some(_) => {
+            let cl = source.as_ref().map(|source| ClWindow::of(&arguments.job, &machine, source));
             let besides = Besides { predicted: true, ..Besides::default() };
-            let rows = MotionRows::new(&machine, read, cl, besides)?;
-            Some((page, rows, PredictedLines::new(&machine, period)?))
+            let rows = MotionRows::new(&machine, cl.transpose()?, besides)?;
+            Some((rows, PredictedLines::new(&machine, period)?))
         }
         None => None,
     };
@@ -185,33 +208,16 @@ pub fn run(session: &Session, arguments: &PredictArguments) -> Result<(), Failur
         Some(source) => Against::Cl(source),
         None => Against::Nothing,
     };
-    let mut rooms = folder.as_ref().map(|_| Rooms::new(&machine, period));
-    let predicted = {
-        let mut csv = match (&arguments.csv, texts.first_mut()) {
-            (Some(_), Some(file)) => Some(SetPointsCsv::new(&machine, file)),
-            _ => None,
-        };
-        let mut listen = |sample: &Sample| {
-            if let Some(overlay) = &mut overlay {
-                overlay.take(sample)?;
-            }
-            if let Some(rooms) = &mut rooms {
-                rooms.take(sample);
-            }
-            if let Some((_, rows, lines)) = &mut page {
-                lines.take(sample, rows);
-            }
-            match &mut csv {
-                Some(csv) => Ok(csv.take(sample)?),
-                None => Ok(()),
-            }
-        };
-        let predicted = predict::predict(&asked, against, &name, program, &mut listen)?;
-        if let Some(csv) = csv {
-            csv.finish()?;
-        }
-        predicted
+    let csv = arguments.csv.as_ref().and(texts.first_mut());
+    let mut watch = Watch {
+        overlay: overlay.as_mut(),
+        rooms: folder.as_ref().map(|_| Rooms::new(&machine, period)),
+        rows,
+        csv: csv.map(|file| SetPointsCsv::new(&machine, file)),
     };
+    let predicted = predict::predict(&asked, against, &name, program, &mut watch)?;
+    let Watch { rooms, rows, csv, .. } = watch;
+    csv.map_or(Ok(()), SetPointsCsv::finish)?;
     let Predicted { mut found, mut findings, chains } = predicted;
     let mut measured_picture = None;
     if let Some(overlay) = &overlay {
@@ -226,7 +232,7 @@ pub fn run(session: &Session, arguments: &PredictArguments) -> Result<(), Failur
     if let (Some(_), Some(file)) = (&arguments.summary, texts.last_mut()) {
         file.write_bytes(json.as_bytes())?;
     }
-    if let Some((mut page, rows, lines)) = page {
+    if let (Some(mut page), Some((rows, lines))) = (page, rows) {
         let shown = predict_page::Shown {
             session,
             machine: &machine,

@@ -51,7 +51,9 @@ impl Shown<'_> {
         meta.warnings = report::warnings(self.findings, name);
         meta.excludes.clone_from(&self.found.assumed);
         let mut parts = Parts::of(self.session, self.machine, &mut meta)?;
-        lines.finish(&mut rows, &mut parts)?;
+        if let Some((line, heard)) = lines.finish(&mut parts)? {
+            rows.hear(line, &heard);
+        }
         rows.finish(&mut parts, &mut meta)?;
         parts.text("nc", name, &mut { program })?;
         if let Some(source) = source {

@@ -9,9 +9,9 @@ use std::fs::File;
 
 use clap::Args;
 use post_machine::diagnostic::Diagnostic;
-use post_readback::FedRapids;
 use post_readback::course::done::{Chords, DoneCourse};
 use post_readback::interpret::Interpreter;
+use post_readback::{FedRapids, MOST_FAULTS};
 
 use crate::arguments::ProgramArguments;
 use crate::failure::Failure;
@@ -23,9 +23,6 @@ use crate::terminal;
 use beyond_travel::BeyondTravel;
 use motions_csv::MotionsCsv;
 use survey::Survey;
-
-/// So many refused blocks are told; reading ends with them.
-const MOST_REFUSED: usize = 50;
 
 /// Reads an NC program back: what it makes the machine do, block by block.
 ///
@@ -87,7 +84,8 @@ const MOTIONS: Role = Role { what: "table of motions", remedy: "name another fil
 pub fn run(session: &Session, arguments: &ReadArguments) -> Result<(), Failure> {
     let control = NcControl::new(session, &arguments.program)?;
     let (name, input) = nc_program::open(session, &arguments.input)?;
-    let mut program = control.run(&name, nc_program::again(&name, &input)?)?;
+    let run = control.run(&name, nc_program::again(&name, &input)?);
+    let mut run = run.map_err(|fault| *fault)?;
     let mut targets: Vec<(Role, &PathArg)> = Vec::new();
     targets.extend(arguments.csv.iter().map(|target| (MOTIONS, target)));
     targets.extend(arguments.cl.iter().map(|target| (Role::CL, target)));
@@ -95,39 +93,25 @@ pub fn run(session: &Session, arguments: &ReadArguments) -> Result<(), Failure> 
     let (tables, cl_files) = files.split_at_mut(usize::from(arguments.csv.is_some()));
     let mut csv = tables.first_mut().map(|file| MotionsCsv::new(&control.machine, file));
     let mut survey = Survey::new(&control.machine);
-    let mut refused: Vec<Diagnostic> = Vec::new();
     let mut beyond = BeyondTravel::default();
-    let mut done = Vec::new();
-    loop {
-        done.clear();
-        let more = program.next(&mut done);
-        for what in &done {
+    while let Some(done) = run.block() {
+        for what in done {
             survey.take(what);
             beyond.take(&control.machine, what);
             if let Some(csv) = &mut csv {
                 csv.take(what)?;
             }
         }
-        match more {
-            Ok(true) => {}
-            Ok(false) => break,
-            Err(fault) => {
-                refused.push(*fault);
-                if refused.len() == MOST_REFUSED {
-                    let message = format!(
-                        "{MOST_REFUSED} blocks were refused; the rest of the program is not read"
-                    );
-                    refused.push(Diagnostic::error("nc-refused", message));
-                    break;
-                }
-            }
-        }
+    }
+    let mut refused = run.faults().to_vec();
+    if refused.len() == MOST_FAULTS {
+        refused.push(nc_program::given_up());
     }
     if let Some(csv) = csv {
         csv.finish()?;
     }
     if let (Some(file), true) = (cl_files.first_mut(), refused.is_empty()) {
-        let program = control.run_with_rapids(&name, || Ok(nc_program::again(&name, &input)?))?;
+        let program = control.program_with_rapids(&name, &input)?;
         write_cl(session, arguments, &control, program, file, &mut refused)?;
     }
     if !refused.is_empty() {
@@ -137,7 +121,7 @@ pub fn run(session: &Session, arguments: &ReadArguments) -> Result<(), Failure> 
     refused.extend(beyond.findings(&name));
     let taken = files.iter().any(AtomicFile::is_standard);
     AtomicFile::finish(session, files)?;
-    let report = program.report();
+    let report = run.program().report();
     session.findings(&report.notes);
     let text = read_text::text(&control.machine, &survey, report, refused.len());
     if taken {

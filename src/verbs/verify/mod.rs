@@ -4,14 +4,16 @@ mod verify_page;
 mod verify_text;
 
 use clap::{Args, ValueEnum};
+use post_readback::Done;
 use post_readback::interpret::Limits;
+use post_readback::verify::BlockReport;
 
 use crate::arguments::flag_values::positive;
 use crate::arguments::{JobArguments, ReportArguments};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
-use crate::job::read_back::{self, Reading};
-use crate::job::report::{Again, Besides, Hears as _, MotionRows};
+use crate::job::read_back::{self, Reading, VerifyWatch};
+use crate::job::report::{Besides, ClWindow, MotionRows};
 use crate::job::{self, nc_program, plugin_finder};
 use crate::session::Session;
 use crate::terminal;
@@ -106,6 +108,33 @@ enum Ignored {
 
 const MAP: Role = Role { what: "map", remedy: "name another file with --map" };
 
+/// What is made of the lines of the program while it is held against the CL file.
+struct Watch<'m, 'f> {
+    map: Option<(JsonRows, &'f mut AtomicFile)>,
+    rows: Option<MotionRows<'m>>,
+}
+
+impl VerifyWatch for Watch<'_, '_> {
+    fn done(&mut self, done: &Done) {
+        if let Some(rows) = &mut self.rows {
+            rows.take(done);
+        }
+    }
+
+    fn line(&mut self, line: &BlockReport) {
+        if let Some((map, file)) = &mut self.map {
+            map.row(line, file);
+        }
+        if let Some(rows) = &mut self.rows {
+            rows.hear(line.nc_line, &verify_page::heard(line));
+        }
+    }
+
+    fn runs_on(&mut self) -> bool {
+        self.rows.as_mut().map(MotionRows::alone).is_some()
+    }
+}
+
 /// Verifies as the arguments say.
 pub fn run(session: &Session, arguments: &VerifyArguments) -> Result<(), Failure> {
     let machine = job::machine(session, &arguments.job, &[])?;
@@ -141,38 +170,20 @@ pub fn run(session: &Session, arguments: &VerifyArguments) -> Result<(), Failure
         own: arguments.posted,
         lines: None,
     };
-    let once_more = Again {
-        arguments: &arguments.job,
-        machine: &machine,
-        finder: &finder,
-        offsets: reading.offsets.as_ref(),
-        limits: reading.limits,
-    };
-    let mut rows = match &page {
+    let rows = match &page {
         Some(_) => {
-            let read = nc_program::reopened(&name, &program)?;
-            let program = once_more.program(Some(&source), &name, read)?;
-            let cl = once_more.cl(&source)?;
+            let cl = ClWindow::of(&arguments.job, &machine, &source)?;
             let besides = Besides { deviations: true, ..Besides::default() };
-            Some(MotionRows::new(&machine, program, Some(cl), besides)?)
+            Some(MotionRows::new(&machine, Some(cl), besides)?)
         }
         None => None,
     };
-    let mut map = arguments.map.as_ref().map(|_| JsonRows::default());
-    let held = {
-        let file = map.is_some().then(|| &mut texts[0]);
-        let mut file = file;
-        read_back::verify(&reading, &mut source, &name, program, &mut |row| {
-            if let (Some(map), Some(file)) = (&mut map, &mut file) {
-                map.row(row, file);
-            }
-            if let Some(rows) = &mut rows {
-                rows.hear(row.nc_line, &verify_page::heard(row));
-            }
-        })?
-    };
-    if let Some(map) = map {
-        map.end(&mut texts[0])?;
+    let map = arguments.map.as_ref().and(texts.first_mut());
+    let mut watch = Watch { map: map.map(|file| (JsonRows::default(), file)), rows };
+    let held = read_back::verify(&reading, &mut source, &name, program, &mut watch)?;
+    let Watch { map, rows } = watch;
+    if let Some((map, file)) = map {
+        map.end(file)?;
     }
     if arguments.summary.is_some()
         && let Some(file) = texts.last_mut()

@@ -7,7 +7,6 @@ use serde::Serialize;
 use super::GivenOption;
 use super::build::Builder;
 use super::file::{AccuracyFile, ControlPointFile, Method, Placement};
-use super::quantity::Quantity;
 use crate::diagnostic::{Place, Short};
 
 /// Of the tool axis' tolerance so much may be used close to a pole; the rest is for what happens between points.
@@ -54,9 +53,6 @@ pub struct ControlPoint {
     pub radius: f64,
 }
 
-/// More points than this in one move are a slip.
-const MOST_POINTS: i64 = 999;
-
 /// No point is moved by more to make up for servos, mm: more is a slip of the unit.
 const MOST_COMPENSATION: f64 = 1.0;
 
@@ -70,48 +66,21 @@ impl Builder<'_> {
             .model
             .as_ref()
             .map_or_else(|| "sampled".to_owned(), |model| model.get_ref().clone());
-        let tolerance = self.tolerance("tolerance", &file.tolerance, 0.005);
-        let axis_tolerance = self.tolerance("axis_tolerance", &file.axis_tolerance, 0.05);
-        let rapid_tolerance = self.tolerance("rapid_tolerance", &file.rapid_tolerance, 0.5);
-        let corner = file.corner.as_ref().map_or(10.0, |corner| {
-            let value = self.number(corner);
-            if !(0.0..=180.0).contains(&value) {
-                self.fault(
-                    "machine-corner",
-                    corner.span(),
-                    format!("corner is {}; it must be 0 to 180 degrees", Short(value)),
-                    "",
-                );
-            }
-            value
-        });
-        let points = file.points.as_ref().map_or(1, |points| {
-            let count = *points.get_ref();
-            if !(1..=MOST_POINTS).contains(&count) {
-                self.fault(
-                    "machine-points",
-                    points.span(),
-                    format!("points is {count}; it must be 1 to {MOST_POINTS}"),
-                    "",
-                );
-            }
-            count.clamp(1, MOST_POINTS) as u32
-        });
-        let servo_compensation = file.servo_compensation.as_ref().map(|said| {
-            let bound = self.tolerance("servo_compensation", &file.servo_compensation, 0.0);
-            if bound > MOST_COMPENSATION {
-                self.fault(
-                    "machine-accuracy",
-                    said.span(),
-                    format!(
-                        "servo_compensation is {} mm; at most {MOST_COMPENSATION} mm is possible",
-                        Short(bound)
-                    ),
-                    "the unit is mm: 3 µm are 0.003",
-                );
-            }
-            bound
-        });
+        let tolerance = self.checked(&file.tolerance).unwrap_or(0.005);
+        let axis_tolerance = self.checked(&file.axis_tolerance).unwrap_or(0.05);
+        let rapid_tolerance = self.checked(&file.rapid_tolerance).unwrap_or(0.5);
+        let corner = self.checked(&file.corner).unwrap_or(10.0);
+        let points = self.counted(&file.points).unwrap_or(1) as u32;
+        let servo_compensation = self.checked(&file.servo_compensation);
+        if let (Some(said), Some(bound)) = (&file.servo_compensation, servo_compensation)
+            && bound > MOST_COMPENSATION
+        {
+            let message = format!(
+                "servo_compensation is {} mm; at most {MOST_COMPENSATION} mm is possible",
+                Short(bound)
+            );
+            self.fault("machine-accuracy", said.span(), message, "the unit is mm: 3 µm are 0.003");
+        }
         Accuracy {
             servo_compensation,
             options: options.remove(&model).unwrap_or_default(),
@@ -129,38 +98,9 @@ impl Builder<'_> {
     }
 
     pub(super) fn control_point(&mut self, file: &ControlPointFile) -> ControlPoint {
-        let along = file.along.as_ref().map_or(0.0, |along| self.number(along));
-        let radius = file.radius.as_ref().map_or(0.0, |radius| {
-            let value = self.number(radius);
-            if value < 0.0 {
-                self.fault(
-                    "machine-control-point",
-                    radius.span(),
-                    format!(
-                        "the radius of the cutting edge is {}; it cannot be below zero",
-                        Short(value)
-                    ),
-                    "",
-                );
-            }
-            value
-        });
-        ControlPoint { along, radius }
-    }
-
-    fn tolerance(&mut self, name: &str, quantity: &Option<Quantity>, default: f64) -> f64 {
-        let Some(quantity) = quantity else {
-            return default;
-        };
-        let value = self.number(quantity);
-        if value <= 0.0 {
-            self.fault(
-                "machine-tolerance",
-                quantity.span(),
-                format!("{name} is {}; it must be above zero", Short(value)),
-                "",
-            );
+        ControlPoint {
+            along: self.checked(&file.along).unwrap_or(0.0),
+            radius: self.checked(&file.radius).unwrap_or(0.0),
         }
-        value
     }
 }

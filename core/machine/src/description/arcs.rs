@@ -2,7 +2,6 @@
 
 use super::build::Builder;
 use super::file::{ArcForm, ArcSplit, ArcsFile};
-use super::quantity::Quantity;
 use crate::diagnostic::Short;
 
 /// Which curves the program has as curves.
@@ -22,19 +21,8 @@ pub struct Arcs {
 
 impl Builder<'_> {
     pub(super) fn arcs(&mut self, file: &ArcsFile) -> Arcs {
-        let mut radius = |name: &str, said: &Option<Quantity>, default: f64| {
-            let Some(quantity) = said else {
-                return default;
-            };
-            let value = self.number(quantity);
-            if value <= 0.0 {
-                let message = format!("{name} is {}; it must be above zero", Short(value));
-                self.fault("machine-arcs", quantity.span(), message, "");
-            }
-            value
-        };
-        let least = radius("least_radius", &file.least_radius, 0.01);
-        let largest = radius("largest_radius", &file.largest_radius, 10_000.0);
+        let least = self.checked(&file.least_radius).unwrap_or(0.01);
+        let largest = self.checked(&file.largest_radius).unwrap_or(10_000.0);
         if let Some(quantity) = file.largest_radius.as_ref().or(file.least_radius.as_ref())
             && least >= largest
         {

@@ -11,7 +11,6 @@ use super::file::{AxisFile, MachineFile};
 use super::limits::MOST_ENTRIES;
 use super::quantity::Quantity;
 use super::{Axis, Clamp, Indexed, Positions};
-use crate::diagnostic::Short;
 use crate::kinematics::travel::{AT_END, passed};
 use crate::kinematics::{Joint, MAX_AXES, Second};
 
@@ -44,12 +43,9 @@ impl Builder<'_> {
                 // One byte for the opening quote.
                 let start = chain_span.start + 1;
                 let span = start + fault.span.start..start + fault.span.end;
-                self.fault(
-                    "machine-chain",
-                    span,
-                    fault.message,
-                    fault.help.as_deref().unwrap_or_default(),
-                );
+                let message = fault.message;
+                let help = fault.help.as_deref().unwrap_or_default();
+                self.fault("machine-chain", span, message, help);
                 return None;
             }
         };
@@ -65,74 +61,60 @@ impl Builder<'_> {
                 LinkKind::Axis { name, primed } => {
                     if primed != carries_part {
                         sound = false;
-                        self.fault(
-                            "machine-chain",
-                            span.clone(),
-                            if carries_part {
-                                format!("{name} stands between the workpiece and the bed, so it carries the part: write {name}'")
-                            } else {
-                                format!("{name}' is primed, but it stands between the bed and the tool")
-                            },
-                            "a prime marks an axis that carries the workpiece (ISO 841); b is the bed",
-                        );
+                        let message = if carries_part {
+                            format!(
+                                "{name} stands between the workpiece and the bed, so it carries the part: write {name}'"
+                            )
+                        } else {
+                            format!("{name}' is primed, but it stands between the bed and the tool")
+                        };
+                        let help = "a prime marks an axis that carries the workpiece (ISO 841); b is the bed";
+                        self.fault("machine-chain", span.clone(), message, help);
                     }
                     if !named.insert(name.clone()) {
                         sound = false;
-                        self.fault(
-                            "machine-chain",
-                            span,
-                            format!("{name} stands twice in the chain"),
-                            "",
-                        );
+                        let message = format!("{name} stands twice in the chain");
+                        self.fault("machine-chain", span, message, "");
                         continue;
                     }
                     if let Some(meaning) = meaning_elsewhere(&name) {
                         sound = false;
-                        self.fault(
-                            "machine-axis",
-                            span,
-                            format!("an axis cannot be called {name}: in the program of every control {meaning}"),
-                            "rename it, here and in [axis]: X Y Z, U V W and P Q R slide, A B C turn (ISO 841)",
+                        let message = format!(
+                            "an axis cannot be called {name}: in the program of every control {meaning}"
                         );
+                        let help = "rename it, here and in [axis]: X Y Z, U V W and P Q R slide, A B C turn (ISO 841)";
+                        self.fault("machine-axis", span, message, help);
                         continue;
                     }
-                    match file.axis.get(&name) {
+                    match file.axis.get_ref().get(&name) {
                         Some(axis) => match self.axis(&name, axis, carries_part) {
                             Some(axis) => axes.push(axis),
                             None => sound = false,
                         },
                         None => {
                             sound = false;
-                            self.fault(
-                                "machine-axis",
-                                span,
-                                format!("the chain has {name}, but there is no [axis.{name}]"),
-                                "describe the axis, or take it out of the chain",
-                            );
+                            let message =
+                                format!("the chain has {name}, but there is no [axis.{name}]");
+                            let help = "describe the axis, or take it out of the chain";
+                            self.fault("machine-axis", span, message, help);
                         }
                     }
                 }
             }
         }
-        for (name, axis) in &file.axis {
+        for (name, axis) in file.axis.get_ref() {
             if !named.contains(name) {
                 sound = false;
-                self.fault(
-                    "machine-axis",
-                    axis.span(),
-                    format!("[axis.{name}] does not stand in the chain"),
-                    "put it where it belongs between w and t",
-                );
+                let message = format!("[axis.{name}] does not stand in the chain");
+                let help = "put it where it belongs between w and t";
+                self.fault("machine-axis", axis.span(), message, help);
             }
         }
         if axes.len() > MAX_AXES {
             sound = false;
-            self.fault(
-                "machine-chain",
-                chain_span,
-                format!("{} axes; at most {MAX_AXES} are possible", axes.len()),
-                "leave out of chain and [axis] what no program moves",
-            );
+            let message = format!("{} axes; at most {MAX_AXES} are possible", axes.len());
+            let help = "leave out of chain and [axis] what no program moves";
+            self.fault("machine-chain", chain_span, message, help);
         }
         sound.then_some(axes)
     }
@@ -148,12 +130,9 @@ impl Builder<'_> {
             (Some(direction), None) => (false, direction),
             (None, Some(direction)) => (true, direction),
             _ => {
-                self.fault(
-                    "machine-axis",
-                    spanned.span(),
-                    format!("{name} must be linear or rotary, one of the two"),
-                    "linear = [1, 0, 0] slides along X, rotary = [0, 0, 1] turns about Z",
-                );
+                let message = format!("{name} must be linear or rotary, one of the two");
+                let help = "linear = [1, 0, 0] slides along X, rotary = [0, 0, 1] turns about Z";
+                self.fault("machine-axis", spanned.span(), message, help);
                 return None;
             }
         };
@@ -165,32 +144,24 @@ impl Builder<'_> {
         let point = match (&axis.point, rotary) {
             (Some(point), true) => self.vector(point),
             (None, true) => {
-                self.fault(
-                    "machine-axis",
-                    spanned.span(),
-                    format!("{name} turns, but the file does not say where its axis line runs"),
-                    "point = [x, y, z], any point on the line, in the machine frame with all axes at zero",
-                );
+                let message =
+                    format!("{name} turns, but the file does not say where its axis line runs");
+                let help = "point = [x, y, z], any point on the line, in the machine frame with all axes at zero";
+                self.fault("machine-axis", spanned.span(), message, help);
                 return None;
             }
             (Some(point), false) => {
-                self.fault(
-                    "machine-axis",
-                    point[0].span(),
-                    format!("{name} slides: a point means nothing to it"),
-                    "take the point out",
-                );
+                let message = format!("{name} slides: a point means nothing to it");
+                let help = "take the point out";
+                self.fault("machine-axis", point[0].span(), message, help);
                 return None;
             }
             (None, false) => Vector3::zeros(),
         };
         if axis.cyclic && !rotary {
-            self.fault(
-                "machine-axis",
-                spanned.span(),
-                format!("{name} slides: it cannot be cyclic"),
-                "give its travel",
-            );
+            let message = format!("{name} slides: it cannot be cyclic");
+            let help = "give its travel";
+            self.fault("machine-axis", spanned.span(), message, help);
         }
         let zero = axis.zero.as_ref().map_or(0.0, |zero| self.number(zero));
         let travel = match (&axis.travel, axis.cyclic) {
@@ -198,79 +169,56 @@ impl Builder<'_> {
                 let [least, most] = [&travel.get_ref()[0], &travel.get_ref()[1]]
                     .map(|quantity| self.number(quantity));
                 if least >= most {
-                    self.fault(
-                        "machine-travel",
-                        travel.span(),
-                        format!("the travel of {name} goes from {least} to {most}: the first must be the smaller"),
-                        "travel = [least, most]",
+                    let message = format!(
+                        "the travel of {name} goes from {least} to {most}: the first must be the smaller"
                     );
+                    let help = "travel = [least, most]";
+                    self.fault("machine-travel", travel.span(), message, help);
                 }
                 if rotary && least.abs().max(most.abs()) > MOST_TRAVEL {
-                    self.fault(
-                        "machine-travel",
-                        travel.span(),
-                        format!("{name} turns by more than a hundred turns"),
-                        "an axis that turns without end says cyclic = true",
-                    );
+                    let message = format!("{name} turns by more than a hundred turns");
+                    let help = "an axis that turns without end says cyclic = true";
+                    self.fault("machine-travel", travel.span(), message, help);
                 }
                 Some([(least - zero) * unit, (most - zero) * unit])
             }
             (None, true) => None,
             (Some(travel), true) => {
-                self.fault(
-                    "machine-travel",
-                    travel.span(),
-                    format!("{name} is cyclic (endless) and has travel: which of the two?"),
-                    "keep one of them",
-                );
+                let message =
+                    format!("{name} is cyclic (endless) and has travel: which of the two?");
+                let help = "keep one of them";
+                self.fault("machine-travel", travel.span(), message, help);
                 None
             }
             (None, false) => {
-                self.fault(
-                    "machine-travel",
-                    spanned.span(),
-                    format!("{name} has no travel"),
-                    if rotary {
-                        "travel = [-120, 30] in degrees, or cyclic = true if it turns without end"
-                    } else {
-                        "travel = [-300, 300] in mm, in positions of the axis"
-                    },
-                );
+                let message = format!("{name} has no travel");
+                let help = if rotary {
+                    "travel = [-120, 30] in degrees, or cyclic = true if it turns without end"
+                } else {
+                    "travel = [-300, 300] in mm, in positions of the axis"
+                };
+                self.fault("machine-travel", spanned.span(), message, help);
                 None
             }
         };
-        let rate = |this: &mut Self, key: &str, quantity: &Option<Quantity>| {
-            let Some(quantity) = quantity else {
-                return f64::INFINITY;
-            };
-            let value = this.number(quantity);
-            if value <= 0.0 {
-                this.fault(
-                    "machine-axis",
-                    quantity.span(),
-                    format!("{key} of {name} is {}; it must be above zero", Short(value)),
-                    "",
-                );
-            }
-            value * unit
+        let of = format!(" of {name}");
+        let mut rate = |given: &Option<Quantity>| {
+            given.as_ref().map(|given| self.within_bounds(given, &of) * unit)
         };
-        let max_feed = rate(self, "max_feed", &axis.max_feed);
+        let max_feed = rate(&axis.max_feed).unwrap_or(f64::INFINITY);
         // A length, not a rate of the axis.
-        let feed_diameter = axis
-            .feed_diameter
-            .as_ref()
-            .map(|_| rate(self, "feed_diameter", &axis.feed_diameter) / unit);
+        let feed_diameter = rate(&axis.feed_diameter).map(|diameter| diameter / unit);
         if let (Some(given), false) = (&axis.feed_diameter, rotary) {
-            self.fault(
-                "machine-axis",
-                given.span(),
-                format!("feed_diameter of {name}: it is for rotary axes, whose ways are angles"),
-                "",
-            );
+            let message =
+                format!("feed_diameter of {name}: it is for rotary axes, whose ways are angles");
+            self.fault("machine-axis", given.span(), message, "");
         }
-        let max_accel = rate(self, "max_accel", &axis.max_accel);
-        let max_jerk = rate(self, "max_jerk", &axis.max_jerk);
-        let max_jump = axis.max_jump.as_ref().map(|_| rate(self, "max_jump", &axis.max_jump));
+        let mut rate = |given: &Option<Quantity>| {
+            given.as_ref().map(|given| self.within_bounds(given, &of) * unit)
+        };
+        let max_accel = rate(&axis.max_accel).unwrap_or(f64::INFINITY);
+        let max_jerk = rate(&axis.max_jerk).unwrap_or(f64::INFINITY);
+        let max_jump = rate(&axis.max_jump);
         let indexed = self.indexed(name, spanned, zero, unit, travel);
         let clamp = self.clamp(name, spanned);
         let range = self.range(name, spanned, unit);
@@ -311,37 +259,28 @@ impl Builder<'_> {
                 .map(|positions| (positions.span(), "positions"))
                 .or_else(|| axis.step.as_ref().map(|step| (step.span(), "step")));
             if let Some((span, key)) = stray {
-                self.fault(
-                    "machine-axis",
-                    span,
-                    format!("{name} has {key}, but is not indexed"),
-                    "indexed = 0 keeps it at 0 during cuts",
-                );
+                let message = format!("{name} has {key}, but is not indexed");
+                let help = "indexed = 0 keeps it at 0 during cuts";
+                self.fault("machine-axis", span, message, help);
             }
             return None;
         };
         let value = (self.number(start) - zero) * unit;
         let inside = |value: f64| passed(travel, value, AT_END).is_none();
         if !inside(value) {
-            self.fault(
-                "machine-travel",
-                start.span(),
-                format!("{name} is indexed at {}, outside its travel", value / unit + zero),
-                "",
-            );
+            let message =
+                format!("{name} is indexed at {}, outside its travel", value / unit + zero);
+            self.fault("machine-travel", start.span(), message, "");
         }
         let positions = match (&axis.positions, &axis.step) {
             (None, None) => Positions::Any,
             (Some(list), None) if list.get_ref().len() > MOST_ENTRIES => {
-                self.fault(
-                    "machine-size",
-                    list.span(),
-                    format!(
-                        "{name} has {} positions; at most {MOST_ENTRIES} are possible",
-                        list.get_ref().len()
-                    ),
-                    "step = 0.1 lets it stand at 0, 0.1, 0.2 …",
+                let message = format!(
+                    "{name} has {} positions; at most {MOST_ENTRIES} are possible",
+                    list.get_ref().len()
                 );
+                let help = "step = 0.1 lets it stand at 0, 0.1, 0.2 …";
+                self.fault("machine-size", list.span(), message, help);
                 Positions::Any
             }
             (Some(list), None) => {
@@ -351,55 +290,38 @@ impl Builder<'_> {
                     .map(|quantity| (self.number(quantity) - zero) * unit)
                     .collect();
                 if let Some(place) = values.iter().position(|value| !inside(*value)) {
-                    self.fault(
-                        "machine-travel",
-                        list.get_ref()[place].span(),
-                        format!("this position of {name} lies outside its travel"),
-                        "",
-                    );
+                    let message = format!("this position of {name} lies outside its travel");
+                    self.fault("machine-travel", list.get_ref()[place].span(), message, "");
                 }
                 if values.is_empty() {
-                    self.fault(
-                        "machine-axis",
-                        list.span(),
-                        format!("{name} has no position"),
-                        "positions = [0, 90, 180, 270]",
-                    );
+                    let message = format!("{name} has no position");
+                    let help = "positions = [0, 90, 180, 270]";
+                    self.fault("machine-axis", list.span(), message, help);
                 }
                 Positions::List(values)
             }
             (None, Some(step)) => {
                 let width = self.number(step) * unit;
                 if width <= 0.0 {
-                    self.fault(
-                        "machine-axis",
-                        step.span(),
-                        format!("the step of {name} must be above zero"),
-                        "step = 5 lets it stand at 0, 5, 10 …",
-                    );
+                    let message = format!("the step of {name} must be above zero");
+                    let help = "step = 5 lets it stand at 0, 5, 10 …";
+                    self.fault("machine-axis", step.span(), message, help);
                 }
                 Positions::Step { first: -zero * unit, step: width.max(1e-6) }
             }
             (Some(list), Some(_)) => {
-                self.fault(
-                    "machine-axis",
-                    list.span(),
-                    format!("{name} has both positions and step: which of the two?"),
-                    "keep one of them",
-                );
+                let message = format!("{name} has both positions and step: which of the two?");
+                let help = "keep one of them";
+                self.fault("machine-axis", list.span(), message, help);
                 Positions::Any
             }
         };
         if !positions.holds(value, travel.is_none()) {
-            self.fault(
-                "machine-axis",
-                start.span(),
-                format!(
-                    "{name} is indexed at {}, which is none of its positions",
-                    value / unit + zero
-                ),
-                "",
+            let message = format!(
+                "{name} is indexed at {}, which is none of its positions",
+                value / unit + zero
             );
+            self.fault("machine-axis", start.span(), message, "");
         }
         Some(Indexed { start: value, positions })
     }
@@ -429,12 +351,9 @@ impl Builder<'_> {
         let [least, most] =
             [&range.get_ref()[0], &range.get_ref()[1]].map(|quantity| self.number(quantity));
         if !axis.cyclic || (most - least - 360.0).abs() > 1e-9 {
-            self.fault(
-                "machine-axis",
-                range.span(),
-                format!("the control cannot show {name} from {least} to {most}"),
-                "a cyclic axis can be shown over one turn: range = [0, 360] or [-180, 180]; its travel is said with travel",
-            );
+            let message = format!("the control cannot show {name} from {least} to {most}");
+            let help = "a cyclic axis can be shown over one turn: range = [0, 360] or [-180, 180]; its travel is said with travel";
+            self.fault("machine-axis", range.span(), message, help);
             return None;
         }
         Some([least * unit, most * unit])
@@ -447,14 +366,14 @@ impl Builder<'_> {
             .enumerate()
             .filter(|(_, axis)| !axis.joint.rotary && axis.indexed.is_none())
             .filter(|(_, axis)| {
-                let spanned = &file.axis[&axis.name];
+                let spanned = &file.axis.get_ref()[&axis.name];
                 let axis = spanned.get_ref();
                 axis.share.is_none() && !reserves(axis)
             })
             .map(|(place, axis)| (place, axis.joint.direction))
             .collect();
         for axis in axes {
-            let spanned = &file.axis[&axis.name];
+            let spanned = &file.axis.get_ref()[&axis.name];
             let said = spanned.get_ref();
             let reserve = said.reserve.as_ref().filter(|_| reserves(said));
             let (span, share) = match (&said.share, reserve) {
@@ -462,12 +381,10 @@ impl Builder<'_> {
                 (Some(share), None) => (share.span(), Some(self.number(share))),
                 (None, Some(reserve)) => (reserve.span(), None),
                 (Some(share), Some(_)) => {
-                    self.fault(
-                        "machine-axis",
-                        share.span(),
-                        format!("{} has both share and reserve: which of the two?", axis.name),
-                        "keep one of them",
-                    );
+                    let message =
+                        format!("{} has both share and reserve: which of the two?", axis.name);
+                    let help = "keep one of them";
+                    self.fault("machine-axis", share.span(), message, help);
                     continue;
                 }
             };
@@ -476,21 +393,14 @@ impl Builder<'_> {
                 .find(|(_, direction)| direction.dot(&axis.joint.direction).abs() > 1.0 - 1e-6);
             let Some((of, _)) = along.filter(|_| !axis.joint.rotary && axis.indexed.is_none())
             else {
-                self.fault(
-                    "machine-axis",
-                    span,
-                    format!("{} can share the way of no other axis", axis.name),
-                    "share and reserve are for a linear axis (a quill) that is parallel to another and not indexed",
-                );
+                let message = format!("{} can share the way of no other axis", axis.name);
+                let help = "share and reserve are for a linear axis (a quill) that is parallel to another and not indexed";
+                self.fault("machine-axis", span, message, help);
                 continue;
             };
             if share.is_some_and(|share| !(0.0..=1.0).contains(&share)) {
-                self.fault(
-                    "machine-axis",
-                    span,
-                    format!("the share of {} must be from 0 to 1", axis.name),
-                    "",
-                );
+                let message = format!("the share of {} must be from 0 to 1", axis.name);
+                self.fault("machine-axis", span, message, "");
             }
             axis.second = Some(match share {
                 Some(share) => Second::Share { of: *of, share },

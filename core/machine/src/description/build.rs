@@ -19,6 +19,7 @@ use super::numbers::EvaluatedAt;
 use super::options::take_options;
 use super::quantity::Quantity;
 use super::setting::Setting;
+use super::table::Given;
 use super::{Axis, Control, Frame, GivenOption, Head, Machine, UnusedOptions};
 use crate::diagnostic::{Diagnostic, Place, Short};
 
@@ -333,12 +334,8 @@ impl Builder<'_> {
             // A machine may carry the options of several dialects; an empty name is a slip.
             if other.is_empty() || other.contains(char::is_whitespace) {
                 let span = file.control.span();
-                self.fault(
-                    "machine-option",
-                    span,
-                    format!("[control.{other}] names no dialect ({} keys)", given.len()),
-                    "",
-                );
+                let message = format!("[control.{other}] names no dialect ({} keys)", given.len());
+                self.fault("machine-option", span, message, "");
             }
         }
         if control.tcp == Some(Tcp::Control) {
@@ -460,9 +457,9 @@ impl Builder<'_> {
 
     /// Tables that are gone through entry by entry have an end.
     fn check_sizes(&mut self, file: &MachineFile) {
-        let parameters = file.parameters.values().map(Spanned::span);
+        let parameters = file.parameters.values().map(Given::span);
         self.check_size("[parameters]", parameters, MOST_PARAMETERS);
-        let tools = file.tools.values().map(Spanned::span);
+        let tools = file.tools.values().map(Given::span);
         self.check_size("[tools]", tools, MOST_ENTRIES);
         let words = file.cl.words.keys().map(Spanned::span);
         self.check_size("[cl.words]", words, MOST_ENTRIES);
@@ -495,15 +492,12 @@ impl Builder<'_> {
         });
         let turns: f64 = turns.product();
         if turns > MOST_TURNS {
-            self.fault(
-                "machine-travel",
-                span,
-                format!(
-                    "the travels of the rotary axes hold {} ways to set them on other full turns; {MOST_TURNS} are possible",
-                    Short(turns)
-                ),
-                "an axis that turns without end says cyclic = true; of the others less travel is rarely missed",
+            let message = format!(
+                "the travels of the rotary axes hold {} ways to set them on other full turns; {MOST_TURNS} are possible",
+                Short(turns)
             );
+            let help = "an axis that turns without end says cyclic = true; of the others less travel is rarely missed";
+            self.fault("machine-travel", span, message, help);
         }
     }
 
@@ -511,15 +505,13 @@ impl Builder<'_> {
     fn check_rapid(&mut self, axes: &[Axis], file: &MachineFile) {
         let endless = axes.iter().find(|axis| axis.max_feed.is_infinite());
         if let (Some(Rapid::Linear), Some(axis)) = (file.control.get_ref().rapid, endless) {
-            self.fault(
-                "machine-feed",
-                file.control.span(),
-                format!(
-                    "[control] rapid = \"linear\" writes rapids at the largest feed of the axes, and {} has no max_feed",
-                    axis.name
-                ),
-                "give every axis its max_feed, or leave rapids to the control: rapid = \"rapid\"",
+            let message = format!(
+                "[control] rapid = \"linear\" writes rapids at the largest feed of the axes, and {} has no max_feed",
+                axis.name
             );
+            let help =
+                "give every axis its max_feed, or leave rapids to the control: rapid = \"rapid\"";
+            self.fault("machine-feed", file.control.span(), message, help);
         }
     }
 
@@ -528,27 +520,21 @@ impl Builder<'_> {
         let linear: BTreeSet<&str> =
             axes.iter().filter(|axis| !axis.joint.rotary).map(|axis| axis.name.as_str()).collect();
         if linear != BTreeSet::from(["X", "Y", "Z"]) {
-            self.fault(
-                "machine-tcp",
-                span.clone(),
-                format!(
-                    "with tcp = \"control\" the linear words are the tip's X, Y and Z, but the linear axes are called {}",
-                    linear.into_iter().collect::<Vec<_>>().join(", ")
-                ),
-                "rename the axes, or use tcp = \"post\"",
+            let message = format!(
+                "with tcp = \"control\" the linear words are the tip's X, Y and Z, but the linear axes are called {}",
+                linear.into_iter().collect::<Vec<_>>().join(", ")
             );
+            let help = "rename the axes, or use tcp = \"post\"";
+            self.fault("machine-tcp", span.clone(), message, help);
         }
         let held = |axis: &&Axis| !axis.joint.rotary && axis.indexed.is_some();
         if let Some(axis) = axes.iter().find(held) {
-            self.fault(
-                "machine-tcp",
-                span,
-                format!(
-                    "with tcp = \"control\" the control moves all linear axes, and {} stands between cuts (indexed)",
-                    axis.name
-                ),
-                "let the axis go, or use tcp = \"post\"",
+            let message = format!(
+                "with tcp = \"control\" the control moves all linear axes, and {} stands between cuts (indexed)",
+                axis.name
             );
+            let help = "let the axis go, or use tcp = \"post\"";
+            self.fault("machine-tcp", span, message, help);
         }
     }
 
@@ -557,11 +543,13 @@ impl Builder<'_> {
         let edge_along = self.direction("the leading edge", edge)?;
         let across = edge_along - tool_axis * tool_axis.dot(&edge_along);
         if across.norm() < 0.5 {
+            let message = "the leading edge must stand across the tool axis".to_owned();
+            let help = "it points where the tool moves: edge = [1, 0, 0] for an upright tool";
             self.fault(
                 "machine-direction",
                 edge[0].span().start..edge[2].span().end,
-                "the leading edge must stand across the tool axis".to_owned(),
-                "it points where the tool moves: edge = [1, 0, 0] for an upright tool",
+                message,
+                help,
             );
         }
         across.try_normalize(1e-9)
@@ -574,12 +562,10 @@ impl Builder<'_> {
                 Ok(number) => {
                     let value = self.number(length);
                     if value < 0.0 {
-                        self.fault(
-                            "machine-tools",
-                            length.span(),
-                            format!("tool {number} has the length {}, below zero", Short(value)),
-                            "lengths go from the gauge point to the tip",
-                        );
+                        let message =
+                            format!("tool {number} has the length {}, below zero", Short(value));
+                        let help = "lengths go from the gauge point to the tip";
+                        self.fault("machine-tools", length.span(), message, help);
                     }
                     tools.push((number, value));
                 }

@@ -6,8 +6,6 @@ use super::Axis;
 use super::build::Builder;
 use super::file::{EdgeSource, MachineFile, Pole, RewindFile, Side};
 use super::keys::axes_are;
-use super::quantity::Quantity;
-use crate::diagnostic::Short;
 use crate::kinematics::Joints;
 use crate::kinematics::travel::passed;
 
@@ -91,12 +89,9 @@ impl Builder<'_> {
                     continue;
                 };
                 if !axes[place].joint.rotary {
-                    this.fault(
-                        "machine-solution",
-                        name.span(),
-                        format!("{} slides: sides are for rotary axes", axes[place].name),
-                        "where a linear axis may go is its travel",
-                    );
+                    let message = format!("{} slides: sides are for rotary axes", axes[place].name);
+                    let help = "where a linear axis may go is its travel";
+                    this.fault("machine-solution", name.span(), message, help);
                 }
                 places.push((place, *side));
             }
@@ -123,24 +118,18 @@ impl Builder<'_> {
             let unit = axis.unit();
             let value = self.number(value) * unit - axis.zero;
             if passed(axis.travel, value, 0.0).is_some() || libm::fabs(value) > FARTHEST {
-                self.fault(
-                    "machine-travel",
-                    name.span(),
-                    format!("{} cannot start there: it is outside its travel", axis.name),
-                    "an endless axis starts within ten thousand turns of zero",
-                );
+                let message = format!("{} cannot start there: it is outside its travel", axis.name);
+                let help = "an endless axis starts within ten thousand turns of zero";
+                self.fault("machine-travel", name.span(), message, help);
             }
             let stands = axis
                 .indexed
                 .as_ref()
                 .is_none_or(|indexed| indexed.positions.holds(value, axis.travel.is_none()));
             if !stands {
-                self.fault(
-                    "machine-travel",
-                    name.span(),
-                    format!("{} cannot start there: it is none of its positions", axis.name),
-                    "",
-                );
+                let message =
+                    format!("{} cannot start there: it is none of its positions", axis.name);
+                self.fault("machine-travel", name.span(), message, "");
             }
             start[place] = value;
         }
@@ -149,12 +138,9 @@ impl Builder<'_> {
                 group.iter().map(|name| name.get_ref().as_str()).collect();
             if names.len() < 2 || names.len() != group.len() {
                 let span = group.first().map_or(file.chain.span(), Spanned::span);
-                self.fault(
-                    "machine-solution",
-                    span,
-                    "axes exclude one another: a group has two or more".to_owned(),
-                    "exclusive = [[\"A\", \"C\"]]",
-                );
+                let message = "axes exclude one another: a group has two or more".to_owned();
+                let help = "exclusive = [[\"A\", \"C\"]]";
+                self.fault("machine-solution", span, message, help);
             }
         }
         let exclusive = said
@@ -169,18 +155,14 @@ impl Builder<'_> {
             None => LOOK_AHEAD,
             Some(points) => {
                 if *points.get_ref() == 0 || *points.get_ref() > 100_000 {
-                    self.fault(
-                        "machine-solution",
-                        points.span(),
-                        "look_ahead is a number of points, from 1 to 100000".to_owned(),
-                        "1 takes the nearest solution each time",
-                    );
+                    let message = "look_ahead is a number of points, from 1 to 100000".to_owned();
+                    let help = "1 takes the nearest solution each time";
+                    self.fault("machine-solution", points.span(), message, help);
                 }
                 *points.get_ref()
             }
         };
-        let corner =
-            said.corner.as_ref().map_or(10.0, |corner| self.positive("corner", corner)).min(180.0);
+        let corner = self.checked(&said.corner).unwrap_or(10.0).min(180.0);
         Solution {
             rule,
             prefer,
@@ -209,12 +191,9 @@ impl Builder<'_> {
             ("largest-axis", _) => Rule::LargestAxis,
             (_, Some(place)) => Rule::Axis(place),
             _ => {
-                self.fault(
-                    "machine-solution",
-                    rule.span(),
-                    format!("there is no rule {text}"),
-                    "\"time\", \"cycle-time\", \"travel\", \"largest-axis\", or \"axis:C\" for an axis of the chain",
-                );
+                let message = format!("there is no rule {text}");
+                let help = "\"time\", \"cycle-time\", \"travel\", \"largest-axis\", or \"axis:C\" for an axis of the chain";
+                self.fault("machine-solution", rule.span(), message, help);
                 Rule::Time
             }
         }
@@ -225,27 +204,21 @@ impl Builder<'_> {
         let lacking = axes.iter().filter(|axis| axis.max_accel.is_infinite());
         let names: Vec<&str> = lacking.map(|axis| axis.name.as_str()).collect();
         if !names.is_empty() {
-            self.fault(
-                "machine-solution",
-                rule.span(),
-                format!(
-                    "cycle-time is made of accelerations, and the file gives no max_accel of {}",
-                    names.join(", ")
-                ),
-                "max_accel in mm/s² or deg/s² under [axis.…] of each, or rule = \"time\"",
+            let message = format!(
+                "cycle-time is made of accelerations, and the file gives no max_accel of {}",
+                names.join(", ")
             );
+            let help = "max_accel in mm/s² or deg/s² under [axis.…] of each, or rule = \"time\"";
+            self.fault("machine-solution", rule.span(), message, help);
         }
     }
 
     fn place_of(&mut self, name: &Spanned<String>, axes: &[Axis]) -> Option<usize> {
         let place = axes.iter().position(|axis| axis.name == *name.get_ref());
         if place.is_none() {
-            self.fault(
-                "machine-solution",
-                name.span(),
-                format!("the machine has no axis {}", name.get_ref()),
-                &axes_are(axes),
-            );
+            let message = format!("the machine has no axis {}", name.get_ref());
+            let help = &axes_are(axes);
+            self.fault("machine-solution", name.span(), message, help);
         }
         place
     }
@@ -253,42 +226,20 @@ impl Builder<'_> {
     pub(super) fn rewind(&mut self, spanned: &Spanned<RewindFile>) -> Option<Rewind> {
         let said = spanned.get_ref();
         let retract = match (&said.distance, &said.plane) {
-            (Some(distance), None) => {
-                Retract::Distance(self.positive("distance of [rewind]", distance))
-            }
+            (Some(distance), None) => Retract::Distance(self.within_bounds(distance, "")),
             (None, Some(plane)) => Retract::Plane(self.number(plane)),
             _ => {
-                self.fault(
-                    "machine-rewind",
-                    spanned.span(),
-                    "[rewind] must say how far the tool is drawn back".to_owned(),
-                    "distance = 50 draws it back along its axis by 50 mm, plane = 200 until the tip stands 200 mm over the part origin",
-                );
+                let message = "[rewind] must say how far the tool is drawn back".to_owned();
+                let help = "distance = 50 draws it back along its axis by 50 mm, plane = 200 until the tip stands 200 mm over the part origin";
+                self.fault("machine-rewind", spanned.span(), message, help);
                 return None;
             }
         };
-        let feed = |this: &mut Self, name: &str, feed: &Option<Quantity>| {
-            feed.as_ref().map(|feed| this.positive(name, feed))
-        };
         Some(Rewind {
             retract,
-            retract_feed: feed(self, "retract_feed", &said.retract_feed),
-            turn_feed: feed(self, "turn_feed", &said.turn_feed),
-            plunge_feed: feed(self, "plunge_feed", &said.plunge_feed),
+            retract_feed: self.checked(&said.retract_feed),
+            turn_feed: self.checked(&said.turn_feed),
+            plunge_feed: self.checked(&said.plunge_feed),
         })
-    }
-
-    /// A number that must be above zero.
-    fn positive(&mut self, name: &str, quantity: &Quantity) -> f64 {
-        let value = self.number(quantity);
-        if value <= 0.0 {
-            self.fault(
-                "machine-solution",
-                quantity.span(),
-                format!("{name} is {}; it must be above zero", Short(value)),
-                "",
-            );
-        }
-        value
     }
 }

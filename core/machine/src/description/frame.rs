@@ -111,12 +111,10 @@ impl Builder<'_> {
             if machine.axes[*place].joint.rotary {
                 let name = &machine.axes[*place].name;
                 let span = said.retract.keys().find(|key| key.get_ref() == name);
-                self.fault(
-                    "machine-frame",
-                    span.map_or(0..0, Spanned::span),
-                    format!("retract turns {name}: the tool leaves the part by its linear axes"),
-                    "rotary axes stand where park or change says",
-                );
+                let message =
+                    format!("retract turns {name}: the tool leaves the part by its linear axes");
+                let help = "rotary axes stand where park or change says";
+                self.fault("machine-frame", span.map_or(0..0, Spanned::span), message, help);
             }
         }
         let park = self.positions(&said.park, machine);
@@ -135,7 +133,7 @@ impl Builder<'_> {
         let aside = aside.filter(|(place, _)| !is_depth(machine, *place));
         machine.frame = Frame {
             leave: None,
-            room: self.approach_room(said),
+            room: self.checked(&said.approach_room).unwrap_or(ROOM),
             retract_said: !retract.is_empty(),
             aside: aside.collect(),
             retract: depth,
@@ -158,12 +156,9 @@ impl Builder<'_> {
             self.fault("machine-frame", leave.distance.span(), message, help);
         }
         if let Some(name) = said.retract.keys().next() {
-            self.fault(
-                "machine-frame",
-                name.span(),
-                "retract and leave both say how the tool leaves the part".to_owned(),
-                "what retract says stands behind then = … of leave",
-            );
+            let message = "retract and leave both say how the tool leaves the part".to_owned();
+            let help = "what retract says stands behind then = … of leave";
+            self.fault("machine-frame", name.span(), message, help);
         }
         let mut names: Vec<&Spanned<String>> = leave.then.keys().collect();
         names.sort_by_key(|name| name.span().start);
@@ -175,12 +170,11 @@ impl Builder<'_> {
         let moves = |(place, _): &(usize, f64)| !machine.axes[*place].joint.rotary;
         let slides = machine.axes.iter().any(|axis| !axis.joint.rotary);
         if slides && then.first().is_some_and(|first| !moves(first)) {
-            self.fault(
-                "machine-frame",
-                spanned.span(),
-                "the first of then is a rotary axis: the tool is still at the part".to_owned(),
-                "linear axes first; or leave it out: rotary axes stand where change and park say",
-            );
+            let message =
+                "the first of then is a rotary axis: the tool is still at the part".to_owned();
+            let help =
+                "linear axes first; or leave it out: rotary axes stand where change and park say";
+            self.fault("machine-frame", spanned.span(), message, help);
         }
         let aside = then.split_off(then.len().min(1));
         machine.frame = Frame {
@@ -190,19 +184,6 @@ impl Builder<'_> {
             retract_said: true,
             ..std::mem::take(&mut machine.frame)
         };
-    }
-
-    /// What `approach_room` says, mm.
-    fn approach_room(&mut self, said: &ControlFile) -> f64 {
-        let Some(quantity) = &said.approach_room else {
-            return ROOM;
-        };
-        let room = self.number(quantity);
-        if room < 0.0 {
-            let message = format!("approach_room is {} mm", Short(room));
-            self.fault("machine-frame", quantity.span(), message, "0 or more");
-        }
-        room
     }
 
     fn positions(&mut self, said: &Said, machine: &Machine) -> Vec<(usize, f64)> {
@@ -219,24 +200,17 @@ impl Builder<'_> {
     ) -> Option<(usize, f64)> {
         let known = machine.axes.iter().position(|axis| axis.name == *name.get_ref());
         let Some(place) = known else {
-            self.fault(
-                "machine-frame",
-                name.span(),
-                format!("the machine has no axis {}", name.get_ref()),
-                &axes_are(&machine.axes),
-            );
+            let message = format!("the machine has no axis {}", name.get_ref());
+            let help = &axes_are(&machine.axes);
+            self.fault("machine-frame", name.span(), message, help);
             return None;
         };
         let axis = &machine.axes[place];
         if let (true, Some(end)) = (ends, End::of(value)) {
             let Some([least, most]) = axis.travel else {
                 let message = format!("{} has no end of travel", axis.name);
-                self.fault(
-                    "machine-frame",
-                    value.span(),
-                    message,
-                    "a position, as the control shows it",
-                );
+                let help = "a position, as the control shows it";
+                self.fault("machine-frame", value.span(), message, help);
                 return None;
             };
             return Some((
@@ -252,38 +226,29 @@ impl Builder<'_> {
         if let (Some([least, most]), true) =
             (axis.travel, passed(axis.travel, position, 0.0).is_some())
         {
-            self.fault(
-                "machine-travel",
-                value.span(),
-                format!(
-                    "{} cannot stand at {}: its travel is {} to {}",
-                    axis.name,
-                    Short(shown),
-                    Short(axis.reading(least)),
-                    Short(axis.reading(most))
-                ),
-                "positions of [control] are in machine coordinates, as the control shows them",
+            let message = format!(
+                "{} cannot stand at {}: its travel is {} to {}",
+                axis.name,
+                Short(shown),
+                Short(axis.reading(least)),
+                Short(axis.reading(most))
             );
+            let help =
+                "positions of [control] are in machine coordinates, as the control shows them";
+            self.fault("machine-travel", value.span(), message, help);
         }
         if axis.travel.is_none() && libm::fabs(position) > FARTHEST {
-            self.fault(
-                "machine-travel",
-                value.span(),
-                format!("{} cannot stand at {}", axis.name, Short(shown)),
-                "an endless axis stands within ten thousand turns of zero",
-            );
+            let message = format!("{} cannot stand at {}", axis.name, Short(shown));
+            let help = "an endless axis stands within ten thousand turns of zero";
+            self.fault("machine-travel", value.span(), message, help);
         }
         if !stands(axis, position) {
-            self.fault(
-                "machine-travel",
-                value.span(),
-                format!(
-                    "{} cannot stand at {}: it is none of its positions",
-                    axis.name,
-                    Short(shown)
-                ),
-                "",
+            let message = format!(
+                "{} cannot stand at {}: it is none of its positions",
+                axis.name,
+                Short(shown)
             );
+            self.fault("machine-travel", value.span(), message, "");
         }
         Some((place, position))
     }

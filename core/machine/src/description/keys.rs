@@ -2,14 +2,17 @@
 
 use std::ops::Range;
 
-use serde::Deserialize;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue, Deserializer};
+use toml::de::{DeTable, DeValue};
 
 use super::Axis;
 use super::file::MachineFile;
 use super::layers::Sources;
+use super::table::{Unread, Why};
 use crate::diagnostic::{Diagnostic, meant, nearest};
+
+/// Keys at the top of a file that are taken out before the rest is read.
+pub(super) const TAKEN_OUT: [&str; 2] = ["extends", "head"];
 
 /// Unknown keys of one file that are told, each by itself.
 const MOST: usize = 20;
@@ -32,32 +35,26 @@ pub(super) fn typed(mut table: Spanned<DeTable<'_>>, sources: &Sources, whole: b
     let mut stood_in = false;
     while faults.len() < MOST {
         // Reading ends at its first fault: what is wrong is put right or taken out, and the rest read again.
-        let error = match MachineFile::deserialize(Deserializer::from(table.clone())) {
+        let Unread { span, why } = match MachineFile::of(table.get_ref(), table.span()) {
             Ok(file) => {
                 return Typed { file: Some(file).filter(|_| !stood_in), faults, hiding };
             }
-            Err(error) => error,
+            Err(unread) => unread,
         };
-        let message = error.message();
-        let missing = message.strip_prefix(MISSING).and_then(|rest| rest.strip_suffix('`'));
         let near_taken = |key: &str| nearest(key, taken.iter().map(String::as_str)).is_some();
-        let echo = missing.is_some_and(|key| !whole || near_taken(key));
-        let (told, help) = explained(message);
-        let mut fault = Diagnostic::error("machine-key", told)
-            .at(error.span().and_then(|span| sources.place(span)));
-        fault.help = help;
-        let gone = match (missing, error.span()) {
-            (Some(key), _) => {
+        let echo = matches!(why, Why::Missing(key) if !whole || near_taken(key));
+        let fault = why.fault().at(sources.place(span.clone()));
+        let gone = match why {
+            Why::Missing(key) => {
                 stood_in = true;
                 stand_in(table.get_mut(), key)
             }
-            (None, Some(span)) if put_right(table.get_mut(), &span, message) => true,
-            (None, Some(span)) => take(table.get_mut(), &span).is_some_and(|key| {
+            _ if put_right(table.get_mut(), &span, &why) => true,
+            _ => take(table.get_mut(), &span).is_some_and(|key| {
                 taken.push(key);
                 hiding.push(fault.clone());
                 true
             }),
-            (None, None) => false,
         };
         if !echo {
             faults.push(fault);
@@ -69,35 +66,26 @@ pub(super) fn typed(mut table: Spanned<DeTable<'_>>, sources: &Sources, whole: b
     Typed { file: None, faults, hiding }
 }
 
-/// How serde begins what it says of a key, and of a word in place of one of a few.
-const FIELD: &str = "unknown field `";
-const VARIANT: &str = "unknown variant `";
-const MISSING: &str = "missing field `";
-
-/// serde's words in those of a machine file, and what would help.
-fn explained(message: &str) -> (String, Option<String>) {
-    let told = [(FIELD, "there is no key"), (VARIANT, "there is no value")];
-    for (start, says) in told {
-        let Some((word, mut names)) = expected(message, start) else {
-            continue;
+impl Why {
+    /// What is wrong, and what would help: the finding has no place yet.
+    fn fault(&self) -> Diagnostic {
+        let of_several = |says: &str, name: &str, known: &[&str]| {
+            let fault =
+                Diagnostic::error("machine-key", format!("there is no {says} `{name}` here"));
+            fault.help(meant(name, "known are", known))
         };
-        if names.contains(&"chain") {
-            // These are taken out before the rest is read.
-            names.extend(["extends", "head"]);
+        match self {
+            Self::Key { name, known } if known.contains(&"chain") => {
+                of_several("key", name, &[known.as_slice(), &TAKEN_OUT].concat())
+            }
+            Self::Key { name, known } => of_several("key", name, known),
+            Self::Word { name, known } => of_several("value", name, known),
+            Self::Missing(key) => {
+                Diagnostic::error("machine-key", format!("missing field `{key}`"))
+            }
+            Self::Kind(message) => Diagnostic::error("machine-key", message.clone()),
         }
-        return (
-            format!("{says} `{word}` here"),
-            Some(meant(word, "known are", &names)).filter(|_| !names.is_empty()),
-        );
     }
-    (message.to_owned(), None)
-}
-
-/// The word that a message of serde begins with behind `start`, and those that are expected in its place.
-fn expected<'m>(message: &'m str, start: &str) -> Option<(&'m str, Vec<&'m str>)> {
-    let (word, expected) = message.strip_prefix(start)?.split_once('`')?;
-    // Of `one of `a`, `b`` every second piece is a name.
-    Some((word, expected.split('`').skip(1).step_by(2).collect()))
 }
 
 /// `its axes are C, A, Y, X, Z`.
@@ -124,31 +112,28 @@ fn take(table: &mut DeTable<'_>, span: &Range<usize>) -> Option<String> {
 }
 
 /// Puts what was likely meant in the place of a misspelt key or word at `span`; whether there is anything near.
-fn put_right(table: &mut DeTable<'_>, span: &Range<usize>, message: &str) -> bool {
-    if let Some((word, names)) = expected(message, FIELD) {
-        let Some(meant) = nearest(word, names) else {
-            return false;
-        };
-        return with_key(table, span, &mut |table, key| {
-            let Some(value) = table.remove(key) else {
-                return false;
-            };
-            // Where it stands already, nothing is missing without the slip.
-            if !table.contains_key(meant) {
-                let name = Spanned::new(span.clone(), meant.to_owned().into());
-                table.insert(name, value);
-            }
-            true
-        });
+fn put_right(table: &mut DeTable<'_>, span: &Range<usize>, why: &Why) -> bool {
+    match why {
+        Why::Key { name, known } => nearest(name, known.iter().copied()).is_some_and(|meant| {
+            with_key(table, span, &mut |table, key| {
+                let Some(value) = table.remove(key) else {
+                    return false;
+                };
+                // Where it stands already, nothing is missing without the slip.
+                if !table.contains_key(meant) {
+                    let name = Spanned::new(span.clone(), meant.to_owned().into());
+                    table.insert(name, value);
+                }
+                true
+            })
+        }),
+        Why::Word { name, known } => nearest(name, known.iter().copied()).is_some_and(|meant| {
+            with_value(table, span, &mut |value| {
+                *value = DeValue::String(meant.to_owned().into());
+            })
+        }),
+        _ => false,
     }
-    let Some((word, names)) = expected(message, VARIANT) else {
-        return false;
-    };
-    nearest(word, names).is_some_and(|meant| {
-        with_value(table, span, &mut |value| {
-            *value = DeValue::String(meant.to_owned().into());
-        })
-    })
 }
 
 /// Does something to the key that stands at `span`, and the table that it stands in; whether that was of use.
@@ -215,47 +200,4 @@ fn stand_in(table: &mut DeTable<'_>, key: &str) -> bool {
     };
     let key = key.to_owned().into();
     parent.insert(Spanned::new(0..0, key), value).is_none()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_words_of_serde_are_told_as_those_of_a_machine_file() {
-        #[derive(Debug, Deserialize)]
-        #[serde(deny_unknown_fields)]
-        #[expect(dead_code, reason = "only its messages are of use")]
-        struct One {
-            tolerance: Option<Two>,
-            corner: Option<f64>,
-        }
-        #[derive(Debug, Deserialize)]
-        #[serde(rename_all = "lowercase")]
-        enum Two {
-            Bisect,
-            Even,
-        }
-        let said = |text: &str| {
-            let error = toml::from_str::<One>(text).unwrap_err();
-            explained(error.message())
-        };
-        assert_eq!(
-            said("tolerence = 1"),
-            (
-                "there is no key `tolerence` here".to_owned(),
-                Some("did you mean `tolerance`? known are tolerance, corner".to_owned())
-            )
-        );
-        assert_eq!(
-            said("tolerance = \"evn\""),
-            (
-                "there is no value `evn` here".to_owned(),
-                Some("did you mean `even`? known are bisect, even".to_owned())
-            )
-        );
-        let (message, help) = said("corner = \"x\"");
-        assert!(message.contains("expected f64"), "{message}");
-        assert_eq!(help, None);
-    }
 }

@@ -9,6 +9,8 @@ use post_grammar::text::is_unprintable;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
+use super::file::MachineFile;
+use super::keys::TAKEN_OUT;
 use super::limits::{MOST_BYTES, MOST_FAULTS};
 use super::setting::Setting;
 use crate::diagnostic::{Diagnostic, Place, meant};
@@ -293,37 +295,18 @@ impl Sources {
     }
 }
 
-/// Keys that a machine file has at its top; a test holds them against the schema.
-const TOP: &[&str] = &[
-    "name",
-    "chain",
-    "extends",
-    "parameters",
-    "workpiece",
-    "tool",
-    "tools",
-    "axis",
-    "servo",
-    "control",
-    "spindle",
-    "cl",
-    "program",
-    "accuracy",
-    "solution",
-    "rewind",
-    "motion",
-    "plan",
-    "head",
-    "solids",
-];
-
 /// The text is a machine file, whatever else may be wrong with it: TOML, with keys of a machine file alone.
 fn is_machine(text: &str) -> bool {
     let Ok(table) = DeTable::parse(text) else {
         return false;
     };
     let mut keys = table.get_ref().keys().peekable();
-    keys.peek().is_some() && keys.all(|key| TOP.contains(&key.get_ref().as_ref()))
+    keys.peek().is_some() && keys.all(|key| is_top_key(key.get_ref()))
+}
+
+/// A machine file has this key at its top.
+fn is_top_key(name: &str) -> bool {
+    MachineFile::KEYS.iter().any(|key| key.name == name) || TAKEN_OUT.contains(&name)
 }
 
 /// Settings of parameters must meet parameters that the machine has: a misspelt one would be lost.
@@ -436,19 +419,4 @@ fn moved(value: Spanned<DeValue<'_>>, start: usize) -> Spanned<DeValue<'_>> {
         scalar => scalar,
     };
     Spanned::new(span, inner)
-}
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeSet;
-
-    use super::TOP;
-
-    #[test]
-    fn a_machine_file_is_known_by_the_keys_of_the_schema() {
-        let schema = super::super::schema();
-        let known = schema["properties"].as_object().unwrap().keys();
-        let known: BTreeSet<&str> = known.map(String::as_str).collect();
-        assert_eq!(known, TOP.iter().copied().collect());
-    }
 }

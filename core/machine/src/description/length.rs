@@ -83,12 +83,10 @@ impl Builder<'_> {
         match place.filter(|place| !axes[*place].joint.rotary) {
             Some(place) => LengthAxis::Said(place),
             None => {
-                self.fault(
-                    "machine-axis",
-                    said.span(),
-                    format!("the machine has no linear axis {name}"),
-                    &format!("{}; \"none\" where the control puts on no length", axes_are(axes)),
-                );
+                let message = format!("the machine has no linear axis {name}");
+                let help =
+                    &format!("{}; \"none\" where the control puts on no length", axes_are(axes));
+                self.fault("machine-axis", said.span(), message, help);
                 LengthAxis::Dialect
             }
         }

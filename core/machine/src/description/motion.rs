@@ -1,9 +1,114 @@
 //! What a machine file says of how the control makes motion: `[motion]`.
 
+use super::bounds::Bounds;
 use super::build::Builder;
-use super::motion_file::{BlendRule, CornerRule, LimitsActOn, MotionFile, RapidRule};
 use super::quantity::Quantity;
-use crate::diagnostic::Short;
+use super::table::{Count, keys, words};
+
+const CODE: &str = "machine-motion";
+
+const PERIOD: Bounds =
+    Bounds::within(1e-5, 1.0, CODE, "[motion] ", "from 0.00001 to 1 s is possible")
+        .unit(" s")
+        .help("periods of controls are 0.0005 to 0.02 s: the unit is seconds");
+
+const BLOCKS: Bounds = Bounds::within(1.0, 1e5, CODE, "[motion] ", "it must be 1 to 100000 blocks");
+
+const ABOVE: Bounds =
+    Bounds::above_zero(CODE, "[motion] ").help("leave it out where there is no limit");
+
+const WAIT: Bounds = time("[motion] ");
+
+/// Times in which a control waits or makes something ready.
+pub(super) const fn time(table: &'static str) -> Bounds {
+    Bounds::from_zero(CODE, table)
+        .up_to(3600.0, "it must be 0 to 3600 s")
+        .unit(" s")
+        .help("the unit is seconds")
+}
+
+keys! {
+    /// How the control makes motion of a program. What is posted does not depend on it, but for feeds that are planned.
+    MotionFile {
+        /// Time from one set-point of the axes to the next (interpolation cycle, IPO), s, 0.00001 to 1; 0.001 if not said.
+        period: Option<Quantity> = PERIOD,
+        /// The control prepares no more than one block in this time, s; 0 if not said.
+        block_time: Option<Quantity> = WAIT,
+        /// Blocks that it looks ahead; 200 if not said, 1 stops at the end of each.
+        look_ahead: Option<Count> = BLOCKS,
+        /// What max_feed, max_accel and max_jerk of the axes hold for where the control keeps the tip: the axes, or the
+        /// coordinates that are programmed (X, Y and Z of the tip); axes if not said.
+        limits: LimitsActOn,
+        /// Largest acceleration of the tip against the part, mm/s²; none if not said.
+        tip_accel: Option<Quantity> = ABOVE,
+        /// Largest jerk of the tip against the part, mm/s³; none if not said.
+        tip_jerk: Option<Quantity> = ABOVE,
+        /// Largest jump of the velocity of the tip against the part where one block passes into the next without a curve
+        /// between them, mm/min; if not said what tip_accel makes of it in one period.
+        tip_jump: Option<Quantity> = ABOVE,
+        /// How the control passes from one cut to the next before the program says anything of it; blend if not said.
+        corner: CornerRule,
+        /// By how much it may leave the path at a corner where the program names no tolerance, mm; as far as its rule leads
+        /// if not said.
+        corner_tolerance: Option<Quantity> = ABOVE,
+        /// How it leaves the path at a corner; round if not said.
+        blend: BlendRule,
+        /// Whether it passes into and out of rapids without standing still; stop if not said.
+        rapids: RapidRule,
+        /// It waits so long wherever it stands still between two moves, until its axes are in position (exact stop), s; 0 if
+        /// not said: it goes on as soon as the commanded position stands.
+        in_position: Option<Quantity> = WAIT,
+        /// A tool change takes so long, s; 0 if not said.
+        tool_change: Option<Quantity> = WAIT,
+        /// The program waits so long where the spindle starts, stops or changes its sense, s; 0 if not said.
+        spindle: Option<Quantity> = WAIT,
+    }
+}
+
+words! {
+    /// What the limits of the axes hold for where the control keeps the tip.
+    LimitsActOn = Axes {
+        /// The axes, whatever they do for the tip.
+        Axes "axes",
+        /// The programmed coordinates: the linear axes may go faster while rotary ones turn (LinuxCNC).
+        Programmed "programmed",
+    }
+}
+
+words! {
+    /// How a control passes from one cut to the next.
+    CornerRule = Blend {
+        /// It stands still at the end of every block (exact stop).
+        Stop "stop",
+        /// It keeps the path, and stands still only where the direction changes (exact path).
+        Path "path",
+        /// It may leave the path (continuous path).
+        Blend "blend",
+    }
+}
+
+words! {
+    /// How a control passes into and out of rapids.
+    RapidRule = Stop {
+        /// It stands still before and behind each (in-position check).
+        Stop "stop",
+        /// As between cuts from one rapid into the next; between rapids and cuts it stands still (LinuxCNC).
+        AmongRapids "among-rapids",
+        /// As between cuts.
+        Blend "blend",
+    }
+}
+
+words! {
+    /// How a control leaves the path at a corner.
+    BlendRule = Round {
+        /// The next block is speeded up while the last one is slowed down: LinuxCNC's rule, with its halves of accelerations;
+        /// blocks in which rotary axes turn have a standstill between them on an exact path.
+        Overlap "overlap",
+        /// A curve takes the place of both ends.
+        Round "round",
+    }
+}
 
 /// How a control makes motion of a program. What is posted does not depend on it, but for feeds that are planned.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,106 +145,30 @@ pub struct MotionRules {
     pub spindle: f64,
 }
 
-/// Time between set-points where the file does not say, s.
-const PERIOD: f64 = 0.001;
-
-/// Shorter and longer periods are slips, s.
-const SHORTEST: f64 = 1e-5;
-const LONGEST: f64 = 1.0;
-
-/// Blocks that are looked ahead where the file does not say, and the most.
-const LOOK_AHEAD: [i64; 2] = [200, 100_000];
-
-/// No wait of a control is longer, s.
-const MOST_SECONDS: f64 = 3600.0;
-
 impl Builder<'_> {
     pub(super) fn motion(&mut self, file: &MotionFile) -> MotionRules {
-        let period = match &file.period {
-            None => PERIOD,
-            Some(period) => {
-                let value = self.number(period);
-                if !(SHORTEST..=LONGEST).contains(&value) {
-                    self.fault(
-                        "machine-motion",
-                        period.span(),
-                        format!(
-                            "[motion] period is {} s; from {SHORTEST} to {LONGEST} s is possible",
-                            Short(value)
-                        ),
-                        "periods of controls are 0.0005 to 0.02 s: the unit is seconds",
-                    );
-                }
-                value
-            }
-        };
-        let [usual, most] = LOOK_AHEAD;
-        let look_ahead = file.look_ahead.as_ref().map_or(usual, |blocks| {
-            let count = *blocks.get_ref();
-            if !(1..=most).contains(&count) {
-                self.fault(
-                    "machine-motion",
-                    blocks.span(),
-                    format!("[motion] look_ahead is {count}; it must be 1 to {most} blocks"),
-                    "",
-                );
-            }
-            count.clamp(1, most)
-        });
-        let mut positive = |name: &str, said: &Option<Quantity>| {
-            said.as_ref().and_then(|said| self.above_zero_of(name, said))
-        };
-        let tip_accel = positive("tip_accel", &file.tip_accel);
-        let tip_jerk = positive("tip_jerk", &file.tip_jerk);
-        let tip_jump = positive("tip_jump", &file.tip_jump);
-        let corner_tolerance = positive("corner_tolerance", &file.corner_tolerance);
-        let mut seconds = |name: &str, said: &Option<Quantity>| {
-            said.as_ref().map_or(0.0, |said| self.seconds_of("motion", name, said))
-        };
+        let period = self.checked(&file.period).unwrap_or(0.001);
+        let look_ahead = self.counted(&file.look_ahead).unwrap_or(200) as usize;
+        let mut number = |given: &Option<Quantity>| self.checked(given);
+        let tip_accel = number(&file.tip_accel).unwrap_or(f64::INFINITY);
+        let tip_jerk = number(&file.tip_jerk).unwrap_or(f64::INFINITY);
+        let tip_jump = number(&file.tip_jump);
+        let corner_tolerance = number(&file.corner_tolerance);
         MotionRules {
             period,
-            block_time: seconds("block_time", &file.block_time),
-            look_ahead: look_ahead as usize,
+            block_time: number(&file.block_time).unwrap_or(0.0),
+            look_ahead,
             limits: file.limits,
-            tip_accel: tip_accel.unwrap_or(f64::INFINITY),
-            tip_jerk: tip_jerk.unwrap_or(f64::INFINITY),
+            tip_accel,
+            tip_jerk,
             tip_jump,
             corner: file.corner,
             corner_tolerance,
             blend: file.blend,
             rapids: file.rapids,
-            in_position: seconds("in_position", &file.in_position),
-            tool_change: seconds("tool_change", &file.tool_change),
-            spindle: seconds("spindle", &file.spindle),
+            in_position: number(&file.in_position).unwrap_or(0.0),
+            tool_change: number(&file.tool_change).unwrap_or(0.0),
+            spindle: number(&file.spindle).unwrap_or(0.0),
         }
-    }
-
-    fn above_zero_of(&mut self, name: &str, said: &Quantity) -> Option<f64> {
-        let value = self.number(said);
-        if value > 0.0 {
-            return Some(value);
-        }
-        self.fault(
-            "machine-motion",
-            said.span(),
-            format!("[motion] {name} is {}; it must be above zero", Short(value)),
-            "leave it out where there is no limit",
-        );
-        None
-    }
-
-    /// A time of `[table]`.
-    pub(super) fn seconds_of(&mut self, table: &str, name: &str, said: &Quantity) -> f64 {
-        let value = self.number(said);
-        // What is no number was told already.
-        if !value.is_nan() && !(0.0..=MOST_SECONDS).contains(&value) {
-            self.fault(
-                "machine-motion",
-                said.span(),
-                format!("[{table}] {name} is {} s; it must be 0 to {MOST_SECONDS} s", Short(value)),
-                "the unit is seconds",
-            );
-        }
-        value
     }
 }

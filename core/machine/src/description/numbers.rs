@@ -34,12 +34,9 @@ impl Builder<'_> {
             return Some((vector / largest).normalize());
         }
         let span = quantities[0].span().start..quantities[2].span().end;
-        self.fault(
-            "machine-direction",
-            span,
-            format!("{what} is null"),
-            "a direction has any length but zero",
-        );
+        let message = format!("{what} is null");
+        let help = "a direction has any length but zero";
+        self.fault("machine-direction", span, message, help);
         None
     }
 

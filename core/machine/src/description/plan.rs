@@ -1,10 +1,49 @@
 //! What a machine file says of planned feeds: `[plan]`.
 
+use super::bounds::Bounds;
 use super::build::Builder;
-use super::motion::MotionRules;
-use super::plan_file::{PlanFile, PlanSolver};
+use super::motion::{MotionRules, time};
 use super::quantity::Quantity;
-use crate::diagnostic::Short;
+use super::table::{Spanned, keys, words};
+
+/// Errors and smoothing.
+const DISTANCE: Bounds = Bounds::above_zero("machine-plan", "[plan] ")
+    .up_to(10.0, "it must be above zero, and 10 mm at most")
+    .unit(" mm")
+    .help("leave it out where there is no limit");
+
+const WAIT: Bounds = time("[plan] ");
+
+keys! {
+    /// What a planned feed (`post --plan`) keeps, beside the limits of the axes and of the tip. What is posted without a plan
+    /// does not depend on it.
+    PlanFile {
+        /// Largest contour error that the servos make of the path, mm; not limited if not said. The axes need servos for it.
+        contour_error: Option<Quantity> = DISTANCE,
+        /// By how much the way of one interpolation period may stray from the path, mm; not limited if not said.
+        chord_error: Option<Quantity> = DISTANCE,
+        /// A block is cut where its feed changes if that saves at least this time, s; a fifth of shortest_block if not said.
+        least_saving: Option<Quantity> = WAIT,
+        /// No block is cut into pieces that take less than this, s; if not said two periods of [motion], and its block_time
+        /// at least.
+        shortest_block: Option<Quantity> = WAIT,
+        /// By how much the curve that is planned along may leave the path of the blocks, mm; half the tolerance of
+        /// [accuracy] if not said.
+        smoothing: Option<Quantity> = DISTANCE,
+        /// Which solver plans; reach if not said.
+        solver: Option<Spanned<PlanSolver>>,
+    }
+}
+
+words! {
+    /// What plans feeds.
+    PlanSolver = Reach {
+        /// Reachability analysis: velocity, acceleration and errors, in linear time.
+        Reach "reach",
+        /// Jerk is kept too; a hundred times slower.
+        Jerk "jerk",
+    }
+}
 
 /// What a planned feed keeps beside the limits of axes and tip (Chen, Ren and Sun 2016).
 #[derive(Clone, Debug, PartialEq)]
@@ -32,9 +71,6 @@ const SAVING: f64 = 0.2;
 /// The share of the tolerance that smoothing may take where the file does not say.
 const SMOOTHING: f64 = 0.5;
 
-/// No error or smoothing is larger, mm.
-const LONGEST: f64 = 10.0;
-
 impl Builder<'_> {
     /// `tolerance` is that of `[accuracy]`, mm.
     pub(super) fn plan(
@@ -43,51 +79,20 @@ impl Builder<'_> {
         motion: &MotionRules,
         tolerance: f64,
     ) -> PlanRules {
-        let mut positive = |name: &str, said: &Option<Quantity>| {
-            said.as_ref().and_then(|said| self.plan_length(name, said))
+        let contour_error = self.checked(&file.contour_error);
+        let chord_error = self.checked(&file.chord_error);
+        let smoothing = self.checked(&file.smoothing);
+        let shortest_block = match self.checked(&file.shortest_block) {
+            Some(said) => said.max(motion.block_time),
+            None => motion.block_time.max(PERIODS * motion.period),
         };
-        let contour_error = positive("contour_error", &file.contour_error);
-        let chord_error = positive("chord_error", &file.chord_error);
-        let smoothing = positive("smoothing", &file.smoothing);
-        let usual = motion.block_time.max(PERIODS * motion.period);
-        let shortest = &file.shortest_block;
-        let shortest = shortest.as_ref().map_or(usual, |said| {
-            self.seconds_of("plan", "shortest_block", said).max(motion.block_time)
-        });
-        let saving = file.least_saving.as_ref();
-        let saving =
-            saving.map_or(SAVING * shortest, |said| self.seconds_of("plan", "least_saving", said));
         PlanRules {
             contour_error,
             chord_error,
-            least_saving: saving,
-            shortest_block: shortest,
+            least_saving: self.checked(&file.least_saving).unwrap_or(SAVING * shortest_block),
+            shortest_block,
             smoothing: smoothing.unwrap_or(SMOOTHING * tolerance),
-            solver: file
-                .solver
-                .as_ref()
-                .map_or_else(PlanSolver::default, |solver| *solver.get_ref()),
+            solver: file.solver.as_ref().map(|solver| *solver.get_ref()).unwrap_or_default(),
         }
-    }
-
-    fn plan_length(&mut self, name: &str, said: &Quantity) -> Option<f64> {
-        let value = self.number(said);
-        if value > 0.0 && value <= LONGEST {
-            return Some(value);
-        }
-        // What is no number was told already.
-        if value.is_nan() {
-            return None;
-        }
-        self.fault(
-            "machine-plan",
-            said.span(),
-            format!(
-                "[plan] {name} is {} mm; it must be above zero, and {LONGEST} mm at most",
-                Short(value)
-            ),
-            "leave it out where there is no limit",
-        );
-        None
     }
 }

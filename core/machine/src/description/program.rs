@@ -217,12 +217,8 @@ impl Builder<'_> {
             let plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
             if name.is_empty() || name.len() > 16 || !name.chars().all(plain) {
                 let message = format!("{name:?} is no ending of a file");
-                self.fault(
-                    "machine-program",
-                    extension.span(),
-                    message,
-                    "letters and digits, without a dot: \"nc\"",
-                );
+                let help = "letters and digits, without a dot: \"nc\"";
+                self.fault("machine-program", extension.span(), message, help);
             }
             rules.extension = Some(name.clone());
         }
@@ -260,12 +256,9 @@ impl Builder<'_> {
             }),
             Err(TemplateFault { message, span }) => {
                 let span = span.map_or(lines.span(), |span| file_span(&spans, &span, lines.span()));
-                self.fault(
-                    "program-text",
-                    span,
-                    format!("[program] {}: {message}", at.key()),
-                    "machines/README.md lists the facts that a template can speak of",
-                );
+                let message = format!("[program] {}: {message}", at.key());
+                let help = "machines/README.md lists the facts that a template can speak of";
+                self.fault("program-text", span, message, help);
                 None
             }
         }

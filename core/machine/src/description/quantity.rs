@@ -1,12 +1,11 @@
 //! Numbers of a machine file: values, or expressions of its parameters.
 
-use std::borrow::Cow;
 use std::fmt;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer};
-use toml::Spanned;
+
+use super::table::Given;
 
 /// A number, or an expression of the file's parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,8 +14,8 @@ pub(crate) enum Number {
     Expression(String),
 }
 
-/// A number or expression and where it stands.
-pub(crate) type Quantity = Spanned<Number>;
+/// A number or expression, where it stands, and of which key.
+pub(crate) type Quantity = Given<Number>;
 
 impl<'de> Deserialize<'de> for Number {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -41,19 +40,5 @@ impl<'de> Deserialize<'de> for Number {
             }
         }
         deserializer.deserialize_any(NumberVisitor)
-    }
-}
-
-impl JsonSchema for Number {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        "Number".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "type": ["number", "string"] })
     }
 }

@@ -1,19 +1,21 @@
 //! The JSON Schema of machine files, for editors and validators.
 
-use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
 use super::file::MachineFile;
+use super::table::Entry;
 
-/// The schema of a machine file, made from the types that read it.
+/// The schema of a machine file, made from the tables that read it.
 ///
 /// Draft 7, which the editors' TOML extensions know. What spans several keys (a chain whose axes are described,
 /// travel in order) is not in it: loading the file tells.
 pub fn schema() -> Value {
-    let settings = SchemaSettings::draft07().for_deserialize();
-    let mut schema = settings.into_generator().into_root_schema_for::<MachineFile>().to_value();
-    tidy(&mut schema);
+    let mut definitions = Map::new();
+    MachineFile::schema(&mut definitions);
+    let mut schema = definitions.remove("MachineFile").unwrap_or_default();
+    schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
     schema["title"] = json!("Machine file of post");
+    schema["definitions"] = Value::Object(definitions);
     for (name, whose) in [
         ("ControlFile", "The options of a dialect"),
         ("AccuracyFile", "The options of an error model"),
@@ -37,44 +39,6 @@ pub fn schema() -> Value {
     schema["if"] = json!({ "required": ["extends"] });
     schema["else"] = needed;
     schema
-}
-
-/// Takes `null` out of the types that optional keys have (TOML has none), and the ends of source lines out of
-/// descriptions.
-fn tidy(value: &mut Value) {
-    let null = json!({ "type": "null" });
-    match value {
-        Value::Object(table) => {
-            if let Some(Value::Array(types)) = table.get_mut("type") {
-                types.retain(|name| name != "null");
-                if types.len() == 1 {
-                    table["type"] = types[0].clone();
-                }
-            }
-            if let Some(Value::Array(choices)) = table.get_mut("anyOf") {
-                choices.retain(|choice| *choice != null);
-                if let [Value::Object(only)] = choices.as_slice() {
-                    let only = only.clone();
-                    table.remove("anyOf");
-                    // Keys beside a reference mean nothing in this draft.
-                    if only.contains_key("$ref") && !table.is_empty() {
-                        table.insert("allOf".to_owned(), json!([only]));
-                    } else {
-                        table.extend(only);
-                    }
-                }
-            }
-            if table.get("default") == Some(&Value::Null) {
-                table.remove("default");
-            }
-            if let Some(Value::String(text)) = table.get_mut("description") {
-                *text = text.replace('\n', " ");
-            }
-            table.values_mut().for_each(tidy);
-        }
-        Value::Array(items) => items.iter_mut().for_each(tidy),
-        _ => {}
-    }
 }
 
 /// Takes what is required out of the schema: the file's own keys, and those of its tables. Returns it as a

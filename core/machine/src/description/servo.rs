@@ -8,7 +8,6 @@ use super::Axis;
 use super::build::Builder;
 use super::file::MachineFile;
 use super::keys::axes_are;
-use super::quantity::Quantity;
 use super::servo_file::{FrictionFile, ServoFile};
 use crate::diagnostic::Short;
 use crate::servo::{Drive, Feedback, Friction, Pole, Servo, ServoModel, StateSpace, stable};
@@ -21,17 +20,6 @@ const FASTEST: f64 = 1e5;
 
 /// The fastest pole, 1/s: windings have some thousands.
 const FASTEST_POLE: f64 = 1e7;
-
-/// What a number of a servo may be.
-#[derive(Clone, Copy)]
-pub(super) enum Allowed {
-    /// Above zero.
-    Above,
-    /// Zero or above.
-    From,
-    /// From 0 to 2.
-    Share,
-}
 
 impl Builder<'_> {
     /// Gives each axis its servo.
@@ -60,25 +48,19 @@ impl Builder<'_> {
             }
             (None, None, Some(pid)) => ServoModel::Pid(self.servo_pid(name, pid)?),
             (None, None, None) => {
-                self.fault(
-                    "machine-servo",
-                    spanned.span(),
-                    format!("[servo.{name}] does not say how the servo behaves"),
-                    "one of [servo.X.loops], [servo.X.transfer] and [servo.X.pid]",
-                );
+                let message = format!("[servo.{name}] does not say how the servo behaves");
+                let help = "one of [servo.X.loops], [servo.X.transfer] and [servo.X.pid]";
+                self.fault("machine-servo", spanned.span(), message, help);
                 return None;
             }
             _ => {
-                self.fault(
-                    "machine-servo",
-                    spanned.span(),
-                    format!("[servo.{name}] describes the servo in more than one way"),
-                    "keep one of loops, transfer and pid",
-                );
+                let message = format!("[servo.{name}] describes the servo in more than one way");
+                let help = "keep one of loops, transfer and pid";
+                self.fault("machine-servo", spanned.span(), message, help);
                 return None;
             }
         };
-        let backlash = self.servo_number("backlash", &file.backlash, Allowed::From, 0.0);
+        let backlash = self.checked(&file.backlash).unwrap_or(0.0);
         let friction = file.friction.as_ref().map(|friction| self.friction(name, friction, &model));
         let servo =
             Servo { place: self.sources.place(spanned.span()), rotary, model, friction, backlash };
@@ -97,21 +79,16 @@ impl Builder<'_> {
         model: &ServoModel,
     ) -> Friction {
         let file = spanned.get_ref();
-        let force = self.servo_number("coulomb", &file.coulomb, Allowed::From, 0.0);
+        let force = self.checked(&file.coulomb).unwrap_or(0.0);
         if !matches!(model, ServoModel::Loops(_)) && force != 0.0 {
-            self.fault(
-                "machine-servo",
-                spanned.span(),
-                format!("[servo.{name}.friction]: no table is known that it could act on"),
-                "friction goes with [servo.X.loops], which describes the table",
-            );
+            let message =
+                format!("[servo.{name}.friction]: no table is known that it could act on");
+            let help = "friction goes with [servo.X.loops], which describes the table";
+            self.fault("machine-servo", spanned.span(), message, help);
         }
         let needed = [("coulomb", file.coulomb.is_some())];
         self.lacks(&format!("[servo.{name}.friction]"), spanned.span(), &needed);
-        Friction {
-            coulomb: force,
-            width: self.servo_number("width", &file.width, Allowed::From, 0.0),
-        }
+        Friction { coulomb: force, width: self.checked(&file.width).unwrap_or(0.0) }
     }
 
     fn check_backlash(&mut self, name: &str, file: &ServoFile, servo: &Servo) {
@@ -207,34 +184,5 @@ impl Builder<'_> {
             self.fault("machine-servo", span, message, "");
         }
         !missing.is_empty()
-    }
-
-    pub(super) fn servo_option(&mut self, key: &str, quantity: &Option<Quantity>) -> Option<f64> {
-        quantity.as_ref().map(|_| self.servo_number(key, quantity, Allowed::Above, 1.0))
-    }
-
-    pub(super) fn servo_number(
-        &mut self,
-        key: &str,
-        quantity: &Option<Quantity>,
-        range: Allowed,
-        default: f64,
-    ) -> f64 {
-        let Some(quantity) = quantity else {
-            return default;
-        };
-        let value = self.number(quantity);
-        let (refused, must) = match range {
-            Allowed::Above => (value <= 0.0, "must be above zero"),
-            Allowed::From => (value < 0.0, "cannot be below zero"),
-            Allowed::Share => {
-                (!(0.0..=2.0).contains(&value) && !value.is_nan(), "must be from 0 to 2")
-            }
-        };
-        if refused {
-            let message = format!("{key} is {}; it {must}", Short(value));
-            self.fault("machine-servo", quantity.span(), message, "");
-        }
-        value
     }
 }

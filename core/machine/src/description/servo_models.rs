@@ -4,7 +4,6 @@ use toml::Spanned;
 
 use super::build::Builder;
 use super::quantity::Quantity;
-use super::servo::Allowed;
 use super::servo_file::{DirectFile, GearFile, LoopsFile, PidFile, ScrewFile, TransferFile};
 use crate::servo::{Current, Drive, Loops, MAX_ORDER, Pid, Transfer};
 
@@ -15,7 +14,6 @@ impl Builder<'_> {
         rotary: bool,
         spanned: &Spanned<LoopsFile>,
     ) -> Option<Loops> {
-        use Allowed::{Above, From, Share};
         let file = spanned.get_ref();
         let drive = self.drive(name, rotary, spanned);
         let current = self.current(name, spanned);
@@ -33,31 +31,20 @@ impl Builder<'_> {
         }
         Some(Loops {
             feedback: file.feedback.unwrap_or_default(),
-            kv: self.servo_number("kv", &file.kv, Above, 1.0),
-            velocity_feed_forward: self.servo_number(
-                "velocity_feed_forward",
-                &file.velocity_feed_forward,
-                Share,
-                0.0,
-            ),
-            acceleration_feed_forward: self.servo_number(
-                "acceleration_feed_forward",
-                &file.acceleration_feed_forward,
-                Share,
-                0.0,
-            ),
-            velocity_gain: self.servo_number("velocity_gain", &file.velocity_gain, Above, 1.0),
-            velocity_time: self.servo_option("velocity_time", &file.velocity_time),
+            kv: self.checked(&file.kv).unwrap_or(1.0),
+            velocity_feed_forward: self.checked(&file.velocity_feed_forward).unwrap_or(0.0),
+            acceleration_feed_forward: self.checked(&file.acceleration_feed_forward).unwrap_or(0.0),
+            velocity_gain: self.checked(&file.velocity_gain).unwrap_or(1.0),
+            velocity_time: self.checked(&file.velocity_time),
             current: current?,
-            motor_inertia: self.servo_number("motor_inertia", &file.motor_inertia, Above, 1.0),
-            motor_damping: self.servo_number("motor_damping", &file.motor_damping, From, 0.0),
+            motor_inertia: self.checked(&file.motor_inertia).unwrap_or(1.0),
+            motor_damping: self.checked(&file.motor_damping).unwrap_or(0.0),
             drive: drive?,
         })
     }
 
     /// The current loop, if the file says one; none if what it says is refused.
     fn current(&mut self, name: &str, spanned: &Spanned<LoopsFile>) -> Option<Option<Current>> {
-        use Allowed::{Above, From};
         let file = spanned.get_ref();
         let needed = [
             ("current_gain", file.current_gain.is_some()),
@@ -74,17 +61,12 @@ impl Builder<'_> {
             return None;
         }
         Some(Some(Current {
-            gain: self.servo_number("current_gain", &file.current_gain, Above, 1.0),
-            time: self.servo_option("current_time", &file.current_time),
-            resistance: self.servo_number("resistance", &file.resistance, Above, 1.0),
-            inductance: self.servo_number("inductance", &file.inductance, Above, 1.0),
-            torque_constant: self.servo_number(
-                "torque_constant",
-                &file.torque_constant,
-                Above,
-                1.0,
-            ),
-            back_emf: self.servo_number("back_emf", &file.back_emf, From, 0.0),
+            gain: self.checked(&file.current_gain).unwrap_or(1.0),
+            time: self.checked(&file.current_time),
+            resistance: self.checked(&file.resistance).unwrap_or(1.0),
+            inductance: self.checked(&file.inductance).unwrap_or(1.0),
+            torque_constant: self.checked(&file.torque_constant).unwrap_or(1.0),
+            back_emf: self.checked(&file.back_emf).unwrap_or(0.0),
         }))
     }
 
@@ -105,19 +87,15 @@ impl Builder<'_> {
                 } else {
                     ("linear", "screw and direct")
                 };
-                self.fault(
-                    "machine-servo",
-                    span,
-                    format!("[servo.{name}.loops]: what drives {name}, a {kind} axis?"),
-                    &format!("one of {drives}: [servo.{name}.loops.direct] …"),
-                );
+                let message = format!("[servo.{name}.loops]: what drives {name}, a {kind} axis?");
+                let help = &format!("one of {drives}: [servo.{name}.loops.direct] …");
+                self.fault("machine-servo", span, message, help);
                 None
             }
         }
     }
 
     fn screw(&mut self, name: &str, spanned: &Spanned<ScrewFile>) -> Option<Drive> {
-        use Allowed::{Above, From};
         let file = spanned.get_ref();
         let what = format!("[servo.{name}.loops.screw]");
         let needed = [("lead", file.lead.is_some()), ("table_mass", file.table_mass.is_some())];
@@ -125,21 +103,19 @@ impl Builder<'_> {
             return None;
         }
         let drive = Drive::Screw {
-            lead: self.servo_number("lead", &file.lead, Above, 1.0),
-            screw_damping: self.servo_number("screw_damping", &file.screw_damping, From, 0.0),
-            axial_stiffness: self.servo_option("axial_stiffness", &file.axial_stiffness),
-            torsional_stiffness: self
-                .servo_option("torsional_stiffness", &file.torsional_stiffness),
-            axial_damping: self.servo_number("axial_damping", &file.axial_damping, From, 0.0),
-            table_mass: self.servo_number("table_mass", &file.table_mass, Above, 1.0),
-            table_damping: self.servo_number("table_damping", &file.table_damping, From, 0.0),
+            lead: self.checked(&file.lead).unwrap_or(1.0),
+            screw_damping: self.checked(&file.screw_damping).unwrap_or(0.0),
+            axial_stiffness: self.checked(&file.axial_stiffness),
+            torsional_stiffness: self.checked(&file.torsional_stiffness),
+            axial_damping: self.checked(&file.axial_damping).unwrap_or(0.0),
+            table_mass: self.checked(&file.table_mass).unwrap_or(1.0),
+            table_damping: self.checked(&file.table_damping).unwrap_or(0.0),
         };
         self.check_damping("axial_damping", &file.axial_damping, &drive);
         Some(drive)
     }
 
     fn gear(&mut self, name: &str, spanned: &Spanned<GearFile>) -> Option<Drive> {
-        use Allowed::{Above, From};
         let file = spanned.get_ref();
         let what = format!("[servo.{name}.loops.gear]");
         let needed =
@@ -148,11 +124,11 @@ impl Builder<'_> {
             return None;
         }
         let drive = Drive::Gear {
-            ratio: self.servo_number("ratio", &file.ratio, Above, 1.0),
-            gear_stiffness: self.servo_option("gear_stiffness", &file.gear_stiffness),
-            gear_damping: self.servo_number("gear_damping", &file.gear_damping, From, 0.0),
-            table_inertia: self.servo_number("table_inertia", &file.table_inertia, Above, 1.0),
-            table_damping: self.servo_number("table_damping", &file.table_damping, From, 0.0),
+            ratio: self.checked(&file.ratio).unwrap_or(1.0),
+            gear_stiffness: self.checked(&file.gear_stiffness),
+            gear_damping: self.checked(&file.gear_damping).unwrap_or(0.0),
+            table_inertia: self.checked(&file.table_inertia).unwrap_or(1.0),
+            table_damping: self.checked(&file.table_damping).unwrap_or(0.0),
         };
         self.check_damping("gear_damping", &file.gear_damping, &drive);
         Some(drive)
@@ -165,8 +141,8 @@ impl Builder<'_> {
             return None;
         }
         Some(Drive::Direct {
-            load: self.servo_number("load", &file.load, Allowed::Above, 1.0),
-            load_damping: self.servo_number("load_damping", &file.load_damping, Allowed::From, 0.0),
+            load: self.checked(&file.load).unwrap_or(1.0),
+            load_damping: self.checked(&file.load_damping).unwrap_or(0.0),
         })
     }
 
@@ -218,7 +194,6 @@ impl Builder<'_> {
     }
 
     pub(super) fn servo_pid(&mut self, name: &str, spanned: &Spanned<PidFile>) -> Option<Pid> {
-        use Allowed::{Above, From};
         let file = spanned.get_ref();
         let what = format!("[servo.{name}.pid]");
         let needed = [
@@ -230,12 +205,12 @@ impl Builder<'_> {
             return None;
         }
         Some(Pid {
-            kp: self.servo_number("kp", &file.kp, Above, 1.0),
-            ki: self.servo_number("ki", &file.ki, From, 0.0),
-            kd: self.servo_number("kd", &file.kd, From, 0.0),
-            gain: self.servo_number("gain", &file.gain, Above, 1.0),
-            inertia: self.servo_number("inertia", &file.inertia, Above, 1.0),
-            damping: self.servo_number("damping", &file.damping, From, 0.0),
+            kp: self.checked(&file.kp).unwrap_or(1.0),
+            ki: self.checked(&file.ki).unwrap_or(0.0),
+            kd: self.checked(&file.kd).unwrap_or(0.0),
+            gain: self.checked(&file.gain).unwrap_or(1.0),
+            inertia: self.checked(&file.inertia).unwrap_or(1.0),
+            damping: self.checked(&file.damping).unwrap_or(0.0),
         })
     }
 

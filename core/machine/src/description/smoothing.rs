@@ -71,20 +71,17 @@ fn fits(pattern: &str, text: &str) -> bool {
 
 impl Builder<'_> {
     pub(super) fn smoothing(&mut self, file: &SmoothingFile) -> SmoothingRules {
-        let axis_tolerance = file
-            .axis_tolerance
-            .as_ref()
-            .map(|tolerance| self.above_zero("axis_tolerance", tolerance));
-        let mut rule = |name: &str, tolerance: &Quantity| Smoothing {
-            tolerance: self.above_zero(name, tolerance),
-            axis_tolerance,
-        };
+        let axis_tolerance = self.checked(&file.axis_tolerance);
+        let rule = |tolerance: f64| Smoothing { tolerance, axis_tolerance };
         SmoothingRules {
-            default: file.tolerance.as_ref().map(|said| rule("tolerance", said)),
+            default: self.checked(&file.tolerance).map(rule),
             operations: file
                 .operations
                 .iter()
-                .map(|(name, said)| (name.get_ref().to_uppercase(), rule(name.get_ref(), said)))
+                .map(|(name, said)| {
+                    let tolerance = self.above_zero(name.get_ref(), said);
+                    (name.get_ref().to_uppercase(), rule(tolerance))
+                })
                 .collect(),
         }
     }
@@ -92,12 +89,9 @@ impl Builder<'_> {
     fn above_zero(&mut self, name: &str, quantity: &Quantity) -> f64 {
         let value = self.number(quantity);
         if value <= 0.0 {
-            self.fault(
-                "machine-program",
-                quantity.span(),
-                format!("[program.smoothing] {name} is {}", Short(value)),
-                "a tolerance lies above zero; an operation without smoothing has no rule",
-            );
+            let message = format!("[program.smoothing] {name} is {}", Short(value));
+            let help = "a tolerance lies above zero; an operation without smoothing has no rule";
+            self.fault("machine-program", quantity.span(), message, help);
         }
         value
     }

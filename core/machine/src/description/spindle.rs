@@ -75,19 +75,11 @@ impl SpindleSpeeds {
 
 impl Builder<'_> {
     pub(super) fn spindle(&mut self, file: &SpindleFile) -> SpindleSpeeds {
-        let mut speeds =
-            SpindleSpeeds { surface_speed: file.surface_speed, ..SpindleSpeeds::default() };
-        for (key, quantity, speed) in [
-            ("min_speed", &file.min_speed, &mut speeds.min),
-            ("max_speed", &file.max_speed, &mut speeds.max),
-        ] {
-            let Some(quantity) = quantity else { continue };
-            *speed = self.number(quantity);
-            if *speed < 0.0 || (key == "max_speed" && *speed == 0.0) {
-                let message = format!("{key} is {} rpm", Short(*speed));
-                self.fault("machine-spindle", quantity.span(), message, "speeds are above zero");
-            }
-        }
+        let speeds = SpindleSpeeds {
+            min: self.checked(&file.min_speed).unwrap_or(0.0),
+            max: self.checked(&file.max_speed).unwrap_or(f64::INFINITY),
+            surface_speed: file.surface_speed,
+        };
         if let (Some(max), true) = (&file.max_speed, speeds.min > speeds.max) {
             let message = format!(
                 "the least speed, {} rpm, lies above the largest, {} rpm",

@@ -37,14 +37,12 @@ mod state_space;
 
 use std::f64::consts::TAU;
 
-use schemars::JsonSchema;
-use serde::Deserialize;
-
 pub use parameters::Parameter;
 pub use poles::{Pole, stable};
 pub use response::Response;
 pub use state_space::{Released, StateSpace};
 
+use crate::description::table::words;
 use crate::diagnostic::Place;
 
 /// Largest number of states of a servo.
@@ -105,15 +103,14 @@ pub struct Loops {
     pub drive: Drive,
 }
 
-/// What the position loop measures.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
-#[serde(rename_all = "kebab-case")]
-pub enum Feedback {
-    /// The table: a full closed loop, as in the prediction paper.
-    #[default]
-    Scale,
-    /// The motor's encoder.
-    Motor,
+words! {
+    /// What the position loop measures.
+    Feedback = Scale {
+        /// The table: a full closed loop, as in the prediction paper.
+        Scale "scale",
+        /// The motor's encoder.
+        Motor "motor",
+    }
 }
 
 /// Current loop and winding.

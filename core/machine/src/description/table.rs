@@ -1,0 +1,473 @@
+//! Tables of a machine file, one row a key: its name, its type, what it may be, and what it means.
+//!
+//! From a row follow the field, how it is read, what the JSON Schema says of it (and with that the reference page and what
+//! an editor shows), and the check of its number.
+
+use std::collections::BTreeMap;
+use std::fmt;
+pub(crate) use std::ops::Range;
+
+use serde::de::{DeserializeOwned, Deserializer as _, Visitor};
+pub(crate) use serde_json::Value;
+use serde_json::{Map, json};
+pub(crate) use toml::Spanned;
+use toml::de::ValueDeserializer;
+pub(crate) use toml::de::{DeTable, DeValue};
+
+use super::bounds::Bounds;
+use super::quantity::Number;
+
+/// A key of a machine file.
+#[derive(Debug)]
+pub(crate) struct Key {
+    /// Its name.
+    pub name: &'static str,
+    /// What it means, as an editor shows it.
+    pub doc: &'static str,
+    /// What it may be.
+    pub bounds: Bounds,
+    /// The schema of its type.
+    pub schema: fn(&mut Schemas) -> Value,
+    /// The file must say it.
+    pub needed: fn() -> bool,
+}
+
+/// The last of `bounds`: those of a row, if it has any.
+pub(crate) const fn last(bounds: &[Bounds]) -> Bounds {
+    bounds[bounds.len() - 1]
+}
+
+/// Why a value cannot be read, and where it stands.
+#[derive(Debug)]
+pub(crate) struct Unread {
+    pub span: Range<usize>,
+    pub why: Why,
+}
+
+/// Why a value cannot be read.
+#[derive(Debug)]
+pub(crate) enum Why {
+    /// The table has other keys than this one.
+    Key { name: String, known: Vec<&'static str> },
+    /// The value is one of a few words, and not this one.
+    Word { name: String, known: Vec<&'static str> },
+    /// The table lacks a key.
+    Missing(&'static str),
+    /// The value is of another kind than its key asks for.
+    Kind(String),
+}
+
+/// What can stand in a machine file for a key.
+pub(crate) trait Entry: Sized {
+    /// The value of a key.
+    ///
+    /// # Errors
+    /// The first thing in it that cannot be read.
+    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, Unread>;
+
+    /// The value where the file does not say it; none if it must.
+    fn absent() -> Option<Self> {
+        None
+    }
+
+    /// The file must say it.
+    fn needed() -> bool {
+        Self::absent().is_none()
+    }
+
+    /// Its schema; that of a table or a word is put under its name and referred to.
+    fn schema(named: &mut Schemas) -> Value;
+}
+
+/// A value, where it stands, and of which key.
+#[derive(Clone, Debug)]
+pub(crate) struct Given<T> {
+    value: T,
+    span: Range<usize>,
+    /// Its key.
+    pub key: &'static Key,
+}
+
+impl<T> Given<T> {
+    /// The value.
+    pub fn get_ref(&self) -> &T {
+        &self.value
+    }
+
+    /// Where it stands, bytes of all layers.
+    pub fn span(&self) -> Range<usize> {
+        self.span.clone()
+    }
+}
+
+/// Schemas by the names of the types that they are of.
+pub(crate) type Schemas = Map<String, Value>;
+
+/// A whole number.
+pub(crate) type Count = Given<i64>;
+
+/// Makes tables of a machine file of their rows, `key: type = bounds`; a key without bounds may be anything.
+macro_rules! keys {
+    ($(
+        $(#[doc = $about:literal])*
+        $table:ident {$(
+            $(#[doc = $doc:literal])*
+            $key:ident: $type:ty $(= $bounds:expr)?,
+        )*}
+    )*) => {$(
+        $(#[doc = $about])*
+        #[derive(Debug)]
+        pub(crate) struct $table {$(
+            $(#[doc = $doc])*
+            pub $key: $type,
+        )*}
+
+        const _: () = {
+            use $crate::description::table::*;
+
+            impl $table {
+                /// Its keys, in the order of its rows.
+                pub(crate) const KEYS: &'static [Key] = &[$(Key {
+                    name: stringify!($key),
+                    doc: concat!($($doc),*),
+                    bounds: last(&[$crate::description::bounds::Bounds::ANY $(, $bounds)?]),
+                    schema: <$type>::schema,
+                    needed: <$type>::needed,
+                },)*];
+
+                /// Reads what a table says that stands at `span`.
+                ///
+                /// # Errors
+                /// The first thing in it that cannot be read.
+                pub(crate) fn of(table: &DeTable<'_>, span: Range<usize>) -> Result<Self, Unread> {
+                    $(let mut $key: Option<$type> = None;)*
+                    for (name, value) in table {
+                        let key = known(name, Self::KEYS)?;
+                        match key.name {
+                            $(stringify!($key) => $key = Some(Entry::read(value, key)?),)*
+                            _ => {}
+                        }
+                    }
+                    $(let $key = $key.or_else(Entry::absent).ok_or_else(|| {
+                        Unread { span: span.clone(), why: Why::Missing(stringify!($key)) }
+                    })?;)*
+                    Ok(Self { $($key,)* })
+                }
+            }
+
+            impl Entry for $table {
+                fn read(value: &Spanned<DeValue<'_>>, _: &'static Key) -> Result<Self, Unread> {
+                    let table = entries(value, concat!("struct ", stringify!($table)))?;
+                    Self::of(table, value.span())
+                }
+
+                fn absent() -> Option<Self> {
+                    Self::of(&DeTable::new(), 0..0).ok()
+                }
+
+                fn schema(named: &mut Schemas) -> Value {
+                    let about = concat!($($about),*);
+                    defined(named, stringify!($table), about, |named| table_schema(named, Self::KEYS))
+                }
+            }
+        };
+    )*};
+}
+
+/// Makes the words that a key can be of their rows, `Variant "word"`; behind the name of the type stands what holds where
+/// the file does not say.
+macro_rules! words {
+    ($(
+        $(#[doc = $about:literal])*
+        $type:ident $(= $default:ident)? {$(
+            $(#[doc = $doc:literal])*
+            $variant:ident $word:literal,
+        )*}
+    )*) => {$(
+        $(#[doc = $about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum $type {$(
+            $(#[doc = $doc])*
+            $variant,
+        )*}
+
+        const _: () = {
+            use $crate::description::table::*;
+
+            impl $type {
+                /// The word that a machine file has for it.
+                pub fn name(self) -> &'static str {
+                    match self {
+                        $(Self::$variant => $word,)*
+                    }
+                }
+            }
+
+            $(impl Default for $type {
+                fn default() -> Self {
+                    Self::$default
+                }
+            })?
+
+            impl Entry for $type {
+                fn read(value: &Spanned<DeValue<'_>>, _: &'static Key) -> Result<Self, Unread> {
+                    Ok([$(Self::$variant),*][word(value, &[$($word),*])?])
+                }
+
+                $(fn absent() -> Option<Self> {
+                    Some(Self::$default)
+                })?
+
+                fn schema(named: &mut Schemas) -> Value {
+                    let words = [$((Self::$variant.name(), concat!($($doc),*))),*];
+                    words_schema(named, stringify!($type), concat!($($about),*), &words)
+                }
+            }
+        };
+    )*};
+}
+
+pub(crate) use {keys, words};
+
+/// The key of this name.
+pub(crate) fn known<S: AsRef<str>>(
+    name: &Spanned<S>,
+    keys: &'static [Key],
+) -> Result<&'static Key, Unread> {
+    let text = name.get_ref().as_ref();
+    keys.iter().find(|key| key.name == text).ok_or_else(|| Unread {
+        span: name.span(),
+        why: Why::Key { name: text.to_owned(), known: keys.iter().map(|key| key.name).collect() },
+    })
+}
+
+/// The place of the word that `value` is among those that it can be.
+pub(crate) fn word(value: &Spanned<DeValue<'_>>, words: &[&'static str]) -> Result<usize, Unread> {
+    let Some(name) = value.get_ref().as_str() else {
+        let why = Why::Kind("wanted string or table".to_owned());
+        return Err(Unread { span: value.span(), why });
+    };
+    words.iter().position(|word| *word == name).ok_or_else(|| Unread {
+        span: value.span(),
+        why: Why::Word { name: name.to_owned(), known: words.to_vec() },
+    })
+}
+
+/// The keys of a table, where `what` is expected.
+pub(crate) fn entries<'v, 'i>(
+    value: &'v Spanned<DeValue<'i>>,
+    what: &'static str,
+) -> Result<&'v DeTable<'i>, Unread> {
+    value.get_ref().as_table().ok_or_else(|| of_another_kind(value, what))
+}
+
+/// The message for a value that is no `what`.
+pub(crate) fn of_another_kind(value: &Spanned<DeValue<'_>>, what: &'static str) -> Unread {
+    struct Nothing(&'static str);
+    impl Visitor<'_> for Nothing {
+        type Value = ();
+
+        fn expecting(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+            to.write_str(self.0)
+        }
+    }
+    let error = ValueDeserializer::from(value.clone()).deserialize_any(Nothing(what)).err();
+    let message = error.map_or_else(String::new, |error| error.message().to_owned());
+    Unread { span: value.span(), why: Why::Kind(message) }
+}
+
+/// A value that serde knows.
+pub(crate) fn plain<T: DeserializeOwned>(value: &Spanned<DeValue<'_>>) -> Result<T, Unread> {
+    T::deserialize(ValueDeserializer::from(value.clone())).map_err(|error| Unread {
+        span: error.span().unwrap_or_else(|| value.span()),
+        why: Why::Kind(error.message().to_owned()),
+    })
+}
+
+/// Puts a schema under its name, once; what refers to it.
+pub(crate) fn defined(
+    named: &mut Schemas,
+    name: &str,
+    doc: &str,
+    schema: impl FnOnce(&mut Schemas) -> Value,
+) -> Value {
+    if !named.contains_key(name) {
+        let mut schema = schema(named);
+        schema["description"] = json!(doc.trim_ascii());
+        named.insert(name.to_owned(), schema);
+    }
+    json!({ "$ref": format!("#/definitions/{name}") })
+}
+
+/// The schema of a table with these keys.
+pub(crate) fn table_schema(named: &mut Schemas, keys: &[Key]) -> Value {
+    let mut properties = Schemas::new();
+    for key in keys {
+        let mut schema = (key.schema)(named);
+        // Keys beside a reference mean nothing in this draft.
+        if schema.get("$ref").is_some() {
+            schema = json!({ "allOf": [schema] });
+        }
+        key.bounds.describe(&mut schema);
+        schema["description"] = json!(key.doc.trim_ascii());
+        properties.insert(key.name.to_owned(), schema);
+    }
+    let mut schema =
+        json!({ "type": "object", "properties": properties, "additionalProperties": false });
+    let needed = keys.iter().filter(|key| (key.needed)()).map(|key| key.name);
+    let needed: Vec<&str> = needed.collect();
+    if !needed.is_empty() {
+        schema["required"] = json!(needed);
+    }
+    schema
+}
+
+/// The schema of a few words, each with what it means.
+pub(crate) fn words_schema(
+    named: &mut Schemas,
+    name: &str,
+    doc: &str,
+    words: &[(&str, &str)],
+) -> Value {
+    defined(named, name, doc, |_| {
+        let words = words.iter().map(|(word, doc)| {
+            json!({ "const": word, "type": "string", "description": doc.trim_ascii() })
+        });
+        json!({ "oneOf": words.collect::<Vec<_>>() })
+    })
+}
+
+impl<T: Entry> Entry for Given<T> {
+    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, Unread> {
+        Ok(Self { value: T::read(value, key)?, span: value.span(), key })
+    }
+
+    fn schema(named: &mut Schemas) -> Value {
+        T::schema(named)
+    }
+}
+
+impl<T: Entry> Entry for Spanned<T> {
+    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, Unread> {
+        Ok(Self::new(value.span(), T::read(value, key)?))
+    }
+
+    fn schema(named: &mut Schemas) -> Value {
+        T::schema(named)
+    }
+}
+
+impl<T: Entry> Entry for Option<T> {
+    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, Unread> {
+        T::read(value, key).map(Some)
+    }
+
+    fn absent() -> Option<Self> {
+        Some(None)
+    }
+
+    fn schema(named: &mut Schemas) -> Value {
+        T::schema(named)
+    }
+}
+
+impl<T: Entry> Entry for Vec<T> {
+    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, Unread> {
+        let DeValue::Array(items) = value.get_ref() else {
+            return Err(of_another_kind(value, "a sequence"));
+        };
+        items.iter().map(|item| T::read(item, key)).collect()
+    }
+
+    fn absent() -> Option<Self> {
+        Some(Self::new())
+    }
+
+    fn schema(named: &mut Schemas) -> Value {
+        json!({ "type": "array", "items": T::schema(named) })
+    }
+}
+
+impl<T: Entry, const N: usize> Entry for [T; N] {
+    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, Unread> {
+        let DeValue::Array(items) = value.get_ref() else {
+            return Err(of_another_kind(
+                value,
+                if N == 2 { "an array of length 2" } else { "an array of length 3" },
+            ));
+        };
+        let items: Vec<T> =
+            items.iter().take(N).map(|item| T::read(item, key)).collect::<Result<_, _>>()?;
+        items.try_into().map_err(|items: Vec<T>| {
+            let message =
+                format!("invalid length {}, expected an array of length {N}", items.len());
+            Unread { span: value.span(), why: Why::Kind(message) }
+        })
+    }
+
+    fn schema(named: &mut Schemas) -> Value {
+        json!({ "type": "array", "items": T::schema(named), "minItems": N, "maxItems": N })
+    }
+}
+
+/// What a user's own name is read as.
+pub(crate) trait Name: Ord {
+    /// A name and where it stands.
+    fn of(name: &str, span: Range<usize>) -> Self;
+}
+
+impl Name for String {
+    fn of(name: &str, _: Range<usize>) -> Self {
+        name.to_owned()
+    }
+}
+
+impl Name for Spanned<String> {
+    fn of(name: &str, span: Range<usize>) -> Self {
+        Self::new(span, name.to_owned())
+    }
+}
+
+impl<N: Name, T: Entry> Entry for BTreeMap<N, T> {
+    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, Unread> {
+        let table = entries(value, "a map")?.iter();
+        table
+            .map(|(name, value)| Ok((N::of(name.get_ref(), name.span()), T::read(value, key)?)))
+            .collect()
+    }
+
+    fn absent() -> Option<Self> {
+        Some(Self::new())
+    }
+
+    fn schema(named: &mut Schemas) -> Value {
+        json!({ "type": "object", "additionalProperties": T::schema(named) })
+    }
+}
+
+/// Makes entries of types that serde knows, with their schemas and what holds where the file does not say it.
+macro_rules! plain {
+    ($($type:ty: $schema:tt, $absent:expr;)*) => {$(
+        impl Entry for $type {
+            fn read(value: &Spanned<DeValue<'_>>, _: &'static Key) -> Result<Self, Unread> {
+                plain(value)
+            }
+
+            fn absent() -> Option<Self> {
+                $absent
+            }
+
+            fn schema(_: &mut Schemas) -> Value {
+                json!($schema)
+            }
+        }
+    )*};
+}
+
+plain! {
+    bool: { "type": "boolean" }, Some(false);
+    String: { "type": "string" }, None;
+    i64: { "type": "integer", "format": "uint32" }, None;
+    u32: { "type": "integer", "format": "uint32" }, None;
+    Number: { "type": ["number", "string"] }, None;
+}

@@ -164,43 +164,7 @@ impl Builder<'_> {
             self.fault("machine-axis", spanned.span(), message, help);
         }
         let zero = axis.zero.as_ref().map_or(0.0, |zero| self.number(zero));
-        let travel = match (&axis.travel, axis.cyclic) {
-            (Some(travel), false) => {
-                let [least, most] = [&travel.get_ref()[0], &travel.get_ref()[1]]
-                    .map(|quantity| self.number(quantity));
-                if least >= most {
-                    let message = format!(
-                        "the travel of {name} goes from {least} to {most}: the first must be the smaller"
-                    );
-                    let help = "travel = [least, most]";
-                    self.fault("machine-travel", travel.span(), message, help);
-                }
-                if rotary && least.abs().max(most.abs()) > MOST_TRAVEL {
-                    let message = format!("{name} turns by more than a hundred turns");
-                    let help = "an axis that turns without end says cyclic = true";
-                    self.fault("machine-travel", travel.span(), message, help);
-                }
-                Some([(least - zero) * unit, (most - zero) * unit])
-            }
-            (None, true) => None,
-            (Some(travel), true) => {
-                let message =
-                    format!("{name} is cyclic (endless) and has travel: which of the two?");
-                let help = "keep one of them";
-                self.fault("machine-travel", travel.span(), message, help);
-                None
-            }
-            (None, false) => {
-                let message = format!("{name} has no travel");
-                let help = if rotary {
-                    "travel = [-120, 30] in degrees, or cyclic = true if it turns without end"
-                } else {
-                    "travel = [-300, 300] in mm, in positions of the axis"
-                };
-                self.fault("machine-travel", spanned.span(), message, help);
-                None
-            }
-        };
+        let travel = self.travel(name, spanned, zero, unit);
         let of = format!(" of {name}");
         let mut rate = |given: &Option<Quantity>| {
             given.as_ref().map(|given| self.within_bounds(given, &of) * unit)
@@ -242,6 +206,55 @@ impl Builder<'_> {
         })
     }
 
+    /// Least and largest value, mm or radians, counted from the drawing's zero; none if it turns without end.
+    fn travel(
+        &mut self,
+        name: &str,
+        spanned: &Spanned<AxisFile>,
+        zero: f64,
+        unit: f64,
+    ) -> Option<[f64; 2]> {
+        let axis = spanned.get_ref();
+        let rotary = axis.rotary.is_some();
+        match (&axis.travel, axis.cyclic) {
+            (Some(travel), false) => {
+                let [least, most] = [&travel.get_ref()[0], &travel.get_ref()[1]]
+                    .map(|quantity| self.number(quantity));
+                if least >= most {
+                    let message = format!(
+                        "the travel of {name} goes from {least} to {most}: the first must be the smaller"
+                    );
+                    let help = "travel = [least, most]";
+                    self.fault("machine-travel", travel.span(), message, help);
+                }
+                if rotary && least.abs().max(most.abs()) > MOST_TRAVEL {
+                    let message = format!("{name} turns by more than a hundred turns");
+                    let help = "an axis that turns without end says cyclic = true";
+                    self.fault("machine-travel", travel.span(), message, help);
+                }
+                Some([(least - zero) * unit, (most - zero) * unit])
+            }
+            (None, true) => None,
+            (Some(travel), true) => {
+                let message =
+                    format!("{name} is cyclic (endless) and has travel: which of the two?");
+                let help = "keep one of them";
+                self.fault("machine-travel", travel.span(), message, help);
+                None
+            }
+            (None, false) => {
+                let message = format!("{name} has no travel");
+                let help = if rotary {
+                    "travel = [-120, 30] in degrees, or cyclic = true if it turns without end"
+                } else {
+                    "travel = [-300, 300] in mm, in positions of the axis"
+                };
+                self.fault("machine-travel", spanned.span(), message, help);
+                None
+            }
+        }
+    }
+
     /// `indexed`, `positions` and `step`: values as the control shows them, counted from the drawing's zero here.
     fn indexed(
         &mut self,
@@ -266,13 +279,32 @@ impl Builder<'_> {
             return None;
         };
         let value = (self.number(start) - zero) * unit;
-        let inside = |value: f64| passed(travel, value, AT_END).is_none();
-        if !inside(value) {
+        if passed(travel, value, AT_END).is_some() {
             let message =
                 format!("{name} is indexed at {}, outside its travel", value / unit + zero);
             self.fault("machine-travel", start.span(), message, "");
         }
-        let positions = match (&axis.positions, &axis.step) {
+        let positions = self.index_positions(name, axis, zero, unit, travel);
+        if !positions.holds(value, travel.is_none()) {
+            let message = format!(
+                "{name} is indexed at {}, which is none of its positions",
+                value / unit + zero
+            );
+            self.fault("machine-axis", start.span(), message, "");
+        }
+        Some(Indexed { start: value, positions })
+    }
+
+    /// Where an indexed axis can stand, counted from the drawing's zero.
+    fn index_positions(
+        &mut self,
+        name: &str,
+        axis: &AxisFile,
+        zero: f64,
+        unit: f64,
+        travel: Option<[f64; 2]>,
+    ) -> Positions {
+        match (&axis.positions, &axis.step) {
             (None, None) => Positions::Any,
             (Some(list), None) if list.get_ref().len() > MOST_ENTRIES => {
                 let message = format!(
@@ -289,7 +321,9 @@ impl Builder<'_> {
                     .iter()
                     .map(|quantity| (self.number(quantity) - zero) * unit)
                     .collect();
-                if let Some(place) = values.iter().position(|value| !inside(*value)) {
+                if let Some(place) =
+                    values.iter().position(|value| passed(travel, *value, AT_END).is_some())
+                {
                     let message = format!("this position of {name} lies outside its travel");
                     self.fault("machine-travel", list.get_ref()[place].span(), message, "");
                 }
@@ -315,15 +349,7 @@ impl Builder<'_> {
                 self.fault("machine-axis", list.span(), message, help);
                 Positions::Any
             }
-        };
-        if !positions.holds(value, travel.is_none()) {
-            let message = format!(
-                "{name} is indexed at {}, which is none of its positions",
-                value / unit + zero
-            );
-            self.fault("machine-axis", start.span(), message, "");
         }
-        Some(Indexed { start: value, positions })
     }
 
     fn clamp(&mut self, name: &str, spanned: &Spanned<AxisFile>) -> Option<Clamp> {

@@ -13,33 +13,31 @@ use crate::diagnostic::Short;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bounds {
     /// It lies above this.
-    above: Option<f64>,
+    pub above: Option<f64>,
     /// It is this or more.
-    least: Option<f64>,
+    pub least: Option<f64>,
     /// It is this or less, as the schema has it.
-    most: Option<f64>,
+    pub most: Option<f64>,
     /// It is this or less, as the check has it: what is larger is a slip of the unit.
-    farthest: f64,
+    pub farthest: f64,
     /// A text has this pattern.
-    pattern: Option<&'static str>,
+    pub pattern: Option<&'static str>,
     /// The names in a table have this pattern.
-    names: Option<&'static str>,
+    pub names: Option<&'static str>,
     /// A list has so many items or more.
-    items: Option<usize>,
+    pub items: Option<usize>,
     /// What the schema tells as the default, as JSON.
-    default: Option<&'static str>,
-    /// The code of the message.
-    code: &'static str,
-    /// What stands before the key's name in the message.
-    table: &'static str,
-    /// What the message calls it in place of its name.
-    called: Option<&'static str>,
-    /// What stands behind the value in the message, with a blank before it.
-    unit: &'static str,
-    /// What the message says that it must be.
-    must: &'static str,
+    pub default: Option<&'static str>,
+    /// The code of the message that refuses a number.
+    pub code: &'static str,
+    /// What the message has before the key's name.
+    pub table: &'static str,
+    /// What it has in place of both.
+    pub called: Option<&'static str>,
+    /// What it has behind the value: unit, and what must be.
+    pub says: &'static str,
     /// What helps.
-    help: &'static str,
+    pub help: &'static str,
 }
 
 impl Bounds {
@@ -56,8 +54,7 @@ impl Bounds {
         code: "",
         table: "",
         called: None,
-        unit: "",
-        must: "",
+        says: "",
         help: "",
     };
 
@@ -79,63 +76,20 @@ impl Bounds {
         Self { items: Some(least), ..Self::ANY }
     }
 
-    /// Numbers above zero; of others `code` tells, with `table` before the key's name.
-    pub const fn above_zero(code: &'static str, table: &'static str) -> Self {
-        let must = "it must be above zero";
-        Self { above: Some(0.0), code, table, must, ..Self::ANY }
+    /// Numbers above zero, refused by `code`.
+    pub const fn above_zero(code: &'static str) -> Self {
+        Self { above: Some(0.0), code, says: "; it must be above zero", ..Self::ANY }
     }
 
-    /// Numbers from zero on.
-    pub const fn from_zero(code: &'static str, table: &'static str) -> Self {
-        let must = "it cannot be below zero";
-        Self { least: Some(0.0), code, table, must, ..Self::ANY }
+    /// Numbers from zero on, refused by `code`.
+    pub const fn from_zero(code: &'static str) -> Self {
+        Self { least: Some(0.0), code, says: "; it cannot be below zero", ..Self::ANY }
     }
 
-    /// Numbers from `least` to `most`, which is what `must` says.
-    pub const fn within(
-        least: f64,
-        most: f64,
-        code: &'static str,
-        table: &'static str,
-        must: &'static str,
-    ) -> Self {
-        let (least, farthest) = (Some(least), most);
-        Self { least, most: Some(most), farthest, code, table, must, ..Self::ANY }
-    }
-
-    /// The same, and the schema says that it is `most` at most.
-    pub const fn at_most(self, most: f64) -> Self {
-        Self { most: Some(most), ..self }
-    }
-
-    /// The same, and the check refuses what is larger than `farthest`, which is what `must` says.
-    pub const fn up_to(self, farthest: f64, must: &'static str) -> Self {
-        Self { farthest, must, ..self }
-    }
-
-    /// The same with another name in the message.
-    pub const fn called(self, name: &'static str) -> Self {
-        Self { called: Some(name), ..self }
-    }
-
-    /// The same with a unit behind the value in the message.
-    pub const fn unit(self, unit: &'static str) -> Self {
-        Self { unit, ..self }
-    }
-
-    /// The same with another sentence of what it must be.
-    pub const fn must(self, must: &'static str) -> Self {
-        Self { must, ..self }
-    }
-
-    /// The same with what helps.
-    pub const fn help(self, help: &'static str) -> Self {
-        Self { help, ..self }
-    }
-
-    /// The same, and the schema tells a default, as JSON.
-    pub const fn default(self, default: &'static str) -> Self {
-        Self { default: Some(default), ..self }
+    /// Numbers from `least` to `most`, refused by `code`.
+    pub const fn within(least: f64, most: f64, code: &'static str, says: &'static str) -> Self {
+        let least = Some(least);
+        Self { least, most: Some(most), farthest: most, code, says, ..Self::ANY }
     }
 
     /// Puts what the schema says of it beside its type.
@@ -196,9 +150,8 @@ impl Builder<'_> {
         Some(value.clamp(least as i64, most as i64))
     }
     fn out_of_bounds(&mut self, key: &Key, span: Range<usize>, of: &str, value: &str) {
-        let Bounds { code, table, unit, must, help, .. } = key.bounds;
-        let name = key.bounds.called.unwrap_or(key.name);
-        let must = if must.is_empty() { String::new() } else { format!("; {must}") };
-        self.fault(code, span, format!("{table}{name}{of} is {value}{unit}{must}"), help);
+        let Bounds { code, table, called, says, help, .. } = key.bounds;
+        let name = called.map_or_else(|| format!("{table}{}{of}", key.name), str::to_owned);
+        self.fault(code, span, format!("{name} is {value}{says}"), help);
     }
 }

@@ -9,7 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::echoes;
-use super::file::{MachineFile, Rapid, Tcp};
+use super::file::{ControlFile, MachineFile, Rapid, Tcp};
 use super::keys::typed;
 use super::layers::{Merged, Source, Sources, overlay};
 use super::limits::{
@@ -20,7 +20,10 @@ use super::options::take_options;
 use super::quantity::Quantity;
 use super::setting::Setting;
 use super::table::Given;
-use super::{Axis, Control, Frame, GivenOption, Head, Machine, UnusedOptions};
+use super::{
+    Accuracy, Arcs, Axis, Control, ControlPoint, Frame, GivenOption, Head, Machine, ProgramRules,
+    SmoothingRules, SpindleSpeeds, UnusedOptions, WordRule,
+};
 use crate::diagnostic::{Diagnostic, Place, Short};
 
 /// The value of an expression of a machine file.
@@ -260,6 +263,17 @@ pub(super) struct Builder<'a> {
     pub(super) faults: Vec<Diagnostic>,
 }
 
+/// What is told by tables that say nothing of axes.
+struct WithoutChain {
+    accuracy: Accuracy,
+    control_point: ControlPoint,
+    spindle: SpindleSpeeds,
+    arcs: Arcs,
+    word_rules: Vec<WordRule>,
+    program: ProgramRules,
+    smoothing: SmoothingRules,
+}
+
 impl Builder<'_> {
     pub(super) fn fault(
         &mut self,
@@ -297,75 +311,35 @@ impl Builder<'_> {
         };
         self.seconds(file, &mut axes);
         self.servos(file, &mut axes);
-        let mount = match &file.workpiece.mount {
-            Some(mount) => self.vector(mount),
-            None => Vector3::zeros(),
-        };
-        let turn = file.workpiece.turn.as_ref();
-        let turn = turn.map_or(0.0, |turn| self.number(turn)).to_radians();
+        let mount = file.workpiece.mount.as_ref();
+        let mount = mount.map_or_else(Vector3::zeros, |mount| self.vector(mount));
+        let turn = self.checked(&file.workpiece.turn).unwrap_or(0.0).to_radians();
         let gauge = self.vector(&file.tool.gauge);
-        let tool_axis = match &file.tool.axis {
-            // One that is null was told, and no machine comes of it.
-            Some(axis) => self.direction("the tool axis", axis).unwrap_or_else(Vector3::z),
-            None => Vector3::z(),
-        };
-        let edge = match &file.tool.edge {
-            Some(edge) => self.edge(edge, tool_axis),
-            None => None,
-        };
+        // One that is null was told, and no machine comes of it.
+        let tool_axis = file.tool.axis.as_ref();
+        let tool_axis = tool_axis.and_then(|axis| self.direction("the tool axis", axis));
+        let tool_axis = tool_axis.unwrap_or_else(Vector3::z);
+        let edge = file.tool.edge.as_ref().and_then(|edge| self.edge(edge, tool_axis));
         let length_axis = self.length_axis(file.tool.length_axis.as_ref(), &axes);
         let solution = self.solution(file, &axes);
         let rewind = file.rewind.as_ref().and_then(|rewind| self.rewind(rewind));
         let tools = self.tools(file);
-        let turns = axes.iter().any(|axis| axis.joint.rotary);
-        let control = file.control.get_ref();
-        if control.tcp.is_none() && turns {
-            self.fault(
-                "machine-tcp",
-                file.control.span(),
-                "[control] does not say who keeps the tip on its path while rotary axes turn"
-                    .to_owned(),
-                "tcp = \"control\" writes the tip and lets the control transform (G43.4, TRAORI, M128); tcp = \"post\" writes axis positions",
-            );
-        }
-        let dialect = control.dialect.get_ref().clone();
-        let options = control_options.remove(&dialect).unwrap_or_default();
-        for (other, given) in &control_options {
-            // A machine may carry the options of several dialects; an empty name is a slip.
-            if other.is_empty() || other.contains(char::is_whitespace) {
-                let span = file.control.span();
-                let message = format!("[control.{other}] names no dialect ({} keys)", given.len());
-                self.fault("machine-option", span, message, "");
-            }
-        }
-        if control.tcp == Some(Tcp::Control) {
-            self.check_tip_words(&axes, file.chain.span());
-        }
-        self.check_rapid(&axes, file);
-        self.check_turns(&axes, file.chain.span());
-        let accuracy = self.accuracy(&file.accuracy, &mut model_options);
+        let options = self.control_options(file, &axes, &mut control_options);
+        let own = self.without_chain(file, &mut model_options);
+        let solids = self.solids(&file.solids, &axes);
+        let motion = self.motion(&file.motion);
+        let plan = self.plan(&file.plan, &motion, own.accuracy.tolerance);
         let unused = |section: &'static str, tables: BTreeMap<String, Vec<GivenOption>>| {
             let tables = tables.into_iter();
             tables.map(move |(plugin, options)| UnusedOptions { section, plugin, options })
         };
-        let unused_options =
-            unused("control", control_options).chain(unused("accuracy", model_options)).collect();
-        let control_point = self.control_point(&file.tool.control_point);
-        let spindle = self.spindle(&file.spindle);
-        let arcs = self.arcs(&control.arcs);
-        let word_rules = self.word_rules(&file.cl);
-        let program = self.program(&file.program);
-        let smoothing = file.program.smoothing.as_ref();
-        let smoothing = smoothing.map(|file| self.smoothing(file)).unwrap_or_default();
-        let indexes = axes.iter().any(|axis| axis.indexed.is_some());
-        let clamps = axes.iter().any(|axis| axis.clamp.is_some());
-        let solids = self.solids(&file.solids, &axes);
-        let motion = self.motion(&file.motion);
-        let plan = self.plan(&file.plan, &motion, accuracy.tolerance);
+        let control_options = unused("control", control_options);
+        let unused_options = control_options.chain(unused("accuracy", model_options)).collect();
         let mut machine = Machine {
-            clamps,
-            indexes,
+            clamps: axes.iter().any(|axis| axis.clamp.is_some()),
+            indexes: axes.iter().any(|axis| axis.indexed.is_some()),
             name: file.name.get_ref().clone(),
+            control: self.control(file.control.get_ref(), &axes, options, own.arcs),
             axes,
             mount,
             turn,
@@ -373,32 +347,13 @@ impl Builder<'_> {
             tool_axis,
             length_axis,
             edge,
-            control_point,
+            control_point: own.control_point,
             tools,
-            control: Control {
-                dialect,
-                dialect_place: self.sources.place(control.dialect.span()),
-                options,
-                tcp: if turns { control.tcp.unwrap_or_default() } else { Tcp::Post },
-                units: control.units,
-                feed: control.feed,
-                feed_length: control.feed_length,
-                tcp_feed_length: control.tcp_feed_length,
-                inverse_time: control.inverse_time,
-                rapid: control.rapid,
-                tool_length: control.tool_length,
-                cycles: control.cycles,
-                planes: control.planes,
-                insert: control.insert,
-                print: control.print,
-                compensation_on_centre: control.compensation_on_centre,
-                arcs,
-            },
-            spindle,
-            word_rules,
-            smoothing,
-            program,
-            accuracy,
+            spindle: own.spindle,
+            word_rules: own.word_rules,
+            smoothing: own.smoothing,
+            program: own.program,
+            accuracy: own.accuracy,
             solution,
             rewind,
             motion,
@@ -408,21 +363,99 @@ impl Builder<'_> {
             unused_options,
             solids,
         };
-        self.frame(control, &mut machine);
-        if let (Some(edge), false) = (&file.tool.edge, machine.pointing().len() == 3) {
-            self.fault(
-                "machine-edge",
-                edge[0].span().start..edge[2].span().end,
-                "the tool has a leading edge, and there are not three rotary axes to follow it"
-                    .to_owned(),
-                "leave the edge out, or give the machine the axis that turns it",
-            );
-        }
+        self.frame(file.control.get_ref(), &mut machine);
+        self.check_edge(file, &machine);
         // With a number that has none, or a direction that is none, its solver would search without end.
         if self.faults.is_empty() {
             self.check_chain(&machine, file.chain.span());
         }
         Some(machine)
+    }
+
+    /// The options of the dialect, taken out of those of all; what is wrong with the control on these axes.
+    fn control_options(
+        &mut self,
+        file: &MachineFile,
+        axes: &[Axis],
+        all: &mut BTreeMap<String, Vec<GivenOption>>,
+    ) -> Vec<GivenOption> {
+        let control = file.control.get_ref();
+        if control.tcp.is_none() && axes.iter().any(|axis| axis.joint.rotary) {
+            let message =
+                "[control] does not say who keeps the tip on its path while rotary axes turn";
+            let help = "tcp = \"control\" writes the tip and lets the control transform (G43.4, TRAORI, M128); tcp = \"post\" writes axis positions";
+            self.fault("machine-tcp", file.control.span(), message.to_owned(), help);
+        }
+        let options = all.remove(control.dialect.get_ref()).unwrap_or_default();
+        for (other, given) in all {
+            // A machine may carry the options of several dialects; an empty name is a slip.
+            if other.is_empty() || other.contains(char::is_whitespace) {
+                let message = format!("[control.{other}] names no dialect ({} keys)", given.len());
+                self.fault("machine-option", file.control.span(), message, "");
+            }
+        }
+        if control.tcp == Some(Tcp::Control) {
+            self.check_tip_words(axes, file.chain.span());
+        }
+        self.check_rapid(axes, file);
+        self.check_turns(axes, file.chain.span());
+        options
+    }
+
+    fn control(
+        &self,
+        file: &ControlFile,
+        axes: &[Axis],
+        options: Vec<GivenOption>,
+        arcs: Arcs,
+    ) -> Control {
+        let turns = axes.iter().any(|axis| axis.joint.rotary);
+        Control {
+            dialect: file.dialect.get_ref().clone(),
+            dialect_place: self.sources.place(file.dialect.span()),
+            options,
+            tcp: if turns { file.tcp.unwrap_or_default() } else { Tcp::Post },
+            units: file.units,
+            feed: file.feed,
+            feed_length: file.feed_length,
+            tcp_feed_length: file.tcp_feed_length,
+            inverse_time: file.inverse_time,
+            rapid: file.rapid,
+            tool_length: file.tool_length,
+            cycles: file.cycles,
+            planes: file.planes,
+            insert: file.insert,
+            print: file.print,
+            compensation_on_centre: file.compensation_on_centre,
+            arcs,
+        }
+    }
+
+    fn check_edge(&mut self, file: &MachineFile, machine: &Machine) {
+        if let (Some(edge), false) = (&file.tool.edge, machine.pointing().len() == 3) {
+            let span = edge[0].span().start..edge[2].span().end;
+            let message =
+                "the tool has a leading edge, and there are not three rotary axes to follow it";
+            let help = "leave the edge out, or give the machine the axis that turns it";
+            self.fault("machine-edge", span, message.to_owned(), help);
+        }
+    }
+
+    /// What is told by tables that say nothing of axes.
+    fn without_chain(
+        &mut self,
+        file: &MachineFile,
+        model_options: &mut BTreeMap<String, Vec<GivenOption>>,
+    ) -> WithoutChain {
+        let accuracy = self.accuracy(&file.accuracy, model_options);
+        let control_point = self.control_point(&file.tool.control_point);
+        let spindle = self.spindle(&file.spindle);
+        let arcs = self.arcs(&file.control.get_ref().arcs);
+        let word_rules = self.word_rules(&file.cl);
+        let program = self.program(&file.program);
+        let smoothing = file.program.smoothing.as_ref();
+        let smoothing = smoothing.map(|file| self.smoothing(file)).unwrap_or_default();
+        WithoutChain { accuracy, control_point, spindle, arcs, word_rules, program, smoothing }
     }
 
     /// What is wrong with the tables that say nothing of axes.
@@ -434,7 +467,7 @@ impl Builder<'_> {
         for vector in [file.workpiece.mount.as_ref(), Some(&file.tool.gauge)] {
             vector.map(|vector| self.vector(vector));
         }
-        file.workpiece.turn.as_ref().map(|turn| self.number(turn));
+        self.checked(&file.workpiece.turn);
         if let Some(axis) = &file.tool.axis {
             self.direction("the tool axis", axis);
         }
@@ -442,15 +475,7 @@ impl Builder<'_> {
             self.rewind(rewind);
         }
         self.tools(file);
-        let accuracy = self.accuracy(&file.accuracy, model_options);
-        self.control_point(&file.tool.control_point);
-        self.spindle(&file.spindle);
-        self.arcs(&file.control.get_ref().arcs);
-        self.word_rules(&file.cl);
-        self.program(&file.program);
-        if let Some(smoothing) = &file.program.smoothing {
-            self.smoothing(smoothing);
-        }
+        let accuracy = self.without_chain(file, model_options).accuracy;
         let motion = self.motion(&file.motion);
         self.plan(&file.plan, &motion, accuracy.tolerance);
     }

@@ -1,11 +1,14 @@
 //! What a machine file says of the choice between solutions, and of leaving the part when a cut cannot go on.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use toml::Spanned;
 
 use super::Axis;
 use super::build::Builder;
 use super::file::{EdgeSource, MachineFile, Pole, RewindFile, Side};
 use super::keys::axes_are;
+use super::quantity::Quantity;
 use crate::kinematics::Joints;
 use crate::kinematics::travel::passed;
 
@@ -82,60 +85,11 @@ impl Builder<'_> {
             None => Rule::Time,
             Some(rule) => self.rule(rule, axes),
         };
-        let sides = |this: &mut Self, sides: &std::collections::BTreeMap<Spanned<String>, Side>| {
-            let mut places = Vec::new();
-            for (name, side) in sides {
-                let Some(place) = this.place_of(name, axes) else {
-                    continue;
-                };
-                if !axes[place].joint.rotary {
-                    let message = format!("{} slides: sides are for rotary axes", axes[place].name);
-                    let help = "where a linear axis may go is its travel";
-                    this.fault("machine-solution", name.span(), message, help);
-                }
-                places.push((place, *side));
-            }
-            places
-        };
-        let prefer = sides(self, &said.prefer);
-        let require = sides(self, &said.require);
-        let mut start: Joints = Default::default();
-        for (place, axis) in axes.iter().enumerate() {
-            start[place] = match &axis.indexed {
-                Some(indexed) => indexed.start,
-                // A rotary axis that cannot stand at the drawing's zero stands at the nearest end.
-                None => axis
-                    .travel
-                    .filter(|_| axis.joint.rotary)
-                    .map_or(0.0, |[least, most]| 0f64.max(least).min(most)),
-            };
-        }
-        for (name, value) in &said.start {
-            let Some(place) = self.place_of(name, axes) else {
-                continue;
-            };
-            let axis = &axes[place];
-            let unit = axis.unit();
-            let value = self.number(value) * unit - axis.zero;
-            if passed(axis.travel, value, 0.0).is_some() || libm::fabs(value) > FARTHEST {
-                let message = format!("{} cannot start there: it is outside its travel", axis.name);
-                let help = "an endless axis starts within ten thousand turns of zero";
-                self.fault("machine-travel", name.span(), message, help);
-            }
-            let stands = axis
-                .indexed
-                .as_ref()
-                .is_none_or(|indexed| indexed.positions.holds(value, axis.travel.is_none()));
-            if !stands {
-                let message =
-                    format!("{} cannot start there: it is none of its positions", axis.name);
-                self.fault("machine-travel", name.span(), message, "");
-            }
-            start[place] = value;
-        }
+        let prefer = self.sides(&said.prefer, axes);
+        let require = self.sides(&said.require, axes);
+        let start = self.start(&said.start, axes);
         for group in &said.exclusive {
-            let names: std::collections::BTreeSet<&str> =
-                group.iter().map(|name| name.get_ref().as_str()).collect();
+            let names: BTreeSet<&str> = group.iter().map(|name| name.get_ref().as_str()).collect();
             if names.len() < 2 || names.len() != group.len() {
                 let span = group.first().map_or(file.chain.span(), Spanned::span);
                 let message = "axes exclude one another: a group has two or more".to_owned();
@@ -174,6 +128,66 @@ impl Builder<'_> {
             edge: said.edge,
             corner: corner.to_radians(),
         }
+    }
+
+    /// Sides of zero by places in the chain.
+    fn sides(
+        &mut self,
+        said: &BTreeMap<Spanned<String>, Side>,
+        axes: &[Axis],
+    ) -> Vec<(usize, Side)> {
+        let mut places = Vec::new();
+        for (name, side) in said {
+            let Some(place) = self.place_of(name, axes) else {
+                continue;
+            };
+            if !axes[place].joint.rotary {
+                let message = format!("{} slides: sides are for rotary axes", axes[place].name);
+                let help = "where a linear axis may go is its travel";
+                self.fault("machine-solution", name.span(), message, help);
+            }
+            places.push((place, *side));
+        }
+        places
+    }
+
+    /// Where the axes stand before the first position, mm or radians.
+    fn start(&mut self, said: &BTreeMap<Spanned<String>, Quantity>, axes: &[Axis]) -> Joints {
+        let mut start: Joints = Default::default();
+        for (place, axis) in axes.iter().enumerate() {
+            start[place] = match &axis.indexed {
+                Some(indexed) => indexed.start,
+                // A rotary axis that cannot stand at the drawing's zero stands at the nearest end.
+                None => axis
+                    .travel
+                    .filter(|_| axis.joint.rotary)
+                    .map_or(0.0, |[least, most]| 0f64.max(least).min(most)),
+            };
+        }
+        for (name, value) in said {
+            let Some(place) = self.place_of(name, axes) else {
+                continue;
+            };
+            let axis = &axes[place];
+            let unit = axis.unit();
+            let value = self.number(value) * unit - axis.zero;
+            if passed(axis.travel, value, 0.0).is_some() || libm::fabs(value) > FARTHEST {
+                let message = format!("{} cannot start there: it is outside its travel", axis.name);
+                let help = "an endless axis starts within ten thousand turns of zero";
+                self.fault("machine-travel", name.span(), message, help);
+            }
+            let stands = axis
+                .indexed
+                .as_ref()
+                .is_none_or(|indexed| indexed.positions.holds(value, axis.travel.is_none()));
+            if !stands {
+                let message =
+                    format!("{} cannot start there: it is none of its positions", axis.name);
+                self.fault("machine-travel", name.span(), message, "");
+            }
+            start[place] = value;
+        }
+        start
     }
 
     fn rule(&mut self, rule: &Spanned<String>, axes: &[Axis]) -> Rule {

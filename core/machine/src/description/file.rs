@@ -20,26 +20,42 @@ use super::table::{
 const AXES: Bounds = Bounds::names("^[A-CEI-LPQRU-Z][0-9]*$");
 
 /// Names of bodies.
-const SOLID_NAMES: Bounds = Bounds::names("^([wbt]|[A-CEI-LPQRU-Z][0-9]*)$").default("{}");
+const BODIES: Bounds =
+    Bounds { default: Some("{}"), ..Bounds::names("^([wbt]|[A-CEI-LPQRU-Z][0-9]*)$") };
 
 /// What an axis does in a time, and lengths of its own.
-const RATE: Bounds = Bounds::above_zero("machine-axis", "");
+const RATE: Bounds = Bounds::above_zero("machine-axis");
 
 /// Numbers of `[solution]` and `[rewind]`.
-const CHOICE: Bounds = Bounds::above_zero("machine-solution", "");
+const CHOICE: Bounds = Bounds::above_zero("machine-solution");
 
-/// Radii of arcs.
-const RADIUS: Bounds = Bounds::above_zero("machine-arcs", "");
+const REWIND: Bounds = Bounds { called: Some("distance of [rewind]"), ..CHOICE };
 
-const TOLERANCE: Bounds = Bounds::above_zero("machine-tolerance", "");
+const RADIUS: Bounds = Bounds::above_zero("machine-arcs");
 
-const SPEEDS: &str = "speeds are above zero";
+const ROOM: Bounds =
+    Bounds { says: " mm", help: "0 or more", ..Bounds::from_zero("machine-frame") };
+
+const TOLERANCE: Bounds = Bounds::above_zero("machine-tolerance");
+
+const COMPENSATION: Bounds = Bounds { most: Some(1.0), ..TOLERANCE };
 
 const CORNER: Bounds =
-    Bounds::within(0.0, 180.0, "machine-corner", "", "it must be 0 to 180 degrees");
+    Bounds::within(0.0, 180.0, "machine-corner", "; it must be 0 to 180 degrees");
 
-const CUTTING_EDGE: Bounds =
-    Bounds::from_zero("machine-control-point", "").called("the radius of the cutting edge");
+const POINTS: Bounds = Bounds::within(1.0, 999.0, "machine-points", "; it must be 1 to 999");
+
+const CUTTING_EDGE: Bounds = Bounds {
+    called: Some("the radius of the cutting edge"),
+    ..Bounds::from_zero("machine-control-point")
+};
+
+/// The least speed of a spindle.
+const LEAST: Bounds =
+    Bounds { says: " rpm", help: "speeds are above zero", ..Bounds::from_zero("machine-spindle") };
+
+/// The largest speed of a spindle.
+const LARGEST: Bounds = Bounds { above: Some(0.0), least: None, ..LEAST };
 
 keys! {
     /// A machine tool as `post` knows it. Positions are in mm in the machine frame with every axis at zero;
@@ -65,7 +81,7 @@ keys! {
         /// that axis moves, `b` the bed: they are drawn in place of what follows from the chain. `w` is what is clamped with
         /// the part, `t` a holder or head besides. A path is that from this file; an empty one takes away
         /// what an extended machine names.
-        solids: BTreeMap<Spanned<String>, Spanned<String>> = SOLID_NAMES,
+        solids: BTreeMap<Spanned<String>, Spanned<String>> = BODIES,
         /// How far the axes are from their set-points, by their letters; those of an axis without are followed exactly.
         servo: BTreeMap<String, Spanned<ServoFile>> = AXES,
         /// The control and its language.
@@ -125,9 +141,9 @@ keys! {
     /// How fast the spindle turns.
     SpindleFile {
         /// Least speed, rpm; a slower one is refused.
-        min_speed: Option<Quantity> = Bounds::from_zero("machine-spindle", "").unit(" rpm").must("").help(SPEEDS),
+        min_speed: Option<Quantity> = LEAST,
         /// Largest speed, rpm; a faster one is refused.
-        max_speed: Option<Quantity> = Bounds::above_zero("machine-spindle", "").unit(" rpm").must("").help(SPEEDS),
+        max_speed: Option<Quantity> = LARGEST,
         /// It turns the part, and SFM and SMM are constant cutting speeds that the control keeps (G96); else they are
         /// those of the cutter's diameter, as revolutions a minute.
         surface_speed: bool = Bounds::OFF,
@@ -210,7 +226,7 @@ keys! {
         /// The line of the program that lets it go, such as M11.
         unclamp: Option<Spanned<String>>,
         /// A quill: it takes this share, 0 to 1, of the way of the axis it runs along.
-        share: Option<Quantity> = Bounds::within(0.0, 1.0, "", "", ""),
+        share: Option<Quantity> = Bounds::within(0.0, 1.0, "", ""),
         /// A quill: it moves only where the travel of the axis it runs along ends.
         reserve: Option<Spanned<bool>>,
         /// Largest feed, mm/min or degrees a minute; no block asks for more.
@@ -244,10 +260,10 @@ keys! {
         /// Where axes stand before the first position, mm or degrees.
         start: BTreeMap<Spanned<String>, Quantity>,
         /// Groups of axes of which one at most moves in a block: `[["A", "C"]]`.
-        exclusive: Vec<Vec<Spanned<String>>> = Bounds::ANY.default("[]"),
+        exclusive: Vec<Vec<Spanned<String>>> = Bounds { default: Some("[]"), ..Bounds::ANY },
         /// Points that are looked at before the first of them is settled; 2000 if not said, 1 takes the nearest
         /// solution each time.
-        look_ahead: Option<Spanned<u32>> = Bounds::within(1.0, 100_000.0, "", "", ""),
+        look_ahead: Option<Spanned<u32>> = Bounds::within(1.0, 100_000.0, "", ""),
         /// What is done close to a singular direction; blend if not said.
         pole: Pole,
         /// Where the leading edge points; travel if not said.
@@ -262,7 +278,7 @@ keys! {
     /// How the tool leaves the part when a cut cannot go on: back along its axis, turn, and return.
     RewindFile {
         /// How far the tool is drawn back along its axis, mm; this or `plane`.
-        distance: Option<Quantity> = CHOICE.called("distance of [rewind]"),
+        distance: Option<Quantity> = REWIND,
         /// The tool is drawn back along its axis until its tip stands so high over the part origin, mm along Z of
         /// the part; this or `distance`.
         plane: Option<Quantity>,
@@ -480,7 +496,7 @@ keys! {
         leave: Option<Spanned<LeaveFile>>,
         /// So far from the ends of their travel linear axes stay over a first position, so that a part which sits higher than
         /// [workpiece] mount says ends in no alarm, mm; half of the way where there is less, and 50 if not said.
-        approach_room: Option<Quantity> = Bounds::from_zero("machine-frame", "").unit(" mm").must("").help("0 or more"),
+        approach_room: Option<Quantity> = ROOM,
         /// Where axes stand before a tool change, machine coordinates, mm or degrees; if not said the rotary axes of park there,
         /// and those that swivel the tool at 0. `{}` leaves all where they are.
         change: Option<Positions>,
@@ -603,13 +619,13 @@ keys! {
         /// What is done about a move that strays; linearise if not said.
         method: Method,
         /// Points put into a move that is compensated, at least; 1 if not said.
-        points: Option<Count> = Bounds::within(1.0, 999.0, "machine-points", "", "it must be 1 to 999"),
+        points: Option<Count> = POINTS,
         /// Drop CL points that the tolerance makes needless; false if not said.
         reduce: bool = Bounds::OFF,
         /// Where the path turns by more than this, degrees, a CL point is a corner: it is never dropped; 10 if not said.
         corner: Option<Quantity> = CORNER,
         /// Contour errors that the servos leave may be compensated (`post --compensate-servo`), no point being moved by more
         /// than this, mm, at most 1; if not said, they may not.
-        servo_compensation: Option<Quantity> = TOLERANCE.at_most(1.0),
+        servo_compensation: Option<Quantity> = COMPENSATION,
     }
 }

@@ -5,27 +5,35 @@ use super::build::Builder;
 use super::quantity::Quantity;
 use super::table::{Count, keys, words};
 
-const CODE: &str = "machine-motion";
-
-const PERIOD: Bounds =
-    Bounds::within(1e-5, 1.0, CODE, "[motion] ", "from 0.00001 to 1 s is possible")
-        .unit(" s")
-        .help("periods of controls are 0.0005 to 0.02 s: the unit is seconds");
-
-const BLOCKS: Bounds = Bounds::within(1.0, 1e5, CODE, "[motion] ", "it must be 1 to 100000 blocks");
-
-const ABOVE: Bounds =
-    Bounds::above_zero(CODE, "[motion] ").help("leave it out where there is no limit");
-
-const WAIT: Bounds = time("[motion] ");
+const ABOVE: Bounds = Bounds {
+    table: "[motion] ",
+    help: "leave it out where there is no limit",
+    ..Bounds::above_zero("machine-motion")
+};
 
 /// Times in which a control waits or makes something ready.
-pub(super) const fn time(table: &'static str) -> Bounds {
-    Bounds::from_zero(CODE, table)
-        .up_to(3600.0, "it must be 0 to 3600 s")
-        .unit(" s")
-        .help("the unit is seconds")
-}
+pub(super) const WAIT: Bounds = Bounds {
+    above: None,
+    least: Some(0.0),
+    farthest: 3600.0,
+    says: " s; it must be 0 to 3600 s",
+    help: "the unit is seconds",
+    ..ABOVE
+};
+
+const PERIOD: Bounds = Bounds {
+    least: Some(1e-5),
+    most: Some(1.0),
+    farthest: 1.0,
+    says: " s; from 0.00001 to 1 s is possible",
+    help: "periods of controls are 0.0005 to 0.02 s: the unit is seconds",
+    ..WAIT
+};
+
+const BLOCKS: Bounds = Bounds {
+    table: "[motion] ",
+    ..Bounds::within(1.0, 1e5, "machine-motion", "; it must be 1 to 100000 blocks")
+};
 
 keys! {
     /// How the control makes motion of a program. What is posted does not depend on it, but for feeds that are planned.

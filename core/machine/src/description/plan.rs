@@ -2,17 +2,20 @@
 
 use super::bounds::Bounds;
 use super::build::Builder;
-use super::motion::{MotionRules, time};
+use super::motion::{self, MotionRules};
 use super::quantity::Quantity;
 use super::table::{Spanned, keys, words};
 
 /// Errors and smoothing.
-const DISTANCE: Bounds = Bounds::above_zero("machine-plan", "[plan] ")
-    .up_to(10.0, "it must be above zero, and 10 mm at most")
-    .unit(" mm")
-    .help("leave it out where there is no limit");
+const DISTANCE: Bounds = Bounds {
+    table: "[plan] ",
+    farthest: 10.0,
+    says: " mm; it must be above zero, and 10 mm at most",
+    help: "leave it out where there is no limit",
+    ..Bounds::above_zero("machine-plan")
+};
 
-const WAIT: Bounds = time("[plan] ");
+const WAIT: Bounds = Bounds { table: "[plan] ", ..motion::WAIT };
 
 keys! {
     /// What a planned feed (`post --plan`) keeps, beside the limits of the axes and of the tip. What is posted without a plan

@@ -10,9 +10,12 @@ use super::table::{
 };
 
 /// Tolerances of `[program.smoothing]`.
-const TOLERANCE: Bounds = Bounds::above_zero("machine-program", "[program.smoothing] ")
-    .must("")
-    .help("a tolerance lies above zero; an operation without smoothing has no rule");
+const TOLERANCE: Bounds = Bounds {
+    table: "[program.smoothing] ",
+    says: "",
+    help: "a tolerance lies above zero; an operation without smoothing has no rule",
+    ..Bounds::above_zero("machine-program")
+};
 
 keys! {
     /// Text of the program, and what the control does to it. Texts are templates: `{{ tool.number }}` stands for a fact, and

@@ -6,12 +6,12 @@ use super::quantity::Quantity;
 use super::table::{Spanned, keys};
 use crate::servo::Feedback;
 
-const ABOVE: Bounds = Bounds::above_zero("machine-servo", "");
+const ABOVE: Bounds = Bounds::above_zero("machine-servo");
 
-const FROM: Bounds = Bounds::from_zero("machine-servo", "");
+const FROM: Bounds = Bounds::from_zero("machine-servo");
 
 /// Shares of what the set-points ask for.
-const SHARE: Bounds = Bounds::within(0.0, 2.0, "machine-servo", "", "it must be from 0 to 2");
+const SHARE: Bounds = Bounds::within(0.0, 2.0, "machine-servo", "; it must be from 0 to 2");
 
 keys! {
     /// The servo of an axis: how far it is from its set-points. One of `loops`, `transfer` and `pid`.

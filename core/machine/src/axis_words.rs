@@ -43,11 +43,11 @@ struct Word {
     coordinate: usize,
     /// Axis units (mm, radians) in one unit of the word (mm or inch, degrees).
     unit: f64,
-    /// Its inverse.
+    /// One over `unit`.
     per_unit: f64,
     /// Ten to the number of decimals.
     scale: f64,
-    /// Its inverse: one printed number is always the same `f64`, so `==` compares what is printed.
+    /// One over `scale`: one printed number is always the same `f64`, so `==` compares what is printed.
     per_scale: f64,
 }
 

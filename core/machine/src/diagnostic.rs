@@ -11,7 +11,7 @@ use post_grammar::text::excerpt;
 /// Longest sentence of a finding, in bytes: what a file holds is cut before it fills a terminal.
 const LONGEST_SENTENCE: usize = 1500;
 
-/// So much of a line is kept for a message, in bytes: the part around what is wrong.
+/// Longest piece of a line that is kept for a message, bytes: the part around what is wrong.
 const SHOWN: usize = 200;
 
 pub use nearest::{meant, nearest};
@@ -48,7 +48,7 @@ pub struct Diagnostic {
 pub struct Extreme {
     /// Findings with the same code and key are about the same limit.
     pub key: u64,
-    /// By how much it is passed; the largest is told.
+    /// Amount by which it is passed; the largest is told.
     pub by: f64,
     /// The value, as told.
     pub value: String,
@@ -101,7 +101,7 @@ impl Diagnostic {
         self
     }
 
-    /// In a box, for results that are mostly good.
+    /// Boxes the finding, for results that are mostly good.
     pub fn boxed(self) -> Box<Self> {
         Box::new(self)
     }

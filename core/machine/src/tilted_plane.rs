@@ -14,9 +14,9 @@ const ALONG: f64 = 1e-6;
 /// A frame whose third axis is the tool axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TiltedPlane {
-    /// Its origin, mm, part frame.
+    /// Origin, mm, part frame.
     pub origin: Vector3<f64>,
-    /// Its axes as columns, unit vectors of the part frame, right-handed.
+    /// Axes as columns, unit vectors of the part frame, right-handed.
     pub axes: Matrix3<f64>,
     /// The angles of the control's convention, degrees, as they are printed; zero where it has none.
     pub angles: [f64; 3],
@@ -65,7 +65,7 @@ impl TiltedPlane {
         self.origin + self.axes * point
     }
 
-    /// Its normal, unit vector, part frame.
+    /// Normal, unit vector, part frame.
     pub fn normal(&self) -> Vector3<f64> {
         self.axes.column(2).into_owned()
     }

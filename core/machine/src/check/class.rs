@@ -47,13 +47,13 @@ pub struct Between {
 /// One axis, as the file describes it.
 #[derive(Clone, Debug, Serialize)]
 pub struct AxisLine {
-    /// Its address.
+    /// Address of the axis.
     pub name: String,
     /// It turns.
     pub rotary: bool,
     /// It carries the part.
     pub carries_part: bool,
-    /// Its direction, the way the tool moves seen from the part; `reversed` is in it.
+    /// Direction, the way the tool moves seen from the part; `reversed` is in it.
     pub direction: [f64; 3],
     /// The direction in words.
     pub along: String,

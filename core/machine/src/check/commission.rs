@@ -34,7 +34,7 @@ pub struct Commission {
 pub struct Trial {
     /// Place of the axis in the chain.
     pub place: usize,
-    /// By how much, mm or radians.
+    /// Way of the axis, mm or radians.
     pub by: f64,
     /// mm/min or deg/min.
     pub feed: f64,

@@ -63,14 +63,14 @@ pub struct Share {
 pub enum Differing {
     /// The axes have other names, or another order or kind.
     Axes {
-        /// Those of the machine, in chain order.
+        /// Axes of the machine, in chain order.
         machine: Vec<String>,
-        /// Those of the other.
+        /// Axes of the other, in chain order.
         nominal: Vec<String>,
     },
     /// One of the two cannot be brought to the part origin with its rotary axes at zero.
     NoZero {
-        /// Its name.
+        /// Name of that machine.
         machine: String,
     },
 }

@@ -12,15 +12,15 @@ use crate::kinematics::{Joints, Unreachable};
 pub struct Solutions {
     /// Tool axis, part frame.
     pub axis: [f64; 3],
-    /// Its tilt from +Z, degrees.
+    /// Tilt from +Z, degrees.
     pub tilt_deg: f64,
-    /// Its azimuth from +X towards +Y, degrees.
+    /// Azimuth from +X towards +Y, degrees.
     pub azimuth_deg: f64,
     /// Ways, full turns left aside.
     pub ways: Vec<WayOfPointing>,
     /// Solutions inside travel and at positions of index axes, full turns counted.
     pub inside: usize,
-    /// They were searched: there may be more.
+    /// Set where the ways were searched: there may be more.
     pub at_least: bool,
 }
 
@@ -41,7 +41,7 @@ pub struct WayOfPointing {
 /// What the control shows of an axis.
 #[derive(Clone, Debug, Serialize)]
 pub struct Reading {
-    /// Its address.
+    /// Address of the axis.
     pub axis: String,
     /// mm or degrees.
     pub value: f64,

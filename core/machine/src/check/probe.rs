@@ -86,12 +86,12 @@ impl<'a> Probe<'a> {
         self.length
     }
 
-    /// Its chain with the tool in it.
+    /// The machine's chain with the tool in it.
     pub fn chain(&self) -> &Chain {
         self.solver().chain()
     }
 
-    /// Its solver with the index axes where they start.
+    /// The machine's solver with the index axes where they start.
     pub(super) fn solver(&self) -> &Solver {
         // There is always one.
         &self.solvers[0]
@@ -112,7 +112,7 @@ impl<'a> Probe<'a> {
         &self.home
     }
 
-    /// In how many independent ways the tool axis can move: 0, 1 (along a curve) or 2 (over an area).
+    /// Number of independent ways in which the tool axis can move: 0, 1 (along a curve) or 2 (over an area).
     pub fn freedom(&self) -> usize {
         self.freedom
     }
@@ -314,7 +314,7 @@ impl<'a> Probe<'a> {
         solved.flatten().map(|joints| self.turns(&joints)).sum()
     }
 
-    /// There is such a way.
+    /// Some way makes the tool axis `axis`.
     pub fn makes(&self, axis: Vector3<f64>) -> bool {
         self.solvers.iter().any(|solver| {
             self.solved(solver, Vector3::zeros(), axis, EXACT)

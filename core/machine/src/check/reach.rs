@@ -23,7 +23,7 @@ const CURVE: usize = 361;
 /// The reachable cone.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Reach {
-    /// In how many independent ways the tool axis can move in a cut: 0, 1 (along a curve), 2 (over an area).
+    /// Number of independent ways in which the tool axis can move in a cut: 0, 1 (along a curve), 2 (over an area).
     pub freedom: usize,
     /// Share of the sphere of directions that can be made, 0 to 1.
     pub share_of_sphere: f64,
@@ -44,12 +44,12 @@ pub struct Reach {
     pub tilt_in_all_azimuths_deg: Option<f64>,
     /// Largest tilt from +Z that can be made in some azimuth, degrees; none if no direction can.
     pub tilt_in_some_azimuth_deg: Option<f64>,
-    /// Such an azimuth, from +X towards +Y, degrees.
+    /// Azimuth of the largest tilt, from +X towards +Y, degrees.
     pub azimuth_of_largest_tilt_deg: Option<f64>,
     /// Solutions for the tool upright in the part, within `axis_tolerance` and at the positions of index axes, as posting
     /// takes them; an axis that may stand anywhere counts once, and so does one on every full turn.
     pub ways_upright: usize,
-    /// For a picture.
+    /// Cells of the sphere for a picture.
     #[serde(skip)]
     pub map: Map,
 }
@@ -139,7 +139,7 @@ impl Reach {
         }
     }
 
-    /// Of a chain without a closed form: what the search over a coarse map finds.
+    /// Finds the reach of a chain without a closed form by a search over a coarse map.
     fn by_search(probe: &Probe<'_>) -> Self {
         let search::Found { cells, borders } = search::directions(probe);
         let band = |edge: usize| PI * edge as f64 / search::TILTS as f64;
@@ -204,7 +204,7 @@ impl Reach {
     }
 }
 
-/// Along one azimuth: the tilt up to which all can be made (none if not even +Z), and the largest of all.
+/// Tilt along one azimuth up to which all can be made (none if not even +Z), and the largest of all.
 fn tilts(probe: &Probe<'_>, azimuth: f64) -> [Option<f64>; 2] {
     let made = |tilt: f64| probe.makes(direction(tilt, azimuth));
     let at = |step: usize| PI * step as f64 / STEPS as f64;

@@ -26,7 +26,7 @@ pub(super) const TILTS: usize = 36;
 pub(super) struct Found {
     /// 1 for each that is made, 0 for the others: a row a band of tilt, in it a cell an azimuth.
     pub cells: Vec<Vec<usize>>,
-    /// For each azimuth the tilt up to which all are made, and the largest that is, radians; none if not even the first.
+    /// Tilt at each azimuth up to which all are made, and the largest that is, radians; none if not even the first.
     pub borders: Vec<[Option<f64>; 2]>,
 }
 
@@ -124,7 +124,7 @@ impl Flood<'_> {
         Some(inside)
     }
 
-    /// From each cell that was made to its neighbours.
+    /// Searches on from each cell that was made to its neighbours.
     fn spread(&mut self) {
         while let Some([band, cell]) = self.queue.pop_front() {
             let Some(from) = self.cells[band][cell] else {

@@ -40,7 +40,7 @@ pub(super) fn solvers(machine: &Machine, length: f64) -> Result<Vec<Solver>, NoC
     Ok(solvers)
 }
 
-/// Of an axis in steps, so many positions are looked at.
+/// Most positions of an axis in steps that are looked at.
 const MOST_STEPS: f64 = 720.0;
 
 /// Where an index axis can stand inside its travel; of an endless one within a turn. Empty if anywhere.

@@ -19,7 +19,7 @@ use crate::kinematics::{Chain, Joint, MAX_AXES};
 pub struct Sign {
     /// Address of the axis.
     pub axis: String,
-    /// By how much its reading changes, mm or degrees.
+    /// Change of the axis' reading, mm or degrees.
     pub by: f64,
     /// What the tool does, seen from the part.
     pub tool: String,

@@ -9,7 +9,7 @@ use super::build::Builder;
 use super::file::{AccuracyFile, ControlPointFile, Method, Placement};
 use crate::diagnostic::{Place, Short};
 
-/// Of the tool axis' tolerance so much may be used close to a pole; the rest is for what happens between points.
+/// Share of the tool axis' tolerance that may be used close to a pole; the rest is for what happens between points.
 pub const SHARE_AT_POLES: f64 = 0.75;
 
 /// Tolerances and how they are kept.
@@ -37,7 +37,7 @@ pub struct Accuracy {
     pub axis_tolerance: f64,
     /// Largest deviation of the tip in a rapid, mm.
     pub rapid_tolerance: f64,
-    /// By how much a point may be moved to compensate what the servos leave, mm; none: not at all.
+    /// Largest way of a point that is moved to compensate what the servos leave, mm; none: not at all.
     pub servo_compensation: Option<f64>,
 }
 

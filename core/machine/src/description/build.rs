@@ -33,7 +33,7 @@ pub struct Evaluated {
     pub file: String,
     /// Where, bytes of the file's text, its quotes with it.
     pub span: Range<usize>,
-    /// Its value, in the file's units.
+    /// Value in the file's units.
     pub value: f64,
 }
 

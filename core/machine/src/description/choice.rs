@@ -66,9 +66,9 @@ pub struct Rewind {
 /// How far the tool is drawn back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Retract {
-    /// So many mm along the tool axis.
+    /// A way along the tool axis, mm.
     Distance(f64),
-    /// Along the tool axis until the tip stands so high over the part origin, mm along Z of the part.
+    /// A height of the tip over the part origin to which it goes along the tool axis, mm along Z of the part.
     Plane(f64),
 }
 

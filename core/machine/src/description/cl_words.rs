@@ -57,7 +57,7 @@ impl WordRule {
         self.lines.iter().map(fill).collect()
     }
 
-    /// As the machine file has it.
+    /// The rule's name as the machine file has it.
     fn name(&self) -> String {
         self.words.join("/")
     }

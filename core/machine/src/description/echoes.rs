@@ -3,7 +3,7 @@
 use super::layers::Sources;
 use crate::diagnostic::Diagnostic;
 
-/// Of the faults that were `found` without what is wrong where `hiding` says the ones that stand on their own.
+/// Keeps those of the faults `found` that stand on their own, and do not repeat one of `hiding`.
 ///
 /// What could not be read is missing where it stands: whatever is said of its table may be its echo, and what is said of
 /// the chain, which all tables make together, too.

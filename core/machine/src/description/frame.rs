@@ -15,7 +15,7 @@ use crate::kinematics::travel::passed;
 /// More rotary axes between bed and tool are those of an arm.
 const MOST_SWIVELS: usize = 3;
 
-/// So far from the ends of travel linear axes stay over a first position, if the file does not say, mm.
+/// Distance that linear axes keep from the ends of their travel over a first position, if the file does not say, mm.
 const ROOM: f64 = 50.0;
 
 /// The positions of a machine around a program's moves.
@@ -30,7 +30,7 @@ pub struct Frame {
     pub leave: Option<f64>,
     /// The machine file says so, and answers for it; else it is the end of travel away from the part.
     pub retract_said: bool,
-    /// So far from the ends of travel linear axes stay over a first position, mm.
+    /// Distance that linear axes keep from the ends of their travel over a first position, mm.
     pub room: f64,
     /// Where axes stand before a tool change, the tool retracted: mm or radians.
     pub change: Vec<(usize, f64)>,

@@ -23,7 +23,7 @@ pub(super) struct Typed {
     pub(super) file: Option<MachineFile>,
     /// All keys that are not known, all values of another kind than their keys ask for, and what is missing.
     pub(super) faults: Vec<Diagnostic>,
-    /// Those of them that leave something out of the file: a slip is read as what was likely meant, and leaves nothing out.
+    /// Faults that leave something out of the file: a slip is read as what was likely meant, and leaves nothing out.
     pub(super) hiding: Vec<Diagnostic>,
 }
 

@@ -20,7 +20,7 @@ use crate::diagnostic::{Diagnostic, Place, meant};
 pub struct Source {
     /// File name, or `--set`.
     pub name: String,
-    /// Its text.
+    /// Text of the file.
     pub text: String,
 }
 
@@ -103,11 +103,11 @@ const DEPTH: usize = 8;
 #[derive(Debug)]
 pub(crate) struct Sources {
     sources: Vec<(usize, Source)>,
-    /// Of each source what can be read of it.
+    /// Text of each source that can be read.
     readable: Vec<Readable>,
-    /// Of each source where its lines begin: a finding is placed without a walk through the text.
+    /// Starts of the lines of each source: a finding is placed without a walk through the text.
     lines: Vec<Vec<usize>>,
-    /// So many of them are files; the rest are settings.
+    /// Number of sources that are files; the rest are settings.
     files: usize,
     /// The machine that the last file extends is not there.
     orphan: Option<Diagnostic>,

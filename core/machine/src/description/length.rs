@@ -9,10 +9,10 @@ use super::{Axis, Machine};
 use crate::axis_words;
 use crate::kinematics::Joints;
 
-/// Along which axis the control puts the tool's length where the words are axis positions.
+/// The axis along which the control puts the tool's length where the words are axis positions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LengthAxis {
-    /// As its dialect does.
+    /// The one that the dialect takes.
     #[default]
     Dialect,
     /// The one of this place in the chain; the machine file answers for it.

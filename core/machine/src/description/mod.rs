@@ -65,9 +65,9 @@ use crate::servo::Servo;
 /// A machine.
 #[derive(Clone, Debug)]
 pub struct Machine {
-    /// Its name, as the file gives it.
+    /// Name, as the file gives it.
     pub name: String,
-    /// Its axes in chain order, from the workpiece to the tool.
+    /// Axes in chain order, from the workpiece to the tool.
     pub axes: Vec<Axis>,
     /// Where the part origin sits with all axes at zero, mm, machine frame.
     pub mount: Vector3<f64>,
@@ -79,7 +79,7 @@ pub struct Machine {
     pub gauge: Vector3<f64>,
     /// Tool axis with all axes at zero, unit vector from the tip to the holder, machine frame.
     pub tool_axis: Vector3<f64>,
-    /// Along which axis the control puts its length.
+    /// The axis along which the control puts the tool's length.
     pub length_axis: LengthAxis,
     /// Leading edge of the tool (knife, disc) with all axes at zero, unit vector across the tool axis,
     /// machine frame; none for a tool that turns.
@@ -88,13 +88,13 @@ pub struct Machine {
     pub control_point: ControlPoint,
     /// Tool lengths by tool number, mm, from the gauge point to the tip.
     pub tools: Vec<(u32, f64)>,
-    /// Its control.
+    /// The control.
     pub control: Control,
     /// How fast its spindle turns.
     pub spindle: SpindleSpeeds,
     /// Lines of the program for words of the CL file.
     pub word_rules: Vec<WordRule>,
-    /// By how much its control may leave the path, by operation.
+    /// Tolerances within which the control may leave the path, by operation.
     pub smoothing: SmoothingRules,
     /// Text of its programs.
     pub program: ProgramRules,
@@ -136,7 +136,7 @@ pub struct UnusedOptions {
 /// A head that the program can swap in.
 #[derive(Clone, Debug)]
 pub struct Head {
-    /// Its name in `HEAD/name`.
+    /// Name in `HEAD/name`.
     pub name: String,
     /// The line of the program that swaps it in, letter for letter; none if the operator does.
     pub word: Option<String>,
@@ -149,7 +149,7 @@ pub struct Head {
 /// One axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// Its address, `X`, `C`.
+    /// Address, `X`, `C`.
     pub name: String,
     /// Where the file describes it.
     pub place: Option<Place>,
@@ -198,13 +198,13 @@ pub struct Indexed {
 pub enum Positions {
     /// Anywhere in its travel.
     Any,
-    /// At these values, mm or radians.
+    /// Values, mm or radians.
     List(Vec<f64>),
-    /// At all whole multiples of `step` from `first`, mm or radians.
+    /// All whole multiples of `step` from `first`, mm or radians.
     Step {
         /// One of them.
         first: f64,
-        /// Their distance.
+        /// Distance from one to the next.
         step: f64,
     },
 }
@@ -309,9 +309,9 @@ pub struct Control {
 /// An option for a plugin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GivenOption {
-    /// Its key.
+    /// Key of the option.
     pub key: String,
-    /// Its value.
+    /// Value of the option.
     pub value: OptionValue,
     /// Where it stands.
     pub place: Option<Place>,
@@ -373,7 +373,7 @@ impl Machine {
         Solver::with(chain, &freedom)
     }
 
-    /// That the chain cannot be solved, as a finding. What its file alone says was refused when it was loaded: this is
+    /// The finding that the chain cannot be solved. What its file alone says was refused when it was loaded: this is
     /// for index axes that stand elsewhere since.
     pub fn unsolvable(&self, lack: &NoClosedForm) -> Diagnostic {
         let (message, help) = lack.told(|joint| &self.axes[joint].name);

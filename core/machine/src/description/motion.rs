@@ -138,7 +138,7 @@ pub struct MotionRules {
     pub tip_jump: Option<f64>,
     /// How it passes from one cut to the next before the program says anything of it.
     pub corner: CornerRule,
-    /// By how much it may leave the path at a corner where the program names no tolerance, mm; none: as far as its rule
+    /// Distance by which it may leave the path at a corner where the program names no tolerance, mm; none: as far as its rule
     /// leads.
     pub corner_tolerance: Option<f64>,
     /// How it leaves the path at a corner.

@@ -11,7 +11,7 @@ use super::limits::MOST_NUMBER;
 use super::quantity::{Number, Quantity};
 use crate::diagnostic::meant;
 
-/// So much of an expression is told in a message, in bytes.
+/// Longest piece of an expression that a message shows, bytes.
 const SHOWN: usize = 80;
 
 impl Builder<'_> {
@@ -168,7 +168,7 @@ impl Builder<'_> {
 
 /// Why a parameter has no value.
 enum Unsettled {
-    /// Its own expression has none.
+    /// The parameter's own expression has none.
     Own(String),
     /// It is defined by itself.
     Circle(String),

@@ -53,13 +53,13 @@ words! {
 pub struct PlanRules {
     /// Largest contour error that the servos make of the path, mm; none: not limited.
     pub contour_error: Option<f64>,
-    /// By how much the way of one interpolation period may stray from the path, mm; none: not limited.
+    /// Distance by which the way of one interpolation period may stray from the path, mm; none: not limited.
     pub chord_error: Option<f64>,
     /// A block is cut where its feed changes if that saves at least this time, s.
     pub least_saving: f64,
     /// No block is cut into pieces that take less than this, s.
     pub shortest_block: f64,
-    /// By how much the curve that is planned along may leave the path of the blocks, mm.
+    /// Distance by which the curve that is planned along may leave the path of the blocks, mm.
     pub smoothing: f64,
     /// Which solver plans.
     pub solver: PlanSolver,

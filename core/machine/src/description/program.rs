@@ -16,13 +16,13 @@ use crate::program_text::{
 /// A place of the program that a machine file has text for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextPlace {
-    /// Behind the start.
+    /// After the start.
     Header,
-    /// Before the end.
+    /// Lines before the end.
     Footer,
     /// A tool change.
     ToolChange,
-    /// Behind a tool change.
+    /// After a tool change.
     AfterToolChange,
     /// Before a tool change but the first.
     BetweenTools,
@@ -39,7 +39,7 @@ pub enum TextPlace {
 }
 
 impl TextPlace {
-    /// As a machine file writes it.
+    /// The key of a machine file for it.
     pub fn key(self) -> &'static str {
         match self {
             Self::Header => "header",
@@ -111,7 +111,7 @@ pub struct ProgramText {
 }
 
 impl ProgramText {
-    /// Its lines with these facts.
+    /// Fills the template with these facts.
     ///
     /// # Errors
     /// What is wrong, with its place in the machine file.
@@ -133,7 +133,7 @@ impl ProgramText {
 /// What the machine file says of the program's text.
 #[derive(Clone, Debug, Default)]
 pub struct ProgramRules {
-    /// Its templates.
+    /// Templates.
     pub texts: Vec<ProgramText>,
     /// The next tool is made ready behind each tool change.
     pub preselect: bool,

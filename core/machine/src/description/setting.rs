@@ -18,7 +18,7 @@ pub enum Setting {
     Number {
         /// The parameter or the key.
         name: String,
-        /// Its value.
+        /// Value that it gets.
         value: f64,
     },
     /// Where the part origin sits, all axes at zero, machine frame, mm.

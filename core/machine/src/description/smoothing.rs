@@ -5,21 +5,21 @@ use super::program_file::SmoothingFile;
 use super::quantity::Quantity;
 use crate::diagnostic::Short;
 
-/// By how much the control may leave the path.
+/// Tolerances within which the control may leave the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Smoothing {
-    /// Of the tip, mm.
+    /// Tolerance of the tip, mm.
     pub tolerance: f64,
-    /// Of the tool axis, degrees; none where it does not turn or the file does not say.
+    /// Tolerance of the tool axis, degrees; none where it does not turn or the file does not say.
     pub axis_tolerance: Option<f64>,
 }
 
 /// What holds in which operation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SmoothingRules {
-    /// In those that have no rule; none: the control keeps the path as it does by default.
+    /// Tolerances in operations that have no rule; none: the control keeps the path as it does by default.
     pub default: Option<Smoothing>,
-    /// By patterns of their names, in capitals.
+    /// Tolerances by patterns of the operations' names, in capitals.
     operations: Vec<(String, Smoothing)>,
 }
 
@@ -36,7 +36,7 @@ impl SmoothingRules {
         all.map(|smoothing| smoothing.tolerance).reduce(f64::max)
     }
 
-    /// In the operation of this name.
+    /// Tolerances in the operation of this name.
     pub fn of(&self, name: &str) -> Option<Smoothing> {
         let name = name.to_uppercase();
         self.operations

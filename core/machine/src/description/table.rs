@@ -20,7 +20,7 @@ use super::quantity::Number;
 /// A key of a machine file.
 #[derive(Debug)]
 pub(crate) struct Key {
-    /// Its name.
+    /// Name of the key.
     pub name: &'static str,
     /// What it means, as an editor shows it.
     pub doc: &'static str,
@@ -75,7 +75,7 @@ pub(crate) trait Entry: Sized {
         Self::absent().is_none()
     }
 
-    /// Its schema; that of a table or a word is put under its name and referred to.
+    /// Schema of the type; that of a table or a word is put under its name and referred to.
     fn schema(named: &mut Schemas) -> Value;
 }
 
@@ -84,7 +84,7 @@ pub(crate) trait Entry: Sized {
 pub(crate) struct Given<T> {
     value: T,
     span: Range<usize>,
-    /// Its key.
+    /// Key that it is given.
     pub key: &'static Key,
 }
 
@@ -126,7 +126,7 @@ macro_rules! keys {
             use $crate::description::table::*;
 
             impl $table {
-                /// Its keys, in the order of its rows.
+                /// Keys in the order of the rows.
                 pub(crate) const KEYS: &'static [Key] = &[$(Key {
                     name: stringify!($key),
                     doc: concat!($($doc),*),

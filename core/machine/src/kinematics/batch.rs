@@ -19,7 +19,7 @@ pub struct Axes {
     pub joints: [Lanes; MAX_AXES],
     /// Sines of the rotary ones.
     pub sines: [Lanes; MAX_AXES],
-    /// Their cosines.
+    /// Cosines of the angles.
     pub cosines: [Lanes; MAX_AXES],
 }
 
@@ -54,7 +54,7 @@ impl Default for Traces {
 }
 
 impl Turns {
-    /// Of one point of a batch.
+    /// Turns of one point of a batch.
     #[inline]
     pub fn of_lane(at: &Axes, lane: usize) -> Self {
         let mut turns = Self::default();

@@ -67,7 +67,7 @@ pub struct Trace {
     pub pose: Pose,
     /// The axis values it is reached with.
     pub joints: Joints,
-    /// Their sines and cosines.
+    /// Sines and cosines of the angles.
     pub turns: Turns,
     /// For each rotary joint, how the tip moves with it, mm a radian, before that joint has turned: its
     /// direction × the arm from its line to the tip.
@@ -79,7 +79,7 @@ pub struct Trace {
 /// A chain with a tool in it: all that kinematics needs to know of a machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
-    /// From the workpiece to the tool.
+    /// Joints from the workpiece to the tool.
     joints: Vec<Joint>,
     /// Where the part origin sits with all axes at zero, mm, machine frame.
     mount: Vector3<f64>,

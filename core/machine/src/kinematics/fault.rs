@@ -26,7 +26,7 @@ pub enum Unreachable {
 pub enum NoClosedForm {
     /// More linear axes move at once than the three that a tip needs.
     ManyLinearAxes {
-        /// Their places in the chain.
+        /// Places of the axes in the chain.
         joints: Vec<usize>,
     },
     /// Fewer than three linear axes, and rotary ones do not make up for them.
@@ -47,12 +47,12 @@ pub enum NoClosedForm {
     FlatLinearAxes,
     /// More free rotary axes than the tool needs.
     RotaryAxes {
-        /// Their places in the chain.
+        /// Places of the axes in the chain.
         joints: Vec<usize>,
     },
     /// Two free rotary axes are parallel.
     Parallel {
-        /// Their places in the chain.
+        /// Places of the axes in the chain.
         joints: [usize; 2],
     },
 }

@@ -15,7 +15,7 @@ pub enum Second {
     Share {
         /// The other axis.
         of: usize,
-        /// From 0 to 1.
+        /// Share, 0 to 1.
         share: f64,
     },
     /// It moves where the travel of axis `of` ends.
@@ -37,7 +37,7 @@ pub(super) struct Linear {
     /// Length of its longest row: no axis goes farther than this times what they go together. Infinite without it.
     pub(super) reach: f64,
     seconds: Vec<Quill>,
-    /// There are linear axes beside the three.
+    /// Set where there are linear axes beside the three.
     pub(super) more: bool,
 }
 
@@ -47,7 +47,7 @@ struct Quill {
     joint: usize,
     /// Which of the three.
     beside: usize,
-    /// Its share of the way; none if it moves where the other's travel ends.
+    /// Share of the way; none if it moves where the other's travel ends.
     share: Option<f64>,
     /// Travel of the other, mm.
     travel: [f64; 2],

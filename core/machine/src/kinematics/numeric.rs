@@ -78,7 +78,7 @@ pub(super) fn solve(
 pub(super) struct Ways {
     /// Independent directions of the tip.
     pub of_tip: usize,
-    /// Those that are left while the tool axis keeps its direction.
+    /// Ways that are left while the tool axis keeps its direction.
     pub with_axis_kept: usize,
     /// Independent ways of the tool axis to turn while the tip stays.
     pub of_axis_with_tip_kept: usize,
@@ -87,7 +87,7 @@ pub(super) struct Ways {
 /// A velocity is nothing where it is less than this share of the largest, or of what is left of it.
 const NOTHING: f64 = 1e-7;
 
-/// In how many ways tip and tool move, the free joints standing at `joints`.
+/// Counts the ways in which tip and tool move, the free joints standing at `joints`.
 pub(super) fn ways(chain: &Chain, free: &[usize], joints: &Joints) -> Ways {
     let (_, jacobian) = linearised(chain, free, &Pose::default(), joints);
     let rank = |from: usize, rows: usize| {

@@ -19,7 +19,7 @@ impl HalfSpace {
     }
 }
 
-/// So far may an end be passed, mm: what sums of three products round off.
+/// Largest way past an end, mm: what sums of three products round off.
 const SLACK: f64 = 1e-7;
 
 /// The sine between planes below which they are parallel.

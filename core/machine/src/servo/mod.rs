@@ -154,7 +154,7 @@ pub enum Drive {
     Gear {
         /// Turns of the motor for one of the table.
         ratio: f64,
-        /// At the table, N·m/rad; none: rigid.
+        /// Stiffness at the table, N·m/rad; none: rigid.
         gear_stiffness: Option<f64>,
         /// Damping beside the stiffness, at the table, N·m·s/rad.
         gear_damping: f64,
@@ -204,7 +204,7 @@ pub struct Pid {
 /// approximation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
-    /// Its force, N, or torque, N·m.
+    /// Force, N, or torque, N·m.
     pub coulomb: f64,
     /// Below this speed it grows in proportion to speed, mm/s or degrees/s.
     pub width: f64,
@@ -217,13 +217,13 @@ pub struct Mechanics {
     pub travel: f64,
     /// Damping on the motor's shaft beside that of the motor, N·m·s/rad.
     pub shaft_damping: f64,
-    /// Between motor and table, N/m or N·m/rad; none: rigid.
+    /// Stiffness between motor and table, N/m or N·m/rad; none: rigid.
     pub stiffness: Option<f64>,
-    /// Beside the stiffness, N·s/m or N·m·s/rad.
+    /// Damping beside the stiffness, N·s/m or N·m·s/rad.
     pub stiffness_damping: f64,
-    /// Of the table, kg or kg·m².
+    /// Mass or inertia of the table, kg or kg·m².
     pub mass: f64,
-    /// Of the table's guide, N·s/m or N·m·s/rad.
+    /// Damping of the table's guide, N·s/m or N·m·s/rad.
     pub damping: f64,
 }
 
@@ -236,7 +236,7 @@ impl Mechanics {
 }
 
 impl Drive {
-    /// As the equations see it.
+    /// The drive as the equations see it.
     pub fn mechanics(&self) -> Mechanics {
         match *self {
             Self::Screw {

@@ -7,9 +7,9 @@ use super::{Drive, Servo, ServoModel};
 pub struct Parameter<'a> {
     /// The table below `[servo.X]` that it stands in, `loops.screw`; empty for `[servo.X]` itself.
     pub table: &'static str,
-    /// Its key in the machine file.
+    /// Key in the machine file.
     pub name: &'static str,
-    /// Its value, in the file's unit.
+    /// Value in the file's unit.
     pub value: &'a mut f64,
 }
 

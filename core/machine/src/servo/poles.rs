@@ -17,7 +17,7 @@ pub struct Pole {
 }
 
 impl Pole {
-    /// Its distance from zero, 1/s.
+    /// Distance from zero, 1/s.
     pub fn size(&self) -> f64 {
         libm::hypot(self.real, self.imaginary)
     }
@@ -34,7 +34,7 @@ impl fmt::Display for Pole {
     }
 }
 
-/// So many steps of the QR iteration a pole are far more than any matrix of a servo takes.
+/// Steps of the QR iteration a pole: far more than any matrix of a servo takes.
 const MOST_STEPS: usize = 1_000;
 
 /// A real part that is smaller than this share of the largest pole is zero but for rounding.

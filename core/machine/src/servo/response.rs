@@ -12,7 +12,7 @@ use crate::description::Machine;
 pub struct Response {
     space: StateSpace,
     poles: Vec<Pole>,
-    /// Of the table on its transmission, rad/s; none where that is rigid, or no part of the model.
+    /// Frequency of the table on its transmission, rad/s; none where that is rigid, or no part of the model.
     swing: Option<f64>,
 }
 
@@ -24,7 +24,7 @@ const PER_E_FOLD: f64 = 64.0;
 const HALVINGS: usize = 60;
 
 impl Response {
-    /// That of `servo`.
+    /// The response of `servo`.
     pub fn new(servo: &Servo) -> Self {
         let space = StateSpace::of(servo);
         // A servo whose poles cannot be found was refused when its machine was loaded.
@@ -36,7 +36,7 @@ impl Response {
         Self { space, poles, swing }
     }
 
-    /// Those of the axes of `machine`, by their places in the chain; none for an axis without a servo, which is where it
+    /// The responses of the axes of `machine`, by their places in the chain; none for an axis without a servo, which is where it
     /// is commanded.
     pub fn of_machine(machine: &Machine) -> Vec<Option<Self>> {
         let servos = machine.axes.iter().map(|axis| axis.servo.as_deref());

@@ -153,7 +153,7 @@ struct Places {
     order: usize,
     /// Position and velocity of the motor, seen at the axis.
     motor: usize,
-    /// Those of the table; of a rigid drive those of the motor.
+    /// States of the table; of a rigid drive those of the motor.
     table: usize,
     velocity_integral: Option<usize>,
     current: Option<usize>,
@@ -335,7 +335,7 @@ fn of_transfer(transfer: &Transfer) -> StateSpace {
 }
 
 impl Pid {
-    /// Its transfer function, eq. 2 of the feedrate paper (whose Table 2 calls the inertia A3 where A4 is meant).
+    /// The transfer function, eq. 2 of the feedrate paper (whose Table 2 calls the inertia A3 where A4 is meant).
     pub fn transfer(&self) -> Transfer {
         let gain = self.gain;
         let mut numerator = vec![gain * self.kd, gain * self.kp];

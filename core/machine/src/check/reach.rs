@@ -141,7 +141,7 @@ impl Reach {
 
     /// Finds the reach of a chain without a closed form by a search over a coarse map.
     fn by_search(probe: &Probe<'_>) -> Self {
-        let search::Found { cells, borders } = search::directions(probe);
+        let search::Directions { cells, borders } = search::directions(probe);
         let band = |edge: usize| PI * edge as f64 / search::TILTS as f64;
         let mut share = 0.0;
         for (row, cells) in cells.iter().enumerate() {

@@ -264,7 +264,7 @@ pub(super) struct Builder<'a> {
 }
 
 /// What is told by tables that say nothing of axes.
-struct WithoutChain {
+struct AxisFreeRules {
     accuracy: Accuracy,
     control_point: ControlPoint,
     spindle: SpindleSpeeds,
@@ -325,7 +325,7 @@ impl Builder<'_> {
         let rewind = file.rewind.as_ref().and_then(|rewind| self.rewind(rewind));
         let tools = self.tools(file);
         let options = self.control_options(file, &axes, &mut control_options);
-        let own = self.without_chain(file, &mut model_options);
+        let own = self.axis_free_rules(file, &mut model_options);
         let solids = self.solids(&file.solids, &axes);
         let motion = self.motion(&file.motion);
         let plan = self.plan(&file.plan, &motion, own.accuracy.tolerance);
@@ -442,11 +442,11 @@ impl Builder<'_> {
     }
 
     /// What is told by tables that say nothing of axes.
-    fn without_chain(
+    fn axis_free_rules(
         &mut self,
         file: &MachineFile,
         model_options: &mut BTreeMap<String, Vec<GivenOption>>,
-    ) -> WithoutChain {
+    ) -> AxisFreeRules {
         let accuracy = self.accuracy(&file.accuracy, model_options);
         let control_point = self.control_point(&file.tool.control_point);
         let spindle = self.spindle(&file.spindle);
@@ -455,7 +455,7 @@ impl Builder<'_> {
         let program = self.program(&file.program);
         let smoothing = file.program.smoothing.as_ref();
         let smoothing = smoothing.map(|file| self.smoothing(file)).unwrap_or_default();
-        WithoutChain { accuracy, control_point, spindle, arcs, word_rules, program, smoothing }
+        AxisFreeRules { accuracy, control_point, spindle, arcs, word_rules, program, smoothing }
     }
 
     /// What is wrong with the tables that say nothing of axes.
@@ -475,7 +475,7 @@ impl Builder<'_> {
             self.rewind(rewind);
         }
         self.tools(file);
-        let accuracy = self.without_chain(file, model_options).accuracy;
+        let accuracy = self.axis_free_rules(file, model_options).accuracy;
         let motion = self.motion(&file.motion);
         self.plan(&file.plan, &motion, accuracy.tolerance);
     }

@@ -13,7 +13,7 @@ use super::program_file::ProgramFile;
 use super::quantity::Quantity;
 use super::servo_file::ServoFile;
 use super::table::{
-    Count, DeValue, Entry, Key, Schemas, Spanned, Unread, Value, Why, defined, keys, words,
+    Count, DeValue, Entry, EntryError, Key, Schemas, Slip, Spanned, Value, defined, keys, words,
 };
 
 /// Names of axes.
@@ -167,11 +167,11 @@ pub(crate) enum Lines {
 }
 
 impl Entry for Lines {
-    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, Unread> {
+    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         let one = String::read(value, key).map(Self::One);
-        one.or_else(|_| Vec::read(value, key).map(Self::Several)).map_err(|_| Unread {
+        one.or_else(|_| Vec::read(value, key).map(Self::Several)).map_err(|_| EntryError {
             span: value.span(),
-            why: Why::Kind("a line of the program or a list of lines is expected".to_owned()),
+            slip: Slip::Kind("a line of the program or a list of lines is expected".to_owned()),
         })
     }
 

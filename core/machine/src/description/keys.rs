@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 use super::Axis;
 use super::file::MachineFile;
 use super::layers::Sources;
-use super::table::{Unread, Why};
+use super::table::{EntryError, Slip};
 use crate::diagnostic::{Diagnostic, meant, nearest};
 
 /// Keys at the top of a file that are taken out before the rest is read.
@@ -18,7 +18,7 @@ pub(super) const TAKEN_OUT: [&str; 2] = ["extends", "head"];
 const MOST: usize = 20;
 
 /// What a merged table says, as far as it can be read.
-pub(super) struct Typed {
+pub(super) struct TypedFile {
     /// The file without what could not be read; none where something that it needs is missing.
     pub(super) file: Option<MachineFile>,
     /// All keys that are not known, all values of another kind than their keys ask for, and what is missing.
@@ -28,28 +28,28 @@ pub(super) struct Typed {
 }
 
 /// What the merged table says; `whole` if all of the texts that it was merged from could be read.
-pub(super) fn typed(mut table: Spanned<DeTable<'_>>, sources: &Sources, whole: bool) -> Typed {
+pub(super) fn typed(mut table: Spanned<DeTable<'_>>, sources: &Sources, whole: bool) -> TypedFile {
     let mut faults = Vec::new();
     let mut hiding: Vec<Diagnostic> = Vec::new();
     let mut taken: Vec<String> = Vec::new();
     let mut stood_in = false;
     while faults.len() < MOST {
         // Reading ends at its first fault: what is wrong is put right or taken out, and the rest read again.
-        let Unread { span, why } = match MachineFile::of(table.get_ref(), table.span()) {
+        let EntryError { span, slip } = match MachineFile::of(table.get_ref(), table.span()) {
             Ok(file) => {
-                return Typed { file: Some(file).filter(|_| !stood_in), faults, hiding };
+                return TypedFile { file: Some(file).filter(|_| !stood_in), faults, hiding };
             }
             Err(unread) => unread,
         };
         let near_taken = |key: &str| nearest(key, taken.iter().map(String::as_str)).is_some();
-        let echo = matches!(why, Why::Missing(key) if !whole || near_taken(key));
-        let fault = why.fault().at(sources.place(span.clone()));
-        let gone = match why {
-            Why::Missing(key) => {
+        let echo = matches!(slip, Slip::Missing(key) if !whole || near_taken(key));
+        let fault = slip.fault().at(sources.place(span.clone()));
+        let gone = match slip {
+            Slip::Missing(key) => {
                 stood_in = true;
                 stand_in(table.get_mut(), key)
             }
-            _ if put_right(table.get_mut(), &span, &why) => true,
+            _ if put_right(table.get_mut(), &span, &slip) => true,
             _ => take(table.get_mut(), &span).is_some_and(|key| {
                 taken.push(key);
                 hiding.push(fault.clone());
@@ -63,10 +63,10 @@ pub(super) fn typed(mut table: Spanned<DeTable<'_>>, sources: &Sources, whole: b
             break;
         }
     }
-    Typed { file: None, faults, hiding }
+    TypedFile { file: None, faults, hiding }
 }
 
-impl Why {
+impl Slip {
     /// What is wrong, and what would help: the finding has no place yet.
     fn fault(&self) -> Diagnostic {
         let of_several = |says: &str, name: &str, known: &[&str]| {
@@ -112,22 +112,24 @@ fn take(table: &mut DeTable<'_>, span: &Range<usize>) -> Option<String> {
 }
 
 /// Puts what was likely meant in the place of a misspelt key or word at `span`; whether there is anything near.
-fn put_right(table: &mut DeTable<'_>, span: &Range<usize>, why: &Why) -> bool {
-    match why {
-        Why::Key { name, known } => nearest(name, known.iter().copied()).is_some_and(|meant| {
-            with_key(table, span, &mut |table, key| {
-                let Some(value) = table.remove(key) else {
-                    return false;
-                };
-                // Where it stands already, nothing is missing without the slip.
-                if !table.contains_key(meant) {
-                    let name = Spanned::new(span.clone(), meant.to_owned().into());
-                    table.insert(name, value);
-                }
-                true
+fn put_right(table: &mut DeTable<'_>, span: &Range<usize>, slip: &Slip) -> bool {
+    match slip {
+        Slip::Key { name, known } => {
+            nearest(name, known.iter().copied()).is_some_and(|meant| {
+                with_key(table, span, &mut |table, key| {
+                    let Some(value) = table.remove(key) else {
+                        return false;
+                    };
+                    // Where it stands already, nothing is missing without the slip.
+                    if !table.contains_key(meant) {
+                        let name = Spanned::new(span.clone(), meant.to_owned().into());
+                        table.insert(name, value);
+                    }
+                    true
+                })
             })
-        }),
-        Why::Word { name, known } => nearest(name, known.iter().copied()).is_some_and(|meant| {
+        }
+        Slip::Word { name, known } => nearest(name, known.iter().copied()).is_some_and(|meant| {
             with_value(table, span, &mut |value| {
                 *value = DeValue::String(meant.to_owned().into());
             })

@@ -6,7 +6,7 @@ use super::bounds::Bounds;
 use super::file::lines_schema;
 use super::quantity::Quantity;
 use super::table::{
-    DeValue, Entry, Key, Range, Schemas, Spanned, Unread, Value, defined, keys, of_another_kind,
+    DeValue, Entry, EntryError, Key, Range, Schemas, Spanned, Value, defined, keys, of_another_kind,
 };
 
 /// Tolerances of `[program.smoothing]`.
@@ -55,7 +55,7 @@ keys! {
 pub(crate) struct TextLines(pub Vec<(String, Option<Range<usize>>)>);
 
 impl Entry for TextLines {
-    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, Unread> {
+    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         let lines: Vec<Spanned<String>> = match value.get_ref() {
             DeValue::String(line) => return Ok(Self(vec![(line.to_string(), None)])),
             DeValue::Array(_) => Entry::read(value, key)?,

@@ -37,16 +37,16 @@ pub(crate) const fn last(bounds: &[Bounds]) -> Bounds {
     bounds[bounds.len() - 1]
 }
 
-/// Why a value cannot be read, and where it stands.
+/// A value that cannot be read: where it stands, and what is wrong.
 #[derive(Debug)]
-pub(crate) struct Unread {
+pub(crate) struct EntryError {
     pub span: Range<usize>,
-    pub why: Why,
+    pub slip: Slip,
 }
 
-/// Why a value cannot be read.
+/// What is wrong with a value that cannot be read.
 #[derive(Debug)]
-pub(crate) enum Why {
+pub(crate) enum Slip {
     /// The table has other keys than this one.
     Key { name: String, known: Vec<&'static str> },
     /// The value is one of a few words, and not this one.
@@ -63,7 +63,7 @@ pub(crate) trait Entry: Sized {
     ///
     /// # Errors
     /// The first thing in it that cannot be read.
-    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, Unread>;
+    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError>;
 
     /// The value where the file does not say it; none if it must.
     fn absent() -> Option<Self> {
@@ -139,7 +139,7 @@ macro_rules! keys {
                 ///
                 /// # Errors
                 /// The first thing in it that cannot be read.
-                pub(crate) fn of(table: &DeTable<'_>, span: Range<usize>) -> Result<Self, Unread> {
+                pub(crate) fn of(table: &DeTable<'_>, span: Range<usize>) -> Result<Self, EntryError> {
                     $(let mut $key: Option<$type> = None;)*
                     for (name, value) in table {
                         let key = known(name, Self::KEYS)?;
@@ -149,14 +149,14 @@ macro_rules! keys {
                         }
                     }
                     $(let $key = $key.or_else(Entry::absent).ok_or_else(|| {
-                        Unread { span: span.clone(), why: Why::Missing(stringify!($key)) }
+                        EntryError { span: span.clone(), slip: Slip::Missing(stringify!($key)) }
                     })?;)*
                     Ok(Self { $($key,)* })
                 }
             }
 
             impl Entry for $table {
-                fn read(value: &Spanned<DeValue<'_>>, _: &'static Key) -> Result<Self, Unread> {
+                fn read(value: &Spanned<DeValue<'_>>, _: &'static Key) -> Result<Self, EntryError> {
                     let table = entries(value, concat!("struct ", stringify!($table)))?;
                     Self::of(table, value.span())
                 }
@@ -210,7 +210,7 @@ macro_rules! words {
             })?
 
             impl Entry for $type {
-                fn read(value: &Spanned<DeValue<'_>>, _: &'static Key) -> Result<Self, Unread> {
+                fn read(value: &Spanned<DeValue<'_>>, _: &'static Key) -> Result<Self, EntryError> {
                     Ok([$(Self::$variant),*][word(value, &[$($word),*])?])
                 }
 
@@ -233,23 +233,26 @@ pub(crate) use {keys, words};
 pub(crate) fn known<S: AsRef<str>>(
     name: &Spanned<S>,
     keys: &'static [Key],
-) -> Result<&'static Key, Unread> {
+) -> Result<&'static Key, EntryError> {
     let text = name.get_ref().as_ref();
-    keys.iter().find(|key| key.name == text).ok_or_else(|| Unread {
+    keys.iter().find(|key| key.name == text).ok_or_else(|| EntryError {
         span: name.span(),
-        why: Why::Key { name: text.to_owned(), known: keys.iter().map(|key| key.name).collect() },
+        slip: Slip::Key { name: text.to_owned(), known: keys.iter().map(|key| key.name).collect() },
     })
 }
 
 /// The place of the word that `value` is among those that it can be.
-pub(crate) fn word(value: &Spanned<DeValue<'_>>, words: &[&'static str]) -> Result<usize, Unread> {
+pub(crate) fn word(
+    value: &Spanned<DeValue<'_>>,
+    words: &[&'static str],
+) -> Result<usize, EntryError> {
     let Some(name) = value.get_ref().as_str() else {
-        let why = Why::Kind("wanted string or table".to_owned());
-        return Err(Unread { span: value.span(), why });
+        let slip = Slip::Kind("wanted string or table".to_owned());
+        return Err(EntryError { span: value.span(), slip });
     };
-    words.iter().position(|word| *word == name).ok_or_else(|| Unread {
+    words.iter().position(|word| *word == name).ok_or_else(|| EntryError {
         span: value.span(),
-        why: Why::Word { name: name.to_owned(), known: words.to_vec() },
+        slip: Slip::Word { name: name.to_owned(), known: words.to_vec() },
     })
 }
 
@@ -257,12 +260,12 @@ pub(crate) fn word(value: &Spanned<DeValue<'_>>, words: &[&'static str]) -> Resu
 pub(crate) fn entries<'v, 'i>(
     value: &'v Spanned<DeValue<'i>>,
     what: &'static str,
-) -> Result<&'v DeTable<'i>, Unread> {
+) -> Result<&'v DeTable<'i>, EntryError> {
     value.get_ref().as_table().ok_or_else(|| of_another_kind(value, what))
 }
 
 /// The message for a value that is no `what`.
-pub(crate) fn of_another_kind(value: &Spanned<DeValue<'_>>, what: &'static str) -> Unread {
+pub(crate) fn of_another_kind(value: &Spanned<DeValue<'_>>, what: &'static str) -> EntryError {
     struct Nothing(&'static str);
     impl Visitor<'_> for Nothing {
         type Value = ();
@@ -273,14 +276,14 @@ pub(crate) fn of_another_kind(value: &Spanned<DeValue<'_>>, what: &'static str) 
     }
     let error = ValueDeserializer::from(value.clone()).deserialize_any(Nothing(what)).err();
     let message = error.map_or_else(String::new, |error| error.message().to_owned());
-    Unread { span: value.span(), why: Why::Kind(message) }
+    EntryError { span: value.span(), slip: Slip::Kind(message) }
 }
 
 /// A value that serde knows.
-pub(crate) fn plain<T: DeserializeOwned>(value: &Spanned<DeValue<'_>>) -> Result<T, Unread> {
-    T::deserialize(ValueDeserializer::from(value.clone())).map_err(|error| Unread {
+pub(crate) fn plain<T: DeserializeOwned>(value: &Spanned<DeValue<'_>>) -> Result<T, EntryError> {
+    T::deserialize(ValueDeserializer::from(value.clone())).map_err(|error| EntryError {
         span: error.span().unwrap_or_else(|| value.span()),
-        why: Why::Kind(error.message().to_owned()),
+        slip: Slip::Kind(error.message().to_owned()),
     })
 }
 
@@ -338,7 +341,7 @@ pub(crate) fn words_schema(
 }
 
 impl<T: Entry> Entry for Given<T> {
-    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, Unread> {
+    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         Ok(Self { value: T::read(value, key)?, span: value.span(), key })
     }
 
@@ -348,7 +351,7 @@ impl<T: Entry> Entry for Given<T> {
 }
 
 impl<T: Entry> Entry for Spanned<T> {
-    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, Unread> {
+    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         Ok(Self::new(value.span(), T::read(value, key)?))
     }
 
@@ -358,7 +361,7 @@ impl<T: Entry> Entry for Spanned<T> {
 }
 
 impl<T: Entry> Entry for Option<T> {
-    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, Unread> {
+    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         T::read(value, key).map(Some)
     }
 
@@ -372,7 +375,7 @@ impl<T: Entry> Entry for Option<T> {
 }
 
 impl<T: Entry> Entry for Vec<T> {
-    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, Unread> {
+    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         let DeValue::Array(items) = value.get_ref() else {
             return Err(of_another_kind(value, "a sequence"));
         };
@@ -389,7 +392,7 @@ impl<T: Entry> Entry for Vec<T> {
 }
 
 impl<T: Entry, const N: usize> Entry for [T; N] {
-    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, Unread> {
+    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         let DeValue::Array(items) = value.get_ref() else {
             return Err(of_another_kind(
                 value,
@@ -401,7 +404,7 @@ impl<T: Entry, const N: usize> Entry for [T; N] {
         items.try_into().map_err(|items: Vec<T>| {
             let message =
                 format!("invalid length {}, expected an array of length {N}", items.len());
-            Unread { span: value.span(), why: Why::Kind(message) }
+            EntryError { span: value.span(), slip: Slip::Kind(message) }
         })
     }
 
@@ -429,7 +432,7 @@ impl Name for Spanned<String> {
 }
 
 impl<N: Name, T: Entry> Entry for BTreeMap<N, T> {
-    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, Unread> {
+    fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         let table = entries(value, "a map")?.iter();
         table
             .map(|(name, value)| Ok((N::of(name.get_ref(), name.span()), T::read(value, key)?)))
@@ -449,7 +452,7 @@ impl<N: Name, T: Entry> Entry for BTreeMap<N, T> {
 macro_rules! plain {
     ($($type:ty: $schema:tt, $absent:expr;)*) => {$(
         impl Entry for $type {
-            fn read(value: &Spanned<DeValue<'_>>, _: &'static Key) -> Result<Self, Unread> {
+            fn read(value: &Spanned<DeValue<'_>>, _: &'static Key) -> Result<Self, EntryError> {
                 plain(value)
             }
 

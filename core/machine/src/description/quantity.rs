@@ -1,11 +1,10 @@
 //! Numbers of a machine file: values, or expressions of its parameters.
 
-use std::fmt;
+use serde_json::json;
 
-use serde::de::{Error, Visitor};
-use serde::{Deserialize, Deserializer};
-
-use super::table::Given;
+use super::table::{
+    DeValue, Entry, EntryError, Given, Key, Schemas, Spanned, Value, of_another_kind, plain,
+};
 
 /// A number, or an expression of the file's parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,28 +16,18 @@ pub(crate) enum Number {
 /// A number or expression, where it stands, and of which key.
 pub(crate) type Quantity = Given<Number>;
 
-impl<'de> Deserialize<'de> for Number {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct NumberVisitor;
-        impl Visitor<'_> for NumberVisitor {
-            type Value = Number;
+impl Entry for Number {
+    fn read(value: &Spanned<DeValue<'_>>, _: &'static Key) -> Result<Self, EntryError> {
+        let number = match value.get_ref() {
+            DeValue::String(text) => return Ok(Self::Expression(text.to_string())),
+            DeValue::Integer(_) => plain::<i64>(value).map(|number| number as f64),
+            _ => plain::<f64>(value),
+        };
+        let what = "a number, or an expression of parameters in quotes";
+        number.map(Self::Value).map_err(|_| of_another_kind(value, what))
+    }
 
-            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("a number, or an expression of parameters in quotes")
-            }
-
-            fn visit_f64<E: Error>(self, value: f64) -> Result<Number, E> {
-                Ok(Number::Value(value))
-            }
-
-            fn visit_i64<E: Error>(self, value: i64) -> Result<Number, E> {
-                Ok(Number::Value(value as f64))
-            }
-
-            fn visit_str<E: Error>(self, text: &str) -> Result<Number, E> {
-                Ok(Number::Expression(text.to_owned()))
-            }
-        }
-        deserializer.deserialize_any(NumberVisitor)
+    fn schema(_: &mut Schemas) -> Value {
+        json!({ "type": ["number", "string"] })
     }
 }

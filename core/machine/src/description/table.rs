@@ -15,7 +15,6 @@ use toml::de::ValueDeserializer;
 pub(crate) use toml::de::{DeTable, DeValue};
 
 use super::bounds::Bounds;
-use super::quantity::Number;
 
 /// A key of a machine file.
 #[derive(Debug)]
@@ -472,5 +471,4 @@ plain! {
     String: { "type": "string" }, None;
     i64: { "type": "integer", "format": "uint32" }, None;
     u32: { "type": "integer", "format": "uint32" }, None;
-    Number: { "type": ["number", "string"] }, None;
 }

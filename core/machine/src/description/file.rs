@@ -77,9 +77,9 @@ keys! {
         tools: BTreeMap<String, Quantity> = Bounds::names("^[0-9]+$"),
         /// The axes of the chain by their letters.
         axis: Spanned<BTreeMap<String, Spanned<AxisFile>>> = AXES,
-        /// STL files of the machine's bodies, for pictures alone; mm, machine frame, every axis at zero. An axis letter is what
-        /// that axis moves, `b` the bed: they are drawn in place of what follows from the chain. `w` is what is clamped with
-        /// the part, `t` a holder or head besides. A path is that from this file; an empty one takes away
+        /// STL files of the machine's bodies, for pictures alone; mm, machine frame, every axis at zero. An axis letter
+        /// is what that axis moves, `b` the bed: they are drawn in place of what follows from the chain. `w` is what is
+        /// clamped with the part, `t` a holder or head besides. A path is that from this file; an empty one takes away
         /// what an extended machine names.
         solids: BTreeMap<Spanned<String>, Spanned<String>> = BODIES,
         /// How far the axes are from their set-points, by their letters; those of an axis without are followed exactly.
@@ -127,10 +127,10 @@ keys! {
         /// Where the leading edge of a knife or disc points with all axes at zero, across the tool axis, a
         /// direction of any length; leave it out for a tool that turns.
         edge: Option<[Quantity; 3]>,
-        /// The linear axis along which the control puts the tool's length: as its dialect does it if not said. Another axis is
-        /// a promise about the control (a parameter, the tool's table, or with tcp = "control" its own data of the machine);
-        /// "none", where tcp = "post", says that its length of each tool is 0 and that work offsets are measured with the tool
-        /// in the spindle.
+        /// The linear axis along which the control puts the tool's length: as its dialect does it if not said. Another
+        /// axis is a promise about the control (a parameter, the tool's table, or with tcp = "control" its own data of
+        /// the machine); "none", where tcp = "post", says that its length of each tool is 0 and that work offsets are
+        /// measured with the tool in the spindle.
         length_axis: Option<Spanned<String>>,
         /// The point of the tool that must stay within tolerance; that of the CL file if not said.
         control_point: ControlPointFile,
@@ -153,8 +153,9 @@ keys! {
 keys! {
     /// Words of the CL file that this machine has lines for.
     ClFile {
-        /// The line of the program, or the lines, for a word that has no meaning to post: `OFSETL = "G{n+53}"`. Between braces
-        /// n is the first number behind the slash, n2 the second. `"SET/OFSETL"` is for one form of a word alone.
+        /// The line of the program, or the lines, for a word that has no meaning to post: `OFSETL = "G{n+53}"`. Between
+        /// braces n is the first number behind the slash, n2 the second. `"SET/OFSETL"` is for one form of a word
+        /// alone.
         words: BTreeMap<Spanned<String>, Spanned<Lines>>,
     }
 }
@@ -221,7 +222,8 @@ keys! {
         positions: Option<Spanned<Vec<Quantity>>> = Bounds::items(1),
         /// An indexed axis stands at whole multiples of this alone, mm or degrees.
         step: Option<Quantity> = RATE,
-        /// The line of the program that clamps the axis where it stands in a cut, such as M10: a rotary one, or an indexed one.
+        /// The line of the program that clamps the axis where it stands in a cut, such as M10: a rotary one, or an
+        /// indexed one.
         clamp: Option<Spanned<String>>,
         /// The line of the program that lets it go, such as M11.
         unclamp: Option<Spanned<String>>,
@@ -231,16 +233,16 @@ keys! {
         reserve: Option<Spanned<bool>>,
         /// Largest feed, mm/min or degrees a minute; no block asks for more.
         max_feed: Option<Quantity> = RATE,
-        /// A feed a minute counts the way of this rotary axis along a circle of this diameter, mm, where the control does not
-        /// keep the tip or counts turns all the same (tcp_feed_length = "combined"); in degrees if not said. 2 mm counts
-        /// radians.
+        /// A feed a minute counts the way of this rotary axis along a circle of this diameter, mm, where the control
+        /// does not keep the tip or counts turns all the same (tcp_feed_length = "combined"); in degrees if not said. 2
+        /// mm counts radians.
         feed_diameter: Option<Quantity> = RATE,
         /// Largest acceleration, mm/s² or degrees/s².
         max_accel: Option<Quantity> = RATE,
         /// Largest jerk, mm/s³ or degrees/s³.
         max_jerk: Option<Quantity> = RATE,
-        /// Largest jump of its velocity where one block passes into the next without a curve between them, mm/min or degrees a
-        /// minute; if not said what max_accel makes of it in one period of [motion].
+        /// Largest jump of its velocity where one block passes into the next without a curve between them, mm/min or
+        /// degrees a minute; if not said what max_accel makes of it in one period of [motion].
         max_jump: Option<Quantity> = RATE,
     }
 }
@@ -249,9 +251,9 @@ keys! {
     /// Which of several solutions is taken.
     SolutionFile {
         /// What is to be small over a pass: `time` (each axis' way over its `max_feed`), `cycle-time` (how long the
-        /// machine takes about, by the feeds of the program and `max_feed`, `max_accel` and `max_jerk` of the axes; close to
-        /// poles also which way to turn early), `travel` (root of the sum of squares of the rotary ways), `largest-axis` (the largest rotary way), or the way of one axis,
-        /// `axis:C`. `time` if not said.
+        /// machine takes about, by the feeds of the program and `max_feed`, `max_accel` and `max_jerk` of the axes;
+        /// close to poles also which way to turn early), `travel` (root of the sum of squares of the rotary ways),
+        /// `largest-axis` (the largest rotary way), or the way of one axis, `axis:C`. `time` if not said.
         rule: Option<Spanned<String>> = Bounds::pattern("^(time|cycle-time|travel|largest-axis|axis:[A-Z][0-9]*)$"),
         /// Sides of zero on which axes should stand if they can: `{ A = "negative" }`.
         prefer: BTreeMap<Spanned<String>, Side>,
@@ -335,7 +337,8 @@ words! {
 words! {
     /// How a cutting feed is written.
     FeedMode = Auto {
-        /// Inverse time where rotary axes move and the control does not keep the tip, if the dialect has it; else per minute.
+        /// Inverse time where rotary axes move and the control does not keep the tip, if the dialect has it; else per
+        /// minute.
         Auto "auto",
         /// Always per minute (G94).
         PerMinute "per-minute",
@@ -421,8 +424,8 @@ words! {
 }
 
 words! {
-    /// What becomes of `CUTCOM` on points of the tool's centre: those of Creo (`CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_CENTER`) and of
-    /// NX (`$$ centerline data`), and presumably those of SolidWorks CAM and CAMWorks, whose files do not say.
+    /// What becomes of `CUTCOM` on points of the tool's centre: those of Creo (`CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_CENTER`)
+    /// and of NX (`$$ centerline data`), and presumably those of SolidWorks CAM and CAMWorks, whose files do not say.
     CompensationOnCentre = Refuse {
         /// It is refused: a register that holds the radius would cut the part off by it.
         Refuse "refuse",
@@ -466,13 +469,14 @@ keys! {
         feed: FeedMode,
         /// What F means under inverse time; minutes if not said.
         inverse_time: InverseTime,
-        /// The length that the control divides by F when it does not keep the tip; if not said as the dialect has it: combined
-        /// for Fanuc, Mazak, Mitsubishi, Okuma and Hurco, linear for the others.
+        /// The length that the control divides by F when it does not keep the tip; if not said as the dialect has it:
+        /// combined for Fanuc, Mazak, Mitsubishi, Okuma and Hurco, linear for the others.
         feed_length: Option<FeedLength>,
         /// The length that the control divides by F when it keeps the tip; tip if not said.
         tcp_feed_length: TcpFeedLength,
-        /// How a rapid is written in which a rotary axis turns, or an axis would pass its max_feed; if not said linear where the
-        /// control keeps the tip without looking at its joints (LinuxCNC) and every axis has its max_feed, else rapid.
+        /// How a rapid is written in which a rotary axis turns, or an axis would pass its max_feed; if not said linear
+        /// where the control keeps the tip without looking at its joints (LinuxCNC) and every axis has its max_feed,
+        /// else rapid.
         rapid: Option<Rapid>,
         /// Which of the lengths that the CL file knows is the tool length; assembly if not said.
         tool_length: ToolLength,
@@ -492,13 +496,15 @@ keys! {
         /// Where linear axes stand when the tool is retracted, machine coordinates, mm; the end of travel of the depth
         /// axis away from the part if not said.
         retract: Positions,
-        /// How the tool leaves the part, and, the other way round, comes to it; by the depth axis alone (retract) if not said.
+        /// How the tool leaves the part, and, the other way round, comes to it; by the depth axis alone (retract) if
+        /// not said.
         leave: Option<Spanned<LeaveFile>>,
-        /// So far from the ends of their travel linear axes stay over a first position, so that a part which sits higher than
-        /// [workpiece] mount says ends in no alarm, mm; half of the way where there is less, and 50 if not said.
+        /// So far from the ends of their travel linear axes stay over a first position, so that a part which sits
+        /// higher than [workpiece] mount says ends in no alarm, mm; half of the way where there is less, and 50 if not
+        /// said.
         approach_room: Option<Quantity> = ROOM,
-        /// Where axes stand before a tool change, machine coordinates, mm or degrees; if not said the rotary axes of park there,
-        /// and those that swivel the tool at 0. `{}` leaves all where they are.
+        /// Where axes stand before a tool change, machine coordinates, mm or degrees; if not said the rotary axes of
+        /// park there, and those that swivel the tool at 0. `{}` leaves all where they are.
         change: Option<Positions>,
         /// Where axes stand at the end and after GOHOME, machine coordinates, mm or degrees.
         park: Positions,
@@ -513,8 +519,8 @@ keys! {
         along: LeaveAlong,
         /// How far, mm; less where the travel of an axis ends.
         distance: Quantity = CHOICE,
-        /// Where axes go then, one after the other in the order written: max or min is the end of travel, a number a position
-        /// in machine coordinates, mm or degrees.
+        /// Where axes go then, one after the other in the order written: max or min is the end of travel, a number a
+        /// position in machine coordinates, mm or degrees.
         then: Positions,
     }
 }
@@ -624,8 +630,8 @@ keys! {
         reduce: bool = Bounds::OFF,
         /// Where the path turns by more than this, degrees, a CL point is a corner: it is never dropped; 10 if not said.
         corner: Option<Quantity> = CORNER,
-        /// Contour errors that the servos leave may be compensated (`post --compensate-servo`), no point being moved by more
-        /// than this, mm, at most 1; if not said, they may not.
+        /// Contour errors that the servos leave may be compensated (`post --compensate-servo`), no point being moved by
+        /// more than this, mm, at most 1; if not said, they may not.
         servo_compensation: Option<Quantity> = COMPENSATION,
     }
 }

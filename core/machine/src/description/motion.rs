@@ -63,8 +63,8 @@ keys! {
         blend: BlendRule,
         /// Whether it passes into and out of rapids without standing still; stop if not said.
         rapids: RapidRule,
-        /// It waits so long wherever it stands still between two moves, until its axes are in position (exact stop), s; 0 if
-        /// not said: it goes on as soon as the commanded position stands.
+        /// It waits so long wherever it stands still between two moves, until its axes are in position (exact stop), s;
+        /// 0 if not said: it goes on as soon as the commanded position stands.
         in_position: Option<Quantity> = WAIT,
         /// A tool change takes so long, s; 0 if not said.
         tool_change: Option<Quantity> = WAIT,
@@ -110,8 +110,8 @@ words! {
 words! {
     /// How a control leaves the path at a corner.
     BlendRule = Round {
-        /// The next block is speeded up while the last one is slowed down: LinuxCNC's rule, with its halves of accelerations;
-        /// blocks in which rotary axes turn have a standstill between them on an exact path.
+        /// The next block is speeded up while the last one is slowed down: LinuxCNC's rule, with its halves of
+        /// accelerations; blocks in which rotary axes turn have a standstill between them on an exact path.
         Overlap "overlap",
         /// A curve takes the place of both ends.
         Round "round",
@@ -138,8 +138,8 @@ pub struct MotionRules {
     pub tip_jump: Option<f64>,
     /// How it passes from one cut to the next before the program says anything of it.
     pub corner: CornerRule,
-    /// Distance by which it may leave the path at a corner where the program names no tolerance, mm; none: as far as its rule
-    /// leads.
+    /// Distance by which it may leave the path at a corner where the program names no tolerance, mm; none: as far as
+    /// its rule leads.
     pub corner_tolerance: Option<f64>,
     /// How it leaves the path at a corner.
     pub blend: BlendRule,

@@ -18,8 +18,8 @@ const TOLERANCE: Bounds = Bounds {
 };
 
 keys! {
-    /// Text of the program, and what the control does to it. Texts are templates: `{{ tool.number }}` stands for a fact, and
-    /// each is a line or a list of lines.
+    /// Text of the program, and what the control does to it. Texts are templates: `{{ tool.number }}` stands for a
+    /// fact, and each is a line or a list of lines.
     ProgramFile {
         /// By how much the control may leave the path; without it it keeps the path as it does by default.
         smoothing: Option<SmoothingFile>,

@@ -59,8 +59,8 @@ keys! {
         torque_constant: Option<Quantity> = ABOVE,
         /// Voltage over speed, V·s/rad; V·s/m for the direct drive of a linear axis.
         back_emf: Option<Quantity> = FROM,
-        /// Inertia that turns with the motor (rotor, coupling, screw or worm), Jm, kg·m²; the mass of its moving part, kg, for
-        /// the direct drive of a linear axis.
+        /// Inertia that turns with the motor (rotor, coupling, screw or worm), Jm, kg·m²; the mass of its moving part,
+        /// kg, for the direct drive of a linear axis.
         motor_inertia: Option<Quantity> = ABOVE,
         /// Viscous damping of the motor, Bm, N·m·s/rad; N·s/m for the direct drive of a linear axis; 0 if not said.
         motor_damping: Option<Quantity> = FROM,

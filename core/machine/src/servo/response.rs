@@ -36,8 +36,8 @@ impl Response {
         Self { space, poles, swing }
     }
 
-    /// The responses of the axes of `machine`, by their places in the chain; none for an axis without a servo, which is where it
-    /// is commanded.
+    /// The responses of the axes of `machine`, by their places in the chain; none for an axis without a servo, which is
+    /// where it is commanded.
     pub fn of_machine(machine: &Machine) -> Vec<Option<Self>> {
         let servos = machine.axes.iter().map(|axis| axis.servo.as_deref());
         servos.map(|servo| servo.map(Self::new)).collect()
@@ -73,7 +73,8 @@ impl Response {
         libm::hypot(value.re, value.im)
     }
 
-    /// The angular frequency at which `|G|` falls below `1/√2` (-3 dB) for the first time, rad/s; infinite if it never does.
+    /// The angular frequency at which `|G|` falls below `1/√2` (-3 dB) for the first time, rad/s; infinite if it never
+    /// does.
     pub fn bandwidth(&self) -> f64 {
         self.first_beyond(|gain| gain >= FRAC_1_SQRT_2)
     }

@@ -87,6 +87,7 @@ pub struct JobArguments {
     #[arg(value_name = "CL-FILE", required = true, value_parser = PathArg::parser())]
     pub input: Option<PathArg>,
 
+    /// How the CL file is read.
     #[command(flatten)]
     pub reading: ReadingArguments,
 

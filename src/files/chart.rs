@@ -58,6 +58,7 @@ pub struct Look {
 }
 
 /// What stands at a point.
+#[expect(missing_docs, reason = "a shape is what it is called")]
 #[derive(Clone, Copy)]
 pub enum Marker {
     Circle,
@@ -96,10 +97,12 @@ pub const DOTTED: Look = look("#000000", 1.6, "2 3", None);
 pub const DASHED: Look = look("#000000", 1.4, "9 4", None);
 
 impl Series {
+    /// Points joined by a line.
     pub fn line(name: impl Into<String>, points: Vec<[f64; 2]>, look: Look) -> Self {
         Self { name: name.into(), draw: Draw::Line(points, look) }
     }
 
+    /// Points by themselves.
     pub fn dots(name: impl Into<String>, points: Vec<[f64; 2]>, marker: Marker) -> Self {
         Self { name: name.into(), draw: Draw::Dots(points, marker) }
     }

@@ -23,21 +23,23 @@ pub struct DryRun<'a> {
     arguments: &'a JobArguments,
     /// The CL file, as the user named it.
     pub name: String,
+    /// Finds the plugins that the machine asks for.
     pub finder: Finder,
     /// Words are not rounded.
     exact: bool,
 }
 
 impl<'a> DryRun<'a> {
-    /// Of the CL file and the machine of the command line, for the verb of that name.
+    /// Of the CL file and the machine of the command line, for the verb of that name of a command.
     pub fn new(
         session: &'a Session,
         verb: &'static str,
+        command: &str,
         arguments: &'a JobArguments,
         exact: bool,
     ) -> Result<Self, Failure> {
         let Some(path) = arguments.input().path() else {
-            let message = format!("post {verb} goes over the CL file several times");
+            let message = format!("{command} {verb} goes over the CL file several times");
             return Err(Diagnostic::error(verb, message)
                 .help("give a file, not standard input")
                 .into());

@@ -275,7 +275,7 @@ pub const CODES: &[CodeGroup] = &[
     },
     CodeGroup {
         title: "Reading a CL file",
-        verbs: "post, study, place, convert, --verify, post lsp",
+        verbs: "post, place, convert, --verify, post lsp",
         codes: &[
             code(
                 "after-fini",
@@ -428,7 +428,7 @@ pub const CODES: &[CodeGroup] = &[
     },
     CodeGroup {
         title: "Making the program",
-        verbs: "post, study, place, convert",
+        verbs: "post, place, convert",
         codes: &[
             code(
                 "dialect",
@@ -480,11 +480,7 @@ pub const CODES: &[CodeGroup] = &[
                 "A feed is below the least that is printed; it is raised, or refused if an axis would be too fast.",
                 "A higher `FEDRAT`, or more decimals for feeds.",
             ),
-            code(
-                "model",
-                "The error model cannot answer; in a study, that the file has no cut.",
-                "Another `[accuracy] model`.",
-            ),
+            code("model", "The error model cannot answer.", "Another `[accuracy] model`."),
             code("more", "More warnings than are told one by one.", "Put right those above first."),
             code(
                 "out-of-reach",
@@ -539,19 +535,13 @@ pub const CODES: &[CodeGroup] = &[
         ],
     },
     CodeGroup {
-        title: "Placing, studying, planning and compensating",
-        verbs: "post new, place, study, plan, --plan, --compensate-servo",
+        title: "Placing, planning and compensating",
+        verbs: "post new, place, --plan, --compensate-servo",
         codes: &[
             code(
                 "compensate-servo",
                 "Compensation lacks its bound or the servos.",
                 "`[accuracy] servo_compensation` and `[servo.X]`.",
-            ),
-            code("curve", "A curve file cannot be read.", "`post plan --help` lists its keys."),
-            code(
-                "infeasible",
-                "No feed keeps the limits at one place of the curve.",
-                "The message says where, and which limits.",
             ),
             code(
                 "new",
@@ -572,6 +562,18 @@ pub const CODES: &[CodeGroup] = &[
                 "plan-rounds",
                 "Rounds have no limit to keep, or no servos to predict with.",
                 "`[plan] contour_error` and `[servo.X]`.",
+            ),
+        ],
+    },
+    CodeGroup {
+        title: "Comparing with the papers",
+        verbs: "papers study, papers plan",
+        codes: &[
+            code("curve", "A curve file cannot be read.", "`papers plan --help` lists its keys."),
+            code(
+                "infeasible",
+                "No feed keeps the limits at one place of the curve.",
+                "The message says where, and which limits.",
             ),
             code(
                 "study",

@@ -13,13 +13,11 @@ mod lsp;
 mod man;
 mod new;
 mod place;
-mod plan;
 mod plugin;
 mod post;
 mod predict;
 mod print_schema;
 mod read;
-mod study;
 mod verify;
 mod view;
 
@@ -43,13 +41,11 @@ use lsp::LspArguments;
 use man::ManArguments;
 use new::NewArguments;
 use place::PlaceArguments;
-use plan::PlanArguments;
 use plugin::PluginArguments;
 use post::PostArguments;
 use predict::PredictArguments;
 use print_schema::SchemaArguments;
 use read::ReadArguments;
-use study::StudyArguments;
 use verify::VerifyArguments;
 use view::{View, ViewArguments};
 
@@ -72,14 +68,12 @@ use view::{View, ViewArguments};
   post new my-mill --class table-table-ac --dialect linuxcnc
   post check my-mill.toml --svg reach.svg
   post convert part.h --from dmu50 --to ac-trunnion -o part.nc
-  post study part.cls --machine ac-trunnion
   post place part.cls --machine dmu50 --svg travel.svg
   post batch *.cls --machine dmu50 --machine ac-trunnion -o results.parquet
   post read part.nc --machine ac-trunnion --csv motions.csv
   post verify part.nc --machine dmu50 --against part.cls --map map.json
   post diff old.nc new.nc --machine ac-trunnion
   post predict part.nc --machine ac-trunnion --pictures prediction
-  post plan curve.json --pictures plan
   post view part.cls --machine ac-trunnion
   post explain over-travel
   post plugin show fanuc
@@ -108,9 +102,7 @@ enum Verb {
     Convert(Box<ConvertArguments>),
     Diff(Box<DiffArguments>),
     New(NewArguments),
-    Study(Box<StudyArguments>),
     Place(Box<PlaceArguments>),
-    Plan(Box<PlanArguments>),
     Predict(Box<PredictArguments>),
     Verify(Box<VerifyArguments>),
     Plugin(PluginArguments),
@@ -135,9 +127,7 @@ impl CommandLine {
             Some(Verb::Convert(arguments)) => convert::run(session, &arguments),
             Some(Verb::Diff(arguments)) => diff::run(session, &arguments),
             Some(Verb::New(arguments)) => new::run(session, &arguments),
-            Some(Verb::Study(arguments)) => study::run(session, &arguments),
             Some(Verb::Place(arguments)) => place::run(session, &arguments),
-            Some(Verb::Plan(arguments)) => plan::run(session, &arguments),
             Some(Verb::Predict(arguments)) => predict::run(session, &arguments),
             Some(Verb::Verify(arguments)) => verify::run(session, &arguments),
             Some(Verb::Plugin(arguments)) => plugin::run(session, &arguments),
@@ -162,6 +152,15 @@ fn view(session: &Session, arguments: &ViewArguments) -> Result<(), Failure> {
     // A program that is not as it should be is worth a look too.
     let shown = view.show();
     done.and(shown)
+}
+
+/// What is said to a command line that begins with a verb that `papers` has now.
+pub fn moved() -> Option<clap::Error> {
+    let first = std::env::args_os().nth(1)?;
+    let verb = ["study", "plan"].into_iter().find(|verb| first == *verb)?;
+    let message = format!("`post {verb}` is `papers {verb}` now");
+    let fault = || CommandLine::command().error(ErrorKind::InvalidSubcommand, message);
+    (!Path::new(verb).exists()).then(fault)
 }
 
 /// What is wrong with a command line that begins with a misspelt verb: clap takes it for a CL file, and complains of what

@@ -1,12 +1,16 @@
 //! What the tests of the command share: running it, and which machine makes which sample.
 
 use std::ffi::OsStr;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
+pub use post_testkit::{Run, assert_contains, names, run};
 use serde_json::Value;
 use tempfile::TempDir;
+
+/// The package, and the command that it makes.
+pub const PACKAGE: &str = "post";
+pub const BINARY: &str = env!("CARGO_BIN_EXE_post");
 
 /// A sample on a machine that can make it.
 pub struct Case {
@@ -92,14 +96,6 @@ impl Case {
     }
 }
 
-/// What a run of the command left.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Run {
-    pub code: i32,
-    pub out: String,
-    pub err: String,
-}
-
 /// The project's folder.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -111,7 +107,7 @@ pub fn sample(name: &str) -> PathBuf {
 
 /// The command, run in the project's folder without the user's settings.
 pub fn command() -> Command {
-    command_as(env!("CARGO_BIN_EXE_post"))
+    command_as(BINARY)
 }
 
 /// Another program that runs the command, as [`command`] does.
@@ -123,27 +119,6 @@ pub fn command_as(program: &str) -> Command {
 
 pub fn post<S: AsRef<OsStr>>(arguments: &[S]) -> Run {
     run(command().args(arguments), b"")
-}
-
-/// Runs a command with `input` as its standard input.
-pub fn run(command: &mut Command, input: &[u8]) -> Run {
-    let mut child = command
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut stdin = child.stdin.take().unwrap();
-    let input = input.to_owned();
-    // The command may write before it has read all, or end without reading.
-    let feeder = std::thread::spawn(move || {
-        let _ = stdin.write_all(&input);
-    });
-    let output = child.wait_with_output().unwrap();
-    feeder.join().unwrap();
-    let err = String::from_utf8(output.stderr).unwrap();
-    let Some(code) = output.status.code() else { panic!("{}: {err}", output.status) };
-    Run { code, out: String::from_utf8(output.stdout).unwrap(), err }
 }
 
 /// A small good file.
@@ -167,22 +142,6 @@ pub fn post_text(arguments: &[&str], text: &str) -> Run {
     all.extend(arguments);
     all.push("-");
     run(command().args(all), text.as_bytes())
-}
-
-#[track_caller]
-pub fn assert_contains(text: &str, parts: &[&str]) {
-    for part in parts {
-        assert!(text.contains(part), "`{part}` is not in:\n{text}");
-    }
-}
-
-/// Names of what lies in a folder.
-pub fn names(folder: &Path) -> Vec<String> {
-    let entries = std::fs::read_dir(folder).unwrap();
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
 }
 
 pub fn read_json(path: &Path) -> Value {

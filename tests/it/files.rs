@@ -405,16 +405,3 @@ fn answers_do_not_replace_a_file_that_came_in_the_meantime() {
     let kept = fs::read_to_string(folder.path().join("mill.toml")).unwrap();
     assert_eq!(kept, "mine");
 }
-
-#[test]
-fn a_study_takes_no_file_of_another_for_its_own() {
-    for name in ["moves.csv", "sweep.csv", "left.svg"] {
-        let folder = with_file("part.cls", GOOD);
-        fs::write(folder.path().join(name), "mine").unwrap();
-        let arguments = ["study", "part.cls", "-m", "ac-trunnion", "-o", "."];
-        let into = ["study", "part.cls", "-m", "ac-trunnion", "-o", "part.cls"];
-        refused(folder.path(), &into, &["part.cls is no folder"]);
-        let told = format!("the study would overwrite ./{name}, which is of no study");
-        refused(folder.path(), &arguments, &[&told, "name another folder with -o"]);
-    }
-}

@@ -13,6 +13,7 @@
 mod codes;
 #[cfg(unix)]
 mod examples;
+mod help;
 mod links;
 mod page;
 mod pictures;

@@ -3,7 +3,7 @@
 //! After a change of the output, read each new snapshot as the machine's operator would, then accept it:
 //! `cargo insta review`, or `INSTA_UPDATE=always cargo test --test it snapshots`.
 
-use crate::{common, dialects};
+use crate::{common, dialects, generate};
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -91,4 +91,12 @@ fn what_three_axes_cannot_make_is_refused() {
         assert_eq!((run.code, run.out.as_str()), (1, ""), "{name}");
         assert!(run.err.contains("error[out-of-reach]"), "{}", run.err);
     }
+}
+
+#[test]
+fn the_blade_is_what_the_generator_writes() {
+    let mut text = Vec::new();
+    generate::write_blade(&mut text, 4).unwrap();
+    let kept = fs::read(root().join("tests/samples/disc-blade.cls")).unwrap();
+    assert!(kept == text, "cargo run --example generate -- blade 4");
 }

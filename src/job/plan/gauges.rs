@@ -2,26 +2,35 @@
 //! a solver was given.
 
 use post_machine::description::Machine;
+use post_machine::kinematics::{Course, ORDERS};
 
 use super::keep::Keep;
-use super::path::Station;
 
 /// What is limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
+    /// Speed of the tip against the part.
     Feed,
+    /// Velocity of an axis.
     Velocity,
+    /// Acceleration of an axis.
     Acceleration,
+    /// Jerk of an axis.
     Jerk,
+    /// Acceleration of the tip.
     TipAcceleration,
+    /// Jerk of the tip.
     TipJerk,
+    /// How far the chord of an interpolation period is off the path.
     ChordError,
+    /// How far the servos leave the path, by the formula of the steady state.
     ContourError,
 }
 
 /// A limit that is measured.
 #[derive(Clone, Debug)]
 pub struct Gauge {
+    /// What it limits.
     pub quantity: Quantity,
     /// Place among the axes that are told, of axis limits.
     pub axis: Option<usize>,
@@ -37,24 +46,43 @@ pub struct Gauge {
     pub scale: f64,
 }
 
+/// Where the path is at a parameter.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Station {
+    /// Parameter of the path.
+    pub parameter: f64,
+    /// The tip and its derivatives, mm, part frame.
+    pub tip: [[f64; 3]; ORDERS],
+    /// Axis values and their derivatives.
+    pub course: Course,
+}
+
 /// A plan at a point of the path.
 #[derive(Clone, Debug, Default)]
 pub struct PlanPoint {
+    /// Parameter of the path.
     pub parameter: f64,
     /// Of the tip from the beginning, mm.
     pub way: f64,
     /// From the beginning, s.
     pub time: f64,
+    /// Where the tip is, mm, part frame.
     pub tip: [f64; 3],
     /// Speed of the tip, mm/s.
     pub feed: f64,
     /// Axis values, in the order of the axes that are told, mm and rad.
     pub position: Vec<f64>,
+    /// By axis, mm/s and rad/s.
     pub velocity: Vec<f64>,
+    /// By axis, mm/s² and rad/s².
     pub acceleration: Vec<f64>,
+    /// By axis, mm/s³ and rad/s³.
     pub jerk: Vec<f64>,
+    /// Acceleration of the tip, mm/s².
     pub tip_acceleration: f64,
+    /// Jerk of the tip, mm/s³.
     pub tip_jerk: f64,
+    /// How far the chord of one interpolation period is off the path, mm.
     pub chord_error: f64,
     /// By the formula of the steady state; NaN where nothing is known of the servos.
     pub contour_error: f64,
@@ -66,6 +94,7 @@ pub struct Gauges<'a> {
     axes: Vec<usize>,
     /// Rotary axes are among them.
     turns: bool,
+    /// What is measured, in the order in which it is told.
     pub all: Vec<Gauge>,
 }
 

@@ -6,7 +6,7 @@ use post_machine::description::Machine;
 use post_machine::kinematics::{Course, ORDERS};
 use post_posting::plan::PlannedPoint;
 
-use super::path::Station;
+use super::gauges::Station;
 
 /// Squared speed halfway of a start from rest with constant jerk, as a share of that at its end: 2^(-4/3).
 const HALF_BY_ROOT: f64 = 0.396_850_262_992_049_9;

@@ -18,14 +18,19 @@ pub struct Keep {
     pub feed: f64,
     /// By axis, in the order in which they are told.
     pub velocity: Vec<f64>,
+    /// By axis, likewise.
     pub acceleration: Vec<f64>,
+    /// By axis, likewise.
     pub jerk: Vec<f64>,
+    /// Of the tip.
     pub tip_acceleration: f64,
+    /// Of the tip.
     pub tip_jerk: f64,
     /// Of one interpolation period.
     pub chord_error: f64,
     /// From one set-point to the next.
     pub period: f64,
+    /// By the formula of the steady state.
     pub contour_error: f64,
     /// What the servos do; none where an axis that leads the tip has none.
     pub servos: Option<Deviation>,

@@ -1,208 +1,21 @@
-//! Planned feeds: along a curve of a curve file, the feedrate paper's system (Chen, Ren, Sun 2016) from one file; and, as they
-//! are shown of a program that is posted, [`map`] and [`posted`].
+//! The plan of a posted program as it is shown: [`map`], and how much it uses of each limit, [`posted`].
 
-mod by_clarabel;
-mod curve_file;
-mod file_limits;
-mod found;
-mod gauges;
+pub mod gauges;
 mod interval;
-mod json_text;
-mod keep;
+pub mod keep;
 pub mod map;
-mod parts;
-mod path;
 pub mod pictures;
 pub mod posted;
-mod rows;
-mod simulate;
-mod solve;
-mod text;
-mod track;
-mod walk;
+pub mod tally;
 
-use std::io::Read as _;
-
-use post_feed::jerk::Piece;
 use post_machine::description::Machine;
-use post_machine::diagnostic::Diagnostic;
 
-use super::nc_program;
-use crate::failure::Failure;
-use crate::files::{FileFault, PathArg};
-use crate::job::text::number;
-use crate::session::Session;
-use curve_file::{CurveFile, GivenPath, Pointing, Splines};
-use found::SplineFound;
-use gauges::{Gauges, PlanPoint};
+use gauges::PlanPoint;
 use keep::Keep;
-use path::CurvePath;
 use pictures::{DrawnAxis, DrawnLimits, DrawnPoint, PlanRooms};
-use rows::Row;
-use simulate::Timeline;
-use walk::{Tally, walk};
-
-pub use found::Found;
-pub use keep::Over;
-pub use rows::csv;
-pub use solve::{Asked, Solver};
-pub use text::text;
-
-/// A curve, and the machine that goes along it.
-pub struct Curve {
-    file: CurveFile,
-    /// As the user named it.
-    name: String,
-    machine: Machine,
-}
-
-/// What came of planning it.
-pub struct Planned {
-    pub found: Found,
-    /// What is kept for its pictures, and the line below their titles.
-    pub rooms: PlanRooms,
-    pub note: String,
-}
-
-impl Curve {
-    /// Reads a curve file; `machine` is the one that was named, else the limits of the file make one.
-    ///
-    /// # Errors
-    /// The file cannot be read, or what is wrong with it.
-    pub fn read(
-        session: &Session,
-        source: &PathArg,
-        machine: Option<Machine>,
-    ) -> Result<(Self, Vec<Diagnostic>), Failure> {
-        let (name, input) = nc_program::open_as(session, "the curve file", source)?;
-        let mut text = String::new();
-        let read = input.take(curve_file::MOST_BYTES + 1).read_to_string(&mut text);
-        read.map_err(|error| FileFault::Read { name: name.clone(), error })?;
-        if text.len() as u64 > curve_file::MOST_BYTES {
-            let message = format!("{name} is longer than {} bytes", curve_file::MOST_BYTES);
-            return Err(Diagnostic::error("curve", message).into());
-        }
-        let file = CurveFile::parse(&name, &text)?;
-        let mut findings = Vec::new();
-        let machine = match machine {
-            Some(machine) => {
-                if !file.limits.axes.is_empty() {
-                    let message = format!(
-                        "{name}: its limits of axes do not count: those of {} do",
-                        machine.name
-                    );
-                    findings.push(Diagnostic::warning("plan", message));
-                }
-                machine
-            }
-            None => {
-                let rotary: Vec<String> = match &file.path {
-                    GivenPath::Splines(Splines { pointing: Pointing::Rotary(axes), .. }) => {
-                        axes.iter().map(|(name, _)| name.clone()).collect()
-                    }
-                    _ => Vec::new(),
-                };
-                file.limits.machine(&name, &rotary)?
-            }
-        };
-        let curve = Self { file, name, machine };
-        Ok((curve, findings))
-    }
-
-    /// Plans the feed along it. With a length of the tool in mm, and simulated if it is asked for.
-    ///
-    /// # Errors
-    /// Which limit cannot be kept, and where; axes that cannot follow.
-    pub fn plan(
-        &self,
-        asked: Asked,
-        over: Over,
-        tool_length: f64,
-        simulated: bool,
-    ) -> Result<Planned, Failure> {
-        let (machine, limits) = (&self.machine, &self.file.limits);
-        let mut path = match &self.file.path {
-            GivenPath::Splines(splines) => CurvePath::new(machine, tool_length, splines)?,
-            GivenPath::Points(points, axes) => {
-                let points = (points.as_slice(), axes.as_deref());
-                CurvePath::through(machine, tool_length, points, &self.name)?
-            }
-        };
-        let over = Over {
-            feed: over.feed.or(limits.tip[0]),
-            chord_error: over.chord_error.or(limits.chord_error),
-            contour_error: over.contour_error.or(limits.contour_error),
-            period: over.period.or(limits.period),
-        };
-        let keep = Keep::new(machine, &path.axes, over)?;
-        if asked.solver == Solver::Jerk && !keep.has_jerk() {
-            let message = format!("{}: --solver jerk, and no jerk is limited", self.name);
-            let help =
-                "j in the limits of the curve file, or max_jerk of the machine's axes, limits it";
-            return Err(Diagnostic::error("plan", message).help(help).into());
-        }
-        let mut plans = solve::plan(&mut path, &keep, asked, &self.name)?;
-        let jerk = asked.solver == Solver::Jerk;
-        let gauges = Gauges::new(machine, &path.axes, path.turns(), &keep, jerk);
-        let refused = |(at, why): (f64, path::NoStation)| path.refused(&self.name, at, &why);
-        let mut first = Tally::new(&gauges);
-        walk(&path, &plans.stretches, &gauges, &mut |step| {
-            first.take(step.point, step.way, step.time);
-        })
-        .map_err(refused)?;
-        let slower = first.slower();
-        for stretch in &mut plans.stretches {
-            stretch.spline.slow(slower);
-        }
-        let names = path.axes.iter().map(|place| machine.axes[*place].name.clone());
-        let names: Vec<String> = names.collect();
-        let mut rooms = rooms(machine, &path.axes, &keep);
-        let mut tally = Tally::new(&gauges);
-        let mut timeline = Timeline::default();
-        let mut rows = Vec::new();
-        walk(&path, &plans.stretches, &gauges, &mut |step| {
-            let active = tally.take(step.point, step.way, step.time);
-            timeline.take(step);
-            let point = step.point;
-            rooms.take(&drawn(point));
-            if step.knot {
-                let limit = active.map(|place| gauges.all[place].name.as_str());
-                rows.push(Row::new(machine, &path.axes, point, limit));
-            }
-        })
-        .map_err(refused)?;
-        let simulated = match simulated {
-            true => {
-                Some(timeline.simulate(&path, &plans.stretches, keep.period, keep.contour_error)?)
-            }
-            false => None,
-        };
-        let stops = plans.stretches.iter().skip(1).map(|stretch| stretch.parameters[0]);
-        let found = Found {
-            curve: self.name.clone(),
-            name: self.file.name.clone(),
-            machine: machine.name.clone(),
-            stops: stops.collect(),
-            samples: plans.samples,
-            length_mm: tally.way(),
-            seconds: tally.time(),
-            solvers: plans.solvers,
-            monotone: plans.monotone,
-            spline_slower: 1.0 - slower,
-            limits: tally.limits(),
-            simulated,
-            feed_splines: plans.stretches.iter().map(|stretch| spline(&stretch.spline)).collect(),
-            axes: names,
-            rows,
-        };
-        let note =
-            format!("{} on {}, {} s", self.file.name, machine.name, number(found.seconds, 3));
-        Ok(Planned { found, rooms, note })
-    }
-}
 
 /// Room for the pictures of a plan of these axes, with what it keeps.
-fn rooms(machine: &Machine, axes: &[usize], keep: &Keep) -> PlanRooms {
+pub fn rooms(machine: &Machine, axes: &[usize], keep: &Keep) -> PlanRooms {
     let axes = axes.iter().enumerate().map(|(axis, place)| DrawnAxis {
         name: machine.axes[*place].name.clone(),
         rotary: machine.axes[*place].joint.rotary,
@@ -218,7 +31,8 @@ fn rooms(machine: &Machine, axes: &[usize], keep: &Keep) -> PlanRooms {
     )
 }
 
-fn drawn(point: &PlanPoint) -> DrawnPoint<'_> {
+/// A point of a plan as its pictures take it.
+pub fn drawn(point: &PlanPoint) -> DrawnPoint<'_> {
     DrawnPoint {
         way: point.way,
         feed: point.feed,
@@ -227,18 +41,5 @@ fn drawn(point: &PlanPoint) -> DrawnPoint<'_> {
         jerk: &point.jerk,
         chord_error: point.chord_error,
         contour_error: point.contour_error,
-    }
-}
-
-fn spline(spline: &post_feed::FeedSpline) -> SplineFound {
-    let (knots, coefficients) = spline.b_spline();
-    let ends = [spline.pieces.first(), spline.pieces.last()];
-    SplineFound {
-        degree: 2,
-        range: [spline.knots[0], spline.knots[spline.knots.len() - 1]],
-        constant_jerk_at_ends: ends
-            .map(|piece| matches!(piece, Some(Piece::Leave(_) | Piece::Arrive(_)))),
-        knots,
-        coefficients,
     }
 }

@@ -23,7 +23,9 @@ const ORDERS: usize = 3;
 /// An axis that is drawn.
 #[derive(Clone, Debug)]
 pub struct DrawnAxis {
+    /// `X`, as its words are called.
     pub name: String,
+    /// Values are rad, not mm.
     pub rotary: bool,
     /// Velocity, acceleration and jerk, mm or rad and s; infinite where there is no limit.
     pub limits: [f64; ORDERS],
@@ -47,9 +49,11 @@ pub struct DrawnPoint<'a> {
     pub way: f64,
     /// mm/s.
     pub feed: f64,
-    /// By axis, mm or rad and s.
+    /// By axis, mm/s or rad/s.
     pub velocity: &'a [f64],
+    /// By axis, mm/s² or rad/s².
     pub acceleration: &'a [f64],
+    /// By axis, mm/s³ or rad/s³.
     pub jerk: &'a [f64],
     /// mm.
     pub chord_error: f64,
@@ -69,6 +73,7 @@ pub struct PlanRooms {
 }
 
 impl PlanRooms {
+    /// No point yet.
     pub fn new(axes: Vec<DrawnAxis>, limits: DrawnLimits) -> Self {
         Self {
             along: Envelope::new(3, WIDTH),

@@ -6,12 +6,11 @@ use post_machine::diagnostic::Diagnostic;
 use post_posting::plan::PlannedPoint;
 use serde::Serialize;
 
-use super::gauges::{Gauges, PlanPoint};
+use super::gauges::{Gauges, PlanPoint, Station};
 use super::interval::{Interval, Intervals};
 use super::keep::{Keep, Over};
-use super::path::Station;
 use super::pictures::PlanRooms;
-use super::walk::{LimitFound, Tally};
+use super::tally::{LimitFound, Tally};
 use crate::files;
 use crate::job::text::number;
 

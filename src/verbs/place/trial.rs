@@ -66,7 +66,7 @@ pub struct Trials<'a> {
 impl<'a> Trials<'a> {
     pub fn new(session: &'a Session, arguments: &'a PlaceArguments) -> Result<Self, Failure> {
         Ok(Self {
-            dry_run: DryRun::new(session, "place", &arguments.job, false)?,
+            dry_run: DryRun::new(session, "place", "post", &arguments.job, false)?,
             least: arguments.least,
             runs: 0,
             most: arguments.runs,

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::common::root;
+use crate::common::{PACKAGE, root};
 
 /// The book's sources.
 pub fn sources() -> PathBuf {
@@ -31,6 +31,23 @@ pub fn pages() -> Vec<PathBuf> {
 /// `UPDATE_GUIDE=1`: pages are written, not compared.
 pub fn updating() -> bool {
     std::env::var_os("UPDATE_GUIDE").is_some()
+}
+
+/// What writes them.
+pub fn update() -> String {
+    format!("UPDATE_GUIDE=1 cargo test -p {PACKAGE} --test it guides")
+}
+
+/// Compares the page of the reference with what is written from `from`, or writes it.
+#[track_caller]
+pub fn is(page: &str, from: &str, text: &str) {
+    let path = sources().join("reference").join(page);
+    let text = format!("<!-- Written from {from} by {} -->\n\n{}\n", update(), text.trim_end());
+    if updating() {
+        write(&path, &text);
+    }
+    let there = fs::read_to_string(&path).unwrap_or_default();
+    assert!(there == text, "docs/src/reference/{page} is stale: run {}", update());
 }
 
 /// A stretch of a page.

@@ -2,12 +2,12 @@
 //! `UPDATE_GUIDE=1` writes them.
 
 use std::fmt::Write as _;
-use std::fs;
 
 use serde_json::Value;
 
+use super::help;
+use super::page::is;
 use crate::common::post;
-use crate::guides::page::{sources, updating, write};
 
 /// What a run prints; it must end well.
 fn printed(arguments: &[&str]) -> String {
@@ -38,59 +38,10 @@ fn code(text: &str) -> String {
     }
 }
 
-/// Compares the page, or writes it.
-#[track_caller]
-fn is(page: &str, from: &str, text: &str) {
-    let head = format!(
-        "<!-- Written from {from} by UPDATE_GUIDE=1 cargo test -p post --test it guides -->\n\n"
-    );
-    let path = sources().join("reference").join(page);
-    let text = head + text.trim_end() + "\n";
-    if updating() {
-        write(&path, &text);
-    }
-    let there = fs::read_to_string(&path).unwrap_or_default();
-    assert!(
-        there == text,
-        "docs/src/reference/{page} is stale: run UPDATE_GUIDE=1 cargo test -p post --test it guides"
-    );
-}
-
-/// The verbs that a help lists.
-fn verbs(help: &str) -> Vec<&str> {
-    let commands = help.split("\nCommands:\n").nth(1).unwrap_or_default();
-    let rows = commands.lines().take_while(|line| !line.is_empty());
-    rows.filter(|row| !row.starts_with("   "))
-        .filter_map(|row| row.split_whitespace().next())
-        .filter(|verb| *verb != "help")
-        .collect()
-}
-
 #[test]
 fn the_page_of_commands_is_their_help() {
-    let mut text = String::from(
-        "# Commands and options\n\nWhat `post --help` and `post VERB --help` print.\n",
-    );
-    let top = printed(&["--help"]);
-    let mut tell = |words: &[&str]| {
-        let help = printed(&[words, &["--help"]].concat());
-        let name = [&["post"], words].concat().join(" ");
-        let _ = write!(
-            text,
-            "\n## {name}\n\n```text\n{}\n```\n",
-            help.lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
-        );
-        help
-    };
-    tell(&[]);
-    assert!(verbs(&top).len() > 15, "{top}");
-    for verb in verbs(&top) {
-        let help = tell(&[verb]);
-        for below in verbs(&help) {
-            tell(&[verb, below]);
-        }
-    }
-    is("commands.md", "`post --help`", &text);
+    let verbs = help::check("commands.md", "Commands and options");
+    assert!(verbs > 15, "{verbs}");
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! What all tests share, and no crate under test stands behind:
 //!
 //! - [`Rng`], numbers that are the same everywhere; [`randomised`] says how many rounds a test takes and from which seed;
-//! - [`repository`] and [`shared`]: where files are.
+//! - [`repository`] and [`shared`]: where files are;
+//! - [`run`]: a command, run to its end.
 #![allow(
     missing_docs,
     clippy::should_implement_trait,
@@ -10,9 +11,11 @@
     reason = "tests alone use it"
 )]
 
+mod command;
 mod data;
 mod random;
 mod text;
 
+pub use command::{Run, assert_contains, names, run};
 pub use data::{repository, shared};
 pub use random::{Rng, randomised, rounds, seed, seeded};

@@ -1,0 +1,91 @@
+//! Splines cut where their first or second derivatives jump.
+
+use nalgebra::Vector3;
+use post_feed::curve::Curve;
+use post_machine::kinematics::ORDERS;
+
+use super::file::{Pointing, Splines};
+
+/// First and second derivatives that differ by no more, as a share, are the same on both sides of a knot.
+const SMOOTH: f64 = 1e-6;
+
+/// A part of splines: its first control point, and how many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    first: usize,
+    count: usize,
+}
+
+impl Part {
+    pub fn curve<const D: usize>(self, splines: &Splines, points: &[[f64; D]]) -> Curve<D> {
+        let weights = match splines.weights.is_empty() {
+            true => Vec::new(),
+            false => splines.weights[self.first..self.first + self.count].to_vec(),
+        };
+        self.made(splines, points, weights)
+    }
+
+    pub fn unweighted<const D: usize>(self, splines: &Splines, points: &[[f64; D]]) -> Curve<D> {
+        self.made(splines, points, Vec::new())
+    }
+
+    #[expect(clippy::expect_used, reason = "a part of knots that were good is good")]
+    fn made<const D: usize>(
+        self,
+        splines: &Splines,
+        points: &[[f64; D]],
+        weights: Vec<f64>,
+    ) -> Curve<D> {
+        let knots = &splines.knots[self.first..self.first + self.count + splines.degree + 1];
+        let points = &points[self.first..self.first + self.count];
+        Curve::new(splines.degree, knots.to_vec(), points.to_vec(), weights).expect("a curve")
+    }
+}
+
+/// The parts between knots at which first or second derivatives of the tip jump, or the tool axis may.
+pub fn smooth_parts(splines: &Splines) -> Vec<Part> {
+    let (degree, count) = (splines.degree, splines.tip.len());
+    let mut parts = vec![Part { first: 0, count }];
+    let mut at = degree + 1;
+    while at < count {
+        let times =
+            (at..count).take_while(|place| splines.knots[*place] == splines.knots[at]).count();
+        // Of degree less the times that a knot stands are the derivatives that are continuous there.
+        if degree < times + 2 {
+            let last = parts.len() - 1;
+            let whole = parts[last];
+            let before = Part { first: whole.first, count: at - whole.first };
+            let first = at + times - degree - 1;
+            let after = Part { first, count: count - first };
+            if jumps(splines, before, after) {
+                parts[last] = before;
+                parts.push(after);
+            }
+        }
+        at += times;
+    }
+    parts
+}
+
+/// Whether derivatives differ where one part meets the next.
+fn jumps(splines: &Splines, before: Part, after: Part) -> bool {
+    let differ = |left: [[f64; 3]; ORDERS], right: [[f64; 3]; ORDERS]| {
+        // What is rounding of a line's second derivative is no jump.
+        let rounding = 1e-9 * Vector3::from(left[1]).norm();
+        (0..3).any(|order| {
+            let (a, b) = (Vector3::from(left[order]), Vector3::from(right[order]));
+            (a - b).norm() > SMOOTH * (a.norm() + b.norm()) + rounding
+        })
+    };
+    let differs = |points: &[[f64; 3]]| {
+        let (left, right) = (before.curve(splines, points), after.curve(splines, points));
+        differ(left.derivatives(left.range()[1]), right.derivatives(right.range()[0]))
+    };
+    differs(&splines.tip)
+        || match &splines.pointing {
+            Pointing::Fixed => false,
+            Pointing::Second(points) | Pointing::Axis(points) => differs(points),
+            // Control values of angles are seldom so arranged.
+            Pointing::Rotary(_) => true,
+        }
+}

@@ -1,0 +1,359 @@
+//! Plans of the stretches of a path, by the solver that is asked for.
+
+use post_feed::limits::Limit;
+use post_feed::problem::Source;
+use post_feed::{
+    Ends, FeedSpline, Infeasible, Problem, Samples, jerk, linear_program, profile, reach,
+};
+use post_machine::diagnostic::{Diagnostic, Short};
+use serde::Serialize;
+
+use super::by_clarabel;
+use super::path::CurvePath;
+use post_command::shared::plan::keep::Keep;
+
+/// Every stretch has so many steps at least: with limits of jerk fewer are none.
+const LEAST_STEPS: usize = 8;
+
+/// What plans.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Solver {
+    /// Reachability analysis.
+    Reach,
+    /// The paper's linear program, by clarabel.
+    Lp,
+    /// The paper's linear program, by our own interior point.
+    Interior,
+    /// With limits of jerk.
+    Jerk,
+}
+
+/// How finely, and with which feeds at the ends, mm/s.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked {
+    pub solver: Solver,
+    /// About so many samples.
+    pub samples: usize,
+    pub start_feed: f64,
+    pub end_feed: f64,
+}
+
+/// A stretch with its plan.
+pub struct StretchPlan {
+    pub parameters: Vec<f64>,
+    pub spline: FeedSpline,
+}
+
+/// What a solver came to.
+#[derive(Clone, Debug, Serialize)]
+pub struct SolverFound {
+    pub solver: Solver,
+    /// `Σ f²` over the samples, mm²/s².
+    pub sum_of_squared_feeds: f64,
+    pub seconds: f64,
+    /// By how much of itself `Σ f²` can be below the largest one at most, proven by multipliers; none: it is not the
+    /// aim of this solver.
+    pub proven_gap: Option<f64>,
+    pub iterations: Option<usize>,
+    /// The largest difference of a feed to that of reachability analysis, as a share of it.
+    pub largest_difference: f64,
+}
+
+/// Plans of all stretches.
+pub struct Plans {
+    pub stretches: Vec<StretchPlan>,
+    /// What each solver came to, the one that was asked for first.
+    pub solvers: Vec<SolverFound>,
+    /// No larger feed at a sample ever forbids a larger one at the next: then both optima are the same.
+    pub monotone: bool,
+    pub samples: usize,
+}
+
+/// One stretch by one solver.
+struct Answer {
+    q: Vec<f64>,
+    spline: Option<FeedSpline>,
+    seconds: f64,
+    bound: Option<f64>,
+    iterations: Option<usize>,
+}
+
+impl Answer {
+    /// Of `q` alone.
+    fn of(problem: &Problem, q: Vec<f64>) -> Self {
+        Self {
+            seconds: profile::duration(&problem.steps, &q),
+            q,
+            spline: None,
+            bound: None,
+            iterations: None,
+        }
+    }
+}
+
+/// The sums over the stretches, as they grow.
+struct Sums {
+    solver: Solver,
+    objective: f64,
+    bound: Option<f64>,
+    seconds: f64,
+    iterations: Option<usize>,
+    difference: f64,
+}
+
+/// Plans every stretch of `path`, which stops between them.
+///
+/// # Errors
+/// Which limit cannot be kept, and where; axes that cannot follow the path.
+pub fn plan(
+    path: &mut CurvePath<'_>,
+    keep: &Keep,
+    asked: Asked,
+    file: &str,
+) -> Result<Plans, Box<Diagnostic>> {
+    let owned = keep.limits(asked.solver == Solver::Jerk);
+    let limits: Vec<&dyn Limit> = owned.iter().map(Box::as_ref).collect();
+    let spans = path.stretches.iter().map(|stretch| stretch.tip.breaks().len() - 1);
+    let steps = asked.samples.div_ceil(spans.sum::<usize>()).max(4);
+    let last = path.stretches.len() - 1;
+    let mut plans =
+        Plans { stretches: Vec::new(), solvers: Vec::new(), monotone: true, samples: 0 };
+    let solvers: &[Solver] = match asked.solver {
+        Solver::Reach => &[Solver::Reach],
+        Solver::Jerk => &[Solver::Jerk, Solver::Reach],
+        Solver::Lp => &[Solver::Lp, Solver::Interior, Solver::Reach],
+        Solver::Interior => &[Solver::Interior, Solver::Reach],
+    };
+    let mut sums: Vec<Sums> = Vec::new();
+    for solver in solvers {
+        sums.push(Sums {
+            solver: *solver,
+            objective: 0.0,
+            bound: None,
+            seconds: 0.0,
+            iterations: None,
+            difference: 0.0,
+        });
+    }
+    let mut way = 0.0;
+    for index in 0..=last {
+        let parameters = parameters(path, index, steps);
+        let guided = path.guide(index, &parameters);
+        guided.map_err(|(at, why)| path.refused(file, at, &why).boxed())?;
+        let samples = path.samples(index, &parameters);
+        let samples = samples.map_err(|(at, why)| path.refused(file, at, &why).boxed())?;
+        let speed = |feed: f64, sample: usize| {
+            let speed = feed / samples.stretch(sample);
+            if feed > 0.0 { speed * speed } else { 0.0 }
+        };
+        let ends = Ends {
+            start: if index == 0 { speed(asked.start_feed, 0) } else { 0.0 },
+            end: match index == last {
+                true => speed(asked.end_feed, samples.len() - 1),
+                false => 0.0,
+            },
+        };
+        let told = Told { path, index, samples: &samples, limits: &limits, way, file };
+        let mut problem = Problem::default();
+        let made = problem.refill(&samples, &limits, ends);
+        made.map_err(|fault| told.infeasible(&fault))?;
+        plans.monotone &= problem.rows.iter().all(|row| row.here * row.next <= 0.0);
+        let weights = samples.squared_feed_weights();
+        let fast = reach::solve(&problem).map_err(|fault| told.infeasible(&fault))?;
+        let mut spline = None;
+        for sum in &mut sums {
+            let answer = match sum.solver {
+                Solver::Reach => Answer::of(&problem, fast.clone()),
+                Solver::Interior => {
+                    let best = linear_program::solve(&problem, &weights);
+                    let best = best.map_err(|fault| told.infeasible(&fault))?;
+                    Answer {
+                        bound: Some(best.bound),
+                        iterations: Some(best.iterations),
+                        ..Answer::of(&problem, best.q)
+                    }
+                }
+                Solver::Lp => {
+                    let best = by_clarabel::solve(&problem, &weights);
+                    let best = best.map_err(|state| {
+                        let message = format!("{file}: clarabel ended without a plan: {state}");
+                        let help = "--solver interior solves the same program";
+                        Diagnostic::error("plan", message).help(help).boxed()
+                    })?;
+                    Answer {
+                        bound: Some(best.bound),
+                        iterations: Some(best.iterations as usize),
+                        ..Answer::of(&problem, best.q)
+                    }
+                }
+                Solver::Jerk => {
+                    let settings = jerk::Settings::default();
+                    let plan = jerk::solve(&samples, &limits, &problem, settings);
+                    let plan = plan.map_err(|fault| told.infeasible(&fault))?;
+                    Answer {
+                        q: plan.law.q(),
+                        seconds: plan.seconds,
+                        spline: Some(FeedSpline::of_law(&parameters, &plan.law)),
+                        bound: None,
+                        iterations: Some(plan.iterations),
+                    }
+                }
+            };
+            let objective: f64 = answer.q.iter().zip(&weights).map(|(q, weight)| q * weight).sum();
+            sum.objective += objective;
+            sum.seconds += answer.seconds;
+            // A stretch without a bound leaves the whole without.
+            sum.bound = answer.bound.map(|bound| sum.bound.unwrap_or(0.0) + bound);
+            sum.iterations = answer.iterations.map(|more| sum.iterations.unwrap_or(0) + more);
+            for ((q, fast), upper) in answer.q.iter().zip(&fast).zip(&problem.upper) {
+                let size = fast.max(1e-6 * upper);
+                if size > 0.0 {
+                    let difference = (q.sqrt() - fast.sqrt()).abs() / size.sqrt();
+                    sum.difference = sum.difference.max(difference);
+                }
+            }
+            if sum.solver == asked.solver {
+                spline = Some(match answer.spline {
+                    Some(spline) => spline,
+                    None => FeedSpline::rounded(&parameters, &answer.q),
+                });
+            }
+        }
+        way += length(&samples, samples.len() - 1);
+        plans.samples += samples.len();
+        plans.stretches.push(StretchPlan { parameters, spline: spline.unwrap_or_default() });
+    }
+    plans.solvers = sums
+        .into_iter()
+        .map(|sum| SolverFound {
+            solver: sum.solver,
+            sum_of_squared_feeds: sum.objective,
+            seconds: sum.seconds,
+            proven_gap: sum.bound.map(|bound| ((bound - sum.objective) / bound).max(0.0)),
+            iterations: sum.iterations,
+            largest_difference: sum.difference,
+        })
+        .collect();
+    Ok(plans)
+}
+
+/// The knots of a stretch, and so many even steps between each and the next: third derivatives jump at knots.
+fn parameters(path: &CurvePath<'_>, index: usize, steps: usize) -> Vec<f64> {
+    let breaks = path.stretches[index].tip.breaks();
+    let steps = steps.max(LEAST_STEPS.div_ceil(breaks.len() - 1));
+    let mut all = vec![breaks[0]];
+    for pair in breaks.windows(2) {
+        let at = |step: usize| match step == steps {
+            true => pair[1],
+            false => pair[0] + (pair[1] - pair[0]) * step as f64 / steps as f64,
+        };
+        all.extend((1..=steps).map(at));
+    }
+    all
+}
+
+/// Length of the tip's path up to a sample, mm.
+fn length(samples: &Samples, last: usize) -> f64 {
+    let each = (0..last).map(|interval| {
+        let ends = samples.stretch(interval) + samples.stretch(interval + 1);
+        0.5 * samples.step(interval) * ends
+    });
+    each.sum()
+}
+
+/// What is needed to tell why there is no plan.
+struct Told<'a> {
+    path: &'a CurvePath<'a>,
+    index: usize,
+    samples: &'a Samples,
+    limits: &'a [&'a dyn Limit],
+    /// Of the tip up to the stretch, mm.
+    way: f64,
+    file: &'a str,
+}
+
+impl Told<'_> {
+    fn infeasible(&self, fault: &Infeasible) -> Box<Diagnostic> {
+        let Some(sample) = fault.sample() else {
+            let message = format!("{}: {fault}", self.file);
+            return Diagnostic::error("infeasible", message).boxed();
+        };
+        let sample = sample.min(self.samples.len() - 1);
+        let parameter = self.samples.parameter[sample];
+        let tip = self.path.stretches[self.index].tip.derivatives(parameter)[0];
+        let place = format!(
+            "at parameter {}, {} mm along the path, at X {} Y {} Z {}",
+            Short(parameter),
+            Short(self.way + length(self.samples, sample)),
+            Short(tip[0]),
+            Short(tip[1]),
+            Short(tip[2])
+        );
+        let feed = |q: f64| Short(60.0 * q.sqrt() * self.samples.stretch(sample));
+        let by = |row: Option<Source>| match row {
+            Some(source) => format!(" ({} allows no more)", self.limit(source)),
+            None => String::new(),
+        };
+        let (message, help) = match *fault {
+            Infeasible::TooFastStart { source, needed, allowed, braking, .. } => (
+                format!(
+                    "the start is too fast: by the hardest braking{} the feed is still {} mm/min {place}, and {} allows {}",
+                    by(braking),
+                    feed(needed),
+                    self.limit(source),
+                    feed(allowed)
+                ),
+                "a smaller --start-feed",
+            ),
+            Infeasible::OutOfReach { source, needed, allowed, accelerating, .. } => (
+                format!(
+                    "the end is too fast: to reach its feed, that {place} would have to be {} mm/min{}, and {} allows {}",
+                    feed(needed),
+                    by(accelerating),
+                    self.limit(source),
+                    feed(allowed)
+                ),
+                "a smaller --end-feed",
+            ),
+            Infeasible::Contradiction { source, .. } => (
+                format!(
+                    "the limits contradict each other {place}, among them {}",
+                    self.limit(source)
+                ),
+                "a larger limit, or a smaller --start-feed or --end-feed",
+            ),
+            Infeasible::NotANumber { source, .. } => (
+                format!("{} is no limit {place}: not finite, or negative", self.limit(source)),
+                "the path may have a cusp there",
+            ),
+            Infeasible::Unbounded { .. } => {
+                (format!("no limit bounds the feed {place}"), "--feed is the largest feed")
+            }
+            Infeasible::TooShort { .. } => (
+                format!("a plan with jerk needs four samples or more between two stops: {place}"),
+                "more --samples",
+            ),
+            Infeasible::NoProgress { .. } => (
+                format!("no plan with limits of jerk was found on the stretch that begins {place}"),
+                "limits that are not so far apart, or more --samples",
+            ),
+            _ => (format!("{fault}: {place}"), ""),
+        };
+        let finding = Diagnostic::error("infeasible", format!("{}: {message}", self.file));
+        match help {
+            "" => finding.boxed(),
+            help => finding.help(help).boxed(),
+        }
+    }
+
+    /// `axis acceleration of Y`.
+    fn limit(&self, source: Source) -> String {
+        let limit = self.limits.get(usize::from(source.limit));
+        let name = limit.map_or("a limit", |limit| limit.name());
+        match source.axis.and_then(|axis| self.path.axes.get(usize::from(axis))) {
+            Some(place) => format!("{name} of {}", self.path.machine.axes[*place].name),
+            None => name.to_owned(),
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! `papers`: the comparisons of the papers that `post` stands on, and their figures.
+
+mod curve;
+mod deviations;
+mod plan;
+mod study;
+
+use clap::{Parser, Subcommand};
+use post_command::shared::{Failure, run_to_end};
+
+use plan::PlanArguments;
+use study::StudyArguments;
+
+/// Compares what papers say of deviations and feeds with what `post` makes of them.
+///
+/// Machines, CL files and flags are those of `post`; no program is written.
+#[derive(Debug, Parser)]
+#[command(
+    name = "papers",
+    version,
+    after_help = "Examples:
+  papers study part.cls --machine ac-trunnion
+  papers plan curve.json --pictures plan
+
+Exit codes: 0 done; 1 refused, the messages say why; 2 the command line is wrong.",
+    max_term_width = 100
+)]
+struct CommandLine {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    Study(Box<StudyArguments>),
+    Plan(Box<PlanArguments>),
+}
+
+fn main() {
+    run_to_end(|session| match CommandLine::try_parse().map_err(Failure::Usage)?.verb {
+        Verb::Study(arguments) => study::run(session, &arguments),
+        Verb::Plan(arguments) => plan::run(session, &arguments),
+    })
+}

@@ -10,7 +10,7 @@ use std::io::{self, IsTerminal as _, Write as _};
 use post_grammar::text::escaped;
 use post_machine::diagnostic::Diagnostic;
 
-pub use codes::{CODES, Code, CodeGroup};
+pub use codes::{Code, CodeGroup, codes};
 pub use progress::JobsProgress;
 
 use crate::failure::Failure;

@@ -6,7 +6,7 @@ use post_machine::diagnostic::nearest;
 
 use crate::failure::Failure;
 use crate::session::Session;
-use crate::terminal::{CODES, Code, CodeGroup, print};
+use crate::terminal::{Code, CodeGroup, codes, print};
 
 /// Explains the codes of messages: what is found, and what helps; without a code all of them
 #[derive(Debug, Args)]
@@ -20,10 +20,10 @@ pub fn run(session: &Session, arguments: &ExplainArguments) -> Result<(), Failur
     let wanted = arguments.code.as_deref().map(bare);
     let is_wanted = |code: &&Code| wanted.is_none_or(|wanted| wanted == code.name);
     let mut text = String::new();
-    for group in CODES {
+    for group in codes() {
         let codes: Vec<&Code> = group.codes.iter().filter(is_wanted).collect();
         if !codes.is_empty() {
-            tell(group, &codes, &mut text);
+            tell(&group, &codes, &mut text);
         }
     }
     match (wanted, text.is_empty()) {
@@ -54,7 +54,7 @@ fn tell(group: &CodeGroup, codes: &[&Code], text: &mut String) {
 }
 
 fn unknown(code: &str) -> Failure {
-    let names = CODES.iter().flat_map(|group| group.codes);
+    let names = codes().into_iter().flat_map(|group| group.codes);
     let near = nearest(code, names.map(|code| code.name));
     let help = near.map_or_else(
         || "  tip: `post explain` lists all codes".to_owned(),

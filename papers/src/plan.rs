@@ -20,7 +20,8 @@ use crate::curve::{self, Asked, Curve, Over, Solver};
 /// The curve is a NURBS of the tip, five axes with a second spline for the tool axis, or points that a smooth curve is laid
 /// through. Kept are the feed, velocity and acceleration of axes and tip, the chord error of one interpolation period, the
 /// contour error of the servos, and with --solver jerk the jerk too: everywhere along the path, not at samples alone (Chen,
-/// Ren, Sun 2016). Limits stand in the curve file, or are those of --machine.
+/// Ren, Sun 2016). Limits stand in the curve file, or are those of --machine, with the time of its control for a block: of
+/// a NURBS each span between two knots is one, of points the way from one to the next.
 #[derive(Debug, Args)]
 #[command(after_help = "A curve file is JSON, in mm and s:
   degree, knots, control_points_mm (or P_tool_tip), weights    the tip, a NURBS
@@ -36,7 +37,7 @@ use crate::curve::{self, Asked, Curve, Over, Solver};
 
 Examples:
   papers plan butterfly.json
-  papers plan butterfly.json --solver lp --contour-error off --simulate
+  papers plan butterfly.json --solver interior --contour-error off --simulate
   papers plan five-axis.json --solver jerk -o plan.json --pictures plan
   papers plan curve.json --machine my-mill.toml --feed 2000 --samples 20000 -o plan.csv
 
@@ -52,7 +53,7 @@ pub struct PlanArguments {
     solver: Solver,
 
     /// So many samples of the path, evenly between each knot and the next; limits are kept between them too. 20000 if not
-    /// said, 2000 for lp and jerk.
+    /// said, 2000 for jerk.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(5..=2_000_000))]
     samples: Option<u32>,
 
@@ -125,9 +126,7 @@ pub struct PlanArguments {
 enum SolverWord {
     /// Reachability analysis: two passes, linear time
     Reach,
-    /// The linear program of the paper, the largest Σ f², by clarabel; told beside the other two
-    Lp,
-    /// The same linear program by an interior point with a banded matrix, linear time an iteration
+    /// The linear program of the paper, the largest Σ f², by an interior point with a banded matrix, linear time an iteration
     Interior,
     /// Jerk is kept too
     Jerk,
@@ -137,7 +136,6 @@ impl From<SolverWord> for Solver {
     fn from(word: SolverWord) -> Self {
         match word {
             SolverWord::Reach => Self::Reach,
-            SolverWord::Lp => Self::Lp,
             SolverWord::Interior => Self::Interior,
             SolverWord::Jerk => Self::Jerk,
         }
@@ -182,7 +180,7 @@ pub fn run(session: &Session, arguments: &PlanArguments) -> Result<(), Failure> 
     let mut texts = AtomicFile::create(session, &targets)?;
     let samples = match arguments.solver {
         Solver::Reach | Solver::Interior => 20_000,
-        Solver::Lp | Solver::Jerk => 2000,
+        Solver::Jerk => 2000,
     };
     let asked = Asked {
         solver: arguments.solver,

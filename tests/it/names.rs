@@ -268,3 +268,16 @@ fn a_first_word_that_is_no_unicode_is_a_wrong_command_line() {
     assert_eq!(done.code, 2, "{}", done.err);
     assert!(done.err.contains("--machine"), "{}", done.err);
 }
+
+#[test]
+fn verbs_that_are_those_of_papers_now_say_so() {
+    for verb in ["study", "plan"] {
+        let told = run(command().args([verb, "part.cls", "-m", "vmc"]), b"");
+        assert_eq!((told.code, told.out.as_str()), (2, ""), "{}", told.err);
+        assert!(
+            told.err.contains(&format!("`post {verb}` is `papers {verb}` now")),
+            "{}",
+            told.err
+        );
+    }
+}

@@ -1,6 +1,5 @@
 //! Feeds planned along a curve of a curve file: the feedrate paper's system (Chen, Ren, Sun 2016) from one file.
 
-mod by_clarabel;
 mod file;
 mod found;
 mod json_text;
@@ -34,7 +33,6 @@ use simulate::Timeline;
 use walk::walk;
 
 pub use found::Found;
-pub use post_command::shared::plan::keep::Over;
 pub use rows::csv;
 pub use solve::{Asked, Solver};
 pub use text::text;
@@ -45,6 +43,19 @@ pub struct Curve {
     /// As the user named it.
     name: String,
     machine: Machine,
+}
+
+/// What the command line says over the files.
+#[derive(Clone, Copy, Debug)]
+pub struct Over {
+    /// mm/s.
+    pub feed: Option<f64>,
+    /// mm; infinite: no limit.
+    pub chord_error: Option<f64>,
+    /// mm; infinite: no limit.
+    pub contour_error: Option<f64>,
+    /// s.
+    pub period: Option<f64>,
 }
 
 /// What came of planning it.
@@ -100,6 +111,18 @@ impl Curve {
         Ok((curve, findings))
     }
 
+    /// The machine with what is said over it: by the curve file, and over that by `over`.
+    fn limited(&self, over: &Over) -> Machine {
+        let (mut machine, limits) = (self.machine.clone(), &self.file.limits);
+        let lay = |said: Option<f64>, limit: &mut Option<f64>| {
+            *limit = said.or(*limit).filter(|error| error.is_finite());
+        };
+        lay(over.chord_error.or(limits.chord_error), &mut machine.plan.chord_error);
+        lay(over.contour_error.or(limits.contour_error), &mut machine.plan.contour_error);
+        machine.motion.period = over.period.or(limits.period).unwrap_or(machine.motion.period);
+        machine
+    }
+
     /// Plans the feed along it. With a length of the tool in mm, and simulated if it is asked for.
     ///
     /// # Errors
@@ -111,7 +134,7 @@ impl Curve {
         tool_length: f64,
         simulated: bool,
     ) -> Result<Planned, Failure> {
-        let (machine, limits) = (&self.machine, &self.file.limits);
+        let machine = &self.limited(&over);
         let mut path = match &self.file.path {
             GivenPath::Splines(splines) => CurvePath::new(machine, tool_length, splines)?,
             GivenPath::Points(points, axes) => {
@@ -119,22 +142,26 @@ impl Curve {
                 CurvePath::through(machine, tool_length, points, &self.name)?
             }
         };
-        let over = Over {
-            feed: over.feed.or(limits.tip[0]),
-            chord_error: over.chord_error.or(limits.chord_error),
-            contour_error: over.contour_error.or(limits.contour_error),
-            period: over.period.or(limits.period),
-        };
-        let keep = Keep::new(machine, &path.axes, over)?;
+        let mut keep = Keep::new(machine, &path.axes);
+        if keep.servos.is_none() && machine.plan.contour_error.is_some() {
+            let message = format!(
+                "{}: a contour error is to be kept, and not every axis that leads the tip has a servo",
+                machine.name
+            );
+            let help = "servo in the limits of the curve file, or [servo.X] of the machine file, says what a servo does; --contour-error off plans without";
+            return Err(Diagnostic::error("plan", message).help(help).into());
+        }
+        keep.feed = over.feed.or(self.file.limits.tip[0]).unwrap_or(f64::INFINITY);
+        keep.block_rate = 1.0 / machine.motion.block_time;
         if asked.solver == Solver::Jerk && !keep.has_jerk() {
             let message = format!("{}: --solver jerk, and no jerk is limited", self.name);
             let help =
                 "j in the limits of the curve file, or max_jerk of the machine's axes, limits it";
             return Err(Diagnostic::error("plan", message).help(help).into());
         }
-        let mut plans = solve::plan(&mut path, &keep, asked, &self.name)?;
+        let mut plans = solve::plan(&mut path, keep.feed, asked, &self.name)?;
         let jerk = asked.solver == Solver::Jerk;
-        let gauges = Gauges::new(machine, &path.axes, path.turns(), &keep, jerk);
+        let gauges = Gauges::new(machine, &path.axes, true, &keep, jerk);
         let refused = |(at, why): (f64, path::NoStation)| path.refused(&self.name, at, &why);
         let mut first = Tally::new(&gauges);
         walk(&path, &plans.stretches, &gauges, &mut |step| {
@@ -163,9 +190,7 @@ impl Curve {
         })
         .map_err(refused)?;
         let simulated = match simulated {
-            true => {
-                Some(timeline.simulate(&path, &plans.stretches, keep.period, keep.contour_error)?)
-            }
+            true => Some(timeline.simulate(&path, &plans.stretches, keep.contour_error)?),
             false => None,
         };
         let stops = plans.stretches.iter().skip(1).map(|stretch| stretch.parameters[0]);

@@ -1,5 +1,7 @@
 //! A path as the planner sees it: where tip and axes are at a parameter, and their derivatives by it.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 use post_command::shared::plan::gauges::Station;
 use post_feed::Samples;
@@ -9,6 +11,7 @@ use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Short};
 use post_machine::kinematics::choose::{Limit, Turning};
 use post_machine::kinematics::{Course, Joints, Pose, Solver, Unreachable, direction, travel};
+use post_posting::plan::SampledAxes;
 
 use super::file::{Pointing, Splines};
 use super::parts::{Part, smooth_parts};
@@ -17,7 +20,10 @@ use super::track::{self, SmoothPiece, Track};
 /// A path on a machine: stretches whose first and second derivatives are continuous; between two of them it stops.
 pub struct CurvePath<'m> {
     pub machine: &'m Machine,
-    solver: Solver,
+    /// The chain with the tool.
+    pub solver: Arc<Solver>,
+    /// The axes that are limited.
+    sampled: SampledAxes,
     /// Joints that point the tool.
     rotary: Vec<usize>,
     turning: Turning,
@@ -29,9 +35,20 @@ pub struct CurvePath<'m> {
 /// A stretch between two stops.
 pub struct Stretch {
     pub tip: Track<3>,
+    /// The ends of the blocks that a control would have: knots, or the points that the file gives.
+    blocks: Vec<f64>,
     pointing: CurvePointing,
     /// Rotary angles at parameters along it: between them they are the nearest.
     guides: Vec<(f64, Joints)>,
+}
+
+impl Stretch {
+    /// Length of the block at a parameter.
+    fn block(&self, parameter: f64) -> f64 {
+        let last = self.blocks.len() - 1;
+        let before = self.blocks[1..last].partition_point(|end| *end <= parameter);
+        self.blocks[before + 1] - self.blocks[before]
+    }
 }
 
 /// How the tool points along a stretch.
@@ -79,7 +96,8 @@ impl<'m> CurvePath<'m> {
             let across = plane && rotary.is_empty() && axis.joint.direction.z.abs() > 1e-9;
             axis.indexed.is_none() && !across && (!axis.joint.rotary || rotary.contains(place))
         });
-        Ok(Self { machine, solver, rotary, turning, axes, stretches: Vec::new() })
+        let (solver, sampled) = (Arc::new(solver), SampledAxes::new(machine));
+        Ok(Self { machine, solver, sampled, rotary, turning, axes, stretches: Vec::new() })
     }
 
     /// The path of `splines` on `machine` with a tool of `length` mm.
@@ -135,11 +153,12 @@ impl<'m> CurvePath<'m> {
             let message = format!("{file}: all points are the same");
             return Err(Diagnostic::error("curve", message).boxed());
         }
-        for SmoothPiece { tip, rotary } in pieces {
+        for SmoothPiece { tip, rotary, points } in pieces {
             let rotary = path.rotary.iter().copied().zip(rotary);
             let curves = rotary.map(|(place, pieces)| (place, Track::Pieces(pieces)));
             path.stretches.push(Stretch {
                 tip: Track::Pieces(tip),
+                blocks: points,
                 pointing: CurvePointing::Rotary(curves.collect()),
                 guides: Vec::new(),
             });
@@ -171,11 +190,8 @@ impl<'m> CurvePath<'m> {
                 CurvePointing::Rotary(curves)
             }
         };
-        Ok(Stretch {
-            tip: Track::Spline(part.curve(splines, &splines.tip)),
-            pointing,
-            guides: Vec::new(),
-        })
+        let tip = Track::Spline(part.curve(splines, &splines.tip));
+        Ok(Stretch { blocks: tip.breaks(), tip, pointing, guides: Vec::new() })
     }
 
     /// Finds the rotary angles along a stretch at these parameters, each near the last.
@@ -271,14 +287,19 @@ impl<'m> CurvePath<'m> {
         }
         let placed = self.solver.course(&vectors, &mut course);
         placed.map_err(NoStation::Unreachable)?;
-        Ok(Station { parameter, tip, course })
+        Ok(Station { parameter, tip, course, block: stretch.block(parameter) })
     }
 
-    /// The samples of a stretch at these parameters.
+    /// The samples of a stretch at these parameters, with the largest feed of the tip, mm/s.
     ///
     /// # Errors
     /// Where the axes cannot follow.
-    pub fn samples(&self, index: usize, parameters: &[f64]) -> Result<Samples, (f64, NoStation)> {
+    pub fn samples(
+        &self,
+        index: usize,
+        parameters: &[f64],
+        feed: f64,
+    ) -> Result<Samples, (f64, NoStation)> {
         let mut samples = Samples {
             // Curves through points are quintics; a spline may be of any degree.
             smooth: matches!(self.stretches[index].tip, Track::Pieces(_)),
@@ -286,27 +307,11 @@ impl<'m> CurvePath<'m> {
         };
         for &parameter in parameters {
             let station = self.at(index, parameter).map_err(|why| (parameter, why))?;
-            let [_, first, second, third] = station.tip;
-            let axes: Vec<[f64; 3]> = (self.axes.iter())
-                .map(|place| std::array::from_fn(|order| station.course.joints[order + 1][*place]))
-                .collect();
-            samples.push(parameter, [first, second, third], &axes);
-            if !self.rotary.is_empty() {
-                let rates = self.axes.iter().map(|place| station.course.rates[*place].into());
-                samples.push_rates(&rates.collect::<Vec<[f64; 3]>>());
-            }
+            self.sampled.push(&mut samples, parameter, &station.tip, &station.course);
+            samples.feeds.push(feed);
+            samples.blocks.push(station.block);
         }
         Ok(samples)
-    }
-
-    /// Rotary axes point the tool.
-    pub fn turns(&self) -> bool {
-        !self.rotary.is_empty()
-    }
-
-    /// The pose of the tool where the axes stand at `joints`.
-    pub fn tip_at(&self, joints: &Joints) -> Vector3<f64> {
-        self.solver.chain().forward(joints).tip
     }
 
     /// What is said where the axes are nowhere.

@@ -1,19 +1,20 @@
 //! A planned motion through the servos: the contour error that they really make, beside the formula of the steady state.
 
+use std::sync::Arc;
+
+use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::Joints;
+use post_motion::contour::{Contour, ContourPoint};
 use post_motion::servo::Servos;
+use post_motion::{At, SetPoints};
 use serde::Serialize;
 
 use super::path::CurvePath;
 use super::solve::StretchPlan;
 use super::walk::Step;
-use post_command::shared::plan::gauges::PlanPoint;
 
-/// The path within so many mm of where the axes are commanded is looked at for the nearest point, and within so many
-/// times their lag.
-const AROUND: f64 = 1.0;
-const LAGS: f64 = 3.0;
+/// Nearer than this to an end of the path is at it, mm.
+const AT_END: f64 = 1e-9;
 
 /// What came of it, mm.
 #[derive(Clone, Debug, Serialize)]
@@ -58,23 +59,20 @@ struct Node {
     way: f64,
     piece: usize,
     share: f64,
-    tip: [f64; 3],
     formula: f64,
 }
 
 impl Timeline {
     /// Takes the next step.
     pub fn take(&mut self, step: &Step<'_>) {
-        let PlanPoint { parameter, time, way, tip, contour_error, .. } = *step.point;
         self.nodes.push(Node {
             stretch: step.stretch,
-            parameter,
-            time,
-            way,
+            parameter: step.point.parameter,
+            time: step.point.time,
+            way: step.point.way,
             piece: step.piece,
             share: step.share,
-            tip,
-            formula: contour_error,
+            formula: step.point.contour_error,
         });
     }
 
@@ -86,24 +84,34 @@ impl Timeline {
         &self,
         path: &CurvePath<'_>,
         plans: &[StretchPlan],
-        period: f64,
         limit: f64,
     ) -> Result<Simulated, Box<Diagnostic>> {
+        let period = path.machine.motion.period;
         let mut servos = Servos::new(path.machine, period)?;
         if servos.places().next().is_none() {
             let message = format!("{} has no servo to simulate", path.machine.name);
             let help = "servo in the limits of the curve file, or [servo.X] of the machine file, says what a servo does";
             return Err(Diagnostic::error("plan", message).help(help).boxed());
         }
-        let commanded = self.commanded(path, plans, period);
-        let joints: Vec<Joints> = commanded.iter().map(|point| point.joints).collect();
-        servos.settle(&joints[0]);
+        let mut points = SetPoints::new(Arc::clone(&path.solver), period);
+        let commanded = self.commanded(path, plans, &mut points);
+        servos.settle(&points.joints[0]);
         let mut actual = Vec::new();
-        servos.follow(&joints, &mut actual);
+        servos.follow(&points.joints, &mut actual);
+        let ends = [&commanded[0], &commanded[commanded.len() - 1]];
+        let mut errors = Vec::with_capacity(commanded.len());
+        let mut take = |point: &ContourPoint| {
+            let beyond = ends.into_iter().find(|end| (end.tip - point.nearest.tip).norm() < AT_END);
+            // Who goes on straight before the beginning or beyond the end does not leave the contour.
+            errors.push(beyond.map_or(point.distance, |end| point.error.cross(&end.along).norm()));
+        };
+        let mut contour = Contour::new();
+        contour.take(&points, &actual, &mut take);
+        contour.finish(&mut take);
         let formula = self.nodes.iter().map(|node| node.formula);
         let mut found = Simulated {
             period_s: period,
-            set_points: joints.len(),
+            set_points: commanded.len(),
             largest: 0.0,
             at_mm: 0.0,
             formula_there: 0.0,
@@ -117,8 +125,7 @@ impl Timeline {
             share_above_limit: None,
         };
         let (mut above, mut beyond) = (0usize, 0usize);
-        for (point, joints) in commanded.iter().zip(&actual) {
-            let error = self.off(path, point, path.tip_at(joints).into());
+        for (point, error) in commanded.iter().zip(errors) {
             if error > found.largest {
                 (found.largest, found.at_mm) = (error, point.way);
                 found.formula_there = point.formula;
@@ -132,7 +139,7 @@ impl Timeline {
             found.rms += error * error;
             found.formula_rms += point.formula * point.formula;
         }
-        let count = joints.len() as f64;
+        let count = commanded.len() as f64;
         found.rms = libm::sqrt(found.rms / count);
         found.formula_rms = libm::sqrt(found.formula_rms / count);
         found.share_above_formula = above as f64 / count;
@@ -140,19 +147,19 @@ impl Timeline {
         Ok(found)
     }
 
-    /// Set-points, one each period.
+    /// Fills in the set-points, one each period, and tells of each where it is on the path.
     fn commanded(
         &self,
         path: &CurvePath<'_>,
         plans: &[StretchPlan],
-        period: f64,
+        points: &mut SetPoints,
     ) -> Vec<Commanded> {
-        let mut points = Vec::new();
+        let mut commanded = Vec::new();
         let mut node = 0;
         let end = self.nodes.last().map_or(0.0, |last| last.time);
-        let count = libm::ceil(end / period) as usize;
+        let count = libm::ceil(end / points.period) as usize;
         for index in 0..=count {
-            let time = (index as f64 * period).min(end);
+            let time = (index as f64 * points.period).min(end);
             while node + 2 < self.nodes.len() && self.nodes[node + 1].time <= time {
                 node += 1;
             }
@@ -172,67 +179,29 @@ impl Timeline {
                 // The walk has been there.
                 continue;
             };
-            points.push(Commanded {
-                node,
-                joints: station.course.joints[0],
-                tip: station.tip[0],
+            let joints = station.course.joints[0];
+            points.joints.push(joints);
+            points.poses.push(path.solver.chain().forward(&joints));
+            points.at.push(At { cuts: true, ..At::default() });
+            let [tip, along, ..] = station.tip.map(Vector3::from);
+            commanded.push(Commanded {
+                tip,
+                along: along.try_normalize(0.0).unwrap_or_default(),
                 way: from.way + share * (to.way - from.way),
                 formula: from.formula.max(to.formula),
             });
         }
-        points
-    }
-
-    /// How far `tip` is from the path around where it is commanded, mm.
-    fn off(&self, path: &CurvePath<'_>, point: &Commanded, tip: [f64; 3]) -> f64 {
-        let room = AROUND + LAGS * distance(point.tip, tip);
-        let near = |node: &Node| (node.way - point.way).abs() <= room;
-        let first = self.nodes[..=point.node].iter().rev().take_while(|node| near(node));
-        let behind = self.nodes[point.node + 1..].iter().take_while(|node| near(node));
-        let around = first.chain(behind);
-        let nearest = around.min_by(|a, b| distance(a.tip, tip).total_cmp(&distance(b.tip, tip)));
-        let Some(node) = nearest else {
-            return distance(point.tip, tip);
-        };
-        let mut least = distance(node.tip, tip);
-        let track = &path.stretches[node.stretch].tip;
-        let [begin, end] = track.range();
-        let mut parameter = node.parameter;
-        // Where the path goes across the way to it: Newton's method for the root of (P - tip)·P'.
-        for _ in 0..4 {
-            let [at, first, second, _] = track.derivatives(parameter);
-            let away: [f64; 3] = std::array::from_fn(|axis| at[axis] - tip[axis]);
-            let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-            let (along, square) = (dot(away, first), dot(away, away));
-            let beyond =
-                (along < 0.0 && parameter >= end && node.stretch + 1 == path.stretches.len())
-                    || (along > 0.0 && parameter <= begin && node.stretch == 0);
-            if beyond {
-                // Who goes on straight before the beginning or beyond the end does not leave the contour.
-                let across = square - along * along / dot(first, first).max(f64::MIN_POSITIVE);
-                return libm::sqrt(across.max(0.0));
-            }
-            least = least.min(libm::sqrt(square));
-            let slope = dot(first, first) + dot(away, second);
-            if slope <= 0.0 {
-                break;
-            }
-            parameter = (parameter - along / slope).clamp(begin, end);
-        }
-        least
+        commanded
     }
 }
 
+/// Where a set-point is on the path.
 struct Commanded {
-    /// The last one of the walk before it.
-    node: usize,
-    joints: Joints,
-    tip: [f64; 3],
+    tip: Vector3<f64>,
+    /// The way that the path goes there.
+    along: Vector3<f64>,
+    /// mm along the path.
     way: f64,
+    /// What the formula says there, mm.
     formula: f64,
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
-    libm::sqrt(squares.sum())
 }

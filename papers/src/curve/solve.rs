@@ -6,11 +6,10 @@ use post_feed::{
     Ends, FeedSpline, Infeasible, Problem, Samples, jerk, linear_program, profile, reach,
 };
 use post_machine::diagnostic::{Diagnostic, Short};
+use post_posting::plan::axis_name;
 use serde::Serialize;
 
-use super::by_clarabel;
 use super::path::CurvePath;
-use post_command::shared::plan::keep::Keep;
 
 /// Every stretch has so many steps at least: with limits of jerk fewer are none.
 const LEAST_STEPS: usize = 8;
@@ -21,9 +20,7 @@ const LEAST_STEPS: usize = 8;
 pub enum Solver {
     /// Reachability analysis.
     Reach,
-    /// The paper's linear program, by clarabel.
-    Lp,
-    /// The paper's linear program, by our own interior point.
+    /// The paper's linear program, by an interior point.
     Interior,
     /// With limits of jerk.
     Jerk,
@@ -102,17 +99,17 @@ struct Sums {
     difference: f64,
 }
 
-/// Plans every stretch of `path`, which stops between them.
+/// Plans every stretch of `path`, which stops between them, with the largest feed of the tip in mm/s.
 ///
 /// # Errors
 /// Which limit cannot be kept, and where; axes that cannot follow the path.
 pub fn plan(
     path: &mut CurvePath<'_>,
-    keep: &Keep,
+    feed: f64,
     asked: Asked,
     file: &str,
 ) -> Result<Plans, Box<Diagnostic>> {
-    let owned = keep.limits(asked.solver == Solver::Jerk);
+    let owned = post_posting::plan::limits(path.machine, &path.machine.plan);
     let limits: Vec<&dyn Limit> = owned.iter().map(Box::as_ref).collect();
     let spans = path.stretches.iter().map(|stretch| stretch.tip.breaks().len() - 1);
     let steps = asked.samples.div_ceil(spans.sum::<usize>()).max(4);
@@ -122,7 +119,6 @@ pub fn plan(
     let solvers: &[Solver] = match asked.solver {
         Solver::Reach => &[Solver::Reach],
         Solver::Jerk => &[Solver::Jerk, Solver::Reach],
-        Solver::Lp => &[Solver::Lp, Solver::Interior, Solver::Reach],
         Solver::Interior => &[Solver::Interior, Solver::Reach],
     };
     let mut sums: Vec<Sums> = Vec::new();
@@ -141,7 +137,7 @@ pub fn plan(
         let parameters = parameters(path, index, steps);
         let guided = path.guide(index, &parameters);
         guided.map_err(|(at, why)| path.refused(file, at, &why).boxed())?;
-        let samples = path.samples(index, &parameters);
+        let samples = path.samples(index, &parameters, feed);
         let samples = samples.map_err(|(at, why)| path.refused(file, at, &why).boxed())?;
         let speed = |feed: f64, sample: usize| {
             let speed = feed / samples.stretch(sample);
@@ -171,19 +167,6 @@ pub fn plan(
                     Answer {
                         bound: Some(best.bound),
                         iterations: Some(best.iterations),
-                        ..Answer::of(&problem, best.q)
-                    }
-                }
-                Solver::Lp => {
-                    let best = by_clarabel::solve(&problem, &weights);
-                    let best = best.map_err(|state| {
-                        let message = format!("{file}: clarabel ended without a plan: {state}");
-                        let help = "--solver interior solves the same program";
-                        Diagnostic::error("plan", message).help(help).boxed()
-                    })?;
-                    Answer {
-                        bound: Some(best.bound),
-                        iterations: Some(best.iterations as usize),
                         ..Answer::of(&problem, best.q)
                     }
                 }
@@ -351,8 +334,8 @@ impl Told<'_> {
     fn limit(&self, source: Source) -> String {
         let limit = self.limits.get(usize::from(source.limit));
         let name = limit.map_or("a limit", |limit| limit.name());
-        match source.axis.and_then(|axis| self.path.axes.get(usize::from(axis))) {
-            Some(place) => format!("{name} of {}", self.path.machine.axes[*place].name),
+        match source.axis {
+            Some(axis) => format!("{name} of {}", axis_name(self.path.machine, axis)),
             None => name.to_owned(),
         }
     }

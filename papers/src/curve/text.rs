@@ -178,7 +178,6 @@ fn sign(value: f64) -> &'static str {
 fn name(solver: Solver) -> &'static str {
     match solver {
         Solver::Reach => "reach",
-        Solver::Lp => "lp (clarabel)",
         Solver::Interior => "interior",
         Solver::Jerk => "jerk",
     }

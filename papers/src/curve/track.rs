@@ -32,14 +32,6 @@ impl<const D: usize> Track<D> {
             Self::Pieces(pieces) => pieces.knots.clone(),
         }
     }
-
-    /// First and last parameter.
-    pub fn range(&self) -> [f64; 2] {
-        match self {
-            Self::Spline(curve) => curve.range(),
-            Self::Pieces(pieces) => [pieces.knots[0], pieces.knots[pieces.knots.len() - 1]],
-        }
-    }
 }
 
 /// Polynomials of degree five between knots.
@@ -100,6 +92,8 @@ impl<const D: usize> Pieces<D> {
 pub struct SmoothPiece {
     pub tip: Pieces<3>,
     pub rotary: Vec<Pieces<1>>,
+    /// Parameters of the points.
+    pub points: Vec<f64>,
 }
 
 /// Lays smooth curves through points: the tip in mm, then `rotary` axes in radians. Between two curves there is a corner.
@@ -114,6 +108,7 @@ pub fn through(points: &[fit::Point], rotary: usize, tolerance: f64) -> Vec<Smoo
         if leg.begins || pieces.is_empty() {
             let mut piece = SmoothPiece::default();
             piece.rotary.resize_with(rotary, Pieces::default);
+            piece.points.push(at);
             pieces.push(piece);
         }
         let last = pieces.len() - 1;
@@ -129,6 +124,7 @@ pub fn through(points: &[fit::Point], rotary: usize, tolerance: f64) -> Vec<Smoo
             }
         }
         at += leg.length;
+        piece.points.push(at);
     };
     for point in points {
         fit.push(point, &mut take);
@@ -155,11 +151,12 @@ mod tests {
         let pieces = through(&points, 1, 0.01);
         assert_eq!(pieces.len(), 1);
         let tip = Track::Pieces(pieces.into_iter().next().unwrap().tip);
-        let [first, last] = tip.range();
+        let knots = tip.breaks();
+        let (first, last) = (knots[0], knots[knots.len() - 1]);
         // The parameter counts turns too, 10 mm a radian.
         let length = libm::hypot(30.0, 15.0);
         assert!((last - first - length).abs() < 0.1);
-        for knot in &tip.breaks()[1..] {
+        for knot in &knots[1..] {
             let [left, right] = [knot - 1e-7, knot + 1e-7].map(|at| tip.derivatives(at));
             for order in 0..ORDERS {
                 for axis in 0..3 {

@@ -7,7 +7,7 @@ use post_plugin::{Curve, ModelSession};
 
 use super::curve::{Peak, peak};
 use super::placed::{each, split, strays};
-use super::survey::{compensating, placing};
+use super::survey::placing;
 use post_machine::description::{Machine, Placement};
 use post_machine::kinematics::Joints;
 use post_posting::Observer;
@@ -18,8 +18,6 @@ use post_posting::accuracy::{Linearise, Move, Node, Placer, Stuck, Tolerances};
 pub struct Kept {
     /// Its number among the cuts of the file, counted from 0.
     pub number: usize,
-    /// Line of the CL file.
-    pub line: u64,
     placer: Placer,
     from: Node,
     to: Node,
@@ -52,13 +50,12 @@ impl Keeper {
 }
 
 impl Observer for Keeper {
-    fn cut(&mut self, line: u64, cut: &Move<'_>) {
+    fn cut(&mut self, _: u64, cut: &Move<'_>) {
         let number = self.peaks.len();
         self.peaks.push(peak(|t| strays(cut, t).norm()).size);
         if self.wanted.contains(&number) {
             self.kept.push(Kept {
                 number,
-                line,
                 placer: cut.placer.clone(),
                 from: *cut.from,
                 to: *cut.to,

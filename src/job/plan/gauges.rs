@@ -1,7 +1,7 @@
 //! How much of each limit a plan uses at a point of the path, worked out from the path itself and not from the rows that
 //! a solver was given.
 
-use post_machine::description::Machine;
+use post_machine::description::{LimitsActOn, Machine};
 use post_machine::kinematics::{Course, ORDERS};
 
 use super::keep::Keep;
@@ -25,6 +25,8 @@ pub enum Quantity {
     ChordError,
     /// How far the servos leave the path, by the formula of the steady state.
     ContourError,
+    /// How soon the control needs its next block.
+    BlockRate,
 }
 
 /// A limit that is measured.
@@ -47,7 +49,7 @@ pub struct Gauge {
 }
 
 /// Where the path is at a parameter.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Station {
     /// Parameter of the path.
     pub parameter: f64,
@@ -55,6 +57,8 @@ pub struct Station {
     pub tip: [[f64; 3]; ORDERS],
     /// Axis values and their derivatives.
     pub course: Course,
+    /// Length of the block that it lies on, in units of the parameter; infinite where there are no blocks.
+    pub block: f64,
 }
 
 /// A plan at a point of the path.
@@ -86,12 +90,16 @@ pub struct PlanPoint {
     pub chord_error: f64,
     /// By the formula of the steady state; NaN where nothing is known of the servos.
     pub contour_error: f64,
+    /// Blocks in a second, at this speed.
+    pub block_rate: f64,
 }
 
 /// The limits, and what is needed to measure them.
 pub struct Gauges<'a> {
     keep: &'a Keep,
     axes: Vec<usize>,
+    /// By axis: where the control limits the programmed coordinates, the one that stands for the axis.
+    programmed: Vec<Option<usize>>,
     /// Rotary axes are among them.
     turns: bool,
     /// What is measured, in the order in which it is told.
@@ -102,7 +110,14 @@ impl<'a> Gauges<'a> {
     /// Those of the axes of `machine` at the places `axes`, for which `keep` was made; `turns`: rotary axes point the tool;
     /// `jerk`: the solver keeps jerk too.
     pub fn new(machine: &Machine, axes: &[usize], turns: bool, keep: &'a Keep, jerk: bool) -> Self {
-        let mut gauges = Self { keep, axes: axes.to_vec(), turns, all: Vec::new() };
+        let programmed = axes.iter().map(|place| {
+            let axis = &machine.axes[*place];
+            let coordinate = ["X", "Y", "Z"].iter().position(|name| axis.name == *name);
+            let limited = machine.motion.limits == LimitsActOn::Programmed && !axis.joint.rotary;
+            coordinate.filter(|_| limited)
+        });
+        let programmed = programmed.collect();
+        let mut gauges = Self { keep, axes: axes.to_vec(), programmed, turns, all: Vec::new() };
         gauges.add(Quantity::Feed, "feed", "mm/min", 60.0, keep.feed, true);
         gauges.add_axes(
             machine,
@@ -140,6 +155,9 @@ impl<'a> Gauges<'a> {
                 keep.contour_error,
                 true,
             );
+        }
+        if keep.block_rate.is_finite() {
+            gauges.add(Quantity::BlockRate, "blocks", "1/s", 1.0, keep.block_rate, true);
         }
         gauges
     }
@@ -214,17 +232,22 @@ impl<'a> Gauges<'a> {
             [joints[0][*place], v, a, j]
         });
         let each: Vec<[f64; 4]> = each.collect();
-        let column = |order: usize| each.iter().map(|values| values[order]).collect();
+        let limited = |order: usize| {
+            let values = each.iter().zip(&self.programmed).map(|(values, coordinate)| {
+                coordinate.map_or(values[order], |coordinate| tip[coordinate][order - 1])
+            });
+            values.collect()
+        };
         PlanPoint {
             parameter: station.parameter,
             way: 0.0,
             time: 0.0,
             tip: station.tip[0],
             feed,
-            position: column(0),
-            velocity: column(1),
-            acceleration: column(2),
-            jerk: column(3),
+            position: each.iter().map(|values| values[0]).collect(),
+            velocity: limited(1),
+            acceleration: limited(2),
+            jerk: limited(3),
             tip_acceleration: size(1),
             tip_jerk: size(2),
             chord_error: chord_error(feed, curvature, self.keep.period),
@@ -239,6 +262,7 @@ impl<'a> Gauges<'a> {
                 Some(servos) => servos.on_a_circle(feed, curvature),
                 None => f64::NAN,
             },
+            block_rate: speed / station.block,
         }
     }
 
@@ -254,13 +278,14 @@ impl<'a> Gauges<'a> {
             Quantity::TipJerk => point.tip_jerk,
             Quantity::ChordError => point.chord_error,
             Quantity::ContourError => point.contour_error,
+            Quantity::BlockRate => point.block_rate,
         }
     }
 
     /// The share of the speed at which a value that is `share` of its limit comes down to it.
     pub fn speed_at_limit(quantity: Quantity, share: f64) -> f64 {
         match quantity {
-            Quantity::Feed | Quantity::Velocity => 1.0 / share,
+            Quantity::Feed | Quantity::Velocity | Quantity::BlockRate => 1.0 / share,
             Quantity::Acceleration | Quantity::TipAcceleration | Quantity::ChordError => {
                 1.0 / share.sqrt()
             }

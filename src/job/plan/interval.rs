@@ -129,6 +129,7 @@ impl Interval<'_> {
             parameter: 0.0,
             tip: quintic::between(&from.tip, &to.tip, self.length, share),
             course: from.course,
+            block: f64::INFINITY,
         };
         let joints = [from, to].map(|end| &end.course.joints);
         station.course.joints = quintic::between(joints[0], joints[1], self.length, share);

@@ -1,12 +1,7 @@
-//! What a plan has to keep: the limits of the machine, of its servos and of the job.
+//! What a plan has to keep, as it is shown beside what it uses: the limits of the machine, of its servos and of the job.
 
-use post_feed::limits::{
-    AxisAcceleration, AxisJerk, AxisVelocity, ChordError, Collocation, ContourError, Feed, Limit,
-    TipAcceleration, TipJerk,
-};
 use post_feed::response::{Answer, Response};
 use post_machine::description::Machine;
-use post_machine::diagnostic::Diagnostic;
 use post_machine::servo;
 
 /// Points of the table of a servo's deviation.
@@ -32,106 +27,44 @@ pub struct Keep {
     pub period: f64,
     /// By the formula of the steady state.
     pub contour_error: f64,
+    /// Blocks in a second.
+    pub block_rate: f64,
     /// What the servos do; none where an axis that leads the tip has none.
     pub servos: Option<Deviation>,
 }
 
-/// What the command line says over the files.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Over {
-    /// mm/s.
-    pub feed: Option<f64>,
-    /// mm; infinite: no limit.
-    pub chord_error: Option<f64>,
-    /// mm; infinite: no limit.
-    pub contour_error: Option<f64>,
-    /// s.
-    pub period: Option<f64>,
-}
-
 impl Keep {
-    /// The limits of `machine` for its axes at the places `axes`, with `over` over them.
-    ///
-    /// # Errors
-    /// A contour error is to be kept, and nothing is known of the servos.
-    pub fn new(machine: &Machine, axes: &[usize], over: Over) -> Result<Self, Box<Diagnostic>> {
+    /// The limits of `machine` for its axes at the places `axes`. Feeds and blocks are those of the job: none. Where nothing
+    /// is known of the servos there is no contour error either.
+    pub fn new(machine: &Machine, axes: &[usize]) -> Self {
         let of = |limit: &dyn Fn(usize) -> f64| axes.iter().map(|place| limit(*place)).collect();
         let servos = Deviation::new(machine, axes);
-        let contour_error = over.contour_error.or(machine.plan.contour_error);
-        if servos.is_none() && contour_error.is_some_and(f64::is_finite) {
-            let message = format!(
-                "{}: a contour error is to be kept, and not every axis that leads the tip has a servo",
-                machine.name
-            );
-            let help = "servo in the limits of the curve file, or [servo.X] of the machine file, says what a servo does; --contour-error off plans without";
-            return Err(Diagnostic::error("plan", message).help(help).boxed());
-        }
         let none = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
-        Ok(Self {
-            feed: none(over.feed),
+        Self {
+            feed: f64::INFINITY,
             velocity: of(&|place| machine.axes[place].max_feed / 60.0),
             acceleration: of(&|place| machine.axes[place].max_accel),
             jerk: of(&|place| machine.axes[place].max_jerk),
             tip_acceleration: machine.motion.tip_accel,
             tip_jerk: machine.motion.tip_jerk,
-            chord_error: none(over.chord_error.or(machine.plan.chord_error)),
-            period: over.period.unwrap_or(machine.motion.period),
-            contour_error: none(contour_error),
+            chord_error: none(machine.plan.chord_error),
+            period: machine.motion.period,
+            contour_error: none(servos.as_ref().and(machine.plan.contour_error)),
+            block_rate: f64::INFINITY,
             servos,
-        })
+        }
     }
 
     /// Some jerk is limited.
     pub fn has_jerk(&self) -> bool {
         self.tip_jerk.is_finite() || self.jerk.iter().any(|jerk| jerk.is_finite())
     }
-
-    /// As limits of a problem; jerk among them if it is asked for.
-    pub fn limits(&self, jerk: bool) -> Vec<Box<dyn Limit>> {
-        let collocation = Collocation::Throughout;
-        let mut limits: Vec<Box<dyn Limit>> = Vec::new();
-        if self.feed.is_finite() {
-            let most = self.feed;
-            limits.push(Box::new(Feed { most, collocation }));
-        }
-        limits.push(Box::new(AxisVelocity { limits: self.velocity.clone(), collocation }));
-        limits.push(Box::new(AxisAcceleration { limits: self.acceleration.clone(), collocation }));
-        if self.tip_acceleration.is_finite() {
-            let limit = self.tip_acceleration;
-            limits.push(Box::new(TipAcceleration { limit, collocation }));
-        }
-        if self.chord_error.is_finite() {
-            limits.push(Box::new(ChordError {
-                tolerance: self.chord_error,
-                period: self.period,
-                collocation,
-            }));
-        }
-        if let (true, Some(servos)) = (self.contour_error.is_finite(), &self.servos) {
-            let axes: Vec<&dyn Response> = servos.servos.iter().map(|servo| servo as _).collect();
-            limits.push(Box::new(ContourError::new(
-                &axes,
-                self.contour_error,
-                servos.highest,
-                collocation,
-            )));
-        }
-        if jerk && self.jerk.iter().any(|jerk| jerk.is_finite()) {
-            limits.push(Box::new(AxisJerk { limits: self.jerk.clone() }));
-        }
-        if jerk && self.tip_jerk.is_finite() {
-            let limit = self.tip_jerk;
-            limits.push(Box::new(TipJerk { limit }));
-        }
-        limits
-    }
 }
 
 /// What the servos of the axes make of a path.
 pub struct Deviation {
-    servos: Vec<AxisResponse>,
     /// The formula goes up to here, rad/s.
-    pub highest: f64,
+    highest: f64,
     /// The answers of the axes at even steps of the frequency's logarithm up to the highest.
     answers: Vec<Vec<Answer>>,
     /// By how much of its radius the path of straight axes strays from a circle, likewise.
@@ -179,7 +112,7 @@ impl Deviation {
         let all: Vec<&dyn Response> = servos.iter().map(|servo| servo as _).collect();
         let deviation = |step: usize| post_feed::limits::deviation(&all, at(step));
         let table = (0..=STEPS).map(deviation).collect();
-        Some(Self { highest, answers, table, servos })
+        Some(Self { highest, answers, table })
     }
 
     /// The step of the tables below a frequency, and how far it is to the next.

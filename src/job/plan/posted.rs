@@ -1,14 +1,13 @@
 //! `post --plan --plan-pictures`: how much of each limit the plan of a posted program uses, along its way.
 
 use post_machine::axis_words;
-use post_machine::description::{Axis, LimitsActOn, Machine, PlanSolver};
-use post_machine::diagnostic::Diagnostic;
+use post_machine::description::{Machine, PlanSolver};
 use post_posting::plan::PlannedPoint;
 use serde::Serialize;
 
-use super::gauges::{Gauges, PlanPoint, Station};
+use super::gauges::Gauges;
 use super::interval::{Interval, Intervals};
-use super::keep::{Keep, Over};
+use super::keep::Keep;
 use super::pictures::PlanRooms;
 use super::tally::{LimitFound, Tally};
 use crate::files;
@@ -30,18 +29,11 @@ pub struct Limited<'m> {
 
 impl<'m> Limited<'m> {
     /// The limits of a machine.
-    ///
-    /// # Errors
-    /// Never of a machine that a feed is planned on.
-    pub fn new(machine: &'m Machine) -> Result<Self, Box<Diagnostic>> {
+    pub fn new(machine: &'m Machine) -> Self {
         let mut axes = axis_words::order(machine);
         axes.retain(|place| machine.axes[*place].indexed.is_none());
-        let keep = Keep::new(machine, &axes, Over::default()).or_else(|_| {
-            // Nothing is known of the servos: a contour error is neither kept nor drawn.
-            let free = Over { contour_error: Some(f64::INFINITY), ..Over::default() };
-            Keep::new(machine, &axes, free)
-        })?;
-        Ok(Self { machine, axes, keep })
+        let keep = Keep::new(machine, &axes);
+        Self { machine, axes, keep }
     }
 
     /// What is used of them.
@@ -107,34 +99,13 @@ impl<'a> Along<'a> {
     }
 
     fn place(&mut self, interval: &Interval<'_>, share: f64, [way, time]: [f64; 2]) {
-        let (station, q) = (interval.station(share), interval.q(share));
-        let mut point = self.gauges.measure(&station, q);
-        if self.limited.machine.motion.limits == LimitsActOn::Programmed {
-            self.programmed(&mut point, station, q);
-        }
+        let mut point = self.gauges.measure(&interval.station(share), interval.q(share));
         self.way += way;
         self.time += time;
         point.parameter = self.parameter + share * interval.length;
         (point.way, point.time) = (self.way, self.time);
         self.tally.take(&point, Some(way), time);
         self.rooms.take(&super::drawn(&point));
-    }
-
-    /// Where the control limits the programmed coordinates, those of the tip stand for the axes of their names.
-    fn programmed(&self, point: &mut PlanPoint, mut station: Station, q: [f64; 3]) {
-        for (coordinate, name) in ["X", "Y", "Z"].into_iter().enumerate() {
-            let axes = &self.limited.machine.axes;
-            let named = |axis: &Axis| axis.name == name && !axis.joint.rotary;
-            if let Some(place) = axes.iter().position(named) {
-                let joints = station.course.joints.iter_mut();
-                for (values, tip) in joints.zip(&station.tip) {
-                    values[place] = tip[coordinate];
-                }
-            }
-        }
-        let told = self.gauges.measure(&station, q);
-        (point.velocity, point.acceleration, point.jerk) =
-            (told.velocity, told.acceleration, told.jerk);
     }
 
     /// The pictures of a program that is called so, and what they show in numbers.

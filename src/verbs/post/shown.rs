@@ -80,7 +80,7 @@ pub fn show<T>(
     if map.is_none() && !draws {
         return Ok((write(None)?, None));
     }
-    let limited = Limited::new(machine).map_err(|fault| *fault)?;
+    let limited = Limited::new(machine);
     let gauges = limited.gauges();
     let mut shown =
         Shown { map: map.map(MapFile::new), along: draws.then(|| Along::new(&limited, &gauges)) };

@@ -10,8 +10,27 @@ use post_motion::limits::AxisLimits;
 
 use super::contour::contour_error;
 
-/// The limits of a machine's axes in the order of [`post_feed::samples::Samples::axes`]: its axes by place in the chain
-/// and, where its limits hold for the programmed coordinates, those three.
+/// The axes of a sample of a path: those of the chain by their places and, where the machine's limits hold for the
+/// programmed coordinates, those three after them.
+#[derive(Clone, Copy, Debug)]
+pub struct SampledAxes {
+    pub(super) of_chain: usize,
+    pub(super) programmed: bool,
+}
+
+impl SampledAxes {
+    /// Those of a machine.
+    pub fn new(machine: &Machine) -> Self {
+        Axes::new(machine).sampled()
+    }
+
+    /// How many they are.
+    pub(super) fn count(self) -> usize {
+        self.of_chain + if self.programmed { 3 } else { 0 }
+    }
+}
+
+/// The limits of a machine's axes in the order of [`SampledAxes`].
 #[derive(Clone, Debug)]
 pub(super) struct Axes {
     limits: AxisLimits,
@@ -24,9 +43,9 @@ impl Axes {
         Self { limits: AxisLimits::new(machine), count: machine.axes.len() }
     }
 
-    /// The coordinates of the tip stand after the axes.
-    pub(super) fn programmed(&self) -> bool {
-        self.limits.programmed.is_some()
+    /// The axes of a sample.
+    pub(super) fn sampled(&self) -> SampledAxes {
+        SampledAxes { of_chain: self.count, programmed: self.limits.programmed.is_some() }
     }
 
     /// Velocities, accelerations and jerks of the axes of the chain.

@@ -118,7 +118,7 @@ impl<'a> Line<'a> {
             period: machine.motion.period,
             collocation: Collocation::Throughout,
         });
-        let sampler = Sampler::new(Rc::clone(&placer), &axes, &Joints::default());
+        let sampler = Sampler::new(Rc::clone(&placer), axes.sampled(), &Joints::default());
         let empty = post_feed::Samples {
             axes: vec![Default::default(); sampler.count()],
             ..Default::default()
@@ -177,7 +177,7 @@ impl<'a> Line<'a> {
     /// A path begins with the axes there.
     pub(super) fn begin(&mut self, joints: &Joints) {
         let placer = Rc::clone(&self.feeds.cutter.placer);
-        self.sampler = Sampler::new(placer, &self.axes, joints);
+        self.sampler = Sampler::new(placer, self.axes.sampled(), joints);
         self.due.clear();
         (self.come, self.way) = (0, 0.0);
     }

@@ -41,7 +41,7 @@ use crate::stream::{Flow, Outlet};
 use crate::tightening::Tightening;
 use account::Account;
 pub use account::{LimitShare, PlanReport, axis_name};
-pub use limits::limits;
+pub use limits::{SampledAxes, limits};
 use line::{Due, Line};
 use queue::{Queue, Start};
 pub use watch::{PlanWatch, PlannedPoint};

@@ -9,7 +9,7 @@ use post_feed::limits::Limit;
 use post_feed::{Ends, Infeasible, Problem, Samples};
 use post_machine::kinematics::{Course, Joints, MAX_AXES, ORDERS, Unreachable};
 
-use super::limits::Axes;
+use super::limits::SampledAxes;
 use crate::accuracy::Placer;
 
 /// Axes of the chain, and the coordinates of the tip after them.
@@ -45,6 +45,35 @@ pub(super) struct Stand {
 }
 
 impl Place {
+    /// Makes the path at a sample of the control point with its derivatives (mm, part frame), and of the axes that follow it.
+    fn new(tip: &[[f64; 3]; ORDERS], course: Course, sampled: SampledAxes) -> Self {
+        let mut place = Self {
+            tip: [tip[1], tip[2], tip[3]],
+            axes: [[0.0; 3]; MOST],
+            rates: [[0.0; 3]; MOST],
+            at: tip[0],
+            course,
+        };
+        let count = sampled.of_chain;
+        for axis in 0..count {
+            place.axes[axis] = [1, 2, 3].map(|order: usize| course.joints[order][axis]);
+            place.rates[axis] = course.rates[axis].into();
+        }
+        if sampled.programmed {
+            for (coordinate, axis) in place.axes[count..count + 3].iter_mut().enumerate() {
+                *axis = [1, 2, 3].map(|order: usize| tip[order][coordinate]);
+            }
+        }
+        place
+    }
+
+    /// Appends it as a sample, without what its block says.
+    fn put(&self, at: f64, sampled: SampledAxes, samples: &mut Samples) {
+        let count = sampled.count();
+        samples.push(at, self.tip, &self.axes[..count]);
+        samples.push_rates(&self.rates[..count]);
+    }
+
     /// Makes the sample that observers see.
     pub(super) fn stand(&self) -> Stand {
         let [first, second, third] = self.tip;
@@ -54,6 +83,20 @@ impl Place {
     /// Speed of the control point for that of the parameter.
     pub(super) fn stretch(&self) -> f64 {
         self.tip[0].iter().map(|part| part * part).sum::<f64>().sqrt()
+    }
+}
+
+impl SampledAxes {
+    /// Appends a sample of a path: its parameter, the point that the axes lead and its derivatives (mm, part frame), and the
+    /// axes with theirs, as [`super::limits()`] take them.
+    pub fn push(
+        self,
+        samples: &mut Samples,
+        parameter: f64,
+        tip: &[[f64; 3]; ORDERS],
+        course: &Course,
+    ) {
+        Place::new(tip, *course, self).put(parameter, self, samples);
     }
 }
 
@@ -76,8 +119,7 @@ pub(super) struct Sampler {
     rotary: Vec<usize>,
     /// Where the other axes stand.
     held: Joints,
-    axes: usize,
-    programmed: bool,
+    axes: SampledAxes,
     samples: Samples,
     problem: Problem,
     /// The last sample, which the next batch begins with.
@@ -88,15 +130,14 @@ pub(super) struct Sampler {
 }
 
 impl Sampler {
-    pub(super) fn new(placer: Rc<Placer>, axes: &Axes, held: &Joints) -> Self {
+    pub(super) fn new(placer: Rc<Placer>, axes: SampledAxes, held: &Joints) -> Self {
         let joints = placer.solver().chain().joints().iter().enumerate();
         let rotary = joints.filter(|(_, joint)| joint.rotary).map(|(place, _)| place);
         Self {
             rotary: rotary.collect(),
             placer,
             held: *held,
-            axes: axes.count,
-            programmed: axes.programmed(),
+            axes,
             // The curve is a quintic.
             samples: Samples { smooth: true, ..Samples::default() },
             problem: Problem::default(),
@@ -123,7 +164,7 @@ impl Sampler {
 
     /// Axes of each sample.
     pub(super) fn count(&self) -> usize {
-        self.axes + if self.programmed { 3 } else { 0 }
+        self.axes.count()
     }
 
     /// The path at a sample of the curve.
@@ -140,23 +181,7 @@ impl Sampler {
         }
         let tip = sample.values.map(|value| Vector3::new(value[0], value[1], value[2]));
         self.placer.solver().course(&tip, &mut course)?;
-        let mut place = Place {
-            tip: [1, 2, 3].map(|order| tip[order].into()),
-            axes: [[0.0; 3]; MOST],
-            rates: [[0.0; 3]; MOST],
-            at: tip[0].into(),
-            course,
-        };
-        for axis in 0..self.axes {
-            place.axes[axis] = [1, 2, 3].map(|order: usize| course.joints[order][axis]);
-            place.rates[axis] = course.rates[axis].into();
-        }
-        if self.programmed {
-            for (coordinate, axis) in place.axes[self.axes..self.axes + 3].iter_mut().enumerate() {
-                *axis = [1, 2, 3].map(|order: usize| tip[order][coordinate]);
-            }
-        }
-        Ok(place)
+        Ok(Place::new(&tip.map(Into::into), course, self.axes))
     }
 
     /// The last sample; none where the path begins.
@@ -194,9 +219,7 @@ impl Sampler {
     }
 
     fn put(&mut self, place: &Place, said: Said) {
-        let count = self.count();
-        self.samples.push(self.at, place.tip, &place.axes[..count]);
-        self.samples.push_rates(&place.rates[..count]);
+        place.put(self.at, self.axes, &mut self.samples);
         self.samples.feeds.push(said.feed);
         self.samples.blocks.push(said.length);
         self.samples.contour_share.push(said.share);

@@ -7,6 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use common::{Run, post, root};
+use post_testkit::{all_drawn, drawn, rounds};
 use serde_json::Value;
 
 const LENGTH: &str = "50";
@@ -41,7 +42,7 @@ fn text([x, y, z]: [f64; 3]) -> String {
     format!("{x},{y},{z}")
 }
 
-/// Every machine of the library as it is and with one thing changed.
+/// Machines of the library as they are and with one thing changed.
 fn variants() -> Vec<(String, Vec<String>)> {
     let mut all = Vec::new();
     for entry in fs::read_dir(root().join("machines")).unwrap() {
@@ -71,7 +72,8 @@ fn variants() -> Vec<(String, Vec<String>)> {
         }
         all.extend(changes.into_iter().map(|change| (name.clone(), change)));
     }
-    all
+    all.sort();
+    drawn(all, 1)
 }
 
 /// The part is put into the middle of the tip's travel; then what the check says of an upright tool and of the part
@@ -143,7 +145,7 @@ fn an_upright_program_is_posted_where_the_check_says_so() {
         "{posted} posted, {refused} refused by both, {poor} said to make few programs, {unloaded} no machine"
     );
     assert!(faults.is_empty(), "{}", faults.join("\n"));
-    assert!(posted > 100 && refused > 10, "{posted} {refused}");
+    assert!(posted > rounds(90) && (refused > 10 || !all_drawn()), "{posted} {refused}");
 }
 
 /// What posting refuses before its first record, the check refuses with the same words.

@@ -11,7 +11,7 @@ use crate::real_files;
 use std::path::Path;
 use std::sync::LazyLock;
 
-use post_testkit::shared;
+use post_testkit::{all_drawn, drawn, shared};
 use post_testruns::read_back::table;
 
 /// What a job shows, its machine, sample and further arguments.
@@ -146,9 +146,9 @@ fn every_file_is_posted_in_every_dialect_and_does_what_it_asks_for() {
         return;
     };
     let mut failed = Vec::new();
-    for dialect in dialects() {
+    for (own, dialect) in (0..).zip(dialects()) {
         let mut posted = 0;
-        for (file, machine, with) in real_files::posted::one_each() {
+        for (file, machine, with) in drawn(real_files::posted::one_each().collect(), own) {
             let mut all = vec!["--verify", "--spindle", "6000"];
             if !with.contains("--tool-length") {
                 all.extend(["--tool-length", "0"]);
@@ -167,7 +167,7 @@ fn every_file_is_posted_in_every_dialect_and_does_what_it_asks_for() {
                 _ => failed.push(format!("{file} in {dialect}:\n{}", done.err)),
             }
         }
-        assert!(posted > 5, "{dialect}");
+        assert!(posted > 5 || !all_drawn(), "{dialect}");
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }

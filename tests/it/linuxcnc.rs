@@ -13,7 +13,7 @@ use std::path::Path;
 use std::process::Command;
 
 use nalgebra::{Rotation3, Vector3};
-use post_testkit::shared;
+use post_testkit::{drawn, shared};
 
 use crate::common::{command, read_json, run};
 
@@ -173,6 +173,17 @@ impl Begin {
     fn at(start: &str) -> Self {
         Self { start: start.to_owned(), tcp_on: false, moved: Vector3::zeros(), left: Vec::new() }
     }
+}
+
+/// Tries those cases of a test that a run takes, all at once: LinuxCNC runs in real time, and asks for a tenth of a
+/// processor.
+fn at_once<T: Send>(cases: Vec<T>, attempt: impl Fn(T) + Sync) {
+    let cases = drawn(cases, 1);
+    std::thread::scope(|scope| {
+        for case in cases {
+            scope.spawn(|| attempt(case));
+        }
+    });
 }
 
 /// Runs something in LinuxCNC until nothing is wrong with it; none where LinuxCNC is not.
@@ -411,60 +422,49 @@ fn fast(machine: &Machine) -> String {
     text
 }
 
+/// Posts [`TWO_TOOLS`], and judges runs of it; whether TCP is still on at the start has nothing to do with how rapids are
+/// written.
 fn two_tools_on(machine: &Machine) {
     if shared("linuxcnc/run").is_none() {
         return;
     }
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("fast.toml"), fast(machine)).unwrap();
-    fs::write(folder.path().join("two.cls"), TWO_TOOLS).unwrap();
-    for (tcp, rapid) in [("control", "rapid"), ("control", "linear"), ("post", "rapid")] {
+    let cases = vec![
+        ("control", "rapid", false),
+        ("control", "rapid", true),
+        ("control", "linear", false),
+        ("post", "rapid", false),
+        ("post", "rapid", true),
+    ];
+    at_once(cases, |(tcp, rapid, tcp_on)| {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("fast.toml"), fast(machine)).unwrap();
+        fs::write(folder.path().join("two.cls"), TWO_TOOLS).unwrap();
         let rapids = format!("control.rapid={rapid:?}");
-        let done = run(
-            command().current_dir(folder.path()).args([
-                "-m",
-                "fast.toml",
-                "--tcp",
-                tcp,
-                "--set",
-                &rapids,
-                "two.cls",
-                "-o",
-                "two.ngc",
-                "--summary",
-                "two.json",
-            ]),
-            b"",
-        );
+        let arguments = ["-m", "fast.toml", "--tcp", tcp, "--set", &rapids, "two.cls"];
+        let texts = ["-o", "two.ngc", "--summary", "two.json"];
+        let done = run(command().current_dir(folder.path()).args(arguments).args(texts), b"");
         assert_eq!(done.code, 0, "{}", done.err);
         let summary = read_json(&folder.path().join("two.json"));
         let told = summary["fast_rapids"]["count"].as_u64().unwrap();
         assert!(told == 0 || rapid == "rapid");
-        // How rapids are written has nothing to do with the start.
-        let starts: &[bool] = if rapid == "rapid" { &[false, true] } else { &[false] };
-        for &tcp_on in starts {
-            let begin = Begin { tcp_on, ..Begin::aside(machine) };
-            let program = folder.path().join("two.ngc");
-            let good = run_until_good(machine, &program, &begin, |rows| {
-                if rows.iter().filter(|row| row.feed).count() <= 500 {
-                    return Err("it hardly cuts".to_owned());
-                }
-                // What the summary does not name holds in rapids as in feeds.
-                let wrong = judge(machine, rows, told == 0);
-                let start = if tcp_on { "TCP still on" } else { "a cold start" };
-                match wrong.is_empty() {
-                    true => Ok(()),
-                    false => Err(format!(
-                        "{}, tcp = {tcp}, rapids {rapid}, {told} told of, from {start}: {wrong:#?}",
-                        machine.file
-                    )),
-                }
-            });
-            if good.is_none() {
-                return;
+        let begin = Begin { tcp_on, ..Begin::aside(machine) };
+        let program = folder.path().join("two.ngc");
+        run_until_good(machine, &program, &begin, |rows| {
+            if rows.iter().filter(|row| row.feed).count() <= 500 {
+                return Err("it hardly cuts".to_owned());
             }
-        }
-    }
+            // What the summary does not name holds in rapids as in feeds.
+            let wrong = judge(machine, rows, told == 0);
+            let start = if tcp_on { "TCP still on" } else { "a cold start" };
+            match wrong.is_empty() {
+                true => Ok(()),
+                false => Err(format!(
+                    "{}, tcp = {tcp}, rapids {rapid}, {told} told of, from {start}: {wrong:#?}",
+                    machine.file
+                )),
+            }
+        });
+    });
 }
 
 #[test]

@@ -15,7 +15,7 @@ use std::path::Path;
 
 use common::{Run, check_numbers, command, read_json, root, run, sample};
 use nalgebra::{Rotation3, Unit, Vector3};
-use post_testkit::shared;
+use post_testkit::{all_drawn, drawn, shared};
 use serde_json::Value;
 
 type V = Vector3<f64>;

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Source, load};
 use post_machine::kinematics::Joints;
+use post_testkit::{all_drawn, drawn};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -162,8 +163,8 @@ fn the_chain_is_the_commands_for_every_machine() {
     let Some(mut browser) = Browser::start() else {
         return;
     };
-    let (mut places, mut swapped) = (0, 0);
-    for row in LIBRARY {
+    let (mut places, mut swapped, mut heads) = (0, 0, 0);
+    for row in drawn(LIBRARY.iter().collect(), 4) {
         let file = Path::new("tests/machines").join(format!("{}.{}", row.machine, row.ending));
         let made = made(row.machine, &file, &["--tool-length", &row.length.to_string()]);
         browser.open(&made.page);
@@ -176,6 +177,7 @@ fn the_chain_is_the_commands_for_every_machine() {
                } return { out, name: machine.axes.map(axis => axis.name) }; })()",
         );
         let base = machine(row.machine);
+        heads += base.heads.len();
         let names: Vec<&str> = base.axes.iter().map(|axis| axis.name.as_str()).collect();
         assert_eq!(asked["name"], json!(names), "{}", row.machine);
         for (index, place) in asked["out"].as_array().unwrap().iter().enumerate() {
@@ -204,8 +206,8 @@ fn the_chain_is_the_commands_for_every_machine() {
         }
         drop(made.folder);
     }
-    assert!(places > 1000, "{places}");
-    assert!(swapped > 5, "{swapped} blocks with another head");
+    assert!(places > 1000 || !all_drawn(), "{places}");
+    assert!(heads == 0 || swapped > 5, "{swapped} blocks with another head");
     browser.assert_quiet();
 }
 

@@ -68,27 +68,24 @@ fn descent(machine: &Machine, rows: &[Row], moved: Vector3<f64>) -> [f64; 2] {
 
 #[test]
 fn the_tip_comes_in_along_the_tool_wherever_the_part_is() {
-    for machine in &MACHINES {
-        if shared("linuxcnc/run").is_none() {
-            return;
-        }
+    if shared("linuxcnc/run").is_none() {
+        return;
+    }
+    let places = [Vector3::zeros(), Vector3::new(40.0, 20.0, -15.0)];
+    let cases = MACHINES.iter().flat_map(|machine| places.map(|moved| (machine, moved)));
+    at_once(cases.collect(), |(machine, moved)| {
         let folder = tempfile::tempdir().unwrap();
         let program = posted(machine, folder.path());
-        for moved in [Vector3::zeros(), Vector3::new(40.0, 20.0, -15.0)] {
-            let begin = Begin { moved, ..Begin::aside(machine) };
-            let good = run_until_good(machine, &program, &begin, |rows| {
-                let [way, aside] = descent(machine, rows, moved);
-                println!("{}: {aside:.3} mm aside on {way:.3} mm down", machine.file);
-                match aside < SIDEWAYS && way > 10.0 {
-                    true => Ok(()),
-                    false => Err(format!("{}: {aside} mm aside on {way} mm", machine.file)),
-                }
-            });
-            if good.is_none() {
-                return;
+        let begin = Begin { moved, ..Begin::aside(machine) };
+        run_until_good(machine, &program, &begin, |rows| {
+            let [way, aside] = descent(machine, rows, moved);
+            println!("{}: {aside:.3} mm aside on {way:.3} mm down", machine.file);
+            match aside < SIDEWAYS && way > 10.0 {
+                true => Ok(()),
+                false => Err(format!("{}: {aside} mm aside on {way} mm", machine.file)),
             }
-        }
-    }
+        });
+    });
 }
 
 /// A line of the program; where it ends, and the least and largest values on it.
@@ -120,32 +117,38 @@ fn what_the_program_before_left_in_force_changes_nothing() {
     if shared("linuxcnc/run").is_none() {
         return;
     }
-    let folder = tempfile::tempdir().unwrap();
-    let program = posted(machine, folder.path());
     let moved = Vector3::new(40.0, 20.0, -15.0);
-    let mut clean: Vec<(usize, [f64; 15])> = Vec::new();
-    for (left, tcp_on) in [
-        (&[][..], false),
-        (&["G90.1"], false),
+    // Where it goes behind what is left in force, once `judge` has nothing to say of it.
+    let ran = |left: &[&'static str], tcp_on, judge: &dyn Fn(&[LineEnd]) -> Result<(), String>| {
+        let folder = tempfile::tempdir().unwrap();
+        let program = posted(machine, folder.path());
+        let begin = Begin { tcp_on, moved, left: left.to_vec(), ..Begin::aside(machine) };
+        let found = std::cell::RefCell::new(Vec::new());
+        run_until_good(machine, &program, &begin, |rows| {
+            found.replace(course(rows));
+            judge(&found.borrow())
+        })?;
+        Some(found.into_inner())
+    };
+    let Some(clean) = ran(&[], false, &|_| Ok(())) else {
+        return;
+    };
+    assert!(clean.len() > 5);
+    let cases = vec![
+        (&["G90.1"][..], false),
         (&["G91"], false),
         (&["G20"], false),
         (&["G93"], false),
         (&["G92 X7 Y-3 Z5"], false),
         (&["G90.1", "G20", "G92 X1", "G18", "G91"], true),
-    ] {
-        let begin = Begin { tcp_on, moved, left: left.to_vec(), ..Begin::aside(machine) };
-        let mut found = std::cell::RefCell::new(Vec::new());
-        let good = run_until_good(machine, &program, &begin, |rows| {
-            let course = course(rows);
-            if clean.is_empty() {
-                *found.borrow_mut() = course;
-                return Ok(());
-            }
+    ];
+    at_once(cases, |(left, tcp_on)| {
+        ran(left, tcp_on, &|course| {
             let off = |(one, other): (&LineEnd, &LineEnd)| {
                 let apart = one.1.iter().zip(&other.1).map(|(a, b)| (a - b).abs());
                 if one.0 == other.0 { apart.fold(0.0, f64::max) } else { f64::INFINITY }
             };
-            let most = clean.iter().zip(&course).map(off).fold(0.0, f64::max);
+            let most = clean.iter().zip(course).map(off).fold(0.0, f64::max);
             match clean.len() == course.len() && most < 0.2 {
                 true => Ok(()),
                 false => {
@@ -153,12 +156,5 @@ fn what_the_program_before_left_in_force_changes_nothing() {
                 }
             }
         });
-        if good.is_none() {
-            return;
-        }
-        if clean.is_empty() {
-            clean = std::mem::take(found.get_mut());
-            assert!(clean.len() > 5);
-        }
-    }
+    });
 }

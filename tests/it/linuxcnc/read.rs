@@ -185,25 +185,21 @@ fn programs_of_ours_are_read_as_they_are_run() {
     if shared("linuxcnc/run").is_none() {
         return;
     }
-    for machine in &MACHINES {
+    let cases = MACHINES.iter().flat_map(|machine| ["control", "post"].map(|tcp| (machine, tcp)));
+    at_once(cases.collect(), |(machine, tcp)| {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("fast.toml"), fast(machine)).unwrap();
         fs::write(folder.path().join("two.cls"), TWO_TOOLS).unwrap();
-        for tcp in ["control", "post"] {
-            posted(folder.path(), tcp);
-            let told = told(machine, folder.path(), "two.ngc");
-            assert!(told.len() > 20, "{} motions", told.len());
-            // Reading knows of no place before the first words: it begins at the zeros of the drawing.
-            let program = folder.path().join("two.ngc");
-            let good = run_until_good(machine, &program, &Begin::at("Z=-5"), |rows| {
-                ends_are_met(machine, &told, rows)?;
-                cuts_are_told(machine, &told, rows)
-            });
-            if good.is_none() {
-                return;
-            }
-        }
-    }
+        posted(folder.path(), tcp);
+        let told = told(machine, folder.path(), "two.ngc");
+        assert!(told.len() > 20, "{} motions", told.len());
+        // Reading knows of no place before the first words: it begins at the zeros of the drawing.
+        let program = folder.path().join("two.ngc");
+        run_until_good(machine, &program, &Begin::at("Z=-5"), |rows| {
+            ends_are_met(machine, &told, rows)?;
+            cuts_are_told(machine, &told, rows)
+        });
+    });
 }
 
 #[test]
@@ -211,7 +207,7 @@ fn words_of_every_kind_are_read_as_they_are_run() {
     if shared("linuxcnc/run").is_none() {
         return;
     }
-    for machine in &MACHINES[..2] {
+    at_once(MACHINES[..2].iter().collect(), |machine| {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("fast.toml"), fast(machine)).unwrap();
         let words = WORDS.replace(" A", &format!(" {}", machine.tilting));
@@ -219,12 +215,8 @@ fn words_of_every_kind_are_read_as_they_are_run() {
         let told = told(machine, folder.path(), "words.ngc");
         let program = folder.path().join("words.ngc");
         let begin = Begin::at("Z=-5");
-        let good =
-            run_until_good(machine, &program, &begin, |rows| ends_are_met(machine, &told, rows));
-        if good.is_none() {
-            return;
-        }
-    }
+        run_until_good(machine, &program, &begin, |rows| ends_are_met(machine, &told, rows));
+    });
 }
 
 #[test]

@@ -261,16 +261,15 @@ fn inverse_time(program: &str) -> String {
 fn agrees_in_all_modes(rig: &Rig, name: &str, left: [f64; 2], program: &str) {
     let inverse = inverse_time(program);
     let [freely, within] = left;
-    for (mode, path, program) in [
+    let modes = vec![
         ("G94 G61", 5.0, program),
         ("G94 G61.1", 5.0, program),
         ("G94 G64", freely, program),
         ("G94 G64 P0.05", within, program),
         ("G93 G61", 5.0, &*inverse),
         ("G93 G64", freely, &*inverse),
-    ] {
-        agrees(rig, name, mode, path, program);
-    }
+    ];
+    at_once(modes, |(mode, path, program)| agrees(rig, name, mode, path, program));
 }
 
 /// Rotary axes turn with linear ones, alone, and not at all.

@@ -204,14 +204,14 @@ fn the_choice_travels_no_farther_than_the_greedy_one() {
         .collect();
     let mut compared = 0;
     println!("file, machine: rotary travel in degrees (changes, rewinds), greedy: the same");
-    for file in FIVE_AXES {
+    for (own, file) in (5..).zip(FIVE_AXES) {
         let with = match file {
             "creo5x_4r19415_finition.ncl" => "--units mm --mount -140,21,-40",
             "nx_HumMan_ust_a.cls" => "--msys apply",
             "own_ncl_form.as" => "--units inch",
             _ => "",
         };
-        for machine in &machines {
+        for machine in &drawn(machines.clone(), own) {
             let with = format!("--tool-length 150 --tcp post {with}");
             let travel = |more: &str| {
                 let (run, summary) = post(&folder.join(file), machine, &format!("{with}{more}"));
@@ -244,5 +244,5 @@ fn the_choice_travels_no_farther_than_the_greedy_one() {
             }
         }
     }
-    assert!(compared > 25, "{compared}");
+    assert!(compared > 25 || !all_drawn(), "{compared}");
 }

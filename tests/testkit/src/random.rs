@@ -1,39 +1,68 @@
 //! Random numbers that are the same everywhere; how many rounds and which numbers a test takes.
 
 use std::f64::consts::PI;
-use std::ops::{Mul, Range};
+use std::ops::{Add, Div, Mul, Range};
+use std::sync::LazyLock;
+use std::time::UNIX_EPOCH;
 
 use nalgebra::Vector3;
 
-/// How many times as many rounds the randomised tests take: `POST_ROUNDS`, 1 if it is not set.
-pub fn rounds() -> u16 {
-    number("POST_ROUNDS", 1)
+/// Which numbers the randomised tests draw: `POST_SEED`, or others in each run.
+static SEED: LazyLock<u64> = LazyLock::new(|| {
+    let otherwise = || UNIX_EPOCH.elapsed().map_or(0, |now| u64::from(now.subsec_nanos()));
+    number("POST_SEED").unwrap_or_else(otherwise)
+});
+
+fn number<N: std::str::FromStr>(variable: &str) -> Option<N> {
+    let text = std::env::var(variable).ok()?;
+    Some(text.parse().unwrap_or_else(|_| panic!("{variable}={text} is no count")))
 }
 
-/// Which numbers the randomised tests draw: `POST_SEED`. 0, as if it is not set, are those of every day.
-pub fn seed() -> u64 {
-    number("POST_SEED", 0)
-}
-
-fn number<N: std::str::FromStr>(variable: &str, otherwise: N) -> N {
-    match std::env::var(variable) {
-        Ok(text) => text.parse().unwrap_or_else(|_| panic!("{variable}={text} is no count")),
-        Err(_) => otherwise,
+/// How many of `count` rounds a test takes: a third of them, or `POST_ROUNDS` times as many.
+pub fn rounds<N>(count: N) -> N
+where
+    N: From<u16> + Add<Output = N> + Mul<Output = N> + Div<Output = N>,
+{
+    match number("POST_ROUNDS") {
+        Some(times) => count * N::from(times),
+        None => (count + N::from(2)) / N::from(3),
     }
 }
 
-/// The rounds of a randomised test, `count` times `POST_ROUNDS`, and its numbers: those of its `own` seed and of
-/// `POST_SEED`.
-pub fn randomised<N: From<u16> + Mul<Output = N>>(count: N, own: u64) -> (Range<N>, Rng) {
-    (N::from(0)..count * N::from(rounds()), seeded(own))
+/// The [`rounds`] of a randomised test, and the numbers that it draws: see [`seeded`].
+pub fn randomised<N>(count: N, own: u64) -> (Range<N>, Rng)
+where
+    N: From<u16> + Add<Output = N> + Mul<Output = N> + Div<Output = N>,
+{
+    (N::from(0)..rounds(count), seeded(own))
 }
 
-/// The numbers of a test's `own` seed and of `POST_SEED`. Where the test fails, the runner shows both beside it.
+/// The numbers of a test's `own` seed and of the run's. Where the test fails, the runner shows beside it how to repeat
+/// it.
 pub fn seeded(own: u64) -> Rng {
-    let (rounds, seed) = (rounds(), seed());
-    println!("random numbers of seed {own}; again with POST_SEED={seed} POST_ROUNDS={rounds}");
+    let rounds = std::env::var("POST_ROUNDS").map(|rounds| format!(" POST_ROUNDS={rounds}"));
+    println!(
+        "random numbers of seed {own}; again with POST_SEED={}{}",
+        *SEED,
+        rounds.unwrap_or_default()
+    );
     // Any odd constant but that of the generator's own step.
-    Rng(own.wrapping_add(seed.wrapping_mul(0xD1B5_4A32_D192_ED03)))
+    Rng(own.wrapping_add(SEED.wrapping_mul(0xD1B5_4A32_D192_ED03)))
+}
+
+/// Whether [`drawn`] leaves no case out.
+pub fn all_drawn() -> bool {
+    rounds(3) >= 3
+}
+
+/// The cases that a test takes of many slow ones: a third, drawn as [`seeded`] does, or all where `POST_ROUNDS` is set.
+pub fn drawn<T>(mut cases: Vec<T>, own: u64) -> Vec<T> {
+    let mut rng = seeded(own);
+    let taken = usize::from(rounds(cases.len() as u16));
+    while cases.len() > taken {
+        cases.remove(rng.pick(cases.len()));
+    }
+    cases
 }
 
 /// SplitMix64: the same numbers on every system and in every run. [`seeded`] and [`randomised`] make that of a test.

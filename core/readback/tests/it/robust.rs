@@ -155,7 +155,7 @@ fn no_mutation_of_a_real_program_brings_the_interpreter_down() {
         let program = fs::read(folder.join(file)).unwrap();
         let machine = machine(machine_name);
         let lexicon = lexicon(dialect);
-        for round in 0..60 * u64::from(rounds()) {
+        for round in 0..rounds(60_u64) {
             let mut random = seeded(round);
             let text = mutated(&program, &mut random);
             let ran = catch_unwind(AssertUnwindSafe(|| run(&machine, &lexicon, &text)));

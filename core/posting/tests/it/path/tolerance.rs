@@ -155,7 +155,7 @@ fn every_block_of_random_paths_is_within_tolerance() {
         for tcp in [false, true] {
             let model = model(kind, tcp, WIDE, &[]);
             let mut worst = Worst::default();
-            for seed in 0..8 * u64::from(rounds()) {
+            for seed in 0..rounds(8_u64) {
                 let points = walk(&mut seeded(100 + seed), 60, 1.0);
                 let one = check(&format!("{kind} {tcp} {seed}"), &model, &points);
                 worst.tip = worst.tip.max(one.tip);

@@ -21,3 +21,11 @@ pub use cl::*;
 pub use expression::{EvaluationFault, Expression, FUNCTIONS, parse_expression};
 pub use fault::{ReadError, SyntaxFault};
 pub use template::{FillFault, Template};
+
+/// What tests look into; no part of the crate's face.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::cl::foreign::kind;
+    pub use crate::cl::line::is_free_text;
+    pub use crate::cl::scan::{plain_goto, record};
+}

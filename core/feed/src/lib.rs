@@ -60,3 +60,10 @@ pub use feed_spline::FeedSpline;
 pub use infeasible::Infeasible;
 pub use problem::{Ends, Problem};
 pub use samples::Samples;
+
+/// What tests look into; no part of the crate's face.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::jerk::forms::{Form, Q, acceleration, jerk, leaving_acceleration, leaving_jerk};
+    pub use crate::limits::channel::Directions;
+}

@@ -16,3 +16,9 @@ pub mod place;
 pub mod program_text;
 pub mod servo;
 pub mod tilted_plane;
+
+/// What tests look into; no part of the crate's face.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::description::smoothing::fits;
+}

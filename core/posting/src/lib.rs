@@ -50,3 +50,12 @@ pub use shift::{PathPoint, PathShift};
 pub use stream::Flow;
 pub use tightening::{TightPlace, Tightening};
 pub use timing::limits;
+
+/// What tests look into; no part of the crate's face.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::accuracy::PlacedBatch;
+    pub use crate::findings::without_numbers;
+    pub use crate::program::interpret::words::Inserted;
+    pub use crate::window::Window;
+}

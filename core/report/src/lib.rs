@@ -22,8 +22,6 @@ mod page;
 mod part;
 mod sha256;
 pub mod solid;
-#[cfg(test)]
-mod squeeze;
 pub mod table;
 mod template;
 pub mod text;

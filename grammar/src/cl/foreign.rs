@@ -9,7 +9,7 @@ const LOOKED_AT: usize = 40;
 const ENOUGH: usize = 3;
 
 /// What the file is that begins so, if it is no cutter-location file.
-pub(super) fn kind(head: &[u8]) -> Option<&'static str> {
+pub fn kind(head: &[u8]) -> Option<&'static str> {
     let head = String::from_utf8_lossy(head);
     let lines: Vec<&str> = head
         .split(['\n', '\r'])
@@ -90,29 +90,4 @@ fn is_block(line: &str) -> bool {
         rest = number[end..].trim_start();
     }
     telling
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn programs_are_told_from_cl_files() {
-        for (head, expected) in [
-            ("%\nO0001 (PART)\nN10 G21 G90\nN20 T1 M6\nN30 G0 X1. Y2.\n", Some("an NC program")),
-            ("0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S1000\n2 L X+10 R0 FMAX\n", Some("an NC program")),
-            ("N10 G54\nN20 G0 X0\nN30 M30\n", Some("an NC program")),
-            (
-                "1050\n0 0 8. 25. 1 2024\n1053\n(MACHINE)\n1011\n0. 0. 0.\n1016\n1 2 3\n",
-                Some("Mastercam's NCI"),
-            ),
-            ("PARTNO x\nGOTO/1,2,3\nN10 G0 X1\nN20 G1 X2\nN30 M30\n", None),
-            ("$$ CLF\nRAPID\n", None),
-            ("RAPID\nSTOP\n", None),
-            ("", None),
-            ("M3\nUNITS/MM\nM4\nM5\nM6", None),
-        ] {
-            assert_eq!(kind(head.as_bytes()), expected, "{head}");
-        }
-    }
 }

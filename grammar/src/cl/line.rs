@@ -19,7 +19,7 @@ struct Grammar;
 /// Whether a line's text is free: then a `$` at its end is text, not a continuation, and `$$` in it is no comment.
 ///
 /// Says of a line's beginning what the grammar says of the whole line, for the reader must know before it joins lines.
-pub(crate) fn is_free_text(line: &[u8]) -> bool {
+pub fn is_free_text(line: &[u8]) -> bool {
     let line = line.trim_ascii_start();
     if let Some(comment) = line.strip_prefix(b"$$") {
         return !comment.trim_ascii_start().starts_with(b"->");
@@ -274,37 +274,6 @@ fn number(text: &str, pair: &Pair<'_, Rule>) -> Result<f64, SyntaxFault> {
             let shown = excerpt(pair.as_str(), SHOWN);
             let message = format!("{shown} is beyond any number a program can hold");
             Err(SyntaxFault::new(text, span.start()..span.end(), message))
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_reader_and_the_grammar_agree_on_what_is_free_text() {
-        for (line, free) in [
-            ("PARTNO", true),
-            (" pprint", true),
-            ("INSERT.", true),
-            ("REMARK -", true),
-            ("REMARK ->FEATNO/", false),
-            ("remark->FEATNO/", false),
-            ("OPFEATSTART/", true),
-            ("OPFEATEND/", true),
-            ("TOOL PATH/", true),
-            ("TOOL/", false),
-            ("\t$$", true),
-            ("$$ -> FEATNO/", false),
-            ("PARTNOX/", false),
-            ("RAPID", false),
-            ("NOSUCH/", false),
-        ] {
-            assert_eq!(is_free_text(line.as_bytes()), free, "{line}");
-            // In a free text, a comment is text.
-            let statement = parse_record(&format!("{line} $$ x")).unwrap();
-            assert_eq!(format!("{statement:?}").contains("$$ x"), free, "{line}: {statement:?}");
         }
     }
 }

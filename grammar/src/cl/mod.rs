@@ -1,10 +1,10 @@
 //! Cutter-location files: chunks of a file to logical lines, lines to typed records.
 
-mod foreign;
-mod line;
+pub(crate) mod foreign;
+pub(crate) mod line;
 mod reader;
 mod record;
-mod scan;
+pub(crate) mod scan;
 mod statements;
 mod vocabulary;
 

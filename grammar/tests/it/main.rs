@@ -7,3 +7,4 @@ mod nc;
 mod reader;
 mod statements;
 mod template;
+mod units;

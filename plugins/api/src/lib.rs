@@ -136,3 +136,9 @@ pub use setup::{
 pub use standstill::Standstill;
 pub use text::{ascii, remark, wrapped};
 pub use vocabulary::{Meaning, VocabularyWord};
+
+/// What tests look into; no part of the contract.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::deviation::peak;
+}

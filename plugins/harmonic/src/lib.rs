@@ -18,7 +18,8 @@ const HIGHEST: usize = 8;
 /// Even pieces for every half wave of the highest order, in which its peaks are looked for.
 const PIECES: u32 = 8;
 
-struct Harmonic {
+/// The model, as it is opened: its order, where it looks, and its answers.
+pub struct Harmonic {
     order: usize,
     /// t of the ends, then of the inner places. The ends are asked for too: they are off the path by the
     /// rounding of the printed words, which is some of the tolerance and none of the wave.
@@ -118,6 +119,3 @@ fn waves(kept: impl Fn(usize) -> Deviation, order: usize, t: f64) -> Deviation {
 }
 
 export_error_model!(harmonic, Harmonic);
-
-#[cfg(test)]
-mod tests;

@@ -14,14 +14,14 @@ mod arcs;
 mod commands;
 mod cycles;
 mod declared;
-mod dialect;
+pub(crate) mod dialect;
 mod model;
 mod options;
 mod pen;
 mod print;
 mod sessions;
 mod shapes;
-mod texts;
+pub(crate) mod texts;
 
 use std::fmt::{self, Write as _};
 

@@ -14,7 +14,8 @@ const PLACES: [f64; 3] = [0.0, 0.5, 1.0];
 /// A parabola has one peak, the length of a vector of them up to three.
 const PIECES: u32 = 8;
 
-struct Parabolic {
+/// The model, as it is opened.
+pub struct Parabolic {
     answers: Vec<Deviation>,
 }
 
@@ -51,6 +52,3 @@ fn parabola(start: Deviation, end: Deviation, bow: Deviation, t: f64) -> Deviati
 }
 
 export_error_model!(parabolic, Parabolic);
-
-#[cfg(test)]
-mod tests;

@@ -28,7 +28,8 @@ const MOST: usize = 4096;
 /// Shorter pieces are not cut either: the move jumps there.
 const LEAST: f64 = 1e-9;
 
-struct Sampled {
+/// The model, as it is opened: how densely it looks, how closely, and its answers.
+pub struct Sampled {
     samples: u32,
     accuracy: f64,
     places: Vec<Place>,
@@ -227,6 +228,3 @@ impl Peak {
 }
 
 export_error_model!(sampled, Sampled);
-
-#[cfg(test)]
-mod tests;

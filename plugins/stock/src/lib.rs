@@ -12,15 +12,3 @@ pub fn plugins() -> &'static [Linked] {
 pub fn plugin(name: &str) -> Option<Linked> {
     plugins().iter().find(|plugin| plugin.name() == name).copied()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_list_is_in_order_and_each_is_found_by_its_name() {
-        assert!(plugins().is_sorted_by_key(|plugin| plugin.name()));
-        assert!(plugin("fanuc").is_some_and(|fanuc| fanuc.name() == "fanuc"));
-        assert!(plugin("fanuk").is_none());
-    }
-}

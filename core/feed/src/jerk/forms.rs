@@ -9,16 +9,16 @@
 use crate::limits::{Channel, first_derivative};
 
 /// A linear form in the three Bernstein coefficients of `q`.
-pub(super) type Form = [f64; 3];
+pub type Form = [f64; 3];
 
 /// Bernstein coefficients of a cubic.
-pub(super) type Cubic<T> = [T; 4];
+pub type Cubic<T> = [T; 4];
 
 /// Bernstein coefficients of a quartic.
-pub(super) type Quartic<T> = [T; 5];
+pub type Quartic<T> = [T; 5];
 
 /// `Q' q' / 2 + Q'' q`.
-pub(super) fn acceleration(channel: &Channel, step: f64) -> Cubic<Form> {
+pub fn acceleration(channel: &Channel, step: f64) -> Cubic<Form> {
     let [p0, p1, p2] = first_derivative(channel.first, channel.second, step);
     let [e0, e1] = slope(step);
     // Q' q' / 2, a quadratic times a linear function.
@@ -33,7 +33,7 @@ pub(super) fn acceleration(channel: &Channel, step: f64) -> Cubic<Form> {
 }
 
 /// `Q' q'' / 2 + 3/2 Q'' q' + Q''' q`.
-pub(super) fn jerk(channel: &Channel, step: f64) -> Quartic<Form> {
+pub fn jerk(channel: &Channel, step: f64) -> Quartic<Form> {
     let (first, second) = (channel.first(step), channel.second(step));
     let [e0, e1] = slope(step);
     let bend = 1.0 / (step * step);
@@ -54,7 +54,7 @@ pub(super) fn jerk(channel: &Channel, step: f64) -> Quartic<Form> {
 }
 
 /// `q` itself as a quartic.
-pub(super) const Q: Quartic<Form> = [
+pub const Q: Quartic<Form> = [
     [1.0, 0.0, 0.0],
     [0.5, 0.5, 0.0],
     [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
@@ -64,7 +64,7 @@ pub(super) const Q: Quartic<Form> = [
 
 /// What `q` at the far end of an interval that begins at rest is multiplied with, at most, to give the second
 /// derivative: there `q = q1 * share^(4/3)`, and it is `q1 * share^(1/3) * (2/3 Q' / step + Q'' * share)`.
-pub(super) fn leaving_acceleration(channel: &Channel, step: f64) -> f64 {
+pub fn leaving_acceleration(channel: &Channel, step: f64) -> f64 {
     let [p0, p1, p2] = first_derivative(channel.first, channel.second, step);
     let push = 2.0 / 3.0 / step;
     let [c0, c1] = channel.second;
@@ -73,7 +73,7 @@ pub(super) fn leaving_acceleration(channel: &Channel, step: f64) -> f64 {
 
 /// What `q1^(3/2)` is multiplied with, at most, to give the third derivative:
 /// `2/9 Q' / step² + 2 Q'' * share / step + Q''' * share²`.
-pub(super) fn leaving_jerk(channel: &Channel, step: f64) -> f64 {
+pub fn leaving_jerk(channel: &Channel, step: f64) -> f64 {
     let (first, second) = (channel.first(step), channel.second(step));
     let [t0, t1, t2] = channel.third;
     let last = [0.0, 0.0, t0 / 6.0, 0.5 * t1, t2];
@@ -132,89 +132,4 @@ fn scaled(factor: f64, form: Form) -> Form {
 
 fn sum(a: Form, b: Form) -> Form {
     std::array::from_fn(|index| a[index] + b[index])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::law::Piece;
-    use super::*;
-    use crate::limits::Order;
-
-    /// Evaluates by the scheme of de Casteljau.
-    fn bernstein(coefficients: &[f64], t: f64) -> f64 {
-        match coefficients {
-            [value] => *value,
-            more => {
-                let pairs = more.windows(2).map(|pair| pair[0] + t * (pair[1] - pair[0]));
-                bernstein(&pairs.collect::<Vec<_>>(), t)
-            }
-        }
-    }
-
-    /// `Q = s³ - 2 s² + 5 s` and a multiple of `s⁵`, on `1..=1.5`.
-    fn channel(fifth: f64) -> (Channel, impl Fn(f64) -> [f64; 3]) {
-        let at = move |s: f64| {
-            let first = 3.0 * s * s - 4.0 * s + 5.0 + 5.0 * fifth * s * s * s * s;
-            let second = 6.0 * s - 4.0 + 20.0 * fifth * s * s * s;
-            [first, second, 6.0 + 60.0 * fifth * s * s]
-        };
-        let (here, next) = (at(1.0), at(1.5));
-        let channel = Channel {
-            first: [here[0], next[0]],
-            second: [here[1], next[1]],
-            // s² from 1 to 1.5 has the middle coefficient 1.5.
-            third: [here[2], 6.0 + 60.0 * fifth * 1.5, next[2]],
-            order: Order::Jerk,
-            limit: 1.0,
-            axis: None,
-        };
-        (channel, at)
-    }
-
-    #[test]
-    fn the_polynomials_are_the_derivatives_by_time() {
-        let (cubic, of_cubic) = channel(0.0);
-        let (channel, at) = channel(0.3);
-        let q = [4.0, 7.0, 6.0];
-        let piece = Piece::Quadratic(q);
-        let value = |forms: &[Form]| -> Vec<f64> {
-            let each = forms.iter();
-            each.map(|form| form.iter().zip(q).map(|(a, b)| a * b).sum()).collect()
-        };
-        let (second, third) = (value(&acceleration(&cubic, 0.5)), value(&jerk(&channel, 0.5)));
-        for step in 0..=10 {
-            let share = f64::from(step) / 10.0;
-            let [q, slope, curve] = piece.at(share, 0.5);
-            let [first, bend, _] = of_cubic(1.0 + 0.5 * share);
-            let want = 0.5 * first * slope + bend * q;
-            assert!((bernstein(&second, share) - want).abs() < 1e-11);
-            let [first, bend, twist] = at(1.0 + 0.5 * share);
-            let want = 0.5 * first * curve + 1.5 * bend * slope + twist * q;
-            let used = want * q.sqrt();
-            assert!((channel.used(share, 0.5, [q, slope, curve]) - used).abs() < 1e-11);
-            assert!((bernstein(&third, share) - want).abs() < 1e-11);
-            assert!((bernstein(&value(&Q), share) - q).abs() < 1e-12);
-        }
-    }
-
-    #[test]
-    fn off_from_rest_the_bounds_hold_and_are_met() {
-        let (channel, at) = channel(0.0);
-        let piece = Piece::Leave(3.0);
-        let (mut second, mut third): (f64, f64) = (0.0, 0.0);
-        for step in 1..=1000 {
-            let share = f64::from(step) / 1000.0;
-            let [first, bend, twist] = at(1.0 + 0.5 * share);
-            let [q, slope, curve] = piece.at(share, 0.5);
-            second = second.max((0.5 * first * slope + bend * q).abs());
-            third = third
-                .max(((0.5 * first * curve + 1.5 * bend * slope + twist * q) * q.sqrt()).abs());
-        }
-        let bounds = [
-            3.0 * leaving_acceleration(&channel, 0.5),
-            3.0 * 3f64.sqrt() * leaving_jerk(&channel, 0.5),
-        ];
-        assert!(second <= bounds[0] && second > 0.9 * bounds[0], "{second} {bounds:?}");
-        assert!(third <= bounds[1] && third > 0.9 * bounds[1], "{third} {bounds:?}");
-    }
 }

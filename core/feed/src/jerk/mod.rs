@@ -19,7 +19,7 @@
 //! **The cost** is the time, `Σ weight / sqrt(coefficient)`, which by convexity is never below the true time.
 
 mod ahead;
-mod forms;
+pub(crate) mod forms;
 mod law;
 mod rounds;
 mod rules;

@@ -8,7 +8,7 @@ mod axis_acceleration;
 mod axis_jerk;
 mod axis_velocity;
 mod block_time;
-mod channel;
+pub(crate) mod channel;
 mod chord_error;
 mod contour_error;
 mod feed;

@@ -17,3 +17,7 @@ mod paper;
 mod properties;
 mod streaming;
 mod support;
+mod units;
+
+// As the files in `units` name them.
+use post_feed::{curve, problem};

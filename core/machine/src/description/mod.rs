@@ -26,7 +26,7 @@ mod servo;
 mod servo_file;
 mod servo_models;
 mod setting;
-mod smoothing;
+pub(crate) mod smoothing;
 mod solids;
 mod spindle;
 pub(crate) mod table;

@@ -32,31 +32,3 @@ impl fmt::Display for Short {
 fn without_zeros(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn seven_digits_count() {
-        for (value, text) in [
-            (0.0, "0"),
-            (-0.0, "0"),
-            (1.0, "1"),
-            (-2.5, "-2.5"),
-            (0.1 + 0.2, "0.3"),
-            (0.123_456_789, "0.1234568"),
-            (12_345.678_9, "12345.68"),
-            (123_456_789.4, "123456789"),
-            (9.999_999_99, "10"),
-            (1e9, "1e9"),
-            (-1.234_567_89e300, "-1.234568e300"),
-            (1.5e-7, "0.00000015"),
-            (1.5e-8, "1.5e-8"),
-            (0.000_123_456_7, "0.0001234567"),
-            (f64::INFINITY, "inf"),
-        ] {
-            assert_eq!(Short(value).to_string(), text);
-        }
-    }
-}

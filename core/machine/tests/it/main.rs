@@ -16,6 +16,7 @@ mod machine_file;
 mod place;
 mod servo;
 mod tilted_plane;
+mod units;
 
 use post_machine::description::Source;
 

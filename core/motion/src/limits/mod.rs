@@ -195,6 +195,3 @@ impl MoveLimits {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -11,9 +11,6 @@ mod settle;
 mod shifts;
 mod track;
 
-#[cfg(test)]
-mod tests;
-
 pub use align::{Alignment, Unaligned, align};
 pub use difference::Difference;
 pub use track::Track;

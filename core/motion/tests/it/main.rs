@@ -5,3 +5,7 @@ mod contour;
 mod contour_limit;
 mod servo;
 mod trajectory;
+mod units;
+
+// As the files in `units` name it.
+use post_motion::At;

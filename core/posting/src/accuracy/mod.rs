@@ -25,7 +25,7 @@ pub use bound::Bound;
 pub use deviation::{Move, Tolerances};
 pub use linearise::{Linearise, Piece, Stuck};
 pub use node::{Node, Placer, Refused};
-pub(crate) use placed_batch::PlacedBatch;
+pub use placed_batch::PlacedBatch;
 pub(crate) use printed_arc::PrintedArc;
 pub use run::Run;
 pub(crate) use word_frame::WordFrame;

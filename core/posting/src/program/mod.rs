@@ -3,7 +3,7 @@
 mod arc;
 mod cycle;
 mod frame;
-mod interpret;
+pub(crate) mod interpret;
 pub mod limits;
 mod spline;
 mod step;

@@ -16,3 +16,4 @@ mod plan;
 mod planes;
 mod program;
 mod route;
+mod units;

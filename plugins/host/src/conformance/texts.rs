@@ -46,7 +46,7 @@ pub(super) fn remarks(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault>
 }
 
 /// A remark in brackets has more behind the closing one.
-fn ends_early(line: &str) -> bool {
+pub fn ends_early(line: &str) -> bool {
     let line = line.trim_end();
     let Some((front, remark)) = line.split_once('(') else {
         return false;
@@ -54,19 +54,4 @@ fn ends_early(line: &str) -> bool {
     let number = front.trim().trim_start_matches(['N', ':', '/']);
     let alone = number.bytes().all(|byte| byte.is_ascii_digit());
     alone && remark.find(')').is_some_and(|end| end + 1 < remark.len())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_remark_that_ends_early_is_seen_in_brackets_alone() {
-        for line in ["(a) b", "N10 (a) G0 Z0 (b)", "(a)(b)"] {
-            assert!(ends_early(line), "{line}");
-        }
-        for line in ["(a)", "N10 (a (b)", "; a) b", "10 ; (a) b", "(a", ""] {
-            assert!(!ends_early(line), "{line}");
-        }
-    }
 }

@@ -1,5 +1,8 @@
 //! Tests of the host, with plugins linked in, opened as libraries, and hostile ones.
 
+// Clippy lets test functions unwrap, but not the helpers beside them.
+#![allow(clippy::unwrap_used)]
+
 mod boastful;
 mod common;
 mod conformance;
@@ -8,3 +11,4 @@ mod libraries;
 mod papers;
 mod sloppy;
 mod strangers;
+mod units;

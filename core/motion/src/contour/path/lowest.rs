@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::contour::spline::Cubic;
+use super::super::spline::Cubic;
 
 /// Newton steps in a piece; they are bisections where Newton leaves its bracket.
 const STEPS: usize = 60;

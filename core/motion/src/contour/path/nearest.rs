@@ -18,7 +18,7 @@ use super::{Foot, Path};
 use crate::At;
 
 /// Other places are looked for so many times the first distance along the path.
-pub(in crate::contour) const REACH: f64 = 16.0;
+pub(in super::super) const REACH: f64 = 16.0;
 
 /// How far along the path other places are looked for, mm.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +40,7 @@ const SAME: f64 = 5e-10;
 
 /// What was found.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::contour) struct Nearest {
+pub(in super::super) struct Nearest {
     pub tip: Vector3<f64>,
     pub axis: Vector3<f64>,
     pub distance: f64,

@@ -1,9 +1,9 @@
 use post_machine::kinematics::Pose;
 use post_testkit::{Rng, randomised};
 
+use super::super::spline::Five;
 use super::tied::TIE;
 use super::*;
-use crate::contour::spline::Five;
 
 /// A path that wanders: it turns gently and at once, slows down, stands, goes back the way it came, and crosses itself.
 fn wandering(rng: &mut Rng, count: usize) -> Vec<Vector3<f64>> {

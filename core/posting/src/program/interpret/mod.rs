@@ -10,7 +10,7 @@ mod readiness;
 mod reading;
 mod tools;
 mod turned;
-mod words;
+pub(crate) mod words;
 mod writer;
 
 use nalgebra::Vector3;

@@ -7,9 +7,9 @@ use post_machine::description::{LimitsActOn, Machine, Source, load};
 use post_machine::kinematics::{Joints, MAX_AXES};
 use post_testkit::repository;
 
-use super::{AxisLimits, of};
-use crate::path::{SplineWay, Stance, Way};
-use crate::{Corner, Move, Pace};
+use post_motion::limits::{AxisLimits, of};
+use post_motion::path::{SplineWay, Stance, Way};
+use post_motion::{Corner, Move, Pace};
 
 /// Values of the dense samples: axes, then the tip.
 const VALUES: usize = MAX_AXES + 3;

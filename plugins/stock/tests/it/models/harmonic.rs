@@ -1,4 +1,7 @@
-use super::*;
+use std::f64::consts::PI;
+
+use post_harmonic::Harmonic;
+use post_plugin::{Curve, Deviation, ErrorModel, Tolerance, Value};
 
 const TOLERANCE: Tolerance = Tolerance { tip: 0.005, axis: 0.05 };
 

@@ -1,8 +1,5 @@
 //! What a table can say, on controls that differ from those of the stock dialects.
 
-// Clippy lets test functions unwrap, but not the helpers beside them.
-#![allow(clippy::unwrap_used)]
-
 use post_iso::{Codes, Control, Dwell, Iso, Leave, Length, Table, Tcp};
 use post_kit::{Bench, P1, P3, TOOL, TOP, at, cut, timed, turn};
 use post_plugin::export::Exported;

@@ -1,8 +1,5 @@
 //! Every event through the engine: what is modal, what is refused, and in which order things are switched.
 
-// Clippy lets test functions unwrap, but not the helpers beside them.
-#![allow(clippy::unwrap_used)]
-
 use post_iso::{Control, Iso, Plane, Rigid, Splines, Table, Tcp, iso_options, options};
 use post_kit::jobs::{FACE, OVER, arc, cycle, frame, plane};
 use post_kit::{Bench, TOOL, TOP, at, cut, rapid, turn, turning};

@@ -1,4 +1,5 @@
-use super::*;
+use post_parabolic::Parabolic;
+use post_plugin::{Curve, Deviation, ErrorModel, Tolerance};
 
 const TOLERANCE: Tolerance = Tolerance { tip: 0.005, axis: 0.05 };
 

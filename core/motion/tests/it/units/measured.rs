@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 use post_machine::kinematics::{Joints, MAX_AXES};
 use post_testkit::seeded;
 
-use super::{Alignment, Difference, Track, Unaligned, align};
+use post_motion::measured::{Alignment, Difference, Track, Unaligned, align};
 
 /// Zeros are found.
 const FOUND: [Option<f64>; MAX_AXES] = [None; MAX_AXES];

@@ -1,0 +1,16 @@
+//! Single files of the crate, each by itself. Those that nobody outside sees are compiled here once more, with the tests
+//! that stand in them.
+#![allow(dead_code, unused_imports, reason = "tests do not use all of a file")]
+
+mod fourier;
+mod limits;
+mod measured;
+
+#[path = "../../../src/servo/discrete.rs"]
+mod discrete;
+#[path = "../../../src/contour/path/mod.rs"]
+mod path;
+#[path = "../../../src/contour/spline.rs"]
+mod spline;
+#[path = "../../../src/contour/spread.rs"]
+mod spread;

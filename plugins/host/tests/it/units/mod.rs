@@ -1,0 +1,11 @@
+//! Single files of the crate, each by itself.
+
+mod dialect;
+mod options;
+mod texts;
+mod vocabulary;
+
+// Nobody outside sees it: it is compiled here once more, with the tests that stand in it.
+#[allow(dead_code, reason = "tests do not use all of a file")]
+#[path = "../../../src/shown.rs"]
+mod shown;

@@ -18,4 +18,4 @@ mod text;
 
 pub use command::{Run, assert_contains, names, run};
 pub use data::{repository, shared};
-pub use random::{Rng, all_drawn, drawn, randomised, rounds, seeded};
+pub use random::{Rng, all_drawn, at_least, drawn, randomised, rounds, seeded};

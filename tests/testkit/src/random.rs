@@ -50,6 +50,11 @@ pub fn seeded(own: u64) -> Rng {
     Rng(own.wrapping_add(SEED.wrapping_mul(0xD1B5_4A32_D192_ED03)))
 }
 
+/// How many of a kind a test meets in its [`rounds`] at least, where it meets more than `count` in all of them.
+pub fn at_least<N: From<u16> + Div<Output = N>>(count: N) -> N {
+    if all_drawn() { count } else { count / N::from(5) }
+}
+
 /// Whether [`drawn`] leaves no case out.
 pub fn all_drawn() -> bool {
     rounds(3) >= 3

@@ -15,7 +15,7 @@ use post_machine::kinematics::{Joint, Joints};
 use post_plugin::Feed;
 use post_posting::program::Reading;
 use post_posting::{Job, MOST_FAULTS, Post};
-use post_testkit::{Rng, randomised, rounds, seeded};
+use post_testkit::{Rng, at_least, randomised, rounds, seeded};
 use post_testmachines::{Reference, angle, between, distance, slerp};
 use post_testruns::posted::{self, Asked, Point, Run, Samples, cl, line, post};
 

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use nalgebra::Vector3;
 use post_plugin::Feed;
 use post_posting::Job;
-use post_testkit::{Rng, randomised};
+use post_testkit::{Rng, at_least, randomised};
 use post_testruns::posted::{Asked, Bench, Run, cl, point, post};
 
 type V = Vector3<f64>;
@@ -207,7 +207,7 @@ fn a_plan_leaves_the_path_as_it_is_and_makes_no_block_faster() {
         // Once more is the same.
         assert_eq!(run(&bench, &text, true).asked, planned.asked);
     }
-    assert!(pieces > 100, "{pieces}");
+    assert!(pieces > at_least(100), "{pieces}");
 }
 
 /// CL points that lie closer together than they are exact: no plan of them is written that is slower than none.

@@ -14,7 +14,7 @@ use nalgebra::{Rotation3, Unit, Vector3};
 use post_machine::description::{Rule, Side};
 use post_machine::kinematics::{Joints, Pose, Solver};
 use post_plugin::Feed;
-use post_testkit::{Rng, randomised, repository};
+use post_testkit::{Rng, at_least, randomised, repository};
 use post_testmachines::{across, angle, distance, slerp, turned};
 use post_testruns::posted::Asked;
 use post_testruns::posted::{Bench, Point, Run, cl, line, point};

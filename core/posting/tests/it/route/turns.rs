@@ -329,7 +329,7 @@ fn a_window_of_any_length_gives_a_path_that_hangs_together() {
     }
     println!("{posted} posted, {refused} refused, {lost} more where the window was too short");
     println!("dearer than the cheapest way at most, by look_ahead: {dearer:.3?}");
-    assert!(posted > 200);
+    assert!(posted > at_least(200));
 }
 
 /// A portal without Z, its Z made by two swinging arms: there is no closed form, and every block of a program holds

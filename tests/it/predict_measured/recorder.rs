@@ -1,6 +1,6 @@
 //! Logs as recorders write them.
 
-use post_testkit::seeded;
+use post_testkit::Rng;
 
 use super::course::AXES;
 use super::plant::{REST, Run};
@@ -60,7 +60,7 @@ impl Recorder {
     }
 
     pub fn log(&self, run: &Run) -> String {
-        let mut random = seeded(self.seed);
+        let mut random = Rng::new(self.seed);
         let mut text = self.head.clone();
         let rows = ((self.window[1] - self.window[0]) / self.period) as u64;
         for row in 0..=rows {

@@ -74,7 +74,7 @@ pub fn drawn<T>(mut cases: Vec<T>, own: u64) -> Vec<T> {
 pub struct Rng(u64);
 
 impl Rng {
-    /// The numbers of a seed alone: for generators of cases that have a seed each, and for what is no test.
+    /// The numbers of a seed alone: for examples that must stay as they are, and for what is no test.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }

@@ -642,7 +642,7 @@ fn no_choice_of_pieces_has_fewer() {
 /// Half circles of points become half circles.
 #[test]
 fn points_of_arcs_become_arcs_again() {
-    let text = machine(&mut post_testkit::seeded(3), CHAINS[2], "post", "mm", FITTED);
+    let text = machine(&mut post_testkit::Rng::new(3), CHAINS[2], "post", "mm", FITTED);
     let bench = Bench::new(&text, 3, LENGTH);
     let mut places = vec![V::new(0.0, 0.0, 10.0), V::zeros()];
     for wave in 0..6 {
@@ -682,7 +682,7 @@ fn spline_at(knots: &[f64], points: &[V], u: f64) -> V {
 /// the file as certified.
 #[test]
 fn splines_stay_splines() {
-    let mut rng = post_testkit::seeded(5);
+    let mut rng = post_testkit::Rng::new(5);
     let text = machine(&mut rng, CHAINS[0], "post", "mm", "");
     let bench = Bench::new(&text, 3, LENGTH);
     let knots = [0.0, 0.0, 0.0, 0.0, 0.123_456_7, 0.4, 0.4, 0.777_777_7, 1.0, 1.0, 1.0, 1.0];

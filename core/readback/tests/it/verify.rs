@@ -13,7 +13,7 @@ use post_readback::{
     Coolants, Corners, CycleCall, CycleKind, Done, Motion, MotionKind, Spindle, Stance, State,
     Told, Way,
 };
-use post_testkit::seeded;
+use post_testkit::Rng;
 use post_testmachines::frechet::frechet;
 
 type V = Vector3<f64>;
@@ -664,7 +664,7 @@ fn limits_of_the_axes_are_told_and_feeds_compared() {
 /// distance told is the Fréchet distance.
 #[test]
 fn strays_are_those_of_the_frechet_distance() {
-    let mut random = seeded(13);
+    let mut random = Rng::new(13);
     let (mut off, mut on) = (0, 0);
     for _ in 0..3000 {
         let count = 2 + random.pick(5);

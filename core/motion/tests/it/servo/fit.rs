@@ -4,7 +4,7 @@ use libm::{cos, sin, sqrt};
 use post_machine::servo::{Feedback, Servo};
 use post_motion::servo::fit::{Fit, Log, fit};
 use post_motion::servo::{Follower, Output};
-use post_testkit::seeded;
+use post_testkit::Rng;
 
 use super::{direct_loops, feedrate_paper, gear_loops, of_loops, screw_loops, with_friction};
 
@@ -28,7 +28,7 @@ fn even() -> Vec<f64> {
 /// What a log of the servo has, with errors of the standard deviation `spread`, each of which keeps the share `kept` of the
 /// one before.
 fn measured_with(servo: &Servo, commanded: &[f64], spread: f64, kept: f64, seed: u64) -> Vec<f64> {
-    let mut noise = seeded(seed);
+    let mut noise = Rng::new(seed);
     let mut error = spread * noise.normal();
     let mut follower = Follower::with(servo, PERIOD, Output::Measured).unwrap();
     follower.settle(commanded[0]);

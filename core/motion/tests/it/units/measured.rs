@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
 use post_machine::kinematics::{Joints, MAX_AXES};
-use post_testkit::seeded;
+use post_testkit::Rng;
 
 use post_motion::measured::{Alignment, Difference, Track, Unaligned, align};
 
@@ -30,7 +30,7 @@ const AXES: [usize; 5] = [0, 1, 2, 3, 4];
 
 /// A log of `path` whose clock is `shift` ahead, from `from` of the path on.
 fn log(shift: f64, from: f64, period: f64, seconds: f64, noise: f64) -> Track {
-    let mut even = seeded(7);
+    let mut even = Rng::new(7);
     track(from + shift, period, seconds, |time| {
         let mut joints = path(time - shift);
         joints[0] += 250.0 + noise * even.range(-1.0, 1.0);
@@ -144,7 +144,7 @@ fn what_cannot_be_laid_over_is_refused() {
 
 #[test]
 fn samples_that_come_late_are_put_on_a_grid() {
-    let mut even = seeded(3);
+    let mut even = Rng::new(3);
     let times: Vec<f64> = (0..1000)
         .map(|place| 0.1 + 0.015 * f64::from(place) + 0.004 * even.range(-1.0, 1.0))
         .collect();
@@ -233,7 +233,7 @@ fn rows_that_are_elsewhere_move_nothing() {
         joints[2] = approach(time) + 2.0 * libm::sin(TAU * time / 5.0).max(0.0);
         joints
     });
-    let mut even = seeded(11);
+    let mut even = Rng::new(11);
     // The log begins a second before the cut, Z stands there already, and for a second somebody has the cover open.
     let log = track(4.0, 0.004, 19.0, |time| {
         let time = time - 5.0;
@@ -260,7 +260,7 @@ fn rows_that_are_elsewhere_move_nothing() {
 /// another one is named, and then one of the two is right.
 #[test]
 fn random_shifts_are_found_or_said_to_be_one_of_several() {
-    let mut even = seeded(2026);
+    let mut even = Rng::new(2026);
     let mut rivals = 0;
     for round in 0..30 {
         let mut between = |from: f64, to: f64| even.range(from, to);
@@ -293,7 +293,7 @@ fn random_shifts_are_found_or_said_to_be_one_of_several() {
         let noise = libm::exp10(between(-4.0, -2.0));
         let lead = between(0.0, 0.2 * seconds);
         let predicted = track(0.0, 0.001, seconds, motion);
-        let mut errors = seeded(round);
+        let mut errors = Rng::new(round);
         let log = track(shift - lead, period, seconds + lead, |time| {
             let mut joints = motion(time - shift);
             joints[0] += zeros[0];

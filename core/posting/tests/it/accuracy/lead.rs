@@ -125,7 +125,7 @@ fn the_edge_is_where_the_certificate_says() {
 #[test]
 fn a_heading_is_laid_across_the_axis_of_the_instant() {
     let more = "[solution]\nedge = \"travel\"\ncorner = 15\n[accuracy]\ntolerance = 0.001\naxis_tolerance = 0.1\n";
-    let bench = Bench::new(&knife(&mut post_testkit::seeded(62), true, more), 4, 100.0);
+    let bench = Bench::new(&knife(&mut post_testkit::Rng::new(62), true, more), 4, 100.0);
     let lean = |x: f64, y: f64| V::new(x, y, 1.0).normalize();
     let stops = [
         stop(V::new(0.0, 0.0, 20.0), lean(0.3, 0.5), None),
@@ -148,7 +148,7 @@ fn a_heading_is_laid_across_the_axis_of_the_instant() {
 #[test]
 fn drawing_back_counts_and_turns_nothing() {
     let more = "[rewind]\ndistance = 20\n[solution]\nedge = \"travel\"\ncorner = 15\n[accuracy]\ntolerance = 0.05\naxis_tolerance = 0.1\n";
-    let bench = Bench::new(&knife(&mut post_testkit::seeded(62), true, more), 4, 100.0);
+    let bench = Bench::new(&knife(&mut post_testkit::Rng::new(62), true, more), 4, 100.0);
     let axis = V::new(0.1, 0.2, 1.0).normalize();
     let cut = |tip: V| stop(tip, axis, Some(1000.0));
     let corner = V::new(50.0, 50.0, 0.0);

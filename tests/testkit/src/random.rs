@@ -2,16 +2,9 @@
 
 use std::f64::consts::PI;
 use std::ops::{Add, Div, Mul, Range};
-use std::sync::LazyLock;
 use std::time::UNIX_EPOCH;
 
 use nalgebra::Vector3;
-
-/// Which numbers the randomised tests draw: `POST_SEED`, or others in each run.
-static SEED: LazyLock<u64> = LazyLock::new(|| {
-    let otherwise = || UNIX_EPOCH.elapsed().map_or(0, |now| u64::from(now.subsec_nanos()));
-    number("POST_SEED").unwrap_or_else(otherwise)
-});
 
 fn number<N: std::str::FromStr>(variable: &str) -> Option<N> {
     let text = std::env::var(variable).ok()?;
@@ -37,17 +30,15 @@ where
     (N::from(0)..rounds(count), seeded(own))
 }
 
-/// The numbers of a test's `own` seed and of the run's. Where the test fails, the runner shows beside it how to repeat
-/// it.
+/// The numbers of a test's `own` seed and of `POST_SEED`; 0, as if it is not set, are those of every day. Where the test
+/// fails, the runner shows beside it how to repeat it.
 pub fn seeded(own: u64) -> Rng {
+    let seed: u64 = number("POST_SEED").unwrap_or(0);
     let rounds = std::env::var("POST_ROUNDS").map(|rounds| format!(" POST_ROUNDS={rounds}"));
-    println!(
-        "random numbers of seed {own}; again with POST_SEED={}{}",
-        *SEED,
-        rounds.unwrap_or_default()
-    );
+    let rounds = rounds.unwrap_or_default();
+    println!("random numbers of seed {own}; again with POST_SEED={seed}{rounds}");
     // Any odd constant but that of the generator's own step.
-    Rng(own.wrapping_add(SEED.wrapping_mul(0xD1B5_4A32_D192_ED03)))
+    Rng(own.wrapping_add(seed.wrapping_mul(0xD1B5_4A32_D192_ED03)))
 }
 
 /// How many of a kind a test meets in its [`rounds`] at least, where it meets more than `count` in all of them.
@@ -60,9 +51,13 @@ pub fn all_drawn() -> bool {
     rounds(3) >= 3
 }
 
-/// The cases that a test takes of many slow ones: a third, drawn as [`seeded`] does, or all where `POST_ROUNDS` is set.
+/// The cases that a test takes of many slow ones: all where `POST_ROUNDS` is set, else a third, drawn anew in each run or
+/// as `POST_SEED` says.
 pub fn drawn<T>(mut cases: Vec<T>, own: u64) -> Vec<T> {
-    let mut rng = seeded(own);
+    let now = || UNIX_EPOCH.elapsed().map_or(0, |now| u64::from(now.subsec_nanos()));
+    let seed = number("POST_SEED").unwrap_or_else(now);
+    println!("a third of the cases: the same with POST_SEED={seed}, all with POST_ROUNDS=1");
+    let mut rng = Rng(own.wrapping_add(seed));
     let taken = usize::from(rounds(cases.len() as u16));
     while cases.len() > taken {
         cases.remove(rng.pick(cases.len()));

@@ -5,7 +5,7 @@ use post_feed::Samples;
 use post_feed::limits::{AxisAcceleration, Collocation, ContourError, Feed, Limit};
 use post_machine::kinematics::Chain;
 use post_machine::servo::{Response, Servo};
-use post_testkit::{Rng, randomised};
+use post_testkit::Rng;
 use post_testmachines::Random;
 
 use super::{Path, even, limit, of_the_paper, planned, samples, simulated, spread, transfer};
@@ -138,7 +138,7 @@ fn outcome(path: &Waves, samples: &Samples, servos: &[Servo]) -> Outcome {
 /// comes and goes faster than that. Neither is far below its limit all the time: the limit is what the plan goes by.
 #[test]
 fn simulated_servos_stray_little_more_than_the_formula_says() {
-    let (rounds, mut rng) = randomised(5u16, 15);
+    let (rounds, mut rng) = (0..5, Rng::new(15));
     let count = rounds.len();
     for (kind, most) in KINDS {
         let (mut all, mut peaks, mut slower) = (Vec::new(), Vec::new(), Vec::new());
@@ -165,7 +165,7 @@ fn simulated_servos_stray_little_more_than_the_formula_says() {
 /// are late stray across it.
 #[test]
 fn the_tips_path_alone_does_not_tell_the_contour_error_of_five_axes() {
-    let (rounds, mut rng) = randomised(3u16, 16);
+    let (rounds, mut rng) = (0..3, Rng::new(16));
     let mut peaks = [0.0_f64; 2];
     for _ in rounds {
         let (path, mut samples) = Waves::new(&mut rng);

@@ -29,18 +29,18 @@ class Blocks(Mapping[str, NDArray[Any]]):
     ``nc_line``             line of the program; 0 of a block that prints nothing
     ``cl_line``             line of the CL file
     ``kind``                how the tool comes to its end: position, reference, rapid, linear, arc, spline or hole
-    ``reason``              why it is there: point, eased, put_in, leave, stage, rewind, feed, above or
-                            at_once
-    ``time_s``              when it ends; dwells counted in
+    ``reason``              why it is there: point, eased, put_in, leave, stage, rewind, feed, above or at_once
+    ``limit``               what made it slower than asked; empty where nothing did
+    ``off_part``            the tolerance of a rapid was enough for it
     ``q``                   axis values at its end, as printed: (n, k), mm and degrees, in the order of :attr:`axes`
-    ``tip``, ``axis``       where the tip comes to stand, and the tool axis there: (n, 3), part frame
+    ``tip``                 where the tip comes to stand: (n, 3), mm, part frame
+    ``axis``                the tool axis there: (n, 3)
+    ``time_s``              when it ends; dwells counted in
     ``way_mm``              way of the tip
     ``tip_deviation_mm``    certified: how far the tip strays from the CL path at most
     ``axis_deviation_deg``  certified: how far the tool axis strays at most
-    ``off_part``            the tolerance of a rapid was enough for it
     ``feed_mm_min``         feed of the tip; nan where the block has none
     ``asked_feed_mm_min``   the feed that the CL file asks for; nan in a rapid
-    ``limit``               what made it slower than asked; empty where nothing did
     ======================= =========================================================================================
     """
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1};
-use post_command::library::{Found, KINDS, MadeProgram, REASONS, ReportTold};
+use post_command::library::{Found, KINDS, Kind, MadeProgram, REASONS, ReportTold};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -70,33 +70,28 @@ impl Job {
             return Ok(None);
         };
         let all = PyDict::new(py);
-        let table = |values: &[f64], width: usize| {
-            let rows = Array2::from_shape_vec((blocks.len(), width), values.to_vec());
-            let rows = rows.map_err(|fault| PyValueError::new_err(fault.to_string()))?;
-            Ok::<_, PyErr>(rows.into_pyarray(py))
-        };
         all.set_item("axes", blocks.axes.clone())?;
         all.set_item("kinds", KINDS)?;
         all.set_item("reasons", REASONS)?;
         all.set_item("limits", blocks.limits.clone())?;
-        all.set_item("nc_line", PyArray1::from_slice(py, &blocks.nc_line))?;
-        all.set_item("cl_line", PyArray1::from_slice(py, &blocks.cl_line))?;
-        all.set_item("kind", PyArray1::from_slice(py, &blocks.kind))?;
-        all.set_item("reason", PyArray1::from_slice(py, &blocks.reason))?;
-        all.set_item("limit", PyArray1::from_slice(py, &blocks.limit))?;
-        all.set_item("off_part", PyArray1::from_slice(py, &blocks.off_part))?;
-        all.set_item("q", table(&blocks.q, blocks.axes.len())?)?;
-        all.set_item("tip", table(&blocks.tip, 3)?)?;
-        all.set_item("axis", table(&blocks.axis, 3)?)?;
-        for (name, values) in [
-            ("time_s", &blocks.time),
-            ("way_mm", &blocks.way),
-            ("tip_deviation_mm", &blocks.tip_deviation),
-            ("axis_deviation_deg", &blocks.axis_deviation),
-            ("feed_mm_min", &blocks.feed),
-            ("asked_feed_mm_min", &blocks.asked_feed),
-        ] {
-            all.set_item(name, PyArray1::from_slice(py, values))?;
+        for array in &blocks.arrays {
+            let (name, values) = (&array.name, &array.values);
+            let whole = values.iter().map(|value| *value as i64);
+            match (array.kind, array.width) {
+                (Kind::Count, _) => all.set_item(name, PyArray1::from_iter(py, whole)),
+                (Kind::Choice, _) => {
+                    all.set_item(name, PyArray1::from_iter(py, whole.map(|place| place as u8)))
+                }
+                (Kind::Flag, _) => {
+                    all.set_item(name, PyArray1::from_iter(py, whole.map(|flag| flag != 0)))
+                }
+                (_, None) => all.set_item(name, PyArray1::from_slice(py, values)),
+                (_, Some(width)) => {
+                    let rows = Array2::from_shape_vec((blocks.rows, width), values.clone());
+                    let rows = rows.map_err(|fault| PyValueError::new_err(fault.to_string()))?;
+                    all.set_item(name, rows.into_pyarray(py))
+                }
+            }?;
         }
         Ok(Some(all))
     }

@@ -117,7 +117,7 @@ impl Part {
         arguments: &JobArguments,
         finder: &Finder,
         period: Option<f64>,
-        (source, mut heard): (&mut ClSource, Option<&mut PredictedParts<'_>>),
+        (source, mut heard): (&mut ClSource, Option<&mut PredictedParts>),
         (name, text): (String, impl Read + Seek),
     ) -> Result<Predicted, Failure> {
         let asked = Asked {

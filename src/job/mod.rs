@@ -1,6 +1,8 @@
 //! A job as the flags mean it: a CL file, a machine with its settings, and the plugins that the machine asks for.
 
+pub mod axes;
 pub mod batch;
+pub mod columns;
 pub mod compensate;
 mod dry_run;
 mod look_ahead;
@@ -16,6 +18,7 @@ pub mod plan_rounds;
 mod plan_worth;
 pub mod plugin_finder;
 mod plugin_folders;
+pub mod posted;
 pub mod predict;
 pub mod read_back;
 pub mod report;

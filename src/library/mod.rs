@@ -18,7 +18,8 @@ use crate::failure::Failure;
 use crate::files::Texts;
 use crate::session::{Face, Session};
 
-pub use blocks::{Blocks, KINDS, REASONS};
+pub use crate::job::columns::Kind;
+pub use blocks::{Array, Blocks, KINDS, REASONS, block_arrays};
 pub use kinematics::{AxisFacts, Deviations, Kinematics, Solutions, Wanted};
 pub use loaded_machine::{LoadedMachine, MachineTold};
 pub use program::{Found, MadeProgram, OptionTold, ReportTold};

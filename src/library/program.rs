@@ -10,7 +10,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_posting::report::Report;
 use post_posting::{LookedAhead, Observer, Output};
 
-use super::blocks::BlockColumns;
+use super::blocks::BlockArrays;
 use super::{Blocks, MachineTold, Refused, Stop, quietly};
 use crate::arguments::{JobArguments, MakingArguments};
 use crate::failure::Failure;
@@ -220,7 +220,7 @@ impl MadeProgram {
             let targets: Vec<_> = targets.into_iter().collect();
             let mut files = AtomicFile::create(session, &targets)?;
             let machine = bench.part.machine.clone();
-            let mut columns = keep_blocks.then(|| BlockColumns::new(&machine));
+            let mut columns = keep_blocks.then(|| BlockArrays::new(&machine));
             let observer = columns.as_mut().map(|columns| columns as &mut dyn Observer);
             let came = line.make(session, &mut bench, observer)?;
             for file in &mut files {
@@ -234,7 +234,7 @@ impl MadeProgram {
                 servo_compensation: came.compensation.as_ref(),
                 plan_rounds: came.plan_rounds.as_ref(),
             });
-            let blocks = columns.map(BlockColumns::finish);
+            let blocks = columns.map(BlockArrays::finish);
             Ok((line, bench.part, came, summary, blocks))
         });
         let ((line, part, came, summary, blocks), mut findings) = made?;

@@ -13,6 +13,7 @@ use post_readback::interpret::Limits;
 use post_readback::verify::BlockReport;
 
 use super::Study;
+use super::columns::{self, Written};
 use super::inputs::{ClText, Inputs};
 use super::job_line::JobLine;
 use super::journal::Journal;
@@ -23,7 +24,7 @@ use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{ClSource, HeldText, PathArg};
 use crate::job::one_program::{Beside, OneProgram};
-use crate::job::predict::{self, Against, Asked, Prediction, Sample};
+use crate::job::predict::{self, Against, Asked, Sample};
 use crate::job::read_back::{self, Reading};
 use crate::job::{self, plugin_finder, unused_options};
 use crate::session::Session;
@@ -189,8 +190,7 @@ impl OneJob<'_> {
         self.tell(&report, &text, &mut outcome);
         if options.verify {
             let held = self.read_back(&target, &mut source, &text)?;
-            outcome.number("verified_tip_deviation_mm", held.found.tip.value);
-            outcome.number("verified_axis_deviation_deg", held.found.axis.value);
+            outcome.tell(&columns::verified(), &held.found);
             let wrong = held.is_wrong();
             findings.extend(held.findings);
             if wrong {
@@ -201,7 +201,7 @@ impl OneJob<'_> {
         }
         if options.predict {
             let predicted = self.predict(&target, &mut source, &text)?;
-            tell_prediction(&predicted.found, &mut outcome);
+            outcome.tell(&columns::predicted(), &predicted.found);
             findings.extend(predicted.findings);
         }
         debug_assert!(findings.iter().all(|finding| finding.severity == Severity::Warning));
@@ -280,45 +280,14 @@ impl OneJob<'_> {
 
     /// What the program came to.
     fn tell(&self, report: &Report, text: &ProgramText, outcome: &mut Outcome) {
-        for (column, count) in [
-            ("moves", report.moves),
-            ("blocks", report.blocks),
-            ("points_added", report.points_added),
-            ("points_dropped", report.points_dropped),
-            ("rewinds", report.rewinds),
-            ("branch_changes", report.branch_changes),
-            ("points_eased", report.points_eased),
-            ("nc_lines", report.nc_lines),
-            ("nc_bytes", text.bytes),
-        ] {
-            outcome.count(column, count);
-        }
-        outcome.text("nc_hash", text.hasher.finalize().to_hex().as_str());
-        for (column, number) in [
-            ("cycle_time_s", report.time_s),
-            ("cutting_time_s", report.cutting_time_s),
-            ("tip_deviation_mm", report.tip_deviation_mm.value),
-            ("axis_deviation_deg", report.axis_deviation_deg.value),
-            ("rapid_deviation_mm", report.rapid_deviation_mm.value),
-        ] {
-            outcome.number(column, number);
-        }
-        let blocks = report.blocks.max(1) as f64;
-        outcome.number("feed_limited_share", report.blocks_limited as f64 / blocks);
-        travel::tell(self.machine, report, outcome);
-    }
-}
-
-/// What is predicted of the program.
-fn tell_prediction(found: &Prediction, outcome: &mut Outcome) {
-    for (column, number) in [
-        ("predicted_cycle_time_s", found.time.cycle_s),
-        ("predicted_cutting_time_s", found.time.cutting_s),
-        ("contour_error_mm", found.contour.tip_mm.largest),
-        ("contour_error_p99_mm", found.contour.tip_mm.p99),
-        ("contour_axis_error_deg", found.contour.axis_deg.largest),
-    ] {
-        outcome.number(column, number);
+        let written = Written {
+            report,
+            bytes: text.bytes,
+            hash: text.hasher.finalize().to_hex().to_string(),
+            left: travel::tell(self.machine, report, outcome),
+        };
+        outcome.tell(&columns::program(), &written);
+        outcome.tell(&columns::text(), &written);
     }
 }
 

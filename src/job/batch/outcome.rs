@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use post_machine::diagnostic::{Diagnostic, Severity};
-use serde::{Deserialize, Deserializer, Serialize};
-use serde_json::value::RawValue;
+use serde::{Deserialize, Serialize};
+
+use crate::job::columns::{Column, Value};
 
 /// The program is good.
 pub const WRITTEN: &str = "written";
@@ -12,31 +13,6 @@ pub const WRITTEN: &str = "written";
 pub const REFUSED: &str = "refused";
 /// Something broke that should not: it is tried again next time.
 pub const FAILED: &str = "failed";
-
-/// A value of a row.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum Value {
-    Number(f64),
-    Count(i64),
-    Text(String),
-}
-
-impl<'de> Deserialize<'de> for Value {
-    /// Numbers are read by the standard library, to the last bit.
-    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let raw = Box::<RawValue>::deserialize(from)?;
-        let raw = raw.get();
-        if raw.starts_with('"') {
-            let text = serde_json::from_str(raw).map(Self::Text);
-            return text.map_err(serde::de::Error::custom);
-        }
-        match raw.parse::<i64>() {
-            Ok(count) => Ok(Self::Count(count)),
-            Err(_) => raw.parse::<f64>().map(Self::Number).map_err(serde::de::Error::custom),
-        }
-    }
-}
 
 /// What came of one job: values by the names of their columns. What has no value is not in it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -62,7 +38,19 @@ impl Outcome {
     }
 
     pub fn text(&mut self, column: &str, value: impl Into<String>) {
-        self.values.insert(column.to_owned(), Value::Text(value.into()));
+        self.values.insert(column.to_owned(), Value::Text(value.into().into()));
+    }
+
+    /// What these columns are of `row`.
+    pub fn tell<R>(&mut self, columns: &[Column<R>], row: &R) {
+        for column in columns {
+            let name = column.name.clone().into_owned();
+            match column.of(row, 0) {
+                Some(Value::Number(number)) => self.number(name, number),
+                Some(value) => drop(self.values.insert(name, value)),
+                None => {}
+            }
+        }
     }
 
     /// Refused, or failed, for these reasons; the first error is told.

@@ -1,9 +1,10 @@
 //! Rows as columns, and files of them.
 
 use super::Study;
-use super::columns::{Kind, OF_JOB};
-use super::outcome::{Outcome, Value};
+use super::columns::OF_JOB;
+use super::outcome::Outcome;
 use crate::files::parquet;
+use crate::job::columns::{Kind, Value};
 
 /// The results of a study, a row a job.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,7 +47,7 @@ impl Values {
                     })
                     .collect(),
             ),
-            Kind::Count => Self::Counts(
+            Kind::Count | Kind::Choice | Kind::Flag => Self::Counts(
                 values
                     .map(|value| match value? {
                         Value::Count(count) => Some(count),
@@ -57,7 +58,7 @@ impl Values {
             Kind::Text => Self::Texts(
                 values
                     .map(|value| match value? {
-                        Value::Text(text) => Some(text),
+                        Value::Text(text) => Some(text.into_owned()),
                         Value::Number(number) => Some(format!("{number:?}")),
                         Value::Count(count) => Some(count.to_string()),
                     })
@@ -101,7 +102,7 @@ impl Table {
             let rows = numbers.iter().zip(outcomes);
             let values = rows.map(|(number, outcome)| {
                 let job = &study.jobs[*number];
-                let text = |text: &str| Some(Value::Text(text.to_owned()));
+                let text = |text: &str| Some(Value::Text(text.to_owned().into()));
                 if let Some(parameter) = &head.parameter {
                     let told = job.parameters().into_iter();
                     let mut told = told.filter(|(name, _)| name == parameter);

@@ -1,6 +1,5 @@
 //! What a program uses of the travel of the axes: columns for each axis, and the least that is left.
 
-use post_machine::axis_words;
 use post_machine::description::Machine;
 use post_posting::report::Report;
 
@@ -16,24 +15,21 @@ pub fn columns(name: &str, rotary: bool) -> [String; 3] {
     ]
 }
 
-/// The axes of a machine and of its heads: names, and whether they turn.
-pub fn axes(machine: &Machine) -> Vec<(String, bool)> {
-    let heads = machine.heads.iter().map(|head| &head.machine);
-    let mut axes: Vec<(String, bool)> = Vec::new();
-    for machine in std::iter::once(machine).chain(heads) {
-        for place in axis_words::order(machine) {
-            let axis = &machine.axes[place];
-            if axes.iter().all(|(known, _)| *known != axis.name) {
-                axes.push((axis.name.clone(), axis.joint.rotary));
-            }
-        }
-    }
-    axes
+/// What is least left of travel to an end.
+pub struct TravelLeft<'a> {
+    /// mm or degrees.
+    pub least: f64,
+    /// The axis that has it.
+    pub axis: &'a str,
 }
 
-/// Tells of each axis what is used, and what is least left to an end.
-pub fn tell(machine: &Machine, report: &Report, outcome: &mut Outcome) {
-    let mut nearest: [Option<(f64, &str)>; 2] = [None, None];
+/// Tells of each axis what is used; what is least left of a slide, and of a table.
+pub fn tell<'a>(
+    machine: &Machine,
+    report: &'a Report,
+    outcome: &mut Outcome,
+) -> [Option<TravelLeft<'a>>; 2] {
+    let mut nearest: [Option<TravelLeft<'_>>; 2] = [None, None];
     for used in &report.axes {
         let Some((_, axis)) = machine.with_axis(&used.name) else {
             continue;
@@ -48,14 +44,9 @@ pub fn tell(machine: &Machine, report: &Report, outcome: &mut Outcome) {
         outcome.number(share, (used.max - used.min) / (to - from));
         let left = (used.min - from).min(to - used.max);
         let nearest = &mut nearest[usize::from(rotary)];
-        if left.is_finite() && nearest.is_none_or(|(known, _)| left < known) {
-            *nearest = Some((left, &used.name));
+        if left.is_finite() && nearest.as_ref().is_none_or(|known| left < known.least) {
+            *nearest = Some(TravelLeft { least: left, axis: &used.name });
         }
     }
-    for (nearest, unit) in nearest.into_iter().zip(["mm", "deg"]) {
-        if let Some((left, axis)) = nearest {
-            outcome.number(format!("travel_left_{unit}"), left);
-            outcome.text(&format!("travel_left_{unit}_axis"), axis);
-        }
-    }
+    nearest
 }

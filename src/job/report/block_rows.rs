@@ -3,31 +3,29 @@
 use std::collections::VecDeque;
 use std::io::{self, BufReader, Read, Write as _};
 
-use post_machine::description::Machine;
-use post_posting::program::{Command, HoleMark, Pace};
-use post_posting::{Block, Flow, MotionKind, Observer, Reason};
-use post_report::meta::{Event, Meta};
-use post_report::table::{Column, TableWriter};
-
 use nalgebra::Vector3;
-use post_machine::description::Tcp;
+use post_machine::description::{Machine, Tcp};
 use post_machine::kinematics::{Chain, Joints};
+use post_posting::program::{Command, HoleMark};
+use post_posting::{Block, Flow, MotionKind, Observer, Reason};
+use post_report::meta::Meta;
 
-use super::axes;
 use super::branch::{self, Branch};
 use super::cl_points::Points;
 use super::cl_window::ClWindow;
 use super::derived::{Derived, Left};
+use super::marks::Marks;
+use super::page_table::PageTable;
 use super::parts::{Parts, fault};
 use super::path_rows::PathRows;
 use crate::failure::Failure;
 use crate::files::Scratch;
+use crate::job::axes::{self, AxisColumn};
+use crate::job::columns::Column;
+use crate::job::posted::{PostedBlock, PostedProgram};
 
 /// Deviations that differ by less are the same, as in the summary: mm or radians.
 const EQUAL: f64 = 1e-9;
-
-/// More events than this are counted and not listed.
-pub const MOST_EVENTS: usize = 5000;
 
 /// The largest of something and its row.
 #[derive(Clone, Copy, Debug, Default)]
@@ -37,32 +35,61 @@ pub struct Largest {
     nc: u64,
 }
 
+/// A row of the page.
+struct Row {
+    posted: PostedBlock,
+    /// When the block begins and ends, as they are packed.
+    times: [f64; 2],
+    left: Left,
+    /// Of the tip, mm.
+    tolerance: f64,
+    /// By how much the tip stands before the gauge point, mm.
+    tool_length: f64,
+}
+
+/// The columns of the page.
+fn columns(machine: &Machine, axes: &[AxisColumn], derived: &Derived<'_>) -> Vec<Column<Row>> {
+    type C = Column<Row>;
+    let accuracy = &machine.accuracy;
+    let [tip, turn] = [accuracy.tolerance, accuracy.axis_tolerance.to_degrees()].map(decimals);
+    let [tips, turns] = [tip, turn].map(power);
+    let mut columns = vec![
+        C::new("nc", "", 0, |row| row.posted.nc),
+        C::new("cl", "", 0, |row| row.posted.block.line),
+        C::new("t0", "s", 4, |row| row.times[0]).from("t1"),
+        C::new("t1", "s", 4, |row| row.times[1]).from("way"),
+        C::new("kind", "", 0, |row| row.posted.kind),
+        C::new("reason", "", 0, |row| row.posted.reason()),
+    ];
+    columns.extend(derived.columns(axes, |row: &Row| &row.left));
+    columns.extend([
+        C::new("deviation", "mm", tip, move |row| up(row.posted.block.deviation.tip, tips)),
+        C::new("axis_deviation", "deg", turn, move |row| {
+            up(row.posted.block.deviation.axis.to_degrees(), turns)
+        }),
+        C::new("tolerance", "mm", 6, |row| row.tolerance),
+        C::new("feed", "mm/min", 1, |row| row.posted.feed()),
+        C::new("asked", "mm/min", 1, |row| row.posted.feed().and(row.posted.asked())),
+        C::new("limit", "", 0, |row| row.posted.limit),
+        C::new("tool_length", "mm", 4, |row| row.tool_length),
+    ]);
+    columns
+}
+
 /// Takes blocks, and packs a row of each.
 pub struct BlockRows<'m> {
-    /// The machine with the head in use.
-    machine: &'m Machine,
     base: &'m Machine,
-    /// Names of the axes of all heads, in the order of their columns.
-    axes: Vec<String>,
-    table: TableWriter<Scratch>,
-    /// Rows whose line of the program is not known yet, one behind the other.
-    waiting: VecDeque<f64>,
-    width: usize,
+    program: PostedProgram<'m>,
+    table: PageTable<Row>,
+    /// Rows whose line of the program is not known yet.
+    waiting: VecDeque<Row>,
     /// Rows that came.
     came: u64,
-    /// The time, s.
-    time: f64,
     /// End of the last block, s, and its tip, as the page will have them.
     end: f64,
     tip: Vector3<f64>,
-    hole: bool,
     reason: Reason,
-    /// Decimals of deviations, and ten to that power.
-    scale: f64,
-    axis_scale: f64,
-    limits: Vec<String>,
-    events: Vec<Event>,
-    left_out: u64,
+    marks: Marks,
     /// Tip and axis in cuts, tip in rapids.
     largest: [Largest; 3],
     fault: Option<Failure>,
@@ -70,8 +97,6 @@ pub struct BlockRows<'m> {
     cl: ClWindow,
     derived: Derived<'m>,
     branch: Branch,
-    /// Rows from which another head is in use, with its number from 1; 0: none.
-    heads: Vec<[u64; 2]>,
     /// Where the blocks end, for the path of the CL file.
     ends: Points,
     /// Lines of the program of the rows, for who predicts it: 32 bits each.
@@ -120,53 +145,24 @@ impl<'m> BlockRows<'m> {
     /// # Errors
     /// There is no place for them.
     pub fn new(machine: &'m Machine, cl: ClWindow, predicted: bool) -> Result<Self, Failure> {
-        let axes = axes::of_all_heads(machine);
-        let accuracy = &machine.accuracy;
-        let [tip, turn] =
-            [decimals(accuracy.tolerance), decimals(accuracy.axis_tolerance.to_degrees())];
-        let mut columns = vec![
-            Column::new("nc", "", 0),
-            Column::new("cl", "", 0),
-            Column::new("t0", "s", 4).from("t1"),
-            Column::new("t1", "s", 4).from("way"),
-            Column::new("kind", "", 0),
-            Column::new("reason", "", 0),
-        ];
+        let program = PostedProgram::new(machine);
         let derived = Derived::new(machine);
-        columns.extend(derived.columns(&axes));
-        columns.extend([
-            Column::new("deviation", "mm", tip),
-            Column::new("axis_deviation", "deg", turn),
-            Column::new("tolerance", "mm", 6),
-            Column::new("feed", "mm/min", 1),
-            Column::new("asked", "mm/min", 1),
-            Column::new("limit", "", 0),
-            Column::new("tool_length", "mm", 4),
-        ]);
+        let columns = columns(machine, &program.axes, &derived);
         Ok(Self {
-            machine,
             base: machine,
-            axes: axes.into_iter().map(|(name, _)| name).collect(),
-            width: columns.len(),
-            table: TableWriter::new("blocks", columns, Parts::scratch()?),
+            program,
+            table: PageTable::new("blocks", columns)?,
             waiting: VecDeque::new(),
             came: 0,
-            time: 0.0,
             end: 0.0,
             tip: Vector3::zeros(),
-            hole: false,
             reason: Reason::Point,
-            scale: power(tip),
-            axis_scale: power(turn),
-            limits: Vec::new(),
-            events: Vec::new(),
-            left_out: 0,
+            marks: Marks::default(),
             largest: [Largest::default(); 3],
             fault: None,
             path: PathRows::new(machine)?,
             derived,
             branch: Branch::new(machine),
-            heads: Vec::new(),
             ends: Points::new()?,
             lines: match predicted {
                 true => Some(Parts::scratch()?),
@@ -194,8 +190,7 @@ impl<'m> BlockRows<'m> {
 
     /// Rows that still wait stand on no line.
     fn settle(&mut self) {
-        let waiting = self.waiting.len() / self.width;
-        self.written(std::iter::repeat_n(0, waiting));
+        self.written(std::iter::repeat_n(0, self.waiting.len()));
     }
 
     /// All blocks have come: their table goes to `parts`, and what was seen to `meta`.
@@ -215,36 +210,30 @@ impl<'m> BlockRows<'m> {
         }
         self.path.finish(parts)?;
         self.cl.finish(self.base, self.ends, parts)?;
-        meta.head_rows = self.heads;
         meta.checks = self.derived.checks();
-        meta.limits = self.limits;
-        meta.events = self.events;
-        meta.events_left_out = self.left_out;
-        parts.table(self.table)
+        meta.limits = self.program.limits;
+        self.marks.finish(meta);
+        self.table.finish(parts)
     }
 
     /// The first blocks that wait stand on these lines of the program.
     fn written(&mut self, lines: impl Iterator<Item = u64>) {
         for line in lines {
-            let row = self.table.rows();
-            let values = self.waiting.make_contiguous();
-            let Some(values) = values.get_mut(..self.width) else {
+            let Some(mut row) = self.waiting.pop_front() else {
                 return;
             };
-            values[0] = line as f64;
+            row.posted.nc = line;
+            let place = self.table.rows();
             for largest in &mut self.largest {
-                if largest.row == row {
+                if largest.row == place {
                     largest.nc = line;
                 }
             }
-            let mut kept = self.table.row(values);
-            if let (Some(lines), true) = (&mut self.lines, kept.is_ok()) {
-                kept = lines.write_all(&(line as u32).to_le_bytes());
-            }
-            if let Err(error) = kept {
+            if let (true, Some(lines)) = (self.table.row(&row), &mut self.lines)
+                && let Err(error) = lines.write_all(&(line as u32).to_le_bytes())
+            {
                 self.fault.get_or_insert(fault(error));
             }
-            self.waiting.drain(..self.width);
         }
     }
 
@@ -252,45 +241,17 @@ impl<'m> BlockRows<'m> {
         let row = self.came;
         self.came += 1;
         // Told against the end of the block before.
-        let from = self.time - self.end;
-        self.time += block.time.minutes * 60.0;
-        let kind = match (self.hole, block.kind) {
-            (true, _) => 6,
-            (_, MotionKind::Position) => 0,
-            (_, MotionKind::Reference) => 1,
-            (_, MotionKind::Rapid) => 2,
-            (_, MotionKind::Linear) => 3,
-            (_, MotionKind::Arc) => 4,
-            (_, MotionKind::Spline) => 5,
-        };
+        let from = self.program.time - self.end;
+        let posted = self.program.block(block);
         if block.reason == Reason::Rewind && self.reason != Reason::Rewind {
-            self.event(row, "rewind", "the tool is drawn back to turn".to_owned());
+            self.marks.event(row, "rewind", "the tool is drawn back to turn");
         }
         self.reason = block.reason;
         if self.branch.changes(&block.joints) {
-            self.event(row, "branch", branch::CHANGED.to_owned());
+            self.marks.event(row, "branch", branch::CHANGED);
         }
-        let reason = match block.reason {
-            Reason::Point => 0,
-            Reason::Eased => 1,
-            Reason::PutIn => 2,
-            Reason::Leave => 3,
-            Reason::Stage => 4,
-            Reason::Rewind => 5,
-            Reason::Feed => 6,
-            Reason::Above => 7,
-            Reason::AtOnce => 8,
-        };
-        let limit = block.time.limit.or(block.planned.limit);
-        let limit = limit.map_or(-1.0, |name| self.limit(name));
-        let minutes = block.time.minutes;
-        let [feed, asked] = match block.pace {
-            _ if block.time.feed.is_none() || minutes <= 0.0 => [0.0, 0.0],
-            Pace::PerMinute(asked) => [block.way / minutes, asked],
-            Pace::InverseTime(asked) => [block.way / minutes, block.way * asked],
-            Pace::Rapid => [block.way / minutes, 0.0],
-        };
-        let accuracy = &self.machine.accuracy;
+        let machine = self.program.machine;
+        let accuracy = &machine.accuracy;
         let tolerance = match block.loose {
             true => accuracy.rapid_tolerance,
             false => accuracy.tolerance,
@@ -309,37 +270,28 @@ impl<'m> BlockRows<'m> {
             }
         }
         let length = self.length(block);
-        let Left { axes, pose, tip } =
-            self.derived.left(self.machine, &block.joints, [block.tip, block.axis], length);
+        let pose = [block.tip, block.axis];
+        let left = self.derived.left(machine, &self.program.axes, &block.joints, pose, length);
+        let tip = left.tip;
         self.derived.check(row, &block.joints, length);
         self.path(row, block, length, tip);
         self.ends.push(block.line, tip, 0.0);
         // Told against what a straight way takes at the feed.
-        let told = (feed * 10.0).round_ties_even() / 10.0;
+        let told = (posted.feed().unwrap_or(0.0) * 10.0).round_ties_even() / 10.0;
         let took = match told > 0.0 {
             true => 60.0 * (tip - self.tip).norm() / told,
             false => 0.0,
         };
-        let left = packed(self.time - self.end - took);
-        self.end += took + left;
+        let to = packed(self.program.time - self.end - took);
+        self.end += took + to;
         self.tip = tip;
-        let head = [0.0, block.line as f64, from, left, f64::from(kind), f64::from(reason)];
-        self.waiting.extend(head);
-        for name in &self.axes {
-            let mut known = self.machine.axes.iter().zip(axes);
-            let value = known.find(|(axis, _)| axis.name == *name);
-            self.waiting.push_back(value.map_or(0.0, |(_, value)| value));
-        }
-        self.waiting.extend(pose.iter().flatten());
-        self.waiting.extend([
-            up(block.deviation.tip, self.scale),
-            up(block.deviation.axis.to_degrees(), self.axis_scale),
+        self.waiting.push_back(Row {
+            posted,
+            times: [from, to],
+            left,
             tolerance,
-            feed,
-            asked,
-            limit,
-            length,
-        ]);
+            tool_length: length,
+        });
     }
 
     /// Length of the tool in use, mm: by how much the tip stands before the gauge point.
@@ -390,7 +342,7 @@ impl<'m> BlockRows<'m> {
         length: f64,
     ) -> Option<Vector3<f64>> {
         let chain = self.chain.as_ref()?;
-        if self.machine.control.tcp == Tcp::Control {
+        if self.program.machine.control.tcp == Tcp::Control {
             return None;
         }
         let mut middle = *from;
@@ -400,56 +352,33 @@ impl<'m> BlockRows<'m> {
         let pose = chain.forward(&middle);
         let middle = pose.tip - pose.axis * length;
         let bow = (middle - 0.5 * (tip + block.tip)).norm();
-        (bow > self.machine.accuracy.tolerance / 50.0).then_some(middle)
-    }
-
-    /// The number of a limit.
-    fn limit(&mut self, name: &str) -> f64 {
-        let known = self.limits.iter().position(|limit| limit == name);
-        let place = known.unwrap_or_else(|| {
-            self.limits.push(name.to_owned());
-            self.limits.len() - 1
-        });
-        place as f64
+        (bow > self.program.machine.accuracy.tolerance / 50.0).then_some(middle)
     }
 
     fn command(&mut self, command: &Command) {
         let row = self.came;
+        self.program.command(command);
+        let mut event = |kind, text: String| self.marks.event(row, kind, text);
         match command {
-            Command::Hole(HoleMark::Above(_)) => self.event(row, "cycle", "hole".to_owned()),
-            Command::Hole(HoleMark::Into { .. }) => self.hole = true,
-            Command::Hole(HoleMark::Done) => self.hole = false,
-            Command::Dwell(seconds) => {
-                self.time += seconds;
-                self.event(row, "dwell", format!("{seconds} s"));
-            }
+            Command::Hole(HoleMark::Above(_)) => event("cycle", "hole".to_owned()),
+            Command::Dwell(seconds) => event("dwell", format!("{seconds} s")),
             Command::Tool(tool) => {
                 let name = match tool.name.is_empty() {
                     true => String::new(),
                     false => format!(", {}", tool.name),
                 };
-                self.event(row, "tool", format!("tool {}{name}", tool.number));
+                event("tool", format!("tool {}{name}", tool.number));
             }
-            Command::Operation(name) => self.event(row, "operation", name.clone()),
+            Command::Operation(name) => event("operation", name.clone()),
             Command::Head(name) => {
                 let (machine, number) = axes::with_head(self.base, name);
-                self.machine = machine;
                 self.chain = chain(machine);
                 self.branch = Branch::new(machine);
-                self.heads.push([row, number]);
-                self.event(row, "head", format!("head {name}"));
+                self.marks.head(row, name, number);
             }
-            Command::Stop => self.event(row, "stop", "stop".to_owned()),
-            Command::OptionalStop => self.event(row, "stop", "optional stop".to_owned()),
+            Command::Stop => event("stop", "stop".to_owned()),
+            Command::OptionalStop => event("stop", "optional stop".to_owned()),
             _ => {}
-        }
-    }
-
-    fn event(&mut self, row: u64, kind: &'static str, text: String) {
-        if self.events.len() < MOST_EVENTS {
-            self.events.push(Event { row, kind, text });
-        } else {
-            self.left_out += 1;
         }
     }
 }

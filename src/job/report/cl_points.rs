@@ -7,28 +7,44 @@ use std::io::{self, BufReader, Read, Write};
 
 use nalgebra::Vector3;
 use post_machine::description::Machine;
-use post_report::table::{Column, TableWriter};
 
 use super::block_rows::decimals;
+use super::page_table::PageTable;
 use super::parts::{Parts, fault};
 use crate::failure::Failure;
 use crate::files::Scratch;
+use crate::job::columns::Column;
 
 /// The block of a line is looked for so many blocks ahead. The page has the same number.
 const AHEAD: usize = 64;
 
-/// The columns of the table; those told against the blocks, if their tips are there.
-pub fn columns(machine: &Machine, told: bool) -> Vec<Column> {
+/// A point of the path, as it is packed.
+pub struct Row {
+    /// Its line.
+    pub line: u64,
+    /// Where it is, mm.
+    pub at: Vector3<f64>,
+    /// 1: the tool comes there at rapid; 2: from elsewhere; 0: in a cut.
+    pub rapid: f64,
+}
+
+/// The table; its places told against the blocks, if their tips are there.
+///
+/// # Errors
+/// There is no place for it.
+pub fn table(machine: &Machine, told: bool) -> Result<PageTable<Row>, Failure> {
     // A tenth of the decimals of the bounds: the path is looked at.
     let decimals = decimals(machine.accuracy.tolerance) - 1;
-    let places = ["x", "y", "z"].map(|name| match told {
-        true => Column::new(name, "mm", decimals).from("blocks"),
-        false => Column::new(name, "mm", decimals),
-    });
-    let mut columns = vec![Column::new("line", "", 0)];
-    columns.extend(places);
-    columns.push(Column::new("rapid", "", 0));
-    columns
+    let mut columns = vec![Column::new("line", "", 0, |row: &Row| row.line)];
+    for (place, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let column = Column::new(name, "mm", decimals, move |row: &Row| row.at[place]);
+        columns.push(match told {
+            true => column.from("blocks"),
+            false => column,
+        });
+    }
+    columns.push(Column::new("rapid", "", 0, |row: &Row| row.rapid));
+    PageTable::new("cl", columns)
 }
 
 /// Lines, places, and a number more, 40 bytes each.
@@ -92,7 +108,7 @@ pub fn pack(
     blocks: Points,
     parts: &mut Parts,
 ) -> Result<(), Failure> {
-    let mut table = TableWriter::new("cl", columns(machine, true), Parts::scratch()?);
+    let mut table = table(machine, true)?;
     let (mut path, mut blocks) = (path.read()?, blocks.read()?);
     let mut near: VecDeque<[f64; 5]> = VecDeque::new();
     let mut line = f64::NAN;
@@ -102,10 +118,10 @@ pub fn pack(
             walk(line, &mut near, &mut blocks);
         }
         let tip = near.front().map_or([0.0; 3], |block| [block[1], block[2], block[3]]);
-        let row = [line, x - tip[0], y - tip[1], z - tip[2], rapid];
-        table.row(&row).map_err(fault)?;
+        let at = Vector3::new(x - tip[0], y - tip[1], z - tip[2]);
+        table.row(&Row { line: line as u64, at, rapid });
     }
-    parts.table(table)
+    table.finish(parts)
 }
 
 /// Goes on to the last of the next blocks that come from a line, if it has one near.

@@ -10,7 +10,9 @@ use post_machine::description::{Machine, Tcp};
 use post_machine::kinematics::chain::turn;
 use post_machine::kinematics::{Chain, Joints, Pose};
 use post_report::meta::Check;
-use post_report::table::Column;
+
+use crate::job::axes::{self, AxisColumn};
+use crate::job::columns::Column;
 
 /// Decimals of linear and rotary axis values: mm, degrees.
 pub const DECIMALS: [u8; 2] = [4, 5];
@@ -43,9 +45,10 @@ pub struct Derived<'m> {
 }
 
 /// Values of a row as they are packed.
+#[derive(Clone, Debug)]
 pub struct Left {
-    /// Those of the axes of the machine, as the control shows them.
-    pub axes: Joints,
+    /// Those of the axes, by columns, as the control shows them.
+    pub axes: Vec<Option<f64>>,
     /// Tip and tool axis.
     pub pose: [Vector3<f64>; 2],
     /// The tip as the page will have it.
@@ -76,46 +79,56 @@ impl<'m> Derived<'m> {
         }
     }
 
-    /// The columns of axes with these names (true where it turns), of the tip and of the tool axis.
-    pub fn columns(&self, axes: &[(String, bool)]) -> Vec<Column> {
-        let axes = axes.iter().map(|(name, rotary)| {
-            let (unit, decimals) = match rotary {
+    /// The columns of these axes, of the tip and of the tool axis; `left` is what of a row is packed in them.
+    pub fn columns<R: 'static>(
+        &self,
+        axes: &[AxisColumn],
+        left: fn(&R) -> &Left,
+    ) -> Vec<Column<R>> {
+        let axes = axes.iter().enumerate().map(|(place, axis)| {
+            let (unit, decimals) = match axis.rotary {
                 true => ("deg", DECIMALS[1]),
                 false => ("mm", DECIMALS[0]),
             };
-            let column = Column::new(format!("q.{name}"), unit, decimals);
-            match (self.way, rotary) {
+            let value = move |row: &R| left(row).axes[place];
+            let column = Column::new(format!("q.{}", axis.name), unit, decimals, value);
+            match (self.way, axis.rotary) {
                 (Way::FromTip, false) => column.from("tips"),
                 _ => column,
             }
         });
-        let tip = ["x", "y", "z"].map(|name| Column::new(format!("tip.{name}"), "mm", 4));
-        let tip = tip.into_iter().map(|column| match self.way {
-            Way::FromAxes => column.from("chain"),
-            _ => column,
+        let tip = ["tip.x", "tip.y", "tip.z"].into_iter().enumerate().map(|(place, name)| {
+            let column = Column::new(name, "mm", 4, move |row| left(row).pose[0][place]);
+            match self.way {
+                Way::FromAxes => column.from("chain"),
+                _ => column,
+            }
         });
-        let axis = ["i", "j", "k"].map(|name| Column::new(format!("axis.{name}"), "", 6));
-        let axis = axis.into_iter().map(|column| match self.way {
-            Way::Nothing => column,
-            _ => column.from("chain"),
+        let axis = ["axis.i", "axis.j", "axis.k"].into_iter().enumerate().map(|(place, name)| {
+            let column = Column::new(name, "", 6, move |row| left(row).pose[1][place]);
+            match self.way {
+                Way::Nothing => column,
+                _ => column.from("chain"),
+            }
         });
         axes.chain(tip).chain(axis).collect()
     }
 
-    /// What is left of a row to pack. `machine` is that with the head in use.
+    /// What is left of a row to pack. `machine` is that with the head in use, whose axes stand in these columns.
     pub fn left(
         &self,
         machine: &Machine,
+        columns: &[AxisColumn],
         joints: &Joints,
         [tip, axis]: [Vector3<f64>; 2],
         length: f64,
     ) -> Left {
-        let mut readings = Joints::default();
-        for ((reading, value), axis) in readings.iter_mut().zip(joints).zip(&machine.axes) {
-            *reading = axis.reading(*value);
-        }
-        let whole =
-            Left { axes: readings, pose: [tip, axis], tip: tip.map(|value| rounded(value, 1e4)) };
+        let mut readings = axes::readings(machine, joints);
+        let whole = Left {
+            axes: axes::in_columns(columns, machine, &readings),
+            pose: [tip, axis],
+            tip: tip.map(|value| rounded(value, 1e4)),
+        };
         let Some(chain) = &self.chain else {
             return whole;
         };
@@ -133,16 +146,16 @@ impl<'m> Derived<'m> {
                 }
             }
             _ => {
-                let mut axes = readings;
                 if let Some(linear) = self.linear(chain, &packed, whole.tip, length) {
                     for (reading, (axis, value)) in
-                        axes.iter_mut().zip(self.machine.axes.iter().zip(linear))
+                        readings.iter_mut().zip(self.machine.axes.iter().zip(linear))
                     {
                         if !axis.joint.rotary {
                             *reading -= value + axis.zero / axis.unit();
                         }
                     }
                 }
+                let axes = axes::in_columns(columns, machine, &readings);
                 Left { axes, pose: [tip, axis - pose.axis], ..whole }
             }
         }

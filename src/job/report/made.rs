@@ -38,7 +38,7 @@ impl Made<'_> {
     /// A text cannot be read again, or the report not be written.
     pub fn write(
         &self,
-        (rows, predicted): (BlockRows<'_>, Option<PredictedParts<'_>>),
+        (rows, predicted): (BlockRows<'_>, Option<PredictedParts>),
         (source, name, text): (&mut ClSource, &str, &mut dyn Read),
         most: u64,
         page: &mut AtomicFile,

@@ -3,7 +3,6 @@
 //! Tables and texts are packed as they come, into scratch files, and put together at the end: memory does not grow with the
 //! program, and what does not fit is left out as a whole.
 
-mod axes;
 mod block_rows;
 mod branch;
 mod cl_points;
@@ -12,8 +11,10 @@ mod derived;
 mod findings;
 mod machine;
 mod made;
+mod marks;
 mod motion_rows;
 mod old_path;
+mod page_table;
 mod parts;
 mod path_rows;
 mod predicted_lines;

@@ -7,21 +7,23 @@ use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 use post_motion::path::Way;
 use post_readback::{Done, Motion, MotionKind, Told};
-use post_report::meta::{AxisUsed, Event, Meta};
-use post_report::table::{Column, TableWriter};
+use post_report::meta::{AxisUsed, Meta};
 
-use super::axes;
-use super::block_rows::{MOST_EVENTS, decimals, packed};
+use super::block_rows::{decimals, packed};
 use super::branch::{self, Branch};
 use super::cl_points::Points;
 use super::cl_window::ClWindow;
 use super::derived::{Derived, Left};
+use super::marks::Marks;
 use super::old_path::OldPath;
-use super::parts::{Parts, fault};
+use super::page_table::PageTable;
+use super::parts::Parts;
 use super::path_rows::PathRows;
 use super::predicted_rows;
 use crate::failure::Failure;
-use crate::files::Scratch;
+use crate::job::axes::{self, AxisColumn};
+use crate::job::columns::Column;
+use crate::job::posted::numbered;
 
 /// Places on a curve at most.
 const MOST_PLACES: f64 = 512.0;
@@ -54,13 +56,73 @@ pub struct Besides {
     pub other: bool,
 }
 
+/// A row of the page.
+struct Row {
+    /// Line of the program.
+    nc: u64,
+    /// When the motion begins and ends, s; as they are packed, once what is known of its line is.
+    times: [f64; 2],
+    /// Among the kinds of posted blocks.
+    kind: u8,
+    left: Left,
+    /// Feed of the tip, mm/min.
+    feed: f64,
+    /// By how much the tip stands before the gauge point, mm.
+    tool_length: f64,
+    heard: Heard,
+    /// A place in the names of limits, or -1.
+    limit: i64,
+    /// Of the tip, mm.
+    tolerance: f64,
+    /// Line of the other program; zero where there is none.
+    other: u64,
+}
+
+/// The columns of the page.
+fn columns(
+    machine: &Machine,
+    axes: &[AxisColumn],
+    derived: &Derived<'_>,
+    besides: Besides,
+) -> Vec<Column<Row>> {
+    type C = Column<Row>;
+    let accuracy = &machine.accuracy;
+    let [tip, turn] = [accuracy.tolerance, accuracy.axis_tolerance.to_degrees()].map(decimals);
+    let mut columns = vec![
+        C::new("nc", "", 0, |row| row.nc),
+        C::new("t0", "s", 4, |row| row.times[0]).from("t1"),
+        C::new("t1", "s", 4, |row| row.times[1]),
+        C::new("kind", "", 0, |row| row.kind),
+    ];
+    columns.extend(derived.columns(axes, |row: &Row| &row.left));
+    columns.extend([
+        C::new("feed", "mm/min", 1, |row| row.feed),
+        C::new("tool_length", "mm", 4, |row| row.tool_length),
+        C::new("cl", "", 0, |row| row.heard.cl),
+        C::new("limit", "", 0, |row| row.limit),
+    ]);
+    if besides.deviations {
+        columns.extend([
+            C::new("deviation", "mm", tip, |row| row.heard.deviation[0]),
+            C::new("axis_deviation", "deg", turn, |row| row.heard.deviation[1]),
+            C::new("tolerance", "mm", 6, |row| row.tolerance),
+        ]);
+    }
+    if besides.predicted {
+        columns.extend(predicted_rows::columns(machine, |row: &Row| &row.heard));
+    }
+    if besides.other {
+        columns.push(C::new("nc2", "", 0, |row| row.other));
+    }
+    columns
+}
+
 /// A row that waits for what is known of its line.
 struct Waiting {
-    nc: u64,
-    kind: MotionKind,
-    values: Vec<f64>,
-    /// The tip at the end, and as it is packed.
-    tips: [Vector3<f64>; 2],
+    row: Row,
+    rapid: bool,
+    /// The tip at the end.
+    tip: Vector3<f64>,
     places: Vec<Vector3<f64>>,
     /// The middle of its way, as the page will have it.
     middle: Option<Vector3<f64>>,
@@ -71,19 +133,16 @@ pub struct MotionRows<'m> {
     /// The machine with the head in use.
     machine: &'m Machine,
     base: &'m Machine,
-    /// Names of the axes of all heads, in the order of their columns.
-    axes: Vec<(String, bool)>,
-    besides: Besides,
+    /// Axes of all heads, in the order of their columns.
+    axes: Vec<AxisColumn>,
     /// Somebody tells of lines: rows wait for that.
     told_of: bool,
-    table: TableWriter<Scratch>,
+    table: PageTable<Row>,
     path: PathRows,
     derived: Derived<'m>,
     /// End of the row before, s.
     end: f64,
     branch: Branch,
-    /// Rows from which another head is in use, with its number.
-    heads: Vec<[u64; 2]>,
     cl: Option<ClWindow>,
     /// The path of the program that it is held against.
     old: Option<OldPath>,
@@ -98,11 +157,9 @@ pub struct MotionRows<'m> {
     tool: Option<u32>,
     length: Option<f64>,
     limits: Vec<String>,
-    events: Vec<Event>,
-    left_out: u64,
+    marks: Marks,
     /// First row of each line that is largest in something, and what: tip, axis, contour error.
     largest: [(f64, u64, u64); 3],
-    fault: Option<Failure>,
     used: Vec<AxisUsed>,
 }
 
@@ -116,48 +173,19 @@ impl<'m> MotionRows<'m> {
         cl: Option<ClWindow>,
         besides: Besides,
     ) -> Result<Self, Failure> {
-        let accuracy = &machine.accuracy;
-        let mut columns = vec![
-            Column::new("nc", "", 0),
-            Column::new("t0", "s", 4).from("t1"),
-            Column::new("t1", "s", 4),
-            Column::new("kind", "", 0),
-        ];
         let axes = axes::of_all_heads(machine);
         let derived = Derived::new(machine);
-        columns.extend(derived.columns(&axes));
-        columns.extend([
-            Column::new("feed", "mm/min", 1),
-            Column::new("tool_length", "mm", 4),
-            Column::new("cl", "", 0),
-            Column::new("limit", "", 0),
-        ]);
-        if besides.deviations {
-            let turn = accuracy.axis_tolerance.to_degrees();
-            columns.extend([
-                Column::new("deviation", "mm", decimals(accuracy.tolerance)),
-                Column::new("axis_deviation", "deg", decimals(turn)),
-                Column::new("tolerance", "mm", 6),
-            ]);
-        }
-        if besides.predicted {
-            columns.extend(predicted_rows::columns(machine));
-        }
-        if besides.other {
-            columns.push(Column::new("nc2", "", 0));
-        }
+        let columns = columns(machine, &axes, &derived, besides);
         Ok(Self {
             machine,
             base: machine,
             axes,
             told_of: besides.deviations || besides.predicted,
-            besides,
-            table: TableWriter::new("blocks", columns, Parts::scratch()?),
+            table: PageTable::new("blocks", columns)?,
             path: PathRows::new(machine)?,
             derived,
             end: 0.0,
             branch: Branch::new(machine),
-            heads: Vec::new(),
             cl,
             old: None,
             ends: Points::new()?,
@@ -169,10 +197,8 @@ impl<'m> MotionRows<'m> {
             tool: None,
             length: None,
             limits: Vec::new(),
-            events: Vec::new(),
-            left_out: 0,
+            marks: Marks::default(),
             largest: [(0.0, 0, 0); 3],
-            fault: None,
             used: Vec::new(),
         })
     }
@@ -188,9 +214,6 @@ impl<'m> MotionRows<'m> {
     /// They could not be kept.
     pub fn finish(mut self, parts: &mut Parts, meta: &mut Meta) -> Result<(), Failure> {
         self.alone();
-        if let Some(fault) = self.fault {
-            return Err(fault);
-        }
         if let Some(cl) = self.cl {
             cl.finish(self.base, self.ends, parts)?;
         }
@@ -203,14 +226,12 @@ impl<'m> MotionRows<'m> {
             let known = known.find(|(value, _, nc)| *value > 0.0 && maximum.nc == Some(*nc));
             maximum.row = known.map(|(_, row, _)| *row);
         }
-        meta.head_rows = self.heads;
         meta.checks = self.derived.checks();
         meta.axes_used = self.used;
         meta.limits = self.limits;
-        meta.events = self.events;
-        meta.events_left_out = self.left_out;
+        self.marks.finish(meta);
         meta.tool_length = self.length.unwrap_or(0.0);
-        parts.table(self.table)
+        self.table.finish(parts)
     }
 
     /// What the program does next.
@@ -227,7 +248,7 @@ impl<'m> MotionRows<'m> {
                 let operation = state.operation.as_deref().unwrap_or_default();
                 if operation != self.operation {
                     self.operation = operation.to_owned();
-                    self.event("operation", operation.to_owned());
+                    self.marks.event(self.came, "operation", operation);
                 }
             }
         }
@@ -235,14 +256,14 @@ impl<'m> MotionRows<'m> {
 
     /// All that is done on `line` gets what was heard of it; what came before, and nobody told of, stays as it is.
     pub fn hear(&mut self, line: u64, heard: &Heard) {
-        let Some(place) = self.waiting.iter().position(|row| row.nc == line) else {
+        let Some(place) = self.waiting.iter().position(|waiting| waiting.row.nc == line) else {
             return;
         };
         for _ in 0..place {
             self.write(None);
         }
         // A hole has many motions on its line.
-        while self.waiting.front().is_some_and(|row| row.nc == line) {
+        while self.waiting.front().is_some_and(|waiting| waiting.row.nc == line) {
             self.write(Some(heard));
         }
     }
@@ -265,34 +286,38 @@ impl<'m> MotionRows<'m> {
             (_, _, Way::Spline(_)) => 5,
             _ => 3,
         };
-        let mut values = vec![motion.line as f64, from, self.time, f64::from(kind)];
         // The chain has the tool in it: where the gauge point is, is the same with every tool.
         let tip = motion.state.solver.chain().tip();
         let length = (self.machine.gauge - tip).dot(&self.machine.tool_axis);
         self.length.get_or_insert(length);
         if self.branch.changes(&motion.to.joints) {
-            self.event("branch", branch::CHANGED.to_owned());
+            self.marks.event(self.came, "branch", branch::CHANGED);
         }
         let pose = motion.to.pose;
         let joints = &motion.to.joints;
-        let Left { axes, pose: left, tip: end } =
-            self.derived.left(self.machine, joints, [pose.tip, pose.axis], length);
+        let pose = [pose.tip, pose.axis];
+        let left = self.derived.left(self.machine, &self.axes, joints, pose, length);
         self.derived.check(self.came, joints, length);
-        for (name, _) in &self.axes {
-            let mut known = self.machine.axes.iter().zip(axes);
-            let value = known.find(|(axis, _)| axis.name == *name);
-            values.push(value.map_or(0.0, |(_, value)| value));
-        }
-        values.extend(left.iter().flatten());
-        values.extend([motion.feed, length]);
-        let places = self.places(motion);
+        let places = self.on_the_way(motion);
         let middle = (self.came > 0 && places.len() == 1)
             .then(|| self.derived.middle(&motion.from.joints, joints, length));
+        let accuracy = &self.machine.accuracy;
+        let rapid = motion.kind == MotionKind::Rapid;
         self.waiting.push_back(Waiting {
-            nc: motion.line,
-            kind: motion.kind,
-            values,
-            tips: [pose.tip, end],
+            row: Row {
+                nc: motion.line,
+                times: [from, self.time],
+                kind,
+                left,
+                feed: motion.feed,
+                tool_length: length,
+                heard: Heard::default(),
+                limit: -1,
+                tolerance: if rapid { accuracy.rapid_tolerance } else { accuracy.tolerance },
+                other: 0,
+            },
+            rapid,
+            tip: motion.to.pose.tip,
             places,
             middle: middle.flatten(),
         });
@@ -329,7 +354,7 @@ impl<'m> MotionRows<'m> {
     }
 
     /// Where the tip goes between the ends of a motion, where that is no straight line.
-    fn places(&self, motion: &Motion) -> Vec<Vector3<f64>> {
+    fn on_the_way(&self, motion: &Motion) -> Vec<Vector3<f64>> {
         let tolerance = self.machine.accuracy.tolerance;
         let [from, to] = [motion.from.pose.tip, motion.to.pose.tip];
         let count = match &motion.way {
@@ -350,38 +375,21 @@ impl<'m> MotionRows<'m> {
 
     /// Packs the first row that waits.
     fn write(&mut self, heard: Option<&Heard>) {
-        let Some(Waiting { nc, kind, mut values, tips: [tip, end], places, middle }) =
-            self.waiting.pop_front()
-        else {
+        let Some(Waiting { mut row, rapid, tip, places, middle }) = self.waiting.pop_front() else {
             return;
         };
-        let none = Heard::default();
-        let heard = heard.unwrap_or(&none);
-        let row = self.table.rows();
-        if let Some([from, to]) = heard.times {
-            (values[1], values[2]) = (from, to);
+        if let Some(heard) = heard {
+            row.heard.clone_from(heard);
         }
-        let from = packed(values[1]) - packed(self.end);
-        self.end = values[2];
-        values[1] = from;
-        let limit = heard.limit.as_deref();
-        let limit = limit.map_or(-1.0, |limit| self.limit(limit));
-        values.extend([heard.cl as f64, limit]);
-        let accuracy = &self.machine.accuracy;
-        if self.besides.deviations {
-            values.extend(heard.deviation);
-            values.push(match kind {
-                MotionKind::Rapid => accuracy.rapid_tolerance,
-                _ => accuracy.tolerance,
-            });
+        let heard = &row.heard;
+        let place = self.table.rows();
+        let [from, to] = heard.times.unwrap_or(row.times);
+        row.times = [packed(from) - packed(self.end), to];
+        self.end = to;
+        if let Some(limit) = &heard.limit {
+            row.limit = numbered(&mut self.limits, limit);
         }
-        if self.besides.predicted {
-            values.extend(predicted_rows::values(self.base, heard));
-        }
-        if self.besides.other {
-            let line = self.old.as_mut().and_then(|old| old.advance(tip));
-            values.push(line.map_or(0.0, |line| line as f64));
-        }
+        row.other = self.old.as_mut().and_then(|old| old.advance(tip)).unwrap_or(0);
         let old = self.old.as_ref();
         let off = |cl: &Option<ClWindow>, tip| match heard.cl {
             0 => old.and_then(|old| old.off(tip)),
@@ -394,30 +402,20 @@ impl<'m> MotionRows<'m> {
         }
         let places: Vec<_> =
             places.into_iter().chain([tip]).map(|place| (place, off(&self.cl, place))).collect();
-        self.path.block(row, end, middle, &places);
+        let end = row.left.tip;
+        self.path.block(place, end, middle, &places);
         if self.cl.is_some() {
             self.ends.push(heard.cl, end, 0.0);
         }
-        if kind != MotionKind::Rapid {
+        if !rapid {
             let [tip, axis] = heard.deviation;
             for (largest, value) in self.largest.iter_mut().zip([tip, axis, heard.contour]) {
                 if value > largest.0 {
-                    *largest = (value, row, nc);
+                    *largest = (value, place, row.nc);
                 }
             }
         }
-        if let Err(error) = self.table.row(&values) {
-            self.fault.get_or_insert(fault(error));
-        }
-    }
-
-    fn limit(&mut self, name: &str) -> f64 {
-        let known = self.limits.iter().position(|limit| limit == name);
-        let place = known.unwrap_or_else(|| {
-            self.limits.push(name.to_owned());
-            self.limits.len() - 1
-        });
-        place as f64
+        self.table.row(&row);
     }
 
     fn told(&mut self, told: &Told) {
@@ -426,34 +424,24 @@ impl<'m> MotionRows<'m> {
                 if *number != self.tool || number.is_none() {
                     let number = number.map_or(String::new(), |number| format!(" {number}"));
                     let name = name.as_ref().map_or(String::new(), |name| format!(" {name}"));
-                    self.event("tool", format!("tool{number}{name}"));
+                    self.marks.event(self.came, "tool", format!("tool{number}{name}"));
                 }
                 self.tool = *number;
             }
             Told::Dwell { time, revolutions: false } => {
                 self.time += time;
-                self.event("dwell", format!("{time} s"));
+                self.marks.event(self.came, "dwell", format!("{time} s"));
             }
-            Told::Stop => self.event("stop", "stop".to_owned()),
-            Told::OptionalStop => self.event("stop", "optional stop".to_owned()),
+            Told::Stop => self.marks.event(self.came, "stop", "stop"),
+            Told::OptionalStop => self.marks.event(self.came, "stop", "optional stop"),
             Told::Head(name) => {
                 let (machine, number) = axes::with_head(self.base, name);
                 self.machine = machine;
                 self.branch = Branch::new(machine);
-                self.heads.push([self.came, number]);
-                self.event("head", format!("head {name}"));
+                self.marks.head(self.came, name, number);
             }
-            Told::Cycle(_) => self.event("cycle", "hole".to_owned()),
+            Told::Cycle(_) => self.marks.event(self.came, "cycle", "hole"),
             _ => {}
-        }
-    }
-
-    fn event(&mut self, kind: &'static str, text: String) {
-        let row = self.came;
-        if self.events.len() < MOST_EVENTS {
-            self.events.push(Event { row, kind, text });
-        } else {
-            self.left_out += 1;
         }
     }
 }

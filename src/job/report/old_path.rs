@@ -9,13 +9,12 @@ use post_machine::description::Machine;
 use post_motion::path::Way;
 use post_readback::interpret::Interpreter;
 use post_readback::{Done, MotionKind, Run};
-use post_report::table::TableWriter;
 
-use super::cl_points;
+use super::cl_points::{self, Row};
 use super::cl_window::Segment;
-use super::parts::{Parts, fault};
+use super::page_table::PageTable;
+use super::parts::Parts;
 use crate::failure::Failure;
-use crate::files::Scratch;
 
 /// How far chords of a path may stray that is only looked at, mm.
 const CHORD: f64 = 0.001;
@@ -35,14 +34,13 @@ const APART: f64 = 10.0;
 /// Reads the old program as far as it is asked for.
 pub struct OldPath {
     run: Run<Interpreter<File>>,
-    table: TableWriter<Scratch>,
+    table: PageTable<Row>,
     segments: VecDeque<Segment>,
     /// Segments that stand behind the place that was found last.
     behind: usize,
     last: Option<Vector3<f64>>,
     done: Vec<Done>,
     ended: bool,
-    fault: Option<Failure>,
 }
 
 impl OldPath {
@@ -51,16 +49,14 @@ impl OldPath {
     /// # Errors
     /// There is no place for its table.
     pub fn new(machine: &Machine, run: Run<Interpreter<File>>) -> Result<Self, Failure> {
-        let columns = cl_points::columns(machine, false);
         Ok(Self {
             run,
-            table: TableWriter::new("cl", columns, Parts::scratch()?),
+            table: cl_points::table(machine, false)?,
             segments: VecDeque::new(),
             behind: 0,
             last: None,
             done: Vec::new(),
             ended: false,
-            fault: None,
         })
     }
 
@@ -108,10 +104,7 @@ impl OldPath {
             self.segments.clear();
             self.read();
         }
-        match self.fault {
-            Some(fault) => Err(fault),
-            None => parts.table(self.table),
-        }
+        self.table.finish(parts)
     }
 
     fn read(&mut self) {
@@ -152,9 +145,6 @@ impl OldPath {
     }
 
     fn point(&mut self, line: u64, tip: Vector3<f64>, rapid: f64) {
-        let row = [line as f64, tip.x, tip.y, tip.z, rapid];
-        if let Err(error) = self.table.row(&row) {
-            self.fault.get_or_insert(fault(error));
-        }
+        self.table.row(&Row { line, at: tip, rapid });
     }
 }

@@ -3,19 +3,29 @@
 
 use nalgebra::Vector3;
 use post_machine::description::Machine;
-use post_report::table::{Column, TableWriter};
 
 use super::block_rows::{decimals, packed};
-use super::parts::{Parts, fault};
+use super::page_table::PageTable;
+use super::parts::Parts;
 use crate::failure::Failure;
-use crate::files::Scratch;
+use crate::job::columns::Column;
+
+/// A place of the path.
+struct Row {
+    /// The row of its block.
+    block: u64,
+    /// Where it is, and how far off the CL path, as they are packed, mm.
+    left: Vector3<f64>,
+    off: Vector3<f64>,
+    /// It is held against the CL path.
+    held: bool,
+}
 
 /// Packs the places of the path.
 pub struct PathRows {
-    table: TableWriter<Scratch>,
+    table: PageTable<Row>,
     /// The end of the last block, as packed.
     last: Option<Vector3<f64>>,
-    fault: Option<Failure>,
 }
 
 impl PathRows {
@@ -27,20 +37,16 @@ impl PathRows {
         // A tenth of the decimals of the bounds: vectors are looked at.
         let off = decimals(machine.accuracy.tolerance) - 1;
         let columns = vec![
-            Column::new("row", "", 0),
-            Column::new("x", "mm", 4).from("tip"),
-            Column::new("y", "mm", 4).from("tip"),
-            Column::new("z", "mm", 4).from("tip"),
-            Column::new("d.x", "mm", off).from("tip"),
-            Column::new("d.y", "mm", off).from("tip"),
-            Column::new("d.z", "mm", off).from("tip"),
-            Column::new("held", "", 0),
+            Column::new("row", "", 0, |row: &Row| row.block),
+            Column::new("x", "mm", 4, |row: &Row| row.left.x).from("tip"),
+            Column::new("y", "mm", 4, |row: &Row| row.left.y).from("tip"),
+            Column::new("z", "mm", 4, |row: &Row| row.left.z).from("tip"),
+            Column::new("d.x", "mm", off, |row: &Row| row.off.x).from("tip"),
+            Column::new("d.y", "mm", off, |row: &Row| row.off.y).from("tip"),
+            Column::new("d.z", "mm", off, |row: &Row| row.off.z).from("tip"),
+            Column::new("held", "", 0, |row: &Row| row.held),
         ];
-        Ok(Self {
-            table: TableWriter::new("path", columns, Parts::scratch()?),
-            last: None,
-            fault: None,
-        })
+        Ok(Self { table: PageTable::new("path", columns)?, last: None })
     }
 
     /// Places of block `row`, in order, the last its end at `tip` (as packed), and how far each is off the CL path, if that
@@ -63,15 +69,12 @@ impl PathRows {
             let on_the_way = single && place == 0;
             let known = middle.filter(|_| on_the_way).unwrap_or(from + step * share);
             let left = at - known;
-            let held = f64::from(u8::from(off.is_some()));
+            let held = off.is_some();
             let off = off.map_or_else(Vector3::zeros, |off| match on_the_way {
                 true => off - bow(known + left.map(packed), from, step),
                 false => off,
             });
-            let row = [row as f64, left.x, left.y, left.z, off.x, off.y, off.z, held];
-            if let Err(error) = self.table.row(&row) {
-                self.fault.get_or_insert(fault(error));
-            }
+            self.table.row(&Row { block: row, left, off, held });
         }
     }
 
@@ -80,10 +83,7 @@ impl PathRows {
     /// # Errors
     /// It could not be kept.
     pub fn finish(self, parts: &mut Parts) -> Result<(), Failure> {
-        match self.fault {
-            Some(fault) => Err(fault),
-            None => parts.table(self.table),
-        }
+        self.table.finish(parts)
     }
 }
 

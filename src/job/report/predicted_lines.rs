@@ -2,25 +2,32 @@
 
 use post_machine::description::Machine;
 use post_machine::kinematics::{Joints, MAX_AXES};
-use post_report::table::{Column, TableWriter};
 
 use super::block_rows::decimals;
 use super::motion_rows::Heard;
-use super::parts::{Parts, fault};
+use super::page_table::PageTable;
+use super::parts::Parts;
 use crate::failure::Failure;
-use crate::files::Scratch;
+use crate::job::columns::Column;
 use crate::job::predict::Sample;
+
+/// The contour error where it counts, mm.
+fn contour(sample: &Sample) -> f64 {
+    match sample.counts() {
+        true => sample.size(),
+        false => 0.0,
+    }
+}
 
 /// Takes set-points.
 pub struct PredictedLines {
-    table: TableWriter<Scratch>,
+    table: PageTable<Sample>,
     period: f64,
     /// The line that is carried out, and what was seen of it.
     line: u64,
     heard: Heard,
     /// Commanded axis values and velocities of the set-point before.
     last: Option<(Joints, Option<Joints>)>,
-    fault: Option<Failure>,
 }
 
 impl PredictedLines {
@@ -31,17 +38,16 @@ impl PredictedLines {
     pub fn new(machine: &Machine, period: f64) -> Result<Self, Failure> {
         let error = decimals(machine.accuracy.tolerance);
         let columns = vec![
-            Column::new("t", "s", 6),
-            Column::new("feed", "mm/min", 1),
-            Column::new("contour", "mm", error),
+            Column::new("t", "s", 6, |sample: &Sample| sample.point.time),
+            Column::new("feed", "mm/min", 1, |sample: &Sample| sample.feed),
+            Column::new("contour", "mm", error, contour),
         ];
         Ok(Self {
-            table: TableWriter::new("series", columns, Parts::scratch()?),
+            table: PageTable::new("series", columns)?,
             period,
             line: 0,
             heard: Heard::default(),
             last: None,
-            fault: None,
         })
     }
 
@@ -50,13 +56,7 @@ impl PredictedLines {
         let point = &sample.point;
         let time = point.time;
         let cl = sample.cl_line().unwrap_or(0);
-        let error = match sample.counts() {
-            true => sample.size(),
-            false => 0.0,
-        };
-        if let Err(error) = self.table.row(&[time, sample.feed, error]) {
-            self.fault.get_or_insert(fault(error));
-        }
+        self.table.row(sample);
         let mut before = None;
         if sample.at.line != self.line {
             let heard = Heard { cl, times: Some([time, time]), ..Heard::default() };
@@ -65,7 +65,7 @@ impl PredictedLines {
         if let Some([_, to]) = &mut self.heard.times {
             *to = time + self.period;
         }
-        self.heard.contour = self.heard.contour.max(error);
+        self.heard.contour = self.heard.contour.max(contour(sample));
         let joints = point.commanded_joints;
         let mut velocity = None;
         if let Some((last, before)) = &self.last {
@@ -90,10 +90,8 @@ impl PredictedLines {
     /// It could not be kept.
     pub fn finish(mut self, parts: &mut Parts) -> Result<Option<(u64, Heard)>, Failure> {
         let last = self.line(0, Heard::default());
-        match self.fault {
-            Some(fault) => Err(fault),
-            None => parts.table(self.table).map(|()| last),
-        }
+        self.table.finish(parts)?;
+        Ok(last)
     }
 
     /// Another line is carried out: what is known of the one before.

@@ -10,17 +10,17 @@ use crate::failure::Failure;
 use crate::job::predict::Sample;
 
 /// Takes set-points.
-pub struct PredictedParts<'m> {
+pub struct PredictedParts {
     series: PredictedLines,
-    rows: PredictedRows<'m>,
+    rows: PredictedRows,
 }
 
-impl<'m> PredictedParts<'m> {
+impl PredictedParts {
     /// For the set-points of a program whose blocks are these; none where nothing was to be predicted of them.
     ///
     /// # Errors
     /// There is no place for them.
-    pub fn of(machine: &'m Machine, blocks: &mut BlockRows<'_>) -> Result<Option<Self>, Failure> {
+    pub fn of(machine: &Machine, blocks: &mut BlockRows<'_>) -> Result<Option<Self>, Failure> {
         let Some(lines) = blocks.lines()? else {
             return Ok(None);
         };

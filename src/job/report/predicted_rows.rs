@@ -4,42 +4,43 @@ use std::collections::VecDeque;
 use std::io::{self, Read};
 
 use post_machine::description::Machine;
-use post_report::table::{Column, TableWriter};
 
 use super::block_rows::{decimals, packed};
 use super::motion_rows::Heard;
+use super::page_table::PageTable;
 use super::parts::{Parts, fault};
 use crate::failure::Failure;
-use crate::files::Scratch;
+use crate::job::columns::Column;
 
 /// A line that somebody tells of is looked for so many rows ahead.
 const AHEAD: usize = 4096;
 
-/// The largest contour error of a row, and the largest velocity and acceleration of each axis.
-pub fn columns(machine: &Machine) -> Vec<Column> {
-    let mut columns = vec![Column::new("contour", "mm", decimals(machine.accuracy.tolerance))];
-    for (letter, units) in [("v", ["mm/s", "deg/s"]), ("a", ["mm/s²", "deg/s²"])] {
-        for axis in &machine.axes {
-            let unit = units[usize::from(axis.joint.rotary)];
-            columns.push(Column::new(format!("{letter}.{}", axis.name), unit, 3));
+/// The largest contour error of a row, and the largest velocity and acceleration of each axis; `heard` is what is known of
+/// the row.
+pub fn columns<R: 'static>(machine: &Machine, heard: fn(&R) -> &Heard) -> Vec<Column<R>> {
+    let error = decimals(machine.accuracy.tolerance);
+    let mut columns = vec![Column::new("contour", "mm", error, move |row| heard(row).contour)];
+    let letters = [("v", ["mm/s", "deg/s"]), ("a", ["mm/s²", "deg/s²"])];
+    for (which, (letter, units)) in letters.into_iter().enumerate() {
+        for (place, axis) in machine.axes.iter().enumerate() {
+            let (name, counted) = (format!("{letter}.{}", axis.name), axis.unit());
+            let value = move |row: &R| heard(row).peaks[which][place] / counted;
+            columns.push(Column::new(name, units[usize::from(axis.joint.rotary)], 3, value));
         }
     }
     columns
 }
 
-/// What [`columns`] hold of a row.
-pub fn values(machine: &Machine, heard: &Heard) -> impl Iterator<Item = f64> {
-    let peaks = heard.peaks.iter().flat_map(|peaks| {
-        let axes = machine.axes.iter().zip(peaks);
-        axes.map(|(axis, peak)| peak / axis.unit())
-    });
-    std::iter::once(heard.contour).chain(peaks)
+/// A row of the page.
+struct Row {
+    /// When it begins and ends, as they are packed, s.
+    times: [f64; 2],
+    heard: Heard,
 }
 
 /// Takes what is heard of lines, and packs it for the rows that stand on them.
-pub struct PredictedRows<'m> {
-    machine: &'m Machine,
-    table: TableWriter<Scratch>,
+pub struct PredictedRows {
+    table: PageTable<Row>,
     /// Lines of the rows, 32 bits each, least byte first.
     lines: Box<dyn Read>,
     /// Those that were read and wait.
@@ -50,17 +51,19 @@ pub struct PredictedRows<'m> {
     fault: Option<Failure>,
 }
 
-impl<'m> PredictedRows<'m> {
+impl PredictedRows {
     /// For rows that stand on these lines.
     ///
     /// # Errors
     /// There is no place for them.
-    pub fn new(machine: &'m Machine, lines: Box<dyn Read>) -> Result<Self, Failure> {
-        let mut all = vec![Column::new("t0", "s", 4).from("t1"), Column::new("t1", "s", 4)];
-        all.extend(columns(machine));
+    pub fn new(machine: &Machine, lines: Box<dyn Read>) -> Result<Self, Failure> {
+        let mut all = vec![
+            Column::new("t0", "s", 4, |row: &Row| row.times[0]).from("t1"),
+            Column::new("t1", "s", 4, |row: &Row| row.times[1]),
+        ];
+        all.extend(columns(machine, |row: &Row| &row.heard));
         Ok(Self {
-            machine,
-            table: TableWriter::new("predicted", all, Parts::scratch()?),
+            table: PageTable::new("predicted", all)?,
             lines,
             waiting: VecDeque::new(),
             ended: false,
@@ -79,7 +82,7 @@ impl<'m> PredictedRows<'m> {
         }
         match self.fault {
             Some(fault) => Err(fault),
-            None => parts.table(self.table),
+            None => self.table.finish(parts),
         }
     }
 
@@ -103,12 +106,9 @@ impl<'m> PredictedRows<'m> {
     fn write(&mut self, heard: &Heard) {
         self.waiting.pop_front();
         let [from, to] = heard.times.unwrap_or([self.end; 2]);
-        let mut row = vec![packed(from) - packed(self.end), to];
+        let times = [packed(from) - packed(self.end), to];
         self.end = to;
-        row.extend(values(self.machine, heard));
-        if let Err(error) = self.table.row(&row) {
-            self.fault.get_or_insert(fault(error));
-        }
+        self.table.row(&Row { times, heard: heard.clone() });
     }
 
     /// All rows of `line` get what was heard of it; those before it that nobody told of stay as they are.

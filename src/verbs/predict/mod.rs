@@ -18,6 +18,7 @@ use crate::arguments::flag_values;
 use crate::arguments::{JobArguments, ReportArguments};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, OwnFolder, PathArg, Role};
+use crate::job::columns::CsvTable;
 use crate::job::predict::measured::{MeasuredPoint, Overlay};
 use crate::job::predict::{self, Against, PredictWatch, Predicted, Sample};
 use crate::job::report::{Besides, ClWindow, MotionRows, PredictedLines};
@@ -27,7 +28,6 @@ use crate::terminal;
 use measured_arguments::MeasuredArguments;
 use measured_pictures::MeasuredRoom;
 use pictures::Rooms;
-use set_points_csv::SetPointsCsv;
 
 /// Predicts what an NC program does on its machine: cycle time, true feed, and how far the tool strays.
 ///
@@ -117,7 +117,7 @@ struct Watch<'a, 'm, 'f> {
     overlay: Option<&'a mut Overlay>,
     rooms: Option<Rooms>,
     rows: Option<(MotionRows<'m>, PredictedLines)>,
-    csv: Option<SetPointsCsv<'m, 'f>>,
+    csv: Option<CsvTable<'f, Sample>>,
 }
 
 impl PredictWatch for Watch<'_, '_, '_> {
@@ -140,7 +140,7 @@ impl PredictWatch for Watch<'_, '_, '_> {
             rows.hear(line, &heard);
         }
         match &mut self.csv {
-            Some(csv) => Ok(csv.take(sample)?),
+            Some(csv) => Ok(csv.row(sample)?),
             None => Ok(()),
         }
     }
@@ -213,11 +213,11 @@ pub fn run(session: &Session, arguments: &PredictArguments) -> Result<(), Failur
         overlay: overlay.as_mut(),
         rooms: folder.as_ref().map(|_| Rooms::new(&machine, period)),
         rows,
-        csv: csv.map(|file| SetPointsCsv::new(&machine, file)),
+        csv: csv.map(|file| CsvTable::new(set_points_csv::columns(&machine), file)),
     };
     let predicted = predict::predict(&asked, against, &name, program, &mut watch)?;
     let Watch { rooms, rows, csv, .. } = watch;
-    csv.map_or(Ok(()), SetPointsCsv::finish)?;
+    csv.map_or(Ok(()), CsvTable::finish)?;
     let Predicted { mut found, mut findings, chains } = predicted;
     let mut measured_picture = None;
     if let Some(overlay) = &overlay {

@@ -3,120 +3,103 @@
 //! Plain text and not Parquet: whatever reads tables reads CSV, and the crate that writes Parquet brings Arrow and some
 //! dozen crates of compression with it, for one output of one verb.
 
-use std::fmt::Write as _;
-
-use post_machine::axis_words;
 use post_machine::description::Machine;
-use post_plugin::fixed;
 use post_readback::{Done, Motion, MotionKind, Spindle, Told, Way};
 
 use crate::files::{AtomicFile, FileFault};
+use crate::job::axes::{self, AxisColumn};
+use crate::job::columns::{Column, CsvTable};
 
-/// So many bytes of rows are written at once.
-const BUFFER: usize = 1 << 16;
+/// A motion, and where its axes stand behind it.
+struct Row {
+    motion: Motion,
+    /// By columns, as the control shows them.
+    readings: Vec<Option<f64>>,
+}
+
+/// The columns of the table.
+fn columns(axes: &[AxisColumn]) -> Vec<Column<Row>> {
+    type C = Column<Row>;
+    let mut columns = vec![
+        C::new("line", "", 0, |row| row.motion.line),
+        C::new("block", "", 0, |row| row.motion.number),
+        C::new("kind", "", 0, |row| match row.motion.kind {
+            MotionKind::Rapid => "rapid",
+            MotionKind::Feed => "feed",
+            MotionKind::Thread => "thread",
+        }),
+        C::new("way", "", 0, |row| match &row.motion.way {
+            Way::Axes => "axes",
+            Way::Tip => "tip",
+            Way::TipAndAxis => "tip and axis",
+            Way::Arc { .. } => "arc",
+            Way::Spline(_) => "spline",
+        }),
+    ];
+    for (column, axis) in axes.iter().enumerate() {
+        let unit = if axis.rotary { "deg" } else { "mm" };
+        columns.push(C::new(axis.name.clone(), unit, 6, move |row| row.readings[column]));
+    }
+    columns.extend([
+        C::new("tip_x", "mm", 6, |row| row.motion.to.pose.tip.x),
+        C::new("tip_y", "mm", 6, |row| row.motion.to.pose.tip.y),
+        C::new("tip_z", "mm", 6, |row| row.motion.to.pose.tip.z),
+        C::new("axis_i", "", 9, |row| row.motion.to.pose.axis.x),
+        C::new("axis_j", "", 9, |row| row.motion.to.pose.axis.y),
+        C::new("axis_k", "", 9, |row| row.motion.to.pose.axis.z),
+        C::new("feed", "mm/min", 3, |row| row.motion.feed),
+        C::new("minutes", "min", 9, |row| row.motion.minutes),
+        C::new("tool", "", 0, |row| row.motion.state.tool),
+        C::new("spindle", "1/min", 0, |row| speed(row.motion.state.spindle).to_string()),
+        C::new("tcp", "", 0, |row| row.motion.state.tcp),
+    ]);
+    columns
+}
+
+/// Clockwise above zero, 1/min.
+fn speed(spindle: Spindle) -> f64 {
+    match spindle {
+        Spindle::Clockwise(speed) => speed,
+        Spindle::CounterClockwise(speed) => -speed,
+        Spindle::Surface { speed, clockwise: true, .. } => speed,
+        Spindle::Surface { speed, .. } => -speed,
+        Spindle::Off | Spindle::Oriented => 0.0,
+    }
+}
 
 /// The table, as it is written.
 pub struct MotionsCsv<'a, 'f> {
     base: &'a Machine,
     /// The machine with the head that it has now.
     machine: &'a Machine,
-    file: &'f mut AtomicFile,
-    /// Names of the axes, a column each: those of the machine, and then those that a head adds.
-    columns: Vec<String>,
-    text: String,
+    axes: Vec<AxisColumn>,
+    table: CsvTable<'f, Row>,
 }
 
 impl<'a, 'f> MotionsCsv<'a, 'f> {
     pub fn new(machine: &'a Machine, file: &'f mut AtomicFile) -> Self {
-        let mut columns: Vec<String> = Vec::new();
-        let heads = machine.heads.iter().map(|head| &head.machine);
-        for machine in [machine].into_iter().chain(heads) {
-            for place in axis_words::order(machine) {
-                let name = &machine.axes[place].name;
-                if !columns.contains(name) {
-                    columns.push(name.clone());
-                }
-            }
-        }
-        let mut text = String::with_capacity(2 * BUFFER);
-        text.push_str("line,block,kind,way");
-        for name in &columns {
-            let _ = write!(text, ",{name}");
-        }
-        text.push_str(",tip_x,tip_y,tip_z,axis_i,axis_j,axis_k,feed,minutes,tool,spindle,tcp\n");
-        Self { base: machine, machine, file, columns, text }
+        let axes = axes::by_words(machine);
+        Self { base: machine, machine, table: CsvTable::new(columns(&axes), file), axes }
     }
 
     /// Takes what was done.
     pub fn take(&mut self, done: &Done) -> Result<(), FileFault> {
         match done {
-            Done::Motion(motion) => self.row(motion),
+            Done::Motion(motion) => {
+                let readings = axes::readings(self.machine, &motion.to.joints);
+                let readings = axes::in_columns(&self.axes, self.machine, &readings);
+                self.table.row(&Row { motion: motion.clone(), readings })
+            }
             Done::Told { told: Told::Head(name), .. } => {
-                self.machine = self.base.head(name).map_or(self.base, |head| &head.machine);
+                (self.machine, _) = axes::with_head(self.base, name);
+                Ok(())
             }
-            _ => {}
+            _ => Ok(()),
         }
-        if self.text.len() > BUFFER {
-            self.file.write_bytes(self.text.as_bytes())?;
-            self.text.clear();
-        }
-        Ok(())
-    }
-
-    fn row(&mut self, motion: &Motion) {
-        let text = &mut self.text;
-        let block = motion.number.map_or_else(String::new, |number| number.to_string());
-        let kind = match motion.kind {
-            MotionKind::Rapid => "rapid",
-            MotionKind::Feed => "feed",
-            MotionKind::Thread => "thread",
-        };
-        let way = match &motion.way {
-            Way::Axes => "axes",
-            Way::Tip => "tip",
-            Way::TipAndAxis => "tip and axis",
-            Way::Arc { .. } => "arc",
-            Way::Spline(_) => "spline",
-        };
-        // Writing to a String cannot fail.
-        let _ = write!(text, "{},{block},{kind},{way}", motion.line);
-        for name in &self.columns {
-            text.push(',');
-            let place = self.machine.axes.iter().position(|axis| axis.name == *name);
-            if let Some(place) = place {
-                fixed(text, self.machine.axes[place].reading(motion.to.joints[place]), 6);
-            }
-        }
-        let pose = &motion.to.pose;
-        for (value, decimals) in
-            pose.tip.iter().map(|value| (value, 6)).chain(pose.axis.iter().map(|value| (value, 9)))
-        {
-            text.push(',');
-            fixed(text, *value, decimals);
-        }
-        let (feed, minutes) = (motion.feed, motion.minutes);
-        let tool = motion.state.tool.map_or_else(String::new, |tool| tool.to_string());
-        let spindle = match motion.state.spindle {
-            Spindle::Clockwise(speed) => speed,
-            Spindle::CounterClockwise(speed) => -speed,
-            Spindle::Surface { speed, clockwise, .. } => {
-                if clockwise {
-                    speed
-                } else {
-                    -speed
-                }
-            }
-            Spindle::Off | Spindle::Oriented => 0.0,
-        };
-        let _ = writeln!(
-            text,
-            ",{feed:.3},{minutes:.9},{tool},{spindle},{}",
-            u8::from(motion.state.tcp)
-        );
     }
 
     /// Writes what is left.
     pub fn finish(self) -> Result<(), FileFault> {
-        self.file.write_bytes(self.text.as_bytes())
+        self.table.finish()
     }
 }

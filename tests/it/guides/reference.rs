@@ -303,3 +303,29 @@ fn the_page_of_keys_is_the_schema() {
     );
     is("machine-keys.md", "`post schema`", &text);
 }
+
+/// The table in the Python package's manual of `Blocks`.
+#[test]
+fn the_arrays_that_python_names_are_those_of_blocks() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/python/post/job.py");
+    let manual = fs::read_to_string(path).unwrap();
+    let rule = format!("    {} {}\n", "=".repeat(23), "=".repeat(89));
+    let mut table = rule.clone();
+    for (name, doc) in post_command::library::block_arrays() {
+        assert!(doc.chars().count() <= 89, "{name}: {doc}");
+        let _ = writeln!(table, "    {:<23} {doc}", format!("``{name}``"));
+    }
+    let mut parts = manual.split(rule.as_str());
+    let (Some(before), Some(_), Some(after)) = (parts.next(), parts.next(), parts.next()) else {
+        panic!("no table in {path}");
+    };
+    let text = format!("{before}{table}{rule}{after}");
+    if updating() {
+        write(path.as_ref(), &text);
+    }
+    let there = fs::read_to_string(path).unwrap();
+    assert!(
+        there == text,
+        "{path} is stale: run UPDATE_GUIDE=1 cargo test -p post --test it guides"
+    );
+}

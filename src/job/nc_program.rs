@@ -6,10 +6,9 @@ use std::io::{self, Read, Seek, SeekFrom};
 use post_host::Finder;
 use post_machine::description::{Machine, Rapid};
 use post_machine::diagnostic::{Diagnostic, Place};
-use post_plugin::{Capabilities, DialectSession as _, Meaning, VocabularyWord};
+use post_plugin::{Capabilities, DialectSession as _, Language, Lengths, VocabularyWord};
 use post_readback::interpret::{Interpreter, Limits, ReadReport};
 use post_readback::lexicon::Lexicon;
-use post_readback::verify::Registers;
 use post_readback::{FedRapids, MOST_FAULTS, Offsets, Run, turns_the_spindle};
 
 use super::{machine_files, plugin_finder, unused_options};
@@ -42,12 +41,12 @@ impl NcControl {
     pub fn of(machine: &Machine, spoken: Spoken, offsets: Offsets, limits: Limits) -> Self {
         let mut counted = machine.clone();
         let first = offsets.tools.first().map(|(_, length)| *length);
-        if spoken.lengths_in_the_offset()
+        if spoken.writes.lengths() == Lengths::WorkOffset
             && let Some(length) = offsets.length.or(first)
         {
             counted.gauge -= machine.tool_axis * length;
         }
-        let lexicon = Lexicon::new(&spoken.words);
+        let lexicon = Lexicon::new(spoken.language, spoken.writes, &spoken.words);
         Self { machine: machine.clone(), counted, spoken, lexicon, offsets, limits }
     }
 
@@ -104,7 +103,7 @@ impl NcControl {
         let program = || -> Result<_, Failure> {
             Ok(self.program(name, again(name, file)?).map_err(|fault| *fault)?)
         };
-        let Some(kept) = fed_rapids(&self.machine, self.spoken.rapids_pass) else {
+        let Some(kept) = fed_rapids(&self.machine, self.spoken.rapids_pass()) else {
             return Ok(FedRapids::none(program()?));
         };
         let turns = turns_the_spindle(&mut program()?);
@@ -132,40 +131,20 @@ pub fn unknown_words(name: &str, report: &ReadReport) -> impl Iterator<Item = Di
 pub struct Spoken {
     /// The words.
     pub words: Vec<VocabularyWord>,
+    /// The language that they belong to.
+    pub language: Language,
+    /// What the dialect declares to write.
+    pub writes: Capabilities,
     /// Largest F by time, 1/min.
     pub most_inverse_time: Option<f64>,
     /// Decimals of a feed a minute.
     pub feed_decimals: u8,
-    /// A joint may pass its largest feed in a rapid under tool centre point control.
-    pub rapids_pass: bool,
 }
 
 impl Spoken {
-    /// The operator changes the tool at a stop: the control knows no lengths, and the work offset is set with the tool in the
-    /// spindle.
-    pub fn lengths_in_the_offset(&self) -> bool {
-        let means = |word: &VocabularyWord, meaning: Meaning| {
-            let mut words = self.words.iter();
-            words.any(|other| other.word == word.word && other.meaning == meaning)
-        };
-        let mut changes = self.words.iter().filter(|word| word.meaning == Meaning::ToolChange);
-        changes.any(|change| means(change, Meaning::Stop))
-    }
-
-    /// Which register a length is compensated by.
-    pub fn registers(&self) -> Registers {
-        let has = |letter: &str, meaning: Meaning| self.has_letter(letter, meaning);
-        match (has("H", Meaning::LengthRegister), has("D", Meaning::LengthOn)) {
-            (true, _) => Registers::OfTool,
-            (false, true) => Registers::Edges,
-            (false, false) => Registers::None,
-        }
-    }
-
-    /// A word of it is `letter`, and means that.
-    pub fn has_letter(&self, letter: &str, meaning: Meaning) -> bool {
-        let mut words = self.words.iter();
-        words.any(|word| word.meaning == meaning && word.word == letter)
+    /// A joint may pass its largest feed in a rapid under tool centre point control.
+    pub fn rapids_pass(&self) -> bool {
+        self.writes.has(Capabilities::TCP_RAPIDS_PASS)
     }
 }
 
@@ -194,9 +173,10 @@ pub fn spoken(finder: &Finder, machine: &Machine) -> Result<Spoken, Failure> {
     }
     Ok(Spoken {
         words,
+        language: dialect.format().language,
+        writes: dialect.capabilities(),
         most_inverse_time: dialect.format().most_inverse_time,
         feed_decimals: dialect.format().feed,
-        rapids_pass: dialect.capabilities().has(Capabilities::TCP_RAPIDS_PASS),
     })
 }
 

@@ -6,14 +6,12 @@ use std::ops::Range;
 use post_host::Finder;
 use post_machine::description::{Machine, OutputUnits, Rapid, TextPlace};
 use post_machine::diagnostic::{Diagnostic, Place, Severity};
-use post_plugin::Meaning;
+use post_plugin::{Lengths, Meaning};
 use post_posting::program::{ToldSpindle, Unknown};
 use post_readback::course::cl::{ClCourse, ClTool, Settings};
 use post_readback::course::{Course, Window};
 use post_readback::interpret::Limits;
-use post_readback::verify::{
-    BlockReport, CutPath, Fault, Registers, Rules, Verification, Verifier,
-};
+use post_readback::verify::{BlockReport, CutPath, Fault, Rules, Verification, Verifier};
 use post_readback::{Done, Offsets};
 
 use super::nc_program::{self, NcControl, Spoken};
@@ -291,24 +289,23 @@ pub fn hold<C: Course, R: Read + Seek>(
 
 /// What a program is held to.
 fn rules(reading: &Reading<'_>, control: &NcControl, tools: &[ClTool]) -> Rules {
-    let NcControl { counted: machine, spoken, offsets, .. } = control;
-    let in_the_offset = spoken.lengths_in_the_offset();
+    let NcControl { counted: machine, spoken, lexicon, offsets, .. } = control;
+    let length_from = lexicon.lengths();
     let [tolerance, axis_tolerance] = reading.tolerances;
     let standard = Rules::of(machine);
     Rules {
         tolerance: tolerance.unwrap_or(standard.tolerance),
         axis_tolerance: axis_tolerance.unwrap_or(standard.axis_tolerance),
-        registers: match in_the_offset {
-            true => Registers::None,
-            false => spoken.registers(),
-        },
+        length_from,
         work_offsets: reading.offsets.as_ref().is_some_and(|offsets| !offsets.work.is_empty()),
         // What stands in the control's tables is one thing, how long the tools are another.
-        lengths: (!in_the_offset).then(|| match reading.arguments.tool_length {
-            Some(length) => Offsets { length: Some(length), ..Offsets::default() },
-            None => offsets.clone(),
+        lengths: (length_from != Lengths::WorkOffset).then(|| {
+            match reading.arguments.tool_length {
+                Some(length) => Offsets { length: Some(length), ..Offsets::default() },
+                None => offsets.clone(),
+            }
         }),
-        radius_registers: spoken.has_letter("D", Meaning::RadiusRegister),
+        radius_registers: lexicon.has_radius_registers(),
         work_offset: match reading.any_work_offset {
             true => None,
             false => work_offset(reading.finder, machine, spoken),
@@ -322,7 +319,7 @@ fn rules(reading: &Reading<'_>, control: &NcControl, tools: &[ClTool]) -> Rules 
         // A retract by lines of the user's own leads where they say.
         own: reading.own && machine.program.text(TextPlace::Retract).is_none(),
         feed_place: feed_place(machine, spoken.feed_decimals),
-        linear_rapids: machine.rapid(spoken.rapids_pass) == Rapid::Linear,
+        linear_rapids: machine.rapid(spoken.rapids_pass()) == Rapid::Linear,
         least_minutes: spoken.most_inverse_time.map_or(0.0, |most| 1.0 / most),
         tool_registers: tools.iter().map(|tool| (tool.number, tool.register)).collect(),
         ..standard

@@ -35,6 +35,7 @@ use post_motion::contour::Contour;
 use post_motion::servo::Servos;
 use post_motion::trajectory::{Filled, Planner};
 use post_motion::{SetPoints, Task};
+use post_plugin::DialectSession as _;
 use post_readback::Offsets;
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
@@ -271,7 +272,8 @@ fn lexicon(machine: &Machine) -> Result<Lexicon, Box<dyn Error>> {
         ..ProgramSetup::default()
     };
     let mut dialect = Plugin::linked(plugin)?.dialect(&setup)?;
-    Ok(Lexicon::new(&dialect.vocabulary()?))
+    let words = dialect.vocabulary()?;
+    Ok(Lexicon::new(dialect.format().language, dialect.capabilities(), &words))
 }
 
 fn say(line: &str) {

@@ -29,7 +29,7 @@ use std::time::{Duration, Instant};
 
 use post_grammar::nc::{NcBlock, NcReader};
 use post_host::{Plugin, ProgramSetup, ProgramWord};
-use post_plugin::VocabularyWord;
+use post_plugin::DialectSession as _;
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
 use post_readback::{Done, Offsets};
@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "{written} lines, {} MB, median of {RUNS} runs",
         fs::metadata(&whole.program)?.len() / 1_000_000
     ));
-    let lexicon = Lexicon::new(&vocabulary()?);
+    let lexicon = lexicon()?;
     let mut rows: Vec<(&str, Vec<Times>)> = Vec::new();
     let mut time = |name: &'static str, run: &mut dyn FnMut() -> Result<(), Box<dyn Error>>| {
         let (start, busy) = (Instant::now(), processor());
@@ -209,7 +209,7 @@ fn interpret(program: &Path, lexicon: &Lexicon) -> Result<(), Box<dyn Error>> {
 }
 
 /// The words of LinuxCNC.
-fn vocabulary() -> Result<Vec<VocabularyWord>, Box<dyn Error>> {
+fn lexicon() -> Result<Lexicon, Box<dyn Error>> {
     let plugin = post_stock::plugin("linuxcnc").ok_or("linuxcnc is not built in")?;
     let words = ["X", "Y", "Z", "A", "C"].map(|name| ProgramWord {
         name: name.to_owned(),
@@ -219,7 +219,8 @@ fn vocabulary() -> Result<Vec<VocabularyWord>, Box<dyn Error>> {
     });
     let setup = ProgramSetup { words: words.to_vec(), ..ProgramSetup::default() };
     let mut dialect = Plugin::linked(plugin)?.dialect(&setup)?;
-    Ok(dialect.vocabulary()?)
+    let words = dialect.vocabulary()?;
+    Ok(Lexicon::new(dialect.format().language, dialect.capabilities(), &words))
 }
 
 fn say(line: &str) {

@@ -15,12 +15,12 @@ use std::path::Path;
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Rapid, Setting, Source, Tcp, load};
 use post_machine::kinematics::Chain;
-use post_plugin::{Capabilities, Meaning, VocabularyWord};
+use post_plugin::Capabilities;
 use post_readback::course::cl::{ClCourse, Settings};
 use post_readback::course::{Course as _, Curve, Item};
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
-use post_readback::verify::{CutPath, Registers, Rules, Verifier};
+use post_readback::verify::{CutPath, Rules, Verifier};
 use post_readback::{Done, Motion, MotionKind, Offsets, Told};
 use post_testkit::{Rng, drawn, seeded};
 
@@ -29,7 +29,6 @@ struct Job {
     name: String,
     machine: Machine,
     lexicon: Lexicon,
-    registers: Registers,
     cl: Vec<u8>,
     cl_name: String,
     lines: Vec<String>,
@@ -48,18 +47,6 @@ fn machine(name: &str, settings: &[Setting]) -> Machine {
     };
     let source = find(name).unwrap();
     load(source, settings, &mut |name| find(name).map_err(|error| error.to_string())).unwrap()
-}
-
-fn registers(words: &[VocabularyWord]) -> Registers {
-    let has = |letter: &str, meaning: Meaning| {
-        let mut words = words.iter();
-        words.any(|word| word.meaning == meaning && word.word == letter)
-    };
-    match (has("H", Meaning::LengthRegister), has("D", Meaning::LengthOn)) {
-        (true, _) => Registers::OfTool,
-        (false, true) => Registers::Edges,
-        (false, false) => Registers::None,
-    }
 }
 
 impl Job {
@@ -85,11 +72,9 @@ impl Job {
         // As its dialect declares it.
         let passes = vocabularies::capabilities(dialect).has(Capabilities::TCP_RAPIDS_PASS);
         machine.control.rapid = Some(machine.rapid(passes));
-        let words = vocabularies::vocabulary(dialect);
         let mut job = Self {
             name: format!("{dialect} {name} {file} {tcp}"),
-            lexicon: Lexicon::new(&words),
-            registers: registers(&words),
+            lexicon: vocabularies::lexicon(dialect),
             cl: fs::read(root().join(&path)).unwrap(),
             cl_name: file.to_owned(),
             lines: run.out.lines().map(str::to_owned).collect(),
@@ -163,7 +148,7 @@ impl Job {
         let offsets = Offsets { length: Some(length), ..Offsets::default() };
         let (near, _) = CutPath::of(&mut self.course(), self.machine.control_point.along);
         let rules = Rules {
-            registers: self.registers,
+            length_from: self.lexicon.lengths(),
             lengths: Some(Offsets { length: Some(self.length), ..Offsets::default() }),
             own: true,
             ..Rules::of(&self.machine)

@@ -72,6 +72,14 @@ pub fn vocabulary(dialect: &str) -> Vec<VocabularyWord> {
     of_dialect(dialect, |dialect| dialect.vocabulary().unwrap())
 }
 
+/// Its words as its programs are read back by them.
+pub fn lexicon(dialect: &str) -> Lexicon {
+    of_dialect(dialect, |dialect| {
+        let words = dialect.vocabulary().unwrap();
+        Lexicon::new(dialect.format().language, dialect.capabilities(), &words)
+    })
+}
+
 /// What the plugin declares.
 pub fn capabilities(dialect: &str) -> Capabilities {
     of_dialect(dialect, |dialect| dialect.capabilities())
@@ -277,7 +285,7 @@ fn every_word_of_every_program_is_in_the_vocabulary_of_its_dialect() {
         let known: BTreeSet<&str> =
             words.iter().filter_map(|word| word.word.split(' ').next()).collect();
         let whole: BTreeSet<&str> = words.iter().map(|word| &*word.word).collect();
-        let syntax = Lexicon::new(&words).syntax().clone();
+        let syntax = lexicon(&dialect).syntax().clone();
         let mut reader = NcReader::new(Cursor::new(text), syntax);
         let mut block = NcBlock::default();
         while reader.next_block(&mut block).unwrap_or_else(|fault| panic!("{name}: {fault:?}")) {

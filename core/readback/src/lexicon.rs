@@ -1,5 +1,5 @@
-//! Which word of a control switches what: what its dialect hands over, and behind that what all controls of its
-//! language have in common.
+//! Which word of a control switches what: what its dialect hands over, and behind that what all controls of the
+//! language that it declares have in common.
 //!
 //! The dialect goes first. What it does not name is looked for among the words that every control of the language
 //! reads the same way (`lexicon/common.rs`); what stands there neither is not known.
@@ -9,21 +9,7 @@ mod common;
 use std::collections::BTreeMap;
 
 use post_grammar::nc::{NcSyntax, Notation};
-use post_plugin::{Meaning, VocabularyWord};
-
-/// The language of a control.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Language {
-    /// Letters, `#1`, `IF [#1 EQ 2] GOTO 3`: Fanuc and what is like it.
-    #[default]
-    Macro,
-    /// Letters, `#1`, `#<name>`, `o1 while [..]`: RS-274/NGC.
-    Rs274,
-    /// Names with `=`, calls with parentheses, `R1`: SINUMERIK.
-    Names,
-    /// `L X+1 R0 FMAX`, `Q1`: Heidenhain.
-    Conversational,
-}
+use post_plugin::{Capabilities, Language, Lengths, Meaning, VocabularyWord};
 
 /// What a word does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +36,7 @@ struct Choice {
 const CODES: usize = 10_000;
 
 /// The words of a control, ready to be looked up.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Lexicon {
     syntax: NcSyntax,
     language: Language,
@@ -65,8 +51,7 @@ pub struct Lexicon {
     /// Names that mean this where nothing stands between their parentheses.
     empty: BTreeMap<String, Meaning>,
     choices: Vec<Choice>,
-    /// D switches the length of the tool.
-    tools_have_edges: bool,
+    writes: Capabilities,
     /// A word changes the tool; else T does.
     changes_by_word: bool,
     /// The dialect itself knows G64, so that G61 is one of several modes.
@@ -76,23 +61,11 @@ pub struct Lexicon {
 }
 
 impl Lexicon {
-    /// From what a dialect hands over.
-    pub fn new(words: &[VocabularyWord]) -> Self {
-        let has = |wanted: &str| words.iter().any(|word| word.word == wanted);
-        let language = if has("BEGIN PGM") {
-            Language::Conversational
-        } else if !has("(") && (has(";") || has("SUPA")) {
-            Language::Names
-        } else if has("O")
-            && words.iter().any(|word| word.meaning == Meaning::Subprogram && word.word == "O")
-            || has("G38.2")
-        {
-            Language::Rs274
-        } else {
-            Language::Macro
-        };
+    /// From what a dialect declares and hands over.
+    pub fn new(language: Language, writes: Capabilities, words: &[VocabularyWord]) -> Self {
         let mut lexicon = Self {
             language,
+            writes,
             g: vec![0; CODES],
             m: vec![0; CODES / 10],
             senses: vec![Sense::Unknown],
@@ -100,7 +73,10 @@ impl Lexicon {
             all_axes: words.iter().any(|word| word.meaning == Meaning::FeedPerMinuteAllAxes),
             path_modes: words.iter().any(|word| word.word == "G64"),
             changes_by_word: words.iter().any(|word| word.meaning == Meaning::ToolChange),
-            ..Self::default()
+            letters: [None; 26],
+            names: BTreeMap::new(),
+            empty: BTreeMap::new(),
+            choices: Vec::new(),
         };
         for (word, sense) in common::words(language) {
             lexicon.add_sense(word, sense);
@@ -121,9 +97,19 @@ impl Lexicon {
         self.language
     }
 
+    /// Where the control has the length of the tool from.
+    pub fn lengths(&self) -> Lengths {
+        self.writes.lengths()
+    }
+
     /// D switches the length of the tool on, and D0 off.
     pub fn tools_have_edges(&self) -> bool {
-        self.tools_have_edges
+        self.writes.has(Capabilities::TOOL_EDGES)
+    }
+
+    /// A contour is compensated by the radius in a register, D.
+    pub fn has_radius_registers(&self) -> bool {
+        !self.writes.has(Capabilities::TOOL_TABLE)
     }
 
     /// A word changes the tool, M6 or another; else T does.
@@ -209,7 +195,6 @@ impl Lexicon {
         }
         if let [letter @ b'A'..=b'Z'] | [letter @ b'A'..=b'Z', b'='] = word.as_bytes() {
             self.letters[usize::from(letter - b'A')] = Some(meaning);
-            self.tools_have_edges |= *letter == b'D' && meaning == Meaning::LengthOn;
             return;
         }
         if let Some(name) = word.strip_suffix("()") {

@@ -145,7 +145,7 @@ typedef struct {
  * is no G93; `words_len` is that of the setup; `extension` is padded with zeros; `writes` is the sum of
  * POST_WRITES_ of all that the dialect writes beyond straight moves: 0 to begin with. `most_inverse_time` is the
  * largest F under G93, 0 if it has no end. `plane_angles` is POST_PLANE_: how the control is told a tilted plane,
- * with `plane_decimals`. */
+ * with `plane_decimals`. `language` is POST_LANGUAGE_: what programs are read back by, 0 (MACRO) if you do not say. */
 typedef struct {
     uint64_t size;
     uint8_t words[32];
@@ -158,6 +158,8 @@ typedef struct {
     double most_inverse_time;
     uint32_t plane_angles;
     uint32_t plane_decimals;
+    uint32_t language;
+    uint32_t reserved; /* 0 */
 } PostFormat;
 
 /* tip: mm, part frame, minus the chord. axis: rotation vector in degrees, part frame. */
@@ -301,6 +303,10 @@ typedef struct {
 #define POST_PLANE_YZX 5u
 #define POST_PLANE_ZXY 6u
 #define POST_PLANE_ZYX 7u
+#define POST_LANGUAGE_MACRO 0u
+#define POST_LANGUAGE_RS274 1u
+#define POST_LANGUAGE_NAMES 2u
+#define POST_LANGUAGE_CONVERSATIONAL 3u
 #define POST_MEANING_REMARK 1u
 #define POST_MEANING_REMARK_OPEN 2u
 #define POST_MEANING_REMARK_CLOSE 3u
@@ -550,6 +556,8 @@ typedef struct {
 /* Under tool centre point control rapids hold what the axes of the program can do, and a joint may pass its own
  * largest feed. */
 #define POST_WRITES_TCP_RAPIDS_PASS 0x0000100000000000u
+/* Length and radius are those of an edge of the tool, which D names: D1 is the first. */
+#define POST_WRITES_TOOL_EDGES 0x0000200000000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */
@@ -895,7 +903,7 @@ POST_ASSERT(offsetof(PostSetup, tools_len) == 136, "PostSetup.tools_len");
 POST_ASSERT(offsetof(PostSetup, least) == 144, "PostSetup.least");
 POST_ASSERT(offsetof(PostSetup, largest) == 168, "PostSetup.largest");
 POST_ASSERT(offsetof(PostSetup, time) == 192, "PostSetup.time");
-POST_ASSERT(sizeof(PostFormat) == 96 && POST_ALIGN(PostFormat) == 8, "PostFormat");
+POST_ASSERT(sizeof(PostFormat) == 104 && POST_ALIGN(PostFormat) == 8, "PostFormat");
 POST_ASSERT(offsetof(PostFormat, size) == 0, "PostFormat.size");
 POST_ASSERT(offsetof(PostFormat, words) == 8, "PostFormat.words");
 POST_ASSERT(offsetof(PostFormat, feed) == 40, "PostFormat.feed");
@@ -907,6 +915,8 @@ POST_ASSERT(offsetof(PostFormat, writes) == 72, "PostFormat.writes");
 POST_ASSERT(offsetof(PostFormat, most_inverse_time) == 80, "PostFormat.most_inverse_time");
 POST_ASSERT(offsetof(PostFormat, plane_angles) == 88, "PostFormat.plane_angles");
 POST_ASSERT(offsetof(PostFormat, plane_decimals) == 92, "PostFormat.plane_decimals");
+POST_ASSERT(offsetof(PostFormat, language) == 96, "PostFormat.language");
+POST_ASSERT(offsetof(PostFormat, reserved) == 100, "PostFormat.reserved");
 POST_ASSERT(sizeof(PostPlugin) == 112 && POST_ALIGN(PostPlugin) == 8, "PostPlugin");
 POST_ASSERT(offsetof(PostPlugin, magic) == 0, "PostPlugin.magic");
 POST_ASSERT(offsetof(PostPlugin, abi) == 8, "PostPlugin.abi");

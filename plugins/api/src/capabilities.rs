@@ -139,6 +139,8 @@ capabilities! {
     /// Under tool centre point control rapids hold what the axes of the program can do, and a joint may pass its own
     /// largest feed.
     44 TCP_RAPIDS_PASS;
+    /// Length and radius are those of an edge of the tool, which D names: D1 is the first.
+    45 TOOL_EDGES;
 }
 
 impl Capabilities {

@@ -4,6 +4,7 @@ use std::fmt;
 
 use crate::field::{Codes, Field, NotKnown, Promise, Reader, Shape, codes};
 use crate::flat::Flat;
+use crate::language::Language;
 use crate::plane::PlaneAngles;
 use crate::setup::Units;
 use crate::vocabulary::Meaning;
@@ -263,7 +264,7 @@ impl Field<'_> for Compensation {
     }
 }
 
-/// All numbers that stand for a word in the fields of events.
+/// All numbers that stand for a word in the fields of events and of formats.
 pub const CODES: &[Codes] = &[
     Units::CODES,
     Feed::CODES,
@@ -273,5 +274,6 @@ pub const CODES: &[Codes] = &[
     Compensation::CODES,
     Cycle::CODES,
     PlaneAngles::CODES,
+    Language::CODES,
     Meaning::CODES,
 ];

@@ -1,6 +1,6 @@
 //! A dialect: one control's language.
 
-use crate::{Batch, Capabilities, Event, OptionSpec, PlaneAngles, Setup, VocabularyWord};
+use crate::{Batch, Capabilities, Event, Language, OptionSpec, PlaneAngles, Setup, VocabularyWord};
 
 /// Writes one control's language. Implemented by the author of a dialect.
 ///
@@ -61,6 +61,8 @@ pub struct Format {
     pub plane_angles: PlaneAngles,
     /// Decimals of those angles, degrees.
     pub plane_decimals: u8,
+    /// What its programs are written in: they are read back by it.
+    pub language: Language,
 }
 
 /// An opened dialect as the core sees it: batches, whatever stands behind it.

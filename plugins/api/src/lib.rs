@@ -80,8 +80,8 @@
 //! [`Event`] is one step of a program; [`EVENTS`] is the same as a table. All dialects are sent the kinds up to
 //! [`Event::Word`]; the others go to those that declare them ([`Dialect::capabilities`], [`Event::sent_under`]), and the
 //! host turns what is not declared into straight moves, or refuses it by name. [`Setup`] says what is known at the
-//! opening: axis words, units, options, tools. [`Dialect::vocabulary`] tells what the words mean, so that a program can
-//! be read back.
+//! opening: axis words, units, options, tools. [`Dialect::vocabulary`] tells what the words mean, and [`Format::language`]
+//! what stands around them, so that a program can be read back.
 //!
 //! # Helpers
 //!
@@ -107,6 +107,7 @@ mod event;
 pub mod export;
 mod field;
 mod flat;
+mod language;
 mod model;
 mod number;
 mod plane;
@@ -127,6 +128,7 @@ pub use drilling::Drilling;
 pub use event::{EVENTS, Event, EventSpec, FieldSpec};
 pub use export::{Linked, LinkedDialect};
 pub use field::{Codes, List, Promise, Shape, ToolPose};
+pub use language::{Language, Lengths};
 pub use model::{Curve, Deviation, ErrorModel, ModelSession, Tolerance};
 pub use number::{fixed, quantise};
 pub use plane::PlaneAngles;

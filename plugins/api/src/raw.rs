@@ -254,6 +254,10 @@ pub struct PostFormat {
     pub plane_angles: u32,
     /// Decimals of those angles, degrees, at most 9.
     pub plane_decimals: u32,
+    /// `LANGUAGE_…`: what its programs are written in.
+    pub language: u32,
+    /// Zero.
+    pub reserved: u32,
 }
 
 /// Host's function that takes a declared option.

@@ -6,7 +6,9 @@ use post_iso::{
     Codes, Control, Dwell, Engine, Iso, Leave, Length, Offset, Stops, Table, no_range,
     offset_of_six, options, words,
 };
-use post_plugin::{Capabilities, Event, Meaning, OptionSpec, Setup, export_dialect, remark};
+use post_plugin::{
+    Capabilities, Event, Language, Meaning, OptionSpec, Setup, export_dialect, remark,
+};
 
 struct Grbl {
     hal: bool,
@@ -17,6 +19,7 @@ struct Grbl {
 impl Control for Grbl {
     const TABLE: &'static Table = &Table {
         options: OPTIONS,
+        language: Language::Rs274,
         percent: false,
         remark: passive,
         // Its buffer has 80 characters, and the line's end is one of them.

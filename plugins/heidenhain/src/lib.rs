@@ -14,8 +14,8 @@ mod tool;
 mod words;
 
 use post_plugin::{
-    Axes, AxisNames, Block, Capabilities, Coolant, Dialect, Drilling, Event, Format, Meaning,
-    Modal, NumberStyle, OptionSpec, PlaneAngles, Setup, SpindleSense, Standstill, Units,
+    Axes, AxisNames, Block, Capabilities, Coolant, Dialect, Drilling, Event, Format, Language,
+    Meaning, Modal, NumberStyle, OptionSpec, PlaneAngles, Setup, SpindleSense, Standstill, Units,
     VocabularyWord, export_dialect,
 };
 
@@ -228,6 +228,7 @@ impl Dialect for Heidenhain {
             // SPA, SPB, SPC turn about fixed axes: the last of them comes first about those that turn along.
             plane_angles: PlaneAngles::Zyx,
             plane_decimals: 4,
+            language: Language::Conversational,
             ..Format::default()
         }
     }

@@ -288,6 +288,9 @@ impl Library {
                 .plane()
                 .ok_or("its format has angles of a plane that this version does not know")?,
             plane_decimals: decimals(raw.plane_decimals),
+            language: raw
+                .language()
+                .ok_or("its format has a language that this version does not know")?,
         };
         Ok((format, Capabilities::from_bits(raw.writes)))
     }

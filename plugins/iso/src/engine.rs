@@ -87,6 +87,7 @@ impl Engine {
             most_inverse_time: self.most_inverse_time,
             plane_angles,
             plane_decimals,
+            language: self.table.language,
             ..self.motion.format(self.table.extension)
         }
     }

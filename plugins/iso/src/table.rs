@@ -1,6 +1,6 @@
 //! What differs from control to control.
 
-use post_plugin::{AxisNames, Cycle, Meaning, OptionSpec, remark};
+use post_plugin::{AxisNames, Cycle, Language, Meaning, OptionSpec, remark};
 
 /// How a control of the family differs from the others. Begin with [`Table::ISO`] and say what is different.
 ///
@@ -12,6 +12,8 @@ pub struct Table {
     pub options: &'static [OptionSpec],
     /// Names of axes that the control reads; a machine with others is refused.
     pub axes: AxisNames,
+    /// The language of its programs: how expressions, loops and calls are written.
+    pub language: Language,
     /// Usual ending of a program's file name.
     pub extension: &'static str,
     /// `%` before and after the program. Option `percent`.
@@ -364,6 +366,7 @@ impl Table {
     pub const ISO: Table = Table {
         options: &[],
         axes: AxisNames::ISO,
+        language: Language::Macro,
         extension: "nc",
         percent: true,
         title: None,

@@ -7,7 +7,7 @@ use post_iso::{
     Subprogram, SurfaceSpeed, Table, Tcp, no_range, offset_of_six, options, words,
 };
 use post_plugin::{
-    Capabilities, Cycle, Meaning, NumberStyle, OptionSpec, Setup, export_dialect, remark,
+    Capabilities, Cycle, Language, Meaning, NumberStyle, OptionSpec, Setup, export_dialect, remark,
 };
 
 struct LinuxCnc {
@@ -18,6 +18,7 @@ struct LinuxCnc {
 impl Control for LinuxCnc {
     const TABLE: &'static Table = &Table {
         options: OPTIONS,
+        language: Language::Rs274,
         extension: "ngc",
         percent: false,
         remark: passive,

@@ -15,7 +15,7 @@ impl Siemens {
         let drills = C::CYCLE_DRILL.and(C::CYCLE_DEEP).and(C::CYCLE_BREAK_CHIP);
         let cycles = drills.and(C::CYCLE_REAM).and(C::CYCLE_BORE).and(C::CYCLE_IN_PLANE);
         [
-            (true, C::TCP_STILL.and(C::TOOL_TABLE).and(commands)),
+            (true, C::TCP_STILL.and(C::TOOL_TABLE).and(C::TOOL_EDGES).and(commands)),
             (true, C::LENGTH_ALONG_DEPTH),
             (upright, arcs.and(cycles)),
             (upright && self.cycles.fine(), C::CYCLE_BORE_FINE),

@@ -1,13 +1,14 @@
 //! How the control differs from the rest of the family.
 
 use post_iso::{Codes, Dwell, Leave, Length, Offset, Subprogram, SurfaceSpeed, Table, Tcp};
-use post_plugin::{AxisNames, ascii};
+use post_plugin::{AxisNames, Language, ascii};
 
 use crate::options::{CANCEL, OPTIONS};
 
 pub(crate) const TABLE: Table = Table {
     options: OPTIONS,
     axes: AxisNames { numbered: true, ..AxisNames::ISO },
+    language: Language::Names,
     extension: "mpf",
     percent: false,
     remark: |text| format!("; {}", ascii(text).trim()).trim_end().to_owned(),

@@ -1,10 +1,10 @@
 //! Variables that a block sets or declares.
 
 use post_grammar::nc::{NcBlock, NcExpression, NcItem, NcValue};
+use post_plugin::Language;
 
 use super::astray::{Answer, fault};
 use super::variables::{Value, Variables};
-use crate::lexicon::Language;
 
 /// Takes what a block sets out of it, with its value as it is in front of the block; `DEF` declares at once.
 pub(super) fn take(

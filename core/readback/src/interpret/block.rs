@@ -5,13 +5,13 @@
 
 use post_grammar::nc::NcBlock;
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::Meaning;
+use post_plugin::{Language, Meaning};
 
 use super::gathered::{Gathered, bit};
 use super::go::{Path, Target};
 use super::state::{Control, FeedMode, MotionMode};
 use super::{cycles, frames, names, planes};
-use crate::lexicon::{Language, Sense};
+use crate::lexicon::Sense;
 use crate::{MotionKind, Told};
 
 /// What the words of one block ask for, besides what is modal.

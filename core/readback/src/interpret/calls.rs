@@ -1,11 +1,11 @@
 //! Words that lead elsewhere: subprograms by M98, M97, M99 and G65.
 
 use post_grammar::nc::{NcBlock, NcItem, NcValue, NcWord};
+use post_plugin::Language;
 
 use super::astray::{Answer, elsewhere, fault};
 use super::expression::whole;
 use super::variables::Variables;
-use crate::lexicon::Language;
 
 /// What a block leads to, once it is run.
 #[derive(Clone, Debug, PartialEq)]

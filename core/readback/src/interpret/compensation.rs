@@ -1,13 +1,13 @@
 //! Compensations of radius and length, tool centre point control, and work offsets.
 
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::Meaning;
+use post_plugin::{Language, Meaning};
 
 use super::block::Asked;
 use super::gathered::{Gathered, bit};
 use super::state::Control;
 use crate::Told;
-use crate::lexicon::{Language, Sense};
+use crate::lexicon::Sense;
 
 impl Control {
     pub(super) fn compensate(

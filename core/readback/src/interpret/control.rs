@@ -9,11 +9,12 @@ use post_machine::diagnostic::{Diagnostic, Place};
 use post_machine::kinematics::chain::turn;
 use post_machine::kinematics::{Joints, MAX_AXES, Turns};
 use post_machine::tilted_plane::TiltedPlane;
+use post_plugin::Language;
 
 use super::ReadReport;
 use super::frame::{Frame, Frames};
 use super::state::{ArcPlane, Axes, Control, FeedMode, Head, Modal, MotionMode, Orientation};
-use crate::lexicon::{Language, Lexicon};
+use crate::lexicon::Lexicon;
 use crate::{Coolants, Corners, Done, Offsets, Spindle, Stance, State, Told};
 
 /// So many lengths are kept ready.

@@ -19,10 +19,10 @@
 //! control: [`Corners::Own`].
 
 use post_motion::Corner;
+use post_plugin::Language;
 
 use super::state::Control;
 use crate::Corners;
-use crate::lexicon::Language;
 
 impl Control {
     /// A word that ends smoothing or asks for the exact path; `code` is ten times the number behind G, 0 of other words.

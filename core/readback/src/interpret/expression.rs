@@ -3,9 +3,9 @@
 
 use post_grammar::nc::{BinaryOperator, NcExpression, NcValue, UnaryOperator};
 use post_machine::diagnostic::Diagnostic;
+use post_plugin::Language;
 
 use super::variables::{Value, Variables};
-use crate::lexicon::Language;
 
 /// Expressions inside one another.
 const DEEPEST: usize = 100;

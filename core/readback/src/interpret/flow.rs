@@ -13,13 +13,13 @@ use post_grammar::nc::{
     Direction, NcBlock, NcExpression, NcFlow, NcItem, NcMark, NcReader, NcTarget,
 };
 use post_machine::diagnostic::{Diagnostic, Place, unreadable};
+use post_plugin::Language;
 
 use super::astray::{Answer, elsewhere, fault, no_target};
 use super::calls::{self, Pending};
 use super::expression::whole;
 use super::variables::{Value, Variables};
 use super::{Limits, assigned};
-use crate::lexicon::Language;
 
 /// So many lines that are looked through for a label take the time of a block that is run.
 const SEARCHED: u64 = 64;

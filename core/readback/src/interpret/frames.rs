@@ -3,13 +3,12 @@
 use nalgebra::{Matrix3, Vector3};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::tilted_plane::rotation;
-use post_plugin::Meaning;
+use post_plugin::{Language, Meaning};
 
 use super::frame::Frame;
 use super::gathered::{Gathered, bit};
 use super::planes;
 use super::state::Control;
-use crate::lexicon::Language;
 
 /// `G52`, `G92`, `G92.1`, `G10`, `G68`, `G69` (two-dimensional turns): `code` is ten times the number.
 pub(super) fn code(

@@ -6,12 +6,11 @@ use nalgebra::Vector3;
 use post_grammar::nc::Approach;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES};
-use post_plugin::Meaning;
+use post_plugin::{Language, Meaning};
 
 use super::gathered::{Gathered, bit};
 use super::go::{Path, Target, shorter};
 use super::state::{Control, MotionMode};
-use crate::lexicon::Language;
 use crate::{CycleCall, CycleKind, MotionKind, Spindle, Told};
 
 impl Control {

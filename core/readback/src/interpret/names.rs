@@ -2,14 +2,14 @@
 
 use post_grammar::nc::{NcBlock, NcItem, NcValue};
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::Meaning;
+use post_plugin::{Language, Meaning};
 
 use super::block::{Asked, Turning};
 use super::gathered::{Gathered, which};
 use super::state::Control;
 use super::{cycles, frames, planes};
 use crate::Told;
-use crate::lexicon::{Language, Sense};
+use crate::lexicon::Sense;
 
 /// Takes what `gather` left.
 pub(super) fn take(

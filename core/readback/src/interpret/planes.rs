@@ -8,13 +8,13 @@ use post_grammar::nc::NcValue;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, Pose};
 use post_machine::tilted_plane::rotation;
+use post_plugin::Language;
 
 use super::frame::Frame;
 use super::gathered::Gathered;
 use super::go::nearest_turn;
 use super::state::Control;
 use crate::MotionKind;
-use crate::lexicon::Language;
 
 /// The tool stands upright on a plane if its axis misses the normal by no more, radians: words have few decimals.
 const UPRIGHT: f64 = 1e-4;

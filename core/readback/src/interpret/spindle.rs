@@ -1,12 +1,11 @@
 //! Tool changes, spindle, coolant and waits.
 
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::Meaning;
+use post_plugin::{Language, Meaning};
 
 use super::block::{Asked, Turning};
 use super::gathered::{Gathered, bit, which};
 use super::state::Control;
-use crate::lexicon::Language;
 use crate::{Spindle, Told};
 
 impl Control {

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
+use post_plugin::Language;
 
 use super::gathered::{Gathered, bit};
 use super::go::{Path, Target};
 use super::state::{Control, FeedMode, MotionMode};
-use crate::lexicon::Language;
 use crate::{MotionKind, SplineWay, Stance, Way};
 
 /// Control points with knots K and weights R; P is the order: ten times the number of the word.

@@ -3,10 +3,10 @@
 use post_machine::description::LengthAxis;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
+use post_plugin::Language;
 
 use super::state::{ArcPlane, Control};
 use crate::Told;
-use crate::lexicon::Language;
 
 /// What the control knows of the tool and its length.
 #[derive(Clone, Debug, Default)]

@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use post_machine::diagnostic::Diagnostic;
-
-use crate::lexicon::Language;
+use post_plugin::Language;
 
 /// Variables that one program may hold: a text that sets more is refused.
 const MOST: usize = 100_000;

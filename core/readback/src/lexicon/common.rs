@@ -4,9 +4,9 @@
 //! stands here, and what is known to do neither. What differs from control to control (planes, tool centre point
 //! control, smoothing) is for the dialect alone.
 
-use post_plugin::Meaning as M;
+use post_plugin::{Language, Meaning as M};
 
-use super::{Language, Sense};
+use super::Sense;
 
 /// A table of words.
 type Words = &'static [(&'static str, M)];

@@ -35,6 +35,7 @@ use std::f64::consts::PI;
 use post_machine::description::{Machine, Rapid};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
+use post_plugin::Lengths;
 
 use crate::course::Course;
 use crate::{CycleKind, Done, MOST_FAULTS, Motion, MotionKind, Offsets, Spindle, Told};
@@ -58,8 +59,8 @@ pub struct Rules {
     pub axis_tolerance: f64,
     /// Largest distance at which a rapid passes a point that it is to pass, mm.
     pub rapid_tolerance: f64,
-    /// Which length register must be in force in a cut.
-    pub registers: Registers,
+    /// Where the length of the tool comes from, which must be in force in a cut.
+    pub length_from: Lengths,
     /// Length register that belongs to a tool where it is not the tool's number.
     pub tool_registers: Vec<(u32, u32)>,
     /// Where each work offset lies is stated: motions tell whether the right one is in force.
@@ -91,18 +92,6 @@ pub struct Rules {
     pub most_faults: usize,
 }
 
-/// Which length register must be in force in a cut.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Registers {
-    /// The control knows the length by its tool.
-    #[default]
-    None,
-    /// That of the tool: H.
-    OfTool,
-    /// The first edge of the tool: D1.
-    Edges,
-}
-
 impl Rules {
     /// As the machine file has them.
     pub fn of(machine: &Machine) -> Self {
@@ -110,7 +99,7 @@ impl Rules {
             tolerance: machine.accuracy.tolerance,
             axis_tolerance: machine.accuracy.axis_tolerance,
             rapid_tolerance: machine.accuracy.rapid_tolerance,
-            registers: Registers::None,
+            length_from: Lengths::Tools,
             tool_registers: Vec::new(),
             work_offsets: false,
             radius_registers: false,

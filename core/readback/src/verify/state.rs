@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use post_machine::axis_words::is_depth;
+use post_plugin::Lengths;
 
 use super::place::{Place, free};
 use post_motion::Corner;
 
+use super::Verifier;
 use super::track::Element;
-use super::{Registers, Verifier};
 use crate::course::Course;
 use crate::{Coolants, Corners, Motion, MotionKind, Spindle, Told, Way};
 
@@ -110,7 +111,7 @@ impl<C: Course> Verifier<'_, C> {
             self.fault("tool", message, Some(motion), cl_line, None);
         } else if state.tool.is_none()
             && let Some(wants) = asked.tool
-            && self.rules.registers != Registers::None
+            && self.rules.length_from.are_named()
         {
             let message = format!("cuts with no tool changed in, and the CL file asks for {wants}");
             self.fault("tool", message, Some(motion), cl_line, None);
@@ -318,10 +319,10 @@ impl<C: Course> Verifier<'_, C> {
             let mut known = self.rules.tool_registers.iter();
             known.find(|(number, _)| *number == tool).map_or(tool, |(_, register)| *register)
         };
-        let wants = match self.rules.registers {
-            Registers::None => return,
-            Registers::OfTool => of_tool(),
-            Registers::Edges => 1,
+        let wants = match self.rules.length_from {
+            Lengths::Tools | Lengths::WorkOffset => return,
+            Lengths::Registers => of_tool(),
+            Lengths::Edges => 1,
         };
         let message = match state.length_register {
             Some(has) if has == wants => return,
@@ -335,7 +336,7 @@ impl<C: Course> Verifier<'_, C> {
 
     /// Words of the depth mean nothing known before the length of the tool is compensated: the tip is lower than they say.
     pub(super) fn look_for_length(&mut self, motion: &Motion) {
-        if self.rules.registers == Registers::None
+        if !self.rules.length_from.are_named()
             || motion.machine
             || motion.state.length_register.is_some()
         {

@@ -6,7 +6,7 @@ use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use post_machine::description::Machine;
-use post_plugin::{Meaning, VocabularyWord};
+use post_plugin::{Capabilities, Language, Meaning, VocabularyWord};
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
 use post_readback::{Done, Offsets};
@@ -90,7 +90,13 @@ fn lexicon(dialect: &str) -> Lexicon {
         }
     }
     assert!(words.len() > 50, "{dialect}");
-    Lexicon::new(&words)
+    let (language, writes) = match dialect {
+        "linuxcnc" | "grbl" => (Language::Rs274, Capabilities::NONE),
+        "siemens" => (Language::Names, Capabilities::TOOL_EDGES),
+        "heidenhain" => (Language::Conversational, Capabilities::TOOL_TABLE),
+        _ => (Language::Macro, Capabilities::NONE),
+    };
+    Lexicon::new(language, writes, &words)
 }
 
 /// Runs a text to its end.

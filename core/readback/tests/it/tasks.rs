@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use post_machine::description::{Machine, Source, load};
 use post_motion::{Corner, Pace, Task, Waiting};
-use post_plugin::VocabularyWord;
+use post_plugin::{Capabilities, Language, VocabularyWord};
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
 use post_readback::tasks::{Planned, Tasks};
@@ -27,7 +27,7 @@ fn tasks(machine: &Machine, program: &str) -> (Vec<Planned>, Vec<String>) {
         LETTERS.iter().map(|(word, meaning)| VocabularyWord::new(word, *meaning)).collect();
     let mut interpreter = Interpreter::new(
         machine,
-        &Lexicon::new(&words),
+        &Lexicon::new(Language::Macro, Capabilities::NONE, &words),
         &Offsets::default(),
         Limits::default(),
         "part.nc",

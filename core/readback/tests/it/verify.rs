@@ -7,8 +7,9 @@ use nalgebra::Vector3;
 use post_machine::description::{Machine, Source, load};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
+use post_plugin::Lengths;
 use post_readback::course::{Course, Curve, Item, Piece, Reach};
-use post_readback::verify::{BlockReport, CutPath, Registers, Rules, Verification, Verifier};
+use post_readback::verify::{BlockReport, CutPath, Rules, Verification, Verifier};
 use post_readback::{
     Coolants, Corners, CycleCall, CycleKind, Done, Motion, MotionKind, Spindle, Stance, State,
     Told, Way,
@@ -193,7 +194,7 @@ impl Does {
 
 fn verify(does: &Does, asks: Asks) -> (Verification, Vec<BlockReport>) {
     let machine = machine();
-    let rules = Rules { registers: Registers::OfTool, ..Rules::of(&machine) };
+    let rules = Rules { length_from: Lengths::Registers, ..Rules::of(&machine) };
     let mut verifier = {
         let mut path = CutPath::new(0.0);
         asks.items.iter().for_each(|item| path.take(item));

@@ -8,7 +8,8 @@ use super::{
     MAX_WORDS, PostAxisWord, PostFormat, PostPair, PostSetup, PostText, PostTool, pairs, slice,
 };
 use crate::{
-    Accuracy, Ahead, AxisWord, Capabilities, Format, PlaneAngles, Setup, Tolerance, Tool, Units,
+    Accuracy, Ahead, AxisWord, Capabilities, Format, Language, PlaneAngles, Setup, Tolerance, Tool,
+    Units,
 };
 
 /// Hands `setup` to `take` in its raw form.
@@ -172,6 +173,8 @@ impl PostFormat {
         most_inverse_time: 0.0,
         plane_angles: 0,
         plane_decimals: 0,
+        language: 0,
+        reserved: 0,
     };
 
     /// `format` as it crosses the border; none if it has too many words or too long an extension.
@@ -185,6 +188,7 @@ impl PostFormat {
             most_inverse_time: format.most_inverse_time.unwrap_or(0.0),
             plane_angles: format.plane_angles.code(),
             plane_decimals: format.plane_decimals.into(),
+            language: format.language.code(),
             ..PostFormat::EMPTY
         };
         raw.words.get_mut(..format.words.len())?.copy_from_slice(&format.words);
@@ -197,6 +201,11 @@ impl PostFormat {
     /// How the control is told a tilted plane; none if this version does not know it.
     pub fn plane(&self) -> Option<PlaneAngles> {
         PlaneAngles::of(self.plane_angles)
+    }
+
+    /// What its programs are written in; none if this version does not know it.
+    pub fn language(&self) -> Option<Language> {
+        Language::of(self.language)
     }
 
     /// Writes it to `to`, as much of it as a host of an earlier version has room for.

@@ -2,7 +2,9 @@
 //! whole lines of finite numbers, the same however the program is cut into batches, and that nothing of it is left
 //! out, is the kit's.
 
-use post_plugin::{Batch, Coolant, DialectSession, Event, Feed, Format, Spindle, Units, quantise};
+use post_plugin::{
+    Batch, Coolant, DialectSession, Event, Feed, Format, Lengths, Meaning, Spindle, Units, quantise,
+};
 
 use super::Case;
 use super::commands::commands;
@@ -174,14 +176,29 @@ fn axis_names(pen: &Pen<'_>) -> Result<Case, PluginFault> {
     Ok(case)
 }
 
-/// The words that it tells hold together; none are told by many.
+/// The words that it tells hold together, and with what it declares of its registers; none are told by many.
 fn vocabulary(plugin: &Plugin, setup: &ProgramSetup) -> Result<Case, PluginFault> {
     let mut case = Case::named("vocabulary");
-    match plugin.dialect(setup)?.vocabulary() {
+    let mut opened = plugin.dialect(setup)?;
+    let (language, lengths) = (opened.format().language, opened.capabilities().lengths());
+    match opened.vocabulary() {
         Ok(words) if words.is_empty() => {
             case.note("it tells none: its programs cannot be read back".to_owned());
         }
-        Ok(words) => case.facts.push(format!("{} words", words.len())),
+        Ok(words) => {
+            case.facts.push(format!("{} words of {}", words.len(), language.name()));
+            let has = |letter: &str, meaning| {
+                let mut words = words.iter();
+                words.any(|word| word.word == letter && word.meaning == meaning)
+            };
+            let edges = has("D", Meaning::LengthOn) && !has("H", Meaning::LengthRegister);
+            if edges != (lengths == Lengths::Edges) {
+                case.wrong(match edges {
+                    true => "D puts a length on, and TOOL_EDGES is not declared: its programs are held to registers of lengths".to_owned(),
+                    false => "TOOL_EDGES is declared, and no D puts a length on: no program can name an edge".to_owned(),
+                });
+            }
+        }
         Err(fault) => case.wrong(fault),
     }
     Ok(case)

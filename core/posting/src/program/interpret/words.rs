@@ -213,7 +213,7 @@ impl Inserted {
 /// What lines of a program begin with that have no words of a letter and a number: those of conversational controls,
 /// and what calls, repeats, jumps or moves the frame. `#` stands for a number, `…` for the rest of a line.
 const STATEMENTS: &[&str] = &[
-    // Heidenhain
+    // Conversational
     "CALL LBL …",
     "CALL PGM …",
     "CALL SELECTED …",
@@ -229,7 +229,7 @@ const STATEMENTS: &[&str] = &[
     "L X# …",
     "L Y# …",
     "L Z# …",
-    // Siemens
+    // Names with parentheses and `=`
     "TRAORI …",
     "TRAFOOF …",
     "TRANS X# …",
@@ -243,7 +243,7 @@ const STATEMENTS: &[&str] = &[
     "SUPA …",
     "GOTOF …",
     "GOTOB …",
-    // Fanuc and LinuxCNC
+    // Macros and RS-274
     "GOTO # …",
     "IF [ …",
     "IF # …",

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::Meaning;
+use post_plugin::{Language, Meaning};
 
 use super::hole::{Hole, Out, Pecks, Wait};
 use super::{drill, feed_a_minute};
@@ -10,7 +10,6 @@ use crate::interpret::block::Turning;
 use crate::interpret::gathered::{Gathered, bit};
 use crate::interpret::go::{Path, Target};
 use crate::interpret::state::Control;
-use crate::lexicon::Language;
 use crate::{CycleKind, MotionKind};
 
 /// So far above the depth that was reached the tool comes at rapid, and so far it is drawn back to break a chip, mm: LinuxCNC's ten

@@ -4,13 +4,13 @@
 //! |---|---|
 //! | `hole` | a hole by its levels, and its strokes |
 //! | `iso` | G73 to G89 |
-//! | `siemens` | CYCLE81 to CYCLE89, CYCLE840 |
-//! | `heidenhain` | CYCL DEF 200 to 209, 240 |
+//! | `names` | CYCLE81 to CYCLE89, CYCLE840 |
+//! | `conversational` | CYCL DEF 200 to 209, 240 |
 
-pub(super) mod heidenhain;
+pub(super) mod conversational;
 mod hole;
 mod iso;
-mod siemens;
+mod names;
 
 use nalgebra::Vector3;
 use post_grammar::nc::NcValue;
@@ -71,7 +71,7 @@ pub(super) fn end(control: &mut Control) {
 
 /// A cycle of this name is made here.
 pub(super) fn known(name: &str) -> bool {
-    siemens::known(name)
+    names::known(name)
 }
 
 /// `CYCLE81(…)`: called where the tool stands, or in force behind each motion where `modal` (MCALL).
@@ -102,25 +102,25 @@ pub(super) fn call(
     }
     if modal {
         // What is wrong with it is said where it stands.
-        siemens_hole(control, name, &values)?;
+        names_hole(control, name, &values)?;
         control.cycles.modal = Some((name.to_owned(), values));
         return Ok(());
     }
-    let hole = siemens_hole(control, name, &values)?;
+    let hole = names_hole(control, name, &values)?;
     drill(control, &hole)
 }
 
-fn siemens_hole(
+fn names_hole(
     control: &Control,
     name: &str,
     values: &[Option<f64>],
 ) -> Result<Hole, Box<Diagnostic>> {
-    let around = siemens::Around {
+    let around = names::Around {
         unit: control.modal.unit,
         feed: feed_a_minute(control),
         speed: control.modal.speed,
     };
-    siemens::hole(name, values, &around).map_err(|finding| control.placed(*finding).boxed())
+    names::hole(name, values, &around).map_err(|finding| control.placed(*finding).boxed())
 }
 
 /// A motion block has come to its end: a cycle that is called at each point (MCALL, M89) is run there.
@@ -130,7 +130,7 @@ pub(super) fn at_point(control: &mut Control) -> Result<(), Box<Diagnostic>> {
         return Ok(());
     }
     if let Some((name, values)) = control.cycles.modal.clone() {
-        let hole = siemens_hole(control, &name, &values)?;
+        let hole = names_hole(control, &name, &values)?;
         return drill(control, &hole);
     }
     if control.cycles.at_each {
@@ -144,14 +144,15 @@ pub(super) fn defined(control: &mut Control) -> Result<(), Box<Diagnostic>> {
     let Some(Defined { cycle, values }) = control.cycles.defined.clone() else {
         return Err(control.refuse("nc-cycle", "a cycle is called, and none is defined"));
     };
-    let parameters = heidenhain::Parameters {
+    let parameters = conversational::Parameters {
         cycle,
         values: &values,
         unit: control.modal.unit,
         feed_unit: super::conversational::feed_unit(control),
         speed: control.modal.speed,
     };
-    let hole = heidenhain::hole(&parameters).map_err(|finding| control.placed(*finding).boxed())?;
+    let hole =
+        conversational::hole(&parameters).map_err(|finding| control.placed(*finding).boxed())?;
     match hole {
         Some(hole) => drill(control, &hole),
         None => Ok(()),

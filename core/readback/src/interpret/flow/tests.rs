@@ -94,7 +94,7 @@ fn o_words_branch_loop_and_call() {
 }
 
 #[test]
-fn siemens_branches_and_loops() {
+fn branches_and_loops_of_names() {
     let program = "DEF REAL _A, _B=2.5\nDEF INT N_C\nR1=1\nN_C=2.4\nIF R1==1\nX1\nELSE\nX2\nENDIF\nIF R1>1\nX3\nELSE\nX4\nENDIF\n\
                    FOR R2=1 TO 3\nX=R2\nENDFOR\nREPEAT\nR1=R1+1\nUNTIL R1>=4\nX=R1\nX=_B\nX=_A\nX=N_C\n\
                    IF R1>3 GOTOF ENDE\nX98\nENDE: X5\nGOTOB ZURUECK\nX97\nM30\n";

@@ -8,7 +8,7 @@ use std::io::Cursor;
 
 use post_machine::description::{Machine, Source, load};
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::{Meaning as M, VocabularyWord};
+use post_plugin::{Capabilities, Language, Meaning as M, VocabularyWord};
 use post_readback::interpret::{Interpreter, Limits, ReadReport};
 use post_readback::lexicon::Lexicon;
 use post_readback::{Done, Motion, Offsets, Told};
@@ -91,9 +91,24 @@ impl Ran {
 
 /// Runs a program.
 pub fn ran(machine: &Machine, words: &[(&'static str, M)], offsets: &Offsets, text: &str) -> Ran {
+    ran_in(Language::Macro, machine, words, offsets, text)
+}
+
+/// Runs a program of a control with this language; one of names has tools with edges.
+pub fn ran_in(
+    language: Language,
+    machine: &Machine,
+    words: &[(&'static str, M)],
+    offsets: &Offsets,
+    text: &str,
+) -> Ran {
+    let writes = match language {
+        Language::Names => Capabilities::TOOL_EDGES,
+        _ => Capabilities::NONE,
+    };
     let words: Vec<VocabularyWord> =
         words.iter().map(|(word, meaning)| VocabularyWord::new(word, *meaning)).collect();
-    let lexicon = Lexicon::new(&words);
+    let lexicon = Lexicon::new(language, writes, &words);
     let input = Cursor::new(text.as_bytes());
     let limits = Limits::default();
     let mut run = Interpreter::new(machine, &lexicon, offsets, limits, "p.nc", input).unwrap();

@@ -2,9 +2,10 @@
 
 use post_machine::description::{Machine, TcpFeedLength};
 use post_motion::Corner;
+use post_plugin::Language;
 use post_readback::{Corners, MotionKind, Offsets, Spindle, Told};
 
-use super::{LETTERS, NAMES, Ran, letters, machine, ran};
+use super::{LETTERS, NAMES, Ran, letters, machine, ran, ran_in};
 
 #[test]
 fn units_and_ways_are_modal() {
@@ -115,9 +116,12 @@ fn a_length_that_matters_must_be_known() {
     let done = ran(&head, LETTERS, &offsets, text).whole();
     assert_eq!(done.last().state.length, 50.0);
     assert_eq!((done.last().state.tool, done.last().state.length_register), (Some(7), Some(7)));
-    let done = ran(&head, NAMES, &offsets, "T7\nM6\nD1\nG0 X0 Y0 Z100\n").whole();
+    let done =
+        ran_in(Language::Names, &head, NAMES, &offsets, "T7\nM6\nD1\nG0 X0 Y0 Z100\n").whole();
     assert_eq!(done.last().state.length, 60.0);
-    let done = ran(&head, NAMES, &offsets, "T7\nM6\nD1\nG0 X0 Y0 Z100\nSUPA D0 Z0\n").whole();
+    let done =
+        ran_in(Language::Names, &head, NAMES, &offsets, "T7\nM6\nD1\nG0 X0 Y0 Z100\nSUPA D0 Z0\n")
+            .whole();
     assert_eq!(done.last().state.length, 0.0);
 }
 
@@ -189,7 +193,7 @@ fn words_say_how_corners_are_passed() {
     // Siemens: G60, G64, and the compressor with and without its tolerance.
     let program = "G1 F500 X1\nG60 X2\nG64 X3\nG642 X4\nCTOL=0.03\nX5\nG64 X6\nG9 X7\n";
     assert_eq!(
-        corners(&ran(&machine, NAMES, &Offsets::default(), program).whole()),
+        corners(&ran_in(Language::Names, &machine, NAMES, &Offsets::default(), program).whole()),
         [
             unsaid,
             said(Corner::Stop),

@@ -3,11 +3,12 @@
 use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
+use post_plugin::Language;
 use post_readback::{Offsets, Way, WorkOffset};
 use post_testkit::randomised;
 use post_testmachines::Reference;
 
-use super::{LETTERS, NAMES, letters, machine, ran};
+use super::{LETTERS, NAMES, letters, machine, ran, ran_in};
 
 /// mm, and radians of the tool axis.
 const SAME: f64 = 1e-9;
@@ -134,7 +135,7 @@ fn a_vector_points_the_tool_and_the_axes_go_the_shorter_way() {
     let machine = machine("ac-trunnion");
     let text = "TRAFOOF\nG1 F500 X0 Y0 Z50 A0 C0\nTRAORI\nORIVECT\nX10 Y5 Z3 A3=0 B3=0.6 C3=0.8\n";
     let offsets = Offsets { length: Some(100.0), ..Offsets::default() };
-    let done = ran(&machine, NAMES, &offsets, text).whole();
+    let done = ran_in(Language::Names, &machine, NAMES, &offsets, text).whole();
     let pose = done.last().to.pose;
     assert!((pose.axis - Vector3::new(0.0, 0.6, 0.8)).norm() < SAME);
     assert!((pose.tip - Vector3::new(10.0, 5.0, 3.0)).norm() < SAME);
@@ -179,7 +180,7 @@ fn rotary_words_turn_as_they_are_told() {
     let c = place(&machine, "C");
     let offsets = Offsets { length: Some(0.0), ..Offsets::default() };
     let turns = |text: &str| {
-        let done = ran(&machine, NAMES, &offsets, text).whole();
+        let done = ran_in(Language::Names, &machine, NAMES, &offsets, text).whole();
         let [from, to] = [done.last().from.joints[c], done.last().to.joints[c]];
         ((to - from).to_degrees() * 1e9).round() / 1e9
     };

@@ -1,10 +1,10 @@
 //! Splines by control points against the closed forms of Bézier curves, and what is refused of them.
 
 use post_machine::description::Machine;
-use post_plugin::Meaning as M;
+use post_plugin::{Language, Meaning as M};
 use post_readback::{Motion, MotionKind, Offsets, SplineWay, Way};
 
-use super::{LETTERS, Ran, machine, ran};
+use super::{LETTERS, Ran, machine, ran, ran_in};
 
 use nalgebra::Vector3;
 
@@ -44,7 +44,7 @@ fn macros(machine: &Machine, text: &str) -> Ran {
 fn even(text: &str) -> Ran {
     let own = [("G38.2", M::Probe), ("G5.2", M::Spline), ("G5.3", M::Nothing)];
     let words = [LETTERS, &own].concat();
-    ran(&machine("vmc"), &words, &Offsets::default(), text)
+    ran_in(Language::Rs274, &machine("vmc"), &words, &Offsets::default(), text)
 }
 
 fn spline(ran: &Ran) -> (&Motion, &SplineWay) {

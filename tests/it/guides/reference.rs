@@ -2,11 +2,12 @@
 //! `UPDATE_GUIDE=1` writes them.
 
 use std::fmt::Write as _;
+use std::fs;
 
 use serde_json::Value;
 
 use super::help;
-use super::page::is;
+use super::page::{is, updating, write};
 use crate::common::post;
 
 /// What a run prints; it must end well.

@@ -34,7 +34,7 @@ pub mod shared {
     /// Values of flags.
     pub mod flag_values {
         pub use crate::arguments::flag_values::{
-            feed, finite, length, not_negative, period, point, positive, setting, word,
+            feed, file, finite, length, not_negative, period, point, positive, setting, word,
         };
     }
 

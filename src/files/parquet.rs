@@ -14,7 +14,9 @@ const MAGIC: &[u8] = b"PAR1";
 
 /// A column.
 pub struct Column<'a> {
+    /// Its name.
     pub name: &'a str,
+    /// Its values.
     pub values: Values<'a>,
 }
 

@@ -2,8 +2,6 @@
 
 use std::path::{self, Path, PathBuf};
 
-use clap::builder::{PathBufValueParser, TypedValueParser};
-
 /// Where a text comes from, or where it goes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PathArg {
@@ -19,11 +17,6 @@ pub enum PathArg {
 }
 
 impl PathArg {
-    /// Reads one on the command line.
-    pub fn parser() -> impl TypedValueParser<Value = Self> {
-        PathBufValueParser::new().map(Self::from)
-    }
-
     /// The path as the user named it, for messages; none for `-`.
     pub fn path(&self) -> Option<&Path> {
         match self {

@@ -9,9 +9,9 @@ use post_posting::report::Report;
 use post_posting::{Observer, Post};
 
 use super::plugin_finder;
-use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{ClInput, NullSink};
+use crate::job::settings::JobSettings;
 use crate::session::Session;
 
 /// Decimals that leave axis values as they are solved: a millionth of a micrometre.
@@ -20,7 +20,7 @@ const EXACT: u8 = 9;
 /// A CL file and how it is looked at.
 pub struct DryRun<'a> {
     session: &'a Session,
-    arguments: &'a JobArguments,
+    arguments: &'a JobSettings,
     /// The CL file, as the user named it.
     pub name: String,
     /// Finds the plugins that the machine asks for.
@@ -35,10 +35,10 @@ impl<'a> DryRun<'a> {
         session: &'a Session,
         verb: &'static str,
         command: &str,
-        arguments: &'a JobArguments,
+        arguments: &'a JobSettings,
         exact: bool,
     ) -> Result<Self, Failure> {
-        let Some(path) = arguments.input().path() else {
+        let Some(path) = arguments.input.path() else {
             let message = format!("{command} {verb} goes over the CL file several times");
             return Err(Diagnostic::error(verb, message)
                 .help("give a file, not standard input")
@@ -48,7 +48,7 @@ impl<'a> DryRun<'a> {
             session,
             arguments,
             name: path.display().to_string(),
-            finder: plugin_finder::finder(session, &arguments.plugins)?,
+            finder: plugin_finder::finder(session, &arguments.over.plugins)?,
             exact,
         })
     }
@@ -64,7 +64,7 @@ impl<'a> DryRun<'a> {
         machine: &Machine,
         watch: Option<&mut dyn Observer>,
     ) -> Result<(Report, Vec<Diagnostic>), Failure> {
-        let source = self.arguments.input();
+        let source = &self.arguments.input;
         let program = super::program_name(source, None);
         let (dialect, _) = plugin_finder::dialect(&self.finder, machine, &program, Some(source))?;
         let (mut model, _) = plugin_finder::model(&self.finder, machine)?;

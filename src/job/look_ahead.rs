@@ -8,25 +8,25 @@ use post_machine::diagnostic::Diagnostic;
 use post_posting::{Job, LookedAhead, Post};
 
 use super::plugin_finder;
-use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{ClSource, NullSink};
+use crate::job::settings::JobSettings;
 use crate::session::Session;
 
 /// Posts the file, or these lines of it, once without text of one's own, and throws the program away. What is refused then would be refused
 /// again.
 pub fn look_ahead(
     session: &Session,
-    arguments: &JobArguments,
+    arguments: &JobSettings,
     machine: &Machine,
     finder: &Finder,
     source: &mut ClSource,
     lines: Option<Range<u64>>,
 ) -> Result<LookedAhead, Failure> {
     let plain = machine.without_text();
-    let program = super::program_name(arguments.input(), None);
+    let program = super::program_name(&arguments.input, None);
     let (mut dialect, _) =
-        plugin_finder::dialect(finder, &plain, &program, Some(arguments.input()))?;
+        plugin_finder::dialect(finder, &plain, &program, Some(&arguments.input))?;
     let (mut model, _) = plugin_finder::model(finder, &plain)?;
     let mut ahead = LookedAhead::default();
     let planes = super::ahead(arguments, source, &plain, &dialect)?;

@@ -7,28 +7,30 @@ use post_host::Finder;
 use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::DialectSession as _;
+use post_posting::plan::PlanWatch;
 use post_posting::report::Report;
-use post_posting::{LookedAhead, Output};
+use post_posting::{LookedAhead, Observer, Output};
 use post_readback::interpret::Limits;
-use post_readback::verify::BlockReport;
+use post_readback::verify::{BlockReport, Verification};
 
-use crate::arguments::{JobArguments, MakingArguments};
 use crate::failure::Failure;
-use crate::files::{ClSource, PathArg};
+use crate::files::{AtomicFile, ClSource, PathArg};
 use crate::job::compensate::{self, Compensation, Moved};
 use crate::job::one_program::{Beside, OneProgram};
 use crate::job::plan_rounds;
 use crate::job::plan_worth;
 use crate::job::plugin_finder;
-use crate::job::predict::{self, Against, Asked, Predicted, Sample};
+use crate::job::predict::{self, Against, Asked, Predicted, Prediction, Sample};
 use crate::job::read_back::{self, Held, Reading};
-use crate::job::report::PredictedParts;
+use crate::job::report::{self, BlockRows, ClWindow, Made, PredictedParts};
+use crate::job::settings::{JobSettings, MakingSettings};
+use crate::job::summary::{self, Told};
 use crate::session::Session;
 
 /// The machine of the command line, its program so numbered if a number is given.
 pub fn numbered(
     session: &Session,
-    arguments: &JobArguments,
+    arguments: &JobSettings,
     number: Option<i64>,
 ) -> Result<Machine, Failure> {
     let machine = super::machine(session, arguments, &[])?;
@@ -45,12 +47,12 @@ pub fn numbered(
 /// # Errors
 /// Its dialect cannot be opened.
 pub fn target(
-    arguments: &JobArguments,
+    arguments: &JobSettings,
     output: Option<&PathArg>,
     machine: &Machine,
     finder: &Finder,
 ) -> Result<PathArg, Failure> {
-    let source = arguments.input();
+    let source = &arguments.input;
     let program = super::program_name(source, output);
     let (dialect, _) = plugin_finder::dialect(finder, machine, &program, Some(source))?;
     let extension = machine.program.extension.clone();
@@ -70,39 +72,275 @@ pub struct Part {
     pub machine: Machine,
 }
 
-impl Part {
+/// The text of a program in the making, that can be read again.
+pub trait ProgramText: Output {
+    /// What messages call it.
+    fn name(&self) -> String;
+
+    /// What was written, from its beginning; nothing more may be written then.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    fn reread(&mut self) -> Result<Box<dyn Reread + '_>, Failure>;
+}
+
+/// A text that can be gone back in.
+pub trait Reread: Read + Seek {}
+
+impl<T: Read + Seek> Reread for T {}
+
+impl ProgramText for AtomicFile {
+    fn name(&self) -> String {
+        Self::name(self).to_owned()
+    }
+
+    fn reread(&mut self) -> Result<Box<dyn Reread + '_>, Failure> {
+        Ok(Box::new(Self::reread(self)?))
+    }
+}
+
+/// What is wanted of a program beside its text.
+#[derive(Default)]
+pub struct Wanted<'w, 'o, 'p> {
+    /// It is read back and held against the CL file.
+    pub verify: bool,
+    /// What it does is predicted.
+    pub predict: bool,
+    /// Sees its plan.
+    pub watch: Option<&'w mut dyn PlanWatch>,
+    /// Sees its blocks, if no page does.
+    pub observer: Option<&'o mut dyn Observer>,
+    /// A page to look at, and its largest size, bytes.
+    pub page: Option<(&'p mut AtomicFile, u64)>,
+}
+
+/// What came of a program that is made.
+pub struct ProgramOutcome {
+    /// What making it came to.
+    pub report: Report,
+    /// Its points were moved for the servos.
+    pub moved: bool,
+    /// What planning in rounds has done.
+    pub plan_rounds: Option<plan_rounds::Found>,
+    /// What moving points for the servos has done.
+    pub compensation: Option<compensate::Found>,
+    /// What reading it back found.
+    pub verification: Option<Verification>,
+    /// What is predicted of it.
+    pub prediction: Option<Prediction>,
+}
+
+impl ProgramOutcome {
+    /// What its summary tells.
+    pub fn told(&self) -> Told<'_> {
+        Told {
+            report: &self.report,
+            verification: self.verification.as_ref(),
+            prediction: self.prediction.as_ref(),
+            servo_compensation: self.compensation.as_ref(),
+            plan_rounds: self.plan_rounds.as_ref(),
+        }
+    }
+}
+
+/// What programs of a job are made with.
+pub struct ProgramMaker<'a> {
+    /// The run.
+    pub session: &'a Session,
+    /// What the job is.
+    pub job: &'a JobSettings,
+    /// How its programs are made.
+    pub making: &'a MakingSettings,
+    /// Its plugins.
+    pub finder: Finder,
+    /// What a first pass over the CL file has found, where that was made.
+    pub ahead: Option<LookedAhead>,
+}
+
+impl<'a> ProgramMaker<'a> {
+    /// Opens what programs are made with, and the machine; what of its file has no effect is said.
+    ///
+    /// # Errors
+    /// The machine or a folder of plugins cannot be used.
+    pub fn open(
+        session: &'a Session,
+        job: &'a JobSettings,
+        making: &'a MakingSettings,
+    ) -> Result<(Self, Machine), Failure> {
+        let machine = numbered(session, job, making.number.map(i64::from))?;
+        let finder = plugin_finder::finder(session, &job.over.plugins)?;
+        super::say_what_is_left(session, job, &machine, &finder);
+        Ok((Self { session, job, making, finder, ahead: None }, machine))
+    }
+
+    /// Makes the first pass over the CL file.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn look_ahead(&mut self, machine: &Machine, source: &mut ClSource) -> Result<(), Failure> {
+        let found = super::look_ahead(self.session, self.job, machine, &self.finder, source, None)?;
+        self.ahead = Some(found);
+        Ok(())
+    }
+
+    /// Plans a program in rounds and moves its points, where that is asked for. Where the plan itself is `shown`, it is
+    /// written whatever it gains.
+    ///
+    /// # Errors
+    /// The machine file does not allow it, or the program cannot be made.
+    pub fn prepare<'p>(
+        &'p self,
+        part: &'p Part,
+        source: &mut ClSource,
+        shown: bool,
+    ) -> Result<Ready<'p>, Failure> {
+        let program = OneProgram {
+            session: self.session,
+            arguments: self.job,
+            machine: &part.machine,
+            finder: &self.finder,
+            target: &part.target,
+            lines: part.lines.clone(),
+            trust_model: self.making.trust_model,
+            plans: self.making.plan,
+            tightening: None,
+        };
+        Ready::new(program, self.making, self.ahead.as_ref(), source, shown)
+    }
+
+    /// Writes a program, and finds out what else is wanted of it; what the user should know goes to `findings`.
+    ///
+    /// # Errors
+    /// All that is wrong with it, the findings among it, or a file that cannot be read or written.
+    pub fn make(
+        &self,
+        (part, ready): (&Part, Ready<'_>),
+        source: &mut ClSource,
+        text: &mut dyn ProgramText,
+        wanted: Wanted<'_, '_, '_>,
+        findings: &mut Vec<Diagnostic>,
+    ) -> Result<ProgramOutcome, Failure> {
+        let Wanted { verify, predict, watch, observer, page } = wanted;
+        findings.extend(ready.warning());
+        let mut rows = match &page {
+            Some(_) => Some(self.rows(part, source, predict)?),
+            None => None,
+        };
+        let observer: Option<&mut dyn Observer> = match (&mut rows, observer) {
+            (Some(rows), _) => Some(rows),
+            (None, Some(observer)) => Some(observer),
+            (None, None) => None,
+        };
+        let beside = Beside { watch, observer, ..Beside::default() };
+        let (report, found) = ready.write(self.ahead.as_ref(), source, text, beside)?;
+        let moved = ready.is_moved();
+        let (plan_rounds, compensation) = ready.found();
+        // What is wrong with the file is found again in each of its parts.
+        for finding in found {
+            if !findings.contains(&finding) {
+                findings.push(finding);
+            }
+        }
+        let Some(report) = report else {
+            return Err(std::mem::take(findings).into());
+        };
+        let (verification, prediction) = (None, None);
+        let mut outcome =
+            ProgramOutcome { report, moved, plan_rounds, compensation, verification, prediction };
+        if verify {
+            let name = text.name();
+            let held = self.read_back(part, moved, source, (name, text.reread()?))?;
+            if held.is_wrong() {
+                findings.extend(held.findings);
+                return Err(std::mem::take(findings).into());
+            }
+            outcome.verification = Some(held.found);
+        }
+        let mut heard = None;
+        if predict {
+            if let Some(rows) = &mut rows {
+                heard = PredictedParts::of(&part.machine, rows)?;
+            }
+            let name = text.name();
+            let told = (&mut *source, heard.as_mut());
+            let predicted = self.predict(part, None, told, (name, text.reread()?))?;
+            findings.extend(predicted.findings);
+            outcome.prediction = Some(predicted.found);
+        }
+        if let (Some((file, most)), Some(rows)) = (page, rows) {
+            let input = self.page(part, &outcome, findings);
+            let name = text.name();
+            let texts = (source, name.as_str(), &mut text.reread()? as &mut dyn Read);
+            input.write((rows, heard), texts, most, file)?;
+        }
+        Ok(outcome)
+    }
+
+    /// What a page is told of a program.
+    fn page<'p>(
+        &'p self,
+        part: &'p Part,
+        outcome: &'p ProgramOutcome,
+        findings: &'p [Diagnostic],
+    ) -> Made<'p> {
+        Made {
+            session: self.session,
+            machine: &part.machine,
+            cl: report::name_of(&self.job.input),
+            program: &part.target,
+            report: &outcome.report,
+            verification: outcome.verification.as_ref(),
+            prediction: outcome.prediction.as_ref(),
+            findings,
+            job: match self.making.plan {
+                true => "plan",
+                false => "post",
+            },
+            facts: summary::facts(&outcome.report, outcome.verification.as_ref()),
+        }
+    }
+
+    /// The rows of the page of a program.
+    fn rows<'p>(
+        &self,
+        part: &'p Part,
+        source: &ClSource,
+        predicted: bool,
+    ) -> Result<BlockRows<'p>, Failure> {
+        let cl = ClWindow::of(self.job, &part.machine, source)?;
+        BlockRows::new(&part.machine, cl, predicted)
+    }
+
     /// Reads the program `name` back and holds it against the CL file; `moved` if its points were moved for the servos.
     ///
     /// # Errors
     /// A file that cannot be read.
     pub fn read_back(
         &self,
-        session: &Session,
-        arguments: &JobArguments,
-        finder: &Finder,
-        (moved, planned): (bool, bool),
+        part: &Part,
+        moved: bool,
         source: &mut ClSource,
         (name, text): (String, impl Read + Seek),
     ) -> Result<Held, Failure> {
         // What was moved on purpose is off the CL file by that.
-        let accuracy = &self.machine.accuracy;
+        let accuracy = &part.machine.accuracy;
         let bound = accuracy.servo_compensation.filter(|_| moved);
         let moved = bound.map(|bound| accuracy.tolerance + bound);
         let reading = Reading {
-            session,
-            arguments,
-            machine: &self.machine,
-            finder,
+            session: self.session,
+            arguments: self.job,
+            machine: &part.machine,
+            finder: &self.finder,
             offsets: None,
             limits: Limits::default(),
             tolerances: [moved, None],
-            planned,
+            planned: self.making.plan,
             solutions: false,
             any_coolant: false,
             // It was written in this run, or lines of the user's have another.
             any_work_offset: true,
             own: true,
-            lines: self.lines.clone(),
+            lines: part.lines.clone(),
         };
         read_back::verify(&reading, source, &name, text, &mut |_: &BlockReport| {})
     }
@@ -113,22 +351,20 @@ impl Part {
     /// A file that cannot be read, or a machine that cannot be used.
     pub fn predict(
         &self,
-        session: &Session,
-        arguments: &JobArguments,
-        finder: &Finder,
+        part: &Part,
         period: Option<f64>,
         (source, mut heard): (&mut ClSource, Option<&mut PredictedParts<'_>>),
         (name, text): (String, impl Read + Seek),
     ) -> Result<Predicted, Failure> {
         let asked = Asked {
-            session,
-            arguments,
-            machine: &self.machine,
-            finder,
+            session: self.session,
+            arguments: self.job,
+            machine: &part.machine,
+            finder: &self.finder,
             offsets: None,
             limits: Limits::default(),
             period,
-            lines: self.lines.clone(),
+            lines: part.lines.clone(),
         };
         predict::predict(&asked, Against::Cl(source), &name, text, &mut |sample: &Sample| {
             if let Some(heard) = &mut heard {
@@ -155,7 +391,7 @@ impl<'a> Ready<'a> {
     /// The machine file does not allow it, or the program cannot be made.
     pub fn new(
         mut program: OneProgram<'a>,
-        making: &MakingArguments,
+        making: &MakingSettings,
         ahead: Option<&LookedAhead>,
         source: &mut ClSource,
         shown: bool,

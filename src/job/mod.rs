@@ -19,6 +19,8 @@ mod plugin_folders;
 pub mod predict;
 pub mod read_back;
 pub mod report;
+mod rounds;
+pub mod settings;
 pub mod summary;
 pub mod text;
 pub mod unused_options;
@@ -36,10 +38,10 @@ use post_posting::ahead::{Ahead, AheadPass};
 use post_posting::program::Reading;
 use post_posting::{Job, Post};
 
-use crate::arguments::JobArguments;
-use crate::arguments::flag_values::Msys;
 use crate::failure::Failure;
 use crate::files::{ClInput, ClSource, FileFault, NullSink, PathArg};
+use crate::job::settings::JobSettings;
+use crate::job::settings::Msys;
 use crate::session::Session;
 pub use dry_run::DryRun;
 pub use look_ahead::look_ahead;
@@ -47,28 +49,28 @@ pub use look_ahead::look_ahead;
 /// The machine with all settings of the command line, and `more` after them.
 pub fn machine(
     session: &Session,
-    arguments: &JobArguments,
+    arguments: &JobSettings,
     more: &[Setting],
 ) -> Result<Machine, Failure> {
-    let mut settings = arguments.settings();
+    let mut settings = arguments.over.settings();
     settings.extend_from_slice(more);
-    machine_files::load(session, arguments.machine(), &arguments.machines, &settings)
+    machine_files::load(session, &arguments.machine, &arguments.over.machines, &settings)
 }
 
 /// Says once what of the machine file has no effect: what `--dialect` leaves behind, and options that no plugin takes.
 pub fn say_what_is_left(
     session: &Session,
-    arguments: &JobArguments,
+    arguments: &JobSettings,
     machine: &Machine,
     finder: &Finder,
 ) {
     unused_options::warn(session, machine, finder);
     other_dialect::say_what_is_left(
         session,
-        arguments.dialect.as_deref(),
-        arguments.machine(),
-        &arguments.machines,
-        &arguments.settings(),
+        arguments.over.dialect.as_deref(),
+        &arguments.machine,
+        &arguments.over.machines,
+        &arguments.over.settings(),
     );
 }
 
@@ -104,7 +106,7 @@ pub fn try_opening(machine: &Machine, finder: &Finder, length: f64) -> Result<()
 }
 
 /// How the CL file that is called `file` in messages is posted.
-pub fn posting(arguments: &JobArguments, file: &str) -> Job {
+pub fn posting(arguments: &JobSettings, file: &str) -> Job {
     Job {
         reading: Reading {
             file: file.to_owned(),
@@ -118,7 +120,7 @@ pub fn posting(arguments: &JobArguments, file: &str) -> Job {
             allowed: arguments.reading.allow.clone(),
             ..Reading::default()
         },
-        tool_length: arguments.tool_length,
+        tool_length: arguments.over.tool_length,
         ..Job::default()
     }
 }
@@ -126,7 +128,7 @@ pub fn posting(arguments: &JobArguments, file: &str) -> Job {
 /// What a first pass over the CL file finds out where the program depends on it: `[control] planes`, and a dialect that
 /// writes them.
 pub fn ahead(
-    arguments: &JobArguments,
+    arguments: &JobSettings,
     source: &mut ClSource,
     machine: &Machine,
     dialect: &impl DialectSession,

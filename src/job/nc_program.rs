@@ -13,9 +13,9 @@ use post_readback::verify::Registers;
 use post_readback::{FedRapids, MOST_FAULTS, Offsets, Run, turns_the_spindle};
 
 use super::{machine_files, plugin_finder, unused_options};
-use crate::arguments::ProgramArguments;
 use crate::failure::Failure;
 use crate::files::{FileFault, PathArg};
+use crate::job::settings::ProgramSettings;
 use crate::session::Session;
 
 /// Longest file of offsets that is read, bytes.
@@ -52,7 +52,7 @@ impl NcControl {
     }
 
     /// As the flags say.
-    pub fn new(session: &Session, arguments: &ProgramArguments) -> Result<Self, Failure> {
+    pub fn new(session: &Session, arguments: &ProgramSettings) -> Result<Self, Failure> {
         let machine = machine_files::load(
             session,
             &arguments.machine,

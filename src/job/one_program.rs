@@ -11,9 +11,9 @@ use post_posting::report::Report;
 use post_posting::{Job, JobFacts, LookedAhead, Observer, Output, PathShift, Post, Tightening};
 
 use super::plugin_finder;
-use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{ClSource, PathArg};
+use crate::job::settings::JobSettings;
 use crate::session::Session;
 
 /// What one program is made of.
@@ -21,8 +21,8 @@ use crate::session::Session;
 pub struct OneProgram<'a> {
     /// The run.
     pub session: &'a Session,
-    /// The command line of the job.
-    pub arguments: &'a JobArguments,
+    /// What the job is.
+    pub arguments: &'a JobSettings,
     /// The machine with its settings.
     pub machine: &'a Machine,
     /// Its plugins.
@@ -71,7 +71,7 @@ impl OneProgram<'_> {
             plans,
             tightening,
         } = self;
-        let cl_file = arguments.input();
+        let cl_file = &arguments.input;
         let program = super::program_name(cl_file, Some(target));
         // Of a part of the file other tools and extents are known than of the whole.
         let part_ahead = match &lines {

@@ -6,12 +6,11 @@
 
 use post_machine::diagnostic::{Diagnostic, Short};
 use post_posting::LookedAhead;
-use post_readback::interpret::Limits;
 
-use super::one_program::{Beside, OneProgram};
+use super::one_program::OneProgram;
+use super::rounds::Rounds;
 use crate::failure::Failure;
-use crate::files::{ClSource, Scratch};
-use crate::job::predict::{self, Against, Asked, Sample};
+use crate::files::ClSource;
 
 /// Shares of time and error that differ by less are the same.
 const SAME: f64 = 1e-3;
@@ -74,30 +73,15 @@ fn outcome(
     ahead: Option<&LookedAhead>,
     source: &mut ClSource,
 ) -> Result<Option<Outcome>, Failure> {
-    let mut text = Scratch::new("a program that is tried")?;
-    let tried = OneProgram { plans, ..program.clone() };
-    let (report, _) = tried.write(ahead, source, &mut text, Beside::default())?;
-    if report.is_none() {
-        return Ok(None);
-    }
-    let asked = Asked {
-        session: program.session,
-        arguments: program.arguments,
-        machine: program.machine,
-        finder: program.finder,
-        offsets: None,
-        limits: Limits::default(),
-        period: None,
-        lines: program.lines.clone(),
+    let mut rounds = Rounds::new(program, ahead, source);
+    let text = match rounds.make(OneProgram { plans, ..program.clone() }, None) {
+        Ok(text) => text,
+        Err(Failure::Refused(_)) => return Ok(None),
+        Err(failure) => return Err(failure),
     };
-    let text = text.reread()?;
-    let name = "a program that is tried";
-    let Ok(predicted) =
-        predict::predict(&asked, Against::Cl(source), name, text, &mut |_: &Sample| Ok(()))
-    else {
+    let Ok(found) = rounds.predict(text, &mut |_| {}) else {
         return Ok(None);
     };
-    let found = predicted.found;
     let (tip, axis) = (&found.contour.tip_mm, &found.contour.axis_deg);
     Ok(Some(Outcome {
         cycle: found.time.cycle_s,

@@ -18,19 +18,18 @@ use post_readback::{Done, Offsets};
 
 use super::nc_program::{self, NcControl, Spoken};
 use super::plugin_finder;
-use crate::arguments::JobArguments;
-use crate::arguments::flag_values::Msys;
 use crate::failure::Failure;
 use crate::files::Watched;
 use crate::files::{ClSource, FileFault};
+use crate::job::settings::{JobSettings, Msys};
 use crate::session::Session;
 
 /// What a program is read with.
 pub struct Reading<'a> {
     /// The run.
     pub session: &'a Session,
-    /// The command line of the job.
-    pub arguments: &'a JobArguments,
+    /// What the job is.
+    pub arguments: &'a JobSettings,
     /// The machine with its settings.
     pub machine: &'a Machine,
     /// Its plugins.
@@ -90,7 +89,7 @@ fn work_offset(finder: &Finder, machine: &Machine, spoken: &Spoken) -> Option<St
 }
 
 /// How the CL file is meant, as posting was told.
-pub fn course_settings(arguments: &JobArguments, machine: &Machine, file: &str) -> Settings {
+pub fn course_settings(arguments: &JobSettings, machine: &Machine, file: &str) -> Settings {
     Settings {
         units: arguments.reading.units,
         apply_msys: arguments.reading.msys == Msys::Apply,
@@ -108,9 +107,9 @@ pub fn course_settings(arguments: &JobArguments, machine: &Machine, file: &str) 
 }
 
 /// What stands in the control's tables as posting counts: `--tool-length`, else the machine file, else the CL file.
-pub fn offsets(arguments: &JobArguments, machine: &Machine, tools: &[ClTool]) -> Offsets {
-    let mut offsets = Offsets { length: arguments.tool_length, ..Offsets::default() };
-    if arguments.tool_length.is_some() {
+pub fn offsets(arguments: &JobSettings, machine: &Machine, tools: &[ClTool]) -> Offsets {
+    let mut offsets = Offsets { length: arguments.over.tool_length, ..Offsets::default() };
+    if arguments.over.tool_length.is_some() {
         return offsets;
     }
     for (number, length) in &machine.tools {
@@ -218,7 +217,7 @@ pub fn hold<C: Course, R: Read + Seek>(
     let offsets = match &reading.offsets {
         Some(offsets) => Offsets {
             // Of tools whose length stands in no table.
-            length: offsets.length.or(reading.arguments.tool_length),
+            length: offsets.length.or(reading.arguments.over.tool_length),
             ..offsets.clone()
         },
         None => offsets(reading.arguments, machine, &tools),
@@ -304,7 +303,7 @@ fn rules(reading: &Reading<'_>, control: &NcControl, tools: &[ClTool]) -> Rules 
         },
         work_offsets: reading.offsets.as_ref().is_some_and(|offsets| !offsets.work.is_empty()),
         // What stands in the control's tables is one thing, how long the tools are another.
-        lengths: (!in_the_offset).then(|| match reading.arguments.tool_length {
+        lengths: (!in_the_offset).then(|| match reading.arguments.over.tool_length {
             Some(length) => Offsets { length: Some(length), ..Offsets::default() },
             None => offsets.clone(),
         }),

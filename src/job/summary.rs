@@ -16,6 +16,7 @@ use crate::job::{compensate, plan_rounds};
 #[derive(Serialize)]
 pub struct Told<'a> {
     #[serde(flatten)]
+    /// What making the program came to.
     pub report: &'a Report,
     /// What reading the program back has found.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -1,13 +1,14 @@
 //! A machine with its settings, as the command loads it.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use post_machine::description::{Machine, Setting};
+use post_machine::description::Machine;
 use post_plugin::DialectSession as _;
 use post_posting::program::{Motion, Pace};
 use post_posting::whole_pass;
 
 use super::{Kinematics, MadeProgram, OptionTold, Refused, Stop, Wanted, quietly};
+use crate::job::settings::MachineSettings;
 use crate::job::{machine_files, plugin_finder};
 use crate::session::Session;
 
@@ -19,30 +20,8 @@ const EXACT: u8 = 9;
 pub struct MachineTold {
     /// A TOML file, or the name of one in a machine folder or built in.
     pub name: String,
-    /// As `--set`: a parameter or any key, and its value.
-    pub set: Vec<(String, String)>,
-    /// Where the part origin sits, all axes at zero, machine frame, mm.
-    pub mount: Option<[f64; 3]>,
-    /// How the part is turned about its Z, degrees.
-    pub turn: Option<f64>,
-    /// Length of every tool from the gauge point to the tip, mm.
-    pub tool_length: Option<f64>,
-    /// Further folders of machine files.
-    pub machines: Vec<PathBuf>,
-    /// Folders of plugin libraries.
-    pub plugins: Vec<PathBuf>,
-}
-
-impl MachineTold {
-    /// What is set over the machine file, in the order of the command.
-    pub fn settings(&self) -> Vec<Setting> {
-        let set = self.set.iter();
-        let mut settings: Vec<Setting> =
-            set.map(|(key, value)| Setting::Written(format!("{key}={value}"))).collect();
-        settings.extend(self.mount.map(Setting::Mount));
-        settings.extend(self.turn.map(Setting::Turn));
-        settings
-    }
+    /// What is set.
+    pub over: MachineSettings,
 }
 
 /// A machine that is loaded, a tool in it.
@@ -60,10 +39,10 @@ impl LoadedMachine {
     /// There is none of that name, its file is refused, or its chain cannot be solved.
     pub fn load(stop: &Stop, told: MachineTold) -> Result<Self, Refused> {
         let load = |session: &Session| {
-            machine_files::load(session, &told.name, &told.machines, &told.settings())
+            machine_files::load(session, &told.name, &told.over.machines, &told.over.settings())
         };
         let (machine, _) = quietly(stop, load)?;
-        let kinematics = Kinematics::new(&machine, told.tool_length.unwrap_or(0.0))?;
+        let kinematics = Kinematics::new(&machine, told.over.tool_length.unwrap_or(0.0))?;
         Ok(Self { told, machine, kinematics })
     }
 
@@ -82,7 +61,7 @@ impl LoadedMachine {
         &self.kinematics
     }
 
-    /// Posts the CL file `input` with these options of the command; its blocks are kept if `keep_blocks` says so. The file
+    /// Posts the CL file `input` with these options of the command, to `output` if that is named; its blocks are kept if `keep_blocks` says so. The file
     /// of the machine is read anew for it.
     ///
     /// # Errors
@@ -91,10 +70,11 @@ impl LoadedMachine {
         &self,
         stop: &Stop,
         input: &Path,
+        output: Option<&Path>,
         options: &[OptionTold],
         keep_blocks: bool,
     ) -> Result<MadeProgram, Refused> {
-        MadeProgram::post(stop, &self.told, input, options, keep_blocks)
+        MadeProgram::post(stop, &self.told, input, output, options, keep_blocks)
     }
 
     /// Axis values for a path, chosen over the whole of it as posting does: by point and axis. `cut` says of each point
@@ -125,7 +105,7 @@ impl LoadedMachine {
             .collect();
         let machine = &self.machine;
         let open = |session: &Session| {
-            let finder = plugin_finder::finder(session, &self.told.plugins)?;
+            let finder = plugin_finder::finder(session, &self.told.over.plugins)?;
             let (dialect, _) = plugin_finder::dialect(&finder, machine, "ROUTE", None)?;
             let mut format = dialect.format().clone();
             // Axis values are wanted as they are solved.
@@ -133,7 +113,7 @@ impl LoadedMachine {
             Ok(format)
         };
         let (format, _) = quietly(stop, open)?;
-        let length = self.told.tool_length.unwrap_or(0.0);
+        let length = self.told.over.tool_length.unwrap_or(0.0);
         let found = whole_pass(machine, &format, length, &path)?;
         let count = self.kinematics.count();
         let mut q = vec![0.0; found.len() * count];

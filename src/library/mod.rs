@@ -18,11 +18,15 @@ use crate::failure::Failure;
 use crate::files::Texts;
 use crate::session::{Face, Session};
 
+pub use crate::job::settings::{MachineSettings, Value};
 pub use blocks::{Blocks, KINDS, REASONS};
 pub use kinematics::{AxisFacts, Deviations, Kinematics, Solutions, Wanted};
 pub use loaded_machine::{LoadedMachine, MachineTold};
-pub use program::{Found, MadeProgram, OptionTold, ReportTold};
+pub use program::{Found, MadeProgram, ReportTold};
 pub use study::{Column, Progressed, StudyJobs, StudyPart, StudyTable, Values};
+
+/// An option of the command, with underscores for its hyphens, and its value.
+pub type OptionTold = (String, Value);
 
 /// Why a job was not done: findings, an error among them.
 pub type Refused = Vec<Diagnostic>;
@@ -67,22 +71,7 @@ fn quietly<T>(
 
 /// What a failure says, where nobody prints it.
 fn refused(failure: Failure) -> Refused {
-    match failure {
-        Failure::Usage(fault) => vec![usage(&fault)],
-        other => other.findings(),
-    }
-}
-
-/// What is wrong with an option, without what a command line would be told besides.
-fn usage(fault: &clap::Error) -> Diagnostic {
-    let text = fault.render().to_string();
-    let mut parts = text.split("\n\n").map(str::trim);
-    let first = parts.next().unwrap_or_default();
-    let finding = Diagnostic::error("option", first.trim_start_matches("error: "));
-    match parts.find_map(|part| part.strip_prefix("tip: ")) {
-        Some(tip) => finding.help(tip),
-        None => finding,
-    }
+    failure.findings()
 }
 
 /// An argument that cannot be used.

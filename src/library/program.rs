@@ -1,77 +1,63 @@
 //! A CL file on a machine: the program, and what can be asked of it.
 
-use std::ffi::{OsStr, OsString};
-use std::io::{Cursor, Read};
+use std::io::Cursor;
 use std::path::Path;
 
-use clap::Parser;
-use post_host::Finder;
 use post_machine::diagnostic::Diagnostic;
-use post_posting::report::Report;
-use post_posting::{LookedAhead, Observer, Output};
+use post_posting::{Observer, Output};
 
 use super::blocks::BlockColumns;
-use super::{Blocks, MachineTold, Refused, Stop, quietly};
-use crate::arguments::{JobArguments, MakingArguments};
+use super::{Blocks, MachineTold, OptionTold, Refused, Stop, quietly};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
-use crate::job::making::{self, Part, Ready};
-use crate::job::one_program::{Beside, OneProgram};
-use crate::job::report::{self, BlockRows, ClWindow, Made, PredictedParts};
-use crate::job::summary::{self, Told};
-use crate::job::{self, compensate, plan_rounds, plugin_finder, read_back};
+use crate::job::making::{self, Part, ProgramMaker, ProgramText, Reread, Wanted};
+use crate::job::plugin_finder;
+use crate::job::settings::{JobSettings, MakingSettings, ReadingSettings, tell};
 use crate::session::Session;
 
-/// An option of the command without its hyphens, and its value if it has one.
-pub type OptionTold = (String, Option<String>);
-
-/// The options of the command that a job takes.
-#[derive(Debug, Parser)]
-#[command(name = "post", disable_help_flag = true)]
-struct JobLine {
-    #[command(flatten)]
-    job: JobArguments,
-
-    #[command(flatten)]
-    making: MakingArguments,
-
-    #[arg(long, value_parser = PathArg::parser())]
+/// A program that is asked for.
+#[derive(Clone, Debug)]
+struct Request {
+    job: JobSettings,
+    making: MakingSettings,
     output: Option<PathArg>,
 }
 
+/// A file, and never a standard stream: those are not ours.
+fn file(path: &Path) -> PathArg {
+    PathArg::from(match path.as_os_str() == "-" {
+        true => Path::new("./-").to_owned(),
+        false => path.to_owned(),
+    })
+}
+
 /// The text of a program in memory.
-#[derive(Default)]
-struct Text(Vec<u8>);
+struct Text {
+    name: String,
+    bytes: Vec<u8>,
+}
 
 impl Output for Text {
     fn write(&mut self, text: &[u8]) -> Result<(), String> {
-        self.0.extend_from_slice(text);
+        self.bytes.extend_from_slice(text);
         Ok(())
     }
 }
 
-/// What a program is made of.
-struct Bench {
-    part: Part,
-    finder: Finder,
-    source: ClSource,
-    ahead: Option<LookedAhead>,
-}
+impl ProgramText for Text {
+    fn name(&self) -> String {
+        self.name.clone()
+    }
 
-/// What making a program came to.
-struct Came {
-    text: Vec<u8>,
-    report: Report,
-    findings: Vec<Diagnostic>,
-    moved: bool,
-    plan_rounds: Option<plan_rounds::Found>,
-    compensation: Option<compensate::Found>,
+    fn reread(&mut self) -> Result<Box<dyn Reread + '_>, Failure> {
+        Ok(Box::new(Cursor::new(&self.bytes)))
+    }
 }
 
 /// A program that is good.
 #[derive(Debug)]
 pub struct MadeProgram {
-    line: JobLine,
+    request: Request,
     part: Part,
     text: Vec<u8>,
     summary: String,
@@ -100,108 +86,52 @@ pub struct ReportTold {
     pub most_megabytes: u64,
 }
 
-impl JobLine {
-    /// The command line that the machine and the options would be.
-    fn new(machine: &MachineTold, input: &Path, options: &[OptionTold]) -> Result<Self, Failure> {
-        let joined = |flag: &str, value: &OsStr| {
-            let mut text = OsString::from(flag);
-            text.push(value);
-            text
-        };
-        let mut line = vec![OsString::from("post")];
-        line.push(format!("--machine={}", machine.name).into());
-        for (key, value) in &machine.set {
-            line.push(format!("--set={key}={value}").into());
-        }
-        if let Some([x, y, z]) = machine.mount {
-            line.push(format!("--mount={x:?},{y:?},{z:?}").into());
-        }
-        if let Some(turn) = machine.turn {
-            line.push(format!("--turn={turn:?}").into());
-        }
-        if let Some(length) = machine.tool_length {
-            line.push(format!("--tool-length={length:?}").into());
-        }
-        for folder in &machine.machines {
-            line.push(joined("--machines=", folder.as_os_str()));
-        }
-        for folder in &machine.plugins {
-            line.push(joined("--plugins=", folder.as_os_str()));
-        }
-        for (key, value) in options {
-            line.push(match value {
-                // Nor standard output to be written.
-                Some(value) if key == "output" && value == "-" => "--output=./-".into(),
-                Some(value) => format!("--{key}={value}").into(),
-                None => format!("--{key}").into(),
-            });
-        }
-        line.push("--".into());
-        // Standard input is not ours to read.
-        line.push(match input.as_os_str() == "-" {
-            true => "./-".into(),
-            false => input.into(),
-        });
-        Self::try_parse_from(line).map_err(Failure::Usage)
+impl Request {
+    fn new(
+        machine: &MachineTold,
+        input: &Path,
+        output: Option<&Path>,
+        options: &[OptionTold],
+    ) -> Result<Self, Failure> {
+        let mut reading = ReadingSettings::default();
+        let mut over = machine.over.clone();
+        let mut making = MakingSettings::default();
+        tell(options, &mut [&mut reading, &mut over, &mut making])?;
+        let job = JobSettings { machine: machine.name.clone(), input: file(input), reading, over };
+        Ok(Self { job, making, output: output.map(file) })
     }
 
-    /// Opens what the program is made of.
-    fn bench(&self, session: &Session) -> Result<Bench, Failure> {
-        let arguments = &self.job;
-        let machine = making::numbered(session, arguments, self.making.number.map(i64::from))?;
-        let finder = plugin_finder::finder(session, &arguments.plugins)?;
-        job::say_what_is_left(session, arguments, &machine, &finder);
-        let mut source = ClSource::new(session, arguments.input(), true)?;
-        let ahead = match machine.program.looks_ahead {
-            true => {
-                Some(job::look_ahead(session, arguments, &machine, &finder, &mut source, None)?)
-            }
-            false => None,
-        };
-        let target = making::target(arguments, self.output.as_ref(), &machine, &finder)?;
-        Ok(Bench { part: Part { lines: None, target, machine }, finder, source, ahead })
+    /// Opens what the program is made with: the program as a part of its file, and the file.
+    fn open<'a>(
+        &'a self,
+        session: &'a Session,
+    ) -> Result<(ProgramMaker<'a>, Part, ClSource), Failure> {
+        let (mut maker, machine) = ProgramMaker::open(session, &self.job, &self.making)?;
+        let mut source = ClSource::new(session, &self.job.input, true)?;
+        if machine.program.looks_ahead {
+            maker.look_ahead(&machine, &mut source)?;
+        }
+        let target = making::target(&self.job, self.output.as_ref(), &machine, &maker.finder)?;
+        Ok((maker, Part { lines: None, target, machine }, source))
     }
 
-    /// Makes it; `observer` sees its blocks.
-    fn make(
-        &self,
-        session: &Session,
-        bench: &mut Bench,
-        observer: Option<&mut dyn Observer>,
-    ) -> Result<Came, Failure> {
-        let Bench { part, finder, source, ahead } = bench;
-        let program = OneProgram {
-            session,
-            arguments: &self.job,
-            machine: &part.machine,
-            finder,
-            target: &part.target,
-            lines: None,
-            trust_model: self.making.trust_model,
-            plans: self.making.plan,
-            tightening: None,
-        };
-        let ready = Ready::new(program, &self.making, ahead.as_ref(), source, false)?;
-        let mut findings: Vec<Diagnostic> = ready.warning().into_iter().collect();
-        let mut text = Text::default();
-        let beside = Beside { observer, ..Beside::default() };
-        let (report, found) = ready.write(ahead.as_ref(), source, &mut text, beside)?;
-        for finding in found {
-            if !findings.contains(&finding) {
-                findings.push(finding);
-            }
-        }
-        let Some(report) = report else {
-            return Err(findings.into());
-        };
-        let moved = ready.is_moved();
-        let (plan_rounds, compensation) = ready.found();
-        Ok(Came { text: text.0, report, findings, moved, plan_rounds, compensation })
+    /// What a program that is made is asked with.
+    fn maker<'a>(&'a self, session: &'a Session) -> Result<ProgramMaker<'a>, Failure> {
+        let finder = plugin_finder::finder(session, &self.job.over.plugins)?;
+        let (job, making) = (&self.job, &self.making);
+        Ok(ProgramMaker { session, job, making, finder, ahead: None })
     }
 }
 
+/// A text for a program in the making.
+fn text(part: &Part) -> Text {
+    let path = part.target.path();
+    let name = path.map(|path| path.display().to_string()).unwrap_or_default();
+    Text { name, bytes: Vec::new() }
+}
+
 impl MadeProgram {
-    /// Posts the CL file `input`. The program is written where the option `output` says, whole or not at all; without it
+    /// Posts the CL file `input`. The program is written to `output`, whole or not at all; without it
     /// nothing is written.
     ///
     /// # Errors
@@ -210,36 +140,36 @@ impl MadeProgram {
         stop: &Stop,
         machine: &MachineTold,
         input: &Path,
+        output: Option<&Path>,
         options: &[OptionTold],
         keep_blocks: bool,
     ) -> Result<Self, Refused> {
         let made = quietly(stop, |session| {
-            let line = JobLine::new(machine, input, options)?;
-            let mut bench = line.bench(session)?;
-            let targets = line.output.as_ref().map(|target| (Role::PROGRAM, target));
+            let request = Request::new(machine, input, output, options)?;
+            let (maker, part, mut source) = request.open(session)?;
+            let targets = request.output.as_ref().map(|target| (Role::PROGRAM, target));
             let targets: Vec<_> = targets.into_iter().collect();
             let mut files = AtomicFile::create(session, &targets)?;
-            let machine = bench.part.machine.clone();
-            let mut columns = keep_blocks.then(|| BlockColumns::new(&machine));
+            let mut columns = keep_blocks.then(|| BlockColumns::new(&part.machine));
             let observer = columns.as_mut().map(|columns| columns as &mut dyn Observer);
-            let came = line.make(session, &mut bench, observer)?;
+            let wanted = Wanted { observer, ..Wanted::default() };
+            let mut text = text(&part);
+            let mut findings = Vec::new();
+            let ready = maker.prepare(&part, &mut source, false)?;
+            let outcome =
+                maker.make((&part, ready), &mut source, &mut text, wanted, &mut findings)?;
             for file in &mut files {
-                file.write_bytes(&came.text)?;
+                file.write_bytes(&text.bytes)?;
             }
             AtomicFile::finish(session, files)?;
-            let summary = files::json(&Told {
-                report: &came.report,
-                verification: None,
-                prediction: None,
-                servo_compensation: came.compensation.as_ref(),
-                plan_rounds: came.plan_rounds.as_ref(),
-            });
             let blocks = columns.map(BlockColumns::finish);
-            Ok((line, bench.part, came, summary, blocks))
+            let (summary, moved) = (files::json(&outcome.told()), outcome.moved);
+            drop(maker);
+            Ok(Self { request, part, text: text.bytes, summary, findings, moved, blocks })
         });
-        let ((line, part, came, summary, blocks), mut findings) = made?;
-        findings.extend(came.findings);
-        Ok(Self { line, part, text: came.text, summary, findings, moved: came.moved, blocks })
+        let (mut made, mut findings) = made?;
+        findings.append(&mut made.findings);
+        Ok(Self { findings, ..made })
     }
 
     /// Its text.
@@ -270,7 +200,7 @@ impl MadeProgram {
 
     /// Its feed is planned.
     pub fn is_planned(&self) -> bool {
-        self.line.making.plan
+        self.request.making.plan
     }
 
     /// Reads it back and holds it against the CL file, as `post verify` does.
@@ -279,30 +209,18 @@ impl MadeProgram {
     /// What is wrong with it.
     pub fn verify(&self, stop: &Stop) -> Result<Found, Refused> {
         let held = quietly(stop, |session| {
-            let finder = plugin_finder::finder(session, &self.line.job.plugins)?;
-            let mut source = ClSource::new(session, self.line.job.input(), true)?;
-            let held = self.held(session, &finder, &mut source, &self.text)?;
-            Ok((files::json(&held.found), held.findings))
+            let maker = self.request.maker(session)?;
+            let mut source = ClSource::new(session, &self.request.job.input, true)?;
+            let text = (self.name(), Cursor::new(&self.text));
+            let held = maker.read_back(&self.part, self.moved, &mut source, text)?;
+            match held.is_wrong() {
+                true => Err(held.findings.into()),
+                false => Ok((files::json(&held.found), held.findings)),
+            }
         });
         let ((json, found), mut findings) = held?;
         findings.extend(found);
         Ok(Found { json, findings })
-    }
-
-    fn held(
-        &self,
-        session: &Session,
-        finder: &Finder,
-        source: &mut ClSource,
-        text: &[u8],
-    ) -> Result<read_back::Held, Failure> {
-        let how = (self.moved, self.is_planned());
-        let text = (self.name(), Cursor::new(text));
-        let held = self.part.read_back(session, &self.line.job, finder, how, source, text)?;
-        match held.is_wrong() {
-            true => Err(held.findings.into()),
-            false => Ok(held),
-        }
     }
 
     /// Predicts what it does on its machine, as `post predict` with the CL file does; `period` between set-points, s, over
@@ -312,12 +230,10 @@ impl MadeProgram {
     /// The machine cannot be predicted.
     pub fn predict(&self, stop: &Stop, period: Option<f64>) -> Result<Found, Refused> {
         let predicted = quietly(stop, |session| {
-            let finder = plugin_finder::finder(session, &self.line.job.plugins)?;
-            let mut source = ClSource::new(session, self.line.job.input(), true)?;
+            let maker = self.request.maker(session)?;
+            let mut source = ClSource::new(session, &self.request.job.input, true)?;
             let text = (self.name(), Cursor::new(&self.text));
-            let told = (&mut source, None);
-            let job = &self.line.job;
-            let predicted = self.part.predict(session, job, &finder, period, told, text)?;
+            let predicted = maker.predict(&self.part, period, (&mut source, None), text)?;
             Ok((files::json(&predicted.found), predicted.findings))
         });
         let ((json, found), mut findings) = predicted?;
@@ -331,55 +247,15 @@ impl MadeProgram {
     /// The page cannot be written, or what it shall tell is refused.
     pub fn report(&self, stop: &Stop, page: &Path, told: ReportTold) -> Result<(), Refused> {
         let written = quietly(stop, |session| {
-            let mut bench = self.line.bench(session)?;
-            let page = PathArg::from(match page.as_os_str() == "-" {
-                true => Path::new("./-").to_owned(),
-                false => page.to_owned(),
-            });
-            let mut files = AtomicFile::create(session, &[(Role::REPORT, &page)])?;
-            let machine = &self.part.machine;
-            let cl = ClWindow::of(&self.line.job, machine, &bench.source)?;
-            let mut rows = BlockRows::new(machine, cl, told.predict)?;
-            let mut came = self.line.make(session, &mut bench, Some(&mut rows))?;
-            let (finder, source) = (&bench.finder, &mut bench.source);
-            let held = match told.verify {
-                true => Some(self.held(session, finder, source, &came.text)?.found),
-                false => None,
-            };
-            let mut heard = None;
-            let mut prediction = None;
-            if told.predict {
-                heard = PredictedParts::of(machine, &mut rows)?;
-                let text = (self.name(), Cursor::new(&came.text));
-                let with = (&mut *source, heard.as_mut());
-                let job = &self.line.job;
-                let predicted = self.part.predict(session, job, finder, None, with, text)?;
-                came.findings.extend(predicted.findings);
-                prediction = Some(predicted.found);
-            }
-            let made = Made {
-                session,
-                machine,
-                cl: report::name_of(self.line.job.input()),
-                program: &self.part.target,
-                report: &came.report,
-                verification: held.as_ref(),
-                prediction: prediction.as_ref(),
-                findings: &came.findings,
-                job: match self.is_planned() {
-                    true => "plan",
-                    false => "post",
-                },
-                facts: summary::facts(&came.report, held.as_ref()),
-            };
+            let (maker, part, mut source) = self.request.open(session)?;
+            let mut files = AtomicFile::create(session, &[(Role::REPORT, &file(page))])?;
             let most = told.most_megabytes.saturating_mul(1_000_000);
-            let name = self.name();
-            let mut text = came.text.as_slice();
-            if let Some(file) = files.first_mut() {
-                let text: &mut dyn Read = &mut text;
-                let texts = (&mut *source, name.as_str(), text);
-                made.write((rows, heard), texts, most, file)?;
-            }
+            let ReportTold { verify, predict, .. } = told;
+            let page = files.first_mut().map(|file| (file, most));
+            let wanted = Wanted { verify, predict, page, ..Wanted::default() };
+            let ready = maker.prepare(&part, &mut source, false)?;
+            let (mut text, mut findings) = (text(&part), Vec::new());
+            maker.make((&part, ready), &mut source, &mut text, wanted, &mut findings)?;
             Ok(AtomicFile::finish(session, files)?)
         });
         written.map(|_| ())

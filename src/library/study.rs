@@ -3,13 +3,12 @@
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use clap::Parser;
-
-use super::{Refused, Stop, quietly, refused};
-use crate::failure::Failure;
+use super::{OptionTold, Refused, Stop, quietly, refused};
 use crate::files::{self, PathArg, Role};
-use crate::job::batch::{self, Inputs, JobLine, Journal, Outcome, Study, StudyArguments};
+use crate::job::batch::{self, Inputs, JobLine, Journal, Outcome, Study};
+use crate::job::settings::{ReadingSettings, StudySettings, tell};
 use crate::session::Session;
+use post_machine::diagnostic::Diagnostic;
 
 pub use crate::job::batch::{Column, Table as StudyTable, Values};
 
@@ -18,17 +17,12 @@ pub type Progressed<'p> = &'p mut dyn FnMut(usize, usize) -> bool;
 
 const RESULTS: Role = Role { what: "table of results", remedy: "name another file" };
 
-/// What the flags of `post batch` say that are no grid.
-#[derive(Debug, Parser)]
-#[command(name = "study", no_binary_name = true)]
-struct Options {
-    #[command(flatten)]
-    study: StudyArguments,
-}
-
-fn options(flags: &[String]) -> Result<StudyArguments, Failure> {
-    let options = Options::try_parse_from(flags).map_err(Failure::Usage)?;
-    Ok(options.study)
+/// What is asked of every job, by the names of `post batch`.
+fn settings(options: &[OptionTold]) -> Result<StudySettings, Box<Diagnostic>> {
+    let mut reading = ReadingSettings::default();
+    let mut settings = StudySettings::default();
+    tell(options, &mut [&mut reading, &mut settings])?;
+    Ok(StudySettings { reading, ..settings })
 }
 
 /// The jobs of a study, and what came of those that are done.
@@ -41,19 +35,19 @@ pub struct StudyJobs {
 }
 
 impl StudyJobs {
-    /// Of lines of JSON, a job each, as `post batch` has them; `flags` are those of `post batch` that are no grid. What the
+    /// Of lines of JSON, a job each, as `post batch` has them; `options` are those of `post batch` that are no grid. What the
     /// file `journal` holds is taken from there, and what is done is added.
     ///
     /// # Errors
-    /// A line that is no job, a flag that is none, or a journal that cannot be read.
+    /// A line that is no job, an option that is none, or a journal that cannot be read.
     pub fn new(
         stop: &Stop,
         lines: &str,
-        flags: &[String],
+        options: &[OptionTold],
         journal: Option<&Path>,
     ) -> Result<Self, Refused> {
         let jobs = JobLine::read("the jobs", lines)?;
-        let options = options(flags).map_err(refused)?;
+        let options = settings(options).map_err(|fault| vec![*fault])?;
         let ((study, inputs), _) = quietly(stop, |session| Study::new(session, jobs, options))?;
         let journal = journal
             .map(|path| Journal::open(path, true))
@@ -186,7 +180,7 @@ pub struct StudyPart {
 }
 
 impl StudyPart {
-    /// Of lines of jobs, the flags of the study, the CL files by the names that the jobs have for them, and what
+    /// Of lines of jobs, the options of the study, the CL files by the names that the jobs have for them, and what
     /// [`StudyJobs::machines`] gave.
     ///
     /// # Errors
@@ -194,12 +188,12 @@ impl StudyPart {
     pub fn new(
         stop: &Stop,
         lines: &str,
-        flags: &[String],
+        options: &[OptionTold],
         files: Vec<(String, Vec<u8>)>,
         machines: &str,
     ) -> Result<Self, Refused> {
         let jobs = JobLine::read("the jobs", lines)?;
-        let options = options(flags).map_err(refused)?;
+        let options = settings(options).map_err(|fault| vec![*fault])?;
         Ok(Self {
             study: quietly(stop, |session| Study::part(session, jobs, options))?.0,
             inputs: Inputs::handed_over(files.into_iter(), machines).map_err(super::option)?,

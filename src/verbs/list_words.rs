@@ -8,6 +8,7 @@ use post_machine::diagnostic::{Diagnostic, unreadable};
 use post_posting::MOST_FAULTS;
 use post_posting::program::limits::MOST_WORDS;
 
+use crate::arguments::flag_values::file;
 use crate::failure::Failure;
 use crate::files::{ClInput, FileFault, PathArg};
 use crate::session::Session;
@@ -22,7 +23,7 @@ use crate::terminal::print;
 #[derive(Debug, Args)]
 pub struct WordsArguments {
     /// The CL file, `-` for standard input.
-    #[arg(value_parser = PathArg::parser())]
+    #[arg(value_parser = file())]
     file: Option<PathArg>,
 
     /// Only words that are refused or unknown.

@@ -24,7 +24,7 @@ mod view;
 use std::path::Path;
 
 use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{ArgMatches, Args, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use post_machine::diagnostic::nearest;
 
 use crate::failure::Failure;
@@ -86,10 +86,38 @@ from standard output went away before its end.",
     max_term_width = 100
 )]
 pub struct CommandLine {
+    #[command(flatten)]
+    post: Nameless,
     #[command(subcommand)]
     verb: Option<Verb>,
-    #[command(flatten)]
-    post: PostArguments,
+}
+
+/// The arguments of the verb that has no name; none where there is a verb, whose arguments are others.
+#[derive(Debug)]
+struct Nameless(Option<PostArguments>);
+
+impl Args for Nameless {
+    fn augment_args(command: Command) -> Command {
+        PostArguments::augment_args(command)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        PostArguments::augment_args_for_update(command)
+    }
+}
+
+impl FromArgMatches for Nameless {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        match matches.subcommand_name() {
+            Some(_) => Ok(Self(None)),
+            None => PostArguments::from_arg_matches(matches).map(|post| Self(Some(post))),
+        }
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
 }
 
 #[derive(Debug, Subcommand)]
@@ -118,7 +146,7 @@ impl CommandLine {
     /// Does what the command line says.
     pub fn run(self, session: &Session) -> Result<(), Failure> {
         match self.verb {
-            None => post::run(session, &self.post),
+            None => self.post.0.map_or(Ok(()), |post| post::run(session, &post)),
             Some(Verb::Words(arguments)) => list_words::run(session, &arguments),
             Some(Verb::Machines(arguments)) => list_machines::run(session, &arguments),
             Some(Verb::Schema(arguments)) => print_schema::run(session, &arguments),

@@ -3,10 +3,10 @@
 
 use std::collections::BTreeMap;
 
-use super::StudyArguments;
 use super::inputs::Inputs;
 use super::job_line::JobLine;
 use super::travel;
+use crate::job::settings::StudySettings;
 
 /// What the values of a column are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +19,9 @@ pub enum Kind {
 /// A column: its name, what its values are, and where they come from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Head {
+    /// Its name in the table.
     pub name: String,
+    /// What its values are.
     pub kind: Kind,
     /// The parameter of the job that it shows; none: what came of the job.
     pub parameter: Option<String>,
@@ -76,7 +78,7 @@ const BYTES: &[(&str, Kind)] = &[
 ];
 
 /// The columns of a study.
-pub fn columns(jobs: &[JobLine], options: &StudyArguments, inputs: &Inputs) -> Vec<Head> {
+pub fn columns(jobs: &[JobLine], options: &StudySettings, inputs: &Inputs) -> Vec<Head> {
     let head = |(name, kind): &(&str, Kind)| Head {
         name: (*name).to_owned(),
         kind: *kind,
@@ -140,8 +142,8 @@ fn of_axes(jobs: &[JobLine], inputs: &Inputs) -> Vec<Head> {
         if loaded.contains(&name) {
             continue;
         }
-        let settings = job.arguments(&Default::default());
-        let settings = settings.map_or_else(|_| Vec::new(), |arguments| arguments.settings());
+        let settings = job.settings(&Default::default());
+        let settings = settings.map_or_else(|_| Vec::new(), |job| job.over.settings());
         let texts = inputs.machine(name);
         let machine = texts.load(&settings).or_else(|_| texts.load(&[]));
         loaded.push(name);

@@ -3,7 +3,7 @@
 use post_machine::diagnostic::Diagnostic;
 
 use super::job_line::{JobLine, Written};
-use crate::arguments::flag_values::finite;
+use crate::job::settings::values::{Value, finite};
 
 /// More jobs than this are a slip.
 /// More are a slip.
@@ -15,15 +15,12 @@ const MOST_STEPS: f64 = 1e6;
 /// What is laid over jobs that do not say it themselves.
 #[derive(Clone, Debug, Default)]
 pub struct Grid {
+    /// Machines, as `--machine` names them.
     pub machines: Vec<String>,
     /// Keys of the machine file, each with its values.
     pub set: Vec<(String, Vec<Written>)>,
-    pub mount: Vec<[Written; 3]>,
-    pub turn: Vec<Written>,
-    pub tool_length: Vec<Written>,
-    pub tolerance: Vec<Written>,
-    pub tcp: Vec<Written>,
-    pub dialect: Vec<Written>,
+    /// Values of settings that jobs may have, by name: in the order of [`JobLine::rows`].
+    pub settings: Vec<(&'static str, Vec<Vec<Written>>)>,
 }
 
 impl Grid {
@@ -33,8 +30,11 @@ impl Grid {
     /// A job without a machine, or there are too many.
     pub fn jobs(&self, seeds: Vec<JobLine>) -> Result<Vec<JobLine>, Box<Diagnostic>> {
         let mut jobs = seeds;
-        let machines: Vec<Option<String>> = self.machines.iter().cloned().map(Some).collect();
-        jobs = lay(jobs, &machines, |job| &mut job.machine)?;
+        jobs = multiplied(jobs, &self.machines, |job, machine| {
+            let free = job.machine.is_none();
+            job.machine.get_or_insert_with(|| machine.clone());
+            free
+        })?;
         if let Some(job) = jobs.iter().find(|job| job.machine.is_none()) {
             let message = format!("no machine is named for {}", job.file);
             return Err(Diagnostic::error("machine", message)
@@ -56,33 +56,18 @@ impl Grid {
                 true
             })?;
         }
-        let mount: Vec<_> = self.mount.iter().cloned().map(Some).collect();
-        jobs = lay(jobs, &mount, |job| &mut job.mount)?;
-        let some = |values: &[Written]| -> Vec<Option<Written>> {
-            values.iter().cloned().map(Some).collect()
-        };
-        jobs = lay(jobs, &some(&self.turn), |job| &mut job.turn)?;
-        jobs = lay(jobs, &some(&self.tool_length), |job| &mut job.tool_length)?;
-        jobs = lay(jobs, &some(&self.tolerance), |job| &mut job.tolerance)?;
-        jobs = lay(jobs, &some(&self.tcp), |job| &mut job.tcp)?;
-        lay(jobs, &some(&self.dialect), |job| &mut job.dialect)
-    }
-}
-
-/// Each job with each of the values at a place where it has none.
-fn lay<T: Clone>(
-    jobs: Vec<JobLine>,
-    values: &[Option<T>],
-    place: fn(&mut JobLine) -> &mut Option<T>,
-) -> Result<Vec<JobLine>, Box<Diagnostic>> {
-    multiplied(jobs, values, |job, value| {
-        let place = place(job);
-        let free = place.is_none();
-        if free {
-            place.clone_from(value);
+        for (name, values) in &self.settings {
+            let Some(row) = JobLine::place(name) else { continue };
+            jobs = multiplied(jobs, values, |job, value| {
+                if job.settings.contains_key(&row) {
+                    return false;
+                }
+                job.settings.insert(row, value.clone());
+                true
+            })?;
         }
-        free
-    })
+        Ok(jobs)
+    }
 }
 
 /// Each job once for each value, or as it is where `put` says that the value has no place in it.
@@ -158,7 +143,7 @@ fn parts(text: &str) -> Vec<&str> {
 /// The numbers of `FROM:TO:STEP`, both ends among them if the steps meet the last; none if it is no range.
 fn range(text: &str) -> Result<Option<Vec<Written>>, String> {
     let ends: Vec<&str> = text.split(':').collect();
-    let numbers = ends.iter().map(|end| finite(end.trim()));
+    let numbers = ends.iter().map(|end| finite(&Value::from(end.trim())));
     let Ok(numbers) = numbers.collect::<Result<Vec<f64>, _>>() else {
         return Ok(None);
     };
@@ -228,7 +213,10 @@ mod tests {
     fn what_a_job_says_itself_is_not_varied() {
         let grid = Grid {
             machines: vec!["vmc".to_owned(), "dmu50".to_owned()],
-            turn: values("0,90").unwrap(),
+            settings: vec![(
+                "turn",
+                values("0,90").unwrap().into_iter().map(|turn| vec![turn]).collect(),
+            )],
             ..Grid::default()
         };
         let own =
@@ -241,7 +229,7 @@ mod tests {
                     "{} {} {}",
                     job.file,
                     job.machine.as_deref().unwrap(),
-                    job.turn.as_ref().unwrap().0
+                    job.settings[&JobLine::place("turn").unwrap()][0].0
                 )
             })
             .collect();

@@ -17,6 +17,7 @@ use crate::session::Session;
 /// A CL file as it was when it was read.
 #[derive(Debug)]
 pub struct ClText {
+    /// Its bytes.
     pub bytes: Arc<[u8]>,
     /// Hash of its bytes.
     pub hash: blake3::Hash,

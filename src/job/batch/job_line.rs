@@ -1,16 +1,23 @@
 //! One job as a line of JSON.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::path::PathBuf;
 
-use post_machine::description::{Setting, Tcp};
+use post_machine::description::Setting;
 use post_machine::diagnostic::Diagnostic;
+use serde::de::{Error as _, MapAccess, Visitor};
+use serde::ser::SerializeMap as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::RawValue;
 
-use crate::arguments::flag_values::{finite, length, positive};
-use crate::arguments::{JobArguments, ReadingArguments};
 use crate::files::PathArg;
+use crate::job::settings::{
+    About, JobSettings, MachineSettings, ReadingSettings, Table as _, Value,
+};
+
+/// How a setting is put where it belongs.
+type Put = fn(&mut MachineSettings, &Value) -> Result<(), String>;
 
 /// A value as it is written: a number keeps its digits, wherever the job is sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,38 +46,103 @@ impl Serialize for Written {
 }
 
 /// What one job is made of. What it does not say, the machine file says.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct JobLine {
     /// The CL file.
     pub file: String,
     /// The machine, as `--machine` names it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub machine: Option<String>,
     /// Parameters and keys of the machine file, as `--set` has them.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub set: BTreeMap<String, Written>,
-    /// `--mount`, mm.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mount: Option<[Written; 3]>,
-    /// `--turn`, degrees.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub turn: Option<Written>,
-    /// `--tool-length`, mm.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub tool_length: Option<Written>,
-    /// `--tolerance`, mm.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub tolerance: Option<Written>,
-    /// `--tcp`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub tcp: Option<Written>,
-    /// `--dialect`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub dialect: Option<Written>,
+    /// Settings of [`JobLine::rows`], by their places there: one value, or a list where the row has several columns.
+    pub settings: BTreeMap<usize, Vec<Written>>,
+}
+
+impl Serialize for JobLine {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let mut line = to.serialize_map(None)?;
+        line.serialize_entry("file", &self.file)?;
+        if let Some(machine) = &self.machine {
+            line.serialize_entry("machine", machine)?;
+        }
+        if !self.set.is_empty() {
+            line.serialize_entry("set", &self.set)?;
+        }
+        for (row, (about, _)) in Self::rows().enumerate() {
+            match self.settings.get(&row).map(Vec::as_slice) {
+                None => {}
+                Some([value]) => line.serialize_entry(about.name, value)?,
+                Some(values) => line.serialize_entry(about.name, values)?,
+            }
+        }
+        line.end()
+    }
+}
+
+impl<'de> Deserialize<'de> for JobLine {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        from.deserialize_map(Lines)
+    }
+}
+
+struct Lines;
+
+impl<'de> Visitor<'de> for Lines {
+    type Value = JobLine;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("struct JobLine")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<JobLine, A::Error> {
+        let mut line = JobLine::default();
+        let mut met: Vec<String> = Vec::new();
+        while let Some(key) = map.next_key::<String>()? {
+            if met.contains(&key) {
+                return Err(A::Error::custom(format!("duplicate field `{key}`")));
+            }
+            match key.as_str() {
+                "file" => line.file = map.next_value()?,
+                "machine" => line.machine = map.next_value()?,
+                "set" => line.set = map.next_value()?,
+                name => {
+                    let Some(row) = JobLine::place(name) else {
+                        let names = JobLine::rows().map(|(about, _)| format!("`{}`", about.name));
+                        let names: Vec<String> = names.collect();
+                        let names = names.join(", ");
+                        return Err(A::Error::custom(format!(
+                            "unknown field `{name}`, expected one of `file`, `machine`, `set`, {names}"
+                        )));
+                    };
+                    let told = match JobLine::rows().nth(row).map(|(about, _)| about.columns.len())
+                    {
+                        Some(3) => map.next_value::<Option<[Written; 3]>>()?.map(Vec::from),
+                        _ => map.next_value::<Option<Written>>()?.map(|value| vec![value]),
+                    };
+                    line.settings.extend(told.map(|told| (row, told)));
+                }
+            }
+            met.push(key);
+        }
+        match met.iter().any(|key| key == "file") {
+            true => Ok(line),
+            false => Err(A::Error::missing_field("file")),
+        }
+    }
 }
 
 impl JobLine {
+    /// The settings that each job may have.
+    pub fn rows() -> impl Iterator<Item = (&'static About, Put)> {
+        let rows = MachineSettings::ROWS.iter().map(|row| (&row.about, row.put));
+        rows.filter(|(about, _)| !about.columns.is_empty())
+    }
+
+    /// The place of a setting among them.
+    pub fn place(name: &str) -> Option<usize> {
+        Self::rows().position(|(about, _)| about.name == name)
+    }
+
     /// Of a CL file alone.
     pub fn of_file(file: String) -> Self {
         Self { file, ..Self::default() }
@@ -89,7 +161,7 @@ impl JobLine {
             }
             let job = serde_json::from_str::<Self>(line)
                 .map_err(|error| error.to_string())
-                .and_then(|job| job.arguments(&ReadingArguments::default()).map(|_| job));
+                .and_then(|job| job.settings(&ReadingSettings::default()).map(|_| job));
             match job {
                 Ok(job) => jobs.push(job),
                 Err(fault) => {
@@ -106,44 +178,29 @@ impl JobLine {
         }
     }
 
-    /// The job as the command line of `post` would have it.
+    /// The job that it means.
     ///
     /// # Errors
     /// A value that is none of its kind.
-    pub fn arguments(&self, reading: &ReadingArguments) -> Result<JobArguments, String> {
-        let told = |name: &str, fault: String| format!("{name}: {fault}");
-        let number =
-            |name: &str, value: &Option<Written>, read: fn(&str) -> Result<f64, String>| {
-                let value = value.as_ref();
-                let number = value.map(|value| read(&value.0)).transpose();
-                number.map_err(|fault| told(name, fault))
-            };
-        let mount = self.mount.as_ref().map(|mount| {
-            let mut point = [0.0; 3];
-            for (number, written) in point.iter_mut().zip(mount) {
-                *number = finite(&written.0)?;
-            }
-            Ok(point)
-        });
-        let tcp = self.tcp.as_ref().map(|who| match who.0.as_str() {
-            "control" => Ok(Tcp::Control),
-            "post" => Ok(Tcp::Post),
-            other => Err(format!("tcp: `{other}` is neither control nor post")),
-        });
+    pub fn settings(&self, reading: &ReadingSettings) -> Result<JobSettings, String> {
+        let mut over = MachineSettings::default();
         let set = self.set.iter();
-        Ok(JobArguments {
-            machine: self.machine.clone(),
-            input: Some(PathArg::from(PathBuf::from(&self.file))),
+        over.set.extend(set.map(|(key, value)| Setting::Written(format!("{key}={}", value.0))));
+        for (row, (about, put)) in Self::rows().enumerate() {
+            let value = match self.settings.get(&row).map(Vec::as_slice) {
+                None => continue,
+                Some([value]) => Value::from(value.0.as_str()),
+                Some(values) => {
+                    Value::List(values.iter().map(|value| Value::from(value.0.as_str())).collect())
+                }
+            };
+            put(&mut over, &value).map_err(|fault| format!("{}: {fault}", about.name))?;
+        }
+        Ok(JobSettings {
+            machine: self.machine.clone().unwrap_or_default(),
+            input: PathArg::from(PathBuf::from(&self.file)),
             reading: reading.clone(),
-            mount: mount.transpose().map_err(|fault: String| told("mount", fault))?,
-            turn: number("turn", &self.turn, finite)?,
-            tool_length: number("tool_length", &self.tool_length, length)?,
-            set: set.map(|(key, value)| Setting::Written(format!("{key}={}", value.0))).collect(),
-            tolerance: number("tolerance", &self.tolerance, positive)?,
-            tcp: tcp.transpose()?,
-            dialect: self.dialect.as_ref().map(|name| name.0.clone()),
-            machines: Vec::new(),
-            plugins: Vec::new(),
+            over,
         })
     }
 
@@ -152,19 +209,9 @@ impl JobLine {
         let set = self.set.iter();
         let mut told: Vec<(String, &Written)> =
             set.map(|(key, value)| (key.clone(), value)).collect();
-        if let Some(mount) = &self.mount {
-            let parts = ["mount_x_mm", "mount_y_mm", "mount_z_mm"].into_iter();
-            told.extend(parts.map(str::to_owned).zip(mount));
-        }
-        let others = [
-            ("turn_deg", &self.turn),
-            ("tool_length_mm", &self.tool_length),
-            ("tolerance_mm", &self.tolerance),
-            ("tcp", &self.tcp),
-            ("dialect", &self.dialect),
-        ];
-        for (name, value) in others {
-            told.extend(value.iter().map(|value| (name.to_owned(), value)));
+        for (row, (about, _)) in Self::rows().enumerate() {
+            let values = self.settings.get(&row).into_iter().flatten();
+            told.extend(about.columns.iter().map(|name| (*name).to_owned()).zip(values));
         }
         told
     }

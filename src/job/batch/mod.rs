@@ -32,6 +32,6 @@ pub use job_line::{JobLine, Written};
 pub use journal::Journal;
 pub use one_job::known;
 pub use outcome::{FAILED, Outcome, REFUSED, WRITTEN};
-pub use study::{Shard, Study, StudyArguments};
+pub use study::{Shard, Study};
 pub use table::{Column, Table, Values};
 pub use workers::{Done, Stop, run};

@@ -19,18 +19,20 @@ use super::journal::Journal;
 use super::key;
 use super::outcome::{FAILED, Outcome, REFUSED, WRITTEN};
 use super::travel;
-use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::{ClSource, HeldText, PathArg};
 use crate::job::one_program::{Beside, OneProgram};
 use crate::job::predict::{self, Against, Asked, Prediction, Sample};
 use crate::job::read_back::{self, Reading};
+use crate::job::settings::JobSettings;
 use crate::job::{self, plugin_finder, unused_options};
 use crate::session::Session;
 
 /// What came of a job, and whether the journal knew it.
 pub struct Did {
+    /// Its row.
     pub outcome: Outcome,
+    /// The journal knew it.
     pub known: bool,
 }
 
@@ -77,7 +79,7 @@ fn told(did: std::thread::Result<Result<Did, Failure>>) -> Did {
 
 /// A job with all that it reads.
 struct Prepared {
-    arguments: JobArguments,
+    arguments: JobSettings,
     machine: Machine,
     cl: Arc<ClText>,
     key: Option<String>,
@@ -91,11 +93,11 @@ impl Prepared {
         inputs: &Inputs,
     ) -> Result<Self, Failure> {
         let arguments = job
-            .arguments(&study.options.reading)
+            .settings(&study.options.reading)
             .map_err(|fault| Diagnostic::error("job", fault))?;
         let cl = inputs.cl(session, &job.file)?;
-        let texts = inputs.machine(arguments.machine());
-        let machine = texts.load(&arguments.settings())?;
+        let texts = inputs.machine(&arguments.machine);
+        let machine = texts.load(&arguments.over.settings())?;
         Ok(Self {
             // Of a plugin that cannot be opened posting tells more.
             key: key::key(study, job, &cl, &texts, &machine).ok(),
@@ -152,7 +154,7 @@ fn attempt(
 struct OneJob<'a> {
     session: &'a Session,
     study: &'a Study,
-    arguments: &'a JobArguments,
+    arguments: &'a JobSettings,
     machine: &'a Machine,
     cl: &'a ClText,
     stop: &'a Arc<AtomicBool>,
@@ -166,7 +168,7 @@ impl OneJob<'_> {
         let mut source = self.source();
         let mut findings = unused_options::found(self.machine, finder);
         let ahead = self.ahead(&mut source)?;
-        let target = self.arguments.input().map(|path| path.with_extension("nc"));
+        let target = self.arguments.input.map(|path| path.with_extension("nc"));
         let program = OneProgram {
             session: self.session,
             arguments: self.arguments,
@@ -213,7 +215,7 @@ impl OneJob<'_> {
 
     fn source(&self) -> ClSource {
         let text = HeldText { bytes: Arc::clone(&self.cl.bytes), stop: Arc::clone(self.stop) };
-        ClSource::of_held(self.session, self.arguments.input(), text)
+        ClSource::of_held(self.session, &self.arguments.input, text)
     }
 
     fn ahead(&self, source: &mut ClSource) -> Result<Option<LookedAhead>, Failure> {

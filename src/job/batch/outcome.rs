@@ -44,6 +44,7 @@ pub struct Outcome {
     /// Hash of all that it depends on; none if it was not got that far.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub key: Option<String>,
+    /// Values by their columns.
     pub values: BTreeMap<String, Value>,
 }
 
@@ -56,11 +57,13 @@ impl Outcome {
         }
     }
 
+    /// Notes how many there are.
     pub fn count(&mut self, column: &str, value: u64) {
         let value = i64::try_from(value).unwrap_or(i64::MAX);
         self.values.insert(column.to_owned(), Value::Count(value));
     }
 
+    /// Notes a text.
     pub fn text(&mut self, column: &str, value: impl Into<String>) {
         self.values.insert(column.to_owned(), Value::Text(value.into()));
     }

@@ -1,59 +1,22 @@
 //! The jobs of a study, and what is asked of each.
 
-use std::path::PathBuf;
-
-use clap::Args;
 use post_host::Finder;
 use post_machine::diagnostic::Diagnostic;
 
 use super::columns::{self, Head};
 use super::inputs::Inputs;
 use super::job_line::JobLine;
-use crate::arguments::ReadingArguments;
 use crate::failure::Failure;
 use crate::job::plugin_finder;
+use crate::job::settings::StudySettings;
 use crate::session::Session;
-
-/// What is asked of every job.
-#[derive(Clone, Debug, Default, Args)]
-pub struct StudyArguments {
-    #[command(flatten)]
-    pub reading: ReadingArguments,
-
-    /// Plans the feed of each program, as `post --plan`.
-    #[arg(long, help_heading = "Jobs")]
-    pub plan: bool,
-
-    /// Reads each program back and holds it against its CL file, as `post --verify`: what strays is a refused job.
-    #[arg(long, help_heading = "Jobs")]
-    pub verify: bool,
-
-    /// Predicts what each program does, as `post --predict`: true cycle time and contour error.
-    #[arg(long, help_heading = "Jobs")]
-    pub predict: bool,
-
-    /// Takes the error model's word where the certificate finds more, and only reports it.
-    #[arg(long, help_heading = "Jobs")]
-    pub trust_model: bool,
-
-    /// Adds a column of how long each job took to compute, s: the bytes of the results are not the same every time then.
-    #[arg(long, help_heading = "Jobs")]
-    pub timings: bool,
-
-    /// A further folder of machine files; the environment variable POST_MACHINES adds more.
-    #[arg(long, value_name = "FOLDER", help_heading = "Machine")]
-    pub machines: Vec<PathBuf>,
-
-    /// A folder of plugin libraries; the environment variable POST_PLUGINS adds more. Opening a library runs
-    /// its code, so no folder is looked into that is not named here.
-    #[arg(long, value_name = "FOLDER", help_heading = "Plugins")]
-    pub plugins: Vec<PathBuf>,
-}
 
 /// One of so many parts of a study, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
+    /// Which part it is, from 1.
     pub index: usize,
+    /// How many parts there are.
     pub of: usize,
 }
 
@@ -80,9 +43,13 @@ impl Shard {
 /// Jobs, what is asked of them, and the columns of their results.
 #[derive(Debug)]
 pub struct Study {
+    /// The jobs, in their order.
     pub jobs: Vec<JobLine>,
-    pub options: StudyArguments,
+    /// What is asked of each.
+    pub options: StudySettings,
+    /// Their plugins.
     pub finder: Finder,
+    /// The columns of their results.
     pub columns: Vec<Head>,
 }
 
@@ -94,7 +61,7 @@ impl Study {
     pub fn new(
         session: &Session,
         jobs: Vec<JobLine>,
-        options: StudyArguments,
+        options: StudySettings,
     ) -> Result<(Self, Inputs), Failure> {
         if jobs.is_empty() {
             return Err(Diagnostic::error("batch", "there is no job to do")
@@ -119,7 +86,7 @@ impl Study {
     pub fn part(
         session: &Session,
         jobs: Vec<JobLine>,
-        options: StudyArguments,
+        options: StudySettings,
     ) -> Result<Self, Failure> {
         Ok(Self {
             columns: Vec::new(),

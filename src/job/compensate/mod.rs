@@ -19,14 +19,13 @@ mod text;
 
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
-use post_posting::{LookedAhead, PathShift};
-use post_readback::interpret::Limits;
+use post_posting::LookedAhead;
 use serde::Serialize;
 
-use super::one_program::{Beside, OneProgram};
+use super::one_program::OneProgram;
+use super::rounds::Rounds;
 use crate::failure::Failure;
 use crate::files::{ClSource, Scratch};
-use crate::job::predict::{self, Against, Asked, Sample};
 use path::{Errors, Recorded};
 pub use path::{Moved, Moves};
 pub use text::text;
@@ -106,11 +105,12 @@ pub fn compensate(
     machine.control.arcs.fit = false;
     machine.accuracy.reduce = false;
     let mut path = Recorded::default();
-    let mut tried = Tried { program, ahead, source };
-    tried.post(&machine, Some(&mut path))?;
-    let text = tried.post(program.machine, None)?;
+    let mut rounds = Rounds::new(program, ahead, source);
+    let plain = OneProgram { machine: &machine, ..program.clone() };
+    rounds.make(plain.clone(), Some(&mut path))?;
+    let text = rounds.make(program.clone(), None)?;
     let mut errors = Errors::of(&path);
-    let before = tried.predict(text, &path, &mut errors)?;
+    let before = stray(&mut rounds, text, &path, &mut errors)?;
     let mut moves: Moves = vec![[0.0; 3]; path.len()];
     let (mut after, mut last, mut kept) = (before, before, false);
     let mut gains = vec![1.0; path.len()];
@@ -119,9 +119,9 @@ pub fn compensate(
         runs += 1;
         let mut next = moves.clone();
         path.step(&mut next, &errors, &gains, bound);
-        let text = tried.post(&machine, Some(&mut Moved::new(&next)))?;
+        let text = rounds.make(plain.clone(), Some(&mut Moved::new(&next)))?;
         let mut left = Errors::of(&path);
-        let found = tried.predict(text, &path, &mut left)?;
+        let found = stray(&mut rounds, text, &path, &mut left)?;
         if found.rms_mm == last.rms_mm {
             // The moves are less than the last digit of a word: the program is the same.
             break;
@@ -177,76 +177,27 @@ fn allowed(machine: &Machine) -> Result<f64, Box<Diagnostic>> {
     Ok(bound)
 }
 
-/// Makes programs and predicts them.
-struct Tried<'t, 'p> {
-    program: &'t OneProgram<'p>,
-    ahead: Option<&'t LookedAhead>,
-    source: &'t mut ClSource,
-}
-
-impl Tried<'_, '_> {
-    fn post(
-        &mut self,
-        machine: &Machine,
-        shift: Option<&mut dyn PathShift>,
-    ) -> Result<Scratch, Failure> {
-        let mut text = Scratch::new("a program that is tried")?;
-        let program = OneProgram { machine, ..self.program.clone() };
-        let (report, findings) = program.write(
-            self.ahead,
-            self.source,
-            &mut text,
-            Beside { shift, ..Beside::default() },
-        )?;
-        match report {
-            Some(_) => Ok(text),
-            None => Err(findings.into()),
+/// How far the tool is off its path; beside each point of `path` the errors are added up.
+fn stray(
+    rounds: &mut Rounds<'_, '_>,
+    text: Scratch,
+    path: &Recorded,
+    errors: &mut Errors,
+) -> Result<Stray, Failure> {
+    let off = 2.0 * rounds.program.machine.accuracy.tolerance;
+    let found = rounds.predict(text, &mut |sample| {
+        if let Some(asked) = &sample.point.asked {
+            let place = sample.point.actual.tip - asked.error;
+            errors.take(path, &place, off, &asked.error);
         }
-    }
-
-    /// How far the tool is off its path; beside each point the errors are added up.
-    fn predict(
-        &mut self,
-        text: Scratch,
-        path: &Recorded,
-        errors: &mut Errors,
-    ) -> Result<Stray, Failure> {
-        let OneProgram { session, arguments, machine, finder, lines, .. } = self.program;
-        let asked = Asked {
-            session,
-            arguments,
-            machine,
-            finder,
-            offsets: None,
-            limits: Limits::default(),
-            period: None,
-            lines: lines.clone(),
-        };
-        let off = 2.0 * machine.accuracy.tolerance;
-        let mut listen = |sample: &Sample| {
-            if let Some(asked) = &sample.point.asked {
-                let place = sample.point.actual.tip - asked.error;
-                errors.take(path, &place, off, &asked.error);
-            }
-            Ok(())
-        };
-        let text = text.reread()?;
-        let found = predict::predict(
-            &asked,
-            Against::Cl(self.source),
-            "a program that is tried",
-            text,
-            &mut listen,
-        )?;
-        let contour = found.found.contour;
-        let tip = contour.tip_mm;
-        let following = contour.parts.iter().find(|part| part.part == "following");
-        Ok(Stray {
-            largest_mm: tip.largest,
-            nc_line: tip.nc_line,
-            cl_line: tip.cl_line,
-            rms_mm: tip.rms,
-            following_rms_mm: following.map_or(0.0, |part| part.tip_mm.rms),
-        })
-    }
+    })?;
+    let tip = found.contour.tip_mm;
+    let following = found.contour.parts.iter().find(|part| part.part == "following");
+    Ok(Stray {
+        largest_mm: tip.largest,
+        nc_line: tip.nc_line,
+        cl_line: tip.cl_line,
+        rms_mm: tip.rms,
+        following_rms_mm: following.map_or(0.0, |part| part.tip_mm.rms),
+    })
 }

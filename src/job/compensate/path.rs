@@ -31,6 +31,7 @@ pub struct Moved<'m> {
 }
 
 impl<'m> Moved<'m> {
+    /// From the first point on.
     pub fn new(moves: &'m Moves) -> Self {
         Self { moves: moves.iter() }
     }

@@ -18,13 +18,12 @@ use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::servo::Response;
 use post_posting::{LookedAhead, Tightening};
-use post_readback::interpret::Limits;
 use serde::Serialize;
 
-use super::one_program::{Beside, OneProgram};
+use super::one_program::OneProgram;
+use super::rounds::Rounds;
 use crate::failure::Failure;
-use crate::files::{ClSource, Scratch};
-use crate::job::predict::{self, Against, Asked, Sample};
+use crate::files::ClSource;
 use excess::{Excess, Off, Settling};
 pub use text::text;
 
@@ -92,15 +91,16 @@ pub fn plan(
     ahead: Option<&LookedAhead>,
     source: &mut ClSource,
 ) -> Result<(Option<Arc<Tightening>>, Found), Failure> {
-    let (limit, settling) = allowed(program.machine).map_err(|fault| *fault)?;
-    let mut tried = Tried { program, ahead, source, limit, settling };
-    let (unplanned, _) = tried.run(None)?;
+    let allowed = allowed(program.machine).map_err(|fault| *fault)?;
+    let limit = allowed.0;
+    let mut tried = Rounds::new(program, ahead, source);
+    let (unplanned, _) = self::round(&mut tried, allowed, None)?;
     let mut tightening = Arc::new(Tightening::default());
     let mut found =
         Found { limit_mm: limit, unplanned, rounds: Vec::new(), chosen: 0, kept: false };
     let mut best = None;
     for round in 0..most.max(1) as usize {
-        let (outcome, excess) = tried.run(Some(Arc::clone(&tightening)))?;
+        let (outcome, excess) = self::round(&mut tried, allowed, Some(Arc::clone(&tightening)))?;
         found.rounds.push(outcome);
         let better = |one: &Round, other: &Round| {
             let by = [one, other].map(|round| (round.over_s, round.contour_mm));
@@ -162,81 +162,44 @@ fn allowed(machine: &Machine) -> Result<(f64, Settling), Box<Diagnostic>> {
     Ok((limit, settling))
 }
 
-/// Makes programs and predicts them.
-struct Tried<'t, 'p> {
-    program: &'t OneProgram<'p>,
-    ahead: Option<&'t LookedAhead>,
-    source: &'t mut ClSource,
-    limit: f64,
-    settling: Settling,
-}
-
-impl Tried<'_, '_> {
-    /// With a plan that is so tightened; none: without a plan.
-    fn run(&mut self, tightening: Option<Arc<Tightening>>) -> Result<(Round, Excess), Failure> {
-        let mut text = Scratch::new("a program that is tried")?;
-        let known = tightening.clone().unwrap_or_default();
-        let tightened = tightening.as_ref().map_or(0, |it| it.places());
-        let program =
-            OneProgram { plans: tightening.is_some(), tightening, ..self.program.clone() };
-        let (report, findings) =
-            program.write(self.ahead, self.source, &mut text, Beside::default())?;
-        if report.is_none() {
-            return Err(findings.into());
-        }
-        let OneProgram { session, arguments, machine, finder, lines, .. } = self.program;
-        let asked = Asked {
-            session,
-            arguments,
-            machine,
-            finder,
-            offsets: None,
-            limits: Limits::default(),
-            period: None,
-            lines: lines.clone(),
-        };
-        let mut excess = Excess::new(self.limit, self.settling, known);
-        let mut listen = |sample: &Sample| {
-            let point = &sample.point;
-            match &point.asked {
-                _ if !sample.counts() => excess.rests(point.time),
-                Some(asked) => {
-                    let tip = point.actual.tip - asked.error;
-                    let off = Off {
-                        error: point.distance,
-                        nc_line: point.at.line,
-                        cl_line: asked.at.line,
-                    };
-                    match sample.at.cuts {
-                        true => excess.take(point.time, &tip, off),
-                        false => excess.take_beside_rapid(off),
-                    }
+/// One round with a plan that is so tightened; none: without a plan.
+fn round(
+    rounds: &mut Rounds<'_, '_>,
+    (limit, settling): (f64, Settling),
+    tightening: Option<Arc<Tightening>>,
+) -> Result<(Round, Excess), Failure> {
+    let known = tightening.clone().unwrap_or_default();
+    let tightened = tightening.as_ref().map_or(0, |it| it.places());
+    let program = OneProgram { plans: tightening.is_some(), tightening, ..rounds.program.clone() };
+    let text = rounds.make(program, None)?;
+    let mut excess = Excess::new(limit, settling, known);
+    let found = rounds.predict(text, &mut |sample| {
+        let point = &sample.point;
+        match &point.asked {
+            _ if !sample.counts() => excess.rests(point.time),
+            Some(asked) => {
+                let tip = point.actual.tip - asked.error;
+                let off =
+                    Off { error: point.distance, nc_line: point.at.line, cl_line: asked.at.line };
+                match sample.at.cuts {
+                    true => excess.take(point.time, &tip, off),
+                    false => excess.take_beside_rapid(off),
                 }
-                None => {}
             }
-            Ok(())
-        };
-        let text = text.reread()?;
-        let found = predict::predict(
-            &asked,
-            Against::Cl(self.source),
-            "a program that is tried",
-            text,
-            &mut listen,
-        )?
-        .found;
-        let largest = excess.largest;
-        let round = Round {
-            cycle_s: found.time.cycle_s,
-            cutting_s: found.time.cutting_s,
-            contour_mm: largest.error,
-            nc_line: largest.nc_line,
-            cl_line: largest.cl_line,
-            beside_rapid_mm: excess.beside_rapid.error,
-            tip_mm: found.contour.tip_mm.largest,
-            over_s: excess.over as f64 * found.period_s,
-            tightened,
-        };
-        Ok((round, excess))
-    }
+            None => {}
+        }
+    })?;
+    let largest = excess.largest;
+    let round = Round {
+        cycle_s: found.time.cycle_s,
+        cutting_s: found.time.cutting_s,
+        contour_mm: largest.error,
+        nc_line: largest.nc_line,
+        cl_line: largest.cl_line,
+        beside_rapid_mm: excess.beside_rapid.error,
+        tip_mm: found.contour.tip_mm.largest,
+        over_s: excess.over as f64 * found.period_s,
+        tightened,
+    };
+    Ok((round, excess))
 }

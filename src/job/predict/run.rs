@@ -19,12 +19,12 @@ use super::prediction::Prediction;
 use super::sample::Sample;
 use super::stages::Stages;
 use super::{cl_path, found};
-use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::Watched;
 use crate::files::{ClSource, FileFault};
 use crate::job::nc_program::{self, NcControl};
 use crate::job::read_back;
+use crate::job::settings::JobSettings;
 use crate::job::text::number;
 use crate::session::Session;
 
@@ -38,8 +38,8 @@ const OTHER_PART: f64 = 1.0;
 pub struct Asked<'a> {
     /// The run.
     pub session: &'a Session,
-    /// The command line of the job.
-    pub arguments: &'a JobArguments,
+    /// What the job is.
+    pub arguments: &'a JobSettings,
     /// The machine with its settings.
     pub machine: &'a Machine,
     /// Its plugins.

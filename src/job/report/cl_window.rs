@@ -12,10 +12,10 @@ use post_readback::course::{Course, Curve, Item, Piece};
 
 use super::cl_points::{self, Points};
 use super::parts::Parts;
-use crate::arguments::JobArguments;
 use crate::failure::Failure;
 use crate::files::ClSource;
 use crate::job::read_back;
+use crate::job::settings::JobSettings;
 
 /// Chords of a curve at most.
 const MOST_CHORDS: f64 = 4096.0;
@@ -62,7 +62,7 @@ impl ClWindow {
     /// # Errors
     /// The file cannot be read, or there is no place for its table.
     pub fn of(
-        arguments: &JobArguments,
+        arguments: &JobSettings,
         machine: &Machine,
         source: &ClSource,
     ) -> Result<Self, Failure> {

@@ -16,14 +16,21 @@ use crate::session::Session;
 
 /// What is known of a program that is made.
 pub struct Made<'a> {
+    /// The run.
     pub session: &'a Session,
+    /// The machine with its settings.
     pub machine: &'a Machine,
     /// What the CL file is called.
     pub cl: String,
+    /// Where the program stands.
     pub program: &'a PathArg,
+    /// What making it came to.
     pub report: &'a Report,
+    /// What reading it back found.
     pub verification: Option<&'a Verification>,
+    /// What is predicted of it.
     pub prediction: Option<&'a Prediction>,
+    /// What the user should know.
     pub findings: &'a [Diagnostic],
     /// What was done: `post`, `plan`, `convert`.
     pub job: &'static str,

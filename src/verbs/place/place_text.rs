@@ -56,7 +56,7 @@ pub fn text(arguments: &PlaceArguments, found: &Found) -> String {
 fn seat_text(arguments: &PlaceArguments, found: &Found, trial: &Trial) -> String {
     let mount = format!("--mount {}", mount_text(&trial.seat.mount));
     let turn = trial.seat.turn;
-    if turn == 0.0 && found.machine.turn == 0.0 && arguments.job.turn.is_none() {
+    if turn == 0.0 && found.machine.turn == 0.0 && arguments.job.settings().over.turn.is_none() {
         mount
     } else {
         format!("{mount} --turn {turn}")

@@ -12,6 +12,7 @@ use post_posting::report::Report;
 use super::{Least, PlaceArguments};
 use crate::failure::Failure;
 use crate::job::DryRun;
+use crate::job::settings::JobSettings;
 use crate::session::Session;
 
 /// Where a part sits.
@@ -64,9 +65,13 @@ pub struct Trials<'a> {
 }
 
 impl<'a> Trials<'a> {
-    pub fn new(session: &'a Session, arguments: &'a PlaceArguments) -> Result<Self, Failure> {
+    pub fn new(
+        session: &'a Session,
+        job: &'a JobSettings,
+        arguments: &'a PlaceArguments,
+    ) -> Result<Self, Failure> {
         Ok(Self {
-            dry_run: DryRun::new(session, "place", "post", &arguments.job, false)?,
+            dry_run: DryRun::new(session, "place", "post", job, false)?,
             least: arguments.least,
             runs: 0,
             most: arguments.runs,

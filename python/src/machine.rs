@@ -7,7 +7,7 @@ use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2,
     PyUntypedArrayMethods,
 };
-use post_command::library::{
+use post_job::library::{
     Deviations, LoadedMachine, MachineSettings, MachineTold, Solutions, Wanted,
 };
 use post_machine::description::Setting;

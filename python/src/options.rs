@@ -1,6 +1,6 @@
 //! Options as Python passes them: values by name.
 
-use post_command::library::{OptionTold, Value};
+use post_job::library::{OptionTold, Value};
 use pyo3::prelude::*;
 
 /// A value of an option.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 
 use numpy::{IntoPyArray, PyArray1};
-use post_command::library::{Refused, Stop, StudyJobs, StudyPart, Values};
+use post_job::library::{Refused, Stop, StudyJobs, StudyPart, Values};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 

@@ -7,8 +7,8 @@ use clap::builder::{EnumValueParser, PathBufValueParser, TypedValueParser};
 use post_machine::description::{OutputUnits, Setting, Tcp};
 use post_posting::program::ToldSpindle;
 
-use crate::files::PathArg;
-use crate::job::settings::values::{self, Value};
+use post_job::files::PathArg;
+use post_job::settings::values::{self, Value};
 
 /// `--units` of a machine.
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -7,10 +7,10 @@ mod flags;
 
 use clap::Args;
 
-use crate::files::PathArg;
-use crate::job::settings::{JobSettings, MachineSettings, ProgramSettings, ReadingSettings};
 use flag_values::file;
 pub use flags::Flags;
+use post_job::files::PathArg;
+use post_job::settings::{JobSettings, MachineSettings, ProgramSettings, ReadingSettings};
 
 /// A CL file, how it is read, and the machine.
 #[derive(Debug, Args)]

@@ -9,10 +9,10 @@ use post_posting::MOST_FAULTS;
 use post_posting::program::limits::MOST_WORDS;
 
 use crate::arguments::flag_values::file;
-use crate::failure::Failure;
-use crate::files::{ClInput, FileFault, PathArg};
-use crate::session::Session;
 use crate::terminal::print;
+use post_job::failure::Failure;
+use post_job::files::{ClInput, FileFault, PathArg};
+use post_job::session::Session;
 
 /// Prints every word of a CL file: how often, and what becomes of it; without a file every word that is known.
 ///

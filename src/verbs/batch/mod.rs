@@ -12,13 +12,13 @@ use post_machine::diagnostic::Diagnostic;
 
 use crate::arguments::Flags;
 use crate::arguments::flag_values::file;
-use crate::failure::Failure;
-use crate::files::{self, AtomicFile, FileFault, PathArg, Role};
-use crate::job::batch::{self, Grid, JobLine, Journal, Shard, Study, Table, Written};
-use crate::job::settings::{ReadingSettings, StudySettings};
-use crate::session::Session;
 use crate::terminal::{self, JobsProgress};
 use map_picture::Map;
+use post_job::batch::{self, Grid, JobLine, Journal, Shard, Study, Table, Written};
+use post_job::failure::Failure;
+use post_job::files::{self, AtomicFile, FileFault, PathArg, Role};
+use post_job::session::Session;
+use post_job::settings::{ReadingSettings, StudySettings};
 
 const RESULTS: Role = Role { what: "table of results", remedy: "name another file with -o" };
 

@@ -13,11 +13,11 @@ use post_machine::diagnostic::Diagnostic;
 
 use crate::arguments::flag_values;
 use crate::arguments::flag_values::file;
-use crate::failure::Failure;
-use crate::files::{self, PathArg, Role};
-use crate::job::{self, machine_files, other_dialect, plugin_finder, report, unused_options};
-use crate::session::Session;
 use crate::terminal::print;
+use post_job::failure::Failure;
+use post_job::files::{self, PathArg, Role};
+use post_job::session::Session;
+use post_job::{self as job, machine_files, other_dialect, plugin_finder, report, unused_options};
 
 /// Prints what was derived from a machine file: chain, class, signs, reach, travel, solutions.
 ///

@@ -18,20 +18,20 @@ use crate::arguments::flag_values::file;
 use crate::arguments::flag_values::{
     TcpWord, feed, length, point, positive, setting, spindle, word,
 };
-use crate::failure::Failure;
-use crate::files::{AtomicFile, ClSource, PathArg, Role};
-use crate::job::nc_program::{self, NcControl};
-use crate::job::nc_to_cl::{self, Tools};
-use crate::job::one_program::{Beside, OneProgram};
-use crate::job::read_back::{self, Against, Held, Reading};
-use crate::job::report::{self, BlockRows, ClWindow, Made};
-use crate::job::settings::{
+use crate::terminal;
+use post_job::failure::Failure;
+use post_job::files::{AtomicFile, ClSource, PathArg, Role};
+use post_job::nc_program::{self, NcControl};
+use post_job::nc_to_cl::{self, Tools};
+use post_job::one_program::{Beside, OneProgram};
+use post_job::read_back::{self, Against, Held, Reading};
+use post_job::report::{self, BlockRows, ClWindow, Made};
+use post_job::session::Session;
+use post_job::settings::{
     JobSettings, MachineSettings, ProgramSettings, ReadingSettings, ReportSettings,
 };
-use crate::job::text::{clock, number, table};
-use crate::job::{self, plugin_finder};
-use crate::session::Session;
-use crate::terminal;
+use post_job::text::{clock, number, table};
+use post_job::{self as job, plugin_finder};
 
 /// Moves an NC program to another machine.
 ///

@@ -13,13 +13,13 @@ use post_readback::diff::{Rules, Unread, compare};
 
 use crate::arguments::flag_values::file;
 use crate::arguments::{Flags, ProgramArguments, flag_values};
-use crate::failure::Failure;
-use crate::files::{self, AtomicFile, FileFault, PathArg, Role};
-use crate::job::nc_program::{self, NcControl};
-use crate::job::settings::{ProgramSettings, ReportSettings};
-use crate::session::Session;
 use crate::terminal;
 use along::Along;
+use post_job::failure::Failure;
+use post_job::files::{self, AtomicFile, FileFault, PathArg, Role};
+use post_job::nc_program::{self, NcControl};
+use post_job::session::Session;
+use post_job::settings::{ProgramSettings, ReportSettings};
 
 /// Compares what two NC programs make the machine do, not their texts.
 ///

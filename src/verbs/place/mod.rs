@@ -10,11 +10,11 @@ use clap::{Args, ValueEnum};
 use crate::arguments::JobArguments;
 use crate::arguments::flag_values::file;
 use crate::arguments::flag_values::{not_negative, positive};
-use crate::failure::Failure;
-use crate::files::{self, PathArg, Role};
-use crate::job;
-use crate::session::Session;
 use crate::terminal;
+use post_job as job;
+use post_job::failure::Failure;
+use post_job::files::{self, PathArg, Role};
+use post_job::session::Session;
 use search::Search;
 use trial::Trials;
 

@@ -8,7 +8,7 @@ use post_posting::report::AxisRange;
 use super::search::{Found, mount_text};
 use super::trial::Trial;
 use super::{Least, PlaceArguments};
-use crate::job::text::{clock, number, table as columns};
+use post_job::text::{clock, number, table as columns};
 
 /// Flags of this verb, which posting does not take, and those that the answer takes the place of: each with whether its
 /// value may stand in a word of its own.

@@ -10,10 +10,10 @@ use post_posting::MountBounds;
 use post_posting::report::Report;
 
 use super::{Least, PlaceArguments};
-use crate::failure::Failure;
-use crate::job::DryRun;
-use crate::job::settings::JobSettings;
-use crate::session::Session;
+use post_job::DryRun;
+use post_job::failure::Failure;
+use post_job::session::Session;
+use post_job::settings::JobSettings;
 
 /// Where a part sits.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,16 +10,16 @@ use post_machine::diagnostic::{Diagnostic, Severity};
 
 use crate::arguments::flag_values::file;
 use crate::arguments::{Flags, JobArguments};
-use crate::failure::Failure;
-use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
-use crate::job::making::{self, Part, ProgramMaker, ProgramOutcome, Wanted};
-use crate::job::predict::Prediction;
-use crate::job::settings::{MakingSettings, ReportSettings};
-use crate::job::summary::{self, Told};
-use crate::job::{compensate, plan_rounds, plugin_finder, predict};
-use crate::session::Session;
 use crate::terminal;
 use parts::Split;
+use post_job::failure::Failure;
+use post_job::files::{self, AtomicFile, ClSource, PathArg, Role};
+use post_job::making::{self, Part, ProgramMaker, ProgramOutcome, Wanted};
+use post_job::predict::Prediction;
+use post_job::session::Session;
+use post_job::settings::{MakingSettings, ReportSettings};
+use post_job::summary::{self, Told};
+use post_job::{compensate, plan_rounds, plugin_finder, predict};
 use shown::ShownArguments;
 
 const SETUP_SHEET: Role =

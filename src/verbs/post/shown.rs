@@ -6,12 +6,12 @@ use post_posting::plan::{PlanWatch, PlannedPoint};
 
 use super::parts::{self, Split};
 use crate::arguments::flag_values::file;
-use crate::failure::Failure;
-use crate::files::{AtomicFile, FileFault, JsonRows, OwnFolder, PathArg, Role};
-use crate::job::plan::map::{LimitMap, MapRow};
-use crate::job::plan::pictures;
-use crate::job::plan::posted::{Along, Limited, MARK};
-use crate::session::Session;
+use post_job::failure::Failure;
+use post_job::files::{AtomicFile, FileFault, JsonRows, OwnFolder, PathArg, Role};
+use post_job::plan::map::{LimitMap, MapRow};
+use post_job::plan::pictures;
+use post_job::plan::posted::{Along, Limited, MARK};
+use post_job::session::Session;
 
 const PICTURES: Role = Role { what: "plan", remedy: "name another folder with --plan-pictures" };
 

@@ -4,14 +4,14 @@ use clap::Args;
 
 use crate::arguments::flag_values::file;
 use crate::arguments::flag_values::positive;
-use crate::failure::Failure;
-use crate::files::PathArg;
-use crate::job::nc_program;
-use crate::job::predict::measured::{
+use post_job::failure::Failure;
+use post_job::files::PathArg;
+use post_job::nc_program;
+use post_job::predict::measured::{
     self, AxisFitted, ColumnNames, Log, LogForm, LogUnits, LogZeros, Overlay, column_names,
     log_units, log_zeros,
 };
-use crate::session::Session;
+use post_job::session::Session;
 use post_machine::description::Machine;
 
 /// A recorded log, and how it is written.

@@ -17,18 +17,18 @@ use post_readback::interpret::Limits;
 use crate::arguments::flag_values;
 use crate::arguments::flag_values::file;
 use crate::arguments::{Flags, JobFlags};
-use crate::failure::Failure;
-use crate::files::{self, AtomicFile, OwnFolder, PathArg, Role};
-use crate::job::predict::measured::{MeasuredPoint, Overlay};
-use crate::job::predict::{self, Against, PredictWatch, Predicted, Sample};
-use crate::job::report::{Besides, ClWindow, MotionRows, PredictedLines};
-use crate::job::settings::ReportSettings;
-use crate::job::{self, nc_program, plugin_finder};
-use crate::session::Session;
 use crate::terminal;
 use measured_arguments::MeasuredArguments;
 use measured_pictures::MeasuredRoom;
 use pictures::Rooms;
+use post_job::failure::Failure;
+use post_job::files::{self, AtomicFile, OwnFolder, PathArg, Role};
+use post_job::predict::measured::{MeasuredPoint, Overlay};
+use post_job::predict::{self, Against, PredictWatch, Predicted, Sample};
+use post_job::report::{Besides, ClWindow, MotionRows, PredictedLines};
+use post_job::session::Session;
+use post_job::settings::ReportSettings;
+use post_job::{self as job, nc_program, plugin_finder};
 use set_points_csv::SetPointsCsv;
 
 /// Predicts what an NC program does on its machine: cycle time, true feed, and how far the tool strays.
@@ -56,10 +56,6 @@ pub struct PredictArguments {
     /// The machine: a TOML file, or the name of one in a machine folder or built in (`post machines`).
     #[arg(short, long, value_name = "MACHINE")]
     machine: String,
-
-    /// The CL file that the program was made from: how far the tool strays from its path.
-    #[arg(long, value_name = "CL-FILE", value_parser = file())]
-    against: Option<PathArg>,
 
     #[command(flatten)]
     job: JobFlags,
@@ -92,6 +88,10 @@ pub struct PredictArguments {
 
     #[command(flatten)]
     report: Flags<ReportSettings>,
+
+    /// The CL file that the program was made from: how far the tool strays from its path.
+    #[arg(long, value_name = "CL-FILE", value_parser = file())]
+    against: Option<PathArg>,
 
     #[command(flatten)]
     measured: MeasuredArguments,

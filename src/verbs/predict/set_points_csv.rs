@@ -6,8 +6,8 @@ use post_machine::axis_words;
 use post_machine::description::Machine;
 use post_plugin::fixed;
 
-use crate::files::{AtomicFile, FileFault};
-use crate::job::predict::Sample;
+use post_job::files::{AtomicFile, FileFault};
+use post_job::predict::Sample;
 
 /// So many bytes of rows are written at once.
 const BUFFER: usize = 1 << 16;

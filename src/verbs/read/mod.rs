@@ -15,14 +15,14 @@ use post_readback::{FedRapids, MOST_FAULTS};
 
 use crate::arguments::ProgramArguments;
 use crate::arguments::flag_values::file;
-use crate::failure::Failure;
-use crate::files::{AtomicFile, PathArg, Role};
-use crate::job::nc_program::{self, NcControl};
-use crate::job::nc_to_cl::{self, Tools};
-use crate::session::Session;
 use crate::terminal;
 use beyond_travel::BeyondTravel;
 use motions_csv::MotionsCsv;
+use post_job::failure::Failure;
+use post_job::files::{AtomicFile, PathArg, Role};
+use post_job::nc_program::{self, NcControl};
+use post_job::nc_to_cl::{self, Tools};
+use post_job::session::Session;
 use survey::Survey;
 
 /// Reads an NC program back: what it makes the machine do, block by block.

@@ -10,7 +10,7 @@ use post_machine::description::Machine;
 use post_plugin::fixed;
 use post_readback::{Done, Motion, MotionKind, Spindle, Told, Way};
 
-use crate::files::{AtomicFile, FileFault};
+use post_job::files::{AtomicFile, FileFault};
 
 /// So many bytes of rows are written at once.
 const BUFFER: usize = 1 << 16;

@@ -11,14 +11,14 @@ use post_readback::verify::BlockReport;
 use crate::arguments::flag_values::file;
 use crate::arguments::flag_values::positive;
 use crate::arguments::{Flags, JobFlags};
-use crate::failure::Failure;
-use crate::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
-use crate::job::read_back::{self, Reading, VerifyWatch};
-use crate::job::report::{Besides, ClWindow, MotionRows};
-use crate::job::settings::ReportSettings;
-use crate::job::{self, nc_program, plugin_finder};
-use crate::session::Session;
 use crate::terminal;
+use post_job::failure::Failure;
+use post_job::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
+use post_job::read_back::{self, Reading, VerifyWatch};
+use post_job::report::{Besides, ClWindow, MotionRows};
+use post_job::session::Session;
+use post_job::settings::ReportSettings;
+use post_job::{self as job, nc_program, plugin_finder};
 
 /// Holds an NC program against a CL file: does the machine do what was asked?
 ///
@@ -45,10 +45,6 @@ pub struct VerifyArguments {
     /// The machine: a TOML file, or the name of one in a machine folder or built in (`post machines`).
     #[arg(short, long, value_name = "MACHINE")]
     machine: String,
-
-    /// The CL file, `-` for standard input.
-    #[arg(long, value_name = "CL-FILE", value_parser = file())]
-    against: PathArg,
 
     #[command(flatten)]
     job: JobFlags,
@@ -97,6 +93,10 @@ pub struct VerifyArguments {
     /// No table, messages alone.
     #[arg(short, long)]
     quiet: bool,
+
+    /// The CL file, `-` for standard input.
+    #[arg(long, value_name = "CL-FILE", value_parser = file())]
+    against: PathArg,
 }
 
 /// What need not be compared.

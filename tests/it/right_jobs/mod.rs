@@ -11,7 +11,7 @@ use std::fs;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use post_command::library::{LoadedMachine, MachineSettings, MachineTold, OptionTold, Stop, Value};
+use post_job::library::{LoadedMachine, MachineSettings, MachineTold, OptionTold, Stop, Value};
 use post_machine::description::Setting;
 use post_testkit::Rng;
 

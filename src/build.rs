@@ -1,5 +1,4 @@
-//! Lists files for the command to carry: the machines of the folder `machines`, where the file name is the name, and
-//! the sources that `post plugin new` writes beside a dialect.
+//! Lists the sources that `post plugin new` writes beside a dialect, for the command to carry.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -13,47 +12,7 @@ fn main() -> io::Result<()> {
     let root = env::var("CARGO_MANIFEST_DIR").map_err(io::Error::other)?;
     let out = env::var("OUT_DIR").map_err(io::Error::other)?;
     let (root, out) = (Path::new(&root), Path::new(&out));
-    println!("cargo::rustc-env=POST_SOURCES={:016x}", hash_of_sources(root)?);
-    fs::write(out.join("machines.rs"), machines(&root.join("machines"))?)?;
     fs::write(out.join("sources.rs"), sources(root)?)
-}
-
-/// Changes with whatever `post` is made of (FNV-1a), so that a journal of other sources is not taken for one of these.
-fn hash_of_sources(root: &Path) -> io::Result<u64> {
-    let mut paths = files_below(&root.join("src"))?;
-    for room in ["core", "plugins", "grammar"] {
-        let room = root.join(room);
-        // In a package of the command by itself they are not there: then its version says what they are.
-        if !room.is_dir() {
-            continue;
-        }
-        let mut crates = files_in(&room)?;
-        crates.push(room);
-        for sources in crates.iter().flat_map(|one| [one.join("src"), one.join("page")]) {
-            if sources.is_dir() {
-                paths.extend(files_below(&sources)?);
-            }
-        }
-    }
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    for path in paths {
-        for byte in fs::read(path)? {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-    Ok(hash)
-}
-
-fn machines(folder: &Path) -> io::Result<String> {
-    let mut paths = files_in(folder)?;
-    paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
-    let mut list = String::from("&[\n");
-    for path in paths {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        row(&mut list, &name, &path)?;
-    }
-    list.push_str("]\n");
-    Ok(list)
 }
 
 /// Name and files of each crate. In a package of the command by itself they are not there: then they are published.

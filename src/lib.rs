@@ -1,20 +1,15 @@
-//! What the command `post` does. The binary runs it; the Python package does the same jobs through it.
+//! What the command `post` does. The binary runs it.
 
 mod arguments;
-mod editor;
 mod failure;
-mod files;
-mod job;
-pub mod library;
-mod session;
 mod terminal;
 mod verbs;
 
 use clap::Parser;
 
-use failure::Failure;
-use job::plugin_finder;
-use session::Session;
+use failure::CommandFault;
+use post_job::session::Session;
+use post_job::{files, plugin_finder};
 use terminal::Terminal;
 use verbs::CommandLine;
 
@@ -22,40 +17,41 @@ use verbs::CommandLine;
 #[doc(hidden)]
 pub mod shared {
     pub use crate::arguments::JobArguments;
-    pub use crate::failure::Failure;
-    pub use crate::files::{AtomicFile, FileFault, OwnFolder, PathArg, Role, chart, json};
-    pub use crate::job::nc_program::open_as;
-    pub use crate::job::text::{number, table};
-    pub use crate::job::{DryRun, machine_files, plugin_finder, say_what_is_left};
+    pub use crate::failure::CommandFault;
     pub use crate::run_to_end;
-    pub use crate::session::Session;
     pub use crate::terminal::{print, tell};
+    pub use post_job::failure::Failure;
+    pub use post_job::files::{AtomicFile, FileFault, OwnFolder, PathArg, Role, chart, json};
+    pub use post_job::nc_program::open_as;
+    pub use post_job::session::Session;
+    pub use post_job::text::{number, table};
+    pub use post_job::{DryRun, machine_files, plugin_finder, say_what_is_left};
 
     /// Values of flags.
     pub mod flag_values {
         pub use crate::arguments::flag_values::{
-            feed, finite, length, not_negative, period, point, positive, setting, word,
+            feed, file, finite, length, not_negative, period, point, positive, setting, word,
         };
     }
 
     /// The plan of a program as it is shown.
     pub mod plan {
-        pub use crate::job::plan::{drawn, gauges, keep, pictures, rooms, tally};
+        pub use post_job::plan::{drawn, gauges, keep, pictures, rooms, tally};
     }
 }
 
 /// Runs the command with the arguments of the process, to its end.
 pub fn run() -> ! {
     run_to_end(|session| match verbs::moved() {
-        Some(fault) => Err(Failure::Usage(fault)),
+        Some(fault) => Err(CommandFault::Usage(fault)),
         None => CommandLine::try_parse()
-            .map_err(|fault| Failure::Usage(verbs::misspelt().unwrap_or(fault)))
+            .map_err(|fault| CommandFault::Usage(verbs::misspelt().unwrap_or(fault)))
             .and_then(|line| line.run(session)),
     })
 }
 
 /// Does `job`, tells why it failed, and ends the process.
-pub fn run_to_end(job: impl FnOnce(&Session) -> Result<(), Failure>) -> ! {
+pub fn run_to_end(job: impl FnOnce(&Session) -> Result<(), CommandFault>) -> ! {
     files::delete_on_signals();
     let session = Session::new(Terminal);
     // A plugin that ends the process would else look like a command that has done its work.
@@ -64,10 +60,10 @@ pub fn run_to_end(job: impl FnOnce(&Session) -> Result<(), Failure>) -> ! {
         files::delete_temporary_files();
         told.findings(&[plugin_finder::diagnostic(fault, &[], None)]);
     });
-    let done = job(&session).and_then(|()| terminal::all_printed(&session));
-    let code = done.as_ref().map_or_else(Failure::exit_code, |()| 0);
-    if let Err(failure) = done {
-        terminal::explain(&session, failure);
+    let done = job(&session).and_then(|()| Ok(terminal::all_printed(&session)?));
+    let code = done.as_ref().map_or_else(CommandFault::exit_code, |()| 0);
+    if let Err(fault) = done {
+        terminal::explain(&session, fault);
     }
     post_host::leave(code)
 }

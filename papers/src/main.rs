@@ -6,7 +6,7 @@ mod plan;
 mod study;
 
 use clap::{Parser, Subcommand};
-use post_command::shared::{Failure, run_to_end};
+use post_command::shared::{CommandFault, run_to_end};
 
 use plan::PlanArguments;
 use study::StudyArguments;
@@ -37,8 +37,11 @@ enum Verb {
 }
 
 fn main() {
-    run_to_end(|session| match CommandLine::try_parse().map_err(Failure::Usage)?.verb {
-        Verb::Study(arguments) => study::run(session, &arguments),
-        Verb::Plan(arguments) => plan::run(session, &arguments),
+    run_to_end(|session| {
+        match CommandLine::try_parse().map_err(CommandFault::Usage)?.verb {
+            Verb::Study(arguments) => study::run(session, &arguments)?,
+            Verb::Plan(arguments) => plan::run(session, &arguments)?,
+        }
+        Ok(())
     })
 }

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use post_machine::description::Setting;
 
 use post_command::shared::flag_values::{
-    feed, length, not_negative, period, point, positive, setting, word,
+    feed, file, length, not_negative, period, point, positive, setting, word,
 };
 use post_command::shared::plan::pictures;
 use post_command::shared::{
@@ -45,7 +45,7 @@ Exit codes: 0 planned; 1 something could not be read, or no feed keeps the limit
 line is wrong.")]
 pub struct PlanArguments {
     /// The curve file, `-` for standard input.
-    #[arg(value_name = "CURVE", value_parser = PathArg::parser())]
+    #[arg(value_name = "CURVE", value_parser = file())]
     curve: PathArg,
 
     /// What plans.
@@ -63,12 +63,12 @@ pub struct PlanArguments {
 
     /// Writes the plan: a table of its points as CSV where the name ends in .csv; else JSON, with all that was found, the
     /// points and the feed as a spline along the path. `-` is standard output, JSON.
-    #[arg(short, long, value_name = "FILE", value_parser = PathArg::parser())]
+    #[arg(short, long, value_name = "FILE", value_parser = file())]
     output: Option<PathArg>,
 
     /// Draws into this folder, as SVG: feed, velocity, acceleration and jerk of the axes, chord error and contour error
     /// along the path, limits drawn in; and writes the plan beside them.
-    #[arg(long, value_name = "FOLDER", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FOLDER", value_parser = file())]
     pictures: Option<PathArg>,
 
     /// No table, messages alone.

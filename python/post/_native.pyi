@@ -5,6 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _Floats = NDArray[np.float64]
+_Option = bool | int | float | str | list[str]
 _Told = tuple[str, str, str, str | None, str | None, int | None, str | None]
 
 __all__ = ["Job", "Machine", "Study", "fail", "run_part"]
@@ -60,12 +61,16 @@ class Machine:
     ) -> _Floats: ...
     def deviation(self, q0: _Floats, q1: _Floats, shares: _Floats) -> tuple[_Floats, _Floats]: ...
     def post(
-        self, input: str, options: list[tuple[str, str | None]], keep_blocks: bool
+        self,
+        input: str,
+        output: str | None,
+        options: list[tuple[str, _Option]],
+        keep_blocks: bool,
     ) -> Job: ...
 
 @final
 class Study:
-    def __new__(cls, lines: str, flags: list[str], journal: str | None) -> Study: ...
+    def __new__(cls, lines: str, options: list[tuple[str, _Option]], journal: str | None) -> Study: ...
     def count(self) -> int: ...
     def open(self) -> list[int]: ...
     def lines(self, numbers: list[int]) -> list[tuple[str, str]]: ...
@@ -79,7 +84,7 @@ class Study:
 
 def run_part(
     lines: str,
-    flags: list[str],
+    options: list[tuple[str, _Option]],
     files: list[tuple[str, bytes]],
     machines: str,
     threads: int | None,

@@ -189,10 +189,8 @@ class Machine:
 
         Raises :class:`PostError` where the command would refuse.
         """
-        told = [pair for name, value in options.items() for pair in flags(name, value)]
-        if output is not None:
-            told.append(("output", os.fspath(output)))
-        native = self._native.post(os.fspath(path), told, blocks)
+        where = None if output is None else os.fspath(output)
+        native = self._native.post(os.fspath(path), where, told(options), blocks)
 
         def planned(rounds: int | None) -> Job:
             more: Options = {**options, "plan": True, "plan_rounds": rounds}
@@ -251,15 +249,19 @@ def written(value: Value) -> str:
     return f"[{', '.join(written(item) for item in value)}]"
 
 
-def flags(name: str, value: object) -> list[tuple[str, str | None]]:
-    """An option as flags of the command: a list is the flag so often, and what is none or false is left out."""
-    flag = name.replace("_", "-")
-    if value is None or value is False:
-        return []
-    if value is True:
-        return [(flag, None)]
-    if isinstance(value, (str, int, float, np.integer, np.floating)):
-        return [(flag, written(value))]
+def told(options: Mapping[str, object]) -> list[tuple[str, bool | int | float | str | list[str]]]:
+    """Options by their names, as values of Python's own; what is none or false is left out."""
+    return [
+        (name, plain(name, value)) for name, value in options.items() if value is not None and value is not False
+    ]
+
+
+def plain(name: str, value: object) -> bool | int | float | str | list[str]:
+    """A value of an option: numbers of NumPy are numbers, and what can be gone over is a list of texts."""
+    if isinstance(value, (np.integer, np.floating)):
+        return value.item()
+    if isinstance(value, (bool, str, int, float)):
+        return value
     if isinstance(value, Iterable):
-        return [(flag, str(item)) for item in value]
+        return [str(item) for item in value]
     raise TypeError(f"{name} cannot be {value!r}")

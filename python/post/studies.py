@@ -15,11 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from post import _native
-from post.machine import Path, written
+from post.machine import Path, told, written
 from post.refusal import Diagnostic, PostError
 
 if TYPE_CHECKING:
     import pyarrow
+
+Options = list[tuple[str, bool | int | float | str | list[str]]]
+"""Options of all jobs, by their names."""
 
 Progress = Callable[[int, int, int], None]
 """Is told how many jobs are done, of how many, and how many of them are not written."""
@@ -137,39 +140,36 @@ def study(
             message = f"no machine is named for {job['file']}"
             raise PostError([Diagnostic("error", "machine", message, "machines names some for all jobs")])
     lines = "".join(json.dumps(job) + "\n" for job in told_jobs)
-    flags: list[str] = []
-    for name, asked in (
-        ("verify", verify),
-        ("predict", predict),
-        ("plan", plan),
-        ("trust-model", trust_model),
-        ("timings", timings),
-        ("tool-from-cutter", tool_from_cutter),
-    ):
-        flags += [f"--{name}"] if asked else []
-    for name, value in (
-        ("units", units),
-        ("msys", msys),
-        ("unknown", unknown),
-        ("tool", tool),
-        ("spindle", spindle),
-        ("feed", feed),
-    ):
-        flags += [f"--{name}={written(value)}"] if value is not None else []
-    flags += [f"--allow={word}" for word in allow]
-    flags += [f"--machines={os.fspath(folder)}" for folder in machine_folders]
-    flags += [f"--plugins={os.fspath(folder)}" for folder in plugins]
-    native = _native.Study(lines, flags, None if resume is None else os.fspath(resume))
-    told = _Told(native, progress)
+    options = told(
+        {
+            "verify": verify,
+            "predict": predict,
+            "plan": plan,
+            "trust_model": trust_model,
+            "timings": timings,
+            "tool_from_cutter": tool_from_cutter,
+            "units": units,
+            "msys": msys,
+            "unknown": unknown,
+            "tool": tool,
+            "spindle": spindle,
+            "feed": feed,
+            "allow": allow,
+            "machines": [os.fspath(folder) for folder in machine_folders],
+            "plugins": [os.fspath(folder) for folder in plugins],
+        }
+    )
+    native = _native.Study(lines, options, None if resume is None else os.fspath(resume))
+    shown = _Told(native, progress)
     try:
         if engine == "threads":
-            native.run(workers, told)
+            native.run(workers, shown)
         elif engine == "ray":
-            _on_ray(native, flags, workers, told)
+            _on_ray(native, options, workers, shown)
         else:
             raise ValueError(f"engine is {engine!r}, neither 'threads' nor 'ray'")
     finally:
-        told.end()
+        shown.end()
     return Study(native)
 
 
@@ -264,14 +264,14 @@ class _Told:
             print(f"\r{'':60}\r", end="", file=sys.stderr, flush=True)
 
 
-def _part(lines: str, flags: list[str], machines: str, names: list[str], *files: bytes) -> tuple[float, list[str]]:
+def _part(lines: str, options: Options, machines: str, names: list[str], *files: bytes) -> tuple[float, list[str]]:
     """What a worker of Ray does: some jobs, and how long they took."""
     begun = time.perf_counter()
-    outcomes = _native.run_part(lines, flags, list(zip(names, files)), machines, 1)
+    outcomes = _native.run_part(lines, options, list(zip(names, files)), machines, 1)
     return time.perf_counter() - begun, outcomes
 
 
-def _on_ray(native: _native.Study, flags: list[str], workers: int | None, told: _Told) -> None:
+def _on_ray(native: _native.Study, options: Options, workers: int | None, told: _Told) -> None:
     """Hands the jobs out to a cluster, in groups that take long enough, until all are back."""
     import ray
 
@@ -292,7 +292,7 @@ def _on_ray(native: _native.Study, flags: list[str], workers: int | None, told: 
                 # Towards the end smaller groups, so that none waits for the last.
                 fair = max(1, len(waiting) // at_once)
                 group = [waiting.popleft() for _ in range(min(size, fair, len(waiting)))]
-                flying[_sent(part, machines, flags, contents, group)] = group
+                flying[_sent(part, machines, options, contents, group)] = group
             ready, _ = ray.wait(list(flying), timeout=0.2)
             for task in ready:
                 group = flying.pop(task)
@@ -304,7 +304,7 @@ def _on_ray(native: _native.Study, flags: list[str], workers: int | None, told: 
                 except ray.exceptions.RayError as fault:
                     # The process ended under its jobs: one of them did it.
                     if len(group) > 1:
-                        flying.update((_sent(part, machines, flags, contents, [job]), [job]) for job in group)
+                        flying.update((_sent(part, machines, options, contents, [job]), [job]) for job in group)
                         continue
                     message = f"the process that did this job ended: {type(fault).__name__}"
                     native.lost(numbers[0], "worker", message)
@@ -320,7 +320,7 @@ def _on_ray(native: _native.Study, flags: list[str], workers: int | None, told: 
             ray.cancel(task, force=True)
 
 
-def _sent(part: Any, machines: Any, flags: list[str], contents: dict[str, Any], group: list[tuple[int, str, str]]) -> Any:
+def _sent(part: Any, machines: Any, options: Options, contents: dict[str, Any], group: list[tuple[int, str, str]]) -> Any:
     """A task for a group of jobs; their CL files are in the object store, each once."""
     import ray
 
@@ -337,7 +337,7 @@ def _sent(part: Any, machines: Any, flags: list[str], contents: dict[str, Any], 
         if contents[name] is not None:
             there.append(name)
     lines = "".join(line + "\n" for _, _, line in group)
-    return part.remote(lines, flags, machines, there, *(contents[name] for name in there))
+    return part.remote(lines, options, machines, there, *(contents[name] for name in there))
 
 
 def _numbered(native: _native.Study) -> Iterable[tuple[int, tuple[str, str]]]:

@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use post_command::library::{Refused, Stop};
+use post_job::library::{Refused, Stop};
 use post_machine::diagnostic::Diagnostic;
 use pyo3::prelude::*;
 

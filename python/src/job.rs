@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1};
-use post_command::library::{Found, KINDS, Kind, MadeProgram, REASONS, ReportTold};
+use post_job::library::{Found, KINDS, Kind, MadeProgram, REASONS, ReportTold};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -4,6 +4,7 @@
 mod apart;
 mod job;
 mod machine;
+mod options;
 mod refusal;
 mod study;
 

@@ -7,11 +7,15 @@ use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2,
     PyUntypedArrayMethods,
 };
-use post_command::library::{Deviations, LoadedMachine, MachineTold, Solutions, Wanted};
+use post_job::library::{
+    Deviations, LoadedMachine, MachineSettings, MachineTold, Solutions, Wanted,
+};
+use post_machine::description::Setting;
 use pyo3::prelude::*;
 
 use crate::apart::apart;
 use crate::job::Job;
+use crate::options;
 
 /// A machine with its settings, a tool in it.
 #[pyclass(frozen, module = "post._native")]
@@ -45,7 +49,18 @@ impl Machine {
         machines: Vec<PathBuf>,
         plugins: Vec<PathBuf>,
     ) -> PyResult<Self> {
-        let told = MachineTold { name, set, mount, turn, tool_length, machines, plugins };
+        let set =
+            set.iter().map(|(key, value)| Setting::Written(format!("{key}={value}"))).collect();
+        let over = MachineSettings {
+            set,
+            mount,
+            turn,
+            tool_length,
+            machines,
+            plugins,
+            ..Default::default()
+        };
+        let told = MachineTold { name, over };
         let loaded = apart(py, |stop| LoadedMachine::load(stop, told))?;
         Ok(Self { loaded })
     }
@@ -138,10 +153,13 @@ impl Machine {
         &self,
         py: Python<'_>,
         input: PathBuf,
-        options: Vec<(String, Option<String>)>,
+        output: Option<PathBuf>,
+        options: Vec<(String, options::Given)>,
         keep_blocks: bool,
     ) -> PyResult<Job> {
-        let made = apart(py, |stop| self.loaded.post(stop, &input, &options, keep_blocks))?;
+        let options = options::told(options);
+        let output = output.as_deref();
+        let made = apart(py, |stop| self.loaded.post(stop, &input, output, &options, keep_blocks))?;
         Ok(Job { made })
     }
 

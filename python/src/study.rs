@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 
 use numpy::{IntoPyArray, PyArray1};
-use post_command::library::{Refused, Stop, StudyJobs, StudyPart, Values};
+use post_job::library::{Refused, Stop, StudyJobs, StudyPart, Values};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::apart::apart;
+use crate::options;
 
 /// Whether to go on is asked of Python no oftener than a user would see.
 struct Looks {
@@ -68,10 +69,11 @@ impl Study {
     fn new(
         py: Python<'_>,
         lines: &str,
-        flags: Vec<String>,
+        options: Vec<(String, options::Given)>,
         journal: Option<PathBuf>,
     ) -> PyResult<Self> {
-        let jobs = apart(py, |stop| StudyJobs::new(stop, lines, &flags, journal.as_deref()))?;
+        let options = options::told(options);
+        let jobs = apart(py, |stop| StudyJobs::new(stop, lines, &options, journal.as_deref()))?;
         Ok(Self { jobs: Mutex::new(jobs) })
     }
 
@@ -167,14 +169,15 @@ fn floats(py: Python<'_>, numbers: impl Iterator<Item = Option<f64>>) -> Bound<'
 pub fn run_part(
     py: Python<'_>,
     lines: &str,
-    flags: Vec<String>,
+    options: Vec<(String, options::Given)>,
     files: Vec<(String, Vec<u8>)>,
     machines: &str,
     threads: Option<NonZeroUsize>,
 ) -> PyResult<Vec<String>> {
     let mut looks = Looks { told: None, fault: None };
+    let options = options::told(options);
     let outcomes = apart(py, |stop| {
-        let part = StudyPart::new(stop, lines, &flags, files, machines)?;
+        let part = StudyPart::new(stop, lines, &options, files, machines)?;
         part.run(threads, &mut |done, refused| looks.look(done, refused))
     });
     looks.heard()?;

@@ -6,7 +6,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use post_grammar::text::escaped;
 use post_machine::diagnostic::{Diagnostic, Place, Severity};
 
-use crate::files::Texts;
+use post_job::files::Texts;
 
 /// Findings of one severity that are told; of the others how many there are.
 const MOST_TOLD: usize = 120;

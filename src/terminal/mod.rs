@@ -13,9 +13,10 @@ use post_machine::diagnostic::Diagnostic;
 pub use codes::{Code, CodeGroup, codes};
 pub use progress::JobsProgress;
 
-use crate::failure::Failure;
-use crate::files::{FileFault, Texts, standard};
-use crate::session::{Bar, Face, Session};
+use crate::failure::CommandFault;
+use post_job::failure::Failure;
+use post_job::files::{FileFault, Texts, standard};
+use post_job::session::{Bar, Face, Session};
 
 /// Lines of text in which names and texts from files, plugins and the command line cannot switch the terminal: what it
 /// would obey is written as an escape.
@@ -79,10 +80,10 @@ pub fn tell(text: &str) {
     let _ = stderr.flush();
 }
 
-/// Says why a verb failed.
-pub fn explain(session: &Session, failure: Failure) {
-    match failure {
-        Failure::Usage(error) => {
+/// Says why the command failed.
+pub fn explain(session: &Session, fault: CommandFault) {
+    match fault {
+        CommandFault::Usage(error) => {
             let plain = error.render().to_string();
             match printable(&plain) {
                 // Colours are the terminal's own here.
@@ -92,7 +93,7 @@ pub fn explain(session: &Session, failure: Failure) {
                 Cow::Owned(legible) => tell(&legible),
             }
         }
-        Failure::Different => {}
-        other => session.findings(&other.findings()),
+        CommandFault::Job(Failure::Different) => {}
+        CommandFault::Job(failure) => session.findings(&failure.findings()),
     }
 }

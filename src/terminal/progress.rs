@@ -4,10 +4,10 @@ use std::io::IsTerminal;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 
-use crate::session::Bar;
+use post_job::session::Bar;
 
 /// A bar over `bytes` of input; of unknown length, a running count.
-pub fn bytes(bytes: Option<u64>) -> impl Bar {
+pub fn bytes(bytes: Option<u64>) -> BytesProgress {
     let bar = match bytes {
         Some(bytes) => ProgressBar::new(bytes),
         None => ProgressBar::no_length(),
@@ -18,12 +18,15 @@ pub fn bytes(bytes: Option<u64>) -> impl Bar {
     if let (Some(_), Ok(style)) = (bytes, ProgressStyle::with_template(style)) {
         bar.set_style(style);
     }
-    bar
+    BytesProgress(bar)
 }
 
-impl Bar for ProgressBar {
+/// How many bytes are read.
+pub struct BytesProgress(ProgressBar);
+
+impl Bar for BytesProgress {
     fn set(&self, position: u64) {
-        self.set_position(position);
+        self.0.set_position(position);
     }
 }
 

@@ -3,9 +3,9 @@
 use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 
-use crate::failure::Failure;
-use crate::session::Session;
 use crate::terminal;
+use post_job::failure::Failure;
+use post_job::session::Session;
 
 /// Prints what a shell reads to complete the verbs and flags of post.
 #[derive(Debug, Args)]

@@ -4,9 +4,9 @@ use clap::Args;
 use clap::error::ErrorKind;
 use post_machine::diagnostic::nearest;
 
-use crate::failure::Failure;
-use crate::session::Session;
+use crate::failure::CommandFault;
 use crate::terminal::{Code, CodeGroup, codes, print};
+use post_job::session::Session;
 
 /// Explains the codes of messages: what is found, and what helps; without a code all of them
 #[derive(Debug, Args)]
@@ -16,7 +16,7 @@ pub struct ExplainArguments {
 }
 
 /// Prints what is known of a code.
-pub fn run(session: &Session, arguments: &ExplainArguments) -> Result<(), Failure> {
+pub fn run(session: &Session, arguments: &ExplainArguments) -> Result<(), CommandFault> {
     let wanted = arguments.code.as_deref().map(bare);
     let is_wanted = |code: &&Code| wanted.is_none_or(|wanted| wanted == code.name);
     let mut text = String::new();
@@ -53,7 +53,7 @@ fn tell(group: &CodeGroup, codes: &[&Code], text: &mut String) {
     }
 }
 
-fn unknown(code: &str) -> Failure {
+fn unknown(code: &str) -> CommandFault {
     let names = codes().into_iter().flat_map(|group| group.codes);
     let near = nearest(code, names.map(|code| code.name));
     let help = near.map_or_else(
@@ -61,5 +61,5 @@ fn unknown(code: &str) -> Failure {
         |near| format!("  tip: a similar code exists: '{near}'"),
     );
     let message = format!("no message has the code '{code}'\n\n{help}\n");
-    Failure::Usage(clap::Error::raw(ErrorKind::InvalidValue, message))
+    CommandFault::Usage(clap::Error::raw(ErrorKind::InvalidValue, message))
 }

@@ -6,11 +6,11 @@ use clap::Args;
 use post_machine::check::Class;
 use post_machine::description::Machine;
 
-use crate::failure::Failure;
-use crate::job;
-use crate::job::machine_files::{self, Listed};
-use crate::session::Session;
 use crate::terminal;
+use post_job as job;
+use post_job::failure::Failure;
+use post_job::machine_files::{self, Listed};
+use post_job::session::Session;
 
 /// Lists the machines that a bare name finds: class, axes, dialect and file.
 ///
@@ -37,7 +37,7 @@ pub fn run(session: &Session, arguments: &MachinesArguments) -> Result<(), Failu
     }
     let mut rows = vec![["name", "axes", "dialect", "from", "class"].map(str::to_owned)];
     rows.extend(machine_files::list(session, &arguments.machines)?.into_iter().map(row));
-    terminal::print(session, &crate::job::text::table(&rows, rows[0].len()));
+    terminal::print(session, &post_job::text::table(&rows, rows[0].len()));
     Ok(())
 }
 

@@ -8,10 +8,11 @@ use post_machine::diagnostic::{Diagnostic, unreadable};
 use post_posting::MOST_FAULTS;
 use post_posting::program::limits::MOST_WORDS;
 
-use crate::failure::Failure;
-use crate::files::{ClInput, FileFault, PathArg};
-use crate::session::Session;
+use crate::arguments::flag_values::file;
 use crate::terminal::print;
+use post_job::failure::Failure;
+use post_job::files::{ClInput, FileFault, PathArg};
+use post_job::session::Session;
 
 /// Prints every word of a CL file: how often, and what becomes of it; without a file every word that is known.
 ///
@@ -22,7 +23,7 @@ use crate::terminal::print;
 #[derive(Debug, Args)]
 pub struct WordsArguments {
     /// The CL file, `-` for standard input.
-    #[arg(value_parser = PathArg::parser())]
+    #[arg(value_parser = file())]
     file: Option<PathArg>,
 
     /// Only words that are refused or unknown.

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::arguments::flag_values::length;
-use crate::editor::{self, Options};
-use crate::failure::Failure;
-use crate::session::Session;
+use post_job::failure::Failure;
+use post_job::session::Session;
+use post_lsp::Options;
 
 /// Serves an editor: faults, completion and explanations in machine files, axis values in CL files and programs.
 ///
@@ -39,5 +39,5 @@ pub struct LspArguments {
 /// Serves.
 pub fn run(session: &Session, arguments: LspArguments) -> Result<(), Failure> {
     let LspArguments { machine, tool_length, machines, plugins, stdio: _ } = arguments;
-    editor::serve(session, Options { machine, tool_length, machines, plugins })
+    post_lsp::serve(session, Options { machine, tool_length, machines, plugins })
 }

@@ -6,10 +6,11 @@ use std::path::PathBuf;
 use clap::{Args, Command};
 use clap_mangen::Man;
 
-use crate::failure::Failure;
-use crate::files::{FileFault, PathArg, Role};
-use crate::session::Session;
-use crate::{files, terminal};
+use crate::terminal;
+use post_job::failure::Failure;
+use post_job::files;
+use post_job::files::{FileFault, PathArg, Role};
+use post_job::session::Session;
 
 /// What a page is to the files of a run.
 const PAGE: Role = Role { what: "manual page", remedy: "name another folder" };

@@ -24,11 +24,10 @@ mod view;
 use std::path::Path;
 
 use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{ArgMatches, Args, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use post_machine::diagnostic::nearest;
 
-use crate::failure::Failure;
-use crate::session::Session;
+use crate::failure::CommandFault;
 use batch::BatchArguments;
 use check::CheckArguments;
 use complete::CompletionsArguments;
@@ -43,6 +42,7 @@ use new::NewArguments;
 use place::PlaceArguments;
 use plugin::PluginArguments;
 use post::PostArguments;
+use post_job::session::Session;
 use predict::PredictArguments;
 use print_schema::SchemaArguments;
 use read::ReadArguments;
@@ -86,10 +86,38 @@ from standard output went away before its end.",
     max_term_width = 100
 )]
 pub struct CommandLine {
+    #[command(flatten)]
+    post: Nameless,
     #[command(subcommand)]
     verb: Option<Verb>,
-    #[command(flatten)]
-    post: PostArguments,
+}
+
+/// The arguments of the verb that has no name; none where there is a verb, whose arguments are others.
+#[derive(Debug)]
+struct Nameless(Option<PostArguments>);
+
+impl Args for Nameless {
+    fn augment_args(command: Command) -> Command {
+        PostArguments::augment_args(command)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        PostArguments::augment_args_for_update(command)
+    }
+}
+
+impl FromArgMatches for Nameless {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        match matches.subcommand_name() {
+            Some(_) => Ok(Self(None)),
+            None => PostArguments::from_arg_matches(matches).map(|post| Self(Some(post))),
+        }
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
 }
 
 #[derive(Debug, Subcommand)]
@@ -116,9 +144,9 @@ enum Verb {
 
 impl CommandLine {
     /// Does what the command line says.
-    pub fn run(self, session: &Session) -> Result<(), Failure> {
-        match self.verb {
-            None => post::run(session, &self.post),
+    pub fn run(self, session: &Session) -> Result<(), CommandFault> {
+        let done = match self.verb {
+            None => self.post.0.map_or(Ok(()), |post| post::run(session, &post)),
             Some(Verb::Words(arguments)) => list_words::run(session, &arguments),
             Some(Verb::Machines(arguments)) => list_machines::run(session, &arguments),
             Some(Verb::Schema(arguments)) => print_schema::run(session, &arguments),
@@ -132,26 +160,27 @@ impl CommandLine {
             Some(Verb::Verify(arguments)) => verify::run(session, &arguments),
             Some(Verb::Plugin(arguments)) => plugin::run(session, &arguments),
             Some(Verb::Read(arguments)) => read::run(session, &arguments),
-            Some(Verb::View(arguments)) => view(session, &arguments),
-            Some(Verb::Explain(arguments)) => explain::run(session, &arguments),
+            Some(Verb::View(arguments)) => return view(session, &arguments),
+            Some(Verb::Explain(arguments)) => return explain::run(session, &arguments),
             Some(Verb::Lsp(arguments)) => lsp::run(session, arguments),
             Some(Verb::Completions(arguments)) => {
                 complete::run(session, &arguments, Self::command())
             }
             Some(Verb::Man(arguments)) => man::run(session, &arguments, Self::command()),
-        }
+        };
+        Ok(done?)
     }
 }
 
 /// Runs another command line with a report, and opens that.
-fn view(session: &Session, arguments: &ViewArguments) -> Result<(), Failure> {
+fn view(session: &Session, arguments: &ViewArguments) -> Result<(), CommandFault> {
     let view = View::new(arguments)?;
     let done = CommandLine::try_parse_from(&view.line)
-        .map_err(Failure::Usage)
+        .map_err(CommandFault::Usage)
         .and_then(|line| line.run(session));
     // A program that is not as it should be is worth a look too.
     let shown = view.show();
-    done.and(shown)
+    done.and(Ok(shown?))
 }
 
 /// What is said to a command line that begins with a verb that `papers` has now.

@@ -2,10 +2,10 @@
 
 use clap::Args;
 
-use crate::failure::Failure;
-use crate::job::machine_schema;
-use crate::session::Session;
 use crate::terminal;
+use post_job::failure::Failure;
+use post_job::machine_schema;
+use post_job::session::Session;
 
 /// Prints the JSON Schema of machine files, by which an editor completes and checks them; the options of the plugins
 /// that are built in are part of it.

@@ -7,9 +7,9 @@ use std::process::{Command, Stdio};
 use clap::Args;
 use post_machine::diagnostic::Diagnostic;
 
-use crate::failure::Failure;
-use crate::files::FileFault;
 use crate::terminal;
+use post_job::failure::Failure;
+use post_job::files::FileFault;
 
 /// Does what the rest of the command line says, with a report in the folder of temporary files, and opens it.
 ///

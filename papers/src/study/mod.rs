@@ -121,10 +121,11 @@ pub struct Models {
 
 /// Studies as the arguments say.
 pub fn run(session: &Session, arguments: &StudyArguments) -> Result<(), Failure> {
-    let dry_run = DryRun::new(session, "study", "papers", &arguments.job, arguments.exact)?;
+    let job = &arguments.job.settings();
+    let dry_run = DryRun::new(session, "study", "papers", job, arguments.exact)?;
     let machine = self::machine(&dry_run, &[])?;
-    say_what_is_left(session, &arguments.job, &machine, &dry_run.finder);
-    let folder = folder(arguments);
+    say_what_is_left(session, job, &machine, &dry_run.finder);
+    let folder = folder(arguments, &job.input);
     let names = [&study_csv::NAMES[..], &pictures::NAMES[..]].concat();
     let mark = ("moves.csv", study_csv::BEGIN);
     let own = OwnFolder::open(session, &folder, STUDY, mark, &names).map_err(|fault| *fault)?;
@@ -161,10 +162,9 @@ pub fn run(session: &Session, arguments: &StudyArguments) -> Result<(), Failure>
     Ok(())
 }
 
-fn folder(arguments: &StudyArguments) -> PathArg {
+fn folder(arguments: &StudyArguments, source: &PathArg) -> PathArg {
     arguments.output.clone().map_or_else(
         || {
-            let source = arguments.job.input();
             let stem = source.stem().unwrap_or_default();
             source.map(|path| path.with_file_name(format!("{stem}-study")))
         },

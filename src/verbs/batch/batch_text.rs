@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use crate::files::PathArg;
-use crate::job::batch::{FAILED, REFUSED, Table, Values, WRITTEN};
-use crate::job::text::clock;
+use post_job::batch::{FAILED, REFUSED, Table, Values, WRITTEN};
+use post_job::files::PathArg;
+use post_job::text::clock;
 
 /// So many codes are told.
 const MOST_CODES: usize = 6;

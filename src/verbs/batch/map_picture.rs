@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use crate::files::svg::{self, label, line, upright};
-use crate::job::batch::{Table, Values, WRITTEN};
-use crate::job::text::number;
+use post_job::batch::{Table, Values, WRITTEN};
+use post_job::files::svg::{self, label, line, upright};
+use post_job::text::number;
 
 /// Room for the numbers beside and below a map, px.
 const LEFT: f64 = 86.0;

@@ -10,14 +10,15 @@ use std::path::PathBuf;
 use clap::Args;
 use post_machine::diagnostic::Diagnostic;
 
-use crate::failure::Failure;
-use crate::files::{self, AtomicFile, FileFault, PathArg, Role};
-use crate::job::batch::{
-    self, Grid, JobLine, Journal, Shard, Study, StudyArguments, Table, Written,
-};
-use crate::session::Session;
+use crate::arguments::Flags;
+use crate::arguments::flag_values::file;
 use crate::terminal::{self, JobsProgress};
 use map_picture::Map;
+use post_job::batch::{self, Grid, JobLine, Journal, Shard, Study, Table, Written};
+use post_job::failure::Failure;
+use post_job::files::{self, AtomicFile, FileFault, PathArg, Role};
+use post_job::session::Session;
+use post_job::settings::{ReadingSettings, StudySettings};
 
 const RESULTS: Role = Role { what: "table of results", remedy: "name another file with -o" };
 
@@ -47,7 +48,7 @@ pub struct BatchArguments {
     files: Vec<PathBuf>,
 
     /// The table: Parquet, CSV or lines of JSON, as its name ends (.parquet, .csv, .jsonl); `-` is CSV on standard output.
-    #[arg(short, long, value_name = "FILE", value_parser = PathArg::parser())]
+    #[arg(short, long, value_name = "FILE", value_parser = file())]
     output: PathArg,
 
     /// A machine: a TOML file, or the name of one in a machine folder or built in. Repeatable.
@@ -83,7 +84,10 @@ pub struct BatchArguments {
     dialect: Option<Listed>,
 
     #[command(flatten)]
-    study: StudyArguments,
+    reading: Flags<ReadingSettings>,
+
+    #[command(flatten)]
+    study: Flags<StudySettings>,
 
     /// So many jobs at a time. [default: as many as there are processors]
     #[arg(short, long, value_name = "N")]
@@ -102,7 +106,7 @@ pub struct BatchArguments {
     resume: Option<Option<PathBuf>>,
 
     /// Draws one column over two others, a map a machine: the shade tells the value, a cross what is refused.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser(), requires_all = ["x", "y"])]
+    #[arg(long, value_name = "FILE", value_parser = file(), requires_all = ["x", "y"])]
     svg: Option<PathArg>,
 
     /// What goes across in the map: a column.
@@ -168,8 +172,10 @@ fn mounts(text: &str) -> Result<Mounts, String> {
 /// Does the study as the arguments say.
 pub fn run(session: &Session, arguments: &BatchArguments) -> Result<(), Failure> {
     let ending = ending(&arguments.output)?;
+    let reading = arguments.reading.0.clone();
+    let options = StudySettings { reading, ..arguments.study.0.clone() };
     let jobs = jobs(session, arguments)?;
-    let (study, inputs) = Study::new(session, jobs, arguments.study.clone())?;
+    let (study, inputs) = Study::new(session, jobs, options)?;
     let map = map(arguments, &study)?;
     for job in &study.jobs {
         session.read_files().note("the CL file", job.file.as_ref());
@@ -237,25 +243,27 @@ fn jobs(session: &Session, arguments: &BatchArguments) -> Result<Vec<JobLine>, F
         session.read_files().note("the list of jobs", file);
         seeds.extend(JobLine::read(&file.display().to_string(), &text)?);
     }
-    let values = |flag: &Option<Listed>| -> Vec<Written> {
-        let listed = flag.iter();
-        listed.flat_map(|listed| listed.0.clone()).collect()
+    let values = |flag: &Option<Listed>| -> Vec<Vec<Written>> {
+        let listed = flag.iter().flat_map(|listed| listed.0.clone());
+        listed.map(|value| vec![value]).collect()
     };
-    let mounts = arguments.mount.iter();
+    let mounts = arguments.mount.iter().flat_map(|mounts| mounts.0.clone());
     let grid = Grid {
         machines: arguments.machine.clone(),
         set: arguments.set.clone(),
-        mount: mounts.flat_map(|mounts| mounts.0.clone()).collect(),
-        turn: values(&arguments.turn),
-        tool_length: values(&arguments.tool_length),
-        tolerance: values(&arguments.tolerance),
-        tcp: values(&arguments.tcp),
-        dialect: values(&arguments.dialect),
+        settings: vec![
+            ("mount", mounts.map(Vec::from).collect()),
+            ("turn", values(&arguments.turn)),
+            ("tool_length", values(&arguments.tool_length)),
+            ("tolerance", values(&arguments.tolerance)),
+            ("tcp", values(&arguments.tcp)),
+            ("dialect", values(&arguments.dialect)),
+        ],
     };
     let jobs = grid.jobs(seeds)?;
     // What is no value of its kind is a slip of the command line and no finding of the study.
     for job in &jobs {
-        job.arguments(&arguments.study.reading).map_err(|fault| Diagnostic::error("job", fault))?;
+        job.settings(&arguments.reading.0).map_err(|fault| Diagnostic::error("job", fault))?;
     }
     Ok(jobs)
 }

@@ -17,11 +17,11 @@ use post_machine::kinematics::Joints;
 use post_plugin::{Batch, DialectSession, Event, Feed, Format};
 
 use super::CheckArguments;
-use crate::failure::Failure;
-use crate::files::{self, PathArg, Role};
-use crate::job::plugin_finder;
-use crate::session::Session;
 use crate::terminal::print;
+use post_job::failure::Failure;
+use post_job::files::{self, PathArg, Role};
+use post_job::plugin_finder;
+use post_job::session::Session;
 
 /// A remark longer than this is no longer read whole on a control's screen.
 const REMARK: usize = 58;

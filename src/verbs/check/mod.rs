@@ -12,11 +12,12 @@ use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
 
 use crate::arguments::flag_values;
-use crate::failure::Failure;
-use crate::files::{self, PathArg, Role};
-use crate::job::{self, machine_files, other_dialect, plugin_finder, report, unused_options};
-use crate::session::Session;
+use crate::arguments::flag_values::file;
 use crate::terminal::print;
+use post_job::failure::Failure;
+use post_job::files::{self, PathArg, Role};
+use post_job::session::Session;
+use post_job::{self as job, machine_files, other_dialect, plugin_finder, report, unused_options};
 
 /// Prints what was derived from a machine file: chain, class, signs, reach, travel, solutions.
 ///
@@ -48,15 +49,15 @@ pub struct CheckArguments {
 
     /// Where the program of --commission goes, `-` for standard output. [default: `commission`, with the
     /// dialect's ending]
-    #[arg(short, long, value_name = "FILE", requires = "commission", value_parser = PathArg::parser())]
+    #[arg(short, long, value_name = "FILE", requires = "commission", value_parser = file())]
     output: Option<PathArg>,
 
     /// Draws the reachable directions of the tool: tilt and azimuth, seen from the part.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FILE", value_parser = file())]
     svg: Option<PathArg>,
 
     /// Writes what is printed as JSON, with all digits; `-` is standard output, alone there.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FILE", value_parser = file())]
     json: Option<PathArg>,
 
     /// Checks the machine with this head, one of those that the program can swap in (`[head.NAME]`).

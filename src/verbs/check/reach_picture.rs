@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use post_machine::check::{Check, number};
 
-use crate::files::svg::{self, label};
+use post_job::files::svg::{self, label};
 
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 700.0;

@@ -13,21 +13,25 @@ use post_readback::course::done::{Chords, DoneCourse};
 use post_readback::interpret::Limits;
 use post_readback::verify::{BlockReport, CutPath};
 
+use crate::arguments::Flags;
+use crate::arguments::flag_values::file;
 use crate::arguments::flag_values::{
     TcpWord, feed, length, point, positive, setting, spindle, word,
 };
-use crate::arguments::{JobArguments, ProgramArguments, ReadingArguments, ReportArguments};
-use crate::failure::Failure;
-use crate::files::{AtomicFile, ClSource, PathArg, Role};
-use crate::job::nc_program::{self, NcControl};
-use crate::job::nc_to_cl::{self, Tools};
-use crate::job::one_program::{Beside, OneProgram};
-use crate::job::read_back::{self, Against, Held, Reading};
-use crate::job::report::{self, BlockRows, ClWindow, Made};
-use crate::job::text::{clock, number, table};
-use crate::job::{self, plugin_finder};
-use crate::session::Session;
 use crate::terminal;
+use post_job::failure::Failure;
+use post_job::files::{AtomicFile, ClSource, PathArg, Role};
+use post_job::nc_program::{self, NcControl};
+use post_job::nc_to_cl::{self, Tools};
+use post_job::one_program::{Beside, OneProgram};
+use post_job::read_back::{self, Against, Held, Reading};
+use post_job::report::{self, BlockRows, ClWindow, Made};
+use post_job::session::Session;
+use post_job::settings::{
+    JobSettings, MachineSettings, ProgramSettings, ReadingSettings, ReportSettings,
+};
+use post_job::text::{clock, number, table};
+use post_job::{self as job, plugin_finder};
 
 /// Moves an NC program to another machine.
 ///
@@ -47,7 +51,7 @@ Exit codes: 0 the program is written, and makes the tool go the way of the first
 2 the command line is wrong.")]
 pub struct ConvertArguments {
     /// The NC program, `-` for standard input.
-    #[arg(value_name = "NC-FILE", value_parser = PathArg::parser())]
+    #[arg(value_name = "NC-FILE", value_parser = file())]
     input: PathArg,
 
     /// The machine that it was made for: a TOML file, or a name (`post machines`).
@@ -59,22 +63,22 @@ pub struct ConvertArguments {
     to: String,
 
     /// The new program, `-` for standard output.
-    #[arg(short, long, value_name = "FILE", value_parser = PathArg::parser())]
+    #[arg(short, long, value_name = "FILE", value_parser = file())]
     output: PathArg,
 
     /// Writes the CL file too that stands between the two programs.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FILE", value_parser = file())]
     cl: Option<PathArg>,
 
     #[command(flatten)]
-    report: ReportArguments,
+    report: Flags<ReportSettings>,
 
     /// No summary, warnings and errors alone.
     #[arg(short, long)]
     quiet: bool,
 
     /// Lengths of tools, work offsets and reference positions of the first machine's control: see `post read`.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser(), help_heading = "First machine")]
+    #[arg(long, value_name = "FILE", value_parser = file(), help_heading = "First machine")]
     offsets: Option<PathArg>,
 
     /// Length of every tool that --offsets does not name, from the gauge point to the tip, mm.
@@ -173,14 +177,14 @@ pub fn run(session: &Session, arguments: &ConvertArguments) -> Result<(), Failur
         },
     ];
     let machine = job::machine(session, &job, &more)?;
-    let finder = plugin_finder::finder(session, &job.plugins)?;
+    let finder = plugin_finder::finder(session, &job.over.plugins)?;
     job::say_what_is_left(session, &job, &machine, &finder);
 
     let mut targets = vec![(Role::PROGRAM, &arguments.output)];
     targets.extend(arguments.cl.iter().map(|cl| (Role::CL, cl)));
-    targets.extend(arguments.report.report.iter().map(|page| (Role::REPORT, page)));
+    targets.extend(arguments.report.0.report.iter().map(|page| (Role::REPORT, page)));
     let mut files = AtomicFile::create(session, &targets)?;
-    let page = arguments.report.report.as_ref().and_then(|_| files.pop());
+    let page = arguments.report.0.report.as_ref().and_then(|_| files.pop());
     let (program, cl_file) = files.split_at_mut(1);
     let program = &mut program[0];
 
@@ -298,7 +302,7 @@ pub fn run(session: &Session, arguments: &ConvertArguments) -> Result<(), Failur
         made.write(
             (rows, None),
             (&mut source, &named, &mut text),
-            arguments.report.most(),
+            arguments.report.0.most(),
             &mut page,
         )?;
         files.push(page);
@@ -320,8 +324,8 @@ pub fn run(session: &Session, arguments: &ConvertArguments) -> Result<(), Failur
 
 impl ConvertArguments {
     /// How the first program is read.
-    fn first(&self) -> ProgramArguments {
-        ProgramArguments {
+    fn first(&self) -> ProgramSettings {
+        ProgramSettings {
             machine: self.from.clone(),
             offsets: self.offsets.clone(),
             most_blocks: self.most_blocks,
@@ -335,25 +339,26 @@ impl ConvertArguments {
     }
 
     /// How its path is posted.
-    fn second(&self) -> JobArguments {
-        JobArguments {
-            machine: Some(self.to.clone()),
-            input: Some(self.input.clone()),
-            reading: ReadingArguments {
+    fn second(&self) -> JobSettings {
+        JobSettings {
+            machine: self.to.clone(),
+            input: self.input.clone(),
+            reading: ReadingSettings {
                 tool: self.tool,
                 spindle: self.spindle,
                 feed: self.feed,
-                ..ReadingArguments::default()
+                ..ReadingSettings::default()
             },
-            mount: self.mount,
-            turn: None,
-            tool_length: None,
-            set: self.set.clone(),
-            tolerance: self.tolerance,
-            tcp: self.tcp,
-            dialect: self.dialect.clone(),
-            machines: self.machines.clone(),
-            plugins: self.plugins.clone(),
+            over: MachineSettings {
+                mount: self.mount,
+                set: self.set.clone(),
+                tolerance: self.tolerance,
+                tcp: self.tcp,
+                dialect: self.dialect.clone(),
+                machines: self.machines.clone(),
+                plugins: self.plugins.clone(),
+                ..MachineSettings::default()
+            },
         }
     }
 }

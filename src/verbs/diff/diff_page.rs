@@ -5,12 +5,12 @@ use post_readback::diff::{Difference, Rules};
 use post_report::meta::{Maximum, Names, Tolerances, Verdict};
 
 use super::Side;
-use crate::failure::Failure;
-use crate::files::{AtomicFile, PathArg};
-use crate::job::nc_program::NcControl;
-use crate::job::report::{self, Besides, MotionRows, OldPath, Parts};
-use crate::job::text::{clock, number};
-use crate::session::Session;
+use post_job::failure::Failure;
+use post_job::files::{AtomicFile, PathArg};
+use post_job::nc_program::NcControl;
+use post_job::report::{self, Besides, MotionRows, OldPath, Parts};
+use post_job::session::Session;
+use post_job::text::{clock, number};
 
 /// What was compared.
 pub struct Shown<'a> {

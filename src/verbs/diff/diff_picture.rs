@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 use post_readback::diff::{Difference, Operation};
 
 use super::along::{Along, Bin};
-use crate::files::PlanView;
-use crate::files::chart::{Chart, DASHED, GREY, LOOKS, Series};
-use crate::files::svg::{self, label};
+use post_job::files::PlanView;
+use post_job::files::chart::{Chart, DASHED, GREY, LOOKS, Series};
+use post_job::files::svg::{self, label};
 
 const WIDTH: f64 = 760.0;
 const TOP: f64 = 64.0;

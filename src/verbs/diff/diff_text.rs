@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use post_readback::diff::{Difference, Operation, Rules, Side, Stretch, Worst};
 
-use crate::job::text::{clock, number, table};
+use post_job::text::{clock, number, table};
 
 /// Stretches, states and events of an operation that are told one by one.
 const MOST_TOLD: usize = 8;

@@ -11,13 +11,15 @@ use clap::Args;
 use post_machine::diagnostic::Diagnostic;
 use post_readback::diff::{Rules, Unread, compare};
 
-use crate::arguments::{ProgramArguments, ReportArguments, flag_values};
-use crate::failure::Failure;
-use crate::files::{self, AtomicFile, FileFault, PathArg, Role};
-use crate::job::nc_program::{self, NcControl};
-use crate::session::Session;
+use crate::arguments::flag_values::file;
+use crate::arguments::{Flags, ProgramArguments, flag_values};
 use crate::terminal;
 use along::Along;
+use post_job::failure::Failure;
+use post_job::files::{self, AtomicFile, FileFault, PathArg, Role};
+use post_job::nc_program::{self, NcControl};
+use post_job::session::Session;
+use post_job::settings::{ProgramSettings, ReportSettings};
 
 /// Compares what two NC programs make the machine do, not their texts.
 ///
@@ -36,11 +38,11 @@ Exit codes, as those of diff: 0 the machine does the same; 1 it does not, or a p
 why; 2 the command line is wrong.")]
 pub struct DiffArguments {
     /// The program as it was.
-    #[arg(value_name = "OLD", value_parser = PathArg::parser())]
+    #[arg(value_name = "OLD", value_parser = file())]
     old: PathArg,
 
     /// The program as it is.
-    #[arg(value_name = "NEW", value_parser = PathArg::parser())]
+    #[arg(value_name = "NEW", value_parser = file())]
     new: PathArg,
 
     #[command(flatten)]
@@ -55,7 +57,7 @@ pub struct DiffArguments {
     dialect_new: Option<String>,
 
     /// What stands in the control's tables for the new program, if it is something else.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser(), help_heading = "New program")]
+    #[arg(long, value_name = "FILE", value_parser = file(), help_heading = "New program")]
     offsets_new: Option<PathArg>,
 
     /// Length of every tool of the new program, if it is another, mm.
@@ -79,14 +81,14 @@ pub struct DiffArguments {
     feed_tolerance: f64,
 
     /// Writes all that was found as JSON, with all digits; `-` is standard output, alone there.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FILE", value_parser = file())]
     json: Option<PathArg>,
 
     #[command(flatten)]
-    report: ReportArguments,
+    report: Flags<ReportSettings>,
 
     /// Draws both paths, how far they are apart along the way, and their feeds.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FILE", value_parser = file())]
     svg: Option<PathArg>,
 }
 
@@ -111,7 +113,7 @@ impl Side {
 /// Does as the arguments say.
 pub fn run(session: &Session, arguments: &DiffArguments) -> Result<(), Failure> {
     let controls = [
-        NcControl::new(session, &arguments.program)?,
+        NcControl::new(session, &arguments.program.settings())?,
         NcControl::new(session, &of_new(arguments))?,
     ];
     let sides = [Side::open(session, &arguments.old)?, Side::open(session, &arguments.new)?];
@@ -142,12 +144,12 @@ pub fn run(session: &Session, arguments: &DiffArguments) -> Result<(), Failure> 
     }
     let mut targets: Vec<(Role, &PathArg)> =
         texts.iter().map(|(role, target, _)| (*role, *target)).collect();
-    targets.extend(arguments.report.report.iter().map(|page| (Role::REPORT, page)));
+    targets.extend(arguments.report.0.report.iter().map(|page| (Role::REPORT, page)));
     let mut written = AtomicFile::create(session, &targets)?;
     for (file, (_, _, text)) in written.iter_mut().zip(&texts) {
         file.write_bytes(text.as_bytes())?;
     }
-    if let (Some(_), Some(page)) = (&arguments.report.report, written.last_mut()) {
+    if let (Some(_), Some(page)) = (&arguments.report.0.report, written.last_mut()) {
         let shown = diff_page::Shown {
             session,
             controls: [old, new],
@@ -155,7 +157,7 @@ pub fn run(session: &Session, arguments: &DiffArguments) -> Result<(), Failure> 
             rules: &rules,
             names: [&arguments.old, &arguments.new],
         };
-        shown.write(&sides, arguments.report.most(), page)?;
+        shown.write(&sides, arguments.report.0.most(), page)?;
     }
     let taken = written.iter().any(AtomicFile::is_standard);
     AtomicFile::finish(session, written)?;
@@ -173,8 +175,8 @@ pub fn run(session: &Session, arguments: &DiffArguments) -> Result<(), Failure> 
 }
 
 /// The flags of the new program.
-fn of_new(arguments: &DiffArguments) -> ProgramArguments {
-    let mut program = arguments.program.clone();
+fn of_new(arguments: &DiffArguments) -> ProgramSettings {
+    let mut program = arguments.program.settings();
     if let Some(machine) = &arguments.machine_new {
         program.machine.clone_from(machine);
         // What was set is a key of the other machine, and its dialect the other's.

@@ -11,11 +11,11 @@ use post_machine::description::{self, OutputUnits, Tcp};
 use post_machine::diagnostic::Diagnostic;
 
 use crate::arguments::flag_values::{self, TcpWord, UnitsWord, finite, word};
-use crate::failure::Failure;
-use crate::files::{self, Role};
-use crate::job::{self, plugin_finder};
-use crate::session::Session;
 use crate::terminal;
+use post_job::failure::Failure;
+use post_job::files::{self, Role};
+use post_job::session::Session;
+use post_job::{self as job, plugin_finder};
 use template::Class;
 
 const MACHINE: Role = Role { what: "machine file", remedy: "give it another name" };

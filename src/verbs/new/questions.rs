@@ -9,8 +9,8 @@ use post_machine::diagnostic::Diagnostic;
 use super::template::Class;
 use super::{Choices, Given, NewArguments, dialect, range};
 use crate::arguments::flag_values::{TcpWord, finite};
-use crate::failure::Failure;
 use crate::terminal::tell;
+use post_job::failure::Failure;
 
 /// How often a wrong answer is asked again.
 const PATIENCE: usize = 3;

@@ -8,12 +8,13 @@ mod trial;
 use clap::{Args, ValueEnum};
 
 use crate::arguments::JobArguments;
+use crate::arguments::flag_values::file;
 use crate::arguments::flag_values::{not_negative, positive};
-use crate::failure::Failure;
-use crate::files::{self, PathArg, Role};
-use crate::job;
-use crate::session::Session;
 use crate::terminal;
+use post_job as job;
+use post_job::failure::Failure;
+use post_job::files::{self, PathArg, Role};
+use post_job::session::Session;
 use search::Search;
 use trial::Trials;
 
@@ -53,7 +54,7 @@ pub struct PlaceArguments {
 
     /// Draws the travel of each axis, what the program uses and what is left; `-` is standard output,
     /// alone there.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FILE", value_parser = file())]
     svg: Option<PathArg>,
 }
 
@@ -75,8 +76,9 @@ fn step(text: &str) -> Result<f64, String> {
 
 /// Places as the arguments say.
 pub fn run(session: &Session, arguments: &PlaceArguments) -> Result<(), Failure> {
-    let mut trials = Trials::new(session, arguments)?;
-    job::say_what_is_left(session, &arguments.job, &trials.machine()?, trials.finder());
+    let job = &arguments.job.settings();
+    let mut trials = Trials::new(session, job, arguments)?;
+    job::say_what_is_left(session, job, &trials.machine()?, trials.finder());
     let found = Search::new(arguments, &mut trials)?.run()?;
     let mut taken = false;
     if let Some(target) = &arguments.svg {

@@ -8,7 +8,7 @@ use post_posting::report::AxisRange;
 use super::search::{Found, mount_text};
 use super::trial::Trial;
 use super::{Least, PlaceArguments};
-use crate::job::text::{clock, number, table as columns};
+use post_job::text::{clock, number, table as columns};
 
 /// Flags of this verb, which posting does not take, and those that the answer takes the place of: each with whether its
 /// value may stand in a word of its own.
@@ -56,7 +56,7 @@ pub fn text(arguments: &PlaceArguments, found: &Found) -> String {
 fn seat_text(arguments: &PlaceArguments, found: &Found, trial: &Trial) -> String {
     let mount = format!("--mount {}", mount_text(&trial.seat.mount));
     let turn = trial.seat.turn;
-    if turn == 0.0 && found.machine.turn == 0.0 && arguments.job.turn.is_none() {
+    if turn == 0.0 && found.machine.turn == 0.0 && arguments.job.settings().over.turn.is_none() {
         mount
     } else {
         format!("{mount} --turn {turn}")

@@ -7,7 +7,7 @@ use post_machine::place::{HalfSpace, descend, most_room, nearest, rounded, shuff
 
 use super::trial::{Bound, Seat, Trial, Trials, bodies};
 use super::{Least, PlaceArguments};
-use crate::failure::Failure;
+use post_job::failure::Failure;
 
 /// Mounts that are found one from the other before a route is given up: each is bound by what was found at those before.
 const ROUNDS: usize = 4;

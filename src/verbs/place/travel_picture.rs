@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use post_posting::report::AxisRange;
 
 use super::search::{Found, mount_text};
-use crate::files::svg::{self, label};
-use crate::job::text::number;
+use post_job::files::svg::{self, label};
+use post_job::text::number;
 
 const WIDTH: f64 = 760.0;
 const TOP: f64 = 84.0;

@@ -10,9 +10,10 @@ use post_posting::MountBounds;
 use post_posting::report::Report;
 
 use super::{Least, PlaceArguments};
-use crate::failure::Failure;
-use crate::job::DryRun;
-use crate::session::Session;
+use post_job::DryRun;
+use post_job::failure::Failure;
+use post_job::session::Session;
+use post_job::settings::JobSettings;
 
 /// Where a part sits.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,9 +65,13 @@ pub struct Trials<'a> {
 }
 
 impl<'a> Trials<'a> {
-    pub fn new(session: &'a Session, arguments: &'a PlaceArguments) -> Result<Self, Failure> {
+    pub fn new(
+        session: &'a Session,
+        job: &'a JobSettings,
+        arguments: &'a PlaceArguments,
+    ) -> Result<Self, Failure> {
         Ok(Self {
-            dry_run: DryRun::new(session, "place", "post", &arguments.job, false)?,
+            dry_run: DryRun::new(session, "place", "post", job, false)?,
             least: arguments.least,
             runs: 0,
             most: arguments.runs,

@@ -7,11 +7,11 @@ use post_host::{Listed, Plugin, PluginFault};
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::raw::ABI;
 
-use crate::failure::Failure;
-use crate::job::origin;
-use crate::job::plugin_finder::{diagnostic, finder};
-use crate::session::Session;
 use crate::terminal::print;
+use post_job::failure::Failure;
+use post_job::origin;
+use post_job::plugin_finder::{diagnostic, finder};
+use post_job::session::Session;
 
 /// Lists the plugins that a machine file can name: those of the folders and those built in.
 ///

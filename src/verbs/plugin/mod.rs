@@ -8,10 +8,10 @@ mod test;
 use clap::{Args, Subcommand};
 use post_host::Plugin;
 
-use crate::failure::Failure;
-use crate::session::Session;
 use list::ListArguments;
 use new::NewArguments;
+use post_job::failure::Failure;
+use post_job::session::Session;
 use show::ShowArguments;
 use test::TestArguments;
 

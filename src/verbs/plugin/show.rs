@@ -8,10 +8,10 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::{CAPABILITIES, CODES, DialectSession, Format};
 
 use super::title;
-use crate::failure::Failure;
-use crate::job::plugin_finder::by_name_or_file;
-use crate::session::Session;
 use crate::terminal::print;
+use post_job::failure::Failure;
+use post_job::plugin_finder::by_name_or_file;
+use post_job::session::Session;
 
 /// Prints the options of a plugin, and what a dialect writes.
 #[derive(Debug, Args)]

@@ -7,10 +7,10 @@ use post_host::{GivenValue, conformance};
 use post_machine::diagnostic::Diagnostic;
 
 use super::title;
-use crate::failure::Failure;
-use crate::job::plugin_finder::{by_name_or_file, diagnostic};
-use crate::session::Session;
 use crate::terminal::print;
+use post_job::failure::Failure;
+use post_job::plugin_finder::{by_name_or_file, diagnostic};
+use post_job::session::Session;
 
 /// Runs a plugin on cases whose answer is known, and says what it gets wrong.
 ///

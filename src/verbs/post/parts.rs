@@ -7,8 +7,8 @@ use clap::ValueEnum;
 use post_machine::diagnostic::Diagnostic;
 use post_posting::LookedAhead;
 
-use crate::failure::Failure;
-use crate::files::PathArg;
+use post_job::failure::Failure;
+use post_job::files::PathArg;
 
 /// Where a new program begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -7,8 +7,8 @@ use post_posting::LookedAhead;
 use post_posting::program::Tool;
 use post_posting::report::{LengthSource, Report};
 
-use crate::files::PathArg;
-use crate::job::text::{clock, number};
+use post_job::files::PathArg;
+use post_job::text::{clock, number};
 
 /// A table of the sheet.
 struct Section {

@@ -5,12 +5,13 @@ use post_machine::description::Machine;
 use post_posting::plan::{PlanWatch, PlannedPoint};
 
 use super::parts::{self, Split};
-use crate::failure::Failure;
-use crate::files::{AtomicFile, FileFault, JsonRows, OwnFolder, PathArg, Role};
-use crate::job::plan::map::{LimitMap, MapRow};
-use crate::job::plan::pictures;
-use crate::job::plan::posted::{Along, Limited, MARK};
-use crate::session::Session;
+use crate::arguments::flag_values::file;
+use post_job::failure::Failure;
+use post_job::files::{AtomicFile, FileFault, JsonRows, OwnFolder, PathArg, Role};
+use post_job::plan::map::{LimitMap, MapRow};
+use post_job::plan::pictures;
+use post_job::plan::posted::{Along, Limited, MARK};
+use post_job::session::Session;
 
 const PICTURES: Role = Role { what: "plan", remedy: "name another folder with --plan-pictures" };
 
@@ -23,13 +24,13 @@ pub struct ShownArguments {
     /// with way (mm) and time (s, by the plan) from and to, limit, axis, least and largest feed (mm/min); planned cuts
     /// alone. CSV where the name ends in .csv, else JSON; `-` is standard output, JSON. With --split one for each program:
     /// map-1.json, map-2.json, …
-    #[arg(long, value_name = "FILE", requires = "plan", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FILE", requires = "plan", value_parser = file())]
     map: Option<PathArg>,
 
     /// Draws the plan into this folder, as SVG: feed, velocity, acceleration and jerk of the axes, chord error and contour
     /// error along the way of the tip in planned cuts, limits drawn in; and tells beside them, as JSON, what is used of each
     /// limit. With --split a folder for each program: FOLDER-1, FOLDER-2, …
-    #[arg(long, value_name = "FOLDER", requires = "plan", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FOLDER", requires = "plan", value_parser = file())]
     plan_pictures: Option<PathArg>,
 }
 

@@ -2,15 +2,16 @@
 
 use clap::Args;
 
+use crate::arguments::flag_values::file;
 use crate::arguments::flag_values::positive;
-use crate::failure::Failure;
-use crate::files::PathArg;
-use crate::job::nc_program;
-use crate::job::predict::measured::{
+use post_job::failure::Failure;
+use post_job::files::PathArg;
+use post_job::nc_program;
+use post_job::predict::measured::{
     self, AxisFitted, ColumnNames, Log, LogForm, LogUnits, LogZeros, Overlay, column_names,
     log_units, log_zeros,
 };
-use crate::session::Session;
+use post_job::session::Session;
 use post_machine::description::Machine;
 
 /// A recorded log, and how it is written.
@@ -20,7 +21,7 @@ pub struct MeasuredArguments {
     /// A log that was recorded while the program ran: a table with the time and the commanded and actual positions of the
     /// axes; commas, semicolons, tabs or blanks between its columns. It is laid over the prediction (its clock and its zeros
     /// are found), and what is left is told: commanded and actual positions, following errors, contour error.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FILE", value_parser = file())]
     measured: Option<PathArg>,
 
     /// Which column holds what, by name or by number from 1: "t=time,X=cmd_x,X'=act_x" is the time, X commanded and X

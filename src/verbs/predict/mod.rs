@@ -15,19 +15,21 @@ use post_readback::Done;
 use post_readback::interpret::Limits;
 
 use crate::arguments::flag_values;
-use crate::arguments::{JobArguments, ReportArguments};
-use crate::failure::Failure;
-use crate::files::{self, AtomicFile, OwnFolder, PathArg, Role};
-use crate::job::columns::CsvTable;
-use crate::job::predict::measured::{MeasuredPoint, Overlay};
-use crate::job::predict::{self, Against, PredictWatch, Predicted, Sample};
-use crate::job::report::{Besides, ClWindow, MotionRows, PredictedLines};
-use crate::job::{self, nc_program, plugin_finder};
-use crate::session::Session;
+use crate::arguments::flag_values::file;
+use crate::arguments::{Flags, JobFlags};
 use crate::terminal;
 use measured_arguments::MeasuredArguments;
 use measured_pictures::MeasuredRoom;
 use pictures::Rooms;
+use post_job::columns::CsvTable;
+use post_job::failure::Failure;
+use post_job::files::{self, AtomicFile, OwnFolder, PathArg, Role};
+use post_job::predict::measured::{MeasuredPoint, Overlay};
+use post_job::predict::{self, Against, PredictWatch, Predicted, Sample};
+use post_job::report::{Besides, ClWindow, MotionRows, PredictedLines};
+use post_job::session::Session;
+use post_job::settings::ReportSettings;
+use post_job::{self as job, nc_program, plugin_finder};
 
 /// Predicts what an NC program does on its machine: cycle time, true feed, and how far the tool strays.
 ///
@@ -38,30 +40,25 @@ use pictures::Rooms;
 ///
 /// What `post` was told for the job must be told here too (--mount, --tool-length, …).
 #[derive(Debug, Args)]
-#[command(
-    mut_arg("input", |argument| {
-        argument
-            .index(None)
-            .required(false)
-            .long("against")
-            .help("The CL file that the program was made from: how far the tool strays from its path")
-    }),
-    after_help = "Examples:
+#[command(after_help = "Examples:
   post predict part.nc --machine ac-trunnion
   post predict part.nc -m my-mill.toml --against part.cls --tool-length 120 --pictures prediction
   post predict part.nc -m my-mill.toml --period 0.004 --csv set-points.csv --summary prediction.json
   post predict part.nc -m my-mill.toml --set axis.X.max_accel=2000
   post predict part.nc -m my-mill.toml --measured log.csv --fit X.kv,Y.kv --pictures prediction
 
-Exit codes: 0 predicted; 1 something could not be read, the messages say what; 2 the command line is wrong."
-)]
+Exit codes: 0 predicted; 1 something could not be read, the messages say what; 2 the command line is wrong.")]
 pub struct PredictArguments {
     /// The NC program, `-` for standard input.
-    #[arg(value_name = "NC-FILE", required = true, value_parser = PathArg::parser())]
-    program: Option<PathArg>,
+    #[arg(value_name = "NC-FILE", value_parser = file())]
+    program: PathArg,
+
+    /// The machine: a TOML file, or the name of one in a machine folder or built in (`post machines`).
+    #[arg(short, long, value_name = "MACHINE")]
+    machine: String,
 
     #[command(flatten)]
-    job: JobArguments,
+    job: JobFlags,
 
     /// Time from one set-point to the next, seconds, over `[motion] period` of the machine file.
     #[arg(long, value_name = "SECONDS", value_parser = flag_values::period, help_heading = "Machine")]
@@ -69,28 +66,32 @@ pub struct PredictArguments {
 
     /// What stands in the control's tables, a TOML file: work offsets, lengths by register or tool. Without it lengths are
     /// those of --tool-length, the machine file and the CL file.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser(), help_heading = "Machine")]
+    #[arg(long, value_name = "FILE", value_parser = file(), help_heading = "Machine")]
     offsets: Option<PathArg>,
 
     /// Writes every set-point as a row: time (s), lines of the program and of the CL file, whether the tool cuts, each axis
     /// commanded and actual as the control shows it, tip commanded and actual (mm, part frame), contour error as a vector
     /// (mm) and of the tool axis (degrees), feed of the tip and of the program (mm/min); `-` is standard output, alone
     /// there.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FILE", value_parser = file())]
     csv: Option<PathArg>,
 
     /// Writes what was found as JSON for programs to read; `-` is standard output.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FILE", value_parser = file())]
     summary: Option<PathArg>,
 
     /// Draws into this folder, as SVG: errors of the axes and feed over time, contour error along the path, magnified on
     /// it and by its size, and the spectrum of the axes' errors; with --measured also the log's errors, those predicted for
     /// it and their difference; and writes the summary beside them.
-    #[arg(long, value_name = "FOLDER", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FOLDER", value_parser = file())]
     pictures: Option<PathArg>,
 
     #[command(flatten)]
-    report: ReportArguments,
+    report: Flags<ReportSettings>,
+
+    /// The CL file that the program was made from: how far the tool strays from its path.
+    #[arg(long, value_name = "CL-FILE", value_parser = file())]
+    against: Option<PathArg>,
 
     #[command(flatten)]
     measured: MeasuredArguments,
@@ -148,11 +149,13 @@ impl PredictWatch for Watch<'_, '_, '_> {
 
 /// Predicts as the arguments say.
 pub fn run(session: &Session, arguments: &PredictArguments) -> Result<(), Failure> {
-    let machine = job::machine(session, &arguments.job, &[])?;
-    let finder = plugin_finder::finder(session, &arguments.job.plugins)?;
-    job::say_what_is_left(session, &arguments.job, &machine, &finder);
-    let named = arguments.program.as_ref().unwrap_or(&PathArg::Standard);
-    let against = arguments.job.input.as_ref();
+    let against = arguments.against.as_ref();
+    let input = against.unwrap_or(&PathArg::Standard);
+    let job = &arguments.job.settings(&arguments.machine, input);
+    let machine = job::machine(session, job, &[])?;
+    let finder = plugin_finder::finder(session, &job.over.plugins)?;
+    job::say_what_is_left(session, job, &machine, &finder);
+    let named = &arguments.program;
     nc_program::not_both_standard(named, against)?;
     let mut others = [Some(named), against].into_iter().flatten();
     if arguments.measured.is_standard() && others.any(|file| file.path().is_none()) {
@@ -177,13 +180,13 @@ pub fn run(session: &Session, arguments: &PredictArguments) -> Result<(), Failur
     let mut targets: Vec<(Role, &PathArg)> = Vec::new();
     targets.extend(arguments.csv.iter().map(|target| (SET_POINTS, target)));
     targets.extend(arguments.summary.iter().map(|target| (Role::SUMMARY, target)));
-    targets.extend(arguments.report.report.iter().map(|page| (Role::REPORT, page)));
+    targets.extend(arguments.report.0.report.iter().map(|page| (Role::REPORT, page)));
     let mut texts = AtomicFile::create(session, &targets)?;
-    let page = arguments.report.report.as_ref().and_then(|_| texts.pop());
+    let page = arguments.report.0.report.as_ref().and_then(|_| texts.pop());
     let again = nc_program::again(&name, &program)?;
     let asked = predict::Asked {
         session,
-        arguments: &arguments.job,
+        arguments: job,
         machine: &machine,
         finder: &finder,
         offsets,
@@ -197,7 +200,7 @@ pub fn run(session: &Session, arguments: &PredictArguments) -> Result<(), Failur
     };
     let rows = match &page {
         Some(_) => {
-            let cl = source.as_ref().map(|source| ClWindow::of(&arguments.job, &machine, source));
+            let cl = source.as_ref().map(|source| ClWindow::of(job, &machine, source));
             let besides = Besides { predicted: true, ..Besides::default() };
             let rows = MotionRows::new(&machine, cl.transpose()?, besides)?;
             Some((rows, PredictedLines::new(&machine, period)?))
@@ -239,11 +242,11 @@ pub fn run(session: &Session, arguments: &PredictArguments) -> Result<(), Failur
             found: &found,
             findings: &findings,
             program: named,
-            against: arguments.job.input.as_ref(),
+            against: arguments.against.as_ref(),
         };
         let text = nc_program::again(&name, &again)?;
         let texts_of = (source.as_mut(), name.as_str(), text);
-        shown.write((rows, lines), texts_of, arguments.report.most(), &mut page)?;
+        shown.write((rows, lines), texts_of, arguments.report.0.most(), &mut page)?;
         texts.push(page);
     }
     let taken = texts.iter().any(AtomicFile::is_standard);

@@ -8,8 +8,8 @@ use super::measured_pictures;
 use super::path_pictures;
 use super::spectrum::Spectrum;
 use super::trail::Trail;
-use crate::files::chart::{DASHED, DOTTED, Draw, Envelope, LOOKS, Panel, Panels, Series};
-use crate::job::predict::{Prediction, Sample};
+use post_job::files::chart::{DASHED, DOTTED, Draw, Envelope, LOOKS, Panel, Panels, Series};
+use post_job::predict::{Prediction, Sample};
 
 /// The files that there can be.
 pub const NAMES: [&str; 7] = [

@@ -6,12 +6,12 @@ use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_report::meta::{Names, Verdict};
 
-use crate::failure::Failure;
-use crate::files::{AtomicFile, ClSource, PathArg};
-use crate::job::predict::Prediction;
-use crate::job::report::{self, MotionRows, Parts, PredictedLines};
-use crate::job::text::clock;
-use crate::session::Session;
+use post_job::failure::Failure;
+use post_job::files::{AtomicFile, ClSource, PathArg};
+use post_job::predict::Prediction;
+use post_job::report::{self, MotionRows, Parts, PredictedLines};
+use post_job::session::Session;
+use post_job::text::clock;
 
 /// What is known of a program that was predicted.
 pub struct Shown<'a> {

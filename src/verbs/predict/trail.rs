@@ -1,6 +1,6 @@
 //! The path of the tip in cuts with its contour error, in a room that does not grow with it.
 
-use crate::job::predict::Sample;
+use post_job::predict::Sample;
 
 /// Spots that are kept.
 const MOST_SPOTS: usize = 4000;

@@ -14,14 +14,15 @@ use post_readback::interpret::Interpreter;
 use post_readback::{FedRapids, MOST_FAULTS};
 
 use crate::arguments::ProgramArguments;
-use crate::failure::Failure;
-use crate::files::{AtomicFile, PathArg, Role};
-use crate::job::nc_program::{self, NcControl};
-use crate::job::nc_to_cl::{self, Tools};
-use crate::session::Session;
+use crate::arguments::flag_values::file;
 use crate::terminal;
 use beyond_travel::BeyondTravel;
 use motions_csv::MotionsCsv;
+use post_job::failure::Failure;
+use post_job::files::{AtomicFile, PathArg, Role};
+use post_job::nc_program::{self, NcControl};
+use post_job::nc_to_cl::{self, Tools};
+use post_job::session::Session;
 use survey::Survey;
 
 /// Reads an NC program back: what it makes the machine do, block by block.
@@ -59,19 +60,19 @@ pub struct ReadArguments {
     program: ProgramArguments,
 
     /// The NC program, `-` for standard input.
-    #[arg(value_name = "NC-FILE", value_parser = PathArg::parser())]
+    #[arg(value_name = "NC-FILE", value_parser = file())]
     input: PathArg,
 
     /// Writes every motion as a row: line, block, kind, way, the axes as the control shows them, tip (mm) and tool axis
     /// in the part frame, feed (mm/min), minutes, tool, spindle (1/min), and whether the control keeps the tip; `-` is
     /// standard output, alone there.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FILE", value_parser = file())]
     csv: Option<PathArg>,
 
     /// Writes the path of the tool against the part as a CL file: points with the tool axis, feeds of the tip, tools,
     /// speeds, curves, cycles and remarks. What the machine does for itself (ways in machine coordinates, the turn of
     /// rotary axes on the way to an approach) is left out; `-` is standard output, alone there.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FILE", value_parser = file())]
     cl: Option<PathArg>,
 }
 
@@ -82,7 +83,7 @@ const MOTIONS: Role = Role { what: "table of motions", remedy: "name another fil
 
 /// Does as the arguments say.
 pub fn run(session: &Session, arguments: &ReadArguments) -> Result<(), Failure> {
-    let control = NcControl::new(session, &arguments.program)?;
+    let control = NcControl::new(session, &arguments.program.settings())?;
     let (name, input) = nc_program::open(session, &arguments.input)?;
     let run = control.run(&name, nc_program::again(&name, &input)?);
     let mut run = run.map_err(|fault| *fault)?;
@@ -156,8 +157,7 @@ fn write_cl(
     let [tip, axis] = [accuracy.tolerance, accuracy.axis_tolerance].map(|mm| mm * CHORDS);
     let mut course = DoneCourse::new(program, Chords::within(tip, axis));
     let part = arguments.input.stem().unwrap_or_default();
-    let tools =
-        Tools { length: arguments.program.tool_length, edges: control.lexicon.tools_have_edges() };
+    let tools = Tools { length: control.offsets.length, edges: control.lexicon.tools_have_edges() };
     let written =
         nc_to_cl::write(&mut course, &part, tip, tools, &mut |text| file.write_bytes(text))?;
     session.findings(&written.notes);

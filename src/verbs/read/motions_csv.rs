@@ -6,9 +6,9 @@
 use post_machine::description::Machine;
 use post_readback::{Done, Motion, MotionKind, Spindle, Told, Way};
 
-use crate::files::{AtomicFile, FileFault};
-use crate::job::axes::{self, AxisColumn};
-use crate::job::columns::{Column, CsvTable};
+use post_job::axes::{self, AxisColumn};
+use post_job::columns::{Column, CsvTable};
+use post_job::files::{AtomicFile, FileFault};
 
 /// A motion, and where its axes stand behind it.
 struct Row {

@@ -6,7 +6,7 @@ use post_machine::description::{Axis, Machine};
 use post_readback::interpret::ReadReport;
 
 use super::survey::Survey;
-use crate::job::text::{clock, number, table};
+use post_job::text::{clock, number, table};
 
 /// So many words that are not known are listed.
 const LISTED: usize = 40;

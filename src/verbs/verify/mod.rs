@@ -8,15 +8,17 @@ use post_readback::Done;
 use post_readback::interpret::Limits;
 use post_readback::verify::BlockReport;
 
+use crate::arguments::flag_values::file;
 use crate::arguments::flag_values::positive;
-use crate::arguments::{JobArguments, ReportArguments};
-use crate::failure::Failure;
-use crate::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
-use crate::job::read_back::{self, Reading, VerifyWatch};
-use crate::job::report::{Besides, ClWindow, MotionRows};
-use crate::job::{self, nc_program, plugin_finder};
-use crate::session::Session;
+use crate::arguments::{Flags, JobFlags};
 use crate::terminal;
+use post_job::failure::Failure;
+use post_job::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
+use post_job::read_back::{self, Reading, VerifyWatch};
+use post_job::report::{Besides, ClWindow, MotionRows};
+use post_job::session::Session;
+use post_job::settings::ReportSettings;
+use post_job::{self as job, nc_program, plugin_finder};
 
 /// Holds an NC program against a CL file: does the machine do what was asked?
 ///
@@ -28,28 +30,28 @@ use crate::terminal;
 ///
 /// What `post` was told for the job must be told here too (--mount, --tool-length, --units, …).
 #[derive(Debug, Args)]
-#[command(
-    mut_arg("input", |argument| {
-        argument
-            .index(None)
-            .long("against")
-            .help("The CL file, `-` for standard input")
-    }),
-    after_help = "Examples:
+#[command(after_help = "Examples:
   post verify part.nc --machine dmu50 --against part.cls
   post verify part.nc -m ac-trunnion --against part.cls --tool-length 120 --map map.json
   post verify part.nc -m my-mill.toml --against part.cls --tolerance 0.01 --summary -
 
 Exit codes: 0 the program does what the CL file asks for; 1 it does not, the messages say where, or something could not be
-read; 2 the command line is wrong."
-)]
+read; 2 the command line is wrong.")]
 pub struct VerifyArguments {
     /// The NC program, `-` for standard input.
-    #[arg(value_name = "NC-FILE", required = true, value_parser = PathArg::parser())]
-    program: Option<PathArg>,
+    #[arg(value_name = "NC-FILE", value_parser = file())]
+    program: PathArg,
+
+    /// The machine: a TOML file, or the name of one in a machine folder or built in (`post machines`).
+    #[arg(short, long, value_name = "MACHINE")]
+    machine: String,
+
+    /// The CL file, `-` for standard input.
+    #[arg(long, value_name = "CL-FILE", value_parser = file())]
+    against: PathArg,
 
     #[command(flatten)]
-    job: JobArguments,
+    job: JobFlags,
 
     /// Largest deviation of the tool axis in a cut, degrees, over the machine file's.
     #[arg(long, value_name = "DEG", value_parser = positive, help_heading = "Machine")]
@@ -58,20 +60,20 @@ pub struct VerifyArguments {
     /// What stands in the control's tables, a TOML file: work offsets, lengths by register or tool. Without it lengths are
     /// those of --tool-length, the machine file and the CL file; beside it --tool-length is how long the tools really are,
     /// and what is compensated is held against that.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser(), help_heading = "Machine")]
+    #[arg(long, value_name = "FILE", value_parser = file(), help_heading = "Machine")]
     offsets: Option<PathArg>,
 
     /// Writes a table as JSON: of each line of the program the line of the CL file that asks for it, the solution of the
     /// machine, the deviation, and what makes it slower than asked; `-` is standard output.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FILE", value_parser = file())]
     map: Option<PathArg>,
 
     /// Writes what was found as JSON for programs to read; `-` is standard output.
-    #[arg(long, value_name = "FILE", value_parser = PathArg::parser())]
+    #[arg(long, value_name = "FILE", value_parser = file())]
     summary: Option<PathArg>,
 
     #[command(flatten)]
-    report: ReportArguments,
+    report: Flags<ReportSettings>,
 
     /// The program was posted for this machine file, and is held to what posting promises of its rapids besides: rotary
     /// axes turn where the tool is retracted or on its line, and it is retracted wherever a tool is changed and at the end.
@@ -137,27 +139,28 @@ impl VerifyWatch for Watch<'_, '_> {
 
 /// Verifies as the arguments say.
 pub fn run(session: &Session, arguments: &VerifyArguments) -> Result<(), Failure> {
-    let machine = job::machine(session, &arguments.job, &[])?;
-    let finder = plugin_finder::finder(session, &arguments.job.plugins)?;
-    job::say_what_is_left(session, &arguments.job, &machine, &finder);
-    let named = arguments.program.as_ref().unwrap_or(&PathArg::Standard);
-    nc_program::not_both_standard(named, Some(arguments.job.input()))?;
+    let job = &arguments.job.settings(&arguments.machine, &arguments.against);
+    let machine = job::machine(session, job, &[])?;
+    let finder = plugin_finder::finder(session, &job.over.plugins)?;
+    job::say_what_is_left(session, job, &machine, &finder);
+    let named = &arguments.program;
+    nc_program::not_both_standard(named, Some(&job.input))?;
     let (name, program) = nc_program::open(session, named)?;
     let offsets = match &arguments.offsets {
         Some(file) => Some(nc_program::offsets(session, file, &machine)?),
         None => None,
     };
-    let mut source = ClSource::new(session, arguments.job.input(), true)?;
+    let mut source = ClSource::new(session, &job.input, true)?;
     let mut targets: Vec<(Role, &PathArg)> = Vec::new();
     targets.extend(arguments.map.iter().map(|map| (MAP, map)));
     targets.extend(arguments.summary.iter().map(|summary| (Role::SUMMARY, summary)));
-    targets.extend(arguments.report.report.iter().map(|page| (Role::REPORT, page)));
+    targets.extend(arguments.report.0.report.iter().map(|page| (Role::REPORT, page)));
     let mut texts = AtomicFile::create(session, &targets)?;
-    let page = arguments.report.report.as_ref().and_then(|_| texts.pop());
+    let page = arguments.report.0.report.as_ref().and_then(|_| texts.pop());
     let again = nc_program::again(&name, &program)?;
     let reading = Reading {
         session,
-        arguments: &arguments.job,
+        arguments: job,
         machine: &machine,
         finder: &finder,
         offsets,
@@ -172,7 +175,7 @@ pub fn run(session: &Session, arguments: &VerifyArguments) -> Result<(), Failure
     };
     let rows = match &page {
         Some(_) => {
-            let cl = ClWindow::of(&arguments.job, &machine, &source)?;
+            let cl = ClWindow::of(job, &machine, &source)?;
             let besides = Besides { deviations: true, ..Besides::default() };
             Some(MotionRows::new(&machine, Some(cl), besides)?)
         }
@@ -195,11 +198,11 @@ pub fn run(session: &Session, arguments: &VerifyArguments) -> Result<(), Failure
             session,
             machine: &machine,
             held: &held,
-            names: [named, arguments.job.input()],
+            names: [named, &job.input],
             tolerances: reading.tolerances,
         };
         let text = nc_program::again(&name, &again)?;
-        shown.write(rows, (&mut source, &name, text), arguments.report.most(), &mut page)?;
+        shown.write(rows, (&mut source, &name, text), arguments.report.0.most(), &mut page)?;
         texts.push(page);
     }
     let taken = texts.iter().any(AtomicFile::is_standard);

@@ -6,12 +6,12 @@ use post_machine::description::Machine;
 use post_readback::verify::{BlockReport, Worst};
 use post_report::meta::{Maximum, Names, Verdict};
 
-use crate::failure::Failure;
-use crate::files::{AtomicFile, ClSource, PathArg};
-use crate::job::read_back::Held;
-use crate::job::report::{self, Heard, MotionRows, Parts};
-use crate::job::text::clock;
-use crate::session::Session;
+use post_job::failure::Failure;
+use post_job::files::{AtomicFile, ClSource, PathArg};
+use post_job::read_back::Held;
+use post_job::report::{self, Heard, MotionRows, Parts};
+use post_job::session::Session;
+use post_job::text::clock;
 
 /// What was found of a line.
 pub fn heard(row: &BlockReport) -> Heard {

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use post_machine::description::Machine;
 use post_readback::verify::Worst;
 
-use crate::job::read_back::Held;
-use crate::job::text::{clock, number};
+use post_job::read_back::Held;
+use post_job::text::{clock, number};
 
 /// The table of a verification of the program called `name`.
 pub fn text(held: &Held, machine: &Machine, name: &str, tolerances: [Option<f64>; 2]) -> String {

@@ -312,7 +312,7 @@ fn the_arrays_that_python_names_are_those_of_blocks() {
     let manual = fs::read_to_string(path).unwrap();
     let rule = format!("    {} {}\n", "=".repeat(23), "=".repeat(89));
     let mut table = rule.clone();
-    for (name, doc) in post_command::library::block_arrays() {
+    for (name, doc) in post_job::library::block_arrays() {
         assert!(doc.chars().count() <= 89, "{name}: {doc}");
         let _ = writeln!(table, "    {:<23} {doc}", format!("``{name}``"));
     }

@@ -11,7 +11,8 @@ use std::fs;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use post_command::library::{LoadedMachine, MachineTold, OptionTold, Stop};
+use post_job::library::{LoadedMachine, MachineSettings, MachineTold, OptionTold, Stop, Value};
+use post_machine::description::Setting;
 use post_testkit::Rng;
 
 use crate::common::root;
@@ -109,11 +110,11 @@ impl RightJob {
         let mut options = Vec::new();
         if random.pick(2) == 0 {
             let dialect = &DIALECTS[random.pick(DIALECTS.len())];
-            options.push(("dialect".to_owned(), Some(dialect.clone())));
+            options.push(("dialect".to_owned(), Value::Text(dialect.clone())));
         }
         match random.pick(3) {
-            0 => options.push(("tcp".to_owned(), Some("control".to_owned()))),
-            1 => options.push(("tcp".to_owned(), Some("post".to_owned()))),
+            0 => options.push(("tcp".to_owned(), "control".into())),
+            1 => options.push(("tcp".to_owned(), "post".into())),
             _ => {}
         }
         let length = (random.range(40.0, 160.0) * 100.0).round() / 100.0;
@@ -128,7 +129,7 @@ impl RightJob {
             line.push_str(&format!(" --set {key}={value}"));
         }
         for (key, value) in &self.options {
-            line.push_str(&format!(" --{key} {}", value.as_deref().unwrap_or_default()));
+            line.push_str(&format!(" --{key} {}", value));
         }
         line + " " + file
     }
@@ -136,12 +137,15 @@ impl RightJob {
     fn run(&self, folder: &std::path::Path) -> Outcome {
         let path = folder.join("job.cls");
         fs::write(&path, &self.cl.text).unwrap();
+        let set = self.set.iter();
         let told = MachineTold {
             name: self.machine.to_owned(),
-            set: self.set.clone(),
-            tool_length: Some(self.length),
-            machines: vec![root().join("machines")],
-            ..MachineTold::default()
+            over: MachineSettings {
+                set: set.map(|(key, value)| Setting::Written(format!("{key}={value}"))).collect(),
+                tool_length: Some(self.length),
+                machines: vec![root().join("machines")],
+                ..MachineSettings::default()
+            },
         };
         let refused = |findings: Vec<post_machine::diagnostic::Diagnostic>| {
             let errors = findings.iter();
@@ -155,7 +159,7 @@ impl RightJob {
             Ok(machine) => machine,
             Err(findings) => return Outcome::Refused(refused(findings)),
         };
-        let made = match machine.post(&stop, &path, &self.options, false) {
+        let made = match machine.post(&stop, &path, None, &self.options, false) {
             Ok(made) => made,
             Err(findings) => return Outcome::Refused(refused(findings)),
         };
@@ -206,7 +210,7 @@ fn study(first: u64, programs: usize, most: usize) -> (usize, Vec<String>, Strin
         let mut row = |bad: bool| {
             let mut names: Vec<String> = job.cl.has.iter().map(|has| (*has).to_owned()).collect();
             names.extend(job.set.iter().map(|(key, value)| format!("{key}={value}")));
-            names.extend(job.options.iter().map(|(_, value)| value.clone().unwrap_or_default()));
+            names.extend(job.options.iter().map(|(_, value)| value.to_string()));
             for name in names {
                 let row = features.entry(name).or_default();
                 row[usize::from(bad)] += 1;

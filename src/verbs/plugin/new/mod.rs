@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 use clap::{ArgGroup, Args};
 use post_machine::diagnostic::Diagnostic;
 
-use crate::failure::Failure;
-use crate::job::plugin_finder::built_in;
-use crate::session::Session;
 use crate::terminal::print;
+use post_job::failure::Failure;
+use post_job::plugin_finder::built_in;
+use post_job::session::Session;
 use starter::{File, Form};
 
 /// Longest name: it stands in file names, in a symbol and in machine files.

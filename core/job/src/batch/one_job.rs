@@ -1,0 +1,354 @@
+//! One job, from its line to its row.
+
+use std::io::{self, Cursor, Read, Seek, SeekFrom};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use post_machine::description::Machine;
+use post_machine::diagnostic::{Diagnostic, Severity};
+use post_posting::report::Report;
+use post_posting::{LookedAhead, Output};
+use post_readback::interpret::Limits;
+use post_readback::verify::BlockReport;
+
+use super::Study;
+use super::columns::{self, Written};
+use super::inputs::{ClText, Inputs};
+use super::job_line::JobLine;
+use super::journal::Journal;
+use super::key;
+use super::outcome::{FAILED, Outcome, REFUSED, WRITTEN};
+use super::travel;
+use crate::failure::Failure;
+use crate::files::{ClSource, HeldText, PathArg};
+use crate::one_program::{Beside, OneProgram};
+use crate::predict::{self, Against, Asked, Sample};
+use crate::read_back::{self, Reading};
+use crate::session::Session;
+use crate::settings::JobSettings;
+use crate::{self as job, plugin_finder, unused_options};
+
+/// What came of a job, and whether the journal knew it.
+pub struct Did {
+    /// Its row.
+    pub outcome: Outcome,
+    /// The journal knew it.
+    pub known: bool,
+}
+
+/// Does a job, whatever comes; none if it was given up.
+pub fn run(
+    session: &Session,
+    study: &Study,
+    job: &JobLine,
+    inputs: &Inputs,
+    journal: Option<&Journal>,
+    stop: &Arc<AtomicBool>,
+) -> Option<Did> {
+    // What a job had in its hands is dropped with it: nothing of it is seen again.
+    let did =
+        catch_unwind(AssertUnwindSafe(|| attempt(session, study, job, inputs, journal, stop)));
+    if stop.load(Ordering::Relaxed) {
+        return None;
+    }
+    Some(told(did))
+}
+
+/// A row of whatever came of a job.
+fn told(did: std::thread::Result<Result<Did, Failure>>) -> Did {
+    let new = |outcome| Did { outcome, known: false };
+    match did {
+        Ok(Ok(did)) => did,
+        Ok(Err(Failure::Refused(findings))) => new(Outcome::not_written(REFUSED, &findings)),
+        Ok(Err(failure)) => {
+            let state = match &failure {
+                Failure::File(fault) if !fault.is_of_input() => FAILED,
+                _ => REFUSED,
+            };
+            new(Outcome::not_written(state, &failure.findings()))
+        }
+        Err(panic) => {
+            let told = panic.downcast_ref::<String>().map(String::as_str);
+            let told = told.or_else(|| panic.downcast_ref::<&str>().copied());
+            let message = format!("post itself failed: {}", told.unwrap_or("it does not say why"));
+            let finding = Diagnostic::error("panic", message);
+            new(Outcome::not_written(FAILED, &[finding]))
+        }
+    }
+}
+
+/// A job with all that it reads.
+struct Prepared {
+    arguments: JobSettings,
+    machine: Machine,
+    cl: Arc<ClText>,
+    key: Option<String>,
+}
+
+impl Prepared {
+    fn new(
+        session: &Session,
+        study: &Study,
+        job: &JobLine,
+        inputs: &Inputs,
+    ) -> Result<Self, Failure> {
+        let arguments = job
+            .settings(&study.options.reading)
+            .map_err(|fault| Diagnostic::error("job", fault))?;
+        let cl = inputs.cl(session, &job.file)?;
+        let texts = inputs.machine(&arguments.machine);
+        let machine = texts.load(&arguments.over.settings())?;
+        Ok(Self {
+            // Of a plugin that cannot be opened posting tells more.
+            key: key::key(study, job, &cl, &texts, &machine).ok(),
+            arguments,
+            machine,
+            cl,
+        })
+    }
+}
+
+/// What the journal knows of a job.
+pub fn known(
+    session: &Session,
+    study: &Study,
+    job: &JobLine,
+    inputs: &Inputs,
+    journal: &Journal,
+) -> Option<Outcome> {
+    // What is wrong with the job is found again when it is done.
+    let prepared = catch_unwind(AssertUnwindSafe(|| Prepared::new(session, study, job, inputs)));
+    journal.known(prepared.ok()?.ok()?.key.as_ref()?)
+}
+
+/// Does a job, or takes from the journal what came of it before.
+fn attempt(
+    session: &Session,
+    study: &Study,
+    job: &JobLine,
+    inputs: &Inputs,
+    journal: Option<&Journal>,
+    stop: &Arc<AtomicBool>,
+) -> Result<Did, Failure> {
+    let Prepared { arguments, machine, cl, key } = Prepared::new(session, study, job, inputs)?;
+    let known = journal.zip(key.as_ref()).and_then(|(journal, key)| journal.known(key));
+    if let Some(outcome) = known {
+        return Ok(Did { outcome, known: true });
+    }
+    let begun = std::time::Instant::now();
+    let one = OneJob { session, study, arguments: &arguments, machine: &machine, cl: &cl, stop };
+    let mut outcome = match one.make() {
+        Ok(outcome) => outcome,
+        Err(Failure::Refused(findings)) => Outcome::not_written(REFUSED, &findings),
+        Err(failure) => return Err(failure),
+    };
+    outcome.key = key;
+    if let Some(key) = outcome.key.clone() {
+        outcome.text("key", key);
+    }
+    outcome.number("compute_time_s", begun.elapsed().as_secs_f64());
+    Ok(Did { outcome, known: false })
+}
+
+/// A job whose machine is loaded.
+struct OneJob<'a> {
+    session: &'a Session,
+    study: &'a Study,
+    arguments: &'a JobSettings,
+    machine: &'a Machine,
+    cl: &'a ClText,
+    stop: &'a Arc<AtomicBool>,
+}
+
+impl OneJob<'_> {
+    /// Posts, and reads back and predicts where that is asked for.
+    fn make(&self) -> Result<Outcome, Failure> {
+        let options = &self.study.options;
+        let finder = &self.study.finder;
+        let mut source = self.source();
+        let mut findings = unused_options::found(self.machine, finder);
+        let ahead = self.ahead(&mut source)?;
+        let target = self.arguments.input.map(|path| path.with_extension("nc"));
+        let program = OneProgram {
+            session: self.session,
+            arguments: self.arguments,
+            machine: self.machine,
+            finder,
+            target: &target,
+            lines: None,
+            trust_model: options.trust_model,
+            plans: options.plan,
+            tightening: None,
+        };
+        let mut text = ProgramText::new(options.verify || options.predict);
+        let (report, found) =
+            program.write(ahead.as_ref(), &mut source, &mut text, Beside::default())?;
+        findings.extend(found);
+        let Some(report) = report else {
+            return Ok(Outcome::not_written(REFUSED, &findings));
+        };
+        let mut outcome = Outcome::default();
+        self.tell(&report, &text, &mut outcome);
+        if options.verify {
+            let held = self.read_back(&target, &mut source, &text)?;
+            outcome.tell(&columns::verified(), &held.found);
+            let wrong = held.is_wrong();
+            findings.extend(held.findings);
+            if wrong {
+                let mut refused = Outcome::not_written(REFUSED, &findings);
+                refused.values.append(&mut outcome.values);
+                return Ok(refused);
+            }
+        }
+        if options.predict {
+            let predicted = self.predict(&target, &mut source, &text)?;
+            outcome.tell(&columns::predicted(), &predicted.found);
+            findings.extend(predicted.findings);
+        }
+        debug_assert!(findings.iter().all(|finding| finding.severity == Severity::Warning));
+        outcome.text("state", WRITTEN);
+        outcome.text("codes", "");
+        outcome.warnings(&findings);
+        Ok(outcome)
+    }
+
+    fn source(&self) -> ClSource {
+        let text = HeldText { bytes: Arc::clone(&self.cl.bytes), stop: Arc::clone(self.stop) };
+        ClSource::of_held(self.session, &self.arguments.input, text)
+    }
+
+    fn ahead(&self, source: &mut ClSource) -> Result<Option<LookedAhead>, Failure> {
+        if !self.machine.program.looks_ahead {
+            return Ok(None);
+        }
+        let finder = &self.study.finder;
+        job::look_ahead(self.session, self.arguments, self.machine, finder, source, None).map(Some)
+    }
+
+    fn read_back(
+        &self,
+        target: &PathArg,
+        source: &mut ClSource,
+        text: &ProgramText,
+    ) -> Result<read_back::Held, Failure> {
+        let reading = Reading {
+            session: self.session,
+            arguments: self.arguments,
+            machine: self.machine,
+            finder: &self.study.finder,
+            offsets: None,
+            limits: Limits::default(),
+            tolerances: [None, None],
+            planned: self.study.options.plan,
+            solutions: false,
+            any_coolant: false,
+            // It was written in this run, or lines of the user's have another.
+            any_work_offset: true,
+            own: true,
+            lines: None,
+        };
+        let name = plugin_finder::cl_name(target);
+        read_back::verify(&reading, source, &name, self.reread(text), &mut |_: &BlockReport| {})
+    }
+
+    fn predict(
+        &self,
+        target: &PathArg,
+        source: &mut ClSource,
+        text: &ProgramText,
+    ) -> Result<predict::Predicted, Failure> {
+        let asked = Asked {
+            session: self.session,
+            arguments: self.arguments,
+            machine: self.machine,
+            finder: &self.study.finder,
+            offsets: None,
+            limits: Limits::default(),
+            period: None,
+            lines: None,
+        };
+        let name = plugin_finder::cl_name(target);
+        let against = Against::Cl(source);
+        predict::predict(&asked, against, &name, self.reread(text), &mut |_: &Sample| Ok(()))
+    }
+
+    fn reread<'t>(&self, text: &'t ProgramText) -> Stoppable<'t> {
+        Stoppable {
+            text: Cursor::new(text.kept.as_deref().unwrap_or_default()),
+            stop: Arc::clone(self.stop),
+        }
+    }
+
+    /// What the program came to.
+    fn tell(&self, report: &Report, text: &ProgramText, outcome: &mut Outcome) {
+        let written = Written {
+            report,
+            bytes: text.bytes,
+            hash: text.hasher.finalize().to_hex().to_string(),
+            left: travel::tell(self.machine, report, outcome),
+        };
+        outcome.tell(&columns::program(), &written);
+        outcome.tell(&columns::text(), &written);
+    }
+}
+
+/// Takes the text of a program: its length and its hash, and if it is read back the text itself.
+struct ProgramText {
+    bytes: u64,
+    hasher: blake3::Hasher,
+    kept: Option<Vec<u8>>,
+}
+
+impl ProgramText {
+    fn new(keeps: bool) -> Self {
+        Self { bytes: 0, hasher: blake3::Hasher::new(), kept: keeps.then(Vec::new) }
+    }
+}
+
+impl Output for ProgramText {
+    fn write(&mut self, text: &[u8]) -> Result<(), String> {
+        self.bytes += text.len() as u64;
+        self.hasher.update(text);
+        if let Some(kept) = &mut self.kept {
+            kept.extend_from_slice(text);
+        }
+        Ok(())
+    }
+}
+
+/// A program that is read back until that is given up.
+struct Stoppable<'t> {
+    text: Cursor<&'t [u8]>,
+    stop: Arc<AtomicBool>,
+}
+
+impl Read for Stoppable<'_> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(io::Error::other("given up"));
+        }
+        self.text.read(into)
+    }
+}
+
+impl Seek for Stoppable<'_> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.text.seek(to)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_a_row_that_is_tried_again() {
+        let did = told(catch_unwind(|| panic!("line {}", 7)));
+        assert_eq!(did.outcome.state(), FAILED);
+        assert_eq!(did.outcome.key, None);
+        let row = crate::files::json_line(&did.outcome);
+        assert!(row.contains("post itself failed: line 7"), "{row}");
+        assert!(row.contains("\"codes\":\"panic\""), "{row}");
+    }
+}

@@ -1,0 +1,133 @@
+//! One CL file on one machine, posted as often as it takes, its text thrown away.
+
+use post_host::{Finder, OpenedDialect};
+use post_machine::description::{Machine, Setting};
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::{Batch, Capabilities, DialectSession, Format, WriteFault};
+use post_posting::program::ToldSpindle;
+use post_posting::report::Report;
+use post_posting::{Observer, Post};
+
+use super::plugin_finder;
+use crate::failure::Failure;
+use crate::files::{ClInput, NullSink};
+use crate::session::Session;
+use crate::settings::JobSettings;
+
+/// Decimals that leave axis values as they are solved: a millionth of a micrometre.
+const EXACT: u8 = 9;
+
+/// A CL file and how it is looked at.
+pub struct DryRun<'a> {
+    session: &'a Session,
+    arguments: &'a JobSettings,
+    /// The CL file, as the user named it.
+    pub name: String,
+    /// Finds the plugins that the machine asks for.
+    pub finder: Finder,
+    /// Words are not rounded.
+    exact: bool,
+}
+
+impl<'a> DryRun<'a> {
+    /// Of the CL file and the machine of the command line, for the verb of that name of a command.
+    pub fn new(
+        session: &'a Session,
+        verb: &'static str,
+        command: &str,
+        arguments: &'a JobSettings,
+        exact: bool,
+    ) -> Result<Self, Failure> {
+        let Some(path) = arguments.input.path() else {
+            let message = format!("{command} {verb} goes over the CL file several times");
+            return Err(Diagnostic::error(verb, message)
+                .help("give a file, not standard input")
+                .into());
+        };
+        Ok(Self {
+            session,
+            arguments,
+            name: path.display().to_string(),
+            finder: plugin_finder::finder(session, &arguments.over.plugins)?,
+            exact,
+        })
+    }
+
+    /// The machine of the command line with `more` set.
+    pub fn machine(&self, more: &[Setting]) -> Result<Machine, Failure> {
+        super::machine(self.session, self.arguments, more)
+    }
+
+    /// Posts the file, and throws the text away.
+    pub fn pass(
+        &self,
+        machine: &Machine,
+        watch: Option<&mut dyn Observer>,
+    ) -> Result<(Report, Vec<Diagnostic>), Failure> {
+        let source = &self.arguments.input;
+        let program = super::program_name(source, None);
+        let (dialect, _) = plugin_finder::dialect(&self.finder, machine, &program, Some(source))?;
+        let (mut model, _) = plugin_finder::model(&self.finder, machine)?;
+        let input = ClInput::open(self.session, source)?;
+        let mut posting = super::posting(self.arguments, &input.name);
+        if posting.reading.spindle == ToldSpindle::Unknown {
+            // Nothing is written: how fast the spindle turns is nobody's business.
+            posting.reading.spindle = ToldSpindle::Still;
+        }
+        let mut dialect = Rounding::new(dialect, self.exact);
+        let mut sink = NullSink;
+        // What a template asks for may not be known here, and nobody reads it.
+        let machine = &machine.without_text();
+        let mut post = Post::new(machine, posting, &mut dialect, &mut model, &mut sink)
+            .map_err(|finding| *finding)?;
+        if let Some(watch) = watch {
+            post.watch(watch);
+        }
+        super::read(self.session, input, &mut post)?;
+        match post.finish() {
+            (Some(report), findings) => Ok((report, findings)),
+            (None, findings) => Err(findings.into()),
+        }
+    }
+}
+
+/// A dialect, and the decimals that the words are rounded to.
+struct Rounding {
+    dialect: OpenedDialect,
+    format: Format,
+}
+
+impl Rounding {
+    fn new(dialect: OpenedDialect, exact: bool) -> Self {
+        let mut format = dialect.format().clone();
+        if exact {
+            format.words.fill(EXACT);
+        }
+        Self { dialect, format }
+    }
+}
+
+impl DialectSession for Rounding {
+    /// What stands between the moves; the moves are looked at as such, whatever the dialect makes of them.
+    fn capabilities(&self) -> Capabilities {
+        const BETWEEN: Capabilities = Capabilities::WORK_OFFSET
+            .and(Capabilities::OFFSETS)
+            .and(Capabilities::SUBPROGRAM)
+            .and(Capabilities::SURFACE_SPEED)
+            .and(Capabilities::SMOOTHING);
+        Capabilities::from_bits(self.dialect.capabilities().bits() & BETWEEN.bits())
+    }
+
+    fn format(&self) -> &Format {
+        &self.format
+    }
+
+    fn write_batch(
+        &mut self,
+        batch: &Batch,
+        out: &mut String,
+        ends: &mut Vec<usize>,
+    ) -> Result<(), WriteFault> {
+        self.dialect.write_batch(batch, out, ends)
+    }
+}

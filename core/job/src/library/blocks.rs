@@ -1,0 +1,109 @@
+//! The blocks of a program, as arrays.
+
+use std::collections::VecDeque;
+
+use post_machine::description::Machine;
+use post_posting::{Block, Flow, Observer};
+
+use crate::columns::{Column, Kind};
+use crate::posted::{self, PostedBlock, PostedProgram};
+
+pub use crate::posted::{KINDS, REASONS};
+
+/// A row of each block; mm, degrees, s, part frame.
+#[derive(Clone, Debug, Default)]
+pub struct Blocks {
+    /// Names of the axes of all heads: the columns of `q`.
+    pub axes: Vec<String>,
+    /// What `limit` counts.
+    pub limits: Vec<String>,
+    /// How many there are.
+    pub rows: usize,
+    /// What is told of them.
+    pub arrays: Vec<Array>,
+}
+
+/// A value of each block, or a list of them.
+#[derive(Clone, Debug)]
+pub struct Array {
+    /// Its name, with its unit.
+    pub name: String,
+    /// What it is.
+    pub doc: String,
+    /// How many values a block has, where it has a list of them.
+    pub width: Option<usize>,
+    /// What its values are.
+    pub kind: Kind,
+    /// Those of all blocks, one behind the other; no number where a block has none.
+    pub values: Vec<f64>,
+}
+
+/// Names of all arrays of blocks, and what they are.
+pub fn block_arrays() -> Vec<(String, String)> {
+    let columns = posted::arrays(0).into_iter();
+    columns.map(|column| (column.name.into_owned(), column.doc.into_owned())).collect()
+}
+
+/// Takes the blocks of a program that is made.
+pub(super) struct BlockArrays<'m> {
+    program: PostedProgram<'m>,
+    columns: Vec<Column<PostedBlock>>,
+    /// Rows whose line of the program is not known yet.
+    waiting: VecDeque<PostedBlock>,
+    blocks: Blocks,
+}
+
+impl<'m> BlockArrays<'m> {
+    pub(super) fn new(machine: &'m Machine) -> Self {
+        let program = PostedProgram::new(machine);
+        let axes: Vec<String> = program.axes.iter().map(|axis| axis.name.clone()).collect();
+        let columns = posted::arrays(axes.len());
+        let arrays = columns.iter().map(|column| Array {
+            name: column.name.clone().into_owned(),
+            doc: column.doc.clone().into_owned(),
+            width: column.width,
+            kind: column.kind,
+            values: Vec::new(),
+        });
+        let blocks = Blocks { axes, arrays: arrays.collect(), ..Blocks::default() };
+        Self { program, columns, waiting: VecDeque::new(), blocks }
+    }
+
+    pub(super) fn finish(mut self) -> Blocks {
+        while self.row(0) {}
+        self.blocks.limits = self.program.limits;
+        self.blocks
+    }
+
+    /// The first row that waits stands on this line; false where none waits.
+    fn row(&mut self, nc: u64) -> bool {
+        let Some(row) = self.waiting.pop_front() else {
+            return false;
+        };
+        let row = PostedBlock { nc, ..row };
+        self.blocks.rows += 1;
+        for (array, column) in self.blocks.arrays.iter_mut().zip(&self.columns) {
+            let values = (0..column.width.unwrap_or(1)).map(|place| column.of(&row, place));
+            let numbers = values.map(|value| value.and_then(|value| value.number()));
+            array.values.extend(numbers.map(|number| number.unwrap_or(f64::NAN)));
+        }
+        true
+    }
+}
+
+impl Observer for BlockArrays<'_> {
+    fn blocks(&mut self, blocks: &[Flow<Block>]) {
+        for next in blocks {
+            match next {
+                Flow::Point(block) => self.waiting.push_back(self.program.block(block)),
+                Flow::Command { command, .. } => self.program.command(command),
+            }
+        }
+    }
+
+    fn lines(&mut self, lines: &[u64]) {
+        for line in lines {
+            self.row(*line);
+        }
+    }
+}

@@ -1,0 +1,263 @@
+//! A CL file on a machine: the program, and what can be asked of it.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use post_machine::diagnostic::Diagnostic;
+use post_posting::{Observer, Output};
+
+use super::blocks::BlockArrays;
+use super::{Blocks, MachineTold, OptionTold, Refused, Stop, quietly};
+use crate::failure::Failure;
+use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
+use crate::making::{self, Part, ProgramMaker, ProgramText, Reread, Wanted};
+use crate::plugin_finder;
+use crate::session::Session;
+use crate::settings::{JobSettings, MakingSettings, ReadingSettings, tell};
+
+/// A program that is asked for.
+#[derive(Clone, Debug)]
+struct Request {
+    job: JobSettings,
+    making: MakingSettings,
+    output: Option<PathArg>,
+}
+
+/// A file, and never a standard stream: those are not ours.
+fn file(path: &Path) -> PathArg {
+    PathArg::from(match path.as_os_str() == "-" {
+        true => Path::new("./-").to_owned(),
+        false => path.to_owned(),
+    })
+}
+
+/// The text of a program in memory.
+struct Text {
+    name: String,
+    bytes: Vec<u8>,
+}
+
+impl Output for Text {
+    fn write(&mut self, text: &[u8]) -> Result<(), String> {
+        self.bytes.extend_from_slice(text);
+        Ok(())
+    }
+}
+
+impl ProgramText for Text {
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+
+    fn reread(&mut self) -> Result<Box<dyn Reread + '_>, Failure> {
+        Ok(Box::new(Cursor::new(&self.bytes)))
+    }
+}
+
+/// A program that is good.
+#[derive(Debug)]
+pub struct MadeProgram {
+    request: Request,
+    part: Part,
+    text: Vec<u8>,
+    summary: String,
+    findings: Vec<Diagnostic>,
+    moved: bool,
+    blocks: Option<Blocks>,
+}
+
+/// What reading back or predicting a program has found.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// As JSON, the bytes that the command writes.
+    pub json: String,
+    /// Warnings.
+    pub findings: Vec<Diagnostic>,
+}
+
+/// What a report shall tell besides.
+#[derive(Clone, Copy, Debug)]
+pub struct ReportTold {
+    /// What reading the program back finds.
+    pub verify: bool,
+    /// What is predicted of it.
+    pub predict: bool,
+    /// Largest size, MB.
+    pub most_megabytes: u64,
+}
+
+impl Request {
+    fn new(
+        machine: &MachineTold,
+        input: &Path,
+        output: Option<&Path>,
+        options: &[OptionTold],
+    ) -> Result<Self, Failure> {
+        let mut reading = ReadingSettings::default();
+        let mut over = machine.over.clone();
+        let mut making = MakingSettings::default();
+        tell(options, &mut [&mut reading, &mut over, &mut making])?;
+        let job = JobSettings { machine: machine.name.clone(), input: file(input), reading, over };
+        Ok(Self { job, making, output: output.map(file) })
+    }
+
+    /// Opens what the program is made with: the program as a part of its file, and the file.
+    fn open<'a>(
+        &'a self,
+        session: &'a Session,
+    ) -> Result<(ProgramMaker<'a>, Part, ClSource), Failure> {
+        let (mut maker, machine) = ProgramMaker::open(session, &self.job, &self.making)?;
+        let mut source = ClSource::new(session, &self.job.input, true)?;
+        if machine.program.looks_ahead {
+            maker.look_ahead(&machine, &mut source)?;
+        }
+        let target = making::target(&self.job, self.output.as_ref(), &machine, &maker.finder)?;
+        Ok((maker, Part { lines: None, target, machine }, source))
+    }
+
+    /// What a program that is made is asked with.
+    fn maker<'a>(&'a self, session: &'a Session) -> Result<ProgramMaker<'a>, Failure> {
+        let finder = plugin_finder::finder(session, &self.job.over.plugins)?;
+        let (job, making) = (&self.job, &self.making);
+        Ok(ProgramMaker { session, job, making, finder, ahead: None })
+    }
+}
+
+/// A text for a program in the making.
+fn text(part: &Part) -> Text {
+    let path = part.target.path();
+    let name = path.map(|path| path.display().to_string()).unwrap_or_default();
+    Text { name, bytes: Vec::new() }
+}
+
+impl MadeProgram {
+    /// Posts the CL file `input`. The program is written to `output`, whole or not at all; without it
+    /// nothing is written.
+    ///
+    /// # Errors
+    /// Why it is refused.
+    pub(super) fn post(
+        stop: &Stop,
+        machine: &MachineTold,
+        input: &Path,
+        output: Option<&Path>,
+        options: &[OptionTold],
+        keep_blocks: bool,
+    ) -> Result<Self, Refused> {
+        let made = quietly(stop, |session| {
+            let request = Request::new(machine, input, output, options)?;
+            let (maker, part, mut source) = request.open(session)?;
+            let targets = request.output.as_ref().map(|target| (Role::PROGRAM, target));
+            let targets: Vec<_> = targets.into_iter().collect();
+            let mut files = AtomicFile::create(session, &targets)?;
+            let mut columns = keep_blocks.then(|| BlockArrays::new(&part.machine));
+            let observer = columns.as_mut().map(|columns| columns as &mut dyn Observer);
+            let wanted = Wanted { observer, ..Wanted::default() };
+            let mut text = text(&part);
+            let mut findings = Vec::new();
+            let ready = maker.prepare(&part, &mut source, false)?;
+            let outcome =
+                maker.make((&part, ready), &mut source, &mut text, wanted, &mut findings)?;
+            for file in &mut files {
+                file.write_bytes(&text.bytes)?;
+            }
+            AtomicFile::finish(session, files)?;
+            let blocks = columns.map(BlockArrays::finish);
+            let (summary, moved) = (files::json(&outcome.told()), outcome.moved);
+            drop(maker);
+            Ok(Self { request, part, text: text.bytes, summary, findings, moved, blocks })
+        });
+        let (mut made, mut findings) = made?;
+        findings.append(&mut made.findings);
+        Ok(Self { findings, ..made })
+    }
+
+    /// Its text.
+    pub fn text(&self) -> &[u8] {
+        &self.text
+    }
+
+    /// What messages call it: where it is, or would be, written.
+    pub fn name(&self) -> String {
+        let path = self.part.target.path();
+        path.map(|path| path.display().to_string()).unwrap_or_default()
+    }
+
+    /// Its summary, the bytes that `--summary` writes.
+    pub fn summary(&self) -> &str {
+        &self.summary
+    }
+
+    /// What the user should know.
+    pub fn findings(&self) -> &[Diagnostic] {
+        &self.findings
+    }
+
+    /// Its blocks, if they were kept.
+    pub fn blocks(&self) -> Option<&Blocks> {
+        self.blocks.as_ref()
+    }
+
+    /// Its feed is planned.
+    pub fn is_planned(&self) -> bool {
+        self.request.making.plan
+    }
+
+    /// Reads it back and holds it against the CL file, as `post verify` does.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn verify(&self, stop: &Stop) -> Result<Found, Refused> {
+        let held = quietly(stop, |session| {
+            let maker = self.request.maker(session)?;
+            let mut source = ClSource::new(session, &self.request.job.input, true)?;
+            let text = (self.name(), Cursor::new(&self.text));
+            let held = maker.read_back(&self.part, self.moved, &mut source, text)?;
+            match held.is_wrong() {
+                true => Err(held.findings.into()),
+                false => Ok((files::json(&held.found), held.findings)),
+            }
+        });
+        let ((json, found), mut findings) = held?;
+        findings.extend(found);
+        Ok(Found { json, findings })
+    }
+
+    /// Predicts what it does on its machine, as `post predict` with the CL file does; `period` between set-points, s, over
+    /// the machine file's.
+    ///
+    /// # Errors
+    /// The machine cannot be predicted.
+    pub fn predict(&self, stop: &Stop, period: Option<f64>) -> Result<Found, Refused> {
+        let predicted = quietly(stop, |session| {
+            let maker = self.request.maker(session)?;
+            let mut source = ClSource::new(session, &self.request.job.input, true)?;
+            let text = (self.name(), Cursor::new(&self.text));
+            let predicted = maker.predict(&self.part, period, (&mut source, None), text)?;
+            Ok((files::json(&predicted.found), predicted.findings))
+        });
+        let ((json, found), mut findings) = predicted?;
+        findings.extend(found);
+        Ok(Found { json, findings })
+    }
+
+    /// Writes a page to look at, the bytes that `--report` writes. The program is made once more for it.
+    ///
+    /// # Errors
+    /// The page cannot be written, or what it shall tell is refused.
+    pub fn report(&self, stop: &Stop, page: &Path, told: ReportTold) -> Result<(), Refused> {
+        let written = quietly(stop, |session| {
+            let (maker, part, mut source) = self.request.open(session)?;
+            let mut files = AtomicFile::create(session, &[(Role::REPORT, &file(page))])?;
+            let most = told.most_megabytes.saturating_mul(1_000_000);
+            let ReportTold { verify, predict, .. } = told;
+            let page = files.first_mut().map(|file| (file, most));
+            let wanted = Wanted { verify, predict, page, ..Wanted::default() };
+            let ready = maker.prepare(&part, &mut source, false)?;
+            let (mut text, mut findings) = (text(&part), Vec::new());
+            maker.make((&part, ready), &mut source, &mut text, wanted, &mut findings)?;
+            Ok(AtomicFile::finish(session, files)?)
+        });
+        written.map(|_| ())
+    }
+}

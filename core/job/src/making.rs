@@ -1,0 +1,458 @@
+//! Programs of a job: made, read back, predicted.
+
+use std::io::{Read, Seek};
+use std::ops::Range;
+
+use post_host::Finder;
+use post_machine::description::{Machine, Setting};
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::DialectSession as _;
+use post_posting::plan::PlanWatch;
+use post_posting::report::Report;
+use post_posting::{LookedAhead, Observer, Output};
+use post_readback::interpret::Limits;
+use post_readback::verify::{BlockReport, Verification};
+
+use crate::compensate::{self, Compensation, Moved};
+use crate::failure::Failure;
+use crate::files::{AtomicFile, ClSource, PathArg};
+use crate::one_program::{Beside, OneProgram};
+use crate::plan_rounds;
+use crate::plan_worth;
+use crate::plugin_finder;
+use crate::predict::{self, Against, Asked, Predicted, Prediction, Sample};
+use crate::read_back::{self, Held, Reading};
+use crate::report::{self, BlockRows, ClWindow, Made, PredictedParts};
+use crate::session::Session;
+use crate::settings::{JobSettings, MakingSettings};
+use crate::summary::{self, Told};
+
+/// The machine of the command line, its program so numbered if a number is given.
+pub fn numbered(
+    session: &Session,
+    arguments: &JobSettings,
+    number: Option<i64>,
+) -> Result<Machine, Failure> {
+    let machine = super::machine(session, arguments, &[])?;
+    let Some(number) = number else {
+        return Ok(machine);
+    };
+    let dialect = machine.control.dialect;
+    let setting = Setting::Written(format!("control.{dialect}.program_number={number}"));
+    super::machine(session, arguments, &[setting])
+}
+
+/// Where a program goes: to `output`, else beside the CL file, with the ending of the machine or of its dialect.
+///
+/// # Errors
+/// Its dialect cannot be opened.
+pub fn target(
+    arguments: &JobSettings,
+    output: Option<&PathArg>,
+    machine: &Machine,
+    finder: &Finder,
+) -> Result<PathArg, Failure> {
+    let source = &arguments.input;
+    let program = super::program_name(source, output);
+    let (dialect, _) = plugin_finder::dialect(finder, machine, &program, Some(source))?;
+    let extension = machine.program.extension.clone();
+    let extension = extension.unwrap_or(dialect.format().extension.clone());
+    let beside = || source.map(|path| path.with_extension(&extension));
+    Ok(output.cloned().unwrap_or_else(beside))
+}
+
+/// One program of a run.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Lines of the CL file that it is made of; none: all.
+    pub lines: Option<Range<u64>>,
+    /// Where it goes.
+    pub target: PathArg,
+    /// The machine with its settings.
+    pub machine: Machine,
+}
+
+/// The text of a program in the making, that can be read again.
+pub trait ProgramText: Output {
+    /// What messages call it.
+    fn name(&self) -> String;
+
+    /// What was written, from its beginning; nothing more may be written then.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    fn reread(&mut self) -> Result<Box<dyn Reread + '_>, Failure>;
+}
+
+/// A text that can be gone back in.
+pub trait Reread: Read + Seek {}
+
+impl<T: Read + Seek> Reread for T {}
+
+impl ProgramText for AtomicFile {
+    fn name(&self) -> String {
+        Self::name(self).to_owned()
+    }
+
+    fn reread(&mut self) -> Result<Box<dyn Reread + '_>, Failure> {
+        Ok(Box::new(Self::reread(self)?))
+    }
+}
+
+/// What is wanted of a program beside its text.
+#[derive(Default)]
+pub struct Wanted<'w, 'o, 'p> {
+    /// It is read back and held against the CL file.
+    pub verify: bool,
+    /// What it does is predicted.
+    pub predict: bool,
+    /// Sees its plan.
+    pub watch: Option<&'w mut dyn PlanWatch>,
+    /// Sees its blocks, if no page does.
+    pub observer: Option<&'o mut dyn Observer>,
+    /// A page to look at, and its largest size, bytes.
+    pub page: Option<(&'p mut AtomicFile, u64)>,
+}
+
+/// What came of a program that is made.
+pub struct ProgramOutcome {
+    /// What making it came to.
+    pub report: Report,
+    /// Its points were moved for the servos.
+    pub moved: bool,
+    /// What planning in rounds has done.
+    pub plan_rounds: Option<plan_rounds::Found>,
+    /// What moving points for the servos has done.
+    pub compensation: Option<compensate::Found>,
+    /// What reading it back found.
+    pub verification: Option<Verification>,
+    /// What is predicted of it.
+    pub prediction: Option<Prediction>,
+}
+
+impl ProgramOutcome {
+    /// What its summary tells.
+    pub fn told(&self) -> Told<'_> {
+        Told {
+            report: &self.report,
+            verification: self.verification.as_ref(),
+            prediction: self.prediction.as_ref(),
+            servo_compensation: self.compensation.as_ref(),
+            plan_rounds: self.plan_rounds.as_ref(),
+        }
+    }
+}
+
+/// What programs of a job are made with.
+pub struct ProgramMaker<'a> {
+    /// The run.
+    pub session: &'a Session,
+    /// What the job is.
+    pub job: &'a JobSettings,
+    /// How its programs are made.
+    pub making: &'a MakingSettings,
+    /// Its plugins.
+    pub finder: Finder,
+    /// What a first pass over the CL file has found, where that was made.
+    pub ahead: Option<LookedAhead>,
+}
+
+impl<'a> ProgramMaker<'a> {
+    /// Opens what programs are made with, and the machine; what of its file has no effect is said.
+    ///
+    /// # Errors
+    /// The machine or a folder of plugins cannot be used.
+    pub fn open(
+        session: &'a Session,
+        job: &'a JobSettings,
+        making: &'a MakingSettings,
+    ) -> Result<(Self, Machine), Failure> {
+        let machine = numbered(session, job, making.number.map(i64::from))?;
+        let finder = plugin_finder::finder(session, &job.over.plugins)?;
+        super::say_what_is_left(session, job, &machine, &finder);
+        Ok((Self { session, job, making, finder, ahead: None }, machine))
+    }
+
+    /// Makes the first pass over the CL file.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn look_ahead(&mut self, machine: &Machine, source: &mut ClSource) -> Result<(), Failure> {
+        let found = super::look_ahead(self.session, self.job, machine, &self.finder, source, None)?;
+        self.ahead = Some(found);
+        Ok(())
+    }
+
+    /// Plans a program in rounds and moves its points, where that is asked for. Where the plan itself is `shown`, it is
+    /// written whatever it gains.
+    ///
+    /// # Errors
+    /// The machine file does not allow it, or the program cannot be made.
+    pub fn prepare<'p>(
+        &'p self,
+        part: &'p Part,
+        source: &mut ClSource,
+        shown: bool,
+    ) -> Result<Ready<'p>, Failure> {
+        let program = OneProgram {
+            session: self.session,
+            arguments: self.job,
+            machine: &part.machine,
+            finder: &self.finder,
+            target: &part.target,
+            lines: part.lines.clone(),
+            trust_model: self.making.trust_model,
+            plans: self.making.plan,
+            tightening: None,
+        };
+        Ready::new(program, self.making, self.ahead.as_ref(), source, shown)
+    }
+
+    /// Writes a program, and finds out what else is wanted of it; what the user should know goes to `findings`.
+    ///
+    /// # Errors
+    /// All that is wrong with it, the findings among it, or a file that cannot be read or written.
+    pub fn make(
+        &self,
+        (part, ready): (&Part, Ready<'_>),
+        source: &mut ClSource,
+        text: &mut dyn ProgramText,
+        wanted: Wanted<'_, '_, '_>,
+        findings: &mut Vec<Diagnostic>,
+    ) -> Result<ProgramOutcome, Failure> {
+        let Wanted { verify, predict, watch, observer, page } = wanted;
+        findings.extend(ready.warning());
+        let mut rows = match &page {
+            Some(_) => Some(self.rows(part, source, predict)?),
+            None => None,
+        };
+        let observer: Option<&mut dyn Observer> = match (&mut rows, observer) {
+            (Some(rows), _) => Some(rows),
+            (None, Some(observer)) => Some(observer),
+            (None, None) => None,
+        };
+        let beside = Beside { watch, observer, ..Beside::default() };
+        let (report, found) = ready.write(self.ahead.as_ref(), source, text, beside)?;
+        let moved = ready.is_moved();
+        let (plan_rounds, compensation) = ready.found();
+        // What is wrong with the file is found again in each of its parts.
+        for finding in found {
+            if !findings.contains(&finding) {
+                findings.push(finding);
+            }
+        }
+        let Some(report) = report else {
+            return Err(std::mem::take(findings).into());
+        };
+        let (verification, prediction) = (None, None);
+        let mut outcome =
+            ProgramOutcome { report, moved, plan_rounds, compensation, verification, prediction };
+        if verify {
+            let name = text.name();
+            let held = self.read_back(part, moved, source, (name, text.reread()?))?;
+            if held.is_wrong() {
+                findings.extend(held.findings);
+                return Err(std::mem::take(findings).into());
+            }
+            outcome.verification = Some(held.found);
+        }
+        let mut heard = None;
+        if predict {
+            if let Some(rows) = &mut rows {
+                heard = PredictedParts::of(&part.machine, rows)?;
+            }
+            let name = text.name();
+            let told = (&mut *source, heard.as_mut());
+            let predicted = self.predict(part, None, told, (name, text.reread()?))?;
+            findings.extend(predicted.findings);
+            outcome.prediction = Some(predicted.found);
+        }
+        if let (Some((file, most)), Some(rows)) = (page, rows) {
+            let input = self.page(part, &outcome, findings);
+            let name = text.name();
+            let texts = (source, name.as_str(), &mut text.reread()? as &mut dyn Read);
+            input.write((rows, heard), texts, most, file)?;
+        }
+        Ok(outcome)
+    }
+
+    /// What a page is told of a program.
+    fn page<'p>(
+        &'p self,
+        part: &'p Part,
+        outcome: &'p ProgramOutcome,
+        findings: &'p [Diagnostic],
+    ) -> Made<'p> {
+        Made {
+            session: self.session,
+            machine: &part.machine,
+            cl: report::name_of(&self.job.input),
+            program: &part.target,
+            report: &outcome.report,
+            verification: outcome.verification.as_ref(),
+            prediction: outcome.prediction.as_ref(),
+            findings,
+            job: match self.making.plan {
+                true => "plan",
+                false => "post",
+            },
+            facts: summary::facts(&outcome.report, outcome.verification.as_ref()),
+        }
+    }
+
+    /// The rows of the page of a program.
+    fn rows<'p>(
+        &self,
+        part: &'p Part,
+        source: &ClSource,
+        predicted: bool,
+    ) -> Result<BlockRows<'p>, Failure> {
+        let cl = ClWindow::of(self.job, &part.machine, source)?;
+        BlockRows::new(&part.machine, cl, predicted)
+    }
+
+    /// Reads the program `name` back and holds it against the CL file; `moved` if its points were moved for the servos.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub fn read_back(
+        &self,
+        part: &Part,
+        moved: bool,
+        source: &mut ClSource,
+        (name, text): (String, impl Read + Seek),
+    ) -> Result<Held, Failure> {
+        // What was moved on purpose is off the CL file by that.
+        let accuracy = &part.machine.accuracy;
+        let bound = accuracy.servo_compensation.filter(|_| moved);
+        let moved = bound.map(|bound| accuracy.tolerance + bound);
+        let reading = Reading {
+            session: self.session,
+            arguments: self.job,
+            machine: &part.machine,
+            finder: &self.finder,
+            offsets: None,
+            limits: Limits::default(),
+            tolerances: [moved, None],
+            planned: self.making.plan,
+            solutions: false,
+            any_coolant: false,
+            // It was written in this run, or lines of the user's have another.
+            any_work_offset: true,
+            own: true,
+            lines: part.lines.clone(),
+        };
+        read_back::verify(&reading, source, &name, text, &mut |_: &BlockReport| {})
+    }
+
+    /// Predicts what the program `name` does; `period` between set-points, s, over the machine file's.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or a machine that cannot be used.
+    pub fn predict(
+        &self,
+        part: &Part,
+        period: Option<f64>,
+        (source, mut heard): (&mut ClSource, Option<&mut PredictedParts>),
+        (name, text): (String, impl Read + Seek),
+    ) -> Result<Predicted, Failure> {
+        let asked = Asked {
+            session: self.session,
+            arguments: self.job,
+            machine: &part.machine,
+            finder: &self.finder,
+            offsets: None,
+            limits: Limits::default(),
+            period,
+            lines: part.lines.clone(),
+        };
+        predict::predict(&asked, Against::Cl(source), &name, text, &mut |sample: &Sample| {
+            if let Some(heard) = &mut heard {
+                heard.take(sample);
+            }
+            Ok(())
+        })
+    }
+}
+
+/// A program that is ready to be written: its feed planned in rounds, its points moved, where that is asked for.
+pub struct Ready<'a> {
+    program: OneProgram<'a>,
+    plan_rounds: Option<plan_rounds::Found>,
+    /// Its plan is left out, and why.
+    unplanned: Option<Diagnostic>,
+    compensation: Option<Compensation>,
+}
+
+impl<'a> Ready<'a> {
+    /// Does what comes before. Where the plan itself is `shown`, it is written whatever it gains.
+    ///
+    /// # Errors
+    /// The machine file does not allow it, or the program cannot be made.
+    pub fn new(
+        mut program: OneProgram<'a>,
+        making: &MakingSettings,
+        ahead: Option<&LookedAhead>,
+        source: &mut ClSource,
+        shown: bool,
+    ) -> Result<Self, Failure> {
+        let mut rounds = None;
+        if let Some(most) = making.plan_rounds {
+            let (tightening, found) = plan_rounds::plan(&program, most, ahead, source)?;
+            program.tightening = tightening;
+            rounds = Some(found);
+        }
+        let mut unplanned = None;
+        if program.plans && rounds.is_none() && !shown {
+            unplanned = plan_worth::gains_nothing(&program, ahead, source)?;
+            program.plans = unplanned.is_none();
+        }
+        let compensation = match making.compensate_servo {
+            true => Some(compensate::compensate(&program, ahead, source)?),
+            false => None,
+        };
+        Ok(Self { program, plan_rounds: rounds, unplanned, compensation })
+    }
+
+    /// What the user should know of the plan.
+    pub fn warning(&self) -> Option<Diagnostic> {
+        let rounds = self.plan_rounds.as_ref();
+        let unplanned = || self.unplanned.clone();
+        rounds.and_then(plan_rounds::warning).or_else(unplanned)
+    }
+
+    /// Its points are moved.
+    pub fn is_moved(&self) -> bool {
+        let compensation = self.compensation.as_ref();
+        compensation.is_some_and(|moved| moved.found.kept)
+    }
+
+    /// What planning in rounds and moving points have done.
+    pub fn found(self) -> (Option<plan_rounds::Found>, Option<compensate::Found>) {
+        let compensation = self.compensation.map(|moved| moved.found);
+        (self.plan_rounds, compensation)
+    }
+
+    /// Writes it, its points moved where that helps; `beside` sees its plan and its blocks.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or a machine that cannot be used.
+    pub fn write(
+        &self,
+        ahead: Option<&LookedAhead>,
+        source: &mut ClSource,
+        file: &mut dyn Output,
+        beside: Beside<'_, '_, '_>,
+    ) -> Result<(Option<Report>, Vec<Diagnostic>), Failure> {
+        let program = self.program.clone();
+        let compensation = self.compensation.as_ref();
+        let moved = compensation.and_then(|found| Some((&found.machine, found.moves.as_ref()?)));
+        let Some((machine, moves)) = moved else {
+            return program.write(ahead, source, file, beside);
+        };
+        let program = OneProgram { machine, ..program };
+        let mut moved = Moved::new(moves);
+        let beside = Beside { shift: Some(&mut moved), ..beside };
+        program.write(ahead, source, file, beside)
+    }
+}

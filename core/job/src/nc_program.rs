@@ -1,0 +1,253 @@
+//! An NC program that is read back: the machine that runs it, the words of its control, and what stands in its tables.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+
+use post_host::Finder;
+use post_machine::description::{Machine, Rapid};
+use post_machine::diagnostic::{Diagnostic, Place};
+use post_plugin::{Capabilities, DialectSession as _, Language, Lengths, VocabularyWord};
+use post_readback::interpret::{Interpreter, Limits, ReadReport};
+use post_readback::lexicon::Lexicon;
+use post_readback::{FedRapids, MOST_FAULTS, Offsets, Run, turns_the_spindle};
+
+use super::{machine_files, plugin_finder, unused_options};
+use crate::failure::Failure;
+use crate::files::{FileFault, PathArg};
+use crate::session::Session;
+use crate::settings::ProgramSettings;
+
+/// Longest file of offsets that is read, bytes.
+const MOST_OFFSETS: u64 = 1 << 20;
+
+/// A control that runs NC programs of a machine.
+#[derive(Debug)]
+pub struct NcControl {
+    /// The machine, as its file says.
+    pub machine: Machine,
+    /// The machine as the control's programs count: where lengths are in the work offset, from the tip of the tool.
+    pub counted: Machine,
+    /// What its dialect tells of them.
+    pub spoken: Spoken,
+    /// Its words.
+    pub lexicon: Lexicon,
+    /// What stands in its tables.
+    pub offsets: Offsets,
+    limits: Limits,
+}
+
+impl NcControl {
+    /// That of a machine, with `offsets` in its tables; `limits` say how far a program may go.
+    pub fn of(machine: &Machine, spoken: Spoken, offsets: Offsets, limits: Limits) -> Self {
+        let mut counted = machine.clone();
+        let first = offsets.tools.first().map(|(_, length)| *length);
+        if spoken.writes.lengths() == Lengths::WorkOffset
+            && let Some(length) = offsets.length.or(first)
+        {
+            counted.gauge -= machine.tool_axis * length;
+        }
+        let lexicon = Lexicon::new(spoken.language, spoken.writes, &spoken.words);
+        Self { machine: machine.clone(), counted, spoken, lexicon, offsets, limits }
+    }
+
+    /// As the flags say.
+    pub fn new(session: &Session, arguments: &ProgramSettings) -> Result<Self, Failure> {
+        let machine = machine_files::load(
+            session,
+            &arguments.machine,
+            &arguments.machines,
+            &arguments.settings(),
+        )?;
+        let finder = plugin_finder::finder(session, &arguments.plugins)?;
+        unused_options::warn(session, &machine, &finder);
+        let mut offsets = match &arguments.offsets {
+            Some(file) => offsets(session, file, &machine)?,
+            None => Offsets::default(),
+        };
+        offsets.length = arguments.tool_length;
+        let spoken = spoken(&finder, &machine)?;
+        let limits = Limits { blocks: arguments.most_blocks, ..Limits::default() };
+        Ok(Self::of(&machine, spoken, offsets, limits))
+    }
+
+    /// The program in `input`, which messages call `name`, from where it stands.
+    ///
+    /// # Errors
+    /// The machine cannot be solved.
+    pub fn run<R: Read + Seek>(
+        &self,
+        name: &str,
+        input: R,
+    ) -> Result<Run<Interpreter<R>>, Box<Diagnostic>> {
+        self.program(name, input).map(Run::new)
+    }
+
+    fn program<R: Read + Seek>(
+        &self,
+        name: &str,
+        input: R,
+    ) -> Result<Interpreter<R>, Box<Diagnostic>> {
+        let Self { counted, lexicon, offsets, limits, .. } = self;
+        Interpreter::new(counted, lexicon, offsets, *limits, name, input)
+    }
+
+    /// The program in `file` from its beginning, its rapids at feed told from cuts.
+    ///
+    /// # Errors
+    /// The file cannot be read again, or the machine not be solved.
+    pub fn program_with_rapids(
+        &self,
+        name: &str,
+        file: &File,
+    ) -> Result<FedRapids<Interpreter<File>>, Failure> {
+        let program = || -> Result<_, Failure> {
+            Ok(self.program(name, again(name, file)?).map_err(|fault| *fault)?)
+        };
+        let Some(kept) = fed_rapids(&self.machine, self.spoken.rapids_pass()) else {
+            return Ok(FedRapids::none(program()?));
+        };
+        let turns = turns_the_spindle(&mut program()?);
+        Ok(FedRapids::new(program()?, &self.machine, kept, turns))
+    }
+}
+
+/// What is told behind the faults of a program that was given up.
+pub fn given_up() -> Diagnostic {
+    let message = format!("{MOST_FAULTS} blocks were refused; the rest of the program is not read");
+    Diagnostic::error("nc-refused", message)
+}
+
+/// Words of the program `name` that are not known: warnings.
+pub fn unknown_words(name: &str, report: &ReadReport) -> impl Iterator<Item = Diagnostic> {
+    report.unknown.iter().take(MOST_FAULTS).map(move |(word, count, line)| {
+        let message = format!("{word} is not known and is taken to move nothing; {count} times");
+        let place = Place::new(name, *line, "", 0..0);
+        Diagnostic::warning("nc-unknown", message).at(Some(place))
+    })
+}
+
+/// What a dialect tells of the programs that its control reads.
+#[derive(Debug)]
+pub struct Spoken {
+    /// The words.
+    pub words: Vec<VocabularyWord>,
+    /// The language that they belong to.
+    pub language: Language,
+    /// What the dialect declares to write.
+    pub writes: Capabilities,
+    /// Largest F by time, 1/min.
+    pub most_inverse_time: Option<f64>,
+    /// Decimals of a feed a minute.
+    pub feed_decimals: u8,
+}
+
+impl Spoken {
+    /// A joint may pass its largest feed in a rapid under tool centre point control.
+    pub fn rapids_pass(&self) -> bool {
+        self.writes.has(Capabilities::TCP_RAPIDS_PASS)
+    }
+}
+
+/// Whether rapids stand at feed in programs of a machine, and whether only where the control keeps the tip: which of them
+/// does, a program says for itself.
+fn fed_rapids(machine: &Machine, passes: bool) -> Option<bool> {
+    let known = machine.axes.iter().all(|axis| axis.max_feed.is_finite());
+    match machine.control.rapid {
+        Some(Rapid::Linear) => Some(false),
+        Some(Rapid::Rapid) => None,
+        None => (passes && known).then_some(true),
+    }
+}
+
+/// What the dialect of a machine tells.
+pub fn spoken(finder: &Finder, machine: &Machine) -> Result<Spoken, Failure> {
+    let (mut dialect, _) = plugin_finder::dialect(finder, machine, "READ", None)?;
+    let words = dialect.vocabulary().map_err(|fault| Diagnostic::error("plugin", fault))?;
+    if words.is_empty() {
+        let message = format!(
+            "dialect {} tells no vocabulary, so that its programs cannot be read back",
+            machine.control.dialect
+        );
+        let help = "a dialect of your own tells it by `vocabulary` (docs/src/plugin-author)";
+        return Err(Diagnostic::error("vocabulary", message).help(help).into());
+    }
+    Ok(Spoken {
+        words,
+        language: dialect.format().language,
+        writes: dialect.capabilities(),
+        most_inverse_time: dialect.format().most_inverse_time,
+        feed_decimals: dialect.format().feed,
+    })
+}
+
+/// The file of offsets.
+pub fn offsets(session: &Session, source: &PathArg, machine: &Machine) -> Result<Offsets, Failure> {
+    let (name, file) = open(session, source)?;
+    let mut text = String::new();
+    let read = file.take(MOST_OFFSETS + 1).read_to_string(&mut text);
+    read.map_err(|error| FileFault::Read { name: name.clone(), error })?;
+    Ok(Offsets::parse(&text, &name, machine)?)
+}
+
+/// Refuses a program and a CL file that are both standard input.
+pub fn not_both_standard(
+    program: &PathArg,
+    against: Option<&PathArg>,
+) -> Result<(), Box<Diagnostic>> {
+    if program.path().is_none() && against.is_some_and(|file| file.path().is_none()) {
+        let message = "program and CL file cannot both be standard input";
+        return Err(Diagnostic::error("input", message).help("name one of them").boxed());
+    }
+    Ok(())
+}
+
+/// Opens a file that can be gone back in, with its name for messages: standard input and pipes are copied first.
+pub fn open(session: &Session, source: &PathArg) -> Result<(String, File), FileFault> {
+    open_as(session, "the NC program", source)
+}
+
+/// The same of another text, which messages call `what`.
+pub fn open_as(
+    session: &Session,
+    what: &'static str,
+    source: &PathArg,
+) -> Result<(String, File), FileFault> {
+    let (Some(path), Some(named)) = (source.absolute(), source.path()) else {
+        let name = "standard input".to_owned();
+        let copied = copied(&mut io::stdin().lock());
+        return match copied {
+            Ok(file) => Ok((name, file)),
+            Err(error) => Err(FileFault::Read { name, error }),
+        };
+    };
+    let fault = |error| FileFault::read(named, error);
+    let mut file = File::open(path).map_err(fault)?;
+    let metadata = file.metadata().map_err(fault)?;
+    if metadata.is_dir() {
+        return Err(FileFault::ReadFolder(named.to_owned()));
+    }
+    let name = named.display().to_string();
+    if metadata.is_file() {
+        session.read_files().note(what, path);
+        return Ok((name, file));
+    }
+    Ok((name, copied(&mut file).map_err(fault)?))
+}
+
+/// The open file `name` once more, from its beginning: whoever read it before is done.
+pub fn again(name: &str, file: &File) -> Result<File, FileFault> {
+    let again = || -> io::Result<File> {
+        let mut again = file.try_clone()?;
+        again.seek(SeekFrom::Start(0))?;
+        Ok(again)
+    };
+    again().map_err(|error| FileFault::Read { name: name.to_owned(), error })
+}
+
+/// What `input` gives, in a file without a name.
+fn copied(input: &mut impl io::Read) -> io::Result<File> {
+    let mut file = tempfile::tempfile()?;
+    io::copy(input, &mut file)?;
+    file.seek(SeekFrom::Start(0))?;
+    Ok(file)
+}

@@ -1,0 +1,296 @@
+//! What a prediction has found, for people.
+
+use std::fmt::Write as _;
+
+use super::measured;
+use super::prediction::{AxisFound, Extreme, LimitTime, Prediction, Spread};
+use crate::text::{clock, number, table};
+
+/// So many limits and operations are listed; the JSON has all of them.
+const MOST_ROWS: usize = 12;
+
+/// The tables of a prediction.
+pub fn text(found: &Prediction) -> String {
+    let mut text = String::new();
+    head(&mut text, found);
+    axes(&mut text, &found.axes);
+    jumps(&mut text, found.corners_with_jump);
+    limits(&mut text, found);
+    operations(&mut text, found);
+    if let Some(measured) = &found.measured {
+        text.push('\n');
+        text.push_str(&measured::text(measured));
+        text.push_str(&measured::fitted_text(&found.fitted));
+    }
+    if !found.assumed.is_empty() {
+        text.push_str("\nassumed\n");
+        for assumed in &found.assumed {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "  {assumed}");
+        }
+    }
+    text
+}
+
+fn head(text: &mut String, found: &Prediction) {
+    let mut row = |name: &str, value: String| {
+        let _ = writeln!(text, "{name:<16} {value}");
+    };
+    row("program", format!("{}, {} blocks", found.program, found.blocks));
+    row("machine", format!("{} ({})", found.machine, found.dialect));
+    row(
+        "set-points",
+        format!("{}, one every {} ms", found.set_points, short(1e3 * found.period_s)),
+    );
+    let time = &found.time;
+    let mut parts = vec![format!("{} cutting", clock(time.cutting_s))];
+    for (seconds, what) in [(time.rapid_s, "at rapid"), (time.waiting_s, "waiting")] {
+        if seconds > 0.0 {
+            parts.push(format!("{} {what}", clock(seconds)));
+        }
+    }
+    row("cycle time", format!("{}: {}", clock(time.cycle_s), parts.join(", ")));
+    let feed = &found.feed;
+    if feed.way_mm > 0.0 {
+        row(
+            "feed",
+            format!(
+                "{} mm/min on average over {} mm of cuts, programmed {}; at most {}, in line {}",
+                number(feed.true_mean, 0),
+                number(feed.way_mm, 1),
+                number(feed.programmed_mean, 0),
+                number(feed.true_largest, 0),
+                feed.largest_nc_line,
+            ),
+        );
+        row(
+            "",
+            format!(
+                "{:.1} % of what is programmed: {} instead of {}; below 95 % of it for {}",
+                100.0 * feed.true_mean / feed.programmed_mean,
+                clock(time.cutting_s),
+                clock(time.cutting_at_feed_s),
+                clock(feed.below_95_percent_s)
+            ),
+        );
+    }
+    let against = match &found.against {
+        Some(file) => format!(", against {file}"),
+        None => {
+            ", against the path that is commanded; how far that is off the program: interpolation"
+                .to_owned()
+        }
+    };
+    let contour = &found.contour;
+    let tip = Shown { unit: "µm", scale: 1e3, decimals: 2 };
+    let axis = Shown { unit: "°", scale: 1.0, decimals: 5 };
+    let most = tip.largest(&contour.tip_mm);
+    row("contour error", format!("{most}{against}"));
+    tip.spread(&mut row, &contour.tip_mm);
+    for part in &contour.parts {
+        row(&format!("  {}", part.part), tip.largest(&part.tip_mm));
+    }
+    let out = &contour.left_out_mm;
+    if out.value > contour.tip_mm.largest {
+        let text = format!(
+            "a corner of the path is passed {} µm beside it, in line {} of the program",
+            tip.number(out.value),
+            out.nc_line
+        );
+        row("", text);
+    }
+    row("tool axis", axis.largest(&contour.axis_deg));
+    axis.spread(&mut row, &contour.axis_deg);
+}
+
+/// How errors are shown.
+struct Shown {
+    unit: &'static str,
+    /// From the unit of the JSON.
+    scale: f64,
+    decimals: u8,
+}
+
+impl Shown {
+    fn number(&self, value: f64) -> String {
+        number(value * self.scale, self.decimals)
+    }
+
+    /// `at most 12.30 µm, in line 812 of the program, CL line 40`.
+    fn largest(&self, spread: &Spread) -> String {
+        let mut text = format!("at most {} {}", self.number(spread.largest), self.unit);
+        if self.is_seen(spread) {
+            let _ = write!(text, ", in line {} of the program", spread.nc_line);
+            if let Some(line) = spread.cl_line {
+                let _ = write!(text, ", CL line {line}");
+            }
+        }
+        text
+    }
+
+    /// `RMS 3.10; half within 1.00, 95 % within 3.00, 99 % within 4.00`.
+    fn spread(&self, row: &mut impl FnMut(&str, String), spread: &Spread) {
+        if self.is_seen(spread) {
+            let [rms, p50, p95, p99] =
+                [spread.rms, spread.p50, spread.p95, spread.p99].map(|value| self.number(value));
+            let text =
+                format!("RMS {rms}; half within {p50}, 95 % within {p95}, 99 % within {p99}");
+            row("", text);
+        }
+    }
+
+    /// The largest is no zero when it is printed.
+    fn is_seen(&self, spread: &Spread) -> bool {
+        self.number(spread.largest) != self.number(0.0)
+    }
+}
+
+fn axes(text: &mut String, axes: &[AxisFound]) {
+    let head = [
+        "axis",
+        "following",
+        "line",
+        "velocity /min",
+        "of",
+        "line",
+        "accel /s²",
+        "of",
+        "line",
+        "jerk /s³",
+        "of",
+        "line",
+        "jump /min",
+        "of",
+        "line",
+    ];
+    let mut rows = vec![head.map(str::to_owned)];
+    for axis in axes {
+        let following = match axis.servo {
+            true => number(axis.following.value, 5),
+            false => "-".to_owned(),
+        };
+        let line = |extreme: &Extreme| match extreme.nc_line {
+            0 => "-".to_owned(),
+            line => line.to_string(),
+        };
+        let limit = |extreme: &Extreme| {
+            extreme.limit.map_or_else(|| "-".to_owned(), |limit| number(limit, 0))
+        };
+        rows.push([
+            format!("{} {}", axis.name, axis.unit),
+            following,
+            match axis.servo {
+                true => line(&axis.following),
+                false => "-".to_owned(),
+            },
+            number(axis.velocity.value, 0),
+            limit(&axis.velocity),
+            line(&axis.velocity),
+            number(axis.acceleration.value, 0),
+            limit(&axis.acceleration),
+            line(&axis.acceleration),
+            number(axis.jerk.value, 0),
+            limit(&axis.jerk),
+            line(&axis.jerk),
+            number(axis.jump.value, 0),
+            limit(&axis.jump),
+            line(&axis.jump),
+        ]);
+    }
+    text.push('\n');
+    text.push_str(&table(&rows, 1));
+}
+
+fn jumps(text: &mut String, corners: u64) {
+    if corners > 0 {
+        let times = match corners {
+            1 => "once".to_owned(),
+            _ => format!("{corners} times"),
+        };
+        let _ = writeln!(
+            text,
+            "A block passes into the next with a jump of velocity {times}; accelerations and jerks are without these."
+        );
+    }
+}
+
+fn limits(text: &mut String, found: &Prediction) {
+    let limits = &found.time.limits;
+    if limits.is_empty() {
+        return;
+    }
+    let head = ["limited by", "moves", "time", "share", "beyond the feed"];
+    let mut rows = vec![head.map(str::to_owned)];
+    for row in limits.iter().take(MOST_ROWS) {
+        rows.push([
+            name(row),
+            row.moves.to_string(),
+            clock(row.seconds),
+            format!("{:.1} %", 100.0 * row.share),
+            match row.beyond_feed_s > 0.0 {
+                true => clock(row.beyond_feed_s),
+                false => "-".to_owned(),
+            },
+        ]);
+    }
+    text.push('\n');
+    text.push_str(&table(&rows, 1));
+    more(text, limits.len());
+}
+
+/// `cuts: acceleration of C`.
+fn name(row: &LimitTime) -> String {
+    let of = |what: &str| match &row.axis {
+        Some(axis) => format!("{what} of {axis}"),
+        None => what.to_owned(),
+    };
+    let limit = match row.limit {
+        "feed" => "feed of the program".to_owned(),
+        "axis velocity" => of("velocity"),
+        "axis acceleration" => of("acceleration"),
+        "axis jerk" => of("jerk"),
+        "tip acceleration" => "acceleration of the tip".to_owned(),
+        "tip jerk" => "jerk of the tip".to_owned(),
+        "corner" => "corners and stops".to_owned(),
+        "block time" => "block time of the control".to_owned(),
+        other => other.to_owned(),
+    };
+    match row.kind {
+        "wait" => format!("waiting: {limit}"),
+        kind => format!("{kind}s: {limit}"),
+    }
+}
+
+fn operations(text: &mut String, found: &Prediction) {
+    let operations = &found.time.operations;
+    if operations.len() < 2 {
+        return;
+    }
+    let head = ["tool", "operation", "time", "cutting"];
+    let mut rows = vec![head.map(str::to_owned)];
+    for row in operations.iter().take(MOST_ROWS) {
+        rows.push([
+            row.tool.map_or_else(|| "-".to_owned(), |tool| format!("T{tool}")),
+            row.operation.clone().unwrap_or_else(|| "-".to_owned()),
+            clock(row.seconds),
+            clock(row.cutting_s),
+        ]);
+    }
+    text.push('\n');
+    text.push_str(&table(&rows, 2));
+    more(text, operations.len());
+}
+
+/// How many rows are not shown.
+fn more(text: &mut String, rows: usize) {
+    if rows > MOST_ROWS {
+        let _ = writeln!(text, "and {} more (--summary has them)", rows - MOST_ROWS);
+    }
+}
+
+/// A number with as many decimals as it needs.
+fn short(value: f64) -> String {
+    let text = number(value, 6);
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    text.to_owned()
+}

@@ -1,0 +1,354 @@
+//! A program of a machine's control held against a CL file, for whoever asks.
+
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+use std::ops::Range;
+
+use post_host::Finder;
+use post_machine::description::{Machine, OutputUnits, Rapid, TextPlace};
+use post_machine::diagnostic::{Diagnostic, Place, Severity};
+use post_plugin::{Lengths, Meaning};
+use post_posting::program::{ToldSpindle, Unknown};
+use post_readback::course::cl::{ClCourse, ClTool, Settings};
+use post_readback::course::{Course, Window};
+use post_readback::interpret::Limits;
+use post_readback::verify::{BlockReport, CutPath, Fault, Rules, Verification, Verifier};
+use post_readback::{Done, Offsets};
+
+use super::nc_program::{self, NcControl, Spoken};
+use super::plugin_finder;
+use crate::failure::Failure;
+use crate::files::Watched;
+use crate::files::{ClSource, FileFault};
+use crate::session::Session;
+use crate::settings::{JobSettings, Msys};
+
+/// What a program is read with.
+pub struct Reading<'a> {
+    /// The run.
+    pub session: &'a Session,
+    /// What the job is.
+    pub arguments: &'a JobSettings,
+    /// The machine with its settings.
+    pub machine: &'a Machine,
+    /// Its plugins.
+    pub finder: &'a Finder,
+    /// What stands in the control's tables; none: as the machine file, the command line and the CL file say.
+    pub offsets: Option<Offsets>,
+    /// What a program may ask for.
+    pub limits: Limits,
+    /// Largest deviations that are other than the machine file's: mm, radians.
+    pub tolerances: [Option<f64>; 2],
+    /// The feed was planned: it may be below that of the CL file.
+    pub planned: bool,
+    /// Which coolant flows is the program's own business.
+    pub any_coolant: bool,
+    /// Which work offset it cuts in, where the CL file names none, is the program's own business.
+    pub any_work_offset: bool,
+    /// The program was posted for this machine file, in this run.
+    pub own: bool,
+    /// Each line is told with the solution of the machine that it ends in.
+    pub solutions: bool,
+    /// Lines of the CL file that the program is made of; none: all.
+    pub lines: Option<Range<u64>>,
+}
+
+/// What came of it.
+pub struct Held {
+    /// What was found.
+    pub found: Verification,
+    /// Of all that is wrong a message: faults at lines of the program, what could not be read of either side; and what was
+    /// taken for granted.
+    pub findings: Vec<Diagnostic>,
+    /// Blocks that were run.
+    pub blocks: u64,
+}
+
+impl Held {
+    /// The program does not do what it should, or that is not known.
+    pub fn is_wrong(&self) -> bool {
+        let mut findings = self.findings.iter();
+        findings.any(|finding| finding.severity == Severity::Error)
+    }
+}
+
+/// The work offset that posting writes where the CL file names none: the dialect's option, as the machine file has it or as
+/// it is by default. None where lines of the machine file name one, its words of CL files may, or the operator chooses it.
+fn work_offset(finder: &Finder, machine: &Machine, spoken: &Spoken) -> Option<String> {
+    let offsets = spoken.words.iter().filter(|word| word.meaning == Meaning::WorkOffset);
+    let offsets: Vec<&str> = offsets.map(|word| word.word.as_ref()).collect();
+    let mut lines = machine.program.own_words();
+    if !machine.word_rules.is_empty() || lines.any(|word| offsets.contains(&word.as_str())) {
+        return None;
+    }
+    if let Some(row) = plugin_finder::integer(finder, machine, "preset") {
+        return (row >= 0).then(|| format!("CYCL DEF 247 Q339={row}"));
+    }
+    plugin_finder::text(finder, machine, "work_offset")
+}
+
+/// How the CL file is meant, as posting was told.
+pub fn course_settings(arguments: &JobSettings, machine: &Machine, file: &str) -> Settings {
+    Settings {
+        units: arguments.reading.units,
+        apply_msys: arguments.reading.msys == Msys::Apply,
+        tool: arguments.reading.tool,
+        tool_from_cutter: arguments.reading.tool_from_cutter,
+        feed: arguments.reading.feed,
+        spindle: match arguments.reading.spindle {
+            Some(ToldSpindle::On(rpm)) => Some(rpm),
+            _ => None,
+        },
+        allowed: arguments.reading.allow.clone(),
+        unknown_left_out: matches!(arguments.reading.unknown, Unknown::Warn | Unknown::Pass),
+        ..Settings::of(machine, file)
+    }
+}
+
+/// What stands in the control's tables as posting counts: `--tool-length`, else the machine file, else the CL file.
+pub fn offsets(arguments: &JobSettings, machine: &Machine, tools: &[ClTool]) -> Offsets {
+    let mut offsets = Offsets { length: arguments.over.tool_length, ..Offsets::default() };
+    if arguments.over.tool_length.is_some() {
+        return offsets;
+    }
+    for (number, length) in &machine.tools {
+        let known = tools.iter().find(|tool| tool.number == *number);
+        let register = known.map_or(*number, |tool| tool.register);
+        offsets.tools.push((*number, *length));
+        offsets.lengths.push((register, *length));
+    }
+    for tool in tools {
+        let told = machine.tools.iter().any(|(number, _)| *number == tool.number);
+        if let (Some(length), false) = (tool.length, told) {
+            offsets.tools.push((tool.number, length));
+            offsets.lengths.push((tool.register, length));
+        }
+    }
+    offsets
+}
+
+/// The last place of a feed a minute, mm/min.
+fn feed_place(machine: &Machine, decimals: u8) -> f64 {
+    let unit = match machine.control.units {
+        OutputUnits::Mm => 1.0,
+        OutputUnits::Inch => 25.4,
+    };
+    unit * libm::pow(0.1, f64::from(decimals))
+}
+
+/// Holds the program `name` from `input` against the CL file.
+///
+/// # Errors
+/// A file that cannot be read, or a machine or dialect that cannot be used.
+pub fn verify<R: Read + Seek>(
+    reading: &Reading<'_>,
+    source: &mut ClSource,
+    name: &str,
+    input: R,
+    watch: &mut dyn VerifyWatch,
+) -> Result<Held, Failure> {
+    let Reading { arguments, machine, .. } = reading;
+    // What the tools are called and how long they are stands anywhere in the CL file.
+    let first = source.open()?;
+    let cl_name = first.name.clone();
+    let settings = course_settings(arguments, machine, &cl_name);
+    let mut course = ClCourse::new(settings.clone(), first.bytes);
+    let (cut_path, mut findings) = CutPath::of(&mut course, machine.control_point.along);
+    let tools = course.tools().to_vec();
+    let course = ClCourse::new(settings, source.open()?.bytes);
+    let against = Against {
+        course: Window::new(course, reading.lines.clone()),
+        name: cl_name,
+        tools,
+        cut_path: Some(cut_path),
+    };
+    let held = hold(reading, against, name, input, watch)?;
+    findings.extend(held.findings);
+    Ok(Held { findings, ..held })
+}
+
+/// Who looks on while a program is held against a course.
+pub trait VerifyWatch {
+    /// What the program did next, before it is judged.
+    fn done(&mut self, _done: &Done) {}
+
+    /// A line of the program is judged; all that it did was told before.
+    fn line(&mut self, line: &BlockReport);
+
+    /// The program strays too often, and nothing more of it is judged: whether it is to be run on all the same.
+    fn runs_on(&mut self) -> bool {
+        false
+    }
+}
+
+impl<F: FnMut(&BlockReport)> VerifyWatch for F {
+    fn line(&mut self, line: &BlockReport) {
+        self(line);
+    }
+}
+
+/// What a program is held against.
+pub struct Against<C> {
+    /// The path.
+    pub course: C,
+    /// The file that it comes from, as messages call it.
+    pub name: String,
+    /// Its tools.
+    pub tools: Vec<ClTool>,
+    /// Where all of it cuts, for how near rapids come; none: nothing is said of that.
+    pub cut_path: Option<CutPath>,
+}
+
+/// Holds the program `name` from `input` against any course.
+///
+/// # Errors
+/// A file that cannot be read, or a machine or dialect that cannot be used.
+pub fn hold<C: Course, R: Read + Seek>(
+    reading: &Reading<'_>,
+    against: Against<C>,
+    name: &str,
+    mut input: R,
+    watch: &mut dyn VerifyWatch,
+) -> Result<Held, Failure> {
+    let machine = reading.machine;
+    let Against { course, name: cl_name, tools, cut_path } = against;
+    let spoken = nc_program::spoken(reading.finder, machine)?;
+    let offsets = match &reading.offsets {
+        Some(offsets) => Offsets {
+            // Of tools whose length stands in no table.
+            length: offsets.length.or(reading.arguments.over.tool_length),
+            ..offsets.clone()
+        },
+        None => offsets(reading.arguments, machine, &tools),
+    };
+    let control = NcControl::of(machine, spoken, offsets, reading.limits);
+    let mut verifier = Verifier::new(&control.counted, rules(reading, &control, &tools), course);
+    if let Some(cut_path) = cut_path {
+        verifier = verifier.near(cut_path);
+    }
+    let unreadable = |error| FileFault::Read { name: name.to_owned(), error };
+    let (watched, length) = Watched::new(&mut input).map_err(unreadable)?;
+    let position = watched.position();
+    let mut run = control.run(name, BufReader::new(watched)).map_err(|fault| *fault)?;
+    let mut progress = reading.session.progress(Some(length));
+    while let Some(done) = run.block() {
+        progress.record(|| position.get());
+        for done in done {
+            watch.done(done);
+            verifier.take(done, &mut |line| watch.line(line));
+        }
+        if verifier.found().gave_up {
+            break;
+        }
+    }
+    progress.finish();
+    let mut findings = run.faults().to_vec();
+    let report = run.program().report();
+    findings.extend(report.notes.iter().cloned());
+    if let Some((line, axes)) = &report.unsaid {
+        let message = format!(
+            "the program cuts before it says where {axes} stands: where the machine has it then is not known"
+        );
+        let place = Place::new(name, *line, "", 0..0);
+        findings.push(Diagnostic::error("missing", message).at(Some(place)));
+    }
+    findings.extend(nc_program::unknown_words(name, report));
+    let blocks = report.blocks;
+    let found = verifier.finish(&mut |line| watch.line(line));
+    if found.gave_up && watch.runs_on() {
+        while let Some(done) = run.block() {
+            done.iter().for_each(|done| watch.done(done));
+        }
+    }
+    drop(run);
+    if let Some((line, message)) = &found.nearest_rapid {
+        let more = match found.near_rapids {
+            1 => String::new(),
+            count => format!("; so in {count} places"),
+        };
+        let place = Place::new(name, *line, "", 0..0);
+        findings.push(Diagnostic::warning("rapid", format!("{message}{more}")).at(Some(place)));
+    }
+    for left in &found.left_on {
+        let more = match left.count {
+            1 => String::new(),
+            count => format!("; so in {count} places"),
+        };
+        let place = Place::new(name, left.line, "", 0..0);
+        let message = format!("{}{more}", left.message);
+        findings.push(Diagnostic::warning(left.code, message).at(Some(place)));
+    }
+    let texts = lines_of(&mut input, &found.faults).map_err(unreadable)?;
+    for fault in &found.faults {
+        let text = fault.nc_line.and_then(|line| texts.iter().find(|(known, _)| *known == line));
+        let text = text.map_or("", |(_, text)| text.as_str());
+        findings.push(fault.diagnostic(name, text, &cl_name));
+    }
+    Ok(Held { found, findings, blocks })
+}
+
+/// What a program is held to.
+fn rules(reading: &Reading<'_>, control: &NcControl, tools: &[ClTool]) -> Rules {
+    let NcControl { counted: machine, spoken, lexicon, offsets, .. } = control;
+    let length_from = lexicon.lengths();
+    let [tolerance, axis_tolerance] = reading.tolerances;
+    let standard = Rules::of(machine);
+    Rules {
+        tolerance: tolerance.unwrap_or(standard.tolerance),
+        axis_tolerance: axis_tolerance.unwrap_or(standard.axis_tolerance),
+        length_from,
+        work_offsets: reading.offsets.as_ref().is_some_and(|offsets| !offsets.work.is_empty()),
+        // What stands in the control's tables is one thing, how long the tools are another.
+        lengths: (length_from != Lengths::WorkOffset).then(|| {
+            match reading.arguments.over.tool_length {
+                Some(length) => Offsets { length: Some(length), ..Offsets::default() },
+                None => offsets.clone(),
+            }
+        }),
+        radius_registers: lexicon.has_radius_registers(),
+        work_offset: match reading.any_work_offset {
+            true => None,
+            false => work_offset(reading.finder, machine, spoken),
+        },
+        first_preset: plugin_finder::integer(reading.finder, machine, "preset")
+            .and_then(|row| u32::try_from(row).ok())
+            .map_or(1, |row| row.max(1)),
+        solutions: reading.solutions,
+        planned: reading.planned,
+        coolants: !reading.any_coolant,
+        // A retract by lines of the user's own leads where they say.
+        own: reading.own && machine.program.text(TextPlace::Retract).is_none(),
+        feed_place: feed_place(machine, spoken.feed_decimals),
+        linear_rapids: machine.rapid(spoken.rapids_pass()) == Rapid::Linear,
+        least_minutes: spoken.most_inverse_time.map_or(0.0, |most| 1.0 / most),
+        tool_registers: tools.iter().map(|tool| (tool.number, tool.register)).collect(),
+        ..standard
+    }
+}
+
+/// The texts of the lines that faults name.
+fn lines_of(
+    input: &mut (impl Read + Seek),
+    faults: &[Fault],
+) -> std::io::Result<Vec<(u64, String)>> {
+    let mut wanted: Vec<u64> = faults.iter().filter_map(|fault| fault.nc_line).collect();
+    wanted.sort_unstable();
+    wanted.dedup();
+    let Some(last) = wanted.last().copied() else {
+        return Ok(Vec::new());
+    };
+    input.seek(SeekFrom::Start(0))?;
+    let mut input = BufReader::new(input);
+    let mut texts = Vec::new();
+    let mut bytes = Vec::new();
+    for line in 1..=last {
+        bytes.clear();
+        if input.read_until(b'\n', &mut bytes)? == 0 {
+            break;
+        }
+        if wanted.binary_search(&line).is_ok() {
+            let text = String::from_utf8_lossy(&bytes);
+            texts.push((line, text.trim_end().to_owned()));
+        }
+    }
+    Ok(texts)
+}

@@ -1,0 +1,224 @@
+//! The path of the CL file, read along with the blocks: its points become a table, and a window of it is what deviations
+//! are drawn from.
+
+use std::collections::VecDeque;
+use std::io::Read;
+
+use nalgebra::Vector3;
+use post_machine::description::Machine;
+use post_readback::MotionKind;
+use post_readback::course::cl::{ClCourse, Settings};
+use post_readback::course::{Course, Curve, Item, Piece};
+
+use super::cl_points::{self, Points};
+use super::parts::Parts;
+use crate::failure::Failure;
+use crate::files::ClSource;
+use crate::read_back;
+use crate::settings::JobSettings;
+
+/// Chords of a curve at most.
+const MOST_CHORDS: f64 = 4096.0;
+
+/// Chords of a span of a spline.
+const SPAN: usize = 64;
+
+/// So many records that cannot be read are passed over: posting tells of them.
+const MOST_FAULTS: u32 = 1000;
+
+/// Segments of the path that are kept behind.
+const MOST_KEPT: usize = 100_000;
+
+/// A straight piece of the path.
+#[derive(Clone, Copy, Debug)]
+pub struct Segment {
+    /// Line that it comes from.
+    pub line: u64,
+    /// Where it begins, mm, part frame.
+    pub from: Vector3<f64>,
+    /// Where it ends.
+    pub to: Vector3<f64>,
+}
+
+/// Reads the path as far as it is asked for.
+pub struct ClWindow {
+    course: ClCourse<Box<dyn Read>>,
+    points: Points,
+    /// How far chords may stray from curves, mm.
+    chord: f64,
+    along: f64,
+    /// The next piece, read and not taken yet.
+    next: Option<Piece>,
+    segments: VecDeque<Segment>,
+    /// Where the tool stands, if that is known.
+    at: Option<Vector3<f64>>,
+    faults: u32,
+    ended: bool,
+}
+
+impl ClWindow {
+    /// That of the CL file of a job, on the machine with its settings.
+    ///
+    /// # Errors
+    /// The file cannot be read, or there is no place for its table.
+    pub fn of(
+        arguments: &JobSettings,
+        machine: &Machine,
+        source: &ClSource,
+    ) -> Result<Self, Failure> {
+        let input = source.open_beside()?;
+        let settings = read_back::course_settings(arguments, machine, &input.name);
+        Self::new(machine, settings, input.bytes)
+    }
+
+    /// Of a CL file, read as posting reads it.
+    ///
+    /// # Errors
+    /// There is no place for its table.
+    pub fn new(
+        machine: &Machine,
+        settings: Settings,
+        input: Box<dyn Read>,
+    ) -> Result<Self, Failure> {
+        Ok(Self {
+            course: ClCourse::new(settings, input),
+            points: Points::new()?,
+            chord: machine.accuracy.tolerance / 10.0,
+            along: machine.control_point.along,
+            next: None,
+            segments: VecDeque::new(),
+            at: None,
+            faults: 0,
+            ended: false,
+        })
+    }
+
+    /// Reads to the end of `line`.
+    pub fn advance(&mut self, line: u64) {
+        while !self.ended || self.next.is_some() {
+            if let Some(piece) = &self.next {
+                if piece.line > line {
+                    return;
+                }
+                let piece = piece.clone();
+                self.next = None;
+                self.piece(&piece);
+            }
+            match self.course.next() {
+                Ok(Some(Item::Piece(piece))) => self.next = Some(piece),
+                Ok(Some(Item::Reach(reach))) => {
+                    self.point(reach.line, reach.to.tip, 2.0);
+                    self.at = Some(reach.to.tip);
+                }
+                Ok(Some(_)) => {}
+                Ok(None) => self.ended = true,
+                Err(_) => {
+                    self.faults += 1;
+                    self.ended = self.faults > MOST_FAULTS;
+                }
+            }
+        }
+    }
+
+    /// Lines before this one are not asked for any more.
+    pub fn forget(&mut self, before: u64) {
+        while let Some(first) = self.segments.front()
+            && (first.line < before || self.segments.len() > MOST_KEPT)
+        {
+            self.segments.pop_front();
+        }
+    }
+
+    /// From the nearest point of the path to `tip`, mm; none where no path is known.
+    pub fn off(&self, tip: Vector3<f64>) -> Option<Vector3<f64>> {
+        let off = self.segments.iter().map(|segment| tip - segment.nearest(tip));
+        off.min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))
+    }
+
+    /// Points of the path between those that are nearest to two places, the first behind it.
+    pub fn between(&self, from: Vector3<f64>, to: Vector3<f64>) -> Vec<Vector3<f64>> {
+        let nearest = |tip: Vector3<f64>, start: usize| {
+            let later = self.segments.iter().enumerate().skip(start);
+            let far =
+                later.map(|(place, segment)| (place, (tip - segment.nearest(tip)).norm_squared()));
+            far.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| place)
+        };
+        let Some(first) = nearest(from, 0) else {
+            return Vec::new();
+        };
+        let last = nearest(to, first).unwrap_or(first);
+        let inner = self.segments.range(first..last);
+        inner.map(|segment| segment.to).collect()
+    }
+
+    /// Reads the rest; the table goes to `parts`, told against the ends of these blocks.
+    ///
+    /// # Errors
+    /// It could not be kept.
+    pub fn finish(
+        mut self,
+        machine: &Machine,
+        blocks: Points,
+        parts: &mut Parts,
+    ) -> Result<(), Failure> {
+        while !self.ended || self.next.is_some() {
+            self.forget(u64::MAX);
+            let line = self.next.as_ref().map_or(0, |piece| piece.line);
+            self.advance(line);
+        }
+        cl_points::pack(machine, self.points, blocks, parts)
+    }
+
+    fn piece(&mut self, piece: &Piece) {
+        let rapid = match piece.kind {
+            MotionKind::Rapid => 1.0,
+            _ => 0.0,
+        };
+        if self.at.is_none_or(|at| (at - piece.from.tip).norm() > 1e-6) {
+            self.point(piece.line, piece.from.tip, 2.0);
+        }
+        let chords = self.chords(piece);
+        let mut from = piece.from.tip;
+        for chord in 1..=chords {
+            let to = match chord == chords {
+                true => piece.to.tip,
+                false => piece.at(chord as f64 / chords as f64, self.along).tip,
+            };
+            self.segments.push_back(Segment { line: piece.line, from, to });
+            self.point(piece.line, to, rapid);
+            from = to;
+        }
+        self.at = Some(from);
+    }
+
+    fn chords(&self, piece: &Piece) -> usize {
+        match &piece.curve {
+            Curve::Straight if self.along == 0.0 => 1,
+            // The point above goes straight, and the tip on a bow.
+            Curve::Straight => 16,
+            Curve::Arc { centre, sweep, .. } => {
+                let radius = (piece.from.tip - centre).norm();
+                let step = libm::sqrt(8.0 * self.chord / radius.max(self.chord));
+                libm::ceil(libm::fabs(*sweep) / step).clamp(1.0, MOST_CHORDS) as usize
+            }
+            Curve::Spline(way) => way.spans().count() * SPAN,
+        }
+    }
+
+    fn point(&mut self, line: u64, tip: Vector3<f64>, rapid: f64) {
+        self.points.push(line, tip, rapid);
+    }
+}
+
+impl Segment {
+    /// Its point that is nearest to `tip`.
+    pub fn nearest(&self, tip: Vector3<f64>) -> Vector3<f64> {
+        let way = self.to - self.from;
+        let square = way.norm_squared();
+        if square <= 0.0 {
+            return self.from;
+        }
+        let share = ((tip - self.from).dot(&way) / square).clamp(0.0, 1.0);
+        self.from + way * share
+    }
+}

@@ -1,0 +1,252 @@
+//! The groups of settings: how a CL file is read, what is set over the machine file, how programs are made, what is told
+//! of them, and how programs are read back.
+
+use std::path::PathBuf;
+
+use post_grammar::Units;
+use post_machine::description::{Setting, Tcp};
+use post_posting::program::{ToldSpindle, Unknown};
+use post_readback::interpret::Limits;
+
+use super::table::settings;
+use super::values::{
+    ANGLE, CL_WORD, COUNT, FEED, FILE, FOLDER, LENGTH, MSYS, NAME, POINT, PROGRAM_NUMBER, ROUNDS,
+    SETTING, SPINDLE, TCP, TOLERANCE, TOOL, UNITS, UNKNOWN,
+};
+use crate::files::PathArg;
+
+/// What becomes of points and axes in a frame of NX.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Msys {
+    /// They are taken as they are written.
+    #[default]
+    Keep,
+    /// They are taken into the frame.
+    Apply,
+}
+
+settings! {
+    /// How a CL file is read.
+    ReadingSettings, Some("Reading");
+
+    /// Units of the CL file's numbers, whatever it says.
+    one units: Units = UNITS, "UNITS";
+
+    /// MSYS of NX: `keep` takes points and axes as written, `apply` takes them into its frame.
+    given msys: Msys = MSYS, "WHAT", default || "keep".to_owned();
+
+    /// What to do with words that have no effect: refuse the file for any (`error`), for those that post does not know
+    /// (`known`), leave all out and say so (`warn`), or write them as comments (`pass`). What may be a move is refused
+    /// whatever is said here.
+    given unknown: Unknown = UNKNOWN, "WHAT", default || "known".to_owned();
+
+    /// Takes upon yourself what a word would have done, and leaves it out: a word that post does not know, or that
+    /// changes where or whether metal is cut (`OFSETL`), `INSERT` (codes become remarks), `CUTTER` (several cutters are
+    /// one tool), `FINI` (the file is whole), `DEEP` and the other kinds of cycles in pecks (without any, in one go),
+    /// `MOVARC` (half turns go right-handed about their axis). What may be a move is never left out. Repeatable.
+    many allow: String = CL_WORD, "WORD";
+
+    /// Number of the tool, for a CL file that loads none.
+    one tool: u32 = TOOL, "N";
+
+    /// Numbers tools from 1 in the order of their cutters, for a CL file that describes several and loads none.
+    flag tool_from_cutter, { conflicts: Some("tool") };
+
+    /// Speed that the spindle is switched on at for each tool for which the CL file does not; `off`: it stands, and
+    /// the tool cuts so.
+    one spindle: ToldSpindle = SPINDLE, "RPM";
+
+    /// Feed of the cuts for which the CL file gives none, mm/min.
+    one feed: f64 = FEED, "MM_A_MINUTE";
+}
+
+settings! {
+    /// What is set over the machine file for a job, and where machines and plugins are looked for.
+    MachineSettings, Some("Machine");
+
+    /// Where the part origin sits for this job, all axes at zero, machine frame, mm.
+    one mount: [f64; 3] = POINT, "X,Y,Z", { hyphens: true, columns: &["mount_x_mm", "mount_y_mm", "mount_z_mm"] };
+
+    /// How the part is turned about its Z for this job, degrees, right-handed: counter-clockwise for who looks down on
+    /// it, from the machine's X to the part's, all axes at zero. The work offset is not turned: words of the tip are
+    /// written along the machine's axes.
+    one turn: f64 = ANGLE, "DEG", { hyphens: true, columns: &["turn_deg"] };
+
+    /// Length of every tool from the gauge point to the tip, mm, over what machine and CL file say.
+    one tool_length: f64 = LENGTH, "MM", { hyphens: true, columns: &["tool_length_mm"] };
+
+    /// Sets a parameter of the machine (`Lm=312`) or any key (`accuracy.tolerance=0.001`).
+    many set: Setting = SETTING, "NAME=VALUE";
+
+    /// Largest deviation of the tip in a cut, mm; short for --set accuracy.tolerance=…
+    one tolerance: f64 = TOLERANCE, "MM", { columns: &["tolerance_mm"] };
+
+    /// Who keeps the tip on its path; short for --set control.tcp=…
+    one tcp: Tcp = TCP, "WHO", { columns: &["tcp"] };
+
+    /// Posts in another dialect than the machine file names, with the options that it has for that one; short for
+    /// --set control.dialect=… (`post plugin list`).
+    one dialect: String = NAME, "NAME", { columns: &["dialect"] };
+
+    /// A further folder of machine files; the environment variable POST_MACHINES adds more.
+    many machines: PathBuf = FOLDER, "FOLDER";
+
+    /// A folder of plugin libraries; the environment variable POST_PLUGINS adds more. Opening a library runs
+    /// its code, so no folder is looked into that is not named here.
+    many plugins: PathBuf = FOLDER, "FOLDER", { heading: Some("Plugins") };
+}
+
+impl MachineSettings {
+    /// What is set over the machine file: `set` first, then the short ones, which win.
+    pub fn settings(&self) -> Vec<Setting> {
+        let mut settings = self.set.clone();
+        settings.extend(self.mount.map(Setting::Mount));
+        settings.extend(self.turn.map(Setting::Turn));
+        settings.extend(self.tolerance.map(Setting::Tolerance));
+        settings.extend(self.tcp.map(Setting::Tcp));
+        settings.extend(self.dialect.clone().map(Setting::Dialect));
+        settings
+    }
+}
+
+/// A CL file, how it is read, and the machine.
+#[derive(Clone, Debug)]
+pub struct JobSettings {
+    /// The machine: a TOML file, or the name of one in a machine folder or built in.
+    pub machine: String,
+    /// The CL file.
+    pub input: PathArg,
+    /// How it is read.
+    pub reading: ReadingSettings,
+    /// What is set over the machine file.
+    pub over: MachineSettings,
+}
+
+settings! {
+    /// What a program is made with, beside CL file and machine.
+    MakingSettings, None;
+
+    /// The program's number (O1234); of several programs the first's. Short for --set
+    /// control.DIALECT.program_number=…
+    one number: u32 = PROGRAM_NUMBER, "N";
+
+    /// Moves points of the path so that the tool, the servos in between, comes nearer to the path of the CL file; by no
+    /// more than the machine file allows (`servo_compensation` under `[accuracy]`; words are rounded besides), and only
+    /// where a prediction against the CL file says that it helps by a hundredth or more.
+    /// Rapids, holes, tool axes and the ends of cuts stay. Arcs and splines go as moves then, and no
+    /// CL point is left out. `--verify` grants the moves; `post verify` later is told so by `--tolerance`, the tolerance and
+    /// the bound together. A point of the file takes 150 bytes of memory.
+    flag compensate_servo;
+
+    /// Plans the feed: the fastest that keeps the feed of the CL file, velocity and acceleration of axes and tip, and what
+    /// `[plan]` of the machine file limits besides (contour error of the servos, chord error of the interpolation); jerk too
+    /// with its `solver = "jerk"`.
+    /// Blocks are cut where their feed changes. `--set plan.contour_error=0.02` sets a limit for one run.
+    flag plan;
+
+    /// Plans again where the servos are predicted (`post predict`) to leave the tool farther off its path than `[plan]
+    /// contour_error`: more gently there, up to so many times, until the limit is kept or the rounds are used up. Tells the
+    /// time of each round, and of the program without a plan. Each round posts and predicts the whole program.
+    one plan_rounds: u32 = ROUNDS, "N", { requires: Some("plan") };
+
+    /// Takes the error model's word where the certificate finds more, and only reports it. (The placement `fewest` asks
+    /// no model.)
+    flag trust_model, { heading: Some("Plugins") };
+}
+
+settings! {
+    /// What a run came to, as a page to look at.
+    ReportSettings, None;
+
+    /// Writes what came of it as a page to look at: one HTML file that any browser of today shows from the disk and that
+    /// loads nothing: verdict, path and machine in 3D, charts, program and CL file side by side.
+    one report: PathArg = FILE, "FILE";
+
+    /// Largest size of the report, MB: above it the texts of the programs are left out first, then further parts, and the
+    /// page says so.
+    given report_max: u64 = COUNT, "MB", default || "64".to_owned(), { requires: Some("report") };
+}
+
+impl ReportSettings {
+    /// Largest size, bytes.
+    pub fn most(&self) -> u64 {
+        self.report_max.saturating_mul(1_000_000)
+    }
+}
+
+settings! {
+    /// An NC program that is read back, and the machine that runs it.
+    ProgramSettings, Some("Machine"), with {
+        /// The machine: a TOML file, or the name of one in a machine folder or built in.
+        machine: String
+    };
+
+    /// Lengths of tools, work offsets and reference positions as the control's tables have them, a TOML file:
+    /// `[work.G54]` with X, Y, Z (mm from where `mount` of the machine file has the part) and what rotary axes show there
+    /// (degrees); `[length]` and `[radius]` by register, `[tool]` by tool number (mm); `[reference.1]` for G28, `[reference.2]`
+    /// for G30 (machine coordinates).
+    one offsets: PathArg = FILE, "FILE", { heading: Some("Reading") };
+
+    /// So many blocks are run once more, by loops, jumps and subprograms; more are refused.
+    given most_blocks: u64 = COUNT, "N", default || Limits::default().blocks.to_string(), { heading: Some("Reading") };
+
+    /// Length of every tool that --offsets does not name, from the gauge point to the tip, mm, over what the machine file
+    /// says.
+    one tool_length: f64 = LENGTH, "MM", { hyphens: true };
+
+    /// Where the part origin sits for this job, all axes at zero, machine frame, mm.
+    one mount: [f64; 3] = POINT, "X,Y,Z", { hyphens: true };
+
+    /// Sets a parameter of the machine (`Lm=312`) or any key (`control.tcp="post"`).
+    many set: Setting = SETTING, "NAME=VALUE";
+
+    /// Reads another dialect than the machine file names; short for --set control.dialect=… (`post plugin list`).
+    one dialect: String = NAME, "NAME";
+
+    /// A further folder of machine files; the environment variable POST_MACHINES adds more.
+    many machines: PathBuf = FOLDER, "FOLDER";
+
+    /// A folder of plugin libraries; the environment variable POST_PLUGINS adds more. Opening a library runs
+    /// its code, so no folder is looked into that is not named here.
+    many plugins: PathBuf = FOLDER, "FOLDER", { heading: Some("Plugins") };
+}
+
+impl ProgramSettings {
+    /// What is set over the machine file: `set` first, then the short ones, which win.
+    pub fn settings(&self) -> Vec<Setting> {
+        let mut settings = self.set.clone();
+        settings.extend(self.mount.map(Setting::Mount));
+        settings.extend(self.dialect.clone().map(Setting::Dialect));
+        settings
+    }
+}
+
+settings! {
+    /// What is asked of every job of a batch.
+    StudySettings, Some("Jobs"), with {
+        /// How the CL files are read.
+        reading: ReadingSettings
+    };
+
+    /// Plans the feed of each program, as `post --plan`.
+    flag plan;
+
+    /// Reads each program back and holds it against its CL file, as `post --verify`: what strays is a refused job.
+    flag verify;
+
+    /// Predicts what each program does, as `post --predict`: true cycle time and contour error.
+    flag predict;
+
+    /// Takes the error model's word where the certificate finds more, and only reports it.
+    flag trust_model;
+
+    /// Adds a column of how long each job took to compute, s: the bytes of the results are not the same every time then.
+    flag timings;
+
+    /// A further folder of machine files; the environment variable POST_MACHINES adds more.
+    many machines: PathBuf = FOLDER, "FOLDER", { heading: Some("Machine") };
+
+    /// A folder of plugin libraries; the environment variable POST_PLUGINS adds more. Opening a library runs
+    /// its code, so no folder is looked into that is not named here.
+    many plugins: PathBuf = FOLDER, "FOLDER", { heading: Some("Plugins") };
+}

@@ -1,0 +1,15 @@
+//! Settings of jobs, each declared once: name, value, unit, default and doc.
+//!
+//! From a row of [`groups`] follow the field of its struct, the flag of the command (`src/arguments`), the key of a job of a
+//! batch ([`JobLine`](crate::batch::JobLine)) and the option that Python passes.
+
+mod groups;
+mod table;
+pub mod values;
+
+pub use groups::{
+    JobSettings, MachineSettings, MakingSettings, Msys, ProgramSettings, ReadingSettings,
+    ReportSettings, StudySettings,
+};
+pub use table::{About, Group, Row, Table, tell};
+pub use values::{Form, Reader, Value};

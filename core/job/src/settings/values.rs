@@ -1,0 +1,308 @@
+//! Values of settings: as they are told, and how each kind of them is read.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use post_grammar::Units;
+use post_machine::description::{Setting, Tcp};
+use post_posting::program::{ToldSpindle, Unknown, limits};
+
+use super::groups::Msys;
+use crate::files::PathArg;
+
+/// A value as a user, a file or another program tells it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// True or not.
+    Yes(bool),
+    /// A whole number.
+    Whole(i64),
+    /// A number.
+    Number(f64),
+    /// A text, numbers as they are written among them.
+    Text(String),
+    /// A file or a folder.
+    Path(PathBuf),
+    /// Several of them.
+    List(Vec<Self>),
+}
+
+impl From<&str> for Value {
+    fn from(text: &str) -> Self {
+        Self::Text(text.to_owned())
+    }
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Yes(yes) => write!(f, "{yes}"),
+            Self::Whole(number) => write!(f, "{number}"),
+            Self::Number(number) => write!(f, "{number:?}"),
+            Self::Text(text) => f.write_str(text),
+            Self::Path(path) => write!(f, "{}", path.display()),
+            Self::List(values) => {
+                let texts: Vec<String> = values.iter().map(Self::to_string).collect();
+                f.write_str(&texts.join(","))
+            }
+        }
+    }
+}
+
+impl Value {
+    /// Whether it says yes.
+    ///
+    /// # Errors
+    /// It is something else.
+    pub fn yes(&self) -> Result<bool, String> {
+        match self {
+            Self::Yes(yes) => Ok(*yes),
+            other => Err(format!("`{other}` is neither true nor false")),
+        }
+    }
+}
+
+/// What values there are of a setting.
+#[derive(Clone, Copy, Debug)]
+pub enum Form {
+    /// It is told or not.
+    Flag,
+    /// Texts, some of which are refused.
+    Text,
+    /// One of these words.
+    Words(fn() -> Vec<&'static str>),
+    /// Whole numbers, both ends among them.
+    Whole {
+        /// The least of them.
+        least: u64,
+        /// The largest.
+        most: u64,
+    },
+    /// Files or folders.
+    Path,
+}
+
+/// What values there are, and how one is read; an error says why it is none.
+pub struct Reader<T> {
+    /// What values there are.
+    pub form: Form,
+    /// Reads one; an error says why it is none.
+    pub read: fn(&Value) -> Result<T, String>,
+}
+
+impl<T> Reader<T> {
+    /// Of texts and numbers.
+    pub const fn text(read: fn(&Value) -> Result<T, String>) -> Self {
+        Self { form: Form::Text, read }
+    }
+}
+
+/// A reader of one of a few words.
+macro_rules! words {
+    ($(#[doc = $doc:literal])* $name:ident: $type:ty { $($word:literal => $meaning:expr),* }) => {
+        $(#[doc = $doc])*
+        pub const $name: Reader<$type> = Reader {
+            form: Form::Words(|| vec![$($word),*]),
+            read: |value| match value.to_string().as_str() {
+                $($word => Ok($meaning),)*
+                other => Err(not_one_of(other, &[$($word),*])),
+            },
+        };
+    };
+}
+
+fn not_one_of(text: &str, words: &[&str]) -> String {
+    match words {
+        [one, other] => format!("`{text}` is neither {one} nor {other}"),
+        words => format!("`{text}` is none of {}", words.join(", ")),
+    }
+}
+
+words!(#[doc = "Units of a CL file."]
+    UNITS: Units { "mm" => Units::Millimetre, "inch" => Units::Inch });
+
+words!(#[doc = "Whether points and axes are taken into the frame of MSYS."]
+    MSYS: Msys { "keep" => Msys::Keep, "apply" => Msys::Apply });
+
+words!(#[doc = "What becomes of words without effect."]
+UNKNOWN: Unknown {
+    "error" => Unknown::Error, "known" => Unknown::Known, "warn" => Unknown::Warn, "pass" => Unknown::Pass
+});
+
+words!(#[doc = "Who keeps the tip on its path."]
+    TCP: Tcp { "control" => Tcp::Control, "post" => Tcp::Post });
+
+/// Number of a tool.
+pub const TOOL: Reader<u32> = whole32(1, u32::MAX, |value| whole(value, 1, u32::MAX.into()));
+
+/// Number of a program.
+pub const PROGRAM_NUMBER: Reader<u32> =
+    whole32(0, u32::MAX, |value| whole(value, 0, u32::MAX.into()));
+
+/// How often a program is planned again.
+pub const ROUNDS: Reader<u32> = whole32(1, 100, |value| whole(value, 1, 100));
+
+/// How many of something, at least one.
+pub const COUNT: Reader<u64> = Reader {
+    form: Form::Whole { least: 1, most: u64::MAX },
+    read: |value| whole(value, 1, u64::MAX),
+};
+
+/// A setting of the machine file, `NAME=VALUE`; what it means is the loader's business.
+pub const SETTING: Reader<Setting> = Reader::text(|value| Ok(Setting::Written(value.to_string())));
+
+/// Any text.
+pub const NAME: Reader<String> = Reader::text(|value| Ok(value.to_string()));
+
+/// A word of CL files, in capitals.
+pub const CL_WORD: Reader<String> = Reader::text(cl_word);
+
+/// Revolutions a minute, or `off`.
+pub const SPINDLE: Reader<ToldSpindle> = Reader::text(spindle);
+
+/// A feed, mm/min.
+pub const FEED: Reader<f64> = Reader::text(feed);
+
+/// A length of a tool, mm.
+pub const LENGTH: Reader<f64> = Reader::text(length);
+
+/// An angle, degrees.
+pub const ANGLE: Reader<f64> = Reader::text(finite);
+
+/// A tolerance, above zero.
+pub const TOLERANCE: Reader<f64> = Reader::text(positive);
+
+/// Three coordinates, mm.
+pub const POINT: Reader<[f64; 3]> = Reader::text(point);
+
+/// A file, `-` for the standard streams.
+pub const FILE: Reader<PathArg> =
+    Reader { form: Form::Path, read: |value| Ok(PathArg::from(path(value))) };
+
+/// A folder.
+pub const FOLDER: Reader<PathBuf> = Reader { form: Form::Path, read: |value| Ok(path(value)) };
+
+const fn whole32(least: u32, most: u32, read: fn(&Value) -> Result<u32, String>) -> Reader<u32> {
+    Reader { form: Form::Whole { least: least as u64, most: most as u64 }, read }
+}
+
+fn path(value: &Value) -> PathBuf {
+    match value {
+        Value::Path(path) => path.clone(),
+        other => other.to_string().into(),
+    }
+}
+
+/// A whole number from `least` to `most`.
+fn whole<N: TryFrom<u64>>(value: &Value, least: u64, most: u64) -> Result<N, String> {
+    let text = value.to_string();
+    let beyond = || format!("{text} is not in {least}..={most}");
+    match text.parse::<i128>() {
+        Ok(number) => {
+            let number =
+                u64::try_from(number).ok().filter(|number| (least..=most).contains(number));
+            let number = number.and_then(|number| N::try_from(number).ok());
+            number.ok_or_else(beyond)
+        }
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+/// A word of CL files, in capitals.
+fn cl_word(value: &Value) -> Result<String, String> {
+    let text = value.to_string();
+    let sign = |byte: u8| byte.is_ascii_alphanumeric() || b"_-.".contains(&byte);
+    if text.starts_with(|first: char| first.is_ascii_alphabetic()) && text.bytes().all(sign) {
+        Ok(text.to_ascii_uppercase())
+    } else {
+        Err(format!("`{text}` is no word of a CL file"))
+    }
+}
+
+/// Revolutions a minute, or `off`.
+pub fn spindle(value: &Value) -> Result<ToldSpindle, String> {
+    if value.to_string().eq_ignore_ascii_case("off") {
+        return Ok(ToldSpindle::Still);
+    }
+    match positive(value) {
+        Ok(rpm) => Ok(ToldSpindle::On(rpm)),
+        Err(message) => Err(format!("{message}; a speed or `off` is meant")),
+    }
+}
+
+/// Three coordinates: `X,Y,Z`, or a list.
+pub fn point(value: &Value) -> Result<[f64; 3], String> {
+    let numbers: Vec<f64> = match value {
+        Value::List(values) => values.iter().map(finite).collect::<Result<_, _>>()?,
+        other => {
+            let text = other.to_string();
+            let numbers = text.split(',').map(|number| finite(&Value::from(number.trim())));
+            numbers.collect::<Result<_, _>>()?
+        }
+    };
+    numbers.try_into().map_err(|numbers: Vec<f64>| {
+        format!("three numbers are needed, X,Y,Z; there are {}", numbers.len())
+    })
+}
+
+/// A number that is neither infinite nor no number.
+pub fn finite(value: &Value) -> Result<f64, String> {
+    let number = match value {
+        Value::Number(number) => Some(*number),
+        Value::Whole(number) => Some(*number as f64),
+        Value::Text(text) => text.parse().ok(),
+        _ => None,
+    };
+    match number {
+        Some(number) if number.is_finite() => Ok(number),
+        _ => Err(format!("`{value}` is no number")),
+    }
+}
+
+/// A number from zero up.
+pub fn not_negative(value: &Value) -> Result<f64, String> {
+    match finite(value)? {
+        number if number >= 0.0 => Ok(number),
+        number => Err(format!("{number} is below zero")),
+    }
+}
+
+/// A feed, mm/min.
+pub fn feed(value: &Value) -> Result<f64, String> {
+    let feed = positive(value)?;
+    let [least, most] = limits::FEEDS;
+    if (least..=most).contains(&feed) {
+        Ok(feed)
+    } else {
+        Err(format!("{feed:e} is no feed: the largest is {most:e} mm/min"))
+    }
+}
+
+/// A length from zero up, mm.
+pub fn length(value: &Value) -> Result<f64, String> {
+    match not_negative(value)? {
+        length if length <= limits::MOST_COORDINATE => Ok(length),
+        length => Err(format!(
+            "{length:e} mm is no length of a tool: the largest is {:e} mm",
+            limits::MOST_COORDINATE
+        )),
+    }
+}
+
+/// A time between two set-points, s: no control is faster, and none so slow.
+pub fn period(value: &Value) -> Result<f64, String> {
+    match finite(value)? {
+        number if (1e-5..=1.0).contains(&number) => Ok(number),
+        number => Err(format!(
+            "{number} s between two set-points; from 0.00001 to 1 s is possible, and controls have 0.0005 to 0.02 s"
+        )),
+    }
+}
+
+/// A number above zero.
+pub fn positive(value: &Value) -> Result<f64, String> {
+    match finite(value)? {
+        number if number > 0.0 => Ok(number),
+        number => Err(format!("{number} is not above zero")),
+    }
+}

@@ -1,0 +1,103 @@
+//! Flags of the command, made of the rows of the table of settings.
+
+use std::path::PathBuf;
+
+use clap::builder::{PathBufValueParser, PossibleValuesParser, ValueParser};
+use clap::error::ErrorKind;
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
+
+use post_job::settings::{About, Form, Row, Table, Value};
+
+/// A group of settings as the command line says them.
+#[derive(Clone, Debug)]
+pub struct Flags<S>(pub S);
+
+impl<S: Table> Args for Flags<S> {
+    fn augment_args(command: Command) -> Command {
+        S::ROWS.iter().fold(command, |command, row| command.arg(flag(row)))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl<S: Table> FromArgMatches for Flags<S> {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let mut flags = Self(S::default());
+        flags.update_from_arg_matches(matches)?;
+        Ok(flags)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        for row in S::ROWS {
+            for value in told(&row.about, matches) {
+                let put = (row.put)(&mut self.0, &value);
+                put.map_err(|why| clap::Error::raw(ErrorKind::ValueValidation, why))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The flag of a row.
+fn flag<S: Table>(row: &'static Row<S>) -> Arg {
+    let about = &row.about;
+    let text = about.text();
+    let help = text.strip_suffix('.').unwrap_or(&text).to_owned();
+    let mut flag = Arg::new(about.name).long(about.flag()).help(help).help_heading(about.heading);
+    flag = match about.form {
+        Form::Flag => return requiring(flag.action(ArgAction::SetTrue), about),
+        _ => flag.value_name(about.value).value_parser(parser(row)),
+    };
+    if let Some(default) = about.default {
+        flag = flag.default_value(default());
+    }
+    let action = if about.many { ArgAction::Append } else { ArgAction::Set };
+    requiring(flag.action(action).allow_hyphen_values(about.hyphens), about)
+}
+
+fn requiring(flag: Arg, about: &About) -> Arg {
+    let flag = about.conflicts.iter().fold(flag, |flag, other| flag.conflicts_with(*other));
+    about.requires.iter().fold(flag, |flag, other| flag.requires(*other))
+}
+
+/// What refuses values of a row that are none.
+fn parser<S: Table>(row: &'static Row<S>) -> ValueParser {
+    match row.about.form {
+        Form::Words(words) => PossibleValuesParser::new(words()).into(),
+        Form::Whole { least, most } => match (i64::try_from(least), i64::try_from(most)) {
+            (Ok(least), Ok(most)) => clap::value_parser!(i64).range(least..=most).into(),
+            _ => clap::value_parser!(u64).range(least..=most).into(),
+        },
+        Form::Path => PathBufValueParser::new().into(),
+        Form::Flag | Form::Text => ValueParser::new(move |text: &str| {
+            let put = (row.put)(&mut S::default(), &Value::from(text));
+            put.map(|()| text.to_owned())
+        }),
+    }
+}
+
+/// The values that the command line has for a row.
+fn told(about: &About, matches: &ArgMatches) -> Vec<Value> {
+    let name = about.name;
+    match about.form {
+        Form::Flag => vec![Value::Yes(matches.get_flag(name))],
+        Form::Text | Form::Words(_) => {
+            let texts = matches.get_many::<String>(name).into_iter().flatten();
+            texts.map(|text| Value::from(text.as_str())).collect()
+        }
+        Form::Whole { most, .. } if i64::try_from(most).is_ok() => {
+            let numbers = matches.get_many::<i64>(name).into_iter().flatten();
+            numbers.map(|number| Value::Whole(*number)).collect()
+        }
+        Form::Whole { .. } => {
+            let numbers = matches.get_many::<u64>(name).into_iter().flatten();
+            numbers.map(|number| Value::Text(number.to_string())).collect()
+        }
+        Form::Path => {
+            let paths = matches.get_many::<PathBuf>(name).into_iter().flatten();
+            paths.map(|path| Value::Path(path.clone())).collect()
+        }
+    }
+}

@@ -39,7 +39,7 @@ fn fastest(tcp: bool) -> f64 {
                 })
                 .collect();
             for feed in [300.0, 6000.0] {
-                let points = walk(&mut Rng::new(7), 80, 1.0);
+                let points = walk(&mut seeded(7), 80, 1.0);
                 let run = model.run(&cl(&points, feed)).good("a path");
                 let (mut at_feed, mut limited) = (0, 0);
                 let mut last: Option<&Asked> = None;

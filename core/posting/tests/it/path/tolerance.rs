@@ -176,7 +176,7 @@ fn a_held_axis_leaves_a_four_axis_machine() {
         for tcp in [false, true] {
             let model = model("trunnion", tcp, WIDE, &[&format!("axis.C.indexed={held}")]);
             let frame = Rotation3::from_axis_angle(&Vector3::z_axis(), held.to_radians());
-            let points: Vec<Point> = walk(&mut Rng::new(55), 60, 1.0)
+            let points: Vec<Point> = walk(&mut seeded(55), 60, 1.0)
                 .into_iter()
                 .map(|old| {
                     point(

@@ -9,6 +9,7 @@ mod batch;
 #[cfg(target_os = "linux")]
 mod bounds;
 mod browser;
+mod ceilings;
 mod changes;
 mod check;
 mod check_posts;

@@ -68,7 +68,8 @@ fn parser<S: Table>(row: &'static Row<S>) -> ValueParser {
         Form::Words(words) => PossibleValuesParser::new(words()).into(),
         Form::Whole { least, most } => match (i64::try_from(least), i64::try_from(most)) {
             (Ok(least), Ok(most)) => clap::value_parser!(i64).range(least..=most).into(),
-            _ => clap::value_parser!(u64).range(least..=most).into(),
+            // As clap says it of a number without a largest.
+            _ => clap::value_parser!(u64).range(least..).into(),
         },
         Form::Path => PathBufValueParser::new().into(),
         Form::Flag | Form::Text => ValueParser::new(move |text: &str| {

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 /// Address space of a run, kB: what the command needs for a usual file, and a little more.
-const SPACE: &str = "200000";
+const SPACE: &str = "220000";
 
 /// Seconds of processor time after which a run is killed; none here takes one.
 const SECONDS: &str = "20";

@@ -46,10 +46,6 @@ pub struct VerifyArguments {
     #[arg(short, long, value_name = "MACHINE")]
     machine: String,
 
-    /// The CL file, `-` for standard input.
-    #[arg(long, value_name = "CL-FILE", value_parser = file())]
-    against: PathArg,
-
     #[command(flatten)]
     job: JobFlags,
 
@@ -97,6 +93,10 @@ pub struct VerifyArguments {
     /// No table, messages alone.
     #[arg(short, long)]
     quiet: bool,
+
+    /// The CL file, `-` for standard input.
+    #[arg(long, value_name = "CL-FILE", value_parser = file())]
+    against: PathArg,
 }
 
 /// What need not be compared.

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 #[derive(Parser)]
 #[grammar = "chain.pest"]
-struct Grammar;
+struct ChainGrammar;
 
 /// One member of a structural code.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -56,7 +56,7 @@ pub fn parse_chain(text: &str) -> Result<Vec<Link>, SyntaxFault> {
         let message = format!("a structural code has at most {LONGEST} bytes");
         return Err(SyntaxFault::new(text, 0..text.len(), message).help(FORM));
     }
-    let pairs = Grammar::parse(Rule::chain, text).map_err(|error| {
+    let pairs = ChainGrammar::parse(Rule::chain, text).map_err(|error| {
         let at = match error.location {
             InputLocation::Pos(at) => at,
             InputLocation::Span((at, _)) => at,

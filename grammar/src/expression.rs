@@ -13,7 +13,7 @@ use std::sync::LazyLock;
 
 #[derive(Parser)]
 #[grammar = "expression.pest"]
-struct Grammar;
+struct ExpressionGrammar;
 
 /// Longest text, in bytes, and deepest nesting of parentheses: the parser calls itself, and no machine file needs more.
 const LONGEST: usize = 4096;
@@ -115,7 +115,7 @@ pub fn parse_expression(text: &str) -> Result<Expression, SyntaxFault> {
             ));
         }
     }
-    let mut pairs = Grammar::parse(Rule::expression, text).map_err(|error| {
+    let mut pairs = ExpressionGrammar::parse(Rule::expression, text).map_err(|error| {
         let at = match error.location {
             InputLocation::Pos(at) => at,
             InputLocation::Span((at, _)) => at,

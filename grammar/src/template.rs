@@ -13,11 +13,11 @@ const TOO_LARGE: f64 = 1e9;
 /// record in their order and `n` is the first; `{1}`, `{2}`, … alone are the same as `{n1}`, `{n2}`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Template {
-    pieces: Vec<Piece>,
+    pieces: Vec<TemplatePart>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-enum Piece {
+enum TemplatePart {
     Text(String),
     Value { text: String, expression: Expression },
 }
@@ -71,13 +71,13 @@ impl Template {
             let inner = behind.strip_prefix('{').ok_or("a `}` closes nothing")?;
             let (inner, behind) = inner.split_once('}').ok_or("a `}` is missing")?;
             if !before.is_empty() {
-                pieces.push(Piece::Text(before.to_owned()));
+                pieces.push(TemplatePart::Text(before.to_owned()));
             }
             pieces.push(value(inner)?);
             rest = behind;
         }
         if !rest.is_empty() {
-            pieces.push(Piece::Text(rest.to_owned()));
+            pieces.push(TemplatePart::Text(rest.to_owned()));
         }
         Ok(Self { pieces })
     }
@@ -85,8 +85,8 @@ impl Template {
     /// How many numbers a record must have at least.
     pub fn numbers(&self) -> usize {
         let names = self.pieces.iter().flat_map(|piece| match piece {
-            Piece::Text(_) => Vec::new(),
-            Piece::Value { expression, .. } => expression.names(),
+            TemplatePart::Text(_) => Vec::new(),
+            TemplatePart::Value { expression, .. } => expression.names(),
         });
         let places = names.filter_map(place);
         places.max().map_or(0, |last| last + 1)
@@ -103,8 +103,8 @@ impl Template {
         let mut line = String::new();
         for piece in &self.pieces {
             match piece {
-                Piece::Text(text) => line.push_str(text),
-                Piece::Value { text, expression } => {
+                TemplatePart::Text(text) => line.push_str(text),
+                TemplatePart::Value { text, expression } => {
                     let fault = |why: String| FillFault::Value { text: text.clone(), why };
                     let value = expression
                         .evaluate(&|name| numbers.get(place(name)?).copied())
@@ -125,7 +125,7 @@ impl Template {
 }
 
 /// What stands between braces.
-fn value(text: &str) -> Result<Piece, String> {
+fn value(text: &str) -> Result<TemplatePart, String> {
     let text = text.trim();
     let alone = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let expression =
@@ -142,7 +142,7 @@ fn value(text: &str) -> Result<Piece, String> {
             "{{{text}}}: {name} is no number of the record: n is the first behind the slash, n2 the second"
         ));
     }
-    Ok(Piece::Value { text: text.to_owned(), expression })
+    Ok(TemplatePart::Value { text: text.to_owned(), expression })
 }
 
 /// Which number of the record a name stands for, counted from 0: `n` and `n1` the first.

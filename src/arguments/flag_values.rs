@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use clap::ValueEnum;
 use clap::builder::{EnumValueParser, PathBufValueParser, TypedValueParser};
 use post_machine::description::{OutputUnits, Setting, Tcp};
-use post_posting::program::ToldSpindle;
+use post_posting::program::DefaultSpindle;
 
 use post_job::files::PathArg;
 use post_job::settings::values::{self, Value};
@@ -74,7 +74,7 @@ macro_rules! of_text {
 }
 
 of_text!(
-    spindle: ToldSpindle,
+    spindle: DefaultSpindle,
     point: [f64; 3],
     finite: f64,
     not_negative: f64,

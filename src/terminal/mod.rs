@@ -42,7 +42,7 @@ impl Face for Terminal {
 }
 
 /// Prints a result to standard output. A reader that has seen enough closes the pipe; any other fault is told by
-/// [`all_printed`] at the end.
+/// `all_printed` at the end.
 pub fn print(session: &Session, text: &str) {
     // Whoever writes a file has been refused before that.
     if standard::is_read(session).is_some() {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use clap::Args;
-use post_grammar::{MajorWord, ReadError, Reader, Usage};
+use post_grammar::{MajorWord, ReadError, Reader, WordUsage};
 use post_machine::diagnostic::{Diagnostic, unreadable};
 use post_posting::MOST_FAULTS;
 use post_posting::program::limits::MOST_WORDS;
@@ -40,7 +40,7 @@ pub fn run(session: &Session, arguments: &WordsArguments) -> Result<(), Failure>
     let input = ClInput::open(session, file)?;
     let name = input.name;
     let mut reader = Reader::new(input.bytes);
-    let mut words: BTreeMap<String, (u64, u64, Usage)> = BTreeMap::new();
+    let mut words: BTreeMap<String, (u64, u64, WordUsage)> = BTreeMap::new();
     let mut faults = Vec::new();
     loop {
         match reader.next_record() {
@@ -51,7 +51,7 @@ pub fn run(session: &Session, arguments: &WordsArguments) -> Result<(), Failure>
                 if let Some((count, _, known)) = words.get_mut(word) {
                     *count += 1;
                     // Of several forms the one without effect is told.
-                    if matches!(usage, Usage::Unknown | Usage::Refused) {
+                    if matches!(usage, WordUsage::Unknown | WordUsage::Refused) {
                         *known = usage;
                     }
                 } else if words.len() == MOST_WORDS {
@@ -78,7 +78,7 @@ pub fn run(session: &Session, arguments: &WordsArguments) -> Result<(), Failure>
         &format!("{:<26} {:>9}  {:<10} {}", "word", "times", "becomes", "first on line"),
     );
     for (word, (count, first, usage)) in rows {
-        if arguments.unknown_only && !matches!(usage, Usage::Unknown | Usage::Refused) {
+        if arguments.unknown_only && !matches!(usage, WordUsage::Unknown | WordUsage::Refused) {
             continue;
         }
         let becomes = usage.name();

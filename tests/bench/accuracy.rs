@@ -17,9 +17,9 @@ use std::time::{Duration, Instant};
 
 use post_grammar::Units;
 use post_host::{OpenedModel, Plugin};
-use post_posting::accuracy::{Linearise, Move, Node, Placer, Run, Tolerances};
-use post_posting::program::{Reading, ToldSpindle};
-use post_posting::{Job, Observer};
+use post_posting::accuracy::{Lineariser, MoveTolerances, NodeMove, NodeRun, PathNode, Placer};
+use post_posting::program::{DefaultSpindle, ReadingOptions};
+use post_posting::{Observer, PostingRequest};
 
 const RUNS: usize = 3;
 
@@ -79,16 +79,16 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 impl Case {
-    fn job(&self) -> Job {
-        Job {
-            reading: Reading {
+    fn job(&self) -> PostingRequest {
+        PostingRequest {
+            reading: ReadingOptions {
                 units: self.millimetres.then_some(Units::Millimetre),
                 // Not all of the files switch it on.
-                spindle: ToldSpindle::Still,
-                ..Reading::default()
+                spindle: DefaultSpindle::Still,
+                ..ReadingOptions::default()
             },
             tool_length: self.tool_length,
-            ..Job::default()
+            ..PostingRequest::default()
         }
     }
 }
@@ -150,9 +150,9 @@ fn median(times: &mut [Duration]) -> Duration {
 
 /// Blocks of a program and the points that they go to, as the bisected moves of a file give them.
 struct Blocks {
-    nodes: Vec<[Node; 2]>,
+    nodes: Vec<[PathNode; 2]>,
     placer: Option<Placer>,
-    linearise: Linearise,
+    linearise: Lineariser,
     model: OpenedModel,
 }
 
@@ -160,11 +160,11 @@ struct Blocks {
 const MOST: usize = 40_000;
 
 impl Observer for Blocks {
-    fn cut(&mut self, _: u64, cut: &Move<'_>) {
+    fn cut(&mut self, _: u64, cut: &NodeMove<'_>) {
         if self.nodes.len() > MOST {
             return;
         }
-        let run = Run {
+        let run = NodeRun {
             placer: cut.placer,
             nodes: &[*cut.from, *cut.to],
             tolerances: cut.tolerances,
@@ -189,7 +189,7 @@ fn certification(case: &Case) -> Result<(), Box<dyn Error>> {
     let mut blocks = Blocks {
         nodes: Vec::new(),
         placer: None,
-        linearise: Linearise::new(&machine.accuracy, false),
+        linearise: Lineariser::new(&machine.accuracy, false),
         model: Plugin::linked(post_stock::plugin("sampled").ok_or("no such plugin")?)?
             .error_model(&[])?,
     };
@@ -198,9 +198,9 @@ fn certification(case: &Case) -> Result<(), Box<dyn Error>> {
         return Ok(());
     };
     let tolerances =
-        Tolerances { tip: machine.accuracy.tolerance, axis: machine.accuracy.axis_tolerance };
+        MoveTolerances { tip: machine.accuracy.tolerance, axis: machine.accuracy.axis_tolerance };
     let nodes = &blocks.nodes;
-    let block = |index: usize| Move {
+    let block = |index: usize| NodeMove {
         placer: &placer,
         from: &nodes[index][0],
         to: &nodes[index][1],

@@ -33,7 +33,7 @@ use post_host::{Plugin, ProgramSetup, ProgramWord};
 use post_machine::description::Machine;
 use post_motion::contour::Contour;
 use post_motion::servo::Servos;
-use post_motion::trajectory::{Filled, Planner};
+use post_motion::trajectory::{FillOutcome, Planner};
 use post_motion::{SetPoints, Task};
 use post_plugin::DialectSession as _;
 use post_readback::Offsets;
@@ -204,7 +204,7 @@ fn staged(path: &Path, tcp: &str) -> Result<Costs, Box<dyn Error>> {
             clock = now;
         };
         let filled = match &mut points {
-            None => Filled::Wants,
+            None => FillOutcome::Wants,
             Some(points) => {
                 planner.fill(points, BATCH, &mut times).map_err(|fault| format!("{fault:?}"))?
             }
@@ -212,7 +212,7 @@ fn staged(path: &Path, tcp: &str) -> Result<Costs, Box<dyn Error>> {
         times.clear();
         lap(1, &mut costs);
         if let Some(points) = &mut points
-            && filled != Filled::Wants
+            && filled != FillOutcome::Wants
         {
             servos.follow(&points.joints, &mut actual);
             lap(2, &mut costs);
@@ -224,9 +224,9 @@ fn staged(path: &Path, tcp: &str) -> Result<Costs, Box<dyn Error>> {
             lap(3, &mut costs);
         }
         match filled {
-            Filled::Full => {}
-            Filled::Ended => break,
-            Filled::Wants => {
+            FillOutcome::Full => {}
+            FillOutcome::Ended => break,
+            FillOutcome::Wants => {
                 while planned.is_empty() && !ended {
                     if program.next(&mut done).map_err(text)? {
                         tasks.take(&mut done, &mut planned);

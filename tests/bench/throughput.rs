@@ -34,7 +34,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use post_posting::Job;
+use post_posting::PostingRequest;
 
 /// Points of the file; more by the first argument behind `--`.
 const POINTS: u64 = 1_000_000;
@@ -99,7 +99,7 @@ fn agree(path: &Path, folder: &Path) -> Result<(), Box<dyn Error>> {
 
 fn job(path: &Path, machine: &str, tcp: &str) -> Result<(), Box<dyn Error>> {
     let settings = [format!("control.tcp={tcp:?}"), "control.dialect=\"fanuc\"".to_owned()];
-    let job = Job { tool_length: Some(100.0), ..Job::default() };
+    let job = PostingRequest { tool_length: Some(100.0), ..PostingRequest::default() };
     job::run(path, machine, &settings, job).map(drop)
 }
 

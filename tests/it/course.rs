@@ -11,7 +11,9 @@ use std::path::PathBuf;
 use nalgebra::Vector3;
 use post_grammar::{ReadError, Reader, Units};
 use post_plugin::{Compensation, Coolant, Spindle, SpindleSense};
-use post_posting::program::{Command, Interpreter, Leg, Pace, Reading, Step, ToldSpindle};
+use post_posting::program::{
+    ClInterpreter, Command, CycleLeg, DefaultSpindle, MoveFeed, ProgramStep, ReadingOptions,
+};
 use post_readback::convert::{ClWriter, Tool};
 use post_readback::course::cl::{ClCourse, Settings};
 use post_readback::course::{Course, Curve, Item, Piece};
@@ -64,7 +66,7 @@ fn files() -> Vec<PathBuf> {
 
 /// As posting reads it, with what it refuses.
 fn posted(text: &[u8], how: &How) -> (Vec<Beat>, Vec<String>) {
-    let mut interpreter = Interpreter::new(Reading {
+    let mut interpreter = ClInterpreter::new(ReadingOptions {
         file: "part.cls".to_owned(),
         units: how.units,
         apply_msys: how.apply_msys,
@@ -72,10 +74,10 @@ fn posted(text: &[u8], how: &How) -> (Vec<Beat>, Vec<String>) {
         tool: how.tool,
         tool_from_cutter: how.from_cutter,
         feed: how.feed,
-        spindle: how.spindle.map_or(ToldSpindle::Still, ToldSpindle::On),
+        spindle: how.spindle.map_or(DefaultSpindle::Still, DefaultSpindle::On),
         chord_tolerance: 0.0005,
         allowed: how.allowed.clone(),
-        ..Reading::default()
+        ..ReadingOptions::default()
     });
     let mut reader = Reader::new(text);
     let mut beats = Vec::new();
@@ -101,37 +103,37 @@ fn posted(text: &[u8], how: &How) -> (Vec<Beat>, Vec<String>) {
     (beats, faults)
 }
 
-fn posted_step(line: u64, step: Step, beats: &mut Vec<Beat>) {
-    let to = |motion: &post_posting::program::Motion| Beat::To {
+fn posted_step(line: u64, step: ProgramStep, beats: &mut Vec<Beat>) {
+    let to = |motion: &post_posting::program::StraightMove| Beat::To {
         line,
-        rapid: motion.pace == Pace::Rapid,
+        rapid: motion.pace == MoveFeed::Rapid,
         feed: match motion.pace {
-            Pace::PerMinute(feed) => Some(feed),
-            Pace::Rapid | Pace::InverseTime(_) => None,
+            MoveFeed::PerMinute(feed) => Some(feed),
+            MoveFeed::Rapid | MoveFeed::InverseTime(_) => None,
         },
         tip: motion.tip,
         axis: motion.axis,
         edge: motion.edge,
     };
     match step {
-        Step::Move(motion) => beats.push(to(&motion)),
-        Step::Arc(step) => {
+        ProgramStep::Move(motion) => beats.push(to(&motion)),
+        ProgramStep::Arc(step) => {
             let points = (1..8).map(|place| step.arc.at(f64::from(place) / 8.0));
             beats.push(Beat::Through(points.collect()));
             beats.push(to(&step.end));
         }
-        Step::Spline(step) => {
+        ProgramStep::Spline(step) => {
             let mut points = Vec::new();
             step.spline.flatten(0.0005, &mut |point, _| points.push(point));
             points.pop();
             beats.push(Beat::Through(points));
             beats.push(to(&step.end));
         }
-        Step::Cycle(step) => {
+        ProgramStep::Cycle(step) => {
             let mut legs = Vec::new();
             step.cycle.legs(&mut |leg| legs.push(leg));
             // Pecks are the control's: of the ways at feed the deepest counts, and what comes behind it.
-            let deepest = |leg: &Leg| matches!(leg, Leg::Feed(height) if *height < 0.0);
+            let deepest = |leg: &CycleLeg| matches!(leg, CycleLeg::Feed(height) if *height < 0.0);
             let last = legs.iter().rposition(deepest).unwrap_or(0);
             // Between holes: up, then aside, then down, by the rapids of what `Expand` makes of the step.
             let stands = beats.iter().rev().find_map(|beat| match beat {
@@ -147,7 +149,7 @@ fn posted_step(line: u64, step: Step, beats: &mut Vec<Beat>) {
                 let aside = tip - foot - axis * height;
                 let level = step.cycle.retract();
                 let mut motion = step.point;
-                motion.pace = Pace::Rapid;
+                motion.pace = MoveFeed::Rapid;
                 if aside.norm() > 1e-6 && height < level {
                     motion.tip = foot + aside + axis * level;
                     beats.push(to(&motion));
@@ -156,7 +158,7 @@ fn posted_step(line: u64, step: Step, beats: &mut Vec<Beat>) {
                     beats.push(to(&motion));
                 }
             }
-            let at = |height: f64, pace: Pace| {
+            let at = |height: f64, pace: MoveFeed| {
                 let mut motion = step.point;
                 motion.tip += motion.axis * height;
                 motion.pace = pace;
@@ -164,17 +166,21 @@ fn posted_step(line: u64, step: Step, beats: &mut Vec<Beat>) {
             };
             for (place, leg) in legs.iter().enumerate() {
                 match *leg {
-                    Leg::Rapid(height) if place < 2 || place > last => {
-                        beats.push(at(height, Pace::Rapid));
+                    CycleLeg::Rapid(height) if place < 2 || place > last => {
+                        beats.push(at(height, MoveFeed::Rapid));
                     }
-                    Leg::Feed(height) if place >= last => beats.push(at(height, step.point.pace)),
-                    Leg::Dwell(seconds) => beats.push(Beat::Said(format!("dwell {seconds:.4}"))),
-                    Leg::Rapid(_) | Leg::Feed(_) => {}
+                    CycleLeg::Feed(height) if place >= last => {
+                        beats.push(at(height, step.point.pace))
+                    }
+                    CycleLeg::Dwell(seconds) => {
+                        beats.push(Beat::Said(format!("dwell {seconds:.4}")))
+                    }
+                    CycleLeg::Rapid(_) | CycleLeg::Feed(_) => {}
                 }
             }
         }
-        Step::EndCycle | Step::Plane(_) => {}
-        Step::Command(command) => beats.extend(said(command).map(Beat::Said)),
+        ProgramStep::EndCycle | ProgramStep::Plane(_) => {}
+        ProgramStep::Command(command) => beats.extend(said(command).map(Beat::Said)),
     }
 }
 

@@ -20,7 +20,7 @@ use post_readback::course::cl::{ClCourse, Settings};
 use post_readback::course::{Course as _, Curve, Item};
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
-use post_readback::verify::{CutPath, Rules, Verifier};
+use post_readback::verify::{CutPath, Verifier, VerifyRules};
 use post_readback::{Done, Motion, MotionKind, Offsets, Told};
 use post_testkit::{Rng, drawn, seeded};
 
@@ -147,11 +147,11 @@ impl Job {
         let text = lines.join("\n") + "\n";
         let offsets = Offsets { length: Some(length), ..Offsets::default() };
         let (near, _) = CutPath::of(&mut self.course(), self.machine.control_point.along);
-        let rules = Rules {
+        let rules = VerifyRules {
             length_from: self.lexicon.lengths(),
             lengths: Some(Offsets { length: Some(self.length), ..Offsets::default() }),
             own: true,
-            ..Rules::of(&self.machine)
+            ..VerifyRules::of(&self.machine)
         };
         let mut verifier = Verifier::new(&self.machine, rules, self.course()).near(near);
         let program = Interpreter::new(
@@ -524,7 +524,10 @@ fn dense(motions: &[&Motion], rapids: Option<&Chain>) -> Vec<At> {
         let turn = (0..8)
             .map(|joint| (motion.to.joints[joint] - motion.from.joints[joint]).abs())
             .fold(0.0, f64::max);
-        let bent = !matches!(motion.way, post_readback::Way::Axes | post_readback::Way::Tip);
+        let bent = !matches!(
+            motion.way,
+            post_readback::Interpolation::Axes | post_readback::Interpolation::Tip
+        );
         // A whole circle ends where it begins: of 60 mm its chords stray by a hundredth of a tolerance then.
         let count = 2.0 + way / 0.5 + if bent { 1500.0 } else { 0.0 } + turn.min(10.0) * 10.0;
         let count = (count as u32).min(2000);

@@ -21,7 +21,7 @@ use std::time::Instant;
 use post_feed::jerk;
 use post_feed::limits::{AxisJerk, Collocation, Limit};
 use post_feed::reach::{Reach, Stream};
-use post_feed::{Ends, Problem, linear_program, profile};
+use post_feed::{EndSpeeds, Problem, linear_program, profile};
 use post_testkit::Rng;
 use random::Limits;
 
@@ -103,7 +103,7 @@ fn with_jerk(axes: usize, count: usize) {
     let jerk = AxisJerk { limits: vec![20_000.0; axes] };
     let mut all: Vec<&dyn Limit> = limits.all().to_vec();
     all.push(&jerk);
-    let Ok(problem) = Problem::new(&samples, &all, Ends::default()) else {
+    let Ok(problem) = Problem::new(&samples, &all, EndSpeeds::default()) else {
         say("no problem");
         return;
     };
@@ -153,7 +153,7 @@ fn compare(axes: usize, collocation: Collocation, count: usize, ask_oracle: bool
     let samples = random::samples(&mut random, axes, count, 0.1 * count as f64);
     let limits = Limits::new(&mut random, axes, collocation);
     let limits = limits.all();
-    let ends = Ends::default();
+    let ends = EndSpeeds::default();
     let Ok(mut problem) = Problem::new(&samples, &limits, ends) else {
         say("no problem");
         return;

@@ -7,7 +7,7 @@ pub const MAX_DEGREE: usize = 7;
 
 /// A curve of `D` coordinates: B-spline, or NURBS where it has weights.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Curve<const D: usize> {
+pub struct NurbsCurve<const D: usize> {
     degree: usize,
     knots: Vec<f64>,
     points: Vec<[f64; D]>,
@@ -64,7 +64,7 @@ impl std::error::Error for CurveFault {}
 /// Value, first, second and third derivative by the curve's parameter.
 pub type Derivatives<const D: usize> = [[f64; D]; 4];
 
-impl<const D: usize> Curve<D> {
+impl<const D: usize> NurbsCurve<D> {
     /// A curve of this degree; `weights` is empty for a B-spline.
     ///
     /// # Errors

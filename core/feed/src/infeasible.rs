@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::table::Source;
+use crate::table::LimitSource;
 
 /// Why no feed keeps every limit. Samples are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,33 +25,33 @@ pub enum Infeasible {
         /// Sample, or the first of the two that it lies between.
         sample: usize,
         /// Which limit.
-        source: Source,
+        source: LimitSource,
     },
     /// The speed is above a bound further on, even by the hardest braking from the given start.
     TooFastStart {
         /// Where the bound is first broken.
         sample: usize,
         /// The bound.
-        source: Source,
+        source: LimitSource,
         /// `q` there by the hardest braking.
         needed: f64,
         /// Largest `q` there.
         allowed: f64,
         /// The row that keeps it from braking harder, if any does.
-        braking: Option<Source>,
+        braking: Option<LimitSource>,
     },
     /// The given end speed cannot be reached: to have it at the end the speed would have to be above a bound before.
     OutOfReach {
         /// The last sample, counted from the end, where the bound is broken.
         sample: usize,
         /// The bound.
-        source: Source,
+        source: LimitSource,
         /// `q` there by the hardest acceleration from there on.
         needed: f64,
         /// Largest `q` there.
         allowed: f64,
         /// The row that keeps it from accelerating harder, if any does.
-        accelerating: Option<Source>,
+        accelerating: Option<LimitSource>,
     },
     /// A plan with jerk limits needs four intervals between two stops; sample the path finer there.
     TooShort {
@@ -69,7 +69,7 @@ pub enum Infeasible {
         /// The interval begins here.
         sample: usize,
         /// One of the limits.
-        source: Source,
+        source: LimitSource,
     },
 }
 
@@ -104,7 +104,7 @@ impl Infeasible {
 
     /// The limit that it breaks, if it is one.
     #[must_use]
-    pub fn source(&self) -> Option<Source> {
+    pub fn source(&self) -> Option<LimitSource> {
         match *self {
             Self::Shape
             | Self::Standstill { .. }

@@ -58,7 +58,7 @@ mod window;
 
 pub use feed_spline::FeedSpline;
 pub use infeasible::Infeasible;
-pub use problem::{Ends, Problem};
+pub use problem::{EndSpeeds, Problem};
 pub use samples::Samples;
 
 /// What tests look into; no part of the crate's face.

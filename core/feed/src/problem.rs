@@ -4,11 +4,11 @@ use crate::infeasible::Infeasible;
 use crate::limits::Limit;
 use crate::samples::Samples;
 
-pub use crate::table::{Row, Source, Table};
+pub use crate::table::{LimitRow, LimitSource, LimitTable};
 
 /// The speed of the path parameter squared that the plan begins and ends with.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Ends {
+pub struct EndSpeeds {
     /// `q` at the first sample; 0 is at rest.
     pub start: f64,
     /// `q` at the last sample; 0 is at rest.
@@ -30,13 +30,13 @@ pub struct Problem {
     /// Largest `q` at each sample.
     pub upper: Vec<f64>,
     /// Where each upper bound comes from.
-    pub causes: Vec<Source>,
+    pub causes: Vec<LimitSource>,
     /// Where the rows of an interval come from.
-    pub sources: Vec<Source>,
+    pub sources: Vec<LimitSource>,
     /// Rows, interval by interval.
-    pub rows: Vec<Row>,
+    pub rows: Vec<LimitRow>,
     /// What the plan begins and ends with.
-    pub ends: Ends,
+    pub ends: EndSpeeds,
 }
 
 impl Problem {
@@ -44,7 +44,11 @@ impl Problem {
     ///
     /// # Errors
     /// Where a number is not finite, where no limit bounds the speed, where the parameter does not grow.
-    pub fn new(samples: &Samples, limits: &[&dyn Limit], ends: Ends) -> Result<Self, Infeasible> {
+    pub fn new(
+        samples: &Samples,
+        limits: &[&dyn Limit],
+        ends: EndSpeeds,
+    ) -> Result<Self, Infeasible> {
         let mut problem = Self::default();
         problem.refill(samples, limits, ends)?;
         Ok(problem)
@@ -58,7 +62,7 @@ impl Problem {
         &mut self,
         samples: &Samples,
         limits: &[&dyn Limit],
-        ends: Ends,
+        ends: EndSpeeds,
     ) -> Result<(), Infeasible> {
         if !samples.is_whole() {
             return Err(Infeasible::Shape);
@@ -70,17 +74,18 @@ impl Problem {
         self.upper.clear();
         self.upper.resize(count, f64::INFINITY);
         self.causes.clear();
-        self.causes.resize(count, Source::default());
+        self.causes.resize(count, LimitSource::default());
         self.sources.clear();
         self.names.clear();
         for (index, limit) in limits.iter().enumerate() {
             self.names.push(limit.name().to_owned());
             let limit_index = index as u16;
             let axes = limit.rows(samples);
-            self.sources.extend(axes.into_iter().map(|axis| Source { limit: limit_index, axis }));
+            self.sources
+                .extend(axes.into_iter().map(|axis| LimitSource { limit: limit_index, axis }));
         }
         self.rows.clear();
-        self.rows.resize(self.sources.len() * count.saturating_sub(1), Row::default());
+        self.rows.resize(self.sources.len() * count.saturating_sub(1), LimitRow::default());
         let mut first = 0;
         for (index, limit) in limits.iter().enumerate() {
             let rows = self.sources[first..]
@@ -89,7 +94,7 @@ impl Problem {
                 .count();
             limit.apply(
                 samples,
-                &mut Table {
+                &mut LimitTable {
                     limit: index as u16,
                     first,
                     stride: self.sources.len(),
@@ -106,16 +111,16 @@ impl Problem {
     /// A problem from numbers alone, at rest at both ends: one limit, called `bound`, makes all bounds, another,
     /// called `row`, all rows.
     #[must_use]
-    pub fn from_rows(steps: Vec<f64>, upper: Vec<f64>, stride: usize, rows: Vec<Row>) -> Self {
-        let row = Source { limit: 1, axis: None };
+    pub fn from_rows(steps: Vec<f64>, upper: Vec<f64>, stride: usize, rows: Vec<LimitRow>) -> Self {
+        let row = LimitSource { limit: 1, axis: None };
         Self {
             names: vec!["bound".to_owned(), "row".to_owned()],
-            causes: vec![Source::default(); upper.len()],
+            causes: vec![LimitSource::default(); upper.len()],
             sources: vec![row; stride],
             steps,
             upper,
             rows,
-            ends: Ends::default(),
+            ends: EndSpeeds::default(),
         }
     }
 
@@ -141,7 +146,7 @@ impl Problem {
         // What is not a number must not get lost in a comparison.
         if bound < self.upper[sample] || bound.is_nan() {
             self.upper[sample] = bound;
-            self.causes[sample] = Source { limit, axis: None };
+            self.causes[sample] = LimitSource { limit, axis: None };
         }
     }
 
@@ -163,14 +168,14 @@ impl Problem {
 
     /// Rows between sample `interval` and the next.
     #[must_use]
-    pub fn rows_of(&self, interval: usize) -> &[Row] {
+    pub fn rows_of(&self, interval: usize) -> &[LimitRow] {
         let stride = self.stride();
         &self.rows[interval * stride..(interval + 1) * stride]
     }
 
     /// The name of where a bound or row comes from, as reports print it.
     #[must_use]
-    pub fn name(&self, source: Source) -> String {
+    pub fn name(&self, source: LimitSource) -> String {
         let name = self.names.get(usize::from(source.limit)).map_or("limit", String::as_str);
         match source.axis {
             Some(axis) => format!("{name} of axis {axis}"),
@@ -181,7 +186,7 @@ impl Problem {
     /// A fault of this problem as a sentence, with the limit by its name.
     #[must_use]
     pub fn describe(&self, fault: &Infeasible) -> String {
-        let by = |row: Option<Source>| match row {
+        let by = |row: Option<LimitSource>| match row {
             Some(source) => format!(" ({} allows no more)", self.name(source)),
             None => String::new(),
         };
@@ -237,14 +242,14 @@ impl Problem {
         if let Some(sample) = self.steps.iter().position(|&step| !grows(step)) {
             return Err(Infeasible::Standstill { sample });
         }
-        let bad = |row: &Row| !(row.here.is_finite() && row.next.is_finite());
+        let bad = |row: &LimitRow| !(row.here.is_finite() && row.next.is_finite());
         if let Some(place) = self.rows.iter().position(bad) {
             return Err(Infeasible::NotANumber {
                 sample: place / self.stride(),
                 source: self.sources[place % self.stride()],
             });
         }
-        let Ends { start, end } = self.ends;
+        let EndSpeeds { start, end } = self.ends;
         if !(start >= 0.0 && end >= 0.0 && start.is_finite() && end.is_finite()) {
             return Err(Infeasible::Shape);
         }
@@ -255,8 +260,8 @@ impl Problem {
     ///
     /// A bound counts as `q / upper`, a negative `q` as infinite.
     #[must_use]
-    pub fn worst(&self, q: &[f64]) -> Usage {
-        let mut worst = Usage::default();
+    pub fn worst(&self, q: &[f64]) -> LimitUsage {
+        let mut worst = LimitUsage::default();
         for (sample, (&q, &upper)) in q.iter().zip(&self.upper).enumerate() {
             let share = if q < 0.0 {
                 f64::INFINITY
@@ -277,7 +282,7 @@ impl Problem {
 
     /// The limit that is used most at a sample: its bound, and the rows of both intervals that it ends.
     #[must_use]
-    pub fn active(&self, q: &[f64], sample: usize) -> Usage {
+    pub fn active(&self, q: &[f64], sample: usize) -> LimitUsage {
         let before = sample.checked_sub(1).map(|before| q[before]);
         self.used(sample, q[sample], before, q.get(sample + 1).copied())
     }
@@ -289,8 +294,8 @@ impl Problem {
         q: f64,
         before: Option<f64>,
         behind: Option<f64>,
-    ) -> Usage {
-        let mut worst = Usage::default();
+    ) -> LimitUsage {
+        let mut worst = LimitUsage::default();
         if self.upper[sample] > 0.0 {
             worst.raise(q / self.upper[sample], sample, self.causes[sample]);
         }
@@ -303,8 +308,8 @@ impl Problem {
     }
 
     /// The row that is used most between two samples.
-    pub(crate) fn used_between(&self, interval: usize, here: f64, next: f64) -> Usage {
-        let mut worst = Usage::default();
+    pub(crate) fn used_between(&self, interval: usize, here: f64, next: f64) -> LimitUsage {
+        let mut worst = LimitUsage::default();
         for (row, &source) in self.rows_of(interval).iter().zip(&self.sources) {
             worst.raise(row.value(here, next).abs(), interval, source);
         }
@@ -314,17 +319,17 @@ impl Problem {
 
 /// How much of a limit is used, and where.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Usage {
+pub struct LimitUsage {
     /// Value over limit.
     pub share: f64,
     /// Sample, or the first of the two that it lies between.
     pub sample: usize,
     /// Which limit.
-    pub source: Source,
+    pub source: LimitSource,
 }
 
-impl Usage {
-    pub(crate) fn raise(&mut self, share: f64, sample: usize, source: Source) {
+impl LimitUsage {
+    pub(crate) fn raise(&mut self, share: f64, sample: usize, source: LimitSource) {
         // What is not a number breaks every limit.
         if share > self.share || share.is_nan() {
             *self =

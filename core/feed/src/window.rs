@@ -1,7 +1,7 @@
 //! What of a path that comes in batches is not handed on yet.
 
 use crate::infeasible::Infeasible;
-use crate::problem::{Problem, Source};
+use crate::problem::{LimitSource, Problem};
 
 /// The samples that wait, as one problem.
 #[derive(Clone, Debug, Default)]
@@ -15,7 +15,7 @@ pub(crate) struct Window {
 pub(crate) struct Joint {
     steps: usize,
     /// The bound before, if another batch is before.
-    bound: Option<(f64, Source)>,
+    bound: Option<(f64, LimitSource)>,
     /// The number that each name has in the window; none where they are the same.
     numbers: Vec<u16>,
 }
@@ -27,8 +27,8 @@ impl Joint {
         number.copied().unwrap_or(limit)
     }
 
-    fn named(&self, source: Source) -> Source {
-        Source { limit: self.limit(source.limit), ..source }
+    fn named(&self, source: LimitSource) -> LimitSource {
+        LimitSource { limit: self.limit(source.limit), ..source }
     }
 }
 
@@ -117,7 +117,7 @@ impl Window {
         if batch.names != problem.names {
             numbers.extend(batch.names.iter().map(|name| problem.number_of(name)));
         }
-        let same = |(ours, theirs): (&Source, &Source)| {
+        let same = |(ours, theirs): (&LimitSource, &LimitSource)| {
             let limit = numbers.get(usize::from(theirs.limit));
             ours.axis == theirs.axis && ours.limit == *limit.unwrap_or(&theirs.limit)
         };

@@ -108,6 +108,9 @@ impl<C: Cell> Cell for Option<C> {
     }
 }
 
+/// Reads a column's value, the first or a further one, off a row.
+type Reader<R> = Box<dyn Fn(&R, usize) -> Option<Value>>;
+
 /// A column of a table whose rows are `R`.
 pub struct Column<R> {
     /// Its name.
@@ -124,7 +127,7 @@ pub struct Column<R> {
     pub kind: Kind,
     /// How many values a row has in it, where it has a list of them.
     pub width: Option<usize>,
-    value: Box<dyn Fn(&R, usize) -> Option<Value>>,
+    value: Reader<R>,
 }
 
 impl<R> Column<R> {

@@ -4,8 +4,8 @@ use post_host::{Finder, OpenedDialect};
 use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Batch, Capabilities, DialectSession, Format, WriteFault};
-use post_posting::program::ToldSpindle;
-use post_posting::report::Report;
+use post_posting::program::DefaultSpindle;
+use post_posting::report::PostingReport;
 use post_posting::{Observer, Post};
 
 use super::plugin_finder;
@@ -63,16 +63,16 @@ impl<'a> DryRun<'a> {
         &self,
         machine: &Machine,
         watch: Option<&mut dyn Observer>,
-    ) -> Result<(Report, Vec<Diagnostic>), Failure> {
+    ) -> Result<(PostingReport, Vec<Diagnostic>), Failure> {
         let source = &self.arguments.input;
         let program = super::program_name(source, None);
         let (dialect, _) = plugin_finder::dialect(&self.finder, machine, &program, Some(source))?;
         let (mut model, _) = plugin_finder::model(&self.finder, machine)?;
         let input = ClInput::open(self.session, source)?;
         let mut posting = super::posting(self.arguments, &input.name);
-        if posting.reading.spindle == ToldSpindle::Unknown {
+        if posting.reading.spindle == DefaultSpindle::Unknown {
             // Nothing is written: how fast the spindle turns is nobody's business.
-            posting.reading.spindle = ToldSpindle::Still;
+            posting.reading.spindle = DefaultSpindle::Still;
         }
         let mut dialect = Rounding::new(dialect, self.exact);
         let mut sink = NullSink;

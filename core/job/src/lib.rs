@@ -41,9 +41,9 @@ use post_host::Finder;
 use post_machine::check::Check;
 use post_machine::description::{Machine, Setting};
 use post_plugin::{Capabilities, DialectSession};
-use post_posting::ahead::{Ahead, AheadPass};
-use post_posting::program::Reading;
-use post_posting::{Job, Post};
+use post_posting::ahead::{FilePreview, PreviewPass};
+use post_posting::program::ReadingOptions;
+use post_posting::{Post, PostingRequest};
 
 use crate::failure::Failure;
 use crate::files::{ClInput, ClSource, FileFault, NullSink, PathArg};
@@ -105,7 +105,7 @@ pub fn try_opening(machine: &Machine, finder: &Finder, length: f64) -> Result<()
             return Err(faults.into_iter().flatten().flatten().collect::<Vec<_>>().into());
         }
     };
-    let job = Job { tool_length: Some(length), ..Job::default() };
+    let job = PostingRequest { tool_length: Some(length), ..PostingRequest::default() };
     match Post::new(machine, job, &mut dialect, &mut model, &mut NullSink) {
         Ok(_) => Ok(()),
         Err(finding) => Err((*finding).into()),
@@ -113,9 +113,9 @@ pub fn try_opening(machine: &Machine, finder: &Finder, length: f64) -> Result<()
 }
 
 /// How the CL file that is called `file` in messages is posted.
-pub fn posting(arguments: &JobSettings, file: &str) -> Job {
-    Job {
-        reading: Reading {
+pub fn posting(arguments: &JobSettings, file: &str) -> PostingRequest {
+    PostingRequest {
+        reading: ReadingOptions {
             file: file.to_owned(),
             units: arguments.reading.units,
             tool: arguments.reading.tool,
@@ -125,10 +125,10 @@ pub fn posting(arguments: &JobSettings, file: &str) -> Job {
             feed: arguments.reading.feed,
             tool_from_cutter: arguments.reading.tool_from_cutter,
             allowed: arguments.reading.allow.clone(),
-            ..Reading::default()
+            ..ReadingOptions::default()
         },
         tool_length: arguments.over.tool_length,
-        ..Job::default()
+        ..PostingRequest::default()
     }
 }
 
@@ -139,13 +139,13 @@ pub fn ahead(
     source: &mut ClSource,
     machine: &Machine,
     dialect: &impl DialectSession,
-) -> Result<Option<Arc<Ahead>>, Failure> {
+) -> Result<Option<Arc<FilePreview>>, Failure> {
     if !machine.control.planes || !dialect.capabilities().has(Capabilities::PLANE) {
         return Ok(None);
     }
     let input = source.open()?;
     let reading = posting(arguments, &input.name).reading;
-    let mut pass = AheadPass::new(machine, reading);
+    let mut pass = PreviewPass::new(machine, reading);
     let mut reader = Reader::new(input.bytes);
     loop {
         match reader.next_record() {

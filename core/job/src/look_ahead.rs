@@ -5,7 +5,7 @@ use std::ops::Range;
 use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
-use post_posting::{Job, LookedAhead, Post};
+use post_posting::{Post, PostingRequest, ProgramPreview};
 
 use super::plugin_finder;
 use crate::failure::Failure;
@@ -22,16 +22,16 @@ pub fn look_ahead(
     finder: &Finder,
     source: &mut ClSource,
     lines: Option<Range<u64>>,
-) -> Result<LookedAhead, Failure> {
+) -> Result<ProgramPreview, Failure> {
     let plain = machine.without_text();
     let program = super::program_name(&arguments.input, None);
     let (mut dialect, _) =
         plugin_finder::dialect(finder, &plain, &program, Some(&arguments.input))?;
     let (mut model, _) = plugin_finder::model(finder, &plain)?;
-    let mut ahead = LookedAhead::default();
+    let mut ahead = ProgramPreview::default();
     let planes = super::ahead(arguments, source, &plain, &dialect)?;
     let input = source.open()?;
-    let job = Job { ahead: planes, lines, ..super::posting(arguments, &input.name) };
+    let job = PostingRequest { ahead: planes, lines, ..super::posting(arguments, &input.name) };
     let mut sink = NullSink;
     let mut post = Post::new(&plain, job, &mut dialect, &mut model, &mut sink)
         .map_err(|finding: Box<Diagnostic>| *finding)?;

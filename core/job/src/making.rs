@@ -8,8 +8,8 @@ use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::DialectSession as _;
 use post_posting::plan::PlanWatch;
-use post_posting::report::Report;
-use post_posting::{LookedAhead, Observer, Output};
+use post_posting::report::PostingReport;
+use post_posting::{Observer, ProgramPreview, TextSink};
 use post_readback::interpret::Limits;
 use post_readback::verify::{BlockReport, Verification};
 
@@ -73,7 +73,7 @@ pub struct Part {
 }
 
 /// The text of a program in the making, that can be read again.
-pub trait ProgramText: Output {
+pub trait ProgramText: TextSink {
     /// What messages call it.
     fn name(&self) -> String;
 
@@ -117,7 +117,7 @@ pub struct Wanted<'w, 'o, 'p> {
 /// What came of a program that is made.
 pub struct ProgramOutcome {
     /// What making it came to.
-    pub report: Report,
+    pub report: PostingReport,
     /// Its points were moved for the servos.
     pub moved: bool,
     /// What planning in rounds has done.
@@ -154,7 +154,7 @@ pub struct ProgramMaker<'a> {
     /// Its plugins.
     pub finder: Finder,
     /// What a first pass over the CL file has found, where that was made.
-    pub ahead: Option<LookedAhead>,
+    pub ahead: Option<ProgramPreview>,
 }
 
 impl<'a> ProgramMaker<'a> {
@@ -392,7 +392,7 @@ impl<'a> Ready<'a> {
     pub fn new(
         mut program: OneProgram<'a>,
         making: &MakingSettings,
-        ahead: Option<&LookedAhead>,
+        ahead: Option<&ProgramPreview>,
         source: &mut ClSource,
         shown: bool,
     ) -> Result<Self, Failure> {
@@ -439,11 +439,11 @@ impl<'a> Ready<'a> {
     /// A file that cannot be read, or a machine that cannot be used.
     pub fn write(
         &self,
-        ahead: Option<&LookedAhead>,
+        ahead: Option<&ProgramPreview>,
         source: &mut ClSource,
-        file: &mut dyn Output,
+        file: &mut dyn TextSink,
         beside: Beside<'_, '_, '_>,
-    ) -> Result<(Option<Report>, Vec<Diagnostic>), Failure> {
+    ) -> Result<(Option<PostingReport>, Vec<Diagnostic>), Failure> {
         let program = self.program.clone();
         let compensation = self.compensation.as_ref();
         let moved = compensation.and_then(|found| Some((&found.machine, found.moves.as_ref()?)));

@@ -1,7 +1,7 @@
 //! What an NC program did, written as a CL file.
 
 use post_machine::diagnostic::Diagnostic;
-use post_motion::Corner;
+use post_motion::CornerMode;
 use post_readback::convert::{ClWriter, Tool};
 use post_readback::course::Course;
 use post_readback::course::done::DoneCourse;
@@ -106,7 +106,7 @@ pub fn fed(left: Option<(u64, u64)>) -> Option<Diagnostic> {
 fn leaves_the_path(corners: Corners) -> bool {
     match corners {
         Corners::Own => true,
-        Corners::Said(Corner::Blend { tolerance }) => tolerance.is_some(),
+        Corners::Said(CornerMode::Blend { tolerance }) => tolerance.is_some(),
         _ => false,
     }
 }

@@ -7,8 +7,10 @@ use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_posting::plan::PlanWatch;
-use post_posting::report::Report;
-use post_posting::{Job, JobFacts, LookedAhead, Observer, Output, PathShift, Post, Tightening};
+use post_posting::report::PostingReport;
+use post_posting::{
+    JobFacts, Observer, PathShift, Post, PostingRequest, ProgramPreview, TextSink, Tightening,
+};
 
 use super::plugin_finder;
 use crate::failure::Failure;
@@ -55,11 +57,11 @@ impl OneProgram<'_> {
     /// file has found, where the machine's texts ask for it.
     pub fn write(
         self,
-        ahead: Option<&LookedAhead>,
+        ahead: Option<&ProgramPreview>,
         source: &mut ClSource,
-        file: &mut dyn Output,
+        file: &mut dyn TextSink,
         beside: Beside<'_, '_, '_>,
-    ) -> Result<(Option<Report>, Vec<Diagnostic>), Failure> {
+    ) -> Result<(Option<PostingReport>, Vec<Diagnostic>), Failure> {
         let Self {
             session,
             arguments,
@@ -90,7 +92,7 @@ impl OneProgram<'_> {
         let (mut model, model_use) = plugin_finder::model(finder, machine)?;
         let planes = super::ahead(arguments, source, machine, &dialect)?;
         let input = source.open()?;
-        let job = Job {
+        let job = PostingRequest {
             ahead: planes,
             trust_model,
             plans,

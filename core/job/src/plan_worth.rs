@@ -5,7 +5,7 @@
 //! CL file, it is the one that is written. What cannot be predicted is not compared.
 
 use post_machine::diagnostic::{Diagnostic, Short};
-use post_posting::LookedAhead;
+use post_posting::ProgramPreview;
 
 use super::one_program::OneProgram;
 use super::rounds::Rounds;
@@ -43,7 +43,7 @@ impl Outcome {
 /// A scratch file or the CL file cannot be read or written.
 pub fn gains_nothing(
     program: &OneProgram<'_>,
-    ahead: Option<&LookedAhead>,
+    ahead: Option<&ProgramPreview>,
     source: &mut ClSource,
 ) -> Result<Option<Diagnostic>, Failure> {
     let Some(planned) = outcome(program, true, ahead, source)? else {
@@ -70,7 +70,7 @@ pub fn gains_nothing(
 fn outcome(
     program: &OneProgram<'_>,
     plans: bool,
-    ahead: Option<&LookedAhead>,
+    ahead: Option<&ProgramPreview>,
     source: &mut ClSource,
 ) -> Result<Option<Outcome>, Failure> {
     let mut rounds = Rounds::new(program, ahead, source);

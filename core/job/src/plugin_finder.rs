@@ -11,7 +11,7 @@ use post_machine::axis_words;
 use post_machine::description::{GivenOption, Machine, OptionValue, OutputUnits, Tcp};
 use post_machine::diagnostic::{self, Diagnostic, Place, nearest};
 use post_plugin::{Accuracy, Tolerance, Units, Value};
-use post_posting::LookedAhead;
+use post_posting::ProgramPreview;
 use post_posting::report::PluginUse;
 
 use super::plugin_folders;
@@ -103,7 +103,7 @@ pub fn dialect_knowing(
     machine: &Machine,
     program: &str,
     cl_file: Option<&PathArg>,
-    ahead: Option<&LookedAhead>,
+    ahead: Option<&ProgramPreview>,
 ) -> Result<(OpenedDialect, PluginUse), Vec<Diagnostic>> {
     let control = &machine.control;
     let fault = |fault: PluginFault| {

@@ -1,8 +1,8 @@
 //! The blocks of a program that is posted as rows, for the report's page and for arrays.
 
 use post_machine::description::Machine;
-use post_posting::program::{Command, HoleMark, Pace};
-use post_posting::{Block, MotionKind, Reason};
+use post_posting::program::{Command, HoleMark, MoveFeed};
+use post_posting::{BlockKind, BlockReason, MotionBlock};
 
 use super::axes::{self, AxisColumn};
 use super::columns::Column;
@@ -18,7 +18,7 @@ pub const REASONS: [&str; 9] =
 #[derive(Clone, Debug)]
 pub struct PostedBlock {
     /// The block.
-    pub block: Block,
+    pub block: MotionBlock,
     /// Line of the program; 0 of a block that prints nothing.
     pub nc: u64,
     /// How the tool comes to its end: a place in [`KINDS`].
@@ -35,15 +35,15 @@ impl PostedBlock {
     /// Why it is there: a place in [`REASONS`].
     pub fn reason(&self) -> u8 {
         match self.block.reason {
-            Reason::Point => 0,
-            Reason::Eased => 1,
-            Reason::PutIn => 2,
-            Reason::Leave => 3,
-            Reason::Stage => 4,
-            Reason::Rewind => 5,
-            Reason::Feed => 6,
-            Reason::Above => 7,
-            Reason::AtOnce => 8,
+            BlockReason::Point => 0,
+            BlockReason::Eased => 1,
+            BlockReason::PutIn => 2,
+            BlockReason::Leave => 3,
+            BlockReason::Stage => 4,
+            BlockReason::Rewind => 5,
+            BlockReason::Feed => 6,
+            BlockReason::Above => 7,
+            BlockReason::AtOnce => 8,
         }
     }
 
@@ -57,9 +57,9 @@ impl PostedBlock {
     /// The feed that the CL file asks for, mm/min; none in a rapid.
     pub fn asked(&self) -> Option<f64> {
         match self.block.pace {
-            Pace::PerMinute(feed) => Some(feed),
-            Pace::InverseTime(rate) => Some(self.block.way * rate),
-            Pace::Rapid => None,
+            MoveFeed::PerMinute(feed) => Some(feed),
+            MoveFeed::InverseTime(rate) => Some(self.block.way * rate),
+            MoveFeed::Rapid => None,
         }
     }
 }
@@ -130,7 +130,7 @@ impl<'m> PostedProgram<'m> {
     }
 
     /// The row of the next block, whose line of the program is not known yet.
-    pub fn block(&mut self, block: &Block) -> PostedBlock {
+    pub fn block(&mut self, block: &MotionBlock) -> PostedBlock {
         self.time += block.time.minutes * 60.0;
         let readings = axes::readings(self.machine, &block.joints);
         let limit = block.time.limit.or(block.planned.limit);
@@ -139,12 +139,12 @@ impl<'m> PostedProgram<'m> {
             nc: 0,
             kind: match (self.hole, block.kind) {
                 (true, _) => 6,
-                (_, MotionKind::Position) => 0,
-                (_, MotionKind::Reference) => 1,
-                (_, MotionKind::Rapid) => 2,
-                (_, MotionKind::Linear) => 3,
-                (_, MotionKind::Arc) => 4,
-                (_, MotionKind::Spline) => 5,
+                (_, BlockKind::Position) => 0,
+                (_, BlockKind::Reference) => 1,
+                (_, BlockKind::Rapid) => 2,
+                (_, BlockKind::Linear) => 3,
+                (_, BlockKind::Arc) => 4,
+                (_, BlockKind::Spline) => 5,
             },
             time: self.time,
             readings: axes::in_columns(&self.axes, self.machine, &readings),

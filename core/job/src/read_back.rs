@@ -7,11 +7,11 @@ use post_host::Finder;
 use post_machine::description::{Machine, OutputUnits, Rapid, TextPlace};
 use post_machine::diagnostic::{Diagnostic, Place, Severity};
 use post_plugin::{Lengths, Meaning};
-use post_posting::program::{ToldSpindle, Unknown};
+use post_posting::program::{DefaultSpindle, UnknownWordPolicy};
 use post_readback::course::cl::{ClCourse, ClTool, Settings};
 use post_readback::course::{Course, Window};
 use post_readback::interpret::Limits;
-use post_readback::verify::{BlockReport, CutPath, Fault, Rules, Verification, Verifier};
+use post_readback::verify::{BlockReport, CutPath, Fault, Verification, Verifier, VerifyRules};
 use post_readback::{Done, Offsets};
 
 use super::nc_program::{self, NcControl, Spoken};
@@ -95,11 +95,14 @@ pub fn course_settings(arguments: &JobSettings, machine: &Machine, file: &str) -
         tool_from_cutter: arguments.reading.tool_from_cutter,
         feed: arguments.reading.feed,
         spindle: match arguments.reading.spindle {
-            Some(ToldSpindle::On(rpm)) => Some(rpm),
+            Some(DefaultSpindle::On(rpm)) => Some(rpm),
             _ => None,
         },
         allowed: arguments.reading.allow.clone(),
-        unknown_left_out: matches!(arguments.reading.unknown, Unknown::Warn | Unknown::Pass),
+        unknown_left_out: matches!(
+            arguments.reading.unknown,
+            UnknownWordPolicy::Warn | UnknownWordPolicy::Pass
+        ),
         ..Settings::of(machine, file)
     }
 }
@@ -287,12 +290,12 @@ pub fn hold<C: Course, R: Read + Seek>(
 }
 
 /// What a program is held to.
-fn rules(reading: &Reading<'_>, control: &NcControl, tools: &[ClTool]) -> Rules {
+fn rules(reading: &Reading<'_>, control: &NcControl, tools: &[ClTool]) -> VerifyRules {
     let NcControl { counted: machine, spoken, lexicon, offsets, .. } = control;
     let length_from = lexicon.lengths();
     let [tolerance, axis_tolerance] = reading.tolerances;
-    let standard = Rules::of(machine);
-    Rules {
+    let standard = VerifyRules::of(machine);
+    VerifyRules {
         tolerance: tolerance.unwrap_or(standard.tolerance),
         axis_tolerance: axis_tolerance.unwrap_or(standard.axis_tolerance),
         length_from,

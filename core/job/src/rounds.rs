@@ -2,7 +2,7 @@
 //! for the servos, and the question whether a plan is worth it share.
 
 use post_machine::diagnostic::Diagnostic;
-use post_posting::{LookedAhead, PathShift};
+use post_posting::{PathShift, ProgramPreview};
 use post_readback::interpret::Limits;
 
 use super::one_program::{Beside, OneProgram};
@@ -17,7 +17,7 @@ const NAME: &str = "a program that is tried";
 pub struct Rounds<'r, 'p> {
     /// The program as it is asked for.
     pub program: &'r OneProgram<'p>,
-    ahead: Option<&'r LookedAhead>,
+    ahead: Option<&'r ProgramPreview>,
     source: &'r mut ClSource,
 }
 
@@ -25,7 +25,7 @@ impl<'r, 'p> Rounds<'r, 'p> {
     /// Rounds of a program.
     pub fn new(
         program: &'r OneProgram<'p>,
-        ahead: Option<&'r LookedAhead>,
+        ahead: Option<&'r ProgramPreview>,
         source: &'r mut ClSource,
     ) -> Self {
         Self { program, ahead, source }

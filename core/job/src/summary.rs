@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use post_posting::plan::PlanReport;
-use post_posting::report::{Deviation, LengthSource, PluginUse, Report};
+use post_posting::report::{LengthSource, PluginUse, PostingReport, ReportedDeviation};
 use post_readback::verify::Verification;
 use serde::Serialize;
 
@@ -17,7 +17,7 @@ use crate::{compensate, plan_rounds};
 pub struct Told<'a> {
     #[serde(flatten)]
     /// What making the program came to.
-    pub report: &'a Report,
+    pub report: &'a PostingReport,
     /// What reading the program back has found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verification: Option<&'a Verification>,
@@ -35,7 +35,7 @@ pub struct Told<'a> {
 /// The summary of a program at `target` that was made from the CL file named `input`, and what reading it back has found,
 /// if it was.
 pub fn text(
-    report: &Report,
+    report: &PostingReport,
     read_back: Option<&Verification>,
     input: &str,
     target: &PathArg,
@@ -54,7 +54,7 @@ pub fn text(
 }
 
 /// The same for the report: without folders, which are others elsewhere.
-pub fn facts(report: &Report, read_back: Option<&Verification>) -> Vec<[String; 2]> {
+pub fn facts(report: &PostingReport, read_back: Option<&Verification>) -> Vec<[String; 2]> {
     rows(report, read_back, |plugin| match &plugin.hash {
         Some(hash) => hash.clone(),
         None => "built in".to_owned(),
@@ -72,7 +72,7 @@ fn origin(plugin: &PluginUse) -> String {
 
 /// What the summary tells of a program: names and values.
 fn rows(
-    report: &Report,
+    report: &PostingReport,
     read_back: Option<&Verification>,
     origin: impl Fn(&PluginUse) -> String,
 ) -> Vec<[String; 2]> {
@@ -301,7 +301,7 @@ fn held_by(plan: &PlanReport) -> String {
 }
 
 /// A certified maximum and its place.
-fn certified(deviation: Deviation, unit: &str, decimals: u8) -> String {
+fn certified(deviation: ReportedDeviation, unit: &str, decimals: u8) -> String {
     let value = at_most(deviation.value, decimals);
     if deviation.line == 0 {
         return format!("{value} {unit}");

@@ -25,5 +25,5 @@ mod set_points;
 pub mod task;
 pub mod trajectory;
 
-pub use set_points::{At, Jump, SetPoints};
-pub use task::{Corner, Move, Pace, Task, Waiting};
+pub use set_points::{ProgramPlace, SetPoints, VelocityJump};
+pub use task::{CornerMode, Move, MovePace, Task, WaitReason};

@@ -18,14 +18,14 @@ pub struct SetPoints {
     /// Tip and tool axis that they make, part frame.
     pub poses: Vec<Pose>,
     /// What is being carried out.
-    pub at: Vec<At>,
+    pub at: Vec<ProgramPlace>,
     /// Jumps of velocity between the set-point before the first of these and the last one.
-    pub jumps: Vec<Jump>,
+    pub jumps: Vec<VelocityJump>,
 }
 
 /// The velocities jump: one move passes into the next in another direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Jump {
+pub struct VelocityJump {
     /// When, s from the beginning.
     pub time: f64,
     /// Velocities behind it less those before, by place in the chain, mm/s or rad/s.
@@ -36,7 +36,7 @@ pub struct Jump {
 
 /// Where a set-point stands in the program.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct At {
+pub struct ProgramPlace {
     /// Number of the task, from 0; while two overlap, the one that is left.
     pub task: u64,
     /// Line of the program.

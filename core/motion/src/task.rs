@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use post_machine::kinematics::Solver;
 
-use crate::path::{Stance, Way};
+use crate::path::{Interpolation, Stance};
 
 /// One thing after the other.
 #[derive(Clone, Debug)]
@@ -22,13 +22,13 @@ pub enum Task {
         /// How long, s.
         seconds: f64,
         /// What for.
-        why: Waiting,
+        why: WaitReason,
     },
 }
 
 /// What the machine waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Waiting {
+pub enum WaitReason {
     /// A dwell of the program.
     Dwell,
     /// A tool change.
@@ -45,7 +45,7 @@ pub struct Move {
     /// Line of the program.
     pub line: u64,
     /// How the control goes.
-    pub way: Way,
+    pub way: Interpolation,
     /// Where it begins: where the last one has ended.
     pub from: Stance,
     /// Where it ends.
@@ -56,14 +56,14 @@ pub struct Move {
     /// axes.
     pub keeps_tip: bool,
     /// How fast it is asked for.
-    pub pace: Pace,
+    pub pace: MovePace,
     /// How the control passes from it into the next one.
-    pub corner: Corner,
+    pub corner: CornerMode,
 }
 
 /// How fast a move is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Pace {
+pub enum MovePace {
     /// As fast as the axes go.
     Rapid,
     /// It takes so long at the feed that the program states, no limit of the machine regarded, minutes.
@@ -72,7 +72,7 @@ pub enum Pace {
 
 /// How a control passes from one move into the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Corner {
+pub enum CornerMode {
     /// It stands still at the end (G9, G61.1 of LinuxCNC, G60).
     Stop,
     /// It keeps the path, and stands still where the direction changes (G61).

@@ -3,14 +3,14 @@
 //! Nothing is posted by it: the interpreter settles what is modal, and its steps are examined, not kept. Memory
 //! does not grow with the file beyond [`MOST_STRETCHES`].
 //!
-//! [`AheadPass`] takes the records and hands every step to the parts of what is to be known; [`Ahead`] is what they
-//! found. A part is a struct with a `step` and a `finish` of its own: [`StillAxes`] says where the tool axis stays.
+//! [`PreviewPass`] takes the records and hands every step to the parts of what is to be known; [`FilePreview`] is what they
+//! found. A part is a struct with a `step` and a `finish` of its own: [`FixedAxisFinder`] says where the tool axis stays.
 
 use nalgebra::Vector3;
 use post_grammar::Record;
 use post_machine::description::Machine;
 
-use crate::program::{Command, Interpreter, Motion, Pace, Reading, Step};
+use crate::program::{ClInterpreter, Command, MoveFeed, ProgramStep, ReadingOptions, StraightMove};
 
 /// Stretches that are remembered; of a file with more, the ones after are not known.
 pub const MOST_STRETCHES: usize = 65_536;
@@ -20,14 +20,14 @@ const SAME: f64 = 1e-9;
 
 /// What is known of a CL file before its program is written.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Ahead {
+pub struct FilePreview {
     /// Where the tool axis stays, in the order of the lines.
-    pub still: Vec<Still>,
+    pub still: Vec<FixedAxisRange>,
 }
 
 /// Lines of a CL file between two places where the tool leaves the part, on which its axis stays.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Still {
+pub struct FixedAxisRange {
     /// Line of the first motion.
     pub first: u64,
     /// Line of the last.
@@ -38,15 +38,18 @@ pub struct Still {
 
 /// The first pass.
 #[derive(Debug)]
-pub struct AheadPass {
-    interpreter: Interpreter,
-    still: StillAxes,
+pub struct PreviewPass {
+    interpreter: ClInterpreter,
+    still: FixedAxisFinder,
 }
 
-impl AheadPass {
+impl PreviewPass {
     /// Makes the pass for a file that is to be read so, on this machine.
-    pub fn new(machine: &Machine, reading: Reading) -> Self {
-        Self { interpreter: Interpreter::new(reading.on(machine)), still: StillAxes::default() }
+    pub fn new(machine: &Machine, reading: ReadingOptions) -> Self {
+        Self {
+            interpreter: ClInterpreter::new(reading.on(machine)),
+            still: FixedAxisFinder::default(),
+        }
     }
 
     /// Takes a record.
@@ -61,8 +64,8 @@ impl AheadPass {
     }
 
     /// The file has ended.
-    pub fn finish(self) -> Ahead {
-        Ahead { still: self.still.finish() }
+    pub fn finish(self) -> FilePreview {
+        FilePreview { still: self.still.finish() }
     }
 }
 
@@ -72,41 +75,41 @@ impl AheadPass {
 /// where an operation begins or ends. Of such a part of the file all stretches count, from one turn of the tool axis at
 /// rapid to the next, or, if the axis turns in one cut of it, none.
 #[derive(Debug, Default)]
-pub struct StillAxes {
-    found: Vec<Still>,
+pub struct FixedAxisFinder {
+    found: Vec<FixedAxisRange>,
     /// How many of them the part of the file before this one leaves.
     sure: usize,
     /// The stretch in hand, and whether something is cut in it.
-    present: Option<(Still, bool)>,
+    present: Option<(FixedAxisRange, bool)>,
     /// A cut of this part of the file turns the tool axis.
     turns: bool,
 }
 
-impl StillAxes {
+impl FixedAxisFinder {
     /// Takes a step.
     #[inline]
-    pub fn step(&mut self, line: u64, step: &Step) {
+    pub fn step(&mut self, line: u64, step: &ProgramStep) {
         match step {
-            Step::Move(motion) => self.motion(line, motion, motion.pace != Pace::Rapid),
-            Step::Arc(arc) => {
+            ProgramStep::Move(motion) => self.motion(line, motion, motion.pace != MoveFeed::Rapid),
+            ProgramStep::Arc(arc) => {
                 self.turns |= (arc.start_axis - arc.end.axis).norm() > SAME;
                 self.motion(line, &arc.end, true);
             }
-            Step::Spline(spline) => self.motion(line, &spline.end, true),
+            ProgramStep::Spline(spline) => self.motion(line, &spline.end, true),
             // The tool comes to a hole at rapid, and turns there if it does.
-            Step::Cycle(cycle) => {
+            ProgramStep::Cycle(cycle) => {
                 self.motion(line, &cycle.point, false);
                 self.motion(line, &cycle.point, true);
             }
-            Step::Plane(_) => self.part_ends(),
-            Step::Command(Command::Operation(_) | Command::OperationEnd) => self.part_ends(),
-            Step::Command(command) if command.leaves() => self.part_ends(),
-            Step::Command(_) | Step::EndCycle => {}
+            ProgramStep::Plane(_) => self.part_ends(),
+            ProgramStep::Command(Command::Operation(_) | Command::OperationEnd) => self.part_ends(),
+            ProgramStep::Command(command) if command.leaves() => self.part_ends(),
+            ProgramStep::Command(_) | ProgramStep::EndCycle => {}
         }
     }
 
     #[inline]
-    fn motion(&mut self, line: u64, motion: &Motion, cuts: bool) {
+    fn motion(&mut self, line: u64, motion: &StraightMove, cuts: bool) {
         match &mut self.present {
             Some((still, cut)) if (still.axis - motion.axis).norm() <= SAME => {
                 still.last = line;
@@ -117,10 +120,10 @@ impl StillAxes {
     }
 
     /// The tool axis turns on the way to a point, or the part of the file begins with it.
-    fn turn(&mut self, line: u64, motion: &Motion, cuts: bool) {
+    fn turn(&mut self, line: u64, motion: &StraightMove, cuts: bool) {
         self.turns |= cuts && self.present.is_some();
         self.stretch_ends();
-        let still = Still { first: line, last: line, axis: motion.axis };
+        let still = FixedAxisRange { first: line, last: line, axis: motion.axis };
         self.present = Some((still, cuts));
     }
 
@@ -141,7 +144,7 @@ impl StillAxes {
     }
 
     /// The file has ended.
-    pub fn finish(mut self) -> Vec<Still> {
+    pub fn finish(mut self) -> Vec<FixedAxisRange> {
         self.part_ends();
         self.found
     }

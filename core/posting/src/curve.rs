@@ -9,24 +9,24 @@ use post_machine::description::{Arcs, Machine, Tcp};
 use post_machine::kinematics::Joints;
 use post_plugin::Capabilities;
 
-use crate::program::{Arc, Motion, Pace, Spline};
+use crate::program::{BSpline, MoveFeed, PathArc, StraightMove};
 
 /// A curve of the CL file that may stay one: the tool axis stands along it, and it is cut at a feed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Curve {
+pub struct CurveMove {
     /// Shape of the curve in the part frame; the tip goes along it.
-    pub course: Course,
+    pub course: CurveShape,
     /// The move to its end, whose pace is that of the whole curve.
-    pub end: Motion,
+    pub end: StraightMove,
 }
 
 /// The course of a curve.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Course {
+pub enum CurveShape {
     /// Along an arc or a helix of a turn at most.
-    Arc(Arc),
+    Arc(PathArc),
     /// Along a spline.
-    Spline(Spline),
+    Spline(BSpline),
 }
 
 /// What is printed of the next block, which goes along a curve.
@@ -72,7 +72,7 @@ const MOST_CHORDS: u64 = 16_384;
 
 /// Which curves dialect and machine keep.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Keeps {
+pub(crate) struct CurvePolicy {
     /// What the machine file says.
     pub arcs: Arcs,
     writes: Capabilities,
@@ -80,7 +80,7 @@ pub(crate) struct Keeps {
     tcp: bool,
 }
 
-impl Keeps {
+impl CurvePolicy {
     pub(crate) fn new(machine: &Machine, writes: Capabilities) -> Self {
         Self { arcs: machine.control.arcs, writes, tcp: machine.control.tcp == Tcp::Control }
     }
@@ -119,14 +119,14 @@ impl Keeps {
     }
 
     /// Whether a spline of the CL file may be kept that would be this many chords.
-    pub(crate) fn spline(&self, end: &Motion, chords: u64) -> bool {
+    pub(crate) fn spline(&self, end: &StraightMove, chords: u64) -> bool {
         let needs = match self.tcp {
             true => Capabilities::SPLINE | Capabilities::ARC_TCP,
             false => Capabilities::SPLINE,
         };
         self.arcs.keep
             && self.writes.has(needs)
-            && end.pace != Pace::Rapid
+            && end.pace != MoveFeed::Rapid
             && (2..=MOST_CHORDS).contains(&chords)
     }
 
@@ -144,10 +144,10 @@ impl Keeps {
 
     /// Whether an arc of the CL file may be kept that would be this many chords; `planes` if the control may have a tilted
     /// plane.
-    pub(crate) fn arc(&self, arc: &Arc, end: &Motion, chords: u64, planes: bool) -> bool {
+    pub(crate) fn arc(&self, arc: &PathArc, end: &StraightMove, chords: u64, planes: bool) -> bool {
         self.arcs.keep
             && self.writes(planes)
-            && end.pace != Pace::Rapid
+            && end.pace != MoveFeed::Rapid
             && self.radius(arc.radius())
             && (2..=MOST_CHORDS).contains(&chords)
     }

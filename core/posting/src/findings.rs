@@ -27,11 +27,11 @@ const MOST_ALIKE: u64 = 200;
 #[derive(Debug)]
 pub(crate) struct Findings {
     file: String,
-    inner: RefCell<Inner>,
+    inner: RefCell<FindingList>,
 }
 
 #[derive(Debug, Default)]
-struct Inner {
+struct FindingList {
     /// Text of the lines that a finding may still be made for.
     source: SourceBuffer,
     found: Vec<Diagnostic>,
@@ -48,7 +48,7 @@ struct Inner {
 /// How often something was found.
 #[derive(Debug)]
 struct Repeat {
-    kind: Kind,
+    kind: FindingKind,
     count: u64,
     /// Where it was found last.
     last: u64,
@@ -58,7 +58,7 @@ struct Repeat {
 
 /// Findings of one kind are reported once: of the same limit, or whose sentences differ in their numbers alone.
 #[derive(Debug, PartialEq, Eq)]
-struct Kind {
+struct FindingKind {
     severity: Severity,
     code: &'static str,
     /// Key of a limit; none for all other findings.
@@ -77,7 +77,7 @@ impl Repeat {
     }
 }
 
-impl Kind {
+impl FindingKind {
     fn of(finding: &Diagnostic) -> Self {
         let key = finding.extreme.as_ref().map(|extreme| extreme.key);
         Self {
@@ -169,7 +169,7 @@ impl Findings {
         }
         let line = finding.place.as_ref().map_or(0, |place| place.line);
         inner.repeats.push(Repeat {
-            kind: Kind::of(&finding),
+            kind: FindingKind::of(&finding),
             count: 1,
             last: line,
             extreme: finding.extreme.clone().map(|extreme| (extreme, line)),
@@ -218,10 +218,10 @@ fn line_of(finding: &Diagnostic) -> u64 {
     finding.place.as_ref().map_or(u64::MAX, |place| place.line)
 }
 
-impl Inner {
+impl FindingList {
     /// What was found before: counted, and of a limit its largest value kept.
     fn repeated(&mut self, finding: &Diagnostic) -> bool {
-        let kind = Kind::of(finding);
+        let kind = FindingKind::of(finding);
         let Some(repeat) = self.repeats.iter_mut().find(|repeat| repeat.kind == kind) else {
             return false;
         };

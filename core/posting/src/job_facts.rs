@@ -1,9 +1,9 @@
 //! What is known of a job before its first record: names, and what a first pass over the CL file found.
 
-use crate::blocks::Block;
+use crate::blocks::MotionBlock;
 use crate::observer::Observer;
-use crate::program::{Command, Tool};
-use crate::stream::Flow;
+use crate::program::{Command, ToolChange};
+use crate::stream::StreamItem;
 
 /// What texts of the program can speak of beside the program itself.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -13,14 +13,14 @@ pub struct JobFacts {
     /// The CL file, without its folder; empty if it has no name.
     pub cl_file: String,
     /// What a first pass found; none if there was none.
-    pub ahead: Option<LookedAhead>,
+    pub ahead: Option<ProgramPreview>,
 }
 
 /// What a first pass over a CL file found.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct LookedAhead {
+pub struct ProgramPreview {
     /// Every tool change, in order.
-    pub changes: Vec<Tool>,
+    pub changes: Vec<ToolChange>,
     /// Least and largest tip at the end of a block, mm, part frame; none without a move.
     pub extents: Option<[[f64; 3]; 2]>,
     /// Time without tool changes, s; none if it was not filled in.
@@ -36,10 +36,10 @@ pub struct LookedAhead {
     pub moved: bool,
 }
 
-impl LookedAhead {
+impl ProgramPreview {
     /// The tools in the order in which they are first used.
-    pub fn tools(&self) -> Vec<&Tool> {
-        let mut tools: Vec<&Tool> = Vec::new();
+    pub fn tools(&self) -> Vec<&ToolChange> {
+        let mut tools: Vec<&ToolChange> = Vec::new();
         for tool in &self.changes {
             if !tools.iter().any(|known| known.number == tool.number) {
                 tools.push(tool);
@@ -49,11 +49,11 @@ impl LookedAhead {
     }
 }
 
-impl Observer for LookedAhead {
-    fn blocks(&mut self, blocks: &[Flow<Block>]) {
+impl Observer for ProgramPreview {
+    fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
         for next in blocks {
             match next {
-                Flow::Point(block) => {
+                StreamItem::Point(block) => {
                     self.pending = None;
                     self.moved = true;
                     let tip: [f64; 3] = block.tip.into();
@@ -63,13 +63,13 @@ impl Observer for LookedAhead {
                         most[axis] = most[axis].max(tip[axis]);
                     }
                 }
-                Flow::Command { line, command } => self.command(*line, command),
+                StreamItem::Command { line, command } => self.command(*line, command),
             }
         }
     }
 }
 
-impl LookedAhead {
+impl ProgramPreview {
     fn command(&mut self, line: u64, command: &Command) {
         match command {
             Command::Tool(tool) => {

@@ -5,12 +5,12 @@
 //!
 //! | stage | takes | hands on |
 //! |---|---|---|
-//! | [`program`] | records | [`program::Step`]: what is meant, mm, part frame |
+//! | [`program`] | records | [`program::ProgramStep`]: what is meant, mm, part frame |
 //! | `expand` | steps | straight moves; those of a curve that may stay one between two commands |
 //! | `configuration` | moves | points with the axis values chosen for them, over whole passes |
-//! | `blocks` | points | [`Block`]: as printed, more or fewer of them, each certified |
+//! | `blocks` | points | [`MotionBlock`]: as printed, more or fewer of them, each certified |
 //! | `timing` | blocks | the same with time, feed and what limits it |
-//! | `emit` | blocks | the dialect's events, whose text goes to an [`Output`] |
+//! | `emit` | blocks | the dialect's events, whose text goes to an [`TextSink`] |
 //!
 //! [`Post`] joins them. [`accuracy`] is the mathematics of error control that `configuration` and `blocks` stand on.
 //! What never happens here: input or output, unsafe code, a dialect's name, a CL keyword after `program`, memory
@@ -39,15 +39,15 @@ mod tightening;
 mod timing;
 mod window;
 
-pub use blocks::{Block, MotionKind, Nominal, Planned, Reason, Time};
+pub use blocks::{BlockDuration, BlockKind, BlockReason, MotionBlock, NominalTime, PlannedTime};
 pub use configuration::whole_pass;
 pub use findings::MOST_FAULTS;
-pub use job_facts::{JobFacts, LookedAhead};
+pub use job_facts::{JobFacts, ProgramPreview};
 pub use mount_bounds::MountBounds;
-pub use observer::{Observer, Output};
-pub use post::{Job, Post};
+pub use observer::{Observer, TextSink};
+pub use post::{Post, PostingRequest};
 pub use shift::{PathPoint, PathShift};
-pub use stream::Flow;
+pub use stream::StreamItem;
 pub use tightening::{TightPlace, Tightening};
 pub use timing::limits;
 
@@ -56,6 +56,6 @@ pub use timing::limits;
 pub mod internals {
     pub use crate::accuracy::PlacedBatch;
     pub use crate::findings::without_numbers;
-    pub use crate::program::interpret::words::Inserted;
-    pub use crate::window::Window;
+    pub use crate::program::interpret::words::InsertContent;
+    pub use crate::window::LineWindow;
 }

@@ -5,10 +5,10 @@ use post_machine::description::{Machine, Tcp};
 use post_machine::kinematics::{Joints, NoClosedForm};
 use post_machine::place::{End, Room};
 
-use crate::blocks::{Block, MotionKind, Reason};
+use crate::blocks::{BlockKind, BlockReason, MotionBlock};
 use crate::observer::Observer;
 use crate::program::Command;
-use crate::stream::Flow;
+use crate::stream::StreamItem;
 
 /// Gathers the ends of travel that the blocks of a program come near to, by the heads that they are made with.
 pub struct MountBounds<'m> {
@@ -69,18 +69,18 @@ impl<'m> MountBounds<'m> {
         }
     }
 
-    fn block(&mut self, block: &Block) {
+    fn block(&mut self, block: &MotionBlock) {
         let Some((_, room)) = self.rooms.get_mut(self.at) else {
             return;
         };
         // A way off the part, or from above it, is as long as travel lets it be: on a machine whose travel is opened it
         // says nothing.
-        if let Reason::Leave | Reason::Above = block.reason {
+        if let BlockReason::Leave | BlockReason::Above = block.reason {
             self.last = None;
             return;
         }
         room.take(&block.joints, block.line);
-        let moves = matches!(block.kind, MotionKind::Linear | MotionKind::Rapid);
+        let moves = matches!(block.kind, BlockKind::Linear | BlockKind::Rapid);
         if let Some((joints, tip)) = &self.last
             && moves
             && self.head.control.tcp == Tcp::Control
@@ -92,17 +92,17 @@ impl<'m> MountBounds<'m> {
 }
 
 impl Observer for MountBounds<'_> {
-    fn blocks(&mut self, blocks: &[Flow<Block>]) {
+    fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
         for next in blocks {
             match next {
-                Flow::Point(block) => self.block(block),
-                Flow::Command { command: Command::Head(name), .. } => self.swap(name),
-                Flow::Command { line, command: Command::Curve(curve) } => {
+                StreamItem::Point(block) => self.block(block),
+                StreamItem::Command { command: Command::Head(name), .. } => self.swap(name),
+                StreamItem::Command { line, command: Command::Curve(curve) } => {
                     if let Some((_, room)) = self.rooms.get_mut(self.at) {
                         curve.between.iter().for_each(|joints| room.take(joints, *line));
                     }
                 }
-                Flow::Command { .. } => {}
+                StreamItem::Command { .. } => {}
             }
         }
     }

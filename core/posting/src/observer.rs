@@ -2,12 +2,12 @@
 
 use std::cell::RefCell;
 
-use crate::accuracy::Move;
-use crate::blocks::{Audience, Block};
-use crate::stream::Flow;
+use crate::accuracy::NodeMove;
+use crate::blocks::{Audience, MotionBlock};
+use crate::stream::StreamItem;
 
 /// Where the text of the program goes.
-pub trait Output {
+pub trait TextSink {
     /// Takes text.
     ///
     /// # Errors
@@ -19,12 +19,12 @@ pub trait Output {
 pub trait Observer {
     /// A cut between two CL points, before any point is put in. Chords of arcs, splines and cycles come one by
     /// one. Where `reduce` gathers CL points, cuts go by unseen.
-    fn cut(&mut self, line: u64, cut: &Move<'_>) {
+    fn cut(&mut self, line: u64, cut: &NodeMove<'_>) {
         let _ = (line, cut);
     }
 
     /// Blocks and the commands between them, in order, as they go to the dialect.
-    fn blocks(&mut self, blocks: &[Flow<Block>]) {
+    fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
         let _ = blocks;
     }
 
@@ -47,7 +47,7 @@ impl<'a> Observers<'a> {
         self.all.get_mut().push(observer);
     }
 
-    pub(crate) fn blocks(&self, blocks: &[Flow<Block>]) {
+    pub(crate) fn blocks(&self, blocks: &[StreamItem<MotionBlock>]) {
         for observer in self.all.borrow_mut().iter_mut() {
             observer.blocks(blocks);
         }
@@ -71,7 +71,7 @@ impl<'a> Observers<'a> {
 }
 
 impl Audience for Observers<'_> {
-    fn cut(&self, line: u64, cut: &Move<'_>) {
+    fn cut(&self, line: u64, cut: &NodeMove<'_>) {
         for observer in self.all.borrow_mut().iter_mut() {
             observer.cut(line, cut);
         }

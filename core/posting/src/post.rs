@@ -9,35 +9,35 @@ use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Capabilities, DialectSession, ModelSession};
 
-use crate::ahead::Ahead;
-use crate::blocks::{Block, Blocks, Surroundings};
-use crate::configuration::{Configuration, Configured};
-use crate::emit::Emit;
-use crate::expand::{Expand, Line};
+use crate::ahead::FilePreview;
+use crate::blocks::{BlockContext, BlockStage, MotionBlock};
+use crate::configuration::{ConfigurationStage, ConfiguredItem};
+use crate::emit::EmitStage;
+use crate::expand::{ExpandStage, PathMove};
 use crate::findings::Findings;
 use crate::job_facts::JobFacts;
-use crate::observer::{Observer, Observers, Output};
-use crate::plan::{Plan, PlanWatch};
-use crate::program::{Interpreter, Reading, Step};
+use crate::observer::{Observer, Observers, TextSink};
+use crate::plan::{PlanStage, PlanWatch};
+use crate::program::{ClInterpreter, ProgramStep, ReadingOptions};
 use crate::refusal;
-use crate::report::{AxisRange, Deviation, Report};
-use crate::shift::{PathShift, Shift};
-use crate::stream::{BATCH, Flow, Outlet};
+use crate::report::{AxisRange, PostingReport, ReportedDeviation};
+use crate::shift::{PathShift, ShiftStage};
+use crate::stream::{BATCH, BatchSink, StreamItem};
 use crate::tightening::Tightening;
-use crate::timing::Timing;
-use crate::window::Window;
+use crate::timing::TimingStage;
+use crate::window::LineWindow;
 
 /// How one CL file is to be posted.
 #[derive(Clone, Debug, Default)]
-pub struct Job {
+pub struct PostingRequest {
     /// How it is read.
-    pub reading: Reading,
+    pub reading: ReadingOptions,
     /// Length of every tool, mm, over what machine and CL file say.
     pub tool_length: Option<f64>,
     /// Take the model's word over the certificate's.
     pub trust_model: bool,
     /// What a first pass found out; without one the tool is taken to turn anywhere.
-    pub ahead: Option<Arc<Ahead>>,
+    pub ahead: Option<Arc<FilePreview>>,
     /// What texts of the program can speak of.
     pub facts: JobFacts,
     /// The feed is planned: `[plan]`.
@@ -51,43 +51,43 @@ pub struct Job {
 /// Posts one CL file, record by record: the stages, and what lies between them.
 pub struct Post<'a> {
     machine: &'a Machine,
-    interpreter: Interpreter,
-    window: Option<Window>,
+    interpreter: ClInterpreter,
+    window: Option<LineWindow>,
     /// Steps that the stages have not seen yet, each with its line.
-    steps: Vec<(u64, Step)>,
-    stages: Stages<'a>,
+    steps: Vec<(u64, ProgramStep)>,
+    stages: PostStages<'a>,
     findings: Findings,
     records: u64,
     last_line: u64,
 }
 
 /// The stages after the interpreter, and the batches between them.
-struct Stages<'a> {
-    expand: Expand,
-    shift: Option<Shift<'a>>,
-    lines: Vec<Flow<Line>>,
-    configuration: Configuration<'a>,
-    configured: Vec<Flow<Configured>>,
-    blocks: Blocks<'a>,
-    made: Vec<Flow<Block>>,
-    plan: Option<Plan<'a>>,
-    planned: Vec<Flow<Block>>,
-    timing: Timing<'a>,
+struct PostStages<'a> {
+    expand: ExpandStage,
+    shift: Option<ShiftStage<'a>>,
+    lines: Vec<StreamItem<PathMove>>,
+    configuration: ConfigurationStage<'a>,
+    configured: Vec<StreamItem<ConfiguredItem>>,
+    blocks: BlockStage<'a>,
+    made: Vec<StreamItem<MotionBlock>>,
+    plan: Option<PlanStage<'a>>,
+    planned: Vec<StreamItem<MotionBlock>>,
+    timing: TimingStage<'a>,
     observers: Observers<'a>,
-    emit: Emit<'a>,
+    emit: EmitStage<'a>,
 }
 
 /// What the stages are to do.
-enum Work<'s> {
+enum StageInput<'s> {
     /// Take these steps.
-    Take(&'s [(u64, Step)]),
+    Take(&'s [(u64, ProgramStep)]),
     /// The file ended on this line.
     Finish(u64),
 }
 
-impl Stages<'_> {
+impl PostStages<'_> {
     /// Runs a batch through all stages. Nothing is left between them; what a stage cannot decide yet it keeps.
-    fn run(&mut self, work: Work<'_>, findings: &Findings) {
+    fn run(&mut self, work: StageInput<'_>, findings: &Findings) {
         let Self {
             expand,
             shift,
@@ -104,42 +104,42 @@ impl Stages<'_> {
         } = self;
         let observers = &*observers;
         let last_line = match &work {
-            Work::Take(_) => None,
-            Work::Finish(line) => Some(*line),
+            StageInput::Take(_) => None,
+            StageInput::Finish(line) => Some(*line),
         };
         let finish = last_line.is_some();
-        let mut to_emit = |made: &mut Vec<Flow<Block>>| {
+        let mut to_emit = |made: &mut Vec<StreamItem<MotionBlock>>| {
             timing.take(made, findings);
             observers.blocks(made);
             emit.take(made, findings);
             emit.take_lines(|lines| observers.lines(lines));
         };
-        let told = plan.as_ref().map(Plan::told);
-        let mut planned = Outlet::new(planned, &mut to_emit);
-        let mut to_plan = |made: &mut Vec<Flow<Block>>| match plan {
+        let told = plan.as_ref().map(PlanStage::told);
+        let mut planned = BatchSink::new(planned, &mut to_emit);
+        let mut to_plan = |made: &mut Vec<StreamItem<MotionBlock>>| match plan {
             Some(plan) => plan.take(made, &mut planned, findings),
             None => planned.pass(made),
         };
-        let mut made = Outlet::new(made, &mut to_plan);
-        let mut to = Surroundings {
+        let mut made = BatchSink::new(made, &mut to_plan);
+        let mut to = BlockContext {
             out: &mut made,
             findings,
             audience: observers.audience(),
             placer: told.as_deref(),
         };
         let mut to_blocks =
-            |configured: &mut Vec<Flow<Configured>>| blocks.take(configured, &mut to);
-        let mut configured = Outlet::new(configured, &mut to_blocks);
-        let mut to_configuration = |lines: &mut Vec<Flow<Line>>| {
+            |configured: &mut Vec<StreamItem<ConfiguredItem>>| blocks.take(configured, &mut to);
+        let mut configured = BatchSink::new(configured, &mut to_blocks);
+        let mut to_configuration = |lines: &mut Vec<StreamItem<PathMove>>| {
             if let Some(shift) = shift {
                 shift.take(lines);
             }
             configuration.take(lines, &mut configured, findings);
         };
-        let mut lines = Outlet::new(lines, &mut to_configuration);
+        let mut lines = BatchSink::new(lines, &mut to_configuration);
         match work {
-            Work::Take(steps) => expand.take(steps, &mut lines, findings),
-            Work::Finish(_) => expand.finish(&mut lines, findings),
+            StageInput::Take(steps) => expand.take(steps, &mut lines, findings),
+            StageInput::Finish(_) => expand.finish(&mut lines, findings),
         }
         lines.flush();
         if finish {
@@ -166,7 +166,7 @@ impl Stages<'_> {
             self.expand.first_line(),
             self.configuration.first_line(),
             self.blocks.first_line(),
-            self.plan.as_ref().and_then(Plan::first_line),
+            self.plan.as_ref().and_then(PlanStage::first_line),
         ];
         kept.into_iter().flatten().min()
     }
@@ -179,10 +179,10 @@ impl<'a> Post<'a> {
     /// What machine and dialect cannot do together.
     pub fn new(
         machine: &'a Machine,
-        mut job: Job,
+        mut job: PostingRequest,
         dialect: &'a mut dyn DialectSession,
         model: &'a mut dyn ModelSession,
-        output: &'a mut dyn Output,
+        output: &'a mut dyn TextSink,
     ) -> Result<Self, Box<Diagnostic>> {
         job.reading = job.reading.on(machine);
         let format = dialect.format().clone();
@@ -198,19 +198,19 @@ impl<'a> Post<'a> {
         let writes = dialect.capabilities();
         let planes = machine.control.planes && writes.has(Capabilities::PLANE);
         let ahead = job.ahead.filter(|_| planes);
-        let mut stages = Stages {
-            expand: Expand::new(machine, job.reading.chord_tolerance, writes, ahead),
+        let mut stages = PostStages {
+            expand: ExpandStage::new(machine, job.reading.chord_tolerance, writes, ahead),
             shift: None,
             lines: Vec::new(),
-            timing: Timing::new(machine, &format, writes)?,
-            configuration: Configuration::new(machine, &format, job.tool_length, writes)?,
+            timing: TimingStage::new(machine, &format, writes)?,
+            configuration: ConfigurationStage::new(machine, &format, job.tool_length, writes)?,
             configured: Vec::new(),
-            blocks: Blocks::new(machine, writes, &format, model, job.trust_model),
+            blocks: BlockStage::new(machine, writes, &format, model, job.trust_model),
             made: Vec::new(),
-            plan: job.plans.then(|| Plan::new(machine, &format, job.tightening)),
+            plan: job.plans.then(|| PlanStage::new(machine, &format, job.tightening)),
             planned: Vec::new(),
             observers: Observers::default(),
-            emit: Emit::new(machine, &job.facts, dialect, output),
+            emit: EmitStage::new(machine, &job.facts, dialect, output),
         };
         if job.plans {
             stages.blocks.plans();
@@ -222,8 +222,8 @@ impl<'a> Post<'a> {
         Ok(Self {
             machine,
             findings,
-            interpreter: Interpreter::new(job.reading),
-            window: job.lines.map(Window::new),
+            interpreter: ClInterpreter::new(job.reading),
+            window: job.lines.map(LineWindow::new),
             steps: Vec::with_capacity(BATCH),
             stages,
             records: 0,
@@ -248,7 +248,7 @@ impl<'a> Post<'a> {
     /// then the path of the moved points.
     pub fn shift(&mut self, shift: &'a mut dyn PathShift) {
         let bound = self.machine.accuracy.servo_compensation.unwrap_or(0.0);
-        self.stages.shift = Some(Shift::new(shift, bound));
+        self.stages.shift = Some(ShiftStage::new(shift, bound));
     }
 
     /// Takes a record.
@@ -276,7 +276,7 @@ impl<'a> Post<'a> {
     }
 
     fn run(&mut self) {
-        self.stages.run(Work::Take(&self.steps), &self.findings);
+        self.stages.run(StageInput::Take(&self.steps), &self.findings);
         self.steps.clear();
     }
 
@@ -308,12 +308,12 @@ impl<'a> Post<'a> {
     }
 
     /// Ends the run: the report, if all is good, and every finding, in the order of the lines.
-    pub fn finish(mut self) -> (Option<Report>, Vec<Diagnostic>) {
+    pub fn finish(mut self) -> (Option<PostingReport>, Vec<Diagnostic>) {
         if !self.gave_up() {
             self.run();
             self.interpreter.finish();
             self.gather();
-            let end = Work::Finish(self.last_line);
+            let end = StageInput::Finish(self.last_line);
             self.stages.run(end, &self.findings);
         }
         let configuration = &self.stages.configuration;
@@ -339,7 +339,7 @@ impl<'a> Post<'a> {
         }
     }
 
-    fn report(&self) -> Report {
+    fn report(&self) -> PostingReport {
         let machine = self.machine;
         let stages = &self.stages;
         let counts = stages.blocks.counts();
@@ -360,7 +360,7 @@ impl<'a> Post<'a> {
                 }
             })
             .collect();
-        Report {
+        PostingReport {
             machine: machine.name.clone(),
             dialect: machine.control.dialect.clone(),
             tcp: match machine.control.tcp {
@@ -378,7 +378,7 @@ impl<'a> Post<'a> {
             points_dropped: counts.points_dropped,
             model_overruled: stages.blocks.overruled(),
             tip_deviation_mm: tip,
-            axis_deviation_deg: Deviation { value: axis.value.to_degrees(), ..axis },
+            axis_deviation_deg: ReportedDeviation { value: axis.value.to_degrees(), ..axis },
             rapid_deviation_mm: rapid,
             control_point: machine.control_point,
             tolerance_mm: machine.accuracy.tolerance,
@@ -386,7 +386,7 @@ impl<'a> Post<'a> {
             axes,
             tools: stages.configuration.tools().to_vec(),
             branch_changes: counts.branch_changes,
-            plan: stages.plan.as_ref().map(Plan::report),
+            plan: stages.plan.as_ref().map(PlanStage::report),
             rewinds: counts.rewinds + stages.expand.rewinds(),
             points_eased: counts.eased,
             time_s: (durations.cutting + durations.other) * 60.0,

@@ -1,7 +1,7 @@
 //! What is said of a point that cannot be reached and of a move that cannot be made.
 
-use crate::accuracy::{Refused, Stuck};
-use crate::program::Motion;
+use crate::accuracy::{LineariseError, PlacementError};
+use crate::program::StraightMove;
 use post_machine::axis_words;
 use post_machine::axis_words::Words;
 use post_machine::description::{Axis, Machine, Positions, Tcp, TextPlace};
@@ -83,9 +83,9 @@ pub(crate) fn retract_not_said(machine: &Machine, writes: Capabilities) -> Optio
 }
 
 /// Why a point has no axis values.
-pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
+pub(crate) fn refused(machine: &Machine, refused: &PlacementError) -> Diagnostic {
     match *refused {
-        Refused::Unreachable(Unreachable::Axis { miss }) => Diagnostic::error(
+        PlacementError::Unreachable(Unreachable::Axis { miss }) => Diagnostic::error(
             "out-of-reach",
             format!(
                 "{} cannot point the tool this way: the nearest orientation misses by {:.4}°, {:.4}° is allowed",
@@ -101,11 +101,11 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
             remedy: String::new(),
         })
         .help("another machine, another set-up, or --msys apply if the axes are written in another frame"),
-        Refused::Unreachable(Unreachable::Linear) => Diagnostic::error(
+        PlacementError::Unreachable(Unreachable::Linear) => Diagnostic::error(
             "out-of-reach",
             format!("the linear axes of {} cannot bring the tip here at these angles", machine.name),
         ),
-        Refused::Unreachable(Unreachable::Numeric { miss }) => Diagnostic::error(
+        PlacementError::Unreachable(Unreachable::Numeric { miss }) => Diagnostic::error(
             "out-of-reach",
             format!(
                 "no axis values of {} were found for this point: the nearest pose misses it by {miss:.4} mm",
@@ -113,7 +113,7 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
             ),
         )
         .help("this machine is solved numerically, from the point before: where the part sits (--mount), or a point between may help"),
-        Refused::OverTravel { over, .. } if no_position(machine, over) => {
+        PlacementError::OverTravel { over, .. } if no_position(machine, over) => {
             let axis = &machine.axes[over.joint];
             Diagnostic::error(
                 "out-of-reach",
@@ -126,7 +126,7 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
             )
             .help("an index axis stands at its positions alone: another set-up of the part")
         }
-        Refused::OverTravel { over, tried } => {
+        PlacementError::OverTravel { over, tried } => {
             let axis = &machine.axes[over.joint];
             let diagnostic = Diagnostic::error(
                 "over-travel",
@@ -149,7 +149,7 @@ pub(crate) fn refused(machine: &Machine, refused: &Refused) -> Diagnostic {
                 ))
             }
         }
-        Refused::Unverified { tip, axis } => Diagnostic::error(
+        PlacementError::Unverified { tip, axis } => Diagnostic::error(
             "kinematics",
             format!(
                 "the solution found misses the point by {tip:.6} mm and {:.6}° when it is put through the chain",
@@ -378,14 +378,18 @@ pub(crate) fn too_fine(machine: &Machine, format: &Format) -> Option<Diagnostic>
 }
 
 /// Why a move cannot be brought within tolerance.
-pub(crate) fn stuck(machine: &Machine, stuck: &Stuck, motion: &Motion) -> Diagnostic {
+pub(crate) fn stuck(
+    machine: &Machine,
+    stuck: &LineariseError,
+    motion: &StraightMove,
+) -> Diagnostic {
     match stuck {
-        Stuck::Refused(refused) => {
+        LineariseError::Refused(refused) => {
             let mut diagnostic = self::refused(machine, refused);
             diagnostic.message = format!("on the way to this point: {}", diagnostic.message);
             diagnostic
         }
-        Stuck::Rounding { tip, axis } => Diagnostic::error(
+        LineariseError::Rounding { tip, axis } => Diagnostic::error(
             "rounding",
             format!(
                 "the decimals of the dialect alone move the tip by {tip:.6} mm and the tool axis by {:.6}°; allowed are {:.6} mm and {:.6}°",
@@ -395,7 +399,7 @@ pub(crate) fn stuck(machine: &Machine, stuck: &Stuck, motion: &Motion) -> Diagno
             ),
         )
         .help("more decimals in [control] or a wider tolerance in [accuracy]"),
-        Stuck::Jump { joint, from, to } => Diagnostic::error(
+        LineariseError::Jump { joint, from, to } => Diagnostic::error(
             "jump",
             format!(
                 "{} must jump from {:.3}° to {:.3}° within this cut: no path of the axes keeps the tolerance",
@@ -405,7 +409,7 @@ pub(crate) fn stuck(machine: &Machine, stuck: &Stuck, motion: &Motion) -> Diagno
             ),
         )
         .help("its travel ends here and the other solution lies far away: retract before this line, or set the part differently"),
-        Stuck::Model(message) => Diagnostic::error(
+        LineariseError::Model(message) => Diagnostic::error(
             "model",
             format!("the error model {} cannot answer: {message}", machine.accuracy.model),
         ),

@@ -8,7 +8,7 @@ use post_machine::description::ControlPoint;
 
 /// The summary of one program. Its keys are those of `--summary FILE.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Report {
+pub struct PostingReport {
     /// Name of the machine.
     pub machine: String,
     /// Name of the dialect.
@@ -34,11 +34,11 @@ pub struct Report {
     /// Points put in because the certificate found more than the model promised.
     pub model_overruled: u64,
     /// Certified largest deviation of the tip in a cut, mm.
-    pub tip_deviation_mm: Deviation,
+    pub tip_deviation_mm: ReportedDeviation,
     /// Certified largest deviation of the tool axis in a cut, degrees.
-    pub axis_deviation_deg: Deviation,
+    pub axis_deviation_deg: ReportedDeviation,
     /// Certified largest deviation of the tip in a rapid, mm.
-    pub rapid_deviation_mm: Deviation,
+    pub rapid_deviation_mm: ReportedDeviation,
     /// The point of the tool that deviations are those of: how far above the point of the CL file, and the radius of
     /// the cutting edge about it, mm.
     pub control_point: ControlPoint,
@@ -49,7 +49,7 @@ pub struct Report {
     /// What of each axis was used.
     pub axes: Vec<AxisRange>,
     /// The tools that were used, each with the length that travel was checked with.
-    pub tools: Vec<ToolUse>,
+    pub tools: Vec<ReportedTool>,
     /// Times that another branch of the solution or another full turn was taken, off the part.
     pub branch_changes: u64,
     /// Times that the tool was drawn back in a cut, or at a corner of a leading edge, turned and brought back.
@@ -93,7 +93,7 @@ pub struct FastRapids {
 
 /// A deviation and where it stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Deviation {
+pub struct ReportedDeviation {
     /// How large; the unit is in the key.
     pub value: f64,
     /// Line of the NC program.
@@ -119,7 +119,7 @@ pub struct AxisRange {
 
 /// A tool that was used.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct ToolUse {
+pub struct ReportedTool {
     /// Tool number; none if the CL file loads no tool.
     pub number: Option<u32>,
     /// The length that was assumed, mm from the gauge point to the tip.

@@ -6,9 +6,9 @@
 use nalgebra::Vector3;
 use post_plugin::Compensation;
 
-use crate::expand::Line;
-use crate::program::{Command, HoleMark, Pace};
-use crate::stream::Flow;
+use crate::expand::PathMove;
+use crate::program::{Command, HoleMark, MoveFeed};
+use crate::stream::StreamItem;
 
 /// A point of the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +35,7 @@ pub trait PathShift {
 }
 
 /// The stage.
-pub(crate) struct Shift<'a> {
+pub(crate) struct ShiftStage<'a> {
     by: &'a mut dyn PathShift,
     /// Largest shift, mm.
     bound: f64,
@@ -44,18 +44,18 @@ pub(crate) struct Shift<'a> {
     offset: bool,
 }
 
-impl<'a> Shift<'a> {
+impl<'a> ShiftStage<'a> {
     pub fn new(by: &'a mut dyn PathShift, bound: f64) -> Self {
         Self { by, bound, begins: true, hole: false, offset: false }
     }
 
     /// Moves the points of a batch.
-    pub fn take(&mut self, batch: &mut [Flow<Line>]) {
+    pub fn take(&mut self, batch: &mut [StreamItem<PathMove>]) {
         for flow in batch {
             match flow {
-                Flow::Command { command, .. } => self.command(command),
-                Flow::Point(Line { line, motion }) => {
-                    let cuts = motion.pace != Pace::Rapid;
+                StreamItem::Command { command, .. } => self.command(command),
+                StreamItem::Point(PathMove { line, motion }) => {
+                    let cuts = motion.pace != MoveFeed::Rapid;
                     let moves = cuts && !self.hole && !self.offset;
                     let by = self.by.next(&PathPoint {
                         line: *line,

@@ -11,7 +11,7 @@ pub(crate) const BATCH: usize = 128;
 
 /// One element of the stream.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Flow<P> {
+pub enum StreamItem<P> {
     /// A point of the path, or what a stage made of it.
     Point(P),
     /// A command between points.
@@ -23,7 +23,7 @@ pub enum Flow<P> {
     },
 }
 
-impl<P> Flow<P> {
+impl<P> StreamItem<P> {
     /// Whether this is a mark that says where the moves of a hole stand.
     #[inline]
     pub(crate) fn marks_hole(&self) -> bool {
@@ -33,12 +33,12 @@ impl<P> Flow<P> {
 
 /// Where a stage puts what it hands on; a batch that is full goes to the next stage at once, so that one arc of a
 /// million chords needs no more memory than another.
-pub(crate) struct Outlet<'o, T> {
+pub(crate) struct BatchSink<'o, T> {
     batch: &'o mut Vec<T>,
     next: &'o mut dyn FnMut(&mut Vec<T>),
 }
 
-impl<'o, T> Outlet<'o, T> {
+impl<'o, T> BatchSink<'o, T> {
     /// An outlet into `batch`, which `next` takes when it is full; it leaves the batch empty.
     pub(crate) fn new(batch: &'o mut Vec<T>, next: &'o mut dyn FnMut(&mut Vec<T>)) -> Self {
         Self { batch, next }
@@ -78,9 +78,9 @@ impl<'o, T> Outlet<'o, T> {
     }
 }
 
-impl<P> Outlet<'_, Flow<P>> {
+impl<P> BatchSink<'_, StreamItem<P>> {
     /// Hands on a command.
     pub(crate) fn command(&mut self, line: u64, command: Command) {
-        self.push(Flow::Command { line, command });
+        self.push(StreamItem::Command { line, command });
     }
 }

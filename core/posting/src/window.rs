@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use crate::program::{Command, Pace, Step};
+use crate::program::{Command, MoveFeed, ProgramStep};
 
 /// Lets through what lies in a range of lines, after the last that the lines before it said of tool, spindle, coolant
 /// and the like. What the lines before it move is not made; what is modal in them the interpreter has read.
 #[derive(Debug)]
-pub struct Window {
+pub struct LineWindow {
     lines: Range<u64>,
     /// What was said last before the range, of each kind.
     state: Vec<Command>,
@@ -15,22 +15,22 @@ pub struct Window {
     /// word of its own.
     before_tool: Vec<Command>,
     /// The plane that points lie in, if the file names one.
-    plane: Option<Step>,
+    plane: Option<ProgramStep>,
     entered: bool,
 }
 
-impl Window {
+impl LineWindow {
     /// Nothing before these lines and behind them.
     pub fn new(lines: Range<u64>) -> Self {
         Self { lines, state: Vec::new(), before_tool: Vec::new(), plane: None, entered: false }
     }
 
     /// Takes a step and gives what of it, and of the state before it, is part of the program.
-    pub fn step(&mut self, line: u64, step: Step, to: &mut Vec<(u64, Step)>) {
+    pub fn step(&mut self, line: u64, step: ProgramStep, to: &mut Vec<(u64, ProgramStep)>) {
         if line < self.lines.start {
             match step {
-                Step::Command(command) => self.keep(command),
-                Step::Plane(_) => self.plane = Some(step),
+                ProgramStep::Command(command) => self.keep(command),
+                ProgramStep::Plane(_) => self.plane = Some(step),
                 _ => {}
             }
             return;
@@ -40,30 +40,35 @@ impl Window {
         }
         if !self.entered {
             match step {
-                Step::Plane(_) => {
+                ProgramStep::Plane(_) => {
                     self.plane = Some(step);
                     return;
                 }
                 // What is said anew before the first move takes the place of what held before.
-                Step::Command(command) if kind(&command).is_some() => return self.keep(command),
-                Step::Command(
+                ProgramStep::Command(command) if kind(&command).is_some() => {
+                    return self.keep(command);
+                }
+                ProgramStep::Command(
                     Command::Operation(_) | Command::Comment(_) | Command::Message(_),
                 ) => {}
                 _ => {
                     self.entered = true;
                     let state = std::mem::take(&mut self.state).into_iter();
-                    to.extend(state.map(|command| (line, Step::Command(command))));
+                    to.extend(state.map(|command| (line, ProgramStep::Command(command))));
                     to.extend(self.plane.take().map(|plane| (line, plane)));
                 }
             }
         }
         match &step {
-            Step::Command(command) => self.said_anew(command),
-            Step::Plane(_) | Step::EndCycle => {}
-            Step::Move(motion) if motion.pace == Pace::Rapid => {}
-            Step::Move(_) | Step::Arc(_) | Step::Spline(_) | Step::Cycle(_) => {
+            ProgramStep::Command(command) => self.said_anew(command),
+            ProgramStep::Plane(_) | ProgramStep::EndCycle => {}
+            ProgramStep::Move(motion) if motion.pace == MoveFeed::Rapid => {}
+            ProgramStep::Move(_)
+            | ProgramStep::Arc(_)
+            | ProgramStep::Spline(_)
+            | ProgramStep::Cycle(_) => {
                 let held = std::mem::take(&mut self.before_tool).into_iter();
-                to.extend(held.map(|command| (line, Step::Command(command))));
+                to.extend(held.map(|command| (line, ProgramStep::Command(command))));
             }
         }
         to.push((line, step));

@@ -1,6 +1,6 @@
 //! What a program says of how the control passes from one motion to the next.
 
-use post_motion::Corner;
+use post_motion::CornerMode;
 
 /// What the program has said of corners, from block to block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -11,5 +11,5 @@ pub enum Corners {
     /// A word whose rule is the control's own, by parameters that no program names: G5.1 Q1, G8 P1, COMPCAD.
     Own,
     /// This.
-    Said(Corner),
+    Said(CornerMode),
 }

@@ -11,8 +11,8 @@ use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
 use crate::interpret::Interpreter;
-use crate::verify::Axes;
-use crate::{Done, Motion, MotionKind, Program, Spindle, Way};
+use crate::verify::AxisLimitCheck;
+use crate::{Done, Interpolation, Motion, MotionKind, Program, Spindle};
 
 /// A rapid at feed may take so much longer than its axes need: feeds are rounded down.
 const SLOW: f64 = 0.1;
@@ -25,13 +25,17 @@ const IN_PIECES: f64 = 0.5;
 const MOMENT: f64 = 1e-4;
 
 /// A motion at feed may be as fast as the axes of the machine go.
-pub(crate) fn is_as_fast_as_rapids(axes: &Axes, machine: &Machine, motion: &Motion) -> bool {
+pub(crate) fn is_as_fast_as_rapids(
+    axes: &AxisLimitCheck,
+    machine: &Machine,
+    motion: &Motion,
+) -> bool {
     is_so_fast(axes, machine, motion, MOMENT)
 }
 
 /// It takes longer than its axes need, between the words too, by no more than a share and a moment, minutes.
-fn is_so_fast(axes: &Axes, machine: &Machine, motion: &Motion, moment: f64) -> bool {
-    let slack = match motion.turns() && motion.way != Way::Axes {
+fn is_so_fast(axes: &AxisLimitCheck, machine: &Machine, motion: &Motion, moment: f64) -> bool {
+    let slack = match motion.turns() && motion.way != Interpolation::Axes {
         true => IN_PIECES,
         false => SLOW,
     };
@@ -55,7 +59,7 @@ pub(crate) fn comes_from_anywhere(machine: &Machine, motion: &Motion) -> bool {
 #[derive(Debug)]
 pub struct FedRapids<P> {
     program: P,
-    machine: Option<(Machine, Axes)>,
+    machine: Option<(Machine, AxisLimitCheck)>,
     /// They stand at feed where the control keeps the tip alone.
     kept: bool,
     /// The program turns the spindle somewhere.
@@ -75,7 +79,7 @@ impl<P> FedRapids<P> {
     pub fn new(program: P, machine: &Machine, kept: bool, turns: bool) -> Self {
         Self {
             program,
-            machine: Some((machine.clone(), Axes::new(machine))),
+            machine: Some((machine.clone(), AxisLimitCheck::new(machine))),
             kept,
             turns,
             left: None,
@@ -101,7 +105,8 @@ impl<P> FedRapids<P> {
                 continue;
             };
             let plain = motion.kind == MotionKind::Feed && !motion.hole && !motion.machine;
-            let straight = !matches!(motion.way, Way::Arc { .. } | Way::Spline(_));
+            let straight =
+                !matches!(motion.way, Interpolation::Arc { .. } | Interpolation::Spline(_));
             if !plain
                 || !straight
                 || self.kept && !motion.state.tcp

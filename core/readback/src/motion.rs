@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use post_machine::kinematics::{Pose, Trace};
-use post_motion::path::{Stance, Way, between, turns};
+use post_motion::path::{Interpolation, Stance, between, turns};
 
 use crate::State;
 
@@ -32,7 +32,7 @@ pub struct Motion {
     /// Rapid or at feed.
     pub kind: MotionKind,
     /// How the control goes from one end to the other.
-    pub way: Way,
+    pub way: Interpolation,
     /// Where it begins.
     pub from: Stance,
     /// Where it ends.
@@ -86,7 +86,7 @@ impl Motion {
     /// What strays is zero at both ends of a piece. Between two places where it was looked at it is larger than there by no
     /// more than an eighth of its second derivative over the square of their distance, and that is bounded.
     pub fn pieces(&self, chord: f64, angle: f64) -> u64 {
-        if self.way == Way::TipAndAxis || !self.turns() {
+        if self.way == Interpolation::TipAndAxis || !self.turns() {
             return 1;
         }
         let bend = self.bend();
@@ -113,7 +113,7 @@ impl Motion {
     /// How far the motion strays at most from straight lines and great circles of `count` pieces of it, where it is looked
     /// at: mm, and of unit vectors.
     fn strays(&self, count: u64) -> (f64, f64) {
-        let straight = self.way == Way::Axes;
+        let straight = self.way == Interpolation::Axes;
         let mut worst: (f64, f64) = (0.0, 0.0);
         let mut from = self.at(0.0);
         for piece in 0..count {
@@ -162,7 +162,7 @@ impl Motion {
                 false => 0.0,
             },
         };
-        if self.way == Way::Axes {
+        if self.way == Interpolation::Axes {
             // Joint by joint from the tool to the part: a turn by w over an arm r of speed s and bend b makes the bend
             // w²·r + 2·w·s + b and the speed w·r + s; an arm is never longer than at its ends but for an eighth of its
             // bend.
@@ -185,7 +185,7 @@ impl Motion {
     /// Pieces whose chords stay within `chord` mm of a spline, as far as points on it tell: doubled until the middles of
     /// all agree.
     pub(crate) fn spline_chords(&self, chord: f64) -> u64 {
-        let Way::Spline(way) = &self.way else {
+        let Interpolation::Spline(way) = &self.way else {
             return 1;
         };
         let mut count = 2 * way.poles.len() as u64;

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use post_machine::description::{CornerRule, Machine, RapidRule};
 use post_machine::diagnostic::Diagnostic;
-use post_motion::{Corner, Move, Pace, Task, Waiting};
+use post_motion::{CornerMode, Move, MovePace, Task, WaitReason};
 
 use crate::{Corners, Done, Motion, MotionKind, Spindle, State, Told};
 
@@ -30,7 +30,7 @@ pub struct Planned {
 #[derive(Clone, Debug)]
 pub struct Tasks {
     /// Where the program says nothing of it.
-    usual: Corner,
+    usual: CornerMode,
     /// By how much a corner may be left where the program names no tolerance, mm.
     tolerance: Option<f64>,
     rapids: RapidRule,
@@ -53,9 +53,9 @@ impl Tasks {
         let rules = &machine.motion;
         Self {
             usual: match rules.corner {
-                CornerRule::Stop => Corner::Stop,
-                CornerRule::Path => Corner::Path,
-                CornerRule::Blend => Corner::Blend { tolerance: None },
+                CornerRule::Stop => CornerMode::Stop,
+                CornerRule::Path => CornerMode::Path,
+                CornerRule::Blend => CornerMode::Blend { tolerance: None },
             },
             tolerance: rules.corner_tolerance,
             rapids: rules.rapids,
@@ -122,15 +122,15 @@ impl Tasks {
             && self.rapids != RapidRule::Blend
             && pending.rapid != rapid
         {
-            last.corner = Corner::Stop;
+            last.corner = CornerMode::Stop;
         }
         let corner = self.corner(&motion);
         let pace = match motion.kind {
-            MotionKind::Rapid => Pace::Rapid,
-            _ if motion.minutes > 0.0 => Pace::Minutes(motion.minutes),
+            MotionKind::Rapid => MovePace::Rapid,
+            _ if motion.minutes > 0.0 => MovePace::Minutes(motion.minutes),
             _ => {
                 self.no_feed.get_or_insert(motion.line);
-                Pace::Rapid
+                MovePace::Rapid
             }
         };
         let next = Planned {
@@ -152,10 +152,10 @@ impl Tasks {
     }
 
     /// How the control passes into whatever comes behind a motion.
-    fn corner(&mut self, motion: &Motion) -> Corner {
+    fn corner(&mut self, motion: &Motion) -> CornerMode {
         let rapid = motion.kind == MotionKind::Rapid;
         if motion.stops || rapid && self.rapids == RapidRule::Stop {
-            return Corner::Stop;
+            return CornerMode::Stop;
         }
         let said = match motion.state.corners {
             Corners::Said(corner) => corner,
@@ -167,11 +167,11 @@ impl Tasks {
         };
         match said {
             // A hole has its depth, and a thread turns back at its end.
-            Corner::Blend { .. } if motion.hole || motion.kind == MotionKind::Thread => {
-                Corner::Path
+            CornerMode::Blend { .. } if motion.hole || motion.kind == MotionKind::Thread => {
+                CornerMode::Path
             }
-            Corner::Blend { tolerance } => {
-                Corner::Blend { tolerance: tolerance.or(self.tolerance) }
+            CornerMode::Blend { tolerance } => {
+                CornerMode::Blend { tolerance: tolerance.or(self.tolerance) }
             }
             corner => corner,
         }
@@ -184,19 +184,19 @@ impl Tasks {
                     true => self.turns(line, *time),
                     false => *time,
                 };
-                (seconds, Waiting::Dwell)
+                (seconds, WaitReason::Dwell)
             }
-            Told::ToolChange { .. } => (self.tool_change, Waiting::ToolChange),
-            Told::Spindle(_) => (self.spindle_seconds, Waiting::Spindle),
+            Told::ToolChange { .. } => (self.tool_change, WaitReason::ToolChange),
+            Told::Spindle(_) => (self.spindle_seconds, WaitReason::Spindle),
             Told::Stop | Told::OptionalStop => {
                 self.stop.get_or_insert(line);
-                (0.0, Waiting::Word)
+                (0.0, WaitReason::Word)
             }
             Told::Subprogram(_) => {
                 self.subprogram.get_or_insert(line);
-                (0.0, Waiting::Word)
+                (0.0, WaitReason::Word)
             }
-            Told::Coolant(_) | Told::Head(_) => (0.0, Waiting::Word),
+            Told::Coolant(_) | Told::Head(_) => (0.0, WaitReason::Word),
             _ => return,
         };
         // Where it stands already, a wait that takes no time is none.

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 use std::time::Instant;
 
-use post_report::table::{Column, TableWriter};
+use post_report::table::{TableColumn, TableWriter};
 use post_report::text::TextWriter;
 
 const ROWS: usize = 1_000_000;
@@ -53,7 +53,7 @@ fn sine(x: f64) -> f64 {
 }
 
 fn main() {
-    let columns = COLUMNS.map(|(name, decimals)| Column::new(name, "", decimals));
+    let columns = COLUMNS.map(|(name, decimals)| TableColumn::new(name, "", decimals));
     let mut table = TableWriter::new("blocks", columns.to_vec(), std::io::sink());
     let rounded = |value: f64| (value * 1e3).round() / 1e3;
     let rows: Vec<[f64; 27]> = (0..ROWS)

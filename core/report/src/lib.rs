@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`table::TableWriter`] | rows of numbers, at print resolution: columns of integers, differences, byte planes, deflate |
 //! | [`text::TextWriter`] | a text, line for line and without loss: templates of lines and columns of their numbers |
-//! | [`solid::Solid`] | the shape of a body of the machine, from an STL file that is handed in: few triangles and sharp edges |
+//! | [`solid::DrawnSolid`] | the shape of a body of the machine, from an STL file that is handed in: few triangles and sharp edges |
 //! | [`meta::Meta`] | what the page tells besides: verdict, maxima, facts, events, the machine |
 //! | [`document::write`] | the page, its scripts, and the parts packed into it |
 //!

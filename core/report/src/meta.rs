@@ -19,7 +19,7 @@ pub struct Meta {
     /// What takes part, without folders.
     pub names: Names,
     /// How it came out.
-    pub verdict: Verdict,
+    pub verdict: VerdictMeta,
     /// The largest of what is limited, and where.
     pub maxima: Vec<Maximum>,
     /// Label and text.
@@ -31,13 +31,13 @@ pub struct Meta {
     /// What "certified" leaves out, as sentences.
     pub excludes: Vec<String>,
     /// Places worth looking at, in the order of the blocks.
-    pub events: Vec<Event>,
+    pub events: Vec<EventMeta>,
     /// Number of events found beyond those that are listed.
     pub events_left_out: u64,
     /// Names for the column `limit`.
     pub limits: Vec<String>,
     /// Tolerances in force.
-    pub tolerances: Tolerances,
+    pub tolerances: TolerancesMeta,
     /// The chain, to draw and to move.
     pub machine: Option<MachineMeta>,
     /// The chains of the heads that are swapped.
@@ -47,7 +47,7 @@ pub struct Meta {
     /// Length from the gauge point to the tip, mm; of several tools the first.
     pub tool_length: f64,
     /// Poses with all their digits.
-    pub checks: Vec<Check>,
+    pub checks: Vec<PoseCheck>,
     /// What `--report-max` left out.
     pub parts_left_out: Vec<String>,
     /// The tables of the document.
@@ -74,7 +74,7 @@ pub struct Names {
 
 /// How it came out.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Verdict {
+pub struct VerdictMeta {
     /// `good`, `warn` or `bad`.
     pub kind: &'static str,
     /// A word or two.
@@ -138,7 +138,7 @@ pub struct Warning {
 
 /// A place worth looking at.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Event {
+pub struct EventMeta {
     /// Row of the table of blocks.
     pub row: u64,
     /// `tool`, `operation`, `rewind`, `branch`, `cycle`, `stop`.
@@ -149,7 +149,7 @@ pub struct Event {
 
 /// Tolerances in force.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Tolerances {
+pub struct TolerancesMeta {
     /// Tolerance of the tip in cuts, mm.
     pub tip: f64,
     /// Tolerance of the tool axis, degrees.
@@ -209,7 +209,7 @@ pub struct AxisMeta {
 
 /// A pose as it was reckoned here, for the page to hold its chain against.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Check {
+pub struct PoseCheck {
     /// Row of the table of blocks.
     pub row: u64,
     /// Axis values in chain order, as the control shows them.

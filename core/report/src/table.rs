@@ -11,7 +11,7 @@ const CHUNK: usize = 1 << 15;
 
 /// A column of a table.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Column {
+pub struct TableColumn {
     /// Name of the column.
     pub name: String,
     /// What it is counted in, `mm`; empty for bare numbers.
@@ -22,7 +22,7 @@ pub struct Column {
     pub from: Option<&'static str>,
 }
 
-impl Column {
+impl TableColumn {
     /// A column.
     pub fn new(name: impl Into<String>, unit: &'static str, decimals: u8) -> Self {
         Self { name: name.into(), unit, decimals, from: None }
@@ -38,7 +38,7 @@ impl Column {
 /// Takes the rows of a table and hands them on packed.
 pub struct TableWriter<W> {
     name: &'static str,
-    columns: Vec<Column>,
+    columns: Vec<TableColumn>,
     scales: Vec<f64>,
     /// The rows of the chunk, column by column.
     values: Vec<Vec<i64>>,
@@ -52,7 +52,7 @@ pub struct TableWriter<W> {
 
 impl<W: Write> TableWriter<W> {
     /// An empty table of that name, whose chunks go to `out`.
-    pub fn new(name: &'static str, columns: Vec<Column>, out: W) -> Self {
+    pub fn new(name: &'static str, columns: Vec<TableColumn>, out: W) -> Self {
         let scales = columns.iter().map(|column| scale(column.decimals));
         Self {
             name,

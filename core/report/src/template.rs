@@ -34,7 +34,7 @@ const SHARE: usize = 6;
 
 /// A number of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Number {
+struct FixedNumber {
     /// Digits without the point.
     digits: i64,
     decimals: u8,
@@ -42,8 +42,8 @@ struct Number {
 
 /// Numbers of one address.
 #[derive(Default)]
-struct Column {
-    numbers: Vec<Number>,
+struct NumberColumn {
+    numbers: Vec<FixedNumber>,
 }
 
 /// The lines of `text` (each with its line feed, the last perhaps without) as templates and columns; none if they are
@@ -59,7 +59,7 @@ pub fn encode(text: &[u8]) -> Option<Vec<u8>> {
     // Of each template its bytes and the columns of its numbers.
     let mut templates: Vec<(Vec<u8>, Vec<u32>)> = Vec::new();
     let mut addresses: BTreeMap<Vec<u8>, usize> = BTreeMap::new();
-    let mut columns: Vec<Column> = Vec::new();
+    let mut columns: Vec<NumberColumn> = Vec::new();
     let mut lines: Vec<i64> = Vec::with_capacity(count);
     let mut template = Vec::new();
     let mut numbers = Vec::new();
@@ -109,7 +109,7 @@ pub fn encode(text: &[u8]) -> Option<Vec<u8>> {
 }
 
 /// A line as its template and its numbers.
-fn take_apart(line: &[u8], template: &mut Vec<u8>, numbers: &mut Vec<Number>) {
+fn take_apart(line: &[u8], template: &mut Vec<u8>, numbers: &mut Vec<FixedNumber>) {
     let mut at = 0;
     while at < line.len() {
         let byte = line[at];
@@ -146,7 +146,7 @@ fn end_of_number(line: &[u8], at: usize) -> usize {
 }
 
 /// What is written, if it is written as usual.
-fn number(text: &[u8]) -> Option<Number> {
+fn number(text: &[u8]) -> Option<FixedNumber> {
     let (minus, unsigned) = match text {
         [b'-', rest @ ..] => (true, rest),
         rest => (false, rest),
@@ -162,14 +162,14 @@ fn number(text: &[u8]) -> Option<Number> {
     if minus && value == 0 {
         return None;
     }
-    Some(Number { digits: if minus { -value } else { value }, decimals: behind.len() as u8 })
+    Some(FixedNumber { digits: if minus { -value } else { value }, decimals: behind.len() as u8 })
 }
 
 /// The columns of the numbers of a template.
 fn slots(
     template: &[u8],
     addresses: &mut BTreeMap<Vec<u8>, usize>,
-    columns: &mut Vec<Column>,
+    columns: &mut Vec<NumberColumn>,
 ) -> Vec<u32> {
     let mut slots = Vec::new();
     let mut seen: Vec<(u8, u8)> = Vec::new();
@@ -202,7 +202,7 @@ fn slots(
             }
         };
         let place = *addresses.entry(address).or_insert_with(|| {
-            columns.push(Column::default());
+            columns.push(NumberColumn::default());
             columns.len() - 1
         });
         slots.push(place as u32);
@@ -210,7 +210,7 @@ fn slots(
     slots
 }
 
-impl Column {
+impl NumberColumn {
     /// Writes the column; none if its numbers do not fit one scale.
     fn encode(&self, out: &mut Vec<u8>) -> Option<()> {
         let decimals = || self.numbers.iter().map(|number| number.decimals);
@@ -218,7 +218,7 @@ impl Column {
         if most > MOST_DECIMALS {
             return None;
         }
-        let trimmed = |number: &Number| number.decimals == 0 || number.digits % 10 != 0;
+        let trimmed = |number: &FixedNumber| number.decimals == 0 || number.digits % 10 != 0;
         let form = match () {
             () if least == most => most,
             () if self.numbers.iter().all(trimmed) => TRIMMED + most,

@@ -2,7 +2,7 @@
 
 use super::record::{Argument, Statement};
 use super::statements;
-use super::vocabulary::{self, Behind, MajorWord};
+use super::vocabulary::{self, ArgumentForm, MajorWord};
 use crate::fault::SyntaxFault;
 use crate::text::excerpt;
 use pest::Parser;
@@ -14,7 +14,7 @@ use std::ops::Range;
 
 #[derive(Parser)]
 #[grammar = "cl/line.pest"]
-struct Grammar;
+struct ClGrammar;
 
 /// Whether a line's text is free: then a `$` at its end is text, not a continuation, and `$$` in it is no comment.
 ///
@@ -39,7 +39,7 @@ pub fn is_free_text(line: &[u8]) -> bool {
 /// Whether any text may stand behind the word.
 fn is_text_word(word: &str) -> bool {
     let known = MajorWord::find(word);
-    known.is_some_and(|known| matches!(known.behind, Behind::Text(_)))
+    known.is_some_and(|known| matches!(known.behind, ArgumentForm::Text(_)))
 }
 
 /// `REMARK ->`, the form of a directive that is no comment to APT.
@@ -54,7 +54,7 @@ pub(super) const LONGEST_WORD: usize = 64;
 pub(crate) const SHOWN: usize = 60;
 
 /// One item behind the slash.
-pub(crate) struct Item<'t> {
+pub(crate) struct LineItem<'t> {
     /// Text as written; empty where two commas follow each other.
     pub text: &'t str,
     /// Where in the line it begins, in bytes.
@@ -65,7 +65,7 @@ pub(crate) struct Item<'t> {
     pub comma_missing: bool,
 }
 
-impl Item<'_> {
+impl LineItem<'_> {
     pub fn span(&self) -> Range<usize> {
         self.start..self.start + self.text.len()
     }
@@ -79,7 +79,7 @@ impl Item<'_> {
 }
 
 /// A statement taken apart, before anyone looks at what it means.
-pub(crate) struct Line<'t> {
+pub(crate) struct LogicalLine<'t> {
     /// The whole line.
     pub text: &'t str,
     /// The major word in capitals.
@@ -91,7 +91,7 @@ pub(crate) struct Line<'t> {
     /// A slash stands behind it.
     pub slash: bool,
     /// What follows.
-    pub items: Vec<Item<'t>>,
+    pub items: Vec<LineItem<'t>>,
 }
 
 /// Reads one logical line: a record without line ends, its continuations joined.
@@ -105,7 +105,7 @@ pub fn parse_record(text: &str) -> Result<Statement, SyntaxFault> {
                 .help("a cutter-location file is plain text; one saved as UTF-16 has to be saved as UTF-8"),
         );
     }
-    let mut pairs = Grammar::parse(Rule::line, text).map_err(|error| {
+    let mut pairs = ClGrammar::parse(Rule::line, text).map_err(|error| {
         let at = match error.location {
             InputLocation::Pos(at) => at,
             InputLocation::Span((at, _)) => at,
@@ -133,21 +133,21 @@ pub fn parse_record(text: &str) -> Result<Statement, SyntaxFault> {
 }
 
 /// A line that moves the tool along a curve, with all that follows its first word as one item.
-fn driven<'t>(text: &'t str, drive: Pair<'t, Rule>) -> Line<'t> {
+fn driven<'t>(text: &'t str, drive: Pair<'t, Rule>) -> LogicalLine<'t> {
     let word = drive.into_inner().next().map_or(0..0, |word| {
         let span = word.as_span();
         span.start()..span.end()
     });
     let known = vocabulary::find(&text[word.clone()]);
     let behind = text[word.end..].trim();
-    Line {
+    LogicalLine {
         text,
         word: match known {
             Some((spelling, _)) => Cow::Borrowed(spelling),
             None => Cow::Owned(excerpt(&text[word.clone()], LONGEST_WORD).to_ascii_uppercase()),
         },
         known: known.map(|(_, word)| word),
-        items: vec![Item {
+        items: vec![LineItem {
             text: behind,
             start: text.len() - text[word.end..].trim_start().len(),
             value: None,
@@ -196,7 +196,9 @@ fn free_text(pair: Pair<'_, Rule>) -> Statement {
     let word = parts.next().map_or("", |word| word.as_str());
     let text = parts.next().map(trimmed).unwrap_or_default();
     match vocabulary::find(word) {
-        Some((spelling, known)) if let Behind::Text(read) = known.behind => read(spelling, text),
+        Some((spelling, known)) if let ArgumentForm::Text(read) = known.behind => {
+            read(spelling, text)
+        }
         _ => unreachable!(
             "`free_word` of line.pest and the words of the table with a text are the same"
         ),
@@ -204,8 +206,8 @@ fn free_text(pair: Pair<'_, Rule>) -> Statement {
 }
 
 /// Collects the items of a statement; a number that a double cannot hold is a fault.
-fn line<'t>(text: &'t str, statement: Pair<'t, Rule>) -> Result<Line<'t>, SyntaxFault> {
-    let mut line = Line {
+fn line<'t>(text: &'t str, statement: Pair<'t, Rule>) -> Result<LogicalLine<'t>, SyntaxFault> {
+    let mut line = LogicalLine {
         text,
         word: Cow::Borrowed(""),
         known: None,
@@ -239,7 +241,7 @@ fn line<'t>(text: &'t str, statement: Pair<'t, Rule>) -> Result<Line<'t>, Syntax
             Rule::slash => line.slash = true,
             Rule::comma => {
                 if due {
-                    line.items.push(Item {
+                    line.items.push(LineItem {
                         text: "",
                         start: span.start(),
                         value: None,
@@ -253,7 +255,7 @@ fn line<'t>(text: &'t str, statement: Pair<'t, Rule>) -> Result<Line<'t>, Syntax
                     Rule::number => Some(number(text, &pair)?),
                     _ => None,
                 };
-                line.items.push(Item {
+                line.items.push(LineItem {
                     text: pair.as_str(),
                     start: span.start(),
                     value,

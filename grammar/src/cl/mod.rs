@@ -11,4 +11,4 @@ mod vocabulary;
 pub use line::parse_record;
 pub use reader::Reader;
 pub use record::*;
-pub use vocabulary::{MajorWord, UnknownPath, Usage};
+pub use vocabulary::{MajorWord, UnknownPath, WordUsage};

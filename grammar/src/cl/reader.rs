@@ -11,7 +11,7 @@
 use super::foreign;
 use super::line::{is_free_text, parse_record};
 use super::record::Record;
-use super::scan::{self, Plain};
+use super::scan::{self, PlainGoto};
 use crate::fault::{ReadError, SyntaxFault};
 use crate::text::excerpt;
 use memchr::{memchr_iter, memchr2};
@@ -59,7 +59,7 @@ pub struct Reader<R> {
 }
 
 /// A physical line; offsets from `start`.
-struct Physical {
+struct PhysicalLine {
     /// Where its text ends.
     end: usize,
     /// Where the next line begins.
@@ -161,7 +161,7 @@ impl<R: Read> Reader<R> {
     /// The plain `GOTO` that begins here, and where the next line begins; `None` if there is none, or if more of the
     /// file must be read to know where it ends.
     #[inline(always)]
-    fn plain(&self) -> Option<(Plain, usize)> {
+    fn plain(&self) -> Option<(PlainGoto, usize)> {
         let pending = self.pending();
         let plain = scan::plain_goto(pending)?;
         let next = match pending[plain.end..] {
@@ -176,7 +176,7 @@ impl<R: Read> Reader<R> {
 
     /// Consumes the plain `GOTO` that begins here.
     #[inline(always)]
-    fn take_plain(&mut self, plain: &Plain, next: usize) -> Record<'_> {
+    fn take_plain(&mut self, plain: &PlainGoto, next: usize) -> Record<'_> {
         let (start, line) = (self.start, self.line);
         self.start += next;
         self.line += 1;
@@ -186,7 +186,7 @@ impl<R: Read> Reader<R> {
     /// Consumes the logical line that begins with `first`, and gives its place in the buffer; `None` if it is blank.
     ///
     /// Continued lines are moved together in the buffer, over the `$` and the line end between them.
-    fn logical(&mut self, first: Physical) -> Result<Option<Range<usize>>, ReadError> {
+    fn logical(&mut self, first: PhysicalLine) -> Result<Option<Range<usize>>, ReadError> {
         let line = self.line;
         let mut begin = 0;
         if line == 1 && self.pending().starts_with(BYTE_ORDER_MARK) {
@@ -254,13 +254,13 @@ impl<R: Read> Reader<R> {
     }
 
     /// Goes on behind the line `last`; its bytes stay in the buffer until it is filled again.
-    fn consume(&mut self, last: &Physical, lines: u64) {
+    fn consume(&mut self, last: &PhysicalLine, lines: u64) {
         self.start += last.next;
         self.line += lines;
     }
 
     /// The line that begins at the offset `from`; `None` at the end of the file.
-    fn physical(&mut self, from: usize) -> io::Result<Option<Physical>> {
+    fn physical(&mut self, from: usize) -> io::Result<Option<PhysicalLine>> {
         let mut searched = from;
         let mut overlong = false;
         loop {
@@ -272,14 +272,14 @@ impl<R: Read> Reader<R> {
                 if pending[end] == b'\n' || end + 1 < pending.len() || self.ended {
                     overlong |= end > LONGEST;
                     let next = end + 1 + usize::from(pair);
-                    return Ok(Some(Physical { end, next, overlong }));
+                    return Ok(Some(PhysicalLine { end, next, overlong }));
                 }
                 searched = end;
             } else {
                 searched = pending.len();
                 overlong |= searched > LONGEST;
                 if self.ended {
-                    let line = Physical { end: searched, next: searched, overlong };
+                    let line = PhysicalLine { end: searched, next: searched, overlong };
                     return Ok((searched > from).then_some(line));
                 }
                 if searched > LONGEST {

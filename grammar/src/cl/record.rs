@@ -68,9 +68,9 @@ pub enum Statement {
     /// `FEDRAT/`.
     Feed(FeedRate),
     /// `SPINDL/`.
-    Spindle(Spindle),
+    Spindle(SpindleWord),
     /// `COOLNT/`.
-    Coolant(Coolant),
+    Coolant(CoolantWord),
     /// `LOADTL/`, `LOAD/TOOL,`, `TURRET/`, `TOOLNO/`.
     LoadTool(LoadTool),
     /// `SELECT/TOOL,n`, `SELCTL/n`: bring the tool to the change position, no change yet.
@@ -109,7 +109,7 @@ pub enum Statement {
     /// `CSYS/` and `$$-> CSYS /`: a frame as a 3 × 4 matrix, row by row.
     Csys([f64; 12]),
     /// `CIRCLE/`: an arc that ends at the next `GOTO`.
-    Circle(Circle),
+    Circle(CircleRecord),
     /// `MOVARC/`: an arc by its angle that ends at the next `GOTO`.
     ArcMove(ArcMove),
     /// `INDIRV/tx,ty,tz`: where the tool sets out along the next curve.
@@ -295,7 +295,7 @@ pub enum FeedUnit {
 
 /// `SPINDL/`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Spindle {
+pub enum SpindleWord {
     /// The spindle turns; a value that is not given stays as it was.
     On {
         /// The speed.
@@ -335,7 +335,7 @@ pub enum Sense {
 
 /// `COOLNT/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Coolant {
+pub enum CoolantWord {
     /// `OFF`.
     Off,
     /// `ON`: the last kind again.
@@ -411,7 +411,7 @@ pub enum Units {
 
 /// `CIRCLE/`: centre and axis; it ends at the next `GOTO`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Circle {
+pub struct CircleRecord {
     /// The centre.
     pub centre: Point,
     /// The axis. Without a sense the arc is counter-clockwise (right-handed) about it.
@@ -512,7 +512,7 @@ pub struct CycleDefinition {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cutcom {
     /// Side of the contour; `None` with `CUTCOM/ON`, which repeats the last.
-    pub side: Option<Side>,
+    pub side: Option<CutterSide>,
     /// `XYPLAN`, `YZPLAN`, `ZXPLAN`: index of the normal (2, 0, 1).
     pub plane: Option<u8>,
     /// Register, if given.
@@ -521,7 +521,7 @@ pub struct Cutcom {
 
 /// Side of the cutter, looking along the feed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum CutterSide {
     /// Off.
     Off,
     /// Left of the contour.

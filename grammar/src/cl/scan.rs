@@ -4,15 +4,15 @@
 
 use std::borrow::Cow;
 
-use super::line::{Item, LONGEST_WORD, Line};
+use super::line::{LONGEST_WORD, LineItem, LogicalLine};
 use super::record::Statement;
 use super::statements::statement;
-use super::vocabulary::{self, Behind};
+use super::vocabulary::{self, ArgumentForm};
 use crate::decimal::{number, short_number};
 
 /// A `GOTO` with three or six numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plain {
+pub struct PlainGoto {
     /// The point and, if `has_axis`, the tool axis; else zeros.
     pub values: [f64; 6],
     /// Six numbers are given.
@@ -21,7 +21,7 @@ pub struct Plain {
     pub end: usize,
 }
 
-impl Plain {
+impl PlainGoto {
     pub fn statement(&self) -> Statement {
         let [x, y, z, i, j, k] = self.values;
         Statement::Goto { point: [x, y, z], axis: self.has_axis.then_some([i, j, k]) }
@@ -31,7 +31,7 @@ impl Plain {
 /// The plain `GOTO` at the start of `text`, which may run on behind the line; `None` if the line is anything else
 /// or in any way unusual.
 #[inline(always)]
-pub fn plain_goto(text: &[u8]) -> Option<Plain> {
+pub fn plain_goto(text: &[u8]) -> Option<PlainGoto> {
     let mut at = match text.strip_prefix(b"GOTO/") {
         Some(_) => 4,
         None => unusual_slash(text)?,
@@ -58,7 +58,11 @@ pub fn plain_goto(text: &[u8]) -> Option<Plain> {
     }
     at = skip_blanks(text, at);
     let ends = matches!(text.get(at), None | Some(b'\n' | b'\r'));
-    (ends && (count == 3 || count == 6)).then_some(Plain { values, has_axis: count == 6, end: at })
+    (ends && (count == 3 || count == 6)).then_some(PlainGoto {
+        values,
+        has_axis: count == 6,
+        end: at,
+    })
 }
 
 /// Where the slash behind `GOTO` stands, with blanks before or behind the word.
@@ -98,7 +102,7 @@ pub fn record(raw: &[u8]) -> Option<Statement> {
     }
     let mut known = vocabulary::find(&text[at..end]);
     if let Some((spelling, word)) = known
-        && let Behind::Text(read) = word.behind
+        && let ArgumentForm::Text(read) = word.behind
     {
         let text = text[end..].trim_start_matches([' ', '\t']);
         let text = text.strip_prefix('/').unwrap_or(text).trim();
@@ -124,7 +128,7 @@ pub fn record(raw: &[u8]) -> Option<Statement> {
     let slash = raw.get(behind) == Some(&b'/');
     let begin = behind + usize::from(slash);
     let parted = begin > word_span.end || ends(raw, begin);
-    let line = Line {
+    let line = LogicalLine {
         text,
         word: match known {
             Some((spelling, _)) => Cow::Borrowed(spelling),
@@ -143,7 +147,7 @@ pub fn record(raw: &[u8]) -> Option<Statement> {
 const USUAL_ITEMS: usize = 12;
 
 /// The items from `at` to the end of the statement.
-fn items(text: &str, mut at: usize) -> Option<Vec<Item<'_>>> {
+fn items(text: &str, mut at: usize) -> Option<Vec<LineItem<'_>>> {
     let bytes = text.as_bytes();
     at = skip_blanks(bytes, at);
     let mut items = match ends(bytes, at) {
@@ -157,7 +161,7 @@ fn items(text: &str, mut at: usize) -> Option<Vec<Item<'_>>> {
         if ends(bytes, at) {
             return Some(items);
         }
-        let mut item = Item { text: "", start: at, value: None, comma_missing: false };
+        let mut item = LineItem { text: "", start: at, value: None, comma_missing: false };
         if bytes[at] == b',' {
             if due {
                 items.push(item);

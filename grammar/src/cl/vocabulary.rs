@@ -24,7 +24,7 @@ use super::statements::{ReadGeometry, ReadItems, ReadText};
 
 /// What `post` does with a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Usage {
+pub enum WordUsage {
     /// The word has its effect on the program.
     Used,
     /// The word's text goes into the program.
@@ -39,7 +39,7 @@ pub enum Usage {
     Unknown,
 }
 
-impl Usage {
+impl WordUsage {
     /// The name that tables show.
     pub fn name(self) -> &'static str {
         match self {
@@ -54,7 +54,7 @@ impl Usage {
 
 /// What stands behind the word, and what takes it.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Behind {
+pub(super) enum ArgumentForm {
     /// Items between commas, for a statement of its own.
     Items(ReadItems),
     /// Any text.
@@ -73,14 +73,14 @@ pub struct MajorWord {
     /// All spellings, in capitals; the first is the word's name.
     pub spellings: &'static [&'static str],
     /// What becomes of it, in a form that is known.
-    pub usage: Usage,
+    pub usage: WordUsage,
     /// A record that it stands in; empty for a word without a statement of its own.
     pub example: &'static str,
     /// What it means to `post`, or why nothing.
     pub meaning: &'static str,
-    pub(super) behind: Behind,
+    pub(super) behind: ArgumentForm,
     /// What becomes of it in a form that is not known: refused where the tool would end up in the wrong place.
-    otherwise: Usage,
+    otherwise: WordUsage,
     /// Whether the word moves the tool, or says which records do: whatever its form, it is never left out.
     pub moves: bool,
     /// Lines that a machine file has for it go before its meaning, which not every control has words for.
@@ -104,7 +104,7 @@ impl MajorWord {
     }
 
     const fn else_refused(mut self) -> Self {
-        self.otherwise = Usage::Refused;
+        self.otherwise = WordUsage::Refused;
         self
     }
 
@@ -157,17 +157,21 @@ fn key(spelling: &str) -> u64 {
 
 impl Statement {
     /// What becomes of it.
-    pub fn usage(&self) -> Usage {
+    pub fn usage(&self) -> WordUsage {
         let word = MajorWord::find(self.word());
-        let listed = word.map_or(Usage::Unknown, |word| word.usage);
+        let listed = word.map_or(WordUsage::Unknown, |word| word.usage);
         let Self::Other { directive, .. } = self else {
             return listed;
         };
         match listed {
             // A directive is a remark to all but the program it is meant for.
-            Usage::Unknown | Usage::Used | Usage::Passed if *directive => Usage::Ignored,
+            WordUsage::Unknown | WordUsage::Used | WordUsage::Passed if *directive => {
+                WordUsage::Ignored
+            }
             // A known word in a form that has no statement.
-            Usage::Used | Usage::Passed => word.map_or(Usage::Unknown, |word| word.otherwise),
+            WordUsage::Used | WordUsage::Passed => {
+                word.map_or(WordUsage::Unknown, |word| word.otherwise)
+            }
             usage => usage,
         }
     }
@@ -205,8 +209,8 @@ pub enum UnknownPath {
 
 const fn row(
     spellings: &'static [&'static str],
-    usage: Usage,
-    behind: Behind,
+    usage: WordUsage,
+    behind: ArgumentForm,
     [example, meaning]: [&'static str; 2],
 ) -> MajorWord {
     MajorWord {
@@ -215,7 +219,7 @@ const fn row(
         example,
         meaning,
         behind,
-        otherwise: Usage::Unknown,
+        otherwise: WordUsage::Unknown,
         moves: false,
         by_rule: false,
     }
@@ -226,32 +230,32 @@ const fn used(
     read: ReadItems,
     told: [&'static str; 2],
 ) -> MajorWord {
-    row(spellings, Usage::Used, Behind::Items(read), told)
+    row(spellings, WordUsage::Used, ArgumentForm::Items(read), told)
 }
 
 const fn passed(
     spellings: &'static [&'static str],
-    behind: Behind,
+    behind: ArgumentForm,
     told: [&'static str; 2],
 ) -> MajorWord {
-    row(spellings, Usage::Passed, behind, told)
+    row(spellings, WordUsage::Passed, behind, told)
 }
 
 const fn ignored(spellings: &'static [&'static str], why: &'static str) -> MajorWord {
-    row(spellings, Usage::Ignored, Behind::Kept, ["", why])
+    row(spellings, WordUsage::Ignored, ArgumentForm::Kept, ["", why])
 }
 
 /// Row of a word that is ignored, though its record is read.
 const fn ignored_as(
     spellings: &'static [&'static str],
-    behind: Behind,
+    behind: ArgumentForm,
     told: [&'static str; 2],
 ) -> MajorWord {
-    row(spellings, Usage::Ignored, behind, told)
+    row(spellings, WordUsage::Ignored, behind, told)
 }
 
 const fn refused(spellings: &'static [&'static str], why: &'static str) -> MajorWord {
-    row(spellings, Usage::Refused, Behind::Kept, ["", why])
+    row(spellings, WordUsage::Refused, ArgumentForm::Kept, ["", why])
 }
 
 /// Moves the tool, or says which records do, in a way that `post` does not know.
@@ -261,7 +265,7 @@ const fn motion(spellings: &'static [&'static str], why: &'static str) -> MajorW
 
 /// Known by name, and left out with a warning.
 const fn unsupported(spellings: &'static [&'static str], meaning: &'static str) -> MajorWord {
-    row(spellings, Usage::Unknown, Behind::Kept, ["", meaning])
+    row(spellings, WordUsage::Unknown, ArgumentForm::Kept, ["", meaning])
 }
 
 /// A text without a statement of its own.
@@ -308,7 +312,7 @@ static WORDS: &[MajorWord] = &[
     refused(&["COUPLE"], "couples the spindle with an axis"),
     ignored(&["CSI_SET_EXTENSION_LENGTH"], "the tool in the CAM system's library"),
     ignored(&["CSI_SET_FLUTE_LENGTH"], "the tool in the CAM system's library"),
-    ignored_as(&["CSYS"], Behind::Items(csys), ["CSYS/1,0,0,0,0,1,0,0,0,0,1,0", "the CAM system's frame; points are meant in the part's"]),
+    ignored_as(&["CSYS"], ArgumentForm::Items(csys), ["CSYS/1,0,0,0,0,1,0,0,0,0,1,0", "the CAM system's frame; points are meant in the part's"]),
     motion(&["CUT"], "moves from here on are made again"),
     used(&["CUTCOM"], cutcom, ["CUTCOM/LEFT,XYPLAN", "cutter radius compensation"]).else_refused(),
     used(&["CUTCOM_GEOMETRY_TYPE"], cutcom_on_centre, ["CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_CENTER", "the points are the tool's centre, or the contour that CUTCOM offsets (Creo)"]),
@@ -338,7 +342,7 @@ static WORDS: &[MajorWord] = &[
     motion(&["INDEX"], "repeats moves"),
     motion(&["INDIRP"], "a direction by a point for the APT processor's moves along surfaces"),
     used(&["INDIRV"], indirv, ["INDIRV/1,0,0", "where the tool sets out along the next curve (CATIA)"]).else_refused().moves(),
-    passed(&["INSERT"], Behind::Text(|_, text| Statement::Insert(text)), ["INSERT M8", "a line of the program, or a comment ([control] insert)"]),
+    passed(&["INSERT"], ArgumentForm::Text(|_, text| Statement::Insert(text)), ["INSERT M8", "a line of the program, or a comment ([control] insert)"]),
     motion(&["JUMPTO"], "goes on at another line of the APT program"),
     used(&["KNOT"], knot, ["KNOT/0,1", "knots of a spline"]),
     ignored(&["LEADER"], "blank tape"),
@@ -359,27 +363,27 @@ static WORDS: &[MajorWord] = &[
     used(&["MULTAX"], multax, ["MULTAX/ON", "tool axis with the points; OFF: Z"]),
     used(&["NURBS"], nurbs, ["NURBS/", "a spline begins"]),
     used(&["OFSETL"], work_offset, ["OFSETL/2", "a work offset by its number, if the dialect has several"]).else_refused().by_rule(),
-    ignored_as(&["OPFEATEND"], Behind::Text(feature), ["OPFEATEND/Hole1", "name of a feature"]),
-    ignored_as(&["OPFEATSTART"], Behind::Text(feature), ["OPFEATSTART/Hole1", "name of a feature"]),
+    ignored_as(&["OPFEATEND"], ArgumentForm::Text(feature), ["OPFEATEND/Hole1", "name of a feature"]),
+    ignored_as(&["OPFEATSTART"], ArgumentForm::Text(feature), ["OPFEATSTART/Hole1", "name of a feature"]),
     refused(&["OPSKIP"], "blocks that the operator may skip"),
     used(&["OPSTOP"], opstop, ["OPSTOP", "optional stop"]),
     refused(&["ORIGIN"], "moves the origin"),
     ignored(&["PAINT"], "display"),
-    passed(&["PARTNO"], Behind::Text(|_, text| Statement::PartName(unquoted(text))), ["PARTNO blade", "name of the part, as a comment"]),
+    passed(&["PARTNO"], ArgumentForm::Text(|_, text| Statement::PartName(unquoted(text))), ["PARTNO blade", "name of the part, as a comment"]),
     refused(&["PIVOTZ"], "how far the head's pivot is; the machine file says it"),
     motion(&["PLUNGE"], "a move that the control computes"),
     motion(&["POSITN"], "a move in machine coordinates"),
     refused(&["POSTN"], "moves the origin"),
-    passed(&["PPRINT"], Behind::Text(|_, text| Statement::Print(unquoted(text))), ["PPRINT check clamps", "a remark for the operator"]),
+    passed(&["PPRINT"], ArgumentForm::Text(|_, text| Statement::Print(unquoted(text))), ["PPRINT check clamps", "a remark for the operator"]),
     ignored(&["PPTOL"], "tolerance; the machine file states ours"),
     ignored(&["PPWORD"], "a word of another post-processor"),
     refused(&["PREFUN"], "a G function by its number"),
     motion(&["PROBE"], "probing"),
-    row(&["PSIS"], Usage::Used, Behind::Geometry(psis), ["PSIS/(PLANE/(POINT/0,0,0),PERPTO,(VECTOR/0,1,0))", "the plane that the tip stays in along the next curve (CATIA)"]).else_refused().moves(),
+    row(&["PSIS"], WordUsage::Used, ArgumentForm::Geometry(psis), ["PSIS/(PLANE/(POINT/0,0,0),PERPTO,(VECTOR/0,1,0))", "the plane that the tip stays in along the next curve (CATIA)"]).else_refused().moves(),
     used(&["RAPID"], rapid, ["RAPID", "the next move is at rapid"]),
     motion(&["READ"], "goes on in another file"),
     refused(&["REFSYS"], "a frame for the points that follow"),
-    ignored_as(&["REMARK"], Behind::Text(|_, text| Statement::Remark(text)), ["REMARK roughing", "a remark"]),
+    ignored_as(&["REMARK"], ArgumentForm::Text(|_, text| Statement::Remark(text)), ["REMARK roughing", "a remark"]),
     motion(&["RETRACT"], "a retract in a form that nobody here knows"),
     motion(&["RETRCT"], "retracts to a plane that other words set"),
     ignored(&["REWIND"], "winds the tape back"),
@@ -399,10 +403,10 @@ static WORDS: &[MajorWord] = &[
     used(&["TLAXIS"], tlaxis, ["TLAXIS/0,0,1", "tool axis of the moves that follow"]).else_refused(),
     used(&["TLDATA"], tldata, ["TLDATA/MILL,10,1,75,0,0", "the cutter (NX)"]),
     motion(&["TLLFT", "TLRGT", "TLONPS", "TLOFPS", "TLNDON"], "how the tool stands to a curve, which only the APT processor can follow"),
-    row(&["TLON"], Usage::Used, Behind::Geometry(tlon), ["TLON,GOFWD/(CIRCLE/0,0,0,10),ON,(LINE/0,0,0,10,0,0)", "along an arc to its end (CATIA)"]).else_refused().moves(),
+    row(&["TLON"], WordUsage::Used, ArgumentForm::Geometry(tlon), ["TLON,GOFWD/(CIRCLE/0,0,0,10),ON,(LINE/0,0,0,10,0,0)", "along an arc to its end (CATIA)"]).else_refused().moves(),
     ignored(&["TMARK"], "mark on the tape"),
-    passed(&["TOOL PATH"], Behind::Line, ["TOOL PATH/ROUGH,TOOL,MILL_10", "an operation begins (NX); its name, as a comment"]),
-    passed(&["TPRINT"], Behind::Text(|_, text| Statement::ToolName(text)), ["TPRINT/T1 End Mill D 10", "name of the tool that is loaded next (CATIA)"]),
+    passed(&["TOOL PATH"], ArgumentForm::Line, ["TOOL PATH/ROUGH,TOOL,MILL_10", "an operation begins (NX); its name, as a comment"]),
+    passed(&["TPRINT"], ArgumentForm::Text(|_, text| Statement::ToolName(text)), ["TPRINT/T1 End Mill D 10", "name of the tool that is loaded next (CATIA)"]),
     refused(&["TRACUT"], "moves the points by a matrix"),
     refused(&["TRANS"], "moves the points by a step"),
     ignored(&["TRNTYP"], "how the CAM system moved the points"),

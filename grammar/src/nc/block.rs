@@ -165,7 +165,7 @@ pub enum NcFlow {
         /// The label, or the number of the block.
         target: NcExpression,
         /// Direction in which the target is looked for.
-        direction: Direction,
+        direction: JumpDirection,
         /// Condition that must hold for the jump.
         condition: Option<NcExpression>,
     },
@@ -260,7 +260,7 @@ pub enum NcFlow {
 
 /// Where a jump looks for its target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Direction {
+pub enum JumpDirection {
     /// Searches from here to the end, then from the beginning.
     Anywhere,
     /// Searches from here to the end (`GOTOF`).

@@ -5,29 +5,29 @@ use pest::error::InputLocation;
 use pest::iterators::{Pair, Pairs};
 use pest_derive::Parser;
 
-use super::block::{Direction, NcBlock, NcFlow, NcItem, NcNumber, NcValue, NcWord};
+use super::block::{JumpDirection, NcBlock, NcFlow, NcItem, NcNumber, NcValue, NcWord};
 use super::expression::{BinaryOperator, NcExpression, UnaryOperator};
 use super::fault::Unreadable;
 use super::number;
 use super::pairs::{due, only};
-use super::tree::{Rules, Tree};
+use super::tree::{ExpressionTree, Precedence};
 
 #[derive(Parser)]
 #[grammar = "nc/conversational.pest"]
-struct Grammar;
+struct ConversationalGrammar;
 
-type Answer<T> = Result<T, Unreadable>;
+type Parsed<T> = Result<T, Unreadable>;
 
 /// Reads the block `code`, in capitals and without remarks; `original` is the same as it was written.
-pub(super) fn parse(code: &str, original: &str, block: &mut NcBlock) -> Answer<()> {
-    let pairs = Grammar::parse(Rule::block, code).map_err(|error| {
+pub(super) fn parse(code: &str, original: &str, block: &mut NcBlock) -> Parsed<()> {
+    let pairs = ConversationalGrammar::parse(Rule::block, code).map_err(|error| {
         let at = match error.location {
             InputLocation::Pos(at) => at,
             InputLocation::Span((at, _)) => at,
         };
         unreadable(code, at)
     })?;
-    let builder = Builder { original };
+    let builder = ConversationalBuilder { original };
     for pair in pairs.flat_map(Pair::into_inner) {
         let span = pair.as_span().start()..pair.as_span().end();
         builder.part(pair, block).map_err(|fault| fault.at(span))?;
@@ -64,12 +64,12 @@ fn unreadable(code: &str, at: usize) -> Unreadable {
 }
 
 /// Pairs of the grammar to what a block says.
-struct Builder<'t> {
+struct ConversationalBuilder<'t> {
     original: &'t str,
 }
 
-impl Builder<'_> {
-    fn part(&self, pair: Pair<'_, Rule>, block: &mut NcBlock) -> Answer<()> {
+impl ConversationalBuilder<'_> {
+    fn part(&self, pair: Pair<'_, Rule>, block: &mut NcBlock) -> Parsed<()> {
         let rule = pair.as_rule();
         let spelling = pair.as_str();
         let item = match rule {
@@ -126,7 +126,7 @@ impl Builder<'_> {
     }
 
     /// `BEGIN PGM NAME MM`
-    fn program_end(&self, pair: Pair<'_, Rule>, block: &mut NcBlock) -> Answer<()> {
+    fn program_end(&self, pair: Pair<'_, Rule>, block: &mut NcBlock) -> Parsed<()> {
         let keyword = if pair.as_str().starts_with("BEGIN") { "BEGIN PGM" } else { "END PGM" };
         block.items.push(NcItem::Name(keyword.into()));
         for part in pair.into_inner() {
@@ -139,7 +139,7 @@ impl Builder<'_> {
     }
 
     /// `CYCL DEF 200 DRILLING Q200=+2`
-    fn cycle(&self, pair: Pair<'_, Rule>, block: &mut NcBlock) -> Answer<()> {
+    fn cycle(&self, pair: Pair<'_, Rule>, block: &mut NcBlock) -> Parsed<()> {
         block.items.push(NcItem::Name("CYCL DEF".into()));
         for part in pair.into_inner() {
             block.items.push(match part.as_rule() {
@@ -152,7 +152,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn word(&self, pair: Pair<'_, Rule>) -> Answer<NcItem> {
+    fn word(&self, pair: Pair<'_, Rule>) -> Parsed<NcItem> {
         let incremental = pair.as_rule() == Rule::incremental;
         let mut parts = pair.into_inner();
         Ok(NcItem::Word(NcWord {
@@ -162,7 +162,7 @@ impl Builder<'_> {
         }))
     }
 
-    fn named(&self, pair: Pair<'_, Rule>) -> Answer<NcItem> {
+    fn named(&self, pair: Pair<'_, Rule>) -> Parsed<NcItem> {
         let mut parts = pair.into_inner();
         let name = due(&mut parts)?.as_str().to_owned().into();
         let value = due(&mut parts)?;
@@ -175,7 +175,7 @@ impl Builder<'_> {
     }
 
     /// `+5`, `-Q1`
-    fn value(&self, pair: Pair<'_, Rule>) -> Answer<NcValue> {
+    fn value(&self, pair: Pair<'_, Rule>) -> Parsed<NcValue> {
         let negative = pair.as_str().starts_with('-');
         let mut last = due(&mut pair.into_inner().rev())?;
         if last.as_rule() == Rule::sign {
@@ -195,7 +195,7 @@ impl Builder<'_> {
     }
 
     /// Reads the same words as an expression.
-    fn expression_of(&self, pair: Pair<'_, Rule>) -> Answer<NcExpression> {
+    fn expression_of(&self, pair: Pair<'_, Rule>) -> Parsed<NcExpression> {
         Ok(match self.value(pair)? {
             NcValue::Number(number) => NcExpression::Number(number.value),
             NcValue::Expression(expression) => *expression,
@@ -205,7 +205,7 @@ impl Builder<'_> {
     }
 
     /// A function by its number: a value, or a jump.
-    fn function_number(&self, pair: Pair<'_, Rule>) -> Answer<NcItem> {
+    fn function_number(&self, pair: Pair<'_, Rule>) -> Parsed<NcItem> {
         let mut told = None;
         let mut body = None;
         for part in pair.into_inner() {
@@ -246,7 +246,7 @@ impl Builder<'_> {
     }
 
     /// `IF +Q1 EQU +5 GOTO LBL 3`
-    fn jump(&self, told: Option<u64>, mut parts: Pairs<'_, Rule>) -> Answer<NcItem> {
+    fn jump(&self, told: Option<u64>, mut parts: Pairs<'_, Rule>) -> Parsed<NcItem> {
         let left = Box::new(self.expression_of(due(&mut parts)?)?);
         let (own, operator) = match due(&mut parts)?.as_str() {
             "EQU" => (9, BinaryOperator::Equal),
@@ -258,14 +258,14 @@ impl Builder<'_> {
         let right = Box::new(self.expression_of(due(&mut parts)?)?);
         Ok(NcItem::Flow(Box::new(NcFlow::Goto {
             target: NcExpression::Text(self.label(due(&mut parts)?)?),
-            direction: Direction::Anywhere,
+            direction: JumpDirection::Anywhere,
             condition: Some(NcExpression::Binary(operator, left, right)),
         })))
     }
 
     /// Operands and operators in a row.
-    fn expression(&self, pair: Pair<'_, Rule>) -> Answer<NcExpression> {
-        let mut tree = Tree::new(Rules::Conversational);
+    fn expression(&self, pair: Pair<'_, Rule>) -> Parsed<NcExpression> {
+        let mut tree = ExpressionTree::new(Precedence::Conversational);
         let mut prefixes = Vec::new();
         for part in pair.into_inner() {
             match part.as_rule() {
@@ -290,7 +290,7 @@ impl Builder<'_> {
     }
 
     /// `5`, `"NAME"`
-    fn label(&self, pair: Pair<'_, Rule>) -> Answer<String> {
+    fn label(&self, pair: Pair<'_, Rule>) -> Parsed<String> {
         match pair.as_rule() {
             Rule::text => Ok(self.text(pair).to_ascii_uppercase()),
             _ => Ok(number::whole(pair.as_str())?.to_string()),
@@ -333,7 +333,7 @@ fn two_sided(sign: &str, left: NcExpression, right: NcExpression) -> (u64, NcExp
 }
 
 /// A function that does not belong to its number is not guessed at.
-fn check_number(told: Option<u64>, own: u64) -> Answer<()> {
+fn check_number(told: Option<u64>, own: u64) -> Parsed<()> {
     match told {
         Some(told) if told != own => {
             Err(Unreadable::new(format!("FN {told} is not this function: that is FN {own}")))

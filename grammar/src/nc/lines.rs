@@ -43,7 +43,7 @@ impl NcMark {
 
 /// Lines of `input`.
 #[derive(Debug)]
-pub(super) struct Lines<R> {
+pub(super) struct ProgramLines<R> {
     input: R,
     buffer: Vec<u8>,
     /// What is read and not yet consumed: `buffer[start..end]`. What stands in front is still there.
@@ -60,7 +60,7 @@ pub(super) struct Lines<R> {
 
 /// A line; offsets from the place of reading.
 #[derive(Debug)]
-pub(super) struct Physical {
+pub(super) struct PhysicalBlockLine {
     /// Where its text ends.
     end: usize,
     /// Where the next line begins.
@@ -69,7 +69,7 @@ pub(super) struct Physical {
     pub(super) overlong: bool,
 }
 
-impl<R: Read + Seek> Lines<R> {
+impl<R: Read + Seek> ProgramLines<R> {
     pub(super) fn new(input: R) -> Self {
         Self {
             input,
@@ -128,7 +128,7 @@ impl<R: Read + Seek> Lines<R> {
     }
 
     /// The text of a line; of one that is too long, its beginning.
-    pub(super) fn text(&self, line: &Physical) -> &[u8] {
+    pub(super) fn text(&self, line: &PhysicalBlockLine) -> &[u8] {
         &self.pending()[..line.end]
     }
 
@@ -155,7 +155,7 @@ impl<R: Read + Seek> Lines<R> {
     }
 
     /// Goes behind a line.
-    pub(super) fn consume(&mut self, line: &Physical) -> io::Result<()> {
+    pub(super) fn consume(&mut self, line: &PhysicalBlockLine) -> io::Result<()> {
         if line.overlong {
             return self.pass_overlong();
         }
@@ -170,7 +170,7 @@ impl<R: Read + Seek> Lines<R> {
     }
 
     /// The next line, which stays in place; none at the end of the file.
-    pub(super) fn physical(&mut self) -> io::Result<Option<Physical>> {
+    pub(super) fn physical(&mut self) -> io::Result<Option<PhysicalBlockLine>> {
         let mut searched = 0;
         loop {
             let pending = self.pending();
@@ -179,12 +179,16 @@ impl<R: Read + Seek> Lines<R> {
                 None => pending.len(),
             };
             if end > LONGEST {
-                return Ok(Some(Physical { end: SHOWN, next: end, overlong: true }));
+                return Ok(Some(PhysicalBlockLine { end: SHOWN, next: end, overlong: true }));
             }
             let next = line_end(&pending[end..], self.ended);
             match next {
                 Some(length) if end + length > 0 => {
-                    return Ok(Some(Physical { end, next: end + length, overlong: false }));
+                    return Ok(Some(PhysicalBlockLine {
+                        end,
+                        next: end + length,
+                        overlong: false,
+                    }));
                 }
                 Some(_) => return Ok(None),
                 None => searched = end,

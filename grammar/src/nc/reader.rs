@@ -8,8 +8,8 @@ use std::io::{Read, Seek};
 
 use super::block::{NcBlock, NcFlow, NcItem, NcSyntax, Notation};
 use super::fault::Unreadable;
-use super::lines::{Lines, NcMark, Physical, line_end};
-use super::search::Found;
+use super::lines::{NcMark, PhysicalBlockLine, ProgramLines, line_end};
+use super::search::JumpCache;
 use super::{conversational, remarks, scan, words};
 use crate::fault::{ReadError, SyntaxFault};
 
@@ -27,11 +27,11 @@ const LONGEST_HEADER: usize = 200;
 /// The input need not be buffered.
 #[derive(Debug)]
 pub struct NcReader<R> {
-    pub(super) lines: Lines<R>,
+    pub(super) lines: ProgramLines<R>,
     pub(super) syntax: NcSyntax,
     /// Jumps that were looked for.
-    pub(super) found: Found,
-    scratch: Scratch,
+    pub(super) found: JumpCache,
+    scratch: BlockText,
     /// The head of the file was looked at.
     opened: bool,
     /// A block was read since the last `%`.
@@ -44,7 +44,7 @@ pub struct NcReader<R> {
 
 /// Room for one block, continuations joined.
 #[derive(Debug, Default)]
-struct Scratch {
+struct BlockText {
     /// Text as written.
     text: String,
     /// Text in capitals, remarks blanked out.
@@ -55,10 +55,10 @@ impl<R: Read + Seek> NcReader<R> {
     /// Reads from `input`, from where it stands.
     pub fn new(input: R, syntax: NcSyntax) -> Self {
         Self {
-            lines: Lines::new(input),
+            lines: ProgramLines::new(input),
             syntax,
-            found: Found::default(),
-            scratch: Scratch::default(),
+            found: JumpCache::default(),
+            scratch: BlockText::default(),
             opened: false,
             began: false,
             behind_percent: false,
@@ -166,7 +166,7 @@ impl<R: Read + Seek> NcReader<R> {
     }
 
     /// Reads the block that begins with the line `first`, and goes behind it.
-    fn logical(&mut self, first: &Physical, block: &mut NcBlock) -> Result<(), ReadError> {
+    fn logical(&mut self, first: &PhysicalBlockLine, block: &mut NcBlock) -> Result<(), ReadError> {
         let line = self.lines.line();
         self.scratch.text.clear();
         self.scratch.code.clear();
@@ -187,7 +187,7 @@ impl<R: Read + Seek> NcReader<R> {
         if overlong {
             return Err(overlong_block(&self.scratch.text, line).into());
         }
-        let Scratch { text, code } = &self.scratch;
+        let BlockText { text, code } = &self.scratch;
         let read =
             taken.and_then(|()| check_depth(code)).and_then(|()| match self.syntax.notation {
                 Notation::Words => words::parse(code, text, self.syntax.hash_variables, block),
@@ -274,7 +274,7 @@ impl<R: Read + Seek> NcReader<R> {
     /// Whether a line can be a block, and is not just words of a text.
     fn is_block(&self, line: &[u8]) -> bool {
         let mut block = NcBlock::default();
-        let read = Scratch::default().read(line, &self.syntax, &mut block);
+        let read = BlockText::default().read(line, &self.syntax, &mut block);
         let names = |item: &NcItem| matches!(item, NcItem::Name(_));
         let prose =
             block.number.is_none() && block.items.len() > 1 && block.items.iter().all(names);
@@ -282,7 +282,7 @@ impl<R: Read + Seek> NcReader<R> {
     }
 }
 
-impl Scratch {
+impl BlockText {
     /// Puts a line behind those of its block.
     fn add(
         &mut self,
@@ -350,7 +350,7 @@ impl Scratch {
 /// What cannot be read in it.
 pub fn parse_block(line: &str, syntax: &NcSyntax) -> Result<NcBlock, SyntaxFault> {
     let mut block = NcBlock { line: 1, ..NcBlock::default() };
-    let read = Scratch::default().read(line.as_bytes(), syntax, &mut block);
+    let read = BlockText::default().read(line.as_bytes(), syntax, &mut block);
     read.map_err(|fault| fault.fault(line, 1))?;
     Ok(block)
 }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::io::{Read, Seek};
 
-use super::block::{Direction, NcSyntax, Notation};
+use super::block::{JumpDirection, NcSyntax, Notation};
 use super::lines::NcMark;
 use super::reader::NcReader;
 use crate::fault::ReadError;
@@ -27,8 +27,8 @@ pub enum NcTarget {
 
 /// What was found, by target, direction and place of the jump.
 #[derive(Debug, Default)]
-pub(super) struct Found {
-    marks: HashMap<(NcTarget, Direction, u64), Option<NcMark>>,
+pub(super) struct JumpCache {
+    marks: HashMap<(NcTarget, JumpDirection, u64), Option<NcMark>>,
     /// Lines looked at.
     searched: u64,
 }
@@ -44,7 +44,7 @@ impl<R: Read + Seek> NcReader<R> {
     pub fn find(
         &mut self,
         target: &NcTarget,
-        direction: Direction,
+        direction: JumpDirection,
     ) -> Result<Option<NcMark>, ReadError> {
         let here = self.mark();
         let key = (target.clone(), direction, here.offset());
@@ -69,18 +69,18 @@ impl<R: Read + Seek> NcReader<R> {
     fn look(
         &mut self,
         target: &NcTarget,
-        direction: Direction,
+        direction: JumpDirection,
         here: NcMark,
     ) -> Result<Option<NcMark>, ReadError> {
-        if direction != Direction::Back
+        if direction != JumpDirection::Back
             && let Some(mark) = self.look_from(here, u64::MAX, target, false)?
         {
             return Ok(Some(mark));
         }
-        if direction == Direction::Forward {
+        if direction == JumpDirection::Forward {
             return Ok(None);
         }
-        let last = direction == Direction::Back;
+        let last = direction == JumpDirection::Back;
         self.look_from(NcMark::START, here.offset(), target, last)
     }
 
@@ -103,7 +103,7 @@ impl<R: Read + Seek> NcReader<R> {
                 return Ok(found);
             };
             self.found.searched += 1;
-            let line = Line(self.lines.text(&physical).trim_ascii_start());
+            let line = LineRest(self.lines.text(&physical).trim_ascii_start());
             if line.is(target, &self.syntax) {
                 found = Some(mark);
                 if !last {
@@ -117,9 +117,9 @@ impl<R: Read + Seek> NcReader<R> {
 
 /// What is left of a line.
 #[derive(Clone, Copy)]
-struct Line<'t>(&'t [u8]);
+struct LineRest<'t>(&'t [u8]);
 
-impl<'t> Line<'t> {
+impl<'t> LineRest<'t> {
     /// Whether the line begins the block, label or program that `target` means.
     fn is(self, target: &NcTarget, syntax: &NcSyntax) -> bool {
         let conversational = syntax.notation == Notation::Conversational;
@@ -131,7 +131,7 @@ impl<'t> Line<'t> {
                 } else {
                     line.after(b"N").or(if syntax.hash_variables { None } else { line.after(b":") })
                 };
-                behind.and_then(Line::whole).is_some_and(|(found, _)| found == *number)
+                behind.and_then(LineRest::whole).is_some_and(|(found, _)| found == *number)
             }
             NcTarget::Label(name) if conversational => {
                 line.after_number(b"").after(b"LBL").is_some_and(|line| line.is_label(name))
@@ -159,19 +159,19 @@ impl<'t> Line<'t> {
     /// What stands behind `prefix`, in capitals, and blanks.
     fn after(self, prefix: &[u8]) -> Option<Self> {
         let (head, rest) = self.0.split_at_checked(prefix.len())?;
-        head.eq_ignore_ascii_case(prefix).then(|| Line(rest.trim_ascii_start()))
+        head.eq_ignore_ascii_case(prefix).then(|| LineRest(rest.trim_ascii_start()))
     }
 
     fn after_skip(self) -> Self {
         match self.0 {
-            [b'/', b'0'..=b'9', rest @ ..] | [b'/', rest @ ..] => Line(rest.trim_ascii_start()),
+            [b'/', b'0'..=b'9', rest @ ..] | [b'/', rest @ ..] => LineRest(rest.trim_ascii_start()),
             _ => self,
         }
     }
 
     /// The text after the number of the block, if it has one.
     fn after_number(self, letter: &[u8]) -> Self {
-        let behind = self.after(letter).and_then(Line::whole);
+        let behind = self.after(letter).and_then(LineRest::whole);
         behind.map_or(self, |(_, rest)| rest)
     }
 
@@ -180,7 +180,7 @@ impl<'t> Line<'t> {
         let digits = self.0.iter().take_while(|byte| byte.is_ascii_digit()).count();
         let number = std::str::from_utf8(&self.0[..digits]).ok()?.parse().ok()?;
         let rest = &self.0[digits..];
-        (rest.first() != Some(&b'.')).then(|| (number, Line(rest.trim_ascii_start())))
+        (rest.first() != Some(&b'.')).then(|| (number, LineRest(rest.trim_ascii_start())))
     }
 
     /// `5`, `"NAME"`
@@ -198,7 +198,7 @@ impl<'t> Line<'t> {
     /// `O1000`, and no `o` word of LinuxCNC.
     fn is_program(self, name: &str) -> bool {
         if let Some(number) = name.strip_prefix('O').and_then(|name| name.parse::<u64>().ok()) {
-            let found = self.after(b"O").or(self.after(b":")).and_then(Line::whole);
+            let found = self.after(b"O").or(self.after(b":")).and_then(LineRest::whole);
             return found.is_some_and(|(found, rest)| found == number && !rest.is_o_word());
         }
         self.after_name(name).is_some_and(|rest| {

@@ -8,7 +8,7 @@ const MOST_OPERATORS: usize = 256;
 
 /// Whose rules say which operator binds first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Rules {
+pub(super) enum Precedence {
     /// Comparisons before `AND`, `OR`, `XOR`, as LinuxCNC has them. Fanuc lets `AND` bind like `*`, and `OR` like `+`:
     /// where the two would differ, brackets are asked for.
     Hash,
@@ -21,7 +21,7 @@ pub(super) enum Rules {
 
 /// What an operand is made of, its brackets aside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Made {
+enum OperandForm {
     /// One thing, or one in brackets.
     Whole,
     /// One thing with a sign in front.
@@ -33,21 +33,21 @@ enum Made {
 
 /// An expression that is being put together: operand, operator, operand …
 #[derive(Debug)]
-pub(super) struct Tree {
-    rules: Rules,
-    operands: Vec<(NcExpression, Made)>,
+pub(super) struct ExpressionTree {
+    rules: Precedence,
+    operands: Vec<(NcExpression, OperandForm)>,
     operators: Vec<BinaryOperator>,
     count: usize,
 }
 
-impl Tree {
-    pub(super) fn new(rules: Rules) -> Self {
+impl ExpressionTree {
+    pub(super) fn new(rules: Precedence) -> Self {
         Self { rules, operands: Vec::new(), operators: Vec::new(), count: 0 }
     }
 
     /// The next operand; `signed` where a sign stands in front of it.
     pub(super) fn operand(&mut self, operand: NcExpression, signed: bool) {
-        let made = if signed { Made::Signed } else { Made::Whole };
+        let made = if signed { OperandForm::Signed } else { OperandForm::Whole };
         self.operands.push((operand, made));
     }
 
@@ -90,9 +90,9 @@ impl Tree {
         };
         self.allow(operator, left.1, right.1)?;
         let made = match operator {
-            _ if is_comparison(operator) => Made::Comparison,
-            _ if is_logic(operator) => Made::Logic(operator),
-            _ => Made::Arithmetic,
+            _ if is_comparison(operator) => OperandForm::Comparison,
+            _ if is_logic(operator) => OperandForm::Logic(operator),
+            _ => OperandForm::Arithmetic,
         };
         let whole = NcExpression::Binary(operator, Box::new(left.0), Box::new(right.0));
         self.operands.push((whole, made));
@@ -100,18 +100,23 @@ impl Tree {
     }
 
     /// Refuses what controls read differently.
-    fn allow(&self, operator: BinaryOperator, left: Made, right: Made) -> Result<(), Unreadable> {
+    fn allow(
+        &self,
+        operator: BinaryOperator,
+        left: OperandForm,
+        right: OperandForm,
+    ) -> Result<(), Unreadable> {
         let both = [left, right];
         let doubtful = if operator == BinaryOperator::Power {
-            left == Made::Signed
+            left == OperandForm::Signed
         } else if is_comparison(operator) {
-            both.iter().any(|made| matches!(made, Made::Comparison | Made::Logic(_)))
-        } else if is_logic(operator) && self.rules == Rules::Hash {
+            both.iter().any(|made| matches!(made, OperandForm::Comparison | OperandForm::Logic(_)))
+        } else if is_logic(operator) && self.rules == Precedence::Hash {
             both.iter().any(|made| match made {
-                Made::Arithmetic => true,
-                Made::Logic(other) => *other != operator,
+                OperandForm::Arithmetic => true,
+                OperandForm::Logic(other) => *other != operator,
                 _ => false,
-            }) || both.contains(&Made::Comparison) && both.contains(&Made::Whole)
+            }) || both.contains(&OperandForm::Comparison) && both.contains(&OperandForm::Whole)
         } else {
             false
         };
@@ -131,7 +136,7 @@ impl Tree {
             B::Power => 9,
             B::Multiply | B::Divide | B::Remainder | B::WholeQuotient => 8,
             B::Add | B::Subtract => 7,
-            B::And | B::Or | B::Xor if self.rules == Rules::Hash => 1,
+            B::And | B::Or | B::Xor if self.rules == Precedence::Hash => 1,
             B::And => 6,
             B::Xor => 5,
             B::Or => 4,

@@ -5,30 +5,30 @@ use pest::error::InputLocation;
 use pest::iterators::{Pair, Pairs};
 use pest_derive::Parser;
 
-use super::block::{Approach, Direction, NcBlock, NcFlow, NcItem, NcNumber, NcValue, NcWord};
+use super::block::{Approach, JumpDirection, NcBlock, NcFlow, NcItem, NcNumber, NcValue, NcWord};
 use super::expression::{NcExpression, UnaryOperator};
 use super::fault::Unreadable;
 use super::number;
 use super::pairs::{due, only};
-use super::tree::{Rules, Tree};
+use super::tree::{ExpressionTree, Precedence};
 
 #[derive(Parser)]
 #[grammar = "nc/words.pest"]
-struct Grammar;
+struct WordsGrammar;
 
-type Answer<T> = Result<T, Unreadable>;
+type Parsed<T> = Result<T, Unreadable>;
 
 /// Reads the block `code`, in capitals and without remarks; `original` is the same as it was written.
-pub(super) fn parse(code: &str, original: &str, hash: bool, block: &mut NcBlock) -> Answer<()> {
+pub(super) fn parse(code: &str, original: &str, hash: bool, block: &mut NcBlock) -> Parsed<()> {
     let rule = if hash { Rule::hash_block } else { Rule::name_block };
-    let pairs = Grammar::parse(rule, code).map_err(|error| {
+    let pairs = WordsGrammar::parse(rule, code).map_err(|error| {
         let at = match error.location {
             InputLocation::Pos(at) => at,
             InputLocation::Span((at, _)) => at,
         };
         unreadable(code, at, hash)
     })?;
-    let builder = Builder { original, hash };
+    let builder = WordsBuilder { original, hash };
     for pair in pairs.flat_map(Pair::into_inner) {
         let span = pair.as_span().start()..pair.as_span().end();
         builder.item(pair, block).map_err(|fault| fault.at(span))?;
@@ -66,13 +66,13 @@ fn unreadable(code: &str, at: usize, hash: bool) -> Unreadable {
 }
 
 /// Pairs of the grammar to what a block says.
-struct Builder<'t> {
+struct WordsBuilder<'t> {
     original: &'t str,
     hash: bool,
 }
 
-impl Builder<'_> {
-    fn item(&self, pair: Pair<'_, Rule>, block: &mut NcBlock) -> Answer<()> {
+impl WordsBuilder<'_> {
+    fn item(&self, pair: Pair<'_, Rule>, block: &mut NcBlock) -> Parsed<()> {
         let item = match pair.as_rule() {
             Rule::skip => {
                 block.skipped = true;
@@ -101,7 +101,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn word(&self, pair: Pair<'_, Rule>) -> Answer<NcItem> {
+    fn word(&self, pair: Pair<'_, Rule>) -> Parsed<NcItem> {
         let mut parts = pair.into_inner();
         let mut first = due(&mut parts)?;
         let comma = first.as_rule() == Rule::comma;
@@ -120,7 +120,7 @@ impl Builder<'_> {
         Ok(NcItem::Word(NcWord { letter: first.as_str().as_bytes()[0], incremental, value }))
     }
 
-    fn named(&self, pair: Pair<'_, Rule>) -> Answer<NcItem> {
+    fn named(&self, pair: Pair<'_, Rule>) -> Parsed<NcItem> {
         let mut parts = pair.into_inner();
         Ok(NcItem::Named {
             name: due(&mut parts)?.as_str().to_owned().into(),
@@ -128,7 +128,7 @@ impl Builder<'_> {
         })
     }
 
-    fn call(&self, pair: Pair<'_, Rule>) -> Answer<NcItem> {
+    fn call(&self, pair: Pair<'_, Rule>) -> Parsed<NcItem> {
         let mut parts = pair.into_inner();
         let name = due(&mut parts)?.as_str().to_owned();
         let mut arguments = Vec::new();
@@ -144,7 +144,7 @@ impl Builder<'_> {
     }
 
     /// `DEF REAL _X, _Y=5`: the name `DEF REAL`, then each variable, by name or with its first value.
-    fn define(&self, pair: Pair<'_, Rule>, block: &mut NcBlock) -> Answer<()> {
+    fn define(&self, pair: Pair<'_, Rule>, block: &mut NcBlock) -> Parsed<()> {
         for part in pair.into_inner() {
             match part.as_rule() {
                 Rule::r#type => {
@@ -174,7 +174,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn value(&self, pair: Pair<'_, Rule>) -> Answer<NcValue> {
+    fn value(&self, pair: Pair<'_, Rule>) -> Parsed<NcValue> {
         match pair.as_rule() {
             Rule::value => self.value(only(pair)),
             Rule::approached => {
@@ -203,8 +203,9 @@ impl Builder<'_> {
     }
 
     /// Operands and operators in a row.
-    fn expression(&self, pair: Pair<'_, Rule>) -> Answer<NcExpression> {
-        let mut tree = Tree::new(if self.hash { Rules::Hash } else { Rules::Names });
+    fn expression(&self, pair: Pair<'_, Rule>) -> Parsed<NcExpression> {
+        let mut tree =
+            ExpressionTree::new(if self.hash { Precedence::Hash } else { Precedence::Names });
         let (mut minus, mut not) = (false, false);
         for part in pair.into_inner() {
             match part.as_rule() {
@@ -229,7 +230,7 @@ impl Builder<'_> {
     }
 
     /// One operand without its sign.
-    fn primary(&self, pair: Pair<'_, Rule>) -> Answer<NcExpression> {
+    fn primary(&self, pair: Pair<'_, Rule>) -> Parsed<NcExpression> {
         Ok(match pair.as_rule() {
             Rule::number => NcExpression::Number(number::value(pair.as_str())?),
             Rule::text => NcExpression::Text(self.text(pair)),
@@ -238,7 +239,7 @@ impl Builder<'_> {
             Rule::hash_function | Rule::function => {
                 let mut parts = pair.into_inner();
                 let name = due(&mut parts)?.as_str().to_owned();
-                let arguments = parts.map(|part| self.argument(part)).collect::<Answer<_>>()?;
+                let arguments = parts.map(|part| self.argument(part)).collect::<Parsed<_>>()?;
                 NcExpression::Function { name, arguments }
             }
             Rule::indexed => {
@@ -260,7 +261,7 @@ impl Builder<'_> {
     }
 
     /// An argument of a function; of `ATAN[y]/[x]` the second stands in brackets.
-    fn argument(&self, pair: Pair<'_, Rule>) -> Answer<NcExpression> {
+    fn argument(&self, pair: Pair<'_, Rule>) -> Parsed<NcExpression> {
         match pair.as_rule() {
             Rule::bracket => self.expression(only(pair)),
             _ => self.expression(pair),
@@ -268,7 +269,7 @@ impl Builder<'_> {
     }
 
     /// `#1`, `#<NAME>`, `#[..]`; `##1` is the variable whose number is in `#1`.
-    fn hash_variable(&self, pair: Pair<'_, Rule>) -> Answer<NcExpression> {
+    fn hash_variable(&self, pair: Pair<'_, Rule>) -> Parsed<NcExpression> {
         let mut hashes = 0;
         let mut variable = None;
         for part in pair.into_inner() {
@@ -304,7 +305,7 @@ impl Builder<'_> {
         self.original[span.start()..span.end()].to_owned()
     }
 
-    fn flow(&self, pair: Pair<'_, Rule>) -> Answer<NcFlow> {
+    fn flow(&self, pair: Pair<'_, Rule>) -> Parsed<NcFlow> {
         let rule = pair.as_rule();
         let spelling = pair.as_str();
         let mut parts = pair.into_inner();
@@ -322,7 +323,7 @@ impl Builder<'_> {
             Rule::hash_if => return self.hash_if(parts),
             Rule::hash_goto => NcFlow::Goto {
                 target: self.target(due(&mut parts)?)?,
-                direction: Direction::Anywhere,
+                direction: JumpDirection::Anywhere,
                 condition: None,
             },
             Rule::hash_while => {
@@ -385,33 +386,33 @@ impl Builder<'_> {
     }
 
     /// `IF [..]` and what hangs on it.
-    fn hash_if(&self, mut parts: Pairs<'_, Rule>) -> Answer<NcFlow> {
+    fn hash_if(&self, mut parts: Pairs<'_, Rule>) -> Parsed<NcFlow> {
         let condition = self.expression(only(due(&mut parts)?))?;
         let then = due(&mut parts)?;
         Ok(match then.as_rule() {
             Rule::then => NcFlow::Then(condition),
             Rule::if_number => NcFlow::Goto {
                 target: NcExpression::Text(then.as_str().to_owned()),
-                direction: Direction::Anywhere,
+                direction: JumpDirection::Anywhere,
                 condition: Some(condition),
             },
             _ => NcFlow::Goto {
                 target: self.target(only(then))?,
-                direction: Direction::Anywhere,
+                direction: JumpDirection::Anywhere,
                 condition: Some(condition),
             },
         })
     }
 
     /// Where `GOTO` leads: a number, something to be worked out, a name.
-    fn target(&self, pair: Pair<'_, Rule>) -> Answer<NcExpression> {
+    fn target(&self, pair: Pair<'_, Rule>) -> Parsed<NcExpression> {
         match pair.as_rule() {
             Rule::name => Ok(NcExpression::Text(pair.as_str().to_owned())),
             _ => self.expression(pair),
         }
     }
 
-    fn goto(&self, pair: Pair<'_, Rule>, condition: Option<NcExpression>) -> Answer<NcFlow> {
+    fn goto(&self, pair: Pair<'_, Rule>, condition: Option<NcExpression>) -> Parsed<NcFlow> {
         self.goto_parts(pair.into_inner(), condition)
     }
 
@@ -419,11 +420,11 @@ impl Builder<'_> {
         &self,
         mut parts: Pairs<'_, Rule>,
         condition: Option<NcExpression>,
-    ) -> Answer<NcFlow> {
+    ) -> Parsed<NcFlow> {
         let direction = match due(&mut parts)?.as_str() {
-            "GOTOF" => Direction::Forward,
-            "GOTOB" => Direction::Back,
-            _ => Direction::Anywhere,
+            "GOTOF" => JumpDirection::Forward,
+            "GOTOB" => JumpDirection::Back,
+            _ => JumpDirection::Anywhere,
         };
         let target = due(&mut parts)?;
         let target = match target.as_rule() {
@@ -433,7 +434,7 @@ impl Builder<'_> {
         Ok(NcFlow::Goto { target: NcExpression::Text(target), direction, condition })
     }
 
-    fn repeat_from(&self, mut parts: Pairs<'_, Rule>) -> Answer<NcFlow> {
+    fn repeat_from(&self, mut parts: Pairs<'_, Rule>) -> Parsed<NcFlow> {
         let block_only = due(&mut parts)?.as_str() == "REPEATB";
         let label = due(&mut parts)?.as_str().to_owned();
         let mut until = block_only.then(|| label.clone());
@@ -448,7 +449,7 @@ impl Builder<'_> {
     }
 
     /// LinuxCNC's `o` words.
-    fn o_flow(&self, mut parts: Pairs<'_, Rule>) -> Answer<NcFlow> {
+    fn o_flow(&self, mut parts: Pairs<'_, Rule>) -> Parsed<NcFlow> {
         let name = due(&mut parts)?;
         let name = match name.as_rule() {
             Rule::angled => angled(name),
@@ -457,7 +458,7 @@ impl Builder<'_> {
         let word = due(&mut parts)?;
         let mut values = parts
             .map(|bracket| self.expression(only(bracket)))
-            .collect::<Answer<Vec<_>>>()?
+            .collect::<Parsed<Vec<_>>>()?
             .into_iter();
         let missing = || Unreadable::new("a value in brackets is missing behind this word");
         let flow = match word.as_str() {
@@ -505,12 +506,12 @@ fn angled(pair: Pair<'_, Rule>) -> String {
     text
 }
 
-fn plain_whole(pair: Pair<'_, Rule>) -> Answer<String> {
+fn plain_whole(pair: Pair<'_, Rule>) -> Parsed<String> {
     Ok(number::whole(pair.as_str())?.to_string())
 }
 
 /// The number that an expression is, if it is nothing else.
-fn plain_number(pair: Pair<'_, Rule>) -> Answer<Option<NcNumber>> {
+fn plain_number(pair: Pair<'_, Rule>) -> Parsed<Option<NcNumber>> {
     let mut negative = false;
     let mut found = None;
     for part in pair.into_inner() {

@@ -54,7 +54,7 @@ fn moves() {
 
 #[test]
 fn arcs_and_splines() {
-    let arc = Circle {
+    let arc = CircleRecord {
         centre: [1.0, 2.0, 3.0],
         axis: [0.0, 0.0, -1.0],
         radius: Some(56.25),
@@ -62,17 +62,17 @@ fn arcs_and_splines() {
         turns: None,
     };
     same(Statement::Circle(arc.clone()), &["CIRCLE / 1, 2, 3, 0, 0, -1, 56.25"]);
-    let nx = Circle { sense: Some(Sense::Clockwise), ..arc.clone() };
+    let nx = CircleRecord { sense: Some(Sense::Clockwise), ..arc.clone() };
     same(Statement::Circle(nx.clone()), &["CIRCLE/1,2,3,0,0,-1,56.25,0.06,0.5,125.0,1.0"]);
     same(
-        Statement::Circle(Circle { turns: Some(2), ..nx }),
+        Statement::Circle(CircleRecord { turns: Some(2), ..nx }),
         &["CIRCLE/1,2,3,0,0,-1,56.25,0.06,0.5,125.0,1.0,TIMES,2"],
     );
     same(
-        Statement::Circle(Circle { sense: Some(Sense::CounterClockwise), ..arc.clone() }),
+        Statement::Circle(CircleRecord { sense: Some(Sense::CounterClockwise), ..arc.clone() }),
         &["CIRCLE/ 1,2,3,0,0,-1,56.25,COUNTERCLOCKWISE ", "CIRCLE/1,2,3,0,0,-1,56.25,CCLW"],
     );
-    same(Statement::Circle(Circle { radius: None, ..arc }), &["CIRCLE/1,2,3,0,0,-1."]);
+    same(Statement::Circle(CircleRecord { radius: None, ..arc }), &["CIRCLE/1,2,3,0,0,-1."]);
     same(Statement::Nurbs, &["NURBS/", "NURBS"]);
     same(Statement::Knot(vec![0.25, 1.0]), &["KNOT/0.25,1.0000000"]);
     same(Statement::Control { point: [1.0, 2.0, 3.0], axis: None }, &["CNTRL/1,2,3"]);
@@ -108,7 +108,7 @@ fn feeds() {
 #[test]
 fn spindle_and_coolant() {
     let on =
-        |speed, unit, sense| Statement::Spindle(Spindle::On { speed, unit, sense, most: None });
+        |speed, unit, sense| Statement::Spindle(SpindleWord::On { speed, unit, sense, most: None });
     let clockwise = Some(Sense::Clockwise);
     same(
         on(Some(9000.0), SpindleUnit::Rpm, clockwise),
@@ -128,16 +128,16 @@ fn spindle_and_coolant() {
     same(on(Some(120.0), SpindleUnit::SurfaceMetric, None), &["SPINDL/SMM,120"]);
     same(on(None, SpindleUnit::Rpm, None), &["SPINDL/ON"]);
     same(on(None, SpindleUnit::Rpm, clockwise), &["SPINDL/CLW"]);
-    same(Statement::Spindle(Spindle::Off), &["SPINDL/OFF"]);
-    same(Statement::Spindle(Spindle::Orient), &["SPINDL/ORIENT", "SPINDL/LOCK"]);
+    same(Statement::Spindle(SpindleWord::Off), &["SPINDL/OFF"]);
+    same(Statement::Spindle(SpindleWord::Orient), &["SPINDL/ORIENT", "SPINDL/LOCK"]);
     for (text, coolant) in [
-        ("OFF", Coolant::Off),
-        ("ON", Coolant::On),
-        ("FLOOD", Coolant::Flood),
-        ("MIST", Coolant::Mist),
-        ("THRU", Coolant::Through),
-        ("through", Coolant::Through),
-        ("AIR", Coolant::Air),
+        ("OFF", CoolantWord::Off),
+        ("ON", CoolantWord::On),
+        ("FLOOD", CoolantWord::Flood),
+        ("MIST", CoolantWord::Mist),
+        ("THRU", CoolantWord::Through),
+        ("through", CoolantWord::Through),
+        ("AIR", CoolantWord::Air),
     ] {
         same(Statement::Coolant(coolant), &[&format!("COOLNT/{text}")]);
     }
@@ -369,14 +369,14 @@ fn cycles() {
 #[test]
 fn cutter_compensation() {
     let cutcom = |side, plane, register| Statement::Cutcom(Cutcom { side, plane, register });
-    same(cutcom(Some(Side::Left), Some(2), None), &["CUTCOM/LEFT,XYPLAN"]);
+    same(cutcom(Some(CutterSide::Left), Some(2), None), &["CUTCOM/LEFT,XYPLAN"]);
     same(
-        cutcom(Some(Side::Right), Some(0), Some(5)),
+        cutcom(Some(CutterSide::Right), Some(0), Some(5)),
         &["CUTCOM/RIGHT,YZPLAN,5", "CUTCOM/RIGHT,OSETNO,5,YZPLAN"],
     );
-    same(cutcom(Some(Side::Left), None, None), &["CUTCOM/ LEFT "]);
+    same(cutcom(Some(CutterSide::Left), None, None), &["CUTCOM/ LEFT "]);
     same(cutcom(None, None, None), &["CUTCOM/ ON "]);
-    same(cutcom(Some(Side::Off), None, None), &["CUTCOM/OFF"]);
+    same(cutcom(Some(CutterSide::Off), None, None), &["CUTCOM/OFF"]);
     same(other("CUTCOM", &[word("LENGTH"), number(3.0)], false), &["CUTCOM/LENGTH,3"]);
 }
 
@@ -521,7 +521,7 @@ fn each_word_has_one_row_and_each_statement_the_name_of_its_row() {
             let kept = read(&format!("{}/1,A", word.name()));
             assert_eq!(kept, other(word.name(), &[number(1.0), self::word("A")], false));
             assert_eq!(kept.usage(), word.usage);
-            assert!(!matches!(word.usage, Usage::Used | Usage::Passed), "{word:?}");
+            assert!(!matches!(word.usage, WordUsage::Used | WordUsage::Passed), "{word:?}");
         } else {
             let statement = read(word.example);
             assert_eq!((statement.word(), statement.usage()), (word.name(), word.usage));
@@ -555,9 +555,9 @@ fn forms_of_autodesk_and_catia() {
         assert!(parse_record(wrong).is_err(), "{wrong}");
     }
     same(Statement::Milling, &["MODE/MILL", "MODE / mill"]);
-    assert_eq!(read("MODE/TURN").usage(), Usage::Refused);
+    assert_eq!(read("MODE/TURN").usage(), WordUsage::Refused);
     same(Statement::SetOut([0.0, 1.0, 0.0]), &["INDIRV/0,1,0", "INDIRV/ 0.,1.,0."]);
-    assert_eq!(read("INDIRV/V1").usage(), Usage::Refused);
+    assert_eq!(read("INDIRV/V1").usage(), WordUsage::Refused);
     same(Statement::PartSurface(None), &["AUTOPS", "AUTOPS/"]);
     same(
         Statement::PartSurface(Some([0.0, 1.0, 0.0])),
@@ -566,7 +566,7 @@ fn forms_of_autodesk_and_catia() {
             "PSIS / (PLANE/ (POINT/ 1, 2,3) , PERPTO,(VECTOR/0,1,0))",
         ],
     );
-    assert_eq!(read("PSIS/S1").usage(), Usage::Refused);
+    assert_eq!(read("PSIS/S1").usage(), WordUsage::Refused);
     same(
         Statement::ToolName("T1 End Mill".to_owned()),
         &["TPRINT/T1 End Mill", "TPRINT T1 End Mill"],
@@ -622,17 +622,17 @@ fn unknown_paths_are_told_from_other_words() {
 #[test]
 fn what_becomes_of_a_record_depends_on_its_form() {
     for (text, usage) in [
-        ("NOSUCH/1", Usage::Unknown),
-        ("COOLNT/SUPER", Usage::Unknown),
-        ("SELECT/WIRE,1", Usage::Unknown),
-        ("LOAD/WIRE,1", Usage::Refused),
-        ("CUTCOM/MAYBE", Usage::Refused),
-        ("TLAXIS/NORMAL", Usage::Refused),
-        ("$$-> NOSUCH / 1", Usage::Ignored),
-        ("$$-> GOTO / 1", Usage::Ignored),
-        ("$$-> TRACUT / 1", Usage::Refused),
-        ("$$-> CUTTER / 1", Usage::Used),
-        ("$$ any remark", Usage::Ignored),
+        ("NOSUCH/1", WordUsage::Unknown),
+        ("COOLNT/SUPER", WordUsage::Unknown),
+        ("SELECT/WIRE,1", WordUsage::Unknown),
+        ("LOAD/WIRE,1", WordUsage::Refused),
+        ("CUTCOM/MAYBE", WordUsage::Refused),
+        ("TLAXIS/NORMAL", WordUsage::Refused),
+        ("$$-> NOSUCH / 1", WordUsage::Ignored),
+        ("$$-> GOTO / 1", WordUsage::Ignored),
+        ("$$-> TRACUT / 1", WordUsage::Refused),
+        ("$$-> CUTTER / 1", WordUsage::Used),
+        ("$$ any remark", WordUsage::Ignored),
     ] {
         assert_eq!(read(text).usage(), usage, "{text}");
     }
@@ -648,26 +648,32 @@ fn the_classic_words_are_judged() {
                  TMARK OPSKIP OPSTOP STOP DELAY DWELL AUXFUN PREFUN INSERT PPRINT DISPLY LEADER REWIND BREAK SLOWDN \
                  THREAD DRAFT PAINT MSYS END-OF-PATH HEAD PIVOTZ PROBE REMARK READ MACRO TERMAC CALL INDIRV TLON GOFWD \
                  PSIS END FINI SET OFSETL MIRROR CALSUB ZERO";
-    let of = |usage: Usage| -> Vec<&str> {
+    let of = |usage: WordUsage| -> Vec<&str> {
         let becomes = |word: &&str| MajorWord::find(word).map(|row| row.usage) == Some(usage);
         words.split_whitespace().filter(becomes).collect()
     };
     let missing: Vec<&str> =
         words.split_whitespace().filter(|word| MajorWord::find(word).is_none()).collect();
     assert_eq!(missing, [""; 0]);
-    assert_eq!(of(Usage::Unknown), ["CHECK", "BREAK", "SLOWDN"]);
+    assert_eq!(of(WordUsage::Unknown), ["CHECK", "BREAK", "SLOWDN"]);
     let without_effect = [
         "MACHIN", "LINTOL", "PPTOL", "MCHTOL", "SAFETY", "SEQNO", "TMARK", "DISPLY", "LEADER",
         "REWIND", "DRAFT", "PAINT", "REMARK",
     ];
-    assert_eq!(of(Usage::Ignored), without_effect);
+    assert_eq!(of(WordUsage::Ignored), without_effect);
 }
 
 /// The book lists the words by what becomes of them.
 #[test]
 fn the_book_lists_the_words_of_the_table() {
     let page = include_str!("../../../docs/src/nc-programmer/cl-files.md");
-    for usage in [Usage::Used, Usage::Passed, Usage::Ignored, Usage::Refused, Usage::Unknown] {
+    for usage in [
+        WordUsage::Used,
+        WordUsage::Passed,
+        WordUsage::Ignored,
+        WordUsage::Refused,
+        WordUsage::Unknown,
+    ] {
         let spellings = MajorWord::all().iter().filter(|word| word.usage == usage);
         let listed: Vec<String> =
             spellings.map(|word| format!("`{}`", word.spellings.join("` = `"))).collect();

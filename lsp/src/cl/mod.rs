@@ -10,7 +10,7 @@ pub mod hover;
 pub mod outline;
 mod posted;
 
-use post_grammar::{MajorWord, ReadError, Reader, Statement, Usage};
+use post_grammar::{MajorWord, ReadError, Reader, Statement, WordUsage};
 use post_machine::diagnostic::{Diagnostic, Place, meant, unreadable};
 
 use super::background::Token;
@@ -39,7 +39,7 @@ pub fn findings(of: &Snapshot, words: bool, token: &Token) -> Option<Vec<Diagnos
         match reader.next_record() {
             Ok(Some(record)) if words => {
                 if let Statement::Other { word, directive: false, .. } = &record.statement
-                    && record.statement.usage() == Usage::Unknown
+                    && record.statement.usage() == WordUsage::Unknown
                 {
                     let text = record.text();
                     let start = text.len() - text.trim_ascii_start().len();

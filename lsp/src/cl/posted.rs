@@ -3,8 +3,8 @@
 use post_grammar::{ReadError, Reader};
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
-use post_posting::program::{Reading, ToldSpindle};
-use post_posting::{Block, Flow, Job, Observer, Post};
+use post_posting::program::{DefaultSpindle, ReadingOptions};
+use post_posting::{MotionBlock, Observer, Post, PostingRequest, StreamItem};
 
 use super::EVERY;
 use crate::background::{Token, Worked};
@@ -68,15 +68,15 @@ pub fn post(
         Ok(opened) => opened,
         Err(faults) => return Some(Err(faults)),
     };
-    let job = Job {
-        reading: Reading {
+    let job = PostingRequest {
+        reading: ReadingOptions {
             file: of.name.clone(),
             // Nothing is written: how fast the spindle turns is nobody's business.
-            spindle: ToldSpindle::Still,
-            ..Reading::default()
+            spindle: DefaultSpindle::Still,
+            ..ReadingOptions::default()
         },
         tool_length,
-        ..Job::default()
+        ..PostingRequest::default()
     };
     // What a template asks for may not be known here, and nobody reads it.
     let plain = machine.without_text();
@@ -122,9 +122,9 @@ struct Watch {
 }
 
 impl Observer for Watch {
-    fn blocks(&mut self, blocks: &[Flow<Block>]) {
+    fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
         for block in blocks {
-            let Flow::Point(block) = block else {
+            let StreamItem::Point(block) = block else {
                 continue;
             };
             let deviation = [block.deviation.tip, block.deviation.axis];

@@ -32,7 +32,7 @@
 //! The axes are X, Y, Z of a machine whose axes carry the tool along the part's; with limits of two rotary axes (A and
 //! C, B and C), or rotary values, those of a table whose axes meet in the part origin, C carrying the part on the other.
 
-use post_feed::curve::{Curve, CurveFault};
+use post_feed::curve::{CurveFault, NurbsCurve};
 use post_machine::diagnostic::Diagnostic;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -197,8 +197,12 @@ fn splines<'a>(
         plane,
         pointing: pointing(json, keys, tip.len())?,
     };
-    let made =
-        Curve::new(degree, splines.knots.clone(), splines.tip.clone(), splines.weights.clone());
+    let made = NurbsCurve::new(
+        degree,
+        splines.knots.clone(),
+        splines.tip.clone(),
+        splines.weights.clone(),
+    );
     made.map_err(|fault| {
         let (raw, help) = match fault {
             CurveFault::Order { knot } => (

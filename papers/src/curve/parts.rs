@@ -1,7 +1,7 @@
 //! Splines cut where their first or second derivatives jump.
 
 use nalgebra::Vector3;
-use post_feed::curve::Curve;
+use post_feed::curve::NurbsCurve;
 use post_machine::kinematics::ORDERS;
 
 use super::file::{Pointing, Splines};
@@ -17,7 +17,7 @@ pub struct Part {
 }
 
 impl Part {
-    pub fn curve<const D: usize>(self, splines: &Splines, points: &[[f64; D]]) -> Curve<D> {
+    pub fn curve<const D: usize>(self, splines: &Splines, points: &[[f64; D]]) -> NurbsCurve<D> {
         let weights = match splines.weights.is_empty() {
             true => Vec::new(),
             false => splines.weights[self.first..self.first + self.count].to_vec(),
@@ -25,7 +25,11 @@ impl Part {
         self.made(splines, points, weights)
     }
 
-    pub fn unweighted<const D: usize>(self, splines: &Splines, points: &[[f64; D]]) -> Curve<D> {
+    pub fn unweighted<const D: usize>(
+        self,
+        splines: &Splines,
+        points: &[[f64; D]],
+    ) -> NurbsCurve<D> {
         self.made(splines, points, Vec::new())
     }
 
@@ -35,10 +39,10 @@ impl Part {
         splines: &Splines,
         points: &[[f64; D]],
         weights: Vec<f64>,
-    ) -> Curve<D> {
+    ) -> NurbsCurve<D> {
         let knots = &splines.knots[self.first..self.first + self.count + splines.degree + 1];
         let points = &points[self.first..self.first + self.count];
-        Curve::new(splines.degree, knots.to_vec(), points.to_vec(), weights).expect("a curve")
+        NurbsCurve::new(splines.degree, knots.to_vec(), points.to_vec(), weights).expect("a curve")
     }
 }
 

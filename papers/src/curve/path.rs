@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use post_command::shared::plan::gauges::Station;
 use post_feed::Samples;
-use post_feed::curve::Curve;
+use post_feed::curve::NurbsCurve;
 use post_machine::axis_words;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Short};
@@ -54,8 +54,8 @@ impl Stretch {
 /// How the tool points along a stretch.
 enum CurvePointing {
     Fixed,
-    Second(Curve<3>),
-    Axis(Curve<3>),
+    Second(NurbsCurve<3>),
+    Axis(NurbsCurve<3>),
     Rotary(Vec<(usize, Track<1>)>),
 }
 

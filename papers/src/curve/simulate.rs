@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_motion::contour::{Contour, ContourPoint};
 use post_motion::servo::Servos;
-use post_motion::{At, SetPoints};
+use post_motion::{ProgramPlace, SetPoints};
 use serde::Serialize;
 
 use super::path::CurvePath;
@@ -182,7 +182,7 @@ impl Timeline {
             let joints = station.course.joints[0];
             points.joints.push(joints);
             points.poses.push(path.solver.chain().forward(&joints));
-            points.at.push(At { cuts: true, ..At::default() });
+            points.at.push(ProgramPlace { cuts: true, ..ProgramPlace::default() });
             let [tip, along, ..] = station.tip.map(Vector3::from);
             commanded.push(Commanded {
                 tip,

@@ -1,9 +1,9 @@
 //! Plans of the stretches of a path, by the solver that is asked for.
 
 use post_feed::limits::Limit;
-use post_feed::problem::Source;
+use post_feed::problem::LimitSource;
 use post_feed::{
-    Ends, FeedSpline, Infeasible, Problem, Samples, jerk, linear_program, profile, reach,
+    EndSpeeds, FeedSpline, Infeasible, Problem, Samples, jerk, linear_program, profile, reach,
 };
 use post_machine::diagnostic::{Diagnostic, Short};
 use post_posting::plan::axis_name;
@@ -143,7 +143,7 @@ pub fn plan(
             let speed = feed / samples.stretch(sample);
             if feed > 0.0 { speed * speed } else { 0.0 }
         };
-        let ends = Ends {
+        let ends = EndSpeeds {
             start: if index == 0 { speed(asked.start_feed, 0) } else { 0.0 },
             end: match index == last {
                 true => speed(asked.end_feed, samples.len() - 1),
@@ -274,7 +274,7 @@ impl Told<'_> {
             Short(tip[2])
         );
         let feed = |q: f64| Short(60.0 * q.sqrt() * self.samples.stretch(sample));
-        let by = |row: Option<Source>| match row {
+        let by = |row: Option<LimitSource>| match row {
             Some(source) => format!(" ({} allows no more)", self.limit(source)),
             None => String::new(),
         };
@@ -331,7 +331,7 @@ impl Told<'_> {
     }
 
     /// `axis acceleration of Y`.
-    fn limit(&self, source: Source) -> String {
+    fn limit(&self, source: LimitSource) -> String {
         let limit = self.limits.get(usize::from(source.limit));
         let name = limit.map_or("a limit", |limit| limit.name());
         match source.axis {

@@ -1,6 +1,6 @@
 //! Curves that are planned along: those of the file, and those that are laid through its points.
 
-use post_feed::curve::Curve;
+use post_feed::curve::NurbsCurve;
 use post_feed::fit::{self, Fit, Leg, Rules};
 
 /// Derivatives that are known at the start of a piece, with its value.
@@ -11,7 +11,7 @@ const FACTORIALS: [f64; ORDERS] = [1.0, 1.0, 2.0, 6.0];
 /// A curve of `D` coordinates by its parameter.
 pub enum Track<const D: usize> {
     /// As the file has it.
-    Spline(Curve<D>),
+    Spline(NurbsCurve<D>),
     /// Through points.
     Pieces(Pieces<D>),
 }

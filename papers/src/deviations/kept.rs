@@ -11,7 +11,9 @@ use super::survey::placing;
 use post_machine::description::{Machine, Placement};
 use post_machine::kinematics::Joints;
 use post_posting::Observer;
-use post_posting::accuracy::{Linearise, Move, Node, Placer, Stuck, Tolerances};
+use post_posting::accuracy::{
+    LineariseError, Lineariser, MoveTolerances, NodeMove, PathNode, Placer,
+};
 
 /// A move with all that it needs.
 #[derive(Clone, Debug)]
@@ -19,9 +21,9 @@ pub struct Kept {
     /// Its number among the cuts of the file, counted from 0.
     pub number: usize,
     placer: Placer,
-    from: Node,
-    to: Node,
-    tolerances: Tolerances,
+    from: PathNode,
+    to: PathNode,
+    tolerances: MoveTolerances,
     control_keeps_tip: bool,
 }
 
@@ -50,7 +52,7 @@ impl Keeper {
 }
 
 impl Observer for Keeper {
-    fn cut(&mut self, _: u64, cut: &Move<'_>) {
+    fn cut(&mut self, _: u64, cut: &NodeMove<'_>) {
         let number = self.peaks.len();
         self.peaks.push(peak(|t| strays(cut, t).norm()).size);
         if self.wanted.contains(&number) {
@@ -67,8 +69,8 @@ impl Observer for Keeper {
 }
 
 impl Kept {
-    fn cut(&self) -> Move<'_> {
-        Move {
+    fn cut(&self) -> NodeMove<'_> {
+        NodeMove {
             placer: &self.placer,
             from: &self.from,
             to: &self.to,
@@ -130,17 +132,17 @@ impl Kept {
         placement: Placement,
         model: &mut dyn ModelSession,
         pieces: u32,
-    ) -> Result<Vec<Stretch>, Stuck> {
+    ) -> Result<Vec<Stretch>, LineariseError> {
         let accuracy = placing(&machine.accuracy, placement);
-        self.split(Linearise::new(&accuracy, false), model, pieces)
+        self.split(Lineariser::new(&accuracy, false), model, pieces)
     }
 
     fn split(
         &self,
-        mut linearise: Linearise,
+        mut linearise: Lineariser,
         model: &mut dyn ModelSession,
         pieces: u32,
-    ) -> Result<Vec<Stretch>, Stuck> {
+    ) -> Result<Vec<Stretch>, LineariseError> {
         let cut = self.cut();
         split(&cut, &[self.from, self.to], &mut linearise, model)?;
         let mut stretches = Vec::new();
@@ -154,7 +156,7 @@ impl Kept {
 
 impl Stretch {
     /// A block between two shares of its move.
-    fn of(block: &Move<'_>, [from, to]: [f64; 2], pieces: u32) -> Self {
+    fn of(block: &NodeMove<'_>, [from, to]: [f64; 2], pieces: u32) -> Self {
         let samples = (0..=pieces).map(|step| {
             let t = f64::from(step) / f64::from(pieces);
             (from * (1.0 - t) + to * t, strays(block, t))

@@ -4,7 +4,9 @@ use nalgebra::Vector3;
 use post_plugin::ModelSession;
 
 use super::curve::peak;
-use post_posting::accuracy::{Linearise, Move, Node, Piece, Run, Stuck};
+use post_posting::accuracy::{
+    LinearPiece, LineariseError, Lineariser, NodeMove, NodeRun, PathNode,
+};
 
 /// A move after points were put in.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,11 +24,11 @@ pub struct Placed {
 /// # Errors
 /// Why it cannot be done.
 pub fn place(
-    cut: &Move<'_>,
-    linearise: &mut Linearise,
+    cut: &NodeMove<'_>,
+    linearise: &mut Lineariser,
     model: &mut dyn ModelSession,
     pieces: &mut Vec<f64>,
-) -> Result<Placed, Stuck> {
+) -> Result<Placed, LineariseError> {
     let nodes = [*cut.from, *cut.to];
     split(cut, &nodes, linearise, model)?;
     let mut placed = Placed::default();
@@ -42,12 +44,12 @@ pub fn place(
 
 /// Cuts one move between its `nodes` into pieces.
 pub(super) fn split(
-    cut: &Move<'_>,
-    nodes: &[Node; 2],
-    linearise: &mut Linearise,
+    cut: &NodeMove<'_>,
+    nodes: &[PathNode; 2],
+    linearise: &mut Lineariser,
     model: &mut dyn ModelSession,
-) -> Result<(), Stuck> {
-    let run = Run {
+) -> Result<(), LineariseError> {
+    let run = NodeRun {
         placer: cut.placer,
         nodes,
         tolerances: cut.tolerances,
@@ -58,16 +60,20 @@ pub(super) fn split(
 }
 
 /// Every piece of a move as a move of its own.
-pub(super) fn each<'m>(cut: &Move<'m>, pieces: &[Piece], mut look: impl FnMut(&Move<'_>, &Piece)) {
-    let mut from = Node { t: 0.0, ..*cut.from };
+pub(super) fn each<'m>(
+    cut: &NodeMove<'m>,
+    pieces: &[LinearPiece],
+    mut look: impl FnMut(&NodeMove<'_>, &LinearPiece),
+) {
+    let mut from = PathNode { t: 0.0, ..*cut.from };
     for piece in pieces {
-        let block = Move { from: &from, to: &piece.to, ..*cut };
+        let block = NodeMove { from: &from, to: &piece.to, ..*cut };
         look(&block, piece);
         from = piece.to;
     }
 }
 
 /// Deviation of the control point at the share `t` of a block, mm, part frame.
-pub(super) fn strays(block: &Move<'_>, t: f64) -> Vector3<f64> {
+pub(super) fn strays(block: &NodeMove<'_>, t: f64) -> Vector3<f64> {
     block.deviation(t).tip.into()
 }

@@ -8,7 +8,7 @@ use super::edge::Rim;
 use super::placed::{Placed, place, strays};
 use post_machine::description::{Accuracy, Machine, Method, Placement};
 use post_posting::Observer;
-use post_posting::accuracy::{Linearise, Move};
+use post_posting::accuracy::{Lineariser, NodeMove};
 
 /// One move.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -49,8 +49,8 @@ pub struct Survey<'a> {
     /// The machine's own model, which placements ask.
     own: &'a mut dyn ModelSession,
     models: Vec<&'a mut dyn ModelSession>,
-    placements: [Linearise; 3],
-    compensate: Linearise,
+    placements: [Lineariser; 3],
+    compensate: Lineariser,
     rotary: Vec<usize>,
     /// Tool axis with all axes at zero, and radius of the cutting edge, mm.
     tool: (Vector3<f64>, f64),
@@ -78,8 +78,8 @@ impl<'a> Survey<'a> {
         Self {
             own,
             placements: Self::PLACEMENTS
-                .map(|placement| Linearise::new(&placing(&machine.accuracy, placement), false)),
-            compensate: Linearise::new(&compensating(&machine.accuracy), true),
+                .map(|placement| Lineariser::new(&placing(&machine.accuracy, placement), false)),
+            compensate: Lineariser::new(&compensating(&machine.accuracy), true),
             rotary: axes.filter(|(_, axis)| axis.joint.rotary).map(|(joint, _)| joint).collect(),
             tool: (machine.tool_axis, machine.control_point.radius),
             rows: Vec::new(),
@@ -90,7 +90,7 @@ impl<'a> Survey<'a> {
         }
     }
 
-    fn model(&mut self, index: usize, cut: &Move<'_>) -> Result<Modelled, String> {
+    fn model(&mut self, index: usize, cut: &NodeMove<'_>) -> Result<Modelled, String> {
         let model = &mut *self.models[index];
         let curve = cut.fit(model)?;
         let value = |t: f64| Vector3::from(model.value(&curve, t).tip);
@@ -114,7 +114,7 @@ impl<'a> Survey<'a> {
 }
 
 impl Observer for Survey<'_> {
-    fn cut(&mut self, line: u64, cut: &Move<'_>) {
+    fn cut(&mut self, line: u64, cut: &NodeMove<'_>) {
         let (first, last) = (&cut.from.trace.joints, &cut.to.trace.joints);
         let turns = self.rotary.iter().map(|joint| last[*joint] - first[*joint]);
         // A sum of nothing would be -0.

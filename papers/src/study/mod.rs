@@ -17,7 +17,7 @@ use post_host::OpenedModel;
 use post_machine::description::{Machine, Method, Setting};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::ModelSession;
-use post_posting::report::Report;
+use post_posting::report::PostingReport;
 
 use post_command::shared::{
     AtomicFile, DryRun, Failure, JobArguments, OwnFolder, PathArg, Role, Session, plugin_finder,
@@ -109,7 +109,7 @@ pub struct Program {
     pub name: String,
     pub reduce: bool,
     /// Why it cannot be done, if it cannot.
-    pub report: Result<Report, String>,
+    pub report: Result<PostingReport, String>,
 }
 
 /// Error models at work.

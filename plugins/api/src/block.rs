@@ -2,7 +2,7 @@
 //!
 //! Nothing here is needed to write a dialect; it saves an author the usual hundred lines.
 
-use crate::number::{Front, Look};
+use crate::number::{Front, NumberForm};
 use crate::{AxisWord, Setup, fixed, quantise};
 
 /// How numbers look.
@@ -25,8 +25,8 @@ impl NumberStyle {
         }
     }
 
-    const fn look(self) -> Look {
-        Look { plus: self.plus, trim: self.trim, point: self.point }
+    const fn look(self) -> NumberForm {
+        NumberForm { plus: self.plus, trim: self.trim, point: self.point }
     }
 }
 
@@ -153,12 +153,12 @@ impl<T: PartialEq + Copy> Modal<T> {
 /// The axis words of a program: their decimals, and which of them a move has to write.
 #[derive(Clone, Debug)]
 pub struct Axes {
-    axes: Vec<Axis>,
+    axes: Vec<AxisState>,
     style: NumberStyle,
 }
 
 #[derive(Clone, Debug)]
-struct Axis {
+struct AxisState {
     name: String,
     /// A blank and the name, if it is short enough.
     front: Option<Front>,
@@ -207,7 +207,7 @@ impl Axes {
             _ => format!("{}=", word.name),
         };
         let axes = setup.words.iter().map(|word| (word, address(word)));
-        let axes = axes.map(|(word, name)| Axis {
+        let axes = axes.map(|(word, name)| AxisState {
             front: Front::blank(&name),
             name,
             group: match (word.rotary, word.depth) {
@@ -243,7 +243,7 @@ impl Axes {
 
     /// A move to `words` turns an axis by so much that [`Axes::modulo`] cannot say it: its name.
     pub fn turns_round(&self, words: &[f64]) -> Option<&str> {
-        let far = |(axis, word): &(&Axis, &f64)| {
+        let far = |(axis, word): &(&AxisState, &f64)| {
             let modulo = axis.modulo.as_ref();
             let before = modulo.and_then(|modulo| modulo.at);
             before.is_some_and(|before| (*word - before).abs() > 360.0 - 1e-9)
@@ -294,7 +294,7 @@ impl Axes {
 
     /// Sets the decimals of the word of this name; false if there is none.
     pub fn set_decimals(&mut self, name: &str, decimals: u8) -> bool {
-        let named = |axis: &&mut Axis| axis.name.trim_end_matches('=') == name;
+        let named = |axis: &&mut AxisState| axis.name.trim_end_matches('=') == name;
         match self.axes.iter_mut().find(named) {
             Some(axis) => {
                 axis.decimals = decimals;
@@ -343,7 +343,7 @@ impl Axes {
     }
 }
 
-impl Axis {
+impl AxisState {
     /// Has the words say the place within a turn, after one of `ways`.
     fn within_turn(&mut self, ways: [&str; 3], close: &'static str) {
         let name = self.name.trim_end_matches('=');

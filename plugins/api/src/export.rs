@@ -172,7 +172,7 @@ impl Exported {
         let mut plugin = common([name, version, about], raw::KIND_DIALECT);
         plugin.describe = Some(describe_dialect::<D>);
         plugin.table_size = size_of::<PostDialect>() as u32;
-        plugin.dialect = Table::<D>::DIALECT;
+        plugin.dialect = PluginFunctions::<D>::DIALECT;
         Exported(plugin)
     }
 
@@ -184,7 +184,7 @@ impl Exported {
         let mut plugin = common([name, version, about], raw::KIND_MODEL);
         plugin.describe = Some(describe_model::<M>);
         plugin.table_size = size_of::<PostModel>() as u32;
-        plugin.model = Table::<M>::MODEL;
+        plugin.model = PluginFunctions::<M>::MODEL;
         Exported(plugin)
     }
 }
@@ -386,9 +386,9 @@ const TOOK_BACK: &str = "it took back text of earlier events";
 
 const NOT_TEXT: &str = "the host handed over text that is not UTF-8";
 
-struct Table<T>(PhantomData<T>);
+struct PluginFunctions<T>(PhantomData<T>);
 
-impl<D: Dialect> Table<D> {
+impl<D: Dialect> PluginFunctions<D> {
     const DIALECT: &'static PostDialect = &PostDialect {
         open: Some(open_dialect::<D>),
         format: Some(format::<D>),
@@ -399,7 +399,7 @@ impl<D: Dialect> Table<D> {
     };
 }
 
-impl<M: ErrorModel> Table<M> {
+impl<M: ErrorModel> PluginFunctions<M> {
     const MODEL: &'static PostModel = &PostModel {
         open: Some(open_model::<M>),
         fit: Some(fit::<M>),

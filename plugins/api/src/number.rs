@@ -31,7 +31,7 @@ const POWERS_F: [f64; 16] = {
 /// Digit for digit what `format!("{value:.decimals$}")` gives (ties of the exact binary value go to the
 /// even digit), except that a number which rounds to nothing has no sign: `0.000`, never `-0.000`.
 pub fn fixed(out: &mut String, value: f64, decimals: u8) {
-    if !Look::default().append(out, Front::NONE, value, decimals) {
+    if !NumberForm::default().append(out, Front::NONE, value, decimals) {
         // Writing to a String cannot fail.
         let _ = write!(out, "{value:.*}", usize::from(decimals));
     }
@@ -68,7 +68,7 @@ impl Front {
 
 /// What [`fixed`] leaves open.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Look {
+pub(crate) struct NumberForm {
     /// A plus where there is no minus.
     pub(crate) plus: bool,
     /// No zeros at the end.
@@ -77,7 +77,7 @@ pub(crate) struct Look {
     pub(crate) point: bool,
 }
 
-impl Look {
+impl NumberForm {
     /// Appends `front` and the number; false, and nothing appended, if that is beyond this way.
     ///
     /// Everything is written where it will stay: putting it together elsewhere and copying it costs more than
@@ -386,8 +386,11 @@ mod tests {
         ] {
             for decimals in 0..=9 {
                 for look in 0..8 {
-                    let look =
-                        Look { plus: look & 1 != 0, trim: look & 2 != 0, point: look & 4 != 0 };
+                    let look = NumberForm {
+                        plus: look & 1 != 0,
+                        trim: look & 2 != 0,
+                        point: look & 4 != 0,
+                    };
                     let mut wanted = std(value, decimals);
                     if look.trim && wanted.contains('.') {
                         wanted.truncate(wanted.trim_end_matches('0').trim_end_matches('.').len());

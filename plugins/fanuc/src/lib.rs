@@ -3,7 +3,7 @@
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
-    Control, Iso, Offset, Plane, Rigid, Splines, Subprogram, SurfaceSpeed, Table, Tcp,
+    Control, Iso, Offset, Plane, Rigid, SplineForm, Subprogram, SurfaceSpeed, Table, Tcp,
     is_offset_beyond_six, iso_options, offset_beyond_six, options, words,
 };
 use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};
@@ -30,7 +30,7 @@ impl Control for Fanuc {
         plane: Plane::Euler { on: "G68.2", turn: "G53.1", off: "G69" },
         cycles_in_plane: true,
         rigid: Rigid::Ahead("M29"),
-        splines: Splines::Knots { code: "G6.2", begin: "G5 P10000", end: "G5 P0" },
+        splines: SplineForm::Knots { code: "G6.2", begin: "G5 P10000", end: "G5 P0" },
         smoothing: SMOOTHING,
         surface: Some(SurfaceSpeed { codes: ["G96", "G97"], most: "G92 S" }),
         probe: "G31",

@@ -3,7 +3,7 @@
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
-    Codes, Control, Dwell, Engine, Iso, Leave, Length, Offset, Stops, Table, no_range,
+    Control, Dwell, Engine, Iso, Leave, Length, MotionCodes, Offset, Stops, Table, no_range,
     offset_of_six, options, words,
 };
 use post_plugin::{
@@ -25,7 +25,11 @@ impl Control for Grbl {
         // Its buffer has 80 characters, and the line's end is one of them.
         remark_length: 78,
         line_length: Some(78),
-        codes: Codes { feed: ["G94", "G93", ""], compensation: ["G40", "", ""], ..Codes::ISO },
+        codes: MotionCodes {
+            feed: ["G94", "G93", ""],
+            compensation: ["G40", "", ""],
+            ..MotionCodes::ISO
+        },
         offset: Offset { word: offset_of_six, at_start: true, ..Table::ISO.offset },
         // A sender's G43.1 or G92 may be left over.
         safe: "G17 G40 G49 G80 G90 G94",

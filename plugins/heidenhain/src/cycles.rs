@@ -3,7 +3,7 @@
 use post_plugin::{Cycle, Drilling, NumberStyle, Setup, Units};
 
 /// What the options say of cycles.
-pub(crate) struct Cycles {
+pub(crate) struct CycleParameters {
     german: bool,
     /// Parameters that came with the software 34059x-04 of the TNC 640.
     newer: bool,
@@ -21,9 +21,9 @@ pub(crate) struct Cycles {
 /// Out at rapid: the largest feed that the parameter takes.
 const RAPID: f64 = 99_999.0;
 
-impl Cycles {
+impl CycleParameters {
     pub(crate) fn new(setup: &Setup<'_>) -> Self {
-        Cycles {
+        CycleParameters {
             german: setup.text("language") == "German",
             newer: setup.text("control") != "iTNC530",
             floating: setup.text("tapping") == "floating",

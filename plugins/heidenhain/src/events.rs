@@ -3,7 +3,7 @@
 use post_plugin::{Compensation, Drilling, Event, Group, NumberStyle, Spindle};
 
 use crate::tool::tool_call;
-use crate::{Call, Heidenhain, Held};
+use crate::{Heidenhain, PendingEvent, ToolCall};
 
 impl Heidenhain {
     pub(crate) fn put(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
@@ -18,15 +18,15 @@ impl Heidenhain {
             | Event::SmoothingOff
             | Event::WorkOffset { .. } => {}
             Event::Preselect { number } if self.tool.is_some() => {
-                self.held.push(Held::Preselect(number));
+                self.held.push(PendingEvent::Preselect(number));
                 return Ok(());
             }
             Event::Coolant(coolant) if self.tool.is_some() => {
-                self.held.push(Held::Coolant(coolant));
+                self.held.push(PendingEvent::Coolant(coolant));
                 return Ok(());
             }
             Event::Word { text } if self.tool.is_some() => {
-                self.held.push(Held::Word(text.to_owned()));
+                self.held.push(PendingEvent::Word(text.to_owned()));
                 return Ok(());
             }
             _ => self.call_tool(None, out)?,
@@ -43,7 +43,7 @@ impl Heidenhain {
                 if !name.is_empty() {
                     self.comment(&format!("T{number} {name}"), out);
                 }
-                self.tool = Some(Call::Tool(tool_call(number, name, self.tool_names)?));
+                self.tool = Some(ToolCall::Tool(tool_call(number, name, self.tool_names)?));
             }
             Event::Preselect { number } => self.preselect(number, out)?,
             Event::Spindle(spindle) => self.turn(spindle, out)?,

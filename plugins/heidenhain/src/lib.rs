@@ -19,7 +19,7 @@ use post_plugin::{
     VocabularyWord, export_dialect,
 };
 
-use crate::cycles::Cycles;
+use crate::cycles::CycleParameters;
 use crate::datum::Datum;
 use crate::frame::{program_name, stock};
 use crate::options::OPTIONS;
@@ -49,7 +49,7 @@ struct Heidenhain {
     coolant_ends: [(Coolant, String); 3],
     /// Two lines of the stock's corners, or none.
     stock: String,
-    cycles: Cycles,
+    cycles: CycleParameters,
     datum: Datum,
     /// Texts of cycles in German.
     german: bool,
@@ -74,13 +74,13 @@ struct Heidenhain {
     /// What takes the place of the next event's lines.
     instead: Option<String>,
     /// A tool call that waits for its speed.
-    tool: Option<Call>,
+    tool: Option<ToolCall>,
     /// A tool has been called here, or the program calls none: the control knows the axis of the tool.
     called: bool,
     /// What M140 should have retracted before that: nothing may move until then.
     stays: bool,
     /// What came between a tool change and its call.
-    held: Vec<Held>,
+    held: Vec<PendingEvent>,
     speed: Modal<f64>,
     feed: Modal<f64>,
     radius: Modal<&'static str>,
@@ -98,7 +98,7 @@ struct Heidenhain {
 
 /// A tool call on its way.
 #[derive(Clone, Debug)]
-enum Call {
+enum ToolCall {
     /// A number, or a name in quotes.
     Tool(String),
     /// Lines of the user's own, which call the tool.
@@ -107,7 +107,7 @@ enum Call {
 
 /// An event that waits for the tool call.
 #[derive(Clone, Debug)]
-enum Held {
+enum PendingEvent {
     Preselect(u32),
     Coolant(Coolant),
     /// A line of the user's own.
@@ -157,7 +157,7 @@ impl Dialect for Heidenhain {
                 off => off,
             },
             stock: stock(setup),
-            cycles: Cycles::new(setup),
+            cycles: CycleParameters::new(setup),
             datum: Datum::new(setup),
             german: setup.text("language") == "German",
             vectors: setup.flag("tool_vectors"),
@@ -250,7 +250,7 @@ impl Dialect for Heidenhain {
         }
         if let Event::ToolChange { .. } = event {
             self.call_tool(None, out)?;
-            self.tool = Some(Call::Own(lines));
+            self.tool = Some(ToolCall::Own(lines));
             return Ok(());
         }
         // As if it were written, but for the numbers of the blocks.

@@ -2,7 +2,7 @@
 
 use post_plugin::{Event, NumberStyle, Spindle, SpindleSense, ascii};
 
-use crate::{Call, Heidenhain, Held};
+use crate::{Heidenhain, PendingEvent, ToolCall};
 
 impl Heidenhain {
     /// The tool call that waits, with its speed if one is known, and what waited for it.
@@ -11,7 +11,7 @@ impl Heidenhain {
             return Ok(());
         };
         match tool {
-            Call::Tool(tool) => {
+            ToolCall::Tool(tool) => {
                 self.block.word("TOOL CALL").word(&tool);
                 // A control that keeps the tip has its own drawing of where the tool lies.
                 self.block.word(match self.tcp {
@@ -23,7 +23,7 @@ impl Heidenhain {
                 }
                 self.block.end(out);
             }
-            Call::Own(lines) => {
+            ToolCall::Own(lines) => {
                 let lines = match speed {
                     Some(speed) => with_speed(&lines, speed)?,
                     None => lines,
@@ -39,9 +39,9 @@ impl Heidenhain {
         self.axes.forget();
         for held in std::mem::take(&mut self.held) {
             match held {
-                Held::Preselect(number) => self.preselect(number, out)?,
-                Held::Coolant(coolant) => self.cool(coolant, out)?,
-                Held::Word(text) => self.own(&text, out),
+                PendingEvent::Preselect(number) => self.preselect(number, out)?,
+                PendingEvent::Coolant(coolant) => self.cool(coolant, out)?,
+                PendingEvent::Word(text) => self.own(&text, out),
             }
         }
         Ok(())

@@ -12,17 +12,17 @@ use crate::table::{CycleCode, Rigid, Table};
 
 /// The cycles of a control, and the one in force.
 #[derive(Debug)]
-pub(crate) struct Cycles {
+pub(crate) struct CycleWords {
     codes: &'static [CycleCode],
     rigid: Option<Rigid>,
     /// Way off the wall, program units; 0: fine boring is not written.
     shift: f64,
-    running: Option<Running>,
+    running: Option<CycleInForce>,
 }
 
 /// A cycle in force. Lengths are in program units.
 #[derive(Clone, Copy, Debug)]
-struct Running {
+struct CycleInForce {
     kind: Cycle,
     code: &'static str,
     feed: Feed,
@@ -66,14 +66,14 @@ const fn pecks(kind: Cycle) -> bool {
     matches!(kind, Cycle::Deep | Cycle::BreakChip)
 }
 
-impl Cycles {
+impl CycleWords {
     pub(crate) fn new(table: &'static Table, setup: &Setup<'_>) -> Self {
         let shift = match setup.option("bore_shift") {
             Some(Value::Number(shift)) => shift,
             _ => 0.0,
         };
         let inch = setup.units == post_plugin::Units::Inch;
-        Cycles {
+        CycleWords {
             codes: table.cycles,
             rigid: (text(setup, "tapping", "rigid") == "rigid").then_some(table.rigid),
             shift: if inch { shift / INCH } else { shift },
@@ -135,7 +135,7 @@ impl Engine {
         if matches!(feed, Feed::InverseTime(_)) {
             return Err("a cycle has no inverse-time feed".to_owned());
         }
-        self.cycles.running = Some(Running {
+        self.cycles.running = Some(CycleInForce {
             kind,
             code,
             feed: self.cycle_feed(kind, feed, pitch),
@@ -258,7 +258,7 @@ impl Engine {
     }
 
     /// Step, shift and wait.
-    fn cycle_words(&mut self, running: &Running, rigid: Option<Rigid>) {
+    fn cycle_words(&mut self, running: &CycleInForce, rigid: Option<Rigid>) {
         let places = self.motion.linear_decimals(2);
         let style = self.motion.style;
         let q = match running.step.filter(|_| pecks(running.kind)) {
@@ -286,7 +286,7 @@ impl Engine {
     fn tap_by_move(
         &mut self,
         code: &str,
-        running: &Running,
+        running: &CycleInForce,
         words: &[f64],
         z: usize,
         [bottom, plane, top]: [f64; 3],

@@ -11,25 +11,25 @@ use post_plugin::{
 
 use approach::leaning;
 
-use crate::cycles::Cycles;
+use crate::cycles::CycleWords;
 use crate::lines::{fits, remark_lines};
-use crate::look::Look;
-use crate::motion::{Arc, Motion};
-use crate::planes::TiltedPlane;
-use crate::settings::Settings;
+use crate::look::BlockStyle;
+use crate::motion::{ArcWords, MotionWriter};
+use crate::planes::PlaneWords;
+use crate::settings::SettingWords;
 use crate::splines;
-use crate::table::{Codes, Dwell, Leave, Table, Tcp};
+use crate::table::{Dwell, Leave, MotionCodes, Table, Tcp};
 
 /// A program on its way out: what is in force, and the words that a table and the options give.
 #[derive(Debug)]
 pub struct Engine {
     pub(crate) table: &'static Table,
     /// Moves, with the block under construction.
-    pub motion: Motion,
-    pub(crate) look: Look,
-    pub(crate) settings: Settings,
-    pub(crate) cycles: Cycles,
-    pub(crate) plane: TiltedPlane,
+    pub motion: MotionWriter,
+    pub(crate) look: BlockStyle,
+    pub(crate) settings: SettingWords,
+    pub(crate) cycles: CycleWords,
+    pub(crate) plane: PlaneWords,
     /// Words of the tool vector have so many decimals; none: rotary words are written.
     vector: Option<u8>,
     splines: bool,
@@ -103,7 +103,7 @@ impl Engine {
                 | Capabilities::HELIX
                 | Capabilities::ARC_RADIUS;
         }
-        if self.splines && table.splines != crate::Splines::None {
+        if self.splines && table.splines != crate::SplineForm::None {
             writes |= Capabilities::SPLINE;
         }
         if self.vector.is_some() {
@@ -233,7 +233,7 @@ impl Engine {
     }
 
     fn command(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
-        let codes: &Codes = &self.table.codes;
+        let codes: &MotionCodes = &self.table.codes;
         match *event {
             Event::Linear { feed, .. }
             | Event::Arc { feed, .. }
@@ -277,12 +277,12 @@ impl Engine {
                 if !codes.arc[0].is_empty() =>
             {
                 self.turn_again(out)?;
-                let arc = Arc { centre, normal, turn, radius, words };
+                let arc = ArcWords { centre, normal, turn, radius, words };
                 self.motion.arc(&arc, feed, out)?;
             }
             Event::Spline { feed, degree, knots, weights, points } if self.splines => {
                 self.turn_again(out)?;
-                let spline = splines::Spline {
+                let spline = splines::SplineWords {
                     degree,
                     knots: knots.0,
                     weights: weights.0,
@@ -538,7 +538,7 @@ fn names_offset(table: &Table, line: &str) -> bool {
 }
 
 /// One M in a block, as most controls have it by default.
-pub(crate) fn one_by_one(codes: &str, motion: &mut Motion, out: &mut String) {
+pub(crate) fn one_by_one(codes: &str, motion: &mut MotionWriter, out: &mut String) {
     for code in codes.split_whitespace() {
         motion.line(code, out);
     }

@@ -20,10 +20,10 @@ pub mod words;
 use post_plugin::{Capabilities, Dialect, Event, Format, OptionSpec, Setup, VocabularyWord};
 
 pub use engine::Engine;
-pub use motion::{Arc, FeedDecimals, Motion};
-pub use splines::Spline;
+pub use motion::{ArcWords, FeedDecimals, MotionWriter};
+pub use splines::SplineWords;
 pub use table::{
-    CYCLES, Codes, CycleCode, Dwell, Leave, Length, Offset, Plane, Rigid, Splines, Stops,
+    CYCLES, CycleCode, Dwell, Leave, Length, MotionCodes, Offset, Plane, Rigid, SplineForm, Stops,
     Subprogram, SurfaceSpeed, Table, Tcp, is_offset_beyond_six, offset_beyond_six, offset_of_six,
 };
 

@@ -2,14 +2,14 @@
 
 /// How blocks look. It changes no value.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Look {
+pub(crate) struct BlockStyle {
     /// Blanks between the words.
     pub(crate) spaces: bool,
     /// `G01`, `M06`.
     pub(crate) leading_zeros: bool,
 }
 
-impl Look {
+impl BlockStyle {
     /// Blocks are written as the engine puts them together.
     pub(crate) fn is_plain(self) -> bool {
         self.spaces && !self.leading_zeros
@@ -53,7 +53,7 @@ mod tests {
         let mut out = String::from("G0 (A B)\n");
         let start = out.len();
         out.push_str(text);
-        let look = Look { spaces, leading_zeros };
+        let look = BlockStyle { spaces, leading_zeros };
         look.apply(&mut out, start);
         assert!(out.starts_with("G0 (A B)\n"));
         out.split_off(start)

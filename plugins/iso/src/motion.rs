@@ -8,12 +8,12 @@ use post_plugin::{
 };
 
 use crate::lines::takes_number;
-use crate::table::Codes;
+use crate::table::MotionCodes;
 
 /// The moving part of a G-code dialect.
 #[derive(Clone, Debug)]
-pub struct Motion {
-    pub(crate) codes: Codes,
+pub struct MotionWriter {
+    pub(crate) codes: MotionCodes,
     /// The block under construction.
     pub block: Block,
     /// The axis words.
@@ -70,11 +70,11 @@ const FEED_STYLE: NumberStyle = NumberStyle { plus: false, point: true, trim: tr
 /// An axis that is measured, and not drawn, leans by less: 0.1 degrees.
 const MEASURED: f64 = 1.8e-3;
 
-impl Motion {
+impl MotionWriter {
     /// Nothing is known to be in force.
     pub fn new(
         setup: &Setup<'_>,
-        codes: Codes,
+        codes: MotionCodes,
         block: Block,
         axes: Axes,
         style: NumberStyle,
@@ -82,7 +82,7 @@ impl Motion {
     ) -> Self {
         let words = setup.words;
         let place = |name| words.iter().position(|word| word.name == name);
-        Motion {
+        MotionWriter {
             codes,
             block,
             places: axes.decimals(),
@@ -502,7 +502,7 @@ impl Motion {
     /// # Errors
     /// If the control cannot be told it: a plane that is none of the three, a start that nobody knows, more than a
     /// turn, an arc that would be read as a whole circle, the first move of a cutter compensation.
-    pub fn arc(&mut self, arc: &Arc<'_>, feed: Feed, out: &mut String) -> Result<(), String> {
+    pub fn arc(&mut self, arc: &ArcWords<'_>, feed: Feed, out: &mut String) -> Result<(), String> {
         let (plane, sense) = arc.plane()?;
         let across = PLANES[plane];
         let places = across.map(|part| self.linear[part]);
@@ -565,7 +565,7 @@ const PLANES: [[usize; 2]; 3] = [[0, 1], [2, 0], [1, 2]];
 
 /// An arc or a helix, as [`Event::Arc`](post_plugin::Event::Arc) has it.
 #[derive(Clone, Copy, Debug)]
-pub struct Arc<'a> {
+pub struct ArcWords<'a> {
     /// Centre in the frame and the units of the linear words.
     pub centre: [f64; 3],
     /// Unit vector about which it turns.
@@ -578,7 +578,7 @@ pub struct Arc<'a> {
     pub words: &'a [f64],
 }
 
-impl Arc<'_> {
+impl ArcWords<'_> {
     /// The plane's place among G17, G18, G19, and 1 or -1 where the normal points the other way.
     fn plane(&self) -> Result<(usize, f64), String> {
         // Along Z, Y, X.

@@ -11,7 +11,7 @@ pub(crate) const INCH: f64 = 25.4;
 
 /// The tilted planes of a control, and the one in force.
 #[derive(Debug)]
-pub(crate) struct TiltedPlane {
+pub(crate) struct PlaneWords {
     words: Plane,
     /// Decimals of the angles.
     decimals: u8,
@@ -20,13 +20,13 @@ pub(crate) struct TiltedPlane {
     on: bool,
 }
 
-impl TiltedPlane {
+impl PlaneWords {
     pub(crate) fn new(table: &Table, setup: &Setup<'_>, decimals: u8) -> Self {
         let offered = flag(setup, "planes", true);
         // An offset that turns with the part knows nothing of a head.
         let head = setup.words.iter().any(|word| word.rotary && !word.carries_part);
         let possible = !(head && matches!(table.plane, Plane::Turned { .. }));
-        TiltedPlane {
+        PlaneWords {
             words: if offered && possible { table.plane } else { Plane::None },
             decimals,
             cycles: flag(setup, "cycles_in_plane", table.cycles_in_plane),

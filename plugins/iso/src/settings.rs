@@ -3,14 +3,14 @@
 use post_plugin::{Capabilities, Event, Feed, Meaning, NumberStyle, Setup, SpindleSense};
 
 use crate::engine::{Engine, one_by_one};
-use crate::motion::Motion;
+use crate::motion::MotionWriter;
 use crate::options::text;
 use crate::planes::INCH;
 use crate::table::{Table, Tcp};
 
 /// Words of the machine file for these, and what of them is in force.
 #[derive(Debug)]
-pub(crate) struct Settings {
+pub(crate) struct SettingWords {
     /// Tolerance, mm, and words, the smallest first.
     levels: Vec<(f64, String)>,
     smoothing_off: String,
@@ -18,7 +18,7 @@ pub(crate) struct Settings {
     smoothing: Option<String>,
     /// Words that wait for the length to be off.
     waiting: Option<String>,
-    clamps: Vec<Clamp>,
+    clamps: Vec<ClampWords>,
     /// Places of the words' names.
     axes: Vec<String>,
     /// Constant cutting speed in force.
@@ -27,7 +27,7 @@ pub(crate) struct Settings {
 
 /// What clamps an axis, and lets it go.
 #[derive(Debug)]
-struct Clamp {
+struct ClampWords {
     axis: String,
     on: String,
     off: String,
@@ -41,7 +41,7 @@ struct Surface {
     sense: SpindleSense,
 }
 
-impl Settings {
+impl SettingWords {
     pub(crate) fn new(table: &Table, setup: &Setup<'_>) -> Result<Self, String> {
         let [levels, off] = table.smoothing;
         let mut levels: Vec<(f64, String)> = text(setup, "smoothing", levels)
@@ -52,7 +52,7 @@ impl Settings {
         levels.sort_by(|one, other| one.0.total_cmp(&other.0));
         let clamps = text(setup, "clamps", "");
         let clamps = clamps.lines().filter(|line| !line.trim().is_empty());
-        Ok(Settings {
+        Ok(SettingWords {
             levels,
             smoothing_off: text(setup, "smoothing_off", off),
             smoothing: None,
@@ -91,7 +91,7 @@ impl Settings {
     }
 
     /// Smoothing that has waited for the length to be off.
-    pub(crate) fn smoothing_due(&mut self, motion: &mut Motion, out: &mut String) {
+    pub(crate) fn smoothing_due(&mut self, motion: &mut MotionWriter, out: &mut String) {
         if let Some(words) = self.waiting.take() {
             motion.line(&words, out);
             self.smoothing = Some(words);
@@ -99,7 +99,7 @@ impl Settings {
     }
 
     /// Ends the smoothing, if it is in force.
-    pub(crate) fn end_smoothing(&mut self, motion: &mut Motion, out: &mut String) {
+    pub(crate) fn end_smoothing(&mut self, motion: &mut MotionWriter, out: &mut String) {
         self.waiting = None;
         if self.smoothing.take().is_some() {
             motion.line(&self.smoothing_off, out);
@@ -146,7 +146,7 @@ fn level(line: &str) -> Result<(f64, String), String> {
 }
 
 /// `C M10 M11`.
-fn clamp(line: &str, setup: &Setup<'_>) -> Result<Clamp, String> {
+fn clamp(line: &str, setup: &Setup<'_>) -> Result<ClampWords, String> {
     let words: Vec<&str> = line.split_whitespace().collect();
     let turns = |axis: &str| {
         let mut axes = setup.words.iter();
@@ -156,9 +156,11 @@ fn clamp(line: &str, setup: &Setup<'_>) -> Result<Clamp, String> {
         [axis, ..] if !turns(axis) => {
             Err(format!("clamps has the line `{line}`, and the machine has no rotary axis {axis}"))
         }
-        [axis, on, off] => {
-            Ok(Clamp { axis: (*axis).to_owned(), on: (*on).to_owned(), off: (*off).to_owned() })
-        }
+        [axis, on, off] => Ok(ClampWords {
+            axis: (*axis).to_owned(),
+            on: (*on).to_owned(),
+            off: (*off).to_owned(),
+        }),
         _ => Err(format!(
             "clamps has the line `{line}`, must be an axis, what clamps it and what lets it go: `C M10 M11`"
         )),

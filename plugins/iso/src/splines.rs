@@ -2,12 +2,12 @@
 
 use post_plugin::{Feed, Group, quantise};
 
-use crate::motion::Motion;
-use crate::table::Splines;
+use crate::motion::MotionWriter;
+use crate::table::SplineForm;
 
 /// A spline, as [`Event::Spline`](post_plugin::Event::Spline) has it.
 #[derive(Clone, Copy, Debug)]
-pub struct Spline<'a> {
+pub struct SplineWords<'a> {
     /// Degree.
     pub degree: u32,
     /// Knots, as many as control points and degree and one more.
@@ -18,15 +18,15 @@ pub struct Spline<'a> {
     pub points: &'a [f64],
 }
 
-impl Motion {
+impl MotionWriter {
     /// A spline from where the tool stands, its first control point.
     ///
     /// # Errors
     /// If the control cannot be told it.
     pub fn spline(
         &mut self,
-        words: Splines,
-        spline: &Spline<'_>,
+        words: SplineForm,
+        spline: &SplineWords<'_>,
         feed: Feed,
         out: &mut String,
     ) -> Result<(), String> {
@@ -44,8 +44,8 @@ impl Motion {
             return Err("a spline under cutter compensation".to_owned());
         }
         match words {
-            Splines::None => return Err("this control has no splines".to_owned()),
-            Splines::Knots { code, begin, end } => {
+            SplineForm::None => return Err("this control has no splines".to_owned()),
+            SplineForm::Knots { code, begin, end } => {
                 if !(2..=4).contains(&order) {
                     return Err(format!(
                         "a spline of degree {}, and this control has degrees 1 to 3",
@@ -81,7 +81,7 @@ impl Motion {
                 }
                 self.line(end, out);
             }
-            Splines::Even { code, end } => {
+            SplineForm::Even { code, end } => {
                 if !is_even(spline.knots, order) {
                     return Err("a spline with uneven knots, which this control has not".to_owned());
                 }

@@ -28,7 +28,7 @@ pub struct Table {
     /// refused.
     pub line_length: Option<usize>,
     /// Words of motion, feed and compensation.
-    pub codes: Codes,
+    pub codes: MotionCodes,
     /// The block behind that of the units: plane, compensation, cycles, way of counting and feed mode in a known state.
     /// It moves nothing, whatever was in force.
     pub safe: &'static str,
@@ -81,7 +81,7 @@ pub struct Table {
     /// place of rotary words; empty where the control has none. Option `tool_vector` asks for them.
     pub vector: &'static str,
     /// Splines. Option `splines` asks for them.
-    pub splines: Splines,
+    pub splines: SplineForm,
     /// Levels of smoothing and its end. Options `smoothing`, `smoothing_off`.
     pub smoothing: [&'static str; 2],
     /// Smoothing may change while the length is in force.
@@ -111,7 +111,7 @@ pub struct Table {
 
 /// Words of motion, feed and compensation.
 #[derive(Clone, Copy, Debug)]
-pub struct Codes {
+pub struct MotionCodes {
     /// mm, inch.
     pub units: [&'static str; 2],
     /// Rapid, cut.
@@ -262,7 +262,7 @@ pub enum Plane {
 
 /// Splines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Splines {
+pub enum SplineForm {
     /// The control has none.
     None,
     /// Control points with knots (K) and weights (R) up to degree 3, between two blocks of the control's own.
@@ -347,9 +347,9 @@ pub const CYCLES: &[CycleCode] = &[
     CycleCode::new(Cycle::BoreBack, "G87", "G87"),
 ];
 
-impl Codes {
+impl MotionCodes {
     /// Words that most controls have.
-    pub const ISO: Codes = Codes {
+    pub const ISO: MotionCodes = MotionCodes {
         units: ["G21", "G20"],
         motion: ["G0", "G1"],
         arc: ["G2", "G3"],
@@ -374,7 +374,7 @@ impl Table {
         // No manual gives a limit; a line of any control's screen is as long.
         remark_length: 80,
         line_length: None,
-        codes: Codes::ISO,
+        codes: MotionCodes::ISO,
         safe: "G17 G40 G80 G90 G94",
         relies: &[],
         cancel: "",
@@ -402,7 +402,7 @@ impl Table {
         rigid: Rigid::Always,
         plane: Plane::None,
         vector: "",
-        splines: Splines::None,
+        splines: SplineForm::None,
         smoothing: ["", ""],
         smoothing_anywhere: false,
         surface: None,

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use post_plugin::{Cycle, Meaning, VocabularyWord};
 
 use crate::engine::Engine;
-use crate::table::{Dwell, Plane, Rigid, Splines, Tcp};
+use crate::table::{Dwell, Plane, Rigid, SplineForm, Tcp};
 
 /// Words that all controls of the family share, where the table says nothing else of them.
 const SHARED: &[(&str, Meaning)] = &[
@@ -120,8 +120,8 @@ impl Engine {
             }
         }
         match table.splines {
-            Splines::None => {}
-            Splines::Knots { code, .. } | Splines::Even { code, .. } => add(code, M::Spline),
+            SplineForm::None => {}
+            SplineForm::Knots { code, .. } | SplineForm::Even { code, .. } => add(code, M::Spline),
         }
         match table.dwell {
             Dwell::Milliseconds(letter) => add(&format!("G4 {letter}"), M::DwellMilliseconds),

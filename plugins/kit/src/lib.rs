@@ -12,7 +12,7 @@
 pub mod jobs;
 mod order;
 
-pub use order::{ORDER, Order};
+pub use order::{EventOrder, ORDER};
 
 use post_plugin::{
     AxisWord, Batch, Capabilities, Compensation, Coolant, Event, Feed, Linked, LinkedDialect,

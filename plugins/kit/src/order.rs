@@ -51,7 +51,7 @@ pub const ORDER: &[(&str, &str)] = &[
 
 /// Follows a program, and says where it breaks the promised order.
 #[derive(Clone, Debug, Default)]
-pub struct Order {
+pub struct EventOrder {
     started: bool,
     ended: bool,
     at_part: bool,
@@ -68,7 +68,7 @@ pub struct Order {
     instead: bool,
 }
 
-impl Order {
+impl EventOrder {
     /// The next event.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
-    Control, CycleCode, Dwell, Engine, Iso, Leave, Length, Offset, Rigid, Splines, Stops,
+    Control, CycleCode, Dwell, Engine, Iso, Leave, Length, Offset, Rigid, SplineForm, Stops,
     Subprogram, SurfaceSpeed, Table, Tcp, no_range, offset_of_six, options, words,
 };
 use post_plugin::{
@@ -51,7 +51,7 @@ impl Control for LinuxCnc {
         dwell: Dwell::Seconds("P", 3),
         cycles: CYCLES,
         rigid: Rigid::Move("G33.1"),
-        splines: Splines::Even { code: "G5.2", end: "G5.3" },
+        splines: SplineForm::Even { code: "G5.2", end: "G5.3" },
         smoothing: SMOOTHING,
         smoothing_anywhere: true,
         surface: Some(SurfaceSpeed { codes: ["G96", "G97"], most: "D" }),

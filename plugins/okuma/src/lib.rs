@@ -3,7 +3,8 @@
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
-    Codes, Control, Dwell, Iso, Leave, Length, Offset, Subprogram, Table, Tcp, iso_options, options,
+    Control, Dwell, Iso, Leave, Length, MotionCodes, Offset, Subprogram, Table, Tcp, iso_options,
+    options,
 };
 use post_plugin::{
     Capabilities, Meaning, OptionKind, OptionSpec, Setup, Units, Value, export_dialect,
@@ -22,7 +23,7 @@ impl Control for Okuma {
         title: Some(("O", 4)),
         line_length: Some(158),
         // The control's parameters choose the units, and its formula for inverse time is the machine's own.
-        codes: Codes { units: ["", ""], feed: ["G94", "", "G95"], ..Codes::ISO },
+        codes: MotionCodes { units: ["", ""], feed: ["G94", "", "G95"], ..MotionCodes::ISO },
         offset: Offset {
             known: |text| number(text).is_some_and(|number| (1..=200).contains(&number)),
             range: "G15 H1 to H200",

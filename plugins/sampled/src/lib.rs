@@ -32,13 +32,13 @@ const LEAST: f64 = 1e-9;
 pub struct Sampled {
     samples: u32,
     accuracy: f64,
-    places: Vec<Place>,
+    places: Vec<PathSample>,
     asked: Vec<f64>,
     answers: Vec<Deviation>,
 }
 
 #[derive(Clone, Copy)]
-struct Place {
+struct PathSample {
     t: f64,
     deviation: Deviation,
     /// The piece that begins here is not settled.
@@ -49,7 +49,7 @@ struct Place {
 
 /// The largest length seen, where, and the bound on what was not looked at.
 #[derive(Clone, Copy, Default)]
-struct Peak {
+struct DeviationPeak {
     size: f64,
     at: f64,
     hidden: f64,
@@ -112,7 +112,7 @@ impl ErrorModel for Sampled {
             place.fresh = false;
         }
 
-        let (mut tip, mut axis) = (Peak::default(), Peak::default());
+        let (mut tip, mut axis) = (DeviationPeak::default(), DeviationPeak::default());
         for place in &self.places {
             tip.see(length(&place.deviation.tip), place.t);
             axis.see(length(&place.deviation.axis), place.t);
@@ -184,7 +184,7 @@ impl Sampled {
     fn ask(&mut self, deviation: &mut dyn FnMut(&[f64], &mut [Deviation])) -> Result<(), String> {
         ask(deviation, &self.asked, &mut self.answers)?;
         for (&t, &deviation) in self.asked.iter().zip(&self.answers) {
-            self.places.push(Place { t, deviation, open: true, fresh: true });
+            self.places.push(PathSample { t, deviation, open: true, fresh: true });
         }
         Ok(())
     }
@@ -211,7 +211,7 @@ impl Sampled {
     }
 }
 
-impl Peak {
+impl DeviationPeak {
     fn see(&mut self, size: f64, at: f64) {
         if size > self.size {
             self.size = size;

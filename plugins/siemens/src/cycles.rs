@@ -5,10 +5,10 @@ use post_plugin::{Cycle, Drilling, Feed, Setup, SpindleSense, Units};
 use crate::text::{call, trimmed};
 
 /// The spindle as it turns: revolutions a minute, and its sense.
-pub(crate) type Turning = (f64, SpindleSense);
+pub(crate) type SpindleTurning = (f64, SpindleSense);
 
 /// What the options say of cycles.
-pub(crate) struct Cycles {
+pub(crate) struct CycleCalls {
     floating: bool,
     /// How far fine boring lifts off in X and Y, and where the spindle stops, degrees.
     lift: [f64; 3],
@@ -16,9 +16,9 @@ pub(crate) struct Cycles {
     taps: bool,
 }
 
-impl Cycles {
+impl CycleCalls {
     pub(crate) fn new(setup: &Setup<'_>) -> Self {
-        Cycles {
+        CycleCalls {
             floating: setup.text("tapping") == "floating",
             lift: ["bore_lift_x", "bore_lift_y", "bore_angle"].map(|key| setup.number(key)),
             taps: setup.units == Units::Millimetre,
@@ -39,7 +39,7 @@ impl Cycles {
         &self,
         drilling: &Drilling,
         top: f64,
-        spindle: Option<Turning>,
+        spindle: Option<SpindleTurning>,
     ) -> Result<String, String> {
         // Which way is down is told by the depth against the surface.
         let (drilling, raised) = drilling.below_its_point();
@@ -119,7 +119,7 @@ fn m_code(sense: SpindleSense) -> f64 {
     }
 }
 
-fn turning(spindle: Option<Turning>) -> Result<Turning, String> {
+fn turning(spindle: Option<SpindleTurning>) -> Result<SpindleTurning, String> {
     spindle.ok_or_else(|| {
         "this cycle is told the spindle's speed and sense, and no spindle turns: switch it on before the cycle"
             .to_owned()

@@ -18,14 +18,14 @@ use post_plugin::{
     export_dialect,
 };
 
-use crate::cycles::{Cycles, Turning};
-use crate::swivel::{Smoothing, Swivel};
+use crate::cycles::{CycleCalls, SpindleTurning};
+use crate::swivel::{SmoothingCall, SwivelCall};
 use crate::text::transfer_header;
 
 struct Siemens {
-    cycles: Cycles,
-    swivel: Swivel,
-    smoothing: Smoothing,
+    cycles: CycleCalls,
+    swivel: SwivelCall,
+    smoothing: SmoothingCall,
     /// Ahead of a program that is transferred by cable; empty: none.
     header: String,
     edge: i64,
@@ -58,7 +58,7 @@ struct Siemens {
     tilted: bool,
     /// Vector of the tool, in units of its last decimal.
     vector: Modal<[f64; 3]>,
-    turning: Option<Turning>,
+    turning: Option<SpindleTurning>,
     /// The speed is one of cutting.
     surface: bool,
     /// D0 is not in force.
@@ -80,9 +80,9 @@ impl Control for Siemens {
         let vectors = setup.flag("tool_vectors");
         let tools = setup.ahead.map_or(&[][..], |ahead| ahead.tools);
         Ok(Siemens {
-            cycles: Cycles::new(setup),
-            swivel: Swivel::new(setup)?,
-            smoothing: Smoothing::new(setup),
+            cycles: CycleCalls::new(setup),
+            swivel: SwivelCall::new(setup)?,
+            smoothing: SmoothingCall::new(setup),
             header: match setup.flag("transfer_header") {
                 true => transfer_header(setup.program),
                 false => String::new(),

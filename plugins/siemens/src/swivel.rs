@@ -6,7 +6,7 @@ use post_plugin::{PlaneAngles, Setup, Units};
 use crate::text::{call, trimmed};
 
 /// CYCLE800 of one control.
-pub(crate) struct Swivel {
+pub(crate) struct SwivelCall {
     retract: i64,
     record: String,
     status: i64,
@@ -23,7 +23,7 @@ pub(crate) struct Swivel {
     scale: f64,
 }
 
-impl Swivel {
+impl SwivelCall {
     pub(crate) fn new(setup: &Setup<'_>) -> Result<Self, String> {
         let place = |name: &str| {
             let mut words = setup.words.iter();
@@ -55,7 +55,7 @@ impl Swivel {
             "" => place("A").or_else(|_| place("B")).ok(),
             name => Some(place(name).map_err(|lack| format!("swivel_reference: {lack}"))?),
         };
-        Ok(Swivel {
+        Ok(SwivelCall {
             retract: setup.integer("swivel_retract"),
             record: setup.text("swivel_record").replace('"', ""),
             status: setup.integer("swivel_status"),
@@ -99,7 +99,7 @@ impl Swivel {
 }
 
 /// How the control is told that it may leave the path.
-pub(crate) struct Smoothing {
+pub(crate) struct SmoothingCall {
     /// Empty: CYCLE832.
     compressor: String,
     mode: String,
@@ -108,10 +108,10 @@ pub(crate) struct Smoothing {
     scale: f64,
 }
 
-impl Smoothing {
+impl SmoothingCall {
     pub(crate) fn new(setup: &Setup<'_>) -> Self {
         let old = setup.text("software") != "4";
-        Smoothing {
+        SmoothingCall {
             compressor: setup.text("smoothing_by").replace("CYCLE832", ""),
             mode: setup.text("smoothing_mode").to_owned(),
             packed: old.then(|| setup.integer("smoothing_code")),

@@ -1,6 +1,6 @@
 //! How the control differs from the rest of the family.
 
-use post_iso::{Codes, Dwell, Leave, Length, Offset, Subprogram, SurfaceSpeed, Table, Tcp};
+use post_iso::{Dwell, Leave, Length, MotionCodes, Offset, Subprogram, SurfaceSpeed, Table, Tcp};
 use post_plugin::{AxisNames, Language, ascii};
 
 use crate::options::{CANCEL, OPTIONS};
@@ -14,13 +14,13 @@ pub(crate) const TABLE: Table = Table {
     remark: |text| format!("; {}", ascii(text).trim()).trim_end().to_owned(),
     line_length: Some(512),
     largest_number: 999_999_999,
-    codes: Codes {
+    codes: MotionCodes {
         // G71 and G70 leave feeds in the units of the control.
         units: ["G710", "G700"],
         radius: "",
         // Those of the dialect's own, with their words for radius and turns.
         arc: ["", ""],
-        ..Codes::ISO
+        ..MotionCodes::ISO
     },
     safe: "G17 G40 G64 G90 G94",
     relies: RELIES,

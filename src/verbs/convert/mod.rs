@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use post_machine::description::{Machine, Setting, Tcp};
 use post_machine::diagnostic::Diagnostic;
-use post_posting::program::ToldSpindle;
-use post_posting::report::Report;
+use post_posting::program::DefaultSpindle;
+use post_posting::report::PostingReport;
 use post_readback::course::CourseFacts;
 use post_readback::course::cl::{ClCourse, Settings};
 use post_readback::course::done::{Chords, DoneCourse};
@@ -123,7 +123,7 @@ pub struct ConvertArguments {
 
     /// Speed that the spindle is switched on at for each tool for which the first program does not; `off`: it stands.
     #[arg(long, value_name = "RPM", value_parser = spindle, help_heading = "Second machine")]
-    spindle: Option<ToldSpindle>,
+    spindle: Option<DefaultSpindle>,
 
     /// Feed of the cuts for which the first program has none, mm/min.
     #[arg(long, value_name = "MM_A_MINUTE", value_parser = feed, help_heading = "Second machine")]
@@ -368,7 +368,7 @@ fn summary(
     name: &str,
     from: &Machine,
     (to, target): (&Machine, &str),
-    report: &Report,
+    report: &PostingReport,
     held: &Held,
     facts: &CourseFacts,
 ) -> Vec<[String; 2]> {

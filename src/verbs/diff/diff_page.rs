@@ -2,7 +2,7 @@
 //! place of the CL path.
 
 use post_readback::diff::{Difference, Rules};
-use post_report::meta::{Maximum, Names, Tolerances, Verdict};
+use post_report::meta::{Maximum, Names, TolerancesMeta, VerdictMeta};
 
 use super::Side;
 use post_job::failure::Failure;
@@ -44,7 +44,7 @@ impl Shown<'_> {
             machine: machine.name.clone(),
         };
         let mut meta = report::about("diff", machine, title, names);
-        meta.tolerances = Tolerances {
+        meta.tolerances = TolerancesMeta {
             tip: self.rules.tip,
             axis: self.rules.axis.to_degrees(),
             rapid: self.rules.tip,
@@ -72,7 +72,7 @@ impl Shown<'_> {
         parts.write(meta, most, page)
     }
 
-    fn verdict(&self) -> Verdict {
+    fn verdict(&self) -> VerdictMeta {
         let operations = &self.found.operations;
         let different = operations.iter().filter(|operation| !operation.same);
         let (kind, word, sentence) = match self.found.same {
@@ -83,7 +83,7 @@ impl Shown<'_> {
                 format!("{} of {} operations are different.", different.count(), operations.len()),
             ),
         };
-        Verdict { kind, word: word.to_owned(), sentences: vec![sentence] }
+        VerdictMeta { kind, word: word.to_owned(), sentences: vec![sentence] }
     }
 
     fn maxima(&self) -> Vec<Maximum> {

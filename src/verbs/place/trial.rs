@@ -7,7 +7,7 @@ use post_machine::diagnostic::{Diagnostic, Severity};
 use post_machine::kinematics::Second;
 use post_machine::place::{End, HalfSpace, opened};
 use post_posting::MountBounds;
-use post_posting::report::Report;
+use post_posting::report::PostingReport;
 
 use super::{Least, PlaceArguments};
 use post_job::DryRun;
@@ -28,7 +28,7 @@ pub struct Seat {
 #[derive(Clone, Debug)]
 pub struct Trial {
     pub seat: Seat,
-    pub report: Report,
+    pub report: PostingReport,
     /// Warnings.
     pub findings: Vec<Diagnostic>,
     /// Seconds, or degrees.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use clap::ValueEnum;
 use post_machine::diagnostic::Diagnostic;
-use post_posting::LookedAhead;
+use post_posting::ProgramPreview;
 
 use post_job::failure::Failure;
 use post_job::files::PathArg;
@@ -20,7 +20,7 @@ pub enum Split {
 }
 
 /// The lines of the CL file that each program is made of: the first begins with the file, the last ends with it.
-pub fn lines(split: Split, ahead: &LookedAhead) -> Result<Vec<Range<u64>>, Failure> {
+pub fn lines(split: Split, ahead: &ProgramPreview) -> Result<Vec<Range<u64>>, Failure> {
     let (begins, what) = match split {
         // What stands before the first operation is part of it.
         Split::Operations => (ahead.operations.get(1..), "operation (TOOL PATH)"),

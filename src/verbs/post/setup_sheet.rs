@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 
 use post_machine::description::{LengthAxis, Machine, OptionValue, OutputUnits};
-use post_posting::LookedAhead;
-use post_posting::program::Tool;
-use post_posting::report::{LengthSource, Report};
+use post_posting::ProgramPreview;
+use post_posting::program::ToolChange;
+use post_posting::report::{LengthSource, PostingReport};
 
 use post_job::files::PathArg;
 use post_job::text::{clock, number};
@@ -22,8 +22,8 @@ pub fn text(
     sheet: &PathArg,
     machine: &Machine,
     cl_file: &PathArg,
-    ahead: &LookedAhead,
-    programs: &[(&PathArg, &Report)],
+    ahead: &ProgramPreview,
+    programs: &[(&PathArg, &PostingReport)],
 ) -> String {
     let title = match cl_file.path().and_then(|path| path.file_name()) {
         Some(name) => format!("Setup: {}", name.to_string_lossy()),
@@ -46,8 +46,8 @@ pub fn text(
 
 fn the_machine(
     machine: &Machine,
-    ahead: &LookedAhead,
-    programs: &[(&PathArg, &Report)],
+    ahead: &ProgramPreview,
+    programs: &[(&PathArg, &PostingReport)],
 ) -> Section {
     let mut rows = Vec::new();
     let mut row = |name: &str, value: String| rows.push(vec![name.to_owned(), value]);
@@ -115,7 +115,7 @@ fn the_machine(
     Section { title: "Machine and part".to_owned(), head: vec!["", ""], rows }
 }
 
-fn the_programs(programs: &[(&PathArg, &Report)]) -> Section {
+fn the_programs(programs: &[(&PathArg, &PostingReport)]) -> Section {
     let rows = programs.iter().map(|(target, report)| {
         let name = target.path().and_then(|path| path.file_name());
         let tools: Vec<String> =
@@ -138,9 +138,9 @@ fn the_programs(programs: &[(&PathArg, &Report)]) -> Section {
 /// What stands in the registers where the control must not put a length along an axis that the tool does not lie along.
 const NO_LENGTH: &str = "0, not the length below: the work offset was measured with the tool in it";
 
-fn the_tools(ahead: &LookedAhead, programs: &[(&PathArg, &Report)]) -> Section {
+fn the_tools(ahead: &ProgramPreview, programs: &[(&PathArg, &PostingReport)]) -> Section {
     let size = |value: Option<f64>| value.map_or("?".to_owned(), |value| number(value, 3));
-    let used = |tool: &Tool| {
+    let used = |tool: &ToolChange| {
         let tools = programs.iter().flat_map(|(_, report)| &report.tools);
         tools.into_iter().find(|used| used.number == Some(tool.number))
     };
@@ -165,7 +165,7 @@ fn the_tools(ahead: &LookedAhead, programs: &[(&PathArg, &Report)]) -> Section {
     }
 }
 
-fn the_axes(programs: &[(&PathArg, &Report)]) -> Section {
+fn the_axes(programs: &[(&PathArg, &PostingReport)]) -> Section {
     let mut rows: Vec<(String, f64, f64, Option<[f64; 2]>)> = Vec::new();
     for axis in programs.iter().flat_map(|(_, report)| &report.axes) {
         if axis.min > axis.max {

@@ -4,7 +4,7 @@ use std::fs::File;
 
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
-use post_report::meta::{Names, Verdict};
+use post_report::meta::{Names, VerdictMeta};
 
 use post_job::failure::Failure;
 use post_job::files::{AtomicFile, ClSource, PathArg};
@@ -63,7 +63,7 @@ impl Shown<'_> {
         parts.write(meta, most, page)
     }
 
-    fn verdict(&self) -> Verdict {
+    fn verdict(&self) -> VerdictMeta {
         let found = self.found;
         let tip = &found.contour.tip_mm;
         let path = match &found.against {
@@ -79,7 +79,7 @@ impl Shown<'_> {
             (false, true) => ("warn", "Predicted, with warnings"),
             (false, false) => ("good", "Predicted, within the tolerance"),
         };
-        Verdict {
+        VerdictMeta {
             kind,
             word: word.to_owned(),
             sentences: vec![format!(

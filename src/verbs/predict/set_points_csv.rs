@@ -16,7 +16,8 @@ pub fn columns(machine: &Machine) -> Vec<Column<Sample>> {
         C::new("cl_line", "", 0, Sample::cl_line),
         C::new("cuts", "", 0, |sample| sample.at.cuts),
     ];
-    let joints: [(&str, fn(&Sample) -> &Joints); 2] = [
+    type JointsOf = fn(&Sample) -> &Joints;
+    let joints: [(&str, JointsOf); 2] = [
         ("", |sample| &sample.point.commanded_joints),
         ("_actual", |sample| &sample.point.actual_joints),
     ];

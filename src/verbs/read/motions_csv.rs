@@ -4,7 +4,7 @@
 //! dozen crates of compression with it, for one output of one verb.
 
 use post_machine::description::Machine;
-use post_readback::{Done, Motion, MotionKind, Spindle, Told, Way};
+use post_readback::{Done, Interpolation, Motion, MotionKind, Spindle, Told};
 
 use post_job::axes::{self, AxisColumn};
 use post_job::columns::{Column, CsvTable};
@@ -29,11 +29,11 @@ fn columns(axes: &[AxisColumn]) -> Vec<Column<Row>> {
             MotionKind::Thread => "thread",
         }),
         C::new("way", "", 0, |row| match &row.motion.way {
-            Way::Axes => "axes",
-            Way::Tip => "tip",
-            Way::TipAndAxis => "tip and axis",
-            Way::Arc { .. } => "arc",
-            Way::Spline(_) => "spline",
+            Interpolation::Axes => "axes",
+            Interpolation::Tip => "tip",
+            Interpolation::TipAndAxis => "tip and axis",
+            Interpolation::Arc { .. } => "arc",
+            Interpolation::Spline(_) => "spline",
         }),
     ];
     for (column, axis) in axes.iter().enumerate() {

@@ -3,8 +3,8 @@
 use std::fs::File;
 
 use post_machine::description::Machine;
-use post_readback::verify::{BlockReport, Worst};
-use post_report::meta::{Maximum, Names, Verdict};
+use post_readback::verify::{BlockReport, WorstDeviation};
+use post_report::meta::{Maximum, Names, VerdictMeta};
 
 use post_job::failure::Failure;
 use post_job::files::{AtomicFile, ClSource, PathArg};
@@ -59,7 +59,7 @@ impl Shown<'_> {
             meta.tolerances.axis = axis.to_degrees();
         }
         let found = &self.held.found;
-        let maximum = |name: &str, worst: &Worst, unit, limit| Maximum {
+        let maximum = |name: &str, worst: &WorstDeviation, unit, limit| Maximum {
             name: name.to_owned(),
             value: worst.value,
             unit,
@@ -100,7 +100,7 @@ impl Shown<'_> {
         parts.write(meta, most, page)
     }
 
-    fn verdict(&self) -> Verdict {
+    fn verdict(&self) -> VerdictMeta {
         let found = &self.held.found;
         let faults = found.faults.len();
         let (kind, word) = match (self.held.is_wrong(), self.held.findings.is_empty()) {
@@ -116,6 +116,6 @@ impl Shown<'_> {
             let more = if found.gave_up { " and more" } else { "" };
             sentences.push(format!("{faults}{more} faults were found: they are listed below."));
         }
-        Verdict { kind, word: word.to_owned(), sentences }
+        VerdictMeta { kind, word: word.to_owned(), sentences }
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use post_machine::description::Machine;
-use post_readback::verify::Worst;
+use post_readback::verify::WorstDeviation;
 
 use post_job::read_back::Held;
 use post_job::text::{clock, number};
@@ -63,7 +63,7 @@ pub fn text(held: &Held, machine: &Machine, name: &str, tolerances: [Option<f64>
     text
 }
 
-fn worst(worst: &Worst, unit: &str, decimals: u8) -> String {
+fn worst(worst: &WorstDeviation, unit: &str, decimals: u8) -> String {
     let value = number(worst.value, decimals);
     match worst.nc_line {
         0 => format!("{value} {unit}"),

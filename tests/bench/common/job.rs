@@ -9,8 +9,8 @@ use post_host::{Plugin, ProgramSetup, ProgramWord};
 use post_machine::axis_words;
 use post_machine::description::{self, Machine, Setting, Source};
 use post_plugin::Units;
-use post_posting::report::Report;
-use post_posting::{Job, Observer, Output, Post};
+use post_posting::report::PostingReport;
+use post_posting::{Observer, Post, PostingRequest, TextSink};
 
 /// A machine of the library.
 pub fn machine(name: &str, settings: &[String]) -> Result<Machine, Box<dyn Error>> {
@@ -29,8 +29,8 @@ pub fn run(
     path: &Path,
     name: &str,
     settings: &[String],
-    job: Job,
-) -> Result<Report, Box<dyn Error>> {
+    job: PostingRequest,
+) -> Result<PostingReport, Box<dyn Error>> {
     watched(path, name, settings, job, None)
 }
 
@@ -39,9 +39,9 @@ pub fn watched(
     path: &Path,
     name: &str,
     settings: &[String],
-    job: Job,
+    job: PostingRequest,
     watch: Option<&mut dyn Observer>,
-) -> Result<Report, Box<dyn Error>> {
+) -> Result<PostingReport, Box<dyn Error>> {
     let machine = machine(name, settings)?;
     let depth = axis_words::depth(&machine);
     let setup = ProgramSetup {
@@ -80,7 +80,7 @@ pub fn watched(
 
 struct Nowhere;
 
-impl Output for Nowhere {
+impl TextSink for Nowhere {
     fn write(&mut self, _: &[u8]) -> Result<(), String> {
         Ok(())
     }

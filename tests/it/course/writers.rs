@@ -238,15 +238,17 @@ fn pecks_are_read_or_the_cycle_is_refused() {
         )
     };
     let pecks = |text: &str| {
-        let mut interpreter =
-            Interpreter::new(Reading { spindle: ToldSpindle::Still, ..Reading::default() });
+        let mut interpreter = ClInterpreter::new(ReadingOptions {
+            spindle: DefaultSpindle::Still,
+            ..ReadingOptions::default()
+        });
         let mut reader = Reader::new(text.as_bytes());
         let mut down = Vec::new();
         while let Ok(Some(record)) = reader.next_record() {
             interpreter.record(&record, &mut |step| {
-                if let Step::Cycle(step) = step {
+                if let ProgramStep::Cycle(step) = step {
                     step.cycle.legs(&mut |leg| {
-                        if let Leg::Feed(height) = leg {
+                        if let CycleLeg::Feed(height) = leg {
                             down.push(height);
                         }
                     });

@@ -11,10 +11,10 @@ use post_plugin::{
     Batch, Capabilities, Curve, Cycle, Deviation, DialectSession, Event, Feed, Format,
     ModelSession, PlaneAngles, Tolerance, ToolPose, WriteFault,
 };
-use post_posting::ahead::AheadPass;
-use post_posting::program::ToldSpindle;
-use post_posting::report::Report;
-use post_posting::{Job, Observer, Output, Post};
+use post_posting::ahead::PreviewPass;
+use post_posting::program::DefaultSpindle;
+use post_posting::report::PostingReport;
+use post_posting::{Observer, Post, PostingRequest, TextSink};
 
 use post_testmachines::{Reference, between};
 
@@ -248,7 +248,7 @@ pub(crate) fn peaks(places: &[Deviation]) -> [f64; 2] {
 /// An output that throws away what is written.
 pub struct Nowhere;
 
-impl Output for Nowhere {
+impl TextSink for Nowhere {
     fn write(&mut self, _: &[u8]) -> Result<(), String> {
         Ok(())
     }
@@ -258,7 +258,7 @@ impl Output for Nowhere {
 #[derive(Debug)]
 pub struct Run {
     pub asked: Vec<Asked>,
-    pub report: Option<Report>,
+    pub report: Option<PostingReport>,
     pub findings: Vec<Diagnostic>,
 }
 
@@ -298,7 +298,7 @@ pub fn post(
     machine: &Machine,
     decimals: u8,
     cl: &str,
-    job: Job,
+    job: PostingRequest,
     model: &mut dyn ModelSession,
 ) -> Run {
     let dialect = Recorder::new(machine, decimals);
@@ -310,7 +310,7 @@ pub fn watched(
     machine: &Machine,
     dialect: Recorder,
     cl: &str,
-    job: Job,
+    job: PostingRequest,
     model: &mut dyn ModelSession,
     observers: &mut [&mut dyn Observer],
 ) -> Run {
@@ -326,17 +326,17 @@ pub fn framed(
     machine: &Machine,
     mut dialect: Recorder,
     cl: &str,
-    mut job: Job,
+    mut job: PostingRequest,
     model: &mut dyn ModelSession,
     observers: &mut [&mut dyn Observer],
 ) -> Run {
-    if job.reading.spindle == ToldSpindle::Unknown {
+    if job.reading.spindle == DefaultSpindle::Unknown {
         // Texts this short do not care for the spindle.
-        job.reading.spindle = ToldSpindle::Still;
+        job.reading.spindle = DefaultSpindle::Still;
     }
     let mut output = Nowhere;
     if machine.control.planes {
-        let mut pass = AheadPass::new(machine, job.reading.clone());
+        let mut pass = PreviewPass::new(machine, job.reading.clone());
         let mut reader = Reader::new(cl.as_bytes());
         while let Ok(Some(record)) = reader.next_record() {
             pass.record(&record);
@@ -457,7 +457,11 @@ impl Bench {
 
     /// With an error model of the test's own, and maybe nothing but its word.
     pub fn run_with(&self, cl: &str, model: &mut dyn ModelSession, trust_model: bool) -> Run {
-        let job = Job { tool_length: Some(self.length), trust_model, ..Job::default() };
+        let job = PostingRequest {
+            tool_length: Some(self.length),
+            trust_model,
+            ..PostingRequest::default()
+        };
         post(&self.machine, self.decimals, cl, job, model)
     }
 }

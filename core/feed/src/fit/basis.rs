@@ -8,7 +8,7 @@ pub(super) const ORDER: usize = DEGREE + 1;
 pub(super) const GAUSS: usize = DEGREE - 2;
 
 /// What multiplies the control points of a span.
-pub(super) type Row = [f64; ORDER];
+pub(super) type BasisRow = [f64; ORDER];
 
 /// The B-splines of one span.
 pub(super) struct Basis {
@@ -38,7 +38,7 @@ impl Basis {
     }
 
     /// Value, first, second and third derivative.
-    pub(super) fn rows(&self, at: f64) -> [Row; 4] {
+    pub(super) fn rows(&self, at: f64) -> [BasisRow; 4] {
         let mut result = [[0.0; ORDER]; 4];
         let mut values = [0.0; ORDER];
         values[0] = 1.0;
@@ -55,7 +55,7 @@ impl Basis {
     }
 
     /// Third derivative.
-    pub(super) fn third(&self, at: f64) -> Row {
+    pub(super) fn third(&self, at: f64) -> BasisRow {
         let mut values = [0.0; ORDER];
         values[0] = 1.0;
         for degree in 0..DEGREE - 3 {
@@ -65,7 +65,7 @@ impl Basis {
     }
 
     /// Values of the B-splines of one degree more than `degree`.
-    fn raised(&self, values: &Row, degree: usize, at: f64) -> Row {
+    fn raised(&self, values: &BasisRow, degree: usize, at: f64) -> BasisRow {
         let mut next = [0.0; ORDER];
         for (index, value) in values[..=degree].iter().enumerate() {
             let share = value * self.inverse[degree][index];
@@ -76,7 +76,7 @@ impl Basis {
     }
 
     /// Turns values of one degree into the derivative, of the order that is missing, of the full one.
-    fn differentiated(&self, mut values: Row, degree: usize) -> Row {
+    fn differentiated(&self, mut values: BasisRow, degree: usize) -> BasisRow {
         for degree in degree..DEGREE {
             let mut next = [0.0; ORDER];
             for (index, value) in values[..=degree].iter().enumerate() {
@@ -93,7 +93,7 @@ impl Basis {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve::Curve;
+    use crate::curve::NurbsCurve;
 
     /// The other evaluation of this crate, by de Boor's scheme, gives the same values and derivatives.
     #[test]
@@ -105,7 +105,7 @@ mod tests {
         for chosen in 0..count {
             let point = |index| [f64::from(u8::from(index == chosen))];
             let points = (0..count).map(point).collect();
-            let curve = Curve::new(DEGREE, knots.clone(), points, Vec::new()).unwrap();
+            let curve = NurbsCurve::new(DEGREE, knots.clone(), points, Vec::new()).unwrap();
             for step in 0..100 {
                 let at = 0.05 * f64::from(step);
                 let span = (DEGREE..count).rfind(|&span| knots[span] <= at).unwrap();

@@ -1,13 +1,13 @@
 //! The linear equations of a fit: data pulls, the third derivative resists.
 
-use super::basis::{ORDER, Row};
+use super::basis::{BasisRow, ORDER};
 use super::track::Span;
 use crate::interior::band::Band;
 
 /// A place where data pulls.
 pub(super) struct Pull<'a, const W: usize> {
     pub(super) span: usize,
-    pub(super) row: &'a Row,
+    pub(super) row: &'a BasisRow,
     pub(super) weight: f64,
     /// The reference spline minus the data.
     pub(super) error: [f64; W],

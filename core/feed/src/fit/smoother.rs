@@ -1,6 +1,6 @@
 //! Some coordinates of the spline: as smooth as their tolerance allows.
 
-use super::basis::{Basis, ORDER, Row};
+use super::basis::{Basis, BasisRow, ORDER};
 use super::equations::{Equations, Pull};
 use super::hull::{Hull, Jet, norm};
 use super::track::{Site, Track};
@@ -25,7 +25,7 @@ const BLURRED: usize = OVERLAP / 2;
 struct Extra<const W: usize> {
     at: f64,
     span: usize,
-    row: Row,
+    row: BasisRow,
     weight: f64,
     error: [f64; W],
 }
@@ -192,7 +192,7 @@ impl<const W: usize> Smoother<W> {
     }
 
     /// A row times the reference, from an origin that keeps numbers small.
-    fn error(&self, track: &Track, span: usize, row: &Row, origin: &Point) -> [f64; W] {
+    fn error(&self, track: &Track, span: usize, row: &BasisRow, origin: &Point) -> [f64; W] {
         let origin = self.part(origin);
         let mut error = [0.0; W];
         for (point, share) in track.reference[span..].iter().zip(row) {

@@ -1,6 +1,6 @@
 //! The polyline of a smooth piece with the knots and sites of the spline that is to follow it.
 
-use super::basis::{Basis, DEGREE, GAUSS, ORDER, Row};
+use super::basis::{Basis, BasisRow, DEGREE, GAUSS, ORDER};
 use super::place::place;
 use super::{MOST, Point};
 
@@ -40,7 +40,7 @@ pub(super) struct Site {
     pub(super) weight: f64,
     /// Whether that is data; else the site counts where the tolerance is in danger alone.
     pub(super) data: bool,
-    pub(super) rows: [Row; 4],
+    pub(super) rows: [BasisRow; 4],
 }
 
 /// What a span adds to the integral of the squared third derivative.
@@ -48,7 +48,7 @@ pub(super) struct Site {
 pub(super) struct Span {
     pub(super) width: f64,
     /// Third derivative at the Gauss points, and their weights.
-    pub(super) thirds: [Row; GAUSS],
+    pub(super) thirds: [BasisRow; GAUSS],
     pub(super) weights: [f64; GAUSS],
     /// The product of the control points `index` and `index + k` in row `index`, entry `k`.
     pub(super) gram: [[f64; ORDER]; ORDER],

@@ -7,7 +7,7 @@ use super::{Law, Settings};
 use crate::infeasible::Infeasible;
 use crate::interior::{Cost, Inequality, Program};
 use crate::limits::Order;
-use crate::problem::Source;
+use crate::problem::LimitSource;
 
 /// Gap to which each round goes.
 const TOLERANCE: f64 = 1e-7;
@@ -27,7 +27,7 @@ pub(super) struct Stretch<'a> {
     pub(super) steps: &'a [f64],
     /// Bounds of `q` at the samples, and where they come from.
     pub(super) upper: &'a [f64],
-    pub(super) causes: &'a [Source],
+    pub(super) causes: &'a [LimitSource],
     /// The plan without jerk limits.
     pub(super) fast: &'a [f64],
     pub(super) corners: &'a [bool],

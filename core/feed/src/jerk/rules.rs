@@ -4,7 +4,7 @@ use super::forms::{self, Form};
 use super::spline::Spline;
 use crate::infeasible::Infeasible;
 use crate::limits::{Channel, Order};
-use crate::problem::Source;
+use crate::problem::LimitSource;
 
 /// What rounding may leave of a row that was kept.
 pub(super) const ROUNDING: f64 = 1e-7;
@@ -17,7 +17,7 @@ pub(super) struct Rule {
     form: Form,
     /// Coefficients of `q` at the same place, for jerk.
     q: Option<Form>,
-    source: Source,
+    source: LimitSource,
 }
 
 impl Rule {
@@ -51,7 +51,7 @@ impl Rules {
                 channels(interval, &mut |limit, channel| {
                     let share = 1.0 / channel.limit;
                     let axis = channel.axis;
-                    let source = Source { limit, axis };
+                    let source = LimitSource { limit, axis };
                     let rule = |form: Form, q: Option<Form>| Rule {
                         form: composed(form, into).map(|value| value * share),
                         q: q.map(|q| composed(q, into)),

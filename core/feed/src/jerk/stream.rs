@@ -12,7 +12,7 @@ use super::spline::State;
 use super::{Piece, Settings, of_limits};
 use crate::infeasible::Infeasible;
 use crate::limits::{Channel, Limit};
-use crate::problem::{Problem, Source, Usage};
+use crate::problem::{LimitSource, LimitUsage, Problem};
 use crate::reach::Reach;
 use crate::samples::Samples;
 use crate::window::Window;
@@ -45,15 +45,15 @@ pub struct Passed<'a> {
     pub step: f64,
     /// `q` over it.
     pub piece: Piece,
-    bounds: [(f64, Source); 2],
+    bounds: [(f64, LimitSource); 2],
     channels: &'a [(u16, Channel)],
 }
 
 impl Passed<'_> {
     /// The limit that is used most at its ends and halfway. It is found when it is asked for.
     #[must_use]
-    pub fn active(&self) -> Usage {
-        let mut usage = Usage::default();
+    pub fn active(&self) -> LimitUsage {
+        let mut usage = LimitUsage::default();
         for (share, (bound, source)) in [0.0, 1.0].into_iter().zip(self.bounds) {
             if bound > 0.0 {
                 usage.raise(self.piece.at(share, self.step)[0] / bound, self.sample, source);
@@ -65,7 +65,7 @@ impl Passed<'_> {
             for &(limit, channel) in self.channels {
                 let axis = channel.axis;
                 let used = channel.used(share, self.step, q).abs();
-                usage.raise(used, self.sample, Source { limit, axis });
+                usage.raise(used, self.sample, LimitSource { limit, axis });
             }
         }
         usage
@@ -143,7 +143,7 @@ impl Stream {
 
     /// The name of where a limit comes from, as reports print it.
     #[must_use]
-    pub fn name(&self, source: Source) -> String {
+    pub fn name(&self, source: LimitSource) -> String {
         self.window.problem.name(source)
     }
 

@@ -3,7 +3,7 @@
 use super::channel::axis_channels;
 use super::{Channel, Collocation, Limit, Order, first_derivative};
 use crate::samples::Samples;
-use crate::table::{Row, Table};
+use crate::table::{LimitRow, LimitTable};
 
 /// `|Q' * s̈ + Q'' * q| <= a` of each axis, with `s̈ = (q[i + 1] - q[i]) / (2 * step)` between two samples: linear in
 /// both. [`Collocation`] says where a row is kept; [`Collocation::Start`] is eq. 23 as it is printed.
@@ -26,7 +26,7 @@ impl Limit for AxisAcceleration {
         axes.flat_map(|axis| std::iter::repeat_n(Some(axis as u16), each)).collect()
     }
 
-    fn apply(&self, samples: &Samples, table: &mut Table<'_>) {
+    fn apply(&self, samples: &Samples, table: &mut LimitTable<'_>) {
         let each = self.collocation.rows();
         for (index, (axis, &limit)) in samples.axes.iter().zip(&self.limits).enumerate() {
             let steps = samples.parameter.windows(2);
@@ -57,13 +57,18 @@ impl Limit for AxisAcceleration {
 /// Bernstein coefficients of `Q' * s̈ + Q'' * q` over an interval, times `scale`: `Q'` is quadratic there, `Q''` and
 /// `q` are linear, `s̈` is constant. The outer two are the values at the ends.
 #[inline]
-pub(super) fn acceleration(first: [f64; 2], second: [f64; 2], step: f64, scale: f64) -> [Row; 3] {
+pub(super) fn acceleration(
+    first: [f64; 2],
+    second: [f64; 2],
+    step: f64,
+    scale: f64,
+) -> [LimitRow; 3] {
     let push = 0.5 * scale / step;
     let [first, middle, last] = first_derivative(first, second, step);
     let [here, next] = [second[0] * scale, second[1] * scale];
     [
-        Row { here: here - first * push, next: first * push },
-        Row { here: 0.5 * next - middle * push, next: 0.5 * here + middle * push },
-        Row { here: -last * push, next: next + last * push },
+        LimitRow { here: here - first * push, next: first * push },
+        LimitRow { here: 0.5 * next - middle * push, next: 0.5 * here + middle * push },
+        LimitRow { here: -last * push, next: next + last * push },
     ]
 }

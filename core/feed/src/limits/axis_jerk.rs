@@ -3,7 +3,7 @@
 use super::channel::axis_channels;
 use super::{Channel, Limit, Order};
 use crate::samples::Samples;
-use crate::table::Table;
+use crate::table::LimitTable;
 
 /// `|Q' * s⃛ + 3 * Q'' * ṡ * s̈ + Q''' * ṡ³| <= j` of each axis.
 ///
@@ -21,7 +21,7 @@ impl Limit for AxisJerk {
 
     /// Nothing: `(j / |Q'''|)^(2/3)` bounds only a plan that goes on evenly; one that slows down may pass a sample
     /// faster.
-    fn apply(&self, _: &Samples, _: &mut Table<'_>) {}
+    fn apply(&self, _: &Samples, _: &mut LimitTable<'_>) {}
 
     fn channels(&self, samples: &Samples, interval: usize, sink: &mut dyn FnMut(Channel)) {
         axis_channels(samples, interval, Order::Jerk, &self.limits, sink);

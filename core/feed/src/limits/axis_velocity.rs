@@ -2,7 +2,7 @@
 
 use super::{Collocation, Limit, first_derivative};
 use crate::samples::Samples;
-use crate::table::Table;
+use crate::table::LimitTable;
 
 /// `|Q'| * ds/dt <= v` of each axis, so `q <= (v / |Q'|)^2`.
 #[derive(Clone, Debug)]
@@ -18,7 +18,7 @@ impl Limit for AxisVelocity {
         "axis velocity"
     }
 
-    fn apply(&self, samples: &Samples, table: &mut Table<'_>) {
+    fn apply(&self, samples: &Samples, table: &mut LimitTable<'_>) {
         for (index, (axis, &limit)) in samples.axes.iter().zip(&self.limits).enumerate() {
             let name = Some(index as u16);
             let bound = |first: f64| (limit / first) * (limit / first);

@@ -2,7 +2,7 @@
 
 use super::{Collocation, Limit, Place, least_of_blocks};
 use crate::samples::Samples;
-use crate::table::Table;
+use crate::table::LimitTable;
 
 /// A control that needs `seconds` to prepare a block must not finish one sooner: the speed on a block of length `l`
 /// stays below `l / seconds`, everywhere on the block. Lengths are [`Samples::blocks`].
@@ -19,7 +19,7 @@ impl Limit for BlockTime {
         "block time"
     }
 
-    fn apply(&self, samples: &Samples, table: &mut Table<'_>) {
+    fn apply(&self, samples: &Samples, table: &mut LimitTable<'_>) {
         for place in Place::all(samples, self.collocation) {
             let length = least_of_blocks(&samples.blocks, &place);
             place.bound(table, length / self.seconds);

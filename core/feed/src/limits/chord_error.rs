@@ -2,7 +2,7 @@
 
 use super::{Collocation, Limit, bound_feed};
 use crate::samples::Samples;
-use crate::table::Table;
+use crate::table::LimitTable;
 
 /// The way of one interpolation period `T` is a chord of the path; on an arc of radius `ρ` it strays from the path by
 /// at most `δ` if the feed is at most `2 * sqrt(ρ² - (ρ - δ)²) / T`.
@@ -33,7 +33,7 @@ impl Limit for ChordError {
         "chord error"
     }
 
-    fn apply(&self, samples: &Samples, table: &mut Table<'_>) {
+    fn apply(&self, samples: &Samples, table: &mut LimitTable<'_>) {
         bound_feed(samples, self.collocation, table, |curvature| self.feed(curvature));
     }
 }

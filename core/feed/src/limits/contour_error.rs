@@ -6,7 +6,7 @@ mod lags;
 use super::{Channel, Collocation, Limit, Order, Place, least_of_blocks};
 use crate::response::Response;
 use crate::samples::Samples;
-use crate::table::{Row, Table};
+use crate::table::{LimitRow, LimitTable};
 use across::{Across, Bound};
 use lags::Lags;
 
@@ -130,7 +130,7 @@ impl ContourError {
     }
 
     /// Bounds and rows where it is known how each axis moves the tip.
-    fn through_axes(&self, samples: &Samples, table: &mut Table<'_>) {
+    fn through_axes(&self, samples: &Samples, table: &mut LimitTable<'_>) {
         let mut across = Across::default();
         let mut before: Option<Bound> = None;
         for sample in 0..samples.len() {
@@ -175,11 +175,11 @@ fn channels(first: &Bound, last: &Bound) -> [Channel; 2] {
 }
 
 /// `|rate * q ± push * s̈| <= 1` at both ends of an interval, with `s̈ = (q[i + 1] - q[i]) / (2 * step)`.
-fn rows(first: &Bound, last: &Bound, step: f64) -> [Row; 4] {
+fn rows(first: &Bound, last: &Bound, step: f64) -> [LimitRow; 4] {
     let row = |bound: &Bound, at_end: bool, sign: f64| {
         let push = sign * 0.5 * bound.push / step;
         let [here, next] = if at_end { [0.0, bound.rate] } else { [bound.rate, 0.0] };
-        Row { here: here - push, next: next + push }
+        LimitRow { here: here - push, next: next + push }
     };
     [row(first, false, 1.0), row(first, false, -1.0), row(last, true, 1.0), row(last, true, -1.0)]
 }
@@ -208,7 +208,7 @@ impl Limit for ContourError {
         vec![None; self.row_count()]
     }
 
-    fn apply(&self, samples: &Samples, table: &mut Table<'_>) {
+    fn apply(&self, samples: &Samples, table: &mut LimitTable<'_>) {
         if samples.has_rates() {
             if samples.rates.len() >= self.lags.axes() {
                 return self.through_axes(samples, table);

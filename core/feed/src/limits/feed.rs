@@ -2,7 +2,7 @@
 
 use super::{Collocation, Limit, Place, least_of_blocks};
 use crate::samples::Samples;
-use crate::table::Table;
+use crate::table::LimitTable;
 
 /// The feed of the tip against the part stays below `most`, and below the feed of its block, [`Samples::feeds`].
 ///
@@ -21,7 +21,7 @@ impl Limit for Feed {
         "feed"
     }
 
-    fn apply(&self, samples: &Samples, table: &mut Table<'_>) {
+    fn apply(&self, samples: &Samples, table: &mut LimitTable<'_>) {
         for place in Place::all(samples, self.collocation) {
             let stretch = if place.is_still() { 1.0 } else { place.stretch };
             place.bound(table, self.most / stretch);

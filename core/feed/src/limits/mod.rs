@@ -27,7 +27,7 @@ pub use tip_acceleration::TipAcceleration;
 pub use tip_jerk::TipJerk;
 
 use crate::samples::{Samples, is_still, norm};
-use crate::table::Table;
+use crate::table::LimitTable;
 
 /// Something that a feed must keep.
 pub trait Limit {
@@ -42,7 +42,7 @@ pub trait Limit {
     }
 
     /// Lowers upper bounds and sets the rows of every interval.
-    fn apply(&self, samples: &Samples, table: &mut Table<'_>);
+    fn apply(&self, samples: &Samples, table: &mut LimitTable<'_>);
 
     /// Hands on what it limits in one interval, for the solver with jerk limits. A limit that has bounds alone, or one
     /// that [`Limit::apply`] says all of, hands on nothing.
@@ -139,7 +139,7 @@ impl Place {
     }
 
     /// Bounds the speed of the parameter there.
-    pub(crate) fn bound(&self, table: &mut Table<'_>, speed: f64) {
+    pub(crate) fn bound(&self, table: &mut LimitTable<'_>, speed: f64) {
         // A speed below 0 is invalid, and must not become valid by being squared.
         let bound = if speed >= 0.0 { speed * speed } else { f64::NAN };
         for sample in self.samples.clone() {
@@ -153,7 +153,7 @@ impl Place {
 pub(crate) fn bound_feed(
     samples: &Samples,
     collocation: Collocation,
-    table: &mut Table<'_>,
+    table: &mut LimitTable<'_>,
     most: impl Fn(f64) -> f64,
 ) {
     for place in Place::all(samples, collocation).filter(|place| !place.is_still()) {

@@ -6,7 +6,7 @@ use super::axis_acceleration::acceleration;
 use super::channel::tip_channels;
 use super::{Channel, Collocation, Limit, Order};
 use crate::samples::{Samples, dot, norm};
-use crate::table::{Row, Table};
+use crate::table::{LimitRow, LimitTable};
 
 /// Pairs of parallel sides of the polygon that stands for the disc.
 const PAIRS: usize = 8;
@@ -33,7 +33,7 @@ impl Limit for TipAcceleration {
         vec![None; PAIRS * self.collocation.rows()]
     }
 
-    fn apply(&self, samples: &Samples, table: &mut Table<'_>) {
+    fn apply(&self, samples: &Samples, table: &mut LimitTable<'_>) {
         let normals: [[f64; 2]; PAIRS] = std::array::from_fn(|pair| {
             let angle = (pair as f64 + 0.5) * PI / PAIRS as f64;
             [libm::cos(angle), libm::sin(angle)]
@@ -44,7 +44,7 @@ impl Limit for TipAcceleration {
         for interval in 0..samples.intervals() {
             let step = samples.step(interval);
             let pair = |all: &[[f64; 3]], axis| [all[interval][axis], all[interval + 1][axis]];
-            let each: [[Row; 3]; 3] = std::array::from_fn(|axis| {
+            let each: [[LimitRow; 3]; 3] = std::array::from_fn(|axis| {
                 acceleration(pair(first, axis), pair(second, axis), step, scale)
             });
             let places: &[usize] = match self.collocation {
@@ -59,7 +59,7 @@ impl Limit for TipAcceleration {
                 let [along, across] = frame(here, next);
                 for (row, normal) in rows[number * PAIRS..].iter_mut().zip(&normals) {
                     let [x, y] = *normal;
-                    *row = Row {
+                    *row = LimitRow {
                         here: x * dot(along, here) + y * dot(across, here),
                         next: x * dot(along, next) + y * dot(across, next),
                     };

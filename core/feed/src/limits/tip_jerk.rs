@@ -3,7 +3,7 @@
 use super::channel::tip_channels;
 use super::{Channel, Limit, Order};
 use crate::samples::Samples;
-use crate::table::Table;
+use crate::table::LimitTable;
 
 /// `|P' * s⃛ + 3 * P'' * ṡ * s̈ + P''' * ṡ³| <= j`, a ball.
 ///
@@ -21,7 +21,7 @@ impl Limit for TipJerk {
     }
 
     /// Nothing, for the reason that [`super::AxisJerk`] has nothing.
-    fn apply(&self, _: &Samples, _: &mut Table<'_>) {}
+    fn apply(&self, _: &Samples, _: &mut LimitTable<'_>) {}
 
     fn channels(&self, samples: &Samples, interval: usize, sink: &mut dyn FnMut(Channel)) {
         tip_channels(samples, interval, Order::Jerk, self.limit, sink);

@@ -2,16 +2,16 @@
 
 use super::step;
 use crate::infeasible::Infeasible;
-use crate::problem::{Problem, Row, Source};
+use crate::problem::{LimitRow, LimitSource, Problem};
 
 /// A limit that is broken on the slowest way on from an end.
 struct Broken {
     sample: usize,
-    source: Source,
+    source: LimitSource,
     needed: f64,
     allowed: f64,
     /// The row that lets it not be slower.
-    by: Option<Source>,
+    by: Option<LimitSource>,
 }
 
 /// The start is above what the path allows.
@@ -53,7 +53,7 @@ fn slowest(problem: &Problem, back: bool) -> Option<Broken> {
     } else {
         [problem.ends.start, problem.ends.end]
     };
-    let mut by: Option<Source> = None;
+    let mut by: Option<LimitSource> = None;
     let mut rows = Vec::new();
     for index in 0..=last {
         let sample = place(index);
@@ -65,7 +65,7 @@ fn slowest(problem: &Problem, back: bool) -> Option<Broken> {
         rows.clear();
         if index < last {
             let interval = if back { sample - 1 } else { sample };
-            let turned = |row: &Row| Row { here: row.next, next: row.here };
+            let turned = |row: &LimitRow| LimitRow { here: row.next, next: row.here };
             let all = problem.rows_of(interval).iter();
             rows.extend(all.map(|row| if back { turned(row) } else { *row }));
             // Rows may forbid it whatever follows.
@@ -87,8 +87,8 @@ fn slowest(problem: &Problem, back: bool) -> Option<Broken> {
 }
 
 /// The row that `q` alone uses most of.
-fn largest(rows: &[Row], q: f64) -> usize {
-    let use_of = |row: &Row| row.value(q, 0.0).abs();
+fn largest(rows: &[LimitRow], q: f64) -> usize {
+    let use_of = |row: &LimitRow| row.value(q, 0.0).abs();
     let each = rows.iter().enumerate();
     let most = each.max_by(|(_, a), (_, b)| use_of(a).total_cmp(&use_of(b)));
     most.map_or(0, |(index, _)| index)
@@ -97,7 +97,7 @@ fn largest(rows: &[Row], q: f64) -> usize {
 /// Names the row of an interval that is farthest from being kept, whatever `q` of the first sample and of `low..=high`
 /// at the second: limits that are not monotone may leave nothing between each other.
 fn contradiction(problem: &Problem, sample: usize, low: f64, high: f64) -> Infeasible {
-    let least = |row: &Row| {
+    let least = |row: &LimitRow| {
         let corners = [(0.0, low), (0.0, high), (1.0, low), (1.0, high)];
         let values = corners.map(|(x, y)| row.value(x * problem.upper[sample], y));
         let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);

@@ -15,7 +15,7 @@ mod step;
 pub mod stream;
 
 use crate::infeasible::Infeasible;
-use crate::problem::{Problem, Row};
+use crate::problem::{LimitRow, Problem};
 
 pub use stream::{Settled, Stream};
 
@@ -137,7 +137,7 @@ pub fn solve(problem: &Problem) -> Result<Vec<f64>, Infeasible> {
 
 /// The controllable set of a sample, from that of the next.
 #[inline]
-fn before(rows: &[Row], upper: f64, low: f64, high: f64) -> Option<(f64, f64)> {
+fn before(rows: &[LimitRow], upper: f64, low: f64, high: f64) -> Option<(f64, f64)> {
     let highest = step::highest_before(rows, upper, low, high)?;
     let lowest = step::lowest_before(rows, upper, low, high)?;
     // A single point may come out turned round by rounding.

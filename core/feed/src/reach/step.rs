@@ -5,7 +5,7 @@
 //! the largest root of the concave `high - low`: Newton's method from the right finds it in finitely many steps, one
 //! for each pair of lines that it meets, and meets two or three.
 
-use crate::problem::Row;
+use crate::problem::LimitRow;
 
 /// A coefficient of `q[i + 1]` that counts as 0: its row bounds `q[i]` alone. So it is where an axis stands still for
 /// an instant (a zero-inertia point).
@@ -27,7 +27,7 @@ struct Span {
 }
 
 #[inline]
-fn span(rows: &[Row], x: f64, low: f64, high: f64) -> Span {
+fn span(rows: &[LimitRow], x: f64, low: f64, high: f64) -> Span {
     let mut span = Span { low, low_slope: 0.0, high, high_slope: 0.0 };
     for &row in rows {
         let [slope, half] = lines(row);
@@ -47,7 +47,7 @@ fn span(rows: &[Row], x: f64, low: f64, high: f64) -> Span {
 /// A row leaves `y` between `slope * x - half` and `slope * x + half`. Without branches, so that rows can be done
 /// several at a time.
 #[inline]
-fn lines(row: Row) -> [f64; 2] {
+fn lines(row: LimitRow) -> [f64; 2] {
     let flat = row.next.abs() <= FLAT;
     let inverse = 1.0 / row.next;
     [if flat { 0.0 } else { -row.here * inverse }, if flat { f64::INFINITY } else { inverse.abs() }]
@@ -55,7 +55,7 @@ fn lines(row: Row) -> [f64; 2] {
 
 /// The largest `x` by the rows that bound it alone.
 #[inline]
-fn alone(rows: &[Row], upper: f64) -> f64 {
+fn alone(rows: &[LimitRow], upper: f64) -> f64 {
     rows.iter()
         .filter(|row| row.next.abs() <= FLAT)
         .fold(upper, |upper, row| upper.min(1.0 / row.here.abs()))
@@ -63,7 +63,7 @@ fn alone(rows: &[Row], upper: f64) -> f64 {
 
 /// The largest `x` of `0..=upper` for which the rows allow some `y` of `low..=high`.
 #[inline]
-pub(super) fn highest_before(rows: &[Row], upper: f64, low: f64, high: f64) -> Option<f64> {
+pub(super) fn highest_before(rows: &[LimitRow], upper: f64, low: f64, high: f64) -> Option<f64> {
     let mut x = alone(rows, upper);
     for _ in 0..MEETINGS {
         let span = span(rows, x, low, high);
@@ -87,7 +87,7 @@ pub(super) fn highest_before(rows: &[Row], upper: f64, low: f64, high: f64) -> O
 
 /// The smallest such `x`.
 #[inline]
-pub(super) fn lowest_before(rows: &[Row], upper: f64, low: f64, high: f64) -> Option<f64> {
+pub(super) fn lowest_before(rows: &[LimitRow], upper: f64, low: f64, high: f64) -> Option<f64> {
     if low <= 0.0 {
         return Some(0.0);
     }
@@ -114,7 +114,7 @@ pub(super) fn lowest_before(rows: &[Row], upper: f64, low: f64, high: f64) -> Op
 
 /// The largest `y` of `low..=high` that `x` allows.
 #[inline]
-pub(super) fn highest_after(rows: &[Row], x: f64, low: f64, high: f64) -> f64 {
+pub(super) fn highest_after(rows: &[LimitRow], x: f64, low: f64, high: f64) -> f64 {
     let reach = rows.iter().fold(high, |reach, &row| {
         let [slope, half] = lines(row);
         let most = slope * x + half;
@@ -125,7 +125,7 @@ pub(super) fn highest_after(rows: &[Row], x: f64, low: f64, high: f64) -> f64 {
 }
 
 /// The smallest `y` that `x` allows, and the row that allows no less.
-pub(super) fn lowest_after(rows: &[Row], x: f64) -> (f64, Option<usize>) {
+pub(super) fn lowest_after(rows: &[LimitRow], x: f64) -> (f64, Option<usize>) {
     let mut least = (0.0, None);
     for (index, &row) in rows.iter().enumerate() {
         let [slope, half] = lines(row);
@@ -144,7 +144,7 @@ mod tests {
     /// `|(y - x)| <= 2`, and `|x - 3| <= 1` through a row without `y` (scaled).
     #[test]
     fn the_root_is_found_with_a_row_that_bounds_x_alone() {
-        let rows = [Row { here: -0.5, next: 0.5 }, Row { here: 0.25, next: 0.0 }];
+        let rows = [LimitRow { here: -0.5, next: 0.5 }, LimitRow { here: 0.25, next: 0.0 }];
         assert_eq!(highest_before(&rows, 10.0, 0.0, 1.0), Some(3.0 * (1.0 - INSIDE)));
         assert_eq!(highest_before(&rows, 10.0, 0.0, 8.0), Some(4.0));
         assert_eq!(lowest_before(&rows, 10.0, 5.0, 8.0), Some(3.0 * (1.0 + INSIDE)));

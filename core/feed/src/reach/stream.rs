@@ -9,7 +9,7 @@
 
 use super::{Reach, step};
 use crate::infeasible::Infeasible;
-use crate::problem::{Ends, Problem, Source, Usage};
+use crate::problem::{EndSpeeds, LimitSource, LimitUsage, Problem};
 use crate::window::Window;
 
 /// Look-aheads that a window is long: all but one of them are handed on at once, so that the sets of few samples are
@@ -29,20 +29,20 @@ pub struct Settled<'a> {
     /// `q` of the samples before and after, where they are in the window.
     neighbours: [Option<f64>; 2],
     /// What the interval before the window used most.
-    arrived: Usage,
+    arrived: LimitUsage,
 }
 
 impl Settled<'_> {
     /// The limit that is used most here: the sample's bound, and the rows of both intervals that it ends. It is found
     /// when it is asked for, and costs what reading the rows of two intervals costs.
     #[must_use]
-    pub fn active(&self) -> Usage {
+    pub fn active(&self) -> LimitUsage {
         let [before, behind] = self.neighbours;
         let mut usage = self.window.used(self.place, self.q, before, behind);
         if self.place == 0 {
             usage.raise(self.arrived.share, self.sample, self.arrived.source);
         }
-        Usage { sample: self.sample, ..usage }
+        LimitUsage { sample: self.sample, ..usage }
     }
 }
 
@@ -77,7 +77,7 @@ pub struct Stream {
     /// The samples that are not handed on yet; begins with the speed that was reached.
     window: Window,
     reach: Reach,
-    arrived: Usage,
+    arrived: LimitUsage,
     uncertain: usize,
 }
 
@@ -94,7 +94,7 @@ impl Stream {
             lookahead,
             window,
             reach: Reach::default(),
-            arrived: Usage::default(),
+            arrived: LimitUsage::default(),
             uncertain: 0,
         }
     }
@@ -183,13 +183,13 @@ impl Stream {
     /// Forgets what was not handed on: the next batch begins another path.
     pub fn clear(&mut self) {
         self.window.clear();
-        self.arrived = Usage::default();
+        self.arrived = LimitUsage::default();
     }
 
     /// The name of where a bound or row comes from, as reports print it. Batches may have lowered bounds for different
     /// reasons: the stream numbers all their names.
     #[must_use]
-    pub fn name(&self, source: Source) -> String {
+    pub fn name(&self, source: LimitSource) -> String {
         self.window.problem.name(source)
     }
 
@@ -237,7 +237,7 @@ impl Stream {
         if let Some(before) = before {
             self.arrived = window.used_between(count - 1, before, q);
         }
-        window.ends = Ends { start: q, end };
+        window.ends = EndSpeeds { start: q, end };
         self.window.drop_first(count);
         Ok(())
     }

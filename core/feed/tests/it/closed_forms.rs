@@ -4,7 +4,7 @@ use post_feed::jerk::{self, Settings};
 use post_feed::limits::{
     AxisAcceleration, AxisJerk, AxisVelocity, Collocation, Limit, TipAcceleration,
 };
-use post_feed::{Ends, Problem, Samples, profile, reach};
+use post_feed::{EndSpeeds, Problem, Samples, profile, reach};
 
 use crate::support::paths::even;
 
@@ -40,7 +40,7 @@ fn on_a_line_the_plan_with_jerk_limits_is_the_s_curve() {
     ];
     for (parameters, most) in cases {
         let samples = line(&parameters);
-        let problem = Problem::new(&samples, &limits, Ends::default()).unwrap();
+        let problem = Problem::new(&samples, &limits, EndSpeeds::default()).unwrap();
         let plan = jerk::solve(&samples, &limits, &problem, Settings::default()).unwrap();
         let over = plan.seconds / s_curve - 1.0;
         println!(
@@ -71,7 +71,7 @@ fn on_a_circle_the_tip_accelerates_with_what_the_curvature_leaves() {
     }
     let tip = TipAcceleration { limit, collocation: Collocation::Throughout };
     let feed = post_feed::limits::Feed { most: 200.0, collocation: Collocation::Throughout };
-    let problem = Problem::new(&samples, &[&tip, &feed], Ends::default()).unwrap();
+    let problem = Problem::new(&samples, &[&tip, &feed], EndSpeeds::default()).unwrap();
     let plan = reach::solve(&problem).unwrap();
     let fastest = plan.iter().copied().fold(0.0, f64::max).sqrt();
     // All across: v² = a ρ, at a corner of the polygon.

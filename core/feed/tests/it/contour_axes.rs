@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 
 use post_feed::limits::{Collocation, ContourError, Feed, Limit};
 use post_feed::response::{Answer, Response};
-use post_feed::{Ends, Infeasible, Problem, Samples, reach};
+use post_feed::{EndSpeeds, Infeasible, Problem, Samples, reach};
 
 /// The PID servo of the feedrate paper (eq. 2), X or Y of its Table 1, by complex division.
 fn servo(x: bool) -> impl Response {
@@ -42,7 +42,7 @@ fn circle(radius: f64, count: usize) -> Samples {
 
 fn speeds(samples: &Samples, limit: &ContourError) -> Vec<f64> {
     let feed = Feed { most: 1e6, collocation: Collocation::Start };
-    let problem = Problem::new(samples, &[&feed, limit], Ends::default()).unwrap();
+    let problem = Problem::new(samples, &[&feed, limit], EndSpeeds::default()).unwrap();
     problem.upper.iter().map(|q| q.sqrt()).collect()
 }
 
@@ -175,7 +175,7 @@ fn the_formula_holds_along_a_plan_that_accelerates() {
     let limit = ContourError::new(&axes, 0.01, 49.8, Collocation::Ends);
     let feed = Feed { most: 50.0, collocation: Collocation::Ends };
     let limits: [&dyn Limit; 2] = [&feed, &limit];
-    let problem = Problem::new(&samples, &limits, Ends::default()).unwrap();
+    let problem = Problem::new(&samples, &limits, EndSpeeds::default()).unwrap();
     let plan = reach::solve(&problem).unwrap();
     assert!(problem.worst(&plan).share < 1.0 + 1e-9);
     // Its rows alone bound the acceleration from rest: what X and Y miss differs.
@@ -188,10 +188,10 @@ fn the_formula_holds_along_a_plan_that_accelerates() {
 fn axes_that_the_limit_does_not_know_are_refused_by_its_name() {
     let x = servo(true);
     let limit = ContourError::new(&[&x as &dyn Response; 4], 0.01, 49.8, Collocation::Start);
-    let fault = Problem::new(&circle(8.0, 4), &[&limit], Ends::default()).unwrap_err();
+    let fault = Problem::new(&circle(8.0, 4), &[&limit], EndSpeeds::default()).unwrap_err();
     assert!(matches!(fault, Infeasible::NotANumber { .. }), "{fault:?}");
     let mut samples = circle(8.0, 4);
     samples.rates[1].pop();
-    let fault = Problem::new(&samples, &[&limit], Ends::default()).unwrap_err();
+    let fault = Problem::new(&samples, &[&limit], EndSpeeds::default()).unwrap_err();
     assert_eq!(fault, Infeasible::Shape);
 }

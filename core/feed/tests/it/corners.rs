@@ -2,7 +2,7 @@
 
 use post_feed::limits::{AxisAcceleration, AxisVelocity, BlockTime, Collocation, Feed, Limit};
 use post_feed::reach::{self, Stream};
-use post_feed::{Ends, Infeasible, Problem, Samples, profile};
+use post_feed::{EndSpeeds, Infeasible, Problem, Samples, profile};
 use post_testkit::Rng;
 
 const FEED: f64 = 50.0;
@@ -45,7 +45,8 @@ fn batches(sides: &[Side], velocity: f64, collocation: Collocation) -> Vec<Probl
     let velocity = AxisVelocity { limits: vec![velocity; 2], collocation };
     let acceleration = AxisAcceleration { limits: vec![ACCELERATION; 2], collocation };
     let limits: [&dyn Limit; 3] = [&feed, &velocity, &acceleration];
-    let problem = |side: &Side| Problem::new(&side.samples(), &limits, Ends::default()).unwrap();
+    let problem =
+        |side: &Side| Problem::new(&side.samples(), &limits, EndSpeeds::default()).unwrap();
     let mut batches: Vec<Problem> = sides.iter().map(problem).collect();
     for (index, side) in sides[..sides.len() - 1].iter().enumerate() {
         let bound = side.corner * side.corner;
@@ -288,7 +289,7 @@ fn the_memory_of_a_stream_is_that_of_its_look_ahead() {
     let side = Side { length: 10.0, direction: [1.0, 0.0], intervals: 64, corner: 0.0 };
     let mut samples = side.samples();
     samples.blocks = vec![0.08; 65];
-    let batch = Problem::new(&samples, &[&feed, &time], Ends::default()).unwrap();
+    let batch = Problem::new(&samples, &[&feed, &time], EndSpeeds::default()).unwrap();
     for lookahead in [10, 100] {
         let mut stream = Stream::new(batch.stride(), lookahead);
         let mut most = 0;

@@ -2,7 +2,7 @@
 
 use post_feed::jerk::{self, Law};
 use post_feed::limits::{AxisAcceleration, AxisJerk, AxisVelocity, ChordError, Collocation, Limit};
-use post_feed::{Ends, Problem, linear_program, profile, reach};
+use post_feed::{EndSpeeds, Problem, linear_program, profile, reach};
 
 use crate::support::paths::{Dual, dual, even};
 
@@ -27,7 +27,8 @@ fn velocity_and_acceleration_alone_give_the_published_lower_bound() {
     assert!((length - 98.1682).abs() < 1e-3, "{length}");
     for collocation in [Collocation::Start, Collocation::Ends, Collocation::Throughout] {
         let (velocity, acceleration) = drives(&path, collocation);
-        let problem = Problem::new(&samples, &[&velocity, &acceleration], Ends::default()).unwrap();
+        let problem =
+            Problem::new(&samples, &[&velocity, &acceleration], EndSpeeds::default()).unwrap();
         let plan = reach::solve(&problem).unwrap();
         let seconds = profile::duration(&problem.steps, &plan);
         let best = linear_program::solve(&problem, &samples.squared_feed_weights()).unwrap();
@@ -79,7 +80,7 @@ fn with_jerk_limits_no_limit_is_broken_between_samples_and_published_times_are_b
         let samples = path.samples(&parameters);
         let mut limits: Vec<&dyn Limit> = vec![&velocity, &acceleration, &jerk];
         limits.extend(chord.as_ref().map(|chord| chord as &dyn Limit));
-        let problem = Problem::new(&samples, &limits, Ends::default()).unwrap();
+        let problem = Problem::new(&samples, &limits, EndSpeeds::default()).unwrap();
         let begin = std::time::Instant::now();
         let plan = jerk::solve(&samples, &limits, &problem, jerk::Settings::default()).unwrap();
         let used = used(&path, &parameters, &plan.law, 8);

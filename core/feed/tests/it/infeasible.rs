@@ -1,7 +1,7 @@
 //! What cannot be planned is named: which limit, and where.
 
 use post_feed::limits::Collocation;
-use post_feed::problem::{Row, Source};
+use post_feed::problem::{LimitRow, LimitSource};
 use post_feed::{Infeasible, Problem, linear_program, reach};
 use post_testkit::Rng;
 
@@ -9,7 +9,7 @@ use crate::support::{oracle, random};
 
 /// Ten samples a millimetre apart, 50 mm/s² and 100 mm/s; at sample 6 a bound of 10 (mm/s)².
 fn slope() -> Problem {
-    let row = Row { here: -0.01, next: 0.01 };
+    let row = LimitRow { here: -0.01, next: 0.01 };
     let mut upper = vec![1e4; 10];
     upper[6] = 10.0;
     Problem::from_rows(vec![1.0; 9], upper, 1, vec![row; 9])
@@ -19,7 +19,7 @@ fn slope() -> Problem {
 fn a_start_too_fast_for_a_bound_ahead_is_named_with_the_bound() {
     let mut problem = slope();
     problem.ends.start = 611.0;
-    let bound = Source::default();
+    let bound = LimitSource::default();
     let row = problem.sources[0];
     let fault = reach::solve(&problem).unwrap_err();
     let want = Infeasible::TooFastStart {

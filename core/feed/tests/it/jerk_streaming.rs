@@ -2,7 +2,7 @@
 
 use post_feed::jerk::{self, Batch, Law, Passed, Settings, Stream};
 use post_feed::limits::{AxisAcceleration, AxisJerk, AxisVelocity, Collocation, Limit};
-use post_feed::{Ends, Infeasible, Problem, Samples};
+use post_feed::{EndSpeeds, Infeasible, Problem, Samples};
 use post_testkit::{Rng, randomised};
 
 use crate::support::random::{self, Limits, part};
@@ -82,7 +82,7 @@ fn with_enough_look_ahead_a_stream_is_as_fast_as_the_whole_path_at_once() {
         let samples = random::samples(&mut random, axes, count, 150.0);
         let drives = Drives::new(&mut random, axes);
         let all = drives.all();
-        let whole = Problem::new(&samples, &all, Ends::default()).unwrap();
+        let whole = Problem::new(&samples, &all, EndSpeeds::default()).unwrap();
         let at_once = jerk::solve(&samples, &all, &whole, Settings::default()).unwrap();
         // The same path, denser: derivatives of the path itself between samples.
         let mut random = Rng::new(seed);
@@ -147,7 +147,7 @@ fn too_short_a_look_ahead_costs_speed_and_breaks_no_limit() {
             drives.jerk.limits = vec![500.0; axes];
         }
         let all = drives.all();
-        let whole = Problem::new(&samples, &all, Ends::default()).unwrap();
+        let whole = Problem::new(&samples, &all, EndSpeeds::default()).unwrap();
         let at_once = jerk::solve(&samples, &all, &whole, Settings::default()).unwrap();
         for lookahead in [1, 4, 7, 15] {
             let batches = [(samples.clone(), whole.clone(), false)];
@@ -232,7 +232,7 @@ fn an_l_with_jerk_limits_is_the_s_curves_of_its_sides() {
     let exact = side(40.0) + side(30.0);
     let batch = |direction: [f64; 2], length: f64| {
         let samples = line(direction, &jerk::graded(0.0, length, 0.1));
-        let problem = Problem::new(&samples, &limits, Ends::default()).unwrap();
+        let problem = Problem::new(&samples, &limits, EndSpeeds::default()).unwrap();
         (samples, problem)
     };
     let (first, mut before) = batch([1.0, 0.0], 40.0);
@@ -280,7 +280,7 @@ fn polygons_with_jerk_limits_keep_them_in_windows_of_any_size() {
         let at = |index: usize| first + length * index as f64 / intervals as f64;
         let parameters: Vec<f64> = (0..=intervals).map(at).collect();
         let samples = line([cos, sin], &parameters);
-        let mut problem = Problem::new(&samples, &limits, Ends::default()).unwrap();
+        let mut problem = Problem::new(&samples, &limits, EndSpeeds::default()).unwrap();
         let stop = random.range(0.0, 1.0) < 0.1;
         let corner = if stop { 0.0 } else { random.range(1.0, 30.0) };
         if side > 0 {
@@ -326,7 +326,7 @@ fn a_long_path_goes_on_behind_batches_that_are_refused() {
     let samples = random::samples(&mut random, 1, count, 400.0);
     let drives = Drives::new(&mut random, 1);
     let all = drives.all();
-    let whole = Problem::new(&samples, &all, Ends::default()).unwrap();
+    let whole = Problem::new(&samples, &all, EndSpeeds::default()).unwrap();
     let lookahead = 60;
     let mut plans = Vec::new();
     for disturbed in [false, true] {
@@ -379,7 +379,7 @@ fn what_has_no_plan_with_jerk_limits_is_named_and_the_stream_begins_anew() {
     let limits: [&dyn Limit; 2] = [&drives.velocity, &drives.jerk];
     let parameters: Vec<f64> = (0..=200).map(|index| 0.1 * f64::from(index)).collect();
     let samples = line([1.0, 0.0], &parameters);
-    let mut problem = Problem::new(&samples, &limits, Ends::default()).unwrap();
+    let mut problem = Problem::new(&samples, &limits, EndSpeeds::default()).unwrap();
     let batch = |problem: &Problem, stream: &mut Stream| -> Result<f64, Infeasible> {
         let mut law = Law::default();
         let mut take = |passed: Passed<'_>| {
@@ -429,7 +429,7 @@ fn pieces_of_any_path_meet_at_corners_without_breaking_a_limit() {
             let count = 11 + random.pick(90);
             let length = random.range(0.05, 0.3) * count as f64;
             let samples = random::samples(&mut random, axes, count, length);
-            let mut problem = Problem::new(&samples, &all, Ends::default()).unwrap();
+            let mut problem = Problem::new(&samples, &all, EndSpeeds::default()).unwrap();
             let corner = random.pick(4) > 0;
             if random.pick(4) == 0 {
                 problem.lower(0, 0.0, "stop");

@@ -2,14 +2,14 @@
 
 use std::f64::consts::TAU;
 
-use post_feed::curve::Curve;
+use post_feed::curve::NurbsCurve;
 use post_feed::jerk;
 use post_feed::limits::{
     AxisAcceleration, AxisJerk, AxisVelocity, ChordError, Collocation, ContourError, Feed, Limit,
     TipAcceleration, TipJerk, deviation,
 };
 use post_feed::response::Response;
-use post_feed::{Ends, Problem, Samples, linear_program, profile, reach};
+use post_feed::{EndSpeeds, Problem, Samples, linear_program, profile, reach};
 
 use crate::support::paths::{butterfly, even, length, plane, spans};
 use crate::support::servo::{Pid, Transfer};
@@ -166,7 +166,7 @@ fn contour_error(samples: &Samples, plan: &[f64], axes: &[&dyn Response]) -> f64
 }
 
 /// The largest share of the limits of velocity and acceleration that a plan uses between samples, by the curve itself.
-fn used(curve: &Curve<2>, parameters: &[f64], plan: &[f64]) -> f64 {
+fn used(curve: &NurbsCurve<2>, parameters: &[f64], plan: &[f64]) -> f64 {
     let mut most: f64 = 0.0;
     for (at, q) in parameters.windows(2).zip(plan.windows(2)) {
         let step = at[1] - at[0];
@@ -204,7 +204,7 @@ fn the_case_set_of_the_paper_on_the_butterfly() {
                 if with {
                     limits.push(&contour);
                 }
-                let problem = Problem::new(&samples, &limits, Ends::default()).unwrap();
+                let problem = Problem::new(&samples, &limits, EndSpeeds::default()).unwrap();
                 let plan = reach::solve(&problem).unwrap();
                 let best = linear_program::solve(&problem, &weights).unwrap();
                 let objective: f64 = plan.iter().zip(&weights).map(|(q, weight)| q * weight).sum();
@@ -246,7 +246,7 @@ fn with_jerk_limits_the_butterfly_takes_longer_and_keeps_them_between_samples() 
         if of_tip {
             limits.extend([&tip as &dyn Limit, &push]);
         }
-        let problem = Problem::new(&samples, &limits, Ends::default()).unwrap();
+        let problem = Problem::new(&samples, &limits, EndSpeeds::default()).unwrap();
         let plan = jerk::solve(&samples, &limits, &problem, jerk::Settings::default()).unwrap();
         let mut most = [0.0_f64; 3];
         for (interval, piece) in plan.law.pieces.iter().enumerate() {

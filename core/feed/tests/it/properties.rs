@@ -2,7 +2,7 @@
 
 use post_feed::jerk::{self, Settings};
 use post_feed::limits::{AxisJerk, Collocation, Limit};
-use post_feed::problem::{Ends, Row};
+use post_feed::problem::{EndSpeeds, LimitRow};
 use post_feed::reach::{self, Stream};
 use post_feed::{Infeasible, Problem, linear_program, profile};
 use post_testkit::{Rng, randomised};
@@ -28,9 +28,9 @@ fn problem(random: &mut Rng) -> Problem {
     let (count, stride) = (2 + random.pick(18), random.pick(4));
     let upper: Vec<f64> = (0..count).map(|_| number(random)).collect();
     let rows = (0..stride * (count - 1))
-        .map(|_| Row { here: signed(random), next: signed(random) })
+        .map(|_| LimitRow { here: signed(random), next: signed(random) })
         .collect();
-    let mut ends = Ends::default();
+    let mut ends = EndSpeeds::default();
     if random.pick(2) == 0 {
         ends.start = random.range(0.0, 1.0) * upper[0];
         ends.end = random.range(0.0, 1.0) * upper[count - 1];
@@ -61,7 +61,7 @@ fn plans_keep_every_limit_and_none_is_above_the_bound() {
                 assert!(best.gap() < 1e-6, "{} {problem:?}", best.gap());
             }
             (Err(fault), other) => {
-                assert!(problem.ends != Ends::default(), "{problem:?}");
+                assert!(problem.ends != EndSpeeds::default(), "{problem:?}");
                 assert!(fault.source().is_some(), "{problem:?}");
                 assert_eq!(other.unwrap_err(), fault, "{problem:?}");
             }
@@ -78,11 +78,12 @@ fn the_optimum_is_that_of_clarabel() {
         let count = 2 + random.pick(58);
         let upper = (0..count).map(|_| random.range(1.0, 100.0)).collect();
         let rows = (0..2 * (count - 1))
-            .map(|_| Row { here: random.range(-0.3, 0.3), next: random.range(-0.3, 0.3) })
+            .map(|_| LimitRow { here: random.range(-0.3, 0.3), next: random.range(-0.3, 0.3) })
             .collect();
         let mut problem = Problem::from_rows(vec![1.0; count - 1], upper, 2, rows);
         if random.range(0.0, 1.0) < 0.5 {
-            problem.ends = Ends { start: random.range(0.0, 8.0).min(problem.upper[0]), end: 0.0 };
+            problem.ends =
+                EndSpeeds { start: random.range(0.0, 8.0).min(problem.upper[0]), end: 0.0 };
         }
         let weights: Vec<f64> = (0..count).map(|_| random.range(0.0, 2.0)).collect();
         let ours = linear_program::solve(&problem, &weights);
@@ -109,7 +110,7 @@ fn a_stream_keeps_every_limit_with_any_look_ahead() {
     for _ in rounds {
         let mut problem = problem(&mut random);
         let lookahead = 1 + random.pick(11);
-        problem.ends = Ends::default();
+        problem.ends = EndSpeeds::default();
         let whole = reach::solve(&problem).unwrap();
         let mut stream = Stream::new(problem.stride(), lookahead);
         let mut plan = Vec::new();
@@ -136,7 +137,7 @@ fn plans_with_jerk_limits_keep_them_and_are_no_faster() {
         let jerk = AxisJerk { limits: (0..axes).map(|_| random.range(2e3, 4e4)).collect() };
         let mut all: Vec<&dyn Limit> = limits.all().to_vec();
         all.push(&jerk);
-        let mut problem = Problem::new(&samples, &all, Ends::default()).unwrap();
+        let mut problem = Problem::new(&samples, &all, EndSpeeds::default()).unwrap();
         problem.upper[150] = 0.0;
         let plan = jerk::solve(&samples, &all, &problem, Settings::default()).unwrap();
         assert!(plan.seconds >= plan.bound * 0.999, "{seed}: {} {}", plan.seconds, plan.bound);
@@ -169,7 +170,7 @@ fn too_few_samples_between_two_stops_are_named() {
     let jerk = AxisJerk { limits: vec![1e4; 2] };
     let mut all: Vec<&dyn Limit> = limits.all().to_vec();
     all.push(&jerk);
-    let mut problem = Problem::new(&samples, &all, Ends::default()).unwrap();
+    let mut problem = Problem::new(&samples, &all, EndSpeeds::default()).unwrap();
     (problem.upper[50], problem.upper[53]) = (0.0, 0.0);
     let fault = jerk::solve(&samples, &all, &problem, Settings::default()).unwrap_err();
     assert_eq!(fault, Infeasible::TooShort { sample: 50 });
@@ -184,10 +185,10 @@ fn plans_with_jerk_limits_begin_and_end_at_given_speeds() {
     let jerk = AxisJerk { limits: vec![2e4; 2] };
     let mut all: Vec<&dyn Limit> = limits.all().to_vec();
     all.push(&jerk);
-    let whole = Problem::new(&samples, &all, Ends::default()).unwrap();
+    let whole = Problem::new(&samples, &all, EndSpeeds::default()).unwrap();
     let slow = jerk::solve(&samples, &all, &whole, Settings::default()).unwrap();
     let least = slow.law.q()[100..300].iter().copied().fold(f64::INFINITY, f64::min);
-    let ends = Ends { start: 0.3 * least, end: 0.3 * least };
+    let ends = EndSpeeds { start: 0.3 * least, end: 0.3 * least };
     let moving = Problem { ends, ..whole };
     let plan = jerk::solve(&samples, &all, &moving, Settings::default()).unwrap();
     let q = plan.law.q();

@@ -1,7 +1,7 @@
 //! Reachability analysis with bounded look-ahead against the whole path at once.
 
 use post_feed::limits::Collocation;
-use post_feed::problem::Ends;
+use post_feed::problem::EndSpeeds;
 use post_feed::reach::{self, Stream};
 use post_feed::{Infeasible, Problem};
 use post_testkit::Rng;
@@ -74,7 +74,7 @@ fn too_short_a_look_ahead_costs_speed_and_breaks_no_limit() {
 #[test]
 fn a_start_and_an_end_in_motion_are_kept() {
     let mut problem = random::problem(3, 3, 4000, Collocation::Throughout);
-    problem.ends = Ends { start: 0.1 * problem.upper[0], end: 0.1 * problem.upper[3999] };
+    problem.ends = EndSpeeds { start: 0.1 * problem.upper[0], end: 0.1 * problem.upper[3999] };
     let whole = reach::solve(&problem).unwrap();
     let (plan, _) = streamed(&problem, 1500, 3).unwrap();
     assert_eq!((plan[0], plan[3999]), (problem.ends.start, problem.ends.end));

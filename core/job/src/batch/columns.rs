@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use post_posting::report::Report;
+use post_posting::report::PostingReport;
 use post_readback::verify::Verification;
 
 use super::inputs::Inputs;
@@ -39,7 +39,7 @@ const STATE: &[(&str, Kind)] = &[
 
 /// A program that was written.
 pub struct Written<'a> {
-    pub report: &'a Report,
+    pub report: &'a PostingReport,
     /// Its text: how many bytes, and their hash.
     pub bytes: u64,
     pub hash: String,

@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Severity};
-use post_posting::report::Report;
-use post_posting::{LookedAhead, Output};
+use post_posting::report::PostingReport;
+use post_posting::{ProgramPreview, TextSink};
 use post_readback::interpret::Limits;
 use post_readback::verify::BlockReport;
 
@@ -218,7 +218,7 @@ impl OneJob<'_> {
         ClSource::of_held(self.session, &self.arguments.input, text)
     }
 
-    fn ahead(&self, source: &mut ClSource) -> Result<Option<LookedAhead>, Failure> {
+    fn ahead(&self, source: &mut ClSource) -> Result<Option<ProgramPreview>, Failure> {
         if !self.machine.program.looks_ahead {
             return Ok(None);
         }
@@ -281,7 +281,7 @@ impl OneJob<'_> {
     }
 
     /// What the program came to.
-    fn tell(&self, report: &Report, text: &ProgramText, outcome: &mut Outcome) {
+    fn tell(&self, report: &PostingReport, text: &ProgramText, outcome: &mut Outcome) {
         let written = Written {
             report,
             bytes: text.bytes,
@@ -306,7 +306,7 @@ impl ProgramText {
     }
 }
 
-impl Output for ProgramText {
+impl TextSink for ProgramText {
     fn write(&mut self, text: &[u8]) -> Result<(), String> {
         self.bytes += text.len() as u64;
         self.hasher.update(text);

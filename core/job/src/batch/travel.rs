@@ -1,7 +1,7 @@
 //! What a program uses of the travel of the axes: columns for each axis, and the least that is left.
 
 use post_machine::description::Machine;
-use post_posting::report::Report;
+use post_posting::report::PostingReport;
 
 use super::outcome::Outcome;
 
@@ -26,7 +26,7 @@ pub struct TravelLeft<'a> {
 /// Tells of each axis what is used; what is least left of a slide, and of a table.
 pub fn tell<'a>(
     machine: &Machine,
-    report: &'a Report,
+    report: &'a PostingReport,
     outcome: &mut Outcome,
 ) -> [Option<TravelLeft<'a>>; 2] {
     let mut nearest: [Option<TravelLeft<'_>>; 2] = [None, None];

@@ -19,7 +19,7 @@ mod text;
 
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
-use post_posting::LookedAhead;
+use post_posting::ProgramPreview;
 use serde::Serialize;
 
 use super::one_program::OneProgram;
@@ -95,7 +95,7 @@ pub struct Compensation {
 /// The machine file does not allow it or describes no servo, or the program cannot be made.
 pub fn compensate(
     program: &OneProgram<'_>,
-    ahead: Option<&LookedAhead>,
+    ahead: Option<&ProgramPreview>,
     source: &mut ClSource,
 ) -> Result<Compensation, Failure> {
     let bound = allowed(program.machine).map_err(|fault| *fault)?;

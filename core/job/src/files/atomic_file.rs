@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
 
-use post_posting::Output;
+use post_posting::TextSink;
 
 use super::file_id::folder;
 use super::naming::{self, Unnamed};
@@ -146,7 +146,7 @@ impl Write for AtomicFile {
     }
 }
 
-impl Output for AtomicFile {
+impl TextSink for AtomicFile {
     fn write(&mut self, text: &[u8]) -> Result<(), String> {
         self.write_bytes(text).map_err(|fault| fault.to_string())
     }
@@ -155,7 +155,7 @@ impl Output for AtomicFile {
 /// Takes a text and keeps none of it: a program is made and judged, and nobody wants its lines.
 pub struct NullSink;
 
-impl Output for NullSink {
+impl TextSink for NullSink {
     fn write(&mut self, _: &[u8]) -> Result<(), String> {
         Ok(())
     }

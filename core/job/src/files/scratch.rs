@@ -2,7 +2,7 @@
 
 use std::io::{self, BufWriter, Write};
 
-use post_posting::Output;
+use post_posting::TextSink;
 
 use super::FileFault;
 use super::temporary::Temporary;
@@ -34,7 +34,7 @@ impl Scratch {
     }
 }
 
-impl Output for Scratch {
+impl TextSink for Scratch {
     fn write(&mut self, text: &[u8]) -> Result<(), String> {
         let written = self.text.write_all(text);
         written.map_err(|error| fault(self.name, error).to_string())

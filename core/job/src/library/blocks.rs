@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use post_machine::description::Machine;
-use post_posting::{Block, Flow, Observer};
+use post_posting::{MotionBlock, Observer, StreamItem};
 
 use crate::columns::{Column, Kind};
 use crate::posted::{self, PostedBlock, PostedProgram};
@@ -92,11 +92,11 @@ impl<'m> BlockArrays<'m> {
 }
 
 impl Observer for BlockArrays<'_> {
-    fn blocks(&mut self, blocks: &[Flow<Block>]) {
+    fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
         for next in blocks {
             match next {
-                Flow::Point(block) => self.waiting.push_back(self.program.block(block)),
-                Flow::Command { command, .. } => self.program.command(command),
+                StreamItem::Point(block) => self.waiting.push_back(self.program.block(block)),
+                StreamItem::Command { command, .. } => self.program.command(command),
             }
         }
     }

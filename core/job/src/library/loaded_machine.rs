@@ -4,7 +4,7 @@ use std::path::Path;
 
 use post_machine::description::Machine;
 use post_plugin::DialectSession as _;
-use post_posting::program::{Motion, Pace};
+use post_posting::program::{MoveFeed, StraightMove};
 use post_posting::whole_pass;
 
 use super::{Kinematics, MadeProgram, OptionTold, Refused, Stop, Wanted, quietly};
@@ -89,16 +89,16 @@ impl LoadedMachine {
         cut: &[bool],
     ) -> Result<Vec<f64>, Refused> {
         let poses = wanted.poses(self.kinematics.has_edge())?;
-        let path: Vec<Motion> = poses
+        let path: Vec<StraightMove> = poses
             .iter()
             .zip(cut)
-            .map(|(pose, cut)| Motion {
+            .map(|(pose, cut)| StraightMove {
                 tip: pose.tip,
                 axis: pose.axis,
                 edge: pose.edge,
                 pace: match cut {
-                    true => Pace::PerMinute(1000.0),
-                    false => Pace::Rapid,
+                    true => MoveFeed::PerMinute(1000.0),
+                    false => MoveFeed::Rapid,
                 },
                 chord: 0.0,
             })

@@ -4,7 +4,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 use post_machine::diagnostic::Diagnostic;
-use post_posting::{Observer, Output};
+use post_posting::{Observer, TextSink};
 
 use super::blocks::BlockArrays;
 use super::{Blocks, MachineTold, OptionTold, Refused, Stop, quietly};
@@ -37,7 +37,7 @@ struct Text {
     bytes: Vec<u8>,
 }
 
-impl Output for Text {
+impl TextSink for Text {
     fn write(&mut self, text: &[u8]) -> Result<(), String> {
         self.bytes.extend_from_slice(text);
         Ok(())

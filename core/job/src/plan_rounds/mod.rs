@@ -17,7 +17,7 @@ use std::sync::Arc;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::servo::Response;
-use post_posting::{LookedAhead, Tightening};
+use post_posting::{ProgramPreview, Tightening};
 use serde::Serialize;
 
 use super::one_program::OneProgram;
@@ -88,7 +88,7 @@ impl Found {
 pub fn plan(
     program: &OneProgram<'_>,
     most: u32,
-    ahead: Option<&LookedAhead>,
+    ahead: Option<&ProgramPreview>,
     source: &mut ClSource,
 ) -> Result<(Option<Arc<Tightening>>, Found), Failure> {
     let allowed = allowed(program.machine).map_err(|fault| *fault)?;

@@ -1,7 +1,7 @@
 //! The path of a CL file, for the tool to be held against.
 
 use post_machine::diagnostic::Diagnostic;
-use post_motion::contour::Reference;
+use post_motion::contour::ReferencePath;
 use post_readback::MOST_FAULTS;
 use post_readback::course::cl::{ClCourse, ClTool};
 use post_readback::course::{Course, Legs, Window};
@@ -43,7 +43,7 @@ pub fn open<'f>(
     asked: &Asked<'_>,
     source: &mut ClSource,
     faults: &'f mut Vec<Diagnostic>,
-) -> Result<(Box<dyn Reference + 'f>, String), Failure> {
+) -> Result<(Box<dyn ReferencePath + 'f>, String), Failure> {
     let input = source.open()?;
     let settings = read_back::course_settings(asked.arguments, asked.machine, &input.name);
     let course = ClCourse::new(settings, input.bytes);

@@ -3,7 +3,7 @@
 use post_machine::axis_words;
 use post_machine::description::{Axis, CornerRule, Machine};
 use post_machine::diagnostic::Diagnostic;
-use post_motion::contour::{self, ContourReport, Peak};
+use post_motion::contour::{self, ContourPeak, ContourReport};
 use post_motion::limits::AxisLimits;
 
 use super::prediction::{AxisFound, ContourFound, Extreme, Part, Spread};
@@ -14,7 +14,7 @@ pub fn axes(machine: &Machine, report: &ContourReport) -> Vec<AxisFound> {
     let places = axis_words::order(machine).into_iter();
     let axes = places.map(|place| {
         let (axis, peaks) = (&machine.axes[place], &report.axes[place]);
-        let extreme = |peak: &Peak, scale: f64, limit: f64| Extreme {
+        let extreme = |peak: &ContourPeak, scale: f64, limit: f64| Extreme {
             value: peak.value * scale / axis.unit(),
             limit: Some(limit / axis.unit()).filter(|limit| limit.is_finite()),
             nc_line: peak.line,
@@ -36,8 +36,10 @@ pub fn axes(machine: &Machine, report: &ContourReport) -> Vec<AxisFound> {
 
 /// How far the tool is off its path.
 pub fn contour(report: &ContourReport, against_a_path: bool) -> ContourFound {
-    let part =
-        |part: &'static str, found: &contour::Spread| Part { part, tip_mm: spread(found, 1.0) };
+    let part = |part: &'static str, found: &contour::ValueSpread| Part {
+        part,
+        tip_mm: spread(found, 1.0),
+    };
     let mut parts =
         vec![part("following", &report.cuts), part("interpolation", &report.interpolation)];
     let (tip, axis) = match against_a_path {
@@ -60,7 +62,7 @@ pub fn contour(report: &ContourReport, against_a_path: bool) -> ContourFound {
     }
 }
 
-fn spread(found: &contour::Spread, unit: f64) -> Spread {
+fn spread(found: &contour::ValueSpread, unit: f64) -> Spread {
     Spread {
         largest: found.peak.value * unit,
         rms: found.rms() * unit,

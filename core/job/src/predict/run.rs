@@ -9,7 +9,7 @@ use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Place};
 use post_machine::kinematics::{Solver, Unreachable};
-use post_motion::trajectory::{Filled, Planner};
+use post_motion::trajectory::{FillOutcome, Planner};
 use post_motion::{SetPoints, Task};
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::tasks::{Planned, Tasks};
@@ -146,7 +146,7 @@ pub fn predict<R: Read + Seek>(
     loop {
         progress.record(|| position.get());
         let filled = match &mut points {
-            None => Filled::Wants,
+            None => FillOutcome::Wants,
             Some(points) => {
                 let filled = planner.fill(points, BATCH, &mut times);
                 let line = points.at.last().map_or(0, |at| at.line);
@@ -155,7 +155,7 @@ pub fn predict<R: Read + Seek>(
         };
         stages.done(machine, &mut times);
         if let Some(points) = &mut points
-            && filled != Filled::Wants
+            && filled != FillOutcome::Wants
         {
             let known = chains.last();
             if !points.is_empty()
@@ -167,9 +167,9 @@ pub fn predict<R: Read + Seek>(
             points.clear();
         }
         match filled {
-            Filled::Full => {}
-            Filled::Ended => break,
-            Filled::Wants => {
+            FillOutcome::Full => {}
+            FillOutcome::Ended => break,
+            FillOutcome::Wants => {
                 reading.more(watch, name);
                 for planned in reading.planned.drain(..) {
                     if let (None, Task::Move(first)) = (&points, &planned.task) {

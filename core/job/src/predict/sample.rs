@@ -1,13 +1,13 @@
 //! One set-point, with all that came of it.
 
-use post_motion::At;
+use post_motion::ProgramPlace;
 use post_motion::contour::ContourPoint;
 
 /// A set-point, and where the machine is at its time.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
     /// What is carried out: line of the program, and whether the tool cuts.
-    pub at: At,
+    pub at: ProgramPlace,
     /// Commanded feed of the tip against the part since the set-point before, mm/min; zero where that was no cut.
     pub feed: f64,
     /// Feed that the program states, mm/min; zero for rapids and waits.

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_machine::kinematics::{Joints, Solver};
-use post_motion::contour::{Contour, ContourPoint, Reference};
+use post_motion::contour::{Contour, ContourPoint, ReferencePath};
 use post_motion::servo::Servos;
 use post_motion::trajectory::TaskTime;
-use post_motion::{At, SetPoints, Task};
+use post_motion::{ProgramPlace, SetPoints, Task};
 use post_readback::State;
 use post_readback::tasks::Planned;
 
@@ -46,7 +46,7 @@ pub struct Stages<'r> {
     operation: usize,
     actual: Vec<Joints>,
     /// Set-points whose contour error is not known yet: what is carried out, and the feed that the tip has and should.
-    waiting: VecDeque<(At, [f64; 2])>,
+    waiting: VecDeque<(ProgramPlace, [f64; 2])>,
     /// Where the tip was commanded last in a cut, and by which chain.
     last: Option<(Vector3<f64>, Arc<Solver>)>,
     times: TimeTally,
@@ -60,7 +60,7 @@ impl<'r> Stages<'r> {
     pub fn new(
         machine: &Machine,
         period: f64,
-        path: Option<(Box<dyn Reference + 'r>, String)>,
+        path: Option<(Box<dyn ReferencePath + 'r>, String)>,
     ) -> Result<Self, Failure> {
         let mut contour = Contour::new();
         let mut against = None;
@@ -211,7 +211,7 @@ impl<'r> Stages<'r> {
 }
 
 /// A set-point with what is known of it by now.
-fn sample(point: &ContourPoint, waiting: &mut VecDeque<(At, [f64; 2])>) -> Sample {
+fn sample(point: &ContourPoint, waiting: &mut VecDeque<(ProgramPlace, [f64; 2])>) -> Sample {
     let (at, [feed, programmed]) = waiting.pop_front().unwrap_or_default();
     Sample { at, feed, programmed, point: *point }
 }

@@ -1,7 +1,7 @@
 //! Where the time goes: by what limits it, by tool and operation.
 
 use post_machine::description::Machine;
-use post_motion::Waiting;
+use post_motion::WaitReason;
 use post_motion::trajectory::{TaskTime, TimeLimit};
 
 use super::prediction::{LimitTime, OperationTime, Times};
@@ -17,12 +17,12 @@ pub enum Kind {
     /// A rapid.
     Rapid,
     /// The machine waits.
-    Wait(Waiting),
+    Wait(WaitReason),
 }
 
 impl Default for Kind {
     fn default() -> Self {
-        Self::Wait(Waiting::Dwell)
+        Self::Wait(WaitReason::Dwell)
     }
 }
 
@@ -125,12 +125,12 @@ impl TimeTally {
 }
 
 /// What is waited for.
-fn reason(why: Waiting) -> &'static str {
+fn reason(why: WaitReason) -> &'static str {
     match why {
-        Waiting::Dwell => "dwell",
-        Waiting::ToolChange => "tool change",
-        Waiting::Spindle => "spindle",
-        Waiting::Word => "standstill",
+        WaitReason::Dwell => "dwell",
+        WaitReason::ToolChange => "tool change",
+        WaitReason::Spindle => "spindle",
+        WaitReason::Word => "standstill",
     }
 }
 

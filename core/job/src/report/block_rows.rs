@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use post_machine::description::{Machine, Tcp};
 use post_machine::kinematics::{Chain, Joints};
 use post_posting::program::{Command, HoleMark};
-use post_posting::{Block, Flow, MotionKind, Observer, Reason};
+use post_posting::{BlockKind, BlockReason, MotionBlock, Observer, StreamItem};
 use post_report::meta::Meta;
 
 use super::branch::{self, Branch};
@@ -88,7 +88,7 @@ pub struct BlockRows<'m> {
     /// End of the last block, s, and its tip, as the page will have them.
     end: f64,
     tip: Vector3<f64>,
-    reason: Reason,
+    reason: BlockReason,
     marks: Marks,
     /// Tip and axis in cuts, tip in rapids.
     largest: [Largest; 3],
@@ -156,7 +156,7 @@ impl<'m> BlockRows<'m> {
             came: 0,
             end: 0.0,
             tip: Vector3::zeros(),
-            reason: Reason::Point,
+            reason: BlockReason::Point,
             marks: Marks::default(),
             largest: [Largest::default(); 3],
             fault: None,
@@ -237,13 +237,13 @@ impl<'m> BlockRows<'m> {
         }
     }
 
-    fn block(&mut self, block: &Block) {
+    fn block(&mut self, block: &MotionBlock) {
         let row = self.came;
         self.came += 1;
         // Told against the end of the block before.
         let from = self.program.time - self.end;
         let posted = self.program.block(block);
-        if block.reason == Reason::Rewind && self.reason != Reason::Rewind {
+        if block.reason == BlockReason::Rewind && self.reason != BlockReason::Rewind {
             self.marks.event(row, "rewind", "the tool is drawn back to turn");
         }
         self.reason = block.reason;
@@ -295,7 +295,7 @@ impl<'m> BlockRows<'m> {
     }
 
     /// Length of the tool in use, mm: by how much the tip stands before the gauge point.
-    fn length(&self, block: &Block) -> f64 {
+    fn length(&self, block: &MotionBlock) -> f64 {
         self.chain.as_ref().map_or(0.0, |chain| {
             let gauge = chain.forward(&block.joints).tip;
             (gauge - block.tip).dot(&block.axis)
@@ -303,21 +303,21 @@ impl<'m> BlockRows<'m> {
     }
 
     /// Where the tip goes in a block, for the table of the path.
-    fn path(&mut self, row: u64, block: &Block, length: f64, end: Vector3<f64>) {
+    fn path(&mut self, row: u64, block: &MotionBlock, length: f64, end: Vector3<f64>) {
         let last = self.last.replace((block.line, block.joints, block.tip));
         let mut places = Vec::new();
         self.cl.advance(block.line);
         if let Some((line, joints, tip)) = last {
             self.cl.forget(line.min(block.line));
             match block.kind {
-                MotionKind::Position | MotionKind::Reference => {}
-                MotionKind::Arc | MotionKind::Spline => {
+                BlockKind::Position | BlockKind::Reference => {}
+                BlockKind::Arc | BlockKind::Spline => {
                     // Certified to be that of the CL file within the tolerance: where on it nobody has held it.
                     for place in self.cl.between(tip, block.tip) {
                         places.push((place, None));
                     }
                 }
-                MotionKind::Rapid | MotionKind::Linear => {
+                BlockKind::Rapid | BlockKind::Linear => {
                     if let Some(middle) = self.middle(&joints, block, tip, length) {
                         let off = self.cl.off(middle);
                         places.push((middle, off));
@@ -337,7 +337,7 @@ impl<'m> BlockRows<'m> {
     fn middle(
         &self,
         from: &Joints,
-        block: &Block,
+        block: &MotionBlock,
         tip: Vector3<f64>,
         length: f64,
     ) -> Option<Vector3<f64>> {
@@ -384,11 +384,11 @@ impl<'m> BlockRows<'m> {
 }
 
 impl Observer for BlockRows<'_> {
-    fn blocks(&mut self, blocks: &[Flow<Block>]) {
+    fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
         for next in blocks {
             match next {
-                Flow::Point(block) => self.block(block),
-                Flow::Command { command, .. } => self.command(command),
+                StreamItem::Point(block) => self.block(block),
+                StreamItem::Command { command, .. } => self.command(command),
             }
         }
     }

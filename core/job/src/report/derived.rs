@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 use post_machine::description::{Machine, Tcp};
 use post_machine::kinematics::chain::turn;
 use post_machine::kinematics::{Chain, Joints, Pose};
-use post_report::meta::Check;
+use post_report::meta::PoseCheck;
 
 use crate::axes::{self, AxisColumn};
 use crate::columns::Column;
@@ -39,7 +39,7 @@ pub struct Derived<'m> {
     machine: &'m Machine,
     chain: Option<Chain>,
     way: Way,
-    checks: Vec<Check>,
+    checks: Vec<PoseCheck>,
     /// Rows to the next check.
     next: u64,
 }
@@ -234,7 +234,7 @@ impl<'m> Derived<'m> {
         self.next = 2 * row + 1;
         let axes = self.machine.axes.iter().zip(joints);
         let Pose { tip, axis, .. } = chain.forward(joints);
-        self.checks.push(Check {
+        self.checks.push(PoseCheck {
             row,
             joints: axes.map(|(axis, value)| axis.reading(*value)).collect(),
             tool_length: length,
@@ -244,7 +244,7 @@ impl<'m> Derived<'m> {
     }
 
     /// What was kept.
-    pub fn checks(self) -> Vec<Check> {
+    pub fn checks(self) -> Vec<PoseCheck> {
         self.checks
     }
 }

@@ -4,9 +4,9 @@ use std::io::Read;
 
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
-use post_posting::report::{Deviation, Report};
+use post_posting::report::{PostingReport, ReportedDeviation};
 use post_readback::verify::Verification;
-use post_report::meta::{AxisUsed, Maximum, Names, Verdict};
+use post_report::meta::{AxisUsed, Maximum, Names, VerdictMeta};
 
 use super::{BlockRows, Parts, PredictedParts};
 use crate::failure::Failure;
@@ -25,7 +25,7 @@ pub struct Made<'a> {
     /// Where the program stands.
     pub program: &'a PathArg,
     /// What making it came to.
-    pub report: &'a Report,
+    pub report: &'a PostingReport,
     /// What reading it back found.
     pub verification: Option<&'a Verification>,
     /// What is predicted of it.
@@ -85,7 +85,7 @@ impl Made<'_> {
         parts.write(meta, most, page)
     }
 
-    fn verdict(&self) -> Verdict {
+    fn verdict(&self) -> VerdictMeta {
         let found = self.report;
         let mut sentences = vec![format!(
             "Every block of the program is certified to stay within {} mm of the CL path with the tip and within {}° with the tool axis.",
@@ -107,12 +107,12 @@ impl Made<'_> {
             let warnings = if warned == 1 { "warning" } else { "warnings" };
             sentences.push(format!("{warned} {warnings}: look at them before it runs."));
         }
-        Verdict { kind, word: word.to_owned(), sentences }
+        VerdictMeta { kind, word: word.to_owned(), sentences }
     }
 
     fn maxima(&self) -> Vec<Maximum> {
         let found = self.report;
-        let maximum = |name: &str, deviation: Deviation, unit, limit: f64| Maximum {
+        let maximum = |name: &str, deviation: ReportedDeviation, unit, limit: f64| Maximum {
             name: name.to_owned(),
             value: deviation.value,
             unit,

@@ -1,6 +1,6 @@
 //! What is marked on the rows of a page: events, and where heads are swapped in.
 
-use post_report::meta::{Event, Meta};
+use post_report::meta::{EventMeta, Meta};
 
 /// More events than this are counted and not listed.
 const MOST_EVENTS: usize = 5000;
@@ -8,7 +8,7 @@ const MOST_EVENTS: usize = 5000;
 /// Marks of the rows of a program.
 #[derive(Debug, Default)]
 pub struct Marks {
-    events: Vec<Event>,
+    events: Vec<EventMeta>,
     left_out: u64,
     heads: Vec<[u64; 2]>,
 }
@@ -17,7 +17,7 @@ impl Marks {
     /// Before `row` something happens.
     pub fn event(&mut self, row: u64, kind: &'static str, text: impl Into<String>) {
         match self.events.len() < MOST_EVENTS {
-            true => self.events.push(Event { row, kind, text: text.into() }),
+            true => self.events.push(EventMeta { row, kind, text: text.into() }),
             false => self.left_out += 1,
         }
     }

@@ -38,7 +38,7 @@ pub use told_by_prediction::{is_exceeded, predicted_facts, predicted_maxima};
 use std::path::Path;
 
 use post_machine::description::Machine;
-use post_report::meta::{FORMAT, Meta, Names, Tolerances};
+use post_report::meta::{FORMAT, Meta, Names, TolerancesMeta};
 
 use crate::files::PathArg;
 
@@ -65,7 +65,7 @@ pub fn about(job: &'static str, machine: &Machine, title: String, names: Names) 
         job,
         title,
         names,
-        tolerances: Tolerances {
+        tolerances: TolerancesMeta {
             tip: accuracy.tolerance,
             axis: accuracy.axis_tolerance.to_degrees(),
             rapid: accuracy.rapid_tolerance,

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
-use post_motion::path::Way;
+use post_motion::path::Interpolation;
 use post_readback::{Done, Motion, MotionKind, Told};
 use post_report::meta::{AxisUsed, Meta};
 
@@ -282,8 +282,8 @@ impl<'m> MotionRows<'m> {
         let kind = match (motion.hole, motion.kind, &motion.way) {
             (true, ..) => 6,
             (_, MotionKind::Rapid, _) => 2,
-            (_, _, Way::Arc { .. }) => 4,
-            (_, _, Way::Spline(_)) => 5,
+            (_, _, Interpolation::Arc { .. }) => 4,
+            (_, _, Interpolation::Spline(_)) => 5,
             _ => 3,
         };
         // The chain has the tool in it: where the gauge point is, is the same with every tool.
@@ -358,17 +358,17 @@ impl<'m> MotionRows<'m> {
         let tolerance = self.machine.accuracy.tolerance;
         let [from, to] = [motion.from.pose.tip, motion.to.pose.tip];
         let count = match &motion.way {
-            Way::Axes => {
+            Interpolation::Axes => {
                 let bow = (motion.at(0.5).tip - 0.5 * (from + to)).norm();
                 if bow > tolerance / 50.0 { 2 } else { 1 }
             }
-            Way::Tip | Way::TipAndAxis => 1,
-            Way::Arc { centre, sweep, .. } => {
+            Interpolation::Tip | Interpolation::TipAndAxis => 1,
+            Interpolation::Arc { centre, sweep, .. } => {
                 let radius = (from - centre).norm().max(tolerance);
                 let step = libm::sqrt(8.0 * tolerance / radius);
                 libm::ceil(libm::fabs(*sweep) / step).clamp(2.0, MOST_PLACES) as u32
             }
-            Way::Spline(way) => (16 * way.spans().count() as u32).min(MOST_PLACES as u32),
+            Interpolation::Spline(way) => (16 * way.spans().count() as u32).min(MOST_PLACES as u32),
         };
         (1..count).map(|place| motion.at(f64::from(place) / f64::from(count)).tip).collect()
     }

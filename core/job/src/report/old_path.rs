@@ -6,7 +6,7 @@ use std::fs::File;
 
 use nalgebra::Vector3;
 use post_machine::description::Machine;
-use post_motion::path::Way;
+use post_motion::path::Interpolation;
 use post_readback::interpret::Interpreter;
 use post_readback::{Done, MotionKind, Run};
 
@@ -128,7 +128,7 @@ impl OldPath {
                 _ => 0.0,
             };
             let chords = match &motion.way {
-                Way::Arc { .. } | Way::Spline(_) => MOST_CHORDS,
+                Interpolation::Arc { .. } | Interpolation::Spline(_) => MOST_CHORDS,
                 _ => motion.pieces(CHORD, 1.0).min(MOST_CHORDS),
             };
             for chord in 1..=chords {

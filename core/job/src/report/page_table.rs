@@ -21,7 +21,7 @@ impl<R> PageTable<R> {
     /// # Errors
     /// There is no place for it.
     pub fn new(name: &'static str, columns: Vec<Column<R>>) -> Result<Self, Failure> {
-        let heads = columns.iter().map(|column| table::Column {
+        let heads = columns.iter().map(|column| table::TableColumn {
             name: column.name.clone().into_owned(),
             unit: column.unit,
             decimals: column.decimals,

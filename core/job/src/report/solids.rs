@@ -6,14 +6,14 @@ use std::io::BufReader;
 use post_machine::description::{self, Machine};
 use post_machine::diagnostic::Diagnostic;
 use post_report::meta::Meta;
-use post_report::solid::{MOST_EDGES, MOST_TRIANGLES, Solid};
-use post_report::table::{Column, TableWriter};
+use post_report::solid::{DrawnSolid, MOST_EDGES, MOST_TRIANGLES};
+use post_report::table::{TableColumn, TableWriter};
 
 use super::parts::{Parts, fault};
 use crate::failure::Failure;
 
 /// A shape that a machine file names, few enough triangles for a frame.
-type Shape<'m> = (&'m description::Solid, Solid);
+type Shape<'m> = (&'m description::Solid, DrawnSolid);
 
 /// What cannot be shown of the shapes that a machine file names; a picture lacks them, and nothing else.
 pub fn faults(machine: &Machine) -> Vec<Diagnostic> {
@@ -51,8 +51,8 @@ pub(super) fn add(
     parts: &mut Parts,
 ) -> Result<Vec<Diagnostic>, Failure> {
     let columns = ["set", "corners", "body"].into_iter();
-    let columns = columns.map(|name| Column::new(name, "", 0));
-    let places = ["x", "y", "z"].map(|name| Column::new(name, "mm", 2));
+    let columns = columns.map(|name| TableColumn::new(name, "", 0));
+    let places = ["x", "y", "z"].map(|name| TableColumn::new(name, "mm", 2));
     let columns = columns.chain(places).collect();
     let mut table = TableWriter::new("solids", columns, Parts::scratch()?);
     let mut faults = Vec::new();
@@ -122,7 +122,7 @@ fn share(needs: impl Iterator<Item = usize>, all: usize) -> usize {
 }
 
 /// A shape of at most so many triangles; or why there is none.
-fn load(given: &description::Solid, most: usize) -> Result<Solid, Box<Diagnostic>> {
+fn load(given: &description::Solid, most: usize) -> Result<DrawnSolid, Box<Diagnostic>> {
     let path = &given.file;
     let fault = |why: &dyn std::fmt::Display, help: &str| {
         let message = format!("the solid {} is not shown: {why}", path.display());
@@ -144,7 +144,7 @@ fn load(given: &description::Solid, most: usize) -> Result<Solid, Box<Diagnostic
         return Err(fault(&"it is no regular file", named));
     }
     let file = File::open(path).map_err(|error| fault(&error, "check its rights"))?;
-    let read = Solid::read(&mut BufReader::new(file), most);
+    let read = DrawnSolid::read(&mut BufReader::new(file), most);
     read.map_err(|why| fault(&why, "let the CAD system write it again, as STL in mm"))
 }
 

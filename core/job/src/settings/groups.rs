@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use post_grammar::Units;
 use post_machine::description::{Setting, Tcp};
-use post_posting::program::{ToldSpindle, Unknown};
+use post_posting::program::{DefaultSpindle, UnknownWordPolicy};
 use post_readback::interpret::Limits;
 
 use super::table::settings;
@@ -38,7 +38,7 @@ settings! {
     /// What to do with words that have no effect: refuse the file for any (`error`), for those that post does not know
     /// (`known`), leave all out and say so (`warn`), or write them as comments (`pass`). What may be a move is refused
     /// whatever is said here.
-    given unknown: Unknown = UNKNOWN, "WHAT", default || "known".to_owned();
+    given unknown: UnknownWordPolicy = UNKNOWN, "WHAT", default || "known".to_owned();
 
     /// Takes upon yourself what a word would have done, and leaves it out: a word that post does not know, or that
     /// changes where or whether metal is cut (`OFSETL`), `INSERT` (codes become remarks), `CUTTER` (several cutters are
@@ -54,7 +54,7 @@ settings! {
 
     /// Speed that the spindle is switched on at for each tool for which the CL file does not; `off`: it stands, and
     /// the tool cuts so.
-    one spindle: ToldSpindle = SPINDLE, "RPM";
+    one spindle: DefaultSpindle = SPINDLE, "RPM";
 
     /// Feed of the cuts for which the CL file gives none, mm/min.
     one feed: f64 = FEED, "MM_A_MINUTE";

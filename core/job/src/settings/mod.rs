@@ -1,6 +1,6 @@
 //! Settings of jobs, each declared once: name, value, unit, default and doc.
 //!
-//! From a row of [`groups`] follow the field of its struct, the flag of the command (`src/arguments`), the key of a job of a
+//! From a row of `groups` follow the field of its struct, the flag of the command (`src/arguments`), the key of a job of a
 //! batch ([`JobLine`](crate::batch::JobLine)) and the option that Python passes.
 
 mod groups;

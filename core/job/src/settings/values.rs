@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use post_grammar::Units;
 use post_machine::description::{Setting, Tcp};
-use post_posting::program::{ToldSpindle, Unknown, limits};
+use post_posting::program::{DefaultSpindle, UnknownWordPolicy, limits};
 
 use super::groups::Msys;
 use crate::files::PathArg;
@@ -125,8 +125,8 @@ words!(#[doc = "Whether points and axes are taken into the frame of MSYS."]
     MSYS: Msys { "keep" => Msys::Keep, "apply" => Msys::Apply });
 
 words!(#[doc = "What becomes of words without effect."]
-UNKNOWN: Unknown {
-    "error" => Unknown::Error, "known" => Unknown::Known, "warn" => Unknown::Warn, "pass" => Unknown::Pass
+UNKNOWN: UnknownWordPolicy {
+    "error" => UnknownWordPolicy::Error, "known" => UnknownWordPolicy::Known, "warn" => UnknownWordPolicy::Warn, "pass" => UnknownWordPolicy::Pass
 });
 
 words!(#[doc = "Who keeps the tip on its path."]
@@ -158,7 +158,7 @@ pub const NAME: Reader<String> = Reader::text(|value| Ok(value.to_string()));
 pub const CL_WORD: Reader<String> = Reader::text(cl_word);
 
 /// Revolutions a minute, or `off`.
-pub const SPINDLE: Reader<ToldSpindle> = Reader::text(spindle);
+pub const SPINDLE: Reader<DefaultSpindle> = Reader::text(spindle);
 
 /// A feed, mm/min.
 pub const FEED: Reader<f64> = Reader::text(feed);
@@ -220,12 +220,12 @@ fn cl_word(value: &Value) -> Result<String, String> {
 }
 
 /// Revolutions a minute, or `off`.
-pub fn spindle(value: &Value) -> Result<ToldSpindle, String> {
+pub fn spindle(value: &Value) -> Result<DefaultSpindle, String> {
     if value.to_string().eq_ignore_ascii_case("off") {
-        return Ok(ToldSpindle::Still);
+        return Ok(DefaultSpindle::Still);
     }
     match positive(value) {
-        Ok(rpm) => Ok(ToldSpindle::On(rpm)),
+        Ok(rpm) => Ok(DefaultSpindle::On(rpm)),
         Err(message) => Err(format!("{message}; a speed or `off` is meant")),
     }
 }

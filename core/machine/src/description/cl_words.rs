@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use post_grammar::{Argument, MajorWord, Template, Usage};
+use post_grammar::{Argument, MajorWord, Template, WordUsage};
 
 use super::build::Builder;
 use super::file::ClFile;
@@ -119,10 +119,10 @@ fn known(words: &[String]) -> Option<String> {
     let row = MajorWord::find(word)?;
     match row.usage {
         _ if row.by_rule => None,
-        Usage::Passed => {
+        WordUsage::Passed => {
             Some("[control] insert says what becomes of INSERT; texts are remarks".to_owned())
         }
-        Usage::Used => Some(format!("\"{word}/WORD\" is a form of it that post does not know")),
+        WordUsage::Used => Some(format!("\"{word}/WORD\" is a form of it that post does not know")),
         _ => None,
     }
 }

@@ -2,22 +2,22 @@
 
 use post_machine::kinematics::{Joints, MAX_AXES};
 
-use super::spread::Peak;
-use crate::{At, Jump};
+use super::spread::ContourPeak;
+use crate::{ProgramPlace, VelocityJump};
 
 /// The largest values of one axis; mm, s, radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AxisPeaks {
     /// Commanded minus actual position at one time.
-    pub following: Peak,
+    pub following: ContourPeak,
     /// Velocity that is commanded: differences of set-points, as are the two below.
-    pub velocity: Peak,
+    pub velocity: ContourPeak,
     /// Acceleration that is commanded, jumps of the velocity left out.
-    pub acceleration: Peak,
+    pub acceleration: ContourPeak,
     /// Jerk that is commanded, jumps of the velocity and what the acceleration jumps there left out.
-    pub jerk: Peak,
+    pub jerk: ContourPeak,
     /// Jump of the velocity that is commanded where one move passes into the next.
-    pub jump: Peak,
+    pub jump: ContourPeak,
 }
 
 /// Gathers them.
@@ -44,10 +44,10 @@ impl AxesPeaks {
     pub fn take(
         &mut self,
         axes: usize,
-        at: (f64, &At),
+        at: (f64, &ProgramPlace),
         period: f64,
         joints: [&Joints; 2],
-        jumps: &[Jump],
+        jumps: &[VelocityJump],
     ) {
         let rate = 1.0 / period;
         let [commanded, actual] = joints;
@@ -92,9 +92,9 @@ impl AxesPeaks {
 }
 
 #[inline]
-fn raise(peak: &mut Peak, value: f64, (time, at): (f64, &At)) {
+fn raise(peak: &mut ContourPeak, value: f64, (time, at): (f64, &ProgramPlace)) {
     let value = value.abs();
     if value > peak.value {
-        *peak = Peak { value, time, line: at.line, ..Peak::default() };
+        *peak = ContourPeak { value, time, line: at.line, ..ContourPeak::default() };
     }
 }

@@ -8,9 +8,9 @@
 use nalgebra::Vector3;
 use post_machine::kinematics::Pose;
 
-use super::leg::Leg;
+use super::leg::ContourLeg;
 use super::path::{Foot, Path, REACH};
-use crate::At;
+use crate::ProgramPlace;
 
 /// Knots ahead of the tool that are kept; a way between two cuts is followed that far.
 const AHEAD: usize = 20_000;
@@ -20,8 +20,8 @@ const LEAST: f64 = 1.0;
 
 /// The nearest point of a path that is asked for.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Asked {
-    pub at: At,
+pub(super) struct NearestAsked {
+    pub at: ProgramPlace,
     pub tip: Vector3<f64>,
     pub distance: f64,
     foot: Foot,
@@ -31,15 +31,15 @@ pub(super) struct Asked {
 
 /// How far a path that is asked for has been followed.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Course {
+pub(super) struct FollowedPath {
     path: Path,
     /// The tool is on it.
     on: bool,
 }
 
-impl Course {
+impl FollowedPath {
     /// A leg behind those that are known.
-    pub fn push(&mut self, leg: &Leg) {
+    pub fn push(&mut self, leg: &ContourLeg) {
         if !leg.at.cuts {
             return;
         }
@@ -59,8 +59,8 @@ impl Course {
         &mut self,
         tool: &Pose,
         way: f64,
-        more: &mut dyn FnMut() -> Option<Leg>,
-    ) -> Option<Asked> {
+        more: &mut dyn FnMut() -> Option<ContourLeg>,
+    ) -> Option<NearestAsked> {
         let way = self.on.then_some(way);
         self.on = true;
         if self.path.is_empty() {
@@ -101,7 +101,7 @@ impl Course {
     }
 
     /// The place nearest to another one of the tool, close to where the first is.
-    pub fn beside(&self, tool: &Pose) -> Option<Asked> {
+    pub fn beside(&self, tool: &Pose) -> Option<NearestAsked> {
         if self.path.is_empty() {
             return None;
         }
@@ -110,17 +110,23 @@ impl Course {
     }
 
     /// The tool axis that is asked for where the tool was found to be nearest.
-    pub fn axis(&self, tool: &Pose, asked: &Asked) -> Vector3<f64> {
+    pub fn axis(&self, tool: &Pose, asked: &NearestAsked) -> Vector3<f64> {
         self.path.axis_beside(tool, asked.foot)
     }
 
-    fn asked(&self, foot: Foot, tool: &Pose) -> Asked {
+    fn asked(&self, foot: Foot, tool: &Pose) -> NearestAsked {
         let tip = self.path.point(foot);
-        Asked { at: self.path.at(foot), tip, distance: (tip - tool.tip).norm(), foot, way: 0.0 }
+        NearestAsked {
+            at: self.path.at(foot),
+            tip,
+            distance: (tip - tool.tip).norm(),
+            foot,
+            way: 0.0,
+        }
     }
 }
 
-fn next_cut(more: &mut dyn FnMut() -> Option<Leg>) -> Option<Leg> {
+fn next_cut(more: &mut dyn FnMut() -> Option<ContourLeg>) -> Option<ContourLeg> {
     loop {
         let leg = more()?;
         if leg.at.cuts {

@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use post_machine::kinematics::Pose;
 
 use super::path::Knot;
-use crate::At;
-use crate::path::{GreatCircle, Way, on_arc};
+use crate::ProgramPlace;
+use crate::path::{GreatCircle, Interpolation, on_arc};
 
 /// A knot stands at least after such a turn, radians: the cubic between leaves an arc by less than a radius times the
 /// fourth power of this over 1944, 3 nm of a metre.
@@ -19,11 +19,11 @@ const MOST: f64 = 4096.0;
 
 /// A leg of a path.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Leg {
+pub struct ContourLeg {
     /// What asks for it: the line, and the task where it is one of a program; whether it cuts.
-    pub at: At,
-    /// How the tip goes; along [`Way::Axes`] and [`Way::Tip`] straight.
-    pub way: Way,
+    pub at: ProgramPlace,
+    /// How the tip goes; along [`Interpolation::Axes`] and [`Interpolation::Tip`] straight.
+    pub way: Interpolation,
     /// Where it begins: tip and tool axis, part frame.
     pub from: Pose,
     /// Where it ends; the tool axis goes on the great circle.
@@ -33,12 +33,12 @@ pub struct Leg {
 }
 
 /// A path that is asked for, handed out in order.
-pub trait Reference {
+pub trait ReferencePath {
     /// The next leg; none at its end. A leg that does not begin where the last one ended is reached somehow.
-    fn next(&mut self) -> Option<Leg>;
+    fn next(&mut self) -> Option<ContourLeg>;
 }
 
-impl Leg {
+impl ContourLeg {
     /// Tip and tool axis at `t` from 0 to 1.
     pub fn at(&self, t: f64) -> Pose {
         self.on(&GreatCircle::new(self.from.axis, self.to.axis), t)
@@ -49,14 +49,14 @@ impl Leg {
         let (from, to) = (&self.from, &self.to);
         let axis = turn.at(t);
         let tip = match &self.way {
-            Way::Axes | Way::Tip | Way::TipAndAxis => {
+            Interpolation::Axes | Interpolation::Tip | Interpolation::TipAndAxis => {
                 let [start, end] = [from, to].map(|pose| pose.tip + pose.axis * self.along);
                 start + (end - start) * t - axis * self.along
             }
-            Way::Arc { centre, normal, sweep } => {
+            Interpolation::Arc { centre, normal, sweep } => {
                 on_arc([from.tip, to.tip], *centre, *normal, *sweep, t)
             }
-            Way::Spline(way) => way.at(t),
+            Interpolation::Spline(way) => way.at(t),
         };
         let edge = Vector3::zeros();
         Pose { tip, axis, edge }
@@ -66,11 +66,11 @@ impl Leg {
     pub(super) fn knots(&self, take: &mut dyn FnMut(Knot)) {
         let circle = GreatCircle::new(self.from.axis, self.to.axis);
         let sweep = match &self.way {
-            Way::Arc { sweep, .. } => sweep.abs(),
+            Interpolation::Arc { sweep, .. } => sweep.abs(),
             _ => 0.0,
         };
         let spans = match &self.way {
-            Way::Spline(way) => SPANS * way.spans().count(),
+            Interpolation::Spline(way) => SPANS * way.spans().count(),
             _ => 1,
         };
         let pieces = libm::ceil(circle.angle.max(sweep) / TURN).max(spans as f64);

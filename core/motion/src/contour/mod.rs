@@ -34,15 +34,15 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use post_machine::kinematics::{Joints, Pose, Solver};
 
-use crate::{At, Pace, SetPoints, Task};
+use crate::{MovePace, ProgramPlace, SetPoints, Task};
 use axes::AxesPeaks;
 pub use axes::AxisPeaks;
-use course::Course;
-pub use leg::{Leg, Reference};
+use course::FollowedPath;
+pub use leg::{ContourLeg, ReferencePath};
 use path::{Knot, Passed, Path};
 pub use report::{AskedPoint, ContourPoint, ContourReport};
-use spline::Five;
-pub use spread::{Peak, Spread};
+use spline::FivePoints;
+pub use spread::{ContourPeak, ValueSpread};
 
 /// The commanded path is known so far ahead of the actual position, s: feed forward may lead, but not by more.
 const LEAD: f64 = 0.05;
@@ -52,7 +52,7 @@ const LEADS: [f64; 2] = [4.0, 64.0];
 
 /// A set-point that waits for what follows it.
 #[derive(Clone, Copy, Debug)]
-struct Pending {
+struct PendingSetPoint {
     number: u64,
     time: f64,
     joints: [Joints; 2],
@@ -64,20 +64,20 @@ struct Pending {
 #[derive(Default)]
 pub struct Contour<'r> {
     /// What the program asks for.
-    programmed: Course,
+    programmed: FollowedPath,
     tasks: u64,
     /// The CL path, and what is known of it.
-    reference: Option<Box<dyn Reference + 'r>>,
-    asked: Course,
+    reference: Option<Box<dyn ReferencePath + 'r>>,
+    asked: FollowedPath,
     solver: Option<Arc<Solver>>,
     path: Path,
     /// The last three set-points, of which the first becomes the next knot, and how many of them are real.
-    window: [(u64, At, Vector3<f64>, Vector3<f64>); 3],
+    window: [(u64, ProgramPlace, Vector3<f64>, Vector3<f64>); 3],
     /// The differences of tips and tool axes by which the path passes it.
-    tips: Five,
-    tool_axes: Five,
+    tips: FivePoints,
+    tool_axes: FivePoints,
     filled: usize,
-    pending: VecDeque<Pending>,
+    pending: VecDeque<PendingSetPoint>,
     /// Set-points that the path is ahead.
     lead: u64,
     axes: AxesPeaks,
@@ -91,7 +91,7 @@ impl<'r> Contour<'r> {
     }
 
     /// Holds the tool against a CL path too.
-    pub fn against(mut self, reference: Box<dyn Reference + 'r>) -> Self {
+    pub fn against(mut self, reference: Box<dyn ReferencePath + 'r>) -> Self {
         self.reference = Some(reference);
         self
     }
@@ -102,8 +102,8 @@ impl<'r> Contour<'r> {
         let number = self.tasks;
         self.tasks += 1;
         if let Task::Move(go) = task {
-            self.programmed.push(&Leg {
-                at: At { task: number, line: go.line, cuts: go.pace != Pace::Rapid },
+            self.programmed.push(&ContourLeg {
+                at: ProgramPlace { task: number, line: go.line, cuts: go.pace != MovePace::Rapid },
                 way: go.way.clone(),
                 from: go.from.pose,
                 to: go.to.pose,
@@ -146,7 +146,7 @@ impl<'r> Contour<'r> {
             self.report.seconds = time;
             let commanded = points.poses[place];
             let number = points.first + place as u64;
-            self.pending.push_back(Pending {
+            self.pending.push_back(PendingSetPoint {
                 number,
                 time,
                 joints: [*joints, *actual],
@@ -179,10 +179,11 @@ impl<'r> Contour<'r> {
     }
 
     /// Takes the next set-point of the path: the one two before it becomes a knot.
-    fn knot(&mut self, point: (u64, At, Vector3<f64>, Vector3<f64>)) {
+    fn knot(&mut self, point: (u64, ProgramPlace, Vector3<f64>, Vector3<f64>)) {
         if self.filled == 0 {
             self.window = [point; 3];
-            (self.tips, self.tool_axes) = (Five::all_at(&point.2), Five::all_at(&point.3));
+            (self.tips, self.tool_axes) =
+                (FivePoints::all_at(&point.2), FivePoints::all_at(&point.3));
         }
         self.window = [self.window[1], self.window[2], point];
         let ways = [self.tips.take(&point.2), self.tool_axes.take(&point.3)];
@@ -218,7 +219,7 @@ impl<'r> Contour<'r> {
         }
     }
 
-    fn tell(&mut self, point: &Pending, listen: &mut dyn FnMut(&ContourPoint)) {
+    fn tell(&mut self, point: &PendingSetPoint, listen: &mut dyn FnMut(&ContourPoint)) {
         let actual = point.actual;
         let commanded = (point.number, &point.commanded.tip);
         let nearest = self.path.nearest(&actual, commanded);
@@ -256,7 +257,7 @@ impl Contour<'_> {
     /// since the last set-point, which a tool that lags cuts off at a corner.
     fn parts(&mut self, told: &mut ContourPoint, way: f64) {
         let mut left = way;
-        let mut most = Apart::default();
+        let mut most = PathDistances::default();
         for place in 0..self.path.passed.len() {
             let Passed { tip, axis, way } = self.path.passed[place];
             let pose = Pose { tip, axis, edge: Vector3::zeros() };
@@ -282,9 +283,9 @@ impl Contour<'_> {
     }
 
     /// How far a place of the commanded path, `way` mm along it from the last one, is off what is asked for.
-    fn apart(&mut self, commanded: &Pose, mut way: f64) -> Apart {
+    fn apart(&mut self, commanded: &Pose, mut way: f64) -> PathDistances {
         let mut programmed = *commanded;
-        let mut apart = Apart::default();
+        let mut apart = PathDistances::default();
         if let Some(asked) = self.programmed.follow(commanded, way, &mut || None) {
             apart.interpolation = asked.distance;
             way = asked.way;
@@ -301,14 +302,14 @@ impl Contour<'_> {
 
 /// Distances between paths, mm.
 #[derive(Clone, Copy, Debug, Default)]
-struct Apart {
+struct PathDistances {
     /// Of the commanded path from that of the program.
     interpolation: f64,
     /// Of that from the CL path; none where it is not known.
     program: Option<f64>,
 }
 
-impl Apart {
+impl PathDistances {
     /// The larger ones.
     fn or(self, other: Self) -> Self {
         Self {

@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use post_machine::kinematics::{Joints, MAX_AXES, Pose};
 
 use super::axes::AxisPeaks;
-use super::spread::{Peak, Spread};
-use crate::At;
+use super::spread::{ContourPeak, ValueSpread};
+use crate::ProgramPlace;
 
 /// Where the tool was, and where on the commanded path that is nearest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub struct ContourPoint {
     /// When, s from the beginning.
     pub time: f64,
     /// What was being carried out at the nearest point, not what is commanded meanwhile.
-    pub at: At,
+    pub at: ProgramPlace,
     /// Axis values that are commanded, mm and radians.
     pub commanded_joints: Joints,
     /// Axis values as they are.
@@ -40,7 +40,7 @@ pub struct ContourPoint {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AskedPoint {
     /// What asks for the nearest point: the line of the CL file, and the number that the leg was handed out with.
-    pub at: At,
+    pub at: ProgramPlace,
     /// Actual tip minus that point, mm, part frame.
     pub error: Vector3<f64>,
     /// Its length, mm.
@@ -55,24 +55,24 @@ pub struct AskedPoint {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContourReport {
     /// Contour error in cuts, mm.
-    pub cuts: Spread,
+    pub cuts: ValueSpread,
     /// Contour error of the tool axis in cuts, radians.
-    pub axis: Spread,
+    pub axis: ValueSpread,
     /// Contour error at rapid, mm.
-    pub rapids: Spread,
+    pub rapids: ValueSpread,
     /// Distance of the commanded path from the path that the program asks for, in cuts, mm.
-    pub interpolation: Spread,
+    pub interpolation: ValueSpread,
     /// Distance of the program's path from the CL path, in cuts, mm; none without one.
-    pub program: Spread,
+    pub program: ValueSpread,
     /// Distance of the tip from the CL path, in cuts, mm; none without one.
-    pub asked: Spread,
+    pub asked: ValueSpread,
     /// Angle of the tool axis against that of the CL path, in cuts, radians.
-    pub asked_axis: Spread,
+    pub asked_axis: ValueSpread,
     /// Distance of the tip from where it is commanded at the same time, in cuts, mm.
-    pub following: Spread,
+    pub following: ValueSpread,
     /// How far the tool stays off a corner of its path in a cut, mm: it passes from one leg to the other, and so the
     /// contour error says less than this.
-    pub missed: Peak,
+    pub missed: ContourPeak,
     /// The largest values of each axis, in chain order, cuts and rapids.
     pub axes: [AxisPeaks; MAX_AXES],
     /// How often a move passes into the next with a jump of the velocity.
@@ -85,7 +85,7 @@ pub struct ContourReport {
 
 impl ContourReport {
     pub(super) fn take(&mut self, point: &ContourPoint, missed: f64) {
-        let peak = |value| Peak {
+        let peak = |value| ContourPeak {
             value,
             time: point.time,
             line: point.at.line,

@@ -20,7 +20,7 @@ pub(super) type Tangents = [Vector3<f64>; 2];
 
 /// Five set-points that move on one by one: their differences, each taken once.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Five {
+pub(super) struct FivePoints {
     last: Vector3<f64>,
     /// The last three chords; the last three second differences with their squares; the last two third ones likewise.
     chords: [Vector3<f64>; 3],
@@ -28,7 +28,7 @@ pub(super) struct Five {
     thirds: [(Vector3<f64>, f64); 2],
 }
 
-impl Five {
+impl FivePoints {
     /// All of them stand here.
     pub fn all_at(point: &Vector3<f64>) -> Self {
         Self { last: *point, ..Self::default() }

@@ -14,7 +14,7 @@ const OCTAVES: usize = 56;
 
 /// The largest of some values, and where it stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Peak {
+pub struct ContourPeak {
     /// The value, never below zero.
     pub value: f64,
     /// When, s from the beginning.
@@ -27,7 +27,7 @@ pub struct Peak {
     pub tip: Vector3<f64>,
 }
 
-impl Peak {
+impl ContourPeak {
     /// Takes one that is larger than what has been.
     #[inline]
     pub(super) fn take(&mut self, other: Self) {
@@ -39,25 +39,30 @@ impl Peak {
 
 /// How values are spread.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Spread {
+pub struct ValueSpread {
     /// How many.
     pub count: u64,
     /// The largest.
-    pub peak: Peak,
+    pub peak: ContourPeak,
     squares: f64,
     bins: Vec<u64>,
 }
 
-impl Default for Spread {
+impl Default for ValueSpread {
     fn default() -> Self {
-        Self { count: 0, peak: Peak::default(), squares: 0.0, bins: vec![0; OCTAVES * PARTS] }
+        Self {
+            count: 0,
+            peak: ContourPeak::default(),
+            squares: 0.0,
+            bins: vec![0; OCTAVES * PARTS],
+        }
     }
 }
 
-impl Spread {
+impl ValueSpread {
     /// Takes one more.
     #[inline]
-    pub(super) fn take(&mut self, value: Peak) {
+    pub(super) fn take(&mut self, value: ContourPeak) {
         self.count += 1;
         self.squares += value.value * value.value;
         self.bins[bin(value.value)] += 1;
@@ -108,11 +113,15 @@ mod tests {
 
     #[test]
     fn percentiles_are_too_large_by_a_sixteenth_at_most() {
-        let mut spread = Spread::default();
+        let mut spread = ValueSpread::default();
         let mut values: Vec<f64> =
             (1..=5000).map(|n| 1e-6 * libm::pow(1.002, f64::from(n))).collect();
         for (place, value) in values.iter().enumerate() {
-            spread.take(Peak { value: *value, time: place as f64, ..Peak::default() });
+            spread.take(ContourPeak {
+                value: *value,
+                time: place as f64,
+                ..ContourPeak::default()
+            });
         }
         values.sort_by(f64::total_cmp);
         for share in [0.001, 0.1, 0.5, 0.9, 0.99, 0.999, 1.0] {
@@ -127,7 +136,7 @@ mod tests {
 
     #[test]
     fn nothing_and_everything_has_a_bin() {
-        assert_eq!(Spread::default().percentile(0.5), 0.0);
+        assert_eq!(ValueSpread::default().percentile(0.5), 0.0);
         for value in [0.0, -0.0, f64::MIN_POSITIVE, 1e300, f64::INFINITY] {
             assert!(bin(value) < OCTAVES * PARTS);
         }

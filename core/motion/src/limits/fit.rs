@@ -10,7 +10,7 @@ use post_machine::kinematics::{Joints, MAX_AXES, Unreachable};
 
 use super::MoveLimits;
 use crate::Move;
-use crate::path::{Stance, Way};
+use crate::path::{Interpolation, Stance};
 
 /// Degree of the series.
 const DEGREE: usize = 6;
@@ -100,7 +100,7 @@ pub(super) fn over(
         .map(|(place, _)| libm::fabs(task.to.joints[place] - task.from.joints[place]))
         .sum();
     let turned = match &task.way {
-        Way::Arc { sweep, .. } => turned + libm::fabs(*sweep),
+        Interpolation::Arc { sweep, .. } => turned + libm::fabs(*sweep),
         _ => turned,
     };
     let mut last = sample(0.0)?;
@@ -131,7 +131,7 @@ pub(super) fn over(
         Ok(())
     };
     let mut each = |begins: f64, ends: f64| run(begins, ends, [begins == 0.0, ends == 1.0]);
-    let Way::Spline(spline) = &task.way else {
+    let Interpolation::Spline(spline) = &task.way else {
         return split(0.0, 1.0, &mut each);
     };
     // A spline is a polynomial (or a quotient of two) from knot to knot.

@@ -12,7 +12,7 @@ use post_machine::description::{BlendRule, LimitsActOn, Machine};
 use post_machine::kinematics::{Joints, MAX_AXES, Unreachable};
 
 use crate::Move;
-use crate::path::Way;
+use crate::path::Interpolation;
 
 /// How fast, and how suddenly, axes and tip may move: of a machine, once.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,21 +114,21 @@ pub struct MoveLimits {
 /// series leaves out is below a thousandth of that.
 ///
 /// # Errors
-/// The axes cannot follow the way: see [`Way::stance_at`].
+/// The axes cannot follow the way: see [`Interpolation::stance_at`].
 pub fn of(task: &Move, limits: &AxisLimits) -> Result<MoveLimits, Unreachable> {
     let mut found = MoveLimits::default();
     let turns = crate::path::turns(task.solver.chain(), [&task.from, &task.to]);
     let straight_tip = match task.way {
-        Way::Axes => !turns,
-        Way::Tip | Way::TipAndAxis => true,
-        Way::Arc { .. } | Way::Spline(_) => false,
+        Interpolation::Axes => !turns,
+        Interpolation::Tip | Interpolation::TipAndAxis => true,
+        Interpolation::Arc { .. } | Interpolation::Spline(_) => false,
     };
     let straight_axes = match task.way {
-        Way::Axes => true,
-        Way::Tip | Way::TipAndAxis => {
-            !turns || coordinates(task, limits).is_some() && task.way == Way::Tip
+        Interpolation::Axes => true,
+        Interpolation::Tip | Interpolation::TipAndAxis => {
+            !turns || coordinates(task, limits).is_some() && task.way == Interpolation::Tip
         }
-        Way::Arc { .. } | Way::Spline(_) => false,
+        Interpolation::Arc { .. } | Interpolation::Spline(_) => false,
     };
     if straight_axes {
         found.straight(task, coordinates(task, limits));
@@ -141,7 +141,7 @@ pub fn of(task: &Move, limits: &AxisLimits) -> Result<MoveLimits, Unreachable> {
     if !straight_axes || !straight_tip {
         fit::over(task, coordinates(task, limits), [!straight_axes, !straight_tip], &mut found)?;
     }
-    if let Way::Arc { centre, normal, sweep } = &task.way
+    if let Interpolation::Arc { centre, normal, sweep } = &task.way
         && !turns
     {
         let (arm, _) = crate::path::arm_and_height(task.from.pose.tip, *centre, *normal);
@@ -153,7 +153,7 @@ pub fn of(task: &Move, limits: &AxisLimits) -> Result<MoveLimits, Unreachable> {
 
 /// The coordinates of the tip that stand for axes on this move; none on one whose axes are led by themselves.
 fn coordinates<'l>(task: &Move, limits: &'l AxisLimits) -> Option<&'l [Option<usize>; MAX_AXES]> {
-    limits.programmed.as_ref().filter(|_| task.keeps_tip && task.way != Way::Axes)
+    limits.programmed.as_ref().filter(|_| task.keeps_tip && task.way != Interpolation::Axes)
 }
 
 /// How large what is limited gets for each place where the tip goes round an ellipse of these half-axes, the rotary axes

@@ -8,8 +8,8 @@
 
 use post_machine::kinematics::{Joints, MAX_AXES};
 
-use super::Track;
-use super::settle::{self, AxisLevel, Off, Rows, Settled};
+use super::AxisTrack;
+use super::settle::{self, AxisLevel, LogRows, Residual, SettledShift};
 use super::shifts::shifts;
 
 /// Rows by which shifts are compared with one another.
@@ -65,7 +65,7 @@ pub struct Alignment {
 
 /// Why a log cannot be laid over a prediction.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Unaligned {
+pub enum AlignmentFault {
     /// One of them has fewer than this many samples.
     Short(usize),
     /// No axis moves in both.
@@ -83,13 +83,13 @@ const FEWEST: usize = 8;
 /// # Errors
 /// Nothing to compare, or nothing alike.
 pub fn align(
-    predicted: &Track,
-    log: &Track,
+    predicted: &AxisTrack,
+    log: &AxisTrack,
     axes: &[usize],
     zeros: &[Option<f64>; MAX_AXES],
-) -> Result<Alignment, Unaligned> {
+) -> Result<Alignment, AlignmentFault> {
     if predicted.joints.len().min(log.joints.len()) < FEWEST {
-        return Err(Unaligned::Short(FEWEST));
+        return Err(AlignmentFault::Short(FEWEST));
     }
     let weighted = axes.iter();
     let weighted: Vec<(usize, f64)> =
@@ -97,13 +97,13 @@ pub fn align(
     let moving: Vec<usize> = weighted.iter().map(|(axis, _)| *axis).collect();
     let began = log.begins - predicted.begins;
     let tried = shifts(predicted, log, &weighted);
-    let both = Both { predicted, axes: &moving, step: predicted.period.max(log.period) };
-    let rows = Rows::of(log, ROWS_COMPARED);
-    let tried: Vec<Settled> =
+    let both = AlignedTracks { predicted, axes: &moving, step: predicted.period.max(log.period) };
+    let rows = LogRows::of(log, ROWS_COMPARED);
+    let tried: Vec<SettledShift> =
         tried.into_iter().map(|shift| both.settled(&rows, zeros, began + shift)).collect();
-    let (best, rival) = both.best(&rows, &tried).ok_or(Unaligned::Still)?;
+    let (best, rival) = both.best(&rows, &tried).ok_or(AlignmentFault::Still)?;
     let fixed = both.needed(&rows, zeros, best.shift);
-    let rows = Rows::of(log, ROWS_SETTLED);
+    let rows = LogRows::of(log, ROWS_SETTLED);
     let found = both.settled(&rows, &fixed, best.shift);
     let (mut told, alike) = told(&found, &both, axes, &fixed, &rows);
     told.rival = rival;
@@ -111,12 +111,12 @@ pub fn align(
     if inside || alike >= ALIKE {
         return Ok(told);
     }
-    Err(Unaligned::Unlike(Box::new(told)))
+    Err(AlignmentFault::Unlike(Box::new(told)))
 }
 
 /// One divided by what an axis moves, squared; none if it stands still in one of both.
-fn weight(predicted: &Track, log: &Track, axis: usize) -> Option<f64> {
-    let variance = |track: &Track| {
+fn weight(predicted: &AxisTrack, log: &AxisTrack, axis: usize) -> Option<f64> {
+    let variance = |track: &AxisTrack| {
         let values = || track.joints.iter().map(|joints| joints[axis]);
         let count = track.joints.len() as f64;
         let mean = values().sum::<f64>() / count;
@@ -128,23 +128,27 @@ fn weight(predicted: &Track, log: &Track, axis: usize) -> Option<f64> {
 }
 
 /// What shifts are settled with.
-struct Both<'a> {
-    predicted: &'a Track,
+struct AlignedTracks<'a> {
+    predicted: &'a AxisTrack,
     /// That move in both.
     axes: &'a [usize],
     step: f64,
 }
 
-impl Both<'_> {
-    fn settled(&self, rows: &Rows, zeros: &[Option<f64>; MAX_AXES], shift: f64) -> Settled {
+impl AlignedTracks<'_> {
+    fn settled(&self, rows: &LogRows, zeros: &[Option<f64>; MAX_AXES], shift: f64) -> SettledShift {
         settle::settled(self.predicted, rows, self.axes, zeros, shift, self.step)
     }
 
     /// The shift that leaves least, and another one that leaves hardly more.
-    fn best<'t>(&self, rows: &Rows, tried: &'t [Settled]) -> Option<(&'t Settled, Option<f64>)> {
+    fn best<'t>(
+        &self,
+        rows: &LogRows,
+        tried: &'t [SettledShift],
+    ) -> Option<(&'t SettledShift, Option<f64>)> {
         let spreads = self.spreads(tried);
         let all = tried.iter().map(|one| (one, self.left(rows, one, &spreads)));
-        let mut all: Vec<(&Settled, f64)> = all.collect();
+        let mut all: Vec<(&SettledShift, f64)> = all.collect();
         all.sort_by(|one, other| one.1.total_cmp(&other.1));
         let (best, least) = *all.first()?;
         let apart = 4.0 * self.step;
@@ -158,7 +162,7 @@ impl Both<'_> {
     /// The zeros, with none where one that is found explains hardly more.
     fn needed(
         &self,
-        rows: &Rows,
+        rows: &LogRows,
         zeros: &[Option<f64>; MAX_AXES],
         shift: f64,
     ) -> [Option<f64>; MAX_AXES] {
@@ -192,7 +196,7 @@ impl Both<'_> {
     }
 
     /// Of each axis the least that any of them leaves: all are measured by it.
-    fn spreads(&self, settled: &[Settled]) -> Joints {
+    fn spreads(&self, settled: &[SettledShift]) -> Joints {
         let mut spreads = [f64::INFINITY; MAX_AXES];
         for axis in self.axes {
             for one in settled {
@@ -203,7 +207,7 @@ impl Both<'_> {
     }
 
     /// What is left of a row on average, squared, all axes added up.
-    fn left(&self, rows: &Rows, settled: &Settled, spreads: &Joints) -> f64 {
+    fn left(&self, rows: &LogRows, settled: &SettledShift, spreads: &Joints) -> f64 {
         let rows = settle::off(self.predicted, rows, settled.shift);
         let mut sum = 0.0;
         for axis in self.axes {
@@ -219,11 +223,11 @@ impl Both<'_> {
 
 /// All that is told of a shift, of the axes that stand still their zeros too; and how alike both are with all rows.
 fn told(
-    found: &Settled,
-    both: &Both<'_>,
+    found: &SettledShift,
+    both: &AlignedTracks<'_>,
     axes: &[usize],
     zeros: &[Option<f64>; MAX_AXES],
-    rows: &Rows,
+    rows: &LogRows,
 ) -> (Alignment, f64) {
     let off = settle::off(both.predicted, rows, found.shift);
     let mut told = Alignment {
@@ -260,7 +264,7 @@ fn told(
     }
     let count = both.axes.len().max(1) as f64;
     told.correlation = inside / count;
-    let far = |row: &&Off| {
+    let far = |row: &&Residual| {
         let mut axes = both.axes.iter();
         axes.any(|axis| !settle::counts(row, *axis, levels[*axis]))
     };

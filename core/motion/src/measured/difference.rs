@@ -2,7 +2,7 @@
 
 /// A difference over time, summed up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Difference {
+pub struct DifferenceSum {
     /// How often it was taken.
     pub count: u64,
     /// The one of the largest size, with its sign.
@@ -13,7 +13,7 @@ pub struct Difference {
     squares: f64,
 }
 
-impl Difference {
+impl DifferenceSum {
     /// Takes the difference `value` at `time`, s.
     pub fn take(&mut self, time: f64, value: f64) {
         if self.count == 0 || value.abs() > self.most.abs() {

@@ -11,6 +11,6 @@ mod settle;
 mod shifts;
 mod track;
 
-pub use align::{Alignment, Unaligned, align};
-pub use difference::Difference;
-pub use track::Track;
+pub use align::{Alignment, AlignmentFault, align};
+pub use difference::DifferenceSum;
+pub use track::AxisTrack;

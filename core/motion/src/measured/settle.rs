@@ -7,7 +7,7 @@
 
 use post_machine::kinematics::{Joints, MAX_AXES};
 
-use super::Track;
+use super::AxisTrack;
 
 /// A row that is off by more than so many standard deviations is left out.
 const OUTSIDE: f64 = 4.685;
@@ -33,14 +33,14 @@ const SETTLED: f64 = 1e-10;
 const SETTLED_SHARE: f64 = 1e-3;
 
 /// Rows of a log, at any times.
-pub(super) struct Rows {
+pub(super) struct LogRows {
     pub times: Vec<f64>,
     pub joints: Vec<Joints>,
 }
 
-impl Rows {
+impl LogRows {
     /// At most so many of a log, at uneven distances, so that none of them is that of something that comes again and again.
-    pub fn of(log: &Track, most: usize) -> Self {
+    pub fn of(log: &AxisTrack, most: usize) -> Self {
         let count = log.joints.len();
         let golden = 0.618_033_988_749_895;
         let places: Vec<usize> = match count > most {
@@ -61,7 +61,7 @@ impl Rows {
 
 /// A row of the log minus the prediction for it.
 #[derive(Clone, Copy)]
-pub(super) struct Off {
+pub(super) struct Residual {
     pub time: f64,
     /// mm or radians.
     pub by: Joints,
@@ -71,11 +71,11 @@ pub(super) struct Off {
 }
 
 /// Rows of the log that the prediction has, each minus it.
-pub(super) fn off(predicted: &Track, rows: &Rows, shift: f64) -> Vec<Off> {
+pub(super) fn off(predicted: &AxisTrack, rows: &LogRows, shift: f64) -> Vec<Residual> {
     let rows = rows.times.iter().zip(&rows.joints);
     rows.filter_map(|(time, joints)| {
         let (predicted, rate) = predicted.at_with_rate(*time - shift)?;
-        Some(Off {
+        Some(Residual {
             time: *time,
             by: std::array::from_fn(|axis| joints[axis] - predicted[axis]),
             rate,
@@ -95,7 +95,7 @@ pub(super) struct AxisLevel {
 
 /// A shift, with what belongs to it.
 #[derive(Clone)]
-pub(super) struct Settled {
+pub(super) struct SettledShift {
     pub shift: f64,
     /// Standard deviation of the shift, s.
     pub deviation: f64,
@@ -104,15 +104,15 @@ pub(super) struct Settled {
 
 /// The least squares from `shift` on, which is right to a few `step`s. Axes with a zero in `zeros` count from there.
 pub(super) fn settled(
-    predicted: &Track,
-    rows: &Rows,
+    predicted: &AxisTrack,
+    rows: &LogRows,
     axes: &[usize],
     zeros: &[Option<f64>; MAX_AXES],
     shift: f64,
     step: f64,
-) -> Settled {
+) -> SettledShift {
     let mut found =
-        Settled { shift, deviation: f64::INFINITY, levels: [AxisLevel::default(); MAX_AXES] };
+        SettledShift { shift, deviation: f64::INFINITY, levels: [AxisLevel::default(); MAX_AXES] };
     for _ in 0..STEPS {
         let rows = off(predicted, rows, found.shift);
         let (mut slope, mut curve) = (0.0, 0.0);
@@ -138,13 +138,13 @@ pub(super) fn settled(
 }
 
 /// Of one axis.
-pub(super) fn level(rows: &[Off], axis: usize, zero: Option<f64>) -> AxisLevel {
+pub(super) fn level(rows: &[Residual], axis: usize, zero: Option<f64>) -> AxisLevel {
     let rates = || rows.iter().map(|row| row.rate[axis].abs());
     let squares: f64 = rates().map(|rate| rate * rate).sum();
     let creeps = CREEPS * libm::sqrt(squares / rows.len().max(1) as f64);
     let mut moves: Vec<f64> = rates().filter(|rate| *rate > creeps).collect();
     let slowest = MOVES * median(&mut moves);
-    let moving = |row: &&Off| slowest == 0.0 || row.rate[axis].abs() > slowest;
+    let moving = |row: &&Residual| slowest == 0.0 || row.rate[axis].abs() > slowest;
     let mut by: Vec<f64> = rows.iter().filter(moving).map(|row| row.by[axis]).collect();
     let zero = zero.unwrap_or_else(|| median(&mut by));
     for by in &mut by {
@@ -154,7 +154,7 @@ pub(super) fn level(rows: &[Off], axis: usize, zero: Option<f64>) -> AxisLevel {
 }
 
 /// Slope and curve of the squares over the shift, in standard deviations; a zero that is free goes along.
-fn normal(rows: &[Off], axis: usize, level: AxisLevel, free: bool) -> [f64; 2] {
+fn normal(rows: &[Residual], axis: usize, level: AxisLevel, free: bool) -> [f64; 2] {
     let mut sums = [0.0; 5];
     for row in rows {
         let by = (row.by[axis] - level.zero) / level.spread;
@@ -176,7 +176,7 @@ fn normal(rows: &[Off], axis: usize, level: AxisLevel, free: bool) -> [f64; 2] {
 }
 
 /// The standard deviation of most rows, those that are early or late among them: by the size that nine of ten do not pass.
-pub(super) fn width(rows: &[Off], axis: usize, level: AxisLevel) -> f64 {
+pub(super) fn width(rows: &[Residual], axis: usize, level: AxisLevel) -> f64 {
     let by = rows.iter().map(|row| (row.by[axis] - level.zero).abs());
     let mut by: Vec<f64> = by.collect();
     (quantile(&mut by, 0.9) / OF_NINETY).max(FINEST)
@@ -190,12 +190,12 @@ fn weight(by: f64) -> f64 {
 }
 
 /// Whether a row counts at all.
-pub(super) fn counts(row: &Off, axis: usize, level: AxisLevel) -> bool {
+pub(super) fn counts(row: &Residual, axis: usize, level: AxisLevel) -> bool {
     (row.by[axis] - level.zero).abs() <= OUTSIDE * level.spread
 }
 
 /// The zero that makes what is left of the rows that count least.
-pub(super) fn zero(rows: &[Off], axis: usize, level: AxisLevel) -> f64 {
+pub(super) fn zero(rows: &[Residual], axis: usize, level: AxisLevel) -> f64 {
     let (mut all, mut sum) = (0.0, 0.0);
     for row in rows {
         let by = row.by[axis] - level.zero;
@@ -206,7 +206,7 @@ pub(super) fn zero(rows: &[Off], axis: usize, level: AxisLevel) -> f64 {
 }
 
 /// What an axis moves in the log, standard deviation.
-pub(super) fn moved(rows: &[Off], axis: usize) -> f64 {
+pub(super) fn moved(rows: &[Residual], axis: usize) -> f64 {
     let count = rows.len().max(1) as f64;
     let logged = || rows.iter().map(|row| row.predicted[axis] + row.by[axis]);
     let mean = logged().sum::<f64>() / count;
@@ -216,12 +216,12 @@ pub(super) fn moved(rows: &[Off], axis: usize) -> f64 {
 
 /// How alike both are in the rows that count: 1 if nothing is left, 0 if they have nothing in common, -1 if they count in
 /// opposite senses.
-pub(super) fn likeness(rows: &[Off], axis: usize, level: AxisLevel) -> f64 {
+pub(super) fn likeness(rows: &[Residual], axis: usize, level: AxisLevel) -> f64 {
     let inside = || rows.iter().filter(|row| counts(row, axis, level));
     let count = inside().count().max(1) as f64;
-    let mean = |value: &dyn Fn(&Off) -> f64| inside().map(value).sum::<f64>() / count;
-    let predicted = |row: &Off| row.predicted[axis];
-    let logged = |row: &Off| row.predicted[axis] + row.by[axis] - level.zero;
+    let mean = |value: &dyn Fn(&Residual) -> f64| inside().map(value).sum::<f64>() / count;
+    let predicted = |row: &Residual| row.predicted[axis];
+    let logged = |row: &Residual| row.predicted[axis] + row.by[axis] - level.zero;
     let [centre, log_centre] = [mean(&predicted), mean(&logged)];
     let variance = mean(&|row| (predicted(row) - centre) * (predicted(row) - centre));
     let log_variance = mean(&|row| (logged(row) - log_centre) * (logged(row) - log_centre));

@@ -3,7 +3,7 @@
 //! The products of both at every shift come from one Fourier transform forth an axis and one back for all of them; what
 //! lies over one another at a shift is centred by sums up to each place, so that zeros do not matter.
 
-use super::Track;
+use super::AxisTrack;
 use crate::fourier::{transform, turns};
 
 /// Means that are laid over one another, of both together; longer ones are taken over a longer time each.
@@ -24,9 +24,9 @@ const FEWEST: usize = 8;
 
 /// Shifts, s, the beginnings of both apart, at which `log` is most like `predicted`: the best one first. Each of `axes` has
 /// its weight.
-pub(super) fn shifts(predicted: &Track, log: &Track, axes: &[(usize, f64)]) -> Vec<f64> {
+pub(super) fn shifts(predicted: &AxisTrack, log: &AxisTrack, axes: &[(usize, f64)]) -> Vec<f64> {
     let mut step = predicted.period.max(log.period);
-    let mut both = [predicted, log].map(|track| Means::of(track, step, axes));
+    let mut both = [predicted, log].map(|track| MeanTrack::of(track, step, axes));
     while both[0].count() + both[1].count() > MOST_MEANS
         && both[0].count().min(both[1].count()) >= 4 * FEWEST
     {
@@ -41,7 +41,7 @@ pub(super) fn shifts(predicted: &Track, log: &Track, axes: &[(usize, f64)]) -> V
 }
 
 /// Axis values, weighted, with sums up to each place.
-struct Means {
+struct MeanTrack {
     /// By axis.
     values: Vec<Vec<f64>>,
     /// Sums of values and of their squares before each place, by axis.
@@ -50,8 +50,8 @@ struct Means {
     variance: f64,
 }
 
-impl Means {
-    fn of(track: &Track, step: f64, axes: &[(usize, f64)]) -> Self {
+impl MeanTrack {
+    fn of(track: &AxisTrack, step: f64, axes: &[(usize, f64)]) -> Self {
         let count = libm::floor(track.seconds() / step + 1e-6) as usize + 1;
         let same = track.period == step;
         let mut values = vec![Vec::with_capacity(count); axes.len()];
@@ -115,7 +115,7 @@ impl Means {
 }
 
 /// Sums of products of both, by shift from 0 on and, from the end back, from -1 on.
-fn products([predicted, log]: &[Means; 2]) -> Vec<[f64; 2]> {
+fn products([predicted, log]: &[MeanTrack; 2]) -> Vec<[f64; 2]> {
     let count = (predicted.count() + log.count()).next_power_of_two();
     let turns = turns(count);
     let mut sums = vec![[0.0; 2]; count];
@@ -145,7 +145,7 @@ fn products([predicted, log]: &[Means; 2]) -> Vec<[f64; 2]> {
 }
 
 /// The correlation at a shift, place in the log minus place in the prediction; none if too little lies over one another.
-fn correlation([predicted, log]: &[Means; 2], shift: i64, product: f64) -> Option<f64> {
+fn correlation([predicted, log]: &[MeanTrack; 2], shift: i64, product: f64) -> Option<f64> {
     let counts = [predicted.count() as i64, log.count() as i64];
     let from = 0.max(-shift);
     let to = counts[0].min(counts[1] - shift);
@@ -164,7 +164,7 @@ fn correlation([predicted, log]: &[Means; 2], shift: i64, product: f64) -> Optio
 }
 
 /// Shifts at which the correlation is larger than around them, and how large it is.
-fn peaks(both: &[Means; 2]) -> Vec<(i64, f64)> {
+fn peaks(both: &[MeanTrack; 2]) -> Vec<(i64, f64)> {
     let products = products(both);
     let [predicted, log] = both.each_ref().map(|means| means.count() as i64);
     let mut peaks = Vec::new();

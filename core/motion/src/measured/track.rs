@@ -2,14 +2,14 @@
 
 use post_machine::kinematics::{Joints, MAX_AXES};
 
-use super::Difference;
+use super::DifferenceSum;
 
 /// Times that are off the grid by less than this share of the period lie on it.
 const ON_GRID: f64 = 1e-6;
 
 /// Axis values at equal distances in time.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Track {
+pub struct AxisTrack {
     /// Time of the first, s.
     pub begins: f64,
     /// From one to the next, s.
@@ -18,7 +18,7 @@ pub struct Track {
     pub joints: Vec<Joints>,
 }
 
-impl Track {
+impl AxisTrack {
     /// Of samples at `times`, which increase, at equal distances: those of `joints` where the samples lie so, else what a
     /// cubic through their neighbours has there.
     pub fn of_samples(times: &[f64], joints: &[Joints], period: f64) -> Self {
@@ -70,15 +70,15 @@ impl Track {
         })
     }
 
-    /// About how far axis values between the samples lie beside [`Track::at`], mm and radians, by axis: a quarter of how
+    /// About how far axis values between the samples lie beside [`AxisTrack::at`], mm and radians, by axis: a quarter of how
     /// far a sample lies beside the cubic through every second one around it.
     ///
     /// Where acceleration jumps by `a` and samples are `h` apart, the cubic is off by up to `0.041·a·h²` and this says
     /// `0.031·a·h²` to `0.035·a·h²` (straight lines: `a·h²/8`); where motion is smoother, the cubic is closer than this
     /// says. Where velocity jumps by `v`, it is off by up to `0.19·v·h`, and this says `0.03·v·h` to `0.09·v·h`, by when
     /// between two samples that is.
-    pub fn between(&self) -> [Difference; MAX_AXES] {
-        let mut found = [Difference::default(); MAX_AXES];
+    pub fn between(&self) -> [DifferenceSum; MAX_AXES] {
+        let mut found = [DifferenceSum::default(); MAX_AXES];
         for (first, around) in self.joints.windows(7).enumerate() {
             let time = self.time(first + 3);
             for (axis, found) in found.iter_mut().enumerate() {

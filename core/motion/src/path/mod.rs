@@ -22,7 +22,7 @@ pub struct Stance {
 
 /// How the control goes from one end to the other.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Way {
+pub enum Interpolation {
     /// All axes linearly in the same parameter.
     Axes,
     /// The tip straight, the rotary axes linearly.
@@ -39,12 +39,12 @@ pub enum Way {
         sweep: f64,
     },
     /// The tip on a spline of the part frame: poles and knots, as the program states them.
-    Spline(Arc<SplineWay>),
+    Spline(Arc<BSpline>),
 }
 
 /// A rational B-spline.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SplineWay {
+pub struct BSpline {
     /// Degree.
     pub degree: usize,
     /// Knots, as many as poles + degree + 1.
@@ -53,7 +53,7 @@ pub struct SplineWay {
     pub poles: Vec<(Vector3<f64>, f64)>,
 }
 
-impl Way {
+impl Interpolation {
     /// Tip and tool axis between `ends` at `t` from 0 to 1 of the way's own parameter (time, at constant feed), as the
     /// control and the chain make them.
     pub fn at(&self, chain: &Chain, ends: [&Stance; 2], t: f64) -> Pose {
@@ -103,7 +103,7 @@ pub fn turns(chain: &Chain, ends: [&Stance; 2]) -> bool {
         .any(|(place, _)| ends[0].joints[place] != ends[1].joints[place])
 }
 
-/// Axis values at `t`, all linearly: where the control keeps the tip ([`Way::Tip`] and below), those of the rotary axes
+/// Axis values at `t`, all linearly: where the control keeps the tip ([`Interpolation::Tip`] and below), those of the rotary axes
 /// alone hold.
 pub fn joints_between(ends: [&Stance; 2], t: f64) -> Joints {
     let [from, to] = ends.map(|stance| &stance.joints);

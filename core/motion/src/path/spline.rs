@@ -2,7 +2,7 @@
 
 use nalgebra::{Vector3, Vector4};
 
-use super::SplineWay;
+use super::BSpline;
 
 /// The highest degree that is evaluated.
 const MOST_DEGREE: usize = 9;
@@ -10,7 +10,7 @@ const MOST_DEGREE: usize = 9;
 /// Pieces whose chords are added up, for each span of the knots.
 const CHORDS: u32 = 64;
 
-impl SplineWay {
+impl BSpline {
     /// It can be evaluated: the degree is from 1 to 9, the knots never fall and are as many as poles + degree + 1, and
     /// its weights lie above zero.
     pub fn is_sound(&self) -> bool {

@@ -3,17 +3,17 @@
 use nalgebra::Vector3;
 use post_machine::kinematics::{Joints, Pose, Solver, Turns, Unreachable};
 
-use super::{Stance, Way, joints_between, on_great_circle};
+use super::{Interpolation, Stance, joints_between, on_great_circle};
 
 /// How far the tool axis may miss where the control leads it by vectors, radians: the axes of the ends reach theirs, so
 /// that more than rounding means that the great circle between them leaves what the axes can reach.
 const MISS: f64 = 1e-7;
 
-impl Way {
-    /// Axis values at `t` from 0 to 1 of the way's own parameter, mm and radians: [`Way::stance_at`] without its pose.
+impl Interpolation {
+    /// Axis values at `t` from 0 to 1 of the way's own parameter, mm and radians: [`Interpolation::stance_at`] without its pose.
     ///
     /// # Errors
-    /// As [`Way::stance_at`].
+    /// As [`Interpolation::stance_at`].
     pub fn joints_at(
         &self,
         solver: &Solver,

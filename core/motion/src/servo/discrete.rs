@@ -10,14 +10,14 @@ const LARGEST: f64 = 1e100;
 /// The exact solution of `x' = a·x + value·r + rate·r' + force·f` after a step of time in which r changes linearly by Δ and
 /// f is constant: `x⁺ = transition·x + value·r + change·Δ + force·f`, r taken at the beginning.
 #[derive(Clone, Debug)]
-pub(super) struct Discrete {
+pub(super) struct DiscreteSolution {
     pub transition: DMatrix<f64>,
     pub value: DVector<f64>,
     pub change: DVector<f64>,
     pub force: DVector<f64>,
 }
 
-impl Discrete {
+impl DiscreteSolution {
     /// Over `step` seconds. The inputs are states of their own of a larger system whose matrix exponential holds all
     /// (Van Loan 1978, "Computing integrals involving the matrix exponential"): over the step r grows by Δ, and neither Δ
     /// nor f changes. None where the equations are out of all proportion to the step.
@@ -86,7 +86,7 @@ pub(super) fn dot<const N: usize>(row: &[f64; N], vector: &[f64; N]) -> f64 {
 
 /// Where a servo stands, and what it was told last.
 #[derive(Clone, Debug)]
-pub(super) struct Stand<const N: usize> {
+pub(super) struct ServoState<const N: usize> {
     /// States at rest at the command 1.
     rest: [f64; N],
     pub states: [f64; N],
@@ -96,7 +96,7 @@ pub(super) struct Stand<const N: usize> {
     pub table: f64,
 }
 
-impl<const N: usize> Stand<N> {
+impl<const N: usize> ServoState<N> {
     pub(super) fn new(space: &StateSpace) -> Self {
         Self {
             rest: padded(space.rest().iter().flatten().copied()),
@@ -166,7 +166,7 @@ mod tests {
         let b = DVector::from_column_slice(&[0.0, 1e3, 40.0, 1e6]);
         let none = DVector::zeros(4);
         for step in [2.5e-4, 1e-3, 1.5e-2] {
-            let solved = Discrete::new(&a, &b, &none, &b, step).unwrap();
+            let solved = DiscreteSolution::new(&a, &b, &none, &b, step).unwrap();
             let (transition, input) = by_series(&a, &b, step, 20);
             let apart = (&solved.transition - &transition).amax();
             assert!(apart < 1e-9 * transition.amax(), "{step}: {apart:e}");

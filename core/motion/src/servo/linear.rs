@@ -2,13 +2,13 @@
 
 use post_machine::servo::{Servo, StateSpace};
 
-use super::Output;
-use super::discrete::{Discrete, Stand, add, columns, dot, padded, play};
+use super::ServoOutput;
+use super::discrete::{DiscreteSolution, ServoState, add, columns, dot, padded, play};
 
 /// The exact solution over one period, and where it stands. N states, those that are not needed zero: arrays of one length
 /// without a test in the loop are what a compiler makes vector instructions of.
 #[derive(Clone, Debug)]
-pub(super) struct Linear<const N: usize> {
+pub(super) struct LinearServo<const N: usize> {
     /// Column by column.
     transition: [[f64; N]; N],
     /// How the command at the beginning of the period enters.
@@ -23,22 +23,23 @@ pub(super) struct Linear<const N: usize> {
     through: f64,
     /// Half of the play behind the loops, axis units.
     half_play: f64,
-    stand: Stand<N>,
+    stand: ServoState<N>,
 }
 
-impl<const N: usize> Linear<N> {
+impl<const N: usize> LinearServo<N> {
     pub(super) fn new(
         servo: &Servo,
         space: &StateSpace,
         period: f64,
-        output: Output,
+        output: ServoOutput,
     ) -> Option<Self> {
-        let solved = Discrete::new(&space.a, &space.value, &space.rate, &space.push, period)?;
+        let solved =
+            DiscreteSolution::new(&space.a, &space.value, &space.rate, &space.push, period)?;
         // A kink of the command by v makes the states jump by jump·v at the beginning of the period.
         let kink = &solved.transition * &space.jump / period;
         let row = match output {
-            Output::Table => &space.position,
-            Output::Measured => &space.measured,
+            ServoOutput::Table => &space.position,
+            ServoOutput::Measured => &space.measured,
         };
         Some(Self {
             transition: columns(&solved.transition),
@@ -48,10 +49,10 @@ impl<const N: usize> Linear<N> {
             position: padded(row.iter().copied()),
             through: space.through,
             half_play: match output {
-                Output::Table => servo.backlash * servo.unit() / 2.0,
-                Output::Measured => 0.0,
+                ServoOutput::Table => servo.backlash * servo.unit() / 2.0,
+                ServoOutput::Measured => 0.0,
             },
-            stand: Stand::new(space),
+            stand: ServoState::new(space),
         })
     }
 

@@ -23,8 +23,8 @@ use post_machine::diagnostic::{Diagnostic, Short};
 use post_machine::kinematics::Joints;
 use post_machine::servo::{MAX_ORDER, Servo, StateSpace};
 
-use linear::Linear;
-use stepped::Stepped;
+use linear::LinearServo;
+use stepped::SteppedServo;
 
 /// The longest period of set-points, s.
 const LONGEST_PERIOD: f64 = 1.0;
@@ -84,21 +84,21 @@ impl Servos {
 /// The servo of one axis.
 #[derive(Clone, Debug)]
 pub struct Follower {
-    kernel: Kernel,
+    kernel: FollowerKernel,
 }
 
 /// States are padded to a whole number of vector registers; the shortest that hold them are taken.
 #[derive(Clone, Debug)]
-enum Kernel {
-    Four(Box<Linear<4>>),
-    Eight(Box<Linear<8>>),
-    Twelve(Box<Linear<MAX_ORDER>>),
-    SteppedEight(Box<Stepped<8>>),
+enum FollowerKernel {
+    Four(Box<LinearServo<4>>),
+    Eight(Box<LinearServo<8>>),
+    Twelve(Box<LinearServo<MAX_ORDER>>),
+    SteppedEight(Box<SteppedServo<8>>),
 }
 
 /// What is asked of a [`Follower`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Output {
+pub enum ServoOutput {
     /// Where the table is.
     Table,
     /// What the position loop measures: a log of the control has this.
@@ -112,14 +112,14 @@ impl Follower {
     /// A period that is not above zero, or longer than a second; numbers whose equations cannot be solved (a machine file
     /// with such is refused).
     pub fn new(servo: &Servo, period: f64) -> Result<Self, Box<Diagnostic>> {
-        Self::with(servo, period, Output::Table)
+        Self::with(servo, period, ServoOutput::Table)
     }
 
     /// Likewise, what `output` says.
     ///
     /// # Errors
     /// As [`Follower::new`].
-    pub fn with(servo: &Servo, period: f64, output: Output) -> Result<Self, Box<Diagnostic>> {
+    pub fn with(servo: &Servo, period: f64, output: ServoOutput) -> Result<Self, Box<Diagnostic>> {
         if !(period > 0.0 && period <= LONGEST_PERIOD) {
             let message = format!(
                 "a period of set-points of {} s: above zero and up to {LONGEST_PERIOD} s are possible",
@@ -131,14 +131,20 @@ impl Follower {
         let friction = servo.friction.is_some_and(|friction| friction.coulomb > 0.0);
         let play_inside = servo.backlash > 0.0 && servo.play_inside();
         let kernel = if friction || play_inside {
-            Stepped::new(servo, &space, period, output).map(Box::new).map(Kernel::SteppedEight)
+            SteppedServo::new(servo, &space, period, output)
+                .map(Box::new)
+                .map(FollowerKernel::SteppedEight)
         } else {
             match space.order() {
-                0..=4 => Linear::new(servo, &space, period, output).map(Box::new).map(Kernel::Four),
-                5..=8 => {
-                    Linear::new(servo, &space, period, output).map(Box::new).map(Kernel::Eight)
-                }
-                _ => Linear::new(servo, &space, period, output).map(Box::new).map(Kernel::Twelve),
+                0..=4 => LinearServo::new(servo, &space, period, output)
+                    .map(Box::new)
+                    .map(FollowerKernel::Four),
+                5..=8 => LinearServo::new(servo, &space, period, output)
+                    .map(Box::new)
+                    .map(FollowerKernel::Eight),
+                _ => LinearServo::new(servo, &space, period, output)
+                    .map(Box::new)
+                    .map(FollowerKernel::Twelve),
             }
         };
         let Some(kernel) = kernel else {
@@ -156,10 +162,10 @@ impl Follower {
     /// The axis has stood still at `value` (mm or radians) for long, up to one period before the next set-point.
     pub fn settle(&mut self, value: f64) {
         match &mut self.kernel {
-            Kernel::Four(kernel) => kernel.settle(value),
-            Kernel::Eight(kernel) => kernel.settle(value),
-            Kernel::Twelve(kernel) => kernel.settle(value),
-            Kernel::SteppedEight(kernel) => kernel.settle(value),
+            FollowerKernel::Four(kernel) => kernel.settle(value),
+            FollowerKernel::Eight(kernel) => kernel.settle(value),
+            FollowerKernel::Twelve(kernel) => kernel.settle(value),
+            FollowerKernel::SteppedEight(kernel) => kernel.settle(value),
         }
     }
 
@@ -178,10 +184,10 @@ impl Follower {
         put: impl FnMut(usize, f64),
     ) {
         match &mut self.kernel {
-            Kernel::Four(kernel) => kernel.run(count, command, put),
-            Kernel::Eight(kernel) => kernel.run(count, command, put),
-            Kernel::Twelve(kernel) => kernel.run(count, command, put),
-            Kernel::SteppedEight(kernel) => kernel.run(count, command, put),
+            FollowerKernel::Four(kernel) => kernel.run(count, command, put),
+            FollowerKernel::Eight(kernel) => kernel.run(count, command, put),
+            FollowerKernel::Twelve(kernel) => kernel.run(count, command, put),
+            FollowerKernel::SteppedEight(kernel) => kernel.run(count, command, put),
         }
     }
 
@@ -190,10 +196,10 @@ impl Follower {
     pub fn states(&self) -> [f64; MAX_ORDER] {
         let mut states = [0.0; MAX_ORDER];
         let held: &[f64] = match &self.kernel {
-            Kernel::Four(kernel) => kernel.states(),
-            Kernel::Eight(kernel) => kernel.states(),
-            Kernel::Twelve(kernel) => kernel.states(),
-            Kernel::SteppedEight(kernel) => kernel.states(),
+            FollowerKernel::Four(kernel) => kernel.states(),
+            FollowerKernel::Eight(kernel) => kernel.states(),
+            FollowerKernel::Twelve(kernel) => kernel.states(),
+            FollowerKernel::SteppedEight(kernel) => kernel.states(),
         };
         states[..held.len()].copy_from_slice(held);
         states

@@ -13,8 +13,8 @@
 
 use post_machine::servo::{Servo, ServoModel, StateSpace};
 
-use super::Output;
-use super::discrete::{Discrete, Stand, add, columns, dot, padded, play};
+use super::ServoOutput;
+use super::discrete::{DiscreteSolution, ServoState, add, columns, dot, padded, play};
 
 /// Longest step, s.
 const LONGEST_STEP: f64 = 1e-4;
@@ -24,7 +24,7 @@ const STEP_SHARE: f64 = 0.2;
 
 /// One step of the linear equations.
 #[derive(Clone, Debug)]
-struct Step<const N: usize> {
+struct ServoStep<const N: usize> {
     transition: [[f64; N]; N],
     value: [f64; N],
     change: [f64; N],
@@ -36,11 +36,11 @@ struct Step<const N: usize> {
 
 /// Where it stands, and how it goes on.
 #[derive(Clone, Debug)]
-pub(super) struct Stepped<const N: usize> {
+pub(super) struct SteppedServo<const N: usize> {
     /// The flanks touch, or there is no play.
-    touching: Step<N>,
+    touching: ServoStep<N>,
     /// They do not.
-    released: Option<Play<N>>,
+    released: Option<BacklashStep<N>>,
     /// Steps in a period.
     count: u32,
     /// How a change of the change of the command over a period enters.
@@ -52,12 +52,12 @@ pub(super) struct Stepped<const N: usize> {
     position: [f64; N],
     /// Half of the play behind the loops, axis units.
     half_play: f64,
-    stand: Stand<N>,
+    stand: ServoState<N>,
 }
 
 #[derive(Clone, Debug)]
-struct Play<const N: usize> {
-    step: Step<N>,
+struct BacklashStep<const N: usize> {
+    step: ServoStep<N>,
     /// Row of how far the transmission is stretched, m or radians.
     stretch: [f64; N],
     /// Half of the play, m or radians.
@@ -66,8 +66,8 @@ struct Play<const N: usize> {
     offset: [f64; N],
 }
 
-impl<const N: usize> Step<N> {
-    fn new(space: &StateSpace, solved: &Discrete) -> Self {
+impl<const N: usize> ServoStep<N> {
+    fn new(space: &StateSpace, solved: &DiscreteSolution) -> Self {
         Self {
             transition: columns(&solved.transition),
             value: padded(solved.value.iter().copied()),
@@ -89,12 +89,12 @@ impl<const N: usize> Step<N> {
     }
 }
 
-impl<const N: usize> Stepped<N> {
+impl<const N: usize> SteppedServo<N> {
     pub(super) fn new(
         servo: &Servo,
         space: &StateSpace,
         period: f64,
-        output: Output,
+        output: ServoOutput,
     ) -> Option<Self> {
         let swing = match &servo.model {
             ServoModel::Loops(loops) => loops.drive.mechanics().natural_frequency(),
@@ -104,7 +104,7 @@ impl<const N: usize> Stepped<N> {
         // A period is a second at most, a swing 1e5 rad/s: this is a small number.
         let count = libm::ceil(period / longest * (1.0 - 1e-9)).max(1.0);
         let step = period / count;
-        let solve = |a, force| Discrete::new(a, &space.value, &space.rate, force, step);
+        let solve = |a, force| DiscreteSolution::new(a, &space.value, &space.rate, force, step);
         let touching = solve(&space.a, &space.push)?;
         // In axis units; the equations have m or radians.
         let whole_play = servo.backlash * servo.unit();
@@ -115,8 +115,8 @@ impl<const N: usize> Stepped<N> {
             Some(released) => {
                 let half = whole_play / 2.0 * length;
                 let pulled = solve(&space.a, &released.force)?.force * (released.stiffness * half);
-                Some(Play {
-                    step: Step::new(space, &solve(&released.a, &space.push)?),
+                Some(BacklashStep {
+                    step: ServoStep::new(space, &solve(&released.a, &space.push)?),
                     stretch: padded(released.stretch.iter().copied()),
                     half,
                     offset: padded(pulled.iter().copied()),
@@ -124,13 +124,13 @@ impl<const N: usize> Stepped<N> {
             }
         };
         let row = match output {
-            Output::Table => &space.position,
-            Output::Measured => &space.measured,
+            ServoOutput::Table => &space.position,
+            ServoOutput::Measured => &space.measured,
         };
-        let outside = output == Output::Table && !servo.play_inside();
+        let outside = output == ServoOutput::Table && !servo.play_inside();
         let friction = servo.friction;
         Some(Self {
-            touching: Step::new(space, &touching),
+            touching: ServoStep::new(space, &touching),
             released,
             count: count as u32,
             kink: padded(space.jump.iter().map(|part| part / period)),
@@ -139,7 +139,7 @@ impl<const N: usize> Stepped<N> {
             velocity: padded(space.velocity.iter().copied()),
             position: padded(row.iter().copied()),
             half_play: if outside { whole_play / 2.0 } else { 0.0 },
-            stand: Stand::new(space),
+            stand: ServoState::new(space),
         })
     }
 

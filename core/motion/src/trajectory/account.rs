@@ -16,7 +16,7 @@ const NOTHING: f64 = 1e-9;
 
 /// A task that is not yet done.
 #[derive(Debug)]
-struct Open {
+struct OpenTask {
     task: u64,
     line: u64,
     begins: f64,
@@ -30,14 +30,14 @@ struct Open {
 
 /// Tasks in order.
 #[derive(Debug, Default)]
-pub(super) struct Accounts {
-    open: VecDeque<Open>,
+pub(super) struct TaskAccounts {
+    open: VecDeque<OpenTask>,
     done: VecDeque<TaskTime>,
 }
 
-impl Accounts {
+impl TaskAccounts {
     pub fn open(&mut self, task: u64, line: u64, asked: Option<f64>, empty: bool) {
-        self.open.push_back(Open {
+        self.open.push_back(OpenTask {
             task,
             line,
             begins: 0.0,

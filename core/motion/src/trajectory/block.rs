@@ -4,7 +4,7 @@ use super::profile::{Phase, Ramp};
 
 /// One block.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Block {
+pub(super) struct LookAheadBlock {
     /// Its length.
     pub length: f64,
     /// Largest velocity.
@@ -17,7 +17,7 @@ pub(super) struct Block {
     pub exit: f64,
 }
 
-impl Block {
+impl LookAheadBlock {
     pub(super) fn ramp(&self) -> Ramp {
         Ramp { acceleration: self.acceleration, jerk: self.jerk }
     }
@@ -25,7 +25,7 @@ impl Block {
 
 /// Why it is no faster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Why {
+pub(super) enum VelocityLimit {
     /// The block's largest velocity.
     Velocity,
     /// On the way from one to another.
@@ -36,11 +36,11 @@ pub(super) enum Why {
 
 /// Constant jerk within one block.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
+pub(super) struct BlockPhase {
     /// Number of the block, from 0 at the beginning of all.
     pub block: u64,
     /// Where in the block it begins.
     pub from: f64,
     pub phase: Phase,
-    pub why: Why,
+    pub why: VelocityLimit,
 }

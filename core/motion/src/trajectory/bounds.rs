@@ -28,7 +28,7 @@ const INSTANT: f64 = 1e-6;
 
 /// Bounds over a move, its parameter running from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bounds {
+pub(super) struct MoveBounds {
     /// Largest rate, 1/s.
     pub rate: f64,
     /// Largest change of the rate, 1/s².
@@ -40,7 +40,7 @@ pub(super) struct Bounds {
 }
 
 /// One thing that is limited.
-struct Limited {
+struct LimitedQuantity {
     /// Bounds of the derivatives over the parameter.
     derivatives: [f64; 3],
     /// Of an arc: the largest first derivative on the whole circle.
@@ -52,10 +52,13 @@ struct Limited {
 }
 
 /// What is limited on a move.
-fn all<'a>(found: &'a MoveLimits, rules: &'a AxisLimits) -> impl Iterator<Item = Limited> + 'a {
+fn all<'a>(
+    found: &'a MoveLimits,
+    rules: &'a AxisLimits,
+) -> impl Iterator<Item = LimitedQuantity> + 'a {
     let axes = (0..MAX_AXES).map(|place| {
         let axis = place as u8;
-        Limited {
+        LimitedQuantity {
             derivatives: [found.first[place], found.second[place], found.third[place]],
             circle: found.circle.map_or(0.0, |circle| circle[place]),
             velocity: rules.velocity[place],
@@ -68,7 +71,7 @@ fn all<'a>(found: &'a MoveLimits, rules: &'a AxisLimits) -> impl Iterator<Item =
             ],
         }
     });
-    let tip = Limited {
+    let tip = LimitedQuantity {
         derivatives: found.tip,
         circle: found.tip[0],
         velocity: f64::INFINITY,
@@ -79,7 +82,7 @@ fn all<'a>(found: &'a MoveLimits, rules: &'a AxisLimits) -> impl Iterator<Item =
     axes.chain([tip]).filter(|limited| limited.derivatives.iter().any(|value| *value > 0.0))
 }
 
-impl Bounds {
+impl MoveBounds {
     /// Of a move that the program wants to take `seconds` (0: as fast as it goes), and whose accelerations may take
     /// `share` of the limits. `sweep`: it is an arc of so many radians, and nothing else turns.
     pub fn new(
@@ -151,7 +154,7 @@ impl Bounds {
     }
 }
 
-impl Bounds {
+impl MoveBounds {
     /// The highest rate over the whole move from rest to rest, no jerk regarded, 1/s.
     pub fn reached(&self) -> f64 {
         self.rate.min(self.acceleration.sqrt())

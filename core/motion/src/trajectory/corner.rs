@@ -33,9 +33,9 @@ use post_machine::description::BlendRule;
 
 use super::kink::Kink;
 use super::profile::Ramp;
-use super::round::Round;
-use super::side::Side;
-use crate::Corner;
+use super::round::RoundedCorner;
+use super::side::CornerSide;
+use crate::CornerMode;
 use crate::limits::AxisLimits;
 
 /// What happens between two moves.
@@ -51,7 +51,7 @@ pub(super) enum Junction {
         jumps: bool,
     },
     /// The same, by a curve.
-    Round(Round),
+    Round(RoundedCorner),
     /// The second begins when the rate of the first has come down to `rate`; its own rate then changes by no more than
     /// `change`, 1/s².
     Overlap { rate: f64, change: f64 },
@@ -71,14 +71,14 @@ const SAME: f64 = 1e-9;
 
 impl Junction {
     /// Between two moves, the first of which asks for its `corner`.
-    pub fn between(sides: [Side; 2], rules: &AxisLimits, blend: BlendRule) -> Self {
-        let overlaps = blend == BlendRule::Overlap && sides.iter().any(Side::turns);
+    pub fn between(sides: [CornerSide; 2], rules: &AxisLimits, blend: BlendRule) -> Self {
+        let overlaps = blend == BlendRule::Overlap && sides.iter().any(CornerSide::turns);
         let tolerance = match sides[0].task.corner {
-            Corner::Stop => return Self::Stop,
-            Corner::Path if overlaps => return Self::Stop,
-            Corner::Path => None,
-            Corner::Blend { .. } if overlaps => return Self::overlap(sides, rules),
-            Corner::Blend { tolerance } => Some(tolerance),
+            CornerMode::Stop => return Self::Stop,
+            CornerMode::Path if overlaps => return Self::Stop,
+            CornerMode::Path => None,
+            CornerMode::Blend { .. } if overlaps => return Self::overlap(sides, rules),
+            CornerMode::Blend { tolerance } => Some(tolerance),
         };
         let Some(kink) = Kink::new(sides, rules) else {
             return match (tolerance, blend) {
@@ -97,11 +97,12 @@ impl Junction {
         if sides[0].overlapped {
             return Self::overlap(sides, rules);
         }
-        let smooth = |share: f64| Round::smooth(sides, rules, &kink, tolerance, [wanted, share]);
-        let faster = |round: &Round| round.passes() > rate.min(wanted) * (1.0 - SAME);
+        let smooth =
+            |share: f64| RoundedCorner::smooth(sides, rules, &kink, tolerance, [wanted, share]);
+        let faster = |round: &RoundedCorner| round.passes() > rate.min(wanted) * (1.0 - SAME);
         if !jerk {
             let circle = match blend {
-                BlendRule::Overlap => Round::circle(sides, rules, tolerance),
+                BlendRule::Overlap => RoundedCorner::circle(sides, rules, tolerance),
                 BlendRule::Round => None,
             };
             let round = circle.or_else(|| smooth(1.0)).filter(faster);
@@ -112,7 +113,7 @@ impl Junction {
             return Self::Round(round);
         }
         // A long curve that is passed slowly takes longer than a short one, or the kink: what counts is the time.
-        let seconds = |round: &Round| {
+        let seconds = |round: &RoundedCorner| {
             let (ratio, rate) = (kink.ratio, round.passes());
             1.0 / round.bounds.rate + around(sides, ratio, rate, 0.5 * round.length)
         };
@@ -127,14 +128,16 @@ impl Junction {
         timed.fold(joined, least).1
     }
 
-    fn overlap(sides: [Side; 2], rules: &AxisLimits) -> Self {
+    fn overlap(sides: [CornerSide; 2], rules: &AxisLimits) -> Self {
         let tolerance = match sides[0].task.corner {
-            Corner::Blend { tolerance } => tolerance,
-            Corner::Stop | Corner::Path => None,
+            CornerMode::Blend { tolerance } => tolerance,
+            CornerMode::Stop | CornerMode::Path => None,
         };
         let first = sides[0].half;
         let next = match sides[1].task.corner {
-            Corner::Stop | Corner::Path if sides[1].whole.jerk.is_infinite() => sides[1].whole,
+            CornerMode::Stop | CornerMode::Path if sides[1].whole.jerk.is_infinite() => {
+                sides[1].whole
+            }
             _ => sides[1].half,
         };
         let [most_first, most_next] = [first.reached(), next.reached()];
@@ -171,8 +174,8 @@ impl Junction {
 
 /// How long the halves of two moves next to each other take, s, less what a corner takes of either, that is passed at
 /// `rate`. Rates and lengths are those of the first move's parameter.
-fn around(sides: [Side; 2], ratio: f64, rate: f64, taken: f64) -> f64 {
-    let half = |side: &Side, ratio: f64| {
+fn around(sides: [CornerSide; 2], ratio: f64, rate: f64, taken: f64) -> f64 {
+    let half = |side: &CornerSide, ratio: f64| {
         let ramp =
             Ramp { acceleration: side.whole.acceleration / ratio, jerk: side.whole.jerk / ratio };
         let length = (0.5 / ratio - taken).max(0.0);

@@ -3,12 +3,12 @@
 
 use std::collections::VecDeque;
 
-use super::block::Block;
+use super::block::LookAheadBlock;
 
 /// Blocks of a run that are not yet carried out, and the velocities where they meet.
 #[derive(Debug, Default)]
-pub(super) struct Envelope {
-    pub blocks: VecDeque<Block>,
+pub(super) struct VelocityEnvelope {
+    pub blocks: VecDeque<LookAheadBlock>,
     /// Number of the first of them.
     pub first: u64,
     /// How much of it is behind, and with what velocity it goes on.
@@ -20,7 +20,7 @@ pub(super) struct Envelope {
     pub caps: Vec<f64>,
 }
 
-impl Envelope {
+impl VelocityEnvelope {
     /// Length of the block at `place` that is yet to come.
     pub fn left(&self, place: usize) -> f64 {
         let begun = if place == 0 { self.begun } else { 0.0 };
@@ -32,7 +32,9 @@ impl Envelope {
         self.caps.clear();
         self.caps.push(self.velocity);
         let pairs = self.blocks.iter().zip(self.blocks.iter().skip(1));
-        let cap = |(last, next): (&Block, &Block)| last.exit.min(last.velocity).min(next.velocity);
+        let cap = |(last, next): (&LookAheadBlock, &LookAheadBlock)| {
+            last.exit.min(last.velocity).min(next.velocity)
+        };
         self.caps.extend(pairs.map(cap));
         self.caps.push(0.0);
     }

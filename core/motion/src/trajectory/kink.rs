@@ -4,10 +4,10 @@ use nalgebra::Vector3;
 use post_machine::description::BlendRule;
 use post_machine::kinematics::{Joints, MAX_AXES, Unreachable};
 
-use super::side::Side;
+use super::side::CornerSide;
 use crate::Move;
 use crate::limits::{AxisLimits, MoveLimits};
-use crate::path::Way;
+use crate::path::Interpolation;
 
 /// Changes of the derivatives below this share of them are rounding.
 const NONE: f64 = 1e-9;
@@ -26,7 +26,7 @@ pub(super) struct Kink {
 
 impl Kink {
     /// None where the two moves cannot be compared.
-    pub fn new(sides: [Side; 2], rules: &AxisLimits) -> Option<Self> {
+    pub fn new(sides: [CornerSide; 2], rules: &AxisLimits) -> Option<Self> {
         let ratio = ratio(sides, rules)?;
         let [out, into] = [&sides[0].found.ends[1], &sides[1].found.ends[0]];
         let mut change = [0.0; MAX_AXES];
@@ -67,9 +67,9 @@ impl Kink {
 
 /// How much faster the parameter of the second move runs than that of the first where they meet, such that the velocities
 /// of what is limited, each weighed by its acceleration, keep their length; none where they cannot be compared.
-fn ratio(sides: [Side; 2], rules: &AxisLimits) -> Option<f64> {
+fn ratio(sides: [CornerSide; 2], rules: &AxisLimits) -> Option<f64> {
     // Between coordinates of the tip and of the axes there is no comparison.
-    let coordinates = sides.map(|side| side.task.keeps_tip && side.task.way != Way::Axes);
+    let coordinates = sides.map(|side| side.task.keeps_tip && side.task.way != Interpolation::Axes);
     if rules.programmed.is_some() && coordinates[0] != coordinates[1] {
         return None;
     }

@@ -7,19 +7,19 @@ use post_machine::kinematics::{Joints, Solver, Unreachable};
 
 use super::TimeLimit;
 use super::profile::Phase;
-use super::round::Curve;
-use crate::path::{Stance, Way};
-use crate::{At, Move};
+use super::round::CornerCurve;
+use crate::path::{Interpolation, Stance};
+use crate::{Move, ProgramPlace};
 
 /// A stretch of path.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Piece {
+pub(super) struct LawPiece {
     /// Number of the move.
     pub entry: u64,
-    pub span: Span,
+    pub span: PieceSpan,
     /// Its length in the coordinate of the law.
     pub length: f64,
-    pub at: At,
+    pub at: ProgramPlace,
     /// The task of the second move, where it takes part of two.
     pub second: u64,
     /// What bounds velocity, acceleration and jerk on it.
@@ -30,16 +30,16 @@ pub(super) struct Piece {
 
 /// What of a move, or of two.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Span {
+pub(super) enum PieceSpan {
     /// From one place of its parameter to another.
     Along { from: f64, to: f64 },
     /// These shares of the move and of the next one, added.
-    Corner { shares: [f64; 2], curve: Curve },
+    Corner { shares: [f64; 2], curve: CornerCurve },
 }
 
 /// Constant jerk on one piece.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Section {
+pub(super) struct LawSection {
     /// Number of the run that it belongs to: within one, each begins where the last one ends.
     pub run: u64,
     /// Number of the piece.
@@ -51,7 +51,7 @@ pub(super) struct Section {
     pub phase: Phase,
 }
 
-impl Section {
+impl LawSection {
     /// When it ends, s.
     pub fn ends(&self) -> f64 {
         self.begins + self.phase.seconds
@@ -60,13 +60,13 @@ impl Section {
 
 /// Pieces and their sections, from the one that is in progress on.
 #[derive(Debug, Default)]
-pub(super) struct Law {
+pub(super) struct TimeLaw {
     /// Ways that lead the tip add up as tip and rotary axes: what is limited are the programmed coordinates.
     programmed: bool,
-    pub sections: VecDeque<Section>,
+    pub sections: VecDeque<LawSection>,
     /// Sections of each run.
     counts: VecDeque<usize>,
-    pieces: VecDeque<Piece>,
+    pieces: VecDeque<LawPiece>,
     /// Number of the first piece.
     first_piece: u64,
     moves: VecDeque<Move>,
@@ -74,7 +74,7 @@ pub(super) struct Law {
     first_move: u64,
 }
 
-impl Law {
+impl TimeLaw {
     /// None yet; `programmed`: the programmed coordinates are limited, not the axes.
     pub fn new(programmed: bool) -> Self {
         Self { programmed, ..Self::default() }
@@ -96,16 +96,16 @@ impl Law {
         &self.moves[(number - self.first_move) as usize]
     }
 
-    pub fn push_piece(&mut self, piece: Piece) -> u64 {
+    pub fn push_piece(&mut self, piece: LawPiece) -> u64 {
         self.pieces.push_back(piece);
         self.first_piece + self.pieces.len() as u64 - 1
     }
 
-    pub fn piece(&self, number: u64) -> &Piece {
+    pub fn piece(&self, number: u64) -> &LawPiece {
         &self.pieces[(number - self.first_piece) as usize]
     }
 
-    pub fn push(&mut self, section: Section) {
+    pub fn push(&mut self, section: LawSection) {
         match self.sections.back() {
             Some(last) if last.run == section.run => {
                 if let Some(count) = self.counts.back_mut() {
@@ -147,7 +147,7 @@ impl Law {
 
     /// Where the machine stands at `time`, which nothing that is over precedes, and in which piece; `near`: the axis values
     /// a little before.
-    pub fn at(&self, time: f64, near: &Joints) -> Result<(Stance, At), Unreachable> {
+    pub fn at(&self, time: f64, near: &Joints) -> Result<(Stance, ProgramPlace), Unreachable> {
         let section = &self.sections[0];
         let stance = self.stance(section, time, near)?;
         let at = self.piece(section.piece).at;
@@ -171,10 +171,15 @@ impl Law {
     }
 
     fn adds_tips(&self, moves: [&Move; 2]) -> bool {
-        self.programmed && moves.iter().all(|task| task.way != Way::Axes)
+        self.programmed && moves.iter().all(|task| task.way != Interpolation::Axes)
     }
 
-    fn stance(&self, section: &Section, time: f64, near: &Joints) -> Result<Stance, Unreachable> {
+    fn stance(
+        &self,
+        section: &LawSection,
+        time: f64,
+        near: &Joints,
+    ) -> Result<Stance, Unreachable> {
         let piece = self.piece(section.piece);
         let within = (time - section.begins).clamp(0.0, section.phase.seconds);
         let covered = section.from + section.phase.length(within);
@@ -184,8 +189,8 @@ impl Law {
             task.way.stance_at(&task.solver, [&task.from, &task.to], t, near)
         };
         match piece.span {
-            Span::Along { from, to } => stand(task, from + (to - from) * share, near),
-            Span::Corner { shares, curve } => {
+            PieceSpan::Along { from, to } => stand(task, from + (to - from) * share, near),
+            PieceSpan::Corner { shares, curve } => {
                 let next = self.task(piece.entry + 1);
                 let [out, into] = curve.places(share);
                 let first = stand(task, 1.0 - shares[0] * (1.0 - out), near)?;

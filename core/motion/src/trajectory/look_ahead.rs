@@ -9,9 +9,9 @@
 //! the last: so that what it has begun is always sound. A plan is made once a quarter more than so many wait, and carried out
 //! until a quarter less are left: `depth` on average, and each block is planned two and a half times, not `depth` times.
 
-use super::block::{Block, Part, Why};
-use super::envelope::Envelope;
-use super::profile::Profile;
+use super::block::{BlockPhase, LookAheadBlock, VelocityLimit};
+use super::envelope::VelocityEnvelope;
+use super::profile::VelocityProfile;
 use super::smooth;
 
 /// Plans the blocks of a run as far as they are seen.
@@ -19,9 +19,9 @@ use super::smooth;
 pub(super) struct LookAhead {
     /// Blocks seen at once.
     depth: usize,
-    envelope: Envelope,
+    envelope: VelocityEnvelope,
     /// What a plan with jerk limits works with; none without any.
-    smooth: Option<smooth::Work>,
+    smooth: Option<smooth::SmoothPlan>,
 }
 
 impl LookAhead {
@@ -29,8 +29,8 @@ impl LookAhead {
     pub fn new(depth: usize, jerk: bool) -> Self {
         Self {
             depth: depth.max(1),
-            envelope: Envelope::default(),
-            smooth: jerk.then(smooth::Work::default),
+            envelope: VelocityEnvelope::default(),
+            smooth: jerk.then(smooth::SmoothPlan::default),
         }
     }
 
@@ -47,12 +47,12 @@ impl LookAhead {
     }
 
     /// Takes a block.
-    pub fn push(&mut self, block: Block) {
+    pub fn push(&mut self, block: LookAheadBlock) {
         self.envelope.blocks.push_back(block);
     }
 
     /// Hands over what is settled: all if the run has `ended`.
-    pub fn settle(&mut self, ended: bool, take: &mut dyn FnMut(Part)) {
+    pub fn settle(&mut self, ended: bool, take: &mut dyn FnMut(BlockPhase)) {
         let ahead = &mut self.envelope;
         let count = ahead.blocks.len();
         let margin = self.depth / 4;
@@ -71,22 +71,23 @@ impl LookAhead {
 }
 
 /// Hands over the first `done` blocks, planned without jerk limits.
-fn settle(ahead: &mut Envelope, done: usize, take: &mut dyn FnMut(Part)) {
+fn settle(ahead: &mut VelocityEnvelope, done: usize, take: &mut dyn FnMut(BlockPhase)) {
     ahead.set_caps();
     ahead.raise();
-    let mut corner = Corners::new(ahead);
+    let mut corner = RampCorners::new(ahead);
     for place in 0..done {
         let block = ahead.blocks[place];
         let ends = [place, place + 1].map(|place| ahead.squares[place].sqrt());
         let length = ahead.left(place);
-        let profile = Profile::new(length, ends, block.velocity, block.ramp(), block.ramp());
+        let profile =
+            VelocityProfile::new(length, ends, block.velocity, block.ramp(), block.ramp());
         let whys = corner.whys(ahead, place, &profile);
         let mut from = block.length - length;
         let counts = profile.counts();
         for (place, phase) in profile.phases().iter().enumerate() {
             let part =
                 usize::from(place >= counts[0]) + usize::from(place >= counts[0] + counts[1]);
-            take(Part { block: ahead.first, from, phase: *phase, why: whys[part] });
+            take(BlockPhase { block: ahead.first, from, phase: *phase, why: whys[part] });
             from += phase.length(phase.seconds);
         }
         ahead.first += 1;
@@ -97,22 +98,27 @@ fn settle(ahead: &mut Envelope, done: usize, take: &mut dyn FnMut(Part)) {
 }
 
 /// Whether the ramps in progress come from, or lead to, a corner.
-struct Corners {
+struct RampCorners {
     up: bool,
     /// Found ahead where a ramp down begins.
     down: Option<bool>,
 }
 
-impl Corners {
-    fn new(ahead: &Envelope) -> Self {
+impl RampCorners {
+    fn new(ahead: &VelocityEnvelope) -> Self {
         Self { up: ahead.velocity == 0.0, down: None }
     }
 
     /// Why the ramp up, the cruise and the ramp down of the block at `place` are no faster.
-    fn whys(&mut self, ahead: &Envelope, place: usize, profile: &Profile) -> [Why; 3] {
+    fn whys(
+        &mut self,
+        ahead: &VelocityEnvelope,
+        place: usize,
+        profile: &VelocityProfile,
+    ) -> [VelocityLimit; 3] {
         let why = |corner: bool| match corner {
-            true => Why::Corner,
-            false => Why::Change,
+            true => VelocityLimit::Corner,
+            false => VelocityLimit::Change,
         };
         let [up, cruise, down] = profile.counts();
         let ups = why(self.up);
@@ -124,14 +130,14 @@ impl Corners {
         }
         let downs = match down > 0 {
             true => why(*self.down.get_or_insert_with(|| leads_to_corner(ahead, place))),
-            false => Why::Change,
+            false => VelocityLimit::Change,
         };
-        [ups, Why::Velocity, downs]
+        [ups, VelocityLimit::Velocity, downs]
     }
 }
 
 /// The ramp down in the block at `place` ends at a corner.
-fn leads_to_corner(ahead: &Envelope, place: usize) -> bool {
+fn leads_to_corner(ahead: &VelocityEnvelope, place: usize) -> bool {
     let mut end = place + 1;
     while let Some(block) = ahead.blocks.get(end) {
         let fall = ahead.squares[end] - ahead.squares[end + 1];

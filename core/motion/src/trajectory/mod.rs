@@ -96,7 +96,7 @@ pub enum TimeLimit {
 
 /// What has come of a call of [`Planner::fill`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Filled {
+pub enum FillOutcome {
     /// The batch is full, or its chain changes: call again.
     Full,
     /// Nothing more is settled before further tasks are pushed, or the end is told.

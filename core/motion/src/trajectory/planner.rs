@@ -17,15 +17,15 @@ use std::sync::Arc;
 use post_machine::description::{BlendRule, Machine};
 use post_machine::kinematics::{Joints, Unreachable};
 
-use super::account::Accounts;
+use super::account::TaskAccounts;
 use super::corner::Junction;
-use super::law::{Law, Piece, Section, Span};
+use super::law::{LawPiece, LawSection, PieceSpan, TimeLaw};
 use super::look_ahead::LookAhead;
 use super::profile::Phase;
-use super::{Filled, TaskTime, TimeLimit};
+use super::{FillOutcome, TaskTime, TimeLimit};
 use crate::limits::{self, AxisLimits};
-use crate::{At, Corner, Jump, Move, Pace, SetPoints, Task};
-use entry::Entry;
+use crate::{CornerMode, Move, MovePace, ProgramPlace, SetPoints, Task, VelocityJump};
+use entry::OpenMove;
 
 /// Makes set-points of tasks, some tasks behind.
 #[derive(Debug)]
@@ -39,11 +39,11 @@ pub struct Planner {
     /// How long it waits where it stands still between moves, s.
     in_position: f64,
     block_time: f64,
-    law: Law,
+    law: TimeLaw,
     ahead: LookAhead,
-    accounts: Accounts,
+    accounts: TaskAccounts,
     /// The last move, whose corner waits for the next one.
-    last: Option<Entry>,
+    last: Option<OpenMove>,
     /// Number of the run in progress.
     run: u64,
     /// The piece before which the last border between tasks was set.
@@ -53,11 +53,11 @@ pub struct Planner {
     /// When the run before the one in progress ends, s.
     before: f64,
     /// Waits before anything has moved, s, and what they are.
-    early: Vec<(f64, At)>,
+    early: Vec<(f64, ProgramPlace)>,
     /// How the axes' derivatives change in front of these pieces, over the coordinate of the law.
     kinks: VecDeque<(u64, [Joints; 2])>,
     /// Jumps that no set-point stands behind yet.
-    jumps: VecDeque<Jump>,
+    jumps: VecDeque<VelocityJump>,
     tasks: u64,
     ended: bool,
     /// The last set-point is made.
@@ -73,7 +73,7 @@ impl Planner {
         let limits = AxisLimits::new(machine);
         let jerk = limits.limits_jerk();
         Self {
-            law: Law::new(limits.programmed.is_some()),
+            law: TimeLaw::new(limits.programmed.is_some()),
             limits,
             jerk,
             blend: rules.blend,
@@ -81,7 +81,7 @@ impl Planner {
             sees_on: rules.look_ahead > 1,
             in_position: rules.in_position,
             ahead: LookAhead::new(rules.look_ahead, jerk),
-            accounts: Accounts::default(),
+            accounts: TaskAccounts::default(),
             last: None,
             run: 0,
             bordered: None,
@@ -100,7 +100,7 @@ impl Planner {
     /// Takes the next task.
     ///
     /// # Errors
-    /// The axes cannot follow the move's way: see [`Way::stance_at`](crate::path::Way::stance_at).
+    /// The axes cannot follow the move's way: see [`Interpolation::stance_at`](crate::path::Interpolation::stance_at).
     pub fn push(&mut self, task: Task) -> Result<(), Unreachable> {
         let number = self.tasks;
         self.tasks += 1;
@@ -121,7 +121,7 @@ impl Planner {
     fn push_wait(&mut self, task: u64, line: u64, seconds: f64) {
         self.stop();
         self.accounts.open(task, line, None, false);
-        let at = At { task, line, cuts: false };
+        let at = ProgramPlace { task, line, cuts: false };
         match self.law.last_move() {
             Some(entry) => self.wait(entry, 1.0, seconds, at),
             None => self.early.push((seconds, at)),
@@ -129,17 +129,17 @@ impl Planner {
     }
 
     /// Stands at an end of a move.
-    fn wait(&mut self, entry: u64, end: f64, seconds: f64, at: At) {
+    fn wait(&mut self, entry: u64, end: f64, seconds: f64, at: ProgramPlace) {
         self.accounts.skip(self.clock);
         self.rest(entry, end, seconds, at, TimeLimit::Wait);
         self.accounts.border(self.clock);
     }
 
     /// The machine stands at a place of a move.
-    fn rest(&mut self, entry: u64, end: f64, seconds: f64, at: At, why: TimeLimit) {
-        let piece = self.law.push_piece(Piece {
+    fn rest(&mut self, entry: u64, end: f64, seconds: f64, at: ProgramPlace, why: TimeLimit) {
+        let piece = self.law.push_piece(LawPiece {
             entry,
-            span: Span::Along { from: end, to: end },
+            span: PieceSpan::Along { from: end, to: end },
             length: 1.0,
             at,
             second: at.task,
@@ -148,7 +148,7 @@ impl Planner {
         });
         let phase = Phase { seconds, ..Phase::default() };
         self.run += 1;
-        self.law.push(Section { run: self.run, piece, from: 0.0, begins: self.clock, phase });
+        self.law.push(LawSection { run: self.run, piece, from: 0.0, begins: self.clock, phase });
         self.clock += seconds;
         self.before = self.clock;
         self.accounts.spend(at.task, seconds, 0.0, why);
@@ -157,14 +157,14 @@ impl Planner {
     fn push_move(&mut self, task: Move, number: u64) -> Result<(), Unreachable> {
         let found = limits::of(&task, &self.limits)?;
         let asked = match task.pace {
-            Pace::Rapid => None,
-            Pace::Minutes(minutes) => Some(minutes * 60.0),
+            MovePace::Rapid => None,
+            MovePace::Minutes(minutes) => Some(minutes * 60.0),
         };
         let still = found.first.iter().all(|value| *value == 0.0) && found.tip[0] == 0.0;
         self.accounts.open(number, task.line, asked, still);
         if still {
             // To stand still where nothing moves is to stand still behind the move before.
-            if task.corner == Corner::Stop {
+            if task.corner == CornerMode::Stop {
                 self.stop();
             }
             if self.last.is_none() {
@@ -172,7 +172,7 @@ impl Planner {
             }
             return Ok(());
         }
-        let at = At { task: number, line: task.line, cuts: asked.is_some() };
+        let at = ProgramPlace { task: number, line: task.line, cuts: asked.is_some() };
         let mut entry = self.entry(&task, found, asked, at);
         let junction = self.last.as_ref().map_or(Junction::Stop, |last| {
             let first = self.law.task(last.number);
@@ -210,27 +210,27 @@ impl Planner {
         out: &mut SetPoints,
         most: usize,
         times: &mut Vec<TaskTime>,
-    ) -> Result<Filled, Unreachable> {
+    ) -> Result<FillOutcome, Unreachable> {
         loop {
             let time = out.time(out.len());
             self.accounts.done(time, times);
             if self.finished || self.ended && self.law.sections.is_empty() {
                 self.accounts.done(f64::INFINITY, times);
-                return Ok(Filled::Ended);
+                return Ok(FillOutcome::Ended);
             }
             if time >= self.clock && !self.ended {
-                return Ok(Filled::Wants);
+                return Ok(FillOutcome::Wants);
             }
             if out.len() >= most {
-                return Ok(Filled::Full);
+                return Ok(FillOutcome::Full);
             }
             self.law.advance(time);
             let Some(solver) = self.law.solver() else {
-                return Ok(Filled::Wants);
+                return Ok(FillOutcome::Wants);
             };
             if !Arc::ptr_eq(solver, &out.solver) {
                 if !out.is_empty() {
-                    return Ok(Filled::Full);
+                    return Ok(FillOutcome::Full);
                 }
                 out.solver = Arc::clone(solver);
             }

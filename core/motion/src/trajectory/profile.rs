@@ -217,13 +217,13 @@ impl Ramp {
 
 /// A ramp up, a cruise, a ramp down.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Profile {
+pub struct VelocityProfile {
     phases: [Phase; 7],
     /// How many of them there are up to the peak, of the cruise, and behind it.
     counts: [u8; 3],
 }
 
-impl Profile {
+impl VelocityProfile {
     /// Over `length` between the velocities `ends`, never above `most` or the ends, with these ramps up and down.
     ///
     /// Where an end cannot be reached from the other at all within the length, it is by a constant acceleration that

@@ -2,11 +2,11 @@
 
 use post_machine::kinematics::{Joints, MAX_AXES};
 
-use super::bounds::{ARC, Bounds, CURVE, NORMAL};
+use super::bounds::{ARC, CURVE, MoveBounds, NORMAL};
 use super::kink::Kink;
-use super::side::Side;
+use super::side::CornerSide;
 use crate::limits::{AxisLimits, MoveLimits};
-use crate::path::Way;
+use crate::path::Interpolation;
 
 /// The part of the length of a corner by whose product with the change of direction it strays.
 const STRAY: f64 = 3.0 / 32.0;
@@ -31,7 +31,7 @@ const STRAY_OF_LENGTH: f64 = 0.25;
 
 /// What a corner is rounded by.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Curve {
+pub(super) enum CornerCurve {
     /// The one way runs out by the smooth step while the other one runs in.
     Smooth,
     /// An arc of a circle that turns by so much, radians.
@@ -40,19 +40,19 @@ pub(super) enum Curve {
 
 /// A curve in the place of a corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Round {
+pub(super) struct RoundedCorner {
     /// How much faster the parameter of the second move runs.
     pub ratio: f64,
     /// What it takes of the one move and of the other.
     pub shares: [f64; 2],
-    pub curve: Curve,
+    pub curve: CornerCurve,
     /// Its length over the first move's parameter.
     pub length: f64,
     /// What limits it, over its own parameter from 0 to 1.
-    pub bounds: Bounds,
+    pub bounds: MoveBounds,
 }
 
-impl Round {
+impl RoundedCorner {
     /// The rate of the first move's parameter with which it is passed, 1/s.
     pub fn passes(&self) -> f64 {
         self.bounds.rate * self.length
@@ -61,7 +61,7 @@ impl Round {
     /// By the smooth step, as long as it takes to be passed at the rate `wanted`, or as long as it may be, or by this share
     /// of that.
     pub fn smooth(
-        sides: [Side; 2],
+        sides: [CornerSide; 2],
         rules: &AxisLimits,
         kink: &Kink,
         tolerance: Option<f64>,
@@ -92,17 +92,23 @@ impl Round {
         Some(Self {
             ratio: kink.ratio,
             shares,
-            curve: Curve::Smooth,
+            curve: CornerCurve::Smooth,
             length,
-            bounds: Bounds::new(&found, rules, length / wanted, 1.0, None),
+            bounds: MoveBounds::new(&found, rules, length / wanted, 1.0, None),
         })
     }
 
     /// Between straight ways of the tip: the arc that is run through as fast as the faster one of them with [`ARC`] of the
     /// least acceleration, and is so long that half of it would do to get up to that within; or a smaller one. Recorded so of
     /// LinuxCNC 2.9: an arc that nothing else makes smaller is `2·v²/a` long at turns of up to 99°.
-    pub fn circle(sides: [Side; 2], rules: &AxisLimits, tolerance: Option<f64>) -> Option<Self> {
-        let curved = |side: &Side| matches!(side.task.way, Way::Arc { .. } | Way::Spline(_));
+    pub fn circle(
+        sides: [CornerSide; 2],
+        rules: &AxisLimits,
+        tolerance: Option<f64>,
+    ) -> Option<Self> {
+        let curved = |side: &CornerSide| {
+            matches!(side.task.way, Interpolation::Arc { .. } | Interpolation::Spline(_))
+        };
         if sides.iter().any(curved) {
             return None;
         }
@@ -136,14 +142,14 @@ impl Round {
         Some(Self {
             ratio: lengths[0] / lengths[1],
             shares,
-            curve: Curve::Circle(sweep),
+            curve: CornerCurve::Circle(sweep),
             length,
-            bounds: Bounds::new(&found, rules, length * lengths[0] / speed, 1.0, Some(sweep)),
+            bounds: MoveBounds::new(&found, rules, length * lengths[0] / speed, 1.0, Some(sweep)),
         })
     }
 }
 
-impl Curve {
+impl CornerCurve {
     /// How much of its part of the first move and of the second one is behind at `share` of the curve.
     ///
     /// By the smooth step `h` the integrals of 1 - h and of h, each over its whole. On an arc of radius 1 that turns by φ the

@@ -2,25 +2,25 @@
 
 use nalgebra::Vector3;
 
-use super::bounds::Bounds;
+use super::bounds::MoveBounds;
 use crate::Move;
 use crate::limits::{AxisLimits, MoveLimits};
 use crate::path::turns;
 
 /// A move as a corner sees it.
 #[derive(Clone, Copy)]
-pub(super) struct Side<'a> {
+pub(super) struct CornerSide<'a> {
     pub task: &'a Move,
     pub found: &'a MoveLimits,
     /// With all accelerations.
-    pub whole: &'a Bounds,
+    pub whole: &'a MoveBounds,
     /// With half of them.
-    pub half: &'a Bounds,
+    pub half: &'a MoveBounds,
     /// The move before overlaps it.
     pub overlapped: bool,
 }
 
-impl Side<'_> {
+impl CornerSide<'_> {
     /// A rotary axis turns on it.
     pub fn turns(&self) -> bool {
         turns(self.task.solver.chain(), [&self.task.from, &self.task.to])

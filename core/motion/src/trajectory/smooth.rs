@@ -20,19 +20,19 @@ mod carried;
 mod hills;
 mod knots;
 
-use super::block::{Part, Why};
-use super::envelope::Envelope;
+use super::block::{BlockPhase, VelocityLimit};
+use super::envelope::VelocityEnvelope;
 use super::profile::Phase;
-use knots::Knot;
+use knots::EnvelopeKnot;
 
 /// Velocities this near to each other, as a share, are one.
 const SAME: f64 = 1e-9;
 
 /// Constant jerk, however many blocks it spans.
 #[derive(Clone, Copy, Debug)]
-struct Step {
+struct JerkStep {
     phase: Phase,
-    why: Why,
+    why: VelocityLimit,
     /// The acceleration is zero where it ends: the plan can be left there.
     rests: bool,
     /// It ends in front of this block, where it does at a block's end.
@@ -41,18 +41,18 @@ struct Step {
 
 /// What a plan works with.
 #[derive(Debug, Default)]
-pub(super) struct Work {
-    knots: Vec<Knot>,
-    steps: Vec<Step>,
+pub(super) struct SmoothPlan {
+    knots: Vec<EnvelopeKnot>,
+    steps: Vec<JerkStep>,
     /// The rest of the last plan, from where the run has got to, places counted as they are now.
-    kept: Vec<Step>,
+    kept: Vec<JerkStep>,
     /// Largest velocities along the blocks, lowered between near knots.
     velocities: Vec<f64>,
 }
 
 /// How a plan is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Mode {
+enum PlanMode {
     /// Near knots are brought to one velocity.
     Thinned,
     /// All knots stay.
@@ -61,26 +61,31 @@ enum Mode {
     Forced,
 }
 
-impl Work {
+impl SmoothPlan {
     /// A new run begins.
     pub fn forget(&mut self) {
         self.kept.clear();
     }
 
     /// Hands over the parts of the first `done` blocks, or of about as many: of all of them if these are all.
-    pub fn settle(&mut self, ahead: &mut Envelope, done: usize, take: &mut dyn FnMut(Part)) {
+    pub fn settle(
+        &mut self,
+        ahead: &mut VelocityEnvelope,
+        done: usize,
+        take: &mut dyn FnMut(BlockPhase),
+    ) {
         let all = done == ahead.blocks.len();
         loop {
-            let planned = self.plan(ahead, Mode::Thinned)
-                || self.plan(ahead, Mode::Plain)
-                || self.kept.is_empty() && self.plan(ahead, Mode::Forced);
+            let planned = self.plan(ahead, PlanMode::Thinned)
+                || self.plan(ahead, PlanMode::Plain)
+                || self.kept.is_empty() && self.plan(ahead, PlanMode::Forced);
             let count = match (planned, all) {
                 (true, true) => self.steps.len(),
                 (true, false) => self.leave(ahead, done),
                 // The old plan, to the next place where it can be left.
                 (false, _) => {
                     std::mem::swap(&mut self.steps, &mut self.kept);
-                    let moves = |step: &Step| step.rests && step.phase.seconds > 0.0;
+                    let moves = |step: &JerkStep| step.rests && step.phase.seconds > 0.0;
                     let place = self.steps.iter().position(moves);
                     place.map_or(self.steps.len(), |place| place + 1)
                 }
@@ -91,7 +96,7 @@ impl Work {
                 .steps
                 .drain(..)
                 .skip(count)
-                .map(|step| Step { ends: step.ends.map(|place| place - gone), ..step });
+                .map(|step| JerkStep { ends: step.ends.map(|place| place - gone), ..step });
             self.kept.extend(rest);
             if !all || ahead.blocks.is_empty() {
                 return;
@@ -100,13 +105,13 @@ impl Work {
     }
 
     /// Plans all blocks; false where the run is too fast for what lies ahead, planned like that.
-    fn plan(&mut self, ahead: &mut Envelope, mode: Mode) -> bool {
+    fn plan(&mut self, ahead: &mut VelocityEnvelope, mode: PlanMode) -> bool {
         self.velocities.clear();
         let own = ahead.blocks.iter().map(|block| block.velocity);
         self.velocities.extend(own);
         ahead.set_caps();
         ahead.raise();
-        if mode == Mode::Thinned && self.thin(ahead) {
+        if mode == PlanMode::Thinned && self.thin(ahead) {
             ahead.raise();
         }
         self.find_knots(ahead);
@@ -118,7 +123,7 @@ impl Work {
         }
         let [first, second] = [self.knots[0], self.knots[1]];
         let possible = first.ramp.reach(second.velocity, first.length);
-        if mode != Mode::Forced && first.velocity > possible * (1.0 + SAME) {
+        if mode != PlanMode::Forced && first.velocity > possible * (1.0 + SAME) {
             return false;
         }
         for place in 1..count {

@@ -10,9 +10,9 @@ use std::sync::Arc;
 
 use nalgebra::{Rotation3, Vector3};
 use post_machine::kinematics::{Chain, Joint, Joints, Pose, Solver};
-use post_motion::contour::{Contour, ContourPoint, ContourReport, Leg, Reference};
-use post_motion::path::Way;
-use post_motion::{At, SetPoints};
+use post_motion::contour::{Contour, ContourLeg, ContourPoint, ContourReport, ReferencePath};
+use post_motion::path::Interpolation;
+use post_motion::{ProgramPlace, SetPoints};
 
 type Point = Vector3<f64>;
 
@@ -55,18 +55,18 @@ fn run(
 }
 
 /// Legs of a path that is asked for.
-struct Legs(std::vec::IntoIter<Leg>);
+struct Legs(std::vec::IntoIter<ContourLeg>);
 
-impl Reference for Legs {
-    fn next(&mut self) -> Option<Leg> {
+impl ReferencePath for Legs {
+    fn next(&mut self) -> Option<ContourLeg> {
         self.0.next()
     }
 }
 
-fn leg(line: u64, way: Way, from: Point, to: Point) -> Leg {
+fn leg(line: u64, way: Interpolation, from: Point, to: Point) -> ContourLeg {
     let pose = |tip| Pose { tip, axis: Point::z(), ..Pose::default() };
-    let at = At { line, cuts: true, task: 0 };
-    Leg { at, way, from: pose(from), to: pose(to), along: 0.0 }
+    let at = ProgramPlace { line, cuts: true, task: 0 };
+    ContourLeg { at, way, from: pose(from), to: pose(to), along: 0.0 }
 }
 
 fn run_axes(
@@ -81,7 +81,7 @@ fn run_against(
     period: f64,
     solver: Arc<Solver>,
     way: &[[Joints; 2]],
-    legs: Vec<Leg>,
+    legs: Vec<ContourLeg>,
     rapid: &dyn Fn(usize) -> bool,
 ) -> (Vec<ContourPoint>, ContourReport) {
     let mut contour = Contour::new().against(Box::new(Legs(legs.into_iter())));
@@ -96,7 +96,7 @@ fn run_against(
             let number = points.first as usize + points.len();
             points.joints.push(*commanded);
             points.poses.push(solver.chain().forward(commanded));
-            points.at.push(At { cuts: !rapid(number), ..At::default() });
+            points.at.push(ProgramPlace { cuts: !rapid(number), ..ProgramPlace::default() });
         }
         let actual: Vec<Joints> = now.iter().map(|pair| pair[1]).collect();
         contour.take(&points, &actual, &mut |point| told.push(*point));

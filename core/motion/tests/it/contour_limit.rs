@@ -9,7 +9,7 @@ mod paper;
 use nalgebra::Vector3;
 use post_feed::limits::{ContourError, Limit};
 use post_feed::response::{Answer, Response};
-use post_feed::{Ends, Problem, Samples, profile, reach};
+use post_feed::{EndSpeeds, Problem, Samples, profile, reach};
 use post_machine::servo::{self, Pid, Servo, ServoModel, Transfer};
 use post_motion::servo::Follower;
 
@@ -102,7 +102,7 @@ fn limit(servos: &[Servo], tolerance: f64, highest: f64) -> ContourError {
 }
 
 fn planned(samples: &Samples, limits: &[&dyn Limit]) -> (Vec<f64>, f64) {
-    let problem = Problem::new(samples, limits, Ends::default()).unwrap();
+    let problem = Problem::new(samples, limits, EndSpeeds::default()).unwrap();
     let plan = reach::solve(&problem).unwrap();
     let seconds = profile::duration(&problem.steps, &plan);
     (plan, seconds)

@@ -7,10 +7,10 @@
 
 use post_plugin::ModelSession;
 
-use super::bound::Bound;
-use super::deviation::{Move, between};
-use super::linearise::{Linearise, Stuck};
-use super::node::{Node, Refused};
+use super::bound::DeviationBound;
+use super::deviation::{NodeMove, between};
+use super::linearise::{LineariseError, Lineariser};
+use super::node::{PathNode, PlacementError};
 
 /// The shortest piece, as a share of its move.
 const SHORTEST: f64 = 1.0 / (1u64 << 22) as f64;
@@ -22,27 +22,27 @@ const ROOM: f64 = 0.9;
 const LIKELY: f64 = 3.0;
 
 /// What was found of a piece.
-enum Verdict {
+enum PieceVerdict {
     /// The piece needs no further point.
-    Good(Bound),
+    Good(DeviationBound),
     /// The piece needs one; with its bound, if that was worked out.
-    Over(Option<Bound>),
+    Over(Option<DeviationBound>),
 }
 
-impl Linearise {
+impl Lineariser {
     /// Can the axes follow this move within its tolerances, whatever points that takes? Nothing is sampled, no model
     /// asked.
-    pub fn comes_through(&mut self, whole: &Move<'_>) -> bool {
+    pub fn comes_through(&mut self, whole: &NodeMove<'_>) -> bool {
         self.take_back(0);
         let mut from = *whole.from;
         from.t = 0.0;
-        let whole = Move { from: &from, ..*whole };
-        let judge = |_: &mut Self, piece: &Move<'_>| {
+        let whole = NodeMove { from: &from, ..*whole };
+        let judge = |_: &mut Self, piece: &NodeMove<'_>| {
             let bound = piece.measured();
             Ok(if piece.tolerances.hold(bound) {
-                Verdict::Good(bound)
+                PieceVerdict::Good(bound)
             } else {
-                Verdict::Over(Some(bound))
+                PieceVerdict::Over(Some(bound))
             })
         };
         self.bisect(&whole, judge).is_ok()
@@ -54,9 +54,9 @@ impl Linearise {
     /// Why it cannot be done.
     pub(super) fn halve(
         &mut self,
-        whole: &Move<'_>,
+        whole: &NodeMove<'_>,
         model: &mut dyn ModelSession,
-    ) -> Result<(), Stuck> {
+    ) -> Result<(), LineariseError> {
         self.bisect(whole, |this, piece| this.verdict(piece, model))
     }
 
@@ -64,52 +64,52 @@ impl Linearise {
     /// piece, unless it is trusted.
     fn verdict(
         &mut self,
-        piece: &Move<'_>,
+        piece: &NodeMove<'_>,
         model: &mut dyn ModelSession,
-    ) -> Result<Verdict, Stuck> {
+    ) -> Result<PieceVerdict, LineariseError> {
         let over = || !self.trust_model && piece.over_halfway();
         let (quick, tolerances) = (piece.quick(), piece.tolerances);
         let rough = piece.bound(quick.0);
         let likely = rough.tip > LIKELY * tolerances.tip || rough.axis > LIKELY * tolerances.axis;
         if likely && over() {
-            return Ok(Verdict::Over(None));
+            return Ok(PieceVerdict::Over(None));
         }
         let measured = piece.course(quick);
         if !likely && !tolerances.hold(measured.0) && over() {
-            return Ok(Verdict::Over(None));
+            return Ok(PieceVerdict::Over(None));
         }
         let judged = self.judge_measured(piece, measured, model)?;
         Ok(if judged.good {
-            Verdict::Good(judged.bound)
+            PieceVerdict::Good(judged.bound)
         } else {
-            Verdict::Over(Some(judged.bound))
+            PieceVerdict::Over(Some(judged.bound))
         })
     }
 
     /// Puts points into the middle of every piece that `judge` does not find good.
     fn bisect(
         &mut self,
-        whole: &Move<'_>,
-        mut judge: impl FnMut(&mut Self, &Move<'_>) -> Result<Verdict, Stuck>,
-    ) -> Result<(), Stuck> {
+        whole: &NodeMove<'_>,
+        mut judge: impl FnMut(&mut Self, &NodeMove<'_>) -> Result<PieceVerdict, LineariseError>,
+    ) -> Result<(), LineariseError> {
         let mut from = *whole.from;
         self.stack.clear();
         self.stack.push(*whole.to);
         while let Some(to) = self.stack.pop() {
-            let piece = Move { from: &from, to: &to, ..*whole };
+            let piece = NodeMove { from: &from, to: &to, ..*whole };
             let bound = match judge(self, &piece)? {
-                Verdict::Good(bound) => {
+                PieceVerdict::Good(bound) => {
                     self.keep(to, bound);
                     from = to;
                     continue;
                 }
-                Verdict::Over(bound) => bound,
+                PieceVerdict::Over(bound) => bound,
             };
             if let Some(stuck) = stuck(&piece) {
                 return Err(stuck);
             }
             let holds = || bound.unwrap_or_else(|| piece.certify()).axis <= piece.tolerances.axis;
-            let middle = put_in(&piece, 0.5, holds).map_err(Stuck::Refused)?;
+            let middle = put_in(&piece, 0.5, holds).map_err(LineariseError::Refused)?;
             self.stack.push(to);
             self.stack.push(middle);
         }
@@ -118,12 +118,12 @@ impl Linearise {
 }
 
 /// A piece that no further point can mend.
-fn stuck(piece: &Move<'_>) -> Option<Stuck> {
+fn stuck(piece: &NodeMove<'_>) -> Option<LineariseError> {
     let (from, to) = (piece.from, piece.to);
     let tip = from.tip_error.max(to.tip_error);
     let axis = from.axis_error.max(to.axis_error);
     if tip >= piece.tolerances.tip || axis >= piece.tolerances.axis {
-        return Some(Stuck::Rounding { tip, axis });
+        return Some(LineariseError::Rounding { tip, axis });
     }
     if to.t - from.t > SHORTEST {
         return None;
@@ -133,16 +133,16 @@ fn stuck(piece: &Move<'_>) -> Option<Stuck> {
     let joint = (0..joints.len())
         .filter(|joint| joints[*joint].rotary)
         .max_by(|a, b| turn(a).total_cmp(&turn(b)))?;
-    Some(Stuck::Jump { joint, from: from.trace.joints[joint], to: to.trace.joints[joint] })
+    Some(LineariseError::Jump { joint, from: from.trace.joints[joint], to: to.trace.joints[joint] })
 }
 
 /// The node at a share of a piece: on the exact inverse solution, unless the axes jump there. `holds` says whether
 /// the tool axis stays within tolerance on the axes' own straight line.
 pub(super) fn put_in(
-    piece: &Move<'_>,
+    piece: &NodeMove<'_>,
     share: f64,
     holds: impl FnOnce() -> bool,
-) -> Result<Node, Refused> {
+) -> Result<PathNode, PlacementError> {
     let (from, to, placer) = (piece.from, piece.to, piece.placer);
     let t = from.t * (1.0 - share) + to.t * share;
     let (first, last) = (&from.trace.joints, &to.trace.joints);

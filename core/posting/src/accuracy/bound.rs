@@ -2,14 +2,14 @@
 
 /// Proven bounds on the deviation along a piece.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Bound {
+pub struct DeviationBound {
     /// Tip, mm.
     pub tip: f64,
     /// Tool axis, radians.
     pub axis: f64,
 }
 
-impl Bound {
+impl DeviationBound {
     /// Nothing is proven.
     pub(super) const NONE: Self = Self { tip: f64::INFINITY, axis: f64::INFINITY };
 

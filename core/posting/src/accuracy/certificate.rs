@@ -8,7 +8,7 @@
 //!
 //! Three bounds are at hand, all rigorous: [`quick`] adds norms joint by joint, [`tight`] takes the second
 //! derivative as a vector at both ends and bounds what it can do between them by the fourth derivative, and
-//! [`Course::tip`] follows the curve that these vectors make, so that ends put off the path on purpose count
+//! [`BlockDerivatives::tip`] follows the curve that these vectors make, so that ends put off the path on purpose count
 //! against the bow between them.
 
 use nalgebra::Vector3;
@@ -18,7 +18,7 @@ use post_machine::kinematics::{Chain, MAX_AXES, Trace};
 
 /// Bounds on the second derivative along one block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Bend {
+pub struct DerivativeBound {
     /// Bound for the tip's deviation, mm.
     pub tip: f64,
     /// Bound for the tool axis' deviation, as a difference of unit vectors.
@@ -35,7 +35,7 @@ pub struct Bend {
 /// `|(R r)''| <= w²·|k×r| + 2·w·|k×r'| + |r''|`; r strays from its chord by at most an eighth of `|r''|` and
 /// r' from the chord's slope by half of it. `sweep` is the angle between the wanted axes, radians.
 #[inline]
-pub fn quick(chain: &Chain, from: &Trace, to: &Trace, sweep: f64) -> Bend {
+pub fn quick(chain: &Chain, from: &Trace, to: &Trace, sweep: f64) -> DerivativeBound {
     let mut tip = 0.0;
     let mut turns = 0.0;
     for (index, joint) in chain.joints().iter().enumerate().rev() {
@@ -53,7 +53,7 @@ pub fn quick(chain: &Chain, from: &Trace, to: &Trace, sweep: f64) -> Bend {
         turns += angle;
     }
     // A unit vector that turns at a rate of `turns` at most bends by its square at most.
-    Bend { tip, axis: turns * turns + sweep * sweep, turn: turns * turns, lead: 0.0 }
+    DerivativeBound { tip, axis: turns * turns + sweep * sweep, turn: turns * turns, lead: 0.0 }
 }
 
 /// A bound that tends to the true second derivative as the block grows short.
@@ -66,25 +66,25 @@ pub fn tight(
     from_axis: Vector3<f64>,
     to_axis: Vector3<f64>,
     sweep: f64,
-) -> Bend {
-    Course::new(chain, from, to).bend(from_axis, to_axis, sweep)
+) -> DerivativeBound {
+    BlockDerivatives::new(chain, from, to).bend(from_axis, to_axis, sweep)
 }
 
 /// How tip and tool axis go along a block: second derivatives at its ends, and what bounds them between.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Course {
+pub struct BlockDerivatives {
     /// Second derivative of the tip at both ends, mm.
     pub tip: [Vector3<f64>; 2],
     /// Second derivative of the tool axis at both ends.
     pub axis: [Vector3<f64>; 2],
     /// Bounds on the fourth derivatives.
-    pub fourth: Bend,
+    pub fourth: DerivativeBound,
 }
 
 /// The curve of a course is bounded in this many pieces.
 const PIECES: u32 = 16;
 
-impl Course {
+impl BlockDerivatives {
     /// Works out the derivatives of a block.
     pub fn new(chain: &Chain, from: &Trace, to: &Trace) -> Self {
         let first = second_derivatives(chain, from, from, to);
@@ -97,12 +97,17 @@ impl Course {
     }
 
     /// Bounds on the second derivatives; see [`tight`]. Nothing is said of a leading edge.
-    pub fn bend(&self, from_axis: Vector3<f64>, to_axis: Vector3<f64>, sweep: f64) -> Bend {
+    pub fn bend(
+        &self,
+        from_axis: Vector3<f64>,
+        to_axis: Vector3<f64>,
+        sweep: f64,
+    ) -> DerivativeBound {
         let square = sweep * sweep;
         // The great circle's own second derivative is -sweep² times itself.
         let first_axis = self.axis[0] + from_axis * square;
         let last_axis = self.axis[1] + to_axis * square;
-        Bend {
+        DerivativeBound {
             tip: self.tip_bend() + self.fourth.tip / 8.0,
             axis: first_axis.norm().max(last_axis.norm())
                 + (self.fourth.axis + square * square) / 8.0,
@@ -205,7 +210,7 @@ fn second_derivatives(
 }
 
 /// Bounds on the fourth derivatives, by Leibniz' rule joint by joint.
-fn fourth_derivatives(chain: &Chain, from: &Trace, to: &Trace) -> Bend {
+fn fourth_derivatives(chain: &Chain, from: &Trace, to: &Trace) -> DerivativeBound {
     // Bounds on the first to fourth derivative of what the joints beyond this one do.
     let mut tip = [0.0; 4];
     let mut axis = [0.0; 4];
@@ -230,7 +235,7 @@ fn fourth_derivatives(chain: &Chain, from: &Trace, to: &Trace) -> Bend {
         let rate = |trace: &Trace| joint.direction.cross(&trace.axes[index]);
         grow(&mut axis, rate(from), rate(to));
     }
-    Bend { tip: tip[3], axis: axis[3], ..Bend::default() }
+    DerivativeBound { tip: tip[3], axis: axis[3], ..DerivativeBound::default() }
 }
 
 /// The larger of two numbers. [`f64::max`] asks besides whether one of them is none, at three times the cost.

@@ -9,18 +9,18 @@
 use nalgebra::Vector3;
 use post_plugin::{Curve, ModelSession};
 
-use super::deviation::{Move, between};
+use super::deviation::{NodeMove, between};
 use super::even::pieces;
-use super::linearise::{Judged, Linearise};
-use super::node::{Node, Refused};
+use super::linearise::{Lineariser, PieceAssessment};
+use super::node::{PathNode, PlacementError};
 
-impl Linearise {
+impl Lineariser {
     /// Compensates a move whose predicted peak exceeds the tolerance. False where what comes out is not within it:
     /// nothing is kept then.
     pub(super) fn compensate(
         &mut self,
-        whole: &Move<'_>,
-        judged: &Judged,
+        whole: &NodeMove<'_>,
+        judged: &PieceAssessment,
         model: &dyn ModelSession,
     ) -> bool {
         let Some(curve) = &judged.curve else {
@@ -38,17 +38,17 @@ impl Linearise {
 
 /// The node at the share `t` of a move.
 fn compensated(
-    whole: &Move<'_>,
+    whole: &NodeMove<'_>,
     curve: &Curve,
     model: &dyn ModelSession,
     t: f64,
-) -> Result<Node, Refused> {
+) -> Result<PathNode, PlacementError> {
     let target = whole.target(t);
     let strays = Vector3::from(whole.deviation(t).tip) - Vector3::from(model.value(curve, t).tip);
     let joints = between(&whole.from.trace.joints, &whole.to.trace.joints, t);
     let place = target.tip + strays;
     let t = whole.from.t * (1.0 - t) + whole.to.t * t;
-    let mut node = Node::default();
+    let mut node = PathNode::default();
     whole.placer.settle_at(&mut node, target, place, t, &joints)?;
     Ok(node)
 }

@@ -12,17 +12,17 @@
 use nalgebra::Vector3;
 use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
 
-use super::bound::Bound;
-use super::certificate::{self, Bend, Course, chord_angle};
+use super::bound::DeviationBound;
+use super::certificate::{self, BlockDerivatives, DerivativeBound, chord_angle};
 use super::heading;
-use super::node::{Node, Placer};
+use super::node::{PathNode, Placer};
 use post_machine::description::{Machine, Tcp};
 use post_machine::kinematics::orientation::angle;
 use post_machine::kinematics::{Joints, Pose};
 
 /// What the pieces of a move must stay within.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tolerances {
+pub struct MoveTolerances {
     /// Tip, mm; infinite where the control keeps the tip.
     pub tip: f64,
     /// Tool axis, radians; infinite in a rapid.
@@ -31,15 +31,15 @@ pub struct Tolerances {
 
 /// A block between two nodes, along a straight piece of the path, and what it must keep.
 #[derive(Clone, Copy, Debug)]
-pub struct Move<'a> {
+pub struct NodeMove<'a> {
     /// Solves points put in.
     pub placer: &'a Placer,
     /// Where it begins.
-    pub from: &'a Node,
+    pub from: &'a PathNode,
     /// Where it ends.
-    pub to: &'a Node,
+    pub to: &'a PathNode,
     /// What its pieces must stay within.
-    pub tolerances: Tolerances,
+    pub tolerances: MoveTolerances,
     /// The tip follows the words in a straight line by itself.
     pub control_keeps_tip: bool,
 }
@@ -53,7 +53,7 @@ const CERTAIN: f64 = 1.0 + 1e-6;
 /// A block that needs more samples than this to be certified is split instead.
 const MOST_SAMPLES: f64 = 64.0;
 
-impl<'n> Move<'n> {
+impl<'n> NodeMove<'n> {
     /// A motion between two nodes, and what it must keep: within the tolerance of a rapid if it is `loose` (off the
     /// part), `chord` mm of it being spent already.
     #[inline]
@@ -62,7 +62,7 @@ impl<'n> Move<'n> {
         placer: &'n Placer,
         chord: f64,
         loose: bool,
-        [from, to]: [&'n Node; 2],
+        [from, to]: [&'n PathNode; 2],
     ) -> Self {
         let accuracy = &machine.accuracy;
         let (tip, axis) = if loose {
@@ -74,7 +74,7 @@ impl<'n> Move<'n> {
             placer,
             from,
             to,
-            tolerances: Tolerances {
+            tolerances: MoveTolerances {
                 tip: tip - chord - if loose { 0.0 } else { placer.reserve() },
                 axis,
             },
@@ -83,28 +83,31 @@ impl<'n> Move<'n> {
     }
 }
 
-impl Move<'_> {
+impl NodeMove<'_> {
     /// The bound of the whole move, if the cheap certificate clears it: then no point is needed, whatever a
     /// model may think, and none is asked.
     #[inline]
-    pub fn whole(&self) -> Option<Bound> {
+    pub fn whole(&self) -> Option<DeviationBound> {
         let bound = self.bound(self.quick().0);
         self.tolerances.hold(bound).then_some(bound)
     }
 
     /// The tightest bound that needs no samples.
-    pub fn measured(&self) -> Bound {
+    pub fn measured(&self) -> DeviationBound {
         self.course(self.quick()).0
     }
 
     /// The tightest bound: where none at hand clears the move, it is sampled so densely that its bend can hide no
     /// more than a small share of the tolerance between them.
-    pub fn certify(&self) -> Bound {
+    pub fn certify(&self) -> DeviationBound {
         self.looked_at(self.known())
     }
 
     /// The bound and bend of [`Move::known`], and where they do not clear the move, samples.
-    pub(super) fn looked_at(&self, (bound, bend): (Bound, Bend)) -> Bound {
+    pub(super) fn looked_at(
+        &self,
+        (bound, bend): (DeviationBound, DerivativeBound),
+    ) -> DeviationBound {
         if self.tolerances.hold(bound) {
             return bound;
         }
@@ -128,7 +131,7 @@ impl Move<'_> {
     }
 
     /// A bound that needs no samples and its bend: the cheap one where it clears the move, else the tightest.
-    pub(super) fn known(&self) -> (Bound, Bend) {
+    pub(super) fn known(&self) -> (DeviationBound, DerivativeBound) {
         let quick = self.quick();
         let bound = self.bound(quick.0);
         if self.tolerances.hold(bound) {
@@ -139,7 +142,7 @@ impl Move<'_> {
 
     /// The bend that norms alone give, and how far the wanted directions turn, radians.
     #[inline]
-    pub(super) fn quick(&self) -> (Bend, f64) {
+    pub(super) fn quick(&self) -> (DerivativeBound, f64) {
         // An upper bound on the sweep is enough, and cheaper than the angle.
         let (from, to) = (&self.from.target, &self.to.target);
         let chain = self.placer.solver().chain();
@@ -152,12 +155,15 @@ impl Move<'_> {
     }
 
     /// The bound by the block's second derivatives, and its bend; see [`Move::quick`].
-    pub(super) fn course(&self, (quick, sweep): (Bend, f64)) -> (Bound, Bend) {
+    pub(super) fn course(
+        &self,
+        (quick, sweep): (DerivativeBound, f64),
+    ) -> (DeviationBound, DerivativeBound) {
         let (from, to) = (self.from, self.to);
         let chain = self.placer.solver().chain();
-        let course = Course::new(chain, &from.trace, &to.trace);
+        let course = BlockDerivatives::new(chain, &from.trace, &to.trace);
         let tight = course.bend(from.target.axis, to.target.axis, sweep);
-        let bend = Bend {
+        let bend = DerivativeBound {
             tip: quick.tip.min(tight.tip),
             axis: quick.axis.min(tight.axis),
             turn: quick.turn.min(tight.turn),
@@ -174,16 +180,16 @@ impl Move<'_> {
 
     /// The bound that a bend proves; none is, where the control would go another way.
     #[inline]
-    pub(super) fn bound(&self, bend: Bend) -> Bound {
+    pub(super) fn bound(&self, bend: DerivativeBound) -> DeviationBound {
         let (from, to) = (self.from, self.to);
         if self.goes_another_way() {
-            return Bound::NONE;
+            return DeviationBound::NONE;
         }
         let axis_ends = certificate::larger(from.axis_error, to.axis_error);
         let tip_ends = certificate::larger(from.tip_error, to.tip_error);
         let turns = certificate::larger(bend.axis, bend.lead);
         let margin = self.margin();
-        Bound {
+        DeviationBound {
             tip: certificate::deviation(tip_ends, self.tip_bend(bend))
                 + self.edge_bow(bend)
                 + margin.tip,
@@ -193,7 +199,7 @@ impl Move<'_> {
 
     /// What the control point bends by. A control that keeps the tip straight swings the points above it.
     #[inline]
-    fn tip_bend(&self, bend: Bend) -> f64 {
+    fn tip_bend(&self, bend: DerivativeBound) -> f64 {
         if self.control_keeps_tip {
             libm::fabs(self.placer.control_point().along) * bend.turn
         } else {
@@ -203,14 +209,14 @@ impl Move<'_> {
 
     /// What floating point rounds off at most.
     #[inline]
-    fn margin(&self) -> Bound {
+    fn margin(&self) -> DeviationBound {
         let (from, to) = (&self.from.trace.joints, &self.to.trace.joints);
         self.placer.margin(from, to)
     }
 
     /// How far a cutting edge strays beyond the control point at most, mm; no model sees that.
     #[inline]
-    pub(super) fn edge_bow(&self, bend: Bend) -> f64 {
+    pub(super) fn edge_bow(&self, bend: DerivativeBound) -> f64 {
         let radius = self.placer.control_point().radius;
         if radius == 0.0 {
             return 0.0;
@@ -226,9 +232,9 @@ impl Move<'_> {
         self.placer.turns_too_far(from, to)
     }
 
-    fn sampled(&self, bend: Bend) -> Bound {
+    fn sampled(&self, bend: DerivativeBound) -> DeviationBound {
         if self.goes_another_way() {
-            return Bound::NONE;
+            return DeviationBound::NONE;
         }
         let tolerances = self.tolerances;
         let tip_bend = self.tip_bend(bend);
@@ -245,7 +251,7 @@ impl Move<'_> {
             axis = axis.max(Vector3::from(deviation.axis).norm().to_radians());
         }
         let blind = 1.0 / (8.0 * count * count);
-        Bound {
+        DeviationBound {
             tip: tip + tip_bend * blind + self.edge_bow(bend) + self.margin().tip,
             axis: chord_angle(axis + axis_bend * blind) + self.margin().axis,
         }
@@ -256,13 +262,13 @@ impl Move<'_> {
     pub fn target(&self, t: f64) -> Pose {
         let (from, to) = (&self.from.target, &self.to.target);
         let edge = if self.placer.solver().chain().edge().is_some() {
-            Circle::new(from.edge, to.edge).at(t)
+            OrientationArc::new(from.edge, to.edge).at(t)
         } else {
             Vector3::zeros()
         };
         Pose {
             tip: from.tip * (1.0 - t) + to.tip * t,
-            axis: Circle::new(from.axis, to.axis).at(t),
+            axis: OrientationArc::new(from.axis, to.axis).at(t),
             edge,
         }
     }
@@ -289,7 +295,7 @@ impl Move<'_> {
             return pose.tip;
         }
         let along = self.placer.control_point().along;
-        let tip = |node: &Node| node.tip - node.trace.pose.axis * along;
+        let tip = |node: &PathNode| node.tip - node.trace.pose.axis * along;
         tip(self.from) * (1.0 - t) + tip(self.to) * t + pose.axis * along
     }
 
@@ -299,26 +305,26 @@ impl Move<'_> {
     }
 
     /// What is the same for every place along this block.
-    fn path(&self) -> Path<'_> {
+    fn path(&self) -> OrientationPath<'_> {
         let (from, to) = (&self.from.target, &self.to.target);
         let follows = self.placer.solver().chain().edge().is_some();
-        Path {
+        OrientationPath {
             block: self,
-            axis: Circle::new(from.axis, to.axis),
-            heading: follows.then(|| Circle::new(from.edge, to.edge)),
+            axis: OrientationArc::new(from.axis, to.axis),
+            heading: follows.then(|| OrientationArc::new(from.edge, to.edge)),
         }
     }
 }
 
 /// A block beside the great circles that tool axis and heading are to go along.
-struct Path<'a> {
-    block: &'a Move<'a>,
-    axis: Circle,
+struct OrientationPath<'a> {
+    block: &'a NodeMove<'a>,
+    axis: OrientationArc,
     /// Great circle of the heading of a tool with a leading edge.
-    heading: Option<Circle>,
+    heading: Option<OrientationArc>,
 }
 
-impl Path<'_> {
+impl OrientationPath<'_> {
     /// Deviation at the share `t`: see [`Move::deviation`].
     fn deviation(&self, t: f64) -> Deviation {
         let (from, to) = (self.block.from, self.block.to);
@@ -340,10 +346,10 @@ impl Path<'_> {
     }
 }
 
-impl Tolerances {
+impl MoveTolerances {
     /// Does a bound keep them?
     #[inline]
-    pub fn hold(&self, bound: Bound) -> bool {
+    pub fn hold(&self, bound: DeviationBound) -> bool {
         bound.tip <= self.tip && bound.axis <= self.axis
     }
 }
@@ -366,7 +372,7 @@ fn turned(wanted: Vector3<f64>, reached: Vector3<f64>) -> Vector3<f64> {
 }
 
 /// The great circle between two unit vectors.
-struct Circle {
+struct OrientationArc {
     from: Vector3<f64>,
     to: Vector3<f64>,
     /// The angle between them, radians, and its sine.
@@ -374,7 +380,7 @@ struct Circle {
     sine: f64,
 }
 
-impl Circle {
+impl OrientationArc {
     fn new(from: Vector3<f64>, to: Vector3<f64>) -> Self {
         let sweep = angle(from, to);
         Self { from, to, sweep, sine: libm::sin(sweep) }

@@ -1,9 +1,9 @@
 //! `even`: as many equal pieces as the model's peak asks for.
 
 use super::bisect::put_in;
-use super::deviation::Move;
-use super::linearise::{Judged, Linearise};
-use super::node::{Node, Refused};
+use super::deviation::NodeMove;
+use super::linearise::{Lineariser, PieceAssessment};
+use super::node::{PathNode, PlacementError};
 
 /// More pieces than this times what the model asked for do not help: the move is not smooth.
 const MOST: u32 = 4;
@@ -16,10 +16,10 @@ pub(super) fn pieces(times: f64) -> u32 {
     libm::ceil(libm::sqrt(times.min(LIMIT))).max(2.0) as u32
 }
 
-impl Linearise {
+impl Lineariser {
     /// Cuts a move into `n = ceil(sqrt(E/tolerance))` equal pieces, E the peak of the model. Where the certificate
     /// finds that too few, there are more. False where no number serves (close to a pole): nothing is kept then.
-    pub(super) fn even(&mut self, whole: &Move<'_>, judged: &Judged) -> bool {
+    pub(super) fn even(&mut self, whole: &NodeMove<'_>, judged: &PieceAssessment) -> bool {
         let (peak, tolerances) = (&judged.peak, &whole.tolerances);
         let asked = pieces((peak.tip / tolerances.tip).max(peak.axis / tolerances.axis));
         let mut count = asked;
@@ -42,10 +42,10 @@ impl Linearise {
     /// model is trusted; else nothing is kept.
     pub(super) fn equal(
         &mut self,
-        whole: &Move<'_>,
+        whole: &NodeMove<'_>,
         count: u32,
-        mut place: impl FnMut(f64) -> Result<Node, Refused>,
-    ) -> Result<bool, Refused> {
+        mut place: impl FnMut(f64) -> Result<PathNode, PlacementError>,
+    ) -> Result<bool, PlacementError> {
         let before = self.count();
         let mut from = *whole.from;
         for step in 1..=count {
@@ -54,7 +54,7 @@ impl Linearise {
             } else {
                 place(f64::from(step) / f64::from(count)).inspect_err(|_| self.take_back(before))?
             };
-            let piece = Move { from: &from, to: &to, ..*whole };
+            let piece = NodeMove { from: &from, to: &to, ..*whole };
             let bound = piece.certify();
             if !whole.tolerances.hold(bound) && (!self.trust_model || piece.goes_another_way()) {
                 self.take_back(before);

@@ -8,10 +8,10 @@ use nalgebra::Vector3;
 use post_plugin::ModelSession;
 
 use super::bisect::put_in;
-use super::bound::Bound;
-use super::linearise::{Linearise, Stuck};
-use super::node::Node;
-use super::run::{Run, Spot, distance};
+use super::bound::DeviationBound;
+use super::linearise::{LineariseError, Lineariser};
+use super::node::PathNode;
+use super::run::{NodeRun, RunPosition, distance};
 
 /// Lengths tried for one block.
 const TRIES: u32 = 12;
@@ -26,55 +26,55 @@ const SAFE: f64 = 0.99;
 const SHORTEST: f64 = 1.0 / 4096.0;
 
 /// A block that was tried.
-struct Tried {
-    to: Node,
-    end: Spot,
+struct TriedBlock {
+    to: PathNode,
+    end: RunPosition,
     /// Bound on the block's deviation, if it is within tolerance.
-    bound: Option<Bound>,
+    bound: Option<DeviationBound>,
     /// How long it should be, as a share of what it is.
     better: f64,
 }
 
 /// CL points that blocks go along, from one of them to another.
 #[derive(Clone, Copy)]
-struct Stretch<'a> {
-    run: &'a Run<'a>,
+struct RunSection<'a> {
+    run: &'a NodeRun<'a>,
     way: &'a [f64],
     /// Last CL point of the section.
     end: usize,
 }
 
-impl Linearise {
+impl Lineariser {
     /// Cuts what lies between two CL points of a run into as few blocks as it finds.
     ///
     /// # Errors
     /// Why it cannot be done, and in which leg.
     pub(super) fn stride(
         &mut self,
-        run: &Run<'_>,
+        run: &NodeRun<'_>,
         first: usize,
         end: usize,
         model: &mut dyn ModelSession,
-    ) -> Result<(), (usize, Stuck)> {
+    ) -> Result<(), (usize, LineariseError)> {
         let way = std::mem::take(&mut self.way);
-        let done = self.stride_along(Stretch { run, way: &way, end }, first, model);
+        let done = self.stride_along(RunSection { run, way: &way, end }, first, model);
         self.way = way;
         done
     }
 
     fn stride_along(
         &mut self,
-        stretch: Stretch<'_>,
+        stretch: RunSection<'_>,
         first: usize,
         model: &mut dyn ModelSession,
-    ) -> Result<(), (usize, Stuck)> {
-        let Stretch { run, way, end } = stretch;
+    ) -> Result<(), (usize, LineariseError)> {
+        let RunSection { run, way, end } = stretch;
         let mut from = run.start(first);
-        let mut start = Spot { leg: first, t: 0.0 };
+        let mut start = RunPosition { leg: first, t: 0.0 };
         let mut step = way[end] - way[first];
         while start.t < 1.0 || start.leg + 1 < end {
             if start.t >= 1.0 {
-                start = Spot { leg: start.leg + 1, t: 0.0 };
+                start = RunPosition { leg: start.leg + 1, t: 0.0 };
                 from.t = 0.0;
             }
             match stretch.longest((&from, start), step) {
@@ -92,7 +92,7 @@ impl Linearise {
                     self.enter(reach - 1);
                     from = run.end(reach);
                     self.keep(from, bound);
-                    start = Spot { leg: reach - 1, t: 1.0 };
+                    start = RunPosition { leg: reach - 1, t: 1.0 };
                 }
                 None => {
                     // The axes jump here: the rest of the leg is bisected, which knows what to do close to a pole.
@@ -108,14 +108,18 @@ impl Linearise {
     }
 }
 
-impl Stretch<'_> {
+impl RunSection<'_> {
     /// The longest block from `start` that is within tolerance; the first try is `step` mm long.
-    fn longest(&self, (from, start): (&Node, Spot), step: f64) -> Option<(Tried, Bound)> {
+    fn longest(
+        &self,
+        (from, start): (&PathNode, RunPosition),
+        step: f64,
+    ) -> Option<(TriedBlock, DeviationBound)> {
         let way = self.way;
         let begin = distance(way, start);
         let rest = way[self.end] - begin;
         let leg = way[start.leg + 1] - way[start.leg];
-        let mut best: Option<(f64, Tried, Bound)> = None;
+        let mut best: Option<(f64, TriedBlock, DeviationBound)> = None;
         // What is known to be too long.
         let mut over = f64::INFINITY;
         let mut length = step.min(rest);
@@ -165,12 +169,15 @@ impl Stretch<'_> {
     }
 
     /// Tries a block of `length` mm; none if there is no way to stand at its end.
-    fn reach(&self, (from, start): (&Node, Spot), length: f64) -> Option<Tried> {
-        let Stretch { run, way, end: last } = *self;
+    fn reach(&self, (from, start): (&PathNode, RunPosition), length: f64) -> Option<TriedBlock> {
+        let RunSection { run, way, end: last } = *self;
         let begin = distance(way, start);
         let to_end = begin + length >= way[last] * (1.0 - 1e-12);
-        let end =
-            if to_end { Spot { leg: last - 1, t: 1.0 } } else { run.spot(way, begin + length) };
+        let end = if to_end {
+            RunPosition { leg: last - 1, t: 1.0 }
+        } else {
+            run.spot(way, begin + length)
+        };
         let mut to = if to_end {
             run.end(last)
         } else {
@@ -209,12 +216,12 @@ impl Stretch<'_> {
         // The tool axis bows with the square of the length too.
         let axis = passed.axis_error;
         let by_axis = if axis > 0.0 { SAFE * run.tolerances.axis / axis } else { f64::INFINITY };
-        Some(Tried { to, end, bound, better: libm::sqrt(by_tip.min(by_axis).max(0.0)) })
+        Some(TriedBlock { to, end, bound, better: libm::sqrt(by_tip.min(by_axis).max(0.0)) })
     }
 }
 
 /// The axes do not stand where the point alone would put them: close to a pole they are turned evenly, and a point put
 /// in on the exact solution would leave the turn for the end of the leg.
-fn eased(run: &Run<'_>, node: &Node) -> bool {
+fn eased(run: &NodeRun<'_>, node: &PathNode) -> bool {
     node.axis_error > run.placer.axis_rounding()
 }

@@ -5,29 +5,29 @@
 
 use post_plugin::{Curve, ModelSession};
 
-use super::bound::Bound;
-use super::certificate::Bend;
-use super::deviation::Move;
-use super::node::{Node, Refused};
-use super::run::Run;
+use super::bound::DeviationBound;
+use super::certificate::DerivativeBound;
+use super::deviation::NodeMove;
+use super::node::{PathNode, PlacementError};
+use super::run::NodeRun;
 use post_machine::description::{Accuracy, Method, Placement};
 
 /// A block within tolerance.
 #[derive(Clone, Copy, Debug)]
-pub struct Piece {
+pub struct LinearPiece {
     /// Where it ends; it begins where the one before it ends. Its `t` is the share of its leg.
-    pub to: Node,
+    pub to: PathNode,
     /// The leg of the run that it ends in.
     pub leg: usize,
     /// Bounds on its deviation.
-    pub bound: Bound,
+    pub bound: DeviationBound,
 }
 
 /// Why a move cannot be brought within tolerance.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Stuck {
+pub enum LineariseError {
     /// A point put in has no node.
-    Refused(Refused),
+    Refused(PlacementError),
     /// The words' decimals alone are too coarse.
     Rounding {
         /// Error of the tip that rounding makes, mm.
@@ -50,34 +50,34 @@ pub enum Stuck {
 
 /// Cuts runs into blocks.
 #[derive(Debug, Default)]
-pub struct Linearise {
+pub struct Lineariser {
     pub(super) method: Method,
     pub(super) points: u32,
     placement: Placement,
     pub(super) trust_model: bool,
     pub(super) overruled: u64,
-    pieces: Vec<Piece>,
+    pieces: Vec<LinearPiece>,
     /// The leg that is being cut.
     leg: usize,
     /// Nodes yet to be reached, the next on top.
-    pub(super) stack: Vec<Node>,
+    pub(super) stack: Vec<PathNode>,
     /// Way of the tip from the start of the run to each of its nodes, mm.
     pub(super) way: Vec<f64>,
 }
 
 /// What model and certificate say of a piece.
-pub(super) struct Judged {
+pub(super) struct PieceAssessment {
     /// Both are content, or the certificate needs no model.
     pub good: bool,
     /// What is proven.
-    pub bound: Bound,
+    pub bound: DeviationBound,
     /// The model's answer, if it was asked.
     pub curve: Option<Curve>,
     /// The peaks of the model's curve, the cutting edge's own share added.
-    pub peak: Bound,
+    pub peak: DeviationBound,
 }
 
-impl Linearise {
+impl Lineariser {
     /// Works as the machine file says. With `trust_model` the certificate only reports.
     pub fn new(accuracy: &Accuracy, trust_model: bool) -> Self {
         let mut linearise = Self { trust_model, ..Self::default() };
@@ -98,19 +98,19 @@ impl Linearise {
     }
 
     /// The blocks of the last run that was split, in order.
-    pub fn pieces(&self) -> &[Piece] {
+    pub fn pieces(&self) -> &[LinearPiece] {
         &self.pieces
     }
 
-    /// Cuts a run into blocks: see [`Linearise::pieces`].
+    /// Cuts a run into blocks: see [`Lineariser::pieces`].
     ///
     /// # Errors
     /// Why it cannot be done, and in which leg.
     pub fn split(
         &mut self,
-        run: &Run<'_>,
+        run: &NodeRun<'_>,
         model: &mut dyn ModelSession,
-    ) -> Result<(), (usize, Stuck)> {
+    ) -> Result<(), (usize, LineariseError)> {
         self.pieces.clear();
         run.measure(&mut self.way);
         let fewest = self.method == Method::Linearise && self.placement == Placement::Fewest;
@@ -131,9 +131,9 @@ impl Linearise {
     /// Blocks from CL point to CL point, as long as they can be; points go into the legs that need them.
     fn point_to_point(
         &mut self,
-        run: &Run<'_>,
+        run: &NodeRun<'_>,
         model: &mut dyn ModelSession,
-    ) -> Result<(), (usize, Stuck)> {
+    ) -> Result<(), (usize, LineariseError)> {
         let mut at = 0;
         while at < run.legs() {
             if let Some((reach, bound)) = run.farthest(at, run.legs(), &self.way) {
@@ -153,10 +153,10 @@ impl Linearise {
     /// to do close to a pole.
     fn cut_leg(
         &mut self,
-        run: &Run<'_>,
+        run: &NodeRun<'_>,
         at: usize,
         model: &mut dyn ModelSession,
-    ) -> Result<(), Stuck> {
+    ) -> Result<(), LineariseError> {
         let start = run.start(at);
         let leg = run.leg(&start, at);
         let before = self.count();
@@ -189,8 +189,8 @@ impl Linearise {
     }
 
     /// A piece is good.
-    pub(super) fn keep(&mut self, to: Node, bound: Bound) {
-        self.pieces.push(Piece { to, leg: self.leg, bound });
+    pub(super) fn keep(&mut self, to: PathNode, bound: DeviationBound) {
+        self.pieces.push(LinearPiece { to, leg: self.leg, bound });
     }
 
     /// Keeps the first `count` pieces, and takes the others back.
@@ -206,25 +206,30 @@ impl Linearise {
     /// Is a piece within tolerance?
     pub(super) fn judge(
         &mut self,
-        piece: &Move<'_>,
+        piece: &NodeMove<'_>,
         model: &mut dyn ModelSession,
-    ) -> Result<Judged, Stuck> {
+    ) -> Result<PieceAssessment, LineariseError> {
         self.judge_measured(piece, piece.course(piece.quick()), model)
     }
 
     /// [`Linearise::judge`] with the tightest bound that needs no samples, and its bend, at hand.
     pub(super) fn judge_measured(
         &mut self,
-        piece: &Move<'_>,
-        (bound, bend): (Bound, Bend),
+        piece: &NodeMove<'_>,
+        (bound, bend): (DeviationBound, DerivativeBound),
         model: &mut dyn ModelSession,
-    ) -> Result<Judged, Stuck> {
+    ) -> Result<PieceAssessment, LineariseError> {
         let tolerances = piece.tolerances;
         if tolerances.hold(bound) {
-            return Ok(Judged { good: true, bound, curve: None, peak: Bound::default() });
+            return Ok(PieceAssessment {
+                good: true,
+                bound,
+                curve: None,
+                peak: DeviationBound::default(),
+            });
         }
-        let curve = piece.fit(model).map_err(Stuck::Model)?;
-        let peak = Bound {
+        let curve = piece.fit(model).map_err(LineariseError::Model)?;
+        let peak = DeviationBound {
             tip: curve.tip_peak + piece.edge_bow(bend),
             axis: curve.axis_peak.to_radians(),
         };
@@ -235,7 +240,7 @@ impl Linearise {
             self.overruled += 1;
         }
         // A model that sees more than the certificate proves is wrong on the safe side: points go in.
-        Ok(Judged {
+        Ok(PieceAssessment {
             good: content && (sure || (self.trust_model && !piece.goes_another_way())),
             bound,
             curve: Some(curve),

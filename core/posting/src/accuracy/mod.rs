@@ -1,6 +1,6 @@
 //! Error control: nodes on the path, the certificate of a block, and where points are put in.
 //!
-//! [`Linearise`] takes a [`Run`], CL points that follow one another without a corner, and cuts it into blocks
+//! [`Lineariser`] takes a [`NodeRun`], CL points that follow one another without a corner, and cuts it into blocks
 //! within tolerance. How is the machine file's `[accuracy]`: `bisect` and `even` keep CL points and put points in
 //! between (and leave out CL points that are needless, if told to), `fewest` goes as far as the certificate
 //! allows, `compensate` moves points that lie on the axes' own straight line.
@@ -21,11 +21,11 @@ mod printed_arc;
 mod run;
 mod word_frame;
 
-pub use bound::Bound;
-pub use deviation::{Move, Tolerances};
-pub use linearise::{Linearise, Piece, Stuck};
-pub use node::{Node, Placer, Refused};
+pub use bound::DeviationBound;
+pub use deviation::{MoveTolerances, NodeMove};
+pub use linearise::{LinearPiece, LineariseError, Lineariser};
+pub use node::{PathNode, PlacementError, Placer};
 pub use placed_batch::PlacedBatch;
 pub(crate) use printed_arc::PrintedArc;
-pub use run::Run;
+pub use run::NodeRun;
 pub(crate) use word_frame::WordFrame;

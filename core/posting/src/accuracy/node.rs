@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use super::bound::Bound;
+use super::bound::DeviationBound;
 use super::certificate::{chord_angle, larger};
 use post_plugin::Format;
 
@@ -19,7 +19,7 @@ use post_machine::tilted_plane::TiltedPlane;
 
 /// A point of the path, solved and rounded.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Node {
+pub struct PathNode {
     /// Place within its move, 0 to 1.
     pub t: f64,
     /// What the CL file asks for.
@@ -36,7 +36,7 @@ pub struct Node {
     pub axis_error: f64,
 }
 
-impl Node {
+impl PathNode {
     /// How far the tip is off its target, mm, part frame.
     #[inline]
     pub fn off(&self) -> Vector3<f64> {
@@ -69,7 +69,7 @@ fn reach(machine: &Machine, solver: &Solver) -> f64 {
 
 /// Why a point has no node.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Refused {
+pub enum PlacementError {
     /// The chain cannot reach it.
     Unreachable(Unreachable),
     /// Every solution leaves the travel of some axis; this is the one of the nearest solution.
@@ -215,14 +215,16 @@ impl Placer {
     ///
     /// # Errors
     /// Why there is none.
-    pub fn place(&self, target: Pose, t: f64, last: &Joints) -> Result<Node, Refused> {
+    pub fn place(&self, target: Pose, t: f64, last: &Joints) -> Result<PathNode, PlacementError> {
         let solver = &self.solver;
         if !solver.closed_form() {
-            let joints =
-                solver.search(&target, last, self.axis_tolerance).map_err(Refused::Unreachable)?;
+            let joints = solver
+                .search(&target, last, self.axis_tolerance)
+                .map_err(PlacementError::Unreachable)?;
             return self.settled(target, t, &joints);
         }
-        let branches = solver.orient(&target, self.axis_tolerance).map_err(Refused::Unreachable)?;
+        let branches =
+            solver.orient(&target, self.axis_tolerance).map_err(PlacementError::Unreachable)?;
         let tried = branches.count();
         let choice = self.turning.nearest(solver, &branches, last, self.branch.get());
         match choice.joints {
@@ -230,7 +232,7 @@ impl Placer {
                 self.branch.set(choice.index);
                 self.settled(target, t, &joints)
             }
-            Err(over) => Err(Refused::OverTravel { over, tried }),
+            Err(over) => Err(PlacementError::OverTravel { over, tried }),
         }
     }
 
@@ -238,15 +240,20 @@ impl Placer {
     ///
     /// # Errors
     /// Why there is none.
-    pub fn settled(&self, target: Pose, t: f64, rotary: &Joints) -> Result<Node, Refused> {
-        let mut node = Node::default();
+    pub fn settled(
+        &self,
+        target: Pose,
+        t: f64,
+        rotary: &Joints,
+    ) -> Result<PathNode, PlacementError> {
+        let mut node = PathNode::default();
         self.settle(&mut node, target, t, rotary)?;
         Ok(node)
     }
 
     /// The node of `target` with the pole joint where `even` has it and the others as near to the wanted axis as
     /// they come, on the turns of `even`; none where the chain has no pole.
-    pub fn place_evenly(&self, target: Pose, t: f64, even: &Joints) -> Option<Node> {
+    pub fn place_evenly(&self, target: Pose, t: f64, even: &Joints) -> Option<PathNode> {
         let pole = self.solver.pole_joint()?;
         let mut joints = *even;
         self.solver.follow(&target, &mut joints);
@@ -278,15 +285,16 @@ impl Placer {
         t: f64,
         first: &Joints,
         last: &Joints,
-    ) -> Result<Node, Refused> {
+    ) -> Result<PathNode, PlacementError> {
         let solver = &self.solver;
         if !solver.closed_form() {
             return self.place(target, t, first);
         }
-        let branches = solver.orient(&target, self.axis_tolerance).map_err(Refused::Unreachable)?;
+        let branches =
+            solver.orient(&target, self.axis_tolerance).map_err(PlacementError::Unreachable)?;
         match self.turning.between(solver, &branches, first, last) {
             Ok(joints) => self.settled(target, t, &joints),
-            Err(over) => Err(Refused::OverTravel { over, tried: branches.count() }),
+            Err(over) => Err(PlacementError::OverTravel { over, tried: branches.count() }),
         }
     }
 
@@ -297,11 +305,11 @@ impl Placer {
     #[inline]
     pub fn settle(
         &self,
-        node: &mut Node,
+        node: &mut PathNode,
         target: Pose,
         t: f64,
         rotary: &Joints,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), PlacementError> {
         self.settle_at(node, target, target.tip, t, rotary)
     }
 
@@ -312,12 +320,12 @@ impl Placer {
     #[inline]
     pub(super) fn settle_at(
         &self,
-        node: &mut Node,
+        node: &mut PathNode,
         target: Pose,
         place: Vector3<f64>,
         t: f64,
         rotary: &Joints,
-    ) -> Result<(), Refused> {
+    ) -> Result<(), PlacementError> {
         let chain = self.solver.chain();
         node.t = t;
         node.target = target;
@@ -334,14 +342,16 @@ impl Placer {
             // The control keeps the tip there; the point above it goes where the tool really leans.
             Some(tip) => tip + chain.forward(joints).axis * along,
         };
-        self.solver.place(wanted, joints, &node.trace.turns).map_err(Refused::Unreachable)?;
+        self.solver
+            .place(wanted, joints, &node.trace.turns)
+            .map_err(PlacementError::Unreachable)?;
         if printed.is_none() {
             self.words.print_linear(joints, &mut node.words);
         }
         for limit in &self.linear {
             let value = joints[limit.joint];
             over(limit.joint, Some(limit.travel), value, AT_END)
-                .map_err(|over| Refused::OverTravel { over, tried: 1 })?;
+                .map_err(|over| PlacementError::OverTravel { over, tried: 1 })?;
         }
         chain.trace(&mut node.trace);
         node.tip = node.trace.pose.tip;
@@ -353,7 +363,7 @@ impl Placer {
         if missed <= self.tip_rounding + swung {
             Ok(())
         } else {
-            Err(Refused::Unverified { tip: missed, axis: node.axis_error })
+            Err(PlacementError::Unverified { tip: missed, axis: node.axis_error })
         }
     }
 
@@ -366,13 +376,17 @@ impl Placer {
     ///
     /// # Errors
     /// Why it cannot stand there.
-    pub(crate) fn resettle(&self, node: &mut Node, place: Vector3<f64>) -> Result<(), Refused> {
+    pub(crate) fn resettle(
+        &self,
+        node: &mut PathNode,
+        place: Vector3<f64>,
+    ) -> Result<(), PlacementError> {
         let rotary = node.trace.joints;
         self.settle_at(node, node.target, place, node.t, &rotary)
     }
 
     /// The control stands at `joints`, beside the words of `node`.
-    pub(crate) fn stray(&self, node: &mut Node, joints: Joints) {
+    pub(crate) fn stray(&self, node: &mut PathNode, joints: Joints) {
         node.trace.joints = joints;
         self.solver.chain().trace(&mut node.trace);
         node.tip = node.trace.pose.tip;
@@ -385,12 +399,12 @@ impl Placer {
     }
 
     /// The linear words of a node as a point, mm; none where they are not X, Y and Z.
-    pub(crate) fn printed(&self, node: &Node) -> Option<Vector3<f64>> {
+    pub(crate) fn printed(&self, node: &PathNode) -> Option<Vector3<f64>> {
         self.words.point(&node.words)
     }
 
     /// The words of a node with their linear ones at the printed `point`, program units.
-    pub(crate) fn with_point(&self, node: &Node, point: [f64; 3]) -> WordValues {
+    pub(crate) fn with_point(&self, node: &PathNode, point: [f64; 3]) -> WordValues {
         self.words.with_point(&node.words, point)
     }
 
@@ -420,7 +434,7 @@ impl Placer {
     /// of the farthest that the chain reaches (up to eight joints, each a turn of a dozen operations), times the
     /// largest angle where that is over a radian, for an angle is rounded before it turns anything.
     #[inline]
-    pub fn margin(&self, from: &Joints, to: &Joints) -> Bound {
+    pub fn margin(&self, from: &Joints, to: &Joints) -> DeviationBound {
         const ULPS: f64 = 64.0 * f64::EPSILON;
         let (mut reach, mut angle) = (self.reach, 1.0);
         for (index, joint) in self.solver.chain().joints().iter().enumerate() {
@@ -431,7 +445,7 @@ impl Placer {
                 reach += value;
             }
         }
-        Bound { tip: ULPS * angle * reach, axis: ULPS * angle }
+        DeviationBound { tip: ULPS * angle * reach, axis: ULPS * angle }
     }
 
     /// The largest error of the tip that rounding can make, mm.

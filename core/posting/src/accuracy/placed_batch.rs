@@ -6,7 +6,7 @@ use post_machine::kinematics::batch::{Axes, LANES, Traces};
 use post_machine::kinematics::travel::{AT_END, over};
 use post_machine::kinematics::{Joints, Pose, Turns};
 
-use super::node::{Node, Placer};
+use super::node::{PathNode, Placer};
 
 /// The working arrays of a batch, and its nodes.
 #[derive(Debug)]
@@ -17,7 +17,7 @@ pub struct PlacedBatch {
     wanted: [Vector3<f64>; LANES],
     /// The nodes, boxed so that they change hands without being copied.
     #[expect(clippy::vec_box, reason = "a node changes hands by its box; it is large")]
-    nodes: Vec<Box<Node>>,
+    nodes: Vec<Box<PathNode>>,
     /// Points that are solved; the others are left to [`Placer::settle`], which says why.
     settled: [bool; LANES],
 }
@@ -40,7 +40,7 @@ impl PlacedBatch {
 
     /// Takes the node of point `lane` out, in the place of `spare`; false if it is not solved.
     #[inline]
-    pub fn take(&mut self, lane: usize, spare: &mut Box<Node>) -> bool {
+    pub fn take(&mut self, lane: usize, spare: &mut Box<PathNode>) -> bool {
         let settled = std::mem::take(&mut self.settled[lane]);
         if settled {
             std::mem::swap(&mut self.nodes[lane], spare);

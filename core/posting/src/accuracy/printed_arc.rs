@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use nalgebra::{Vector2, Vector3};
 
-use crate::program::Arc;
+use crate::program::PathArc;
 use post_machine::kinematics::chain::turn;
 
 /// Angles of the printed arc and of the wanted one differ by no more, radians: else the control goes another way round.
@@ -159,7 +159,7 @@ impl PrintedArc {
     /// wanted one: what its radius and angle are off goes along nearly straight lines (off by no more than an eighth of
     /// the second derivative), and the way from centre to centre turns backwards evenly. That sum is looked at in
     /// places, between which it strays by no more than an eighth of its second derivative.
-    pub(crate) fn deviation(&self, wanted: &Arc) -> f64 {
+    pub(crate) fn deviation(&self, wanted: &PathArc) -> f64 {
         let mut up = Vector3::zeros();
         up[self.axis] = self.sense;
         let lean = (wanted.axis - up).norm();

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::node::{Node, Placer};
+use super::node::{PathNode, Placer};
 use post_machine::kinematics::Joints;
 
 /// How far the places are apart by which the frame is found, mm.
@@ -30,7 +30,7 @@ pub(crate) struct WordFrame {
 impl WordFrame {
     /// Where the axes stand as at `node`. None where the linear words are not X, Y and Z, where they are not square on
     /// one another and right-handed, or where they do not place the tip alone.
-    pub(crate) fn new(placer: &Placer, node: &Node) -> Option<Self> {
+    pub(crate) fn new(placer: &Placer, node: &PathNode) -> Option<Self> {
         let solver = placer.solver();
         let chain = solver.chain();
         let sliding = (0..chain.joints().len()).filter(|joint| !chain.joints()[*joint].rotary);

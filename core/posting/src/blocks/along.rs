@@ -8,12 +8,15 @@ use post_machine::description::ArcSplit;
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::travel::{AT_END, passed};
 
-use super::{Block, Blocks, Follow, Leg, MotionKind, Nominal, Reason, Surroundings, Travels};
-use crate::accuracy::{Bound, Node, PlacedBatch, Placer, PrintedArc, WordFrame};
-use crate::configuration::{Chosen, pose};
-use crate::curve::{Course, Curve, CurveWords, PrintedCurve};
-use crate::program::{Arc, Command, Motion, Pace};
-use crate::stream::Flow;
+use super::{
+    AxisTravels, BlockContext, BlockKind, BlockReason, BlockStage, FollowTime, MotionBlock,
+    NominalTime, PathLeg,
+};
+use crate::accuracy::{DeviationBound, PathNode, PlacedBatch, Placer, PrintedArc, WordFrame};
+use crate::configuration::{ChosenPoint, pose};
+use crate::curve::{CurveMove, CurveShape, CurveWords, PrintedCurve};
+use crate::program::{Command, MoveFeed, PathArc, StraightMove};
+use crate::stream::StreamItem;
 
 /// Controls take an arc whose ends differ by more in their distance from the centre for a slip: mm.
 const MISMATCH: f64 = 0.005;
@@ -36,35 +39,35 @@ const AT_ITS_END: f64 = 1e-6;
 
 /// A curve that is on its way, and the moves that it would be otherwise.
 #[derive(Debug)]
-pub(super) struct Following {
+pub(super) struct PendingCurve {
     pub(super) line: u64,
-    pub(super) curve: Box<Curve>,
-    pub(super) moves: Vec<Chosen>,
+    pub(super) curve: Box<CurveMove>,
+    pub(super) moves: Vec<ChosenPoint>,
 }
 
 /// A block along an arc.
 pub(super) struct ArcBlock {
-    node: Box<Node>,
+    node: Box<PathNode>,
     pub(super) printed: PrintedArc,
     curve: PrintedCurve,
     /// The least time in which the axes keep up.
-    minutes: Follow,
+    minutes: FollowTime,
     /// How far it is from its path, mm.
     pub(super) off: f64,
-    bound: Bound,
+    bound: DeviationBound,
     /// Share of the whole arc.
     share: f64,
 }
 
 impl ArcBlock {
     /// Adds what is proven of the block.
-    pub(super) fn proven(self, bound: Bound) -> Self {
+    pub(super) fn proven(self, bound: DeviationBound) -> Self {
         Self { bound, ..self }
     }
 }
 
-impl Following {
-    pub(super) fn new(line: u64, curve: &Curve) -> Self {
+impl PendingCurve {
+    pub(super) fn new(line: u64, curve: &CurveMove) -> Self {
         Self { line, curve: Box::new(curve.clone()), moves: Vec::new() }
     }
 
@@ -74,19 +77,19 @@ impl Following {
     }
 
     /// One more of its moves.
-    pub(super) fn push(&mut self, next: &Chosen) {
+    pub(super) fn push(&mut self, next: &ChosenPoint) {
         self.moves.push(next.clone());
     }
 }
 
-impl Blocks<'_> {
+impl BlockStage<'_> {
     /// The curve that is on its way has come to its end, or is broken off: it is kept or made by its moves. Nothing is
     /// solved ahead in `placed`.
     pub(super) fn go_along(
         &mut self,
         whole: bool,
         placed: &mut PlacedBatch,
-        to: &mut Surroundings<'_, '_>,
+        to: &mut BlockContext<'_, '_>,
     ) {
         let Some(following) = self.following.take() else {
             return;
@@ -100,11 +103,11 @@ impl Blocks<'_> {
     }
 
     /// Makes blocks along the curve, if that can be.
-    fn keep(&mut self, following: &Following, to: &mut Surroundings<'_, '_>) -> bool {
+    fn keep(&mut self, following: &PendingCurve, to: &mut BlockContext<'_, '_>) -> bool {
         let (Some(placer), Some(last)) = (self.placer.clone(), self.last.as_deref()) else {
             return false;
         };
-        let still = |next: &Chosen| {
+        let still = |next: &ChosenPoint| {
             let standing = self.planes.standing(next);
             next.arrives && next.rewind.is_none() && placer.stand(standing, &last.trace.joints)
         };
@@ -120,15 +123,15 @@ impl Blocks<'_> {
         let curve = &following.curve;
         let lift = curve.end.axis * self.machine.control_point.along;
         match &curve.course {
-            Course::Arc(arc) => {
+            CurveShape::Arc(arc) => {
                 let wanted = arc.placed(|point| point + lift, |direction| direction);
-                let whole = Motion { tip: curve.end.tip + lift, ..curve.end };
+                let whole = StraightMove { tip: curve.end.tip + lift, ..curve.end };
                 let Some(blocks) = self.arc_blocks(&placer, &frame, (&wanted, &whole)) else {
                     return false;
                 };
                 self.push_arc(&placer, following.line, &whole, blocks, to);
             }
-            Course::Spline(spline) => {
+            CurveShape::Spline(spline) => {
                 let lifted = spline.clone().placed(|point| point + lift);
                 return self.keep_spline(&placer, &frame, following, &lifted, to);
             }
@@ -141,7 +144,7 @@ impl Blocks<'_> {
         &self,
         placer: &Placer,
         frame: &WordFrame,
-        (arc, end): (&Arc, &Motion),
+        (arc, end): (&PathArc, &StraightMove),
     ) -> Option<Vec<ArcBlock>> {
         let normal = frame.direction(arc.axis);
         let axis = normal.iamax();
@@ -162,7 +165,7 @@ impl Blocks<'_> {
         &self,
         frame: &WordFrame,
         (axis, sense): (usize, f64),
-        arc: &Arc,
+        arc: &PathArc,
         split: ArcSplit,
     ) -> Vec<f64> {
         use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -197,7 +200,7 @@ impl Blocks<'_> {
         placer: &Placer,
         frame: &WordFrame,
         (axis, sense): (usize, f64),
-        (arc, end): (&Arc, &Motion),
+        (arc, end): (&PathArc, &StraightMove),
         cuts: &[f64],
     ) -> Option<Vec<ArcBlock>> {
         let mut pieces: Vec<ArcBlock> = Vec::with_capacity(cuts.len());
@@ -205,7 +208,7 @@ impl Blocks<'_> {
         for &cut in cuts {
             let before = pieces.last().map(|piece| &*piece.node).or(self.last.as_deref())?;
             let tip = if cut == 1.0 { end.tip } else { arc.at(cut) };
-            let target = pose(&Motion { tip, ..*end });
+            let target = pose(&StraightMove { tip, ..*end });
             let mut node = placer.settled(target, 1.0, &before.trace.joints).ok()?;
             self.steady(placer, before, &mut node);
             let wanted = arc
@@ -224,8 +227,8 @@ impl Blocks<'_> {
         placer: &Placer,
         frame: &WordFrame,
         about: (usize, f64),
-        wanted: &Arc,
-        ends: [&Node; 2],
+        wanted: &PathArc,
+        ends: [&PathNode; 2],
     ) -> Option<ArcBlock> {
         let off = |printed: &PrintedArc| printed.deviation(wanted);
         let block = self.printed_arc(placer, frame, about, wanted.centre, ends, off)?;
@@ -242,7 +245,7 @@ impl Blocks<'_> {
         frame: &WordFrame,
         about: (usize, f64),
         mut centre: Vector3<f64>,
-        [from, node]: [&Node; 2],
+        [from, node]: [&PathNode; 2],
         off: impl Fn(&PrintedArc) -> f64,
     ) -> Option<ArcBlock> {
         let mut ends = [placer.printed(from)?, placer.printed(node)?];
@@ -310,7 +313,7 @@ impl Blocks<'_> {
             curve: PrintedCurve { words, between, way: self.way_of_arc(frame, &printed) },
             minutes: self.arc_follow(frame, &printed),
             off,
-            bound: Bound::default(),
+            bound: DeviationBound::default(),
             share: 1.0,
         })
     }
@@ -323,11 +326,11 @@ impl Blocks<'_> {
         off: f64,
         farthest: f64,
         chord: f64,
-        [from, node]: [&Node; 2],
-    ) -> Option<Bound> {
+        [from, node]: [&PathNode; 2],
+    ) -> Option<DeviationBound> {
         let accuracy = &self.machine.accuracy;
         let margin = placer.margin(&from.trace.joints, &node.trace.joints);
-        let bound = Bound {
+        let bound = DeviationBound {
             tip: off + placer.control_point().radius * farthest + margin.tip,
             axis: farthest + margin.axis,
         };
@@ -377,22 +380,22 @@ impl Blocks<'_> {
         &mut self,
         placer: &Placer,
         line: u64,
-        motion: &Motion,
+        motion: &StraightMove,
         pieces: Vec<ArcBlock>,
-        to: &mut Surroundings<'_, '_>,
+        to: &mut BlockContext<'_, '_>,
     ) {
         let count = pieces.len();
         for (place, piece) in pieces.into_iter().enumerate() {
             if self.compensating {
                 self.check_compensation(placer, line, &piece.node, to.findings);
             }
-            let leg = Leg {
+            let leg = PathLeg {
                 line,
                 motion,
                 loose: false,
                 reason: match place + 1 == count {
-                    true => Reason::Point,
-                    false => Reason::Stage,
+                    true => BlockReason::Point,
+                    false => BlockReason::Stage,
                 },
             };
             let node = self.push_piece(&leg, piece, to);
@@ -404,18 +407,18 @@ impl Blocks<'_> {
     /// Hands on a block along an arc; gives where it ends.
     pub(super) fn push_piece(
         &mut self,
-        leg: &Leg<'_>,
+        leg: &PathLeg<'_>,
         piece: ArcBlock,
-        to: &mut Surroundings<'_, '_>,
-    ) -> Box<Node> {
+        to: &mut BlockContext<'_, '_>,
+    ) -> Box<PathNode> {
         let way = libm::hypot(piece.printed.length(), piece.printed.rise());
-        let nominal = Nominal::of(leg.motion.pace, way, Travels::default);
-        let block = Block {
-            kind: MotionKind::Arc,
+        let nominal = NominalTime::of(leg.motion.pace, way, AxisTravels::default);
+        let block = MotionBlock {
+            kind: BlockKind::Arc,
             way,
             nominal: match leg.motion.pace {
                 // The time is that of the whole arc.
-                Pace::InverseTime(_) => nominal.share(piece.share),
+                MoveFeed::InverseTime(_) => nominal.share(piece.share),
                 _ => nominal,
             },
             follow: piece.minutes,
@@ -424,19 +427,19 @@ impl Blocks<'_> {
         self.largest.keep(leg, piece.bound);
         let command = Command::Curve(Box::new(piece.curve));
         to.out.command(leg.line, command);
-        to.out.push(Flow::Point(block));
+        to.out.push(StreamItem::Point(block));
         piece.node
     }
 
     /// The least time in which no axis passes its largest feed, also on a control that divides F by the way in the plane.
-    fn arc_follow(&self, frame: &WordFrame, printed: &PrintedArc) -> Follow {
-        let mut follow = Follow::default();
+    fn arc_follow(&self, frame: &WordFrame, printed: &PrintedArc) -> FollowTime {
+        let mut follow = FollowTime::default();
         let length = printed.length();
         let faster = libm::hypot(length, printed.rise()) / length;
         for (joint, slide) in frame.slides() {
             let minutes = faster * printed.fastest(*slide) / self.machine.axes[*joint].max_feed;
             if minutes > follow.minutes {
-                follow = Follow { minutes, joint: *joint };
+                follow = FollowTime { minutes, joint: *joint };
             }
         }
         follow

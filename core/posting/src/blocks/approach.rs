@@ -5,12 +5,12 @@ use post_machine::axis_words;
 use post_machine::description::Tcp;
 use post_machine::kinematics::{Joints, Pose};
 
-use super::lie::Lie;
-use super::nominal::{Nominal, Travels};
-use super::{Block, Blocks, Leg, MotionKind, Reason, Surroundings};
-use crate::accuracy::{Bound, Node, Placer};
-use crate::program::{Motion, Pace};
-use crate::stream::Flow;
+use super::lie::ToolAlignment;
+use super::nominal::{AxisTravels, NominalTime};
+use super::{BlockContext, BlockKind, BlockReason, BlockStage, MotionBlock, PathLeg};
+use crate::accuracy::{DeviationBound, PathNode, Placer};
+use crate::program::{MoveFeed, StraightMove};
+use crate::stream::StreamItem;
 
 /// Least way in or down; a shorter one is left out, mm.
 const LEAST: f64 = 1.0;
@@ -32,32 +32,36 @@ const SAME: f64 = 1e-9;
 const DEPTH: usize = 2;
 
 /// The axis that retracts the tool, and where it does.
-struct Retract {
+struct RetractAxis {
     depth: usize,
     position: f64,
     /// The sense of the axis away from the part.
     up: f64,
 }
 
-impl Blocks<'_> {
+impl BlockStage<'_> {
     /// The first position after the start, a tool change, or a turn of an index axis.
     pub(super) fn first(
         &mut self,
         placer: &Placer,
-        leg: &Leg<'_>,
-        node: &Node,
-        kind: MotionKind,
-        to: &mut Surroundings<'_, '_>,
+        leg: &PathLeg<'_>,
+        node: &PathNode,
+        kind: BlockKind,
+        to: &mut BlockContext<'_, '_>,
     ) {
         if !self.comes_from_above(placer, node) {
             return self.come(leg, node, kind, to);
         }
         let stops = self.stops_above(placer, node);
-        let mut last: Option<&Node> = None;
+        let mut last: Option<&PathNode> = None;
         for stop in &stops {
-            let motion =
-                Motion { tip: stop.target.tip, pace: Pace::Rapid, chord: 0.0, ..*leg.motion };
-            let over = Leg { motion: &motion, loose: true, reason: Reason::Above, ..*leg };
+            let motion = StraightMove {
+                tip: stop.target.tip,
+                pace: MoveFeed::Rapid,
+                chord: 0.0,
+                ..*leg.motion
+            };
+            let over = PathLeg { motion: &motion, loose: true, reason: BlockReason::Above, ..*leg };
             match last {
                 None => self.come(&over, stop, kind, to),
                 Some(last) => self.cut(placer, &over, last, stop, to),
@@ -68,24 +72,30 @@ impl Blocks<'_> {
             Some(last) => {
                 // Into a bore it is no rapid over the part.
                 let loose = leg.loose && placer.solver().closed_form();
-                self.cut(placer, &Leg { loose, ..*leg }, last, node, to);
+                self.cut(placer, &PathLeg { loose, ..*leg }, last, node, to);
             }
             // It is up there already.
             None => {
-                let leg = Leg { reason: Reason::AtOnce, ..*leg };
+                let leg = PathLeg { reason: BlockReason::AtOnce, ..*leg };
                 self.come(&leg, node, kind, to);
             }
         }
     }
 
     /// Moves from wherever the tool stands to `node`.
-    fn come(&self, leg: &Leg<'_>, node: &Node, kind: MotionKind, to: &mut Surroundings<'_, '_>) {
-        let block = self.block(leg, node, Bound::default());
-        to.out.push(Flow::Point(Block {
+    fn come(
+        &self,
+        leg: &PathLeg<'_>,
+        node: &PathNode,
+        kind: BlockKind,
+        to: &mut BlockContext<'_, '_>,
+    ) {
+        let block = self.block(leg, node, DeviationBound::default());
+        to.out.push(StreamItem::Point(MotionBlock {
             kind,
             // The way is not known: the feed is that of a millimetre.
             way: 1.0,
-            nominal: Nominal::of(leg.motion.pace, 1.0, Travels::default),
+            nominal: NominalTime::of(leg.motion.pace, 1.0, AxisTravels::default),
             ..block
         }));
     }
@@ -93,7 +103,7 @@ impl Blocks<'_> {
     /// No word moves the tool along its own line alone, as X and Y move it across: the words are those of a part that is
     /// turned, or of a plane whose Z is not the depth's word, or the tool leans, or the control begins to keep the tip
     /// with the very move. Else the words across the tool come first.
-    fn comes_from_above(&self, placer: &Placer, node: &Node) -> bool {
+    fn comes_from_above(&self, placer: &Placer, node: &PathNode) -> bool {
         let machine = self.machine;
         if machine.frame.leave.is_some() {
             return true;
@@ -106,7 +116,8 @@ impl Blocks<'_> {
         let word = axis_words::coordinate(&machine.axes[depth].name);
         if let Some(normal) = self.plane_normal() {
             // Along it, and not into the part, it is the plane's own Z: the others come first where that is its word.
-            let along = Lie::of(&normal, &way) == Lie::Along && way.dot(&normal) > 0.0;
+            let along =
+                ToolAlignment::of(&normal, &way) == ToolAlignment::Along && way.dot(&normal) > 0.0;
             return word != DEPTH || !along;
         }
         if machine.control.tcp == Tcp::Post {
@@ -121,13 +132,14 @@ impl Blocks<'_> {
         if turned && !self.tcp_still {
             return true;
         }
-        Lie::of(&node.target.axis, &way) != Lie::Along || 1.0 - libm::fabs(way[word]) >= SAME
+        ToolAlignment::of(&node.target.axis, &way) != ToolAlignment::Along
+            || 1.0 - libm::fabs(way[word]) >= SAME
     }
 
     /// Where the tool comes by to `node`, from the retract on: the place farthest out on its own line from which it goes
     /// straight in. Where another axis ends its travel before that is as high as the retract, or the line wins no height,
     /// the place over it comes first. None where the tool is up there already.
-    fn stops_above(&self, placer: &Placer, node: &Node) -> Vec<Node> {
+    fn stops_above(&self, placer: &Placer, node: &PathNode) -> Vec<PathNode> {
         if let Some(distance) = self.machine.frame.leave {
             let out = self.out_by_leave(placer, node, distance);
             return out.into_iter().map(|(out, _)| out).collect();
@@ -144,7 +156,7 @@ impl Blocks<'_> {
         let rates = self.rates(placer, node, &line);
         let rise = rates[retract.depth] * retract.up;
         let way = chain.way_of(retract.depth, &node.trace.joints);
-        let rises = rise > 0.0 && Lie::of(&line, &way) != Lie::Across;
+        let rises = rise > 0.0 && ToolAlignment::of(&line, &way) != ToolAlignment::Across;
         let most = if rises { height / rise } else { OUT };
         let mut others = rates;
         if rises {
@@ -166,9 +178,9 @@ impl Blocks<'_> {
     pub(super) fn out_by_leave(
         &self,
         placer: &Placer,
-        node: &Node,
+        node: &PathNode,
         distance: f64,
-    ) -> Option<(Node, f64)> {
+    ) -> Option<(PathNode, f64)> {
         let line = self.line_of(node);
         let rates = self.rates(placer, node, &line);
         let free = self.free_way(placer, node, &rates, |_| 0.0);
@@ -180,12 +192,12 @@ impl Blocks<'_> {
     }
 
     /// The axis that retracts the tool; none where its position is not given.
-    fn retract(&self) -> Option<Retract> {
+    fn retract(&self) -> Option<RetractAxis> {
         let depth = axis_words::depth(self.base)?;
         let mut retract = self.machine.frame.retract.iter();
         let (_, position) = retract.find(|(joint, _)| *joint == depth)?;
         let axis = &self.machine.axes[depth];
-        Some(Retract {
+        Some(RetractAxis {
             depth,
             position: *position,
             up: libm::copysign(1.0, axis.joint.direction.dot(&self.machine.tool_axis)),
@@ -194,12 +206,12 @@ impl Blocks<'_> {
 
     /// The line of the tool at `node`, away from the part: in a plane its normal, which is the word Z alone. Unit vector,
     /// part frame.
-    fn line_of(&self, node: &Node) -> Vector3<f64> {
+    fn line_of(&self, node: &PathNode) -> Vector3<f64> {
         self.plane_normal().unwrap_or(node.trace.pose.axis)
     }
 
     /// How the linear axes go while the tool goes a mm along `line`, the rotary ones standing, mm.
-    fn rates(&self, placer: &Placer, node: &Node, line: &Vector3<f64>) -> Joints {
+    fn rates(&self, placer: &Placer, node: &PathNode, line: &Vector3<f64>) -> Joints {
         let solver = placer.solver();
         let joints = &node.trace.joints;
         let mut rates = Joints::default();
@@ -220,7 +232,7 @@ impl Blocks<'_> {
     fn free_way(
         &self,
         placer: &Placer,
-        node: &Node,
+        node: &PathNode,
         rates: &Joints,
         kept: impl Fn(f64) -> f64,
     ) -> f64 {
@@ -241,7 +253,7 @@ impl Blocks<'_> {
     }
 
     /// How far the retract leads up from `joints`, mm: no farther than the depth axis may come near to its end.
-    fn height_left(&self, placer: &Placer, retract: &Retract, joints: &Joints) -> f64 {
+    fn height_left(&self, placer: &Placer, retract: &RetractAxis, joints: &Joints) -> f64 {
         let stands = joints[retract.depth];
         let to_retract = (retract.position - stands) * retract.up;
         let travel = self.machine.axes[retract.depth].travel;
@@ -259,17 +271,22 @@ impl Blocks<'_> {
     fn drawn_out(
         &self,
         placer: &Placer,
-        node: &Node,
+        node: &PathNode,
         line: &Vector3<f64>,
         way: f64,
-    ) -> Option<Node> {
+    ) -> Option<PathNode> {
         let ways = (0..TRIES).map(|halved| way / f64::from(1 << halved));
         ways.take_while(|way| *way >= LEAST)
             .find_map(|way| self.stands_at(placer, node, node.tip + line * way))
     }
 
     /// The tool of `node` as high as the retract, by the depth axis alone.
-    fn drawn_up(&self, placer: &Placer, retract: &Retract, node: &Node) -> Option<Node> {
+    fn drawn_up(
+        &self,
+        placer: &Placer,
+        retract: &RetractAxis,
+        node: &PathNode,
+    ) -> Option<PathNode> {
         let joints = &node.trace.joints;
         let height = self.height_left(placer, retract, joints);
         let way = placer.solver().chain().way_of(retract.depth, joints);
@@ -279,7 +296,7 @@ impl Blocks<'_> {
     }
 
     /// The tool of `node` at another place, the rotary axes standing.
-    fn stands_at(&self, placer: &Placer, node: &Node, tip: Vector3<f64>) -> Option<Node> {
+    fn stands_at(&self, placer: &Placer, node: &PathNode, tip: Vector3<f64>) -> Option<PathNode> {
         let target = Pose { tip, ..node.target };
         let joints = &node.trace.joints;
         let placed = match placer.solver().closed_form() {

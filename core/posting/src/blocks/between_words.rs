@@ -8,8 +8,8 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::travel::{OverTravel, over};
 use post_machine::kinematics::{Joints, KeptTip, MAX_AXES};
 
-use super::Leg;
-use crate::accuracy::{Node, Placer};
+use super::PathLeg;
+use crate::accuracy::{PathNode, Placer};
 use crate::findings::Findings;
 use crate::refusal::{self, FINDS_A_MOUNT};
 
@@ -21,7 +21,7 @@ const UNSEEN: f64 = 1e-3;
 
 /// The least time of a block in which the linear axes keep up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Follow {
+pub struct FollowTime {
     /// Minutes; zero where the control does not keep the tip, or nothing turns.
     pub minutes: f64,
     /// The axis that asks for it: its place in the chain.
@@ -30,7 +30,7 @@ pub struct Follow {
 
 /// What the linear axes do between the words, over the program.
 #[derive(Clone, Debug)]
-pub(crate) struct BetweenWords {
+pub(crate) struct CompensatingMotion {
     /// The control keeps the tip.
     keeps: bool,
     /// Minutes that each axis needs for one mm or radian at its largest feed.
@@ -42,7 +42,7 @@ pub(crate) struct BetweenWords {
     beside: Joints,
 }
 
-impl BetweenWords {
+impl CompensatingMotion {
     pub(super) fn new(machine: &Machine) -> Self {
         Self {
             keeps: machine.control.tcp == Tcp::Control,
@@ -80,16 +80,16 @@ impl BetweenWords {
     pub(super) fn block(
         &mut self,
         machine: &Machine,
-        (placer, leg, [from, to]): (&Placer, &Leg<'_>, [&Node; 2]),
+        (placer, leg, [from, to]): (&Placer, &PathLeg<'_>, [&PathNode; 2]),
         asked: f64,
         findings: &Findings,
-    ) -> Follow {
+    ) -> FollowTime {
         if !self.keeps {
-            return Follow::default();
+            return FollowTime::default();
         }
         let along = placer.control_point().along;
         let Some(kept) = KeptTip::new(placer.solver(), along, &from.trace, &to.trace) else {
-            return Follow::default();
+            return FollowTime::default();
         };
         if let Some(follow) = self.cleared(machine, &kept, [from, to], asked) {
             return follow;
@@ -104,14 +104,14 @@ impl BetweenWords {
         &self,
         machine: &Machine,
         kept: &KeptTip<'_>,
-        [from, to]: [&Node; 2],
+        [from, to]: [&PathNode; 2],
         asked: f64,
-    ) -> Option<Follow> {
+    ) -> Option<FollowTime> {
         let bend = kept.quick();
         // A curve strays from its chord by an eighth of what its second derivative can be, its slope from the
         // chord's by half of it, and a curve that turns back goes a quarter of it more at most.
         let (strays, faster) = (bend / 8.0, bend / 2.0);
-        let mut follow = Follow::default();
+        let mut follow = FollowTime::default();
         for joint in kept.sliding() {
             let (first, last) = (from.trace.joints[joint], to.trace.joints[joint]);
             let chord = (last - first).abs();
@@ -126,7 +126,7 @@ impl BetweenWords {
                 return None;
             }
             if minutes > follow.minutes {
-                follow = Follow { minutes, joint };
+                follow = FollowTime { minutes, joint };
             }
         }
         Some(follow)
@@ -137,10 +137,10 @@ impl BetweenWords {
         &mut self,
         machine: &Machine,
         kept: &KeptTip<'_>,
-        (leg, [from, to]): (&Leg<'_>, [&Node; 2]),
+        (leg, [from, to]): (&PathLeg<'_>, [&PathNode; 2]),
         asked: f64,
         findings: &Findings,
-    ) -> Follow {
+    ) -> FollowTime {
         let Some(slides) = kept.slides(&self.slowness, asked) else {
             findings.at(
                 leg.line,
@@ -154,7 +154,7 @@ impl BetweenWords {
                 )
                 .help("they lie in one plane on the way: a point between, or tcp = \"post\""),
             );
-            return Follow::default();
+            return FollowTime::default();
         };
         for joint in kept.sliding() {
             let (least, most) = (slides.least[joint], slides.most[joint]);
@@ -174,12 +174,12 @@ impl BetweenWords {
                 }
             }
         }
-        Follow { minutes: slides.minutes, joint: slides.slowest }
+        FollowTime { minutes: slides.minutes, joint: slides.slowest }
     }
 }
 
 /// `B turns from -10.000° to 10.000°`.
-fn turning(machine: &Machine, [from, to]: [&Node; 2]) -> String {
+fn turning(machine: &Machine, [from, to]: [&PathNode; 2]) -> String {
     let mut turns = Vec::new();
     for (joint, axis) in machine.axes.iter().enumerate() {
         let (first, last) = (from.trace.joints[joint], to.trace.joints[joint]);
@@ -195,7 +195,7 @@ fn turning(machine: &Machine, [from, to]: [&Node; 2]) -> String {
     turns.join(" and ")
 }
 
-fn over_travel(machine: &Machine, over: &OverTravel, ends: [&Node; 2]) -> Diagnostic {
+fn over_travel(machine: &Machine, over: &OverTravel, ends: [&PathNode; 2]) -> Diagnostic {
     Diagnostic::error(
         "over-travel",
         format!(

@@ -5,26 +5,26 @@ use post_machine::axis_words::WordValues;
 use post_machine::kinematics::Joints;
 use post_plugin::Feed;
 
-use super::between_words::Follow;
-use super::nominal::{Nominal, STILL};
-use crate::accuracy::Bound;
-use crate::program::Pace;
+use super::between_words::FollowTime;
+use super::nominal::{NominalTime, STILL};
+use crate::accuracy::DeviationBound;
+use crate::program::MoveFeed;
 
 /// A motion of the program, from where the block before it ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Block {
+pub struct MotionBlock {
     /// Line of the CL file.
     pub line: u64,
     /// How the tool comes to its end.
-    pub kind: MotionKind,
+    pub kind: BlockKind,
     /// Why it is there.
-    pub reason: Reason,
+    pub reason: BlockReason,
     /// The tolerance of a rapid was enough for it: it goes off the part.
     pub loose: bool,
     /// No word of it differs from those of the block before: nothing is printed.
     pub still: bool,
     /// The feed that the CL file asks for.
-    pub pace: Pace,
+    pub pace: MoveFeed,
     /// The printed words.
     pub words: WordValues,
     /// Axis values at its end, as printed: mm, radians.
@@ -34,46 +34,46 @@ pub struct Block {
     /// The tool axis there, unit vector, part frame.
     pub axis: Vector3<f64>,
     /// Certified: the block stays this close to the CL path, chords of arcs and splines counted in.
-    pub deviation: Bound,
+    pub deviation: DeviationBound,
     /// Way of the tip, mm.
     pub way: f64,
     /// The time that the CL file asks for.
-    pub nominal: Nominal,
+    pub nominal: NominalTime,
     /// How fast the linear axes can follow where the control keeps the tip.
-    pub follow: Follow,
+    pub follow: FollowTime,
     /// What a planned feed leaves it; filled in by the planning stage.
-    pub planned: Planned,
+    pub planned: PlannedTime,
     /// How long it takes; filled in by the timing stage.
-    pub time: Time,
+    pub time: BlockDuration,
 }
 
 /// What a planned feed leaves a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Planned {
+pub struct PlannedTime {
     /// The least time, minutes; zero where nothing is planned.
     pub minutes: f64,
     /// The limit that asks for it, if it is not the feed that the CL file asks for.
     pub limit: Option<&'static str>,
 }
 
-impl Block {
+impl MotionBlock {
     /// The time that the CL file leaves it at least, minutes.
     #[inline]
     pub fn asked(&self) -> f64 {
         match self.pace {
-            Pace::PerMinute(feed) if self.nominal.moves && self.way > STILL => self.way / feed,
+            MoveFeed::PerMinute(feed) if self.nominal.moves && self.way > STILL => self.way / feed,
             _ => self.nominal.minutes,
         }
     }
 }
 
-impl Block {
+impl MotionBlock {
     /// What a share of the block is due, and how fast it can be followed. Nowhere in it the axes are faster than where
     /// the whole is fastest.
     pub(crate) fn part(&self, share: f64) -> Self {
         Self {
             nominal: self.nominal.share(share),
-            follow: Follow { minutes: self.follow.minutes * share, ..self.follow },
+            follow: FollowTime { minutes: self.follow.minutes * share, ..self.follow },
             ..*self
         }
     }
@@ -81,10 +81,10 @@ impl Block {
 
 /// How the tool comes to the end of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MotionKind {
+pub enum BlockKind {
     /// A position, from wherever the tool stands, clear of the part: the first one after the start or a tool change.
     Position,
-    /// As [`MotionKind::Position`], the tool retracted ahead of it: an index axis turns on the way.
+    /// As [`BlockKind::Position`], the tool retracted ahead of it: an index axis turns on the way.
     Reference,
     /// A move at rapid traverse.
     Rapid,
@@ -98,7 +98,7 @@ pub enum MotionKind {
 
 /// Why a block is there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reason {
+pub enum BlockReason {
     /// Ends on a CL point.
     Point,
     /// Ends on a CL point close to a pole, a rotary axis held or turned early within the tolerance of the tool axis.
@@ -121,7 +121,7 @@ pub enum Reason {
 
 /// How long a block takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Time {
+pub struct BlockDuration {
     /// Minutes, as the control understands what is printed.
     pub minutes: f64,
     /// The feed as written; none in a rapid, unless it is written as a feed move.

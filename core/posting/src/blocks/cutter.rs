@@ -5,11 +5,11 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::orientation::angle;
 use post_plugin::Compensation;
 
-use super::Blocks;
-use crate::accuracy::{Node, Placer};
+use super::BlockStage;
+use crate::accuracy::{PathNode, Placer};
 use crate::findings::Findings;
 
-impl Blocks<'_> {
+impl BlockStage<'_> {
     /// Compensation is switched on or off.
     pub(super) fn compensate(&mut self, line: u64, to: Compensation, findings: &Findings) {
         self.compensating = to != Compensation::Off;
@@ -31,7 +31,7 @@ impl Blocks<'_> {
         &mut self,
         placer: &Placer,
         line: u64,
-        node: &Node,
+        node: &PathNode,
         findings: &Findings,
     ) {
         let machine = self.machine;

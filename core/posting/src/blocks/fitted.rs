@@ -10,8 +10,8 @@ use nalgebra::Vector3;
 use post_machine::description::ArcSplit;
 
 use super::along::ArcBlock;
-use super::{Blocks, Leg, Nominal, Surroundings};
-use crate::accuracy::{Bound, Node, Placer, PrintedArc, WordFrame, arc_fit};
+use super::{BlockContext, BlockStage, NominalTime, PathLeg};
+use crate::accuracy::{DeviationBound, PathNode, Placer, PrintedArc, WordFrame, arc_fit};
 
 /// Largest bulge (tangent of a quarter of the angle) of an arc: 340°, half a turn and a quarter.
 const BULGES: [f64; 3] = [11.430_052_302_761_343, 1.000_001, 0.414_213_562_373_095_1];
@@ -23,17 +23,17 @@ const BULGE_BY_RADIUS: f64 = 0.839_099_631_177_28;
 const AT_QUADRANT: f64 = 1e-6;
 
 /// A piece of a run: the leg after it, and how it goes.
-enum Piece {
-    Line(Bound),
+enum FittedPiece {
+    Line(DeviationBound),
     Arc(Box<ArcBlock>),
 }
 
 /// A run in the frame of the words.
-struct Laid<'r> {
+struct WordFrameRun<'r> {
     placer: &'r Placer,
     frame: WordFrame,
-    legs: &'r [Leg<'r>],
-    nodes: &'r [Node],
+    legs: &'r [PathLeg<'r>],
+    nodes: &'r [PathNode],
     /// Where the CL file wants the points, and where they are printed, mm.
     wanted: Vec<Vector3<f64>>,
     printed: Vec<Vector3<f64>>,
@@ -41,20 +41,20 @@ struct Laid<'r> {
     tolerance: f64,
 }
 
-impl Blocks<'_> {
+impl BlockStage<'_> {
     /// Goes along a run by arcs and lines.
     pub(super) fn fit(
         &mut self,
         placer: &Placer,
-        legs: &[Leg<'_>],
-        nodes: &[Node],
-        to: &mut Surroundings<'_, '_>,
+        legs: &[PathLeg<'_>],
+        nodes: &[PathNode],
+        to: &mut BlockContext<'_, '_>,
     ) {
         let mut at = 0;
         while at < legs.len() {
             // Legs along which nothing turns.
             let still =
-                |node: &&Node| !self.kinds.turning(&nodes[at].trace.joints, &node.trace.joints);
+                |node: &&PathNode| !self.kinds.turning(&nodes[at].trace.joints, &node.trace.joints);
             let count = nodes[at + 1..].iter().take_while(still).count();
             let (legs, nodes) = (&legs[at..], &nodes[at..]);
             match self.laid(placer, &legs[..count], &nodes[..=count]) {
@@ -63,7 +63,7 @@ impl Blocks<'_> {
                     at += count;
                 }
                 None => {
-                    let turns = |pair: &&[Node]| {
+                    let turns = |pair: &&[PathNode]| {
                         self.kinds.turning(&pair[0].trace.joints, &pair[1].trace.joints)
                     };
                     let count = match count {
@@ -80,15 +80,15 @@ impl Blocks<'_> {
     fn laid<'r>(
         &self,
         placer: &'r Placer,
-        legs: &'r [Leg<'r>],
-        nodes: &'r [Node],
-    ) -> Option<Laid<'r>> {
+        legs: &'r [PathLeg<'r>],
+        nodes: &'r [PathNode],
+    ) -> Option<WordFrameRun<'r>> {
         let first = legs.first()?;
         let frame = WordFrame::new(placer, &nodes[0])?;
         let printed = nodes.iter().map(|node| placer.printed(node));
         let margin = placer.margin(&nodes[0].trace.joints, &nodes[0].trace.joints);
         let edge = placer.control_point().radius * self.machine.accuracy.axis_tolerance;
-        Some(Laid {
+        Some(WordFrameRun {
             placer,
             legs,
             nodes,
@@ -99,13 +99,13 @@ impl Blocks<'_> {
         })
     }
 
-    fn fit_laid(&mut self, laid: &Laid<'_>, to: &mut Surroundings<'_, '_>) {
+    fn fit_laid(&mut self, laid: &WordFrameRun<'_>, to: &mut BlockContext<'_, '_>) {
         let mut at = 0;
         while at < laid.legs.len() {
             let line = farthest(at, laid.legs.len(), |end| self.line(laid, at, end));
             let reach = line.as_ref().map_or(at + 1, |(reach, _)| *reach);
             let arc = farthest(reach, laid.legs.len(), |end| {
-                self.fitted_arc(laid, at, end).map(|arc| Piece::Arc(Box::new(arc)))
+                self.fitted_arc(laid, at, end).map(|arc| FittedPiece::Arc(Box::new(arc)))
             });
             let Some((end, piece)) = arc.or(line) else {
                 let ends = [&laid.nodes[at], &laid.nodes[at + 1]];
@@ -116,16 +116,16 @@ impl Blocks<'_> {
             self.counts.points_dropped += (end - at - 1) as u64;
             let leg = &laid.legs[end - 1];
             match piece {
-                Piece::Arc(arc) => {
+                FittedPiece::Arc(arc) => {
                     self.push_piece(leg, *arc, to);
                 }
-                Piece::Line(bound) => {
+                FittedPiece::Line(bound) => {
                     let ends = [&laid.nodes[at], &laid.nodes[end]];
                     let due = (at..end).map(|leg| {
                         self.nominal(&laid.legs[leg], &laid.nodes[leg], &laid.nodes[leg + 1])
                     });
-                    let due: Vec<Nominal> = due.collect();
-                    let nominal = Nominal::between(&due, (0, 0.0), (due.len() - 1, 1.0));
+                    let due: Vec<NominalTime> = due.collect();
+                    let nominal = NominalTime::between(&due, (0, 0.0), (due.len() - 1, 1.0));
                     self.push(laid.placer, leg, ends, nominal, bound, to);
                 }
             }
@@ -134,14 +134,20 @@ impl Blocks<'_> {
     }
 
     /// A straight block over the legs from `at` to `end`.
-    fn line(&self, laid: &Laid<'_>, at: usize, end: usize) -> Option<Piece> {
+    fn line(&self, laid: &WordFrameRun<'_>, at: usize, end: usize) -> Option<FittedPiece> {
         let off = arc_fit::off_line([laid.printed[at], laid.printed[end]], &laid.wanted[at..=end]);
-        self.bound_of(laid, at, end, off).map(Piece::Line)
+        self.bound_of(laid, at, end, off).map(FittedPiece::Line)
     }
 
     /// What is proven of a piece that is `off` its path, if that is within tolerance. The tool axis may be that of any of
     /// its points.
-    fn bound_of(&self, laid: &Laid<'_>, at: usize, end: usize, off: f64) -> Option<Bound> {
+    fn bound_of(
+        &self,
+        laid: &WordFrameRun<'_>,
+        at: usize,
+        end: usize,
+        off: f64,
+    ) -> Option<DeviationBound> {
         let nodes = &laid.nodes[at..=end];
         let farthest = nodes.iter().map(|node| node.axis_error).fold(0.0, f64::max);
         let chord = laid.legs[at].motion.chord;
@@ -149,7 +155,7 @@ impl Blocks<'_> {
     }
 
     /// An arc over the legs from `at` to `end`, in the first plane that has one.
-    fn fitted_arc(&self, laid: &Laid<'_>, at: usize, end: usize) -> Option<ArcBlock> {
+    fn fitted_arc(&self, laid: &WordFrameRun<'_>, at: usize, end: usize) -> Option<ArcBlock> {
         let split = match self.keeps.arcs.split {
             ArcSplit::Full => 0,
             ArcSplit::Half => 1,

@@ -1,8 +1,8 @@
 //! CL points that wait for what comes after them: along one stretch of path some of them may be needless.
 
-use super::{Blocks, Leg, Reason, STILL, Surroundings};
-use crate::accuracy::{Node, Placer};
-use crate::program::{Motion, Pace};
+use super::{BlockContext, BlockReason, BlockStage, PathLeg, STILL};
+use crate::accuracy::{PathNode, Placer};
+use crate::program::{MoveFeed, StraightMove};
 use post_machine::description::Axis;
 use post_machine::kinematics::Second;
 use post_machine::kinematics::orientation::angle;
@@ -15,19 +15,19 @@ const LEAST: f64 = 1e-6;
 
 /// Legs that follow one another at one feed and without a corner, and the points at their ends.
 #[derive(Debug, Default)]
-pub(super) struct Gathered {
-    legs: Vec<(u64, Motion)>,
-    nodes: Vec<Node>,
+pub(super) struct PendingRun {
+    legs: Vec<(u64, StraightMove)>,
+    nodes: Vec<PathNode>,
 }
 
-impl Gathered {
+impl PendingRun {
     /// Line of the first leg that waits.
     pub(super) fn first_line(&self) -> Option<u64> {
         self.legs.first().map(|(line, _)| *line)
     }
 
     /// Can a leg to `node` go on here, if the path turns by no more than `corner`, radians?
-    fn joins(&self, leg: &Leg<'_>, node: &Node, corner: f64) -> bool {
+    fn joins(&self, leg: &PathLeg<'_>, node: &PathNode, corner: f64) -> bool {
         let (Some((_, motion)), [.., before, last]) = (self.legs.last(), self.nodes.as_slice())
         else {
             return false;
@@ -47,17 +47,17 @@ fn in_reserve(axis: &Axis) -> bool {
     matches!(axis.second, Some(Second::Reserve { .. }))
 }
 
-impl Blocks<'_> {
+impl BlockStage<'_> {
     /// Does a move to `node` wait, as part of a run?
     #[inline]
-    pub(super) fn gathers(&self, leg: &Leg<'_>, node: &Node) -> bool {
+    pub(super) fn gathers(&self, leg: &PathLeg<'_>, node: &PathNode) -> bool {
         // Cutter radius compensation offsets the points that the control is given.
         if !(self.machine.accuracy.reduce || self.keeps.fits()) || leg.loose || self.compensating {
             return false;
         }
         // A time of its own cannot be shared; axes that exclude one another, or of which one moves where the other
         // ends, cannot move in one block.
-        let steady = matches!(leg.motion.pace, Pace::PerMinute(_))
+        let steady = matches!(leg.motion.pace, MoveFeed::PerMinute(_))
             && self.machine.solution.exclusive.is_empty()
             && !self.machine.axes.iter().any(in_reserve);
         steady
@@ -70,7 +70,7 @@ impl Blocks<'_> {
 
     /// The tip as good as stands still while the axes turn. Such a move is paced by the axes: together with others
     /// it would be paced by the way of the tip, and they would turn in no time.
-    fn stands(&self, last: &Node, node: &Node) -> bool {
+    fn stands(&self, last: &PathNode, node: &PathNode) -> bool {
         let way = self.wanted_way(last, node);
         way <= STILL && self.turn_between(last, node).to_degrees() > way
     }
@@ -78,10 +78,10 @@ impl Blocks<'_> {
     /// Takes a move into the run, or ends that and begins another with it.
     pub(super) fn gather(
         &mut self,
-        leg: &Leg<'_>,
-        last: &Node,
-        node: &Node,
-        to: &mut Surroundings<'_, '_>,
+        leg: &PathLeg<'_>,
+        last: &PathNode,
+        node: &PathNode,
+        to: &mut BlockContext<'_, '_>,
     ) {
         let corner = self.machine.accuracy.corner;
         if !self.gathered.joins(leg, node, corner) {
@@ -94,7 +94,7 @@ impl Blocks<'_> {
 
     /// Carries out the run that waits.
     #[inline]
-    pub(super) fn end_run(&mut self, to: &mut Surroundings<'_, '_>) {
+    pub(super) fn end_run(&mut self, to: &mut BlockContext<'_, '_>) {
         if !self.gathered.legs.is_empty() {
             self.carry_out_run(to);
         }
@@ -104,9 +104,9 @@ impl Blocks<'_> {
     pub(super) fn go_straight(
         &mut self,
         placer: &Placer,
-        legs: &[Leg<'_>],
-        nodes: &[Node],
-        to: &mut Surroundings<'_, '_>,
+        legs: &[PathLeg<'_>],
+        nodes: &[PathNode],
+        to: &mut BlockContext<'_, '_>,
     ) {
         if let (true, [_, _, ..]) = (self.machine.accuracy.reduce, legs) {
             return self.split(placer, legs, nodes, to);
@@ -116,7 +116,7 @@ impl Blocks<'_> {
         }
     }
 
-    fn carry_out_run(&mut self, to: &mut Surroundings<'_, '_>) {
+    fn carry_out_run(&mut self, to: &mut BlockContext<'_, '_>) {
         let Some(placer) = self.placer.clone() else {
             return;
         };
@@ -127,10 +127,15 @@ impl Blocks<'_> {
         for (_, motion) in &mut gathered.legs {
             motion.chord = chord;
         }
-        let legs: Vec<Leg<'_>> = gathered
+        let legs: Vec<PathLeg<'_>> = gathered
             .legs
             .iter()
-            .map(|(line, motion)| Leg { line: *line, motion, loose: false, reason: Reason::Point })
+            .map(|(line, motion)| PathLeg {
+                line: *line,
+                motion,
+                loose: false,
+                reason: BlockReason::Point,
+            })
             .collect();
         match self.keeps.fits() {
             true => self.fit(&placer, &legs, &gathered.nodes, to),

@@ -10,7 +10,7 @@ const LYING: f64 = 0.01;
 
 /// The lie of a tool, or of the normal of a plane, to the way of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Lie {
+pub(super) enum ToolAlignment {
     /// The axis moves it along its own line.
     Along,
     /// The axis moves it along its line, and aside.
@@ -19,7 +19,7 @@ pub(super) enum Lie {
     Across,
 }
 
-impl Lie {
+impl ToolAlignment {
     /// Compares a direction with the way of an axis, both unit vectors.
     pub(super) fn of(direction: &Vector3<f64>, way: &Vector3<f64>) -> Self {
         if way.cross(direction).norm() <= MEASURED {
@@ -40,19 +40,19 @@ mod tests {
     fn a_tool_lies_along_aslant_or_across() {
         let way = Vector3::z();
         for (degrees, wanted) in [
-            (0.0, Lie::Along),
-            (0.05, Lie::Along),
-            (179.95, Lie::Along),
-            (0.2, Lie::Aslant),
-            (45.0, Lie::Aslant),
-            (89.0, Lie::Aslant),
-            (89.9, Lie::Across),
-            (90.3, Lie::Across),
-            (135.0, Lie::Aslant),
+            (0.0, ToolAlignment::Along),
+            (0.05, ToolAlignment::Along),
+            (179.95, ToolAlignment::Along),
+            (0.2, ToolAlignment::Aslant),
+            (45.0, ToolAlignment::Aslant),
+            (89.0, ToolAlignment::Aslant),
+            (89.9, ToolAlignment::Across),
+            (90.3, ToolAlignment::Across),
+            (135.0, ToolAlignment::Aslant),
         ] {
             let (sine, cosine) = libm::sincos(f64::to_radians(degrees));
             let tool = Vector3::new(0.6 * sine, 0.8 * sine, cosine);
-            assert_eq!(Lie::of(&tool, &way), wanted, "{degrees}");
+            assert_eq!(ToolAlignment::of(&tool, &way), wanted, "{degrees}");
         }
     }
 }

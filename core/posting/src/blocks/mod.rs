@@ -22,22 +22,24 @@ use nalgebra::Vector3;
 use post_machine::description::{Machine, Tcp};
 use post_plugin::{Capabilities, Format, ModelSession};
 
-use crate::accuracy::{Bound, Linearise, Move, Node, PlacedBatch, Placer, Run};
-use crate::configuration::{Chosen, Configured, pose};
-use crate::curve::Keeps;
+use crate::accuracy::{
+    DeviationBound, Lineariser, NodeMove, NodeRun, PathNode, PlacedBatch, Placer,
+};
+use crate::configuration::{ChosenPoint, ConfiguredItem, pose};
+use crate::curve::CurvePolicy;
 use crate::findings::Findings;
-use crate::program::{Command, Motion, Pace};
+use crate::program::{Command, MoveFeed, StraightMove};
 use crate::refusal;
-use crate::stream::{Flow, Outlet};
-use along::Following;
+use crate::stream::{BatchSink, StreamItem};
+use along::PendingCurve;
 pub(crate) use audience::Audience;
-pub(crate) use between_words::BetweenWords;
-pub use between_words::Follow;
-pub use block::{Block, MotionKind, Planned, Reason, Time};
-use gathered::Gathered;
-pub use nominal::Nominal;
-pub(crate) use nominal::{Kinds, STILL, Travels};
-use plane::Planes;
+pub(crate) use between_words::CompensatingMotion;
+pub use between_words::FollowTime;
+pub use block::{BlockDuration, BlockKind, BlockReason, MotionBlock, PlannedTime};
+use gathered::PendingRun;
+pub use nominal::NominalTime;
+pub(crate) use nominal::{AxisKinds, AxisTravels, STILL};
+use plane::ActivePlane;
 
 /// Turns that differ by less are the same, radians.
 const TURN: f64 = 1e-6;
@@ -47,45 +49,45 @@ const LEAST_TOGETHER: usize = 4;
 
 /// A straight piece of the CL path on its way to become blocks.
 #[derive(Clone, Copy, Debug)]
-struct Leg<'m> {
+struct PathLeg<'m> {
     line: u64,
-    motion: &'m Motion,
+    motion: &'m StraightMove,
     /// Leg off the part: the tolerance of a rapid is enough.
     loose: bool,
     /// Why it is there, if not to reach its CL point.
-    reason: Reason,
+    reason: BlockReason,
 }
 
 /// The largest deviations certified so far.
 #[derive(Clone, Copy, Debug, Default)]
-struct Largest {
-    cut: Bound,
+struct LargestDeviations {
+    cut: DeviationBound,
     rapid: f64,
 }
 
-impl Largest {
+impl LargestDeviations {
     /// Can a block with this bound be the worst one?
     #[inline]
-    fn may_be_worst(&self, leg: &Leg<'_>, bound: Bound) -> bool {
+    fn may_be_worst(&self, leg: &PathLeg<'_>, bound: DeviationBound) -> bool {
         let tip = bound.tip + leg.motion.chord;
         if leg.loose { tip > self.rapid } else { tip > self.cut.tip || bound.axis > self.cut.axis }
     }
 
     #[inline]
-    fn keep(&mut self, leg: &Leg<'_>, bound: Bound) {
+    fn keep(&mut self, leg: &PathLeg<'_>, bound: DeviationBound) {
         let tip = bound.tip + leg.motion.chord;
         if leg.loose {
             self.rapid = self.rapid.max(tip);
         } else {
-            self.cut = self.cut.and(Bound { tip, ..bound });
+            self.cut = self.cut.and(DeviationBound { tip, ..bound });
         }
     }
 }
 
 /// What the stage is handed, beside its batch.
-pub(crate) struct Surroundings<'s, 'o> {
+pub(crate) struct BlockContext<'s, 'o> {
     /// Where blocks go.
-    pub out: &'s mut Outlet<'o, Flow<Block>>,
+    pub out: &'s mut BatchSink<'o, StreamItem<MotionBlock>>,
     /// Where faults go.
     pub findings: &'s Findings,
     /// Observers of cuts, if there are any.
@@ -96,7 +98,7 @@ pub(crate) struct Surroundings<'s, 'o> {
 
 /// Counts of this stage.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Counts {
+pub(crate) struct BlockCounts {
     /// Points put in.
     pub points_added: u64,
     /// CL points that no block ends on.
@@ -110,7 +112,7 @@ pub(crate) struct Counts {
 }
 
 /// The stage that makes blocks.
-pub(crate) struct Blocks<'a> {
+pub(crate) struct BlockStage<'a> {
     machine: &'a Machine,
     /// The machine with the head that it starts with.
     base: &'a Machine,
@@ -118,24 +120,24 @@ pub(crate) struct Blocks<'a> {
     /// Solves the points; none before the first.
     placer: Option<Rc<Placer>>,
     /// The tilted planes of the control.
-    planes: Planes,
-    linearise: Linearise,
-    kinds: Kinds,
-    between: BetweenWords,
+    planes: ActivePlane,
+    linearise: Lineariser,
+    kinds: AxisKinds,
+    between: CompensatingMotion,
     /// CL points that wait for those after them.
-    gathered: Gathered,
+    gathered: PendingRun,
     /// Which curves are kept.
-    keeps: Keeps,
+    keeps: CurvePolicy,
     /// Feeds are planned after this stage: curves tell their way.
     plans: bool,
     /// A curve whose end has not come yet.
-    following: Option<Following>,
+    following: Option<PendingCurve>,
     /// What each leg of the run in hand is due.
-    nominal: Vec<Nominal>,
+    nominal: Vec<NominalTime>,
     /// Where the tool stands; none before the first position.
-    last: Option<Box<Node>>,
+    last: Option<Box<PathNode>>,
     /// The node before that, to be filled again.
-    spare: Option<Box<Node>>,
+    spare: Option<Box<PathNode>>,
     /// Points that are solved together.
     placed: Option<Box<PlacedBatch>>,
     /// The last move was a cut: the tool is on the part.
@@ -151,11 +153,11 @@ pub(crate) struct Blocks<'a> {
     /// Set once the fault that compensation cannot be was given.
     told_compensation: bool,
     /// The largest deviations so far.
-    largest: Largest,
-    counts: Counts,
+    largest: LargestDeviations,
+    counts: BlockCounts,
 }
 
-impl<'a> Blocks<'a> {
+impl<'a> BlockStage<'a> {
     pub(crate) fn new(
         machine: &'a Machine,
         writes: Capabilities,
@@ -169,12 +171,12 @@ impl<'a> Blocks<'a> {
             base: machine,
             model,
             placer: None,
-            planes: Planes::new(format),
-            linearise: Linearise::new(&machine.accuracy, trust_model),
-            kinds: Kinds::new(machine),
-            between: BetweenWords::new(machine),
-            gathered: Gathered::default(),
-            keeps: Keeps::new(machine, writes),
+            planes: ActivePlane::new(format),
+            linearise: Lineariser::new(&machine.accuracy, trust_model),
+            kinds: AxisKinds::new(machine),
+            between: CompensatingMotion::new(machine),
+            gathered: PendingRun::default(),
+            keeps: CurvePolicy::new(machine, writes),
             plans: false,
             following: None,
             nominal: Vec::new(),
@@ -187,8 +189,8 @@ impl<'a> Blocks<'a> {
             compensating: false,
             compensation_due: false,
             told_compensation: false,
-            largest: Largest::default(),
-            counts: Counts::default(),
+            largest: LargestDeviations::default(),
+            counts: BlockCounts::default(),
         }
     }
 
@@ -198,7 +200,7 @@ impl<'a> Blocks<'a> {
     }
 
     /// Blocks from here on are made with another placer; those before it have been handed on by then.
-    fn use_placer(&mut self, placer: Option<Rc<Placer>>, to: &mut Surroundings<'_, '_>) {
+    fn use_placer(&mut self, placer: Option<Rc<Placer>>, to: &mut BlockContext<'_, '_>) {
         if let Some(told) = to.placer {
             to.out.flush();
             told.borrow_mut().clone_from(&placer);
@@ -211,12 +213,12 @@ impl<'a> Blocks<'a> {
     }
 
     /// Counts so far.
-    pub(crate) fn counts(&self) -> Counts {
+    pub(crate) fn counts(&self) -> BlockCounts {
         self.counts
     }
 
     /// What the linear axes did between the words.
-    pub(crate) fn between_words(&self) -> &BetweenWords {
+    pub(crate) fn between_words(&self) -> &CompensatingMotion {
         &self.between
     }
 
@@ -227,12 +229,16 @@ impl<'a> Blocks<'a> {
 
     /// Line of the first point that waits for those after it.
     pub(crate) fn first_line(&self) -> Option<u64> {
-        let following = self.following.as_ref().map(Following::line);
+        let following = self.following.as_ref().map(PendingCurve::line);
         self.gathered.first_line().or(following)
     }
 
     /// Takes a batch.
-    pub(crate) fn take(&mut self, batch: &[Flow<Configured>], to: &mut Surroundings<'_, '_>) {
+    pub(crate) fn take(
+        &mut self,
+        batch: &[StreamItem<ConfiguredItem>],
+        to: &mut BlockContext<'_, '_>,
+    ) {
         let mut placed = self.placed.take().unwrap_or_default();
         let mut from = 0;
         while from < batch.len() {
@@ -247,10 +253,14 @@ impl<'a> Blocks<'a> {
 
     /// Solves the points at the front of a batch together, as far as one placer solves them; gives how many elements
     /// they are. Where there are few, or the next is something else, nothing is solved ahead.
-    fn settle_ahead(&self, batch: &[Flow<Configured>], placed: &mut PlacedBatch) -> usize {
+    fn settle_ahead(
+        &self,
+        batch: &[StreamItem<ConfiguredItem>],
+        placed: &mut PlacedBatch,
+    ) -> usize {
         let points = || {
             batch.iter().map_while(|next| match next {
-                Flow::Point(Configured::Point(chosen)) if chosen.arrives => {
+                StreamItem::Point(ConfiguredItem::Point(chosen)) if chosen.arrives => {
                     Some((pose(&chosen.motion), self.planes.standing(chosen)))
                 }
                 _ => None,
@@ -270,15 +280,15 @@ impl<'a> Blocks<'a> {
     #[inline]
     fn next(
         &mut self,
-        next: &Flow<Configured>,
+        next: &StreamItem<ConfiguredItem>,
         lane: usize,
         placed: &mut PlacedBatch,
-        to: &mut Surroundings<'_, '_>,
+        to: &mut BlockContext<'_, '_>,
     ) {
         if let Some(following) = &mut self.following {
             match next {
-                Flow::Point(Configured::Point(chosen)) => return following.push(chosen),
-                Flow::Command { command: Command::AlongEnd, .. } => {
+                StreamItem::Point(ConfiguredItem::Point(chosen)) => return following.push(chosen),
+                StreamItem::Command { command: Command::AlongEnd, .. } => {
                     return self.go_along(true, placed, to);
                 }
                 // Something has come between: by its moves.
@@ -286,23 +296,25 @@ impl<'a> Blocks<'a> {
             }
         }
         match next {
-            Flow::Point(Configured::Point(chosen)) => self.point(chosen, lane, placed, to),
-            Flow::Point(Configured::Placer(placer)) => {
+            StreamItem::Point(ConfiguredItem::Point(chosen)) => {
+                self.point(chosen, lane, placed, to)
+            }
+            StreamItem::Point(ConfiguredItem::Placer(placer)) => {
                 self.end_run(to);
                 self.take_placer(placer, to);
             }
-            Flow::Point(Configured::Broken) => {
+            StreamItem::Point(ConfiguredItem::Broken) => {
                 self.end_run(to);
                 // The next point is a first position again.
                 self.last = None;
                 self.on_part = false;
             }
-            Flow::Command { line, command } => self.command(*line, command, to),
+            StreamItem::Command { line, command } => self.command(*line, command, to),
         }
     }
 
     /// The file ends: what waits is carried out.
-    pub(crate) fn finish(&mut self, line: u64, to: &mut Surroundings<'_, '_>) {
+    pub(crate) fn finish(&mut self, line: u64, to: &mut BlockContext<'_, '_>) {
         let mut placed = self.placed.take().unwrap_or_default();
         placed.forget();
         self.go_along(false, &mut placed, to);
@@ -310,7 +322,7 @@ impl<'a> Blocks<'a> {
         self.depart(line, to);
     }
 
-    fn command(&mut self, line: u64, command: &Command, to: &mut Surroundings<'_, '_>) {
+    fn command(&mut self, line: u64, command: &Command, to: &mut BlockContext<'_, '_>) {
         self.end_run(to);
         match command {
             Command::Tool(_) | Command::Home | Command::WorkOffset(_) | Command::Smoothing(_) => {
@@ -327,7 +339,7 @@ impl<'a> Blocks<'a> {
                 self.depart(line, to);
                 if let Some(head) = self.base.head(name) {
                     self.machine = &head.machine;
-                    self.kinds = Kinds::new(self.machine);
+                    self.kinds = AxisKinds::new(self.machine);
                     self.between.set(self.machine);
                     self.linearise.set(&self.machine.accuracy);
                 }
@@ -337,7 +349,7 @@ impl<'a> Blocks<'a> {
                 self.compensation_due = true;
             }
             Command::Along(curve) => {
-                self.following = Some(Following::new(line, curve));
+                self.following = Some(PendingCurve::new(line, curve));
                 return;
             }
             Command::AlongEnd => return,
@@ -349,20 +361,20 @@ impl<'a> Blocks<'a> {
     #[inline]
     fn point(
         &mut self,
-        chosen: &Chosen,
+        chosen: &ChosenPoint,
         lane: usize,
         placed: &mut PlacedBatch,
-        to: &mut Surroundings<'_, '_>,
+        to: &mut BlockContext<'_, '_>,
     ) {
         self.enter_plane(chosen, placed, to);
         let Some(placer) = self.placer.clone() else {
             return;
         };
-        let leg = Leg {
+        let leg = PathLeg {
             line: chosen.line,
             motion: &chosen.motion,
-            loose: chosen.motion.pace == Pace::Rapid,
-            reason: if chosen.eased { Reason::Eased } else { Reason::Point },
+            loose: chosen.motion.pace == MoveFeed::Rapid,
+            reason: if chosen.eased { BlockReason::Eased } else { BlockReason::Point },
         };
         if chosen.arrives {
             self.counts.branch_changes += u64::from(chosen.changed && leg.loose);
@@ -392,9 +404,9 @@ impl<'a> Blocks<'a> {
     fn travel(
         &mut self,
         placer: &Placer,
-        leg: &Leg<'_>,
-        mut node: Box<Node>,
-        to: &mut Surroundings<'_, '_>,
+        leg: &PathLeg<'_>,
+        mut node: Box<PathNode>,
+        to: &mut BlockContext<'_, '_>,
     ) {
         if self.compensating {
             self.check_compensation(placer, leg.line, &node, to.findings);
@@ -407,16 +419,16 @@ impl<'a> Blocks<'a> {
             self.end_run(to);
         }
         match self.last.take() {
-            None => self.first(placer, leg, &node, MotionKind::Position, to),
+            None => self.first(placer, leg, &node, BlockKind::Position, to),
             Some(last) if self.machine.indexes && self.indexes(&last, &node) => {
                 // An index axis turns with the tool retracted, not somewhere over the part.
                 let last = self.leave_part(placer, leg.line, last, to);
-                self.first(placer, leg, &node, MotionKind::Reference, to);
+                self.first(placer, leg, &node, BlockKind::Reference, to);
                 self.spare = Some(last);
             }
             Some(last) => self.spare = Some(self.go(placer, leg, last, &mut node, gathers, to)),
         }
-        self.on_part = leg.motion.pace != Pace::Rapid;
+        self.on_part = leg.motion.pace != MoveFeed::Rapid;
         self.last = Some(node);
     }
 
@@ -425,12 +437,12 @@ impl<'a> Blocks<'a> {
     fn go(
         &mut self,
         placer: &Placer,
-        leg: &Leg<'_>,
-        mut last: Box<Node>,
-        node: &mut Node,
+        leg: &PathLeg<'_>,
+        mut last: Box<PathNode>,
+        node: &mut PathNode,
         gathers: bool,
-        to: &mut Surroundings<'_, '_>,
-    ) -> Box<Node> {
+        to: &mut BlockContext<'_, '_>,
+    ) -> Box<PathNode> {
         if leg.loose && self.on_part {
             // The tool leaves the part as it stands, and turns when it is away: where its axis stays, nothing turns
             // (unless the tip depends on it, as it does without a closed form).
@@ -443,7 +455,7 @@ impl<'a> Blocks<'a> {
             if let Ok(stay) = stay
                 && self.turn_between(&last, &stay) + TURN < self.turn_between(&last, node)
             {
-                let leaving = Leg { reason: Reason::Leave, ..*leg };
+                let leaving = PathLeg { reason: BlockReason::Leave, ..*leg };
                 self.cut(placer, &leaving, &last, &stay, to);
                 *last = stay;
             }
@@ -459,7 +471,7 @@ impl<'a> Blocks<'a> {
     }
 
     /// The tool axis in the machine frame, as the head holds it.
-    fn in_machine(&self, placer: &Placer, node: &Node) -> Vector3<f64> {
+    fn in_machine(&self, placer: &Placer, node: &PathNode) -> Vector3<f64> {
         let mut joints = node.trace.joints;
         for (value, axis) in joints.iter_mut().zip(&self.machine.axes) {
             if axis.carries_part {
@@ -470,14 +482,14 @@ impl<'a> Blocks<'a> {
     }
 
     /// Are tool axis and leading edge wanted alike at two nodes?
-    fn points_alike(&self, from: &Node, to: &Node) -> bool {
+    fn points_alike(&self, from: &PathNode, to: &PathNode) -> bool {
         let (from, to) = (&from.target, &to.target);
         let apart = (from.axis - to.axis).norm() + (from.edge_across() - to.edge_across()).norm();
         apart < TURN
     }
 
     /// The sum of all rotary moves between two nodes, radians.
-    fn turn_between(&self, from: &Node, to: &Node) -> f64 {
+    fn turn_between(&self, from: &PathNode, to: &PathNode) -> f64 {
         let axes = self.machine.axes.iter().enumerate();
         axes.filter(|(_, axis)| axis.joint.rotary)
             .map(|(joint, _)| (to.trace.joints[joint] - from.trace.joints[joint]).abs())
@@ -489,13 +501,13 @@ impl<'a> Blocks<'a> {
     fn cut(
         &mut self,
         placer: &Placer,
-        leg: &Leg<'_>,
-        last: &Node,
-        node: &Node,
-        to: &mut Surroundings<'_, '_>,
+        leg: &PathLeg<'_>,
+        last: &PathNode,
+        node: &PathNode,
+        to: &mut BlockContext<'_, '_>,
     ) {
         let chord = leg.motion.chord;
-        let whole = Move::planned(self.machine, placer, chord, leg.loose, [last, node]);
+        let whole = NodeMove::planned(self.machine, placer, chord, leg.loose, [last, node]);
         if let Some(audience) = to.audience
             && !leg.loose
         {
@@ -520,18 +532,18 @@ impl<'a> Blocks<'a> {
     fn split(
         &mut self,
         placer: &Placer,
-        legs: &[Leg<'_>],
-        nodes: &[Node],
-        to: &mut Surroundings<'_, '_>,
+        legs: &[PathLeg<'_>],
+        nodes: &[PathNode],
+        to: &mut BlockContext<'_, '_>,
     ) {
         let Some(first) = legs.first() else {
             return;
         };
         let mut linearise = std::mem::take(&mut self.linearise);
         let (chord, loose) = (first.motion.chord, first.loose);
-        let planned = Move::planned(self.machine, placer, chord, loose, [&nodes[0], &nodes[1]]);
+        let planned = NodeMove::planned(self.machine, placer, chord, loose, [&nodes[0], &nodes[1]]);
         let moves = nodes.windows(2).any(|pair| self.wanted_way(&pair[0], &pair[1]) > STILL);
-        let run = Run {
+        let run = NodeRun {
             placer,
             nodes,
             tolerances: planned.tolerances,
@@ -554,9 +566,9 @@ impl<'a> Blocks<'a> {
                     kept += usize::from(on_point);
                     self.counts.points_added += u64::from(!on_point);
                     let end = (piece.leg, piece.to.t);
-                    let nominal = Nominal::between(&due, at, end);
-                    let leg = Leg {
-                        reason: if on_point { legs[piece.leg].reason } else { Reason::PutIn },
+                    let nominal = NominalTime::between(&due, at, end);
+                    let leg = PathLeg {
+                        reason: if on_point { legs[piece.leg].reason } else { BlockReason::PutIn },
                         ..legs[piece.leg]
                     };
                     let ends = [&from, &piece.to];
@@ -580,15 +592,15 @@ impl<'a> Blocks<'a> {
     fn push(
         &mut self,
         placer: &Placer,
-        leg: &Leg<'_>,
-        [from, node]: [&Node; 2],
-        nominal: Nominal,
-        bound: Bound,
-        to: &mut Surroundings<'_, '_>,
+        leg: &PathLeg<'_>,
+        [from, node]: [&PathNode; 2],
+        nominal: NominalTime,
+        bound: DeviationBound,
+        to: &mut BlockContext<'_, '_>,
     ) {
         self.largest.keep(leg, bound);
         self.compensation_due = false;
-        let mut block = Block {
+        let mut block = MotionBlock {
             still: from.words == node.words,
             way: self.way(from, node),
             nominal,
@@ -599,17 +611,17 @@ impl<'a> Blocks<'a> {
             let way = (placer, leg, [from, node]);
             block.follow = self.between.block(machine, way, asked, to.findings);
         }
-        to.out.push(Flow::Point(block));
+        to.out.push(StreamItem::Point(block));
     }
 
     #[inline]
-    fn block(&self, leg: &Leg<'_>, node: &Node, bound: Bound) -> Block {
-        Block {
+    fn block(&self, leg: &PathLeg<'_>, node: &PathNode, bound: DeviationBound) -> MotionBlock {
+        MotionBlock {
             line: leg.line,
-            kind: if leg.motion.pace == Pace::Rapid {
-                MotionKind::Rapid
+            kind: if leg.motion.pace == MoveFeed::Rapid {
+                BlockKind::Rapid
             } else {
-                MotionKind::Linear
+                BlockKind::Linear
             },
             reason: leg.reason,
             loose: leg.loose,
@@ -619,12 +631,12 @@ impl<'a> Blocks<'a> {
             joints: node.trace.joints,
             tip: node.tip - node.trace.pose.axis * self.machine.control_point.along,
             axis: node.trace.pose.axis,
-            deviation: Bound { tip: bound.tip + leg.motion.chord, ..bound },
+            deviation: DeviationBound { tip: bound.tip + leg.motion.chord, ..bound },
             way: 0.0,
-            nominal: Nominal::default(),
-            follow: Follow::default(),
-            planned: Planned::default(),
-            time: Time::default(),
+            nominal: NominalTime::default(),
+            follow: FollowTime::default(),
+            planned: PlannedTime::default(),
+            time: BlockDuration::default(),
         }
     }
 }

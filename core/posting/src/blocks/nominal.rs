@@ -3,9 +3,9 @@
 use post_machine::description::Machine;
 use post_machine::kinematics::{Joints, MAX_AXES};
 
-use super::{Blocks, Leg};
-use crate::accuracy::Node;
-use crate::program::Pace;
+use super::{BlockStage, PathLeg};
+use crate::accuracy::PathNode;
+use crate::program::MoveFeed;
 
 /// A tip that moves by no more than this stands still but for the rounding of the words, mm.
 pub(crate) const STILL: f64 = 2e-3;
@@ -15,14 +15,14 @@ pub(crate) const STILL: f64 = 2e-3;
 /// It is found for the move and shared out: pieces that are shorter than the words' decimals, or put off the path,
 /// have no pace of their own.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Nominal {
+pub struct NominalTime {
     /// Minutes.
     pub minutes: f64,
     /// The tip moves; else the feed is that of the axes.
     pub moves: bool,
 }
 
-impl Nominal {
+impl NominalTime {
     /// A share of it.
     #[inline]
     pub(super) fn share(self, share: f64) -> Self {
@@ -47,24 +47,24 @@ impl Nominal {
 
     /// Time of a move in which the tip goes `length` mm.
     #[inline]
-    pub(crate) fn of(pace: Pace, length: f64, travels: impl FnOnce() -> Travels) -> Self {
+    pub(crate) fn of(pace: MoveFeed, length: f64, travels: impl FnOnce() -> AxisTravels) -> Self {
         let moves = length > STILL;
         let minutes = match pace {
-            Pace::PerMinute(feed) if moves => length / feed,
+            MoveFeed::PerMinute(feed) if moves => length / feed,
             // The tip stands still: the feed is taken along the axes, degrees as millimetres, as controls do.
-            Pace::PerMinute(feed) => travels().combined / feed,
-            Pace::InverseTime(feed) => 1.0 / feed,
-            Pace::Rapid => 0.0,
+            MoveFeed::PerMinute(feed) => travels().combined / feed,
+            MoveFeed::InverseTime(feed) => 1.0 / feed,
+            MoveFeed::Rapid => 0.0,
         };
         Self { minutes, moves }
     }
 }
 
-impl Blocks<'_> {
+impl BlockStage<'_> {
     /// What a move is due.
     #[inline]
-    pub(super) fn nominal(&self, leg: &Leg<'_>, from: &Node, to: &Node) -> Nominal {
-        Nominal::of(leg.motion.pace, self.way(from, to), || {
+    pub(super) fn nominal(&self, leg: &PathLeg<'_>, from: &PathNode, to: &PathNode) -> NominalTime {
+        NominalTime::of(leg.motion.pace, self.way(from, to), || {
             self.kinds.travels(&from.trace.joints, &to.trace.joints)
         })
     }
@@ -72,7 +72,7 @@ impl Blocks<'_> {
     /// Way of the tip between two nodes as they are printed, mm: it has the feed, whichever point of the tool is
     /// guided, and it is what a control that keeps the tip will time.
     #[inline]
-    pub(super) fn way(&self, from: &Node, to: &Node) -> f64 {
+    pub(super) fn way(&self, from: &PathNode, to: &PathNode) -> f64 {
         let way = to.tip - from.tip;
         match self.machine.control_point.along {
             0.0 => way.norm(),
@@ -81,16 +81,16 @@ impl Blocks<'_> {
     }
 
     /// [`Blocks::way`] as the CL file asks for it.
-    pub(super) fn wanted_way(&self, from: &Node, to: &Node) -> f64 {
+    pub(super) fn wanted_way(&self, from: &PathNode, to: &PathNode) -> f64 {
         let along = self.machine.control_point.along;
-        let tip = |node: &Node| node.target.tip - node.target.axis * along;
+        let tip = |node: &PathNode| node.target.tip - node.target.axis * along;
         (tip(to) - tip(from)).norm()
     }
 }
 
 /// Which axes of a chain are rotary.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Kinds {
+pub(crate) struct AxisKinds {
     rotary: [bool; MAX_AXES],
     /// What a degree of each counts.
     degree: [f64; MAX_AXES],
@@ -99,7 +99,7 @@ pub(crate) struct Kinds {
 
 /// How far the axes go in a block: mm and degrees.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Travels {
+pub(crate) struct AxisTravels {
     pub linear: f64,
     pub rotary: f64,
     pub combined: f64,
@@ -107,7 +107,7 @@ pub(crate) struct Travels {
     pub rotary_longest: f64,
 }
 
-impl Kinds {
+impl AxisKinds {
     pub(crate) fn new(machine: &Machine) -> Self {
         let mut kinds =
             Self { count: machine.axes.len(), degree: [1.0; MAX_AXES], ..Self::default() };
@@ -134,8 +134,8 @@ impl Kinds {
         (0..MAX_AXES).any(|index| self.rotary[index] && from[index] != to[index])
     }
 
-    pub(crate) fn travels(&self, from: &Joints, to: &Joints) -> Travels {
-        let mut travels = Travels::default();
+    pub(crate) fn travels(&self, from: &Joints, to: &Joints) -> AxisTravels {
+        let mut travels = AxisTravels::default();
         let (mut linear, mut rotary) = (0.0, 0.0);
         for index in 0..self.count.min(MAX_AXES) {
             let travel = (to[index] - from[index]).abs();

@@ -4,11 +4,11 @@ use post_machine::diagnostic::{Diagnostic, Short};
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::orientation::angle;
 
-use super::{Blocks, Leg, Reason, Surroundings};
-use crate::accuracy::{Node, Placer};
+use super::{BlockContext, BlockReason, BlockStage, PathLeg};
+use crate::accuracy::{PathNode, Placer};
 use crate::configuration::pose;
 use crate::findings::Findings;
-use crate::program::{Motion, Pace};
+use crate::program::{MoveFeed, StraightMove};
 use crate::refusal;
 
 /// A tool leans from here on, radians.
@@ -29,9 +29,9 @@ const SHORT: f64 = 1e-3;
 /// How far a tool that leans is drawn back where the machine has no `[rewind]`, mm: the first that travel allows.
 const LEAVE: [f64; 5] = [100.0, 50.0, 25.0, 12.0, 6.0];
 
-impl Blocks<'_> {
+impl BlockStage<'_> {
     /// The tool is about to be retracted: from where it stands, if it stands anywhere.
-    pub(super) fn depart(&mut self, line: u64, to: &mut Surroundings<'_, '_>) {
+    pub(super) fn depart(&mut self, line: u64, to: &mut BlockContext<'_, '_>) {
         if let (Some(placer), Some(last)) = (self.placer.clone(), self.last.take()) {
             self.leave_part(&placer, line, last, to);
         }
@@ -44,9 +44,9 @@ impl Blocks<'_> {
         &mut self,
         placer: &Placer,
         line: u64,
-        last: Box<Node>,
-        to: &mut Surroundings<'_, '_>,
-    ) -> Box<Node> {
+        last: Box<PathNode>,
+        to: &mut BlockContext<'_, '_>,
+    ) -> Box<PathNode> {
         if let Some(distance) = self.machine.frame.leave {
             return self.leave_along(placer, line, last, distance, to);
         }
@@ -68,10 +68,10 @@ impl Blocks<'_> {
         &mut self,
         placer: &Placer,
         line: u64,
-        last: Box<Node>,
+        last: Box<PathNode>,
         distance: f64,
-        to: &mut Surroundings<'_, '_>,
-    ) -> Box<Node> {
+        to: &mut BlockContext<'_, '_>,
+    ) -> Box<PathNode> {
         let Some((out, way)) = self.out_by_leave(placer, &last, distance) else {
             if self.on_part {
                 to.findings.at(line, stays());
@@ -81,19 +81,19 @@ impl Blocks<'_> {
         if self.on_part && way < distance - SHORT {
             to.findings.at(line, left_early(way, distance));
         }
-        let motion = Motion {
+        let motion = StraightMove {
             tip: out.target.tip,
             axis: last.target.axis,
             edge: last.target.edge,
-            pace: Pace::Rapid,
+            pace: MoveFeed::Rapid,
             chord: 0.0,
         };
-        let leg = Leg {
+        let leg = PathLeg {
             line,
             motion: &motion,
             // In a bore it is no rapid over the part.
             loose: placer.solver().closed_form(),
-            reason: Reason::Leave,
+            reason: BlockReason::Leave,
         };
         self.cut(placer, &leg, &last, &out, to);
         self.on_part = false;
@@ -105,30 +105,31 @@ impl Blocks<'_> {
         &mut self,
         placer: &Placer,
         line: u64,
-        last: Box<Node>,
-        to: &mut Surroundings<'_, '_>,
-    ) -> Box<Node> {
-        let stands = Motion {
+        last: Box<PathNode>,
+        to: &mut BlockContext<'_, '_>,
+    ) -> Box<PathNode> {
+        let stands = StraightMove {
             tip: last.target.tip,
             axis: last.target.axis,
             edge: last.target.edge,
-            pace: Pace::Rapid,
+            pace: MoveFeed::Rapid,
             chord: 0.0,
         };
         let along = self.machine.control_point.along;
         let feed = self.machine.rewind.and_then(|rewind| rewind.retract_feed);
-        let by = |distance: &f64| Motion { tip: stands.tip + stands.axis * *distance, ..stands };
+        let by =
+            |distance: &f64| StraightMove { tip: stands.tip + stands.axis * *distance, ..stands };
         let rewind = self.machine.rewind.as_ref();
         let own = rewind.and_then(|rewind| stands.drawn_back(rewind, along));
         // A plane that lies below the tool has been passed.
         let passed = rewind.is_some() && own.is_none() && !self.on_part;
         let first = own.into_iter().chain(rewind.is_none().then(|| by(&LEAVE[0])));
         let shorter = LEAVE[1..].iter().map(by).filter(|_| !passed);
-        let away: Vec<Motion> = first.chain(shorter).collect();
+        let away: Vec<StraightMove> = first.chain(shorter).collect();
         // The rotary axes as they stand, an index axis among them; as far as the linear axes go.
         let mut refused = None;
         for (place, away) in away.into_iter().enumerate() {
-            let motion = Motion { pace: Pace::feed_or_rapid(feed), ..away };
+            let motion = StraightMove { pace: MoveFeed::feed_or_rapid(feed), ..away };
             let joints = &last.trace.joints;
             let placed = match placer.solver().closed_form() {
                 true => placer.settled(pose(&motion), 1.0, joints),
@@ -137,7 +138,8 @@ impl Blocks<'_> {
             };
             match placed {
                 Ok(node) => {
-                    let out = Leg { line, motion: &motion, loose: true, reason: Reason::Leave };
+                    let out =
+                        PathLeg { line, motion: &motion, loose: true, reason: BlockReason::Leave };
                     self.cut(placer, &out, &last, &node, to);
                     // Cut short by the end of travel, it may still be in the part: from there it must not go sideways.
                     self.on_part &= place > 0;
@@ -162,7 +164,7 @@ impl Blocks<'_> {
     }
 
     /// A retract that is not proven to lead away from the part is refused.
-    fn check_retract(&self, placer: &Placer, line: u64, node: &Node, findings: &Findings) {
+    fn check_retract(&self, placer: &Placer, line: u64, node: &PathNode, findings: &Findings) {
         let machine = self.machine;
         let joints = &node.trace.joints;
         for (joint, position) in &machine.frame.retract {
@@ -204,9 +206,9 @@ impl Blocks<'_> {
     pub(super) fn rewind(
         &mut self,
         placer: &Placer,
-        leg: &Leg<'_>,
+        leg: &PathLeg<'_>,
         joints: &Joints,
-        to: &mut Surroundings<'_, '_>,
+        to: &mut BlockContext<'_, '_>,
     ) {
         let (Some(rewind), Some(last)) = (self.machine.rewind, self.last.take()) else {
             return;
@@ -214,28 +216,28 @@ impl Blocks<'_> {
         self.counts.rewinds += 1;
         let along = self.machine.control_point.along;
         let away = leg.motion.drawn_back(&rewind, along).unwrap_or(*leg.motion);
-        let back = rewind.plunge_feed.map_or(leg.motion.pace, Pace::PerMinute);
+        let back = rewind.plunge_feed.map_or(leg.motion.pace, MoveFeed::PerMinute);
         // The tip stands still while the axes turn: what counts is the farthest of them.
-        let turn = rewind.turn_feed.map_or(Pace::Rapid, |feed| {
+        let turn = rewind.turn_feed.map_or(MoveFeed::Rapid, |feed| {
             let axes = self.machine.axes.iter().enumerate();
             let farthest = axes
                 .filter(|(_, axis)| axis.joint.rotary)
                 .map(|(joint, _)| libm::fabs(joints[joint] - last.trace.joints[joint]))
                 .fold(0.0, f64::max);
-            Pace::InverseTime(feed / farthest.to_degrees().max(1e-3))
+            MoveFeed::InverseTime(feed / farthest.to_degrees().max(1e-3))
         });
         let stops = [
-            (away, Pace::feed_or_rapid(rewind.retract_feed), last.trace.joints, true),
+            (away, MoveFeed::feed_or_rapid(rewind.retract_feed), last.trace.joints, true),
             (away, turn, *joints, true),
             (*leg.motion, back, *joints, false),
         ];
         let mut at = last;
         for (motion, pace, joints, loose) in stops {
-            let motion = Motion { pace, chord: 0.0, ..motion };
-            let leg = Leg {
+            let motion = StraightMove { pace, chord: 0.0, ..motion };
+            let leg = PathLeg {
                 motion: &motion,
-                loose: loose || pace == Pace::Rapid,
-                reason: Reason::Rewind,
+                loose: loose || pace == MoveFeed::Rapid,
+                reason: BlockReason::Rewind,
                 ..*leg
             };
             match placer.settled(pose(leg.motion), 1.0, &joints) {

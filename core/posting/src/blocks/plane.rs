@@ -11,9 +11,9 @@ use post_machine::kinematics::orientation::angle;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::Format;
 
-use super::{Blocks, Surroundings, TURN};
-use crate::accuracy::{Node, PlacedBatch, Placer};
-use crate::configuration::{Chosen, pose};
+use super::{BlockContext, BlockStage, TURN};
+use crate::accuracy::{PathNode, PlacedBatch, Placer};
+use crate::configuration::{ChosenPoint, pose};
 use crate::program::Command;
 
 /// A place so near to the middle between two printed values may stand at either, in last decimals.
@@ -21,7 +21,7 @@ const BETWEEN: f64 = 0.1;
 
 /// The plane in force.
 #[derive(Debug)]
-pub(super) struct Planes {
+pub(super) struct ActivePlane {
     format: Format,
     /// What solves points outside.
     outside: Option<Rc<Placer>>,
@@ -33,7 +33,7 @@ pub(super) struct Planes {
     axes: Option<Matrix3<f64>>,
 }
 
-impl Planes {
+impl ActivePlane {
     pub(super) fn new(format: &Format) -> Self {
         Self { format: format.clone(), outside: None, wanted: None, stands: None, axes: None }
     }
@@ -41,7 +41,7 @@ impl Planes {
     /// The rotary values of a point: in a plane those of the plane. What the choice held or turned early close to a pole
     /// does not count there, for the tool stands upright on the plane.
     #[inline]
-    pub(super) fn standing<'j>(&'j self, chosen: &'j Chosen) -> &'j Joints {
+    pub(super) fn standing<'j>(&'j self, chosen: &'j ChosenPoint) -> &'j Joints {
         match &self.stands {
             Some(stands) if self.stays(stands, chosen) => stands,
             _ => &chosen.joints,
@@ -50,7 +50,7 @@ impl Planes {
 
     /// Another branch or another full turn of the axes is another plane.
     #[inline]
-    fn stays(&self, stands: &Joints, chosen: &Chosen) -> bool {
+    fn stays(&self, stands: &Joints, chosen: &ChosenPoint) -> bool {
         let alike = |placer: &Rc<Placer>| {
             let joints = placer.solver().chain().joints().iter().enumerate();
             joints
@@ -61,9 +61,9 @@ impl Planes {
     }
 }
 
-impl Blocks<'_> {
+impl BlockStage<'_> {
     /// Another placer comes; the tool leaves a plane with the one that it is in it with.
-    pub(super) fn take_placer(&mut self, placer: &Rc<Placer>, to: &mut Surroundings<'_, '_>) {
+    pub(super) fn take_placer(&mut self, placer: &Rc<Placer>, to: &mut BlockContext<'_, '_>) {
         self.planes.outside = Some(Rc::clone(placer));
         if self.planes.axes.is_none() {
             self.use_placer(Some(Rc::clone(placer)), to);
@@ -76,7 +76,7 @@ impl Blocks<'_> {
         &mut self,
         line: u64,
         wanted: Option<Vector3<f64>>,
-        to: &mut Surroundings<'_, '_>,
+        to: &mut BlockContext<'_, '_>,
     ) {
         self.depart(line, to);
         self.leave_plane(line, to);
@@ -84,7 +84,7 @@ impl Blocks<'_> {
     }
 
     /// No plane is in force any more; the tool has left the part.
-    fn leave_plane(&mut self, line: u64, to: &mut Surroundings<'_, '_>) {
+    fn leave_plane(&mut self, line: u64, to: &mut BlockContext<'_, '_>) {
         self.planes.stands = None;
         self.use_placer(self.planes.outside.clone(), to);
         if self.planes.axes.take().is_some() {
@@ -97,9 +97,9 @@ impl Blocks<'_> {
     #[inline]
     pub(super) fn enter_plane(
         &mut self,
-        chosen: &Chosen,
+        chosen: &ChosenPoint,
         placed: &mut PlacedBatch,
-        to: &mut Surroundings<'_, '_>,
+        to: &mut BlockContext<'_, '_>,
     ) {
         if let Some(origin) = self.planes.wanted {
             let planes = &self.planes;
@@ -117,9 +117,9 @@ impl Blocks<'_> {
 
     fn change_plane(
         &mut self,
-        chosen: &Chosen,
+        chosen: &ChosenPoint,
         origin: Vector3<f64>,
-        to: &mut Surroundings<'_, '_>,
+        to: &mut BlockContext<'_, '_>,
     ) {
         let line = chosen.line;
         self.end_run(to);
@@ -165,7 +165,7 @@ impl Blocks<'_> {
     /// A coordinate that is constant in the plane is turned into it with the noise of the CL file's digits: where the place of
     /// `node` is about between two printed values, it stays at that of `last`. What that puts it off is certified as all
     /// rounding is.
-    pub(super) fn steady(&self, placer: &Placer, last: &Node, node: &mut Node) {
+    pub(super) fn steady(&self, placer: &Placer, last: &PathNode, node: &mut PathNode) {
         let Some(axes) = self.planes.axes else {
             return;
         };

@@ -1,12 +1,15 @@
 //! Splines of the CL file that stay splines: one block, its control points and knots printed and certified.
 
-use super::along::Following;
-use super::{Block, Blocks, Follow, Leg, MotionKind, Nominal, Reason, Surroundings, Travels};
-use crate::accuracy::{Bound, Node, Placer, WordFrame};
+use super::along::PendingCurve;
+use super::{
+    AxisTravels, BlockContext, BlockKind, BlockReason, BlockStage, FollowTime, MotionBlock,
+    NominalTime, PathLeg,
+};
+use crate::accuracy::{DeviationBound, PathNode, Placer, WordFrame};
 use crate::configuration::pose;
 use crate::curve::{CurveWords, PrintedCurve};
-use crate::program::{Command, Motion, Spline};
-use crate::stream::Flow;
+use crate::program::{BSpline, Command, StraightMove};
+use crate::stream::StreamItem;
 use nalgebra::Vector3;
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::travel::{AT_END, passed};
@@ -16,16 +19,16 @@ const LAST_KNOT: f64 = 1000.0;
 
 /// A spline as it is printed.
 struct SplineBlock {
-    node: Box<Node>,
+    node: Box<PathNode>,
     curve: PrintedCurve,
-    bound: Bound,
+    bound: DeviationBound,
 }
 
 /// Places between the ends by which a feed is planned: this many a knot span.
 const PLACES: u32 = 16;
 
 /// Places along a spline between its ends, mm, part frame.
-fn places(printed: &Spline, frame: &WordFrame) -> Vec<Vector3<f64>> {
+fn places(printed: &BSpline, frame: &WordFrame) -> Vec<Vector3<f64>> {
     let cubics = printed.cubics();
     let mut places: Vec<Vector3<f64>> = cubics
         .flat_map(|[a, b, c, d]| {
@@ -41,18 +44,18 @@ fn places(printed: &Spline, frame: &WordFrame) -> Vec<Vector3<f64>> {
     places
 }
 
-impl Blocks<'_> {
+impl BlockStage<'_> {
     /// Makes a block along a spline of the control point, if that can be.
     pub(super) fn keep_spline(
         &mut self,
         placer: &Placer,
         frame: &WordFrame,
-        following: &Following,
-        spline: &Spline,
-        to: &mut Surroundings<'_, '_>,
+        following: &PendingCurve,
+        spline: &BSpline,
+        to: &mut BlockContext<'_, '_>,
     ) -> bool {
         let end = &following.curve.end;
-        let motion = Motion { tip: spline.end(), ..*end };
+        let motion = StraightMove { tip: spline.end(), ..*end };
         let Some(block) = self.spline_block(placer, frame, spline, &motion) else {
             return false;
         };
@@ -63,27 +66,31 @@ impl Blocks<'_> {
             Some(way)
         });
         let way: f64 = ways.sum();
-        let leg =
-            Leg { line: following.line, motion: &motion, loose: false, reason: Reason::Point };
+        let leg = PathLeg {
+            line: following.line,
+            motion: &motion,
+            loose: false,
+            reason: BlockReason::Point,
+        };
         // Whatever its direction, no axis goes faster than the tool.
-        let mut follow = Follow::default();
+        let mut follow = FollowTime::default();
         for (joint, slide) in frame.slides() {
             let minutes = way * slide.norm() / self.machine.axes[*joint].max_feed;
             if minutes > follow.minutes {
-                follow = Follow { minutes, joint: *joint };
+                follow = FollowTime { minutes, joint: *joint };
             }
         }
-        let made = Block {
-            kind: MotionKind::Spline,
+        let made = MotionBlock {
+            kind: BlockKind::Spline,
             way,
-            nominal: Nominal::of(motion.pace, way, Travels::default),
+            nominal: NominalTime::of(motion.pace, way, AxisTravels::default),
             follow,
             ..self.block(&leg, &block.node, block.bound)
         };
         self.largest.keep(&leg, block.bound);
         let command = Command::Curve(Box::new(block.curve));
         to.out.command(leg.line, command);
-        to.out.push(Flow::Point(made));
+        to.out.push(StreamItem::Point(made));
         self.spare = self.last.replace(block.node);
         self.on_part = true;
         true
@@ -93,8 +100,8 @@ impl Blocks<'_> {
         &self,
         placer: &Placer,
         frame: &WordFrame,
-        spline: &Spline,
-        end: &Motion,
+        spline: &BSpline,
+        end: &StraightMove,
     ) -> Option<SplineBlock> {
         let last = self.last.as_deref()?;
         // No dialect declares splines inside a tilted plane.

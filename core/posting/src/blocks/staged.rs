@@ -3,23 +3,23 @@
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, Pose};
 
-use super::{Blocks, Leg, Reason, Surroundings, TURN};
-use crate::accuracy::{Node, Placer};
+use super::{BlockContext, BlockReason, BlockStage, PathLeg, TURN};
+use crate::accuracy::{PathNode, Placer};
 use crate::refusal;
 
 /// Axis values that differ by less are the same: mm or radians.
 const EQUAL: f64 = 1e-9;
 
-impl Blocks<'_> {
+impl BlockStage<'_> {
     /// An indexed axis stands differently.
-    pub(super) fn indexes(&self, from: &Node, to: &Node) -> bool {
+    pub(super) fn indexes(&self, from: &PathNode, to: &PathNode) -> bool {
         let axes = self.machine.axes.iter().zip(&from.trace.joints);
         axes.zip(&to.trace.joints)
             .any(|((axis, from), to)| axis.indexed.is_some() && (from - to).abs() > TURN)
     }
 
     /// Axes that exclude one another and would move together, group by group.
-    pub(super) fn excluded(&self, from: &Node, to: &Node) -> Vec<Vec<usize>> {
+    pub(super) fn excluded(&self, from: &PathNode, to: &PathNode) -> Vec<Vec<usize>> {
         let moves =
             |joint: &usize| (to.trace.joints[*joint] - from.trace.joints[*joint]).abs() > EQUAL;
         let groups = self.machine.solution.exclusive.iter();
@@ -33,10 +33,10 @@ impl Blocks<'_> {
     pub(super) fn by_stages(
         &mut self,
         placer: &Placer,
-        leg: &Leg<'_>,
-        from: &Node,
-        node: &Node,
-        to: &mut Surroundings<'_, '_>,
+        leg: &PathLeg<'_>,
+        from: &PathNode,
+        node: &PathNode,
+        to: &mut BlockContext<'_, '_>,
     ) {
         let (first, last) = (from.trace.joints, node.trace.joints);
         let mut at = *from;
@@ -76,16 +76,16 @@ impl Blocks<'_> {
     fn stage(
         &mut self,
         placer: &Placer,
-        leg: &Leg<'_>,
-        at: &mut Node,
+        leg: &PathLeg<'_>,
+        at: &mut PathNode,
         (target, t): (Pose, f64),
         joints: &Joints,
-        to: &mut Surroundings<'_, '_>,
+        to: &mut BlockContext<'_, '_>,
     ) {
         let settled = placer.settled(target, t, joints);
         match settled {
             Ok(node) => {
-                let leg = Leg { reason: Reason::Stage, ..*leg };
+                let leg = PathLeg { reason: BlockReason::Stage, ..*leg };
                 self.cut(placer, &leg, at, &node, to);
                 *at = node;
             }

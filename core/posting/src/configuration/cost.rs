@@ -2,7 +2,7 @@
 
 /// Costs are compared place by place: rewinds, points on a side that is not preferred, travel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Cost {
+pub(crate) struct PathCost {
     rewinds: u32,
     against: u32,
     /// Travel as [`super::metric::Measure`] counts it; infinite where there is no way.
@@ -12,7 +12,7 @@ pub(crate) struct Cost {
 /// A tie is decided by order: travels differ if they differ by more than this share.
 const EQUAL: f64 = 1e-9;
 
-impl Cost {
+impl PathCost {
     pub(crate) const NONE: Self = Self { rewinds: 0, against: 0, travel: 0.0 };
     pub(crate) const NO_WAY: Self = Self { rewinds: 0, against: 0, travel: f64::INFINITY };
 

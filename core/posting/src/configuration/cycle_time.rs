@@ -14,7 +14,7 @@ use post_machine::kinematics::{Chain, Joints, MAX_AXES};
 
 /// What the drives of a machine can do.
 #[derive(Clone, Debug)]
-pub(crate) struct Drives {
+pub(crate) struct DriveLimits {
     /// Largest velocities, mm/s or rad/s.
     velocity: Joints,
     /// Largest accelerations, mm/s² or rad/s².
@@ -32,7 +32,7 @@ pub(crate) struct Drives {
 /// Most pieces of one rapid; more count as this many.
 const MOST_PIECES: f64 = 1024.0;
 
-impl Drives {
+impl DriveLimits {
     pub(crate) fn new(machine: &Machine) -> Self {
         let mut drives = Self {
             velocity: [f64::INFINITY; MAX_AXES],
@@ -142,8 +142,8 @@ fn rest_to_rest(way: f64, [velocity, acceleration, jerk]: [f64; 3]) -> f64 {
 
 /// Adds the time of a path up, step by step.
 #[derive(Clone, Debug)]
-pub(crate) struct Clock<'a> {
-    drives: &'a Drives,
+pub(crate) struct PathClock<'a> {
+    drives: &'a DriveLimits,
     /// Where the axes stand.
     at: Joints,
     /// The last step: ways of the axes, and how long it took; none if it is not known.
@@ -155,9 +155,9 @@ pub(crate) struct Clock<'a> {
 /// A standstill beside a step; it lasts no time in which something could be accelerated.
 const AT_REST: (Joints, f64) = ([0.0; MAX_AXES], 0.0);
 
-impl<'a> Clock<'a> {
+impl<'a> PathClock<'a> {
     /// Begins at `at`; how the axes came there is not known.
-    pub(crate) fn new(drives: &'a Drives, at: Joints) -> Self {
+    pub(crate) fn new(drives: &'a DriveLimits, at: Joints) -> Self {
         Self { drives, at, last: None, seconds: 0.0 }
     }
 
@@ -263,8 +263,8 @@ mod tests {
         assert_eq!(rest_to_rest(0.0, limits), 0.0);
     }
 
-    fn drives() -> Drives {
-        Drives {
+    fn drives() -> DriveLimits {
+        DriveLimits {
             velocity: [150.0; MAX_AXES],
             acceleration: [600.0; MAX_AXES],
             jerk: [f64::INFINITY; MAX_AXES],
@@ -286,7 +286,7 @@ mod tests {
         let drives = drives();
         let whole = rest_to_rest(180.0, [150.0, 600.0, f64::INFINITY]);
         for count in [1, 2, 10] {
-            let mut clock = Clock::new(&drives, first(0.0));
+            let mut clock = PathClock::new(&drives, first(0.0));
             clock.rests();
             for step in 1..=count {
                 clock.cuts(&first(180.0 * f64::from(step) / f64::from(count)), 1e-3);
@@ -301,7 +301,7 @@ mod tests {
     #[test]
     fn what_is_asked_for_is_what_it_takes_where_nothing_limits_it() {
         let drives = drives();
-        let mut clock = Clock::new(&drives, first(0.0));
+        let mut clock = PathClock::new(&drives, first(0.0));
         // 600 units a second squared, nowhere more than 500, and no faster than 50.
         for step in 1..=100 {
             let t = 0.1 * f64::from(step) / 100.0;

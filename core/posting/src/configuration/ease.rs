@@ -2,11 +2,11 @@
 //! of the tool axis goes.
 
 use super::backtrace::Backtrace;
-use super::cycle_time::Clock;
+use super::cycle_time::PathClock;
 use super::route::Route;
 use super::settle::SAME;
-use super::taut::{Gate, taut};
-use super::trellis::{self, HELD, Judge, Kind, State, Trellis, pose};
+use super::taut::{TubePoint, taut};
+use super::trellis::{self, ArrivalKind, CutChecker, HELD, Trellis, TrellisState, pose};
 use post_machine::kinematics::Joints;
 
 /// Shares of the room close to a pole that are tried under the rule `cycle-time`; with none, points on the pole alone are
@@ -64,13 +64,13 @@ impl Route<'_> {
         let state = |way: &Backtrace, layer: usize| trellis.states[way.states[layer]];
         // The point after the run, if there is one, is where the string must arrive.
         let behind = (run.end < layers.len()).then_some(run.end);
-        let gates: Vec<Gate> = run
+        let gates: Vec<TubePoint> = run
             .clone()
             .chain(behind)
-            .map(|layer| Gate {
+            .map(|layer| TubePoint {
                 time: match layers[layer].kind {
-                    Kind::Cut => Some(minutes(trellis, layer)),
-                    Kind::First | Kind::Rapid => None,
+                    ArrivalKind::Cut => Some(minutes(trellis, layer)),
+                    ArrivalKind::First | ArrivalKind::Rapid => None,
                 },
                 range: if layer < run.end {
                     self.room(layer, &state(way, layer), pole, share)
@@ -123,7 +123,7 @@ impl Route<'_> {
         let drives = trellis.measure.drives()?;
         let count = trellis.layers.len();
         let first = run.start.saturating_sub(2);
-        let mut clock = Clock::new(drives, way.joints(trellis, first));
+        let mut clock = PathClock::new(drives, way.joints(trellis, first));
         let mut pieces = Vec::new();
         for layer in first + 1..count.min(run.end + 2) {
             let [before, at] = [layer - 1, layer].map(|layer| &trellis.layers[layer]);
@@ -133,7 +133,7 @@ impl Route<'_> {
                 Some(before) => self.rewound[before],
                 None => way.joints(trellis, layer),
             };
-            if at.kind != Kind::Cut {
+            if at.kind != ArrivalKind::Cut {
                 let placer = &self.settings[at.setting].1;
                 clock.rapid(placer.solver().chain(), &to);
                 continue;
@@ -159,7 +159,7 @@ impl Route<'_> {
     }
 
     /// A share of what the tolerance leaves the pole joint at a point.
-    fn room(&self, layer: usize, state: &State, pole: usize, share: f64) -> [f64; 2] {
+    fn room(&self, layer: usize, state: &TrellisState, pole: usize, share: f64) -> [f64; 2] {
         let [least, most] = self.trellis.axes.travel(pole);
         if state.branch == HELD {
             return [least, most];
@@ -211,7 +211,7 @@ impl Route<'_> {
         let mut points = points;
         let good = points.all(|layer| {
             let [before, at] = [layer - 1, layer].map(|layer| &trellis.layers[layer]);
-            if at.kind != Kind::Cut || !(turned(layer - 1) || turned(layer)) {
+            if at.kind != ArrivalKind::Cut || !(turned(layer - 1) || turned(layer)) {
                 return true;
             }
             let from = way.joints(trellis, layer - 1);

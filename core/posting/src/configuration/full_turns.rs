@@ -2,20 +2,24 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::solution::{Axes, Stand, unwound};
+use super::solution::{AxisSolution, ChoiceAxes, unwound};
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::travel::{OverTravel, over};
 
 /// Values that differ by less are the same, mm or radians.
 const SAME: f64 = 1e-9;
 
-impl Axes {
+impl ChoiceAxes {
     /// Puts the pointing joints of `stand` on the turns nearest to `last`.
     ///
     /// # Errors
     /// The axis that this takes out of its travel.
     #[inline]
-    pub(crate) fn carried(&self, stand: &Stand, last: &Joints) -> Result<Joints, OverTravel> {
+    pub(crate) fn carried(
+        &self,
+        stand: &AxisSolution,
+        last: &Joints,
+    ) -> Result<Joints, OverTravel> {
         let mut joints = stand.joints;
         for axis in &self.turning {
             let joint = axis.joint;
@@ -76,13 +80,23 @@ impl Axes {
 
     /// Calls `take` with the stand whose first axis is a full turn farther to either side than nearest to `last`,
     /// where that is inside travel.
-    pub(crate) fn other_turns(&self, stand: &Stand, last: &Joints, take: &mut dyn FnMut(&Joints)) {
+    pub(crate) fn other_turns(
+        &self,
+        stand: &AxisSolution,
+        last: &Joints,
+        take: &mut dyn FnMut(&Joints),
+    ) {
         self.first_turned(stand, last, &[-1.0, 1.0], take);
     }
 
     /// Calls `take` with the stand on the turns nearest to `last`, and with its first axis on every other turn
     /// inside travel; where a third axis turns against the first, on the nearest alone.
-    pub(crate) fn unheld(&self, stand: &Stand, last: &Joints, take: &mut dyn FnMut(&Joints)) {
+    pub(crate) fn unheld(
+        &self,
+        stand: &AxisSolution,
+        last: &Joints,
+        take: &mut dyn FnMut(&Joints),
+    ) {
         let turns: &[f64] =
             if self.turning.len() > 2 { &[0.0] } else { &[0.0, -1.0, 1.0, -2.0, 2.0] };
         self.first_turned(stand, last, turns, take);
@@ -90,7 +104,7 @@ impl Axes {
 
     fn first_turned(
         &self,
-        stand: &Stand,
+        stand: &AxisSolution,
         last: &Joints,
         turns: &[f64],
         take: &mut dyn FnMut(&Joints),
@@ -117,7 +131,12 @@ impl Axes {
 
     /// Calls `take` with every set of turns that `stand` can have inside travel; axes without travel are put on
     /// the turn nearest to `last`, free ones where they were.
-    pub(crate) fn turned(&self, stand: &Stand, last: &Joints, take: &mut dyn FnMut(&Joints)) {
+    pub(crate) fn turned(
+        &self,
+        stand: &AxisSolution,
+        last: &Joints,
+        take: &mut dyn FnMut(&Joints),
+    ) {
         let mut joints = stand.joints;
         self.turn_from(0, stand, last, &mut joints, take);
     }
@@ -125,7 +144,7 @@ impl Axes {
     fn turn_from(
         &self,
         place: usize,
-        stand: &Stand,
+        stand: &AxisSolution,
         last: &Joints,
         joints: &mut Joints,
         take: &mut dyn FnMut(&Joints),

@@ -9,7 +9,7 @@ use post_plugin::Capabilities;
 
 /// What the control does with lengths, and what was reported of it.
 #[derive(Debug)]
-pub(super) struct Lengths {
+pub(super) struct LengthAxisCheck {
     writes: Capabilities,
     /// The head in use; empty for the one that the machine starts with.
     head: String,
@@ -24,7 +24,7 @@ pub(super) struct Lengths {
     told: Vec<String>,
 }
 
-impl Lengths {
+impl LengthAxisCheck {
     pub(super) fn new(writes: Capabilities) -> Self {
         Self {
             writes,

@@ -3,7 +3,7 @@
 use post_machine::description::{Machine, Rule, Side};
 use post_machine::kinematics::{Chain, Joints, MAX_AXES};
 
-use super::cycle_time::Drives;
+use super::cycle_time::DriveLimits;
 
 /// An axis without `max_feed` counts as one with this many mm/min or degrees/min.
 const USUAL_FEED: f64 = 10_000.0;
@@ -13,7 +13,7 @@ const NEAR_ZERO: f64 = 1e-6;
 
 /// Measures moves of one machine.
 #[derive(Clone, Debug)]
-pub(crate) struct Measure {
+pub(crate) struct TravelMeasure {
     rule: Rule,
     count: usize,
     rotary: [bool; MAX_AXES],
@@ -23,13 +23,13 @@ pub(crate) struct Measure {
     /// What the control shows at zero of each axis.
     zero: Joints,
     /// Drives that times are worked out with, under `cycle-time`.
-    drives: Option<Box<Drives>>,
+    drives: Option<Box<DriveLimits>>,
 }
 
 /// Share of the time of a move that is added to the other measures: it decides between ways that are equal in them.
 const TIE: f64 = 1e-6;
 
-impl Measure {
+impl TravelMeasure {
     pub(crate) fn new(machine: &Machine) -> Self {
         let mut slowness = [0.0; MAX_AXES];
         let mut rotary = [false; MAX_AXES];
@@ -51,13 +51,13 @@ impl Measure {
             prefer: machine.solution.prefer.clone(),
             zero,
             drives: (machine.solution.rule == Rule::CycleTime)
-                .then(|| Box::new(Drives::new(machine))),
+                .then(|| Box::new(DriveLimits::new(machine))),
         }
     }
 
     /// What the time is made of, under the rule `cycle-time`.
     #[inline]
-    pub(crate) fn drives(&self) -> Option<&Drives> {
+    pub(crate) fn drives(&self) -> Option<&DriveLimits> {
         self.drives.as_deref()
     }
 

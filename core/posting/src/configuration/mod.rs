@@ -29,23 +29,23 @@ use post_machine::kinematics::travel::{AT_END, passed};
 use post_plugin::{Capabilities, Format, Spindle};
 
 use crate::accuracy::Placer;
-use crate::expand::Line;
+use crate::expand::PathMove;
 use crate::findings::Findings;
 use crate::program::limits::MOST_TOOLS;
-use crate::program::{Command, Motion, Tool};
-use crate::report::{LengthSource, ToolUse};
-use crate::stream::{Flow, Outlet};
-use lengths::Lengths;
-pub(crate) use route::Chosen;
-use route::{Lost, Route};
+use crate::program::{Command, StraightMove, ToolChange};
+use crate::report::{LengthSource, ReportedTool};
+use crate::stream::{BatchSink, StreamItem};
+use lengths::LengthAxisCheck;
+pub(crate) use route::ChosenPoint;
+use route::{DroppedPoint, Route};
 pub(crate) use trellis::pose;
 pub use whole_pass::whole_pass;
 
 /// What this stage hands on beside commands.
 #[derive(Clone, Debug)]
-pub(crate) enum Configured {
+pub(crate) enum ConfiguredItem {
     /// A point with the axis values that were chosen for it.
-    Point(Chosen),
+    Point(ChosenPoint),
     /// What solves the points from here on.
     Placer(Rc<Placer>),
     /// The path ended in a fault; the next point begins one anew.
@@ -54,7 +54,7 @@ pub(crate) enum Configured {
 
 /// What is not decided yet.
 #[derive(Debug)]
-enum Waiting {
+enum WaitingItem {
     /// A number of points.
     Points(u64),
     /// A command, with its line.
@@ -65,23 +65,23 @@ enum Waiting {
 const MOST_WAITING: usize = 4096;
 
 /// What leaves this stage.
-type Out<'o> = Outlet<'o, Flow<Configured>>;
+type ConfiguredSink<'o> = BatchSink<'o, StreamItem<ConfiguredItem>>;
 
 /// The stage that chooses axis values.
 #[derive(Debug)]
-pub(crate) struct Configuration<'a> {
+pub(crate) struct ConfigurationStage<'a> {
     machine: &'a Machine,
     /// The machine with the head that it starts with.
     base: &'a Machine,
     route: Route<'a>,
     /// The placer that the next stage knows of.
     setting: Option<usize>,
-    waiting: VecDeque<Waiting>,
+    waiting: VecDeque<WaitingItem>,
     /// Commands among them.
     commands: usize,
-    chosen: Vec<Chosen>,
+    chosen: Vec<ChosenPoint>,
     /// Along which axis the control puts lengths.
-    lengths: Lengths,
+    lengths: LengthAxisCheck,
     /// What the user says of every tool.
     told_length: Option<f64>,
     /// Length of the tool in use, if anybody gave it.
@@ -89,18 +89,18 @@ pub(crate) struct Configuration<'a> {
     /// Where the length comes from.
     source: LengthSource,
     /// The tools that were used, each with the length that was assumed.
-    tools: Vec<ToolUse>,
+    tools: Vec<ReportedTool>,
     /// The tool, with the head and the length that it has now, is among them.
     in_use: bool,
     /// The last speed of the spindle, rpm.
     speed: Option<f64>,
     /// The tool in use.
-    tool: Option<Tool>,
+    tool: Option<ToolChange>,
     /// Points taken.
     moves: u64,
 }
 
-impl<'a> Configuration<'a> {
+impl<'a> ConfigurationStage<'a> {
     /// Begins where the machine file says.
     ///
     /// # Errors
@@ -112,7 +112,7 @@ impl<'a> Configuration<'a> {
         writes: Capabilities,
     ) -> Result<Self, Box<Diagnostic>> {
         Ok(Self {
-            lengths: Lengths::new(writes),
+            lengths: LengthAxisCheck::new(writes),
             machine,
             base: machine,
             route: Route::new(machine, format, told_length.unwrap_or(0.0))?,
@@ -140,7 +140,7 @@ impl<'a> Configuration<'a> {
     }
 
     /// The tools that were used, in the order in which they came.
-    pub(crate) fn tools(&self) -> &[ToolUse] {
+    pub(crate) fn tools(&self) -> &[ReportedTool] {
         &self.tools
     }
 
@@ -148,8 +148,8 @@ impl<'a> Configuration<'a> {
     pub(crate) fn first_line(&self) -> Option<u64> {
         let mut waiting = self.waiting.iter();
         let command = waiting.find_map(|waiting| match waiting {
-            Waiting::Command(line, _) => Some(*line),
-            Waiting::Points(_) => None,
+            WaitingItem::Command(line, _) => Some(*line),
+            WaitingItem::Points(_) => None,
         });
         [command, self.route.first_line()].into_iter().flatten().min()
     }
@@ -157,25 +157,25 @@ impl<'a> Configuration<'a> {
     /// Takes a batch.
     pub(crate) fn take(
         &mut self,
-        batch: &mut Vec<Flow<Line>>,
-        out: &mut Out<'_>,
+        batch: &mut Vec<StreamItem<PathMove>>,
+        out: &mut ConfiguredSink<'_>,
         findings: &Findings,
     ) {
         for next in batch.drain(..) {
             match next {
-                Flow::Point(at) => self.point(&at, out, findings),
-                Flow::Command { line, command } => self.arrange(line, command, out, findings),
+                StreamItem::Point(at) => self.point(&at, out, findings),
+                StreamItem::Command { line, command } => self.arrange(line, command, out, findings),
             }
         }
     }
 
     /// The file ends: everything is decided.
-    pub(crate) fn finish(&mut self, out: &mut Out<'_>, findings: &Findings) {
+    pub(crate) fn finish(&mut self, out: &mut ConfiguredSink<'_>, findings: &Findings) {
         self.settle(out, findings);
     }
 
     #[inline]
-    fn point(&mut self, at: &Line, out: &mut Out<'_>, findings: &Findings) {
+    fn point(&mut self, at: &PathMove, out: &mut ConfiguredSink<'_>, findings: &Findings) {
         self.moves += 1;
         let line = at.line;
         if !self.in_use {
@@ -190,14 +190,14 @@ impl<'a> Configuration<'a> {
         }
         match self.route.add(line, &motion) {
             Ok(()) => match self.waiting.back_mut() {
-                Some(Waiting::Points(count)) => *count += 1,
-                _ => self.waiting.push_back(Waiting::Points(1)),
+                Some(WaitingItem::Points(count)) => *count += 1,
+                _ => self.waiting.push_back(WaitingItem::Points(1)),
             },
-            Err(Lost::Point(fault)) => findings.at(line, *fault),
-            Err(Lost::Path(fault)) => {
+            Err(DroppedPoint::Point(fault)) => findings.at(line, *fault),
+            Err(DroppedPoint::Path(fault)) => {
                 findings.at(line, *fault);
                 self.drain(out, findings);
-                out.push(Flow::Point(Configured::Broken));
+                out.push(StreamItem::Point(ConfiguredItem::Broken));
             }
         }
         if self.route.has_chosen() {
@@ -207,8 +207,8 @@ impl<'a> Configuration<'a> {
 
     /// Moves a point of the path to the control point of the tool.
     #[inline]
-    fn guided(&self, motion: Motion) -> Motion {
-        Motion { tip: self.control_point(motion.tip, motion.axis), ..motion }
+    fn guided(&self, motion: StraightMove) -> StraightMove {
+        StraightMove { tip: self.control_point(motion.tip, motion.axis), ..motion }
     }
 
     #[inline]
@@ -217,7 +217,13 @@ impl<'a> Configuration<'a> {
     }
 
     /// A command is carried out between the points that it stands between.
-    fn arrange(&mut self, line: u64, command: Command, out: &mut Out<'_>, findings: &Findings) {
+    fn arrange(
+        &mut self,
+        line: u64,
+        command: Command,
+        out: &mut ConfiguredSink<'_>,
+        findings: &Findings,
+    ) {
         if command.leaves() || self.commands >= MOST_WAITING {
             self.settle(out, findings);
         }
@@ -225,18 +231,18 @@ impl<'a> Configuration<'a> {
             self.command(line, command, out, findings);
         } else {
             self.commands += 1;
-            self.waiting.push_back(Waiting::Command(line, command));
+            self.waiting.push_back(WaitingItem::Command(line, command));
         }
     }
 
     /// Has everything decided, and hands it on.
-    fn settle(&mut self, out: &mut Out<'_>, findings: &Findings) {
+    fn settle(&mut self, out: &mut ConfiguredSink<'_>, findings: &Findings) {
         self.route.settle_all();
         self.drain(out, findings);
     }
 
     /// Hands on what was decided, and the commands that stand between.
-    fn drain(&mut self, out: &mut Out<'_>, findings: &Findings) {
+    fn drain(&mut self, out: &mut ConfiguredSink<'_>, findings: &Findings) {
         let mut chosen = std::mem::take(&mut self.chosen);
         self.route.take_chosen(&mut chosen);
         for next in chosen.drain(..) {
@@ -251,30 +257,30 @@ impl<'a> Configuration<'a> {
 
     /// A point that is decided, after what solves it.
     #[inline]
-    fn hand_on(&mut self, next: Chosen, out: &mut Out<'_>) {
+    fn hand_on(&mut self, next: ChosenPoint, out: &mut ConfiguredSink<'_>) {
         if self.setting != Some(next.setting) {
             self.setting = Some(next.setting);
             let placer = Rc::clone(self.route.placer(next.setting));
-            out.push(Flow::Point(Configured::Placer(placer)));
+            out.push(StreamItem::Point(ConfiguredItem::Placer(placer)));
         }
-        out.push(Flow::Point(Configured::Point(next)));
+        out.push(StreamItem::Point(ConfiguredItem::Point(next)));
     }
 
     /// One more point is decided: the commands after it follow.
     #[inline]
-    fn arrived(&mut self, out: &mut Out<'_>, findings: &Findings) {
+    fn arrived(&mut self, out: &mut ConfiguredSink<'_>, findings: &Findings) {
         match self.waiting.front_mut() {
-            Some(Waiting::Points(count)) if *count > 1 => {
+            Some(WaitingItem::Points(count)) if *count > 1 => {
                 *count -= 1;
                 return;
             }
-            Some(Waiting::Points(_)) => {
+            Some(WaitingItem::Points(_)) => {
                 self.waiting.pop_front();
             }
             _ => {}
         }
-        while let Some(Waiting::Command(..)) = self.waiting.front() {
-            if let Some(Waiting::Command(line, command)) = self.waiting.pop_front() {
+        while let Some(WaitingItem::Command(..)) = self.waiting.front() {
+            if let Some(WaitingItem::Command(line, command)) = self.waiting.pop_front() {
                 self.commands -= 1;
                 self.command(line, command, out, findings);
             }
@@ -282,7 +288,13 @@ impl<'a> Configuration<'a> {
     }
 
     /// Carries out what a command means for the choice, and hands it on.
-    fn command(&mut self, line: u64, mut command: Command, out: &mut Out<'_>, findings: &Findings) {
+    fn command(
+        &mut self,
+        line: u64,
+        mut command: Command,
+        out: &mut ConfiguredSink<'_>,
+        findings: &Findings,
+    ) {
         match &mut command {
             Command::From { tip, axis } => self.stand(*tip, *axis),
             Command::Tool(tool) => {
@@ -366,7 +378,7 @@ impl<'a> Configuration<'a> {
     }
 
     /// Finds the length of a tool.
-    fn measure(&mut self, tool: &Tool) {
+    fn measure(&mut self, tool: &ToolChange) {
         let table = || {
             let tools = &self.machine.tools;
             tools.iter().find(|(number, _)| *number == tool.number).map(|(_, length)| *length)
@@ -388,7 +400,7 @@ impl<'a> Configuration<'a> {
     #[cold]
     fn take_into_use(&mut self, line: u64, findings: &Findings) {
         self.in_use = true;
-        let used = ToolUse {
+        let used = ReportedTool {
             number: self.tool.as_ref().map(|tool| tool.number),
             length_mm: self.length.unwrap_or(0.0),
             source: self.source,

@@ -1,10 +1,10 @@
 //! Where the path cannot go on: another index position off the part, a rewind, or a fault that says what was tried.
 
-use super::route::{Lost, Route};
-use super::solution::{Found, both};
-use super::trellis::{Kind, State, pose};
-use crate::accuracy::Refused;
-use crate::program::{Motion, Pace};
+use super::route::{DroppedPoint, Route};
+use super::solution::{SolutionSummary, both};
+use super::trellis::{ArrivalKind, TrellisState, pose};
+use crate::accuracy::PlacementError;
+use crate::program::{MoveFeed, StraightMove};
 use crate::refusal;
 use post_machine::description::Positions;
 use post_machine::diagnostic::Diagnostic;
@@ -20,28 +20,28 @@ impl Route<'_> {
     pub(super) fn find_way(
         &mut self,
         line: u64,
-        motion: &Motion,
-        pushed: Result<Found, Unreachable>,
-    ) -> Result<(), Lost> {
+        motion: &StraightMove,
+        pushed: Result<SolutionSummary, Unreachable>,
+    ) -> Result<(), DroppedPoint> {
         let kind = match (&pushed, self.trellis.layers.last()) {
             (Ok(_), Some(layer)) => layer.kind,
-            _ => Kind::First,
+            _ => ArrivalKind::First,
         };
         if pushed.is_ok() {
             self.trellis.pop();
         }
-        if self.try_positions(line, motion).map_err(Lost::Point)? {
+        if self.try_positions(line, motion).map_err(DroppedPoint::Point)? {
             return Ok(());
         }
         let found = match pushed {
             Ok(found) => found,
             Err(unreachable) => {
-                let refused = Refused::Unreachable(unreachable);
-                return Err(Lost::Point(refusal::refused(self.machine, &refused).boxed()));
+                let refused = PlacementError::Unreachable(unreachable);
+                return Err(DroppedPoint::Point(refusal::refused(self.machine, &refused).boxed()));
             }
         };
-        if kind != Kind::Cut {
-            return Err(Lost::Point(self.over_travel(&found)));
+        if kind != ArrivalKind::Cut {
+            return Err(DroppedPoint::Point(self.over_travel(&found)));
         }
         if self.machine.rewind.is_some() && self.try_rewind(line, motion) {
             return Ok(());
@@ -50,11 +50,11 @@ impl Route<'_> {
         // After the fault the path begins anew, so that what follows is checked too.
         self.settle_all();
         self.leave();
-        Err(Lost::Path(fault))
+        Err(DroppedPoint::Path(fault))
     }
 
     /// Pushes a point if there is a way to stand at it.
-    fn goes_on(&mut self, line: u64, motion: &Motion) -> bool {
+    fn goes_on(&mut self, line: u64, motion: &StraightMove) -> bool {
         let pushed = self.push(line, motion).is_ok();
         if pushed && !self.alive() {
             self.trellis.pop();
@@ -65,7 +65,7 @@ impl Route<'_> {
 
     /// Goes back to where the tool was last off the part, and puts a redundant axis on another of its
     /// positions there: the nearest with which the path comes through to this point.
-    fn try_positions(&mut self, line: u64, motion: &Motion) -> Result<bool, Box<Diagnostic>> {
+    fn try_positions(&mut self, line: u64, motion: &StraightMove) -> Result<bool, Box<Diagnostic>> {
         let held = self.settings[self.setting].0;
         let mut alternatives: Vec<Joints> = Vec::new();
         for joint in self.machine.redundant() {
@@ -100,9 +100,9 @@ impl Route<'_> {
         });
         // The points since the last rapid, this one last.
         let settled = usize::from(self.anchored);
-        let off_part = |kind: Kind| kind != Kind::Cut;
+        let off_part = |kind: ArrivalKind| kind != ArrivalKind::Cut;
         let back = match motion.pace {
-            Pace::Rapid => self.trellis.layers.len(),
+            MoveFeed::Rapid => self.trellis.layers.len(),
             _ => match (settled..self.trellis.layers.len())
                 .rev()
                 .find(|layer| off_part(self.trellis.layers[*layer].kind))
@@ -112,7 +112,7 @@ impl Route<'_> {
                 None => return Ok(false),
             },
         };
-        let mut points: Vec<(u64, Motion)> = Vec::new();
+        let mut points: Vec<(u64, StraightMove)> = Vec::new();
         while self.trellis.layers.len() > back {
             if let Some(layer) = self.trellis.pop() {
                 points.insert(0, (layer.line, layer.motion));
@@ -153,7 +153,7 @@ impl Route<'_> {
     }
 
     /// Adds to the point before the states that a rewind there can reach, and pushes the point again.
-    fn try_rewind(&mut self, line: u64, motion: &Motion) -> bool {
+    fn try_rewind(&mut self, line: u64, motion: &StraightMove) -> bool {
         let Some(rewind) = self.machine.rewind else {
             return false;
         };
@@ -168,7 +168,8 @@ impl Route<'_> {
         };
         let reaches = |joints: &Joints| placer.settled(pose(&back), 1.0, joints).is_ok();
         let mut stands = Vec::new();
-        let states: Vec<State> = self.trellis.states_of(self.trellis.layers.len() - 1).to_vec();
+        let states: Vec<TrellisState> =
+            self.trellis.states_of(self.trellis.layers.len() - 1).to_vec();
         let mut added = Vec::new();
         for (place, state) in states.iter().enumerate() {
             if !state.cost.is_way() || !reaches(&state.joints) {
@@ -195,7 +196,7 @@ impl Route<'_> {
             let state = &states[place];
             self.rewound.push(state.joints);
             let index = self.trellis.states.len();
-            self.trellis.states.push(State {
+            self.trellis.states.push(TrellisState {
                 cost: state.cost.and_rewind(self.trellis.measure.off_part(
                     placer.solver().chain(),
                     &state.joints,
@@ -214,9 +215,9 @@ impl Route<'_> {
         self.goes_on(line, motion)
     }
 
-    fn over_travel(&self, found: &Found) -> Box<Diagnostic> {
+    fn over_travel(&self, found: &SolutionSummary) -> Box<Diagnostic> {
         let refused = match found.over {
-            Some(over) => Refused::OverTravel { over, tried: found.solutions },
+            Some(over) => PlacementError::OverTravel { over, tried: found.solutions },
             None if !self.machine.solution.require.is_empty() => {
                 return Diagnostic::error(
                     "over-travel",
@@ -225,13 +226,13 @@ impl Route<'_> {
                 .help("another side, or another set-up of the part")
                 .boxed();
             }
-            None => Refused::Unreachable(Unreachable::Linear),
+            None => PlacementError::Unreachable(Unreachable::Linear),
         };
         refusal::refused(self.machine, &refused).boxed()
     }
 
     /// The fault of a cut that cannot go on: what each solution would have asked for.
-    fn no_way(&self, motion: &Motion, found: &Found) -> Box<Diagnostic> {
+    fn no_way(&self, motion: &StraightMove, found: &SolutionSummary) -> Box<Diagnostic> {
         let placer = &self.settings[self.setting].1;
         let target = pose(motion);
         let Some(from) = self.trellis.best().map(|index| self.trellis.states[index]) else {

@@ -11,23 +11,23 @@ use std::rc::Rc;
 
 use post_plugin::Format;
 
-use crate::accuracy::{Linearise, Move, Placer};
-use crate::program::{Motion, Pace};
+use crate::accuracy::{Lineariser, NodeMove, Placer};
+use crate::program::{MoveFeed, StraightMove};
 use post_machine::description::{Machine, Positions};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, Pose, Unreachable};
 
 use super::backtrace::Backtrace;
-use super::solution::Found;
-use super::trellis::{Judge, Trellis};
+use super::solution::SolutionSummary;
+use super::trellis::{CutChecker, Trellis};
 
 /// A point of the path with the axis values that were chosen for it.
 #[derive(Clone, Debug)]
-pub(crate) struct Chosen {
+pub(crate) struct ChosenPoint {
     /// Line of the CL file.
     pub line: u64,
     /// The control point's path: see [`super::Configuration`].
-    pub motion: Motion,
+    pub motion: StraightMove,
     /// Which placer solves it: see [`Route::placer`].
     pub setting: usize,
     /// The tool comes here; else it is here already, and is turned.
@@ -61,16 +61,16 @@ pub(crate) struct Route<'a> {
     pub(super) near: Joints,
     /// Axis values before a rewind: see [`trellis::State::rewind`].
     pub(super) rewound: Vec<Joints>,
-    pub(super) judge: Trial<'a>,
+    pub(super) judge: CutTrial<'a>,
     /// Redundant axes can be put elsewhere as long as the last rapid is not settled.
     pub(super) tries_positions: bool,
-    pub(super) chosen: Vec<Chosen>,
+    pub(super) chosen: Vec<ChosenPoint>,
     pub(super) way: Backtrace,
 }
 
 /// A point that is left out.
 #[derive(Debug)]
-pub(crate) enum Lost {
+pub(crate) enum DroppedPoint {
     /// The point cannot be reached; the path goes on from the point before.
     Point(Box<Diagnostic>),
     /// The point can be reached, but the path cannot go on to it; the next point begins a path anew.
@@ -90,18 +90,18 @@ fn tries_positions(machine: &Machine) -> bool {
 
 /// Tries whether a cut comes through, by cutting it into pieces.
 #[derive(Debug)]
-pub(super) struct Trial<'a> {
+pub(super) struct CutTrial<'a> {
     machine: &'a Machine,
-    linearise: Linearise,
+    linearise: Lineariser,
     /// The tip counts too, not the tool axis alone.
     pub(super) strict: bool,
 }
 
-impl Judge for Trial<'_> {
+impl CutChecker for CutTrial<'_> {
     fn passes(
         &mut self,
         placer: &Placer,
-        motion: &Motion,
+        motion: &StraightMove,
         (from_pose, from): (&Pose, &Joints),
         (to_pose, to): (&Pose, &Joints),
     ) -> bool {
@@ -109,8 +109,9 @@ impl Judge for Trial<'_> {
         let (Some(from), Some(to)) = (node(from_pose, from, 0.0), node(to_pose, to, 1.0)) else {
             return false;
         };
-        let loose = motion.pace == Pace::Rapid;
-        let mut planned = Move::planned(self.machine, placer, motion.chord, loose, [&from, &to]);
+        let loose = motion.pace == MoveFeed::Rapid;
+        let mut planned =
+            NodeMove::planned(self.machine, placer, motion.chord, loose, [&from, &to]);
         if planned.whole().is_some() {
             return true;
         }
@@ -121,13 +122,13 @@ impl Judge for Trial<'_> {
     }
 }
 
-impl Trial<'_> {
+impl CutTrial<'_> {
     /// Where the axes stand on the way of a cut, the points put in that it needs, and at which share of it: up to its end.
     /// False where it does not come through.
     pub(super) fn pieces(
         &mut self,
         placer: &Placer,
-        motion: &Motion,
+        motion: &StraightMove,
         (from_pose, from): (&Pose, &Joints),
         (to_pose, to): (&Pose, &Joints),
         pieces: &mut Vec<(f64, Joints)>,
@@ -137,7 +138,7 @@ impl Trial<'_> {
         let (Some(from), Some(to)) = (node(from_pose, from, 0.0), node(to_pose, to, 1.0)) else {
             return false;
         };
-        let planned = Move::planned(self.machine, placer, motion.chord, false, [&from, &to]);
+        let planned = NodeMove::planned(self.machine, placer, motion.chord, false, [&from, &to]);
         if planned.whole().is_some() {
             pieces.push((1.0, to.trace.joints));
             return true;
@@ -172,7 +173,7 @@ impl<'a> Route<'a> {
             mark: 0,
             near,
             rewound: Vec::new(),
-            judge: Trial { machine, linearise: Linearise::default(), strict: false },
+            judge: CutTrial { machine, linearise: Lineariser::default(), strict: false },
             tries_positions: tries_positions(machine),
             chosen: Vec::new(),
             way: Backtrace::default(),
@@ -292,13 +293,13 @@ impl<'a> Route<'a> {
     /// Takes the next point where one state lives and goes on as it is: decided at once. None, and nothing taken, on
     /// any doubt; [`Route::add`] knows what to do then.
     #[inline]
-    pub(crate) fn step(&mut self, line: u64, motion: &Motion) -> Option<Chosen> {
+    pub(crate) fn step(&mut self, line: u64, motion: &StraightMove) -> Option<ChosenPoint> {
         if !self.anchored || self.tries_positions {
             return None;
         }
         let placer = &self.settings[self.setting].1;
         let joints = self.trellis.step(line, motion, self.setting, placer)?;
-        Some(Chosen {
+        Some(ChosenPoint {
             line,
             motion: *motion,
             setting: self.setting,
@@ -315,7 +316,7 @@ impl<'a> Route<'a> {
     /// # Errors
     /// Why the point cannot be reached, or the path not go on to it; it is left out.
     #[inline]
-    pub(crate) fn add(&mut self, line: u64, motion: &Motion) -> Result<(), Lost> {
+    pub(crate) fn add(&mut self, line: u64, motion: &StraightMove) -> Result<(), DroppedPoint> {
         let pushed = self.push(line, motion);
         if pushed.is_err() || !self.alive() {
             self.find_way(line, motion, pushed)?;
@@ -326,7 +327,11 @@ impl<'a> Route<'a> {
 
     /// Pushes a point in the present setting.
     #[inline]
-    pub(super) fn push(&mut self, line: u64, motion: &Motion) -> Result<Found, Unreachable> {
+    pub(super) fn push(
+        &mut self,
+        line: u64,
+        motion: &StraightMove,
+    ) -> Result<SolutionSummary, Unreachable> {
         self.trellis.push(
             line,
             motion,
@@ -345,7 +350,7 @@ impl<'a> Route<'a> {
     }
 
     /// Points that were decided since the last call, in the place of those in `chosen`.
-    pub(crate) fn take_chosen(&mut self, chosen: &mut Vec<Chosen>) {
+    pub(crate) fn take_chosen(&mut self, chosen: &mut Vec<ChosenPoint>) {
         chosen.clear();
         std::mem::swap(&mut self.chosen, chosen);
     }

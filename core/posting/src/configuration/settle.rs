@@ -1,9 +1,9 @@
 //! Settling: the cheapest way through the trellis is walked back, eased close to poles, and handed out.
 
 use super::backtrace::Backtrace;
-use super::cost::Cost;
-use super::route::{Chosen, Route};
-use super::trellis::{HELD, State, Trellis};
+use super::cost::PathCost;
+use super::route::{ChosenPoint, Route};
+use super::trellis::{HELD, Trellis, TrellisState};
 use post_machine::description::Pole;
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::POLE;
@@ -53,7 +53,7 @@ impl Route<'_> {
             self.settle_all();
             return;
         }
-        self.chosen.push(Chosen {
+        self.chosen.push(ChosenPoint {
             line: at.line,
             motion: at.motion,
             setting: at.setting,
@@ -67,7 +67,7 @@ impl Route<'_> {
         trellis.layers.swap_remove(0);
         trellis.layers[0].first = 0;
         trellis.states.clear();
-        trellis.states.push(State { cost: Cost::NONE, from: 0, root: 0, ..state });
+        trellis.states.push(TrellisState { cost: PathCost::NONE, from: 0, root: 0, ..state });
         self.mark = 0;
     }
 
@@ -158,7 +158,7 @@ impl Route<'_> {
             let settled = layer == 0 && self.anchored;
             if !settled || before.is_some() {
                 let at = &trellis.layers[layer];
-                self.chosen.push(Chosen {
+                self.chosen.push(ChosenPoint {
                     line: at.line,
                     motion: at.motion,
                     setting: at.setting,
@@ -186,7 +186,7 @@ impl Route<'_> {
                 if state.root == root {
                     state.cost = state.cost.beyond(&base);
                 } else {
-                    state.cost = Cost::NO_WAY;
+                    state.cost = PathCost::NO_WAY;
                 }
             }
         }
@@ -204,7 +204,7 @@ impl Route<'_> {
         trellis.layers[0].first = 0;
         trellis.layers[0].count = 1;
         trellis.states[0] =
-            State { cost: Cost::NONE, joints, from: 0, root: 0, branch, rewind: None };
+            TrellisState { cost: PathCost::NONE, joints, from: 0, root: 0, branch, rewind: None };
         self.anchored = true;
         self.mark = 0;
         if upto == last {

@@ -11,7 +11,7 @@ use post_machine::kinematics::{Joints, Pose, Solver, Unreachable};
 
 /// One solution, its angles on the turn around zero.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stand {
+pub(crate) struct AxisSolution {
     /// Axis values: pointing angles in -π to π.
     pub joints: Joints,
     /// Which branch of the inverse; stands of one branch at neighbouring points go on from one another.
@@ -22,8 +22,8 @@ pub(crate) struct Stand {
 
 /// What the choice needs to know of the axes.
 #[derive(Clone, Debug)]
-pub(crate) struct Axes {
-    pub(super) turning: Vec<Turning>,
+pub(crate) struct ChoiceAxes {
+    pub(super) turning: Vec<RotaryAxis>,
     /// Axes among them whose full turns are nothing to the machine, one bit each: they have no travel, and no side of
     /// zero counts.
     pub(super) endless: u8,
@@ -40,7 +40,7 @@ pub(crate) struct Axes {
 
 /// A rotary axis that is solved for.
 #[derive(Clone, Debug)]
-pub(super) struct Turning {
+pub(super) struct RotaryAxis {
     pub(super) joint: usize,
     pub(super) travel: Option<[f64; 2]>,
     pub(super) positions: Option<Positions>,
@@ -51,7 +51,7 @@ pub(super) struct Turning {
     pub(super) first: bool,
 }
 
-impl Turning {
+impl RotaryAxis {
     #[inline]
     pub(super) fn forbids(&self, value: f64) -> bool {
         self.require.is_some_and(|side| wrong_side(value + self.zero, side))
@@ -66,7 +66,7 @@ impl Turning {
 
 /// What was found at a point beside the stands themselves.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Found {
+pub(crate) struct SolutionSummary {
     /// Sine and cosine of [`Branches::latitude`].
     pub latitude: (f64, f64),
     /// Solutions, inside travel or not.
@@ -75,7 +75,7 @@ pub(crate) struct Found {
     pub over: Option<OverTravel>,
 }
 
-impl Found {
+impl SolutionSummary {
     /// Records the number of solutions of a chain without a closed form, whose poles are not known.
     pub(super) fn by_search(solutions: usize) -> Self {
         Self { latitude: (1.0, 0.0), solutions, over: None }
@@ -93,7 +93,7 @@ pub(crate) fn both(_: &Branches) -> [bool; 2] {
 /// Linear positions are checked before they are rounded: so far beyond the end is left to the rounding, mm.
 const SLACK: f64 = 2e-3;
 
-impl Axes {
+impl ChoiceAxes {
     /// `printed` gives the values of a rotary joint that are printed inside its travel, radians.
     pub(crate) fn new(
         machine: &Machine,
@@ -111,7 +111,7 @@ impl Axes {
             .map(|&joint| {
                 let axis = &machine.axes[joint];
                 let positions = axis.indexed.as_ref().map(|indexed| indexed.positions.clone());
-                Turning {
+                RotaryAxis {
                     joint,
                     travel: axis.travel.map(|travel| printed(joint, travel)),
                     positions: positions.filter(|positions| *positions != Positions::Any),
@@ -196,8 +196,8 @@ impl Axes {
         pose: &Pose,
         last: &Joints,
         going: &dyn Fn(&Branches) -> [bool; 2],
-        stands: &mut Vec<Stand>,
-    ) -> Result<Found, Unreachable> {
+        stands: &mut Vec<AxisSolution>,
+    ) -> Result<SolutionSummary, Unreachable> {
         if !solver.closed_form() {
             return self.searched(solver, pose, last, stands);
         }
@@ -214,10 +214,13 @@ impl Axes {
         branches: &Branches,
         last: &Joints,
         going: [bool; 2],
-        stands: &mut Vec<Stand>,
-    ) -> Result<Found, Unreachable> {
-        let mut found =
-            Found { latitude: branches.latitude(), solutions: branches.count(), over: None };
+        stands: &mut Vec<AxisSolution>,
+    ) -> Result<SolutionSummary, Unreachable> {
+        let mut found = SolutionSummary {
+            latitude: branches.latitude(),
+            solutions: branches.count(),
+            over: None,
+        };
         let mut flat = None;
         for index in (0..branches.count()).filter(|index| going[*index]) {
             let mut set = solver.angles(branches, index);
@@ -240,7 +243,7 @@ impl Axes {
                 self.keep_least(&mut found.over, over);
                 continue;
             }
-            stands.push(Stand { joints, branch: index as u8, free: set.free });
+            stands.push(AxisSolution { joints, branch: index as u8, free: set.free });
         }
         match flat {
             Some(unreachable) if stands.is_empty() && found.over.is_none() => Err(unreachable),
@@ -266,7 +269,7 @@ impl Axes {
         }
         self.at_rest(&mut set.joints).ok()?;
         let turns = solver.turns(&set);
-        let mut stand = Stand { joints: set.joints, branch, free: 0 };
+        let mut stand = AxisSolution { joints: set.joints, branch, free: 0 };
         solver.place(pose.tip, &mut stand.joints, &turns).ok()?;
         if self.beyond(&stand.joints).is_some() {
             return None;
@@ -282,17 +285,17 @@ impl Axes {
         solver: &Solver,
         pose: &Pose,
         last: &Joints,
-        stands: &mut Vec<Stand>,
-    ) -> Result<Found, Unreachable> {
+        stands: &mut Vec<AxisSolution>,
+    ) -> Result<SolutionSummary, Unreachable> {
         let solutions = solver.inverse(pose, last, self.axis_tolerance)?;
-        let mut found = Found::by_search(solutions.len());
+        let mut found = SolutionSummary::by_search(solutions.len());
         for (branch, mut joints) in solutions.into_iter().enumerate() {
             let over = match self.at_rest(&mut joints) {
                 Ok(()) => self.beyond(&joints),
                 Err(over) => Some(over),
             };
             match over {
-                None => stands.push(Stand { joints, branch: branch as u8, free: 0 }),
+                None => stands.push(AxisSolution { joints, branch: branch as u8, free: 0 }),
                 Some(over) => {
                     self.keep_least(&mut found.over, over);
                 }
@@ -368,7 +371,7 @@ impl Axes {
         pose: &Pose,
         last: &Joints,
         turned: f64,
-    ) -> Option<Stand> {
+    ) -> Option<AxisSolution> {
         let pole = solver.pole_joint()?;
         let mut joints = *solver.held();
         for axis in &self.turning {
@@ -416,7 +419,7 @@ impl Axes {
         }
         let turns = solver.chain().turns(&joints);
         solver.place(pose.tip, &mut joints, &turns).ok()?;
-        let stand = Stand { joints, branch: 0, free: 0 };
+        let stand = AxisSolution { joints, branch: 0, free: 0 };
         self.reaches(&joints).then_some(stand)
     }
 

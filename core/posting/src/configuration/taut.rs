@@ -8,7 +8,7 @@
 
 /// One point of the tube.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Gate {
+pub(crate) struct TubePoint {
     /// Time from the point before, minutes; none where the axis may turn as it likes (a rapid).
     pub time: Option<f64>,
     /// Least and largest value, radians.
@@ -16,7 +16,7 @@ pub(crate) struct Gate {
 }
 
 /// The taut string through `gates` from `start`, one value a gate.
-pub(crate) fn taut(start: Option<f64>, gates: &[Gate]) -> Vec<f64> {
+pub(crate) fn taut(start: Option<f64>, gates: &[TubePoint]) -> Vec<f64> {
     let mut values: Vec<f64> = Vec::with_capacity(gates.len());
     let mut first = 0;
     let mut from = start;
@@ -34,7 +34,7 @@ pub(crate) fn taut(start: Option<f64>, gates: &[Gate]) -> Vec<f64> {
 }
 
 /// One piece: on from `before`, or, where its first gate may be jumped to, from anywhere.
-fn pull(before: Option<f64>, gates: &[Gate], values: &mut Vec<f64>) {
+fn pull(before: Option<f64>, gates: &[TubePoint], values: &mut Vec<f64>) {
     let start = before.filter(|_| gates[0].time.is_some());
     let mut from = start.unwrap_or_else(|| free_start(gates, before.unwrap_or(0.0)));
     let mut times: Vec<f64> = Vec::with_capacity(gates.len());
@@ -101,7 +101,7 @@ fn pull(before: Option<f64>, gates: &[Gate], values: &mut Vec<f64>) {
 
 /// Where a string begins that may begin anywhere: where it need not turn for as long as possible, and of
 /// those values at the one nearest to `before`.
-fn free_start(gates: &[Gate], before: f64) -> f64 {
+fn free_start(gates: &[TubePoint], before: f64) -> f64 {
     let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
     for gate in gates {
         let [least, most] = gate.range;
@@ -120,11 +120,11 @@ fn free_start(gates: &[Gate], before: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn gate(time: f64, low: f64, high: f64) -> Gate {
-        Gate { time: Some(time), range: [low, high] }
+    fn gate(time: f64, low: f64, high: f64) -> TubePoint {
+        TubePoint { time: Some(time), range: [low, high] }
     }
 
-    fn wide(time: f64) -> Gate {
+    fn wide(time: f64) -> TubePoint {
         gate(time, f64::NEG_INFINITY, f64::INFINITY)
     }
 
@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn it_turns_early_where_it_may_jump() {
-        let jump = Gate { time: None, range: [f64::NEG_INFINITY, f64::INFINITY] };
+        let jump = TubePoint { time: None, range: [f64::NEG_INFINITY, f64::INFINITY] };
         let gates = [wide(1.0), jump, wide(1.0), gate(1.0, 5.0, 5.0)];
         assert_eq!(taut(Some(0.0), &gates), [0.0, 5.0, 5.0, 5.0]);
     }
@@ -162,7 +162,7 @@ mod tests {
         };
         for _ in 0..200 {
             let count = 2 + (random() * 8.0) as usize;
-            let gates: Vec<Gate> = (0..count)
+            let gates: Vec<TubePoint> = (0..count)
                 .map(|_| {
                     let middle = 4.0 * random();
                     let half = 1.5 * random();

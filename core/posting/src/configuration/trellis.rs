@@ -2,24 +2,24 @@
 //! go on. What has cost least so far is kept for each state (Viterbi), so that the cheapest path through all of
 //! them is known at every point.
 
-use super::cost::Cost;
-use super::cycle_time::{Clock, Drives};
-use super::metric::Measure;
-use super::solution::{Axes, Found, Stand};
+use super::cost::PathCost;
+use super::cycle_time::{DriveLimits, PathClock};
+use super::metric::TravelMeasure;
+use super::solution::{AxisSolution, ChoiceAxes, SolutionSummary};
 use crate::accuracy::Placer;
-use crate::program::{Motion, Pace};
+use crate::program::{MoveFeed, StraightMove};
 use post_machine::description::{Machine, Pole, SHARE_AT_POLES};
 use post_machine::kinematics::orientation::{Branches, angle};
 use post_machine::kinematics::{Joints, Pose, Unreachable};
 
 /// One point of the path with the ways to stand there.
 #[derive(Clone, Debug)]
-pub(crate) struct Layer {
+pub(crate) struct TrellisLayer {
     /// Line of the CL file.
     pub line: u64,
     /// The move that ends here.
-    pub motion: Motion,
-    pub kind: Kind,
+    pub motion: StraightMove,
+    pub kind: ArrivalKind,
     /// Which placer solves it.
     pub setting: usize,
     /// First of its states.
@@ -31,7 +31,7 @@ pub(crate) struct Layer {
 
 /// How the tool arrives at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum ArrivalKind {
     /// Arrival from nowhere: the first position after a start or a tool change.
     First,
     Rapid,
@@ -40,8 +40,8 @@ pub(crate) enum Kind {
 
 /// One way to stand at a point, and the cheapest way to have come there.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct State {
-    pub cost: Cost,
+pub(crate) struct TrellisState {
+    pub cost: PathCost,
     pub joints: Joints,
     /// Which state of the point before.
     pub from: usize,
@@ -64,7 +64,7 @@ const MOST_STATES: usize = 64;
 const WORTH: f64 = 0.034_906_585_039_886_59;
 
 /// What the states at a point can go on to.
-struct Ways {
+struct TransitionRange {
     /// Branches that have a state.
     alive: [bool; 2],
     /// Latitude of the point before.
@@ -75,18 +75,18 @@ struct Ways {
 }
 
 /// What is known of a cut before its states go on.
-struct Passage {
+struct CutPassage {
     /// Whether it leads past where the branches meet.
     meet: bool,
     /// Angle that the tool axis goes, radians.
     arc: f64,
 }
 
-impl Ways {
+impl TransitionRange {
     /// Does the way lead past where the branches meet? Only if both its ends are close enough to there. Else each
     /// branch goes on by itself; there it has to be tried.
     #[inline]
-    fn meet(&self, axes: &Axes, latitude: (f64, f64)) -> bool {
+    fn meet(&self, axes: &ChoiceAxes, latitude: (f64, f64)) -> bool {
         !axes.far(self.latitude, self.reach)
             && !axes.far(latitude, self.reach)
             && axes.margin(self.latitude) + axes.margin(latitude) <= self.reach
@@ -94,7 +94,7 @@ impl Ways {
 
     /// Branches that are worth being worked out.
     #[inline]
-    fn going(&self, axes: &Axes, branches: &Branches) -> [bool; 2] {
+    fn going(&self, axes: &ChoiceAxes, branches: &Branches) -> [bool; 2] {
         if self.alive == [true; 2] || branches.count() == 1 || self.meet(axes, branches.latitude())
         {
             [true; 2]
@@ -105,33 +105,33 @@ impl Ways {
 }
 
 /// A cut from one of two states to another: does the machine come through, within tolerance?
-pub(crate) trait Judge {
+pub(crate) trait CutChecker {
     fn passes(
         &mut self,
         placer: &Placer,
-        motion: &Motion,
+        motion: &StraightMove,
         from: (&Pose, &Joints),
         to: (&Pose, &Joints),
     ) -> bool;
 }
 
 /// Time that the program asks for a move over `way` mm, minutes; a rapid has none.
-pub(super) fn minutes(motion: &Motion, way: f64) -> f64 {
+pub(super) fn minutes(motion: &StraightMove, way: f64) -> f64 {
     match motion.pace {
-        Pace::PerMinute(feed) => way / feed,
-        Pace::InverseTime(feed) => 1.0 / feed,
-        Pace::Rapid => 0.0,
+        MoveFeed::PerMinute(feed) => way / feed,
+        MoveFeed::InverseTime(feed) => 1.0 / feed,
+        MoveFeed::Rapid => 0.0,
     }
 }
 
 /// The points that are not settled yet; the first of them is, if `anchored`.
 #[derive(Debug)]
 pub(crate) struct Trellis {
-    pub measure: Measure,
-    pub axes: Axes,
-    pub layers: Vec<Layer>,
-    pub states: Vec<State>,
-    stands: Vec<Stand>,
+    pub measure: TravelMeasure,
+    pub axes: ChoiceAxes,
+    pub layers: Vec<TrellisLayer>,
+    pub states: Vec<TrellisState>,
+    stands: Vec<AxisSolution>,
     /// Without a closed form: where searches at the newest point began, and what they found.
     searched: Vec<(Joints, Option<Joints>)>,
     /// Tool axes closer to the pole than this (sine) leave the pole joint free.
@@ -144,7 +144,7 @@ pub(crate) struct Trellis {
 }
 
 /// Where a point is wanted.
-pub(crate) fn pose(motion: &Motion) -> Pose {
+pub(crate) fn pose(motion: &StraightMove) -> Pose {
     Pose { tip: motion.tip, axis: motion.axis, edge: motion.edge }
 }
 
@@ -163,8 +163,8 @@ impl Trellis {
         }
         .max(0.0);
         Self {
-            measure: Measure::new(machine),
-            axes: Axes::new(machine, placer.solver(), freedom, |joint, travel| {
+            measure: TravelMeasure::new(machine),
+            axes: ChoiceAxes::new(machine, placer.solver(), freedom, |joint, travel| {
                 placer.printed_travel(joint, travel)
             }),
             layers: Vec::new(),
@@ -178,7 +178,7 @@ impl Trellis {
     }
 
     /// The states of a layer.
-    pub(crate) fn states_of(&self, layer: usize) -> &[State] {
+    pub(crate) fn states_of(&self, layer: usize) -> &[TrellisState] {
         let layer = &self.layers[layer];
         &self.states[layer.first..layer.first + layer.count]
     }
@@ -191,16 +191,16 @@ impl Trellis {
     pub(crate) fn push(
         &mut self,
         line: u64,
-        motion: &Motion,
+        motion: &StraightMove,
         setting: usize,
         placer: &Placer,
         near: &Joints,
-        judge: &mut dyn Judge,
-    ) -> Result<Found, Unreachable> {
+        judge: &mut dyn CutChecker,
+    ) -> Result<SolutionSummary, Unreachable> {
         let kind = match (self.layers.is_empty(), motion.pace) {
-            (true, _) => Kind::First,
-            (false, Pace::Rapid) => Kind::Rapid,
-            (false, _) => Kind::Cut,
+            (true, _) => ArrivalKind::First,
+            (false, MoveFeed::Rapid) => ArrivalKind::Rapid,
+            (false, _) => ArrivalKind::Cut,
         };
         let target = pose(motion);
         let before = self.layers.last().map(|layer| layer.first..layer.first + layer.count);
@@ -216,12 +216,12 @@ impl Trellis {
             .map_or(*near, |state| state.joints);
         let first = self.states.len();
         let ways = self.ways(&target, kind);
-        if kind == Kind::Cut && !placer.solver().closed_form() {
+        if kind == ArrivalKind::Cut && !placer.solver().closed_form() {
             self.search_on(placer, &target, before.clone().unwrap_or(0..0));
         }
         let found = if self.states.len() > first {
             // What other solutions there are is nothing to a cut, and costly to find out.
-            Ok(Found::by_search(1))
+            Ok(SolutionSummary::by_search(1))
         } else {
             let going = |branches: &Branches| ways.going(&self.axes, branches);
             self.axes.stands(placer.solver(), &target, &last, &going, &mut stands)
@@ -234,7 +234,7 @@ impl Trellis {
             }
         };
         let on_pole = found.latitude.0 <= self.cone && placer.solver().pole_joint().is_some();
-        if kind != Kind::Cut {
+        if kind != ArrivalKind::Cut {
             // A tie goes to the larger value of the axis nearest to the tool.
             let joint = placer.solver().last_rotary();
             stands.sort_by(|a, b| b.joints[joint].total_cmp(&a.joints[joint]));
@@ -245,16 +245,18 @@ impl Trellis {
         }
         if self.states.len() == first {
             match kind {
-                Kind::First => {
+                ArrivalKind::First => {
                     for stand in &stands {
                         self.reach(placer, stand, None, near);
                     }
                 }
-                Kind::Rapid => self.turn(placer, &stands, range),
-                Kind::Cut => {
+                ArrivalKind::Rapid => self.turn(placer, &stands, range),
+                ArrivalKind::Cut => {
                     if placer.solver().closed_form() {
-                        let passage =
-                            Passage { meet: ways.meet(&self.axes, found.latitude), arc: ways.arc };
+                        let passage = CutPassage {
+                            meet: ways.meet(&self.axes, found.latitude),
+                            arc: ways.arc,
+                        };
                         self.go_on(placer, motion, &stands, &passage, range, judge);
                     }
                 }
@@ -262,7 +264,7 @@ impl Trellis {
         }
         self.stands = stands;
         self.thin(first);
-        self.layers.push(Layer {
+        self.layers.push(TrellisLayer {
             line,
             motion: *motion,
             kind,
@@ -280,7 +282,7 @@ impl Trellis {
     pub(crate) fn step(
         &mut self,
         line: u64,
-        motion: &Motion,
+        motion: &StraightMove,
         setting: usize,
         placer: &Placer,
     ) -> Option<Joints> {
@@ -288,11 +290,11 @@ impl Trellis {
             return None;
         };
         let solver = placer.solver();
-        if motion.pace == Pace::Rapid || state.branch == HELD || !solver.closed_form() {
+        if motion.pace == MoveFeed::Rapid || state.branch == HELD || !solver.closed_form() {
             return None;
         }
         let target = pose(motion);
-        let ways = self.ways(&target, Kind::Cut);
+        let ways = self.ways(&target, ArrivalKind::Cut);
         let branches = solver.orient(&target, self.axes.axis_tolerance).ok()?;
         let latitude = branches.latitude();
         if branches.count() == 1 || self.eased(latitude.0) || ways.meet(&self.axes, latitude) {
@@ -305,7 +307,7 @@ impl Trellis {
         let layer = &mut self.layers[0];
         layer.line = line;
         layer.motion = *motion;
-        layer.kind = Kind::Cut;
+        layer.kind = ArrivalKind::Cut;
         layer.setting = setting;
         layer.latitude = latitude;
         Some(joints)
@@ -318,10 +320,14 @@ impl Trellis {
 
     /// What the states of the newest layer can go on to.
     #[inline]
-    fn ways(&self, target: &Pose, kind: Kind) -> Ways {
-        let mut ways =
-            Ways { alive: [true; 2], latitude: (0.0, 0.0), arc: 0.0, reach: f64::INFINITY };
-        let Some(last) = self.layers.last().filter(|_| kind == Kind::Cut) else {
+    fn ways(&self, target: &Pose, kind: ArrivalKind) -> TransitionRange {
+        let mut ways = TransitionRange {
+            alive: [true; 2],
+            latitude: (0.0, 0.0),
+            arc: 0.0,
+            reach: f64::INFINITY,
+        };
+        let Some(last) = self.layers.last().filter(|_| kind == ArrivalKind::Cut) else {
             return ways;
         };
         ways.alive = [false; 2];
@@ -354,9 +360,9 @@ impl Trellis {
     ///
     /// If only states with the same turns were compared, a path that comes and goes at a pole would
     /// add a turn to either side each time, until there are [`MOST_STATES`] at every point.
-    fn keep(&mut self, first: usize, state: State) {
+    fn keep(&mut self, first: usize, state: TrellisState) {
         let axes = &self.axes;
-        let like = |known: &&mut State| {
+        let like = |known: &&mut TrellisState| {
             axes.alike((known.branch, &known.joints), (state.branch, &state.joints))
         };
         match self.states[first..].iter_mut().find(like) {
@@ -374,11 +380,11 @@ impl Trellis {
         target: &Pose,
         before: std::ops::Range<usize>,
         near: &Joints,
-        kind: Kind,
+        kind: ArrivalKind,
     ) {
         let first = self.states.len();
         for quarter in [0.0, 1.0, -1.0, 2.0] {
-            if kind == Kind::First {
+            if kind == ArrivalKind::First {
                 self.hold_from(placer, target, (None, kind), near, quarter, first);
             }
             for index in before.clone() {
@@ -396,7 +402,7 @@ impl Trellis {
         &mut self,
         placer: &Placer,
         target: &Pose,
-        (from, kind): (Option<usize>, Kind),
+        (from, kind): (Option<usize>, ArrivalKind),
         near: &Joints,
         quarter: f64,
         first: usize,
@@ -411,20 +417,22 @@ impl Trellis {
         let Some(mut stand) = held else {
             return;
         };
-        if kind == Kind::Cut && !self.axes.stand_still(&last, &mut stand.joints) {
+        if kind == ArrivalKind::Cut && !self.axes.stand_still(&last, &mut stand.joints) {
             return;
         }
         let (cost, way) = match &before {
-            Some(state) if kind == Kind::Cut => (state.cost, self.way_on(state, &stand.joints)),
+            Some(state) if kind == ArrivalKind::Cut => {
+                (state.cost, self.way_on(state, &stand.joints))
+            }
             Some(state) => (
                 state.cost,
                 self.measure.off_part(placer.solver().chain(), &state.joints, &stand.joints),
             ),
-            None => (Cost::NONE, self.measure.approach(near, &stand.joints)),
+            None => (PathCost::NONE, self.measure.approach(near, &stand.joints)),
         };
         self.keep(
             first,
-            State {
+            TrellisState {
                 cost: cost.and(way, self.measure.against(&stand.joints)),
                 joints: stand.joints,
                 from: from.unwrap_or(0),
@@ -436,7 +444,7 @@ impl Trellis {
     }
 
     /// Adds every set of turns of a solution, reached from one state or from nowhere.
-    fn reach(&mut self, placer: &Placer, stand: &Stand, from: Option<usize>, near: &Joints) {
+    fn reach(&mut self, placer: &Placer, stand: &AxisSolution, from: Option<usize>, near: &Joints) {
         let chain = placer.solver().chain();
         let Self { axes, measure, states, .. } = self;
         let before = from.map(|index| states[index]);
@@ -444,9 +452,9 @@ impl Trellis {
         axes.turned(stand, &last, &mut |joints| {
             let (cost, way) = match &before {
                 Some(state) => (state.cost, measure.off_part(chain, &state.joints, joints)),
-                None => (Cost::NONE, measure.approach(near, joints)),
+                None => (PathCost::NONE, measure.approach(near, joints)),
             };
-            states.push(State {
+            states.push(TrellisState {
                 cost: cost.and(way, measure.against(joints)),
                 joints: *joints,
                 from: from.unwrap_or(0),
@@ -458,7 +466,7 @@ impl Trellis {
     }
 
     /// Connects every state with every other, off the part.
-    fn turn(&mut self, placer: &Placer, stands: &[Stand], before: std::ops::Range<usize>) {
+    fn turn(&mut self, placer: &Placer, stands: &[AxisSolution], before: std::ops::Range<usize>) {
         let first = self.states.len();
         let mut begun = false;
         for index in before {
@@ -492,11 +500,11 @@ impl Trellis {
     fn go_on(
         &mut self,
         placer: &Placer,
-        motion: &Motion,
-        stands: &[Stand],
-        passage: &Passage,
+        motion: &StraightMove,
+        stands: &[AxisSolution],
+        passage: &CutPassage,
         before: std::ops::Range<usize>,
-        judge: &mut dyn Judge,
+        judge: &mut dyn CutChecker,
     ) {
         let first = self.states.len();
         let Some(last) = self.layers.last() else {
@@ -550,7 +558,7 @@ impl Trellis {
 
     /// What it costs to go on in a cut from a state of the newest layer.
     #[inline]
-    fn way_on(&self, state: &State, joints: &Joints) -> f64 {
+    fn way_on(&self, state: &TrellisState, joints: &Joints) -> f64 {
         let travel = self.measure.between(&state.joints, joints);
         match self.measure.drives() {
             Some(drives) => travel + self.seconds_on(drives, state, joints),
@@ -562,14 +570,14 @@ impl Trellis {
     /// so far; a dearer way that would have gone on more smoothly is not known any more. And how the tool came to the first
     /// layer is not known at all.)
     #[cold]
-    fn seconds_on(&self, drives: &Drives, state: &State, joints: &Joints) -> f64 {
+    fn seconds_on(&self, drives: &DriveLimits, state: &TrellisState, joints: &Joints) -> f64 {
         let newest = self.layers.len() - 1;
         let before = self.states[state.from].joints;
-        let cut = self.layers[newest].kind == Kind::Cut && state.rewind.is_none();
-        let mut clock = Clock::new(drives, if cut { before } else { state.joints });
+        let cut = self.layers[newest].kind == ArrivalKind::Cut && state.rewind.is_none();
+        let mut clock = PathClock::new(drives, if cut { before } else { state.joints });
         match (cut, newest) {
             (false, _) => clock.rests(),
-            (true, 0) => clock = Clock::new(drives, state.joints),
+            (true, 0) => clock = PathClock::new(drives, state.joints),
             (true, _) => clock.cuts(&state.joints, self.asked[0]),
         }
         let known = clock.seconds;
@@ -589,7 +597,7 @@ impl Trellis {
     }
 
     /// Time that is asked for a move to a point after the newest layer.
-    fn asked_next(&self, motion: &Motion) -> f64 {
+    fn asked_next(&self, motion: &StraightMove) -> f64 {
         self.layers
             .last()
             .map_or(0.0, |last| 60.0 * minutes(motion, (motion.tip - last.motion.tip).norm()))
@@ -597,9 +605,9 @@ impl Trellis {
 
     /// The state that stands at `joints` and comes from another.
     #[inline]
-    fn after(&self, from: usize, joints: Joints, branch: u8) -> State {
+    fn after(&self, from: usize, joints: Joints, branch: u8) -> TrellisState {
         let state = &self.states[from];
-        State {
+        TrellisState {
             cost: state.cost.and(self.way_on(state, &joints), self.measure.against(&joints)),
             joints,
             from,
@@ -611,7 +619,7 @@ impl Trellis {
 
     /// Connects a held pole joint with every solution: that joint is turned while it turns nothing, the others
     /// go on from where they are.
-    fn leave_pole(&mut self, stand: &Stand, from: usize, first: usize) {
+    fn leave_pole(&mut self, stand: &AxisSolution, from: usize, first: usize) {
         let state = self.states[from];
         let mut reached = Vec::new();
         self.axes.unheld(stand, &state.joints, &mut |joints| reached.push(*joints));
@@ -682,7 +690,7 @@ impl Trellis {
     }
 
     /// Takes the newest layer back.
-    pub(crate) fn pop(&mut self) -> Option<Layer> {
+    pub(crate) fn pop(&mut self) -> Option<TrellisLayer> {
         let layer = self.layers.pop()?;
         self.states.truncate(layer.first);
         Some(layer)

@@ -5,8 +5,8 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_plugin::Format;
 
-use super::route::{Lost, Route};
-use crate::program::Motion;
+use super::route::{DroppedPoint, Route};
+use crate::program::StraightMove;
 
 /// The axis values of each point of `path`, chosen over the whole of it as for a program whose words are written as
 /// `format` says, with a tool of `length` mm. The machine does not draw its tool back: where a cut cannot go on, that is
@@ -18,7 +18,7 @@ pub fn whole_pass(
     machine: &Machine,
     format: &Format,
     length: f64,
-    path: &[Motion],
+    path: &[StraightMove],
 ) -> Result<Vec<Joints>, Vec<Diagnostic>> {
     let machine = Machine { rewind: None, ..machine.clone() };
     let along = machine.control_point.along;
@@ -27,9 +27,9 @@ pub fn whole_pass(
     let mut found = vec![Joints::default(); path.len()];
     let mut chosen = Vec::new();
     for (index, motion) in path.iter().enumerate() {
-        let guided = Motion { tip: motion.tip + motion.axis * along, ..*motion };
+        let guided = StraightMove { tip: motion.tip + motion.axis * along, ..*motion };
         if let Err(lost) = route.add(index as u64, &guided) {
-            let (Lost::Point(fault) | Lost::Path(fault)) = lost;
+            let (DroppedPoint::Point(fault) | DroppedPoint::Path(fault)) = lost;
             let message = format!("point {index}: {}", fault.message);
             faults.push(Diagnostic { message, ..*fault });
             if faults.len() >= crate::MOST_FAULTS {

@@ -4,14 +4,14 @@ use post_machine::description::{OutputUnits, Smoothing, Tcp, TextPlace};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Capabilities, Event, SpindleSense};
 
-use super::Emit;
+use super::EmitStage;
 use crate::findings::Findings;
-use crate::program::Tool;
+use crate::program::ToolChange;
 
 /// Millimetres in a foot.
 const FOOT: f64 = 304.8;
 
-impl Emit<'_> {
+impl EmitStage<'_> {
     /// Another work offset, the tool retracted and nothing in force that counts from the one before.
     pub(super) fn work_offset(&mut self, line: u64, number: u32, findings: &Findings) {
         let event = Event::WorkOffset { number, name: "" };
@@ -76,7 +76,7 @@ impl Emit<'_> {
 
     /// Another length register for the tool in the spindle: false if it is another tool, or the dialect knows only
     /// tool changes.
-    pub(super) fn offsets(&mut self, line: u64, tool: &Tool) -> bool {
+    pub(super) fn offsets(&mut self, line: u64, tool: &ToolChange) -> bool {
         if self.tool != Some(tool.number) || !self.writer.knows(Capabilities::OFFSETS) {
             self.tool = Some(tool.number);
             return false;

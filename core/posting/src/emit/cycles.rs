@@ -10,31 +10,31 @@ use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::{Diagnostic, Short};
 use post_plugin::{Capabilities, Cycle, Event, Feed, ToolPose};
 
-use super::Emit;
-use crate::blocks::{Block, MotionKind};
+use super::EmitStage;
+use crate::blocks::{BlockKind, MotionBlock};
 use crate::findings::Findings;
-use crate::program::{Command, Drilling, HoleMark, Pace};
-use crate::stream::Flow;
+use crate::program::{Command, HoleCycle, HoleMark, MoveFeed};
+use crate::stream::StreamItem;
 
 /// A feed that differs by less is the same.
 const SAME_FEED: f64 = 1e-6;
 
 /// What of a hole has come so far.
 #[derive(Debug)]
-pub(super) struct Hole {
+pub(super) struct HoleMoves {
     line: u64,
-    drilling: Drilling,
+    drilling: HoleCycle,
     /// The point that its heights count from, and the tool axis, part frame; none before the tool stands above it.
     at: Option<ToolPose>,
     /// Moves to the retract level above it.
-    above: Vec<Flow<Block>>,
+    above: Vec<StreamItem<MotionBlock>>,
     /// Moves into it and back to that level.
-    into: Vec<Flow<Block>>,
+    into: Vec<StreamItem<MotionBlock>>,
 }
 
-impl Hole {
+impl HoleMoves {
     /// Where the moves go that come now.
-    fn part(&mut self) -> &mut Vec<Flow<Block>> {
+    fn part(&mut self) -> &mut Vec<StreamItem<MotionBlock>> {
         match self.at {
             None => &mut self.above,
             Some(_) => &mut self.into,
@@ -44,7 +44,7 @@ impl Hole {
 
 /// The cycle in force: what [`Event::Cycle`] said, and where its points have their retract level.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct InForce {
+pub(super) struct CycleInForce {
     kind: Cycle,
     feed: Feed,
     depth: f64,
@@ -58,8 +58,8 @@ pub(super) struct InForce {
 }
 
 /// A hole as a cycle.
-struct Native {
-    cycle: InForce,
+struct NativeCycle {
+    cycle: CycleInForce,
     /// All axis words with the tip on the point.
     words: WordValues,
     /// Distance by which it is farther off the CL path than the moves are, mm.
@@ -78,17 +78,17 @@ pub(super) fn depth_word(machine: &Machine) -> Option<usize> {
     z_word(machine).filter(|place| axis_words::depth(machine) == Some(joint(*place)))
 }
 
-impl Emit<'_> {
+impl EmitStage<'_> {
     /// Takes a mark of a hole, or what comes while one is open.
-    pub(super) fn drill(&mut self, next: &Flow<Block>, findings: &Findings) {
+    pub(super) fn drill(&mut self, next: &StreamItem<MotionBlock>, findings: &Findings) {
         let (line, mark) = match (next, &mut self.hole) {
-            (Flow::Command { line, command: Command::Hole(mark) }, _) => (*line, mark),
+            (StreamItem::Command { line, command: Command::Hole(mark) }, _) => (*line, mark),
             (next, Some(hole)) => return hole.part().push(next.clone()),
             _ => return,
         };
         match mark {
             HoleMark::Above(drilling) => {
-                self.hole = Some(Box::new(Hole {
+                self.hole = Some(Box::new(HoleMoves {
                     line,
                     drilling: *drilling,
                     at: None,
@@ -117,7 +117,7 @@ impl Emit<'_> {
         }
     }
 
-    fn hole_done(&mut self, hole: &Hole, findings: &Findings) {
+    fn hole_done(&mut self, hole: &HoleMoves, findings: &Findings) {
         let native = self.native(hole, findings);
         if native.is_none() && hole.drilling.alone {
             findings.at(hole.line, not_here());
@@ -152,11 +152,11 @@ impl Emit<'_> {
     }
 
     /// As moves.
-    fn replay(&mut self, stream: &[Flow<Block>], findings: &Findings) {
+    fn replay(&mut self, stream: &[StreamItem<MotionBlock>], findings: &Findings) {
         for next in stream {
             match next {
-                Flow::Point(block) => self.placed_block(block, findings),
-                Flow::Command { line, command } => self.command(*line, command, findings),
+                StreamItem::Point(block) => self.placed_block(block, findings),
+                StreamItem::Command { line, command } => self.command(*line, command, findings),
             }
             if self.writer.is_full() {
                 self.flush(findings);
@@ -165,7 +165,7 @@ impl Emit<'_> {
     }
 
     /// Blocks that the control makes itself.
-    fn pass(&mut self, stream: &[Flow<Block>]) {
+    fn pass(&mut self, stream: &[StreamItem<MotionBlock>]) {
         for block in points(stream).filter(|block| !block.still) {
             self.extremes.cover(&block.joints);
             self.extremes.go(&self.last, &block.joints);
@@ -175,9 +175,9 @@ impl Emit<'_> {
     }
 
     /// The cycle, unless it is in force, and its point.
-    fn point(&mut self, hole: &Hole, native: &Native, in_force: bool) {
+    fn point(&mut self, hole: &HoleMoves, native: &NativeCycle, in_force: bool) {
         if self.clamps()
-            && let Some(block) = points(&hole.into).find(|block| block.kind == MotionKind::Linear)
+            && let Some(block) = points(&hole.into).find(|block| block.kind == BlockKind::Linear)
         {
             self.clamp(block);
         }
@@ -199,10 +199,10 @@ impl Emit<'_> {
             );
         }
         for next in &hole.into {
-            if let Flow::Point(block) = next {
+            if let StreamItem::Point(block) = next {
                 let mut drifted = *block;
                 drifted.deviation.tip += native.drift;
-                self.pass(&[Flow::Point(drifted)]);
+                self.pass(&[StreamItem::Point(drifted)]);
             }
         }
         self.extremes.blocks += 1;
@@ -211,9 +211,9 @@ impl Emit<'_> {
     }
 
     /// Every block of the way to the next hole keeps to the level of the last one.
-    fn stays_level(&self, above: &[Flow<Block>], level: &WordValues) -> bool {
+    fn stays_level(&self, above: &[StreamItem<MotionBlock>], level: &WordValues) -> bool {
         points(above)
-            .all(|block| block.kind == MotionKind::Rapid && self.across_alone(&block.words, level))
+            .all(|block| block.kind == BlockKind::Rapid && self.across_alone(&block.words, level))
             && above.len() == points(above).count()
     }
 
@@ -224,7 +224,7 @@ impl Emit<'_> {
     }
 
     /// The hole as a cycle; none if it is not the same.
-    fn native(&self, hole: &Hole, findings: &Findings) -> Option<Native> {
+    fn native(&self, hole: &HoleMoves, findings: &Findings) -> Option<NativeCycle> {
         let machine = self.machine;
         let (point, drilling) = (hole.at?, &hole.drilling);
         // Where the control keeps the tip, and where the plane is tilted, it must have said so.
@@ -243,7 +243,7 @@ impl Emit<'_> {
         }
         let level = points(&hole.above).last()?;
         let moves = points(&hole.into).all(|block| {
-            matches!(block.kind, MotionKind::Rapid | MotionKind::Linear)
+            matches!(block.kind, BlockKind::Rapid | BlockKind::Linear)
                 && self.rotary_stand(&block.words, &level.words)
         });
         if !moves {
@@ -284,8 +284,8 @@ impl Emit<'_> {
             stands[*place] = 0.0;
         }
         let in_units = |way: Option<f64>| way.map(|way| way / unit);
-        Some(Native {
-            cycle: InForce {
+        Some(NativeCycle {
+            cycle: CycleInForce {
                 kind: drilling.kind,
                 feed,
                 depth,
@@ -311,7 +311,7 @@ impl Emit<'_> {
     }
 
     /// The words of the way into the hole go down the depth word.
-    fn upright(&self, hole: &Hole, level: &Block, place: usize) -> bool {
+    fn upright(&self, hole: &HoleMoves, level: &MotionBlock, place: usize) -> bool {
         let bottom = points(&hole.into).map(|block| block.words[place]);
         let bottom = bottom.fold(f64::INFINITY, f64::min);
         let unit = unit_length(self.machine.control.units);
@@ -329,7 +329,7 @@ impl Emit<'_> {
 
     /// How far the moves leave the straight way down through the level's words, in program units; none if that is more than
     /// the tolerance leaves.
-    fn drift(&self, hole: &Hole, level: &Block, place: usize) -> Option<f64> {
+    fn drift(&self, hole: &HoleMoves, level: &MotionBlock, place: usize) -> Option<f64> {
         let unit = unit_length(self.machine.control.units);
         let (mut drift, mut deviation) = (0.0_f64, 0.0_f64);
         for block in points(&hole.into) {
@@ -346,12 +346,12 @@ impl Emit<'_> {
     }
 
     /// The feed of the cycle, per minute, as it is printed: that of its slowest block.
-    fn cycle_feed(&self, hole: &Hole, findings: &Findings) -> Option<Feed> {
+    fn cycle_feed(&self, hole: &HoleMoves, findings: &Findings) -> Option<Feed> {
         let unit = unit_length(self.machine.control.units);
         let mut slowest = f64::INFINITY;
         let mut asked = f64::INFINITY;
         for block in points(&hole.into) {
-            if block.kind != MotionKind::Linear || block.still {
+            if block.kind != BlockKind::Linear || block.still {
                 continue;
             }
             let feed = match block.time.feed {
@@ -359,7 +359,7 @@ impl Emit<'_> {
                 _ => block.way / unit / block.time.minutes,
             };
             slowest = slowest.min(feed);
-            if let Pace::PerMinute(feed) = block.pace {
+            if let MoveFeed::PerMinute(feed) = block.pace {
                 asked = asked.min(feed / unit);
             }
         }
@@ -382,10 +382,10 @@ impl Emit<'_> {
     }
 }
 
-fn points(stream: &[Flow<Block>]) -> impl Iterator<Item = &Block> {
+fn points(stream: &[StreamItem<MotionBlock>]) -> impl Iterator<Item = &MotionBlock> {
     stream.iter().filter_map(|next| match next {
-        Flow::Point(block) => Some(block),
-        Flow::Command { .. } => None,
+        StreamItem::Point(block) => Some(block),
+        StreamItem::Command { .. } => None,
     })
 }
 

@@ -2,8 +2,8 @@
 
 use post_machine::kinematics::{Joints, MAX_AXES};
 
-use crate::blocks::Block;
-use crate::report::Deviation;
+use crate::blocks::MotionBlock;
+use crate::report::ReportedDeviation;
 
 /// Deviations that differ by less are the same: mm or radians.
 const EQUAL: f64 = 1e-9;
@@ -20,7 +20,7 @@ pub(crate) struct Extremes {
     /// Blocks among them that go along a curve.
     pub curves: u64,
     /// Cuts: tip (mm), tool axis (radians); rapids: tip (mm).
-    pub deviations: [Deviation; 3],
+    pub deviations: [ReportedDeviation; 3],
     /// Least axis values.
     pub least: Joints,
     /// Largest axis values.
@@ -36,7 +36,7 @@ impl Extremes {
         Self {
             blocks: 0,
             curves: 0,
-            deviations: [Deviation::default(); 3],
+            deviations: [ReportedDeviation::default(); 3],
             least: [f64::INFINITY; MAX_AXES],
             most: [f64::NEG_INFINITY; MAX_AXES],
             travel: [0.0; MAX_AXES],
@@ -46,7 +46,7 @@ impl Extremes {
 
     /// Keeps the largest deviations; the block will be event `index` of the batch.
     #[inline]
-    pub(super) fn mark(&mut self, block: &Block, index: usize) {
+    pub(super) fn mark(&mut self, block: &MotionBlock, index: usize) {
         if block.loose {
             self.keep(RAPID, block.deviation.tip, block.line, index);
         } else {
@@ -60,7 +60,7 @@ impl Extremes {
         let deviation = &mut self.deviations[slot];
         // Of blocks that are equal but for rounding errors, the first is named.
         if value > deviation.value + EQUAL {
-            *deviation = Deviation { value, block: 0, line };
+            *deviation = ReportedDeviation { value, block: 0, line };
             self.marks[slot] = Some(index);
         } else if value > deviation.value {
             deviation.value = value;

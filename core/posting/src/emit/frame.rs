@@ -6,23 +6,23 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Capabilities, Coolant, Event, Spindle};
 
-use super::{Emit, FirstPosition, across, cycles, stands};
-use crate::blocks::{Block, Reason};
+use super::{EmitStage, FirstPosition, across, cycles, stands};
+use crate::blocks::{BlockReason, MotionBlock};
 use crate::findings::Findings;
-use crate::program::{Pace, Tool};
+use crate::program::{MoveFeed, ToolChange};
 
 /// Full turns that an axis may stand away from its park position without a warning, degrees.
 const TURN: f64 = 360.0;
 
 /// What an axis does for the tool on its way to the part.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Part {
+enum AxisRole {
     Rotary,
     Plane,
     Depth,
 }
 
-impl Part {
+impl AxisRole {
     fn of(machine: &Machine, joint: usize) -> Self {
         if machine.axes[joint].joint.rotary {
             Self::Rotary
@@ -38,7 +38,7 @@ fn parks(axes: u32, words: &[f64]) -> Event<'_> {
     Event::Park { axes, words }
 }
 
-impl Emit<'_> {
+impl EmitStage<'_> {
     /// The depth axes to where the tool is clear of the part, and everything cancelled that a first position put in
     /// force.
     pub(super) fn retract(&mut self, line: u64) {
@@ -106,17 +106,17 @@ impl Emit<'_> {
 
     /// Axes to positions of the machine, the tool retracted: the rotary ones, those across the tool, and the depth last.
     fn park(&mut self, line: u64, positions: &[(usize, f64)], findings: &Findings) {
-        for part in [Part::Rotary, Part::Plane, Part::Depth] {
+        for part in [AxisRole::Rotary, AxisRole::Plane, AxisRole::Depth] {
             let group: Vec<(usize, f64)> = positions
                 .iter()
                 .copied()
-                .filter(|(joint, _)| Part::of(self.base, *joint) == part)
+                .filter(|(joint, _)| AxisRole::of(self.base, *joint) == part)
                 .collect();
             if group.is_empty() {
                 continue;
             }
             // From there the tool is retracted again before anything turns or goes across.
-            self.clear &= part != Part::Depth;
+            self.clear &= part != AxisRole::Depth;
             for &(joint, value) in &group {
                 self.tell_unwinding(line, joint, value, findings);
                 self.set_clamp(line, joint, false, true);
@@ -187,7 +187,7 @@ impl Emit<'_> {
         }
     }
 
-    pub(super) fn change(&mut self, line: u64, tool: &Tool, findings: &Findings) {
+    pub(super) fn change(&mut self, line: u64, tool: &ToolChange, findings: &Findings) {
         if self.offsets(line, tool) {
             return;
         }
@@ -291,17 +291,17 @@ impl Emit<'_> {
 
     /// The first position after the start, a tool change or a retract: the rotary axes turn with the tool clear of the
     /// part, are clamped, and then it comes near.
-    pub(super) fn position(&mut self, block: &Block, findings: &Findings) {
+    pub(super) fn position(&mut self, block: &MotionBlock, findings: &Findings) {
         let line = block.line;
         self.worked = true;
         match block.reason {
-            Reason::Above => self.extremes.reach_above(),
+            BlockReason::Above => self.extremes.reach_above(),
             _ => self.extremes.reach(&block.joints),
         }
         let turns = self.machine.axes.iter().any(|axis| axis.joint.rotary);
         self.retract(line);
         self.tell_compensation(findings);
-        if self.changed && self.commanded.is_some() && block.pace == Pace::Rapid {
+        if self.changed && self.commanded.is_some() && block.pace == MoveFeed::Rapid {
             // The tool's own speed may stand after its first position.
             self.waits = Some(FirstPosition::of(block));
         } else {
@@ -342,7 +342,7 @@ impl Emit<'_> {
         if !self.plane_on {
             self.keep_tip(line, true);
         }
-        if block.reason != Reason::Above {
+        if block.reason != BlockReason::Above {
             self.begin_compensation(line);
         }
         self.writer.push(
@@ -350,7 +350,7 @@ impl Emit<'_> {
             Event::Position {
                 tool: stands(block),
                 feed: block.time.feed,
-                plane_first: !matches!(block.reason, Reason::Above | Reason::AtOnce),
+                plane_first: !matches!(block.reason, BlockReason::Above | BlockReason::AtOnce),
                 words,
             },
         );

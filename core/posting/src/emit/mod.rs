@@ -14,25 +14,25 @@ use post_machine::kinematics::Joints;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Capabilities, Compensation, Coolant, DialectSession, Event, List, ToolPose};
 
-use crate::blocks::{Block, MotionKind, Reason};
+use crate::blocks::{BlockKind, BlockReason, MotionBlock};
 use crate::curve::{CurveWords, PrintedCurve};
 use crate::findings::Findings;
 use crate::job_facts::JobFacts;
-use crate::observer::Output;
+use crate::observer::TextSink;
 use crate::program::Command;
-use crate::stream::Flow;
-use cycles::{Hole, InForce};
+use crate::stream::StreamItem;
+use cycles::{CycleInForce, HoleMoves};
 pub(crate) use extremes::Extremes;
-use texts::Texts;
-use writer::Writer;
+use texts::ProgramTexts;
+use writer::EventWriter;
 
 /// The last stage.
-pub(crate) struct Emit<'a> {
+pub(crate) struct EmitStage<'a> {
     machine: &'a Machine,
     /// The machine with the head that it starts with.
     base: &'a Machine,
-    writer: Writer<'a>,
-    texts: Texts<'a>,
+    writer: EventWriter<'a>,
+    texts: ProgramTexts<'a>,
     extremes: Extremes,
     /// Where the axes stand after the last block.
     last: Joints,
@@ -64,9 +64,9 @@ pub(crate) struct Emit<'a> {
     /// Whether the control got it.
     plane_on: bool,
     /// The hole whose moves are coming.
-    hole: Option<Box<Hole>>,
+    hole: Option<Box<HoleMoves>>,
     /// The cycle in force.
-    cycle: Option<InForce>,
+    cycle: Option<CycleInForce>,
     /// Place of the word that cycles drill along, and the same where it is that of the axis along the tool.
     z_word: Option<usize>,
     depth_word: Option<usize>,
@@ -97,21 +97,21 @@ pub(crate) struct Emit<'a> {
     left_compensating: Option<u64>,
 }
 
-impl<'a> Emit<'a> {
+impl<'a> EmitStage<'a> {
     pub(crate) fn new(
         machine: &'a Machine,
         job: &JobFacts,
         dialect: &'a mut dyn DialectSession,
-        output: &'a mut dyn Output,
+        output: &'a mut dyn TextSink,
     ) -> Self {
         let words = Words::new(machine, dialect.format());
-        let mut writer = Writer::new(dialect, output);
+        let mut writer = EventWriter::new(dialect, output);
         writer.push(0, Event::Start);
         let mut emit = Self {
             machine,
             base: machine,
             writer,
-            texts: Texts::new(machine, job),
+            texts: ProgramTexts::new(machine, job),
             extremes: Extremes::new(),
             last: Joints::default(),
             clamped: 0,
@@ -162,15 +162,15 @@ impl<'a> Emit<'a> {
     }
 
     /// Takes a batch.
-    pub(crate) fn take(&mut self, batch: &[Flow<Block>], findings: &Findings) {
+    pub(crate) fn take(&mut self, batch: &[StreamItem<MotionBlock>], findings: &Findings) {
         for next in batch {
             match next {
                 _ if self.hole.is_some() || next.marks_hole() => self.drill(next, findings),
-                Flow::Point(block) => {
+                StreamItem::Point(block) => {
                     self.end_cycle(block.line);
                     self.placed_block(block, findings);
                 }
-                Flow::Command { line, command } => {
+                StreamItem::Command { line, command } => {
                     self.end_cycle(*line);
                     self.command(*line, command, findings);
                 }
@@ -206,34 +206,34 @@ impl<'a> Emit<'a> {
 
     /// Writes a block, and notes where it stands.
     #[inline]
-    fn placed_block(&mut self, block: &Block, findings: &Findings) {
+    fn placed_block(&mut self, block: &MotionBlock, findings: &Findings) {
         let before = self.writer.next();
         self.block(block, findings);
         self.writer.place(before);
     }
 
     #[inline]
-    fn block(&mut self, block: &Block, findings: &Findings) {
+    fn block(&mut self, block: &MotionBlock, findings: &Findings) {
         let line = block.line;
         if self.waits.is_some_and(|first| cuts(block) || first.goes_in(block)) {
             self.wake(line, findings);
         }
         match block.kind {
-            MotionKind::Position => self.position(block, findings),
-            MotionKind::Reference => {
+            BlockKind::Position => self.position(block, findings),
+            BlockKind::Reference => {
                 self.retract(line);
                 self.extremes.go(&self.last, &block.joints);
                 self.position(block, findings);
             }
-            MotionKind::Arc | MotionKind::Spline => self.curve(block),
-            MotionKind::Rapid | MotionKind::Linear => {
+            BlockKind::Arc | BlockKind::Spline => self.curve(block),
+            BlockKind::Rapid | BlockKind::Linear => {
                 // A block without a changed word moves nothing and is not written.
                 if block.still {
                     self.extremes.mark(block, self.writer.next());
                     return;
                 }
                 match block.reason {
-                    Reason::Above => self.extremes.reach_above(),
+                    BlockReason::Above => self.extremes.reach_above(),
                     _ => self.extremes.reach(&block.joints),
                 }
                 self.extremes.go(&self.last, &block.joints);
@@ -252,7 +252,7 @@ impl<'a> Emit<'a> {
             }
         }
         self.last = block.joints;
-        if block.reason != Reason::Above {
+        if block.reason != BlockReason::Above {
             self.begin_compensation(line);
         }
     }
@@ -274,7 +274,7 @@ impl<'a> Emit<'a> {
     }
 
     /// A block along a curve.
-    fn curve(&mut self, block: &Block) {
+    fn curve(&mut self, block: &MotionBlock) {
         let (Some(curve), Some(feed)) = (self.curve.take(), block.time.feed) else {
             return;
         };
@@ -386,9 +386,9 @@ impl<'a> Emit<'a> {
 
     /// Lets go the axes that this block moves, and clamps the others before the tool cuts: but for those that turn in the
     /// cuts here, which would be clamped from block to block.
-    fn clamp(&mut self, block: &Block) {
+    fn clamp(&mut self, block: &MotionBlock) {
         for joint in 0..self.machine.axes.len() {
-            let cuts = block.kind != MotionKind::Rapid;
+            let cuts = block.kind != BlockKind::Rapid;
             if self.last[joint] != block.joints[joint] {
                 self.set_clamp(block.line, joint, false, false);
                 self.free |= u8::from(cuts) << joint;
@@ -451,12 +451,12 @@ struct FirstPosition {
 }
 
 impl FirstPosition {
-    fn of(block: &Block) -> Self {
+    fn of(block: &MotionBlock) -> Self {
         Self { line: block.line, tip: block.tip, axis: block.axis }
     }
 
     /// A block of another line leads below it, along the tool: into a slot, it may be, at rapid.
-    fn goes_in(&self, block: &Block) -> bool {
+    fn goes_in(&self, block: &MotionBlock) -> bool {
         block.line != self.line && (block.tip - self.tip).dot(&self.axis) < -LOWER
     }
 }
@@ -465,12 +465,12 @@ impl FirstPosition {
 const LOWER: f64 = 1e-6;
 
 /// Whether a block goes at feed, from where the tool stands.
-fn cuts(block: &Block) -> bool {
-    matches!(block.kind, MotionKind::Linear | MotionKind::Arc | MotionKind::Spline)
+fn cuts(block: &MotionBlock) -> bool {
+    matches!(block.kind, BlockKind::Linear | BlockKind::Arc | BlockKind::Spline)
 }
 
 /// Where the tool stands at the end of a block.
 #[inline]
-fn stands(block: &Block) -> Option<ToolPose> {
+fn stands(block: &MotionBlock) -> Option<ToolPose> {
     Some(ToolPose { tip: block.tip.into(), axis: block.axis.into() })
 }

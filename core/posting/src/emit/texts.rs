@@ -5,13 +5,13 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::program_text::{Extents, Facts, OperationFacts, ProgramFacts, ToolFacts};
 use post_plugin::Event;
 
-use super::Emit;
+use super::EmitStage;
 use crate::findings::Findings;
 use crate::job_facts::JobFacts;
-use crate::program::Tool;
+use crate::program::ToolChange;
 
 /// The templates of a machine, and what is known at this place of the program.
-pub(super) struct Texts<'a> {
+pub(super) struct ProgramTexts<'a> {
     rules: &'a ProgramRules,
     facts: Facts,
     /// Numbers of the tools in the order of their changes, if they are known ahead.
@@ -23,7 +23,7 @@ pub(super) struct Texts<'a> {
     faults: Vec<Diagnostic>,
 }
 
-impl<'a> Texts<'a> {
+impl<'a> ProgramTexts<'a> {
     pub(super) fn new(machine: &'a Machine, job: &JobFacts) -> Self {
         let ahead = job.ahead.as_ref();
         let program = ProgramFacts {
@@ -80,7 +80,7 @@ impl<'a> Texts<'a> {
     }
 
     /// A tool is about to come.
-    pub(super) fn tool(&mut self, tool: &Tool) {
+    pub(super) fn tool(&mut self, tool: &ToolChange) {
         self.changed += 1;
         self.facts.last_tool = self.facts.tool.replace(tool_facts(tool));
         let behind = self.changes.get(self.changed..).unwrap_or_default();
@@ -131,7 +131,7 @@ impl<'a> Texts<'a> {
     }
 }
 
-fn tool_facts(tool: &Tool) -> ToolFacts {
+fn tool_facts(tool: &ToolChange) -> ToolFacts {
     ToolFacts {
         number: tool.number,
         register: tool.register,
@@ -142,7 +142,7 @@ fn tool_facts(tool: &Tool) -> ToolFacts {
     }
 }
 
-impl Emit<'_> {
+impl EmitStage<'_> {
     /// The lines that the machine file has for this place, numbered like any other; false if it has none.
     pub(super) fn say(&mut self, line: u64, at: TextPlace) -> bool {
         let Some(lines) = self.texts.lines(line, at) else {

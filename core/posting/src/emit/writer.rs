@@ -5,13 +5,13 @@ use post_plugin::{Batch, Capabilities, DialectSession, Event, Format};
 
 use super::extremes::Extremes;
 use crate::findings::Findings;
-use crate::observer::Output;
+use crate::observer::TextSink;
 use crate::stream::BATCH;
 
 /// Hands events over in batches, and counts lines.
-pub(super) struct Writer<'a> {
+pub(super) struct EventWriter<'a> {
     dialect: &'a mut dyn DialectSession,
-    output: &'a mut dyn Output,
+    output: &'a mut dyn TextSink,
     /// Words of a block.
     words: usize,
     batch: Batch,
@@ -23,20 +23,20 @@ pub(super) struct Writer<'a> {
     /// The dialect refused an event, or the output text: no more is made.
     broken: bool,
     /// Where the blocks stand, if an observer asks for it.
-    places: Option<Places>,
+    places: Option<BlockLines>,
 }
 
 /// Where blocks stand in the program.
 #[derive(Default)]
-struct Places {
+struct BlockLines {
     /// Indices of the events that the blocks of the batch end on; none for a block without one.
     events: Vec<Option<usize>>,
     /// Lines of the program that the blocks before them end on; zero where there is none.
     lines: Vec<u64>,
 }
 
-impl<'a> Writer<'a> {
-    pub(super) fn new(dialect: &'a mut dyn DialectSession, output: &'a mut dyn Output) -> Self {
+impl<'a> EventWriter<'a> {
+    pub(super) fn new(dialect: &'a mut dyn DialectSession, output: &'a mut dyn TextSink) -> Self {
         Self {
             words: dialect.format().words.len(),
             dialect,
@@ -125,7 +125,7 @@ impl<'a> Writer<'a> {
     pub(super) fn flush(&mut self, extremes: &mut Extremes, findings: &Findings) {
         let Self { batch, text, ends, .. } = self;
         if batch.is_empty() {
-            if let Some(Places { events, lines }) = &mut self.places {
+            if let Some(BlockLines { events, lines }) = &mut self.places {
                 lines.extend(events.drain(..).map(|_| 0));
             }
             return;
@@ -164,7 +164,7 @@ impl<'a> Writer<'a> {
     }
 }
 
-impl Places {
+impl BlockLines {
     /// The batch is written as `text`, its events up to `ends`, after `lines` lines.
     fn written(&mut self, mut lines: u64, text: &[u8], ends: &[usize]) {
         let mut counted = 0;

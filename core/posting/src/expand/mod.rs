@@ -15,27 +15,30 @@ use post_machine::description::{Cycles, Machine};
 use post_machine::diagnostic::{Diagnostic, Short};
 use post_plugin::{Capabilities, Cycle};
 
-use crate::ahead::Ahead;
-use crate::curve::{Course, Curve, Keeps};
+use crate::ahead::FilePreview;
+use crate::curve::{CurveMove, CurvePolicy, CurveShape};
 use crate::findings::Findings;
 use crate::program::limits::MOST_CHORDS;
-use crate::program::{ArcStep, Command, CycleStep, HoleMark, Leg, Motion, Pace, SplineStep, Step};
-use crate::stream::{Flow, Outlet};
-use planes::Planes;
+use crate::program::{
+    ArcStep, Command, CycleLeg, CycleStep, HoleMark, MoveFeed, ProgramStep, SplineStep,
+    StraightMove,
+};
+use crate::stream::{BatchSink, StreamItem};
+use planes::PlaneTracker;
 use tangential::Tangential;
 
 /// A straight move of the path, from its line of the CL file.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
+pub struct PathMove {
     /// Line of the CL file.
     pub line: u64,
     /// The move.
-    pub motion: Motion,
+    pub motion: StraightMove,
 }
 
 /// The first stage after the interpreter.
 #[derive(Debug)]
-pub(crate) struct Expand {
+pub(crate) struct ExpandStage {
     /// How far chords may stray from arcs and splines, mm.
     chord_tolerance: f64,
     /// Where the tool stands, mm, part frame; none if it is not known.
@@ -45,18 +48,21 @@ pub(crate) struct Expand {
     /// Tangential control of a tool with a leading edge.
     tangential: Option<Tangential>,
     /// Which curves may stay curves; none if none may.
-    keeps: Option<Keeps>,
+    keeps: Option<CurvePolicy>,
     /// The cycles that the dialect has words for, as far as the machine file wants them.
     cycles: Capabilities,
     /// Where the tool axis stays, if the control is to get planes.
-    planes: Option<Planes>,
+    planes: Option<PlaneTracker>,
 }
 
 /// The moves and commands of `steps`, each with its line, chords straying by no more than `chord_tolerance` mm; and
 /// what cannot be expanded. The tool has no leading edge.
-pub fn expanded(steps: &[(u64, Step)], chord_tolerance: f64) -> (Vec<Flow<Line>>, Vec<Diagnostic>) {
+pub fn expanded(
+    steps: &[(u64, ProgramStep)],
+    chord_tolerance: f64,
+) -> (Vec<StreamItem<PathMove>>, Vec<Diagnostic>) {
     let findings = Findings::new("");
-    let mut stage = Expand {
+    let mut stage = ExpandStage {
         chord_tolerance,
         tip: None,
         only_said: false,
@@ -66,9 +72,9 @@ pub fn expanded(steps: &[(u64, Step)], chord_tolerance: f64) -> (Vec<Flow<Line>>
         planes: None,
     };
     let mut all = Vec::new();
-    let mut next = |batch: &mut Vec<Flow<Line>>| all.append(batch);
+    let mut next = |batch: &mut Vec<StreamItem<PathMove>>| all.append(batch);
     let mut batch = Vec::new();
-    let mut out = Outlet::new(&mut batch, &mut next);
+    let mut out = BatchSink::new(&mut batch, &mut next);
     stage.take(steps, &mut out, &findings);
     out.flush();
     (all, findings.sorted())
@@ -78,21 +84,21 @@ pub fn expanded(steps: &[(u64, Step)], chord_tolerance: f64) -> (Vec<Flow<Line>>
 const APART: f64 = 1e-6;
 
 /// What leaves this stage.
-type Out<'o> = Outlet<'o, Flow<Line>>;
+type ExpandedSink<'o> = BatchSink<'o, StreamItem<PathMove>>;
 
-impl Expand {
+impl ExpandStage {
     /// Makes the stage for a machine and a dialect that declares what it `writes`; `ahead` where the control is to be
     /// told planes.
     pub(crate) fn new(
         machine: &Machine,
         chord_tolerance: f64,
         writes: Capabilities,
-        ahead: Option<Arc<Ahead>>,
+        ahead: Option<Arc<FilePreview>>,
     ) -> Self {
         let tangential = Tangential::new(machine);
-        let keeps = Keeps::new(machine, writes);
+        let keeps = CurvePolicy::new(machine, writes);
         Self {
-            planes: ahead.map(Planes::new),
+            planes: ahead.map(PlaneTracker::new),
             cycles: match machine.control.cycles {
                 Cycles::Native => writes,
                 Cycles::Moves => Capabilities::NONE,
@@ -117,7 +123,12 @@ impl Expand {
     }
 
     /// Takes a batch of steps, each with its line.
-    pub(crate) fn take(&mut self, steps: &[(u64, Step)], out: &mut Out<'_>, findings: &Findings) {
+    pub(crate) fn take(
+        &mut self,
+        steps: &[(u64, ProgramStep)],
+        out: &mut ExpandedSink<'_>,
+        findings: &Findings,
+    ) {
         for (line, step) in steps {
             let line = *line;
             let change = self.planes.as_mut().and_then(|planes| planes.change(line, step));
@@ -125,19 +136,19 @@ impl Expand {
                 self.command(line, Command::Still(still), out, findings);
             }
             match step {
-                Step::Move(motion) => self.go(line, *motion, out, findings),
-                Step::Arc(arc) => self.arc(line, arc, out, findings),
-                Step::Spline(spline) => self.spline(line, spline, out, findings),
-                Step::Cycle(cycle) => self.cycle(line, cycle, out, findings),
+                ProgramStep::Move(motion) => self.go(line, *motion, out, findings),
+                ProgramStep::Arc(arc) => self.arc(line, arc, out, findings),
+                ProgramStep::Spline(spline) => self.spline(line, spline, out, findings),
+                ProgramStep::Cycle(cycle) => self.cycle(line, cycle, out, findings),
                 // Points are in the part frame whatever plane they lie in.
-                Step::Plane(_) | Step::EndCycle => {}
-                Step::Command(command) => self.command(line, command.clone(), out, findings),
+                ProgramStep::Plane(_) | ProgramStep::EndCycle => {}
+                ProgramStep::Command(command) => self.command(line, command.clone(), out, findings),
             }
         }
     }
 
     /// The file ends: what was kept back is handed on.
-    pub(crate) fn finish(&mut self, out: &mut Out<'_>, findings: &Findings) {
+    pub(crate) fn finish(&mut self, out: &mut ExpandedSink<'_>, findings: &Findings) {
         if let Some(tangential) = &mut self.tangential {
             tangential.finish(out, findings);
         }
@@ -145,16 +156,28 @@ impl Expand {
 
     /// One straight move.
     #[inline]
-    fn go(&mut self, line: u64, motion: Motion, out: &mut Out<'_>, findings: &Findings) {
+    fn go(
+        &mut self,
+        line: u64,
+        motion: StraightMove,
+        out: &mut ExpandedSink<'_>,
+        findings: &Findings,
+    ) {
         self.tip = Some(motion.tip);
         self.only_said = false;
         match &mut self.tangential {
-            None => out.push_with(|| Flow::Point(Line { line, motion })),
+            None => out.push_with(|| StreamItem::Point(PathMove { line, motion })),
             Some(tangential) => tangential.go(line, motion, out, findings),
         }
     }
 
-    fn command(&mut self, line: u64, command: Command, out: &mut Out<'_>, findings: &Findings) {
+    fn command(
+        &mut self,
+        line: u64,
+        command: Command,
+        out: &mut ExpandedSink<'_>,
+        findings: &Findings,
+    ) {
         if let Command::From { tip, .. } = command {
             self.tip = Some(tip);
             self.only_said = true;
@@ -169,19 +192,19 @@ impl Expand {
     }
 
     /// An arc. One that may stay an arc goes turn by turn, its moves between the commands that say so.
-    fn arc(&mut self, line: u64, step: &ArcStep, out: &mut Out<'_>, findings: &Findings) {
+    fn arc(&mut self, line: u64, step: &ArcStep, out: &mut ExpandedSink<'_>, findings: &Findings) {
         let ArcStep { arc, end, .. } = step;
         // After a hole the tool stands above the point that the arc begins on.
         let start = arc.at(0.0);
         if self.only_said || self.tip.is_some_and(|tip| (tip - start).norm() > APART) {
-            let to_start = Motion { tip: start, axis: step.start_axis, chord: 0.0, ..*end };
+            let to_start = StraightMove { tip: start, axis: step.start_axis, chord: 0.0, ..*end };
             self.go(line, to_start, out, findings);
         }
         let turns = libm::ceil(arc.sweep / TAU - 1e-9).max(1.0);
         let turn = arc.piece(0.0, 1.0 / turns);
         let (count, _) = turn.chords(self.chord_tolerance);
         let planes = self.planes.as_ref().is_some();
-        let keeps = |keeps: &Keeps| keeps.arc(arc, end, count, planes);
+        let keeps = |keeps: &CurvePolicy| keeps.arc(arc, end, count, planes);
         if step.start_axis != end.axis
             || count.saturating_mul(turns as u64) > MOST_CHORDS
             || !self.keeps.as_ref().is_some_and(keeps)
@@ -192,13 +215,13 @@ impl Expand {
             let [from, to] = [place - 1, place].map(|place| f64::from(place) / turns);
             let arc = if turns == 1.0 { *arc } else { arc.piece(from, to) };
             let pace = match end.pace {
-                Pace::InverseTime(feed) => Pace::InverseTime(feed * turns),
+                MoveFeed::InverseTime(feed) => MoveFeed::InverseTime(feed * turns),
                 pace => pace,
             };
             let tip = if to == 1.0 { end.tip } else { arc.at(1.0) };
-            let end = Motion { tip, pace, ..*end };
-            let course = Course::Arc(arc);
-            let curve = Box::new(Curve { course, end });
+            let end = StraightMove { tip, pace, ..*end };
+            let course = CurveShape::Arc(arc);
+            let curve = Box::new(CurveMove { course, end });
             self.command(line, Command::Along(curve), out, findings);
             let step = ArcStep { arc, end, ..*step };
             self.chords(line, &step, out, findings);
@@ -207,7 +230,13 @@ impl Expand {
     }
 
     /// Chords, the tool axis turning evenly from start to end.
-    fn chords(&mut self, line: u64, step: &ArcStep, out: &mut Out<'_>, findings: &Findings) {
+    fn chords(
+        &mut self,
+        line: u64,
+        step: &ArcStep,
+        out: &mut ExpandedSink<'_>,
+        findings: &Findings,
+    ) {
         let ArcStep { arc, end, start_axis } = step;
         let (count, chord) = arc.chords(self.chord_tolerance);
         if count > MOST_CHORDS {
@@ -216,7 +245,7 @@ impl Expand {
         }
         let pace = match end.pace {
             // The time is that of the whole arc.
-            Pace::InverseTime(feed) => Pace::InverseTime(feed * count as f64),
+            MoveFeed::InverseTime(feed) => MoveFeed::InverseTime(feed * count as f64),
             pace => pace,
         };
         for piece in 1..=count {
@@ -226,7 +255,7 @@ impl Expand {
             } else {
                 (start_axis * (1.0 - t) + end.axis * t).try_normalize(1e-9).unwrap_or(end.axis)
             };
-            let motion = Motion {
+            let motion = StraightMove {
                 tip: if piece == count { end.tip } else { arc.at(t) },
                 axis,
                 pace,
@@ -248,11 +277,17 @@ impl Expand {
         .help("check its numbers, widen the tolerance, or let the CAM system write GOTOs")
     }
 
-    fn spline(&mut self, line: u64, step: &SplineStep, out: &mut Out<'_>, findings: &Findings) {
+    fn spline(
+        &mut self,
+        line: u64,
+        step: &SplineStep,
+        out: &mut ExpandedSink<'_>,
+        findings: &Findings,
+    ) {
         let SplineStep { spline, end } = step;
         if self.only_said {
             let tip = spline.start();
-            let to_start = Motion { tip, chord: 0.0, ..*end };
+            let to_start = StraightMove { tip, chord: 0.0, ..*end };
             self.go(line, to_start, out, findings);
         }
         let keeps = |count| self.keeps.as_ref().is_some_and(|keeps| keeps.spline(end, count));
@@ -265,12 +300,12 @@ impl Expand {
             }
         };
         if along {
-            let course = Course::Spline(spline.clone());
-            let curve = Box::new(Curve { course, end: *end });
+            let course = CurveShape::Spline(spline.clone());
+            let curve = Box::new(CurveMove { course, end: *end });
             self.command(line, Command::Along(curve), out, findings);
         }
         spline.flatten(self.chord_tolerance, &mut |tip, chord| {
-            self.go(line, Motion { tip, chord, ..*end }, out, findings);
+            self.go(line, StraightMove { tip, chord, ..*end }, out, findings);
         });
         if along {
             self.command(line, Command::AlongEnd, out, findings);
@@ -278,7 +313,13 @@ impl Expand {
     }
 
     /// Approach, pecks, dwell and retract at one point; where the control has the cycle, marked for what writes it.
-    fn cycle(&mut self, line: u64, step: &CycleStep, out: &mut Out<'_>, findings: &Findings) {
+    fn cycle(
+        &mut self,
+        line: u64,
+        step: &CycleStep,
+        out: &mut ExpandedSink<'_>,
+        findings: &Findings,
+    ) {
         let CycleStep { cycle, point } = *step;
         let native = cycle.native();
         let known = native.filter(|native| self.cycles.has(capability(native.kind)));
@@ -288,7 +329,7 @@ impl Expand {
             findings.at(line, no_moves(kind));
             return;
         }
-        let rapid = |tip| Motion { tip, pace: Pace::Rapid, ..point };
+        let rapid = |tip| StraightMove { tip, pace: MoveFeed::Rapid, ..point };
         if let Some(drilling) = known {
             let mark = Command::Hole(HoleMark::Above(drilling));
             self.command(line, mark, out, findings);
@@ -312,12 +353,12 @@ impl Expand {
         cycle.legs(&mut |leg| {
             let at = |height: f64| point.tip + point.axis * height;
             match leg {
-                Leg::Rapid(height) => self.go(line, rapid(at(height)), out, findings),
-                Leg::Feed(height) => {
-                    let motion = Motion { tip: at(height), ..point };
+                CycleLeg::Rapid(height) => self.go(line, rapid(at(height)), out, findings),
+                CycleLeg::Feed(height) => {
+                    let motion = StraightMove { tip: at(height), ..point };
                     self.go(line, motion, out, findings);
                 }
-                Leg::Dwell(seconds) => {
+                CycleLeg::Dwell(seconds) => {
                     self.command(line, Command::Dwell(seconds), out, findings);
                 }
             }

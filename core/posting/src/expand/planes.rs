@@ -4,32 +4,38 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use crate::ahead::{Ahead, Still};
-use crate::program::Step;
+use crate::ahead::{FilePreview, FixedAxisRange};
+use crate::program::ProgramStep;
 
 /// Tool axes that differ by less are one, as unit vectors.
 const SAME: f64 = 1e-9;
 
 /// Follows the stretches on which the tool axis stays.
 #[derive(Debug)]
-pub(super) struct Planes {
-    ahead: Arc<Ahead>,
+pub(super) struct PlaneTracker {
+    ahead: Arc<FilePreview>,
     /// The next of its stretches that is not passed.
     next: usize,
     /// The tool axis of the plane in force.
     axis: Option<Vector3<f64>>,
 }
 
-impl Planes {
-    pub(super) fn new(ahead: Arc<Ahead>) -> Self {
+impl PlaneTracker {
+    pub(super) fn new(ahead: Arc<FilePreview>) -> Self {
         Self { ahead, next: 0, axis: None }
     }
 
     /// The plane that begins ahead of a step from `line`, as the origin of its frame (that of the part, so that the work
     /// offset means what it means outside); none within if one ends. Nothing if all stays as it is.
     #[inline]
-    pub(super) fn change(&mut self, line: u64, step: &Step) -> Option<Option<Vector3<f64>>> {
-        if !matches!(step, Step::Move(_) | Step::Arc(_) | Step::Spline(_) | Step::Cycle(_)) {
+    pub(super) fn change(&mut self, line: u64, step: &ProgramStep) -> Option<Option<Vector3<f64>>> {
+        if !matches!(
+            step,
+            ProgramStep::Move(_)
+                | ProgramStep::Arc(_)
+                | ProgramStep::Spline(_)
+                | ProgramStep::Cycle(_)
+        ) {
             return None;
         }
         let axis = self.at(line).map(|still| still.axis);
@@ -42,7 +48,7 @@ impl Planes {
         (!same).then_some(axis.map(|_| Vector3::zeros()))
     }
 
-    fn at(&mut self, line: u64) -> Option<&Still> {
+    fn at(&mut self, line: u64) -> Option<&FixedAxisRange> {
         let stretches = &self.ahead.still;
         while stretches.get(self.next).is_some_and(|still| still.last < line) {
             self.next += 1;

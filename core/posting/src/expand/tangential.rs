@@ -10,10 +10,10 @@ use std::collections::VecDeque;
 
 use nalgebra::Vector3;
 
-use super::{Line, Out};
+use super::{ExpandedSink, PathMove};
 use crate::findings::Findings;
-use crate::program::{Command, Motion, Pace};
-use crate::stream::Flow;
+use crate::program::{Command, MoveFeed, StraightMove};
+use crate::stream::StreamItem;
 use post_machine::description::{EdgeSource, Machine, Rewind};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::orientation::angle;
@@ -49,11 +49,11 @@ pub(super) struct Tangential {
     /// Tip and tool axis of the last point that was taken.
     at: Option<[Vector3<f64>; 2]>,
     /// The last cut with a direction, and that direction, of length one.
-    cut: Option<(u64, Motion, Vector3<f64>)>,
+    cut: Option<(u64, StraightMove, Vector3<f64>)>,
     /// Whether there was such a cut since the tool came.
     has_cut: bool,
     /// What came after it: moves without a direction (rapids, straight in and out), and commands.
-    behind: VecDeque<Flow<Line>>,
+    behind: VecDeque<StreamItem<PathMove>>,
     /// Corners that the tool was drawn back at.
     pub(super) rewinds: u64,
 }
@@ -77,14 +77,20 @@ impl Tangential {
     /// Line of the first step that waits.
     pub(super) fn first_line(&self) -> Option<u64> {
         let behind = || match self.behind.front()? {
-            Flow::Point(at) => Some(at.line),
-            Flow::Command { line, .. } => Some(*line),
+            StreamItem::Point(at) => Some(at.line),
+            StreamItem::Command { line, .. } => Some(*line),
         };
         self.cut.map(|(line, ..)| line).or_else(behind)
     }
 
     /// Takes a move; what is settled goes on.
-    pub(super) fn go(&mut self, line: u64, motion: Motion, out: &mut Out<'_>, findings: &Findings) {
+    pub(super) fn go(
+        &mut self,
+        line: u64,
+        motion: StraightMove,
+        out: &mut ExpandedSink<'_>,
+        findings: &Findings,
+    ) {
         if self.source == EdgeSource::Cl {
             let along = if motion.edge == Vector3::zeros() {
                 self.edge
@@ -98,7 +104,7 @@ impl Tangential {
             return;
         }
         let from = self.at.replace([motion.tip, motion.axis]);
-        let way = from.filter(|_| motion.pace != Pace::Rapid).and_then(|[from, axis]| {
+        let way = from.filter(|_| motion.pace != MoveFeed::Rapid).and_then(|[from, axis]| {
             let way = (motion.tip - from).try_normalize(SHORT)?;
             let leads = |axis| across(way, axis, STRAIGHT_IN).is_some();
             (leads(axis) && leads(motion.axis)).then_some(way)
@@ -108,7 +114,7 @@ impl Tangential {
                 self.settle(Some(way), out, findings);
                 self.cut = Some((line, motion, way));
             }
-            None => self.hold(Flow::Point(Line { line, motion }), out, findings),
+            None => self.hold(StreamItem::Point(PathMove { line, motion }), out, findings),
         }
     }
 
@@ -117,11 +123,11 @@ impl Tangential {
         &mut self,
         line: u64,
         command: Command,
-        out: &mut Out<'_>,
+        out: &mut ExpandedSink<'_>,
         findings: &Findings,
     ) {
         if !command.leaves() {
-            self.hold(Flow::Command { line, command }, out, findings);
+            self.hold(StreamItem::Command { line, command }, out, findings);
             return;
         }
         self.settle(None, out, findings);
@@ -134,11 +140,16 @@ impl Tangential {
     }
 
     /// What waits has nothing after it.
-    pub(super) fn finish(&mut self, out: &mut Out<'_>, findings: &Findings) {
+    pub(super) fn finish(&mut self, out: &mut ExpandedSink<'_>, findings: &Findings) {
         self.settle(None, out, findings);
     }
 
-    fn hold(&mut self, next: Flow<Line>, out: &mut Out<'_>, findings: &Findings) {
+    fn hold(
+        &mut self,
+        next: StreamItem<PathMove>,
+        out: &mut ExpandedSink<'_>,
+        findings: &Findings,
+    ) {
         self.behind.push_back(next);
         if self.behind.len() >= MOST_HELD {
             self.settle(None, out, findings);
@@ -146,8 +157,13 @@ impl Tangential {
     }
 
     /// Settles what waits; the next cut goes along `go`.
-    fn settle(&mut self, go: Option<Vector3<f64>>, out: &mut Out<'_>, findings: &Findings) {
-        let moves = self.behind.iter().any(|next| matches!(next, Flow::Point(_)));
+    fn settle(
+        &mut self,
+        go: Option<Vector3<f64>>,
+        out: &mut ExpandedSink<'_>,
+        findings: &Findings,
+    ) {
+        let moves = self.behind.iter().any(|next| matches!(next, StreamItem::Point(_)));
         // Where no cut came before, the edge stands as the first cut wants it from the beginning.
         self.has_cut |= self.cut.is_some();
         let mut turned = !self.has_cut;
@@ -163,7 +179,7 @@ impl Tangential {
             }
         }
         for next in std::mem::take(&mut self.behind) {
-            let Flow::Point(Line { line, motion }) = next else {
+            let StreamItem::Point(PathMove { line, motion }) = next else {
                 out.push(next);
                 continue;
             };
@@ -174,7 +190,7 @@ impl Tangential {
             self.pass(line, motion, None, out);
             last = Some((line, motion));
             if let Some(go) = go
-                && motion.pace == Pace::Rapid
+                && motion.pace == MoveFeed::Rapid
             {
                 // Off the part: turned here, before the way in.
                 self.pass(line, motion, Some(go), out);
@@ -197,9 +213,9 @@ impl Tangential {
     /// Turns the edge at a corner from one heading to another.
     fn corner_turn(
         &mut self,
-        (line, motion): (u64, Motion),
+        (line, motion): (u64, StraightMove),
         [come, heading]: [Vector3<f64>; 2],
-        out: &mut Out<'_>,
+        out: &mut ExpandedSink<'_>,
         findings: &Findings,
     ) {
         let away = self.rewind.and_then(|rewind| Some((rewind, motion.drawn_back(&rewind, 0.0)?)));
@@ -207,17 +223,20 @@ impl Tangential {
         let laid = across(heading, motion.axis, 1e-3);
         if let Some((rewind, away)) = away {
             self.rewinds += 1;
-            let away_from_part = Motion { pace: Pace::feed_or_rapid(rewind.retract_feed), ..away };
+            let away_from_part =
+                StraightMove { pace: MoveFeed::feed_or_rapid(rewind.retract_feed), ..away };
             self.pass(line, away_from_part, None, out);
-            let turn = Motion {
-                pace: rewind.turn_feed.map_or(Pace::Rapid, |feed| {
-                    Pace::InverseTime(feed / angle.to_degrees().max(1e-3))
+            let turn = StraightMove {
+                pace: rewind.turn_feed.map_or(MoveFeed::Rapid, |feed| {
+                    MoveFeed::InverseTime(feed / angle.to_degrees().max(1e-3))
                 }),
                 ..away
             };
             self.pass(line, turn, laid, out);
-            let back =
-                Motion { pace: rewind.plunge_feed.map_or(motion.pace, Pace::PerMinute), ..motion };
+            let back = StraightMove {
+                pace: rewind.plunge_feed.map_or(motion.pace, MoveFeed::PerMinute),
+                ..motion
+            };
             self.pass(line, back, Some(heading), out);
         } else {
             if self.rewind.is_some() {
@@ -248,9 +267,9 @@ impl Tangential {
     fn pass(
         &mut self,
         line: u64,
-        mut motion: Motion,
+        mut motion: StraightMove,
         heading: Option<Vector3<f64>>,
-        out: &mut Out<'_>,
+        out: &mut ExpandedSink<'_>,
     ) {
         let laid = |heading: Vector3<f64>| across(heading, motion.axis, 1e-3);
         let headed =
@@ -262,7 +281,7 @@ impl Tangential {
         });
         self.edge = edge;
         motion.edge = heading;
-        out.push(Flow::Point(Line { line, motion }));
+        out.push(StreamItem::Point(PathMove { line, motion }));
     }
 }
 

@@ -45,14 +45,14 @@ pub struct LimitShare {
 
 /// Sums of a plan.
 #[derive(Debug, Default)]
-pub(super) struct Account {
+pub(super) struct PlanTally {
     report: PlanReport,
     times: BTreeMap<(&'static str, Option<u16>), f64>,
     /// Shares of the block in hand.
     pending: Vec<((&'static str, Option<u16>), f64)>,
 }
 
-impl Account {
+impl PlanTally {
     /// Counts the pieces that a block became.
     pub(super) fn block(&mut self, count: usize, asked: f64, planned: f64, printed: f64) {
         for (limit, seconds) in self.pending.drain(..) {

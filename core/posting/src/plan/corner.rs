@@ -3,8 +3,8 @@
 use post_feed::limits::ChordError;
 use post_machine::description::{CornerRule, Machine};
 
-use super::limits::Axes;
-use super::samples::Place;
+use super::limits::PlanAxes;
+use super::samples::PathDerivatives;
 
 /// What a corner allows: the control passes it with a jump of the velocity, or along a curve that leaves the path.
 #[derive(Clone, Debug)]
@@ -19,7 +19,7 @@ pub(super) struct Corner {
 }
 
 impl Corner {
-    pub(super) fn new(machine: &Machine, axes: &Axes, chord: Option<ChordError>) -> Self {
+    pub(super) fn new(machine: &Machine, axes: &PlanAxes, chord: Option<ChordError>) -> Self {
         let rules = &machine.motion;
         let tolerance = machine.accuracy.tolerance;
         Self {
@@ -37,7 +37,12 @@ impl Corner {
     /// `length` long to both sides.
     ///
     /// A curve that is a parabola over the length `l` leaves the corner by `l·|ΔP'|/8` and bends by `ΔQ'/l`.
-    pub(super) fn allows(&self, before: &Place, behind: &Place, length: f64) -> f64 {
+    pub(super) fn allows(
+        &self,
+        before: &PathDerivatives,
+        behind: &PathDerivatives,
+        length: f64,
+    ) -> f64 {
         let count = self.jumps.len();
         let turn: f64 = norm(std::array::from_fn(|axis| behind.tip[0][axis] - before.tip[0][axis]));
         let kinks = (0..count).map(|axis| (behind.axes[axis][0] - before.axes[axis][0]).abs());

@@ -7,37 +7,37 @@ use post_machine::axis_words::WordValues;
 use post_machine::description::{Machine, Tcp};
 use post_machine::kinematics::{Chain, Joints, Pose, Trace};
 
-use super::pieces::Piece;
-use super::queue::Start;
-use crate::accuracy::{Bound, Node, Placer};
-use crate::blocks::{Block, MotionKind, Reason};
+use super::pieces::FeedPiece;
+use super::queue::BlockStart;
+use crate::accuracy::{DeviationBound, PathNode, Placer};
+use crate::blocks::{BlockKind, BlockReason, MotionBlock};
 
 /// What rounding leaves of the bounds below by floating point.
 const SLACK: f64 = 1.1;
 
 /// Cuts blocks.
 #[derive(Debug)]
-pub(super) struct Cutter<'a> {
+pub(super) struct BlockCutter<'a> {
     pub(super) machine: &'a Machine,
     pub(super) placer: Rc<Placer>,
 }
 
 /// Where a piece of a block ends.
 #[derive(Clone, Copy, Debug)]
-struct Reached {
+struct PieceEnd {
     joints: Joints,
     words: WordValues,
     tip: Vector3<f64>,
     /// Place within the block, 0 to 1.
     t: f64,
     /// How far it is off the block as it was.
-    off: Bound,
+    off: DeviationBound,
 }
 
-impl Cutter<'_> {
+impl BlockCutter<'_> {
     /// Can a block be several? Not along a curve, not off the part.
-    pub(super) fn can_cut(block: &Block) -> bool {
-        block.kind == MotionKind::Linear && !block.loose
+    pub(super) fn can_cut(block: &MotionBlock) -> bool {
+        block.kind == BlockKind::Linear && !block.loose
     }
 
     /// Hands on the pieces of a block whose way is `length` as their speeds count. Where words have too few decimals for a piece,
@@ -47,25 +47,25 @@ impl Cutter<'_> {
     /// the control keeps the tip, tip and rotary axes) go straight between places that are off the block by that.
     pub(super) fn cut(
         &self,
-        block: &Block,
-        start: &Start,
-        pieces: &[Piece],
+        block: &MotionBlock,
+        start: &BlockStart,
+        pieces: &[FeedPiece],
         length: f64,
-        mut out: impl FnMut(Block, f64),
+        mut out: impl FnMut(MotionBlock, f64),
     ) -> usize {
-        let mut from = Reached {
+        let mut from = PieceEnd {
             joints: start.joints,
             words: start.words,
             tip: start.tip,
             t: 0.0,
-            off: Bound::default(),
+            off: DeviationBound::default(),
         };
-        let end = Reached {
+        let end = PieceEnd {
             joints: block.joints,
             words: block.words,
             tip: block.tip,
             t: 1.0,
-            off: Bound::default(),
+            off: DeviationBound::default(),
         };
         let bow = self.bow(start, block);
         let mut slowest = f64::INFINITY;
@@ -93,7 +93,7 @@ impl Cutter<'_> {
     }
 
     /// Can a piece of a block end at the share `t` of it?
-    pub(super) fn can_end(&self, block: &Block, start: &Start, t: f64) -> bool {
+    pub(super) fn can_end(&self, block: &MotionBlock, start: &BlockStart, t: f64) -> bool {
         let bow = self.bow(start, block);
         self.reach(block, start, t).is_some_and(|to| {
             self.holds(block, &to, bow) && to.words != start.words && to.words != block.words
@@ -101,7 +101,7 @@ impl Cutter<'_> {
     }
 
     /// The place at the share `t` of a block, as it is printed.
-    fn reach(&self, block: &Block, start: &Start, t: f64) -> Option<Reached> {
+    fn reach(&self, block: &MotionBlock, start: &BlockStart, t: f64) -> Option<PieceEnd> {
         let placer = &self.placer;
         let joints: Joints = std::array::from_fn(|place| {
             start.joints[place] + (block.joints[place] - start.joints[place]) * t
@@ -112,39 +112,45 @@ impl Cutter<'_> {
             let tip = start.tip + (block.tip - start.tip) * t;
             pose = Pose { tip: tip + pose.axis * along, ..pose };
         }
-        let mut node = Node::default();
+        let mut node = PathNode::default();
         placer.settle(&mut node, pose, t, &joints).ok()?;
-        Some(Reached {
+        Some(PieceEnd {
             joints: node.trace.joints,
             words: node.words,
             tip: node.tip - node.trace.pose.axis * along,
             t,
-            off: Bound { tip: node.tip_error, axis: node.axis_error },
+            off: DeviationBound { tip: node.tip_error, axis: node.axis_error },
         })
     }
 
     /// What is proven of a block one of whose ends is off by so much.
-    fn widened(block: &Block, off: Bound, bow: Bound) -> Bound {
-        Bound {
+    fn widened(block: &MotionBlock, off: DeviationBound, bow: DeviationBound) -> DeviationBound {
+        DeviationBound {
             tip: block.deviation.tip + (off.tip + bow.tip) * SLACK,
             axis: block.deviation.axis + (off.axis + bow.axis) * SLACK,
         }
     }
 
-    fn holds(&self, block: &Block, to: &Reached, bow: Bound) -> bool {
+    fn holds(&self, block: &MotionBlock, to: &PieceEnd, bow: DeviationBound) -> bool {
         let accuracy = &self.machine.accuracy;
         let bound = Self::widened(block, to.off, bow);
         bound.tip <= accuracy.tolerance && bound.axis <= accuracy.axis_tolerance
     }
 
     /// The piece between two places.
-    fn between(&self, block: &Block, from: &Reached, to: &Reached, bow: Bound) -> Block {
+    fn between(
+        &self,
+        block: &MotionBlock,
+        from: &PieceEnd,
+        to: &PieceEnd,
+        bow: DeviationBound,
+    ) -> MotionBlock {
         if from.t == 0.0 && to.t == 1.0 {
             return *block;
         }
         let ends = to.t == 1.0;
-        Block {
-            reason: if ends { block.reason } else { Reason::Feed },
+        MotionBlock {
+            reason: if ends { block.reason } else { BlockReason::Feed },
             words: to.words,
             joints: to.joints,
             tip: to.tip,
@@ -157,7 +163,7 @@ impl Cutter<'_> {
 
     /// How far a way of axes bends away from another one whose ends are off by rounding: by a half of what they turn
     /// times what the angles are rounded by, at the longest arm. Where the control keeps the tip only its axis does.
-    fn bow(&self, start: &Start, block: &Block) -> Bound {
+    fn bow(&self, start: &BlockStart, block: &MotionBlock) -> DeviationBound {
         let chain = self.placer.solver().chain();
         let joints = chain.joints().iter().enumerate();
         let turn: f64 = joints
@@ -172,7 +178,7 @@ impl Cutter<'_> {
                 .into_iter()
                 .fold(0.0, f64::max),
         };
-        Bound { tip: axis * arm, axis }
+        DeviationBound { tip: axis * arm, axis }
     }
 }
 

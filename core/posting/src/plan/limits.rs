@@ -21,7 +21,7 @@ pub struct SampledAxes {
 impl SampledAxes {
     /// Those of a machine.
     pub fn new(machine: &Machine) -> Self {
-        Axes::new(machine).sampled()
+        PlanAxes::new(machine).sampled()
     }
 
     /// How many they are.
@@ -32,13 +32,13 @@ impl SampledAxes {
 
 /// The limits of a machine's axes in the order of [`SampledAxes`].
 #[derive(Clone, Debug)]
-pub(super) struct Axes {
+pub(super) struct PlanAxes {
     limits: AxisLimits,
     /// Number of axes of the chain.
     pub(super) count: usize,
 }
 
-impl Axes {
+impl PlanAxes {
     pub(super) fn new(machine: &Machine) -> Self {
         Self { limits: AxisLimits::new(machine), count: machine.axes.len() }
     }
@@ -92,7 +92,7 @@ impl Axes {
 /// What a plan keeps on `machine`: the feed of each block, velocity, acceleration and jerk of axes and tip, the errors that
 /// `rules` limit, and the time that the control takes for a block. Everywhere along the path, between samples too.
 pub fn limits(machine: &Machine, rules: &PlanRules) -> Vec<Box<dyn Limit>> {
-    let axes = Axes::new(machine);
+    let axes = PlanAxes::new(machine);
     let collocation = Collocation::Throughout;
     let finite = |all: &[f64]| all.iter().any(|one| one.is_finite());
     let mut limits: Vec<Box<dyn Limit>> = vec![Box::new(Feed { most: f64::INFINITY, collocation })];

@@ -12,21 +12,21 @@ use post_machine::description::{Machine, PlanSolver};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 
-use super::account::Account;
+use super::account::PlanTally;
 use super::corner::Corner;
-use super::cut::Cutter;
+use super::cut::BlockCutter;
 use super::graded::{at_least, evenly_bent, graded};
-use super::limits::{self, Axes};
-use super::pieces::{Cutting, Piece, Profile, STANDING};
-use super::queue::{Queue, Start};
-use super::rest::FromRest;
-use super::samples::{Place, Said, Sampler, Stand};
-use super::solver::{Solver, Step};
+use super::limits::{self, PlanAxes};
+use super::pieces::{BlockProfile, CutThresholds, FeedPiece, STANDING};
+use super::queue::{BlockQueue, BlockStart};
+use super::rest::RestToRest;
+use super::samples::{PathDerivatives, SampleBlock, Sampler, WatchedSample};
+use super::solver::{SampleSolver, SettledSample};
 use super::watch::PlannedPoint;
-use super::{CORNER, Watching};
+use super::{CORNER, SharedWatch};
 use crate::accuracy::Placer;
-use crate::blocks::{Block, Planned, STILL};
-use crate::stream::Flow;
+use crate::blocks::{MotionBlock, PlannedTime, STILL};
+use crate::stream::StreamItem;
 use crate::tightening::Tightening;
 
 /// Samples after the first of a leg next to a stop or corner, where jerk is planned.
@@ -40,7 +40,7 @@ const MOSTLY: f64 = 0.7;
 
 /// What a block says of its legs.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Due {
+pub(super) struct BlockDemand {
     /// The feed, mm/s; none where the tip stands still, and the time says it.
     feed: Option<f64>,
     /// The tip stands still.
@@ -56,9 +56,9 @@ pub(super) struct Due {
     pub(super) share: f64,
 }
 
-impl Due {
+impl BlockDemand {
     /// What `block` says; `aside` if another point than the tip is guided, whose way is another.
-    pub(super) fn of(block: &Block, aside: bool) -> Self {
+    pub(super) fn of(block: &MotionBlock, aside: bool) -> Self {
         let seconds = block.asked() * 60.0;
         let moves = block.way > STILL && !aside;
         Self {
@@ -74,14 +74,14 @@ impl Due {
 }
 
 /// A run of blocks on its way through the planner.
-pub(super) struct Line<'a> {
-    feeds: Feeds<'a>,
-    axes: Axes,
+pub(super) struct PlannerRun<'a> {
+    feeds: BlockFeeds<'a>,
+    axes: PlanAxes,
     sampler: Sampler,
     tightening: Option<Arc<Tightening>>,
     limits: Vec<Box<dyn Limit>>,
     corner: Corner,
-    solver: Solver,
+    solver: SampleSolver,
     /// Jerk is planned, which needs some intervals between stops.
     jerk: bool,
     /// A limit is asked for that holds the tool in bends, beyond what its axes can.
@@ -89,7 +89,7 @@ pub(super) struct Line<'a> {
     /// The least acceleration of a linear axis, mm/s².
     acceleration: f64,
     samples: Vec<Sample>,
-    due: VecDeque<Due>,
+    due: VecDeque<BlockDemand>,
     /// Legs of the first of them that have come, and their length.
     come: usize,
     way: f64,
@@ -102,16 +102,16 @@ pub(super) struct Line<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Unplanned;
 
-impl<'a> Line<'a> {
+impl<'a> PlannerRun<'a> {
     pub(super) fn new(
         machine: &'a Machine,
         placer: Rc<Placer>,
         tightening: Option<Arc<Tightening>>,
-        watch: Option<Watching<'a>>,
+        watch: Option<SharedWatch<'a>>,
         least_block: f64,
     ) -> Self {
         let rules = &machine.plan;
-        let axes = Axes::new(machine);
+        let axes = PlanAxes::new(machine);
         let limits = limits::limits(machine, rules);
         let chord = rules.chord_error.map(|tolerance| ChordError {
             tolerance,
@@ -125,13 +125,13 @@ impl<'a> Line<'a> {
         };
         let stride = limits.iter().map(|limit| limit.rows(&empty).len()).sum();
         Self {
-            feeds: Feeds {
-                cutting: Cutting {
+            feeds: BlockFeeds {
+                cutting: CutThresholds {
                     saving: rules.least_saving,
                     shortest: rules.shortest_block.max(least_block),
                 },
-                cutter: Cutter { machine, placer },
-                rest: FromRest::new(&axes),
+                cutter: BlockCutter { machine, placer },
+                rest: RestToRest::new(&axes),
                 names: limits.iter().map(|limit| limit.name()).collect(),
                 pieces: Vec::new(),
                 slowest: None,
@@ -142,7 +142,7 @@ impl<'a> Line<'a> {
             sampler,
             tightening,
             limits,
-            solver: Solver::new(rules.solver, stride),
+            solver: SampleSolver::new(rules.solver, stride),
             jerk: rules.solver == PlanSolver::Jerk,
             bends: rules.contour_error.is_some(),
             acceleration: machine
@@ -183,24 +183,27 @@ impl<'a> Line<'a> {
     }
 
     /// Takes what the next block demands, which comes in `legs` legs.
-    pub(super) fn due(&mut self, due: Due, legs: usize) {
-        self.due.push_back(Due { legs, ..due });
+    pub(super) fn due(&mut self, due: BlockDemand, legs: usize) {
+        self.due.push_back(BlockDemand { legs, ..due });
     }
 
     /// The curve goes on by a leg.
     pub(super) fn leg(
         &mut self,
         leg: &Leg<'_>,
-        queue: &mut Queue,
-        account: &mut Account,
-        out: &mut dyn FnMut(Flow<Block>),
+        queue: &mut BlockQueue,
+        account: &mut PlanTally,
+        out: &mut dyn FnMut(StreamItem<MotionBlock>),
     ) -> Result<(), Unplanned> {
         let Some(due) = self.due.front().copied() else {
             return Err(Unplanned);
         };
         let length = if due.legs == 1 { leg.length } else { due.way };
-        let said =
-            Said { feed: due.feed.unwrap_or(length / due.seconds), length, share: due.share };
+        let said = SampleBlock {
+            feed: due.feed.unwrap_or(length / due.seconds),
+            length,
+            share: due.share,
+        };
         let Some((first, rest)) = leg.samples.split_first() else {
             return Err(Unplanned);
         };
@@ -214,7 +217,7 @@ impl<'a> Line<'a> {
             Some((tightening, line)) => {
                 let [x, y, z, ..] = sample.values[0];
                 let share = tightening.share(line, &Vector3::new(x, y, z));
-                Said { share, ..said }
+                SampleBlock { share, ..said }
             }
             None => said,
         };
@@ -268,7 +271,7 @@ impl<'a> Line<'a> {
     }
 
     /// The path at a sample; where the tip stands still in a block, what is left of its way is rounding.
-    fn place(&self, sample: &Sample, due: Due) -> Result<Place, Unplanned> {
+    fn place(&self, sample: &Sample, due: BlockDemand) -> Result<PathDerivatives, Unplanned> {
         let mut place = self.sampler.place(sample).map_err(|_| Unplanned)?;
         if due.feed.is_none() && due.stands {
             place.tip = [[0.0; 3]; 3];
@@ -287,9 +290,9 @@ impl<'a> Line<'a> {
     /// The path ends at rest.
     pub(super) fn finish(
         &mut self,
-        queue: &mut Queue,
-        account: &mut Account,
-        out: &mut dyn FnMut(Flow<Block>),
+        queue: &mut BlockQueue,
+        account: &mut PlanTally,
+        out: &mut dyn FnMut(StreamItem<MotionBlock>),
     ) -> Result<(), Unplanned> {
         self.plan(queue, account, out)?;
         let found = self.solver.finish(&mut |step| self.feeds.settled(step, queue, account, out));
@@ -312,9 +315,9 @@ impl<'a> Line<'a> {
     /// Hands the samples gathered so far to the solver.
     fn plan(
         &mut self,
-        queue: &mut Queue,
-        account: &mut Account,
-        out: &mut dyn FnMut(Flow<Block>),
+        queue: &mut BlockQueue,
+        account: &mut PlanTally,
+        out: &mut dyn FnMut(StreamItem<MotionBlock>),
     ) -> Result<(), Unplanned> {
         let limits: Vec<&dyn Limit> = self.limits.iter().map(|limit| &**limit).collect();
         let found = match self.sampler.batch(&limits) {
@@ -342,25 +345,25 @@ impl<'a> Line<'a> {
 }
 
 /// What is made of samples whose speed is settled: feeds of blocks.
-struct Feeds<'a> {
-    cutter: Cutter<'a>,
-    cutting: Cutting,
-    rest: FromRest,
+struct BlockFeeds<'a> {
+    cutter: BlockCutter<'a>,
+    cutting: CutThresholds,
+    rest: RestToRest,
     /// Names of the limits, in order.
     names: Vec<&'static str>,
-    pieces: Vec<Piece>,
+    pieces: Vec<FeedPiece>,
     /// Where the block in hand is slowest: squared speed, and the limit that it is at.
     slowest: Option<(f64, &'static str)>,
-    watch: Option<Watching<'a>>,
+    watch: Option<SharedWatch<'a>>,
 }
 
-impl Feeds<'_> {
+impl BlockFeeds<'_> {
     fn settled(
         &mut self,
-        step: Step,
-        queue: &mut Queue,
-        account: &mut Account,
-        out: &mut dyn FnMut(Flow<Block>),
+        step: SettledSample,
+        queue: &mut BlockQueue,
+        account: &mut PlanTally,
+        out: &mut dyn FnMut(StreamItem<MotionBlock>),
     ) {
         let source = step.source;
         let name = self.names.get(usize::from(source.limit));
@@ -386,7 +389,13 @@ impl Feeds<'_> {
     }
 
     /// Shows both ends of an interval, with what the plan does inside it.
-    fn watch(&self, queue: &Queue, before: Option<&Stand>, step: Step, limit: &'static str) {
+    fn watch(
+        &self,
+        queue: &BlockQueue,
+        before: Option<&WatchedSample>,
+        step: SettledSample,
+        limit: &'static str,
+    ) {
         let (Some(watch), Some(before), Some(behind)) =
             (&self.watch, before, queue.stand.as_deref())
         else {
@@ -421,18 +430,18 @@ impl Feeds<'_> {
     /// A block whose plan is known: one, or several.
     fn block(
         &mut self,
-        block: &Block,
-        start: &Start,
-        profile: &mut Profile,
-        account: &mut Account,
-        out: &mut dyn FnMut(Flow<Block>),
+        block: &MotionBlock,
+        start: &BlockStart,
+        profile: &mut BlockProfile,
+        account: &mut PlanTally,
+        out: &mut dyn FnMut(StreamItem<MotionBlock>),
     ) {
         let asked = block.asked() * 60.0;
         let planned = profile.seconds();
         let (from, to) = (&start.joints, &block.joints);
         if self.rest.is_passed(planned, asked, from, to) {
             account.too_slow();
-            out(Flow::Point(*block));
+            out(StreamItem::Point(*block));
             return;
         }
         // Where the tip makes most of the way, its feed is what the block keeps.
@@ -443,7 +452,7 @@ impl Feeds<'_> {
         };
         profile.measure(by_tip);
         let limit = self.slowest.map(|(_, limit)| limit);
-        match Cutter::can_cut(block) {
+        match BlockCutter::can_cut(block) {
             true => {
                 let can_end = |share: f64| self.cutter.can_end(block, start, share);
                 profile.pieces(&self.cutting, length, &can_end, &mut self.pieces);
@@ -463,8 +472,8 @@ impl Feeds<'_> {
         let mut printed = 0.0;
         let count = self.cutter.cut(block, start, &self.pieces, length, |piece, seconds| {
             printed += seconds;
-            let planned = Planned { minutes: seconds / 60.0, limit };
-            out(Flow::Point(Block { planned, ..piece }));
+            let planned = PlannedTime { minutes: seconds / 60.0, limit };
+            out(StreamItem::Point(MotionBlock { planned, ..piece }));
         });
         // What is written is never faster than the CL file asks for.
         account.block(count, asked, planned, printed.max(asked));

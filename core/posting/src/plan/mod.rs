@@ -34,16 +34,16 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::Format;
 
 use crate::accuracy::Placer;
-use crate::blocks::{Block, MotionKind};
+use crate::blocks::{BlockKind, MotionBlock};
 use crate::findings::Findings;
 use crate::program::{Command, HoleMark};
-use crate::stream::{Flow, Outlet};
+use crate::stream::{BatchSink, StreamItem};
 use crate::tightening::Tightening;
-use account::Account;
+use account::PlanTally;
 pub use account::{LimitShare, PlanReport, axis_name};
 pub use limits::{SampledAxes, limits};
-use line::{Due, Line};
-use queue::{Queue, Start};
+use line::{BlockDemand, PlannerRun};
+use queue::{BlockQueue, BlockStart};
 pub use watch::{PlanWatch, PlannedPoint};
 
 /// The name under which corners stand among the limits.
@@ -65,21 +65,21 @@ const STANDS: f64 = 1.001e-3;
 pub(crate) type PlacerCell = Rc<RefCell<Option<Rc<Placer>>>>;
 
 /// The observer of a plan, shared by what plans.
-type Watching<'a> = Rc<RefCell<&'a mut dyn PlanWatch>>;
+type SharedWatch<'a> = Rc<RefCell<&'a mut dyn PlanWatch>>;
 
 /// The stage that plans feeds.
-pub(crate) struct Plan<'a> {
+pub(crate) struct PlanStage<'a> {
     base: &'a Machine,
     machine: &'a Machine,
     /// Where the contour error may use less than its limit.
     tightening: Option<Arc<Tightening>>,
-    watch: Option<Watching<'a>>,
+    watch: Option<SharedWatch<'a>>,
     told: PlacerCell,
-    run: Option<Run<'a>>,
-    queue: Queue,
-    account: Account,
+    run: Option<CurvePlanner<'a>>,
+    queue: BlockQueue,
+    account: PlanTally,
     /// Where the axes stand; none where it is not known.
-    stands: Option<Start>,
+    stands: Option<BlockStart>,
     /// Where the last leg of the curve ends.
     point: fit::Point,
     /// A path has begun.
@@ -96,12 +96,12 @@ pub(crate) struct Plan<'a> {
 }
 
 /// What plans with one placer.
-struct Run<'a> {
+struct CurvePlanner<'a> {
     fit: Fit,
-    line: Line<'a>,
+    line: PlannerRun<'a>,
 }
 
-impl<'a> Plan<'a> {
+impl<'a> PlanStage<'a> {
     pub(crate) fn new(
         machine: &'a Machine,
         format: &Format,
@@ -114,8 +114,8 @@ impl<'a> Plan<'a> {
             watch: None,
             told: PlacerCell::default(),
             run: None,
-            queue: Queue::default(),
-            account: Account::default(),
+            queue: BlockQueue::default(),
+            account: PlanTally::default(),
             stands: None,
             point: [0.0; fit::MOST],
             moves: false,
@@ -151,18 +151,18 @@ impl<'a> Plan<'a> {
     /// Takes a batch, which is empty then.
     pub(crate) fn take(
         &mut self,
-        batch: &mut Vec<Flow<Block>>,
-        out: &mut Outlet<'_, Flow<Block>>,
+        batch: &mut Vec<StreamItem<MotionBlock>>,
+        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
         findings: &Findings,
     ) {
         self.take_placer(out, findings);
         for next in batch.drain(..) {
             match next {
-                Flow::Command { line, command } => {
+                StreamItem::Command { line, command } => {
                     self.command(&command, out, findings);
-                    self.queue.push(Flow::Command { line, command });
+                    self.queue.push(StreamItem::Command { line, command });
                 }
-                Flow::Point(block) => self.block(block, out, findings),
+                StreamItem::Point(block) => self.block(block, out, findings),
             }
         }
         if !self.moves {
@@ -171,7 +171,11 @@ impl<'a> Plan<'a> {
     }
 
     /// The program ends.
-    pub(crate) fn finish(&mut self, out: &mut Outlet<'_, Flow<Block>>, findings: &Findings) {
+    pub(crate) fn finish(
+        &mut self,
+        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
+        findings: &Findings,
+    ) {
         self.stop(out, findings);
         if let Some(warning) = self.account.slower_than_none() {
             findings.add(warning);
@@ -179,7 +183,11 @@ impl<'a> Plan<'a> {
     }
 
     /// Blocks are made with another placer.
-    fn take_placer(&mut self, out: &mut Outlet<'_, Flow<Block>>, findings: &Findings) {
+    fn take_placer(
+        &mut self,
+        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
+        findings: &Findings,
+    ) {
         let told = self.told.borrow().clone();
         let known = self.run.as_ref().map(|run| Rc::as_ptr(run.line.placer()));
         if told.as_ref().map(Rc::as_ptr) == known {
@@ -197,14 +205,14 @@ impl<'a> Plan<'a> {
         }
         let watch = self.watch.clone();
         let tightening = self.tightening.clone();
-        let line = Line::new(self.machine, placer, tightening, watch, self.least_block);
+        let line = PlannerRun::new(self.machine, placer, tightening, watch, self.least_block);
         if !std::mem::replace(&mut self.warned, true) {
             for warning in limits::warnings(self.machine) {
                 findings.add(warning);
             }
         }
         let accuracy = &self.machine.accuracy;
-        self.run = Some(Run {
+        self.run = Some(CurvePlanner {
             fit: Fit::new(fit::Rules {
                 dimensions: line.dimensions(),
                 tolerance: self.machine.plan.smoothing,
@@ -221,7 +229,7 @@ impl<'a> Plan<'a> {
     fn command(
         &mut self,
         command: &Command,
-        out: &mut Outlet<'_, Flow<Block>>,
+        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
         findings: &Findings,
     ) {
         match command {
@@ -247,22 +255,31 @@ impl<'a> Plan<'a> {
         }
     }
 
-    fn block(&mut self, block: Block, out: &mut Outlet<'_, Flow<Block>>, findings: &Findings) {
+    fn block(
+        &mut self,
+        block: MotionBlock,
+        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
+        findings: &Findings,
+    ) {
         if block.still {
-            self.queue.push(Flow::Point(block));
+            self.queue.push(StreamItem::Point(block));
             return;
         }
         let way = std::mem::take(&mut self.way);
-        let end =
-            Start { joints: block.joints, words: block.words, tip: block.tip, axis: block.axis };
+        let end = BlockStart {
+            joints: block.joints,
+            words: block.words,
+            tip: block.tip,
+            axis: block.axis,
+        };
         let start = self.stands.replace(end);
-        let cuts = matches!(block.kind, MotionKind::Linear | MotionKind::Arc | MotionKind::Spline);
+        let cuts = matches!(block.kind, BlockKind::Linear | BlockKind::Arc | BlockKind::Spline);
         let planned = start.filter(|_| cuts && !self.in_hole && self.run.is_some());
         match planned {
             Some(start) => self.plan(block, &start, &end, &way, out, findings),
             None => {
                 self.stop(out, findings);
-                self.queue.push(Flow::Point(block));
+                self.queue.push(StreamItem::Point(block));
             }
         }
         // Its memory serves the next curve.
@@ -276,19 +293,20 @@ impl<'a> Plan<'a> {
     /// The feed of a block is planned.
     fn plan(
         &mut self,
-        block: Block,
-        start: &Start,
-        end: &Start,
+        block: MotionBlock,
+        start: &BlockStart,
+        end: &BlockStart,
         way: &[Vector3<f64>],
-        out: &mut Outlet<'_, Flow<Block>>,
+        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
         findings: &Findings,
     ) {
         let Some(run) = &mut self.run else {
             return;
         };
         let along = self.machine.control_point.along;
-        let point =
-            |run: &Run<'_>, at: &Start| run.line.point(at.tip + at.axis * along, &at.joints);
+        let point = |run: &CurvePlanner<'_>, at: &BlockStart| {
+            run.line.point(at.tip + at.axis * along, &at.joints)
+        };
         let last = point(run, end);
         if !self.moves {
             self.point = point(run, start);
@@ -296,7 +314,7 @@ impl<'a> Plan<'a> {
         let tolerance = STANDS * self.machine.plan.smoothing;
         if distance(&self.point, &last) < tolerance {
             // Too short for the curve: it keeps the feed of the CL file, whatever comes before and after it.
-            self.queue.push(Flow::Point(block));
+            self.queue.push(StreamItem::Point(block));
             self.account.give_up(1);
             return;
         }
@@ -306,7 +324,7 @@ impl<'a> Plan<'a> {
             run.line.begin(&start.joints);
             self.moves = true;
         }
-        let mut due = Due::of(&block, along != 0.0);
+        let mut due = BlockDemand::of(&block, along != 0.0);
         if let (Some(tightening), true) = (&self.tightening, along != 0.0) {
             // The curve goes beside the tip, whose places are known.
             due.share = tightening.least(block.line, &start.tip, &end.tip);
@@ -338,7 +356,7 @@ impl<'a> Plan<'a> {
     }
 
     /// The tool comes to a standstill: what waits is planned to its end.
-    fn stop(&mut self, out: &mut Outlet<'_, Flow<Block>>, findings: &Findings) {
+    fn stop(&mut self, out: &mut BatchSink<'_, StreamItem<MotionBlock>>, findings: &Findings) {
         if let (true, Some(run)) = (self.moves, &mut self.run) {
             let (queue, account, line) = (&mut self.queue, &mut self.account, &mut run.line);
             let mut failed = false;
@@ -357,7 +375,7 @@ impl<'a> Plan<'a> {
 
     /// What waits goes on without a plan.
     #[cold]
-    fn fail(&mut self, out: &mut Outlet<'_, Flow<Block>>, findings: &Findings) {
+    fn fail(&mut self, out: &mut BatchSink<'_, StreamItem<MotionBlock>>, findings: &Findings) {
         self.moves = false;
         if let Some(run) = &mut self.run {
             run.fit.clear();

@@ -21,7 +21,7 @@ const MOST_ENDS: usize = 96;
 
 /// How blocks are cut.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cutting {
+pub(super) struct CutThresholds {
     /// A cut saves at least this time, s.
     pub saving: f64,
     /// No piece takes less, s.
@@ -30,7 +30,7 @@ pub(super) struct Cutting {
 
 /// A piece of a block with one feed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Piece {
+pub(super) struct FeedPiece {
     /// Where it ends, as a share of the block.
     pub end: f64,
     /// Speed of the tip, mm/s, or of the parameter, per second.
@@ -39,7 +39,7 @@ pub(super) struct Piece {
 
 /// The plan at a sample.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sample {
+pub(super) struct PlanSample {
     /// Parameter from the start of the block.
     pub at: f64,
     /// Squared speed of the parameter.
@@ -52,8 +52,8 @@ pub(super) struct Sample {
 
 /// The plan along a block.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Profile {
-    samples: Vec<Sample>,
+pub(super) struct BlockProfile {
+    samples: Vec<PlanSample>,
     /// The speed is that of the tip, which the curve passes the block with; else that of the parameter.
     by_tip: bool,
     /// Samples and places between them, closer where the speed changes: place and speed.
@@ -69,7 +69,7 @@ pub(super) struct Profile {
     ways: Vec<(f64, usize)>,
 }
 
-impl Profile {
+impl BlockProfile {
     /// Forgets everything.
     pub(super) fn clear(&mut self) {
         self.samples.clear();
@@ -79,18 +79,18 @@ impl Profile {
     pub(super) fn begin(&mut self) {
         let last = self.samples.last().copied();
         self.samples.clear();
-        self.samples.extend(last.map(|last| Sample { at: 0.0, seconds: 0.0, ..last }));
+        self.samples.extend(last.map(|last| PlanSample { at: 0.0, seconds: 0.0, ..last }));
     }
 
     /// The plan goes on.
-    pub(super) fn push(&mut self, sample: Sample) {
+    pub(super) fn push(&mut self, sample: PlanSample) {
         self.samples.push(sample);
     }
 
     /// Halfway from the last sample to a place and stretch the plan has this squared speed, after so long.
     pub(super) fn halfway(&mut self, at: f64, q: f64, stretch: f64, seconds: f64) {
         if let Some(last) = self.samples.last() {
-            let middle = Sample {
+            let middle = PlanSample {
                 at: last.at.midpoint(at),
                 q,
                 stretch: last.stretch.midpoint(stretch),
@@ -101,12 +101,12 @@ impl Profile {
     }
 
     /// The last sample.
-    pub(super) fn last(&self) -> Option<Sample> {
+    pub(super) fn last(&self) -> Option<PlanSample> {
         self.samples.last().copied()
     }
 
     /// The ends of the last way of the plan, which has a place halfway, or none.
-    pub(super) fn ends_of_way(&self, halfway: bool) -> Option<[Sample; 2]> {
+    pub(super) fn ends_of_way(&self, halfway: bool) -> Option<[PlanSample; 2]> {
         let back = if halfway { 3 } else { 2 };
         let from = self.samples.len().checked_sub(back)?;
         Some([self.samples[from], *self.samples.last()?])
@@ -128,7 +128,7 @@ impl Profile {
     }
 
     /// The whole of it at one speed, which the plan has nowhere less of, but for where the tool comes from rest or to it.
-    pub(super) fn whole(&mut self, length: f64) -> Option<Piece> {
+    pub(super) fn whole(&mut self, length: f64) -> Option<FeedPiece> {
         self.leaving = f64::INFINITY;
         self.refine(STEP);
         self.tell_time(length);
@@ -141,10 +141,10 @@ impl Profile {
     /// share of the block.
     pub(super) fn pieces(
         &mut self,
-        cutting: &Cutting,
+        cutting: &CutThresholds,
         length: f64,
         can_end: &dyn Fn(f64) -> bool,
-        out: &mut Vec<Piece>,
+        out: &mut Vec<FeedPiece>,
     ) {
         out.clear();
         self.leaving = cutting.shortest;
@@ -207,7 +207,7 @@ impl Profile {
     }
 
     /// The cheapest way to each place where a piece may end: what its pieces take, and what cuts must save.
-    fn cheapest(&mut self, cutting: &Cutting, scale: f64) {
+    fn cheapest(&mut self, cutting: &CutThresholds, scale: f64) {
         self.ways.clear();
         self.ways.push((0.0, 0));
         let last = self.ends.len() - 1;
@@ -236,7 +236,7 @@ impl Profile {
     fn refine(&mut self, step: f64) {
         self.places.clear();
         let speed = |speed: f64, stretch: f64| if self.by_tip { speed * stretch } else { speed };
-        let mut last: Option<Sample> = None;
+        let mut last: Option<PlanSample> = None;
         for sample in &self.samples {
             let root = sample.q.sqrt();
             let here = speed(root, sample.stretch);
@@ -261,8 +261,8 @@ impl Profile {
         }
     }
 
-    fn piece(&self, from: usize, to: usize) -> Piece {
-        Piece { end: self.places[to].0 / self.length(), speed: self.speed(from, to) }
+    fn piece(&self, from: usize, to: usize) -> FeedPiece {
+        FeedPiece { end: self.places[to].0 / self.length(), speed: self.speed(from, to) }
     }
 
     /// The speed of a piece: the least between its ends, but for places where the tool nearly stands, which are left to
@@ -307,14 +307,14 @@ impl Profile {
 mod tests {
     use super::*;
 
-    const CUTTING: Cutting = Cutting { saving: 0.001, shortest: 0.005 };
+    const CUTTING: CutThresholds = CutThresholds { saving: 0.001, shortest: 0.005 };
 
-    fn profile(samples: &[(f64, f64)]) -> Profile {
-        let mut profile = Profile::default();
+    fn profile(samples: &[(f64, f64)]) -> BlockProfile {
+        let mut profile = BlockProfile::default();
         let mut before: Option<(f64, f64)> = None;
         for &(at, speed) in samples {
             let from = before.replace((at, speed));
-            profile.push(Sample {
+            profile.push(PlanSample {
                 at,
                 q: speed * speed,
                 stretch: 1.0,
@@ -324,7 +324,7 @@ mod tests {
         profile
     }
 
-    fn pieces(profile: &mut Profile) -> Vec<Piece> {
+    fn pieces(profile: &mut BlockProfile) -> Vec<FeedPiece> {
         let mut out = Vec::new();
         let length = profile.length();
         profile.pieces(&CUTTING, length, &|_| true, &mut out);
@@ -334,7 +334,7 @@ mod tests {
     #[test]
     fn an_even_plan_is_one_piece() {
         let mut plan = profile(&[(0.0, 20.0), (4.0, 20.0), (10.0, 20.0)]);
-        let piece = Piece { end: 1.0, speed: 20.0 };
+        let piece = FeedPiece { end: 1.0, speed: 20.0 };
         assert_eq!(pieces(&mut plan), [piece]);
         assert_eq!(plan.whole(10.0), Some(piece));
     }
@@ -371,7 +371,7 @@ mod tests {
     #[test]
     fn a_short_block_from_rest_to_rest_has_the_feed_of_its_height() {
         let mut plan = profile(&[(0.0, 0.0), (0.01, 10.0), (0.02, 0.0)]);
-        assert_eq!(pieces(&mut plan), [Piece { end: 1.0, speed: 10.0 }]);
+        assert_eq!(pieces(&mut plan), [FeedPiece { end: 1.0, speed: 10.0 }]);
         assert!((plan.seconds() - 0.004).abs() < 1e-12);
     }
 

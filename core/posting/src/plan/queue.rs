@@ -6,15 +6,15 @@ use nalgebra::Vector3;
 use post_machine::axis_words::WordValues;
 use post_machine::kinematics::Joints;
 
-use super::pieces::{Profile, Sample};
-use super::samples::{Place, Stand};
-use super::solver::Step;
-use crate::blocks::Block;
-use crate::stream::Flow;
+use super::pieces::{BlockProfile, PlanSample};
+use super::samples::{PathDerivatives, WatchedSample};
+use super::solver::SettledSample;
+use crate::blocks::MotionBlock;
+use crate::stream::StreamItem;
 
 /// Where a block begins.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Start {
+pub(super) struct BlockStart {
     pub joints: Joints,
     pub words: WordValues,
     /// Tip, mm, part frame.
@@ -25,15 +25,15 @@ pub(super) struct Start {
 
 /// One that waits.
 #[derive(Debug)]
-struct Waiting {
-    flow: Flow<Block>,
+struct QueueItem {
+    flow: StreamItem<MotionBlock>,
     /// Start of a block whose feed is planned.
-    open: Option<Start>,
+    open: Option<BlockStart>,
 }
 
 /// A sample of the path that the solver has.
 #[derive(Clone, Debug)]
-struct Mark {
+struct SampleMark {
     /// Parameter from the start of its block.
     at: f64,
     /// Speed of the tip for that of the parameter.
@@ -41,40 +41,40 @@ struct Mark {
     /// The block ends with it.
     ends: bool,
     /// Path as observers see it: how it comes there, and how it leaves if that is another way.
-    stand: Option<Box<Stand>>,
-    leaves: Option<Box<Stand>>,
+    stand: Option<Box<WatchedSample>>,
+    leaves: Option<Box<WatchedSample>>,
 }
 
 /// Blocks and commands in order, and the samples that lie on them.
 #[derive(Debug, Default)]
-pub(super) struct Queue {
-    waiting: VecDeque<Waiting>,
-    marks: VecDeque<Mark>,
+pub(super) struct BlockQueue {
+    waiting: VecDeque<QueueItem>,
+    marks: VecDeque<SampleMark>,
     /// The plan along the first open block, as far as it is settled.
-    pub(super) profile: Profile,
+    pub(super) profile: BlockProfile,
     /// Time from the sample before to the one settled last, s.
     pub(super) seconds: f64,
     /// Whether there is an observer.
     pub(super) watched: bool,
     /// The sample settled last, as the path comes there, and as it leaves a corner.
-    pub(super) stand: Option<Box<Stand>>,
-    leaves: Option<Box<Stand>>,
+    pub(super) stand: Option<Box<WatchedSample>>,
+    leaves: Option<Box<WatchedSample>>,
 }
 
-impl Queue {
+impl BlockQueue {
     /// What needs no plan.
-    pub(super) fn push(&mut self, flow: Flow<Block>) {
-        self.waiting.push_back(Waiting { flow, open: None });
+    pub(super) fn push(&mut self, flow: StreamItem<MotionBlock>) {
+        self.waiting.push_back(QueueItem { flow, open: None });
     }
 
     /// A block whose feed is planned.
-    pub(super) fn open(&mut self, block: Block, start: Start) {
-        self.waiting.push_back(Waiting { flow: Flow::Point(block), open: Some(start) });
+    pub(super) fn open(&mut self, block: MotionBlock, start: BlockStart) {
+        self.waiting.push_back(QueueItem { flow: StreamItem::Point(block), open: Some(start) });
     }
 
     /// The solver was handed a sample.
-    pub(super) fn mark(&mut self, at: f64, place: &Place, ends: bool) {
-        self.marks.push_back(Mark {
+    pub(super) fn mark(&mut self, at: f64, place: &PathDerivatives, ends: bool) {
+        self.marks.push_back(SampleMark {
             at,
             stretch: place.stretch(),
             ends,
@@ -84,20 +84,20 @@ impl Queue {
     }
 
     /// The path leaves the last sample another way than it came.
-    pub(super) fn corner(&mut self, place: &Place) {
+    pub(super) fn corner(&mut self, place: &PathDerivatives) {
         if let (true, Some(mark)) = (self.watched, self.marks.back_mut()) {
             mark.leaves = Some(Box::new(place.stand()));
         }
     }
 
     /// The sample settled last as the path leaves it; it is forgotten.
-    pub(super) fn left(&mut self) -> Option<Box<Stand>> {
+    pub(super) fn left(&mut self) -> Option<Box<WatchedSample>> {
         let came = self.stand.take();
         self.leaves.take().or(came)
     }
 
     /// The next sample is settled; true if a block ends with it, whose plan is then in the profile.
-    pub(super) fn settle(&mut self, step: &Step) -> bool {
+    pub(super) fn settle(&mut self, step: &SettledSample) -> bool {
         let Some(mark) = self.marks.pop_front() else {
             return false;
         };
@@ -113,7 +113,12 @@ impl Queue {
             self.profile.halfway(mark.at, halfway, mark.stretch, rest);
         }
         self.seconds = seconds;
-        self.profile.push(Sample { at: mark.at, q: step.q, stretch: mark.stretch, seconds: rest });
+        self.profile.push(PlanSample {
+            at: mark.at,
+            q: step.q,
+            stretch: mark.stretch,
+            seconds: rest,
+        });
         mark.ends
     }
 
@@ -121,11 +126,11 @@ impl Queue {
     /// unknown any more. None where none waits.
     pub(super) fn first_open(
         &mut self,
-        ready: &mut dyn FnMut(Flow<Block>),
-    ) -> Option<(Block, Start)> {
+        ready: &mut dyn FnMut(StreamItem<MotionBlock>),
+    ) -> Option<(MotionBlock, BlockStart)> {
         while let Some(next) = self.waiting.pop_front() {
             match (next.flow, next.open) {
-                (Flow::Point(block), Some(start)) => return Some((block, start)),
+                (StreamItem::Point(block), Some(start)) => return Some((block, start)),
                 (flow, _) => ready(flow),
             }
         }
@@ -133,7 +138,7 @@ impl Queue {
     }
 
     /// All that waits for nothing any more.
-    pub(super) fn ready(&mut self, ready: &mut dyn FnMut(Flow<Block>)) {
+    pub(super) fn ready(&mut self, ready: &mut dyn FnMut(StreamItem<MotionBlock>)) {
         while self.waiting.front().is_some_and(|next| next.open.is_none()) {
             if let Some(next) = self.waiting.pop_front() {
                 ready(next.flow);
@@ -153,7 +158,7 @@ impl Queue {
     /// Line of the CL file of the first block that waits for its feed.
     pub(super) fn open_line(&self) -> Option<u64> {
         self.waiting.iter().find_map(|next| match &next.flow {
-            Flow::Point(block) if next.open.is_some() => Some(block.line),
+            StreamItem::Point(block) if next.open.is_some() => Some(block.line),
             _ => None,
         })
     }
@@ -161,8 +166,8 @@ impl Queue {
     /// Line of the CL file of the first that waits.
     pub(super) fn first_line(&self) -> Option<u64> {
         self.waiting.front().map(|next| match &next.flow {
-            Flow::Point(block) => block.line,
-            Flow::Command { line, .. } => *line,
+            StreamItem::Point(block) => block.line,
+            StreamItem::Command { line, .. } => *line,
         })
     }
 }

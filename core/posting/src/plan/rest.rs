@@ -2,21 +2,21 @@
 
 use post_machine::kinematics::Joints;
 
-use super::limits::Axes;
+use super::limits::PlanAxes;
 
 /// A plan may keep errors that moving from rest to rest does not: only one that takes this many times longer is discarded.
 const FAR_SLOWER: f64 = 1e4;
 
 /// The limits of the axes, by place in the chain.
 #[derive(Clone, Debug)]
-pub(super) struct FromRest {
+pub(super) struct RestToRest {
     velocity: Vec<f64>,
     acceleration: Vec<f64>,
     jerk: Vec<f64>,
 }
 
-impl FromRest {
-    pub(super) fn new(axes: &Axes) -> Self {
+impl RestToRest {
+    pub(super) fn new(axes: &PlanAxes) -> Self {
         let [velocity, acceleration, jerk] = axes.of_joints();
         Self { velocity, acceleration, jerk }
     }

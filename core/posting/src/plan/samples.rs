@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use post_feed::fit::{self, Sample};
 use post_feed::jerk::Batch;
 use post_feed::limits::Limit;
-use post_feed::{Ends, Infeasible, Problem, Samples};
+use post_feed::{EndSpeeds, Infeasible, Problem, Samples};
 use post_machine::kinematics::{Course, Joints, MAX_AXES, ORDERS, Unreachable};
 
 use super::limits::SampledAxes;
@@ -19,15 +19,15 @@ pub(super) const MOST: usize = MAX_AXES + 3;
 const BATCH: usize = 128;
 
 /// First to third derivative of each axis.
-pub(super) type Derivatives = [[f64; 3]; MOST];
+pub(super) type AxisDerivatives = [[f64; 3]; MOST];
 
 /// The path at one sample.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct PathDerivatives {
     /// First to third derivative of the control point, mm, part frame.
     pub tip: [[f64; 3]; 3],
     /// Derivatives of each axis, mm or radians.
-    pub axes: Derivatives,
+    pub axes: AxisDerivatives,
     /// How each axis moves the control point.
     rates: [[f64; 3]; MOST],
     /// Where that is, mm, part frame.
@@ -38,13 +38,13 @@ pub(super) struct Place {
 
 /// A sample as observers see it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stand {
+pub(super) struct WatchedSample {
     /// The control point and its derivatives.
     pub tip: [[f64; 3]; ORDERS],
     pub course: Course,
 }
 
-impl Place {
+impl PathDerivatives {
     /// Makes the path at a sample of the control point with its derivatives (mm, part frame), and of the axes that follow it.
     fn new(tip: &[[f64; 3]; ORDERS], course: Course, sampled: SampledAxes) -> Self {
         let mut place = Self {
@@ -75,9 +75,9 @@ impl Place {
     }
 
     /// Makes the sample that observers see.
-    pub(super) fn stand(&self) -> Stand {
+    pub(super) fn stand(&self) -> WatchedSample {
         let [first, second, third] = self.tip;
-        Stand { tip: [self.at, first, second, third], course: self.course }
+        WatchedSample { tip: [self.at, first, second, third], course: self.course }
     }
 
     /// Speed of the control point for that of the parameter.
@@ -96,13 +96,13 @@ impl SampledAxes {
         tip: &[[f64; 3]; ORDERS],
         course: &Course,
     ) {
-        Place::new(tip, *course, self).put(parameter, self, samples);
+        PathDerivatives::new(tip, *course, self).put(parameter, self, samples);
     }
 }
 
 /// What a block says of its samples.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Said {
+pub(super) struct SampleBlock {
     /// The feed of the control point that the CL file asks for, mm/s.
     pub feed: f64,
     /// Length of the block, in units of the parameter.
@@ -123,7 +123,7 @@ pub(super) struct Sampler {
     samples: Samples,
     problem: Problem,
     /// The last sample, which the next batch begins with.
-    last: Option<(Place, Said)>,
+    last: Option<(PathDerivatives, SampleBlock)>,
     at: f64,
     /// What a corner at its first sample allows.
     corner: Option<f64>,
@@ -171,7 +171,7 @@ impl Sampler {
     ///
     /// # Errors
     /// The linear axes cannot follow.
-    pub(super) fn place(&self, sample: &Sample) -> Result<Place, Unreachable> {
+    pub(super) fn place(&self, sample: &Sample) -> Result<PathDerivatives, Unreachable> {
         let mut course = Course::default();
         course.joints[0] = self.held;
         for order in 0..ORDERS {
@@ -181,23 +181,23 @@ impl Sampler {
         }
         let tip = sample.values.map(|value| Vector3::new(value[0], value[1], value[2]));
         self.placer.solver().course(&tip, &mut course)?;
-        Ok(Place::new(&tip.map(Into::into), course, self.axes))
+        Ok(PathDerivatives::new(&tip.map(Into::into), course, self.axes))
     }
 
     /// The last sample; none where the path begins.
-    pub(super) fn last(&self) -> Option<&Place> {
+    pub(super) fn last(&self) -> Option<&PathDerivatives> {
         self.last.as_ref().map(|(place, _)| place)
     }
 
     /// The path goes on from a corner with its own derivatives, and no faster than `q` there.
-    pub(super) fn corner(&mut self, place: &Place, said: Said, q: f64) {
+    pub(super) fn corner(&mut self, place: &PathDerivatives, said: SampleBlock, q: f64) {
         self.samples.clear();
         self.put(place, said);
         self.corner = Some(q);
     }
 
     /// What a block says holds from the last sample on.
-    pub(super) fn enter(&mut self, said: Said) {
+    pub(super) fn enter(&mut self, said: SampleBlock) {
         if let Some((_, last)) = &mut self.last {
             *last = said;
         }
@@ -213,12 +213,12 @@ impl Sampler {
     }
 
     /// The path goes on by `way` to this sample, or begins there.
-    pub(super) fn push(&mut self, place: &Place, said: Said, way: f64) {
+    pub(super) fn push(&mut self, place: &PathDerivatives, said: SampleBlock, way: f64) {
         self.at += way;
         self.put(place, said);
     }
 
-    fn put(&mut self, place: &Place, said: Said) {
+    fn put(&mut self, place: &PathDerivatives, said: SampleBlock) {
         place.put(self.at, self.axes, &mut self.samples);
         self.samples.feeds.push(said.feed);
         self.samples.blocks.push(said.length);
@@ -243,7 +243,7 @@ impl Sampler {
         if self.samples.len() < 2 {
             return Ok(None);
         }
-        let found = self.problem.refill(&self.samples, limits, Ends::default());
+        let found = self.problem.refill(&self.samples, limits, EndSpeeds::default());
         let corner = self.corner.take();
         if let Some(q) = corner {
             self.problem.lower(0, q, super::CORNER);

@@ -1,7 +1,7 @@
 //! What finds the fastest feed along samples: with jerk limits or without.
 
 use post_feed::jerk::{self, Batch};
-use post_feed::problem::Source;
+use post_feed::problem::LimitSource;
 use post_feed::reach::{self, stream::Settled};
 use post_feed::{Infeasible, Problem};
 use post_machine::description::PlanSolver;
@@ -14,7 +14,7 @@ const LOOK_AHEAD_FOR_JERK: usize = 256;
 
 /// A sample whose speed is settled.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Step {
+pub(super) struct SettledSample {
     /// Squared speed of the parameter.
     pub q: f64,
     /// Squared speed halfway from the sample before, where that is not halfway between the two.
@@ -22,12 +22,12 @@ pub(super) struct Step {
     /// Time from the sample before, s; none where the squared speed is linear.
     pub seconds: Option<f64>,
     /// The limit that is used most.
-    pub source: Source,
+    pub source: LimitSource,
 }
 
 /// The solver of a line.
 #[derive(Debug)]
-pub(super) enum Solver {
+pub(super) enum SampleSolver {
     /// Velocity, acceleration and errors.
     Reach(Box<reach::Stream>),
     /// Jerk too.
@@ -38,7 +38,7 @@ pub(super) enum Solver {
     },
 }
 
-impl Solver {
+impl SampleSolver {
     /// Makes the solver for problems of `stride` rows an interval.
     pub(super) fn new(asked: PlanSolver, stride: usize) -> Self {
         match asked {
@@ -54,7 +54,7 @@ impl Solver {
     pub(super) fn push(
         &mut self,
         batch: Batch<'_>,
-        sink: &mut dyn FnMut(Step),
+        sink: &mut dyn FnMut(SettledSample),
     ) -> Result<(), Infeasible> {
         match self {
             Self::Reach(stream) => push(stream, batch.problem, sink),
@@ -65,7 +65,7 @@ impl Solver {
     }
 
     /// The path ends at rest.
-    pub(super) fn finish(&mut self, sink: &mut dyn FnMut(Step)) -> Result<(), Infeasible> {
+    pub(super) fn finish(&mut self, sink: &mut dyn FnMut(SettledSample)) -> Result<(), Infeasible> {
         match self {
             Self::Reach(stream) => stream.finish(0.0, &mut |settled| sink(step(&settled))),
             Self::Jerk { stream, begun } => {
@@ -99,22 +99,22 @@ impl Solver {
 fn push(
     stream: &mut reach::Stream,
     problem: &Problem,
-    sink: &mut dyn FnMut(Step),
+    sink: &mut dyn FnMut(SettledSample),
 ) -> Result<(), Infeasible> {
     stream.push(problem, &mut |settled| sink(step(&settled)))
 }
 
-fn step(settled: &Settled<'_>) -> Step {
-    Step { q: settled.q, halfway: None, seconds: None, source: settled.active().source }
+fn step(settled: &Settled<'_>) -> SettledSample {
+    SettledSample { q: settled.q, halfway: None, seconds: None, source: settled.active().source }
 }
 
-fn handed_on(passed: &jerk::Passed<'_>, begun: &mut bool, sink: &mut dyn FnMut(Step)) {
+fn handed_on(passed: &jerk::Passed<'_>, begun: &mut bool, sink: &mut dyn FnMut(SettledSample)) {
     let at = |share: f64| passed.piece.at(share, passed.step)[0].max(0.0);
     let source = passed.active().source;
     if !std::mem::replace(begun, true) {
-        sink(Step { q: at(0.0), halfway: None, seconds: None, source });
+        sink(SettledSample { q: at(0.0), halfway: None, seconds: None, source });
     }
-    sink(Step {
+    sink(SettledSample {
         q: at(1.0),
         halfway: Some(at(0.5)),
         seconds: Some(passed.piece.duration(passed.step)),

@@ -8,7 +8,7 @@ use super::limits::direction;
 
 /// An arc about an axis; a spiral or a helix where its ends differ in radius or height.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arc {
+pub struct PathArc {
     /// Where heights count from, mm.
     pub(crate) centre: Vector3<f64>,
     /// Axis about which it turns right-handed, unit vector.
@@ -31,14 +31,14 @@ const ROUNDED: f64 = 1e-7;
 
 /// An arc whose end lies so little ahead of its start that the other reading may be meant: by how much, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ArcDoubt {
+pub enum ArcAmbiguity {
     /// The arc is made as the short one between them.
     Short(f64),
     /// The arc is made as a whole turn.
     Turn(f64),
 }
 
-impl Arc {
+impl PathArc {
     /// The arc from `start` to `end`, right-handed about `axis`, over `turns` passes of its end (1 is the usual arc).
     ///
     /// # Errors
@@ -100,15 +100,15 @@ impl Arc {
 
     /// What else may be meant where the end lies just ahead of the start; an end just after it is nearly a whole turn
     /// either way. `end` is the point that the file gives, in the frame of the arc.
-    pub fn doubt(&self, end: Vector3<f64>) -> Option<ArcDoubt> {
+    pub fn doubt(&self, end: Vector3<f64>) -> Option<ArcAmbiguity> {
         let ahead = self.axis.cross(&self.radial).dot(&(end - self.centre));
         if !(ROUNDED..10.0 * CLOSED).contains(&ahead) || self.radial.dot(&(end - self.centre)) < 0.0
         {
             return None;
         }
         Some(match self.sweep < PI {
-            true => ArcDoubt::Short(ahead),
-            false => ArcDoubt::Turn(ahead),
+            true => ArcAmbiguity::Short(ahead),
+            false => ArcAmbiguity::Turn(ahead),
         })
     }
 
@@ -166,8 +166,8 @@ mod tests {
     #[test]
     fn quarter_turns_go_the_way_of_the_axis() {
         let (start, end) = (point(10.0, 0.0, 0.0), point(0.0, 10.0, 0.0));
-        let forth = Arc::new(start, end, Vector3::zeros(), Vector3::z(), 1).unwrap();
-        let back = Arc::new(start, end, Vector3::zeros(), -Vector3::z(), 1).unwrap();
+        let forth = PathArc::new(start, end, Vector3::zeros(), Vector3::z(), 1).unwrap();
+        let back = PathArc::new(start, end, Vector3::zeros(), -Vector3::z(), 1).unwrap();
         let half = std::f64::consts::FRAC_1_SQRT_2 * 10.0;
         assert!((forth.at(0.5) - point(half, half, 0.0)).norm() < 1e-12);
         assert!((back.at(0.5) - point(-half, -half, 0.0)).norm() < 1e-12);
@@ -178,10 +178,10 @@ mod tests {
     fn equal_ends_are_a_whole_turn_and_heights_a_helix() {
         let start = point(10.0, 0.0, 0.0);
         let arc =
-            Arc::new(start, point(10.0, 0.0, 3.0), Vector3::zeros(), Vector3::z(), 1).unwrap();
+            PathArc::new(start, point(10.0, 0.0, 3.0), Vector3::zeros(), Vector3::z(), 1).unwrap();
         assert!((arc.at(0.5) - point(-10.0, 0.0, 1.5)).norm() < 1e-12);
         let two =
-            Arc::new(start, point(10.0, 0.0, 3.0), Vector3::zeros(), Vector3::z(), 2).unwrap();
+            PathArc::new(start, point(10.0, 0.0, 3.0), Vector3::zeros(), Vector3::z(), 2).unwrap();
         assert!((two.at(0.5) - point(10.0, 0.0, 1.5)).norm() < 1e-12);
     }
 
@@ -190,12 +190,12 @@ mod tests {
         let start = point(10.0, 0.0, 0.0);
         let doubt = |end: Vector3<f64>, axis: f64| {
             let axis = Vector3::z() * axis;
-            Arc::new(start, end, Vector3::zeros(), axis, 1).unwrap().doubt(end)
+            PathArc::new(start, end, Vector3::zeros(), axis, 1).unwrap().doubt(end)
         };
         let turn = doubt(point(10.0, 2e-4, 0.0), 1.0);
-        assert!(matches!(turn, Some(ArcDoubt::Turn(ahead)) if (ahead - 2e-4).abs() < 1e-9));
+        assert!(matches!(turn, Some(ArcAmbiguity::Turn(ahead)) if (ahead - 2e-4).abs() < 1e-9));
         let short = doubt(point(10.0, 4e-3, 1.0), 1.0);
-        assert!(matches!(short, Some(ArcDoubt::Short(ahead)) if (ahead - 4e-3).abs() < 1e-9));
+        assert!(matches!(short, Some(ArcAmbiguity::Short(ahead)) if (ahead - 4e-3).abs() < 1e-9));
         // The start itself, an end after it, an arc, and a half turn are what they are.
         assert_eq!(doubt(start, 1.0), None);
         assert_eq!(doubt(point(10.0, 2e-4, 0.0), -1.0), None);
@@ -206,7 +206,7 @@ mod tests {
 
     #[test]
     fn chords_stay_within_what_they_promise() {
-        let arc = Arc::new(
+        let arc = PathArc::new(
             point(50.0, 0.0, 0.0),
             point(-49.0, 3.0, 7.0),
             point(0.0, 1.0, 0.0),

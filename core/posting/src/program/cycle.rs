@@ -44,7 +44,7 @@ struct Peck {
 
 /// A cycle at one hole as the control gets it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drilling {
+pub struct HoleCycle {
     /// The control's cycle.
     pub kind: Cycle,
     /// Distance from the point down to the bottom, mm.
@@ -65,7 +65,7 @@ pub struct Drilling {
 
 /// One leg of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Leg {
+pub enum CycleLeg {
     /// Goes at rapid traverse to this height.
     Rapid(f64),
     /// Goes at the cycle's feed to this height.
@@ -269,7 +269,7 @@ impl DrillCycle {
     }
 
     /// The cycle as the control gets it; none if it has no words for it: pecks of two depths, or a first peck that differs.
-    pub fn native(&self) -> Option<Drilling> {
+    pub fn native(&self) -> Option<HoleCycle> {
         let step = match self.peck {
             // In one go all the same.
             Some(peck) if peck.step >= -self.bottom => None,
@@ -277,7 +277,7 @@ impl DrillCycle {
             Some(peck) => Some(peck.step),
             None => self.shift,
         };
-        Some(Drilling {
+        Some(HoleCycle {
             kind: match self.kind {
                 Cycle::Deep | Cycle::BreakChip if step.is_none() => Cycle::Drill,
                 kind => kind,
@@ -316,30 +316,30 @@ impl DrillCycle {
     }
 
     /// Calls `emit` with the legs at one point, in order.
-    pub fn legs(&self, emit: &mut dyn FnMut(Leg)) {
-        emit(Leg::Rapid(self.retract));
-        emit(Leg::Rapid(self.clearance));
+    pub fn legs(&self, emit: &mut dyn FnMut(CycleLeg)) {
+        emit(CycleLeg::Rapid(self.retract));
+        emit(CycleLeg::Rapid(self.clearance));
         if let Some(peck) = self.peck {
             let mut depth = 0.0 - peck.step;
             while depth > self.bottom {
-                emit(Leg::Feed(depth));
+                emit(CycleLeg::Feed(depth));
                 if peck.full {
-                    emit(Leg::Rapid(self.clearance));
-                    emit(Leg::Rapid((depth + GAP).min(self.clearance)));
+                    emit(CycleLeg::Rapid(self.clearance));
+                    emit(CycleLeg::Rapid((depth + GAP).min(self.clearance)));
                 } else {
-                    emit(Leg::Rapid((depth + GAP).min(self.clearance)));
+                    emit(CycleLeg::Rapid((depth + GAP).min(self.clearance)));
                 }
                 depth -= peck.later;
             }
         }
-        emit(Leg::Feed(self.bottom));
+        emit(CycleLeg::Feed(self.bottom));
         if self.dwell > 0.0 {
-            emit(Leg::Dwell(self.dwell));
+            emit(CycleLeg::Dwell(self.dwell));
         }
         if matches!(self.kind, Cycle::Ream | Cycle::Tap | Cycle::TapLeft) {
-            emit(Leg::Feed(self.clearance));
+            emit(CycleLeg::Feed(self.clearance));
         }
-        emit(Leg::Rapid(self.retract));
+        emit(CycleLeg::Rapid(self.retract));
     }
 }
 
@@ -409,7 +409,7 @@ fn pitch(cycle: &CycleDefinition, scale: f64) -> Result<Option<f64>, String> {
 mod tests {
     use super::*;
 
-    fn legs(definition: &CycleDefinition, scale: f64) -> Vec<Leg> {
+    fn legs(definition: &CycleDefinition, scale: f64) -> Vec<CycleLeg> {
         let mut legs = Vec::new();
         DrillCycle::new(definition, scale).unwrap().legs(&mut |leg| legs.push(leg));
         legs
@@ -427,13 +427,13 @@ mod tests {
         assert_eq!(
             legs(&definition, 1.0),
             [
-                Leg::Rapid(1.0),
-                Leg::Rapid(1.0),
-                Leg::Feed(-2.0),
-                Leg::Rapid(1.0),
-                Leg::Rapid(-1.5),
-                Leg::Feed(-3.5),
-                Leg::Rapid(1.0),
+                CycleLeg::Rapid(1.0),
+                CycleLeg::Rapid(1.0),
+                CycleLeg::Feed(-2.0),
+                CycleLeg::Rapid(1.0),
+                CycleLeg::Rapid(-1.5),
+                CycleLeg::Feed(-3.5),
+                CycleLeg::Rapid(1.0),
             ]
         );
     }
@@ -448,9 +448,11 @@ mod tests {
             later_step: Some(2.0),
             ..CycleDefinition::default()
         };
-        let down: Vec<Leg> =
-            legs(&definition, 1.0).into_iter().filter(|leg| matches!(leg, Leg::Feed(_))).collect();
-        assert_eq!(down, [Leg::Feed(-5.0), Leg::Feed(-7.0), Leg::Feed(-8.0)]);
+        let down: Vec<CycleLeg> = legs(&definition, 1.0)
+            .into_iter()
+            .filter(|leg| matches!(leg, CycleLeg::Feed(_)))
+            .collect();
+        assert_eq!(down, [CycleLeg::Feed(-5.0), CycleLeg::Feed(-7.0), CycleLeg::Feed(-8.0)]);
     }
 
     #[test]
@@ -466,11 +468,11 @@ mod tests {
         assert_eq!(
             legs(&definition, 25.4),
             [
-                Leg::Rapid(25.4),
-                Leg::Rapid(2.54),
-                Leg::Feed(-25.4),
-                Leg::Dwell(0.5),
-                Leg::Rapid(25.4),
+                CycleLeg::Rapid(25.4),
+                CycleLeg::Rapid(2.54),
+                CycleLeg::Feed(-25.4),
+                CycleLeg::Dwell(0.5),
+                CycleLeg::Rapid(25.4),
             ]
         );
     }
@@ -485,7 +487,8 @@ mod tests {
             ..CycleDefinition::default()
         };
         let sunk = legs(&definition, 1.0);
-        let Some(Leg::Feed(bottom)) = sunk.iter().find(|leg| matches!(leg, Leg::Feed(_))) else {
+        let Some(CycleLeg::Feed(bottom)) = sunk.iter().find(|leg| matches!(leg, CycleLeg::Feed(_)))
+        else {
             panic!("{sunk:?}");
         };
         // With 90° as deep as half the diameter.

@@ -7,7 +7,7 @@ use super::limits::MOST_DEGREES;
 
 /// The frame in force.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Frame {
+pub(crate) struct ClFrame {
     /// Take points and axes into the frame of `MSYS`.
     apply_msys: bool,
     /// Origin in mm, and the frame's axes as rows.
@@ -23,7 +23,7 @@ pub(crate) struct Frame {
 /// Angles with six decimals of a radian do not quite reach a right angle: so far they are taken as one.
 const NEAR: f64 = 2e-6;
 
-impl Frame {
+impl ClFrame {
     /// The frame of a part that sits turned about its Z by `turn`, radians, right-handed.
     pub(crate) fn new(apply_msys: bool, turn: f64) -> Self {
         let rotation = || Rotation3::from_axis_angle(&Vector3::z_axis(), turn).into_inner();

@@ -9,11 +9,12 @@ mod spline;
 mod step;
 mod word_census;
 
-pub use arc::Arc;
-pub use cycle::{DrillCycle, Drilling, Leg};
-pub use interpret::{Interpreter, Reading, ToldSpindle};
-pub use spline::Spline;
+pub use arc::PathArc;
+pub use cycle::{CycleLeg, DrillCycle, HoleCycle};
+pub use interpret::{ClInterpreter, DefaultSpindle, ReadingOptions};
+pub use spline::BSpline;
 pub use step::{
-    ArcStep, Command, CycleStep, HoleMark, Motion, Pace, PlaneStep, SplineStep, Step, Tool,
+    ArcStep, Command, CycleStep, HoleMark, MoveFeed, PlaneStep, ProgramStep, SplineStep,
+    StraightMove, ToolChange,
 };
-pub use word_census::Unknown;
+pub use word_census::UnknownWordPolicy;

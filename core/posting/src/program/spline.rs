@@ -8,12 +8,12 @@ const DEGREE: usize = 3;
 
 /// A clamped cubic B-spline.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Spline {
+pub struct BSpline {
     knots: Vec<f64>,
     points: Vec<Vector3<f64>>,
 }
 
-impl Spline {
+impl BSpline {
     /// A spline over 0 to 1 from the knots of the file (interior ones and the last) and all control points.
     ///
     /// # Errors
@@ -104,7 +104,7 @@ impl Spline {
         self.points.last().copied().unwrap_or_default()
     }
 
-    /// How many chords [`Spline::flatten`] makes; none if they cannot be counted.
+    /// How many chords [`BSpline::flatten`] makes; none if they cannot be counted.
     pub fn chords(&self, tolerance: f64) -> Option<u64> {
         let mut chords = 0.0;
         for span in DEGREE..self.points.len() {
@@ -190,13 +190,13 @@ impl Spline {
 mod tests {
     use super::*;
 
-    fn wave() -> Spline {
+    fn wave() -> BSpline {
         let points = [0.0, 3.0, -2.0, 5.0, 1.0, 4.0, 2.0]
             .iter()
             .enumerate()
             .map(|(index, y)| Vector3::new(index as f64 * 5.0, *y * 4.0, 0.3 * index as f64))
             .collect();
-        Spline::new(&[0.2, 0.5, 0.6, 1.0], points).unwrap()
+        BSpline::new(&[0.2, 0.5, 0.6, 1.0], points).unwrap()
     }
 
     #[test]
@@ -208,7 +208,7 @@ mod tests {
             Vector3::new(3.0, 2.0, 1.0),
             Vector3::new(4.0, 0.0, 1.0),
         ];
-        let spline = Spline::new(&[1.0], points.clone()).unwrap();
+        let spline = BSpline::new(&[1.0], points.clone()).unwrap();
         for step in 0..=10 {
             let t = f64::from(step) / 10.0;
             let s = 1.0 - t;
@@ -257,16 +257,16 @@ mod tests {
         }
         let points = vec![Vector3::zeros(), Vector3::x(), Vector3::y(), Vector3::z(), Vector3::x()];
         for knot in [1e-300, 1e-320, 1e-200] {
-            let spline = Spline::new(&[knot, 1.0], points.clone()).unwrap();
+            let spline = BSpline::new(&[knot, 1.0], points.clone()).unwrap();
             assert_eq!(spline.chords(0.001), None, "{knot}");
         }
     }
 
     #[test]
     fn what_does_not_fit_is_refused() {
-        assert!(Spline::new(&[0.5], vec![]).is_err());
-        assert!(Spline::new(&[0.6, 0.4, 1.0], vec![Vector3::zeros(); 6]).is_err());
-        let fault = Spline::new(&[0.5, 1.0], vec![Vector3::zeros(); 4]).unwrap_err();
+        assert!(BSpline::new(&[0.5], vec![]).is_err());
+        assert!(BSpline::new(&[0.6, 0.4, 1.0], vec![Vector3::zeros(); 6]).is_err());
+        let fault = BSpline::new(&[0.5, 1.0], vec![Vector3::zeros(); 4]).unwrap_err();
         assert!(fault.contains("need 5 control points"), "{fault}");
     }
 }

@@ -6,15 +6,15 @@ use post_machine::description::{Retract, Rewind, Smoothing};
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Compensation, Coolant, Spindle, SpindleSense};
 
-use super::{Arc, DrillCycle, Drilling, Spline};
-use crate::curve::{Curve, PrintedCurve};
+use super::{BSpline, DrillCycle, HoleCycle, PathArc};
+use crate::curve::{CurveMove, PrintedCurve};
 
 /// One step of the program, with every modal word settled. Curves and cycles keep their shape: whether they are
 /// written as such or as moves is for dialect and machine to say.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Step {
+pub enum ProgramStep {
     /// Along a straight line.
-    Move(Motion),
+    Move(StraightMove),
     /// Along an arc or a helix.
     Arc(Box<ArcStep>),
     /// Along a spline.
@@ -40,7 +40,7 @@ pub enum Command {
         axis: Vector3<f64>,
     },
     /// Tool change.
-    Tool(Tool),
+    Tool(ToolChange),
     /// An index axis of the part is at an angle (`ROTABL`).
     Index {
         /// `A`, `B` or `C`.
@@ -93,7 +93,7 @@ pub enum Command {
     /// The tool is retracted and the axes are parked.
     Home,
     /// The moves up to the next [`Command::AlongEnd`] go along this curve.
-    Along(Box<Curve>),
+    Along(Box<CurveMove>),
     /// The curve ends.
     AlongEnd,
     /// What is printed of the next block, which goes along a curve.
@@ -111,7 +111,7 @@ pub enum Command {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HoleMark {
     /// Moves to the retract level above the hole follow.
-    Above(Drilling),
+    Above(HoleCycle),
     /// The tool stands there: those into the hole and back to that level follow.
     Into {
         /// The point that the heights count from, mm, part frame.
@@ -143,7 +143,7 @@ impl Command {
 
 /// A move along a straight line of the part frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
+pub struct StraightMove {
     /// Where the tip goes, mm, part frame.
     pub tip: Vector3<f64>,
     /// The tool axis there, unit vector from the tip to the holder, part frame.
@@ -152,7 +152,7 @@ pub struct Motion {
     /// the tool axis is meant. Zero if the file does not say.
     pub edge: Vector3<f64>,
     /// How fast.
-    pub pace: Pace,
+    pub pace: MoveFeed,
     /// How far this line strays from the curve that the CL file asks for (arcs, splines), mm, proven.
     pub chord: f64,
 }
@@ -161,9 +161,9 @@ pub struct Motion {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArcStep {
     /// Shape of the arc in the part frame.
-    pub arc: Arc,
+    pub arc: PathArc,
     /// The move to its end, whose pace is that of the whole arc.
-    pub end: Motion,
+    pub end: StraightMove,
     /// The tool axis at its start, part frame; it turns evenly to that of the end.
     pub start_axis: Vector3<f64>,
 }
@@ -172,9 +172,9 @@ pub struct ArcStep {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SplineStep {
     /// Shape of the spline in the part frame.
-    pub spline: Spline,
+    pub spline: BSpline,
     /// The move to its end.
-    pub end: Motion,
+    pub end: StraightMove,
 }
 
 /// A cycle at one point: what is done there, along the tool axis.
@@ -183,7 +183,7 @@ pub struct CycleStep {
     /// The cycle in force.
     pub cycle: DrillCycle,
     /// The point that its heights count from, and its feed.
-    pub point: Motion,
+    pub point: StraightMove,
 }
 
 /// A plane that stays for an operation, the tool standing upright on it.
@@ -193,7 +193,7 @@ pub struct PlaneStep {
     pub axes: [Vector3<f64>; 3],
 }
 
-impl Motion {
+impl StraightMove {
     /// The motion to where the tool is drawn back to from here; none if its axis does not lead there. The point of
     /// the motion stands `along` mm above the tip.
     pub(crate) fn drawn_back(&self, rewind: &Rewind, along: f64) -> Option<Self> {
@@ -218,7 +218,7 @@ impl Motion {
 
 /// How fast a move is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Pace {
+pub enum MoveFeed {
     /// Rapid traverse.
     Rapid,
     /// Feed of the tip against the part, mm/min.
@@ -227,7 +227,7 @@ pub enum Pace {
     InverseTime(f64),
 }
 
-impl Pace {
+impl MoveFeed {
     /// A feed in mm/min; none is rapid.
     pub(crate) fn feed_or_rapid(feed: Option<f64>) -> Self {
         feed.map_or(Self::Rapid, Self::PerMinute)
@@ -236,7 +236,7 @@ impl Pace {
 
 /// A tool change.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Tool {
+pub struct ToolChange {
     /// Tool number.
     pub number: u32,
     /// Register of its length compensation.

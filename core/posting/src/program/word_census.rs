@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use post_grammar::{MajorWord, Usage};
+use post_grammar::{MajorWord, WordUsage};
 use post_machine::diagnostic::{Diagnostic, Place, nearest};
 
 use super::limits::MOST_WORDS;
 
 /// What to do with a word that is not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Unknown {
+pub enum UnknownWordPolicy {
     /// Refuse the file.
     Error,
     /// Leave out those that a program is known to do without, and say so; refuse the file for the others.
@@ -31,7 +31,7 @@ pub(crate) struct WordCensus {
 
 #[derive(Debug)]
 struct WordCount {
-    usage: Usage,
+    usage: WordUsage,
     count: u64,
     /// Where it was met first.
     first: Place,
@@ -43,7 +43,7 @@ impl WordCensus {
     pub(crate) fn count(
         &mut self,
         word: &str,
-        usage: Usage,
+        usage: WordUsage,
         place: impl FnOnce() -> Place,
     ) -> bool {
         if let Some(count) = self.counts.get_mut(word) {
@@ -61,7 +61,8 @@ impl WordCensus {
     /// Counts a word at `place` that is not carried out because the user allows it; `instead` is what is done.
     pub(crate) fn allow(&mut self, word: &str, instead: &'static str, place: Place) {
         let count = self.allowed.entry((word.to_owned(), instead));
-        let count = count.or_insert(WordCount { usage: Usage::Refused, count: 0, first: place });
+        let count =
+            count.or_insert(WordCount { usage: WordUsage::Refused, count: 0, first: place });
         count.count += 1;
     }
 
@@ -82,15 +83,15 @@ impl WordCensus {
     pub(crate) fn ignored(&self) -> impl Iterator<Item = (&str, u64)> {
         self.counts
             .iter()
-            .filter(|(_, count)| count.usage == Usage::Ignored)
+            .filter(|(_, count)| count.usage == WordUsage::Ignored)
             .map(|(word, count)| (word.as_str(), count.count))
     }
 
     /// A finding for each word that is not known.
-    pub(crate) fn unknown(&self, policy: Unknown) -> impl Iterator<Item = Diagnostic> {
+    pub(crate) fn unknown(&self, policy: UnknownWordPolicy) -> impl Iterator<Item = Diagnostic> {
         self.counts
             .iter()
-            .filter(|(_, count)| count.usage == Usage::Unknown)
+            .filter(|(_, count)| count.usage == WordUsage::Unknown)
             .map(move |(word, count)| {
                 let what = if MajorWord::find(word).is_some() {
                     "is not supported"
@@ -99,16 +100,16 @@ impl WordCensus {
                 };
                 let message = format!("{word} {what}: met {}", times(count.count));
                 let finding = match policy {
-                    Unknown::Known if MajorWord::find(word).is_some() => {
+                    UnknownWordPolicy::Known if MajorWord::find(word).is_some() => {
                         Diagnostic::warning("unknown-word", format!("{message}; left out"))
                     }
-                    Unknown::Error | Unknown::Known => Diagnostic::error("unknown-word", message).help(
+                    UnknownWordPolicy::Error | UnknownWordPolicy::Known => Diagnostic::error("unknown-word", message).help(
                         "--allow leaves it out, --unknown=warn all of its kind, --unknown=pass writes them as comments",
                     ),
-                    Unknown::Warn => {
+                    UnknownWordPolicy::Warn => {
                         Diagnostic::warning("unknown-word", format!("{message}; left out"))
                     }
-                    Unknown::Pass => Diagnostic::warning(
+                    UnknownWordPolicy::Pass => Diagnostic::warning(
                         "unknown-word",
                         format!("{message}; written as a comment"),
                     ),

@@ -6,8 +6,8 @@ use post_machine::description::{FeedLength, FeedMode, InverseTime, Machine, Tcp,
 use post_machine::kinematics::Joints;
 use post_plugin::{Capabilities, Feed, Format};
 
-use crate::blocks::{Block, Kinds, MotionKind, STILL};
-use crate::program::Pace;
+use crate::blocks::{AxisKinds, BlockKind, MotionBlock, STILL};
+use crate::program::MoveFeed;
 
 /// What a length of the control's may differ from the way of the tip to be the same.
 const SAME: f64 = 1e-9;
@@ -16,9 +16,9 @@ const SAME: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub(super) struct FeedWriter {
     /// Ways as the control counts them.
-    kinds: Kinds,
+    kinds: AxisKinds,
     /// Ways in mm and degrees.
-    degrees: Kinds,
+    degrees: AxisKinds,
     tcp: Tcp,
     inverse_time: bool,
     length: FeedLength,
@@ -28,14 +28,14 @@ pub(super) struct FeedWriter {
     /// No linear axis passes its largest feed if the tool goes no faster, mm/min.
     most: f64,
     unit: f64,
-    feed: Printed,
+    feed: DecimalFormat,
     /// None where the machine or the dialect has no feed by time.
-    inverse: Option<Printed>,
+    inverse: Option<DecimalFormat>,
 }
 
 /// A feed as it is written, and what comes of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Written {
+pub(super) struct WrittenFeed {
     /// As written.
     pub feed: Feed,
     /// What the control takes for the block, minutes.
@@ -65,8 +65,8 @@ impl FeedWriter {
         };
         let length = machine.control.feed_length.unwrap_or(usual);
         Some(Self {
-            degrees: Kinds::new(machine),
-            kinds: Kinds::counted(machine, unit_length(machine.control.units)),
+            degrees: AxisKinds::new(machine),
+            kinds: AxisKinds::counted(machine, unit_length(machine.control.units)),
             tcp,
             inverse_time: wanted,
             length,
@@ -74,15 +74,17 @@ impl FeedWriter {
             square: length != FeedLength::Longest && square(machine),
             most: most(machine),
             unit: unit_length(machine.control.units),
-            feed: Printed::new(format.feed),
+            feed: DecimalFormat::new(format.feed),
             inverse: match machine.control.feed {
                 FeedMode::PerMinute => None,
                 _ => format.inverse_time.map(|decimals| {
                     let most = format.most_inverse_time.unwrap_or(f64::INFINITY);
-                    Printed::new(decimals).up_to(most).per(match machine.control.inverse_time {
-                        InverseTime::Minutes => 1.0,
-                        InverseTime::Seconds => 60.0,
-                    })
+                    DecimalFormat::new(decimals).up_to(most).per(
+                        match machine.control.inverse_time {
+                            InverseTime::Minutes => 1.0,
+                            InverseTime::Seconds => 60.0,
+                        },
+                    )
                 }),
             },
         })
@@ -95,11 +97,13 @@ impl FeedWriter {
 
     /// The feed of a block from `from` that must take `least` minutes; it is never faster than the CL file asks for.
     #[inline]
-    pub(super) fn write(&self, block: &Block, from: &Joints, least: f64) -> Written {
+    pub(super) fn write(&self, block: &MotionBlock, from: &Joints, least: f64) -> WrittenFeed {
         let turning = self.kinds.turning(from, &block.joints);
         let tip = block.way;
         let asked = match block.pace {
-            Pace::PerMinute(feed) if block.nominal.moves => block.nominal.minutes.max(tip / feed),
+            MoveFeed::PerMinute(feed) if block.nominal.moves => {
+                block.nominal.minutes.max(tip / feed)
+            }
             _ => block.nominal.minutes,
         };
         let minutes = asked.max(least).max(1e-9);
@@ -113,9 +117,9 @@ impl FeedWriter {
         let plain = match self.tcp {
             Tcp::Control => tip > SAME && (self.tcp_length == TcpFeedLength::Tip || !turning),
             Tcp::Post => !turning && self.square,
-        } || matches!(block.kind, MotionKind::Arc | MotionKind::Spline);
+        } || matches!(block.kind, BlockKind::Arc | BlockKind::Spline);
         let length = if plain { tip / self.unit } else { self.measured(from, &block.joints, tip) };
-        if let Pace::PerMinute(feed) = block.pace
+        if let MoveFeed::PerMinute(feed) = block.pace
             && block.nominal.moves
             && tip > STILL
             && (plain || (length * self.unit - tip).abs() <= SAME * tip)
@@ -128,7 +132,7 @@ impl FeedWriter {
     }
 
     /// The feed of a way of which only this is known: the tool comes linearly, the rotary axes standing.
-    pub(super) fn approach(&self, feed: f64) -> (Written, bool) {
+    pub(super) fn approach(&self, feed: f64) -> (WrittenFeed, bool) {
         let allowed = feed.min(self.most);
         (self.per_minute(allowed / self.unit, 1.0), allowed < feed * (1.0 - SAME))
     }
@@ -136,10 +140,10 @@ impl FeedWriter {
     /// A feed of `value` a minute along `length`; where none so low is printed, the time of it, if there is a word for
     /// that.
     #[inline]
-    fn per_minute(&self, value: f64, length: f64) -> Written {
+    fn per_minute(&self, value: f64, length: f64) -> WrittenFeed {
         let feed = self.feed.floor(value);
         if feed > 0.0 {
-            return Written {
+            return WrittenFeed {
                 feed: Feed::PerMinute(feed),
                 minutes: length / feed,
                 raised_from: None,
@@ -150,7 +154,7 @@ impl FeedWriter {
     }
 
     #[cold]
-    fn too_low(&self, value: f64, length: f64) -> Written {
+    fn too_low(&self, value: f64, length: f64) -> WrittenFeed {
         if let Some(printed) = self.inverse {
             let written = printed.inverse(value / length);
             if written.raised_from.is_none() {
@@ -158,7 +162,7 @@ impl FeedWriter {
             }
         }
         let feed = self.least();
-        Written {
+        WrittenFeed {
             feed: Feed::PerMinute(feed),
             minutes: length / feed,
             raised_from: Some(value),
@@ -226,7 +230,7 @@ fn most(machine: &Machine) -> f64 {
 
 /// Numbers with a fixed number of decimals.
 #[derive(Clone, Copy, Debug)]
-struct Printed {
+struct DecimalFormat {
     /// Ten to the number of decimals.
     scale: f64,
     per_scale: f64,
@@ -236,7 +240,7 @@ struct Printed {
     per_minute: f64,
 }
 
-impl Printed {
+impl DecimalFormat {
     fn new(decimals: u8) -> Self {
         let scale = (0..decimals).fold(1.0, |scale, _| scale * 10.0);
         Self { scale, per_scale: 1.0 / scale, most: f64::INFINITY, per_minute: 1.0 }
@@ -261,11 +265,11 @@ impl Printed {
 
     /// `value` blocks a minute; the least printed number if it is below that.
     #[inline]
-    fn inverse(&self, value: f64) -> Written {
+    fn inverse(&self, value: f64) -> WrittenFeed {
         let asked = value / self.per_minute;
         let printed = self.floor(asked.min(self.most));
         let feed = printed.max(self.per_scale);
-        Written {
+        WrittenFeed {
             feed: Feed::InverseTime(feed),
             minutes: 1.0 / (feed * self.per_minute),
             raised_from: (printed <= 0.0).then_some(asked),

@@ -13,22 +13,22 @@ use post_machine::diagnostic::{Diagnostic, Extreme};
 use post_machine::kinematics::Joints;
 use post_plugin::{Capabilities, Feed, Format};
 
-use crate::blocks::{Block, MotionKind};
+use crate::blocks::{BlockKind, MotionBlock};
 use crate::findings::Findings;
-use crate::program::{Command, Pace};
-use crate::stream::Flow;
-use feed::{FeedWriter, Written};
-use limits::Limit;
+use crate::program::{Command, MoveFeed};
+use crate::stream::StreamItem;
+use feed::{FeedWriter, WrittenFeed};
+use limits::BlockTimeLimit;
 use rapids::Rapids;
 
 /// The stage that gives every block its time and feed.
 #[derive(Debug)]
-pub(crate) struct Timing<'a> {
+pub(crate) struct TimingStage<'a> {
     base: &'a Machine,
     format: Format,
     writes: Capabilities,
     feeds: FeedWriter,
-    limits: Vec<Box<dyn Limit>>,
+    limits: Vec<Box<dyn BlockTimeLimit>>,
     rapids: Rapids,
     /// Where the axes stand.
     last: Joints,
@@ -61,7 +61,7 @@ struct LowFeeds {
     least: f64,
 }
 
-impl<'a> Timing<'a> {
+impl<'a> TimingStage<'a> {
     /// # Errors
     /// The machine asks for inverse time, and the dialect has none.
     pub(crate) fn new(
@@ -126,11 +126,11 @@ impl<'a> Timing<'a> {
     }
 
     /// Fills in the times of a batch.
-    pub(crate) fn take(&mut self, batch: &mut [Flow<Block>], findings: &Findings) {
+    pub(crate) fn take(&mut self, batch: &mut [StreamItem<MotionBlock>], findings: &Findings) {
         for next in batch {
             match next {
-                Flow::Point(block) => self.block(block, findings),
-                Flow::Command { command, .. } => self.command(command),
+                StreamItem::Point(block) => self.block(block, findings),
+                StreamItem::Command { command, .. } => self.command(command),
             }
         }
     }
@@ -153,22 +153,22 @@ impl<'a> Timing<'a> {
     }
 
     #[inline]
-    fn block(&mut self, block: &mut Block, findings: &Findings) {
+    fn block(&mut self, block: &mut MotionBlock, findings: &Findings) {
         if block.still {
             return;
         }
         match block.kind {
-            MotionKind::Position | MotionKind::Reference => self.approach(block),
-            MotionKind::Rapid => self.rapid(block, findings),
-            MotionKind::Linear | MotionKind::Arc | MotionKind::Spline => self.cut(block, findings),
+            BlockKind::Position | BlockKind::Reference => self.approach(block),
+            BlockKind::Rapid => self.rapid(block, findings),
+            BlockKind::Linear | BlockKind::Arc | BlockKind::Spline => self.cut(block, findings),
         }
         self.last = block.joints;
         self.rapids.stand(block.tip);
     }
 
     /// A time for a way that is not known has no meaning; without a feed a minute the way is made at rapid.
-    fn approach(&mut self, block: &mut Block) {
-        if let Pace::PerMinute(feed) = block.pace {
+    fn approach(&mut self, block: &mut MotionBlock) {
+        if let MoveFeed::PerMinute(feed) = block.pace {
             let (written, limited) = self.feeds.approach(feed);
             if limited {
                 block.time.limit = Some("max_feed");
@@ -183,7 +183,7 @@ impl<'a> Timing<'a> {
 
     /// A rapid takes what its slowest axis needs; where its axes would go too fast, or each for itself, it is written
     /// as a feed move, if the machine file says so.
-    fn rapid(&mut self, block: &mut Block, findings: &Findings) {
+    fn rapid(&mut self, block: &mut MotionBlock, findings: &Findings) {
         let (least, ..) = self.least(block);
         block.time.minutes = least;
         if self.rapids.is_fed(&self.last, block, least) {
@@ -194,7 +194,7 @@ impl<'a> Timing<'a> {
     }
 
     #[inline]
-    fn cut(&mut self, block: &mut Block, findings: &Findings) {
+    fn cut(&mut self, block: &mut MotionBlock, findings: &Findings) {
         let (least, limit, needed) = self.least(block);
         block.time.limit =
             limit.filter(|_| least > block.asked() * (1.0 + 1e-9)).map(|limit| limit.name(block));
@@ -214,7 +214,13 @@ impl<'a> Timing<'a> {
 
     /// Puts a feed into a block that must take `least` minutes.
     #[inline]
-    fn put(&mut self, block: &mut Block, written: Written, least: f64, findings: &Findings) {
+    fn put(
+        &mut self,
+        block: &mut MotionBlock,
+        written: WrittenFeed,
+        least: f64,
+        findings: &Findings,
+    ) {
         block.time.minutes = written.minutes;
         block.time.feed = Some(written.feed);
         let Some(asked) = written.raised_from else {
@@ -228,7 +234,7 @@ impl<'a> Timing<'a> {
     }
 
     #[inline]
-    fn note_raised(&mut self, line: u64, written: &Written) {
+    fn note_raised(&mut self, line: u64, written: &WrittenFeed) {
         let Some(lowest) = written.raised_from else {
             return;
         };
@@ -241,7 +247,7 @@ impl<'a> Timing<'a> {
     /// The least time that all limits leave a block, minutes, the limit that asks for it, and the least time that the axes
     /// need.
     #[inline]
-    fn least(&self, block: &Block) -> (f64, Option<&dyn Limit>, f64) {
+    fn least(&self, block: &MotionBlock) -> (f64, Option<&dyn BlockTimeLimit>, f64) {
         let mut least = (0.0, None);
         let mut needed = 0.0;
         for limit in &self.limits {
@@ -271,7 +277,7 @@ fn plain(value: f64) -> String {
 }
 
 /// The least feed that is printed is too fast for the axes.
-fn too_fast(asked: f64, written: &Written) -> Diagnostic {
+fn too_fast(asked: f64, written: &WrittenFeed) -> Diagnostic {
     let least = number(written.feed);
     let factor = least / asked;
     Diagnostic::error(

@@ -9,7 +9,7 @@ use post_machine::description::{Machine, Rapid, Tcp};
 use post_machine::kinematics::{Chain, Joints, MAX_AXES};
 use post_plugin::Capabilities;
 
-use crate::blocks::{Block, Reason};
+use crate::blocks::{BlockReason, MotionBlock};
 use crate::report::FastRapids;
 
 /// What is over its largest feed by this factor is over it.
@@ -84,7 +84,7 @@ impl Rapids {
 
     /// Is this rapid, whose axes need `least` minutes, to be written as a feed move? If it is left to the control and
     /// an axis would be too fast, that is noted.
-    pub(super) fn is_fed(&mut self, last: &Joints, block: &Block, least: f64) -> bool {
+    pub(super) fn is_fed(&mut self, last: &Joints, block: &MotionBlock, least: f64) -> bool {
         // Without a largest feed there is none to write.
         if least <= 0.0 {
             return false;
@@ -102,8 +102,8 @@ impl Rapids {
 
     /// A first position is reached from above, by the depth axis alone: the feed, mm/min, if that is to be written as a
     /// feed move. If it is left to the control and the axis would be too fast, that is noted.
-    pub(super) fn feed_down(&mut self, block: &Block) -> Option<f64> {
-        if let Reason::Above | Reason::AtOnce = block.reason {
+    pub(super) fn feed_down(&mut self, block: &MotionBlock) -> Option<f64> {
+        if let BlockReason::Above | BlockReason::AtOnce = block.reason {
             return self.feed_across(block);
         }
         let (Tcp::Control, Some((chain, depth))) = (self.tcp, &self.down) else {
@@ -131,7 +131,7 @@ impl Rapids {
 
     /// Feed to the place above a first position, which is reached from anywhere: whichever way that is, no axis goes
     /// faster than the tip. How fast the axes are then is reported of the way down.
-    fn feed_across(&self, block: &Block) -> Option<f64> {
+    fn feed_across(&self, block: &MotionBlock) -> Option<f64> {
         let (Rapid::Linear, Some((chain, _))) = (self.mode, &self.down) else {
             return None;
         };
@@ -149,12 +149,12 @@ impl Rapids {
         fast.then(|| 1.0 / slowest)
     }
 
-    fn turns(&self, last: &Joints, block: &Block) -> bool {
+    fn turns(&self, last: &Joints, block: &MotionBlock) -> bool {
         (0..MAX_AXES).any(|index| self.rotary[index] && last[index] != block.joints[index])
     }
 
     /// What the control takes that looks at the axes of the program alone, minutes.
-    fn full_speed(&self, last: &Joints, block: &Block, least: f64) -> f64 {
+    fn full_speed(&self, last: &Joints, block: &MotionBlock, least: f64) -> f64 {
         if self.tcp == Tcp::Post {
             return least;
         }
@@ -167,7 +167,7 @@ impl Rapids {
     }
 
     #[cold]
-    fn note(&mut self, last: &Joints, block: &Block, factor: f64) {
+    fn note(&mut self, last: &Joints, block: &MotionBlock, factor: f64) {
         self.found.count += 1;
         if factor <= self.found.factor {
             return;

@@ -8,8 +8,8 @@ use nalgebra::{Unit, UnitQuaternion, Vector3};
 use post_machine::description::{Setting, Source, load};
 use post_machine::kinematics::Joints;
 use post_plugin::{Capabilities, Feed};
-use post_posting::program::{Reading, ToldSpindle};
-use post_posting::{Block, Flow, Job, MotionKind, Observer};
+use post_posting::program::{DefaultSpindle, ReadingOptions};
+use post_posting::{BlockKind, MotionBlock, Observer, PostingRequest, StreamItem};
 use post_testkit::{Rng, randomised, repository, shared};
 use post_testmachines::frechet::keeps_within;
 use post_testruns::posted::{Asked, AskedArc, Bench, Recorder, Run, Samples, watched};
@@ -25,12 +25,12 @@ pub(super) const ALL: Capabilities = Capabilities::ARC_XY
 
 /// Keeps the blocks that are printed.
 #[derive(Default)]
-struct Printed(Vec<Block>);
+struct Printed(Vec<MotionBlock>);
 
 impl Observer for Printed {
-    fn blocks(&mut self, blocks: &[Flow<Block>]) {
+    fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
         for next in blocks {
-            if let Flow::Point(block) = next
+            if let StreamItem::Point(block) = next
                 && !block.still
             {
                 self.0.push(*block);
@@ -45,11 +45,11 @@ pub(super) fn posted(
     decimals: u8,
     writes: Capabilities,
     cl: &str,
-) -> (Run, Vec<Block>) {
+) -> (Run, Vec<MotionBlock>) {
     let mut dialect = Recorder::new(&bench.machine, decimals);
     dialect.capabilities = writes;
     let mut printed = Printed::default();
-    let job = Job { tool_length: Some(LENGTH), ..Job::default() };
+    let job = PostingRequest { tool_length: Some(LENGTH), ..PostingRequest::default() };
     let run = watched(&bench.machine, dialect, cl, job, &mut Samples, &mut [&mut printed]);
     (run, printed.0)
 }
@@ -307,7 +307,7 @@ fn printed_arcs_are_as_near_as_certified() {
         for (pair, block) in motions.windows(2).zip(&blocks[1..]) {
             let [from, to]: [&Asked; 2] = [pair[0], pair[1]];
             let Some(arc) = &to.arc else {
-                assert_ne!(block.kind, MotionKind::Arc);
+                assert_ne!(block.kind, BlockKind::Arc);
                 continue;
             };
             let controlled = Controlled::new(&from.words, &to.words, arc);
@@ -419,15 +419,15 @@ fn real_files_have_fewer_blocks() {
         let counts = [Capabilities::NONE, ALL].map(|writes| {
             let mut dialect = Recorder::new(&machine, 3);
             dialect.capabilities = writes;
-            let job = Job {
+            let job = PostingRequest {
                 tool_length: Some(if name.contains("Teste") { 80.0 } else { 150.0 }),
-                reading: Reading {
-                    spindle: ToldSpindle::On(6000.0),
+                reading: ReadingOptions {
+                    spindle: DefaultSpindle::On(6000.0),
                     tool: (!text.contains("LOAD") && !name.ends_with(".clt")).then_some(1),
                     tool_from_cutter: name.ends_with(".clt"),
-                    ..Reading::default()
+                    ..ReadingOptions::default()
                 },
-                ..Job::default()
+                ..PostingRequest::default()
             };
             let run = watched(&machine, dialect, &text, job, &mut Samples, &mut []);
             let report = run.good(name).report.unwrap();
@@ -485,7 +485,7 @@ const FITTED: &str = "arcs = { fit = true }";
 
 /// What the control makes of a fitted run: places along it, and for each piece between two how far it may be from the
 /// path.
-fn traced(bench: &Bench, run: &Run, blocks: &[Block]) -> (Vec<V>, Vec<f64>) {
+fn traced(bench: &Bench, run: &Run, blocks: &[MotionBlock]) -> (Vec<V>, Vec<f64>) {
     const LOOKS: u32 = 64;
     let motions = run.motions();
     let (mut curve, mut apart) = (Vec::new(), Vec::new());

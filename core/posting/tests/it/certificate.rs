@@ -8,7 +8,9 @@ use std::fs;
 use nalgebra::Vector3;
 use post_machine::description::{Setting, Source, load};
 use post_machine::kinematics::{Chain, Joint, Joints, Pose, Solver, Trace};
-use post_posting::accuracy::certificate::{Bend, Course, chord_angle, deviation, quick, tight};
+use post_posting::accuracy::certificate::{
+    BlockDerivatives, DerivativeBound, chord_angle, deviation, quick, tight,
+};
 use post_testkit::{Rng, at_least, randomised, repository};
 use post_testmachines::{Random, Reference, angle, between, blade, distance, slerp};
 
@@ -22,7 +24,7 @@ fn traces(chain: &Chain, from: &Joints, to: &Joints) -> [Trace; 2] {
 }
 
 /// Both bounds of a block between two wanted poses.
-fn bounds(chain: &Chain, from: &Joints, to: &Joints, wanted: [&Pose; 2]) -> [Bend; 2] {
+fn bounds(chain: &Chain, from: &Joints, to: &Joints, wanted: [&Pose; 2]) -> [DerivativeBound; 2] {
     let [first, last] = traces(chain, from, to);
     let sweep = angle(wanted[0].axis, wanted[1].axis);
     [
@@ -177,7 +179,7 @@ fn ends_off_the_path_count_against_the_bow() {
         let reference = &machine.reference;
         let chain = reference.chain();
         let [first, last] = traces(&chain, &from, &to);
-        let course = Course::new(&chain, &first, &last);
+        let course = BlockDerivatives::new(&chain, &first, &last);
         let (start, end) = (pose(reference, &from).tip, pose(reference, &to).tip);
         let bow = (pose(reference, &between(&from, &to, 0.5)).tip - (start + end) / 2.0) / 2.0;
         let off = match round % 4 {

@@ -4,7 +4,7 @@ use std::fs;
 
 use post_machine::description::{Machine, Source, load};
 use post_plugin::Capabilities;
-use post_posting::{Job, JobFacts, LookedAhead};
+use post_posting::{JobFacts, PostingRequest, ProgramPreview};
 use post_testkit::repository;
 use post_testruns::posted::{Recorder, Run, Samples, watched};
 
@@ -28,7 +28,7 @@ fn posted(machine: &Machine, writes: Capabilities, cl: &str) -> Run {
 fn posted_as(machine: &Machine, writes: Capabilities, cl: &str, facts: JobFacts) -> Run {
     let mut dialect = Recorder::new(machine, 3);
     dialect.capabilities = writes;
-    let job = Job { tool_length: Some(100.0), facts, ..Job::default() };
+    let job = PostingRequest { tool_length: Some(100.0), facts, ..PostingRequest::default() };
     let cl = format!("UNITS/MM;{cl};FINI;").replace(';', "\n");
     watched(machine, dialect, &cl, job, &mut Samples, &mut [])
 }
@@ -252,12 +252,18 @@ preselect = true
 tolerance = 0.02
 "#;
     let vmc = machine("vmc", more);
-    let tool =
-        |number| post_posting::program::Tool { number, register: number, ..Default::default() };
+    let tool = |number| post_posting::program::ToolChange {
+        number,
+        register: number,
+        ..Default::default()
+    };
     let facts = JobFacts {
         program: "PART".to_owned(),
         cl_file: "part.cls".to_owned(),
-        ahead: Some(LookedAhead { changes: vec![tool(3), tool(5)], ..LookedAhead::default() }),
+        ahead: Some(ProgramPreview {
+            changes: vec![tool(3), tool(5)],
+            ..ProgramPreview::default()
+        }),
     };
     let of = |name: &str| format!("TOOL PATH/{name},TOOL,T;{CUT};END-OF-PATH");
     let cl = format!("LOADTL/3;{};SELECT/TOOL,9;LOADTL/5;{}", of("A"), of("B) M30 ("));

@@ -106,7 +106,7 @@ fn told_by_their_turn_they_are_as_near_as_certified() {
                 worst = worst.max(off(tip, &helix, &circle, away));
             }
             let bound = block.deviation.tip;
-            if block.kind != post_posting::MotionKind::Rapid {
+            if block.kind != post_posting::BlockKind::Rapid {
                 assert!(
                     worst <= bound + 1e-6,
                     "{worst} above {bound}, line {}\n{what}",

@@ -3,8 +3,8 @@
 
 use post_machine::description::{CompensationOnCentre, Machine, Source, load};
 use post_plugin::{Capabilities, Cycle, Feed};
-use post_posting::Job;
-use post_posting::program::{Reading, ToldSpindle};
+use post_posting::PostingRequest;
+use post_posting::program::{DefaultSpindle, ReadingOptions};
 use post_testkit::{Rng, randomised};
 use post_testruns::posted::{Asked, Recorder, Run, Samples, watched};
 
@@ -75,15 +75,15 @@ fn run(machine: &Machine, capabilities: Capabilities, cl: &str) -> Run {
 fn run_file(machine: &Machine, capabilities: Capabilities, cl: &str, no_tools: bool) -> Run {
     let mut recorder = Recorder::new(machine, 3);
     recorder.capabilities = capabilities;
-    let job = Job {
-        reading: Reading {
-            spindle: ToldSpindle::On(500.0),
+    let job = PostingRequest {
+        reading: ReadingOptions {
+            spindle: DefaultSpindle::On(500.0),
             tool_from_cutter: no_tools,
             allowed: vec!["DEEP".to_owned()],
-            ..Reading::default()
+            ..ReadingOptions::default()
         },
         tool_length: Some(50.0),
-        ..Job::default()
+        ..PostingRequest::default()
     };
     watched(machine, recorder, cl, job, &mut Samples, &mut [])
 }

@@ -13,13 +13,13 @@ use post_machine::description::{Machine, Setting, Source, load};
 use post_machine::diagnostic::Severity;
 use post_machine::kinematics::{Joint, Joints};
 use post_plugin::Feed;
-use post_posting::program::Reading;
-use post_posting::{Job, MOST_FAULTS, Post};
+use post_posting::program::ReadingOptions;
+use post_posting::{MOST_FAULTS, Post, PostingRequest};
 use post_testkit::{Rng, at_least, randomised, rounds, seeded};
 use post_testmachines::{Reference, angle, between, distance, slerp};
 use post_testruns::posted::{self, Asked, Point, Run, Samples, cl, line, post};
 
-fn run(machine: &Machine, cl: &str, job: Job) -> Run {
+fn run(machine: &Machine, cl: &str, job: PostingRequest) -> Run {
     let mut run = post(machine, 3, cl, job, &mut Samples);
     // Programs this short do not care for the spindle.
     run.findings.retain(|finding| finding.code != "spindle");
@@ -173,7 +173,11 @@ tcp = "{}"
 
 impl Model {
     fn run(&self, cl: &str) -> Run {
-        run(&self.machine, cl, Job { tool_length: Some(self.length), ..Job::default() })
+        run(
+            &self.machine,
+            cl,
+            PostingRequest { tool_length: Some(self.length), ..PostingRequest::default() },
+        )
     }
 
     /// The place of an axis in the chain, by the order of the words.

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use nalgebra::Vector3;
 use post_plugin::Feed;
-use post_posting::Job;
+use post_posting::PostingRequest;
 use post_testkit::{Rng, at_least, randomised};
 use post_testruns::posted::{Asked, Bench, Run, cl, point, post};
 
@@ -41,7 +41,7 @@ fn machine(tcp: &str, more: &str) -> String {
 }
 
 fn run(bench: &Bench, text: &str, plans: bool) -> Run {
-    let job = Job { tool_length: Some(LENGTH), plans, ..Job::default() };
+    let job = PostingRequest { tool_length: Some(LENGTH), plans, ..PostingRequest::default() };
     post(&bench.machine, 3, text, job, &mut post_testruns::posted::Samples).good(text)
 }
 

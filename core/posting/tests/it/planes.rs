@@ -4,8 +4,8 @@
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use post_machine::description::Machine;
 use post_plugin::{Capabilities, PlaneAngles};
-use post_posting::Job;
-use post_posting::program::{Reading, ToldSpindle};
+use post_posting::PostingRequest;
+use post_posting::program::{DefaultSpindle, ReadingOptions};
 use post_testkit::{Rng, randomised};
 use post_testruns::posted::{AskedPlane, Recorder, Run, Samples, framed, watched};
 
@@ -33,11 +33,11 @@ fn machines(tcp: &str) -> [(&'static str, Machine); 3] {
     ]
 }
 
-fn job() -> Job {
-    Job {
-        reading: Reading { spindle: ToldSpindle::On(500.0), ..Reading::default() },
+fn job() -> PostingRequest {
+    PostingRequest {
+        reading: ReadingOptions { spindle: DefaultSpindle::On(500.0), ..ReadingOptions::default() },
         tool_length: Some(150.0),
-        ..Job::default()
+        ..PostingRequest::default()
     }
 }
 

@@ -14,28 +14,31 @@ use nalgebra::Vector3;
 use post_grammar::{Reader, Units};
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::{Compensation, Spindle};
-use post_posting::Flow;
-use post_posting::expand::{Line, expanded};
-use post_posting::program::{Command, Interpreter, Motion, Pace, Reading, ToldSpindle, Unknown};
+use post_posting::StreamItem;
+use post_posting::expand::{PathMove, expanded};
+use post_posting::program::{
+    ClInterpreter, Command, DefaultSpindle, MoveFeed, ReadingOptions, StraightMove,
+    UnknownWordPolicy,
+};
 
 /// What comes of a text.
 struct Run {
     /// Curves and cycles as moves.
-    steps: Vec<Flow<Line>>,
+    steps: Vec<StreamItem<PathMove>>,
     findings: Vec<Diagnostic>,
 }
 
 impl Run {
-    fn of(reading: Reading, text: &str) -> Self {
+    fn of(reading: ReadingOptions, text: &str) -> Self {
         let spindle = match reading.spindle {
             // Texts this short do not care for the spindle.
-            ToldSpindle::Unknown => ToldSpindle::Still,
+            DefaultSpindle::Unknown => DefaultSpindle::Still,
             told => told,
         };
-        let reading = Reading { chord_tolerance: 0.01, spindle, ..reading };
+        let reading = ReadingOptions { chord_tolerance: 0.01, spindle, ..reading };
         let text = text.replace(';', "\n");
         let mut reader = Reader::new(text.as_bytes());
-        let mut interpreter = Interpreter::new(reading.clone());
+        let mut interpreter = ClInterpreter::new(reading.clone());
         let mut steps = Vec::new();
         while let Some(record) = reader.next_record().unwrap() {
             interpreter.record(&record, &mut |step| steps.push((record.line, step)));
@@ -47,10 +50,10 @@ impl Run {
         Self { steps, findings }
     }
 
-    fn moves(&self) -> Vec<Motion> {
-        let motion = |step: &Flow<Line>| match step {
-            Flow::Point(line) => Some(line.motion),
-            Flow::Command { .. } => None,
+    fn moves(&self) -> Vec<StraightMove> {
+        let motion = |step: &StreamItem<PathMove>| match step {
+            StreamItem::Point(line) => Some(line.motion),
+            StreamItem::Command { .. } => None,
         };
         self.steps.iter().filter_map(motion).collect()
     }
@@ -65,7 +68,10 @@ impl Run {
             .filter(|step| {
                 !matches!(
                     step,
-                    Flow::Command { command: Command::Index { .. } | Command::OperationEnd, .. }
+                    StreamItem::Command {
+                        command: Command::Index { .. } | Command::OperationEnd,
+                        ..
+                    }
                 )
             })
             .map(step)
@@ -116,18 +122,18 @@ fn placed(tip: Vector3<f64>, axis: Vector3<f64>) -> String {
     format!("{} @{}", vector(tip), vector(axis))
 }
 
-fn step(step: &Flow<Line>) -> String {
+fn step(step: &StreamItem<PathMove>) -> String {
     let command = match step {
-        Flow::Point(line) => {
+        StreamItem::Point(line) => {
             let motion = &line.motion;
             let pace = match motion.pace {
-                Pace::Rapid => "R".to_owned(),
-                Pace::PerMinute(feed) => format!("F{}", number(feed)),
-                Pace::InverseTime(feed) => format!("V{}", number(feed)),
+                MoveFeed::Rapid => "R".to_owned(),
+                MoveFeed::PerMinute(feed) => format!("F{}", number(feed)),
+                MoveFeed::InverseTime(feed) => format!("V{}", number(feed)),
             };
             return format!("{pace} {}", placed(motion.tip, motion.axis));
         }
-        Flow::Command { command, .. } => command,
+        StreamItem::Command { command, .. } => command,
     };
     match command {
         Command::From { tip, axis } => format!("from {}", placed(*tip, *axis)),
@@ -144,7 +150,7 @@ fn step(step: &Flow<Line>) -> String {
 
 /// Reads mm at 100 mm/min, unless the text says otherwise.
 fn run(text: &str) -> Run {
-    Run::of(Reading::default(), &format!("UNITS/MM;FEDRAT/100;{text}"))
+    Run::of(ReadingOptions::default(), &format!("UNITS/MM;FEDRAT/100;{text}"))
 }
 
 /// Rows of text, steps and findings, read as by [`run`].

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::number::{self, LENGTH};
-use crate::SplineWay;
+use crate::BSpline;
 use crate::{CycleCall, CycleKind, Spindle};
 
 /// The record of a cycle.
@@ -82,7 +82,7 @@ pub(super) fn spindle_record(spindle: Spindle, out: &mut String) {
 }
 
 /// NX's splines: cubic, clamped at both ends, all weights one, no knot more than twice.
-pub(super) fn is_nurbs(way: &SplineWay) -> bool {
+pub(super) fn is_nurbs(way: &BSpline) -> bool {
     if way.degree != 3 || !way.is_sound() {
         return false;
     }

@@ -9,7 +9,7 @@ use post_machine::kinematics::Pose;
 use super::number::{self, DIRECTION, LENGTH};
 use super::records::{definition, is_nurbs, offset_number, spindle_record};
 use super::text;
-use crate::SplineWay;
+use crate::BSpline;
 use crate::course::{Curve, Item, Piece, Reach};
 use crate::{Coolants, CycleCall, MotionKind, Told};
 
@@ -427,7 +427,7 @@ impl ClWriter {
         self.goto(&piece.to, out);
     }
 
-    fn spline(&mut self, way: &SplineWay, out: &mut String) {
+    fn spline(&mut self, way: &BSpline, out: &mut String) {
         out.push_str("NURBS\nKNOT/");
         let [first, last] = way.range();
         let inner = way.knots[way.degree + 1..way.poles.len()].iter();

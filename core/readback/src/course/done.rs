@@ -13,7 +13,7 @@ use post_machine::kinematics::{Joints, MAX_AXES, Pose};
 
 use super::descent::{Descent, descends};
 use super::{Course, Curve, Item, Piece, Reach};
-use crate::{Done, Motion, MotionKind, Program, State, Told, Way};
+use crate::{Done, Interpolation, Motion, MotionKind, Program, State, Told};
 
 /// How near a course stays to a program whose tip goes on curves that no piece has.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -173,7 +173,7 @@ impl<P: Program> DoneCourse<P> {
         }
         let cuts = motion.kind != MotionKind::Rapid;
         self.astray = match motion.way {
-            Way::Axes if !cuts => self.astray & !moved & linear(motion),
+            Interpolation::Axes if !cuts => self.astray & !moved & linear(motion),
             // A tip has a place of the part, and so has what is cut.
             _ => 0,
         };
@@ -236,13 +236,15 @@ impl<P: Program> DoneCourse<P> {
         let mut count = motion.pieces(chord, angle);
         // A spline stays one where the tool axis does.
         let along = match &motion.way {
-            Way::Spline(_) if motion.turns() => {
+            Interpolation::Spline(_) if motion.turns() => {
                 count = count.max(motion.spline_chords(chord));
                 None
             }
-            Way::Spline(way) => Some(Curve::Spline(Arc::clone(way))),
-            Way::Arc { centre, normal, sweep } => Some(arc(*centre, *normal, sweep / count as f64)),
-            Way::Axes | Way::Tip | Way::TipAndAxis => None,
+            Interpolation::Spline(way) => Some(Curve::Spline(Arc::clone(way))),
+            Interpolation::Arc { centre, normal, sweep } => {
+                Some(arc(*centre, *normal, sweep / count as f64))
+            }
+            Interpolation::Axes | Interpolation::Tip | Interpolation::TipAndAxis => None,
         };
         let mut from = motion.from.pose;
         for place in 1..=count {

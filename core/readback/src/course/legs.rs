@@ -1,11 +1,11 @@
 //! A course as the legs that a predicted tool is held against.
 
 use post_machine::diagnostic::Diagnostic;
-use post_motion::At;
-use post_motion::contour::{Leg, Reference};
+use post_motion::ProgramPlace;
+use post_motion::contour::{ContourLeg, ReferencePath};
 
 use super::{Course, Curve, Item, Piece};
-use crate::{MOST_FAULTS, MotionKind, Way};
+use crate::{Interpolation, MOST_FAULTS, MotionKind};
 
 /// The cuts of a course.
 #[derive(Debug)]
@@ -23,8 +23,8 @@ impl<'c, C: Course> Legs<'c, C> {
     }
 }
 
-impl<C: Course> Reference for Legs<'_, C> {
-    fn next(&mut self) -> Option<Leg> {
+impl<C: Course> ReferencePath for Legs<'_, C> {
+    fn next(&mut self) -> Option<ContourLeg> {
         loop {
             match self.course.next() {
                 Ok(Some(Item::Piece(piece))) if piece.kind != MotionKind::Rapid => {
@@ -43,14 +43,14 @@ impl<C: Course> Reference for Legs<'_, C> {
     }
 }
 
-fn leg(piece: Piece, along: f64) -> Leg {
+fn leg(piece: Piece, along: f64) -> ContourLeg {
     let way = match piece.curve {
-        Curve::Straight => Way::TipAndAxis,
-        Curve::Arc { centre, normal, sweep } => Way::Arc { centre, normal, sweep },
-        Curve::Spline(way) => Way::Spline(way),
+        Curve::Straight => Interpolation::TipAndAxis,
+        Curve::Arc { centre, normal, sweep } => Interpolation::Arc { centre, normal, sweep },
+        Curve::Spline(way) => Interpolation::Spline(way),
     };
-    Leg {
-        at: At { task: 0, line: piece.line, cuts: true },
+    ContourLeg {
+        at: ProgramPlace { task: 0, line: piece.line, cuts: true },
         way,
         from: piece.from,
         to: piece.to,

@@ -24,7 +24,7 @@ use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 
-use crate::SplineWay;
+use crate::BSpline;
 use crate::{MotionKind, Told};
 
 pub use facts::{CourseFacts, Operation};
@@ -116,5 +116,5 @@ pub enum Curve {
         sweep: f64,
     },
     /// On a spline.
-    Spline(Arc<SplineWay>),
+    Spline(Arc<BSpline>),
 }

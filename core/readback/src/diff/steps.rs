@@ -8,7 +8,7 @@ use post_machine::kinematics::{Joints, Pose};
 
 use super::outline::Splitter;
 use crate::course::descent::{Descent, descends};
-use crate::{Done, Motion, MotionKind, Program, Run, State, Told, Way};
+use crate::{Done, Interpolation, Motion, MotionKind, Program, Run, State, Told};
 
 /// Steps stray from the way by no more: mm, radians.
 const SAG: f64 = 0.000_1;
@@ -367,15 +367,15 @@ fn step(motion: &Motion, from: Spot, to: Spot) -> Step {
 fn steps_of(motion: &Motion) -> u64 {
     let straight = motion.pieces(SAG, TURN);
     let curved = match &motion.way {
-        Way::Axes | Way::Tip | Way::TipAndAxis => 1,
-        Way::Arc { centre, normal, sweep } => {
+        Interpolation::Axes | Interpolation::Tip | Interpolation::TipAndAxis => 1,
+        Interpolation::Arc { centre, normal, sweep } => {
             let arm = motion.from.pose.tip - centre;
             let radius = (arm - normal * normal.dot(&arm)).norm();
             // A chord over the angle a strays by r·a²/8.
             let angle = libm::sqrt(8.0 * SAG / radius.max(SAG));
             libm::ceil(libm::fabs(*sweep) / angle) as u64
         }
-        Way::Spline(_) => motion.spline_chords(SAG),
+        Interpolation::Spline(_) => motion.spline_chords(SAG),
     };
     straight.max(curved).clamp(1, MOST)
 }

@@ -6,9 +6,9 @@ use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
-use super::gathered::Gathered;
-use super::go::{Path, Target};
-use super::state::Control;
+use super::gathered::BlockWords;
+use super::go::{MotionTarget, WordPath};
+use super::state::ControlState;
 
 /// Start and end lie on one circle if their radii differ by no more than this, mm, and by this share of the radius: the
 /// decimals of an inch program, and the rounding of a centre far away.
@@ -21,14 +21,14 @@ const SAME: f64 = 1e-6;
 /// A helix of more turns is none.
 const MOST_TURNS: f64 = 10_000.0;
 
-impl Control {
+impl ControlState {
     /// The arc that the words of a block ask for.
     pub(super) fn arc_words(
         &mut self,
         clockwise: bool,
-        words: &mut Gathered,
-        target: &mut Target,
-    ) -> Result<Path, Box<Diagnostic>> {
+        words: &mut BlockWords,
+        target: &mut MotionTarget,
+    ) -> Result<WordPath, Box<Diagnostic>> {
         let [first, second, third] = self.modal.plane.coordinates();
         let from = self.point();
         let to = Vector3::from_fn(|row, _| target.point[row].unwrap_or(from[row]));
@@ -72,11 +72,15 @@ impl Control {
         let mut sweep = self.sweep([flat(from), flat(to), flat(centre)], clockwise)?;
         sweep += if clockwise { -full_turns * TAU } else { full_turns * TAU };
         centre[third] = from[third];
-        Ok(Path::Arc { centre, normal: self.modal.plane.normal(), sweep })
+        Ok(WordPath::Arc { centre, normal: self.modal.plane.normal(), sweep })
     }
 
     /// Full turns beside the arc's own: `TURN=2`, or P of RS-274/NGC, which counts the last part of a turn too.
-    fn further_turns(&self, clockwise: bool, words: &mut Gathered) -> Result<f64, Box<Diagnostic>> {
+    fn further_turns(
+        &self,
+        clockwise: bool,
+        words: &mut BlockWords,
+    ) -> Result<f64, Box<Diagnostic>> {
         let code = if clockwise { 20 } else { 30 };
         let counted = self.lexicon.letter_beside(code, b'P') == Some(Meaning::Turns);
         let turns = match words.turns {

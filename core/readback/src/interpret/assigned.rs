@@ -4,14 +4,14 @@ use post_grammar::nc::{NcBlock, NcExpression, NcItem, NcValue};
 use post_plugin::Language;
 
 use super::astray::{Answer, fault};
-use super::variables::{Value, Variables};
+use super::variables::{VariableValue, Variables};
 
 /// Takes what a block sets out of it, with its value as it is in front of the block; `DEF` declares at once.
 pub(super) fn take(
     block: &mut NcBlock,
     language: Language,
     variables: &mut Variables,
-    set: &mut Vec<(String, Value)>,
+    set: &mut Vec<(String, VariableValue)>,
 ) -> Answer<()> {
     if let Some(NcItem::Name(kind)) = block.items.first()
         && let Some(kind) = kind.strip_prefix("DEF ")
@@ -37,10 +37,10 @@ pub(super) fn take(
                 NcValue::Expression(value) => {
                     variables.value(value).map(|value| (name.to_string(), value))
                 }
-                NcValue::Text(text) => Ok((name.to_string(), Value::Text(text.clone()))),
-                other => {
-                    variables.worth(other).map(|number| (name.to_string(), Value::Number(number)))
-                }
+                NcValue::Text(text) => Ok((name.to_string(), VariableValue::Text(text.clone()))),
+                other => variables
+                    .worth(other)
+                    .map(|number| (name.to_string(), VariableValue::Number(number))),
             },
             _ => return true,
         };

@@ -7,16 +7,16 @@ use post_grammar::nc::NcBlock;
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Language, Meaning};
 
-use super::gathered::{Gathered, bit};
-use super::go::{Path, Target};
-use super::state::{Control, FeedMode, MotionMode};
+use super::gathered::{BlockWords, bit};
+use super::go::{MotionTarget, WordPath};
+use super::state::{ControlState, FeedMeaning, MotionMode};
 use super::{cycles, frames, names, planes};
 use crate::lexicon::Sense;
 use crate::{MotionKind, Told};
 
 /// What the words of one block ask for, besides what is modal.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Asked {
+pub(super) struct BlockRequest {
     /// In machine coordinates.
     pub machine: bool,
     /// By way of a point to this reference position.
@@ -54,7 +54,7 @@ pub(super) struct Asked {
     /// M0 that changes the tool beside T, and alone stops the program as everywhere.
     pub change_or_stop: bool,
     /// Spindle from here on.
-    pub spindle: Option<Turning>,
+    pub spindle: Option<SpindleRequest>,
     /// Coolant from here on: the number behind M.
     pub coolant: Option<u16>,
     /// No coolant.
@@ -71,7 +71,7 @@ pub(super) struct Asked {
 
 /// What the spindle does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Turning {
+pub(super) enum SpindleRequest {
     Clockwise,
     CounterClockwise,
     Off,
@@ -94,15 +94,15 @@ const SHAPES: u32 = bit(b'I') | bit(b'J') | bit(b'K') | bit(b'R');
 
 /// Runs a block of words.
 pub(super) fn run(
-    control: &mut Control,
+    control: &mut ControlState,
     block: &NcBlock,
-    words: &mut Gathered,
+    words: &mut BlockWords,
 ) -> Result<(), Box<Diagnostic>> {
     control.gather(block, words)?;
     for remark in &block.remarks {
         control.remark(remark);
     }
-    let mut asked = Asked::default();
+    let mut asked = BlockRequest::default();
     if words.more {
         control.modal.named_register = None;
         names::take(control, block, words, &mut asked)?;
@@ -127,7 +127,7 @@ pub(super) fn run(
     control.left_over(words)
 }
 
-impl Control {
+impl ControlState {
     /// A remark; one that names an operation says which.
     pub(super) fn remark(&mut self, remark: &str) {
         let text = remark.trim();
@@ -171,8 +171,8 @@ impl Control {
     fn g_code(
         &mut self,
         code: u16,
-        words: &mut Gathered,
-        asked: &mut Asked,
+        words: &mut BlockWords,
+        asked: &mut BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
         match self.lexicon.g(code) {
             Sense::Means(Meaning::Rapid) => self.motion(MotionMode::Rapid),
@@ -201,8 +201,8 @@ impl Control {
         &mut self,
         code: u16,
         sense: Sense,
-        words: &mut Gathered,
-        asked: &mut Asked,
+        words: &mut BlockWords,
+        asked: &mut BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
         let name = f64::from(code) / 10.0;
         match sense {
@@ -230,7 +230,11 @@ impl Control {
     }
 
     /// Takes an M code.
-    pub(super) fn m_code(&mut self, code: u16, asked: &mut Asked) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn m_code(
+        &mut self,
+        code: u16,
+        asked: &mut BlockRequest,
+    ) -> Result<(), Box<Diagnostic>> {
         if matches!(code, 67 | 68) && self.lexicon.language() == Language::Rs274 {
             let message = format!(
                 "M{code} is not run: its output may be wired to what switches the kinematics"
@@ -251,7 +255,7 @@ impl Control {
             Sense::Means(meaning) => {
                 // `meant` takes ten times the number, as of G.
                 let code = if meaning == Meaning::CoolantOn { code * 10 } else { 0 };
-                self.meant(code, meaning, &mut Gathered::default(), asked)
+                self.meant(code, meaning, &mut BlockWords::default(), asked)
             }
             Sense::Refused => Err(self.refuse(
                 "nc-word",
@@ -293,13 +297,17 @@ impl Control {
     }
 
     /// Does what the block asks for, in the order in which controls do it.
-    fn obey(&mut self, words: &mut Gathered, asked: &Asked) -> Result<(), Box<Diagnostic>> {
+    fn obey(
+        &mut self,
+        words: &mut BlockWords,
+        asked: &BlockRequest,
+    ) -> Result<(), Box<Diagnostic>> {
         if asked.dwell {
             self.dwell(words)?;
         }
         if let Some(feed) = words.take(b'F') {
             let unit =
-                if self.modal.feed_mode == FeedMode::Inverse { 1.0 } else { self.modal.unit };
+                if self.modal.feed_mode == FeedMeaning::Inverse { 1.0 } else { self.modal.unit };
             if feed < 0.0 {
                 return Err(self.refuse("nc-feed", format!("F{feed} is no feed")));
             }
@@ -319,8 +327,8 @@ impl Control {
             self.work_offset(code, words)?;
         }
         self.move_as_asked(words, asked)?;
-        if asked.spindle == Some(Turning::Off) {
-            self.turn_spindle(Turning::Off);
+        if asked.spindle == Some(SpindleRequest::Off) {
+            self.turn_spindle(SpindleRequest::Off);
         }
         if asked.coolant_off {
             self.coolant_off();
@@ -343,8 +351,8 @@ impl Control {
     /// The motion, or what takes the words of axes instead.
     fn move_as_asked(
         &mut self,
-        words: &mut Gathered,
-        asked: &Asked,
+        words: &mut BlockWords,
+        asked: &BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
         if let Some((code, meaning)) = asked.frame {
             return frames::code(self, code, meaning, words);
@@ -391,7 +399,7 @@ impl Control {
 
     /// A motion as the modal word says.
     #[inline]
-    fn plain_motion(&mut self, words: &mut Gathered, rapid: bool) -> Result<(), Box<Diagnostic>> {
+    fn plain_motion(&mut self, words: &mut BlockWords, rapid: bool) -> Result<(), Box<Diagnostic>> {
         let mode = if rapid { MotionMode::Rapid } else { self.modal.motion };
         let kind = match mode {
             MotionMode::Rapid => MotionKind::Rapid,
@@ -405,7 +413,7 @@ impl Control {
             }
         };
         if kind == MotionKind::Feed
-            && self.modal.feed_mode == FeedMode::Inverse
+            && self.modal.feed_mode == FeedMeaning::Inverse
             && words.present & bit(b'F') == 0
         {
             return Err(self.refuse(
@@ -413,7 +421,7 @@ impl Control {
                 "under inverse time every block at feed says its F, and this one does not",
             ));
         }
-        let mut target = Target::default();
+        let mut target = MotionTarget::default();
         self.put_target(words, &mut target)?;
         if self.modal.vectors {
             self.vector_words(words, &mut target);
@@ -423,14 +431,14 @@ impl Control {
                 let path = self.arc_words(mode == MotionMode::Clockwise, words, &mut target)?;
                 self.go(kind, &path, &target)?;
             }
-            _ => self.go(kind, &Path::Straight, &target)?,
+            _ => self.go(kind, &WordPath::Straight, &target)?,
         }
         cycles::at_point(self)
     }
 
     /// What was not made use of: refused where it may change a motion, else counted by name.
     #[inline]
-    pub(super) fn left_over(&mut self, words: &Gathered) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn left_over(&mut self, words: &BlockWords) -> Result<(), Box<Diagnostic>> {
         let left = words.present & !words.used;
         if left == 0 {
             return Ok(());
@@ -473,8 +481,11 @@ impl Control {
     }
 
     /// The target that the words of axes say, in the coordinates that are in force.
-    pub(super) fn target(&mut self, words: &mut Gathered) -> Result<Target, Box<Diagnostic>> {
-        let mut target = Target::default();
+    pub(super) fn target(
+        &mut self,
+        words: &mut BlockWords,
+    ) -> Result<MotionTarget, Box<Diagnostic>> {
+        let mut target = MotionTarget::default();
         self.put_target(words, &mut target)?;
         Ok(target)
     }
@@ -483,8 +494,8 @@ impl Control {
     #[inline]
     fn put_target(
         &mut self,
-        words: &mut Gathered,
-        target: &mut Target,
+        words: &mut BlockWords,
+        target: &mut MotionTarget,
     ) -> Result<(), Box<Diagnostic>> {
         target.vector = words.vector;
         let mut left = words.present & self.axes.mask;

@@ -9,7 +9,7 @@ use super::variables::Variables;
 
 /// What a block leads to, once it is run.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Pending {
+pub(super) enum BlockTransfer {
     /// The subprogram `O` of this number, so often, with these variables of its own where it is a macro.
     Subprogram { number: u64, times: i64, own: Option<Vec<(String, f64)>> },
     /// The blocks from `N` of this number on.
@@ -36,7 +36,7 @@ pub(super) fn leads(block: &NcBlock, language: Language, variables: &Variables) 
 
 /// The words that lead elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Code {
+enum CallWord {
     /// M98.
     Subprogram,
     /// M97 (Haas).
@@ -50,16 +50,16 @@ enum Code {
 }
 
 #[inline]
-fn code(word: &NcWord) -> Option<Code> {
+fn code(word: &NcWord) -> Option<CallWord> {
     let NcValue::Number(number) = &word.value else {
         return None;
     };
     match (word.letter, number.value) {
-        (b'M', 98.0) => Some(Code::Subprogram),
-        (b'M', 97.0) => Some(Code::Local),
-        (b'M', 99.0) => Some(Code::Return),
-        (b'G', 65.0) => Some(Code::Macro),
-        (b'G', 66.0 | 66.1) => Some(Code::Modal),
+        (b'M', 98.0) => Some(CallWord::Subprogram),
+        (b'M', 97.0) => Some(CallWord::Local),
+        (b'M', 99.0) => Some(CallWord::Return),
+        (b'G', 65.0) => Some(CallWord::Macro),
+        (b'G', 66.0 | 66.1) => Some(CallWord::Modal),
         _ => None,
     }
 }
@@ -69,7 +69,7 @@ pub(super) fn take(
     block: &mut NcBlock,
     language: Language,
     variables: &Variables,
-) -> Answer<Option<Pending>> {
+) -> Answer<Option<BlockTransfer>> {
     if language == Language::Names {
         // `L100`: a subprogram, of which only the main program's file is at hand.
         let mut items = block.items.iter();
@@ -114,13 +114,13 @@ pub(super) fn take(
     };
     let needed = || number.ok_or_else(|| fault("a subprogram is called without its number P"));
     let pending = match found {
-        Code::Modal => {
+        CallWord::Modal => {
             return Err(fault("G66 calls a macro at every motion, and that is not run"));
         }
-        Code::Subprogram => Pending::Subprogram { number: needed()?, times, own: None },
-        Code::Local => Pending::Local { number: needed()?, times },
-        Code::Return => Pending::Return { to: number },
-        Code::Macro => Pending::Subprogram {
+        CallWord::Subprogram => BlockTransfer::Subprogram { number: needed()?, times, own: None },
+        CallWord::Local => BlockTransfer::Local { number: needed()?, times },
+        CallWord::Return => BlockTransfer::Return { to: number },
+        CallWord::Macro => BlockTransfer::Subprogram {
             number: needed()?,
             times,
             own: Some(arguments(block, variables)?),
@@ -128,7 +128,7 @@ pub(super) fn take(
     };
     block.items.retain(|item| match item {
         NcItem::Word(word) => {
-            found != Code::Macro && code(word).is_none() && !matches!(word.letter, b'P' | b'L')
+            found != CallWord::Macro && code(word).is_none() && !matches!(word.letter, b'P' | b'L')
         }
         _ => true,
     });

@@ -3,17 +3,17 @@
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Language, Meaning};
 
-use super::block::Asked;
-use super::gathered::{Gathered, bit};
-use super::state::Control;
+use super::block::BlockRequest;
+use super::gathered::{BlockWords, bit};
+use super::state::ControlState;
 use crate::Told;
 use crate::lexicon::Sense;
 
-impl Control {
+impl ControlState {
     pub(super) fn compensate(
         &mut self,
         side: i8,
-        words: &mut Gathered,
+        words: &mut BlockWords,
     ) -> Result<(), Box<Diagnostic>> {
         let register = if side == 0 || self.lexicon.tools_have_edges() {
             None
@@ -49,8 +49,8 @@ impl Control {
     /// Length, tool centre point control and edges.
     pub(super) fn compensations(
         &mut self,
-        words: &mut Gathered,
-        asked: &Asked,
+        words: &mut BlockWords,
+        asked: &BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
         if self.lexicon.tools_have_edges() {
             if let Some(edge) = words.take_number(b'D', self)? {
@@ -99,7 +99,7 @@ impl Control {
     }
 
     /// Length compensation by Z of the block: G43.1.
-    pub(super) fn stated_length(&mut self, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn stated_length(&mut self, words: &mut BlockWords) -> Result<(), Box<Diagnostic>> {
         let said = words.present & self.axes.mask;
         let (Some(length), true) = (words.take(b'Z'), said == bit(b'Z')) else {
             return Err(self.refuse("nc-length", "a length along other axes than Z is not run"));
@@ -114,7 +114,7 @@ impl Control {
     }
 
     /// Length compensation by a register.
-    pub(super) fn length_by(&mut self, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn length_by(&mut self, words: &mut BlockWords) -> Result<(), Box<Diagnostic>> {
         let register = match words.take_number(b'H', self)? {
             Some(register) => Some(register),
             // `HL=1` was taken among the names.
@@ -147,7 +147,7 @@ impl Control {
     pub(super) fn work_offset(
         &mut self,
         code: u16,
-        words: &mut Gathered,
+        words: &mut BlockWords,
     ) -> Result<(), Box<Diagnostic>> {
         let number = f64::from(code) / 10.0;
         let mut name = format!("G{number}");

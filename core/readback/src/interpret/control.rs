@@ -12,8 +12,11 @@ use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::Language;
 
 use super::ReadReport;
-use super::frame::{Frame, Frames};
-use super::state::{ArcPlane, Axes, Control, FeedMode, Head, Modal, MotionMode, Orientation};
+use super::frame::{CoordinateFrame, FrameStack};
+use super::state::{
+    ArcPlane, AxisLetters, ControlState, FeedMeaning, ModalState, MotionMode, MountedHead,
+    OrientationMode,
+};
 use crate::lexicon::Lexicon;
 use crate::{Coolants, Corners, Done, Offsets, Spindle, Stance, State, Told};
 
@@ -26,7 +29,7 @@ const NOTES: usize = 100;
 /// So many words that are not known are counted apart.
 const UNKNOWN: usize = 1000;
 
-impl Axes {
+impl AxisLetters {
     fn new(machine: &Machine) -> Self {
         let mut axes = Self {
             letters: [Self::NONE; 26],
@@ -54,7 +57,7 @@ impl Axes {
     }
 }
 
-impl Control {
+impl ControlState {
     /// A control at the beginning of a program: axes at their zeros, no length, the machine file's work offset.
     ///
     /// # Errors
@@ -69,7 +72,7 @@ impl Control {
         let solver = Arc::new(solver);
         let heads = machine.heads.iter();
         let heads = heads
-            .map(|head| Head {
+            .map(|head| MountedHead {
                 name: head.name.clone(),
                 word: head.word.clone(),
                 machine: Arc::new(head.machine.clone()),
@@ -82,16 +85,16 @@ impl Control {
             machine: Arc::new(machine.clone()),
             heads,
             head_by_hand: None,
-            axes: Axes::new(machine),
-            modal: Modal::new(lexicon.language(), machine.control.units),
-            frames: Frames::default(),
+            axes: AxisLetters::new(machine),
+            modal: ModalState::new(lexicon.language(), machine.control.units),
+            frames: FrameStack::default(),
             work: None,
             offsets_told: false,
-            tools: super::tools::Tools::default(),
+            tools: super::tools::ToolState::default(),
             variables: super::variables::Variables::new(lexicon.language()),
-            cycles: super::cycles::Cycles::default(),
+            cycles: super::cycles::CycleState::default(),
             spline: None,
-            path: super::conversational::Path::default(),
+            path: super::conversational::PathMemory::default(),
             state: State {
                 solver: Arc::clone(&solver),
                 length: 0.0,
@@ -119,8 +122,8 @@ impl Control {
             hole: false,
             zero: Joints::default(),
             origin: Joints::default(),
-            to_part: Frame::default(),
-            to_work: Frame::default(),
+            to_part: CoordinateFrame::default(),
+            to_work: CoordinateFrame::default(),
             line: 0,
             number: None,
             report: ReadReport::default(),
@@ -262,7 +265,7 @@ impl Control {
                 *joint = self.at.joints[before];
             }
         }
-        self.axes = Axes::new(&machine);
+        self.axes = AxisLetters::new(&machine);
         self.machine = machine;
         self.solvers.clear();
         self.at.joints = joints;
@@ -312,10 +315,10 @@ impl Control {
     }
 
     /// The frame of the work offset in the part frame.
-    fn work_frame(&self) -> Frame {
+    fn work_frame(&self) -> CoordinateFrame {
         let shift = self.work.and_then(|work| self.offsets.work.get(work));
         let Some(shift) = shift.filter(|work| work.shift != Joints::default()) else {
-            return Frame::default();
+            return CoordinateFrame::default();
         };
         let chain = self.state.solver.chain();
         let turns = chain.turns(&self.origin);
@@ -323,7 +326,7 @@ impl Control {
         let upright = rotary.clone().all(|(axis, shift)| !axis.joint.rotary || shift == 0.0);
         let origin = chain.forward(&self.origin).tip;
         if upright {
-            return Frame::shifted(origin);
+            return CoordinateFrame::shifted(origin);
         }
         // The machine's directions, seen from the part with its axes there.
         let mut axes = Matrix3::identity();
@@ -336,11 +339,11 @@ impl Control {
                 }
             }
         }
-        Frame::new(axes, origin)
+        CoordinateFrame::new(axes, origin)
     }
 }
 
-impl Modal {
+impl ModalState {
     fn new(language: Language, units: OutputUnits) -> Self {
         Self {
             motion: if language == Language::Names { MotionMode::Linear } else { MotionMode::None },
@@ -348,7 +351,7 @@ impl Modal {
             incremental: false,
             centres_absolute: false,
             unit: unit_length(units),
-            feed_mode: FeedMode::PerMinute,
+            feed_mode: FeedMeaning::PerMinute,
             feed: None,
             speed: 0.0,
             surface_speed: false,
@@ -356,7 +359,7 @@ impl Modal {
             return_start: true,
             contour_tolerance: None,
             shortest: None,
-            orientation: Orientation::Usual,
+            orientation: OrientationMode::Usual,
             vectors: false,
             tcp_by_length: false,
             named_register: None,

@@ -18,20 +18,20 @@
 //! Of what else smooths (G5.1 Q1, G8 P1, G5 P10000, G187 P, compressors without CTOL) the rule lies in parameters of the
 //! control: [`Corners::Own`].
 
-use post_motion::Corner;
+use post_motion::CornerMode;
 use post_plugin::Language;
 
-use super::state::Control;
+use super::state::ControlState;
 use crate::Corners;
 
-impl Control {
+impl ControlState {
     /// A word that ends smoothing or asks for the exact path; `code` is ten times the number behind G, 0 of other words.
     pub(super) fn keeps_corners(&mut self, code: u16) {
         let keeps_path = self.lexicon.has_path_modes();
         self.corners(match (self.lexicon.language(), code) {
-            (Language::Rs274, 610) if keeps_path => Corners::Said(Corner::Path),
+            (Language::Rs274, 610) if keeps_path => Corners::Said(CornerMode::Path),
             (Language::Rs274, 611) | (Language::Macro, 610) | (Language::Names, 600) => {
-                Corners::Said(Corner::Stop)
+                Corners::Said(CornerMode::Stop)
             }
             // The end of what was switched on.
             _ => Corners::Unsaid,
@@ -47,7 +47,7 @@ impl Control {
         };
         self.corners(match (tolerance, code) {
             (Some(0.0), _) => Corners::Unsaid,
-            (Some(_), _) | (None, 640) => Corners::Said(Corner::Blend { tolerance }),
+            (Some(_), _) | (None, 640) => Corners::Said(CornerMode::Blend { tolerance }),
             (None, _) => Corners::Own,
         });
     }
@@ -58,7 +58,7 @@ impl Control {
         self.modal.contour_tolerance = said;
         let smooths = match self.state.corners {
             Corners::Own => true,
-            Corners::Said(Corner::Blend { tolerance }) => tolerance.is_some(),
+            Corners::Said(CornerMode::Blend { tolerance }) => tolerance.is_some(),
             _ => false,
         };
         if smooths {

@@ -5,7 +5,7 @@ use post_grammar::nc::{BinaryOperator, NcExpression, NcValue, UnaryOperator};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Language;
 
-use super::variables::{Value, Variables};
+use super::variables::{VariableValue, Variables};
 
 /// Expressions inside one another.
 const DEEPEST: usize = 100;
@@ -48,7 +48,7 @@ impl Variables {
     ///
     /// # Errors
     /// It cannot be worked out.
-    pub fn value(&self, expression: &NcExpression) -> Answer<Value> {
+    pub fn value(&self, expression: &NcExpression) -> Answer<VariableValue> {
         self.value_at(expression, 0)
     }
 
@@ -87,12 +87,12 @@ impl Variables {
 
     fn number_at(&self, expression: &NcExpression, depth: usize) -> Answer<f64> {
         match self.value_at(expression, depth)? {
-            Value::Number(number) => Ok(number),
-            Value::Text(text) => Err(no_number(&text)),
+            VariableValue::Number(number) => Ok(number),
+            VariableValue::Text(text) => Err(no_number(&text)),
         }
     }
 
-    fn value_at(&self, expression: &NcExpression, depth: usize) -> Answer<Value> {
+    fn value_at(&self, expression: &NcExpression, depth: usize) -> Answer<VariableValue> {
         if depth > DEEPEST {
             return Err(fault(&format!(
                 "an expression has more than {DEEPEST} others inside one another"
@@ -100,7 +100,7 @@ impl Variables {
         }
         let number = match expression {
             NcExpression::Number(number) => *number,
-            NcExpression::Text(text) => return Ok(Value::Text(text.clone())),
+            NcExpression::Text(text) => return Ok(VariableValue::Text(text.clone())),
             NcExpression::Variable(name) if self.constant(name).is_some() => {
                 self.constant(name).unwrap_or_default()
             }
@@ -127,7 +127,7 @@ impl Variables {
                 self.function(name, &values)?
             }
         };
-        finite(number).map(Value::Number)
+        finite(number).map(VariableValue::Number)
     }
 
     /// Names that stand for a number.
@@ -142,21 +142,28 @@ impl Variables {
         }
     }
 
-    fn binary(&self, operator: BinaryOperator, left: Value, right: Value) -> Answer<Value> {
+    fn binary(
+        &self,
+        operator: BinaryOperator,
+        left: VariableValue,
+        right: VariableValue,
+    ) -> Answer<VariableValue> {
         use BinaryOperator as B;
         if operator == B::Join {
             return joined(text(left), &text(right));
         }
         let (left, right) = match (left, right) {
-            (Value::Number(left), Value::Number(right)) => (left, right),
-            (Value::Text(left), Value::Text(right)) => {
+            (VariableValue::Number(left), VariableValue::Number(right)) => (left, right),
+            (VariableValue::Text(left), VariableValue::Text(right)) => {
                 return match operator {
-                    B::Equal => Ok(Value::Number(truth(left == right))),
-                    B::NotEqual => Ok(Value::Number(truth(left != right))),
+                    B::Equal => Ok(VariableValue::Number(truth(left == right))),
+                    B::NotEqual => Ok(VariableValue::Number(truth(left != right))),
                     _ => Err(no_number(&left)),
                 };
             }
-            (Value::Text(text), _) | (_, Value::Text(text)) => return Err(no_number(&text)),
+            (VariableValue::Text(text), _) | (_, VariableValue::Text(text)) => {
+                return Err(no_number(&text));
+            }
         };
         let answer = match operator {
             B::Add => left + right,
@@ -183,7 +190,7 @@ impl Variables {
             B::And | B::Or | B::Xor => self.logical(operator, left, right)?,
             B::Join => 0.0,
         };
-        finite(answer).map(Value::Number)
+        finite(answer).map(VariableValue::Number)
     }
 
     fn equal(&self, left: f64, right: f64) -> Answer<bool> {
@@ -342,21 +349,21 @@ fn canonical(name: &str) -> String {
     }
 }
 
-fn text(value: Value) -> String {
+fn text(value: VariableValue) -> String {
     match value {
-        Value::Number(number) => format!("{number}"),
-        Value::Text(text) => text,
+        VariableValue::Number(number) => format!("{number}"),
+        VariableValue::Text(text) => text,
     }
 }
 
 /// One text behind the other.
-fn joined(mut left: String, right: &str) -> Answer<Value> {
+fn joined(mut left: String, right: &str) -> Answer<VariableValue> {
     left.push_str(right);
     if left.len() > LONGEST_TEXT {
         let message = format!("a text of more than {LONGEST_TEXT} bytes is put together");
         return Err(fault(&message));
     }
-    Ok(Value::Text(left))
+    Ok(VariableValue::Text(left))
 }
 
 fn truth(holds: bool) -> f64 {

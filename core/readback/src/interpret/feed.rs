@@ -3,19 +3,19 @@
 use nalgebra::Vector3;
 use post_machine::description::{FeedLength, InverseTime, TcpFeedLength};
 
-use super::state::{Control, FeedMode};
-use crate::{MotionKind, Stance, Way};
+use super::state::{ControlState, FeedMeaning};
+use crate::{Interpolation, MotionKind, Stance};
 
 /// A tip that goes less far than this stands, mm: turned about itself it comes back to its last digits.
 const STANDS: f64 = 1e-9;
 
-impl Control {
+impl ControlState {
     /// Feed of the tip against the part, mm/min, and minutes of a motion; zero where the program states none.
     #[inline]
     pub(super) fn timed(
         &self,
         kind: MotionKind,
-        way: &Way,
+        way: &Interpolation,
         from: &Stance,
         to: &Stance,
     ) -> (f64, f64) {
@@ -26,25 +26,28 @@ impl Control {
             return (0.0, 0.0);
         };
         let tip = tip_length(way, from, to);
-        let mode =
-            if kind == MotionKind::Thread { FeedMode::PerRevolution } else { self.modal.feed_mode };
+        let mode = if kind == MotionKind::Thread {
+            FeedMeaning::PerRevolution
+        } else {
+            self.modal.feed_mode
+        };
         let minutes = match mode {
-            FeedMode::Inverse => match self.machine.control.inverse_time {
+            FeedMeaning::Inverse => match self.machine.control.inverse_time {
                 InverseTime::Minutes => 1.0 / feed,
                 InverseTime::Seconds => 1.0 / (60.0 * feed),
             },
-            FeedMode::PerMinute => self.feed_length(way, tip, from, to) / feed,
-            FeedMode::PerRevolution if self.modal.speed > 0.0 => {
+            FeedMeaning::PerMinute => self.feed_length(way, tip, from, to) / feed,
+            FeedMeaning::PerRevolution if self.modal.speed > 0.0 => {
                 self.feed_length(way, tip, from, to) / (feed * self.modal.speed)
             }
-            FeedMode::PerRevolution => return (0.0, 0.0),
+            FeedMeaning::PerRevolution => return (0.0, 0.0),
         };
         if minutes > 0.0 { (tip / minutes, minutes) } else { (0.0, 0.0) }
     }
 
     /// The length that F a minute counts along, mm, or degrees where rotary axes alone turn.
     #[inline]
-    fn feed_length(&self, way: &Way, tip: f64, from: &Stance, to: &Stance) -> f64 {
+    fn feed_length(&self, way: &Interpolation, tip: f64, from: &Stance, to: &Stance) -> f64 {
         let counted = self.machine.control.tcp_feed_length;
         if self.state.tcp && tip > STANDS && counted == TcpFeedLength::Tip {
             return tip;
@@ -79,7 +82,7 @@ impl Control {
         if self.state.tcp && counted == TcpFeedLength::Combined {
             return (tip * tip + turned).sqrt();
         }
-        if let Way::Arc { .. } | Way::Spline(_) = way {
+        if let Interpolation::Arc { .. } | Interpolation::Spline(_) = way {
             return tip;
         }
         let usual = match self.lexicon.counts_all_axes() {
@@ -111,16 +114,16 @@ impl Control {
 }
 
 /// The way of the tip against the part, mm.
-pub(super) fn tip_length(way: &Way, from: &Stance, to: &Stance) -> f64 {
+pub(super) fn tip_length(way: &Interpolation, from: &Stance, to: &Stance) -> f64 {
     let chord = to.pose.tip - from.pose.tip;
     match way {
-        Way::Axes | Way::Tip | Way::TipAndAxis => chord.norm(),
-        Way::Arc { centre, normal, sweep } => {
+        Interpolation::Axes | Interpolation::Tip | Interpolation::TipAndAxis => chord.norm(),
+        Interpolation::Arc { centre, normal, sweep } => {
             let arm = from.pose.tip - centre;
             let across: Vector3<f64> = arm - normal * normal.dot(&arm);
             let along = normal.dot(&chord);
             libm::hypot(across.norm() * sweep, along)
         }
-        Way::Spline(spline) => spline.length(),
+        Interpolation::Spline(spline) => spline.length(),
     }
 }

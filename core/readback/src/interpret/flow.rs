@@ -10,15 +10,15 @@ use std::io::{Read, Seek};
 
 use post_grammar::ReadError;
 use post_grammar::nc::{
-    Direction, NcBlock, NcExpression, NcFlow, NcItem, NcMark, NcReader, NcTarget,
+    JumpDirection, NcBlock, NcExpression, NcFlow, NcItem, NcMark, NcReader, NcTarget,
 };
 use post_machine::diagnostic::{Diagnostic, Place, unreadable};
 use post_plugin::Language;
 
 use super::astray::{Answer, elsewhere, fault, no_target};
-use super::calls::{self, Pending};
+use super::calls::{self, BlockTransfer};
 use super::expression::whole;
-use super::variables::{Value, Variables};
+use super::variables::{VariableValue, Variables};
 use super::{Limits, assigned};
 
 /// So many lines that are looked through for a label take the time of a block that is run.
@@ -26,7 +26,7 @@ const SEARCHED: u64 = 64;
 
 /// What is running.
 #[derive(Clone, Debug)]
-enum Running {
+enum OpenConstruct {
     /// A subprogram.
     Call {
         /// Where it begins.
@@ -63,7 +63,7 @@ enum Running {
 
 /// Blocks in the order in which they are run.
 #[derive(Debug)]
-pub(super) struct Flow<R> {
+pub(super) struct ProgramFlow<R> {
     reader: NcReader<R>,
     /// The file, as messages call it.
     file: String,
@@ -77,16 +77,16 @@ pub(super) struct Flow<R> {
     over: bool,
     /// Where the block stands that was handed out last.
     here: NcMark,
-    running: Vec<Running>,
+    running: Vec<OpenConstruct>,
     /// What the block that was handed out last leads to, once it is run.
-    pending: Option<Pending>,
+    pending: Option<BlockTransfer>,
     /// What that block sets, once it is run.
-    set: Vec<(String, Value)>,
+    set: Vec<(String, VariableValue)>,
     /// For looking through.
     passed: NcBlock,
 }
 
-impl<R: Read + Seek> Flow<R> {
+impl<R: Read + Seek> ProgramFlow<R> {
     /// From the first block on.
     pub fn new(reader: NcReader<R>, language: Language, limits: Limits, file: &str) -> Self {
         let here = reader.mark();
@@ -200,7 +200,8 @@ impl<R: Read + Seek> Flow<R> {
     }
 
     fn ended(&mut self) -> Answer<bool> {
-        let inside = self.running.iter().any(|running| matches!(running, Running::Call { .. }));
+        let inside =
+            self.running.iter().any(|running| matches!(running, OpenConstruct::Call { .. }));
         self.running.clear();
         match inside {
             true => Err(fault("the program ends inside a subprogram: nothing leads back from it")),
@@ -331,29 +332,29 @@ impl<R: Read + Seek> Flow<R> {
 
     /// A label is passed.
     fn label(&mut self, name: &str) -> Answer<bool> {
-        if let Some(Running::Part { until: Some(until), .. }) = self.running.last()
+        if let Some(OpenConstruct::Part { until: Some(until), .. }) = self.running.last()
             && until == name
         {
-            self.pending = Some(Pending::PartEnd);
+            self.pending = Some(BlockTransfer::PartEnd);
         }
         Ok(true)
     }
 
     /// Where a block's words lead once it is run.
-    fn lead(&mut self, pending: Pending, line: u64, variables: &mut Variables) -> Answer<()> {
+    fn lead(&mut self, pending: BlockTransfer, line: u64, variables: &mut Variables) -> Answer<()> {
         match pending {
-            Pending::Subprogram { number, times, own } => {
+            BlockTransfer::Subprogram { number, times, own } => {
                 let wanted = NcTarget::Program(format!("O{number}"));
-                let start = self.find(&wanted, Direction::Anywhere)?;
+                let start = self.find(&wanted, JumpDirection::Anywhere)?;
                 let start = start.ok_or_else(|| elsewhere(&format!("O{number}")))?;
                 self.enter(start, times, own, variables)
             }
-            Pending::Local { number, times } => {
-                let start = self.find(&NcTarget::Number(number), Direction::Anywhere)?;
+            BlockTransfer::Local { number, times } => {
+                let start = self.find(&NcTarget::Number(number), JumpDirection::Anywhere)?;
                 let start = start.ok_or_else(|| no_target(&format!("N{number}")))?;
                 self.enter(start, times, None, variables)
             }
-            Pending::Return { to } => {
+            BlockTransfer::Return { to } => {
                 if !self.called() {
                     return Err(fault(&format!(
                         "line {line} begins the program again, without end: no subprogram is running"
@@ -362,7 +363,7 @@ impl<R: Read + Seek> Flow<R> {
                 if to.is_some() {
                     // No further run of it.
                     for running in self.running.iter_mut().rev() {
-                        if let Running::Call { left, .. } = running {
+                        if let OpenConstruct::Call { left, .. } = running {
                             *left = 0;
                             break;
                         }
@@ -370,11 +371,11 @@ impl<R: Read + Seek> Flow<R> {
                 }
                 self.back(variables)?;
                 match to {
-                    Some(number) => self.jump(&NcTarget::Number(number), Direction::Anywhere),
+                    Some(number) => self.jump(&NcTarget::Number(number), JumpDirection::Anywhere),
                     None => Ok(()),
                 }
             }
-            Pending::PartEnd => self.part_ends(),
+            BlockTransfer::PartEnd => self.part_ends(),
         }
     }
 
@@ -394,7 +395,7 @@ impl<R: Read + Seek> Flow<R> {
             Language::Macro => NcTarget::Program(target.to_owned()),
             Language::Names | Language::Conversational => NcTarget::Label(target.to_owned()),
         };
-        let start = self.find(&wanted, Direction::Anywhere)?;
+        let start = self.find(&wanted, JumpDirection::Anywhere)?;
         let Some(start) = start else {
             return Err(match self.language {
                 Language::Conversational => no_target(&format!("LBL {target}")),
@@ -426,7 +427,7 @@ impl<R: Read + Seek> Flow<R> {
         }
         let back = self.reader.mark();
         let has_own = own.is_some();
-        self.push(Running::Call { start, back, left: times - 1, own: has_own })?;
+        self.push(OpenConstruct::Call { start, back, left: times - 1, own: has_own })?;
         if let Some(own) = own {
             variables.enter(own);
         }
@@ -446,17 +447,17 @@ impl<R: Read + Seek> Flow<R> {
     }
 
     fn called(&self) -> bool {
-        self.running.iter().any(|running| matches!(running, Running::Call { .. }))
+        self.running.iter().any(|running| matches!(running, OpenConstruct::Call { .. }))
     }
 
     /// The innermost subprogram ends.
     fn back(&mut self, variables: &mut Variables) -> Answer<()> {
         while let Some(running) = self.running.pop() {
-            let Running::Call { start, back, left, own } = running else {
+            let OpenConstruct::Call { start, back, left, own } = running else {
                 continue;
             };
             if left > 0 {
-                self.running.push(Running::Call { start, back, left: left - 1, own });
+                self.running.push(OpenConstruct::Call { start, back, left: left - 1, own });
                 return self.begin(start);
             }
             if own {
@@ -471,7 +472,7 @@ impl<R: Read + Seek> Flow<R> {
     fn part(&mut self, label: String, until: Option<String>, times: i64) -> Answer<()> {
         let here = self.here;
         let runs = self.unwind(|running| match running {
-            Running::Part { by, .. } if *by == here => Some(()),
+            OpenConstruct::Part { by, .. } if *by == here => Some(()),
             _ => None,
         });
         if runs.is_some() {
@@ -481,15 +482,15 @@ impl<R: Read + Seek> Flow<R> {
             return Ok(());
         }
         let back = self.reader.mark();
-        let start = self.find(&NcTarget::Label(label.clone()), Direction::Anywhere)?;
+        let start = self.find(&NcTarget::Label(label.clone()), JumpDirection::Anywhere)?;
         let start = start.ok_or_else(|| no_target(&label))?;
-        self.push(Running::Part { start, by: here, back, until, left: times - 1 })?;
+        self.push(OpenConstruct::Part { start, by: here, back, until, left: times - 1 })?;
         self.go_to(start)
     }
 
     /// The innermost part was run once.
     fn part_ends(&mut self) -> Answer<()> {
-        let Some(Running::Part { start, back, left, .. }) = self.running.last_mut() else {
+        let Some(OpenConstruct::Part { start, back, left, .. }) = self.running.last_mut() else {
             return Ok(());
         };
         if *left > 0 {
@@ -502,7 +503,7 @@ impl<R: Read + Seek> Flow<R> {
         self.go_to(back)
     }
 
-    fn jump(&mut self, wanted: &NcTarget, direction: Direction) -> Answer<()> {
+    fn jump(&mut self, wanted: &NcTarget, direction: JumpDirection) -> Answer<()> {
         let found = self.find(wanted, direction)?;
         let found = found.ok_or_else(|| match wanted {
             NcTarget::Label(name) | NcTarget::Subprogram(name) | NcTarget::Program(name) => {
@@ -514,7 +515,7 @@ impl<R: Read + Seek> Flow<R> {
     }
 
     /// Where something stands. Afterwards the next block is the same as before.
-    fn find(&mut self, target: &NcTarget, direction: Direction) -> Answer<Option<NcMark>> {
+    fn find(&mut self, target: &NcTarget, direction: JumpDirection) -> Answer<Option<NcMark>> {
         let before = self.reader.lines_searched();
         let found = self.reader.find(target, direction);
         let searched = self.reader.lines_searched() - before;

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 /// A frame: where its origin lies and how its directions stand in the frame around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Frame {
+pub(super) struct CoordinateFrame {
     /// Its directions as columns, in the frame around it.
     pub axes: Matrix3<f64>,
     /// Its origin in the frame around it, mm.
@@ -13,13 +13,13 @@ pub(super) struct Frame {
     upright: bool,
 }
 
-impl Default for Frame {
+impl Default for CoordinateFrame {
     fn default() -> Self {
         Self::shifted(Vector3::zeros())
     }
 }
 
-impl Frame {
+impl CoordinateFrame {
     /// A frame that is shifted alone, mm.
     pub fn shifted(origin: Vector3<f64>) -> Self {
         Self { axes: Matrix3::identity(), origin, upright: true }
@@ -70,20 +70,20 @@ impl Frame {
 
 /// The frames between the words of a program and its work offset, from outside to inside.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Frames {
+pub(super) struct FrameStack {
     /// What is shifted or turned outside of a tilted plane, or where there is none: `CYCL DEF 7`, `G52`, `G92`.
-    pub outer: Frame,
+    pub outer: CoordinateFrame,
     /// The tilted plane. While there is one the linear words are the tip, whoever keeps it.
-    pub plane: Option<Frame>,
+    pub plane: Option<CoordinateFrame>,
     /// What is shifted or turned inside of the tilted plane.
-    pub inner: Frame,
+    pub inner: CoordinateFrame,
     /// `G92` has a part in `outer`.
     pub preset: bool,
 }
 
-impl Frames {
+impl FrameStack {
     /// The frame that the words are written in, within that of the work offset.
-    pub fn all(&self) -> Frame {
+    pub fn all(&self) -> CoordinateFrame {
         let plane = self.plane.unwrap_or_default();
         self.outer.around(&plane).around(&self.inner)
     }

@@ -5,17 +5,17 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::tilted_plane::rotation;
 use post_plugin::{Language, Meaning};
 
-use super::frame::Frame;
-use super::gathered::{Gathered, bit};
+use super::frame::CoordinateFrame;
+use super::gathered::{BlockWords, bit};
 use super::planes;
-use super::state::Control;
+use super::state::ControlState;
 
 /// `G52`, `G92`, `G92.1`, `G10`, `G68`, `G69` (two-dimensional turns): `code` is ten times the number.
 pub(super) fn code(
-    control: &mut Control,
+    control: &mut ControlState,
     code: u16,
     meaning: Meaning,
-    words: &mut Gathered,
+    words: &mut BlockWords,
 ) -> Result<(), Box<Diagnostic>> {
     match meaning {
         Meaning::LocalOffset => local_zero(control, words),
@@ -23,7 +23,7 @@ pub(super) fn code(
         Meaning::SetPositionOff => {
             // `G92.1 X0`: the words say of which axes.
             words.used |= control.axes.mask;
-            control.frames.outer = Frame::default();
+            control.frames.outer = CoordinateFrame::default();
             control.frames_changed();
             Ok(())
         }
@@ -42,8 +42,8 @@ pub(super) fn code(
 
 /// The linear words of a block, program units in mm; they are no motion. Those of other axes must be zero.
 fn taken(
-    control: &Control,
-    words: &mut Gathered,
+    control: &ControlState,
+    words: &mut BlockWords,
     what: &str,
 ) -> Result<[Option<f64>; 3], Box<Diagnostic>> {
     let others = words.present & control.axes.mask & !(bit(b'X') | bit(b'Y') | bit(b'Z'));
@@ -62,7 +62,7 @@ fn taken(
     Ok(found)
 }
 
-fn local_zero(control: &mut Control, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+fn local_zero(control: &mut ControlState, words: &mut BlockWords) -> Result<(), Box<Diagnostic>> {
     if control.frames.plane.is_some() || !control.frames.outer.upright() {
         return Err(control.refuse("nc-frame", "G52 under a tilted plane or a turn is not run"));
     }
@@ -74,13 +74,13 @@ fn local_zero(control: &mut Control, words: &mut Gathered) -> Result<(), Box<Dia
     for (own, said) in origin.iter_mut().zip(shift) {
         *own = said.unwrap_or(*own);
     }
-    control.frames.outer = Frame::shifted(origin);
+    control.frames.outer = CoordinateFrame::shifted(origin);
     control.frames_changed();
     Ok(())
 }
 
 /// G92: where the tool stands has these coordinates.
-fn preset(control: &mut Control, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+fn preset(control: &mut ControlState, words: &mut BlockWords) -> Result<(), Box<Diagnostic>> {
     if control.frames.plane.is_some() || !control.to_work.upright() {
         return Err(control.refuse("nc-frame", "G92 under a tilted plane or a turn is not run"));
     }
@@ -95,14 +95,14 @@ fn preset(control: &mut Control, words: &mut Gathered) -> Result<(), Box<Diagnos
             origin[row] += point[row] - value;
         }
     }
-    control.frames.outer = Frame::shifted(origin);
+    control.frames.outer = CoordinateFrame::shifted(origin);
     control.frames.preset = true;
     control.frames_changed();
     Ok(())
 }
 
 /// G10: tables of the control. Lengths of registers are plain (L10 P R); the rest counts from the machine's zeros.
-fn table(control: &mut Control, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+fn table(control: &mut ControlState, words: &mut BlockWords) -> Result<(), Box<Diagnostic>> {
     let list = words.take(b'L');
     let register = words.take_number(b'P', control)?;
     match (list, register, words.take(b'R')) {
@@ -127,7 +127,7 @@ fn table(control: &mut Control, words: &mut Gathered) -> Result<(), Box<Diagnost
 }
 
 /// `G68 X Y R`: the coordinates are turned in the plane about a point.
-fn turned(control: &mut Control, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+fn turned(control: &mut ControlState, words: &mut BlockWords) -> Result<(), Box<Diagnostic>> {
     if words.present & (bit(b'I') | bit(b'J') | bit(b'K')) != 0 {
         return Err(control.refuse(
             "nc-frame",
@@ -141,7 +141,7 @@ fn turned(control: &mut Control, words: &mut Gathered) -> Result<(), Box<Diagnos
         return Err(control.refuse("nc-frame", "G68 without R: the angle stands in the control"));
     };
     let [first, second, third] = control.modal.plane.coordinates();
-    control.frames.inner = Frame::default();
+    control.frames.inner = CoordinateFrame::default();
     control.frames_changed();
     let said = taken(control, words, "G68")?;
     let here = control.point();
@@ -153,21 +153,21 @@ fn turned(control: &mut Control, words: &mut Gathered) -> Result<(), Box<Diagnos
     axes[(first, second)] = -sine;
     axes[(second, first)] = sine;
     axes[(second, second)] = cosine;
-    control.frames.inner = Frame::new(axes, centre - axes * centre);
+    control.frames.inner = CoordinateFrame::new(axes, centre - axes * centre);
     control.frames_changed();
     Ok(())
 }
 
 /// `TRANS X10`, `ATRANS`, `ROT`, `AROT`, `SCALE`, `MIRROR`: the words behind it. False if it is none of these.
 pub(super) fn name(
-    control: &mut Control,
+    control: &mut ControlState,
     name: &str,
-    words: &mut Gathered,
+    words: &mut BlockWords,
 ) -> Result<bool, Box<Diagnostic>> {
     let said = words.present & control.axes.mask != 0;
     let frame = match name {
         // Without words each takes back all that the program has shifted and turned.
-        "TRANS" | "ROT" | "SCALE" | "MIRROR" if !said => Frame::default(),
+        "TRANS" | "ROT" | "SCALE" | "MIRROR" if !said => CoordinateFrame::default(),
         "TRANS" => shift(control, words)?,
         "ATRANS" => control.frames.inner.around(&shift(control, words)?),
         "ROT" => turn(control, words)?,
@@ -182,12 +182,18 @@ pub(super) fn name(
     Ok(true)
 }
 
-fn shift(control: &Control, words: &mut Gathered) -> Result<Frame, Box<Diagnostic>> {
+fn shift(
+    control: &ControlState,
+    words: &mut BlockWords,
+) -> Result<CoordinateFrame, Box<Diagnostic>> {
     let by = taken(control, words, "a shift")?;
-    Ok(Frame::shifted(Vector3::from(by.map(Option::unwrap_or_default))))
+    Ok(CoordinateFrame::shifted(Vector3::from(by.map(Option::unwrap_or_default))))
 }
 
-fn turn(control: &Control, words: &mut Gathered) -> Result<Frame, Box<Diagnostic>> {
+fn turn(
+    control: &ControlState,
+    words: &mut BlockWords,
+) -> Result<CoordinateFrame, Box<Diagnostic>> {
     let unit = control.modal.unit;
     let angles = taken(control, words, "a turn")?.map(|angle| angle.unwrap_or_default() / unit);
     if angles.iter().filter(|angle| **angle != 0.0).count() > 1 {
@@ -196,5 +202,5 @@ fn turn(control: &Control, words: &mut Gathered) -> Result<Frame, Box<Diagnostic
             "ROT about several axes: their order is a parameter of the control",
         ));
     }
-    Ok(Frame::new(rotation([0, 1, 2], angles.map(f64::to_radians)), Vector3::zeros()))
+    Ok(CoordinateFrame::new(rotation([0, 1, 2], angles.map(f64::to_radians)), Vector3::zeros()))
 }

@@ -5,14 +5,14 @@ use post_grammar::nc::{Approach, NcBlock, NcItem, NcValue};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 
-use super::state::Control;
+use super::state::ControlState;
 
 /// So many G or M may stand in one block.
 const CODES: usize = 24;
 
 /// The words of a block.
 #[derive(Clone, Debug)]
-pub(super) struct Gathered {
+pub(super) struct BlockWords {
     /// Bits of the letters that stand in the block.
     pub present: u32,
     /// Their values, program units.
@@ -28,9 +28,9 @@ pub(super) struct Gathered {
     /// Bits of letters that a word of the block has made use of.
     pub used: u32,
     /// Ten times the numbers behind G, in order.
-    pub g: Codes,
+    pub g: CodeNumbers,
     /// The numbers behind M.
-    pub m: Codes,
+    pub m: CodeNumbers,
     /// Bits of letters whose number has a decimal point.
     pub pointed: u32,
     /// Bits of letters whose number has none and is not zero.
@@ -51,12 +51,12 @@ pub(super) struct Gathered {
 
 /// Numbers behind a letter.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Codes {
+pub(super) struct CodeNumbers {
     list: [u16; CODES],
     count: usize,
 }
 
-impl Codes {
+impl CodeNumbers {
     /// The numbers.
     #[inline]
     pub fn list(&self) -> &[u16] {
@@ -69,7 +69,7 @@ impl Codes {
     }
 }
 
-impl Default for Gathered {
+impl Default for BlockWords {
     fn default() -> Self {
         Self {
             present: 0,
@@ -79,8 +79,8 @@ impl Default for Gathered {
             approached: 0,
             approaches: [None; 26],
             used: 0,
-            g: Codes::default(),
-            m: Codes::default(),
+            g: CodeNumbers::default(),
+            m: CodeNumbers::default(),
             pointed: 0,
             pointless: 0,
             more: false,
@@ -99,7 +99,7 @@ pub(super) const fn bit(letter: u8) -> u32 {
     1 << (letter.wrapping_sub(b'A') & 31)
 }
 
-impl Gathered {
+impl BlockWords {
     /// The value of a letter, program units; none if it does not stand in the block.
     #[inline]
     pub fn get(&self, letter: u8) -> Option<f64> {
@@ -118,7 +118,7 @@ impl Gathered {
     pub fn take_number(
         &mut self,
         letter: u8,
-        control: &Control,
+        control: &ControlState,
     ) -> Result<Option<u32>, Box<Diagnostic>> {
         match self.take(letter) {
             None => Ok(None),
@@ -130,7 +130,7 @@ impl Gathered {
     pub fn present_number(
         &self,
         letter: u8,
-        control: &Control,
+        control: &ControlState,
     ) -> Result<Option<u32>, Box<Diagnostic>> {
         self.get(letter).map(|value| which(letter, value, control)).transpose()
     }
@@ -155,13 +155,13 @@ impl Gathered {
     }
 }
 
-impl Control {
+impl ControlState {
     /// Takes the words of a block.
     #[inline]
     pub(super) fn gather(
         &self,
         block: &NcBlock,
-        words: &mut Gathered,
+        words: &mut BlockWords,
     ) -> Result<(), Box<Diagnostic>> {
         words.clear();
         for item in &block.items {
@@ -214,7 +214,7 @@ impl Control {
         &self,
         letter: u8,
         value: &NcValue,
-        words: &mut Gathered,
+        words: &mut BlockWords,
     ) -> Result<f64, Box<Diagnostic>> {
         if let (NcValue::Approached(approach, _), b'A'..=b'Z') = (value, letter) {
             match approach {
@@ -237,7 +237,7 @@ impl Control {
     }
 
     #[inline]
-    fn code(&self, letter: u8, value: f64, codes: &mut Codes) -> Result<(), Box<Diagnostic>> {
+    fn code(&self, letter: u8, value: f64, codes: &mut CodeNumbers) -> Result<(), Box<Diagnostic>> {
         let whole = libm::rint(value);
         if !(0.0..65_535.0).contains(&whole) || libm::fabs(value - whole) > 1e-6 {
             return Err(
@@ -257,7 +257,11 @@ impl Control {
 }
 
 /// A whole number from 0 on, of a register or a tool.
-pub(super) fn which(letter: u8, value: f64, control: &Control) -> Result<u32, Box<Diagnostic>> {
+pub(super) fn which(
+    letter: u8,
+    value: f64,
+    control: &ControlState,
+) -> Result<u32, Box<Diagnostic>> {
     let whole = libm::rint(value);
     if (0.0..1e9).contains(&whole) && libm::fabs(value - whole) < 1e-6 {
         return Ok(whole as u32);

@@ -7,8 +7,8 @@ use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES, Pose};
 
-use super::state::{Axes, Control, Orientation};
-use crate::{Done, Motion, MotionKind, SplineWay, Stance, Way};
+use super::state::{AxisLetters, ControlState, OrientationMode};
+use crate::{BSpline, Done, Interpolation, Motion, MotionKind, Stance};
 
 /// A tip that the axes miss by more than this is not reached, mm.
 const REACHED: f64 = 1e-6;
@@ -18,7 +18,7 @@ const AIMED: f64 = 1e-4;
 
 /// Where a motion goes, as words say it; what is not said stays.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Target {
+pub(super) struct MotionTarget {
     /// Coordinates X, Y, Z of the program, mm.
     pub point: [Option<f64>; 3],
     /// Values of further axes: mm and radians counted from the drawing's zeros, by place in the chain.
@@ -29,7 +29,7 @@ pub(super) struct Target {
     pub vector: Option<Vector3<f64>>,
 }
 
-impl Target {
+impl MotionTarget {
     /// A point of the program, all three coordinates, mm.
     pub fn point(point: Vector3<f64>) -> Self {
         Self { point: [Some(point.x), Some(point.y), Some(point.z)], ..Self::default() }
@@ -45,7 +45,7 @@ impl Target {
 
 /// A pass along a straight line of words, or along a curve whose end it is.
 #[derive(Clone, Debug)]
-pub(super) enum Path {
+pub(super) enum WordPath {
     /// Straight in the words.
     Straight,
     /// On an arc of the program's coordinates.
@@ -58,10 +58,10 @@ pub(super) enum Path {
         sweep: f64,
     },
     /// On a spline of the program's coordinates.
-    Spline(Arc<SplineWay>),
+    Spline(Arc<BSpline>),
 }
 
-impl Control {
+impl ControlState {
     /// Where the tool stands in the coordinates of the program: what the control shows for X, Y, Z, mm. Of a machine that
     /// lacks one of those axes, zero for it.
     #[inline]
@@ -84,7 +84,7 @@ impl Control {
     ) -> Result<(), Box<Diagnostic>> {
         // It says nothing that was not known of the others.
         let said = self.said;
-        let went = self.go(kind, &Path::Straight, &Target::point(point));
+        let went = self.go(kind, &WordPath::Straight, &MotionTarget::point(point));
         self.said = said;
         went
     }
@@ -94,8 +94,8 @@ impl Control {
     pub fn go(
         &mut self,
         kind: MotionKind,
-        path: &Path,
-        target: &Target,
+        path: &WordPath,
+        target: &MotionTarget,
     ) -> Result<(), Box<Diagnostic>> {
         let from = self.at;
         self.says(target);
@@ -108,24 +108,26 @@ impl Control {
             self.reach_axes(target);
         }
         let way = match path {
-            Path::Straight if target.vector.is_some() => match self.modal.orientation {
-                Orientation::Axes => Way::Tip,
-                Orientation::Usual | Orientation::Circle => Way::TipAndAxis,
+            WordPath::Straight if target.vector.is_some() => match self.modal.orientation {
+                OrientationMode::Axes => Interpolation::Tip,
+                OrientationMode::Usual | OrientationMode::Circle => Interpolation::TipAndAxis,
             },
-            Path::Straight if self.state.tcp && self.modal.orientation == Orientation::Circle => {
-                Way::TipAndAxis
+            WordPath::Straight
+                if self.state.tcp && self.modal.orientation == OrientationMode::Circle =>
+            {
+                Interpolation::TipAndAxis
             }
-            Path::Straight if self.state.tcp => Way::Tip,
-            Path::Straight => Way::Axes,
-            Path::Arc { centre, normal, sweep } => self.arc(&from, *centre, *normal, *sweep)?,
-            Path::Spline(way) => self.spline_way(&from, way),
+            WordPath::Straight if self.state.tcp => Interpolation::Tip,
+            WordPath::Straight => Interpolation::Axes,
+            WordPath::Arc { centre, normal, sweep } => self.arc(&from, *centre, *normal, *sweep)?,
+            WordPath::Spline(way) => self.spline_way(&from, way),
         };
         self.moved(kind, way, from);
         Ok(())
     }
 
     /// Remembers which axes the program has led somewhere.
-    fn says(&mut self, target: &Target) {
+    fn says(&mut self, target: &MotionTarget) {
         self.said |= target.said;
         for (row, place) in self.axes.cartesian.iter().enumerate() {
             if let (Some(_), Some(place)) = (target.point[row], place) {
@@ -151,7 +153,7 @@ impl Control {
     pub fn go_joints(&mut self, kind: MotionKind, joints: &Joints) {
         let from = self.at;
         self.stand(joints);
-        self.moved(kind, Way::Axes, from);
+        self.moved(kind, Interpolation::Axes, from);
     }
 
     /// Turns the rotary axes to `joints` while the tip stays on its place: `PLANE … MOVE`.
@@ -168,13 +170,13 @@ impl Control {
             }
         }
         self.place(tip, self.axes.rotary)?;
-        self.moved(kind, Way::Tip, from);
+        self.moved(kind, Interpolation::Tip, from);
         Ok(())
     }
 
     /// Axis positions: words count from the work offset, axis by axis.
     #[inline]
-    fn reach_axes(&mut self, target: &Target) {
+    fn reach_axes(&mut self, target: &MotionTarget) {
         let axes = self.axes.cartesian;
         let told = target.point.iter().any(Option::is_some);
         if self.to_work.upright() {
@@ -198,7 +200,7 @@ impl Control {
 
     /// The tip: linear words are its coordinates, the linear axes follow.
     #[inline]
-    fn reach_tip(&mut self, target: &Target) -> Result<(), Box<Diagnostic>> {
+    fn reach_tip(&mut self, target: &MotionTarget) -> Result<(), Box<Diagnostic>> {
         let told = target.point.iter().any(Option::is_some);
         if !told && !self.state.tcp {
             // In a tilted plane alone nobody keeps the tip while a rotary axis turns.
@@ -224,7 +226,7 @@ impl Control {
 
     /// Takes the axes that `target` says; the places of the rotary ones among them, as bits.
     #[inline]
-    fn take_said(&mut self, target: &Target) -> u32 {
+    fn take_said(&mut self, target: &MotionTarget) -> u32 {
         let mut said = target.said;
         while said != 0 {
             let place = said.trailing_zeros() as usize % MAX_AXES;
@@ -270,7 +272,7 @@ impl Control {
 
     /// Points the tool along `vector` and brings the tip onto the target: of the ways to do so the one next to where the
     /// axes stand.
-    fn aim(&mut self, target: &Target, vector: Vector3<f64>) -> Result<(), Box<Diagnostic>> {
+    fn aim(&mut self, target: &MotionTarget, vector: Vector3<f64>) -> Result<(), Box<Diagnostic>> {
         let axis = self.to_part.out_direction(vector).try_normalize(1e-9);
         let Some(axis) = axis else {
             return Err(self.refuse("nc-vector", "the vector of the tool axis has no length"));
@@ -340,9 +342,9 @@ impl Control {
         centre: Vector3<f64>,
         normal: Vector3<f64>,
         sweep: f64,
-    ) -> Result<Way, Box<Diagnostic>> {
+    ) -> Result<Interpolation, Box<Diagnostic>> {
         if self.tip_words() {
-            return Ok(Way::Arc {
+            return Ok(Interpolation::Arc {
                 centre: self.to_part.out(centre),
                 normal: self.to_part.out_direction(normal),
                 sweep,
@@ -378,7 +380,7 @@ impl Control {
         let [first, second, third] = [0, 1, 2].map(|row| ways[row]);
         // Where the three axes make a left-handed frame, a turn is seen from behind.
         let handed = if first.cross(&second).dot(&third) < 0.0 { -1.0 } else { 1.0 };
-        Ok(Way::Arc {
+        Ok(Interpolation::Arc {
             centre: from.pose.tip + direction(self.to_work.out_direction(centre - start)),
             normal: direction(self.to_work.out_direction(normal)),
             sweep: sweep * handed,
@@ -396,8 +398,8 @@ impl Control {
 
     /// Hands on the motion from `from` to where the machine stands now; none if it is the same place.
     #[inline]
-    pub fn moved(&mut self, kind: MotionKind, way: Way, from: Stance) {
-        let arc = matches!(way, Way::Arc { .. } | Way::Spline(_));
+    pub fn moved(&mut self, kind: MotionKind, way: Interpolation, from: Stance) {
+        let arc = matches!(way, Interpolation::Arc { .. } | Interpolation::Spline(_));
         if from.joints == self.at.joints && !arc {
             return;
         }
@@ -443,7 +445,7 @@ impl Control {
     #[inline]
     pub fn axis_of(&self, letter: u8) -> Option<usize> {
         let place = self.axes.letters[usize::from(letter.wrapping_sub(b'A')) % 26];
-        (place != Axes::NONE).then_some(usize::from(place))
+        (place != AxisLetters::NONE).then_some(usize::from(place))
     }
 }
 

@@ -8,16 +8,16 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES};
 use post_plugin::{Language, Meaning};
 
-use super::gathered::{Gathered, bit};
-use super::go::{Path, Target, shorter};
-use super::state::{Control, MotionMode};
+use super::gathered::{BlockWords, bit};
+use super::go::{MotionTarget, WordPath, shorter};
+use super::state::{ControlState, MotionMode};
 use crate::{CycleCall, CycleKind, MotionKind, Spindle, Told};
 
-impl Control {
+impl ControlState {
     /// A motion in machine coordinates: G53, SUPA. Words alone change nothing.
     pub(super) fn machine_move(
         &mut self,
-        words: &mut Gathered,
+        words: &mut BlockWords,
         rapid: bool,
     ) -> Result<(), Box<Diagnostic>> {
         let said = words.present & self.axes.mask;
@@ -114,7 +114,7 @@ impl Control {
                 "the linear axes do not place the tip with the rotary axes at zero",
             ));
         }
-        let mut target = Target::default();
+        let mut target = MotionTarget::default();
         for place in 0..self.machine.axes.len() {
             if said & (1 << place) == 0 {
                 continue;
@@ -127,7 +127,7 @@ impl Control {
         }
         let tip = self.to_part.inside(solver.chain().forward(&world).tip);
         target.point = [Some(tip.x), Some(tip.y), Some(tip.z)];
-        self.go(kind, &Path::Straight, &target)
+        self.go(kind, &WordPath::Straight, &target)
     }
 
     /// The axis value (from the drawing's zero, mm or radians) of a machine coordinate in program units.
@@ -141,7 +141,7 @@ impl Control {
     pub(super) fn reference(
         &mut self,
         which: u8,
-        words: &mut Gathered,
+        words: &mut BlockWords,
     ) -> Result<(), Box<Diagnostic>> {
         words.used |= bit(b'P');
         let said = words.present & self.axes.mask;
@@ -164,7 +164,7 @@ impl Control {
                 }
             }
         }
-        self.go(MotionKind::Rapid, &Path::Straight, &Target { vector: None, ..target })?;
+        self.go(MotionKind::Rapid, &WordPath::Straight, &MotionTarget { vector: None, ..target })?;
         let mut joints = self.at.joints;
         let mut stated = 0;
         for place in places {
@@ -197,7 +197,7 @@ impl Control {
         &mut self,
         code: u16,
         meaning: Meaning,
-        words: &mut Gathered,
+        words: &mut BlockWords,
     ) -> Result<(), Box<Diagnostic>> {
         let name = f64::from(code) / 10.0;
         if meaning == Meaning::ThreadBack || self.lexicon.language() == Language::Names {
@@ -227,7 +227,7 @@ impl Control {
         let before = (self.modal.feed, self.hole);
         self.modal.feed = Some(pitch);
         self.hole |= tap;
-        let mut went = self.go(MotionKind::Thread, &Path::Straight, &target);
+        let mut went = self.go(MotionKind::Thread, &WordPath::Straight, &target);
         if tap && went.is_ok() {
             went = self.straight(MotionKind::Thread, from);
         }
@@ -253,7 +253,7 @@ impl Control {
     }
 
     /// I J K as the tool axis; what is not said is zero, as the manuals of such words have it.
-    pub(super) fn vector_words(&self, words: &mut Gathered, target: &mut Target) {
+    pub(super) fn vector_words(&self, words: &mut BlockWords, target: &mut MotionTarget) {
         if words.present & (bit(b'I') | bit(b'J') | bit(b'K')) == 0 {
             return;
         }
@@ -263,7 +263,7 @@ impl Control {
 
     /// Numbers without a point: some controls count them in their least increment.
     #[cold]
-    pub(super) fn least_increments(&mut self, words: &Gathered) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn least_increments(&mut self, words: &BlockWords) -> Result<(), Box<Diagnostic>> {
         if self.lexicon.language() == Language::Macro
             && words.present & self.axes.mask & words.pointless != 0
         {

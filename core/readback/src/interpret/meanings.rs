@@ -3,18 +3,18 @@
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
-use super::block::{Asked, Turning};
-use super::gathered::{Gathered, bit};
-use super::state::{ArcPlane, Control, FeedMode, MotionMode, Orientation};
+use super::block::{BlockRequest, SpindleRequest};
+use super::gathered::{BlockWords, bit};
+use super::state::{ArcPlane, ControlState, FeedMeaning, MotionMode, OrientationMode};
 
-impl Control {
+impl ControlState {
     /// A code or name whose meaning the lexicon knows; `code` is ten times the number behind G, or 0.
     pub(super) fn meant(
         &mut self,
         code: u16,
         meaning: Meaning,
-        words: &mut Gathered,
-        asked: &mut Asked,
+        words: &mut BlockWords,
+        asked: &mut BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
         match meaning {
             Meaning::Rapid => self.motion(MotionMode::Rapid),
@@ -29,10 +29,10 @@ impl Control {
             Meaning::PlaneZx => self.modal.plane = ArcPlane::Zx,
             Meaning::PlaneYz => self.modal.plane = ArcPlane::Yz,
             Meaning::FeedPerMinute | Meaning::FeedPerMinuteAllAxes => {
-                self.feed_mode(FeedMode::PerMinute)
+                self.feed_mode(FeedMeaning::PerMinute)
             }
-            Meaning::InverseTime => self.feed_mode(FeedMode::Inverse),
-            Meaning::FeedPerRevolution => self.feed_mode(FeedMode::PerRevolution),
+            Meaning::InverseTime => self.feed_mode(FeedMeaning::Inverse),
+            Meaning::FeedPerRevolution => self.feed_mode(FeedMeaning::PerRevolution),
             Meaning::MachineCoordinates => asked.machine = true,
             Meaning::RapidBlock => asked.rapid = true,
             Meaning::LengthOn => asked.length_on = Some(code),
@@ -66,10 +66,12 @@ impl Control {
             }
             Meaning::ExactStop => self.exact_stop = true,
             Meaning::ToolChange => asked.change = true,
-            Meaning::SpindleClockwise => asked.spindle = Some(Turning::Clockwise),
-            Meaning::SpindleCounterClockwise => asked.spindle = Some(Turning::CounterClockwise),
-            Meaning::SpindleOff => asked.spindle = Some(Turning::Off),
-            Meaning::SpindleOrient => asked.spindle = Some(Turning::Oriented),
+            Meaning::SpindleClockwise => asked.spindle = Some(SpindleRequest::Clockwise),
+            Meaning::SpindleCounterClockwise => {
+                asked.spindle = Some(SpindleRequest::CounterClockwise)
+            }
+            Meaning::SpindleOff => asked.spindle = Some(SpindleRequest::Off),
+            Meaning::SpindleOrient => asked.spindle = Some(SpindleRequest::Oriented),
             Meaning::CoolantOn => asked.coolant = Some(code / 10),
             Meaning::CoolantOff => asked.coolant_off = true,
             Meaning::Dwell
@@ -129,19 +131,19 @@ impl Control {
             Meaning::InchLengths => self.modal.unit = 25.4,
             Meaning::MillimetreLengths => self.modal.unit = 1.0,
             Meaning::SpindleClockwiseCoolant => {
-                asked.spindle = Some(Turning::Clockwise);
+                asked.spindle = Some(SpindleRequest::Clockwise);
                 asked.coolant = Some(8);
             }
             Meaning::SpindleCounterClockwiseCoolant => {
-                asked.spindle = Some(Turning::CounterClockwise);
+                asked.spindle = Some(SpindleRequest::CounterClockwise);
                 asked.coolant = Some(8);
             }
             // The tool axis under tool centre point control: how it goes between two blocks.
             Meaning::OrientationAxes | Meaning::OrientationMachine => {
-                self.modal.orientation = Orientation::Axes;
+                self.modal.orientation = OrientationMode::Axes;
             }
-            Meaning::OrientationVector => self.modal.orientation = Orientation::Circle,
-            Meaning::OrientationPart => self.modal.orientation = Orientation::Usual,
+            Meaning::OrientationVector => self.modal.orientation = OrientationMode::Circle,
+            Meaning::OrientationPart => self.modal.orientation = OrientationMode::Usual,
             Meaning::Thread | Meaning::ThreadAndBack | Meaning::ThreadBack => {
                 asked.thread = Some((code, meaning));
             }
@@ -177,7 +179,7 @@ impl Control {
         Ok(())
     }
 
-    pub(super) fn feed_mode(&mut self, mode: FeedMode) {
+    pub(super) fn feed_mode(&mut self, mode: FeedMeaning) {
         if self.modal.feed_mode != mode {
             self.modal.feed_mode = mode;
             // A number that was a speed is no time.

@@ -51,9 +51,9 @@ use post_machine::diagnostic::Diagnostic;
 
 use crate::lexicon::Lexicon;
 use crate::{Done, Offsets, State};
-use flow::Flow;
-use gathered::Gathered;
-use state::Control;
+use flow::ProgramFlow;
+use gathered::BlockWords;
+use state::ControlState;
 
 /// How far a program may go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,8 +89,8 @@ pub struct ReadReport {
 /// Runs blocks one by one.
 #[derive(Debug)]
 struct Runner {
-    control: Control,
-    words: Gathered,
+    control: ControlState,
+    words: BlockWords,
     conversational: bool,
 }
 
@@ -115,7 +115,7 @@ impl Runner {
 /// Runs a program block by block.
 #[derive(Debug)]
 pub struct Interpreter<R> {
-    flow: Flow<R>,
+    flow: ProgramFlow<R>,
     block: NcBlock,
     runner: Runner,
 }
@@ -135,12 +135,12 @@ impl<R: Read + Seek> Interpreter<R> {
     ) -> Result<Self, Box<Diagnostic>> {
         let reader = NcReader::new(input, lexicon.syntax().clone());
         let runner = Runner {
-            control: Control::new(machine, lexicon, offsets, file)?,
-            words: Gathered::default(),
+            control: ControlState::new(machine, lexicon, offsets, file)?,
+            words: BlockWords::default(),
             conversational: lexicon.syntax().notation == Notation::Conversational,
         };
         Ok(Self {
-            flow: Flow::new(reader, lexicon.language(), limits, file),
+            flow: ProgramFlow::new(reader, lexicon.language(), limits, file),
             block: NcBlock::default(),
             runner,
         })

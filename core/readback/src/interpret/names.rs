@@ -4,19 +4,19 @@ use post_grammar::nc::{NcBlock, NcItem, NcValue};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Language, Meaning};
 
-use super::block::{Asked, Turning};
-use super::gathered::{Gathered, which};
-use super::state::Control;
+use super::block::{BlockRequest, SpindleRequest};
+use super::gathered::{BlockWords, which};
+use super::state::ControlState;
 use super::{cycles, frames, planes};
 use crate::Told;
 use crate::lexicon::Sense;
 
 /// Takes what `gather` left.
 pub(super) fn take(
-    control: &mut Control,
+    control: &mut ControlState,
     block: &NcBlock,
-    words: &mut Gathered,
-    asked: &mut Asked,
+    words: &mut BlockWords,
+    asked: &mut BlockRequest,
 ) -> Result<(), Box<Diagnostic>> {
     let mut modal_call = false;
     let mut items = block.items.iter().peekable();
@@ -56,14 +56,14 @@ pub(super) fn take(
     Ok(())
 }
 
-impl Control {
+impl ControlState {
     /// A name with a value: `A3=0.5`, `CR=5`, an axis of a longer name.
     fn named(
         &mut self,
         name: &str,
         value: &NcValue,
-        words: &mut Gathered,
-        asked: &mut Asked,
+        words: &mut BlockWords,
+        asked: &mut BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
         if let Some((_, place)) = self.axes.names.iter().find(|(known, _)| known == name) {
             let place = *place;
@@ -96,7 +96,7 @@ impl Control {
                 self.smooth(None);
                 self.keeps_corners(0);
             }
-            Sense::Means(Meaning::SpindleOrient) => asked.spindle = Some(Turning::Oriented),
+            Sense::Means(Meaning::SpindleOrient) => asked.spindle = Some(SpindleRequest::Oriented),
             Sense::Means(Meaning::Probe) => {
                 return Err(self.refuse(
                     "nc-probe",
@@ -121,7 +121,7 @@ impl Control {
         &mut self,
         place: usize,
         value: &NcValue,
-        words: &mut Gathered,
+        words: &mut BlockWords,
     ) -> Result<(), Box<Diagnostic>> {
         use post_grammar::nc::Approach;
         let approach = match value {
@@ -158,8 +158,8 @@ impl Control {
     fn name(
         &mut self,
         name: &str,
-        words: &mut Gathered,
-        asked: &mut Asked,
+        words: &mut BlockWords,
+        asked: &mut BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
         if frames::name(self, name, words)? {
             return Ok(());
@@ -189,8 +189,8 @@ impl Control {
         name: &str,
         arguments: &[Option<NcValue>],
         modal: bool,
-        words: &mut Gathered,
-        asked: &mut Asked,
+        words: &mut BlockWords,
+        asked: &mut BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
         let empty = arguments.iter().all(Option::is_none);
         let sense = if empty { self.lexicon.empty_call(name) } else { self.lexicon.name(name) };

@@ -10,10 +10,10 @@ use post_machine::kinematics::{Joints, Pose};
 use post_machine::tilted_plane::rotation;
 use post_plugin::Language;
 
-use super::frame::Frame;
-use super::gathered::Gathered;
+use super::frame::CoordinateFrame;
+use super::gathered::BlockWords;
 use super::go::nearest_turn;
-use super::state::Control;
+use super::state::ControlState;
 use crate::MotionKind;
 
 /// The tool stands upright on a plane if its axis misses the normal by no more, radians: words have few decimals.
@@ -24,7 +24,7 @@ const SAME: f64 = 1e-7;
 
 /// Which of two solutions is meant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Pick {
+pub(super) enum SolutionChoice {
     /// The program does not say.
     #[default]
     Any,
@@ -38,7 +38,7 @@ pub(super) enum Pick {
 
 /// How the axes turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Turn {
+pub(super) enum PlaneTurn {
     /// Not at all.
     #[default]
     Stay,
@@ -50,9 +50,9 @@ pub(super) enum Turn {
 
 /// A G code of a tilted plane (`G68.2 X Y Z I J K`, `G254`); `code` is ten times its number.
 pub(super) fn begin(
-    control: &mut Control,
+    control: &mut ControlState,
     code: u16,
-    words: &mut Gathered,
+    words: &mut BlockWords,
 ) -> Result<(), Box<Diagnostic>> {
     if control.frames.plane.is_some() {
         return Err(control
@@ -78,7 +78,7 @@ pub(super) fn begin(
             let origin =
                 Vector3::new(number(b'X'), number(b'Y'), number(b'Z')) * control.modal.unit;
             let angles = [b'I', b'J', b'K'].map(|letter| number(letter).to_radians());
-            lay(control, Frame::new(rotation([2, 0, 2], angles), origin))
+            lay(control, CoordinateFrame::new(rotation([2, 0, 2], angles), origin))
         }
         _ => {
             let name = f64::from(code) / 10.0;
@@ -90,9 +90,9 @@ pub(super) fn begin(
 
 /// The axes turn to the plane in force: `G53.1`.
 pub(super) fn turn(
-    control: &mut Control,
+    control: &mut ControlState,
     code: u16,
-    words: &mut Gathered,
+    words: &mut BlockWords,
 ) -> Result<(), Box<Diagnostic>> {
     if control.frames.plane.is_none() {
         let name = f64::from(code) / 10.0;
@@ -102,20 +102,20 @@ pub(super) fn turn(
         ));
     }
     let pick = match words.take(b'P') {
-        Some(1.0) => Pick::Plus,
-        Some(2.0) => Pick::Minus,
-        _ => Pick::Any,
+        Some(1.0) => SolutionChoice::Plus,
+        Some(2.0) => SolutionChoice::Minus,
+        _ => SolutionChoice::Any,
     };
-    turn_to(control, Turn::Alone, pick, MotionKind::Rapid).map(|_| ())
+    turn_to(control, PlaneTurn::Alone, pick, MotionKind::Rapid).map(|_| ())
 }
 
 /// It ends: `G69`, `G255`, `CYCLE800()`.
-pub(super) fn end(control: &mut Control) -> Result<(), Box<Diagnostic>> {
+pub(super) fn end(control: &mut ControlState) -> Result<(), Box<Diagnostic>> {
     // G69 ends a turn in the plane too.
     let letters = matches!(control.lexicon.language(), Language::Macro | Language::Rs274);
     let turned = letters && !control.frames.inner.is_default();
     if turned {
-        control.frames.inner = Frame::default();
+        control.frames.inner = CoordinateFrame::default();
     }
     if control.frames.plane.take().is_some() || turned {
         control.frames_changed();
@@ -124,7 +124,10 @@ pub(super) fn end(control: &mut Control) -> Result<(), Box<Diagnostic>> {
 }
 
 /// The words are in `frame` from here on, which is given in the coordinates of the program outside of any plane.
-pub(super) fn lay(control: &mut Control, frame: Frame) -> Result<(), Box<Diagnostic>> {
+pub(super) fn lay(
+    control: &mut ControlState,
+    frame: CoordinateFrame,
+) -> Result<(), Box<Diagnostic>> {
     control.frames.plane = Some(frame);
     control.frames_changed();
     Ok(())
@@ -132,7 +135,7 @@ pub(super) fn lay(control: &mut Control, frame: Frame) -> Result<(), Box<Diagnos
 
 /// The frame of the machine's own directions as the axes stand now, with the origin of the program: G254, CYCLE800 with
 /// the rotary axes themselves.
-pub(super) fn as_it_stands(control: &Control) -> Result<Frame, Box<Diagnostic>> {
+pub(super) fn as_it_stands(control: &ControlState) -> Result<CoordinateFrame, Box<Diagnostic>> {
     let [Some(x), Some(y), Some(z)] = control.axes.cartesian else {
         return Err(control.refuse("nc-plane", "a tilted plane needs the axes X, Y and Z"));
     };
@@ -144,16 +147,16 @@ pub(super) fn as_it_stands(control: &Control) -> Result<Frame, Box<Diagnostic>> 
     if !across {
         return Err(control.refuse("nc-plane", "X, Y and Z of this machine do not stand across one another as X, Y and Z of a frame do"));
     }
-    Ok(Frame::new(control.to_part.axes.transpose() * axes, Vector3::zeros()))
+    Ok(CoordinateFrame::new(control.to_part.axes.transpose() * axes, Vector3::zeros()))
 }
 
 /// The normal of the plane in force, unit vector, part frame.
-fn normal(control: &Control) -> Vector3<f64> {
+fn normal(control: &ControlState) -> Vector3<f64> {
     control.to_part.out_direction(Vector3::z())
 }
 
 /// The tool stands upright on the plane in force.
-pub(super) fn upright(control: &Control) -> bool {
+pub(super) fn upright(control: &ControlState) -> bool {
     let (axis, normal) = (control.at.pose.axis, normal(control));
     axis.dot(&normal) > 0.0 && axis.cross(&normal).norm() <= UPRIGHT
 }
@@ -163,30 +166,30 @@ pub(super) fn upright(control: &Control) -> bool {
 /// # Errors
 /// The plane is out of reach, or it is not plain which solution the control takes.
 pub(super) fn turn_to(
-    control: &mut Control,
-    how: Turn,
-    pick: Pick,
+    control: &mut ControlState,
+    how: PlaneTurn,
+    pick: SolutionChoice,
     kind: MotionKind,
 ) -> Result<Joints, Box<Diagnostic>> {
     let to = solution(control, pick)?;
     let stands = (0..control.machine.axes.len()).all(|place| to[place] == control.at.joints[place]);
     match how {
         _ if stands => {}
-        Turn::Stay => {}
-        Turn::Alone => control.go_joints(kind, &to),
-        Turn::Move => control.turn_about_tip(kind, &to)?,
+        PlaneTurn::Stay => {}
+        PlaneTurn::Alone => control.go_joints(kind, &to),
+        PlaneTurn::Move => control.turn_about_tip(kind, &to)?,
     }
     Ok(to)
 }
 
 /// Where the axes stand upright on the plane in force, the linear ones as they are.
-fn solution(control: &Control, pick: Pick) -> Result<Joints, Box<Diagnostic>> {
+fn solution(control: &ControlState, pick: SolutionChoice) -> Result<Joints, Box<Diagnostic>> {
     let last = control.at.joints;
-    let sided = matches!(pick, Pick::Plus | Pick::Minus);
+    let sided = matches!(pick, SolutionChoice::Plus | SolutionChoice::Minus);
     let tilts = tilting(control);
     let on_side = |joints: &Joints| match (pick, tilts) {
-        (Pick::Plus, Some(place)) => shown(control, place, joints) >= -SAME,
-        (Pick::Minus, Some(place)) => shown(control, place, joints) <= SAME,
+        (SolutionChoice::Plus, Some(place)) => shown(control, place, joints) >= -SAME,
+        (SolutionChoice::Minus, Some(place)) => shown(control, place, joints) <= SAME,
         _ => true,
     };
     if upright(control) && (!sided || on_side(&last)) {
@@ -200,7 +203,7 @@ fn solution(control: &Control, pick: Pick) -> Result<Joints, Box<Diagnostic>> {
             "no solution of the tilted plane lies within the travel of the rotary axes",
         ));
     }
-    if inside.len() > 1 && pick == Pick::Nearest {
+    if inside.len() > 1 && pick == SolutionChoice::Nearest {
         let way = |joints: &Joints, place: usize| libm::fabs(joints[place] - last[place]);
         let rotary: Vec<usize> = rotary(control).collect();
         let nearer = |one: &Joints, other: &Joints| {
@@ -228,7 +231,7 @@ fn solution(control: &Control, pick: Pick) -> Result<Joints, Box<Diagnostic>> {
 }
 
 /// All ways in which the rotary axes stand upright on the plane in force, next to where they stand and within travel.
-fn reachable(control: &Control) -> Result<Vec<Joints>, Box<Diagnostic>> {
+fn reachable(control: &ControlState) -> Result<Vec<Joints>, Box<Diagnostic>> {
     let last = control.at.joints;
     let pose = Pose { tip: control.at.pose.tip, axis: normal(control), edge: Vector3::zeros() };
     let cannot = |_| control.refuse("nc-plane", "the rotary axes cannot turn to this plane");
@@ -254,22 +257,22 @@ fn reachable(control: &Control) -> Result<Vec<Joints>, Box<Diagnostic>> {
     Ok(inside)
 }
 
-fn rotary(control: &Control) -> impl Iterator<Item = usize> + '_ {
+fn rotary(control: &ControlState) -> impl Iterator<Item = usize> + '_ {
     (0..control.machine.axes.len()).filter(|place| control.axes.rotary & (1 << place) != 0)
 }
 
 /// What an axis shows there, radians.
-fn shown(control: &Control, place: usize, joints: &Joints) -> f64 {
+fn shown(control: &ControlState, place: usize, joints: &Joints) -> f64 {
     joints[place] + control.machine.axes[place].zero
 }
 
 /// The rotary axis that tilts: the first one seen from the tool.
-fn tilting(control: &Control) -> Option<usize> {
+fn tilting(control: &ControlState) -> Option<usize> {
     rotary(control).last()
 }
 
 /// What each of A, B, C shows where the axes stand upright on the plane, degrees: Q120 to Q122.
-pub(super) fn angles(control: &Control, joints: &Joints) -> [f64; 3] {
+pub(super) fn angles(control: &ControlState, joints: &Joints) -> [f64; 3] {
     [b'A', b'B', b'C'].map(|letter| {
         control.axis_of(letter).map_or(0.0, |place| shown(control, place, joints).to_degrees())
     })
@@ -277,7 +280,7 @@ pub(super) fn angles(control: &Control, joints: &Joints) -> [f64; 3] {
 
 /// `CYCLE800(_FR, _TC, _ST, _MODE, _X0, _Y0, _Z0, _A, _B, _C, _X1, _Y1, _Z1, _DIR, _FR_I, _DMODE)`.
 pub(super) fn call(
-    control: &mut Control,
+    control: &mut ControlState,
     name: &str,
     arguments: &[Option<NcValue>],
 ) -> Result<(), Box<Diagnostic>> {
@@ -329,13 +332,14 @@ pub(super) fn call(
                 format!("CYCLE800: _MODE = {mode} is no sequence of turns about axes"),
             ));
         };
-        Frame::new(rotation(order, turns.map(f64::to_radians)), Vector3::zeros())
+        CoordinateFrame::new(rotation(order, turns.map(f64::to_radians)), Vector3::zeros())
     };
-    let frame = Frame::shifted(before).around(&turned).around(&Frame::shifted(behind));
+    let frame =
+        CoordinateFrame::shifted(before).around(&turned).around(&CoordinateFrame::shifted(behind));
     lay(control, frame)?;
     if direction != 0.0 && mode != 192.0 {
         // The axis whose sign it speaks of is told in the control's record of the head.
-        turn_to(control, Turn::Alone, Pick::Any, MotionKind::Rapid)?;
+        turn_to(control, PlaneTurn::Alone, SolutionChoice::Any, MotionKind::Rapid)?;
     }
     Ok(())
 }
@@ -353,7 +357,7 @@ fn turns_of(mode: f64) -> Option<[usize; 3]> {
 
 /// The rotary axes must stand where CYCLE800 names them: the first and second of the control's record, whose order the
 /// program does not say.
-fn stand_at(control: &Control, turns: [f64; 3]) -> Result<(), Box<Diagnostic>> {
+fn stand_at(control: &ControlState, turns: [f64; 3]) -> Result<(), Box<Diagnostic>> {
     let mut left: Vec<f64> = rotary(control)
         .map(|place| shown(control, place, &control.at.joints).to_degrees())
         .collect();

@@ -3,21 +3,21 @@
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Language, Meaning};
 
-use super::block::{Asked, Turning};
-use super::gathered::{Gathered, bit, which};
-use super::state::Control;
+use super::block::{BlockRequest, SpindleRequest};
+use super::gathered::{BlockWords, bit, which};
+use super::state::ControlState;
 use crate::{Spindle, Told};
 
-impl Control {
+impl ControlState {
     pub(super) fn tool_and_spindle(
         &mut self,
-        words: &mut Gathered,
-        asked: &Asked,
+        words: &mut BlockWords,
+        asked: &BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
         if let Some(speed) = words.take(b'S') {
             self.modal.speed = speed;
             // Beside a word that turns it the new speed never has the old sense.
-            if matches!(asked.spindle, None | Some(Turning::Off)) {
+            if matches!(asked.spindle, None | Some(SpindleRequest::Off)) {
                 self.speed_changed();
             }
         }
@@ -37,7 +37,7 @@ impl Control {
         }
         match asked.spindle {
             // It stops when the motion has come to its end; on RS-274/NGC before.
-            Some(Turning::Off) if self.lexicon.language() != Language::Rs274 => {}
+            Some(SpindleRequest::Off) if self.lexicon.language() != Language::Rs274 => {}
             Some(turning) => self.turn_spindle(turning),
             None => {}
         }
@@ -47,32 +47,34 @@ impl Control {
     /// S changed while the spindle turns.
     pub(super) fn speed_changed(&mut self) {
         match self.state.spindle {
-            Spindle::Clockwise(_) => self.turn_spindle(Turning::Clockwise),
-            Spindle::CounterClockwise(_) => self.turn_spindle(Turning::CounterClockwise),
+            Spindle::Clockwise(_) => self.turn_spindle(SpindleRequest::Clockwise),
+            Spindle::CounterClockwise(_) => self.turn_spindle(SpindleRequest::CounterClockwise),
             Spindle::Surface { clockwise, .. } => self.turn_spindle(if clockwise {
-                Turning::Clockwise
+                SpindleRequest::Clockwise
             } else {
-                Turning::CounterClockwise
+                SpindleRequest::CounterClockwise
             }),
             Spindle::Off | Spindle::Oriented => {}
         }
     }
 
     /// What the spindle does from here on.
-    pub(super) fn turn_spindle(&mut self, turning: Turning) {
+    pub(super) fn turn_spindle(&mut self, turning: SpindleRequest) {
         self.modal.tapped = false;
         let spindle = match turning {
-            Turning::Clockwise | Turning::CounterClockwise if self.modal.surface_speed => {
+            SpindleRequest::Clockwise | SpindleRequest::CounterClockwise
+                if self.modal.surface_speed =>
+            {
                 Spindle::Surface {
                     speed: self.modal.speed,
                     most: self.modal.most_speed,
-                    clockwise: turning == Turning::Clockwise,
+                    clockwise: turning == SpindleRequest::Clockwise,
                 }
             }
-            Turning::Clockwise => Spindle::Clockwise(self.modal.speed),
-            Turning::CounterClockwise => Spindle::CounterClockwise(self.modal.speed),
-            Turning::Off => Spindle::Off,
-            Turning::Oriented => Spindle::Oriented,
+            SpindleRequest::Clockwise => Spindle::Clockwise(self.modal.speed),
+            SpindleRequest::CounterClockwise => Spindle::CounterClockwise(self.modal.speed),
+            SpindleRequest::Off => Spindle::Off,
+            SpindleRequest::Oriented => Spindle::Oriented,
         };
         if self.state.spindle != spindle {
             self.state.spindle = spindle;
@@ -85,7 +87,7 @@ impl Control {
     pub(super) fn stand_behind_taps(&mut self) {
         self.modal.rigid_taps = false;
         if self.modal.tapped {
-            self.turn_spindle(Turning::Off);
+            self.turn_spindle(SpindleRequest::Off);
         }
     }
 
@@ -114,7 +116,7 @@ impl Control {
     }
 
     /// G4: seconds, turns of the spindle where the control counts them.
-    pub(super) fn dwell(&mut self, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn dwell(&mut self, words: &mut BlockWords) -> Result<(), Box<Diagnostic>> {
         let told = |time, revolutions| Told::Dwell { time, revolutions };
         let told = match self.lexicon.language() {
             Language::Names => match (words.take(b'F'), words.take(b'S')) {
@@ -131,7 +133,10 @@ impl Control {
     }
 
     /// The time of a wait by its letter: as the dialect says of it, else X, U and F in seconds.
-    pub(super) fn letters_dwell(&mut self, words: &mut Gathered) -> Result<Told, Box<Diagnostic>> {
+    pub(super) fn letters_dwell(
+        &mut self,
+        words: &mut BlockWords,
+    ) -> Result<Told, Box<Diagnostic>> {
         const G4: u16 = 40;
         for letter in [b'P', b'X', b'U', b'F', b'S'] {
             let meaning = self.lexicon.letter_beside(G4, letter);

@@ -6,10 +6,10 @@ use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Language;
 
-use super::gathered::{Gathered, bit};
-use super::go::{Path, Target};
-use super::state::{Control, FeedMode, MotionMode};
-use crate::{MotionKind, SplineWay, Stance, Way};
+use super::gathered::{BlockWords, bit};
+use super::go::{MotionTarget, WordPath};
+use super::state::{ControlState, FeedMeaning, MotionMode};
+use crate::{BSpline, Interpolation, MotionKind, Stance};
 
 /// Control points with knots K and weights R; P is the order: ten times the number of the word.
 const KNOTS: u16 = 62;
@@ -32,7 +32,7 @@ const MOST_POLES: usize = 1_000_000;
 
 /// What was told of a spline so far.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Gathering {
+pub(super) struct OpenSpline {
     even: bool,
     order: usize,
     /// Control points in the coordinates of the program, mm, and their weights.
@@ -40,14 +40,14 @@ pub(super) struct Gathering {
     knots: Vec<f64>,
 }
 
-impl Gathering {
+impl OpenSpline {
     /// It has all its knots.
     fn complete(&self) -> bool {
         !self.even && !self.poles.is_empty() && self.knots.len() == self.poles.len() + self.order
     }
 
     /// The curve, in the coordinates of the program.
-    fn way(self) -> SplineWay {
+    fn way(self) -> BSpline {
         let Self { even, order, poles, mut knots } = self;
         if even {
             let spans = poles.len().saturating_sub(order) + 1;
@@ -56,11 +56,11 @@ impl Gathering {
             let even = (0..=last).map(|place| place.saturating_sub(order - 1).min(spans) as f64);
             knots = even.collect();
         }
-        SplineWay { degree: order.saturating_sub(1), knots, poles }
+        BSpline { degree: order.saturating_sub(1), knots, poles }
     }
 }
 
-impl Control {
+impl ControlState {
     /// A word of splines, ten times its number: the block begins one, or goes on with it.
     pub(super) fn spline_word(&mut self, code: u16) -> Result<(), Box<Diagnostic>> {
         let even = match (code, self.lexicon.language()) {
@@ -72,8 +72,9 @@ impl Control {
             return Err(self.refuse("nc-spline", "a spline under G91 is not run"));
         }
         self.motion(MotionMode::Spline);
-        let spline =
-            self.spline.get_or_insert_with(|| Box::new(Gathering { even, ..Gathering::default() }));
+        let spline = self
+            .spline
+            .get_or_insert_with(|| Box::new(OpenSpline { even, ..OpenSpline::default() }));
         match spline.even == even {
             true => Ok(()),
             false => Err(self.not_followed(code)),
@@ -81,7 +82,7 @@ impl Control {
     }
 
     /// Beside the words of a spline that is not at its end nothing else stands: the block ends it, or is refused.
-    pub(super) fn within_spline(&mut self, words: &Gathered) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn within_spline(&mut self, words: &BlockWords) -> Result<(), Box<Diagnostic>> {
         let Some(spline) = &self.spline else {
             return Ok(());
         };
@@ -104,12 +105,12 @@ impl Control {
     }
 
     /// A block of a spline.
-    pub(super) fn spline_block(&mut self, words: &mut Gathered) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn spline_block(&mut self, words: &mut BlockWords) -> Result<(), Box<Diagnostic>> {
         let Some(mut spline) = self.spline.take() else {
             let message = "words of a spline behind its last knot, and none begins here";
             return Err(self.refuse("nc-spline", message));
         };
-        if self.modal.feed_mode == FeedMode::Inverse {
+        if self.modal.feed_mode == FeedMeaning::Inverse {
             return Err(self.refuse("nc-feed", "a spline under inverse time is not run"));
         }
         let linear = bit(b'X') | bit(b'Y') | bit(b'Z');
@@ -139,9 +140,9 @@ impl Control {
     /// `G6.2 P4 K0 X Y Z R1`, `K0 X Y Z`, and behind the last point as many blocks with K alone as the order.
     fn knot_point(
         &mut self,
-        spline: &mut Gathering,
+        spline: &mut OpenSpline,
         begins: bool,
-        words: &mut Gathered,
+        words: &mut BlockWords,
     ) -> Result<(), Box<Diagnostic>> {
         if begins {
             let order = words.take_number(b'P', self)?.unwrap_or(ORDER_OF_KNOTS);
@@ -174,9 +175,9 @@ impl Control {
     /// `G5.2 X Y P1 L3`, `X Y P1`: the first control point is where the tool stands, and P alone its weight.
     fn even_point(
         &mut self,
-        spline: &mut Gathering,
+        spline: &mut OpenSpline,
         begins: bool,
-        words: &mut Gathered,
+        words: &mut BlockWords,
     ) -> Result<(), Box<Diagnostic>> {
         let point = self.spline_point(spline, words);
         let weight = words.take(b'P');
@@ -209,7 +210,7 @@ impl Control {
 
     fn pole(
         &self,
-        spline: &mut Gathering,
+        spline: &mut OpenSpline,
         point: Vector3<f64>,
         weight: f64,
     ) -> Result<(), Box<Diagnostic>> {
@@ -222,7 +223,7 @@ impl Control {
     }
 
     /// The control point that a block says, what it leaves out as that of the one before; none if it says nothing.
-    fn spline_point(&self, spline: &Gathering, words: &mut Gathered) -> Option<Vector3<f64>> {
+    fn spline_point(&self, spline: &OpenSpline, words: &mut BlockWords) -> Option<Vector3<f64>> {
         let unit = self.modal.unit;
         let said = [b'X', b'Y', b'Z'].map(|letter| words.take(letter));
         if said.iter().all(Option::is_none) {
@@ -261,19 +262,19 @@ impl Control {
             let message = "a spline that does not begin and end in its first and last control point, its knots there as many as the order, is not run";
             return Err(self.refuse("nc-spline", message));
         }
-        let path = Path::Spline(Arc::new(way));
-        self.go(MotionKind::Feed, &path, &Target::point(last))
+        let path = WordPath::Spline(Arc::new(way));
+        self.go(MotionKind::Feed, &path, &MotionTarget::point(last))
     }
 
     /// A spline of the program's coordinates as one of the part frame. Positions of axes lie as the axes do, and the
     /// rotary ones stand still: seen from the part they are turned, and what is turned is a spline of turned points.
-    pub(super) fn spline_way(&self, from: &Stance, way: &SplineWay) -> Way {
+    pub(super) fn spline_way(&self, from: &Stance, way: &BSpline) -> Interpolation {
         let mut way = way.clone();
         if self.tip_words() {
             for (pole, _) in &mut way.poles {
                 *pole = self.to_part.out(*pole);
             }
-            return Way::Spline(Arc::new(way));
+            return Interpolation::Spline(Arc::new(way));
         }
         let chain = self.state.solver.chain();
         let start = way.poles[0].0;
@@ -284,6 +285,6 @@ impl Control {
             let offset = self.to_work.out_direction(*pole - start);
             *pole = from.pose.tip + ways[0] * offset.x + ways[1] * offset.y + ways[2] * offset.z;
         }
-        Way::Spline(Arc::new(way))
+        Interpolation::Spline(Arc::new(way))
     }
 }

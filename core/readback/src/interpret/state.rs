@@ -7,10 +7,10 @@ use post_machine::description::Machine;
 use post_machine::kinematics::{Joints, Solver, Turns};
 
 use super::ReadReport;
-use super::cycles::Cycles;
-use super::frame::{Frame, Frames};
-use super::splines::Gathering;
-use super::tools::Tools;
+use super::cycles::CycleState;
+use super::frame::{CoordinateFrame, FrameStack};
+use super::splines::OpenSpline;
+use super::tools::ToolState;
 use super::variables::Variables;
 use crate::lexicon::Lexicon;
 use crate::{Done, Offsets, Stance, State};
@@ -21,7 +21,7 @@ use crate::{Done, Offsets, Stance, State};
 /// modal here and then ask for motions: `Control::go` in words, or `Control::straight` along the coordinates of the
 /// program. What happens is pushed to `done` in order.
 #[derive(Debug)]
-pub(super) struct Control {
+pub(super) struct ControlState {
     /// The file, as messages call it.
     pub file: String,
     /// Which word switches what.
@@ -31,29 +31,29 @@ pub(super) struct Control {
     /// The machine with the head that it has now.
     pub machine: Arc<Machine>,
     /// Its heads.
-    pub heads: Vec<Head>,
+    pub heads: Vec<MountedHead>,
     /// The head, by its place among them, that a remark asks the operator to swap in at the next stop.
     pub head_by_hand: Option<usize>,
     /// Which word is which axis.
-    pub axes: Axes,
+    pub axes: AxisLetters,
     /// What is modal in its programs.
-    pub modal: Modal,
+    pub modal: ModalState,
     /// What the words count from, inside the work offset. After a change: [`Control::frames_changed`].
-    pub frames: Frames,
+    pub frames: FrameStack,
     /// Number of the work offset in force, by place in `offsets.work`; none: the machine file's.
     pub work: Option<usize>,
     /// That work offsets of which nothing is said are one was told.
     pub offsets_told: bool,
     /// Tools and lengths.
-    pub tools: Tools,
+    pub tools: ToolState,
     /// Its variables.
     pub variables: Variables,
     /// The cycle that is in force, if there is one.
-    pub cycles: Cycles,
+    pub cycles: CycleState,
     /// The spline whose control points are told, if one is.
-    pub spline: Option<Box<Gathering>>,
+    pub spline: Option<Box<OpenSpline>>,
     /// What conversational path functions remember.
-    pub path: super::conversational::Path,
+    pub path: super::conversational::PathMemory,
     /// What its motions share; handed on when something of it changes. After a change: [`Control::state_changed`].
     pub state: State,
     /// `state` as it was handed on last; none if it has changed since.
@@ -79,9 +79,9 @@ pub(super) struct Control {
     /// Axis values at the origin of the work offset, the tip of the tool there: mm and radians, by place in the chain.
     pub origin: Joints,
     /// The frame of the words in the part frame, where they are the tip.
-    pub to_part: Frame,
+    pub to_part: CoordinateFrame,
     /// The frame of the words in that of the work offset.
-    pub to_work: Frame,
+    pub to_work: CoordinateFrame,
     /// Line of the block that is run.
     pub line: u64,
     /// Its number.
@@ -96,7 +96,7 @@ pub(super) struct Control {
 
 /// A head that a word swaps in.
 #[derive(Clone, Debug)]
-pub(super) struct Head {
+pub(super) struct MountedHead {
     /// Its name.
     pub name: String,
     /// The line of the program that swaps it in.
@@ -107,7 +107,7 @@ pub(super) struct Head {
 
 /// Which word is which axis.
 #[derive(Clone, Debug)]
-pub(super) struct Axes {
+pub(super) struct AxisLetters {
     /// Place in the chain of the axis of each letter; [`Axes::NONE`] if there is none.
     pub letters: [u8; 26],
     /// Places of the axes whose names are longer than a letter.
@@ -120,14 +120,14 @@ pub(super) struct Axes {
     pub rotary: u32,
 }
 
-impl Axes {
+impl AxisLetters {
     /// No axis has this letter.
     pub const NONE: u8 = u8::MAX;
 }
 
 /// What is modal in a program, lengths in mm.
 #[derive(Clone, Debug)]
-pub(super) struct Modal {
+pub(super) struct ModalState {
     /// What axis words alone mean.
     pub motion: MotionMode,
     /// The plane of arcs and cycles.
@@ -141,7 +141,7 @@ pub(super) struct Modal {
     /// By how much smoothing may leave the contour, mm: CTOL of Siemens.
     pub contour_tolerance: Option<f64>,
     /// How F counts.
-    pub feed_mode: FeedMode,
+    pub feed_mode: FeedMeaning,
     /// F: mm/min, 1/min (or 1/s as the machine file has it) or mm a revolution; of rotary axes alone deg/min or a
     /// revolution, unless `unit` was an inch: then so many times 25.4. None where the program has stated none.
     pub feed: Option<f64>,
@@ -156,7 +156,7 @@ pub(super) struct Modal {
     /// Rotary axes go the shorter way (M126) or as written (M127); none: as the machine file says of each axis.
     pub shortest: Option<bool>,
     /// How the tool axis goes between two vectors.
-    pub orientation: Orientation,
+    pub orientation: OrientationMode,
     /// I J K of a straight move are the tool axis: G43.5.
     pub vectors: bool,
     /// Tool centre point control came with a word of length compensation, and ends with it.
@@ -219,7 +219,7 @@ impl ArcPlane {
 
 /// How F counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum FeedMode {
+pub(super) enum FeedMeaning {
     /// G94.
     #[default]
     PerMinute,
@@ -231,7 +231,7 @@ pub(super) enum FeedMode {
 
 /// How the tool axis goes between two vectors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Orientation {
+pub(super) enum OrientationMode {
     /// As the control is set up: words of rotary axes linearly, vectors on the great circle.
     #[default]
     Usual,

@@ -5,12 +5,12 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_plugin::Language;
 
-use super::state::{ArcPlane, Control};
+use super::state::{ArcPlane, ControlState};
 use crate::Told;
 
 /// What the control knows of the tool and its length.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Tools {
+pub(super) struct ToolState {
     /// The tool that is made ready, or that M6 will bring.
     pub ready: Option<u32>,
     /// Its name, where it is called by one.
@@ -30,7 +30,7 @@ pub(super) struct Tools {
     told: Vec<u32>,
 }
 
-impl Control {
+impl ControlState {
     /// The tool `number` is in the spindle now.
     pub fn change_tool(
         &mut self,

@@ -10,7 +10,7 @@ const MOST: usize = 100_000;
 
 /// What a variable holds.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Value {
+pub(super) enum VariableValue {
     /// A number.
     Number(f64),
     /// A text.
@@ -21,9 +21,9 @@ pub(super) enum Value {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Variables {
     language: Language,
-    global: BTreeMap<String, Value>,
+    global: BTreeMap<String, VariableValue>,
     /// Those of each subprogram that is running, the last one's innermost; of the main program the first.
-    local: Vec<BTreeMap<String, Value>>,
+    local: Vec<BTreeMap<String, VariableValue>>,
     /// Names that `DEF INT` or `DEF BOOL` declared: they hold whole numbers.
     whole: BTreeMap<String, ()>,
 }
@@ -43,7 +43,7 @@ impl Variables {
     ///
     /// # Errors
     /// The program has not set it.
-    pub fn get(&self, name: &str) -> Result<&Value, Box<Diagnostic>> {
+    pub fn get(&self, name: &str) -> Result<&VariableValue, Box<Diagnostic>> {
         let found = match self.is_local(name) {
             true => self.local.last().and_then(|local| local.get(name)),
             false => self.global.get(name),
@@ -60,7 +60,7 @@ impl Variables {
     ///
     /// # Errors
     /// It is a variable by which the control itself is changed, or there are too many.
-    pub fn set(&mut self, name: &str, value: Value) -> Result<(), Box<Diagnostic>> {
+    pub fn set(&mut self, name: &str, value: VariableValue) -> Result<(), Box<Diagnostic>> {
         if self.held_by_control(name) {
             return Err(Diagnostic::error(
                 "nc-variable",
@@ -70,8 +70,8 @@ impl Variables {
             .boxed());
         }
         let value = match value {
-            Value::Number(number) if self.whole.contains_key(name) => {
-                Value::Number(libm::round(number))
+            VariableValue::Number(number) if self.whole.contains_key(name) => {
+                VariableValue::Number(libm::round(number))
             }
             other => other,
         };
@@ -82,7 +82,7 @@ impl Variables {
     ///
     /// # Errors
     /// There are too many.
-    pub fn put(&mut self, name: &str, value: Value) -> Result<(), Box<Diagnostic>> {
+    pub fn put(&mut self, name: &str, value: VariableValue) -> Result<(), Box<Diagnostic>> {
         let local = self.is_local(name);
         let map = match self.local.last_mut() {
             Some(innermost) if local => innermost,
@@ -110,14 +110,14 @@ impl Variables {
         &mut self,
         kind: &str,
         name: &str,
-        value: Option<Value>,
+        value: Option<VariableValue>,
     ) -> Result<(), Box<Diagnostic>> {
         if matches!(kind, "INT" | "BOOL" | "CHAR") {
             self.whole.insert(name.to_owned(), ());
         }
         let value = value.unwrap_or(match kind {
-            "STRING" => Value::Text(String::new()),
-            _ => Value::Number(0.0),
+            "STRING" => VariableValue::Text(String::new()),
+            _ => VariableValue::Number(0.0),
         });
         self.set(name, value)
     }
@@ -125,7 +125,7 @@ impl Variables {
     /// A subprogram begins, with these variables of its own.
     pub fn enter(&mut self, own: impl IntoIterator<Item = (String, f64)>) {
         let own = own.into_iter();
-        self.local.push(own.map(|(name, value)| (name, Value::Number(value))).collect());
+        self.local.push(own.map(|(name, value)| (name, VariableValue::Number(value))).collect());
     }
 
     /// A subprogram ends.
@@ -254,7 +254,7 @@ mod tests {
 
     fn number(variables: &Variables, name: &str) -> Option<f64> {
         match variables.get(name) {
-            Ok(Value::Number(number)) => Some(*number),
+            Ok(VariableValue::Number(number)) => Some(*number),
             _ => None,
         }
     }
@@ -288,15 +288,15 @@ mod tests {
             (Language::Conversational, "QL120", true),
         ] {
             let mut variables = Variables::new(language);
-            assert_eq!(variables.set(name, Value::Number(1.0)).is_ok(), allowed, "{name}");
+            assert_eq!(variables.set(name, VariableValue::Number(1.0)).is_ok(), allowed, "{name}");
         }
     }
 
     #[test]
     fn a_subprogram_has_its_own() {
         let mut variables = Variables::new(Language::Macro);
-        variables.set("#1", Value::Number(5.0)).unwrap();
-        variables.set("#100", Value::Number(6.0)).unwrap();
+        variables.set("#1", VariableValue::Number(5.0)).unwrap();
+        variables.set("#100", VariableValue::Number(6.0)).unwrap();
         variables.enter([("#2".to_owned(), 7.0)]);
         assert_eq!(number(&variables, "#1"), None);
         assert_eq!(number(&variables, "#2"), Some(7.0));
@@ -311,7 +311,7 @@ mod tests {
         let mut variables = Variables::new(Language::Names);
         variables.define("INT", "_N", None).unwrap();
         assert_eq!(number(&variables, "_N"), Some(0.0));
-        variables.set("_N", Value::Number(2.5)).unwrap();
+        variables.set("_N", VariableValue::Number(2.5)).unwrap();
         assert_eq!(number(&variables, "_N"), Some(3.0));
     }
 }

@@ -6,7 +6,7 @@ use post_machine::description::{Axis, Machine};
 use post_machine::kinematics::travel::passed;
 use post_machine::kinematics::{Joints, KeptTip, Slides, Solver, Trace};
 
-use crate::{Motion, MotionKind, Way};
+use crate::{Interpolation, Motion, MotionKind};
 
 /// Words are rounded: so far beyond an end of travel is on it, mm or degrees.
 const ROUNDED: f64 = 0.0015;
@@ -29,20 +29,20 @@ pub(super) type AxisFault = (&'static str, String, f64);
 
 /// Where a motion takes an axis beyond its travel: which, and by how much, mm or degrees.
 pub fn over_travel(machine: &Machine, motion: &Motion) -> Option<(String, f64)> {
-    let (_, message, by) = Axes::new(machine).over_travel(machine, motion)?;
+    let (_, message, by) = AxisLimitCheck::new(machine).over_travel(machine, motion)?;
     Some((message, by))
 }
 
 /// What is known of the axes of a machine.
 #[derive(Clone, Debug)]
-pub(crate) struct Axes {
+pub(crate) struct AxisLimitCheck {
     /// Minutes that each axis needs for one mm or radian.
     slowness: Joints,
     /// Some axis has a largest feed.
     limited: bool,
 }
 
-impl Axes {
+impl AxisLimitCheck {
     pub fn new(machine: &Machine) -> Self {
         let slowness = machine.slowness();
         Self { slowness, limited: slowness.iter().any(|slowness| *slowness > 0.0) }
@@ -52,8 +52,8 @@ impl Axes {
     pub fn over_travel(&self, machine: &Machine, motion: &Motion) -> Option<AxisFault> {
         let (mut least, mut most) = (motion.to.joints, motion.to.joints);
         match &motion.way {
-            Way::Axes => {}
-            Way::Tip | Way::TipAndAxis => {
+            Interpolation::Axes => {}
+            Interpolation::Tip | Interpolation::TipAndAxis => {
                 if let Some(slides) = slides(motion, &Joints::default(), f64::INFINITY) {
                     for joint in 0..machine.axes.len() {
                         if slides.least[joint] <= slides.most[joint] {
@@ -63,7 +63,7 @@ impl Axes {
                     }
                 }
             }
-            Way::Arc { .. } | Way::Spline(_) => {
+            Interpolation::Arc { .. } | Interpolation::Spline(_) => {
                 let mut last = [motion.from.joints; 2];
                 for (place, joints) in looked(motion).enumerate() {
                     for joint in 0..machine.axes.len() {
@@ -127,8 +127,8 @@ impl Axes {
                 slowest = Some((minutes, joint));
             }
         };
-        let follows = matches!(motion.way, Way::Tip | Way::TipAndAxis);
-        let curved = matches!(motion.way, Way::Arc { .. } | Way::Spline(_));
+        let follows = matches!(motion.way, Interpolation::Tip | Interpolation::TipAndAxis);
+        let curved = matches!(motion.way, Interpolation::Arc { .. } | Interpolation::Spline(_));
         for joint in 0..machine.axes.len() {
             let way = libm::fabs(motion.to.joints[joint] - motion.from.joints[joint]);
             if !curved || machine.axes[joint].joint.rotary {
@@ -156,7 +156,7 @@ impl Axes {
 /// At how many places a curve is looked at.
 fn looks(motion: &Motion) -> u32 {
     let turns = match motion.way {
-        Way::Arc { sweep, .. } => libm::fabs(sweep) / TAU,
+        Interpolation::Arc { sweep, .. } => libm::fabs(sweep) / TAU,
         _ => 1.0,
     };
     // Of a short arc a parabola needs three places.

@@ -1,8 +1,8 @@
 //! Ways cut into pieces so short that each may be taken for straight.
 
-use super::place::{Bound, Place};
+use super::place::{PlaceBound, ToolPlace};
 use crate::course::{Curve, Piece};
-use crate::{Motion, Way};
+use crate::{Interpolation, Motion};
 
 /// Halvings of a piece at most: what bends more than this says is no way of a machine.
 const DEEPEST: u32 = 14;
@@ -12,7 +12,12 @@ const DEEPEST: u32 = 14;
 const TURN: f64 = 0.12;
 
 /// Puts the places at the ends of the pieces of a way behind `places`, without that of its beginning.
-fn chop(at: impl Fn(f64) -> Place, first: usize, sag: &Bound, places: &mut Vec<Place>) {
+fn chop(
+    at: impl Fn(f64) -> ToolPlace,
+    first: usize,
+    sag: &PlaceBound,
+    places: &mut Vec<ToolPlace>,
+) {
     let mut start = at(0.0);
     let (mut low, count) = (0.0, first.max(1));
     for piece in 1..=count {
@@ -24,12 +29,12 @@ fn chop(at: impl Fn(f64) -> Place, first: usize, sag: &Bound, places: &mut Vec<P
 }
 
 fn halve(
-    at: &impl Fn(f64) -> Place,
-    from: (f64, &Place),
-    to: (f64, &Place),
-    sag: &Bound,
+    at: &impl Fn(f64) -> ToolPlace,
+    from: (f64, &ToolPlace),
+    to: (f64, &ToolPlace),
+    sag: &PlaceBound,
     left: u32,
-    places: &mut Vec<Place>,
+    places: &mut Vec<ToolPlace>,
 ) {
     let share = 0.5 * (from.0 + to.0);
     let middle = at(share);
@@ -42,7 +47,7 @@ fn halve(
 }
 
 /// The way of a motion behind its beginning.
-pub(super) fn motion(motion: &Motion, along: f64, sag: &Bound, places: &mut Vec<Place>) {
+pub(super) fn motion(motion: &Motion, along: f64, sag: &PlaceBound, places: &mut Vec<ToolPlace>) {
     let chain = motion.state.solver.chain();
     let mut turn: f64 = 0.0;
     for (index, joint) in chain.joints().iter().enumerate() {
@@ -51,20 +56,20 @@ pub(super) fn motion(motion: &Motion, along: f64, sag: &Bound, places: &mut Vec<
         }
     }
     let first = match &motion.way {
-        Way::Axes | Way::Tip | Way::TipAndAxis if turn == 0.0 => {
-            places.push(Place::new(&motion.to.pose, along));
+        Interpolation::Axes | Interpolation::Tip | Interpolation::TipAndAxis if turn == 0.0 => {
+            places.push(ToolPlace::new(&motion.to.pose, along));
             return;
         }
-        Way::Axes | Way::Tip | Way::TipAndAxis => pieces_of(turn),
-        Way::Arc { sweep, .. } => pieces_of(turn.max(sweep.abs())),
-        Way::Spline(way) => 2 * way.poles.len() + pieces_of(turn),
+        Interpolation::Axes | Interpolation::Tip | Interpolation::TipAndAxis => pieces_of(turn),
+        Interpolation::Arc { sweep, .. } => pieces_of(turn.max(sweep.abs())),
+        Interpolation::Spline(way) => 2 * way.poles.len() + pieces_of(turn),
     };
-    chop(|t| Place::new(&motion.at(t), along), first, sag, places);
+    chop(|t| ToolPlace::new(&motion.at(t), along), first, sag, places);
 }
 
 /// The way of a piece of a course behind its beginning.
-pub(super) fn piece(piece: &Piece, along: f64, sag: &Bound, places: &mut Vec<Place>) {
-    let (from, to) = (Place::new(&piece.from, along), Place::new(&piece.to, along));
+pub(super) fn piece(piece: &Piece, along: f64, sag: &PlaceBound, places: &mut Vec<ToolPlace>) {
+    let (from, to) = (ToolPlace::new(&piece.from, along), ToolPlace::new(&piece.to, along));
     let turn = from.apart(&to).axis;
     let first = match &piece.curve {
         Curve::Straight if turn == 0.0 => {
@@ -75,7 +80,7 @@ pub(super) fn piece(piece: &Piece, along: f64, sag: &Bound, places: &mut Vec<Pla
         Curve::Arc { sweep, .. } => pieces_of(turn.max(sweep.abs())),
         Curve::Spline(way) => 2 * way.poles.len() + pieces_of(turn),
     };
-    chop(|t| Place::new(&piece.at(t, along), along), first, sag, places);
+    chop(|t| ToolPlace::new(&piece.at(t, along), along), first, sag, places);
 }
 
 fn pieces_of(turn: f64) -> usize {

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 
 use super::chop;
-use super::place::{Bound, Place};
+use super::place::{PlaceBound, ToolPlace};
 use crate::course::{Course, Item};
 use crate::{MOST_FAULTS, MotionKind};
 
@@ -37,7 +37,7 @@ pub struct CutPath {
     cell: f64,
     /// How far the guided point stands above the tip, mm.
     along: f64,
-    places: Vec<Place>,
+    places: Vec<ToolPlace>,
 }
 
 impl CutPath {
@@ -75,10 +75,10 @@ impl CutPath {
         if piece.kind == MotionKind::Rapid {
             return;
         }
-        let sag = Bound::new(self.cell, 1.0);
+        let sag = PlaceBound::new(self.cell, 1.0);
         let mut places = std::mem::take(&mut self.places);
         places.clear();
-        places.push(Place::new(&piece.from, self.along));
+        places.push(ToolPlace::new(&piece.from, self.along));
         chop::piece(piece, self.along, &sag, &mut places);
         for ends in places.windows(2) {
             let way = ends[1].point - ends[0].point;

@@ -28,12 +28,12 @@ pub(super) struct Detour {
     asked: Vec<(Joints, Pose)>,
     /// Places of the course that were passed on the way to others.
     passed: Vec<Pose>,
-    open: Vec<End>,
+    open: Vec<RapidEnd>,
 }
 
 /// Where a rapid ends that nothing asks for.
 #[derive(Clone, Copy, Debug)]
-struct End {
+struct RapidEnd {
     line: u64,
     number: Option<u64>,
     from: Joints,
@@ -46,7 +46,7 @@ struct End {
 
 /// How a rapid went astray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum StrayKind {
     /// An axis stands where nothing sends it.
     Far,
     /// A retract is too short.
@@ -57,13 +57,13 @@ pub(super) enum Kind {
 
 /// A rapid that went astray.
 #[derive(Debug)]
-pub(super) struct Astray {
+pub(super) struct StrayRapid {
     pub line: u64,
     pub number: Option<u64>,
     /// The axis, and how far it is from all where it could stand, or how far it turns: mm or degrees.
     pub axis: usize,
     pub by: f64,
-    pub kind: Kind,
+    pub kind: StrayKind,
 }
 
 impl Detour {
@@ -76,7 +76,7 @@ impl Detour {
         if asked {
             self.ask(&motion.to.joints, &motion.to.pose);
         } else if self.open.len() < MOST {
-            self.open.push(End {
+            self.open.push(RapidEnd {
                 line: motion.line,
                 number: motion.number,
                 from: motion.from.joints,
@@ -103,7 +103,7 @@ impl Detour {
         motion: Option<&Motion>,
         own: bool,
         (slack, lean): ([f64; 2], f64),
-    ) -> Option<Astray> {
+    ) -> Option<StrayRapid> {
         if let Some(motion) = motion {
             self.ask(&motion.from.joints, &motion.from.pose);
         }
@@ -115,11 +115,11 @@ impl Detour {
         }
         let lean = lean + SAME_LINE;
         let passed = &passed;
-        let on_a_line = |end: &End| {
+        let on_a_line = |end: &RapidEnd| {
             let mut places = asked.iter().map(|(_, pose)| pose).chain(passed);
             !end.machine && places.any(|pose| end.on_the_line(pose, slack[0], lean))
         };
-        let goes = |(place, end): &(usize, &End)| {
+        let goes = |(place, end): &(usize, &RapidEnd)| {
             let mut passed = passed.iter();
             let next = open.get(place + 1).filter(|next| on_a_line(next));
             !end.machine
@@ -148,7 +148,7 @@ impl Detour {
     }
 }
 
-impl End {
+impl RapidEnd {
     /// The first rotary axis that turns, where words of the part say so.
     fn turns(&self, machine: &Machine, slack: [f64; 2]) -> Option<usize> {
         let turns = |place: &usize| {
@@ -167,7 +167,7 @@ impl End {
         axis: usize,
         mut poses: impl Iterator<Item = &'p Pose>,
         slack: f64,
-    ) -> Option<Astray> {
+    ) -> Option<StrayRapid> {
         let ends = [&self.from, &self.joints];
         let retracted = ends.iter().all(|joints| retract::lacks(machine, joints, slack).is_none());
         let on_line = |pose: &Pose| {
@@ -179,12 +179,12 @@ impl End {
             return None;
         }
         let turned = libm::fabs(self.joints[axis] - self.from[axis]);
-        Some(Astray {
+        Some(StrayRapid {
             line: self.line,
             number: self.number,
             axis,
             by: turned / machine.axes[axis].unit(),
-            kind: Kind::Turns,
+            kind: StrayKind::Turns,
         })
     }
 
@@ -195,14 +195,14 @@ impl End {
         (asked, between): (&[(Joints, Pose)], bool),
         slack: [f64; 2],
         lean: f64,
-    ) -> Option<Astray> {
+    ) -> Option<StrayRapid> {
         if !self.machine && asked.iter().any(|(_, pose)| self.on_the_line(pose, slack[0], lean)) {
             return None;
         }
         // While the part turns or the head swings, the linear axes go round with it: but the depth goes no deeper than at all
         // places that are asked for.
         let goes_round = !self.machine && self.turns(machine, slack).is_some();
-        let mut worst: Option<(f64, Astray)> = None;
+        let mut worst: Option<(f64, StrayRapid)> = None;
         for (place, axis) in machine.axes.iter().enumerate() {
             if goes_round && !is_depth(machine, place) {
                 continue;
@@ -214,7 +214,7 @@ impl End {
             if libm::fabs(value - self.from[place]) <= slack {
                 continue;
             }
-            let (mut by, mut kind) = (f64::INFINITY, Kind::Far);
+            let (mut by, mut kind) = (f64::INFINITY, StrayKind::Far);
             let mut allow = |other: f64| {
                 let mut apart = value - other;
                 if rotary {
@@ -239,7 +239,7 @@ impl End {
                 let retract = frame.retract.iter().find(|(other, _)| *other == place);
                 let least = match retract {
                     Some((_, retract)) if self.machine => {
-                        kind = Kind::Short;
+                        kind = StrayKind::Short;
                         away * retract
                     }
                     _ => {
@@ -250,7 +250,7 @@ impl End {
                 by = by.min((least - away * value).max(0.0));
             }
             if by > slack && worst.as_ref().is_none_or(|(most, _)| by / slack > *most) {
-                let astray = Astray {
+                let astray = StrayRapid {
                     line: self.line,
                     number: self.number,
                     axis: place,

@@ -1,14 +1,14 @@
 //! Rapids of the course that the program makes at feed.
 
 use super::Verifier;
-use super::place::{Place, free};
-use super::track::What;
+use super::place::{ToolPlace, free};
+use super::track::ElementKind;
 use crate::course::Course;
 use crate::{Motion, MotionKind, fed_rapids};
 
 impl<C: Course> Verifier<'_, C> {
     /// A first point that the program comes to at feed. False if the motion is no such.
-    pub(super) fn reaches_at_feed(&mut self, motion: &Motion, places: &[Place]) -> bool {
+    pub(super) fn reaches_at_feed(&mut self, motion: &Motion, places: &[ToolPlace]) -> bool {
         let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
             return false;
         };
@@ -16,7 +16,7 @@ impl<C: Course> Verifier<'_, C> {
         let due = self.track.get(index).and_then(|element| {
             let reached = places[places.len() - 1].within(&element.to, &bound);
             match element.what {
-                What::Reach(kind) if reached => Some((kind, element.line)),
+                ElementKind::Reach(kind) if reached => Some((kind, element.line)),
                 _ => None,
             }
         });
@@ -34,7 +34,7 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// A motion at feed where a rapid is due, along it. False if the motion is no such.
-    pub(super) fn follows_a_rapid(&mut self, motion: &Motion, places: &[Place]) -> bool {
+    pub(super) fn follows_a_rapid(&mut self, motion: &Motion, places: &[ToolPlace]) -> bool {
         let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
             return false;
         };
@@ -50,9 +50,9 @@ impl<C: Course> Verifier<'_, C> {
                 // How the axis goes from one end to the other is not asked for.
                 bound.axis = 2.0;
             }
-            let on = |place: &Place| free(place, &element.from, &element.to, &bound);
+            let on = |place: &ToolPlace| free(place, &element.from, &element.to, &bound);
             let (start, end) = (on(from), on(to));
-            matches!(element.what, What::Way) && !end.is_empty() && start.from <= end.to
+            matches!(element.what, ElementKind::Way) && !end.is_empty() && start.from <= end.to
         });
         if !due {
             return false;

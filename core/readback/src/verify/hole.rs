@@ -3,9 +3,9 @@
 use nalgebra::Vector3;
 
 use super::Verifier;
-use super::place::{Apart, Place};
+use super::place::{PlaceDistance, ToolPlace};
 use super::state;
-use super::track::{Element, Hole, What};
+use super::track::{CourseHole, Element, ElementKind};
 use crate::course::Course;
 use crate::{CycleKind, Motion, MotionKind, Spindle, Told};
 
@@ -21,14 +21,14 @@ pub(super) struct HoleRun {
     /// The bottom was reached.
     bottom: bool,
     dwelt: bool,
-    stroke: Stroke,
+    stroke: HoleDescent,
     /// How far it is off its axis as a whole, mm: told once.
     shift: Vector3<f64>,
 }
 
 /// One way down in a hole.
 #[derive(Clone, Copy, Debug, Default)]
-struct Stroke {
+struct HoleDescent {
     /// Others went before it.
     later: bool,
     /// How far the hole was cut when it began, mm.
@@ -41,8 +41,8 @@ struct Stroke {
 
 /// A hole that was made, as long as nothing else is cut.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Made {
-    axis: Axis,
+pub(super) struct DrilledHole {
+    axis: HoleAxis,
     deepest: f64,
     /// How the spindle has turned in it.
     spindle: Spindle,
@@ -54,13 +54,13 @@ pub(super) struct Made {
 
 /// The axis of a hole, from the level where the feed begins.
 #[derive(Clone, Copy, Debug)]
-struct Axis {
-    top: Place,
+struct HoleAxis {
+    top: ToolPlace,
     down: Vector3<f64>,
     depth: f64,
 }
 
-impl Axis {
+impl HoleAxis {
     fn of(element: &Element) -> Self {
         let way = element.to.point - element.from.point;
         let depth = way.norm();
@@ -72,18 +72,20 @@ impl Axis {
     }
 
     /// How far down a place is, mm, and how far it is off.
-    fn split(&self, place: &Place) -> (f64, Apart) {
+    fn split(&self, place: &ToolPlace) -> (f64, PlaceDistance) {
         let offset = place.point - self.top.point;
         let depth = offset.dot(&self.down);
-        let apart =
-            Apart { point: (offset - self.down * depth).norm(), axis: place.apart(&self.top).axis };
+        let apart = PlaceDistance {
+            point: (offset - self.down * depth).norm(),
+            axis: place.apart(&self.top).axis,
+        };
         (depth, apart)
     }
 }
 
 impl HoleRun {
     /// What is wrong with going down to `to` at feed, if no peck goes so far, or comes out before the next: told once a hole.
-    fn too_long(&mut self, asked: &Hole, to: f64, bound: f64) -> Option<String> {
+    fn too_long(&mut self, asked: &CourseHole, to: f64, bound: f64) -> Option<String> {
         let [first, later] = asked.pecks?;
         if to <= self.deepest {
             return None;
@@ -114,7 +116,7 @@ impl HoleRun {
 
 impl<C: Course> Verifier<'_, C> {
     /// The hole that is due begins with this motion, if it goes down its axis.
-    pub(super) fn begins_hole(&mut self, motion: &Motion, places: &[Place]) -> bool {
+    pub(super) fn begins_hole(&mut self, motion: &Motion, places: &[ToolPlace]) -> bool {
         let Some(index) = self.next else {
             return false;
         };
@@ -122,10 +124,10 @@ impl<C: Course> Verifier<'_, C> {
         let Some(element) = self.track.get(index) else {
             return false;
         };
-        if !matches!(element.what, What::Hole(_)) {
+        if !matches!(element.what, ElementKind::Hole(_)) {
             return false;
         }
-        let axis = Axis::of(element);
+        let axis = HoleAxis::of(element);
         let cl_line = element.line;
         let (from, off) = axis.split(&places[0]);
         let (to, _) = axis.split(&places[places.len() - 1]);
@@ -161,7 +163,7 @@ impl<C: Course> Verifier<'_, C> {
             at: from,
             bottom: false,
             dwelt: false,
-            stroke: Stroke::default(),
+            stroke: HoleDescent::default(),
             shift,
         });
         true
@@ -177,7 +179,7 @@ impl<C: Course> Verifier<'_, C> {
         let Some(element) = self.track.get(index) else {
             return;
         };
-        let What::Hole(hole) = &element.what else {
+        let ElementKind::Hole(hole) = &element.what else {
             return;
         };
         let class = |kind: CycleKind| match kind {
@@ -193,7 +195,7 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// A motion while a hole is made.
-    pub(super) fn hole_motion(&mut self, motion: &Motion, places: &[Place]) {
+    pub(super) fn hole_motion(&mut self, motion: &Motion, places: &[ToolPlace]) {
         let Some(mut run) = self.hole else {
             return;
         };
@@ -201,11 +203,11 @@ impl<C: Course> Verifier<'_, C> {
             self.hole = None;
             return;
         };
-        let What::Hole(asked) = &element.what else {
+        let ElementKind::Hole(asked) = &element.what else {
             self.hole = None;
             return;
         };
-        let mut axis = Axis::of(&element);
+        let mut axis = HoleAxis::of(&element);
         axis.top.point += run.shift;
         let bound = self.bound;
         let cl_line = Some(element.line);
@@ -216,12 +218,12 @@ impl<C: Course> Verifier<'_, C> {
             self.set_kind("hole");
         }
         self.block.cl_line = cl_line;
-        let mut worst = Apart::default();
+        let mut worst = PlaceDistance::default();
         let mut down = false;
         for ends in places.windows(2) {
             let ((from, _), (to, off)) = (axis.split(&ends[0]), axis.split(&ends[1]));
             let on_axis = off.point <= bound.point
-                && super::place::Bound::new(1.0, off.axis).axis <= bound.axis;
+                && super::place::PlaceBound::new(1.0, off.axis).axis <= bound.axis;
             let above = from <= bound.point && to <= bound.point;
             if rapid {
                 if !on_axis && !above {
@@ -275,7 +277,7 @@ impl<C: Course> Verifier<'_, C> {
         }
         if !rapid {
             if worst.point > bound.point
-                || super::place::Bound::new(1.0, worst.axis).axis > bound.axis
+                || super::place::PlaceBound::new(1.0, worst.axis).axis > bound.axis
             {
                 let message = format!(
                     "a hole is {:.3} mm or {:.3}° off its axis",
@@ -298,7 +300,7 @@ impl<C: Course> Verifier<'_, C> {
         let above = run.at <= bound.point;
         // Out of it, or elsewhere.
         if above && (run.bottom || rapid && self.goes_elsewhere(&axis, places)) {
-            self.made = run.bottom.then_some(Made {
+            self.made = run.bottom.then_some(DrilledHole {
                 axis,
                 deepest: run.deepest,
                 spindle: motion.state.spindle,
@@ -314,7 +316,7 @@ impl<C: Course> Verifier<'_, C> {
 
     /// A further peck in the hole that was made last: one before may have come to the bottom within the tolerance. False
     /// if the motion is none.
-    pub(super) fn pecks_again(&mut self, motion: &Motion, places: &[Place]) -> bool {
+    pub(super) fn pecks_again(&mut self, motion: &Motion, places: &[ToolPlace]) -> bool {
         let Some(made) = self.made else {
             return false;
         };
@@ -372,11 +374,11 @@ impl<C: Course> Verifier<'_, C> {
         };
         let due = self.track.get(index);
         due.is_some_and(|element| {
-            matches!(element.what, What::Hole(_)) && element.from.axis != made.axis.top.axis
+            matches!(element.what, ElementKind::Hole(_)) && element.from.axis != made.axis.top.axis
         })
     }
 
-    fn goes_elsewhere(&self, axis: &Axis, places: &[Place]) -> bool {
+    fn goes_elsewhere(&self, axis: &HoleAxis, places: &[ToolPlace]) -> bool {
         let (_, off) = axis.split(&places[places.len() - 1]);
         off.point > self.rapid_bound.point
     }
@@ -385,7 +387,7 @@ impl<C: Course> Verifier<'_, C> {
         self.hole = None;
         self.next = Some(run.index + 1);
         self.apart = true;
-        self.reach.iter_mut().for_each(|span| *span = super::place::Span::EMPTY);
+        self.reach.iter_mut().for_each(|span| *span = super::place::ShareSpan::EMPTY);
         let cl_line = Some(element.line);
         if !run.bottom {
             let message = format!(
@@ -396,9 +398,9 @@ impl<C: Course> Verifier<'_, C> {
             return;
         }
         self.found.holes += 1;
-        let off = Apart { point: libm::fabs(depth - run.deepest), axis: 0.0 };
+        let off = PlaceDistance { point: libm::fabs(depth - run.deepest), axis: 0.0 };
         self.note_deviation(off, motion.line, element.line);
-        if let What::Hole(hole) = &element.what
+        if let ElementKind::Hole(hole) = &element.what
             && let Some(dwell) = &hole.dwell
             && !run.dwelt
         {
@@ -416,7 +418,7 @@ impl<C: Course> Verifier<'_, C> {
         let Some(element) = self.track.get(run.index) else {
             return false;
         };
-        let What::Hole(hole) = &element.what else {
+        let ElementKind::Hole(hole) = &element.what else {
             return false;
         };
         let same = hole
@@ -455,7 +457,7 @@ impl<C: Course> Verifier<'_, C> {
 fn at_the_speed_of(motion: &Motion, element: &Element) -> Element {
     let mut element = element.clone();
     let speeds = (motion.state.spindle.rpm(), element.asked.spindle.rpm());
-    if let (What::Hole(hole), (Some(printed), Some(asked))) = (&element.what, speeds)
+    if let (ElementKind::Hole(hole), (Some(printed), Some(asked))) = (&element.what, speeds)
         && matches!(hole.kind, CycleKind::Tap | CycleKind::TapLeft)
         && asked > 0.0
     {

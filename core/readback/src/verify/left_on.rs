@@ -8,26 +8,26 @@ use crate::{Coolants, Spindle, Told};
 
 /// What of the program runs.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Running {
+pub(super) struct RunningFunctions {
     tool: Option<u32>,
     spindle: Spindle,
     coolants: Coolants,
     /// Lines at which the spindle and the coolants were told last.
     lines: [u64; 2],
     /// What ran as the tool came; until it is held against the course.
-    change: Option<Change>,
+    change: Option<RunningChange>,
 }
 
 /// A tool change with something still on.
 #[derive(Clone, Copy, Debug)]
-struct Change {
+struct RunningChange {
     line: u64,
     tool: Option<u32>,
     spindle: Spindle,
     coolants: Coolants,
 }
 
-impl Change {
+impl RunningChange {
     /// What runs and should not, each with its code.
     fn faults(
         &self,
@@ -73,7 +73,7 @@ impl<C: Course> Verifier<'_, C> {
                 if same || running.lines.contains(&line) {
                     return;
                 }
-                let change = Change {
+                let change = RunningChange {
                     line,
                     tool: *number,
                     spindle: running.spindle,

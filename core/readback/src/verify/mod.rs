@@ -39,20 +39,20 @@ use post_plugin::Lengths;
 
 use crate::course::Course;
 use crate::{CycleKind, Done, MOST_FAULTS, Motion, MotionKind, Offsets, Spindle, Told};
-pub(crate) use axes::Axes;
+pub(crate) use axes::AxisLimitCheck;
 pub use axes::over_travel;
 pub use cut_path::CutPath;
 use detour::Detour;
-use hole::{HoleRun, Made};
-use left_on::Running;
-use place::{Apart, Bound, Place, Span};
-pub use report::{BlockReport, Fault, LeftOn, Verification, Worst};
-use sweep::Stray;
-use track::{Track, What};
+use hole::{DrilledHole, HoleRun};
+use left_on::RunningFunctions;
+use place::{PlaceBound, PlaceDistance, ShareSpan, ToolPlace};
+pub use report::{BlockReport, Fault, LeftOn, Verification, WorstDeviation};
+use sweep::StrayStretch;
+use track::{CourseTrack, ElementKind};
 
 /// What is held to.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rules {
+pub struct VerifyRules {
     /// Largest deviation of the tip in a cut, mm.
     pub tolerance: f64,
     /// Largest deviation of the tool axis in a cut, radians.
@@ -92,7 +92,7 @@ pub struct Rules {
     pub most_faults: usize,
 }
 
-impl Rules {
+impl VerifyRules {
     /// As the machine file has them.
     pub fn of(machine: &Machine) -> Self {
         Self {
@@ -129,7 +129,7 @@ const RAPID_TURN: f64 = 1.0 / 180.0 * PI;
 
 /// A command of the spindle.
 #[derive(Clone, Copy, Debug)]
-struct Turned {
+struct SpindleCommand {
     spindle: Spindle,
     /// Line of the program.
     line: u64,
@@ -141,23 +141,23 @@ struct Turned {
 #[derive(Debug)]
 pub struct Verifier<'m, C> {
     machine: &'m Machine,
-    rules: Rules,
+    rules: VerifyRules,
     /// How far the guided point stands above the tip, mm.
     along: f64,
-    sag: Bound,
-    rapid_sag: Bound,
-    bound: Bound,
-    rapid_bound: Bound,
-    track: Track<C>,
+    sag: PlaceBound,
+    rapid_sag: PlaceBound,
+    bound: PlaceBound,
+    rapid_bound: PlaceBound,
+    track: CourseTrack<C>,
     /// For each element of the track the places on it where the program may stand.
-    reach: Vec<Span>,
+    reach: Vec<ShareSpan>,
     /// The element that a rapid may come to next; all before it were passed.
     next: Option<usize>,
     /// The tool has moved at rapid since the last cut, or not cut yet.
     apart: bool,
-    stray: Option<Stray>,
+    stray: Option<StrayStretch>,
     hole: Option<HoleRun>,
-    made: Option<Made>,
+    made: Option<DrilledHole>,
     /// The cycle of the program that is on.
     cycle: Option<CycleKind>,
     /// Where the course cuts.
@@ -167,10 +167,10 @@ pub struct Verifier<'m, C> {
     /// How near the course's own rapids come to its cuts where the motion at hand has passed them, mm.
     course_near: f64,
     /// Ends of the pieces of the motion at hand, its beginning first.
-    places: Vec<Place>,
-    spare: Vec<Span>,
+    places: Vec<ToolPlace>,
+    spare: Vec<ShareSpan>,
     /// What the spindle was told since the tool came or since it was compared.
-    turned: Vec<Turned>,
+    turned: Vec<SpindleCommand>,
     /// The program has moved since the spindle was told something.
     moved: bool,
     /// By how much the control may leave the path, as it was looked at last, mm.
@@ -178,29 +178,29 @@ pub struct Verifier<'m, C> {
     /// The work offsets that were cut in, each by the number that the course asks for.
     worked: Vec<(Option<u32>, String)>,
     detour: Detour,
-    running: Running,
+    running: RunningFunctions,
     /// Where the axes stand; none: nothing has moved.
     stands: Option<Joints>,
-    axes: Axes,
+    axes: AxisLimitCheck,
     block: BlockReport,
     found: Verification,
 }
 
 impl<'m, C: Course> Verifier<'m, C> {
     /// A program of `machine` against `course`.
-    pub fn new(machine: &'m Machine, rules: Rules, course: C) -> Self {
+    pub fn new(machine: &'m Machine, rules: VerifyRules, course: C) -> Self {
         let along = machine.control_point.along;
-        let sag = Bound::new(rules.tolerance * SAG, rules.axis_tolerance * SAG);
+        let sag = PlaceBound::new(rules.tolerance * SAG, rules.axis_tolerance * SAG);
         let widened = |mm: f64, angle: f64| {
-            let bound = Bound::new(mm + COMPUTED, angle + COMPUTED);
+            let bound = PlaceBound::new(mm + COMPUTED, angle + COMPUTED);
             // Both sides are cut into pieces.
-            Bound { point: bound.point + 2.0 * sag.point, axis: bound.axis + 2.0 * sag.axis }
+            PlaceBound { point: bound.point + 2.0 * sag.point, axis: bound.axis + 2.0 * sag.axis }
         };
         Self {
             machine,
             along,
             sag,
-            rapid_sag: Bound::new(
+            rapid_sag: PlaceBound::new(
                 rules.rapid_tolerance.max(rules.tolerance) * SAG,
                 RAPID_TURN * SAG,
             ),
@@ -209,7 +209,7 @@ impl<'m, C: Course> Verifier<'m, C> {
                 rules.rapid_tolerance.max(rules.tolerance),
                 RAPID_TURN.max(rules.axis_tolerance),
             ),
-            track: Track::new(course, along, sag),
+            track: CourseTrack::new(course, along, sag),
             reach: Vec::new(),
             next: Some(0),
             apart: true,
@@ -227,9 +227,9 @@ impl<'m, C: Course> Verifier<'m, C> {
             moved: false,
             smoothing: 0.0,
             detour: Detour::default(),
-            running: Running::default(),
+            running: RunningFunctions::default(),
             stands: None,
-            axes: Axes::new(machine),
+            axes: AxisLimitCheck::new(machine),
             block: BlockReport::default(),
             found: Verification::default(),
             rules,
@@ -282,7 +282,7 @@ impl<'m, C: Course> Verifier<'m, C> {
                 {
                     last.passing = true;
                 }
-                self.turned.push(Turned { spindle: *spindle, line, passing: false });
+                self.turned.push(SpindleCommand { spindle: *spindle, line, passing: false });
             }
             _ => {}
         }
@@ -323,7 +323,7 @@ impl<'m, C: Course> Verifier<'m, C> {
         self.found.time_s += motion.minutes * 60.0;
         let mut places = std::mem::take(&mut self.places);
         places.clear();
-        places.push(Place::new(&motion.from.pose, self.along));
+        places.push(ToolPlace::new(&motion.from.pose, self.along));
         let sag = match motion.kind {
             MotionKind::Rapid => self.rapid_sag,
             _ => self.sag,
@@ -436,7 +436,7 @@ impl<'m, C: Course> Verifier<'m, C> {
     }
 
     /// Notes how far the motion at hand is off, within the tolerance.
-    fn note_deviation(&mut self, apart: Apart, nc_line: u64, cl_line: u64) {
+    fn note_deviation(&mut self, apart: PlaceDistance, nc_line: u64, cl_line: u64) {
         let angle = apart.axis.to_degrees();
         self.found.tip.take(apart.point, nc_line, cl_line);
         self.found.axis.take(angle, nc_line, cl_line);
@@ -455,15 +455,15 @@ impl<'m, C: Course> Verifier<'m, C> {
         };
         // Where nothing is cut it is not late yet for what was not met.
         let waits = self.track.kept().iter().take(behind);
-        let waits = waits
-            .enumerate()
-            .find(|(_, element)| self.apart && matches!(element.what, What::Event(_, false)));
+        let waits = waits.enumerate().find(|(_, element)| {
+            self.apart && matches!(element.what, ElementKind::Event(_, false))
+        });
         let behind = waits.map_or(behind, |(index, _)| index);
         for _ in 0..behind {
             let Some(element) = self.track.pop() else {
                 break;
             };
-            if let What::Event(told, false) = &element.what {
+            if let ElementKind::Event(told, false) = &element.what {
                 let message = format!("{} is left out", state::event_name(told));
                 let place =
                     (self.block.nc_line > 0).then_some((self.block.nc_line, self.block.block));

@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 
 use super::Verifier;
-use super::place::Place;
-use super::track::What;
+use super::place::ToolPlace;
+use super::track::ElementKind;
 use crate::Motion;
 use crate::course::Course;
 
@@ -13,7 +13,7 @@ impl<C: Course> Verifier<'_, C> {
     ///
     /// Where the tool stands before it comes to its first point is not known, and how machines turn off the part is often
     /// their own: what comes near is told, and what touches is a fault.
-    pub(super) fn look_how_near(&mut self, motion: &Motion, places: &[Place]) {
+    pub(super) fn look_how_near(&mut self, motion: &Motion, places: &[ToolPlace]) {
         let ends = [&places[0], &places[places.len() - 1]];
         let ends = ends.map(|end| self.cut_path.distance(end.point));
         let slack = self.rapid_bound.point + self.cut_path.blur();
@@ -50,7 +50,7 @@ impl<C: Course> Verifier<'_, C> {
         let mut under_way = None;
         if let Some(index) = self.next.and_then(|next| self.behind_events(next))
             && let Some(element) = self.track.get(index)
-            && matches!(element.what, What::Way)
+            && matches!(element.what, ElementKind::Way)
         {
             under_way = Some((element.from.point, element.to.point));
         }

@@ -1,9 +1,9 @@
 //! Between the cuts: where one is left, what is due before the next, and where that begins.
 
 use super::detour::Detour;
-use super::place::{Apart, Place, Span, free};
-use super::sweep::Stray;
-use super::track::{MOST, What};
+use super::place::{PlaceDistance, ShareSpan, ToolPlace, free};
+use super::sweep::StrayStretch;
+use super::track::{ElementKind, MOST};
 use super::{Verifier, state};
 use crate::course::Course;
 use crate::{Motion, Told};
@@ -43,7 +43,7 @@ impl<C: Course> Verifier<'_, C> {
 
     /// The first element from `index` on that is no event.
     pub(super) fn behind_events(&mut self, mut index: usize) -> Option<usize> {
-        while let What::Event(..) = self.track.get(index)?.what {
+        while let ElementKind::Event(..) = self.track.get(index)?.what {
             index += 1;
         }
         Some(index)
@@ -57,8 +57,10 @@ impl<C: Course> Verifier<'_, C> {
         let Some(index) = self.behind_events(next) else {
             return false;
         };
-        let due =
-            self.track.get(index).is_some_and(|element| matches!(element.what, What::Hole(_)));
+        let due = self
+            .track
+            .get(index)
+            .is_some_and(|element| matches!(element.what, ElementKind::Hole(_)));
         if due {
             self.next = Some(index);
         }
@@ -66,19 +68,19 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// A cut that was left goes on here, or the next one begins; or a rapid is due that passes here.
-    pub(super) fn may_begin(&mut self, place: &Place) -> bool {
+    pub(super) fn may_begin(&mut self, place: &ToolPlace) -> bool {
         let rapid = self.rapid_bound;
         let due = self.next.and_then(|next| self.behind_events(next));
         let due = due.and_then(|index| self.track.get(index));
         let passes = due.is_some_and(|element| {
-            matches!(element.what, What::Way | What::Reach(_))
+            matches!(element.what, ElementKind::Way | ElementKind::Reach(_))
                 && !free(place, &element.from, &element.to, &rapid).is_empty()
         });
         passes || self.may_cut(place)
     }
 
     /// A cut that was left goes on here, or the next one begins.
-    pub(super) fn may_cut(&mut self, place: &Place) -> bool {
+    pub(super) fn may_cut(&mut self, place: &ToolPlace) -> bool {
         let bound = self.bound;
         let kept = self.reach.iter().zip(self.track.kept());
         let goes_on = kept.filter(|(span, element)| !span.is_empty() && element.is_cut());
@@ -91,13 +93,13 @@ impl<C: Course> Verifier<'_, C> {
             return false;
         };
         self.track.get(index).is_some_and(|element| {
-            !matches!(element.what, What::Way | What::Reach(_))
+            !matches!(element.what, ElementKind::Way | ElementKind::Reach(_))
                 && place.within(&element.from, &bound)
         })
     }
 
     /// A cut begins: where on the course may that be?
-    pub(super) fn begin_cut(&mut self, motion: &Motion, place: &Place) {
+    pub(super) fn begin_cut(&mut self, motion: &Motion, place: &ToolPlace) {
         let bound = self.bound;
         let mut reach = std::mem::take(&mut self.reach);
         // Behind what was cut so far.
@@ -118,7 +120,7 @@ impl<C: Course> Verifier<'_, C> {
             let span = free(place, &element.from, &element.to, &bound);
             if span.from <= 0.0 && !span.is_empty() {
                 if reach.len() <= index {
-                    reach.resize(index + 1, Span::EMPTY);
+                    reach.resize(index + 1, ShareSpan::EMPTY);
                 }
                 reach[index] = span;
             }
@@ -131,7 +133,7 @@ impl<C: Course> Verifier<'_, C> {
         } else {
             self.look_for_detours(Some(motion));
         }
-        if self.reach.iter().all(Span::is_empty) {
+        if self.reach.iter().all(ShareSpan::is_empty) {
             self.find_cut(motion, place, self.next.unwrap_or(stood));
         }
         self.next = None;
@@ -148,7 +150,7 @@ impl<C: Course> Verifier<'_, C> {
         let mut missed = Vec::new();
         for index in 0..first {
             if let Some(element) = self.track.get(index)
-                && let What::Event(told, met @ false) = &mut element.what
+                && let ElementKind::Event(told, met @ false) = &mut element.what
             {
                 *met = true;
                 missed.push((state::event_name(told), element.line));
@@ -162,7 +164,7 @@ impl<C: Course> Verifier<'_, C> {
 
     /// No cut of the course is due here. Looks for it farther on, and tells what was left out; else takes the nearest that
     /// is due, and tells how far that is.
-    fn find_cut(&mut self, motion: &Motion, place: &Place, first: usize) {
+    fn find_cut(&mut self, motion: &Motion, place: &ToolPlace, first: usize) {
         let bound = self.bound;
         let mut found = None;
         let mut index = first;
@@ -171,12 +173,14 @@ impl<C: Course> Verifier<'_, C> {
                 break;
             };
             let near = match &element.what {
-                What::Cut | What::Thread => free(place, &element.from, &element.to, &bound),
-                What::Hole(_) => match place.within(&element.from, &bound) {
-                    true => Span::WHOLE,
-                    false => Span::EMPTY,
+                ElementKind::Cut | ElementKind::Thread => {
+                    free(place, &element.from, &element.to, &bound)
+                }
+                ElementKind::Hole(_) => match place.within(&element.from, &bound) {
+                    true => ShareSpan::WHOLE,
+                    false => ShareSpan::EMPTY,
                 },
-                _ => Span::EMPTY,
+                _ => ShareSpan::EMPTY,
             };
             if !near.is_empty() {
                 found = Some((index, near));
@@ -187,7 +191,7 @@ impl<C: Course> Verifier<'_, C> {
             // Its beginning too, if that is farther.
             self.tell_left_out(first, index + usize::from(span.from > 0.0), motion);
             self.reach.clear();
-            self.reach.resize(index + 1, Span::EMPTY);
+            self.reach.resize(index + 1, ShareSpan::EMPTY);
             self.reach[index] = span;
             return;
         }
@@ -203,9 +207,9 @@ impl<C: Course> Verifier<'_, C> {
                 break;
             };
             let lines = match element.what {
-                What::Cut | What::Thread | What::Hole(_) => &mut cuts,
-                What::Way | What::Reach(_) => &mut ways,
-                What::Event(..) => continue,
+                ElementKind::Cut | ElementKind::Thread | ElementKind::Hole(_) => &mut cuts,
+                ElementKind::Way | ElementKind::Reach(_) => &mut ways,
+                ElementKind::Event(..) => continue,
             };
             let first = lines.map_or(element.line, |[first, _]| first);
             *lines = Some([first, element.line]);
@@ -223,8 +227,8 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// A cut begins off the course: at the nearest place where one could.
-    fn begin_astray(&mut self, motion: &Motion, place: &Place, first: usize) {
-        let mut best: Option<(f64, usize, Span)> = None;
+    fn begin_astray(&mut self, motion: &Motion, place: &ToolPlace, first: usize) {
+        let mut best: Option<(f64, usize, ShareSpan)> = None;
         let mut index = first;
         while index < first + AHEAD {
             let Some(element) = self.track.get(index) else {
@@ -233,7 +237,7 @@ impl<C: Course> Verifier<'_, C> {
             if element.is_cut() {
                 let apart = place.apart(&element.from);
                 let factor = (apart.point / self.bound.point).max(apart.axis / self.bound.axis);
-                best = Some((factor, index, Span { from: 0.0, to: 0.0 }));
+                best = Some((factor, index, ShareSpan { from: 0.0, to: 0.0 }));
                 break;
             }
             index += 1;
@@ -243,10 +247,10 @@ impl<C: Course> Verifier<'_, C> {
         };
         let line = self.track.kept().get(index).map_or(0, |element| element.line);
         self.reach.clear();
-        self.reach.resize(index + 1, Span::EMPTY);
+        self.reach.resize(index + 1, ShareSpan::EMPTY);
         self.reach[index] = span;
-        self.stray = Some(Stray {
-            worst: Apart::default(),
+        self.stray = Some(StrayStretch {
+            worst: PlaceDistance::default(),
             factor: (factor * 1.001).max(1.0),
             line: motion.line,
             number: motion.number,
@@ -267,10 +271,10 @@ impl<C: Course> Verifier<'_, C> {
         let place = Some((line, None));
         while let Some(element) = self.track.get(index) {
             let ahead = reached.is_none_or(|reached| index > reached) && Some(index) >= self.next;
-            if ahead && (element.is_cut() || matches!(element.what, What::Hole(_))) {
+            if ahead && (element.is_cut() || matches!(element.what, ElementKind::Hole(_))) {
                 break;
             }
-            if let What::Event(asked, met @ false) = &mut element.what {
+            if let ElementKind::Event(asked, met @ false) = &mut element.what {
                 let cl_line = element.line;
                 *met = true;
                 let same = state::same_event(asked, told, element.asked.spindle);
@@ -300,8 +304,8 @@ impl<C: Course> Verifier<'_, C> {
         if self.reach[last].to < 1.0 {
             return false;
         }
-        self.reach[..last].fill(Span::EMPTY);
-        self.reach[last] = Span { from: 1.0, to: 1.0 };
+        self.reach[..last].fill(ShareSpan::EMPTY);
+        self.reach[last] = ShareSpan { from: 1.0, to: 1.0 };
         true
     }
 
@@ -319,9 +323,9 @@ impl<C: Course> Verifier<'_, C> {
         while let Some(element) = self.track.get(index) {
             let line = element.line;
             let place = match &element.what {
-                What::Way | What::Reach(_) => Some(1),
-                What::Event(_, true) => None,
-                What::Event(told, false) => {
+                ElementKind::Way | ElementKind::Reach(_) => Some(1),
+                ElementKind::Event(_, true) => None,
+                ElementKind::Event(told, false) => {
                     let message = format!("{} is left out", state::event_name(told));
                     self.fault_at("event", message, None, Some(line), None);
                     None

@@ -8,7 +8,7 @@ use post_machine::kinematics::Pose;
 /// Between two places all three go straight. Chords of directions are shorter than their arcs; pieces are cut so short
 /// that this makes no difference (see [`super::chop`]).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Place {
+pub(super) struct ToolPlace {
     pub point: Vector3<f64>,
     pub axis: Vector3<f64>,
     /// Zero for a tool that turns.
@@ -17,7 +17,7 @@ pub(super) struct Place {
 
 /// How far two places may be apart, and still be one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bound {
+pub(super) struct PlaceBound {
     /// mm.
     pub point: f64,
     /// Of directions, as the length of a difference of unit vectors.
@@ -26,7 +26,7 @@ pub(super) struct Bound {
 
 /// How far two places are apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Apart {
+pub(super) struct PlaceDistance {
     /// mm.
     pub point: f64,
     /// Radians.
@@ -35,7 +35,7 @@ pub(super) struct Apart {
 
 /// Shares of a straight piece, from the first to the last; empty where the first is larger.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Span {
+pub(super) struct ShareSpan {
     pub from: f64,
     pub to: f64,
 }
@@ -43,7 +43,7 @@ pub(super) struct Span {
 /// A difference that is shorter than this has no direction: mm, or of unit vectors.
 const SHORT: f64 = 1e-12;
 
-impl Place {
+impl ToolPlace {
     /// Of the point `along` mm above the tip, towards the holder.
     pub fn new(pose: &Pose, along: f64) -> Self {
         Self { point: pose.tip + pose.axis * along, axis: pose.axis, edge: pose.edge_across() }
@@ -58,15 +58,15 @@ impl Place {
         }
     }
 
-    pub fn apart(&self, other: &Self) -> Apart {
+    pub fn apart(&self, other: &Self) -> PlaceDistance {
         let chord = (self.axis - other.axis).norm();
-        Apart {
+        PlaceDistance {
             point: (self.point - other.point).norm(),
             axis: angle_of(chord.max(self.edge_chord(other))),
         }
     }
 
-    pub fn within(&self, other: &Self, bound: &Bound) -> bool {
+    pub fn within(&self, other: &Self, bound: &PlaceBound) -> bool {
         (self.point - other.point).norm() <= bound.point
             && (self.axis - other.axis).norm() <= bound.axis
             && self.edge_chord(other) <= bound.axis
@@ -85,7 +85,7 @@ impl Place {
     }
 }
 
-impl Bound {
+impl PlaceBound {
     pub fn times(&self, factor: f64) -> Self {
         Self {
             point: self.point * factor,
@@ -100,7 +100,7 @@ impl Bound {
     }
 }
 
-impl Apart {
+impl PlaceDistance {
     pub fn larger(&self, other: &Self) -> Self {
         Self { point: self.point.max(other.point), axis: self.axis.max(other.axis) }
     }
@@ -110,7 +110,7 @@ impl Apart {
     }
 }
 
-impl Span {
+impl ShareSpan {
     pub const EMPTY: Self = Self { from: 1.0, to: 0.0 };
     pub const WHOLE: Self = Self { from: 0.0, to: 1.0 };
 
@@ -130,8 +130,13 @@ pub(super) fn angle_of(chord: f64) -> f64 {
 
 /// The shares of the straight piece from `a` to `b` that are within `bound` of `place`: one span, for balls are convex.
 #[inline]
-pub(super) fn free(place: &Place, a: &Place, b: &Place, bound: &Bound) -> Span {
-    let mut span = Span::WHOLE;
+pub(super) fn free(
+    place: &ToolPlace,
+    a: &ToolPlace,
+    b: &ToolPlace,
+    bound: &PlaceBound,
+) -> ShareSpan {
+    let mut span = ShareSpan::WHOLE;
     narrow(&mut span, a.point - place.point, b.point - a.point, bound.point);
     // Most pieces keep their tool axis, and lie on one that is kept.
     if !span.is_empty() && (a.axis != place.axis || b.axis != a.axis) {
@@ -145,27 +150,32 @@ pub(super) fn free(place: &Place, a: &Place, b: &Place, bound: &Bound) -> Span {
 
 /// Leaves of `span` where `offset + way * share` is no longer than `most`.
 #[inline]
-fn narrow(span: &mut Span, offset: Vector3<f64>, way: Vector3<f64>, most: f64) {
+fn narrow(span: &mut ShareSpan, offset: Vector3<f64>, way: Vector3<f64>, most: f64) {
     let square = way.norm_squared();
     if square < SHORT * SHORT {
         if offset.norm_squared() > most * most {
-            *span = Span::EMPTY;
+            *span = ShareSpan::EMPTY;
         }
         return;
     }
     let nearest = -offset.dot(&way) / square;
     let rest = most * most - (offset + way * nearest).norm_squared();
     if rest < 0.0 {
-        *span = Span::EMPTY;
+        *span = ShareSpan::EMPTY;
         return;
     }
     let half = (rest / square).sqrt();
-    *span = span.meet(&Span { from: nearest - half, to: nearest + half });
+    *span = span.meet(&ShareSpan { from: nearest - half, to: nearest + half });
 }
 
 /// How near the piece from `a` to `b` comes to `place` on `span` of it: point and directions each for itself.
 #[inline]
-pub(super) fn nearest(place: &Place, a: &Place, b: &Place, span: &Span) -> Apart {
+pub(super) fn nearest(
+    place: &ToolPlace,
+    a: &ToolPlace,
+    b: &ToolPlace,
+    span: &ShareSpan,
+) -> PlaceDistance {
     let least = |offset: Vector3<f64>, way: Vector3<f64>| {
         let square = way.norm_squared();
         let share = match square < SHORT * SHORT {
@@ -182,5 +192,5 @@ pub(super) fn nearest(place: &Place, a: &Place, b: &Place, span: &Span) -> Apart
     if place.has_edge() && a.has_edge() {
         chord = chord.max(least(a.edge - place.edge, b.edge - a.edge));
     }
-    Apart { point, axis: angle_of(chord) }
+    PlaceDistance { point, axis: angle_of(chord) }
 }

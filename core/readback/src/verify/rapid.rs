@@ -2,16 +2,16 @@
 
 use post_machine::kinematics::Pose;
 
-use super::detour::Kind;
-use super::place::{Bound, Place, Span, free, nearest};
-use super::track::What;
+use super::detour::StrayKind;
+use super::place::{PlaceBound, ShareSpan, ToolPlace, free, nearest};
+use super::track::ElementKind;
 use super::{RAPID_TURN, Verifier};
 use crate::Motion;
 use crate::course::Course;
 
 impl<C: Course> Verifier<'_, C> {
     /// A motion at rapid.
-    pub(super) fn rapid(&mut self, motion: &Motion, places: &[Place]) {
+    pub(super) fn rapid(&mut self, motion: &Motion, places: &[ToolPlace]) {
         if self.hole.is_some() {
             return self.hole_motion(motion, places);
         }
@@ -47,7 +47,7 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// From one place of a rapid of the course to another a rapid goes as it does, and on. True if it does.
-    fn keeps_to_the_way(&mut self, motion: &Motion, places: &[Place]) -> bool {
+    fn keeps_to_the_way(&mut self, motion: &Motion, places: &[ToolPlace]) -> bool {
         let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
             return false;
         };
@@ -56,18 +56,18 @@ impl<C: Course> Verifier<'_, C> {
         let Some(element) = self.track.get(index) else {
             return false;
         };
-        if !matches!(element.what, What::Way) {
+        if !matches!(element.what, ElementKind::Way) {
             return false;
         }
         let (line, from, to) = (element.line, element.from, element.to);
-        let on = |place: &Place| free(place, &from, &to, &bound);
+        let on = |place: &ToolPlace| free(place, &from, &to, &bound);
         let (start, end) = (on(&places[0]), on(&places[places.len() - 1]));
         if start.is_empty() || end.is_empty() {
             return false;
         }
         let way = to.point - from.point;
         let length = way.norm();
-        let off = |place: &Place| {
+        let off = |place: &ToolPlace| {
             let offset = place.point - from.point;
             let share = match length > 0.0 {
                 true => (offset.dot(&way) / (length * length)).clamp(0.0, 1.0),
@@ -89,7 +89,7 @@ impl<C: Course> Verifier<'_, C> {
 
     /// To the first hole and from one to the next along the same axis, no rapid goes across lower than the CL file does: up
     /// first, then across.
-    fn look_how_low(&mut self, motion: &Motion, places: &[Place]) {
+    fn look_how_low(&mut self, motion: &Motion, places: &[ToolPlace]) {
         let slack = self.rapid_bound.point;
         let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
             return;
@@ -97,17 +97,17 @@ impl<C: Course> Verifier<'_, C> {
         let Some(due) = self.track.get(index) else {
             return;
         };
-        let What::Hole(hole) = &due.what else {
+        let ElementKind::Hole(hole) = &due.what else {
             return;
         };
         let (foot, up, line) = (due.from.point, due.from.axis, due.line);
-        let upright = |place: &Place| (place.axis - up).norm() <= RAPID_TURN;
-        let height = |place: &Place| (place.point - foot).dot(&up);
-        let across = |[from, to]: [&Place; 2]| {
+        let upright = |place: &ToolPlace| (place.axis - up).norm() <= RAPID_TURN;
+        let height = |place: &ToolPlace| (place.point - foot).dot(&up);
+        let across = |[from, to]: [&ToolPlace; 2]| {
             let way = to.point - from.point;
             (way - up * way.dot(&up)).norm() > slack
         };
-        let lowest = |[from, to]: [&Place; 2]| height(from).min(height(to));
+        let lowest = |[from, to]: [&ToolPlace; 2]| height(from).min(height(to));
         // What the course crosses by leaning the tool it crosses at heights of its own.
         if !hole.approach.iter().flatten().all(upright) || !places.iter().all(upright) {
             return;
@@ -130,14 +130,14 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// The course comes past this place on its own way to the hole that is due, however the tool leans there.
-    fn is_on_the_way_to_a_hole(&mut self, place: &Place) -> bool {
+    fn is_on_the_way_to_a_hole(&mut self, place: &ToolPlace) -> bool {
         let mut bound = self.rapid_bound;
         bound.axis = 2.0;
         let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
             return false;
         };
         self.track.get(index).is_some_and(|due| match &due.what {
-            What::Hole(hole) => {
+            ElementKind::Hole(hole) => {
                 let mut ways = hole.approach.iter();
                 ways.any(|[from, to]| !free(place, from, to, &bound).is_empty())
             }
@@ -146,22 +146,22 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// The tip comes past this place on a way of the course, before its next cut, however the tool leans.
-    fn leads_past(&mut self, end: &Place) -> bool {
+    fn leads_past(&mut self, end: &ToolPlace) -> bool {
         let mut bound = self.rapid_bound;
         bound.axis = 2.0;
         self.is_on_the_way_to_a_hole(end) || self.is_on_the_course(end, bound)
     }
 
     /// A rapid of the course leads past this place, before its next cut.
-    fn ends_on_the_course(&mut self, end: &Place) -> bool {
+    fn ends_on_the_course(&mut self, end: &ToolPlace) -> bool {
         self.is_on_the_course(end, self.rapid_bound)
     }
 
-    fn is_on_the_course(&mut self, end: &Place, bound: Bound) -> bool {
+    fn is_on_the_course(&mut self, end: &ToolPlace, bound: PlaceBound) -> bool {
         let mut index = self.next.unwrap_or(0);
         while let Some(element) = self.track.get(index) {
             match element.what {
-                What::Way | What::Reach(_) => {
+                ElementKind::Way | ElementKind::Reach(_) => {
                     let mut bound = bound;
                     if element.from.axis != element.to.axis {
                         // How the axis goes from one end to the other is not asked for.
@@ -171,7 +171,7 @@ impl<C: Course> Verifier<'_, C> {
                         return true;
                     }
                 }
-                What::Event(..) => {}
+                ElementKind::Event(..) => {}
                 _ => return false,
             }
             index += 1;
@@ -180,7 +180,7 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// Passes points of the course, in their order.
-    pub(super) fn pass(&mut self, motion: &Motion, places: &[Place]) {
+    pub(super) fn pass(&mut self, motion: &Motion, places: &[ToolPlace]) {
         let Some(mut next) = self.next else {
             return;
         };
@@ -190,17 +190,17 @@ impl<C: Course> Verifier<'_, C> {
             while let Some(element) = self.track.get(next) {
                 match &element.what {
                     // Whether it was met is asked before the next cut.
-                    What::Event(..) => {}
-                    What::Way | What::Reach(_) => {
+                    ElementKind::Event(..) => {}
+                    ElementKind::Way | ElementKind::Reach(_) => {
                         let span = free(&element.to, &ends[0], &ends[1], &bound);
                         if span.is_empty() || span.to < least {
                             break;
                         }
-                        let span = span.meet(&Span { from: least, to: 1.0 });
+                        let span = span.meet(&ShareSpan { from: least, to: 1.0 });
                         let near = nearest(&element.to, &ends[0], &ends[1], &span);
                         least = span.from;
                         let (line, place) = (element.line, element.to);
-                        if matches!(element.what, What::Way) {
+                        if matches!(element.what, ElementKind::Way) {
                             let (from, to) = (element.from.point, element.to.point);
                             let point = self.cut_path.distance(to);
                             self.course_near = self.course_near.min(self.dips(from, to)).min(point);
@@ -223,10 +223,10 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// A rapid must not end where something is cut, unless the course does.
-    fn look_where_it_ends(&mut self, motion: &Motion, end: &Place) {
+    fn look_where_it_ends(&mut self, motion: &Motion, end: &ToolPlace) {
         let near = self.cut_path.distance(end.point);
         let slack = self.rapid_bound.point + self.cut_path.blur();
-        let from = Place::new(&motion.from.pose, self.along);
+        let from = ToolPlace::new(&motion.from.pose, self.along);
         // Along what is cut it may leave it.
         if near <= slack
             && self.cut_path.distance(from.point) > slack
@@ -253,13 +253,13 @@ impl<C: Course> Verifier<'_, C> {
         };
         let (name, by) = (&axis.name, astray.by);
         let message = match astray.kind {
-            Kind::Short => {
+            StrayKind::Short => {
                 format!("a retract ends {by:.3}{unit} short of where the machine file has {name}")
             }
-            Kind::Far => format!(
+            StrayKind::Far => format!(
                 "a rapid takes {name} {by:.3}{unit} from all where the CL file and the machine file send it"
             ),
-            Kind::Turns => format!(
+            StrayKind::Turns => format!(
                 "{name} turns by {by:.3}{unit} off the ways of the CL file, and the tool is not retracted"
             ),
         };

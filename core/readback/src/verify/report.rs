@@ -31,11 +31,11 @@ pub struct Verification {
     /// Cuts that are slower than the course asks, and no axis explains it.
     pub slower: u64,
     /// Largest deviation of the guided point from the course in a cut, mm.
-    pub tip: Worst,
+    pub tip: WorstDeviation,
     /// Largest deviation of the tool axis in a cut, degrees.
-    pub axis: Worst,
+    pub axis: WorstDeviation,
     /// Largest distance at which a rapid passes a point of the course, mm.
-    pub rapid: Worst,
+    pub rapid: WorstDeviation,
     /// Time of the motions as the program states it, s; without rapids of machines whose file names no largest feeds.
     pub time_s: f64,
     /// What is wrong, in the order of the program; what is wrong in the same way again and again is one of them.
@@ -59,7 +59,7 @@ pub struct LeftOn {
 
 /// A deviation and where it stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Worst {
+pub struct WorstDeviation {
     /// How large; the unit is told where it is used.
     pub value: f64,
     /// Line of the NC program.
@@ -68,7 +68,7 @@ pub struct Worst {
     pub cl_line: u64,
 }
 
-impl Worst {
+impl WorstDeviation {
     pub(super) fn take(&mut self, value: f64, nc_line: u64, cl_line: u64) {
         if value > self.value {
             *self = Self { value, nc_line, cl_line };
@@ -127,7 +127,7 @@ pub struct BlockReport {
     /// `cut`, `rapid` or `hole`.
     pub kind: &'static str,
     /// Which of the machine's solutions it ends in, counted from 1 as the inverse of its chain gives them; none where there
-    /// is one alone, or it was not asked for ([`super::Rules::solutions`]).
+    /// is one alone, or it was not asked for ([`super::VerifyRules::solutions`]).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub solution: Option<usize>,
     /// Largest deviation of the guided point, mm.

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use post_machine::axis_words::is_depth;
 use post_plugin::Lengths;
 
-use super::place::{Place, free};
-use post_motion::Corner;
+use super::place::{ToolPlace, free};
+use post_motion::CornerMode;
 
 use super::Verifier;
 use super::track::Element;
 use crate::course::Course;
-use crate::{Coolants, Corners, Motion, MotionKind, Spindle, Told, Way};
+use crate::{Coolants, Corners, Interpolation, Motion, MotionKind, Spindle, Told};
 
 /// Speeds and feeds are rounded as they are printed: so much of them, and so much besides.
 const SHARE: f64 = 0.005;
@@ -30,7 +30,7 @@ const SHORT: f64 = 1e-3;
 
 impl<C: Course> Verifier<'_, C> {
     /// Compares what holds in a cut with what the course asks for where the motion has its place.
-    pub(super) fn compare(&mut self, motion: &Motion, places: &[Place]) {
+    pub(super) fn compare(&mut self, motion: &Motion, places: &[ToolPlace]) {
         let Some(mut element) = self.element_of(places) else {
             return;
         };
@@ -43,13 +43,13 @@ impl<C: Course> Verifier<'_, C> {
 
     /// The feed of an element, or of another that a motion lies on as a whole, if that is larger: what is left of a piece at
     /// a corner is within the tolerance of the next.
-    fn feed_of(&self, places: &[Place], element: &Element) -> Option<f64> {
+    fn feed_of(&self, places: &[ToolPlace], element: &Element) -> Option<f64> {
         let feed = element.feed?;
         let last = self.reach.iter().rposition(|span| !span.is_empty())?;
         let [first, middle, end] = [0, places.len() / 2, places.len() - 1].map(|at| &places[at]);
         let ahead = end.point - first.point;
         let on = |other: &&Element| {
-            let free = |place: &Place| free(place, &other.from, &other.to, &self.bound);
+            let free = |place: &ToolPlace| free(place, &other.from, &other.to, &self.bound);
             let forward = ahead.dot(&(other.to.point - other.from.point)) >= 0.0;
             let whole = [first, middle, end].iter().all(|place| !free(place).is_empty());
             other.is_cut() && forward && whole
@@ -61,7 +61,7 @@ impl<C: Course> Verifier<'_, C> {
 
     /// The element of the course that a motion follows: where all that it may follow ask for the same, any of them; else
     /// that at the middle of its way.
-    fn element_of(&mut self, places: &[Place]) -> Option<Element> {
+    fn element_of(&mut self, places: &[ToolPlace]) -> Option<Element> {
         let bound = self.bound.times(self.stray.map_or(1.0, |stray| stray.factor));
         let last = self.reach.iter().rposition(|span| !span.is_empty())?;
         let middle = match places.len() {
@@ -171,7 +171,7 @@ impl<C: Course> Verifier<'_, C> {
     fn compare_smoothing(&mut self, motion: &Motion) {
         let state = &motion.state;
         let said = match state.corners {
-            Corners::Said(Corner::Blend { tolerance }) => tolerance,
+            Corners::Said(CornerMode::Blend { tolerance }) => tolerance,
             _ => None,
         };
         let smoothing = state.smoothing.or(said).unwrap_or(0.0);
@@ -354,7 +354,12 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// Compares the feed: never faster than asked, and slower only where an axis could not go faster.
-    pub(super) fn compare_feed(&mut self, motion: &Motion, places: &[Place], element: &Element) {
+    pub(super) fn compare_feed(
+        &mut self,
+        motion: &Motion,
+        places: &[ToolPlace],
+        element: &Element,
+    ) {
         let Some(asked) = element.feed else {
             return;
         };
@@ -372,7 +377,7 @@ impl<C: Course> Verifier<'_, C> {
         let feed = way / motion.minutes;
         // Of a short way a rounded word is much.
         let mut rounded = ROUNDED / way;
-        if motion.way == Way::Axes {
+        if motion.way == Interpolation::Axes {
             // What is printed is the feed along the axes, which may go a much shorter way than the tip.
             let joints = motion.state.solver.chain().joints().iter().enumerate();
             let square: f64 = joints

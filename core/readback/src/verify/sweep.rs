@@ -7,15 +7,15 @@
 //! A motion that finds no way strays. Then the bound is widened until there is one, which says how far the program is off,
 //! and it stays wide until the program is back on the course.
 
-use super::place::{Apart, Bound, Place, Span, free, nearest};
-use super::track::What;
+use super::place::{PlaceBound, PlaceDistance, ShareSpan, ToolPlace, free, nearest};
+use super::track::ElementKind;
 use super::{COMPUTED, Verifier, state};
 use crate::Motion;
 use crate::course::Course;
 
 /// A stretch of the program that is off the course.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stray {
+pub(super) struct StrayStretch {
     /// The bound is so many times the tolerance.
     pub factor: f64,
     pub line: u64,
@@ -24,7 +24,7 @@ pub(super) struct Stray {
     /// Lines of the course, from and to.
     pub asked: [u64; 2],
     /// How far its ends are off at least.
-    pub worst: Apart,
+    pub worst: PlaceDistance,
 }
 
 /// By this share of the tolerance an element must be nearer to count in place of one before it.
@@ -38,7 +38,7 @@ const STEPS: usize = 9;
 
 /// How a sweep ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Swept {
+enum SweepOutcome {
     /// The whole motion has a place on the course.
     Through,
     /// None, and one reason is that this element was in the way.
@@ -49,7 +49,7 @@ enum Swept {
 
 impl<C: Course> Verifier<'_, C> {
     /// A motion at feed.
-    pub(super) fn feed(&mut self, motion: &Motion, places: &[Place]) {
+    pub(super) fn feed(&mut self, motion: &Motion, places: &[ToolPlace]) {
         if self.hole.is_some() {
             return self.hole_motion(motion, places);
         }
@@ -101,8 +101,8 @@ impl<C: Course> Verifier<'_, C> {
         loop {
             let swept = self.sweep(motion, places, self.factor(), true);
             match swept {
-                Swept::Through => break,
-                Swept::Stopped(index) => {
+                SweepOutcome::Through => break,
+                SweepOutcome::Stopped(index) => {
                     self.reach.clone_from(&begun);
                     if self.remove_obstacle(index, motion, places) {
                         if self.hole.is_some() || self.apart {
@@ -111,7 +111,7 @@ impl<C: Course> Verifier<'_, C> {
                         continue;
                     }
                 }
-                Swept::Nowhere => self.reach.clone_from(&begun),
+                SweepOutcome::Nowhere => self.reach.clone_from(&begun),
             }
             if draws_back(places, &self.bound) {
                 self.reach = begun;
@@ -141,18 +141,18 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// Behind a stretch that was off: within the tolerance again, where the program stands.
-    pub(super) fn come_back_to_the_course(&mut self, place: &Place) {
+    pub(super) fn come_back_to_the_course(&mut self, place: &ToolPlace) {
         if self.stray.is_none() {
             return;
         }
         let bound = self.bound;
         let kept = self.track.kept();
-        let narrowed: Vec<Span> = self
+        let narrowed: Vec<ShareSpan> = self
             .reach
             .iter()
             .zip(kept)
             .map(|(span, element)| match span.is_empty() || !element.is_cut() {
-                true => Span::EMPTY,
+                true => ShareSpan::EMPTY,
                 false => span.meet(&free(place, &element.from, &element.to, &bound)),
             })
             .collect();
@@ -173,7 +173,7 @@ impl<C: Course> Verifier<'_, C> {
         let angle = (2.0 * libm::asin(0.5 * angle)).to_degrees();
         let [tip_off, axis_off] = [
             stray.worst.point > self.bound.point,
-            Bound::new(1.0, stray.worst.axis).axis > self.bound.axis,
+            PlaceBound::new(1.0, stray.worst.axis).axis > self.bound.axis,
         ];
         let off = match (tip_off, axis_off) {
             (true, false) => format!("{point:.3} mm"),
@@ -207,25 +207,31 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// Carries what can be reached along a motion.
-    fn sweep(&mut self, motion: &Motion, places: &[Place], factor: f64, measured: bool) -> Swept {
+    fn sweep(
+        &mut self,
+        motion: &Motion,
+        places: &[ToolPlace],
+        factor: f64,
+        measured: bool,
+    ) -> SweepOutcome {
         let mut reach = std::mem::take(&mut self.reach);
         let mut spare = std::mem::take(&mut self.spare);
         let bound = self.bound.times(factor);
-        let mut worst = Apart::default();
+        let mut worst = PlaceDistance::default();
         let mut asked = 0;
-        let mut swept = Swept::Through;
+        let mut swept = SweepOutcome::Through;
         for ends in places.windows(2) {
             spare.clear();
             let column = self.column(&ends[0], &ends[1], bound, &reach, &mut spare);
             std::mem::swap(&mut reach, &mut spare);
             let Some((apart, line)) = column.here else {
-                swept = column.stopped.map_or(Swept::Nowhere, Swept::Stopped);
+                swept = column.stopped.map_or(SweepOutcome::Nowhere, SweepOutcome::Stopped);
                 break;
             };
             (worst, asked) = (worst.larger(&apart), line);
         }
         (self.reach, self.spare) = (reach, spare);
-        if measured && swept == Swept::Through {
+        if measured && swept == SweepOutcome::Through {
             self.block.cl_line = Some(asked);
             match &mut self.stray {
                 None => self.note_deviation(worst, motion.line, asked),
@@ -245,23 +251,23 @@ impl<C: Course> Verifier<'_, C> {
     /// One straight piece of the program against the course.
     fn column(
         &mut self,
-        from: &Place,
-        to: &Place,
-        bound: Bound,
-        reach: &[Span],
-        out: &mut Vec<Span>,
-    ) -> Column {
-        let mut column = Column { here: None, stopped: None };
-        let mut apart: Option<Apart> = None;
+        from: &ToolPlace,
+        to: &ToolPlace,
+        bound: PlaceBound,
+        reach: &[ShareSpan],
+        out: &mut Vec<ShareSpan>,
+    ) -> PieceOutcome {
+        let mut column = PieceOutcome { here: None, stopped: None };
+        let mut apart: Option<PlaceDistance> = None;
         // The element that the piece leads to, and how far its end is from it.
         let (mut line, mut off) = (0, f64::INFINITY);
         // What can be reached of the program's piece at the beginning of the element.
-        let mut below = Span::EMPTY;
+        let mut below = ShareSpan::EMPTY;
         let mut index = 0;
         while index < reach.len() || !below.is_empty() {
-            let left = reach.get(index).copied().unwrap_or(Span::EMPTY);
+            let left = reach.get(index).copied().unwrap_or(ShareSpan::EMPTY);
             if left.is_empty() && below.is_empty() {
-                out.push(Span::EMPTY);
+                out.push(ShareSpan::EMPTY);
                 index += 1;
                 continue;
             }
@@ -269,17 +275,20 @@ impl<C: Course> Verifier<'_, C> {
                 break;
             };
             match &element.what {
-                What::Cut | What::Thread => {}
+                ElementKind::Cut | ElementKind::Thread => {}
                 // It was met: nothing of the way.
-                What::Event(_, true) => {
-                    out.push(Span::EMPTY);
+                ElementKind::Event(_, true) => {
+                    out.push(ShareSpan::EMPTY);
                     index += 1;
                     continue;
                 }
-                What::Event(_, false) | What::Hole(_) | What::Reach(_) | What::Way => {
+                ElementKind::Event(_, false)
+                | ElementKind::Hole(_)
+                | ElementKind::Reach(_)
+                | ElementKind::Way => {
                     column.stopped = Some(index);
-                    out.push(Span::EMPTY);
-                    below = Span::EMPTY;
+                    out.push(ShareSpan::EMPTY);
+                    below = ShareSpan::EMPTY;
                     index += 1;
                     continue;
                 }
@@ -289,19 +298,19 @@ impl<C: Course> Verifier<'_, C> {
                 if edge.from <= 0.0 && !edge.is_empty() {
                     below = match below.is_empty() {
                         true => edge,
-                        false => Span { from: 0.0, to: edge.to },
+                        false => ShareSpan { from: 0.0, to: edge.to },
                     };
                 }
             }
             let right = free(to, &element.from, &element.to, &bound);
             let right = match below.is_empty() {
                 false => right,
-                true => right.meet(&Span { from: left.from, to: 1.0 }),
+                true => right.meet(&ShareSpan { from: left.from, to: 1.0 }),
             };
             let top = free(&element.to, from, to, &bound);
             let top = match left.is_empty() {
                 false => top,
-                true => top.meet(&Span { from: below.from, to: 1.0 }),
+                true => top.meet(&ShareSpan { from: below.from, to: 1.0 }),
             };
             if !right.is_empty() {
                 let near = nearest(to, &element.from, &element.to, &right);
@@ -323,7 +332,7 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// Widens the bound until the motion has a place on the course; false if none is wide enough.
-    fn widen(&mut self, motion: &Motion, places: &[Place], begun: &[Span]) -> bool {
+    fn widen(&mut self, motion: &Motion, places: &[ToolPlace], begun: &[ShareSpan]) -> bool {
         let mut low = self.factor();
         let mut high = low;
         let mut thin = Vec::new();
@@ -346,13 +355,13 @@ impl<C: Course> Verifier<'_, C> {
         thinned(places, high, &mut thin);
         self.begin_from(begun, &places[0], high);
         let asked = self.stands_at();
-        let stray = self.stray.get_or_insert(Stray {
+        let stray = self.stray.get_or_insert(StrayStretch {
             factor: high,
             line: motion.line,
             number: motion.number,
             last: motion.line,
             asked: [asked, asked],
-            worst: Apart::default(),
+            worst: PlaceDistance::default(),
         });
         stray.factor = high;
         self.sweep(motion, &thin, high, true);
@@ -363,18 +372,18 @@ impl<C: Course> Verifier<'_, C> {
     fn has_place(
         &mut self,
         motion: &Motion,
-        places: &[Place],
-        begun: &[Span],
+        places: &[ToolPlace],
+        begun: &[ShareSpan],
         factor: f64,
-        thin: &mut Vec<Place>,
+        thin: &mut Vec<ToolPlace>,
     ) -> bool {
         thinned(places, factor, thin);
         self.begin_from(begun, &places[0], factor);
-        self.sweep(motion, thin, factor, false) == Swept::Through
+        self.sweep(motion, thin, factor, false) == SweepOutcome::Through
     }
 
     /// What can be reached with a wider bound where less could be with the narrower one: all around it that is free.
-    fn begin_from(&mut self, begun: &[Span], place: &Place, factor: f64) {
+    fn begin_from(&mut self, begun: &[ShareSpan], place: &ToolPlace, factor: f64) {
         self.reach.clear();
         self.reach.extend_from_slice(begun);
         let bound = self.bound.times(factor);
@@ -387,7 +396,7 @@ impl<C: Course> Verifier<'_, C> {
             {
                 let wide = free(place, &element.from, &element.to, &bound);
                 if !wide.is_empty() {
-                    *span = Span {
+                    *span = ShareSpan {
                         from: span.from.min(wide.from.max(span.from)),
                         to: span.to.max(wide.to),
                     };
@@ -405,19 +414,19 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// Something of the course stands between cuts. True if the motion can be tried again, or was dealt with.
-    fn remove_obstacle(&mut self, index: usize, motion: &Motion, places: &[Place]) -> bool {
+    fn remove_obstacle(&mut self, index: usize, motion: &Motion, places: &[ToolPlace]) -> bool {
         let Some(element) = self.track.get(index) else {
             return false;
         };
         let line = element.line;
         match &mut element.what {
-            What::Event(told, met @ false) => {
+            ElementKind::Event(told, met @ false) => {
                 *met = true;
                 let message = format!("{} is left out", state::event_name(told));
                 self.fault("event", message, Some(motion), Some(line), None);
                 true
             }
-            What::Hole(_) => {
+            ElementKind::Hole(_) => {
                 self.next = Some(index);
                 if !self.begins_hole(motion, places) {
                     self.next = None;
@@ -427,7 +436,7 @@ impl<C: Course> Verifier<'_, C> {
                 self.hole_motion(motion, places);
                 true
             }
-            What::Reach(_) => {
+            ElementKind::Reach(_) => {
                 self.next = Some(index);
                 if !self.reaches_at_feed(motion, places) {
                     self.next = None;
@@ -436,7 +445,7 @@ impl<C: Course> Verifier<'_, C> {
                 self.leave_cuts();
                 true
             }
-            What::Way => {
+            ElementKind::Way => {
                 self.leave_cut();
                 if self.follows_a_rapid(motion, places) {
                     return true;
@@ -449,19 +458,19 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     fn leave_cuts(&mut self) {
-        self.reach.iter_mut().for_each(|span| *span = Span::EMPTY);
+        self.reach.iter_mut().for_each(|span| *span = ShareSpan::EMPTY);
         self.apart = true;
     }
 
     /// Along its own axis at feed to where a cut may begin, or a point of the course stands.
-    fn comes_down(&mut self, places: &[Place]) -> bool {
+    fn comes_down(&mut self, places: &[ToolPlace]) -> bool {
         let (from, to) = (&places[0], &places[places.len() - 1]);
         draws_back(&[*to, *from], &self.bound) && self.may_cut(to)
     }
 }
 
 /// Along the tool's own axis to the holder: a tool that leaves what it cuts so does no harm, at whatever feed.
-fn draws_back(places: &[Place], bound: &Bound) -> bool {
+fn draws_back(places: &[ToolPlace], bound: &PlaceBound) -> bool {
     let (from, to) = (&places[0], &places[places.len() - 1]);
     let way = to.point - from.point;
     let along = way.dot(&from.axis);
@@ -471,9 +480,9 @@ fn draws_back(places: &[Place], bound: &Bound) -> bool {
 }
 
 /// The part sees the tool stand as it is.
-fn stands(places: &[Place]) -> bool {
+fn stands(places: &[ToolPlace]) -> bool {
     let first = &places[0];
-    let same = |place: &Place| {
+    let same = |place: &ToolPlace| {
         (place.point - first.point).norm() <= COMPUTED
             && (place.axis - first.axis).norm() <= COMPUTED
     };
@@ -481,14 +490,14 @@ fn stands(places: &[Place]) -> bool {
 }
 
 /// The tool turns about where it stands, off the part: a rewind turns so at feed.
-fn turns(places: &[Place], most: f64) -> bool {
+fn turns(places: &[ToolPlace], most: f64) -> bool {
     let from = &places[0];
-    let stays = |to: &Place| (to.point - from.point).norm() <= most;
+    let stays = |to: &ToolPlace| (to.point - from.point).norm() <= most;
     places[places.len() - 1].axis != from.axis && places.iter().all(stays)
 }
 
 /// Places of a motion as close as a bound widened by `factor` asks for: chords over k pieces stray k² times as far.
-fn thinned(places: &[Place], factor: f64, thin: &mut Vec<Place>) {
+fn thinned(places: &[ToolPlace], factor: f64, thin: &mut Vec<ToolPlace>) {
     let stride = (0.5 * libm::sqrt(factor)).max(1.0) as usize;
     let last = places.len() - 1;
     thin.clear();
@@ -497,9 +506,9 @@ fn thinned(places: &[Place], factor: f64, thin: &mut Vec<Place>) {
 }
 
 /// What became of a piece.
-struct Column {
+struct PieceOutcome {
     /// How near its end is to the course, and the line there; none if it has no place.
-    here: Option<(Apart, u64)>,
+    here: Option<(PlaceDistance, u64)>,
     /// An element that no cut passes.
     stopped: Option<usize>,
 }

@@ -8,13 +8,13 @@ use std::sync::Arc;
 use post_machine::diagnostic::Diagnostic;
 
 use super::chop;
-use super::place::{Apart, Bound, Place};
+use super::place::{PlaceBound, PlaceDistance, ToolPlace};
 use crate::course::{Course, Item, Piece};
 use crate::{Coolants, CycleCall, CycleKind, MOST_FAULTS, MotionKind, Spindle, Told};
 
 /// What a course asks to hold while the tool cuts.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Asked {
+pub(super) struct CutState {
     pub tool: Option<u32>,
     /// What the spindle and the coolants did as the tool came.
     pub at_change: (Spindle, Coolants),
@@ -34,21 +34,21 @@ pub(super) struct Asked {
 #[derive(Clone, Debug)]
 pub(super) struct Element {
     pub line: u64,
-    pub what: What,
-    pub from: Place,
-    pub to: Place,
-    pub asked: Arc<Asked>,
+    pub what: ElementKind,
+    pub from: ToolPlace,
+    pub to: ToolPlace,
+    pub asked: Arc<CutState>,
     /// mm/min.
     pub feed: Option<f64>,
     /// Its end is the end of what the course calls one piece.
     pub ends: bool,
     /// How near the program has come to its end while it might stand there.
-    pub near: Apart,
+    pub near: PlaceDistance,
 }
 
 /// What is asked for.
 #[derive(Clone, Debug)]
-pub(super) enum What {
+pub(super) enum ElementKind {
     /// A straight piece at feed.
     Cut,
     /// A straight piece along a thread.
@@ -58,14 +58,14 @@ pub(super) enum What {
     /// A point that is reached by whatever way; at rapid, or at feed too.
     Reach(MotionKind),
     /// A hole of a cycle.
-    Hole(Box<Hole>),
+    Hole(Box<CourseHole>),
     /// The program stops or waits; it was met.
     Event(Told, bool),
 }
 
 /// A hole: from the level where the feed begins to the bottom.
 #[derive(Clone, Debug)]
-pub(super) struct Hole {
+pub(super) struct CourseHole {
     pub kind: CycleKind,
     /// How far below the level where its feed begins the first peck may come, and how far each behind it, mm; none: in one
     /// go.
@@ -77,22 +77,22 @@ pub(super) struct Hole {
     /// And how fast, mm/min; none at rapid.
     pub out: Option<f64>,
     /// How the course comes to it at rapid: a control may go otherwise.
-    pub approach: Vec<[Place; 2]>,
+    pub approach: Vec<[ToolPlace; 2]>,
 }
 
 /// A course on its way to a program.
 #[derive(Debug)]
-pub(super) struct Track<C> {
+pub(super) struct CourseTrack<C> {
     course: C,
     along: f64,
-    sag: Bound,
+    sag: PlaceBound,
     elements: VecDeque<Element>,
-    asked: Arc<Asked>,
+    asked: Arc<CutState>,
     cycle: Option<CycleCall>,
     hole: Option<Element>,
     /// Rapids towards the next hole.
-    approach: Vec<[Place; 2]>,
-    places: Vec<Place>,
+    approach: Vec<[ToolPlace; 2]>,
+    places: Vec<ToolPlace>,
     ended: bool,
     /// Line of the item read last.
     line: u64,
@@ -110,10 +110,10 @@ pub(super) const MOST_SPEEDS: usize = 64;
 const MOST_APPROACH: usize = 64;
 
 /// Infinitely far.
-const FAR: Apart = Apart { point: f64::INFINITY, axis: f64::INFINITY };
+const FAR: PlaceDistance = PlaceDistance { point: f64::INFINITY, axis: f64::INFINITY };
 
-impl<C: Course> Track<C> {
-    pub fn new(course: C, along: f64, sag: Bound) -> Self {
+impl<C: Course> CourseTrack<C> {
+    pub fn new(course: C, along: f64, sag: PlaceBound) -> Self {
         Self {
             course,
             along,
@@ -185,8 +185,8 @@ impl<C: Course> Track<C> {
                 if reach.hole {
                     return;
                 }
-                let to = Place::new(&reach.to, self.along);
-                self.push(reach.line, What::Reach(reach.kind), (to, to), None);
+                let to = ToolPlace::new(&reach.to, self.along);
+                self.push(reach.line, ElementKind::Reach(reach.kind), (to, to), None);
             }
             Item::Away { line } => {
                 self.line = line;
@@ -200,8 +200,8 @@ impl<C: Course> Track<C> {
     }
 
     fn piece(&mut self, piece: &Piece) {
-        let from = Place::new(&piece.from, self.along);
-        let to = Place::new(&piece.to, self.along);
+        let from = ToolPlace::new(&piece.from, self.along);
+        let to = ToolPlace::new(&piece.to, self.along);
         if piece.hole && self.of_hole(piece, from, to) {
             return;
         }
@@ -215,11 +215,11 @@ impl<C: Course> Track<C> {
                 return;
             }
             MotionKind::Rapid => {
-                self.push(piece.line, What::Way, (from, to), None);
+                self.push(piece.line, ElementKind::Way, (from, to), None);
                 return;
             }
-            MotionKind::Feed => What::Cut,
-            MotionKind::Thread => What::Thread,
+            MotionKind::Feed => ElementKind::Cut,
+            MotionKind::Thread => ElementKind::Thread,
         };
         let mut places = std::mem::take(&mut self.places);
         places.clear();
@@ -237,7 +237,7 @@ impl<C: Course> Track<C> {
     }
 
     /// A piece of a hole; false if it is none of the way down and up.
-    fn of_hole(&mut self, piece: &Piece, from: Place, to: Place) -> bool {
+    fn of_hole(&mut self, piece: &Piece, from: ToolPlace, to: ToolPlace) -> bool {
         let down = piece.kind != MotionKind::Rapid;
         match &mut self.hole {
             None if down => {
@@ -247,7 +247,7 @@ impl<C: Course> Track<C> {
                     false => cycle.peck,
                 };
                 let pecks = [cycle.clearance + cycle.peck, later];
-                let hole = Hole {
+                let hole = CourseHole {
                     kind: cycle.kind,
                     pecks: (cycle.peck > 0.0).then_some(pecks),
                     dwell: None,
@@ -257,7 +257,7 @@ impl<C: Course> Track<C> {
                 };
                 self.hole = Some(Element {
                     line: piece.line,
-                    what: What::Hole(Box::new(hole)),
+                    what: ElementKind::Hole(Box::new(hole)),
                     from,
                     to,
                     asked: Arc::clone(&self.asked),
@@ -272,7 +272,7 @@ impl<C: Course> Track<C> {
                 // Up again; whatever else a control does at the bottom is its business.
                 let up = (to.point - element.from.point).norm() <= self.sag.point * 32.0;
                 match &mut element.what {
-                    What::Hole(hole) if hole.back.is_none() => {
+                    ElementKind::Hole(hole) if hole.back.is_none() => {
                         if up {
                             (hole.back, hole.out) = (Some(piece.kind), piece.feed);
                         }
@@ -290,7 +290,13 @@ impl<C: Course> Track<C> {
         }
     }
 
-    fn push(&mut self, line: u64, what: What, ends: (Place, Place), feed: Option<f64>) {
+    fn push(
+        &mut self,
+        line: u64,
+        what: ElementKind,
+        ends: (ToolPlace, ToolPlace),
+        feed: Option<f64>,
+    ) {
         self.approach.clear();
         self.elements.push_back(Element {
             line,
@@ -337,14 +343,14 @@ impl<C: Course> Track<C> {
                 self.cycle = None;
             }
             Told::Dwell { .. } if self.hole.is_some() => {
-                if let Some(Element { what: What::Hole(hole), .. }) = &mut self.hole {
+                if let Some(Element { what: ElementKind::Hole(hole), .. }) = &mut self.hole {
                     hole.dwell = Some(told);
                 }
             }
             Told::Dwell { .. } | Told::Stop | Told::OptionalStop => {
                 self.end_hole();
-                let at = self.elements.back().map_or_else(Place::default, |last| last.to);
-                self.push(line, What::Event(told, false), (at, at), None);
+                let at = self.elements.back().map_or_else(ToolPlace::default, |last| last.to);
+                self.push(line, ElementKind::Event(told, false), (at, at), None);
             }
             _ => {}
         }
@@ -353,6 +359,6 @@ impl<C: Course> Track<C> {
 
 impl Element {
     pub fn is_cut(&self) -> bool {
-        matches!(self.what, What::Cut | What::Thread)
+        matches!(self.what, ElementKind::Cut | ElementKind::Thread)
     }
 }

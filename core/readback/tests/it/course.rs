@@ -9,8 +9,8 @@ use post_machine::kinematics::{Chain, Freedom, Joint, Joints, Pose, Solver};
 use post_readback::course::done::{Chords, DoneCourse};
 use post_readback::course::{Course, Curve, Item, Piece};
 use post_readback::{
-    Coolants, Corners, Done, Motion, MotionKind, Program, Spindle, SplineWay, Stance, State, Told,
-    Way,
+    BSpline, Coolants, Corners, Done, Interpolation, Motion, MotionKind, Program, Spindle, Stance,
+    State, Told,
 };
 use post_testkit::{Rng, randomised};
 use post_testmachines::Random;
@@ -44,7 +44,7 @@ fn state(solver: &Arc<Solver>) -> Arc<State> {
     })
 }
 
-fn motion(state: &Arc<State>, way: Way, from: Joints, to: Joints) -> Motion {
+fn motion(state: &Arc<State>, way: Interpolation, from: Joints, to: Joints) -> Motion {
     let stance = |joints: Joints| Stance { joints, pose: state.solver.chain().forward(&joints) };
     Motion {
         line: 1,
@@ -101,7 +101,7 @@ fn random_machines_go_where_matrices_say_and_chords_stay_near() {
         for (from, to) in from.iter().zip(&mut to) {
             *to = from + (*to - from) * share;
         }
-        let motion = motion(&state, Way::Axes, from, to);
+        let motion = motion(&state, Interpolation::Axes, from, to);
         for step in 0..=8 {
             let t = f64::from(step) / 8.0;
             let between: Vec<f64> =
@@ -146,7 +146,8 @@ fn at(c: f64, x: f64, y: f64, z: f64) -> Joints {
 #[test]
 fn a_table_that_turns_under_a_standing_tool_draws_a_circle() {
     let state = turntable();
-    let whole = motion(&state, Way::Axes, at(0.0, 30.0, 0.0, 5.0), at(TAU, 30.0, 0.0, 5.0));
+    let whole =
+        motion(&state, Interpolation::Axes, at(0.0, 30.0, 0.0, 5.0), at(TAU, 30.0, 0.0, 5.0));
     for step in 0..=16 {
         let t = f64::from(step) / 16.0;
         let tip = whole.at(t).tip;
@@ -159,7 +160,7 @@ fn a_table_that_turns_under_a_standing_tool_draws_a_circle() {
     assert!(sagitta(count as f64 * 0.9) > 0.01, "{count}");
     // The tool points where it did: its axis asks for no pieces.
     assert_eq!(
-        motion(&state, Way::Tip, at(0.0, 30.0, 0.0, 5.0), at(TAU, 30.0, 0.0, 5.0))
+        motion(&state, Interpolation::Tip, at(0.0, 30.0, 0.0, 5.0), at(TAU, 30.0, 0.0, 5.0))
             .pieces(0.01, 1e-3),
         1
     );
@@ -168,20 +169,21 @@ fn a_table_that_turns_under_a_standing_tool_draws_a_circle() {
 #[test]
 fn arcs_splines_and_kept_tips_go_as_they_say() {
     let state = turntable();
-    let way = Way::Arc { centre: V::new(0.0, 0.0, 9.0), normal: -V::z(), sweep: 0.75 * TAU };
+    let way =
+        Interpolation::Arc { centre: V::new(0.0, 0.0, 9.0), normal: -V::z(), sweep: 0.75 * TAU };
     let mut arc = motion(&state, way, at(0.0, 10.0, 0.0, 0.0), at(0.0, 0.0, 10.0, 3.0));
     assert!((arc.at(1.0 / 3.0).tip - V::new(0.0, -10.0, 1.0)).norm() < 1e-12);
     assert!((arc.at(2.0 / 3.0).tip - V::new(-10.0, 0.0, 2.0)).norm() < 1e-12);
     assert!((arc.at(1.0).tip - arc.to.pose.tip).norm() < 1e-12);
     // A cubic from the corners of a square is Bernstein's sum.
     let corners = [V::zeros(), V::x() * 6.0, V::new(6.0, 6.0, 0.0), V::y() * 6.0];
-    let way = Arc::new(SplineWay {
+    let way = Arc::new(BSpline {
         degree: 3,
         knots: vec![0.0, 0.0, 0.0, 0.0, 2.0, 2.0, 2.0, 2.0],
         poles: corners.iter().map(|corner| (*corner, 1.0)).collect(),
     });
     assert!(way.is_sound());
-    arc.way = Way::Spline(Arc::clone(&way));
+    arc.way = Interpolation::Spline(Arc::clone(&way));
     for step in 0..=10 {
         let t = f64::from(step) / 10.0;
         let s = 1.0 - t;
@@ -192,7 +194,7 @@ fn arcs_splines_and_kept_tips_go_as_they_say() {
     }
     // Weights make a quarter of a circle of a parabola.
     let half = std::f64::consts::FRAC_1_SQRT_2;
-    let circle = SplineWay {
+    let circle = BSpline {
         degree: 2,
         knots: vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0],
         poles: vec![(V::x(), 1.0), (V::new(1.0, 1.0, 0.0), half), (V::y(), 1.0)],
@@ -249,7 +251,7 @@ fn rapid(state: &Arc<State>, from: Joints, to: Joints, machine: bool) -> Vec<Don
     vec![Done::Motion(Motion {
         kind: MotionKind::Rapid,
         machine,
-        ..motion(state, Way::Axes, from, to)
+        ..motion(state, Interpolation::Axes, from, to)
     })]
 }
 
@@ -270,7 +272,7 @@ fn what_only_the_first_machine_does_is_no_path_of_the_part() {
         rapid(&state, at(1.0, 50.0, 20.0, 10.0), at(1.0, 50.0, 20.0, 2.0), false),
         vec![Done::Motion(motion(
             &state,
-            Way::Axes,
+            Interpolation::Axes,
             at(1.0, 50.0, 20.0, 2.0),
             at(1.0, 60.0, 20.0, 2.0),
         ))],
@@ -302,7 +304,8 @@ fn what_only_the_first_machine_does_is_no_path_of_the_part() {
 #[test]
 fn a_swing_of_the_table_at_feed_is_cut_into_chords_of_its_own_speed() {
     let state = turntable();
-    let swing = motion(&state, Way::Axes, at(0.0, 30.0, 0.0, 5.0), at(1.0, 60.0, 0.0, 5.0));
+    let swing =
+        motion(&state, Interpolation::Axes, at(0.0, 30.0, 0.0, 5.0), at(1.0, 60.0, 0.0, 5.0));
     let items = course(vec![vec![Done::Motion(swing.clone())]]);
     let pieces: Vec<&Piece> = items
         .iter()

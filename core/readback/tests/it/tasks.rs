@@ -3,12 +3,12 @@
 use std::io::Cursor;
 
 use post_machine::description::{Machine, Source, load};
-use post_motion::{Corner, Pace, Task, Waiting};
+use post_motion::{CornerMode, MovePace, Task, WaitReason};
 use post_plugin::{Capabilities, Language, VocabularyWord};
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
 use post_readback::tasks::{Planned, Tasks};
-use post_readback::{Offsets, Way};
+use post_readback::{Interpolation, Offsets};
 use post_testkit::repository;
 
 use crate::interpret::LETTERS;
@@ -46,7 +46,7 @@ fn tasks(machine: &Machine, program: &str) -> (Vec<Planned>, Vec<String>) {
 }
 
 /// Line and corner of each move, or line and seconds of each wait.
-fn outline(planned: &[Planned]) -> Vec<(u64, Result<Corner, f64>)> {
+fn outline(planned: &[Planned]) -> Vec<(u64, Result<CornerMode, f64>)> {
     let each = planned.iter().map(|planned| match &planned.task {
         Task::Move(step) => (step.line, Ok(step.corner)),
         Task::Wait { line, seconds, .. } => (*line, Err(*seconds)),
@@ -54,8 +54,8 @@ fn outline(planned: &[Planned]) -> Vec<(u64, Result<Corner, f64>)> {
     each.collect()
 }
 
-const BLEND: Result<Corner, f64> = Ok(Corner::Blend { tolerance: None });
-const STOP: Result<Corner, f64> = Ok(Corner::Stop);
+const BLEND: Result<CornerMode, f64> = Ok(CornerMode::Blend { tolerance: None });
+const STOP: Result<CornerMode, f64> = Ok(CornerMode::Stop);
 
 #[test]
 fn a_control_stands_still_where_it_waits_and_at_rapids() {
@@ -88,7 +88,7 @@ fn a_control_stands_still_where_it_waits_and_at_rapids() {
     let Task::Move(cut) = &planned[2].task else {
         panic!("a cut");
     };
-    assert_eq!((cut.pace, &cut.way), (Pace::Minutes(10.0 / 600.0), &Way::Axes));
+    assert_eq!((cut.pace, &cut.way), (MovePace::Minutes(10.0 / 600.0), &Interpolation::Axes));
     assert_eq!((planned[2].feed, planned[2].rapid), (600.0, false));
     assert_eq!((planned[1].feed, planned[1].rapid), (0.0, true));
 }
@@ -99,8 +99,8 @@ fn the_machine_file_says_what_a_program_leaves_open() {
         "T1 M6\nM3 S600\nG0 X0 Y0 Z-10.\nX10.\nG1 X20. F600.\nX30.\nG61 X40.\nG64 X50.\nX60.\n";
     let motion = "[motion]\ncorner = \"path\"\ncorner_tolerance = 0.01\nrapids = \"blend\"\ntool_change = 6\nspindle = 1.5";
     let (planned, notes) = tasks(&machine(motion), program);
-    let path = Ok(Corner::Path);
-    let within = Ok(Corner::Blend { tolerance: Some(0.01) });
+    let path = Ok(CornerMode::Path);
+    let within = Ok(CornerMode::Blend { tolerance: Some(0.01) });
     let outline = outline(&planned);
     assert_eq!(
         outline,
@@ -117,13 +117,13 @@ fn the_machine_file_says_what_a_program_leaves_open() {
             (9, within),
         ]
     );
-    let waits: Vec<Waiting> = planned
+    let waits: Vec<WaitReason> = planned
         .iter()
         .filter_map(|planned| match planned.task {
             Task::Wait { why, .. } => Some(why),
             Task::Move(_) => None,
         })
         .collect();
-    assert_eq!(waits, [Waiting::ToolChange, Waiting::Spindle]);
+    assert_eq!(waits, [WaitReason::ToolChange, WaitReason::Spindle]);
     assert!(notes.is_empty(), "{notes:?}");
 }

@@ -9,10 +9,10 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 use post_plugin::Lengths;
 use post_readback::course::{Course, Curve, Item, Piece, Reach};
-use post_readback::verify::{BlockReport, CutPath, Rules, Verification, Verifier};
+use post_readback::verify::{BlockReport, CutPath, Verification, Verifier, VerifyRules};
 use post_readback::{
-    Coolants, Corners, CycleCall, CycleKind, Done, Motion, MotionKind, Spindle, Stance, State,
-    Told, Way,
+    Coolants, Corners, CycleCall, CycleKind, Done, Interpolation, Motion, MotionKind, Spindle,
+    Stance, State, Told,
 };
 use post_testkit::Rng;
 use post_testmachines::frechet::frechet;
@@ -157,7 +157,7 @@ impl Does {
             line: self.line,
             number: None,
             kind,
-            way: Way::Axes,
+            way: Interpolation::Axes,
             from: stance(self.at),
             to: stance(to),
             feed: 500.0,
@@ -194,7 +194,7 @@ impl Does {
 
 fn verify(does: &Does, asks: Asks) -> (Verification, Vec<BlockReport>) {
     let machine = machine();
-    let rules = Rules { length_from: Lengths::Registers, ..Rules::of(&machine) };
+    let rules = VerifyRules { length_from: Lengths::Registers, ..VerifyRules::of(&machine) };
     let mut verifier = {
         let mut path = CutPath::new(0.0);
         asks.items.iter().for_each(|item| path.take(item));

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Corner;
+use super::Vertex;
 
 /// Cells along the longest side of the box, to begin with.
 const CELLS: f64 = 256.0;
@@ -13,21 +13,21 @@ const MOST_KEPT: usize = 200_000;
 /// Factor by which the cells are made wider, step by step.
 const WIDER: f64 = 1.2;
 
-type Cell = [i16; 3];
+type GridCell = [i16; 3];
 
 /// Triangles between cells of a grid.
-pub(super) struct Coarse {
-    low: Corner,
-    middle: Corner,
+pub(super) struct ClusteredMesh {
+    low: Vertex,
+    middle: Vertex,
     size: f64,
     /// The corner of each cell that is farthest from the middle of the box: edges and corners of a body stay.
-    cells: BTreeMap<Cell, Corner>,
-    triangles: BTreeSet<[Cell; 3]>,
+    cells: BTreeMap<GridCell, Vertex>,
+    triangles: BTreeSet<[GridCell; 3]>,
 }
 
-impl Coarse {
+impl ClusteredMesh {
     /// A grid over a box.
-    pub(super) fn new(low: Corner, high: Corner) -> Self {
+    pub(super) fn new(low: Vertex, high: Vertex) -> Self {
         let sides = low.iter().zip(high).map(|(low, high)| high - low);
         Self {
             low,
@@ -39,7 +39,7 @@ impl Coarse {
     }
 
     /// Takes a triangle.
-    pub(super) fn add(&mut self, triangle: [Corner; 3]) {
+    pub(super) fn add(&mut self, triangle: [Vertex; 3]) {
         let cells = triangle.map(|corner| self.join(corner));
         keep(&mut self.triangles, cells);
         // Triangles that have shrunk leave their cells behind.
@@ -49,7 +49,7 @@ impl Coarse {
     }
 
     /// At most `most` triangles, and at least one if there are any.
-    pub(super) fn triangles(mut self, most: usize) -> Vec<[Corner; 3]> {
+    pub(super) fn triangles(mut self, most: usize) -> Vec<[Vertex; 3]> {
         while self.triangles.len() > most {
             let wider = self.wider();
             if wider.triangles.is_empty() {
@@ -63,7 +63,7 @@ impl Coarse {
         triangles.map(|triangle| triangle.map(|cell| self.cells[&cell])).collect()
     }
 
-    fn cell(&self, corner: Corner) -> Cell {
+    fn cell(&self, corner: Vertex) -> GridCell {
         std::array::from_fn(|at| ((corner[at] - self.low[at]) / self.size) as i16)
     }
 
@@ -86,9 +86,9 @@ impl Coarse {
     }
 
     /// A corner comes to those of its cell.
-    fn join(&mut self, corner: Corner) -> Cell {
+    fn join(&mut self, corner: Vertex) -> GridCell {
         let cell = self.cell(corner);
-        let far = |corner: Corner| -> f64 {
+        let far = |corner: Vertex| -> f64 {
             let way = corner.iter().zip(self.middle);
             way.map(|(to, from)| (to - from) * (to - from)).sum()
         };
@@ -101,7 +101,7 @@ impl Coarse {
 }
 
 /// Keeps a triangle that has not shrunk, its least cell first: the same one is kept once.
-fn keep(triangles: &mut BTreeSet<[Cell; 3]>, [a, b, c]: [Cell; 3]) {
+fn keep(triangles: &mut BTreeSet<[GridCell; 3]>, [a, b, c]: [GridCell; 3]) {
     if a == b || b == c || c == a {
         return;
     }

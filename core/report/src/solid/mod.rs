@@ -9,7 +9,7 @@ use std::io::{BufRead, Seek};
 pub use stl::StlFault;
 
 /// A corner, mm.
-pub type Corner = [f64; 3];
+pub type Vertex = [f64; 3];
 
 /// Triangles of all solids of one machine that a frame draws.
 pub const MOST_TRIANGLES: usize = 3_800;
@@ -22,14 +22,14 @@ const SCALE: f64 = 100.0;
 
 /// A shape as it is drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Solid {
+pub struct DrawnSolid {
     /// Faces of the shape.
-    pub triangles: Vec<[Corner; 3]>,
+    pub triangles: Vec<[Vertex; 3]>,
     /// Edges at which the shape is bent sharply or ends, the longest first.
-    pub edges: Vec<[Corner; 2]>,
+    pub edges: Vec<[Vertex; 2]>,
 }
 
-impl Solid {
+impl DrawnSolid {
     /// Reads an STL file, binary or text. More triangles than `most` become fewer: corners that are close together
     /// become one of them, and triangles that have shrunk to a line go. Memory grows with what is kept and not with the
     /// file.
@@ -53,7 +53,7 @@ impl Solid {
             }
         })?;
         if count > most {
-            let mut coarse = coarse::Coarse::new(low, high);
+            let mut coarse = coarse::ClusteredMesh::new(low, high);
             stl::read(file, &mut |triangle| coarse.add(triangle))?;
             triangles = coarse.triangles(most);
         }

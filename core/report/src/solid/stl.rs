@@ -8,7 +8,7 @@
 use std::fmt;
 use std::io::{self, BufRead, Read as _, Seek, SeekFrom};
 
-use super::Corner;
+use super::Vertex;
 
 /// Largest coordinate, mm: a kilometre is no machine.
 const FARTHEST: f64 = 1e6;
@@ -72,7 +72,7 @@ impl From<io::Error> for StlFault {
 /// Hands every triangle of a file to `take`, from the file's beginning.
 pub(super) fn read(
     file: &mut (impl BufRead + Seek),
-    take: &mut dyn FnMut([Corner; 3]),
+    take: &mut dyn FnMut([Vertex; 3]),
 ) -> Result<(), StlFault> {
     let length = file.seek(SeekFrom::End(0))?;
     file.rewind()?;
@@ -80,7 +80,7 @@ pub(super) fn read(
         return Err(StlFault::TooLong(length));
     }
     let mut count = 0;
-    let mut take = |triangle: [Corner; 3]| {
+    let mut take = |triangle: [Vertex; 3]| {
         count += 1;
         let near = |value: &f64| value.abs() <= FARTHEST;
         if !triangle.iter().flatten().all(near) {
@@ -116,7 +116,7 @@ pub(super) fn read(
 fn binary(
     file: &mut impl BufRead,
     count: u32,
-    take: &mut dyn FnMut([Corner; 3]) -> Result<(), StlFault>,
+    take: &mut dyn FnMut([Vertex; 3]) -> Result<(), StlFault>,
 ) -> Result<(), StlFault> {
     let mut record = [0; 50];
     for _ in 0..count {
@@ -131,7 +131,7 @@ fn binary(
 
 fn text(
     file: &mut impl BufRead,
-    take: &mut dyn FnMut([Corner; 3]) -> Result<(), StlFault>,
+    take: &mut dyn FnMut([Vertex; 3]) -> Result<(), StlFault>,
 ) -> Result<(), StlFault> {
     let mut line = Vec::new();
     let mut corners = Vec::with_capacity(3);
@@ -169,7 +169,7 @@ fn text(
             }
             "vertex" => return fault("a facet has three corners, and this is a fourth"),
             "endloop" => {
-                let Ok(triangle) = <[Corner; 3]>::try_from(corners.as_slice()) else {
+                let Ok(triangle) = <[Vertex; 3]>::try_from(corners.as_slice()) else {
                     return fault("a facet has three corners, and here it ends with fewer");
                 };
                 take(triangle)?;

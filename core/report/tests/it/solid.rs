@@ -1,10 +1,10 @@
 use std::f64::consts::PI;
 use std::io::Cursor;
 
-use post_report::solid::{Corner, Solid};
+use post_report::solid::{DrawnSolid, Vertex};
 
 /// A binary file whose header begins as a text does.
-fn binary(triangles: &[[Corner; 3]]) -> Vec<u8> {
+fn binary(triangles: &[[Vertex; 3]]) -> Vec<u8> {
     let mut file = [b' '; 80].to_vec();
     file[..12].copy_from_slice(b"solid column");
     file.extend(u32::try_from(triangles.len()).unwrap().to_le_bytes());
@@ -18,7 +18,7 @@ fn binary(triangles: &[[Corner; 3]]) -> Vec<u8> {
     file
 }
 
-fn text(triangles: &[[Corner; 3]]) -> Vec<u8> {
+fn text(triangles: &[[Vertex; 3]]) -> Vec<u8> {
     let mut file = String::from("SOLID Tisch \r\n");
     for triangle in triangles {
         file.push_str("  facet normal 0 0 0\r\n    outer loop\r\n");
@@ -31,16 +31,16 @@ fn text(triangles: &[[Corner; 3]]) -> Vec<u8> {
     file.into_bytes()
 }
 
-fn read(file: &[u8], most: usize) -> Solid {
-    Solid::read(&mut Cursor::new(file), most).unwrap()
+fn read(file: &[u8], most: usize) -> DrawnSolid {
+    DrawnSolid::read(&mut Cursor::new(file), most).unwrap()
 }
 
 fn refused(file: &[u8]) -> String {
-    Solid::read(&mut Cursor::new(file), 100).unwrap_err().to_string()
+    DrawnSolid::read(&mut Cursor::new(file), 100).unwrap_err().to_string()
 }
 
 /// A box from the origin, 12 triangles.
-fn cuboid(x: f64, y: f64, z: f64) -> Vec<[Corner; 3]> {
+fn cuboid(x: f64, y: f64, z: f64) -> Vec<[Vertex; 3]> {
     let corner = |bits: usize| {
         let side = |bit: usize, length: f64| if bits & bit == 0 { 0.0 } else { length };
         [side(1, x), side(2, y), side(4, z)]
@@ -55,7 +55,7 @@ fn cuboid(x: f64, y: f64, z: f64) -> Vec<[Corner; 3]> {
 }
 
 /// A ball about a point: a cube of 12 n² triangles, blown up.
-fn ball(middle: Corner, radius: f64, n: usize) -> Vec<[Corner; 3]> {
+fn ball(middle: Vertex, radius: f64, n: usize) -> Vec<[Vertex; 3]> {
     let side = |at: usize| 2.0 * at as f64 / n as f64 - 1.0;
     let point = |face: usize, i: usize, j: usize| {
         let up = if face < 3 { 1.0 } else { -1.0 };
@@ -100,7 +100,7 @@ fn many_triangles_become_few_of_the_same_shape() {
         let size = radius * (4.0 * PI * 2.0 / count as f64).sqrt();
         let (mut low, mut high) = (middle, middle);
         for corner in solid.triangles.iter().flatten() {
-            let from: Corner = std::array::from_fn(|at| corner[at] - middle[at]);
+            let from: Vertex = std::array::from_fn(|at| corner[at] - middle[at]);
             let far = from.iter().map(|value| value * value).sum::<f64>().sqrt();
             assert!((far - radius).abs() < size, "{far}");
             for at in 0..3 {
@@ -134,12 +134,12 @@ fn corners_of_a_body_stay() {
     let solid = read(&binary(&triangles), 800);
     assert!(solid.triangles.len() <= 800);
     for corner in 0..8 {
-        let wanted: Corner =
+        let wanted: Vertex =
             std::array::from_fn(|at| if corner >> at & 1 == 1 { 1000.0 } else { 0.0 });
         assert!(solid.triangles.iter().flatten().any(|place| *place == wanted), "{wanted:?}");
     }
     // What is no surface stays something.
-    let cloud: Vec<[Corner; 3]> = (0..5000)
+    let cloud: Vec<[Vertex; 3]> = (0..5000)
         .map(|at| {
             let place = |more: usize| {
                 let mixed = (at * 7919 + more * 104_729) % 1_000_003;

@@ -1,5 +1,5 @@
 use miniz_oxide::inflate::decompress_to_vec;
-use post_report::table::{Column, TableWriter};
+use post_report::table::{TableColumn, TableWriter};
 
 use crate::integers;
 
@@ -34,8 +34,11 @@ fn parts(text: &[u8]) -> Vec<Vec<u8>> {
 
 #[test]
 fn rows_come_back_in_their_chunks() {
-    let columns =
-        vec![Column::new("a", "mm", 3), Column::new("b", "", 0), Column::new("c", "deg", 5)];
+    let columns = vec![
+        TableColumn::new("a", "mm", 3),
+        TableColumn::new("b", "", 0),
+        TableColumn::new("c", "deg", 5),
+    ];
     let mut table = TableWriter::new("t", columns, Vec::new());
     let row = |place: usize| {
         let t = place as f64;
@@ -74,7 +77,7 @@ fn rows_come_back_in_their_chunks() {
 #[test]
 fn what_is_no_number_is_refused() {
     for value in [f64::NAN, f64::INFINITY, 1e300] {
-        let mut table = TableWriter::new("t", vec![Column::new("a", "mm", 3)], Vec::new());
+        let mut table = TableWriter::new("t", vec![TableColumn::new("a", "mm", 3)], Vec::new());
         let fault = table.row(&[value]).unwrap_err().to_string();
         assert!(fault.contains("column a"), "{fault}");
     }

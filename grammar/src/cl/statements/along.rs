@@ -2,7 +2,7 @@
 //! parentheses.
 
 use super::{Read, other};
-use crate::cl::line::{Line, number_of};
+use crate::cl::line::{LogicalLine, number_of};
 use crate::cl::record::{AlongArc, Direction, Point, Statement};
 use crate::fault::SyntaxFault;
 
@@ -10,11 +10,11 @@ use crate::fault::SyntaxFault;
 #[derive(Debug, PartialEq)]
 struct Geometry {
     word: String,
-    items: Vec<Item>,
+    items: Vec<NestedItem>,
 }
 
 #[derive(Debug, PartialEq)]
-enum Item {
+enum NestedItem {
     Number(f64),
     Word(String),
     Geometry(Geometry),
@@ -24,7 +24,7 @@ enum Item {
 const DEEPEST: usize = 8;
 
 /// `PSIS/(PLANE/(POINT/x,y,z),PERPTO,(VECTOR/i,j,k))`; any other surface is left to those who know it.
-pub(crate) fn psis(line: &Line<'_>) -> Read<Statement> {
+pub(crate) fn psis(line: &LogicalLine<'_>) -> Read<Statement> {
     let (_, items) = nested(line)?;
     Ok(match items.as_slice() {
         [plane] if let Some((_, normal)) = plane_across(plane) => {
@@ -35,13 +35,13 @@ pub(crate) fn psis(line: &Line<'_>) -> Read<Statement> {
 }
 
 /// `TLON,GOFWD/` with an arc in its two forms; anything else is left to those who know it.
-pub(crate) fn tlon(line: &Line<'_>) -> Read<Statement> {
+pub(crate) fn tlon(line: &LogicalLine<'_>) -> Read<Statement> {
     let (modifier, items) = nested(line)?;
     if modifier != ",GOFWD" {
         return Ok(other(line, false));
     }
     let arc = match items.as_slice() {
-        [curve, Item::Word(on), until] if on == "ON" => {
+        [curve, NestedItem::Word(on), until] if on == "ON" => {
             circle(curve, until).or_else(|| cylinder(curve, until)).transpose()
         }
         _ => Ok(None),
@@ -56,7 +56,7 @@ pub(crate) fn tlon(line: &Line<'_>) -> Read<Statement> {
 }
 
 /// `(CIRCLE/c,r),ON,(LINE/c,end)`. The line begins at the centre.
-fn circle(curve: &Item, until: &Item) -> Option<Result<AlongArc, &'static str>> {
+fn circle(curve: &NestedItem, until: &NestedItem) -> Option<Result<AlongArc, &'static str>> {
     let [x, y, z, radius] = numbers("CIRCLE", curve)?;
     let [from_x, from_y, from_z, ex, ey, ez] = numbers("LINE", until)?;
     if [from_x, from_y, from_z] != [x, y, z] {
@@ -66,9 +66,9 @@ fn circle(curve: &Item, until: &Item) -> Option<Result<AlongArc, &'static str>> 
 }
 
 /// `(CYLNDR/c,u,r),ON,(PLANE/PERPTO,(PLANE/(POINT/…),PERPTO,(VECTOR/…)),(POINT/c),(POINT/end))`.
-fn cylinder(curve: &Item, until: &Item) -> Option<Result<AlongArc, &'static str>> {
+fn cylinder(curve: &NestedItem, until: &NestedItem) -> Option<Result<AlongArc, &'static str>> {
     let [x, y, z, i, j, k, radius] = numbers("CYLNDR", curve)?;
-    let [Item::Word(across), plane, through, end] = behind("PLANE", until)? else {
+    let [NestedItem::Word(across), plane, through, end] = behind("PLANE", until)? else {
         return None;
     };
     let (_, normal) = plane_across(plane)?;
@@ -103,9 +103,9 @@ fn size(of: Direction) -> f64 {
 }
 
 /// `(PLANE/(POINT/x,y,z),PERPTO,(VECTOR/i,j,k))`: a point of it and its normal.
-fn plane_across(item: &Item) -> Option<(Point, Direction)> {
+fn plane_across(item: &NestedItem) -> Option<(Point, Direction)> {
     match behind("PLANE", item)? {
-        [point, Item::Word(across), normal] if across == "PERPTO" => {
+        [point, NestedItem::Word(across), normal] if across == "PERPTO" => {
             Some((numbers("POINT", point)?, numbers("VECTOR", normal)?))
         }
         _ => None,
@@ -113,15 +113,15 @@ fn plane_across(item: &Item) -> Option<(Point, Direction)> {
 }
 
 /// What stands behind the word, if the item is geometry of that word.
-fn behind<'i>(word: &str, item: &'i Item) -> Option<&'i [Item]> {
+fn behind<'i>(word: &str, item: &'i NestedItem) -> Option<&'i [NestedItem]> {
     match item {
-        Item::Geometry(geometry) if geometry.word == word => Some(&geometry.items),
+        NestedItem::Geometry(geometry) if geometry.word == word => Some(&geometry.items),
         _ => None,
     }
 }
 
 /// The `N` numbers after the word; a fault if anything else stands there.
-fn numbers<const N: usize>(word: &str, item: &Item) -> Option<[f64; N]> {
+fn numbers<const N: usize>(word: &str, item: &NestedItem) -> Option<[f64; N]> {
     let items = behind(word, item)?;
     let mut numbers = [0.0; N];
     if items.len() != N {
@@ -129,7 +129,7 @@ fn numbers<const N: usize>(word: &str, item: &Item) -> Option<[f64; N]> {
     }
     for (number, item) in numbers.iter_mut().zip(items) {
         match item {
-            Item::Number(value) => *number = *value,
+            NestedItem::Number(value) => *number = *value,
             _ => return None,
         }
     }
@@ -137,7 +137,7 @@ fn numbers<const N: usize>(word: &str, item: &Item) -> Option<[f64; N]> {
 }
 
 /// What stands between word and slash, in capitals and without blanks, and the items behind it.
-fn nested(line: &Line<'_>) -> Read<(String, Vec<Item>)> {
+fn nested(line: &LogicalLine<'_>) -> Read<(String, Vec<NestedItem>)> {
     let text = line.text.split_once("$$").map_or(line.text, |(text, _)| text);
     let text = text.get(line.word_span.end..).unwrap_or_default();
     let mut code: String = text.split_whitespace().collect();
@@ -156,7 +156,7 @@ fn nested(line: &Line<'_>) -> Read<(String, Vec<Item>)> {
 }
 
 /// The items at the start of `rest`, which is left with what follows them.
-fn items(rest: &mut &str, depth: usize) -> Option<Vec<Item>> {
+fn items(rest: &mut &str, depth: usize) -> Option<Vec<NestedItem>> {
     let mut items = Vec::new();
     loop {
         items.push(item(rest, depth)?);
@@ -167,7 +167,7 @@ fn items(rest: &mut &str, depth: usize) -> Option<Vec<Item>> {
     }
 }
 
-fn item(rest: &mut &str, depth: usize) -> Option<Item> {
+fn item(rest: &mut &str, depth: usize) -> Option<NestedItem> {
     if let Some(inside) = rest.strip_prefix('(') {
         if depth == DEEPEST {
             return None;
@@ -180,7 +180,7 @@ fn item(rest: &mut &str, depth: usize) -> Option<Item> {
         let items = items(rest, depth + 1)?;
         *rest = rest.strip_prefix(')')?;
         let word = word.to_owned();
-        return Some(Item::Geometry(Geometry { word, items }));
+        return Some(NestedItem::Geometry(Geometry { word, items }));
     }
     let end = rest.find([',', '(', ')', '/']).unwrap_or(rest.len());
     let (text, behind) = rest.split_at(end);
@@ -189,7 +189,7 @@ fn item(rest: &mut &str, depth: usize) -> Option<Item> {
         return None;
     }
     Some(match number_of(text) {
-        Some(value) => Item::Number(value),
-        None => Item::Word(text.to_owned()),
+        Some(value) => NestedItem::Number(value),
+        None => NestedItem::Word(text.to_owned()),
     })
 }

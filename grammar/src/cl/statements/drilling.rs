@@ -3,7 +3,7 @@
 use super::Read;
 use super::items::{Items, word};
 use super::technology::feed_unit;
-use crate::cl::line::Item;
+use crate::cl::line::LineItem;
 use crate::cl::record::{Argument, Cycle, CycleDefinition, FeedRate, Statement};
 
 /// Labelled numbers (NX, Creo, SolidWorks CAM) go to their field; bare ones to the first free one of depth,
@@ -55,7 +55,7 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
                 // `RTRCTO,AUTO`, `DWELL,REV,2`
                 (None, _) => {
                     cycle.rest.push(item.argument());
-                    cycle.rest.extend(items.take().map(Item::argument));
+                    cycle.rest.extend(items.take().map(LineItem::argument));
                     cycle.rest.extend(items.take_number().map(Argument::Number));
                 }
             },
@@ -94,7 +94,7 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
         }
     }
     if cycle.kinds.is_empty() {
-        let span = items.line.items.first().map_or_else(|| items.rest(), Item::span);
+        let span = items.line.items.first().map_or_else(|| items.rest(), LineItem::span);
         return Err(items.fault(span, "CYCLE needs the kind of cycle", FORM));
     }
     Ok(Statement::Cycle(Cycle::Define(Box::new(cycle))))

@@ -3,7 +3,7 @@
 use super::Read;
 use super::items::{Items, word};
 use super::technology::sense;
-use crate::cl::record::{ArcMove, Circle, Delta, Rotate, Sense, Statement};
+use crate::cl::record::{ArcMove, CircleRecord, Delta, Rotate, Sense, Statement};
 use crate::fault::SyntaxFault;
 
 pub(crate) fn goto(items: &mut Items<'_, '_>) -> Read<Statement> {
@@ -99,7 +99,7 @@ pub(crate) fn circle(items: &mut Items<'_, '_>) -> Read<Statement> {
             return Err(SyntaxFault { span: fault.span.start..end, ..fault });
         }
     };
-    let mut circle = Circle {
+    let mut circle = CircleRecord {
         centre: [numbers[0], numbers[1], numbers[2]],
         axis: [numbers[3], numbers[4], numbers[5]],
         radius,

@@ -4,23 +4,23 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use super::{Read, other};
-use crate::cl::line::{Item, Line, SHOWN};
+use crate::cl::line::{LineItem, LogicalLine, SHOWN};
 use crate::cl::record::{Direction, Point, Statement};
 use crate::fault::SyntaxFault;
 use crate::text::excerpt;
 
 /// The items of a line, taken one by one.
 pub(crate) struct Items<'l, 't> {
-    pub(super) line: &'l Line<'t>,
+    pub(super) line: &'l LogicalLine<'t>,
     pub(super) next: usize,
 }
 
 impl<'l, 't> Items<'l, 't> {
-    pub(super) fn peek(&self) -> Option<&'l Item<'t>> {
+    pub(super) fn peek(&self) -> Option<&'l LineItem<'t>> {
         self.line.items.get(self.next)
     }
 
-    pub(super) fn take(&mut self) -> Option<&'l Item<'t>> {
+    pub(super) fn take(&mut self) -> Option<&'l LineItem<'t>> {
         let item = self.peek()?;
         self.next += 1;
         Some(item)
@@ -36,7 +36,7 @@ impl<'l, 't> Items<'l, 't> {
     /// The number that must follow `word`.
     pub(super) fn number(&mut self, word: &str, form: &str) -> Read<f64> {
         match self.peek() {
-            Some(Item { value: Some(value), .. }) => {
+            Some(LineItem { value: Some(value), .. }) => {
                 self.next += 1;
                 Ok(*value)
             }
@@ -47,7 +47,7 @@ impl<'l, 't> Items<'l, 't> {
 
     /// A tool or register number.
     pub(super) fn whole(&mut self, word: &str, form: &str) -> Read<u32> {
-        let span = self.peek().map_or_else(|| self.rest(), Item::span);
+        let span = self.peek().map_or_else(|| self.rest(), LineItem::span);
         let value = self.number(word, form)?;
         if value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value) {
             return Ok(value as u32);
@@ -57,7 +57,7 @@ impl<'l, 't> Items<'l, 't> {
 
     /// All items, as numbers, at least one.
     pub(super) fn numbers(&self, form: &str) -> Read<Vec<f64>> {
-        let number = |item: &Item<'_>| {
+        let number = |item: &LineItem<'_>| {
             item.value.ok_or_else(|| self.unexpected(item, "a number is expected", form))
         };
         let numbers: Vec<f64> = self.line.items.iter().map(number).collect::<Read<_>>()?;
@@ -139,7 +139,7 @@ impl<'l, 't> Items<'l, 't> {
         SyntaxFault::new(self.line.text, span, message).help(format!("expected {form}"))
     }
 
-    pub(super) fn unexpected(&self, item: &Item<'_>, message: &str, form: &str) -> SyntaxFault {
+    pub(super) fn unexpected(&self, item: &LineItem<'_>, message: &str, form: &str) -> SyntaxFault {
         let message = match item.text {
             "" => format!("{message}, nothing stands between the commas"),
             text => format!("{message}, not `{}`", excerpt(text, SHOWN)),
@@ -155,7 +155,7 @@ impl<'l, 't> Items<'l, 't> {
 }
 
 /// The item as a word in capitals; empty if it is a number.
-pub(super) fn word<'t>(item: &Item<'t>) -> Cow<'t, str> {
+pub(super) fn word<'t>(item: &LineItem<'t>) -> Cow<'t, str> {
     match item.value {
         Some(_) => Cow::Borrowed(""),
         None if item.text.bytes().any(|byte| byte.is_ascii_lowercase()) => {

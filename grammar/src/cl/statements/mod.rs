@@ -11,9 +11,9 @@ mod items;
 pub(super) mod technology;
 pub(super) mod tooling;
 
-use super::line::{Item, Line};
+use super::line::{LineItem, LogicalLine};
 use super::record::Statement;
-use super::vocabulary::Behind;
+use super::vocabulary::ArgumentForm;
 use crate::fault::SyntaxFault;
 use items::Items;
 
@@ -23,13 +23,13 @@ type Read<T> = Result<T, SyntaxFault>;
 pub(super) type ReadItems = fn(&mut Items<'_, '_>) -> Read<Statement>;
 
 /// Reads a line whose geometry stands in parentheses.
-pub(super) type ReadGeometry = fn(&Line<'_>) -> Read<Statement>;
+pub(super) type ReadGeometry = fn(&LogicalLine<'_>) -> Read<Statement>;
 
 /// Takes the text behind one word: its spelling in capitals, the text without blanks around it.
 pub(super) type ReadText = fn(&'static str, String) -> Statement;
 
 /// A directive. Only those that carry facts are typed; the rest is meant for one program and comes as it stands.
-pub(super) fn directive(line: &Line<'_>) -> Read<Statement> {
+pub(super) fn directive(line: &LogicalLine<'_>) -> Read<Statement> {
     match line.word.as_ref() {
         "CUTTER" | "CSYS" | "CUTCOM_GEOMETRY_TYPE" => match statement(line)? {
             Statement::Other { .. } => Ok(other(line, true)),
@@ -40,10 +40,10 @@ pub(super) fn directive(line: &Line<'_>) -> Read<Statement> {
 }
 
 /// A statement of its own.
-pub(super) fn statement(line: &Line<'_>) -> Read<Statement> {
+pub(super) fn statement(line: &LogicalLine<'_>) -> Read<Statement> {
     let read = match line.known.map(|word| word.behind) {
-        Some(Behind::Items(read)) => read,
-        Some(Behind::Geometry(read)) => return read(line),
+        Some(ArgumentForm::Items(read)) => read,
+        Some(ArgumentForm::Geometry(read)) => return read(line),
         _ => return Ok(other(line, false)),
     };
     if let Some(first) = line.items.first().filter(|_| !line.slash) {
@@ -61,10 +61,10 @@ pub(super) fn statement(line: &Line<'_>) -> Read<Statement> {
     read(&mut Items { line, next: 0 })
 }
 
-fn other(line: &Line<'_>, directive: bool) -> Statement {
+fn other(line: &LogicalLine<'_>, directive: bool) -> Statement {
     Statement::Other {
         word: line.word.clone(),
-        arguments: line.items.iter().map(Item::argument).collect(),
+        arguments: line.items.iter().map(LineItem::argument).collect(),
         directive,
     }
 }

@@ -2,9 +2,9 @@
 
 use super::Read;
 use super::items::{Items, word};
-use crate::cl::line::Item;
+use crate::cl::line::LineItem;
 use crate::cl::record::{
-    Coolant, Delay, FeedRate, FeedUnit, Sense, Spindle, SpindleUnit, Statement, Units,
+    CoolantWord, Delay, FeedRate, FeedUnit, Sense, SpindleUnit, SpindleWord, Statement, Units,
 };
 
 pub(super) fn feed_unit(word: &str) -> Option<FeedUnit> {
@@ -55,8 +55,8 @@ pub(crate) fn spindl(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str = "SPINDL/RPM,speed,CLW, SPINDL/speed,RPM,CLW, SPINDL/ON or SPINDL/OFF; units RPM, SFM, SMM (with MAXRPM,speed), senses CLW, CCLW";
     if let [item] = items.line.items.as_slice() {
         match word(item).as_ref() {
-            "OFF" => return Ok(Statement::Spindle(Spindle::Off)),
-            "LOCK" | "ORIENT" => return Ok(Statement::Spindle(Spindle::Orient)),
+            "OFF" => return Ok(Statement::Spindle(SpindleWord::Off)),
+            "LOCK" | "ORIENT" => return Ok(Statement::Spindle(SpindleWord::Orient)),
             _ => {}
         }
     }
@@ -88,7 +88,7 @@ pub(crate) fn spindl(items: &mut Items<'_, '_>) -> Read<Statement> {
     if speed.is_none() && unit.is_some() {
         return Err(items.fault(items.rest(), "SPINDL needs a number with its unit", FORM));
     }
-    Ok(Statement::Spindle(Spindle::On {
+    Ok(Statement::Spindle(SpindleWord::On {
         speed,
         unit: unit.unwrap_or(SpindleUnit::Rpm),
         sense: turning,
@@ -117,12 +117,12 @@ pub(crate) fn coolnt(items: &mut Items<'_, '_>) -> Read<Statement> {
         };
     };
     Ok(Statement::Coolant(match word(item).as_ref() {
-        "OFF" => Coolant::Off,
-        "ON" => Coolant::On,
-        "FLOOD" => Coolant::Flood,
-        "MIST" => Coolant::Mist,
-        "THRU" | "THROUGH" => Coolant::Through,
-        "AIR" => Coolant::Air,
+        "OFF" => CoolantWord::Off,
+        "ON" => CoolantWord::On,
+        "FLOOD" => CoolantWord::Flood,
+        "MIST" => CoolantWord::Mist,
+        "THRU" | "THROUGH" => CoolantWord::Through,
+        "AIR" => CoolantWord::Air,
         _ => return items.other(),
     }))
 }
@@ -175,7 +175,7 @@ pub(crate) fn subprogram(items: &mut Items<'_, '_>) -> Read<Statement> {
 }
 
 /// The one item, if it is a whole number from 0 up.
-fn only_whole(items: &[Item<'_>]) -> Option<u32> {
+fn only_whole(items: &[LineItem<'_>]) -> Option<u32> {
     let [item] = items else { return None };
     let value = item.value?;
     let whole = value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value);

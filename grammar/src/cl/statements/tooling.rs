@@ -2,7 +2,7 @@
 
 use super::Read;
 use super::items::{Items, word};
-use crate::cl::record::{Cutcom, LoadTool, Side, Statement};
+use crate::cl::record::{Cutcom, CutterSide, LoadTool, Statement};
 
 pub(crate) fn load_tool(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str =
@@ -85,9 +85,9 @@ pub(crate) fn cutcom(items: &mut Items<'_, '_>) -> Read<Statement> {
     let first = items.take().map(word).unwrap_or_default();
     let mut cutcom = Cutcom {
         side: match first.as_ref() {
-            "LEFT" => Some(Side::Left),
-            "RIGHT" => Some(Side::Right),
-            "OFF" => Some(Side::Off),
+            "LEFT" => Some(CutterSide::Left),
+            "RIGHT" => Some(CutterSide::Right),
+            "OFF" => Some(CutterSide::Off),
             "ON" => None,
             "" => {
                 items.next = 0;

@@ -2,7 +2,7 @@
 
 use super::{conversational, hash, names};
 use post_grammar::nc::{
-    Approach, Direction, NcBlock, NcExpression, NcFlow, NcItem, NcSyntax, NcValue, parse_block,
+    Approach, JumpDirection, NcBlock, NcExpression, NcFlow, NcItem, NcSyntax, NcValue, parse_block,
 };
 
 fn block(line: &str, syntax: &NcSyntax) -> NcBlock {
@@ -84,9 +84,9 @@ fn flow(flow: &NcFlow) -> String {
     match flow {
         NcFlow::Goto { target, direction, condition } => {
             let direction = match direction {
-                Direction::Anywhere => "",
-                Direction::Forward => "F",
-                Direction::Back => "B",
+                JumpDirection::Anywhere => "",
+                JumpDirection::Forward => "F",
+                JumpDirection::Back => "B",
             };
             let condition =
                 condition.as_ref().map_or(String::new(), |each| format!(" if {}", tree(each)));

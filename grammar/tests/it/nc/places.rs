@@ -1,7 +1,7 @@
 //! Going back, and looking for the places that a program jumps to.
 
 use super::{conversational, hash, names, read};
-use post_grammar::nc::{Direction, NcBlock, NcItem, NcMark, NcReader, NcSyntax, NcTarget};
+use post_grammar::nc::{JumpDirection, NcBlock, NcItem, NcMark, NcReader, NcSyntax, NcTarget};
 use std::io::Cursor;
 
 fn reader(text: &str, syntax: &NcSyntax) -> NcReader<Cursor<String>> {
@@ -60,27 +60,27 @@ fn numbers_are_found_forwards_backwards_and_around() {
     let target = NcTarget::Number;
     assert_eq!(next(&mut reader), Some(1));
     for (number, direction, expected) in [
-        (10, Direction::Forward, Some(5)),
-        (10, Direction::Back, Some(1)),
-        (10, Direction::Anywhere, Some(5)),
-        (20, Direction::Forward, Some(2)),
-        (30, Direction::Anywhere, Some(4)),
-        (100, Direction::Anywhere, None),
-        (1000, Direction::Anywhere, Some(6)),
+        (10, JumpDirection::Forward, Some(5)),
+        (10, JumpDirection::Back, Some(1)),
+        (10, JumpDirection::Anywhere, Some(5)),
+        (20, JumpDirection::Forward, Some(2)),
+        (30, JumpDirection::Anywhere, Some(4)),
+        (100, JumpDirection::Anywhere, None),
+        (1000, JumpDirection::Anywhere, Some(6)),
     ] {
         let found = reader.find(&target(number), direction).unwrap();
         assert_eq!(line(found), expected, "N{number} {direction:?}");
     }
     // Looking moves nothing, and what was found once is not looked for again.
     let searched = reader.lines_searched();
-    assert_eq!(line(reader.find(&target(20), Direction::Forward).unwrap()), Some(2));
+    assert_eq!(line(reader.find(&target(20), JumpDirection::Forward).unwrap()), Some(2));
     assert_eq!(reader.lines_searched(), searched);
     assert_eq!(next(&mut reader), Some(2));
-    let back = reader.find(&target(10), Direction::Anywhere).unwrap().unwrap();
+    let back = reader.find(&target(10), JumpDirection::Anywhere).unwrap().unwrap();
     reader.go_to(back).unwrap();
     assert_eq!(next(&mut reader), Some(5));
-    assert_eq!(line(reader.find(&target(10), Direction::Back).unwrap()), Some(5));
-    assert_eq!(line(reader.find(&target(10), Direction::Anywhere).unwrap()), Some(1));
+    assert_eq!(line(reader.find(&target(10), JumpDirection::Back).unwrap()), Some(5));
+    assert_eq!(line(reader.find(&target(10), JumpDirection::Anywhere).unwrap()), Some(1));
 }
 
 #[test]
@@ -90,12 +90,13 @@ fn labels_programs_and_subprograms_are_found() {
     for (name, expected) in
         [("MARK1", Some(2)), ("MARK12", Some(3)), ("MARK2", Some(4)), ("MARK3", None)]
     {
-        let found = reader.find(&NcTarget::Label(name.to_owned()), Direction::Anywhere).unwrap();
+        let found =
+            reader.find(&NcTarget::Label(name.to_owned()), JumpDirection::Anywhere).unwrap();
         assert_eq!(line(found), expected, "{name}");
     }
     for (name, expected) in [("LAP", Some(6)), ("LAP2", Some(7)), ("LA", None)] {
         let found =
-            reader.find(&NcTarget::Subprogram(name.to_owned()), Direction::Anywhere).unwrap();
+            reader.find(&NcTarget::Subprogram(name.to_owned()), JumpDirection::Anywhere).unwrap();
         assert_eq!(line(found), expected, "{name}");
     }
 
@@ -111,7 +112,7 @@ fn labels_programs_and_subprograms_are_found() {
         (NcTarget::Program("<PART2>".to_owned()), Some(9)),
         (NcTarget::Program("O300".to_owned()), None),
     ] {
-        let found = reader.find(&target, Direction::Anywhere).unwrap();
+        let found = reader.find(&target, JumpDirection::Anywhere).unwrap();
         assert_eq!(line(found), expected, "{target:?}");
     }
 
@@ -121,10 +122,11 @@ fn labels_programs_and_subprograms_are_found() {
     for (name, expected) in
         [("5", Some(2)), ("50", Some(6)), ("BOHREN", Some(5)), ("BOHR", None), ("6", None)]
     {
-        let found = reader.find(&NcTarget::Label(name.to_owned()), Direction::Anywhere).unwrap();
+        let found =
+            reader.find(&NcTarget::Label(name.to_owned()), JumpDirection::Anywhere).unwrap();
         assert_eq!(line(found), expected, "{name}");
     }
-    assert_eq!(line(reader.find(&NcTarget::Number(3), Direction::Forward).unwrap()), Some(4));
+    assert_eq!(line(reader.find(&NcTarget::Number(3), JumpDirection::Forward).unwrap()), Some(4));
 }
 
 #[test]

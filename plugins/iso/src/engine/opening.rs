@@ -5,13 +5,13 @@ use post_plugin::{Axes, Block, Modal, NumberStyle, Setup, Standstill, Units, Val
 use super::Engine;
 use super::spindle::COOLANTS;
 use crate::FeedDecimals;
-use crate::cycles::Cycles;
+use crate::cycles::CycleWords;
 use crate::lines::program_name;
-use crate::look::Look;
-use crate::motion::Motion;
+use crate::look::BlockStyle;
+use crate::motion::MotionWriter;
 use crate::options::{flag, integer, text};
-use crate::planes::TiltedPlane;
-use crate::settings::Settings;
+use crate::planes::PlaneWords;
+use crate::settings::SettingWords;
 use crate::table::{Table, Tcp};
 
 /// Most decimals of a number with a point where the option of it is not offered.
@@ -88,14 +88,14 @@ impl Engine {
         });
         Ok(Engine {
             table,
-            motion: Motion::new(setup, codes, block, axes, style, feeds),
-            look: Look {
+            motion: MotionWriter::new(setup, codes, block, axes, style, feeds),
+            look: BlockStyle {
                 spaces: flag(setup, "spaces", true),
                 leading_zeros: flag(setup, "leading_zeros", false),
             },
-            settings: Settings::new(table, setup)?,
-            cycles: Cycles::new(table, setup),
-            plane: TiltedPlane::new(table, setup, rotary as u8),
+            settings: SettingWords::new(table, setup)?,
+            cycles: CycleWords::new(table, setup),
+            plane: PlaneWords::new(table, setup, rotary as u8),
             vector: (!table.vector.is_empty() && flag(setup, "tool_vector", false)).then_some(6),
             splines: flag(setup, "splines", false),
             title: title(table, setup),

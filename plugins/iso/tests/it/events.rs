@@ -1,6 +1,6 @@
 //! Every event through the engine: what is modal, what is refused, and in which order things are switched.
 
-use post_iso::{Control, Iso, Plane, Rigid, Splines, Table, Tcp, iso_options, options};
+use post_iso::{Control, Iso, Plane, Rigid, SplineForm, Table, Tcp, iso_options, options};
 use post_kit::jobs::{FACE, OVER, arc, cycle, frame, plane};
 use post_kit::{Bench, TOOL, TOP, at, cut, rapid, turn, turning};
 use post_plugin::export::Exported;
@@ -32,7 +32,7 @@ impl Control for Whole {
         vector: "G43.5",
         plane: Plane::Euler { on: "G68.2", turn: "G53.1", off: "G69" },
         rigid: Rigid::Ahead("M29"),
-        splines: Splines::Knots { code: "G6.2", begin: "G5 P10000", end: "G5 P0" },
+        splines: SplineForm::Knots { code: "G6.2", begin: "G5 P10000", end: "G5 P0" },
         units_inside: true,
         ..Table::ISO
     };

@@ -1,6 +1,6 @@
 //! What a table can say, on controls that differ from those of the stock dialects.
 
-use post_iso::{Codes, Control, Dwell, Iso, Leave, Length, Table, Tcp};
+use post_iso::{Control, Dwell, Iso, Leave, Length, MotionCodes, Table, Tcp};
 use post_kit::{Bench, P1, P3, TOOL, TOP, at, cut, timed, turn};
 use post_plugin::export::Exported;
 use post_plugin::{Compensation, Event, Feed, Linked, Setup};
@@ -11,7 +11,11 @@ struct Small;
 impl Control for Small {
     const TABLE: &'static Table = &Table {
         percent: false,
-        codes: Codes { feed: ["G94", "", ""], compensation: ["G40", "", ""], ..Codes::ISO },
+        codes: MotionCodes {
+            feed: ["G94", "", ""],
+            compensation: ["G40", "", ""],
+            ..MotionCodes::ISO
+        },
         safe: "G17 G90 G94",
         length: Length { on: "", off: "", ..Table::ISO.length },
         leave: &[Leave::Retract],

@@ -1,6 +1,6 @@
 //! The order of events that the kit holds.
 
-use post_kit::{ASIDE, ORDER, Order, P1, P2, TOOL, TOP, at, cut, job, rapid, turn, turning};
+use post_kit::{ASIDE, EventOrder, ORDER, P1, P2, TOOL, TOP, at, cut, job, rapid, turn, turning};
 use post_plugin::{Coolant, Cycle, EVENTS, Event, Feed};
 
 const CYCLE: Event<'static> = Event::Cycle {
@@ -23,7 +23,7 @@ const PLANE: Event<'static> = Event::Plane {
 };
 
 fn follow(events: &[Event<'_>]) -> Result<(), String> {
-    let mut order = Order::default();
+    let mut order = EventOrder::default();
     events.iter().try_for_each(|event| order.next(event))
 }
 

@@ -1,8 +1,8 @@
 //! Random paths and problems from a seed.
 
 use post_feed::limits::{AxisAcceleration, AxisVelocity, Collocation, Feed, Limit};
-use post_feed::problem::Row;
-use post_feed::{Ends, Problem, Samples};
+use post_feed::problem::LimitRow;
+use post_feed::{EndSpeeds, Problem, Samples};
 use post_testkit::Rng;
 
 /// A smooth path of `axes` axes, each a straight part and three waves; the first three are the tip too.
@@ -84,7 +84,7 @@ pub fn problem(seed: u64, axes: usize, count: usize, collocation: Collocation) -
     let mut random = Rng::new(seed);
     let samples = samples(&mut random, axes, count, 100.0);
     let limits = Limits::new(&mut random, axes, collocation);
-    Problem::new(&samples, &limits.all(), Ends::default()).unwrap()
+    Problem::new(&samples, &limits.all(), EndSpeeds::default()).unwrap()
 }
 
 /// A problem all of whose rows are monotone, with bounds that jump and steep rows, not from any path.
@@ -95,7 +95,7 @@ pub fn monotone(seed: u64, count: usize) -> Problem {
     let rows = (0..stride * (count - 1))
         .map(|_| {
             let sign = if random.range(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
-            Row { here: -sign * random.range(0.0, 1.0), next: sign * random.range(0.0, 1.0) }
+            LimitRow { here: -sign * random.range(0.0, 1.0), next: sign * random.range(0.0, 1.0) }
         })
         .collect();
     Problem::from_rows(vec![1.0; count - 1], upper, stride, rows)
@@ -108,7 +108,7 @@ pub fn any(seed: u64, count: usize) -> Problem {
     let stride = 3;
     let mut row = || {
         let size = libm::exp(random.range(-6.0, 1.0));
-        Row {
+        LimitRow {
             here: size * random.range(-1.0, 1.0),
             // One in ten bounds its own sample alone.
             next: if random.range(0.0, 1.0) < 0.1 { 0.0 } else { size * random.range(-1.0, 1.0) },

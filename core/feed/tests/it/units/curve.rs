@@ -1,4 +1,4 @@
-use post_feed::curve::{Curve, CurveFault};
+use post_feed::curve::{CurveFault, NurbsCurve};
 
 /// A quarter of the unit circle as a NURBS of degree 2: radius and curvature are known everywhere.
 #[test]
@@ -6,7 +6,7 @@ fn a_circle_has_its_radius_and_curvature() {
     let half = 0.5f64.sqrt();
     let knots = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
     let points = vec![[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-    let curve = Curve::new(2, knots, points, vec![1.0, half, 1.0]).unwrap();
+    let curve = NurbsCurve::new(2, knots, points, vec![1.0, half, 1.0]).unwrap();
     for step in 0..=20 {
         let [p, d, dd, ddd] = curve.derivatives(f64::from(step) / 20.0);
         assert!((libm::hypot(p[0], p[1]) - 1.0).abs() < 1e-14);
@@ -29,7 +29,7 @@ fn a_cubic_polynomial_is_reproduced_on_knots_of_any_spacing() {
     };
     let control = |index: usize| [polar(knots[index + 1], knots[index + 2], knots[index + 3])];
     let points = (0..8).map(control).collect();
-    let curve = Curve::new(3, knots.clone(), points, Vec::new()).unwrap();
+    let curve = NurbsCurve::new(3, knots.clone(), points, Vec::new()).unwrap();
     for step in 0..=40 {
         let t = f64::from(step) / 40.0;
         let want = [
@@ -50,7 +50,7 @@ fn numbers_that_are_no_curve_are_refused() {
     let knots = vec![0.0, 0.0, 1.0, 1.0];
     let points = vec![[0.0], [1.0]];
     let new = |degree, knots: &[f64], weights: &[f64]| {
-        Curve::new(degree, knots.to_vec(), points.clone(), weights.to_vec()).err()
+        NurbsCurve::new(degree, knots.to_vec(), points.clone(), weights.to_vec()).err()
     };
     assert_eq!(new(1, &knots, &[]), None);
     assert_eq!(new(0, &knots, &[]), Some(CurveFault::Degree));

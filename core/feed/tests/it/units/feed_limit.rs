@@ -1,6 +1,6 @@
 use post_feed::limits::{Collocation, Feed};
 use post_feed::samples::Samples;
-use post_feed::{Ends, Infeasible, Problem};
+use post_feed::{EndSpeeds, Infeasible, Problem};
 
 /// Ten samples a millimetre apart: 40 mm/s, from sample 4 on 10 mm/s.
 fn slower() -> Samples {
@@ -15,7 +15,7 @@ fn slower() -> Samples {
 
 fn speeds(samples: &Samples, collocation: Collocation) -> Result<Vec<f64>, Infeasible> {
     let feed = Feed { most: 30.0, collocation };
-    let problem = Problem::new(samples, &[&feed], Ends::default())?;
+    let problem = Problem::new(samples, &[&feed], EndSpeeds::default())?;
     Ok(problem.upper.into_iter().map(f64::sqrt).collect())
 }
 

@@ -1,5 +1,5 @@
 use post_feed::FeedSpline;
-use post_feed::curve::Curve;
+use post_feed::curve::NurbsCurve;
 use post_feed::jerk::Piece;
 
 fn example() -> FeedSpline {
@@ -28,7 +28,7 @@ fn the_coefficients_are_those_of_a_b_spline() {
     let spline = example();
     let (knots, points) = spline.b_spline();
     let points = points.into_iter().map(|q| [q]).collect();
-    let curve = Curve::new(2, knots, points, Vec::new()).unwrap();
+    let curve = NurbsCurve::new(2, knots, points, Vec::new()).unwrap();
     for step in 0..=500 {
         let at = f64::from(step) / 100.0;
         let (own, other) = (spline.at(at), curve.derivatives(at));
@@ -66,7 +66,7 @@ fn beyond_a_start_with_jerk_the_b_spline_counts_from_the_inner_knot_on() {
     };
     let (knots, points) = spline.b_spline();
     let points = points.into_iter().map(|q| [q]).collect();
-    let curve = Curve::new(2, knots, points, Vec::new()).unwrap();
+    let curve = NurbsCurve::new(2, knots, points, Vec::new()).unwrap();
     for at in [2.0, 2.3, 2.9, 3.0] {
         let (own, other) = (spline.at(at), curve.derivatives(at));
         assert!((own[0] - other[0][0]).abs() < 1e-12, "{at}");

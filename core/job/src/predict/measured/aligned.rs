@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES};
-use post_motion::measured::{Alignment, Track, Unaligned, align};
+use post_motion::measured::{Alignment, AlignmentFault, AxisTrack, align};
 
 use super::columns::{Columns, Content};
 use super::log::Which;
@@ -38,14 +38,14 @@ pub(super) fn aligned(overlay: &Overlay, machine: &Machine) -> Result<Alignment,
     let zeros = overlay.zeros();
     align(&predicted, &logged, &axes, zeros).map_err(|why| {
         let message = match &why {
-            Unaligned::Short(fewest) => {
+            AlignmentFault::Short(fewest) => {
                 format!("program and log need {fewest} set-points to be laid over one another")
             }
-            Unaligned::Still => {
+            AlignmentFault::Still => {
                 "no axis moves both in the program and in the log, so that it is not known when the program began"
                     .to_owned()
             }
-            Unaligned::Unlike(best) => format!(
+            AlignmentFault::Unlike(best) => format!(
                 "the log does not look like this program: at best they are alike by {} (1 is the same), {}; {} % of the rows are elsewhere",
                 number(best.correlation, 2),
                 by_axis(best, machine, 1.1),
@@ -53,7 +53,7 @@ pub(super) fn aligned(overlay: &Overlay, machine: &Machine) -> Result<Alignment,
             ),
         };
         let help = match &why {
-            Unaligned::Unlike(best) => {
+            AlignmentFault::Unlike(best) => {
                 let ranges = [&predicted, &logged].map(|track| ranges(track));
                 units(machine, &log.columns, ranges)
                     .or_else(|| reversed(best, machine))
@@ -123,7 +123,7 @@ fn reversed(alignment: &Alignment, machine: &Machine) -> Option<String> {
 }
 
 /// The ranges in which the axes move.
-fn ranges(track: &Track) -> Joints {
+fn ranges(track: &AxisTrack) -> Joints {
     let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; MAX_AXES];
     for joints in &track.joints {
         for (ends, value) in ends.iter_mut().zip(joints) {
@@ -158,7 +158,11 @@ fn units(machine: &Machine, columns: &Columns, [wanted, logged]: [Joints; 2]) ->
 }
 
 /// The commanded positions, and of some axes the actual ones.
-fn mixed<'t>(commanded: &'t Track, actual: &'t Track, only_actual: &[usize]) -> Cow<'t, Track> {
+fn mixed<'t>(
+    commanded: &'t AxisTrack,
+    actual: &'t AxisTrack,
+    only_actual: &[usize],
+) -> Cow<'t, AxisTrack> {
     if only_actual.is_empty() {
         return Cow::Borrowed(commanded);
     }
@@ -176,7 +180,7 @@ fn mixed<'t>(commanded: &'t Track, actual: &'t Track, only_actual: &[usize]) -> 
 
 /// From the first motion of these axes to the last, s; none if they never move, or if a track that is not known to be
 /// `whole` has no rest at its beginning and at its end.
-pub(super) fn moving(track: &Track, axes: &[usize], whole: bool) -> Option<f64> {
+pub(super) fn moving(track: &AxisTrack, axes: &[usize], whole: bool) -> Option<f64> {
     let moves = |pair: &[Joints]| {
         let mut axes = axes.iter();
         axes.any(|axis| (pair[1][*axis] - pair[0][*axis]).abs() > MOVES)

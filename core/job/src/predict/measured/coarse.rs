@@ -4,7 +4,7 @@ use post_machine::axis_words;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::MAX_AXES;
-use post_motion::measured::Difference;
+use post_motion::measured::DifferenceSum;
 
 use super::log::{Log, Which};
 use crate::text::number;
@@ -24,7 +24,7 @@ pub(super) fn steps(machine: &Machine, log: &Log) -> usize {
 
 /// About how far commanded positions between rows lie beside the cubic, mm and radians, by axis; none if there are no
 /// set-points between rows, or no commanded positions.
-pub(super) fn between(machine: &Machine, log: &Log) -> Option<[Difference; MAX_AXES]> {
+pub(super) fn between(machine: &Machine, log: &Log) -> Option<[DifferenceSum; MAX_AXES]> {
     let known = steps(machine, log) == 1 || log.commanded.joints.is_empty();
     (!known).then(|| log.commanded.between())
 }
@@ -33,7 +33,7 @@ pub(super) fn between(machine: &Machine, log: &Log) -> Option<[Difference; MAX_A
 pub(super) fn doubt(
     machine: &Machine,
     log: &Log,
-    between: &[Difference; MAX_AXES],
+    between: &[DifferenceSum; MAX_AXES],
     findings: &mut Vec<Diagnostic>,
 ) {
     let mut axes = Vec::new();

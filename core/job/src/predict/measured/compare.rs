@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use post_machine::description::Machine;
 use post_machine::kinematics::{Joints, MAX_AXES, Solver};
-use post_motion::measured::{Alignment, Difference};
+use post_motion::measured::{Alignment, DifferenceSum};
 use post_motion::servo::Servos;
 
 use super::coarse;
@@ -29,9 +29,9 @@ pub(super) struct Compared<'a> {
     /// those of the prediction.
     axes: Vec<usize>,
     /// By axis: commanded, actual, following measured, predicted, and their difference.
-    sums: [[Difference; 5]; MAX_AXES],
+    sums: [[DifferenceSum; 5]; MAX_AXES],
     /// Contour error: measured, predicted, and their difference.
-    contours: [Difference; 3],
+    contours: [DifferenceSum; 3],
 }
 
 impl<'a> Compared<'a> {
@@ -194,7 +194,7 @@ impl<'a> Compared<'a> {
     pub fn axes(
         &self,
         machine: &Machine,
-        between: Option<&[Difference; MAX_AXES]>,
+        between: Option<&[DifferenceSum; MAX_AXES]>,
     ) -> Vec<AxisLaid> {
         let logged = |place: &usize| (0..2).any(|which| self.overlay.log.has[which][*place]);
         let axes = post_machine::axis_words::order(machine).into_iter();

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Short};
-use post_motion::servo::fit::{self, Fitted};
+use post_motion::servo::fit::{self, FittedNumber};
 use serde::Serialize;
 
 use super::coarse;
@@ -95,7 +95,7 @@ fn axis(machine: &Machine, log: &Log, place: usize, keys: &[&str]) -> Result<Axi
     let found = fit::fit(
         servo,
         keys,
-        fit::Log {
+        fit::ServoLog {
             period: log.commanded.period,
             steps,
             commanded: &commanded,
@@ -127,7 +127,7 @@ fn axis(machine: &Machine, log: &Log, place: usize, keys: &[&str]) -> Result<Axi
 }
 
 /// `[servo.X.loops]` and its numbers, as many digits of each as it is known to; those that are not determined as remarks.
-fn lines(axis: &str, fitted: &[Fitted]) -> String {
+fn lines(axis: &str, fitted: &[FittedNumber]) -> String {
     let mut text = String::new();
     let mut tables: Vec<&str> = Vec::new();
     for number in fitted {
@@ -142,7 +142,7 @@ fn lines(axis: &str, fitted: &[Fitted]) -> String {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "[servo.{axis}{dot}{table}]");
         for number in fitted.iter().filter(|number| number.table == table) {
-            let Fitted { name, value, before, .. } = number;
+            let FittedNumber { name, value, before, .. } = number;
             let _ = match number.determined {
                 true => writeln!(
                     text,

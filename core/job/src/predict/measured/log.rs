@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader, Read};
 
 use post_machine::description::Machine;
 use post_machine::kinematics::MAX_AXES;
-use post_motion::measured::Track;
+use post_motion::measured::AxisTrack;
 
 use super::clock::Clock;
 use super::columns::{ColumnNames, Columns};
@@ -39,9 +39,9 @@ pub struct Log {
     /// Its columns.
     pub columns: Columns,
     /// Where the axes were commanded, and where they were, mm and radians, counted as the machine file counts.
-    pub commanded: Track,
+    pub commanded: AxisTrack,
     /// Likewise.
-    pub actual: Track,
+    pub actual: AxisTrack,
     /// Axes that are in [`Log::commanded`], and in [`Log::actual`].
     pub has: [[bool; MAX_AXES]; 2],
     /// Jumps of a rotary axis by about a full turn, which are taken for its count starting again.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use post_machine::kinematics::{Joints, MAX_AXES, Solver};
 use post_motion::contour::Contour;
-use post_motion::{At, SetPoints};
+use post_motion::{ProgramPlace, SetPoints};
 
 /// Rows of a batch.
 pub(super) const BATCH: usize = 256;
@@ -77,7 +77,7 @@ impl<'a> LoggedPath<'a> {
             self.points.get_or_insert_with(|| SetPoints::new(Arc::clone(solver), self.period));
         points.joints.push(commanded);
         points.poses.push(solver.chain().forward(&commanded));
-        points.at.push(At { task: 0, line: row.line, cuts: row.cuts });
+        points.at.push(ProgramPlace { task: 0, line: row.line, cuts: row.cuts });
         self.actual[0].push(measured);
         self.actual[1].push(predicted);
         self.rows.push_back(row);

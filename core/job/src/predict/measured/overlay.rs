@@ -10,8 +10,8 @@ use std::sync::Arc;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{MAX_AXES, Solver};
-use post_motion::At;
-use post_motion::measured::Track;
+use post_motion::ProgramPlace;
+use post_motion::measured::AxisTrack;
 
 use super::aligned;
 use super::coarse;
@@ -38,16 +38,16 @@ pub struct Overlay {
     pub(super) log: Log,
     /// What it counts from, where that is said, mm or radians.
     zeros: [Option<f64>; MAX_AXES],
-    pub(super) commanded: Track,
-    pub(super) actual: Track,
+    pub(super) commanded: AxisTrack,
+    pub(super) actual: AxisTrack,
     /// What is carried out from a set-point on.
-    runs: Vec<(usize, At)>,
+    runs: Vec<(usize, ProgramPlace)>,
 }
 
 impl Overlay {
     /// Of a prediction every `period` seconds that is still to come.
     pub fn new(log: Log, zeros: [Option<f64>; MAX_AXES], period: f64) -> Self {
-        let track = || Track { begins: 0.0, period, joints: Vec::new() };
+        let track = || AxisTrack { begins: 0.0, period, joints: Vec::new() };
         Self { log, zeros, commanded: track(), actual: track(), runs: Vec::new() }
     }
 
@@ -68,7 +68,7 @@ impl Overlay {
             let help = "--period: a longer time from one to the next";
             return Err(Diagnostic::error("log", message).help(help).into());
         }
-        let at = At { task: 0, ..sample.at };
+        let at = ProgramPlace { task: 0, ..sample.at };
         if self.runs.last().is_none_or(|(_, last)| *last != at) {
             self.runs.push((place, at));
         }
@@ -145,10 +145,10 @@ impl Overlay {
     }
 
     /// What is carried out at the set-point `place`, looked for from the run `run` on.
-    pub(super) fn at(&self, place: usize, run: &mut usize) -> At {
+    pub(super) fn at(&self, place: usize, run: &mut usize) -> ProgramPlace {
         while self.runs.get(*run + 1).is_some_and(|(from, _)| *from <= place) {
             *run += 1;
         }
-        self.runs.get(*run).map_or_else(At::default, |(_, at)| *at)
+        self.runs.get(*run).map_or_else(ProgramPlace::default, |(_, at)| *at)
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Axes in mm and degrees, contour errors in mm, times in seconds: of the log's clock.
 
-use post_motion::measured::Difference;
+use post_motion::measured::DifferenceSum;
 use serde::Serialize;
 
 /// A log laid over a prediction.
@@ -116,7 +116,7 @@ pub struct Left {
 
 impl Left {
     /// In another unit; none of none.
-    pub fn of(difference: &Difference, unit: f64) -> Option<Self> {
+    pub fn of(difference: &DifferenceSum, unit: f64) -> Option<Self> {
         (difference.count > 0).then(|| Self {
             most: difference.most / unit,
             most_at_s: difference.most_at,

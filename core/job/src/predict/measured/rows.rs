@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Place};
 use post_machine::kinematics::{Joints, MAX_AXES};
-use post_motion::measured::Track;
+use post_motion::measured::AxisTrack;
 
 use super::clock::Clock;
 use super::columns::{Column, Columns, Content, Head};
@@ -326,8 +326,8 @@ impl<'a> Rows<'a> {
         let [commanded, actual] = [0, 1].map(|which| {
             let joints = std::mem::take(&mut self.joints[which]);
             match has[which].contains(&true) {
-                true => Track::of_samples(&self.times, &joints, clock.period),
-                false => Track::default(),
+                true => AxisTrack::of_samples(&self.times, &joints, clock.period),
+                false => AxisTrack::default(),
             }
         });
         Ok(Log {

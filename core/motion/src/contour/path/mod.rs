@@ -16,7 +16,7 @@ use std::collections::VecDeque;
 use nalgebra::Vector3;
 
 use super::spline::{Cubic, Tangents};
-use crate::At;
+use crate::ProgramPlace;
 pub(super) use nearest::REACH;
 
 /// Knots behind the nearest point that are kept.
@@ -30,7 +30,7 @@ const MOST: usize = 1 << 18;
 pub(super) struct Knot {
     /// Number of the set-point.
     pub number: u64,
-    pub at: At,
+    pub at: ProgramPlace,
     pub tip: Vector3<f64>,
     pub axis: Vector3<f64>,
     /// How the tip reaches and leaves it, and the tool axis.
@@ -192,7 +192,7 @@ impl Path {
     }
 
     /// What asks for a place: a piece is asked for by the knot at its end.
-    pub fn at(&self, foot: Foot) -> At {
+    pub fn at(&self, foot: Foot) -> ProgramPlace {
         let knot = foot.knot + usize::from(foot.share > 0.0);
         self.knots[knot.min(self.knots.len() - 1)].at
     }

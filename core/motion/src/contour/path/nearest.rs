@@ -15,21 +15,21 @@ use post_machine::kinematics::Pose;
 use super::lowest::lowest;
 use super::tied::TIE;
 use super::{Foot, Path};
-use crate::At;
+use crate::ProgramPlace;
 
 /// Other places are looked for so many times the first distance along the path.
 pub(in super::super) const REACH: f64 = 16.0;
 
 /// How far along the path other places are looked for, mm.
 #[derive(Clone, Copy, Debug)]
-struct Within {
+struct SearchReach {
     ahead: f64,
     back: f64,
     /// They count if they are nearer by more than this, mm.
     gain: f64,
 }
 
-impl Within {
+impl SearchReach {
     fn all(reach: f64) -> Self {
         Self { ahead: reach, back: reach, gain: 0.0 }
     }
@@ -45,7 +45,7 @@ pub(in super::super) struct Nearest {
     pub axis: Vector3<f64>,
     pub distance: f64,
     /// The knot that is nearer in time.
-    pub at: At,
+    pub at: ProgramPlace,
     /// The farthest point of what is passed over at a corner, mm.
     pub missed: f64,
     /// How far the place has gone on along the path, mm; zero where it went back.
@@ -58,7 +58,7 @@ impl Path {
         let start = self.further(self.foot);
         let first = (self.point(start) - actual.tip).norm();
         let found = self.descend(&actual.tip, start);
-        let mut foot = self.least(&actual.tip, found, Within::all(REACH * first));
+        let mut foot = self.least(&actual.tip, found, SearchReach::all(REACH * first));
         // Back on the way it came, or beyond a turn: it may be on a way ahead meanwhile.
         let bound = match self.length(foot) < self.length(self.foot) - TIE {
             true => Some(foot.distance + SAME),
@@ -76,7 +76,7 @@ impl Path {
             let here = self.place_of(commanded.0);
             let other = self.descend(&actual.tip, here);
             if other.distance < foot.distance {
-                foot = self.least(&actual.tip, other, Within::all(REACH * following));
+                foot = self.least(&actual.tip, other, SearchReach::all(REACH * following));
             }
         }
         let tip = self.point(foot);
@@ -118,7 +118,7 @@ impl Path {
     }
 
     fn among(&self, tool: &Pose, found: Foot, back: f64, first: f64) -> Foot {
-        let within = Within { ahead: REACH * first, back, gain: TIE };
+        let within = SearchReach { ahead: REACH * first, back, gain: TIE };
         self.least(&tool.tip, found, within)
     }
 
@@ -178,7 +178,7 @@ impl Path {
     }
 
     /// The nearest place within a reach along the path of where it is itself.
-    fn least(&self, from: &Vector3<f64>, mut found: Foot, within: Within) -> Foot {
+    fn least(&self, from: &Vector3<f64>, mut found: Foot, within: SearchReach) -> Foot {
         loop {
             let other = self.others(from, found, within);
             if other.distance >= found.distance {
@@ -189,7 +189,7 @@ impl Path {
     }
 
     /// A place that is nearer than the one found, within a reach of it along the path both ways.
-    fn others(&self, from: &Vector3<f64>, found: Foot, within: Within) -> Foot {
+    fn others(&self, from: &Vector3<f64>, found: Foot, within: SearchReach) -> Foot {
         if found.distance <= within.gain {
             return found;
         }

@@ -1,7 +1,7 @@
 use post_machine::kinematics::Pose;
 use post_testkit::{Rng, at_least, randomised};
 
-use super::super::spline::Five;
+use super::super::spline::FivePoints;
 use super::tied::TIE;
 use super::*;
 
@@ -37,14 +37,14 @@ fn wandering(rng: &mut Rng, count: usize) -> Vec<Vector3<f64>> {
 fn path(points: &[Vector3<f64>]) -> Path {
     let last = points[points.len() - 1];
     let mut path = Path::default();
-    let mut tips = Five::all_at(&points[0]);
+    let mut tips = FivePoints::all_at(&points[0]);
     tips.take(&points[0]);
     tips.take(&points[1]);
     for (number, tip) in points.iter().enumerate() {
         let tip_ways = tips.take(points.get(number + 2).unwrap_or(&last));
         path.push(Knot {
             number: number as u64,
-            at: At::default(),
+            at: ProgramPlace::default(),
             tip: *tip,
             axis: Vector3::z(),
             tip_ways,

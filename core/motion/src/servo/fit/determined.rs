@@ -2,8 +2,8 @@
 
 use nalgebra::DVector;
 
-use super::search::{Found, Search};
-use super::{Direction, Fit, Fitted, LARGEST_DEVIATION};
+use super::search::{FitSearch, SearchState};
+use super::{FittedNumber, LARGEST_DEVIATION, ServoFit, UndeterminedDirection};
 
 /// A singular value that is smaller than this share of the largest is the error of the differences.
 const SMALLEST: f64 = 1e-9;
@@ -12,10 +12,15 @@ const ENDLESS: f64 = 1e9;
 /// A share in a combination that is not told.
 const SMALL_SHARE: f64 = 0.1;
 
-impl Search<'_> {
+impl FitSearch<'_> {
     /// What has been found, with errors of the log of the standard deviation `spread` that hang together so
     /// much, whose squares were `before`.
-    pub(super) fn told(&self, found: &Found, [spread, together]: [f64; 2], before: f64) -> Fit {
+    pub(super) fn told(
+        &self,
+        found: &SearchState,
+        [spread, together]: [f64; 2],
+        before: f64,
+    ) -> ServoFit {
         let count = self.names.len();
         let samples = (self.log.measured.len() - self.log.lead) as f64;
         let derivatives = found.triangle.view((0, 0), (count, count)).into_owned();
@@ -52,7 +57,7 @@ impl Search<'_> {
                     .map(|other| (self.names[other], correlation(other)))
                     .max_by(|one, other| libm::fabs(one.1).total_cmp(&libm::fabs(other.1)));
                 let value = self.value(&found.place, index);
-                Fitted {
+                FittedNumber {
                     table: self.tables[index],
                     name: self.names[index],
                     before: self.value(&self.start, index),
@@ -69,7 +74,7 @@ impl Search<'_> {
             .filter(|(_, along)| **along > LARGEST_DEVIATION)
             .map(|(direction, along)| self.direction(direction, *along))
             .collect();
-        Fit {
+        ServoFit {
             servo: self.servo_at(&found.place),
             fitted,
             undetermined,
@@ -80,14 +85,14 @@ impl Search<'_> {
         }
     }
 
-    fn direction(&self, direction: &DVector<f64>, along: f64) -> Direction {
+    fn direction(&self, direction: &DVector<f64>, along: f64) -> UndeterminedDirection {
         // The largest share is 1.
         let largest = direction.iter().copied().fold(0.0, |largest: f64, share| {
             if libm::fabs(share) > libm::fabs(largest) { share } else { largest }
         });
         let shares = self.names.iter().zip(direction.iter());
         let shares = shares.map(|(name, share)| (*name, share / largest));
-        Direction {
+        UndeterminedDirection {
             shares: shares.filter(|(_, share)| libm::fabs(*share) > SMALL_SHARE).collect(),
             deviation: told_deviation(along * libm::fabs(largest)),
         }

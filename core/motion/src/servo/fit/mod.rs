@@ -19,11 +19,11 @@ use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, meant};
 use post_machine::servo::Servo;
 
-use search::Search;
+use search::FitSearch;
 
 /// What a control has recorded of one axis.
 #[derive(Clone, Copy, Debug)]
-pub struct Log<'a> {
+pub struct ServoLog<'a> {
     /// Time from one measured position to the next, s.
     pub period: f64,
     /// So many commanded positions stand for each measured one: where a control makes more set-points than are recorded,
@@ -40,13 +40,13 @@ pub struct Log<'a> {
 
 /// A servo that has been adjusted to a log.
 #[derive(Clone, Debug)]
-pub struct Fit {
+pub struct ServoFit {
     /// With its new numbers.
     pub servo: Servo,
     /// The numbers that were adjusted, as they were named.
-    pub fitted: Vec<Fitted>,
+    pub fitted: Vec<FittedNumber>,
     /// Combinations of them that the log does not determine.
-    pub undetermined: Vec<Direction>,
+    pub undetermined: Vec<UndeterminedDirection>,
     /// Root of the mean square of measured minus predicted, with the numbers as they were, mm or radians.
     pub before: f64,
     /// The same with the new ones.
@@ -60,7 +60,7 @@ pub struct Fit {
 
 /// A number that was adjusted, in the unit of the machine file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fitted {
+pub struct FittedNumber {
     /// The table below `[servo.X]` that it stands in, `loops.screw`; empty for `[servo.X]` itself.
     pub table: &'static str,
     /// Its key in the machine file.
@@ -80,7 +80,7 @@ pub struct Fitted {
 
 /// A combination of numbers that could be larger or smaller without the log saying so.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Direction {
+pub struct UndeterminedDirection {
     /// The numbers, and how each changes: by the factor `e^share` (feed-forward: by `share`), the largest share being 1.
     pub shares: Vec<(&'static str, f64)>,
     /// Standard deviation along it, in the same measure; infinite if the log says nothing of it.
@@ -100,8 +100,8 @@ const MOST_ROUNDS: usize = 30;
 /// # Errors
 /// A name that the servo does not have, a number that is zero and so has no factor, a log that is too short, or whose two
 /// courses are not of one length.
-pub fn fit(servo: &Servo, names: &[&str], log: Log<'_>) -> Result<Fit, Box<Diagnostic>> {
-    let search = Search::new(servo, names, log)?;
+pub fn fit(servo: &Servo, names: &[&str], log: ServoLog<'_>) -> Result<ServoFit, Box<Diagnostic>> {
+    let search = FitSearch::new(servo, names, log)?;
     let before = search.squares(&search.start)?;
     // The more of the errors is explained, the less the numbers are drawn back to where they were.
     let compared = (log.measured.len() - log.lead) as f64;

@@ -4,9 +4,9 @@ use nalgebra::{DMatrix, DVector};
 use post_machine::diagnostic::{Diagnostic, meant};
 use post_machine::servo::{Servo, StateSpace, stable};
 
-use super::Log;
+use super::ServoLog;
 use super::independence::hanging_together;
-use crate::servo::{Follower, Output};
+use crate::servo::{Follower, ServoOutput};
 
 /// Fewer samples than this a number say nothing.
 const LEAST_SAMPLES: usize = 4;
@@ -25,9 +25,9 @@ const MOST_STEPS: usize = 100;
 const BLOCK: usize = 256;
 
 /// What is searched for, and in what.
-pub(super) struct Search<'a> {
+pub(super) struct FitSearch<'a> {
     servo: &'a Servo,
-    pub(super) log: Log<'a>,
+    pub(super) log: ServoLog<'a>,
     pub(super) names: Vec<&'static str>,
     pub(super) tables: Vec<&'static str>,
     /// Searched for by its logarithm.
@@ -36,18 +36,18 @@ pub(super) struct Search<'a> {
 }
 
 /// Where the search stands.
-pub(super) struct Found {
+pub(super) struct SearchState {
     pub(super) place: DVector<f64>,
     /// Triangle of the derivatives, and of the errors behind them.
     pub(super) triangle: DMatrix<f64>,
     pub(super) converged: bool,
 }
 
-impl<'a> Search<'a> {
+impl<'a> FitSearch<'a> {
     pub(super) fn new(
         servo: &'a Servo,
         names: &[&str],
-        log: Log<'a>,
+        log: ServoLog<'a>,
     ) -> Result<Self, Box<Diagnostic>> {
         let fault = |message: String, help: String| {
             Err(Diagnostic::error("fit", message).at(servo.place.clone()).help(help).boxed())
@@ -127,7 +127,7 @@ impl<'a> Search<'a> {
     fn follower(&self, place: &DVector<f64>) -> Result<Follower, Box<Diagnostic>> {
         let servo = self.servo_at(place);
         let mut follower =
-            Follower::with(&servo, self.log.period / self.log.steps as f64, Output::Measured)?;
+            Follower::with(&servo, self.log.period / self.log.steps as f64, ServoOutput::Measured)?;
         follower.settle(self.log.commanded.first().copied().unwrap_or_default());
         Ok(follower)
     }
@@ -141,7 +141,7 @@ impl<'a> Search<'a> {
     /// Measured minus predicted, of what is compared.
     pub(super) fn errors(&self, place: &DVector<f64>) -> Result<Vec<f64>, Box<Diagnostic>> {
         let mut follower = self.follower(place)?;
-        let Log { steps, commanded, measured, lead, .. } = self.log;
+        let ServoLog { steps, commanded, measured, lead, .. } = self.log;
         let mut errors = Vec::with_capacity(measured.len() - lead);
         follower.run(
             commanded.len(),
@@ -174,7 +174,7 @@ impl<'a> Search<'a> {
                 followers.push(self.follower(&moved)?);
             }
         }
-        let Log { steps, commanded, measured, lead, .. } = self.log;
+        let ServoLog { steps, commanded, measured, lead, .. } = self.log;
         let mut triangle = DMatrix::zeros(count + 1, count + 1);
         let mut predicted = vec![[0.0; BLOCK]; followers.len()];
         let starts = (0..measured.len()).step_by(BLOCK);
@@ -215,7 +215,7 @@ impl<'a> Search<'a> {
 
     /// Standard deviation of the log's errors, mm or radians, that which independent errors would have that say as little;
     /// and how many of them say no more than one that is independent.
-    pub(super) fn spread(&self, found: &Found) -> Result<[f64; 2], Box<Diagnostic>> {
+    pub(super) fn spread(&self, found: &SearchState) -> Result<[f64; 2], Box<Diagnostic>> {
         let count = self.names.len();
         let errors = self.errors(&found.place)?;
         let squares: f64 = errors.iter().map(|error| error * error).sum();
@@ -225,7 +225,11 @@ impl<'a> Search<'a> {
     }
 
     /// Searches from `from`. Each number is drawn back to where it was at first with the strength `draw`.
-    pub(super) fn run(&self, from: &DVector<f64>, draw: f64) -> Result<Found, Box<Diagnostic>> {
+    pub(super) fn run(
+        &self,
+        from: &DVector<f64>,
+        draw: f64,
+    ) -> Result<SearchState, Box<Diagnostic>> {
         let count = self.names.len();
         let cost = |place: &DVector<f64>, squares: f64| {
             squares + draw * draw * (place - &self.start).norm_squared()
@@ -274,7 +278,7 @@ impl<'a> Search<'a> {
                 break;
             }
         }
-        Ok(Found { place, triangle, converged })
+        Ok(SearchState { place, triangle, converged })
     }
 
     /// Feed-forward stays from 0 to 2, as in the machine file.

@@ -4,20 +4,20 @@ use post_machine::kinematics::Joints;
 
 use super::Planner;
 use crate::limits::MoveLimits;
-use crate::path::{Way, turns};
+use crate::path::{Interpolation, turns};
 use crate::trajectory::TimeLimit;
-use crate::trajectory::bounds::Bounds;
-use crate::trajectory::side::Side;
-use crate::{At, Move};
+use crate::trajectory::bounds::MoveBounds;
+use crate::trajectory::side::CornerSide;
+use crate::{Move, ProgramPlace};
 
 /// A move whose end is open.
 #[derive(Clone, Debug)]
-pub(super) struct Entry {
+pub(super) struct OpenMove {
     /// Its number in the law.
     pub number: u64,
     pub found: MoveLimits,
-    pub whole: Bounds,
-    pub half: Bounds,
+    pub whole: MoveBounds,
+    pub half: MoveBounds,
     /// The length that its parameter from 0 to 1 has in the coordinate of the law.
     pub scale: f64,
     /// The share of it that the corner before has taken.
@@ -28,13 +28,13 @@ pub(super) struct Entry {
     pub entrance: Option<[f64; 2]>,
     /// Joined to the move before: how the axes' derivatives change over the coordinate of the law.
     pub kink: Option<[Joints; 2]>,
-    pub at: At,
+    pub at: ProgramPlace,
 }
 
-impl Entry {
+impl OpenMove {
     /// What a corner has to know of it.
-    pub fn side<'a>(&'a self, task: &'a Move) -> Side<'a> {
-        Side {
+    pub fn side<'a>(&'a self, task: &'a Move) -> CornerSide<'a> {
+        CornerSide {
             task,
             found: &self.found,
             whole: &self.whole,
@@ -51,10 +51,12 @@ impl Planner {
         task: &Move,
         found: MoveLimits,
         asked: Option<f64>,
-        at: At,
-    ) -> Entry {
+        at: ProgramPlace,
+    ) -> OpenMove {
         let sweep = match &task.way {
-            Way::Arc { sweep, .. } if !turns(task.solver.chain(), [&task.from, &task.to]) => {
+            Interpolation::Arc { sweep, .. }
+                if !turns(task.solver.chain(), [&task.from, &task.to]) =>
+            {
                 Some(libm::fabs(*sweep))
             }
             _ => None,
@@ -62,14 +64,14 @@ impl Planner {
         let feed = asked.unwrap_or(0.0);
         let bounds = |share: f64| {
             let seconds = feed.max(self.block_time);
-            let mut bounds = Bounds::new(&found, &self.limits, seconds, share, sweep);
+            let mut bounds = MoveBounds::new(&found, &self.limits, seconds, share, sweep);
             if bounds.by[0] == TimeLimit::Feed && feed < seconds {
                 bounds.by[0] = TimeLimit::BlockTime;
             }
             bounds
         };
         let whole = bounds(1.0);
-        Entry {
+        OpenMove {
             number: 0,
             half: bounds(0.5),
             scale: 1.0 / whole.rate,

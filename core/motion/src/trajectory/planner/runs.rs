@@ -4,17 +4,17 @@ use post_machine::description::BlendRule;
 use post_machine::kinematics::{Joints, Unreachable};
 
 use super::Planner;
-use super::entry::Entry;
-use crate::Corner;
+use super::entry::OpenMove;
+use crate::CornerMode;
 use crate::limits::KINK;
 use crate::trajectory::TimeLimit;
-use crate::trajectory::block::{Block, Part, Why};
+use crate::trajectory::block::{BlockPhase, LookAheadBlock, VelocityLimit};
 use crate::trajectory::corner::Junction;
 use crate::trajectory::kink;
-use crate::trajectory::law::{Piece, Span};
+use crate::trajectory::law::{LawPiece, PieceSpan};
 use crate::trajectory::look_ahead::LookAhead;
 use crate::trajectory::profile::Phase;
-use crate::trajectory::round::Round;
+use crate::trajectory::round::RoundedCorner;
 
 impl Planner {
     /// The last move leads to a standstill.
@@ -26,7 +26,7 @@ impl Planner {
     }
 
     /// At an exact stop the control waits until its axes are in position.
-    fn stand(&mut self, last: &Entry) {
+    fn stand(&mut self, last: &OpenMove) {
         self.finish();
         if self.in_position > 0.0 {
             let seconds = self.in_position;
@@ -38,9 +38,9 @@ impl Planner {
     /// From the last move into the next one.
     pub(super) fn pass(
         &mut self,
-        last: Entry,
+        last: OpenMove,
         junction: Junction,
-        next: &mut Entry,
+        next: &mut OpenMove,
     ) -> Result<(), Unreachable> {
         let [out, into] = match &junction {
             Junction::Round(round) => round.shares,
@@ -87,7 +87,7 @@ impl Planner {
     }
 
     /// How the axes' derivatives change between two moves that are joined, over the coordinate of the law.
-    fn kink(&self, entries: [&Entry; 2], ratio: f64) -> Result<[Joints; 2], Unreachable> {
+    fn kink(&self, entries: [&OpenMove; 2], ratio: f64) -> Result<[Joints; 2], Unreachable> {
         let moves = entries.map(|entry| self.law.task(entry.number));
         let found = entries.map(|entry| &entry.found);
         let [change, bend] = kink::of_axes(moves, found, &self.limits, ratio)?;
@@ -96,8 +96,8 @@ impl Planner {
     }
 
     /// The last move up to its corner, which takes the share `out`.
-    fn along(&mut self, last: &Entry, out: f64, junction: Junction) {
-        let blends = matches!(self.law.task(last.number).corner, Corner::Blend { .. });
+    fn along(&mut self, last: &OpenMove, out: f64, junction: Junction) {
+        let blends = matches!(self.law.task(last.number).corner, CornerMode::Blend { .. });
         let shared = match junction {
             Junction::Overlap { .. } => true,
             Junction::Stop => blends && self.blend == BlendRule::Overlap,
@@ -119,7 +119,7 @@ impl Planner {
             Junction::Round(_) => f64::INFINITY,
             Junction::Stop | Junction::Overlap { .. } => 0.0,
         };
-        let mut block = Block {
+        let mut block = LookAheadBlock {
             length: (1.0 - out - last.taken) * scale,
             velocity: bounds.rate * scale,
             acceleration: bounds.acceleration * share * scale,
@@ -127,9 +127,9 @@ impl Planner {
             exit,
         };
         let joined = !last.begins && last.taken == 0.0;
-        let piece = Piece {
+        let piece = LawPiece {
             entry: last.number,
-            span: Span::Along { from: last.taken, to: 1.0 - out },
+            span: PieceSpan::Along { from: last.taken, to: 1.0 - out },
             length: block.length,
             at: last.at,
             second: last.at.task,
@@ -150,7 +150,12 @@ impl Planner {
                 } else if change < block.acceleration * (1.0 - 1e-9) && seconds > 0.0 {
                     let phase = Phase { seconds, velocity: 0.0, acceleration: change, jerk: 0.0 };
                     begun = [phase.velocity(seconds), phase.length(seconds)];
-                    self.take(Part { block: number, from: 0.0, phase, why: Why::Corner });
+                    self.take(BlockPhase {
+                        block: number,
+                        from: 0.0,
+                        phase,
+                        why: VelocityLimit::Corner,
+                    });
                 }
             }
             self.ahead.begin(number, begun[0], begun[1]);
@@ -159,7 +164,7 @@ impl Planner {
     }
 
     /// The curve that takes shares of two moves.
-    fn corner(&mut self, last: &Entry, next: &Entry, round: &Round) {
+    fn corner(&mut self, last: &OpenMove, next: &OpenMove, round: &RoundedCorner) {
         let mut bounds = round.bounds;
         let length = round.length * last.scale;
         let velocities = [last, next].map(|entry| entry.whole.rate * entry.scale);
@@ -169,16 +174,16 @@ impl Planner {
         } else {
             bounds.by[0] = TimeLimit::Corner;
         }
-        self.law.push_piece(Piece {
+        self.law.push_piece(LawPiece {
             entry: last.number,
-            span: Span::Corner { shares: round.shares, curve: round.curve },
+            span: PieceSpan::Corner { shares: round.shares, curve: round.curve },
             length,
             at: last.at,
             second: next.at.task,
             by: bounds.by,
             border: Some(0.5),
         });
-        self.ahead.push(Block {
+        self.ahead.push(LookAheadBlock {
             length,
             velocity: bounds.rate * length,
             acceleration: bounds.acceleration * length,

@@ -3,21 +3,21 @@
 use post_machine::kinematics::Joints;
 
 use super::Planner;
-use crate::Jump;
+use crate::VelocityJump;
 use crate::trajectory::TimeLimit;
-use crate::trajectory::block::{Part, Why};
-use crate::trajectory::law::{Section, Span};
+use crate::trajectory::block::{BlockPhase, VelocityLimit};
+use crate::trajectory::law::{LawSection, PieceSpan};
 
 impl Planner {
     /// What the look-ahead has settled goes into the law.
-    pub(super) fn take(&mut self, part: Part) {
-        let Part { phase, from, .. } = part;
+    pub(super) fn take(&mut self, part: BlockPhase) {
+        let BlockPhase { phase, from, .. } = part;
         let piece = *self.law.piece(part.block);
         let reached = |kink: &mut (u64, [Joints; 2])| kink.0 <= part.block;
         while let Some((number, [change, bend])) = self.kinks.pop_front_if(reached) {
             if number == part.block {
                 let (velocity, along) = (phase.velocity, phase.acceleration);
-                self.jumps.push_back(Jump {
+                self.jumps.push_back(VelocityJump {
                     time: self.clock,
                     change: change.map(|change| change * velocity),
                     bend: std::array::from_fn(|place| {
@@ -28,17 +28,17 @@ impl Planner {
         }
         let covered = phase.length(phase.seconds);
         let reason = match part.why {
-            Why::Velocity => piece.by[0],
-            Why::Corner if piece.at.cuts => TimeLimit::Corner,
-            Why::Corner | Why::Change => match phase.jerk == 0.0 {
+            VelocityLimit::Velocity => piece.by[0],
+            VelocityLimit::Corner if piece.at.cuts => TimeLimit::Corner,
+            VelocityLimit::Corner | VelocityLimit::Change => match phase.jerk == 0.0 {
                 true => piece.by[1],
                 false => piece.by[2],
             },
         };
         let share = covered / piece.length;
         let (task, whole) = match piece.span {
-            Span::Along { from, to } => (piece.at.task, to - from),
-            Span::Corner { shares, .. } => match from + 0.5 * covered < 0.5 * piece.length {
+            PieceSpan::Along { from, to } => (piece.at.task, to - from),
+            PieceSpan::Corner { shares, .. } => match from + 0.5 * covered < 0.5 * piece.length {
                 true => (piece.at.task, 2.0 * shares[0]),
                 false => (piece.second, 2.0 * shares[1]),
             },
@@ -52,7 +52,7 @@ impl Planner {
                 self.bordered = Some(part.block);
             }
         }
-        self.law.push(Section {
+        self.law.push(LawSection {
             run: self.run,
             piece: part.block,
             from,

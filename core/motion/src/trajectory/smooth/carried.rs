@@ -1,14 +1,14 @@
 //! How far a plan is carried out, and what that is block by block.
 
-use super::{Step, Work};
-use crate::trajectory::block::Part;
-use crate::trajectory::envelope::Envelope;
+use super::{JerkStep, SmoothPlan};
+use crate::trajectory::block::BlockPhase;
+use crate::trajectory::envelope::VelocityEnvelope;
 use crate::trajectory::profile::Phase;
 
-impl Work {
+impl SmoothPlan {
     /// How many steps are carried out where the control has seen enough of the first `done` blocks: to the last place in
     /// them where the plan can be left, else to the next.
-    pub(super) fn leave(&mut self, ahead: &Envelope, done: usize) -> usize {
+    pub(super) fn leave(&mut self, ahead: &VelocityEnvelope, done: usize) -> usize {
         let wanted: f64 = (0..done).map(|place| ahead.left(place)).sum();
         let mut covered = 0.0;
         let mut best = 0;
@@ -21,7 +21,7 @@ impl Work {
             if level && ends > done && covered + length > wanted {
                 let seconds = (wanted - covered) / phase.velocity;
                 if seconds > 0.0 && seconds < phase.seconds {
-                    let part = |seconds: f64, ends: Option<usize>| Step {
+                    let part = |seconds: f64, ends: Option<usize>| JerkStep {
                         phase: Phase { seconds, ..phase },
                         ends,
                         ..step
@@ -48,9 +48,9 @@ impl Work {
     /// Hands over the first `count` steps block by block; how many blocks are behind.
     pub(super) fn carry_out(
         &mut self,
-        ahead: &mut Envelope,
+        ahead: &mut VelocityEnvelope,
         count: usize,
-        take: &mut dyn FnMut(Part),
+        take: &mut dyn FnMut(BlockPhase),
     ) -> usize {
         let (mut place, mut begun) = (0, ahead.begun);
         for index in 0..count {
@@ -67,7 +67,7 @@ impl Work {
                     false => step.phase.time_at(left),
                 };
                 if seconds > 0.0 {
-                    take(Part {
+                    take(BlockPhase {
                         block: ahead.first + place as u64,
                         from: begun,
                         phase: Phase { seconds, ..step.phase },

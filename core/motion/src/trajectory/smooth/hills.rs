@@ -1,16 +1,16 @@
 //! Hills: a double S from knot to knot.
 
-use super::knots::Knot;
-use super::{SAME, Step, Work};
-use crate::trajectory::block::Why;
-use crate::trajectory::envelope::Envelope;
+use super::knots::EnvelopeKnot;
+use super::{JerkStep, SAME, SmoothPlan};
+use crate::trajectory::block::VelocityLimit;
+use crate::trajectory::envelope::VelocityEnvelope;
 
 /// Blocks are unlike from this ratio of their accelerations or jerks on.
 const UNLIKE: f64 = 2.0;
 
-impl Work {
+impl SmoothPlan {
     /// Lays a hill from each knot to the next.
-    pub(super) fn lay_hills(&mut self, ahead: &Envelope) {
+    pub(super) fn lay_hills(&mut self, ahead: &VelocityEnvelope) {
         self.steps.clear();
         for index in 0..self.knots.len() - 1 {
             self.lay(ahead, self.knots[index], self.knots[index + 1]);
@@ -18,15 +18,15 @@ impl Work {
     }
 
     /// One hill, or several where these are gone over sooner.
-    fn lay(&mut self, ahead: &Envelope, knot: Knot, next: Knot) {
+    fn lay(&mut self, ahead: &VelocityEnvelope, knot: EnvelopeKnot, next: EnvelopeKnot) {
         let profile = knot.profile(next.velocity);
         if let Some((knot, middle)) = self.split(ahead, &knot, &next, profile.seconds()) {
             self.lay(ahead, knot, middle);
             return self.lay(ahead, middle, next);
         }
         let why = |corner: bool| match corner {
-            true => Why::Corner,
-            false => Why::Change,
+            true => VelocityLimit::Corner,
+            false => VelocityLimit::Change,
         };
         let [up, cruise, _] = profile.counts();
         let phases = profile.phases();
@@ -35,11 +35,11 @@ impl Work {
             let why = match place {
                 _ if place < up => why(knot.corner),
                 _ if place >= up + cruise => why(next.corner),
-                _ if reached => Why::Velocity,
+                _ if reached => VelocityLimit::Velocity,
                 _ => why(knot.corner || next.corner),
             };
             let last = place + 1 == phases.len();
-            self.steps.push(Step {
+            self.steps.push(JerkStep {
                 phase: *phase,
                 why,
                 rests: last || place + 1 == up || place + 1 == up + cruise,
@@ -51,11 +51,11 @@ impl Work {
     /// A hill in two where its blocks are least alike, if that takes less than `seconds`.
     fn split(
         &self,
-        ahead: &Envelope,
-        knot: &Knot,
-        next: &Knot,
+        ahead: &VelocityEnvelope,
+        knot: &EnvelopeKnot,
+        next: &EnvelopeKnot,
         seconds: f64,
-    ) -> Option<(Knot, Knot)> {
+    ) -> Option<(EnvelopeKnot, EnvelopeKnot)> {
         let unlike = |place: usize| {
             let [last, next] = [&ahead.blocks[place - 1], &ahead.blocks[place]];
             let ratio = |one: f64, other: f64| (one / other).max(other / one);
@@ -67,7 +67,11 @@ impl Work {
             return None;
         }
         let first = self.up_to(ahead, *knot, place);
-        let middle = Knot { place, velocity: ahead.squares[place].sqrt(), ..Knot::default() };
+        let middle = EnvelopeKnot {
+            place,
+            velocity: ahead.squares[place].sqrt(),
+            ..EnvelopeKnot::default()
+        };
         let mut middle = self.up_to(ahead, middle, next.place);
         let reached = [
             first.ramp.reach(first.velocity, first.length),

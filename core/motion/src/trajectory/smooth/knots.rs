@@ -1,8 +1,8 @@
 //! Knots: where the envelope meets a bound of the velocity.
 
-use super::{SAME, Work};
-use crate::trajectory::envelope::Envelope;
-use crate::trajectory::profile::{Profile, Ramp};
+use super::{SAME, SmoothPlan};
+use crate::trajectory::envelope::VelocityEnvelope;
+use crate::trajectory::profile::{Ramp, VelocityProfile};
 
 /// Knots are brought to one velocity where its square is no less than this of the largest one's: a slow corner must not
 /// hold up what is near it.
@@ -10,7 +10,7 @@ const ALIKE: f64 = 0.5;
 
 /// A place of the envelope where a bound is met, and what follows on it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Knot {
+pub(super) struct EnvelopeKnot {
     /// It stands in front of this block.
     pub place: usize,
     pub velocity: f64,
@@ -22,7 +22,7 @@ pub(super) struct Knot {
     pub corner: bool,
 }
 
-impl Default for Knot {
+impl Default for EnvelopeKnot {
     fn default() -> Self {
         Self {
             place: 0,
@@ -35,11 +35,11 @@ impl Default for Knot {
     }
 }
 
-impl Knot {
+impl EnvelopeKnot {
     /// The hill from it to the next knot, which is passed at `velocity`.
-    pub fn profile(&self, velocity: f64) -> Profile {
+    pub fn profile(&self, velocity: f64) -> VelocityProfile {
         let ends = [self.velocity, velocity];
-        Profile::new(self.length, ends, self.top, self.ramp, self.ramp)
+        VelocityProfile::new(self.length, ends, self.top, self.ramp, self.ramp)
     }
 
     /// The next knot's velocity can be come to, up or down.
@@ -48,9 +48,9 @@ impl Knot {
     }
 }
 
-impl Work {
+impl SmoothPlan {
     /// The velocity in front of the block at `place` is at a bound, and not amid blocks that go at the same.
-    fn is_knot(&self, ahead: &Envelope, place: usize) -> bool {
+    fn is_knot(&self, ahead: &VelocityEnvelope, place: usize) -> bool {
         let cap = ahead.caps[place];
         let met = ahead.squares[place] >= cap * cap * (1.0 - SAME);
         let level = |velocity: f64| velocity <= cap * (1.0 + SAME);
@@ -58,7 +58,7 @@ impl Work {
     }
 
     /// Brings knots that are closer than an acceleration takes to rise to the least of their velocities; true if any.
-    pub(super) fn thin(&mut self, ahead: &mut Envelope) -> bool {
+    pub(super) fn thin(&mut self, ahead: &mut VelocityEnvelope) -> bool {
         let count = ahead.blocks.len();
         let mut lowered = false;
         let mut place = 1;
@@ -105,18 +105,18 @@ impl Work {
     }
 
     /// Finds the knots, and what follows on each of them.
-    pub(super) fn find_knots(&mut self, ahead: &Envelope) {
+    pub(super) fn find_knots(&mut self, ahead: &VelocityEnvelope) {
         let count = ahead.blocks.len();
         self.knots.clear();
         for place in 0..=count {
             if place > 0 && place < count && !self.is_knot(ahead, place) {
                 continue;
             }
-            self.knots.push(Knot {
+            self.knots.push(EnvelopeKnot {
                 place,
                 velocity: ahead.squares[place].sqrt(),
                 corner: ahead.at_corner(place),
-                ..Knot::default()
+                ..EnvelopeKnot::default()
             });
         }
         let knots = self.knots.len();
@@ -127,12 +127,17 @@ impl Work {
     }
 
     /// A knot with what follows on it up to the block at `next`.
-    pub(super) fn up_to(&self, ahead: &Envelope, knot: Knot, next: usize) -> Knot {
-        let mut knot = Knot {
+    pub(super) fn up_to(
+        &self,
+        ahead: &VelocityEnvelope,
+        knot: EnvelopeKnot,
+        next: usize,
+    ) -> EnvelopeKnot {
+        let mut knot = EnvelopeKnot {
             place: knot.place,
             velocity: knot.velocity,
             corner: knot.corner,
-            ..Knot::default()
+            ..EnvelopeKnot::default()
         };
         for place in knot.place..next {
             let block = &ahead.blocks[place];

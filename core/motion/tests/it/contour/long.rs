@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::Rotation3;
 use post_motion::contour::{Contour, ContourPoint};
-use post_motion::{At, SetPoints};
+use post_motion::{ProgramPlace, SetPoints};
 
 use super::{Point, joints, machine};
 
@@ -39,7 +39,7 @@ fn a_circle_many_times_is_off_by_the_same() {
         points.poses.clear();
         let poses = commanded.iter().map(|joints| solver.chain().forward(joints));
         points.poses.extend(poses);
-        points.at = vec![At { task: 0, line: 1, cuts: true }; TURN];
+        points.at = vec![ProgramPlace { task: 0, line: 1, cuts: true }; TURN];
         contour.take(&points, &actual, &mut listen);
         points.clear();
     }

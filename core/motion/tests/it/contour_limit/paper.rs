@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 use post_feed::Samples;
-use post_feed::curve::Curve;
+use post_feed::curve::NurbsCurve;
 use post_feed::limits::{
     AxisAcceleration, AxisVelocity, ChordError, Collocation, ContourError, Feed, Limit, deviation,
 };
@@ -18,7 +18,7 @@ use super::{Path, even, limit, of_the_paper, planned, samples, simulated};
 const TOLERANCE: f64 = 0.02;
 
 /// A plane curve, its coordinates being X and Y.
-struct Plane(Curve<2>);
+struct Plane(NurbsCurve<2>);
 
 impl Path for Plane {
     fn axes(&self, parameter: f64) -> Vec<[f64; 4]> {
@@ -44,7 +44,7 @@ fn butterfly() -> Option<Plane> {
     let scale = 793.0 / 382.859_558;
     let points = points.map(|point| [0, 1].map(|axis| scale * numbers(point)[axis]));
     let weights = numbers(&value["weights"]);
-    let curve = Curve::new(3, numbers(&value["knots"]), points.collect(), weights);
+    let curve = NurbsCurve::new(3, numbers(&value["knots"]), points.collect(), weights);
     Some(Plane(curve.unwrap()))
 }
 
@@ -61,7 +61,7 @@ fn rosette() -> Plane {
     let mut knots = vec![0.0; 3];
     knots.extend(even(0.0, 1.0, points.len() - 3));
     knots.extend([1.0; 3]);
-    Plane(Curve::new(3, knots, points, Vec::new()).unwrap())
+    Plane(NurbsCurve::new(3, knots, points, Vec::new()).unwrap())
 }
 
 /// The largest contour error by the formula for all directions, µm.

@@ -2,8 +2,8 @@
 
 use libm::{cos, sin, sqrt};
 use post_machine::servo::{Feedback, Servo};
-use post_motion::servo::fit::{Fit, Log, fit};
-use post_motion::servo::{Follower, Output};
+use post_motion::servo::fit::{ServoFit, ServoLog, fit};
+use post_motion::servo::{Follower, ServoOutput};
 use post_testkit::Rng;
 
 use super::{direct_loops, feedrate_paper, gear_loops, of_loops, screw_loops, with_friction};
@@ -30,7 +30,7 @@ fn even() -> Vec<f64> {
 fn measured_with(servo: &Servo, commanded: &[f64], spread: f64, kept: f64, seed: u64) -> Vec<f64> {
     let mut noise = Rng::new(seed);
     let mut error = spread * noise.normal();
-    let mut follower = Follower::with(servo, PERIOD, Output::Measured).unwrap();
+    let mut follower = Follower::with(servo, PERIOD, ServoOutput::Measured).unwrap();
     follower.settle(commanded[0]);
     let values = commanded.iter().map(|value| follower.next(*value));
     values
@@ -53,13 +53,13 @@ fn fitted(
     commanded: &[f64],
     measured: &[f64],
     lead: usize,
-) -> Fit {
+) -> ServoFit {
     let mut start = truth.clone();
     for (name, factor) in wrong {
         *start.parameter(name).unwrap() *= factor;
     }
     let names: Vec<&str> = wrong.iter().map(|(name, _)| *name).collect();
-    let log = Log { period: PERIOD, steps: 1, commanded, measured, lead };
+    let log = ServoLog { period: PERIOD, steps: 1, commanded, measured, lead };
     fit(&start, &names, log).unwrap()
 }
 
@@ -198,21 +198,21 @@ fn what_cannot_be_fitted_is_refused() {
     let servo = of_loops(screw_loops(Feedback::Scale, [0.9, 0.0]));
     let commanded = lively();
     let log =
-        Log { period: PERIOD, steps: 1, commanded: &commanded, measured: &commanded, lead: 0 };
-    let said = |names: &[&str], log: Log<'_>| {
+        ServoLog { period: PERIOD, steps: 1, commanded: &commanded, measured: &commanded, lead: 0 };
+    let said = |names: &[&str], log: ServoLog<'_>| {
         let fault = fit(&servo, names, log).unwrap_err();
         format!("{} | {}", fault.message, fault.help.unwrap_or_default())
     };
     assert!(said(&["kw"], log).contains("did you mean `kv`"));
     assert!(said(&["backlash"], log).contains("backlash is zero"));
     assert!(said(&["kv", "kv"], log).contains("twice"));
-    let short = Log { lead: 1495, ..log };
+    let short = ServoLog { lead: 1495, ..log };
     assert!(said(&["kv"], short).contains("5 of them compared"));
-    let uneven = Log { measured: &commanded[1..], ..log };
+    let uneven = ServoLog { measured: &commanded[1..], ..log };
     assert!(said(&["kv"], uneven).contains("1499 measured"));
     assert!(said(&[], log).contains("nothing to fit"));
     let mut holed = commanded.clone();
     holed[700] = f64::NAN;
-    let holed = Log { measured: &holed, ..log };
+    let holed = ServoLog { measured: &holed, ..log };
     assert!(said(&["kv"], holed).contains("no number"));
 }

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Setting, Source, load};
 use post_machine::kinematics::{Joints, Solver};
-use post_motion::path::{Stance, Way};
-use post_motion::trajectory::{Filled, Planner, TaskTime};
-use post_motion::{Corner, Move, Pace, SetPoints, Task};
+use post_motion::path::{Interpolation, Stance};
+use post_motion::trajectory::{FillOutcome, Planner, TaskTime};
+use post_motion::{CornerMode, Move, MovePace, SetPoints, Task};
 
 /// A machine from the text of its file.
 pub fn machine(text: &str) -> Machine {
@@ -64,7 +64,7 @@ impl Program {
         Stance { joints, pose: chain.forward(&joints) }
     }
 
-    pub fn go(&mut self, way: Way, to: Stance, pace: Pace, corner: Corner) {
+    pub fn go(&mut self, way: Interpolation, to: Stance, pace: MovePace, corner: CornerMode) {
         let task = Move {
             line: self.tasks.len() as u64 + 1,
             way,
@@ -100,15 +100,15 @@ pub fn run(machine: &Machine, tasks: &[Task], solver: &Arc<Solver>, chunk: usize
         all.at.extend(&batch.at);
         all.jumps.extend(&batch.jumps);
         batch.clear();
-        if filled != Filled::Full {
+        if filled != FillOutcome::Full {
             return filled;
         }
     };
     for task in tasks {
         planner.push(task.clone()).expect("reachable");
-        assert_eq!(drain(&mut planner, &mut times), Filled::Wants);
+        assert_eq!(drain(&mut planner, &mut times), FillOutcome::Wants);
     }
     planner.end();
-    assert_eq!(drain(&mut planner, &mut times), Filled::Ended);
+    assert_eq!(drain(&mut planner, &mut times), FillOutcome::Ended);
     Run { points: all, times }
 }

@@ -2,14 +2,19 @@
 
 use nalgebra::Vector3;
 use post_machine::description::Machine;
-use post_motion::path::Way;
+use post_motion::path::Interpolation;
 use post_motion::trajectory::TimeLimit;
-use post_motion::{Corner, Pace, Task, Waiting};
+use post_motion::{CornerMode, MovePace, Task, WaitReason};
 use post_testkit::{Rng, randomised};
 
 use super::build::{Program, run, trunnion};
 
-fn square(machine: &Machine, turn: f64, corner: Corner, feed: f64) -> (Program, [Vector3<f64>; 3]) {
+fn square(
+    machine: &Machine,
+    turn: f64,
+    corner: CornerMode,
+    feed: f64,
+) -> (Program, [Vector3<f64>; 3]) {
     let (sine, cosine) = libm::sincos(turn);
     let points = [
         Vector3::zeros(),
@@ -20,7 +25,7 @@ fn square(machine: &Machine, turn: f64, corner: Corner, feed: f64) -> (Program, 
     for pair in points.windows(2) {
         let to = program.stance([pair[1].x, pair[1].y, 0.0], &program.here.joints);
         let minutes = (pair[1] - pair[0]).norm() / feed;
-        program.go(Way::Tip, to, Pace::Minutes(minutes), corner);
+        program.go(Interpolation::Tip, to, MovePace::Minutes(minutes), corner);
     }
     (program, points)
 }
@@ -43,7 +48,7 @@ fn corners_are_blended_within_their_tolerance() {
         );
         let tolerance = rng.order(-3.0, 0.0);
         let turn = rng.range(0.1, 3.1);
-        let corner = Corner::Blend { tolerance: Some(tolerance) };
+        let corner = CornerMode::Blend { tolerance: Some(tolerance) };
         let (program, [a, b, c]) = square(&machine, turn, corner, rng.order(3.0, 4.3));
         let run = run(&machine, &program.tasks, &program.solver, 1000);
         let strays =
@@ -71,8 +76,13 @@ fn where_a_standstill_is_asked_for_the_end_is_reached() {
         for _ in 0..50 {
             let tip = program.here.pose.tip + rng.point(20.0);
             let to = program.stance([tip.x, tip.y, tip.z], &program.here.joints);
-            program.go(Way::Tip, to, Pace::Minutes(0.001), Corner::Blend { tolerance: None });
-            let wait = Task::Wait { line: 0, seconds: 0.01, why: Waiting::Dwell };
+            program.go(
+                Interpolation::Tip,
+                to,
+                MovePace::Minutes(0.001),
+                CornerMode::Blend { tolerance: None },
+            );
+            let wait = Task::Wait { line: 0, seconds: 0.01, why: WaitReason::Dwell };
             program.tasks.push(wait);
             ends.push(to);
         }
@@ -95,7 +105,7 @@ fn a_tangent_is_passed_at_full_speed_and_a_corner_is_not() {
     let machine =
         trunnion("max_feed = 30000, max_accel = 2000", "max_feed = 7200, max_accel = 600", "");
     for (turn, fast) in [(0.0, true), (0.001, true), (1.0, false)] {
-        let (program, _) = square(&machine, turn, Corner::Path, 6000.0);
+        let (program, _) = square(&machine, turn, CornerMode::Path, 6000.0);
         let run = run(&machine, &program.tasks, &program.solver, 1000);
         let seconds: f64 = run.times.iter().map(|time| time.seconds).sum();
         // A ramp between 0 and 100 mm/s costs 100 / 2a; the second way lies askew to the axes.
@@ -114,7 +124,7 @@ fn a_corner_is_slowed_down_for_until_no_axis_jumps_by_more_than_a_period_makes()
         "max_feed = 7200, max_accel = 600",
         "period = 0.001",
     );
-    let (program, [_, corner, _]) = square(&machine, 1.2, Corner::Path, 6000.0);
+    let (program, [_, corner, _]) = square(&machine, 1.2, CornerMode::Path, 6000.0);
     let run = run(&machine, &program.tasks, &program.solver, 1000);
     let tips: Vec<_> = run.points.poses.iter().map(|pose| pose.tip).collect();
     let speeds =
@@ -132,10 +142,10 @@ fn a_stop_takes_as_long_as_axes_need_to_be_in_position() {
     let seconds = |motion: &str| {
         let limits = "max_feed = 30000, max_accel = 2000";
         let machine = trunnion(limits, limits, motion);
-        let (mut program, _) = square(&machine, 1.0, Corner::Stop, 3000.0);
-        program.tasks.push(Task::Wait { line: 9, seconds: 1.0, why: Waiting::Dwell });
+        let (mut program, _) = square(&machine, 1.0, CornerMode::Stop, 3000.0);
+        program.tasks.push(Task::Wait { line: 9, seconds: 1.0, why: WaitReason::Dwell });
         let to = program.stance([0.0; 3], &program.here.joints);
-        program.go(Way::Tip, to, Pace::Minutes(0.01), Corner::Stop);
+        program.go(Interpolation::Tip, to, MovePace::Minutes(0.01), CornerMode::Stop);
         let run = run(&machine, &program.tasks, &program.solver, 100);
         let last = run.times.last().expect("moves");
         (last.begins + last.seconds, run.times[0].limit)
@@ -158,16 +168,16 @@ fn more_tolerance_is_never_slower_with_jerk_limits() {
         );
         let machine = trunnion(&limits, &limits, "period = 0.001");
         let (turn, feed) = (rng.range(0.2, 3.0), rng.order(2.5, 4.3));
-        let seconds = |corner: Corner| {
+        let seconds = |corner: CornerMode| {
             let (program, _) = square(&machine, turn, corner, feed);
             let run = run(&machine, &program.tasks, &program.solver, 1000);
             let last = run.times.last().expect("moves");
             last.begins + last.seconds
         };
-        let mut least = seconds(Corner::Stop).min(seconds(Corner::Path));
+        let mut least = seconds(CornerMode::Stop).min(seconds(CornerMode::Path));
         for tolerance in [0.001, 0.01, 0.05, 0.2, 1.0, 5.0] {
             let tolerance = Some(tolerance);
-            let now = seconds(Corner::Blend { tolerance });
+            let now = seconds(CornerMode::Blend { tolerance });
             assert!(
                 now <= least * 1.05,
                 "{round} {turn} {feed} {limits} {tolerance:?}: {now}, {least} with less"

@@ -1,9 +1,9 @@
 //! Ten million set-points: times and positions stay exact.
 
 use post_machine::kinematics::Joints;
-use post_motion::path::Way;
-use post_motion::trajectory::{Filled, Planner};
-use post_motion::{Corner, Move, Pace, SetPoints, Task};
+use post_motion::path::Interpolation;
+use post_motion::trajectory::{FillOutcome, Planner};
+use post_motion::{CornerMode, Move, MovePace, SetPoints, Task};
 use std::sync::Arc;
 
 use super::build::{Program, trunnion};
@@ -52,13 +52,13 @@ fn times_and_positions_do_not_drift() {
             let turned = (number % 2) as usize;
             let task = Task::Move(Move {
                 line: number + 1,
-                way: Way::Axes,
+                way: Interpolation::Axes,
                 from: ends[turned],
                 to: ends[1 - turned],
                 solver: Arc::clone(&start.solver),
                 keeps_tip: false,
-                pace: Pace::Minutes(WAY / FEED / 60.0),
-                corner: Corner::Stop,
+                pace: MovePace::Minutes(WAY / FEED / 60.0),
+                corner: CornerMode::Stop,
             });
             planner.push(task).unwrap();
         } else {
@@ -81,7 +81,7 @@ fn times_and_positions_do_not_drift() {
                 late = late.max((time.seconds - SECONDS).abs());
                 timed += 1;
             }
-            if filled != Filled::Full {
+            if filled != FillOutcome::Full {
                 break;
             }
         }

@@ -2,8 +2,8 @@
 
 use post_machine::description::Machine;
 use post_motion::limits::AxisLimits;
-use post_motion::path::Way;
-use post_motion::{Corner, Pace, SetPoints, Task};
+use post_motion::path::Interpolation;
+use post_motion::{CornerMode, MovePace, SetPoints, Task};
 use post_testkit::{Rng, randomised};
 
 use super::build::{Program, run, trunnion};
@@ -33,7 +33,7 @@ fn kinked(
     rng: &mut Rng,
     machine: &Machine,
     count: usize,
-    mut corner: impl FnMut(&mut Rng) -> Corner,
+    mut corner: impl FnMut(&mut Rng) -> CornerMode,
 ) -> Program {
     let mut program = Program::new(machine, [10.0, 20.0, 30.0]);
     let turning = machine.axes.iter().enumerate();
@@ -52,11 +52,11 @@ fn kinked(
         }
         let to = program.stance([tip.x, tip.y, tip.z], &joints);
         let pace = match rng.pick(8) {
-            0 => Pace::Rapid,
-            _ => Pace::Minutes(size / rng.order(2.5, 4.5)),
+            0 => MovePace::Rapid,
+            _ => MovePace::Minutes(size / rng.order(2.5, 4.5)),
         };
         let corner = corner(rng);
-        program.go(Way::Axes, to, pace, corner);
+        program.go(Interpolation::Axes, to, pace, corner);
     }
     program
 }
@@ -110,14 +110,14 @@ fn seconds(machine: &Machine, program: &Program) -> f64 {
     run.times.iter().map(|time| time.seconds).sum()
 }
 
-fn blend(rng: &mut Rng) -> Corner {
-    Corner::Blend { tolerance: [None, Some(rng.order(-4.0, 0.0))][rng.pick(2)] }
+fn blend(rng: &mut Rng) -> CornerMode {
+    CornerMode::Blend { tolerance: [None, Some(rng.order(-4.0, 0.0))][rng.pick(2)] }
 }
 
-fn any_corner(rng: &mut Rng) -> Corner {
+fn any_corner(rng: &mut Rng) -> CornerMode {
     match rng.pick(5) {
-        0 => Corner::Stop,
-        1 | 2 => Corner::Path,
+        0 => CornerMode::Stop,
+        1 | 2 => CornerMode::Path,
         _ => blend(rng),
     }
 }
@@ -150,13 +150,13 @@ fn a_corner_is_rounded_and_not_jumped_at_where_that_costs_no_time() {
         // Ways of 5 to 30 mm that turn by up to a degree: slow enough for a curve within the tolerance at full feed.
         let mut program = Program::new(&machine, [0.0; 3]);
         let mut way = rng.point(1.0).normalize();
-        let corner = Corner::Blend { tolerance: Some(0.1) };
+        let corner = CornerMode::Blend { tolerance: Some(0.1) };
         for _ in 0..20 {
             way = (way + rng.point(0.01)).normalize();
             let tip = program.here.pose.tip + way * rng.range(5.0, 30.0);
             let to = program.stance([tip.x, tip.y, tip.z], &program.here.joints);
             let length = (tip - program.here.pose.tip).norm();
-            program.go(Way::Axes, to, Pace::Minutes(length / 1000.0), corner);
+            program.go(Interpolation::Axes, to, MovePace::Minutes(length / 1000.0), corner);
         }
         let run = run(&machine, &program.tasks, &program.solver, 1000);
         assert!(run.points.jumps.is_empty(), "{round}");
@@ -173,8 +173,8 @@ fn a_corner_is_rounded_and_not_jumped_at_where_that_costs_no_time() {
 /// How much longer the same moves take with each of three corners, from stop to blend, than with the one before.
 fn slower(rng: &mut Rng, jerk: bool) -> [f64; 2] {
     let machine = machine(rng, jerk, "period = 0.001");
-    let mut program = kinked(rng, &machine, 40, |_| Corner::Stop);
-    let times = [Corner::Stop, Corner::Path, blend(rng)].map(|corner| {
+    let mut program = kinked(rng, &machine, 40, |_| CornerMode::Stop);
+    let times = [CornerMode::Stop, CornerMode::Path, blend(rng)].map(|corner| {
         for task in &mut program.tasks {
             if let Task::Move(task) = task {
                 task.corner = corner;

@@ -1,8 +1,8 @@
 //! No limit is passed, whatever comes.
 
 use post_machine::description::Machine;
-use post_motion::path::Way;
-use post_motion::{Corner, Pace, SetPoints, Task, Waiting};
+use post_motion::path::Interpolation;
+use post_motion::{CornerMode, MovePace, SetPoints, Task, WaitReason};
 use post_testkit::{Rng, randomised};
 
 use super::build::{Program, run, trunnion};
@@ -48,8 +48,8 @@ fn moves(
     rng: &mut Rng,
     machine: &Machine,
     count: usize,
-    way: &Way,
-    mut corner: impl FnMut(&mut Rng) -> Corner,
+    way: &Interpolation,
+    mut corner: impl FnMut(&mut Rng) -> CornerMode,
 ) -> Program {
     let mut program = Program::new(machine, [10.0, 20.0, 30.0]);
     for _ in 0..count {
@@ -64,13 +64,13 @@ fn moves(
         }
         let to = program.stance([tip.x, tip.y, tip.z], &joints);
         let pace = match rng.pick(6) {
-            0 => Pace::Rapid,
-            _ => Pace::Minutes(step.norm() / rng.order(2.0, 4.5)),
+            0 => MovePace::Rapid,
+            _ => MovePace::Minutes(step.norm() / rng.order(2.0, 4.5)),
         };
         let corner = corner(rng);
         program.go(way.clone(), to, pace, corner);
         if rng.pick(8) == 0 {
-            program.tasks.push(Task::Wait { line: 0, seconds: 0.0123, why: Waiting::Dwell });
+            program.tasks.push(Task::Wait { line: 0, seconds: 0.0123, why: WaitReason::Dwell });
         }
     }
     program
@@ -107,8 +107,8 @@ fn moves_with_a_standstill_behind_each_keep_all_limits() {
     for round in rounds {
         let drawn = Drawn::new(&mut rng, round % 2 == 0);
         let machine = drawn.machine("period = 0.0005", 1.0);
-        let way = [Way::Axes, Way::Tip][rng.pick(2)].clone();
-        let program = moves(&mut rng, &machine, 30, &way, |_| Corner::Stop);
+        let way = [Interpolation::Axes, Interpolation::Tip][rng.pick(2)].clone();
+        let program = moves(&mut rng, &machine, 30, &way, |_| CornerMode::Stop);
         let run = run(&machine, &program.tasks, &program.solver, 100);
         let ratios = ratios(&run.points, &machine);
         assert!(ratios.iter().all(|ratio| *ratio < SLACK), "{round} {way:?}: {ratios:?}");
@@ -124,8 +124,8 @@ fn a_path_that_is_kept_keeps_all_limits_but_for_its_jumps() {
     for round in rounds {
         let drawn = Drawn::new(&mut rng, false);
         let machine = drawn.machine("period = 0.001", 1.0);
-        let program = moves(&mut rng, &machine, 60, &Way::Axes, |rng| {
-            [Corner::Path, Corner::Stop][usize::from(rng.pick(5) == 0)]
+        let program = moves(&mut rng, &machine, 60, &Interpolation::Axes, |rng| {
+            [CornerMode::Path, CornerMode::Stop][usize::from(rng.pick(5) == 0)]
         });
         let run = run(&machine, &program.tasks, &program.solver, 100);
         let own = jumps::ratios(&run.points, &machine);
@@ -141,7 +141,9 @@ fn overlapping_and_rounded_moves_keep_velocities_and_accelerations() {
         let blend = ["overlap", "round"][usize::from(round % 2)];
         let machine = drawn.machine(&format!("period = 0.0005\nblend = \"{blend}\""), 1.0);
         let tolerance = [None, Some(0.01), Some(0.5)][rng.pick(3)];
-        let program = moves(&mut rng, &machine, 60, &Way::Axes, |_| Corner::Blend { tolerance });
+        let program = moves(&mut rng, &machine, 60, &Interpolation::Axes, |_| CornerMode::Blend {
+            tolerance,
+        });
         let run = run(&machine, &program.tasks, &program.solver, 100);
         let [velocity, acceleration, _, jump] = jumps::ratios(&run.points, &machine);
         // Where a move that must end as it is programmed is overlapped, LinuxCNC's own motion passes limits so too.
@@ -162,8 +164,8 @@ fn larger_limits_are_never_slower() {
         let drawn = Drawn::new(&mut rng, false);
         let motion = ["blend = \"overlap\"", "blend = \"round\""][usize::from(round % 2)];
         let machine = drawn.machine(motion, 1.0);
-        let program = moves(&mut rng, &machine, 60, &Way::Axes, |rng| {
-            [Corner::Path, Corner::Stop, Corner::Blend { tolerance: None }][rng.pick(3)]
+        let program = moves(&mut rng, &machine, 60, &Interpolation::Axes, |rng| {
+            [CornerMode::Path, CornerMode::Stop, CornerMode::Blend { tolerance: None }][rng.pick(3)]
         });
         let mut last = f64::INFINITY;
         for faster in [1.0, 1.1, 1.7, 3.0] {
@@ -182,9 +184,9 @@ fn it_does_not_matter_how_many_set_points_are_asked_for_at_once() {
     for round in rounds {
         let drawn = Drawn::new(&mut rng, round % 2 == 0);
         let machine = drawn.machine("look_ahead = 7", 1.0);
-        let way = [Way::Axes, Way::Tip][rng.pick(2)].clone();
+        let way = [Interpolation::Axes, Interpolation::Tip][rng.pick(2)].clone();
         let program = moves(&mut rng, &machine, 40, &way, |rng| {
-            [Corner::Path, Corner::Stop, Corner::Blend { tolerance: None }][rng.pick(3)]
+            [CornerMode::Path, CornerMode::Stop, CornerMode::Blend { tolerance: None }][rng.pick(3)]
         });
         let [one, many] =
             [1, 1000].map(|chunk| run(&machine, &program.tasks, &program.solver, chunk));

@@ -3,8 +3,8 @@
 
 use std::process::Command;
 
-use post_motion::path::Way;
-use post_motion::{Corner, Pace, Task, Waiting};
+use post_motion::path::Interpolation;
+use post_motion::{CornerMode, MovePace, Task, WaitReason};
 use post_testkit::shared;
 
 use super::build::{Program, run, trunnion};
@@ -37,7 +37,7 @@ fn overlapping_moves_go_as_those_of_linuxcnc() {
     );
     // X Y Z A C of t1.ngc; Z0 of the joints is -50 of the tip.
     let mut program = Program::new(&machine, [0.0, 0.0, -TOOL]);
-    let blend = Corner::Blend { tolerance: None };
+    let blend = CornerMode::Blend { tolerance: None };
     let place = |name: &str| machine.axes.iter().position(|axis| axis.name == name);
     let (a, c) = (place("A").expect("A"), place("C").expect("C"));
     let go = |program: &mut Program, words: [f64; 5], feed: Option<f64>| {
@@ -48,16 +48,16 @@ fn overlapping_moves_go_as_those_of_linuxcnc() {
         let to = program.stance([x, y, z], &joints);
         let length = (to.pose.tip - program.here.pose.tip).norm();
         let (pace, corner) = match feed {
-            None => (Pace::Rapid, Corner::Stop),
-            Some(feed) => (Pace::Minutes(length / feed), blend),
+            None => (MovePace::Rapid, CornerMode::Stop),
+            Some(feed) => (MovePace::Minutes(length / feed), blend),
         };
-        program.go(Way::Tip, to, pace, corner);
+        program.go(Interpolation::Tip, to, pace, corner);
     };
     go(&mut program, [0.0, 0.0, 60.0, 0.0, 0.0], None);
     go(&mut program, [10.0, 20.0, 30.0, 0.0, 0.0], Some(3000.0));
     go(&mut program, [30.0, -10.0, 25.0, -20.0, 40.0], Some(3000.0));
     go(&mut program, [35.0, -15.0, 22.0, -30.0, 55.0], Some(3000.0));
-    program.tasks.push(Task::Wait { line: 7, seconds: 0.2, why: Waiting::Dwell });
+    program.tasks.push(Task::Wait { line: 7, seconds: 0.2, why: WaitReason::Dwell });
     go(&mut program, [0.0, 0.0, 60.0, 0.0, 0.0], Some(3000.0));
     let ours = run(&machine, &program.tasks, &program.solver, 1000);
     let moves = |row: usize| rows[row][5..10] != rows[row - 1][5..10];

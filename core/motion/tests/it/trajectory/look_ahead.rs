@@ -1,8 +1,8 @@
 //! Many blocks in one go.
 
 use post_machine::description::Machine;
-use post_motion::path::Way;
-use post_motion::{Corner, Pace};
+use post_motion::path::Interpolation;
+use post_motion::{CornerMode, MovePace};
 use post_testkit::{Rng, randomised};
 
 use super::build::{Program, run, trunnion};
@@ -16,7 +16,7 @@ fn straight(machine: &Machine, blocks: &[[f64; 2]]) -> Program {
     for [length, feed] in blocks {
         x += length;
         let to = program.stance([x, 0.0, 0.0], &program.here.joints);
-        program.go(Way::Axes, to, Pace::Minutes(length / feed), Corner::Path);
+        program.go(Interpolation::Axes, to, MovePace::Minutes(length / feed), CornerMode::Path);
     }
     program
 }
@@ -162,7 +162,7 @@ fn a_curve_of_many_blocks_is_gone_round_at_its_feed() {
         joints[1] = 0.2 * cosine - 0.2;
         let to = program.stance([50.0 * cosine, 50.0 * sine, 5.0 * sine * sine], &joints);
         let length = (to.pose.tip - program.here.pose.tip).norm();
-        program.go(Way::Tip, to, Pace::Minutes(length / feed), Corner::Path);
+        program.go(Interpolation::Tip, to, MovePace::Minutes(length / feed), CornerMode::Path);
     }
     let begun = std::time::Instant::now();
     let run = run(&machine, &program.tasks, &program.solver, 1000);

@@ -1,6 +1,6 @@
 //! Profiles against the closed forms of textbooks, and against their own sums.
 
-use post_motion::trajectory::profile::{Profile, Ramp};
+use post_motion::trajectory::profile::{Ramp, VelocityProfile};
 use post_testkit::{Rng, randomised};
 
 /// From rest to rest: trapezoid or triangle; with jerk the four double S.
@@ -40,7 +40,7 @@ fn from_rest_to_rest_it_takes_the_time_of_the_textbook() {
             _ => rng.order(0.0, 7.0),
         };
         let ramp = Ramp { acceleration: a, jerk: j };
-        let profile = Profile::new(length, [0.0, 0.0], v, ramp, ramp);
+        let profile = VelocityProfile::new(length, [0.0, 0.0], v, ramp, ramp);
         let (own, due) = (profile.seconds(), textbook(length, v, a, j));
         assert!(libm::fabs(own - due) <= 1e-9 * due, "{length} {v} {a} {j}: {own}, not {due}");
     }
@@ -79,7 +79,7 @@ fn profiles_keep_their_limits_and_end_where_and_as_they_should() {
         if top == 0.0 || change > 0.0 && change < 1e-6 * from {
             continue;
         }
-        let profile = Profile::new(length, [from, to], top, up, down);
+        let profile = VelocityProfile::new(length, [from, to], top, up, down);
         let (mut covered, mut velocity, mut last) = (0.0, from, 0.0);
         let counts = profile.counts();
         for (place, phase) in profile.phases().iter().enumerate() {

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use post_machine::kinematics::Joints;
-use post_motion::path::{Way, on_arc};
-use post_motion::{Corner, Pace, Task, Waiting};
+use post_motion::path::{Interpolation, on_arc};
+use post_motion::{CornerMode, MovePace, Task, WaitReason};
 use post_testkit::{Rng, randomised};
 
 use super::build::{Program, run, trunnion};
@@ -29,19 +29,19 @@ fn step(rng: &mut Rng, program: &mut Program, count: usize) {
     // The pole, where vectors say nothing of C, is another matter.
     joints[1] = joints[1].clamp(0.3, 1.2);
     let pace = match rng.pick(5) {
-        0 => Pace::Rapid,
-        1 => Pace::Minutes(0.0),
-        _ => Pace::Minutes(rng.order(-8.0, -3.0)),
+        0 => MovePace::Rapid,
+        1 => MovePace::Minutes(0.0),
+        _ => MovePace::Minutes(rng.order(-8.0, -3.0)),
     };
     let corner = match rng.pick(4) {
-        0 => Corner::Stop,
-        1 => Corner::Path,
-        2 => Corner::Blend { tolerance: None },
-        _ => Corner::Blend { tolerance: Some(rng.order(-4.0, 1.0)) },
+        0 => CornerMode::Stop,
+        1 => CornerMode::Path,
+        2 => CornerMode::Blend { tolerance: None },
+        _ => CornerMode::Blend { tolerance: Some(rng.order(-4.0, 1.0)) },
     };
     let way = match rng.pick(6) {
-        0 => Way::Axes,
-        1 => Way::TipAndAxis,
+        0 => Interpolation::Axes,
+        1 => Interpolation::TipAndAxis,
         2 => {
             let centre = here.pose.tip + Vector3::new(rng.range(1.0, 20.0), 0.0, 0.0);
             let normal = Vector3::z();
@@ -51,10 +51,10 @@ fn step(rng: &mut Rng, program: &mut Program, count: usize) {
             let end = centre + turned;
             assert!((on_arc([here.pose.tip, end], centre, normal, sweep, 1.0) - end).norm() < 1e-9);
             let to = program.stance([end.x, end.y, end.z], &joints);
-            let way = Way::Arc { centre, normal, sweep };
+            let way = Interpolation::Arc { centre, normal, sweep };
             return program.go(way, to, pace, corner);
         }
-        _ => Way::Tip,
+        _ => Interpolation::Tip,
     };
     let to = program.stance([tip.x, tip.y, tip.z], &joints);
     program.go(way, to, pace, corner);
@@ -62,7 +62,7 @@ fn step(rng: &mut Rng, program: &mut Program, count: usize) {
         program.tasks.push(Task::Wait {
             line: 0,
             seconds: [0.0, 1e-7, 0.02][rng.pick(3)],
-            why: Waiting::Dwell,
+            why: WaitReason::Dwell,
         });
     }
 }
@@ -97,7 +97,7 @@ fn whatever_is_asked_for_nothing_jumps_and_all_of_it_is_done() {
         joints[1] = 0.6;
         program.here = program.stance([100.0, 0.0, 0.0], &joints);
         if rng.pick(3) == 0 {
-            program.tasks.push(Task::Wait { line: 0, seconds: 0.01, why: Waiting::Spindle });
+            program.tasks.push(Task::Wait { line: 0, seconds: 0.01, why: WaitReason::Spindle });
         }
         for count in 0..30 {
             step(&mut rng, &mut program, count);

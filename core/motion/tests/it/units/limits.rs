@@ -8,8 +8,8 @@ use post_machine::kinematics::{Joints, MAX_AXES};
 use post_testkit::repository;
 
 use post_motion::limits::{AxisLimits, of};
-use post_motion::path::{SplineWay, Stance, Way};
-use post_motion::{Corner, Move, Pace};
+use post_motion::path::{BSpline, Interpolation, Stance};
+use post_motion::{CornerMode, Move, MovePace};
 
 /// Values of the dense samples: axes, then the tip.
 const VALUES: usize = MAX_AXES + 3;
@@ -26,7 +26,7 @@ fn machine(name: &str) -> Machine {
 }
 
 /// A move between the tips, the rotary axes from and to the angles (degrees, in the order of the chain).
-fn task(machine: &Machine, way: Way, tips: [[f64; 3]; 2], angles: [[f64; 2]; 2]) -> Move {
+fn task(machine: &Machine, way: Interpolation, tips: [[f64; 3]; 2], angles: [[f64; 2]; 2]) -> Move {
     let solver = Arc::new(machine.solver(80.0).unwrap());
     let stances = [0, 1].map(|end| {
         let mut joints = Joints::default();
@@ -46,8 +46,8 @@ fn task(machine: &Machine, way: Way, tips: [[f64; 3]; 2], angles: [[f64; 2]; 2])
         to,
         solver,
         keeps_tip: true,
-        pace: Pace::Rapid,
-        corner: Corner::Stop,
+        pace: MovePace::Rapid,
+        corner: CornerMode::Stop,
     }
 }
 
@@ -57,7 +57,7 @@ fn at(task: &Move, limits: &AxisLimits, t: f64, near: &Joints) -> [f64; VALUES] 
     let mut values = [0.0; VALUES];
     values[..MAX_AXES].copy_from_slice(&stance.joints);
     values[MAX_AXES..].copy_from_slice(stance.pose.tip.as_slice());
-    if task.way != Way::Axes
+    if task.way != Interpolation::Axes
         && let Some(programmed) = &limits.programmed
     {
         for (place, coordinate) in programmed.iter().enumerate() {
@@ -77,7 +77,7 @@ fn dense(task: &Move, limits: &AxisLimits) -> ([[f64; VALUES]; 3], [[f64; VALUES
     let mut near = task.from.joints;
     for place in 0..=COUNT {
         let row = at(task, limits, place as f64 * step, &near);
-        if limits.programmed.is_none() || task.way == Way::Axes {
+        if limits.programmed.is_none() || task.way == Interpolation::Axes {
             near.copy_from_slice(&row[..MAX_AXES]);
         } else {
             let ends = [&task.from, &task.to];
@@ -173,9 +173,9 @@ fn bounds_hold_along_every_way() {
             [[-170.0, 20.0], [200.0, -25.0]],
         ] {
             let straight = |way| task(&machine, way, tips, angles);
-            check(&format!("{name} axes"), &machine, &straight(Way::Axes));
-            check(&format!("{name} tip"), &machine, &straight(Way::Tip));
-            let circle = Way::Arc {
+            check(&format!("{name} axes"), &machine, &straight(Interpolation::Axes));
+            check(&format!("{name} tip"), &machine, &straight(Interpolation::Tip));
+            let circle = Interpolation::Arc {
                 centre: Vector3::new(25.0, 5.0, 0.0),
                 normal: Vector3::z(),
                 sweep: 1.25 * std::f64::consts::PI,
@@ -188,7 +188,7 @@ fn bounds_hold_along_every_way() {
             );
             check(&format!("{name} arc"), &machine, &helix);
         }
-        let spline = Way::Spline(Arc::new(SplineWay {
+        let spline = Interpolation::Spline(Arc::new(BSpline {
             degree: 3,
             knots: vec![0.0, 0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 2.0, 2.0],
             poles: [
@@ -206,6 +206,6 @@ fn bounds_hold_along_every_way() {
     }
     // On a great circle away from the pole, by the nearest solution.
     let machine = machine("ac-trunnion");
-    let vectors = task(&machine, Way::TipAndAxis, tips, [[20.0, -30.0], [60.0, -40.0]]);
+    let vectors = task(&machine, Interpolation::TipAndAxis, tips, [[20.0, -30.0], [60.0, -40.0]]);
     check("vectors", &machine, &vectors);
 }

@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 use post_machine::kinematics::{Joints, MAX_AXES};
 use post_testkit::Rng;
 
-use post_motion::measured::{Alignment, Difference, Track, Unaligned, align};
+use post_motion::measured::{Alignment, AlignmentFault, AxisTrack, DifferenceSum, align};
 
 /// Zeros are found.
 const FOUND: [Option<f64>; MAX_AXES] = [None; MAX_AXES];
@@ -20,16 +20,16 @@ fn path(time: f64) -> Joints {
     joints
 }
 
-fn track(begins: f64, period: f64, seconds: f64, of: impl FnMut(f64) -> Joints) -> Track {
+fn track(begins: f64, period: f64, seconds: f64, of: impl FnMut(f64) -> Joints) -> AxisTrack {
     let count = (seconds / period).round() as usize + 1;
     let times = (0..count).map(|place| begins + place as f64 * period);
-    Track { begins, period, joints: times.map(of).collect() }
+    AxisTrack { begins, period, joints: times.map(of).collect() }
 }
 
 const AXES: [usize; 5] = [0, 1, 2, 3, 4];
 
 /// A log of `path` whose clock is `shift` ahead, from `from` of the path on.
-fn log(shift: f64, from: f64, period: f64, seconds: f64, noise: f64) -> Track {
+fn log(shift: f64, from: f64, period: f64, seconds: f64, noise: f64) -> AxisTrack {
     let mut even = Rng::new(7);
     track(from + shift, period, seconds, |time| {
         let mut joints = path(time - shift);
@@ -130,16 +130,19 @@ fn what_swings_alone_has_rivals() {
 fn what_cannot_be_laid_over_is_refused() {
     let predicted = track(0.0, 0.001, 20.0, path);
     let still = track(0.0, 0.001, 20.0, |_| Joints::default());
-    assert_eq!(align(&predicted, &still, &AXES, &FOUND), Err(Unaligned::Still));
+    assert_eq!(align(&predicted, &still, &AXES, &FOUND), Err(AlignmentFault::Still));
     let short = track(0.0, 0.001, 0.003, path);
-    assert_eq!(align(&predicted, &short, &AXES, &FOUND), Err(Unaligned::Short(8)));
+    assert_eq!(align(&predicted, &short, &AXES, &FOUND), Err(AlignmentFault::Short(8)));
     let other = track(0.0, 0.001, 20.0, |time| {
         let mut joints = Joints::default();
         joints[0] = libm::sin(97.0 * time * time);
         joints
     });
     let found = align(&predicted, &other, &AXES, &FOUND);
-    assert!(matches!(&found, Err(Unaligned::Unlike(best)) if best.correlation < 0.5), "{found:?}");
+    assert!(
+        matches!(&found, Err(AlignmentFault::Unlike(best)) if best.correlation < 0.5),
+        "{found:?}"
+    );
 }
 
 #[test]
@@ -149,14 +152,14 @@ fn samples_that_come_late_are_put_on_a_grid() {
         .map(|place| 0.1 + 0.015 * f64::from(place) + 0.004 * even.range(-1.0, 1.0))
         .collect();
     let joints: Vec<Joints> = times.iter().map(|time| path(*time)).collect();
-    let track = Track::of_samples(&times, &joints, 0.015);
+    let track = AxisTrack::of_samples(&times, &joints, 0.015);
     for (place, joints) in track.joints.iter().enumerate().take(580) {
         let wanted = path(track.time(place));
         // The fourth derivative of X is 40 (2π/2.5)⁴ mm/s⁴; over steps of 23 ms a cubic is off by some µm at most.
         assert!((joints[0] - wanted[0]).abs() < 0.02, "{place}");
     }
     let exact: Vec<f64> = (0..1000).map(|place| 0.015 * f64::from(place)).collect();
-    assert_eq!(Track::of_samples(&exact, &joints, 0.015).joints[..], joints[..]);
+    assert_eq!(AxisTrack::of_samples(&exact, &joints, 0.015).joints[..], joints[..]);
 }
 
 #[test]
@@ -213,7 +216,7 @@ fn what_lies_between_samples_is_told() {
 
 #[test]
 fn differences_are_summed_up() {
-    let mut difference = Difference::default();
+    let mut difference = DifferenceSum::default();
     assert_eq!((difference.mean(), difference.rms()), (0.0, 0.0));
     for (time, value) in [(1.0, 1.0), (2.0, -7.0), (3.0, 3.0)] {
         difference.take(time, value);

@@ -4,20 +4,20 @@ use post_grammar::{Argument, Record, SpindleUnit};
 use post_machine::description::Smoothing;
 use post_machine::diagnostic::Short;
 
-use super::Interpreter;
-use crate::program::{Command, Step};
+use super::ClInterpreter;
+use crate::program::{Command, ProgramStep};
 
 /// Numbers that a file gives a work offset which may be meant as G codes: the first offset is G54.
 const CODES: std::ops::RangeInclusive<u32> = 54..=59;
 
-impl Interpreter {
+impl ClInterpreter {
     /// A work offset by its number.
     pub(super) fn work_offset(
         &mut self,
         record: &Record<'_>,
         number: u32,
         set: bool,
-        emit: &mut impl FnMut(Step),
+        emit: &mut impl FnMut(ProgramStep),
     ) {
         let word = record.statement.word();
         let value = Argument::Number(number.into());
@@ -44,7 +44,7 @@ impl Interpreter {
         // CAM systems repeat it in every operation.
         if self.offset.replace(number) != Some(number) {
             self.tip = None;
-            emit(Step::Command(Command::WorkOffset(number)));
+            emit(ProgramStep::Command(Command::WorkOffset(number)));
         }
     }
 
@@ -53,7 +53,7 @@ impl Interpreter {
         &mut self,
         record: &Record<'_>,
         number: u32,
-        emit: &mut impl FnMut(Step),
+        emit: &mut impl FnMut(ProgramStep),
     ) {
         let word = record.statement.word();
         let arguments = [Argument::Number(number.into())];
@@ -62,7 +62,7 @@ impl Interpreter {
         }
         self.load_told(record, emit);
         self.tip = None;
-        emit(Step::Command(Command::Subprogram(number)));
+        emit(ProgramStep::Command(Command::Subprogram(number)));
     }
 
     /// The user takes it upon himself that the word has no effect.
@@ -79,7 +79,7 @@ impl Interpreter {
         &mut self,
         record: &Record<'_>,
         (speed, unit, most): (f64, SpindleUnit, Option<f64>),
-        emit: &mut impl FnMut(Step),
+        emit: &mut impl FnMut(ProgramStep),
     ) {
         let metres = match unit {
             SpindleUnit::SurfaceInch => speed * 0.3048,
@@ -95,16 +95,20 @@ impl Interpreter {
         let most = most.or(self.surface_speed.and_then(|(_, most)| most));
         self.rpm = None;
         self.surface_speed = Some((metres, most));
-        emit(Step::Command(Command::SurfaceSpeed { speed: metres, most, sense: self.sense }));
+        emit(ProgramStep::Command(Command::SurfaceSpeed {
+            speed: metres,
+            most,
+            sense: self.sense,
+        }));
     }
 
     /// Other tolerances of the control from here on; none: it keeps the path as it does by default.
-    pub(super) fn smooth(&mut self, wanted: Option<Smoothing>, emit: &mut impl FnMut(Step)) {
+    pub(super) fn smooth(&mut self, wanted: Option<Smoothing>, emit: &mut impl FnMut(ProgramStep)) {
         if wanted == self.smoothing {
             return;
         }
         self.smoothing = wanted;
         self.tip = None;
-        emit(Step::Command(Command::Smoothing(wanted)));
+        emit(ProgramStep::Command(Command::Smoothing(wanted)));
     }
 }

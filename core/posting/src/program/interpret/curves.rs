@@ -1,25 +1,25 @@
 //! Arcs and splines: what the file says of them, put together and checked.
 
 use nalgebra::Vector3;
-use post_grammar::{Circle, Record, Sense, Statement};
+use post_grammar::{CircleRecord, Record, Sense, Statement};
 
-use super::{Interpreter, Pending};
-use crate::program::arc::ArcDoubt;
+use super::{ClInterpreter, UnfinishedCurve};
+use crate::program::arc::ArcAmbiguity;
 use crate::program::limits::MOST_SPLINE_NUMBERS;
-use crate::program::{Arc, ArcStep, Spline, SplineStep, Step};
+use crate::program::{ArcStep, BSpline, PathArc, ProgramStep, SplineStep};
 use post_machine::diagnostic::Short;
 
 /// Ends of an arc whose distances from its centre differ by more are no arc: mm.
 pub(super) const ARC_MISMATCH: f64 = 0.1;
 
-impl Interpreter {
+impl ClInterpreter {
     pub(super) fn arc(
         &mut self,
         record: &Record<'_>,
-        circle: &Circle,
+        circle: &CircleRecord,
         end: Vector3<f64>,
         start_axis: Vector3<f64>,
-        emit: &mut impl FnMut(Step),
+        emit: &mut impl FnMut(ProgramStep),
     ) {
         let Some(start) = self.tip else {
             self.fault(
@@ -41,7 +41,7 @@ impl Interpreter {
         let Some(centre) = self.point(record, circle.centre) else {
             return;
         };
-        let arc = match Arc::new(start, end, centre, axis, circle.turns.unwrap_or(1)) {
+        let arc = match PathArc::new(start, end, centre, axis, circle.turns.unwrap_or(1)) {
             Ok(arc) => arc,
             Err(message) => {
                 self.fault(record, "arc", format!("no arc: {message}"), "");
@@ -59,10 +59,10 @@ impl Interpreter {
         }
         if let Some(doubt) = arc.doubt(end) {
             let message = match doubt {
-                ArcDoubt::Short(ahead) => format!(
+                ArcAmbiguity::Short(ahead) => format!(
                     "this arc ends {ahead:.4} mm ahead of its start: it is made as that short arc, not as a whole turn"
                 ),
-                ArcDoubt::Turn(ahead) => format!(
+                ArcAmbiguity::Turn(ahead) => format!(
                     "this arc ends {} mm ahead of its start: it is made as a whole turn, not as so short an arc",
                     Short(ahead)
                 ),
@@ -110,7 +110,7 @@ impl Interpreter {
         let arc = arc.placed(shift, turn);
         let start_axis = turn(start_axis);
         self.arrive(end);
-        emit(Step::Arc(Box::new(ArcStep { arc, start_axis, end: self.motion(end, pace) })));
+        emit(ProgramStep::Arc(Box::new(ArcStep { arc, start_axis, end: self.motion(end, pace) })));
     }
 
     pub(super) fn spline_data(&mut self, record: &Record<'_>) {
@@ -119,7 +119,7 @@ impl Interpreter {
             Statement::Control { point, .. } => self.point(record, *point).unwrap_or_default(),
             _ => Vector3::zeros(),
         };
-        let Some(Pending::Spline { knots, points }) = &mut self.pending else {
+        let Some(UnfinishedCurve::Spline { knots, points }) = &mut self.pending else {
             self.fault(record, "spline", "there is no NURBS before it".to_owned(), "");
             return;
         };
@@ -145,11 +145,11 @@ impl Interpreter {
         }
     }
 
-    pub(super) fn end_spline(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
-        if !matches!(self.pending, Some(Pending::Spline { .. })) {
+    pub(super) fn end_spline(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
+        if !matches!(self.pending, Some(UnfinishedCurve::Spline { .. })) {
             return;
         }
-        let Some(Pending::Spline { knots, points }) = self.pending.take() else {
+        let Some(UnfinishedCurve::Spline { knots, points }) = self.pending.take() else {
             return;
         };
         self.refuse_suspects();
@@ -160,12 +160,15 @@ impl Interpreter {
         let Some(pace) = pace else {
             return;
         };
-        match Spline::new(&knots, points) {
+        match BSpline::new(&knots, points) {
             Ok(spline) => {
                 let end = spline.end();
                 self.arrive(end);
                 let spline = spline.placed(|point| self.frame.to_part(point, Vector3::zeros()).0);
-                emit(Step::Spline(Box::new(SplineStep { spline, end: self.motion(end, pace) })));
+                emit(ProgramStep::Spline(Box::new(SplineStep {
+                    spline,
+                    end: self.motion(end, pace),
+                })));
             }
             Err(message) => {
                 self.fault(record, "spline", format!("the NURBS before this: {message}"), "")

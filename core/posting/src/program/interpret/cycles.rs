@@ -6,8 +6,8 @@ use post_grammar::{Cycle, CycleDefinition, Record};
 use post_machine::diagnostic::Short;
 use post_plugin::SpindleSense;
 
-use super::{FeedWord, Interpreter, SHOWN_NAME};
-use crate::program::{CycleStep, DrillCycle, Pace, Step};
+use super::{ClInterpreter, ModalFeed, SHOWN_NAME};
+use crate::program::{CycleStep, DrillCycle, MoveFeed, ProgramStep};
 
 /// Pitch and feed a turn agree but for so much: a feed a minute is written without decimals.
 const SAME_PITCH: f64 = 0.01;
@@ -17,15 +17,15 @@ fn printed_speed(rpm: f64) -> f64 {
     libm::round(rpm).max(1.0)
 }
 
-impl Interpreter {
+impl ClInterpreter {
     /// The cycle in force at a point; nothing if its thread cannot be.
     pub(super) fn drill(
         &mut self,
         record: &Record<'_>,
         drill: DrillCycle,
-        feed: Pace,
+        feed: MoveFeed,
         point: Vector3<f64>,
-        emit: &mut impl FnMut(Step),
+        emit: &mut impl FnMut(ProgramStep),
     ) {
         if std::mem::take(&mut self.rapid) {
             self.warn(
@@ -51,7 +51,10 @@ impl Interpreter {
         };
         // After it the tool stands at the level between the holes.
         self.arrive(point + self.axis * drill.retract());
-        emit(Step::Cycle(Box::new(CycleStep { cycle: drill, point: self.motion(point, feed) })));
+        emit(ProgramStep::Cycle(Box::new(CycleStep {
+            cycle: drill,
+            point: self.motion(point, feed),
+        })));
     }
 
     /// A thread with its pitch, which is what the tool goes in one turn of the spindle, and the feed that makes it at the speed
@@ -60,9 +63,10 @@ impl Interpreter {
         &mut self,
         record: &Record<'_>,
         drill: DrillCycle,
-        feed: Pace,
-    ) -> Option<(DrillCycle, Pace)> {
-        let (Pace::PerMinute(feed), Some(rpm)) = (feed, self.rpm.filter(|rpm| *rpm > 0.0)) else {
+        feed: MoveFeed,
+    ) -> Option<(DrillCycle, MoveFeed)> {
+        let (MoveFeed::PerMinute(feed), Some(rpm)) = (feed, self.rpm.filter(|rpm| *rpm > 0.0))
+        else {
             self.fault(
                 record,
                 "cycle",
@@ -101,7 +105,7 @@ impl Interpreter {
             );
             return None;
         }
-        let feed = Pace::PerMinute(libm::fabs(pitch) * printed_speed(rpm));
+        let feed = MoveFeed::PerMinute(libm::fabs(pitch) * printed_speed(rpm));
         Some((drill.threaded(pitch, left), feed))
     }
 
@@ -124,7 +128,7 @@ impl Interpreter {
         &mut self,
         record: &Record<'_>,
         cycle: &Cycle,
-        emit: &mut impl FnMut(Step),
+        emit: &mut impl FnMut(ProgramStep),
     ) {
         if matches!(cycle, Cycle::Off | Cycle::Define(_)) {
             self.cycle_lost = false;
@@ -132,7 +136,7 @@ impl Interpreter {
         match cycle {
             Cycle::Off => {
                 if self.cycle.take().is_some() {
-                    emit(Step::EndCycle);
+                    emit(ProgramStep::EndCycle);
                 }
             }
             Cycle::On => self.cycle = self.last_cycle,
@@ -208,7 +212,7 @@ impl Interpreter {
         let feed = match definition.feed {
             // A thread's feed follows from its pitch where none is given.
             None if drill.taps() && drill.pitch().is_some() => {
-                drill.pitch().map(|pitch| FeedWord::PerRevolution(libm::fabs(pitch)))
+                drill.pitch().map(|pitch| ModalFeed::PerRevolution(libm::fabs(pitch)))
             }
             Some(feed) => self.feed_word(record, feed),
             None => self.feed.or_else(|| self.told_feed()),
@@ -221,7 +225,7 @@ impl Interpreter {
                 format!("of this cycle is left out: {}", excerpt(&left.join(", "), SHOWN_NAME)),
             );
         }
-        let Some(feed) = feed.filter(|feed| *feed != FeedWord::Pace(Pace::Rapid)) else {
+        let Some(feed) = feed.filter(|feed| *feed != ModalFeed::Pace(MoveFeed::Rapid)) else {
             self.cycle = None;
             self.cycle_lost = true;
             self.fault(

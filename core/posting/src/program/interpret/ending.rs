@@ -3,9 +3,9 @@
 use post_grammar::{Statement, parse_record};
 use post_machine::diagnostic::Diagnostic;
 
-use super::Interpreter;
+use super::ClInterpreter;
 
-impl Interpreter {
+impl ClInterpreter {
     /// What is wrong with the end of a file whose last record is `last`; `line_end` says whether a line end stands after
     /// it. The finding has no place yet.
     pub(crate) fn cut_off(&self, last: &str, line_end: bool) -> Option<Diagnostic> {

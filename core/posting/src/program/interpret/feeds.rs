@@ -2,24 +2,24 @@
 
 use post_grammar::{FeedRate, FeedUnit, Record, Units};
 
-use super::{FeedWord, Interpreter, millimetres};
-use crate::program::Pace;
+use super::{ClInterpreter, ModalFeed, millimetres};
+use crate::program::MoveFeed;
 use crate::program::limits::{FEEDS, FEEDS_A_TURN, FEEDS_BY_TIME};
 use post_machine::diagnostic::Short;
 
-impl Interpreter {
+impl ClInterpreter {
     /// A feed word as the spindle turns now.
     #[inline]
-    pub(super) fn resolved(&mut self, record: &Record<'_>, feed: FeedWord) -> Option<Pace> {
+    pub(super) fn resolved(&mut self, record: &Record<'_>, feed: ModalFeed) -> Option<MoveFeed> {
         if !self.may_cut {
             self.cut_standing(record);
         }
         match (feed, self.rpm) {
-            (FeedWord::Pace(pace), _) => Some(pace),
-            (FeedWord::PerRevolution(feed), Some(rpm)) if rpm > 0.0 => {
-                self.in_range(record, (feed * rpm, FEEDS, "mm/min")).map(Pace::PerMinute)
+            (ModalFeed::Pace(pace), _) => Some(pace),
+            (ModalFeed::PerRevolution(feed), Some(rpm)) if rpm > 0.0 => {
+                self.in_range(record, (feed * rpm, FEEDS, "mm/min")).map(MoveFeed::PerMinute)
             }
-            (FeedWord::PerRevolution(_), _) => {
+            (ModalFeed::PerRevolution(_), _) => {
                 let (message, help) = match self.surface_speed {
                     Some(_) => (
                         "a feed per revolution at a constant cutting speed: how many revolutions a minute that is nobody knows here",
@@ -37,9 +37,9 @@ impl Interpreter {
     }
 
     /// The feed of cuts that the file gives none.
-    pub(super) fn told_feed(&self) -> Option<FeedWord> {
+    pub(super) fn told_feed(&self) -> Option<ModalFeed> {
         let feed = self.reading.feed?;
-        Some(FeedWord::Pace(Pace::PerMinute(feed)))
+        Some(ModalFeed::Pace(MoveFeed::PerMinute(feed)))
     }
 
     pub(super) fn set_feed(&mut self, record: &Record<'_>, feed: FeedRate) {
@@ -53,7 +53,7 @@ impl Interpreter {
     }
 
     /// A feed in mm.
-    pub(super) fn feed_word(&mut self, record: &Record<'_>, feed: FeedRate) -> Option<FeedWord> {
+    pub(super) fn feed_word(&mut self, record: &Record<'_>, feed: FeedRate) -> Option<ModalFeed> {
         let value = feed.value.unwrap_or(0.0);
         if value <= 0.0 {
             // CAM systems write 0 where no feed was given.
@@ -92,18 +92,18 @@ impl Interpreter {
             Some(FeedUnit::InverseTime) => {
                 return self
                     .in_range(record, (value, FEEDS_BY_TIME, "moves a minute"))
-                    .map(|feed| FeedWord::Pace(Pace::InverseTime(feed)));
+                    .map(|feed| ModalFeed::Pace(MoveFeed::InverseTime(feed)));
             }
-            Some(FeedUnit::Rapid) => return Some(FeedWord::Pace(Pace::Rapid)),
+            Some(FeedUnit::Rapid) => return Some(ModalFeed::Pace(MoveFeed::Rapid)),
         };
         let feed = value * scale;
         if per_revolution {
             return self
                 .in_range(record, (feed, FEEDS_A_TURN, "mm a revolution"))
-                .map(FeedWord::PerRevolution);
+                .map(ModalFeed::PerRevolution);
         }
         self.in_range(record, (feed, FEEDS, "mm/min"))
-            .map(|feed| FeedWord::Pace(Pace::PerMinute(feed)))
+            .map(|feed| ModalFeed::Pace(MoveFeed::PerMinute(feed)))
     }
 
     /// The value, if it lies within its limits; else a fault.

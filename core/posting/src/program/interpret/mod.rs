@@ -16,26 +16,27 @@ mod writer;
 use nalgebra::Vector3;
 use post_grammar::text::{as_remark, excerpt};
 use post_grammar::{
-    ArcMove, Circle, Coolant as CoolantWord, Delay, Delta, Record, Side, Statement, Units, Usage,
+    ArcMove, CircleRecord, CoolantWord, CutterSide, Delay, Delta, Record, Statement, Units,
+    WordUsage,
 };
 use post_machine::description::{Print, Smoothing};
 use post_plugin::{Coolant, SpindleSense};
 
-pub use reading::{Reading, ToldSpindle};
+pub use reading::{DefaultSpindle, ReadingOptions};
 
-use super::frame::Frame;
+use super::frame::ClFrame;
 use super::limits::{LONGEST_DWELL, MOST_WORDS, direction};
 use super::word_census::WordCensus;
-use super::{Command, DrillCycle, Pace, PlaneStep, Step};
+use super::{Command, DrillCycle, MoveFeed, PlaneStep, ProgramStep};
 use post_machine::diagnostic::{Diagnostic, Place, Short};
-use turned::ArcAxes;
-use words::Suspect;
-use writer::Writer;
+use turned::ArcAxisConvention;
+use words::SuspectRecord;
+use writer::CamSystem;
 
 /// Turns records into steps.
 #[derive(Debug)]
-pub struct Interpreter {
-    reading: Reading,
+pub struct ClInterpreter {
+    reading: ReadingOptions,
     /// Units that the file names.
     units: Option<Units>,
     /// Millimetres in one unit of the file.
@@ -55,11 +56,11 @@ pub struct Interpreter {
     rapid: bool,
     /// `FEDRAT/RAPID` is in force.
     rapid_feed: bool,
-    feed: Option<FeedWord>,
-    frame: Frame,
-    pending: Option<Pending>,
-    cycle: Option<(DrillCycle, FeedWord)>,
-    last_cycle: Option<(DrillCycle, FeedWord)>,
+    feed: Option<ModalFeed>,
+    frame: ClFrame,
+    pending: Option<UnfinishedCurve>,
+    cycle: Option<(DrillCycle, ModalFeed)>,
+    last_cycle: Option<(DrillCycle, ModalFeed)>,
     rpm: Option<f64>,
     /// The constant cutting speed, m/min, and the revolutions a minute that it must not exceed.
     surface_speed: Option<(f64, Option<f64>)>,
@@ -75,7 +76,7 @@ pub struct Interpreter {
     offset: Option<u32>,
     /// Tolerance by which the control may leave the path.
     smoothing: Option<Smoothing>,
-    side: Option<Side>,
+    side: Option<CutterSide>,
     /// Number, register and length (as written) of the tool in the spindle.
     loaded: Option<(u32, u32, Option<f64>)>,
     /// A further cutter was described, and no tool was loaded for it.
@@ -86,29 +87,29 @@ pub struct Interpreter {
     moved: bool,
     /// Records after a move that may carry a path, and are not known here: none may be left out where a further
     /// move follows.
-    suspects: Vec<Suspect>,
+    suspects: Vec<SuspectRecord>,
     /// Some move was read since the last tool was loaded.
     cut_any: bool,
     /// The cutters described so far, in the order of the numbers of their tools, and the tool that is to be loaded for the
     /// last; for files whose tools are numbered here.
-    cutters: Vec<Described>,
+    cutters: Vec<CutterDescription>,
     /// The file loads tools itself.
     file_loads: bool,
     cutter_due: Option<u32>,
     /// The cutter described last.
-    described: Option<Described>,
+    described: Option<CutterDescription>,
     /// Cutter compensation is in force, and its register.
     compensated: bool,
     register: Option<u32>,
     /// What the file has shown of who wrote it.
-    writer: Writer,
+    writer: CamSystem,
     /// Whether it was reported what becomes of `CUTCOM` on points of the tool's centre.
     told_on_centre: bool,
     /// `INDIRV`, unit vector, frame of the file.
     set_out: Option<Vector3<f64>>,
     /// Normal of the plane that `AUTOPS` or `PSIS` names, unit vector, frame of the file.
     part_surface: Option<Vector3<f64>>,
-    arc_axes: ArcAxes,
+    arc_axes: ArcAxisConvention,
     tool_name: String,
     diameter: Option<f64>,
     /// A cycle was refused: the points that it acts at are no moves.
@@ -129,7 +130,7 @@ pub struct Interpreter {
 
 /// A cutter as the file describes it.
 #[derive(Clone, Debug, PartialEq)]
-struct Described {
+struct CutterDescription {
     /// Where its length stands among the numbers: that tells the words apart.
     length: usize,
     numbers: Vec<f64>,
@@ -139,8 +140,8 @@ struct Described {
 
 /// A feed as the file has it; one a revolution waits for the speed of the spindle at the move.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum FeedWord {
-    Pace(Pace),
+enum ModalFeed {
+    Pace(MoveFeed),
     /// Feed a revolution, mm.
     PerRevolution(f64),
 }
@@ -150,19 +151,19 @@ const SHOWN_NAME: usize = 80;
 
 /// A curve that is not yet complete.
 #[derive(Clone, Debug)]
-enum Pending {
-    Arc(Circle),
+enum UnfinishedCurve {
+    Arc(CircleRecord),
     Turned(ArcMove),
     Spline { knots: Vec<f64>, points: Vec<Vector3<f64>> },
 }
 
-impl Interpreter {
+impl ClInterpreter {
     /// Nothing read yet.
-    pub fn new(reading: Reading) -> Self {
+    pub fn new(reading: ReadingOptions) -> Self {
         let scale = reading.units.map_or(1.0, millimetres);
-        let frame = Frame::new(reading.apply_msys, reading.turn);
+        let frame = ClFrame::new(reading.apply_msys, reading.turn);
         let smoothing = reading.smoothing.default;
-        let may_cut = reading.knife || reading.spindle == ToldSpindle::Still;
+        let may_cut = reading.knife || reading.spindle == DefaultSpindle::Still;
         Self {
             reading,
             units: None,
@@ -202,11 +203,11 @@ impl Interpreter {
             described: None,
             compensated: false,
             register: None,
-            writer: Writer::default(),
+            writer: CamSystem::default(),
             told_on_centre: false,
             set_out: None,
             part_surface: None,
-            arc_axes: ArcAxes::default(),
+            arc_axes: ArcAxisConvention::default(),
             tool_name: String::new(),
             diameter: None,
             cycle_lost: false,
@@ -239,7 +240,7 @@ impl Interpreter {
 
     /// Takes one record and gives the steps it means to `emit`, in order.
     #[inline]
-    pub fn record(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
+    pub fn record(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
         if let Statement::Goto { point, axis } = &record.statement
             && self.pending.is_none()
             && self.cycle.is_none()
@@ -256,11 +257,10 @@ impl Interpreter {
     pub fn finish(&mut self) {
         match self.pending.take() {
             None => {}
-            Some(Pending::Arc(_) | Pending::Turned(_)) => self.findings.push(Diagnostic::error(
-                "arc",
-                "the file ends with a CIRCLE or MOVARC that no GOTO ends",
-            )),
-            Some(Pending::Spline { .. }) => self.findings.push(Diagnostic::error(
+            Some(UnfinishedCurve::Arc(_) | UnfinishedCurve::Turned(_)) => self.findings.push(
+                Diagnostic::error("arc", "the file ends with a CIRCLE or MOVARC that no GOTO ends"),
+            ),
+            Some(UnfinishedCurve::Spline { .. }) => self.findings.push(Diagnostic::error(
                 "spline",
                 "the file ends within a NURBS: no GOTO, END-OF-PATH or FINI follows it",
             )),
@@ -293,10 +293,10 @@ impl Interpreter {
         self.findings.extend(self.census.slips(&self.reading.allowed));
     }
 
-    fn other(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
+    fn other(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
         if self.finished {
             if !matches!(record.statement, Statement::Remark(_) | Statement::Fini) {
-                self.count("FINI", record, Usage::Used);
+                self.count("FINI", record, WordUsage::Used);
                 if self.census.times("FINI") == 2 {
                     self.warn(record, "after-fini", "records behind FINI are left out".to_owned());
                 }
@@ -319,7 +319,7 @@ impl Interpreter {
             },
             Statement::Head(name) => {
                 self.tip = None;
-                emit(Step::Command(Command::Head(name.clone())));
+                emit(ProgramStep::Command(Command::Head(name.clone())));
             }
             Statement::Godlta(delta) => {
                 let Some(tip) = self.tip else {
@@ -357,12 +357,12 @@ impl Interpreter {
                 self.measured = true;
                 self.tip = Some(tip);
                 let (tip, axis) = self.frame.to_part(tip, self.axis);
-                emit(Step::Command(Command::From { tip, axis }));
+                emit(ProgramStep::Command(Command::From { tip, axis }));
             }
             Statement::Gohome(None) => {
                 self.rapid = false;
                 self.tip = None;
-                emit(Step::Command(Command::Home));
+                emit(ProgramStep::Command(Command::Home));
             }
             Statement::Gohome(Some((point, axis))) => {
                 self.rapid = true;
@@ -392,12 +392,12 @@ impl Interpreter {
                     self.coolant = coolant;
                 }
                 self.load_told(record, emit);
-                emit(Step::Command(Command::Coolant(coolant)));
+                emit(ProgramStep::Command(Command::Coolant(coolant)));
             }
             Statement::LoadTool(tool) => self.load_read(record, tool, emit),
             Statement::SelectTool(number) => {
                 if self.loaded.map(|(loaded, ..)| loaded) != Some(*number) {
-                    emit(Step::Command(Command::Preselect(*number)));
+                    emit(ProgramStep::Command(Command::Preselect(*number)));
                 }
             }
             Statement::ToolData { numbers, .. } => self.cutter(record, numbers, 2),
@@ -434,8 +434,8 @@ impl Interpreter {
                     self.fault(record, "msys", message.to_owned(), "");
                 }
             }
-            Statement::Circle(circle) => self.wait_for_end(record, Pending::Arc(circle.clone())),
-            Statement::ArcMove(arc) => self.wait_for_end(record, Pending::Turned(*arc)),
+            Statement::Circle(circle) => self.wait_for_end(record, UnfinishedCurve::Arc(circle.clone())),
+            Statement::ArcMove(arc) => self.wait_for_end(record, UnfinishedCurve::Turned(*arc)),
             Statement::SetOut(along) => match direction(Vector3::from(*along)) {
                 Some(along) => {
                     self.set_out = Some(along);
@@ -454,7 +454,7 @@ impl Interpreter {
                 self.end_spline(record, emit);
                 match self.tip {
                     Some(tip) => {
-                        self.pending = Some(Pending::Spline {
+                        self.pending = Some(UnfinishedCurve::Spline {
                             knots: Vec::new(),
                             points: vec![tip],
                         });
@@ -487,13 +487,13 @@ impl Interpreter {
             ),
             Statement::Rotate(rotate) => match self.frame.rotate(rotate) {
                 Ok((axis, angle)) => {
-                    emit(Step::Command(Command::Index { axis, angle }));
+                    emit(ProgramStep::Command(Command::Index { axis, angle }));
                     let plane = self.frame.turned().map(|turned| {
                         Box::new(PlaneStep {
                             axes: [0, 1, 2].map(|axis| turned.column(axis).into_owned()),
                         })
                     });
-                    emit(Step::Plane(plane));
+                    emit(ProgramStep::Plane(plane));
                     self.axis = match (self.frame.turned(), self.told_axis) {
                         (None, Some(axis)) => axis,
                         _ => Vector3::z(),
@@ -529,8 +529,8 @@ impl Interpreter {
                     "put a SPINDL before it",
                 ),
             },
-            Statement::Stop => emit(Step::Command(Command::Stop)),
-            Statement::OptionalStop => emit(Step::Command(Command::OptionalStop)),
+            Statement::Stop => emit(ProgramStep::Command(Command::Stop)),
+            Statement::OptionalStop => emit(ProgramStep::Command(Command::OptionalStop)),
             Statement::ToolPath { name, tool } => {
                 self.end_spline(record, emit);
                 // Every path of NX stands by itself: its first GOTO gives the axis if it is not Z.
@@ -540,19 +540,19 @@ impl Interpreter {
                 self.path = Some(excerpt(&name, SHOWN_NAME).into_owned());
                 self.paths = true;
                 let smoothing = self.reading.smoothing.of(&name);
-                emit(Step::Command(Command::Operation(name)));
+                emit(ProgramStep::Command(Command::Operation(name)));
                 self.smooth(smoothing, emit);
             }
             Statement::EndOfPath => {
                 self.end_spline(record, emit);
                 self.path = None;
-                emit(Step::Command(Command::OperationEnd));
+                emit(ProgramStep::Command(Command::OperationEnd));
             }
             Statement::Print(text) if self.reading.print == Print::Message => {
-                emit(Step::Command(Command::Message(as_remark(text.clone()))));
+                emit(ProgramStep::Command(Command::Message(as_remark(text.clone()))));
             }
             Statement::PartName(text) | Statement::Print(text) => {
-                emit(Step::Command(Command::Comment(as_remark(text.clone()))))
+                emit(ProgramStep::Command(Command::Comment(as_remark(text.clone()))))
             }
             Statement::Insert(text) => self.insert(record, text, emit),
             Statement::ToolName(name) => self.tool_name = as_remark(name.clone()),
@@ -560,12 +560,12 @@ impl Interpreter {
                 if let Statement::Remark(text) = &record.statement {
                     self.writer.remark(text);
                 }
-                self.count(record.statement.word(), record, Usage::Ignored);
+                self.count(record.statement.word(), record, WordUsage::Ignored);
             }
             Statement::Fini => {
                 self.end_spline(record, emit);
                 self.finished = true;
-                self.count("FINI", record, Usage::Used);
+                self.count("FINI", record, WordUsage::Used);
             }
             Statement::Other {
                 word,
@@ -576,7 +576,7 @@ impl Interpreter {
     }
 
     /// A curve that the next point ends.
-    fn wait_for_end(&mut self, record: &Record<'_>, curve: Pending) {
+    fn wait_for_end(&mut self, record: &Record<'_>, curve: UnfinishedCurve) {
         if self.pending.is_some() {
             let word = record.statement.word();
             self.fault(
@@ -602,7 +602,7 @@ impl Interpreter {
         }
     }
 
-    fn dwell(&mut self, record: &Record<'_>, seconds: f64, emit: &mut impl FnMut(Step)) {
+    fn dwell(&mut self, record: &Record<'_>, seconds: f64, emit: &mut impl FnMut(ProgramStep)) {
         if !(0.0..=LONGEST_DWELL).contains(&seconds) {
             self.fault(
                 record,
@@ -612,10 +612,10 @@ impl Interpreter {
             );
             return;
         }
-        emit(Step::Command(Command::Dwell(seconds)));
+        emit(ProgramStep::Command(Command::Dwell(seconds)));
     }
 
-    fn count(&mut self, word: &str, record: &Record<'_>, usage: Usage) {
+    fn count(&mut self, word: &str, record: &Record<'_>, usage: WordUsage) {
         let file = &self.reading.file;
         let counted = self.census.count(word, usage, || record_place(file, record));
         if !counted {

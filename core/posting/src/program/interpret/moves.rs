@@ -3,11 +3,11 @@
 use nalgebra::Vector3;
 use post_grammar::Record;
 
-use super::{Interpreter, Pending};
+use super::{ClInterpreter, UnfinishedCurve};
 use crate::program::limits::{MOST_COORDINATE, is_near};
-use crate::program::{Motion, Pace, Step};
+use crate::program::{MoveFeed, ProgramStep, StraightMove};
 
-impl Interpreter {
+impl ClInterpreter {
     /// A `GOTO` that neither ends a curve nor stands in a cycle: nearly all of a file.
     #[inline]
     pub(super) fn plain_goto(
@@ -15,7 +15,7 @@ impl Interpreter {
         record: &Record<'_>,
         point: [f64; 3],
         axis: Option<[f64; 3]>,
-        emit: &mut impl FnMut(Step),
+        emit: &mut impl FnMut(ProgramStep),
     ) {
         if !self.set_axis(record, axis) {
             return;
@@ -28,7 +28,7 @@ impl Interpreter {
         };
         if let Some(pace) = self.pace(record) {
             self.arrive(tip);
-            emit(Step::Move(self.motion(tip, pace)));
+            emit(ProgramStep::Move(self.motion(tip, pace)));
         }
     }
 
@@ -37,10 +37,10 @@ impl Interpreter {
         record: &Record<'_>,
         point: [f64; 3],
         axis: Option<[f64; 3]>,
-        emit: &mut impl FnMut(Step),
+        emit: &mut impl FnMut(ProgramStep),
     ) {
         let pending = match self.pending.take() {
-            Some(arc @ (Pending::Arc(_) | Pending::Turned(_))) => Some(arc),
+            Some(arc @ (UnfinishedCurve::Arc(_) | UnfinishedCurve::Turned(_))) => Some(arc),
             Some(spline) => {
                 self.pending = Some(spline);
                 self.end_spline(record, emit);
@@ -66,9 +66,9 @@ impl Interpreter {
         };
         if let Some(pending) = pending {
             let circle = match pending {
-                Pending::Arc(circle) => Some(circle),
-                Pending::Turned(arc) => self.turned(record, &arc, tip),
-                Pending::Spline { .. } => None,
+                UnfinishedCurve::Arc(circle) => Some(circle),
+                UnfinishedCurve::Turned(arc) => self.turned(record, &arc, tip),
+                UnfinishedCurve::Spline { .. } => None,
             };
             match circle {
                 Some(circle) => self.arc(record, &circle, tip, start_axis, emit),
@@ -134,13 +134,13 @@ impl Interpreter {
 
     /// How fast the next move goes; a fault if nothing says so.
     #[inline]
-    pub(super) fn pace(&mut self, record: &Record<'_>) -> Option<Pace> {
+    pub(super) fn pace(&mut self, record: &Record<'_>) -> Option<MoveFeed> {
         if std::mem::take(&mut self.rapid) || self.rapid_feed {
-            return Some(Pace::Rapid);
+            return Some(MoveFeed::Rapid);
         }
         if self.feed.is_none() && self.tip.is_none() {
             // The first approach of a file that names no feed yet comes from the tool change.
-            return Some(Pace::Rapid);
+            return Some(MoveFeed::Rapid);
         }
         let Some(feed) = self.feed.or_else(|| self.told_feed()) else {
             self.fault(
@@ -165,13 +165,13 @@ impl Interpreter {
 
     /// The motion to `tip` (frame of the file) with axis and edge in force.
     #[inline]
-    pub(super) fn motion(&self, tip: Vector3<f64>, pace: Pace) -> Motion {
+    pub(super) fn motion(&self, tip: Vector3<f64>, pace: MoveFeed) -> StraightMove {
         let (tip, axis) = self.frame.to_part(tip, self.axis);
         let edge = if self.edge == Vector3::zeros() {
             self.edge
         } else {
             self.frame.direction_to_part(self.edge)
         };
-        Motion { tip, axis, edge, pace, chord: 0.0 }
+        StraightMove { tip, axis, edge, pace, chord: 0.0 }
     }
 }

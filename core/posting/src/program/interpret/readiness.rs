@@ -3,14 +3,14 @@
 use post_grammar::Record;
 use post_plugin::Spindle;
 
-use super::{Interpreter, ToldSpindle};
-use crate::program::{Command, Step};
+use super::{ClInterpreter, DefaultSpindle};
+use crate::program::{Command, ProgramStep};
 
-impl Interpreter {
+impl ClInterpreter {
     /// What is to be seen to before a move: the axis after an index move, the tool that the user names, a
     /// cutter without a tool, the speed that the user names.
     #[cold]
-    pub(super) fn before_move(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
+    pub(super) fn before_move(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
         if std::mem::take(&mut self.check_axis)
             && let (Some(turned), Some(told)) = (self.frame.turned(), self.told_axis)
             && (turned * self.axis - told).norm() > 1e-3
@@ -41,7 +41,7 @@ impl Interpreter {
             self.spindle_said = true;
             self.may_cut = true;
             self.rpm = Some(rpm);
-            emit(Step::Command(Command::Spindle(Spindle::On { rpm, sense: self.sense })));
+            emit(ProgramStep::Command(Command::Spindle(Spindle::On { rpm, sense: self.sense })));
         }
         self.due = false;
     }
@@ -86,6 +86,6 @@ impl Interpreter {
 
     /// The tool cuts without turning: a knife, or as the user says.
     pub(super) fn need_not_turn(&self) -> bool {
-        self.reading.knife || self.reading.spindle == ToldSpindle::Still
+        self.reading.knife || self.reading.spindle == DefaultSpindle::Still
     }
 }

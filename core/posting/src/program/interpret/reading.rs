@@ -5,11 +5,11 @@ use post_machine::description::{
     CompensationOnCentre, Insert, Machine, Print, SmoothingRules, ToolLength, WordRule,
 };
 
-use crate::program::Unknown;
+use crate::program::UnknownWordPolicy;
 
 /// How a file is read.
 #[derive(Clone, Debug, Default)]
-pub struct Reading {
+pub struct ReadingOptions {
     /// The file's name in messages.
     pub file: String,
     /// Units of the numbers, whatever the file says.
@@ -22,7 +22,7 @@ pub struct Reading {
     /// that stands as the machine's does.
     pub turn: f64,
     /// What to do with unknown words.
-    pub unknown: Unknown,
+    pub unknown: UnknownWordPolicy,
     /// What becomes of `INSERT`.
     pub insert: Insert,
     /// What becomes of `CUTCOM` on points of the tool's centre.
@@ -32,7 +32,7 @@ pub struct Reading {
     /// How far chords may stray from arcs and splines, mm.
     pub chord_tolerance: f64,
     /// What the spindle does where the file does not say.
-    pub spindle: ToldSpindle,
+    pub spindle: DefaultSpindle,
     /// Feed of the cuts that the file gives none, mm/min.
     pub feed: Option<f64>,
     /// The file loads no tools: they are numbered in the order of their cutters.
@@ -53,7 +53,7 @@ pub struct Reading {
 
 /// What the spindle does where the file does not say.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum ToldSpindle {
+pub enum DefaultSpindle {
     /// Not known: a cut is refused.
     #[default]
     Unknown,
@@ -63,7 +63,7 @@ pub enum ToldSpindle {
     On(f64),
 }
 
-impl ToldSpindle {
+impl DefaultSpindle {
     /// The speed, rpm, if it turns.
     pub(super) fn speed(self) -> Option<f64> {
         match self {
@@ -73,7 +73,7 @@ impl ToldSpindle {
     }
 }
 
-impl Reading {
+impl ReadingOptions {
     /// Adds what the machine's file says of it.
     pub(crate) fn on(mut self, machine: &Machine) -> Self {
         // Half of the tolerance goes to chords of arcs and splines, half is left for the axes.

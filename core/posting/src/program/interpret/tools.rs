@@ -2,23 +2,23 @@
 
 use post_grammar::text::excerpt;
 use post_grammar::{
-    Argument, Cutcom, LoadTool, Record, Sense, Side, Spindle as SpindleWord, SpindleUnit, Usage,
+    Argument, Cutcom, CutterSide, LoadTool, Record, Sense, SpindleUnit, SpindleWord, WordUsage,
 };
 use post_plugin::{Compensation, Spindle, SpindleSense};
 
-use super::writer::CutPoints;
-use super::{Described, Interpreter, SHOWN_NAME};
+use super::writer::CompensatedPoints;
+use super::{ClInterpreter, CutterDescription, SHOWN_NAME};
 use crate::program::limits::{MOST_COORDINATE, MOST_TOOLS};
-use crate::program::{Command, Step, Tool};
+use crate::program::{Command, ProgramStep, ToolChange};
 use post_machine::description::{CompensationOnCentre, ToolLength};
 use post_machine::diagnostic::{Diagnostic, Short};
 
-impl Interpreter {
+impl ClInterpreter {
     pub(super) fn spindle(
         &mut self,
         record: &Record<'_>,
         spindle: SpindleWord,
-        emit: &mut impl FnMut(Step),
+        emit: &mut impl FnMut(ProgramStep),
     ) {
         self.spindle_said = true;
         self.may_cut = self.need_not_turn();
@@ -84,7 +84,7 @@ impl Interpreter {
                 Spindle::On { rpm, sense: self.sense }
             }
         };
-        emit(Step::Command(Command::Spindle(step)));
+        emit(ProgramStep::Command(Command::Spindle(step)));
     }
 
     /// Autodesk's stock APT posts stop the spindle by `SPINDL/ON` and start it by `SPINDL/OFF`: the two are exchanged in the
@@ -110,7 +110,7 @@ impl Interpreter {
         &mut self,
         record: &Record<'_>,
         tool: &LoadTool,
-        emit: &mut impl FnMut(Step),
+        emit: &mut impl FnMut(ProgramStep),
     ) {
         let register = tool.register.unwrap_or(tool.number);
         if tool.number == 0 || register == 0 {
@@ -164,7 +164,7 @@ impl Interpreter {
         self.due = true;
         if self.compensated {
             self.compensated = false;
-            emit(Step::Command(Command::Compensate(Compensation::Off)));
+            emit(ProgramStep::Command(Command::Compensate(Compensation::Off)));
             self.warn(
                 record,
                 "compensation",
@@ -176,7 +176,7 @@ impl Interpreter {
         let cutter = std::mem::take(&mut self.cutter);
         // The tool comes from the changer: no arc begins where the last one stood.
         self.tip = None;
-        emit(Step::Command(Command::Tool(Tool {
+        emit(ProgramStep::Command(Command::Tool(ToolChange {
             number: tool.number,
             register,
             length,
@@ -187,7 +187,7 @@ impl Interpreter {
     }
 
     /// Loads the tool that the user names or that belongs to the cutter, before the first record that needs one.
-    pub(super) fn load_told(&mut self, record: &Record<'_>, emit: &mut impl FnMut(Step)) {
+    pub(super) fn load_told(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
         let told = match self.loaded {
             None => self.reading.tool.take(),
             Some(_) => None,
@@ -204,11 +204,11 @@ impl Interpreter {
         &mut self,
         record: &Record<'_>,
         tool: &LoadTool,
-        emit: &mut impl FnMut(Step),
+        emit: &mut impl FnMut(ProgramStep),
     ) {
         if self.writer.catia && tool.described {
             // LOADTL loads it.
-            self.count("TOOLNO", record, Usage::Ignored);
+            self.count("TOOLNO", record, WordUsage::Ignored);
             return;
         }
         let (tool, radius_register) = self.by_position(tool);
@@ -284,7 +284,8 @@ impl Interpreter {
             self.fault(record, "cutter", message, "");
             return;
         }
-        let cutter = Described { length, numbers: numbers.to_vec(), name: self.tool_name.clone() };
+        let cutter =
+            CutterDescription { length, numbers: numbers.to_vec(), name: self.tool_name.clone() };
         // Files that load their tools describe the cutter just before or after that.
         let other = self.described.as_ref().is_some_and(|before| {
             if before.length == length {
@@ -325,12 +326,12 @@ impl Interpreter {
         &mut self,
         record: &Record<'_>,
         cutcom: Cutcom,
-        emit: &mut impl FnMut(Step),
+        emit: &mut impl FnMut(ProgramStep),
     ) {
         let side = match cutcom.side {
-            Some(Side::Off) => {
+            Some(CutterSide::Off) => {
                 self.compensated = false;
-                emit(Step::Command(Command::Compensate(Compensation::Off)));
+                emit(ProgramStep::Command(Command::Compensate(Compensation::Off)));
                 return;
             }
             Some(side) => {
@@ -357,19 +358,19 @@ impl Interpreter {
         self.register = cutcom.register.or(self.register);
         let tool = self.loaded.map(|(number, ..)| number);
         let register = self.register.or(tool).unwrap_or(1);
-        self.compensated |= matches!(side, Some(Side::Left | Side::Right));
+        self.compensated |= matches!(side, Some(CutterSide::Left | CutterSide::Right));
         if side.is_some() {
             self.check_on_centre(record, register);
         }
         match side {
-            Some(Side::Left) => {
-                emit(Step::Command(Command::Compensate(Compensation::Left { register })))
+            Some(CutterSide::Left) => {
+                emit(ProgramStep::Command(Command::Compensate(Compensation::Left { register })))
             }
-            Some(Side::Right) => {
-                emit(Step::Command(Command::Compensate(Compensation::Right { register })))
+            Some(CutterSide::Right) => {
+                emit(ProgramStep::Command(Command::Compensate(Compensation::Right { register })))
             }
             // CAMWorks switches it ON first and names the side in the next record.
-            Some(Side::Off) | None => {}
+            Some(CutterSide::Off) | None => {}
         }
     }
 
@@ -378,9 +379,11 @@ impl Interpreter {
     fn check_on_centre(&mut self, record: &Record<'_>, register: u32) {
         let option = self.reading.compensation_on_centre;
         let (why, presumed) = match self.writer.points() {
-            CutPoints::Centre(why) => (why, false),
-            CutPoints::Presumed(why) if option != CompensationOnCentre::Contour => (why, true),
-            CutPoints::Contour if self.writer.autodesk && !self.told_on_centre => {
+            CompensatedPoints::Centre(why) => (why, false),
+            CompensatedPoints::Presumed(why) if option != CompensationOnCentre::Contour => {
+                (why, true)
+            }
+            CompensatedPoints::Contour if self.writer.autodesk && !self.told_on_centre => {
                 self.told_on_centre = true;
                 let message = format!(
                     "CUTCOM in a file of Autodesk's, which does not say what its points are: with compensation \"in control\" they are the contour, \
@@ -389,7 +392,7 @@ impl Interpreter {
                 self.warn(record, "compensation", message);
                 return;
             }
-            CutPoints::Presumed(_) | CutPoints::Contour => return,
+            CompensatedPoints::Presumed(_) | CompensatedPoints::Contour => return,
         };
         if std::mem::replace(&mut self.told_on_centre, true) {
             return;

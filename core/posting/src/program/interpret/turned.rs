@@ -4,12 +4,12 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
-use post_grammar::{AlongArc, ArcMove, Circle, Record, Sense};
+use post_grammar::{AlongArc, ArcMove, CircleRecord, Record, Sense};
 use post_machine::diagnostic::Short;
 
-use super::Interpreter;
+use super::ClInterpreter;
 use super::curves::ARC_MISMATCH;
-use crate::program::Step;
+use crate::program::ProgramStep;
 use crate::program::limits::direction;
 
 /// Ends nearer than this are one point: mm.
@@ -29,7 +29,7 @@ const SETS_OUT: f64 = 0.98;
 
 /// What the arcs read so far say of their axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum ArcAxes {
+pub(super) enum ArcAxisConvention {
     /// Nothing: each of them would be the same either way.
     #[default]
     Open,
@@ -40,12 +40,12 @@ pub(super) enum ArcAxes {
 }
 
 /// The ways round by which a stated angle leads from start to end, each as its turns for [`Arc::new`](crate::program::Arc::new).
-struct WaysRound {
+struct ArcTurnCounts {
     forth: Option<u32>,
     back: Option<u32>,
 }
 
-impl WaysRound {
+impl ArcTurnCounts {
     /// `swept` is the angle from start to end about the axis, from 0 up; `closed`: they are one point.
     fn new(swept: f64, closed: bool, stated: f64, radius: f64) -> Self {
         let most = (POINT_STEP / radius).clamp(ANGLE_STEP, MOST_OFF);
@@ -62,14 +62,14 @@ impl WaysRound {
     }
 }
 
-impl Interpreter {
+impl ClInterpreter {
     /// The arc of a `MOVARC` to `end`, mm; none if its numbers do not agree or do not say which way it goes.
     pub(super) fn turned(
         &mut self,
         record: &Record<'_>,
         arc: &ArcMove,
         end: Vector3<f64>,
-    ) -> Option<Circle> {
+    ) -> Option<CircleRecord> {
         let Some(start) = self.tip else {
             self.no_arc(record, "it begins at the last point, and there is none");
             return None;
@@ -98,20 +98,22 @@ impl Interpreter {
         let swept = libm::atan2(axis.dot(&from.cross(&to)), from.dot(&to));
         let swept = if swept < 0.0 { swept + TAU } else { swept };
         let closed = (to - from).norm() < CLOSED;
-        let ways = WaysRound::new(swept, closed, arc.degrees.to_radians(), radius);
+        let ways = ArcTurnCounts::new(swept, closed, arc.degrees.to_radians(), radius);
         let turned_over = axis.dot(&self.axis) < 0.0;
         let (sense, turns) = match (ways.forth, ways.back) {
             (Some(turns), None) => {
-                if turned_over && self.arc_axes == ArcAxes::Open {
-                    self.arc_axes = ArcAxes::TurnedOver;
+                if turned_over && self.arc_axes == ArcAxisConvention::Open {
+                    self.arc_axes = ArcAxisConvention::TurnedOver;
                 }
                 (None, turns)
             }
             (None, Some(turns)) => {
-                self.arc_axes = ArcAxes::OfThePlane;
+                self.arc_axes = ArcAxisConvention::OfThePlane;
                 (Some(Sense::Clockwise), turns)
             }
-            (Some(turns), Some(_)) if self.arc_axes == ArcAxes::TurnedOver => (None, turns),
+            (Some(turns), Some(_)) if self.arc_axes == ArcAxisConvention::TurnedOver => {
+                (None, turns)
+            }
             (Some(turns), Some(_)) if self.reading.allows("MOVARC") => {
                 self.allow(
                     "MOVARC",
@@ -144,7 +146,7 @@ impl Interpreter {
                 return None;
             }
         };
-        Some(Circle {
+        Some(CircleRecord {
             centre: arc.centre,
             axis: arc.axis,
             radius: Some(arc.radius),
@@ -158,7 +160,7 @@ impl Interpreter {
         &mut self,
         record: &Record<'_>,
         along: &AlongArc,
-        emit: &mut impl FnMut(Step),
+        emit: &mut impl FnMut(ProgramStep),
     ) {
         let set_out = self.set_out.take();
         if self.cycle_lost {
@@ -219,7 +221,7 @@ impl Interpreter {
             self.no_arc(record, &message);
             return;
         }
-        let circle = Circle {
+        let circle = CircleRecord {
             centre: along.centre,
             axis: axis.into(),
             radius: Some(along.radius),

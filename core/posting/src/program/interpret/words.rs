@@ -1,16 +1,16 @@
 //! Words without a meaning of their own, and `INSERT`: carried out by a rule of the machine file, left out, or refused.
 
 use post_grammar::text::{as_remark, escaped, excerpt, is_unprintable};
-use post_grammar::{Argument, Record, UnknownPath, Usage};
+use post_grammar::{Argument, Record, UnknownPath, WordUsage};
 use post_machine::description::Insert;
 use post_machine::diagnostic::{Diagnostic, Place};
 
-use super::{Interpreter, SHOWN_NAME, record_place};
-use crate::program::{Command, Step, Unknown};
+use super::{ClInterpreter, SHOWN_NAME, record_place};
+use crate::program::{Command, ProgramStep, UnknownWordPolicy};
 
 /// A record that may carry a path.
 #[derive(Debug)]
-pub(super) struct Suspect {
+pub(super) struct SuspectRecord {
     word: String,
     place: Place,
 }
@@ -18,14 +18,14 @@ pub(super) struct Suspect {
 /// Largest number of suspects that are reported.
 const MOST_SUSPECTS: usize = 100;
 
-impl Interpreter {
+impl ClInterpreter {
     pub(super) fn other_word(
         &mut self,
         record: &Record<'_>,
         word: &str,
         arguments: &[Argument],
         directive: bool,
-        emit: &mut impl FnMut(Step),
+        emit: &mut impl FnMut(ProgramStep),
     ) {
         self.writer.word(word);
         self.wants_fini |= directive || self.writer.is_camworks();
@@ -37,11 +37,11 @@ impl Interpreter {
             return;
         }
         let usage = record.statement.usage();
-        if matches!(usage, Usage::Refused | Usage::Unknown) && self.reading.allows(word) {
+        if matches!(usage, WordUsage::Refused | WordUsage::Unknown) && self.reading.allows(word) {
             self.allow(word, "is left out", record);
             return;
         }
-        if usage == Usage::Refused {
+        if usage == WordUsage::Refused {
             self.fault(
                 record,
                 "refused-word",
@@ -50,8 +50,8 @@ impl Interpreter {
             );
         }
         self.count(word, record, usage);
-        if usage == Usage::Unknown && self.reading.unknown == Unknown::Pass {
-            emit(Step::Command(Command::Comment(as_remark(record.text().into_owned()))));
+        if usage == WordUsage::Unknown && self.reading.unknown == UnknownWordPolicy::Pass {
+            emit(ProgramStep::Command(Command::Comment(as_remark(record.text().into_owned()))));
         }
     }
 
@@ -69,7 +69,7 @@ impl Interpreter {
         }
         if self.moved && self.suspects.len() < MOST_SUSPECTS {
             self.due = true;
-            self.suspects.push(Suspect {
+            self.suspects.push(SuspectRecord {
                 word: word.to_owned(),
                 place: record_place(&self.reading.file, record),
             });
@@ -79,7 +79,7 @@ impl Interpreter {
 
     /// A move follows: what may carry a path stands between moves.
     pub(super) fn refuse_suspects(&mut self) {
-        for Suspect { word, place } in std::mem::take(&mut self.suspects) {
+        for SuspectRecord { word, place } in std::mem::take(&mut self.suspects) {
             let message = format!(
                 "{word} is not a word that post knows, and stands with its numbers between moves: it may be a move itself, and cannot be left out"
             );
@@ -91,12 +91,12 @@ impl Interpreter {
 
     /// The file ends: no move follows, so that the records are as any other that is not known.
     pub(super) fn clear_suspects(&mut self) {
-        for Suspect { word, place } in std::mem::take(&mut self.suspects) {
+        for SuspectRecord { word, place } in std::mem::take(&mut self.suspects) {
             match self.reading.allows(&word) {
                 true => self.census.allow(&word, "is left out", place),
                 false => {
                     // Full, it was said.
-                    let _ = self.census.count(&word, Usage::Unknown, || place);
+                    let _ = self.census.count(&word, WordUsage::Unknown, || place);
                 }
             }
         }
@@ -108,7 +108,7 @@ impl Interpreter {
         record: &Record<'_>,
         word: &str,
         arguments: &[Argument],
-        emit: &mut impl FnMut(Step),
+        emit: &mut impl FnMut(ProgramStep),
     ) -> bool {
         let fitting =
             self.reading.rules.iter().filter_map(|rule| Some((rule.fits(word, arguments)?, rule)));
@@ -119,7 +119,7 @@ impl Interpreter {
             Ok(lines) => {
                 self.load_told(record, emit);
                 for line in lines {
-                    emit(Step::Command(Command::Literal(line)));
+                    emit(ProgramStep::Command(Command::Literal(line)));
                 }
             }
             Err(message) => self.fault(
@@ -133,13 +133,18 @@ impl Interpreter {
     }
 
     /// A line of the user's own.
-    pub(super) fn insert(&mut self, record: &Record<'_>, text: &str, emit: &mut impl FnMut(Step)) {
+    pub(super) fn insert(
+        &mut self,
+        record: &Record<'_>,
+        text: &str,
+        emit: &mut impl FnMut(ProgramStep),
+    ) {
         // Tabs are blanks, here as in all of a CL file.
         let text = text.replace('\t', " ");
         let shown = escaped(&excerpt(&text, SHOWN_NAME), &[]).into_owned();
         if self.reading.insert == Insert::Literal {
             match text.chars().find(|letter| is_unprintable(*letter)) {
-                None => emit(Step::Command(Command::Literal(text))),
+                None => emit(ProgramStep::Command(Command::Literal(text))),
                 Some(odd) => self.fault(
                     record,
                     "insert",
@@ -152,31 +157,31 @@ impl Interpreter {
             }
             return;
         }
-        match Inserted::of(&text) {
-            Inserted::Remark => {}
-            Inserted::Code if self.reading.allows("INSERT") => {
+        match InsertContent::of(&text) {
+            InsertContent::Remark => {}
+            InsertContent::Code if self.reading.allows("INSERT") => {
                 self.allow("INSERT", "is written as a remark", record);
             }
-            Inserted::Code => self.fault(
+            InsertContent::Code => self.fault(
                 record,
                 "insert",
                 format!("INSERT {shown} is a line for the control, and would be written as a remark"),
                 "--set control.insert=literal writes what INSERT holds as lines of the program; --allow INSERT as remarks",
             ),
-            Inserted::Mixed => self.warn(
+            InsertContent::Mixed => self.warn(
                 record,
                 "insert",
                 format!("INSERT {shown} is written as a remark, and holds a G or M word"),
             ),
         }
-        emit(Step::Command(Command::Comment(as_remark(text))));
+        emit(ProgramStep::Command(Command::Comment(as_remark(text))));
     }
 }
 
 /// What an `INSERT` holds. SolidWorks CAM describes tools and stock with it (`14MM CRB 4FL 32 LOC`,
 /// `Stock Size X85. Y38. Z48.`), others hand words to the control (`M8`, `G04 X2.`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Inserted {
+pub enum InsertContent {
     /// Something to read.
     Remark,
     /// Nothing but words of a program: letters with numbers, or variables that are set.
@@ -185,7 +190,7 @@ pub enum Inserted {
     Mixed,
 }
 
-impl Inserted {
+impl InsertContent {
     /// What the text of an `INSERT` is.
     pub fn of(text: &str) -> Self {
         let code = without_remarks(text);

@@ -2,7 +2,7 @@
 
 /// Signs of the system that wrote a file.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Writer {
+pub(super) struct CamSystem {
     /// `$$*CATIA0`, `$$ CATIA APT VERSION`: CATIA's aptsource.
     pub(super) catia: bool,
     /// `MODE/MILL`.
@@ -20,7 +20,7 @@ pub(super) struct Writer {
 
 /// What the points are under `CUTCOM`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum CutPoints {
+pub(super) enum CompensatedPoints {
     /// Points of the contour, or nothing says otherwise.
     Contour,
     /// The tool's centre; the file says so in the words of this text.
@@ -29,7 +29,7 @@ pub(super) enum CutPoints {
     Presumed(&'static str),
 }
 
-impl Writer {
+impl CamSystem {
     pub(super) fn remark(&mut self, text: &str) {
         let text = text.trim();
         if text.eq_ignore_ascii_case("centerline data") {
@@ -57,15 +57,15 @@ impl Writer {
     }
 
     /// What the points are under `CUTCOM`.
-    pub(super) fn points(&self) -> CutPoints {
+    pub(super) fn points(&self) -> CompensatedPoints {
         match self.points {
-            Some(true) => CutPoints::Centre(
+            Some(true) => CompensatedPoints::Centre(
                 "by the file itself: CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_CENTER, centerline data",
             ),
-            None if self.camworks => CutPoints::Presumed(
+            None if self.camworks => CompensatedPoints::Presumed(
                 "as in every known file of SolidWorks CAM and CAMWorks, which do not say",
             ),
-            _ => CutPoints::Contour,
+            _ => CompensatedPoints::Contour,
         }
     }
 }

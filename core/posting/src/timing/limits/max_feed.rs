@@ -3,8 +3,8 @@
 use post_machine::description::Machine;
 use post_machine::kinematics::{Joints, MAX_AXES};
 
-use super::Limit;
-use crate::blocks::Block;
+use super::BlockTimeLimit;
+use crate::blocks::MotionBlock;
 
 /// Largest feeds of the axes.
 #[derive(Debug)]
@@ -19,12 +19,12 @@ impl MaxFeed {
     }
 }
 
-impl Limit for MaxFeed {
-    fn name(&self, _: &Block) -> &'static str {
+impl BlockTimeLimit for MaxFeed {
+    fn name(&self, _: &MotionBlock) -> &'static str {
         "max_feed"
     }
 
-    fn least_minutes(&self, from: &Joints, block: &Block) -> f64 {
+    fn least_minutes(&self, from: &Joints, block: &MotionBlock) -> f64 {
         let to = &block.joints;
         // Between the words too, where the control keeps the tip.
         let mut least = block.follow.minutes;

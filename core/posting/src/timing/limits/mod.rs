@@ -6,12 +6,12 @@ mod planned;
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 
-use crate::blocks::Block;
+use crate::blocks::MotionBlock;
 
 /// A limit of the machine.
-pub trait Limit: std::fmt::Debug {
+pub trait BlockTimeLimit: std::fmt::Debug {
     /// Name of the limit for a block that it limits, as the machine file has it.
-    fn name(&self, block: &Block) -> &'static str;
+    fn name(&self, block: &MotionBlock) -> &'static str;
 
     /// An axis cannot do more; else it is a wish that the least feed that is printed may pass.
     fn must_hold(&self) -> bool {
@@ -19,10 +19,10 @@ pub trait Limit: std::fmt::Debug {
     }
 
     /// The least time of a block that begins with the axes at `from` (mm, radians), minutes.
-    fn least_minutes(&self, from: &Joints, block: &Block) -> f64;
+    fn least_minutes(&self, from: &Joints, block: &MotionBlock) -> f64;
 }
 
 /// The limits that hold on a machine.
-pub fn of(machine: &Machine) -> Vec<Box<dyn Limit>> {
+pub fn of(machine: &Machine) -> Vec<Box<dyn BlockTimeLimit>> {
     vec![Box::new(max_feed::MaxFeed::new(machine)), Box::new(planned::PlannedFeed)]
 }

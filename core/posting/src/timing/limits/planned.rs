@@ -2,15 +2,15 @@
 
 use post_machine::kinematics::Joints;
 
-use super::Limit;
-use crate::blocks::Block;
+use super::BlockTimeLimit;
+use crate::blocks::MotionBlock;
 
 /// What the planning stage left a block.
 #[derive(Debug)]
 pub(super) struct PlannedFeed;
 
-impl Limit for PlannedFeed {
-    fn name(&self, block: &Block) -> &'static str {
+impl BlockTimeLimit for PlannedFeed {
+    fn name(&self, block: &MotionBlock) -> &'static str {
         block.planned.limit.unwrap_or("plan")
     }
 
@@ -18,7 +18,7 @@ impl Limit for PlannedFeed {
         false
     }
 
-    fn least_minutes(&self, _: &Joints, block: &Block) -> f64 {
+    fn least_minutes(&self, _: &Joints, block: &MotionBlock) -> f64 {
         block.planned.minutes
     }
 }

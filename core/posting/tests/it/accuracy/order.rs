@@ -1,7 +1,7 @@
 //! The order of the path: tip and path can be gone along together, never back, and each block stays within what is
 //! certified for it. The truth is the Fréchet distance, found in the free-space diagram.
 
-use post_posting::{Block, Flow, Job, MotionKind, Observer};
+use post_posting::{BlockKind, MotionBlock, Observer, PostingRequest, StreamItem};
 use post_testmachines::frechet::{frechet, keeps_within};
 use post_testruns::posted::{Recorder, watched};
 
@@ -12,12 +12,12 @@ const PIECES: usize = 24;
 
 /// All blocks of a program.
 #[derive(Default)]
-struct Seen(Vec<Block>);
+struct Seen(Vec<MotionBlock>);
 
 impl Observer for Seen {
-    fn blocks(&mut self, blocks: &[Flow<Block>]) {
+    fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
         for block in blocks {
-            if let Flow::Point(block) = block {
+            if let StreamItem::Point(block) = block {
                 self.0.push(*block);
             }
         }
@@ -26,13 +26,13 @@ impl Observer for Seen {
 
 /// The way of the control point, as a polyline, and what is certified for each piece of it, mm; what the polyline
 /// itself misses is added to that.
-fn curve(bench: &Bench, blocks: &[Block]) -> (Vec<V>, Vec<f64>) {
+fn curve(bench: &Bench, blocks: &[MotionBlock]) -> (Vec<V>, Vec<f64>) {
     let along = bench.machine.control_point.along;
     let keeps = bench.machine.control.tcp == post_machine::description::Tcp::Control;
     let (mut curve, mut certified) = (Vec::new(), Vec::new());
     for pair in blocks.windows(2) {
         let [from, to] = pair else { continue };
-        assert_ne!(to.kind, MotionKind::Position);
+        assert_ne!(to.kind, BlockKind::Position);
         let at = |t: f64| {
             let (mut tip, axis) = bench.reference.forward(&between(&from.joints, &to.joints, t));
             if keeps {
@@ -59,7 +59,7 @@ fn curve(bench: &Bench, blocks: &[Block]) -> (Vec<V>, Vec<f64>) {
 fn in_order(bench: &Bench, stops: &[Stop], cl: &str, decimals: u8) -> Result<usize, String> {
     let mut seen = Seen::default();
     let length = if bench.place("X") < bench.place("A") { 120.0 } else { 0.0 };
-    let job = Job { tool_length: Some(length), ..Job::default() };
+    let job = PostingRequest { tool_length: Some(length), ..PostingRequest::default() };
     let dialect = Recorder::new(&bench.machine, decimals);
     let run = watched(&bench.machine, dialect, cl, job, &mut Shape::Fine, &mut [&mut seen]);
     let Some(report) = &run.report else {

@@ -2,7 +2,7 @@
 
 use post_machine::description::{Source, load};
 use post_plugin::{Capabilities, Feed};
-use post_posting::Job;
+use post_posting::PostingRequest;
 use post_testruns::posted::{Bench, Recorder, Run, Samples, watched};
 
 /// A fork head of 500 mm; `more` goes to `[control]`.
@@ -235,7 +235,7 @@ fn a_dialect_says_that_joints_may_be_too_fast_in_a_rapid() {
         let bench = Bench::new(machine, 4, 0.0);
         let mut recorder = Recorder::new(&bench.machine, 4);
         recorder.capabilities = Capabilities::TCP_RAPIDS_PASS;
-        let job = Job { tool_length: Some(0.0), ..Job::default() };
+        let job = PostingRequest { tool_length: Some(0.0), ..PostingRequest::default() };
         let cl = swing(1.0, -10.0, "RAPID");
         let run = watched(&bench.machine, recorder, &cl, job, &mut Samples, &mut []);
         (run.motions().last().unwrap().kind, run.report.unwrap().fast_rapids.count)
@@ -271,7 +271,7 @@ fn a_dialect_says_along_what_a_feed_counts() {
         let bench = Bench::new(&text, 4, 0.0);
         let mut recorder = Recorder::new(&bench.machine, 4);
         recorder.capabilities = writes;
-        let job = Job { tool_length: Some(0.0), ..Job::default() };
+        let job = PostingRequest { tool_length: Some(0.0), ..PostingRequest::default() };
         let cl = swing(10.0, -10.0, "FEDRAT/300,MMPM");
         feed_of(&watched(&bench.machine, recorder, &cl, job, &mut Samples, &mut []))
     };

@@ -2,25 +2,25 @@
 
 use post_plugin::Capabilities;
 use post_posting::program::Command;
-use post_posting::{Block, Flow, MotionKind, Observer, Reason};
+use post_posting::{BlockKind, BlockReason, MotionBlock, Observer, StreamItem};
 use post_testruns::posted::{Recorder, watched};
 
 use super::*;
 
 /// Keeps all that it sees.
 #[derive(Default)]
-struct Seen(Vec<Flow<Block>>);
+struct Seen(Vec<StreamItem<MotionBlock>>);
 
 impl Observer for Seen {
-    fn blocks(&mut self, blocks: &[Flow<Block>]) {
+    fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
         self.0.extend_from_slice(blocks);
     }
 }
 
 impl Seen {
-    fn written(&self) -> Vec<&Block> {
+    fn written(&self) -> Vec<&MotionBlock> {
         let blocks = self.0.iter().filter_map(|next| match next {
-            Flow::Point(block) if !block.still => Some(block),
+            StreamItem::Point(block) if !block.still => Some(block),
             _ => None,
         });
         blocks.collect()
@@ -28,8 +28,8 @@ impl Seen {
 }
 
 /// A job with a tool of so many mm.
-fn job(length: f64) -> Job {
-    Job { tool_length: Some(length), ..Job::default() }
+fn job(length: f64) -> PostingRequest {
+    PostingRequest { tool_length: Some(length), ..PostingRequest::default() }
 }
 
 #[test]
@@ -64,7 +64,7 @@ fn observers_see_the_blocks_that_the_dialect_is_asked_for() {
             }
             let report = run.report.expect("a good run");
             let sum = |cuts: bool| -> f64 {
-                let kind = |block: &&&Block| (block.kind == MotionKind::Linear) == cuts;
+                let kind = |block: &&&MotionBlock| (block.kind == BlockKind::Linear) == cuts;
                 let blocks = written.iter().filter(kind);
                 blocks.map(|block| block.time.minutes * 60.0).sum()
             };
@@ -73,7 +73,7 @@ fn observers_see_the_blocks_that_the_dialect_is_asked_for() {
             let worst = written.iter().filter(|block| !block.loose);
             let worst = worst.fold(0.0, |most: f64, block| most.max(block.deviation.tip));
             assert_eq!(worst, report.tip_deviation_mm.value);
-            let put_in = written.iter().filter(|block| block.reason == Reason::PutIn);
+            let put_in = written.iter().filter(|block| block.reason == BlockReason::PutIn);
             assert_eq!(put_in.count() as u64, report.points_added);
             let limited = written.iter().filter(|block| block.time.limit.is_some());
             assert_eq!(limited.count() as u64, report.blocks_limited);
@@ -94,8 +94,8 @@ fn commands_stand_where_they_stood() {
         .0
         .iter()
         .map(|next| match next {
-            Flow::Point(block) => (block.line, true),
-            Flow::Command { line, .. } => (*line, false),
+            StreamItem::Point(block) => (block.line, true),
+            StreamItem::Command { line, .. } => (*line, false),
         })
         .collect();
     let lines: Vec<(u64, bool)> = lines.into_iter().filter(|(line, _)| *line > 4).collect();
@@ -132,7 +132,7 @@ fn operations_are_told_to_dialects_that_know_them() {
             &mut [&mut seen],
         )
         .good("a job");
-        let named = |next: &Flow<Block>| matches!(next, Flow::Command { command: Command::Operation(name), .. } if name == "ROUGH");
+        let named = |next: &StreamItem<MotionBlock>| matches!(next, StreamItem::Command { command: Command::Operation(name), .. } if name == "ROUGH");
         assert!(seen.0.iter().any(named));
         let kinds = run.asked.iter().map(|asked| asked.kind);
         kinds.collect::<Vec<_>>()

@@ -52,7 +52,7 @@ Z = { linear = [0, 0, 1], travel = [-500, 500] }
     let Ok(machine) = load(source, &[], &mut |_| Err(String::new())) else {
         return;
     };
-    let run = run(&machine, "UNITS/MM\nGOTO/1,2,3,0,0,1\n", Job::default());
+    let run = run(&machine, "UNITS/MM\nGOTO/1,2,3,0,0,1\n", PostingRequest::default());
     if run.report.is_some() {
         let mut linear = run.motions()[0].words[..3].to_vec();
         linear.sort_by(f64::total_cmp);
@@ -82,7 +82,8 @@ fn a_tolerance_below_the_decimals_is_refused_at_once() {
         let machine = model("trunnion", false, WIDE, settings).machine;
         let mut dialect = posted::Recorder::new(&machine, 3);
         let (mut model, mut output) = (Samples, posted::Nowhere);
-        let opened = Post::new(&machine, Job::default(), &mut dialect, &mut model, &mut output);
+        let opened =
+            Post::new(&machine, PostingRequest::default(), &mut dialect, &mut model, &mut output);
         opened.err().map(|fault| (fault.code, fault.message))
     };
     assert_eq!(opened(&["accuracy.tolerance=0.00051"]), None);
@@ -107,8 +108,10 @@ fn frames_are_applied_as_asked() {
     for (apply, tip, axis) in
         [(false, [11.0, 22.0, 33.0], [0.6, 0.0, 0.8]), (true, [2.0, -1.0, 3.0], [0.0, -0.6, 0.8])]
     {
-        let reading = Reading { apply_msys: apply, ..Reading::default() };
-        let run = run(&model.machine, text, Job { reading, ..Job::default() }).good("a path");
+        let reading = ReadingOptions { apply_msys: apply, ..ReadingOptions::default() };
+        let run =
+            run(&model.machine, text, PostingRequest { reading, ..PostingRequest::default() })
+                .good("a path");
         let words = &run.motions()[0].words;
         let reached = model.at(words, words, 0.0);
         assert!((reached.0 - Vector3::from(tip)).norm() < 1e-3, "{words:?}");

@@ -101,7 +101,7 @@ fn msys_takes_points_and_axes_when_told_to() {
         (true, "UNITS/MM", "R 2,-1,3 @0,-1,0", ""),
         (true, "UNITS/INCH", "R 50.8,-25.4,76.2 @0,-1,0", ""),
     ] {
-        let reading = Reading { apply_msys: apply, ..Reading::default() };
+        let reading = ReadingOptions { apply_msys: apply, ..ReadingOptions::default() };
         let run = Run::of(reading, &format!("{text};{MSYS};GOTO/11,22,33,1,0,0"));
         assert_eq!(run.steps(), steps, "{apply} {text}");
         assert_eq!(run.findings(), findings, "{apply} {text}");

@@ -85,7 +85,7 @@ fn rapid_is_for_one_move_and_as_a_feed_until_the_next_feed() {
         ),
     ]);
     let text = "UNITS/MM;GOTO/1,0,0;GOTO/2,0,0";
-    let run = Run::of(Reading::default(), text);
+    let run = Run::of(ReadingOptions::default(), text);
     assert_eq!((run.steps().as_str(), run.findings().as_str()), ("R 1,0,0", "error no-feed"));
 }
 
@@ -118,7 +118,7 @@ fn feeds_of_every_unit() {
         ("MM", "FEDRAT/RAPID", "R 1,0,0"),
     ] {
         let text = format!("UNITS/{units};{TURNING};{text};GOTO/1,0,0");
-        let run = Run::of(Reading::default(), &text);
+        let run = Run::of(ReadingOptions::default(), &text);
         assert_eq!(run.steps(), format!("S1000; {pace}"), "{text}");
         assert_eq!(run.findings(), "", "{text}");
     }
@@ -154,9 +154,9 @@ fn an_inverse_time_feed_is_the_time_of_the_whole_arc() {
     let chords = moves.len() - 2;
     assert!(chords > 5, "{chords}");
     for motion in &moves[1..=chords] {
-        assert_eq!(motion.pace, Pace::InverseTime(4.0 * chords as f64));
+        assert_eq!(motion.pace, MoveFeed::InverseTime(4.0 * chords as f64));
     }
-    assert_eq!(moves[chords + 1].pace, Pace::InverseTime(4.0));
+    assert_eq!(moves[chords + 1].pace, MoveFeed::InverseTime(4.0));
 }
 
 /// A file that lies about its units: lengths and feeds must be put right together, or the feed is off by 25.4.
@@ -174,7 +174,7 @@ fn overridden_units_take_the_declared_feed_words_with_them() {
         (Units::Inch, "FEDRAT/MMPM,10", "F10 25.4,0,0"),
     ];
     for (units, text, steps) in cases {
-        let reading = Reading { units: Some(units), ..Reading::default() };
+        let reading = ReadingOptions { units: Some(units), ..ReadingOptions::default() };
         let run = Run::of(reading, &format!("{text};GOTO/1,0,0"));
         assert_eq!(run.steps(), steps, "{units:?} {text}");
         assert_eq!(run.findings(), "", "{units:?} {text}");
@@ -184,7 +184,7 @@ fn overridden_units_take_the_declared_feed_words_with_them() {
 /// Half a file in mm and half in inches: the second half is cut 25.4 times too large, or too small.
 #[test]
 fn units_come_before_what_is_read_in_them() {
-    let told = |units| Reading { units, ..Reading::default() };
+    let told = |units| ReadingOptions { units, ..ReadingOptions::default() };
     for (units, text, findings) in [
         (None, "UNITS/INCH;GOTO/1,0,0", ""),
         (None, "UNITS/INCH;FROM/0,0,0;RAPID;GOTO/1,0,0;UNITS/INCH", ""),
@@ -213,7 +213,7 @@ fn units_after_numbers_are_refused_whatever_stands_between() {
         "LOADTL/1,LENGTH,100;UNITS/INCH;GOTO/1,0,0",
     ]
     .into_iter()
-    .filter(|text| Run::of(Reading::default(), text).findings() != "error units")
+    .filter(|text| Run::of(ReadingOptions::default(), text).findings() != "error units")
     .collect();
     assert!(accepted.is_empty(), "no error: {accepted:#?}");
 }

@@ -56,7 +56,7 @@ fn the_told_tool_is_loaded_before_compensation() {
 
 /// Steps and findings with tool 5 told.
 fn with_tool(text: &str) -> (String, String) {
-    let reading = Reading { tool: Some(5), ..Reading::default() };
+    let reading = ReadingOptions { tool: Some(5), ..ReadingOptions::default() };
     let run = Run::of(reading, &format!("UNITS/MM;FEDRAT/100;{text}"));
     (run.steps(), run.findings())
 }
@@ -115,7 +115,8 @@ fn compensation_on_the_tools_centre_is_wear_or_refused() {
         ("MOVE_ATTRIB/LEADIN", Wear, "warning compensation"),
         ("MOVE_ATTRIB/LEADIN", Contour, ""),
     ] {
-        let reading = Reading { compensation_on_centre: on_centre, ..Reading::default() };
+        let reading =
+            ReadingOptions { compensation_on_centre: on_centre, ..ReadingOptions::default() };
         let text = format!("UNITS/MM;FEDRAT/100;LOADTL/1;{before};{cut}");
         let run = Run::of(reading.clone(), &text);
         assert_eq!(run.findings(), findings, "{before}");

@@ -46,13 +46,13 @@ fn known_words_in_unknown_forms_are_reported() {
 fn unknown_words_go_by_the_policy() {
     const TEXT: &str = "UNITS/MM;FEDRAT/100;FROBN/1,UP;GOTO/1,0,0;FROBN/2";
     let cases = [
-        (Unknown::Error, "F100 1,0,0", "error unknown-word"),
-        (Unknown::Known, "F100 1,0,0", "error unknown-word"),
-        (Unknown::Warn, "F100 1,0,0", "warning unknown-word"),
-        (Unknown::Pass, "# FROBN/1,UP; F100 1,0,0; # FROBN/2", "warning unknown-word"),
+        (UnknownWordPolicy::Error, "F100 1,0,0", "error unknown-word"),
+        (UnknownWordPolicy::Known, "F100 1,0,0", "error unknown-word"),
+        (UnknownWordPolicy::Warn, "F100 1,0,0", "warning unknown-word"),
+        (UnknownWordPolicy::Pass, "# FROBN/1,UP; F100 1,0,0; # FROBN/2", "warning unknown-word"),
     ];
     for (unknown, steps, findings) in cases {
-        let reading = || Reading { unknown, ..Reading::default() };
+        let reading = || ReadingOptions { unknown, ..ReadingOptions::default() };
         let run = Run::of(reading(), TEXT);
         assert_eq!(run.steps(), steps, "{unknown:?}");
         assert_eq!(run.findings(), findings, "{unknown:?}");

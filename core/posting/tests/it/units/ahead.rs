@@ -1,28 +1,28 @@
 use nalgebra::Vector3;
-use post_posting::ahead::StillAxes;
-use post_posting::program::{Command, Motion, Pace, Step};
+use post_posting::ahead::FixedAxisFinder;
+use post_posting::program::{Command, MoveFeed, ProgramStep, StraightMove};
 
 /// The lines of the stretches, from steps that are written as letters: `r` a rapid, `c` a cut, capitals with the tool
 /// axis along X, `|` where the tool leaves.
 fn stretches(steps: &str) -> Vec<(u64, u64)> {
-    let mut axes = StillAxes::default();
+    let mut axes = FixedAxisFinder::default();
     for (line, letter) in (1..).zip(steps.chars()) {
-        let motion = |axis, pace| Motion {
+        let motion = |axis, pace| StraightMove {
             tip: Vector3::zeros(),
             axis,
             edge: Vector3::zeros(),
             pace,
             chord: 0.0,
         };
-        let feed = Pace::PerMinute(100.0);
+        let feed = MoveFeed::PerMinute(100.0);
         axes.step(
             line,
             &match letter {
-                'r' => Step::Move(motion(Vector3::z(), Pace::Rapid)),
-                'c' => Step::Move(motion(Vector3::z(), feed)),
-                'R' => Step::Move(motion(Vector3::x(), Pace::Rapid)),
-                'C' => Step::Move(motion(Vector3::x(), feed)),
-                _ => Step::Command(Command::Home),
+                'r' => ProgramStep::Move(motion(Vector3::z(), MoveFeed::Rapid)),
+                'c' => ProgramStep::Move(motion(Vector3::z(), feed)),
+                'R' => ProgramStep::Move(motion(Vector3::x(), MoveFeed::Rapid)),
+                'C' => ProgramStep::Move(motion(Vector3::x(), feed)),
+                _ => ProgramStep::Command(Command::Home),
             },
         );
     }

@@ -1,13 +1,13 @@
 use nalgebra::Vector3;
 use post_plugin::{Coolant, Spindle, SpindleSense};
-use post_posting::internals::Window;
-use post_posting::program::{Command, Motion, Pace, Step, Tool};
+use post_posting::internals::LineWindow;
+use post_posting::program::{Command, MoveFeed, ProgramStep, StraightMove, ToolChange};
 
 #[test]
 fn a_part_begins_in_the_state_that_the_lines_before_it_set() {
-    let mut window = Window::new(10..20);
+    let mut window = LineWindow::new(10..20);
     let mut steps = Vec::new();
-    let tool = |number| Command::Tool(Tool { number, ..Tool::default() });
+    let tool = |number| Command::Tool(ToolChange { number, ..ToolChange::default() });
     for (line, command) in [
         (1, Command::Coolant(Coolant::Mist)),
         (2, tool(1)),
@@ -20,9 +20,9 @@ fn a_part_begins_in_the_state_that_the_lines_before_it_set() {
         (19, Command::Home),
         (20, Command::Stop),
     ] {
-        window.step(line, Step::Command(command), &mut steps);
+        window.step(line, ProgramStep::Command(command), &mut steps);
     }
-    let command = |line, command| (line, Step::Command(command));
+    let command = |line, command| (line, ProgramStep::Command(command));
     assert_eq!(
         steps,
         [
@@ -38,26 +38,26 @@ fn a_part_begins_in_the_state_that_the_lines_before_it_set() {
 /// The spindle of the tool before waits until the tool cuts without a speed of its own.
 #[test]
 fn a_tool_begins_with_its_own_speed() {
-    let tool = || Command::Tool(Tool { number: 2, ..Tool::default() });
+    let tool = || Command::Tool(ToolChange { number: 2, ..ToolChange::default() });
     let turning = |rpm| Command::Spindle(Spindle::On { rpm, sense: SpindleSense::Clockwise });
     let made = |said: &[Command]| {
-        let mut window = Window::new(10..20);
+        let mut window = LineWindow::new(10..20);
         let mut steps = Vec::new();
-        window.step(1, Step::Command(turning(15_000.0)), &mut steps);
-        window.step(2, Step::Command(Command::Coolant(Coolant::Mist)), &mut steps);
-        let motion = Motion {
+        window.step(1, ProgramStep::Command(turning(15_000.0)), &mut steps);
+        window.step(2, ProgramStep::Command(Command::Coolant(Coolant::Mist)), &mut steps);
+        let motion = StraightMove {
             tip: Vector3::zeros(),
             axis: Vector3::z(),
             edge: Vector3::zeros(),
-            pace: Pace::PerMinute(100.0),
+            pace: MoveFeed::PerMinute(100.0),
             chord: 0.0,
         };
         for command in said {
-            window.step(10, Step::Command(command.clone()), &mut steps);
+            window.step(10, ProgramStep::Command(command.clone()), &mut steps);
         }
-        window.step(11, Step::Move(motion), &mut steps);
+        window.step(11, ProgramStep::Move(motion), &mut steps);
         let commands = steps.into_iter().filter_map(|(_, step)| match step {
-            Step::Command(command) => Some(command),
+            ProgramStep::Command(command) => Some(command),
             _ => None,
         });
         commands.collect::<Vec<_>>()

@@ -4,11 +4,11 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use post_grammar::{ArcMove, Circle, Record, Sense, Statement};
+use post_grammar::{ArcMove, CircleRecord, Record, Sense, Statement};
 use post_machine::kinematics::Pose;
 
 use super::modal::{Meant, Modal, Out};
-use crate::SplineWay;
+use crate::BSpline;
 use crate::course::Curve;
 
 /// Ends of an arc nearer than this are one point, and the arc a whole turn: mm.
@@ -23,7 +23,7 @@ const MOST_NUMBERS: usize = 1_000_000;
 /// A curve that is not complete.
 #[derive(Clone, Debug)]
 pub(super) enum Pending {
-    Arc(Circle),
+    Arc(CircleRecord),
     Turned(ArcMove),
     Spline {
         /// Knots between the ends, and the last.
@@ -93,7 +93,7 @@ impl Modal {
     pub(super) fn arc(
         &mut self,
         record: &Record<'_>,
-        circle: &Circle,
+        circle: &CircleRecord,
         to: Pose,
         out: &mut Out,
     ) -> Meant {
@@ -165,7 +165,7 @@ impl Modal {
 }
 
 /// NX's splines: cubic, clamped at both ends; the file has the knots between, and 1.
-fn way(interior: &[f64], poles: Vec<Vector3<f64>>) -> Result<SplineWay, String> {
+fn way(interior: &[f64], poles: Vec<Vector3<f64>>) -> Result<BSpline, String> {
     const DEGREE: usize = 3;
     let Some((1.0, interior)) = interior.split_last().map(|(last, all)| (*last, all)) else {
         return Err("its last knot must be 1".to_owned());
@@ -173,7 +173,7 @@ fn way(interior: &[f64], poles: Vec<Vector3<f64>>) -> Result<SplineWay, String> 
     let mut knots = vec![0.0; DEGREE + 1];
     knots.extend_from_slice(interior);
     knots.extend([1.0; DEGREE + 1]);
-    let way = SplineWay {
+    let way = BSpline {
         degree: DEGREE,
         knots,
         poles: poles.into_iter().map(|pole| (pole, 1.0)).collect(),

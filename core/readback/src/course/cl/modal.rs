@@ -3,7 +3,9 @@
 use std::collections::VecDeque;
 
 use nalgebra::Vector3;
-use post_grammar::{Argument, Coolant, Delay, Delta, Record, Rotate, Side, Statement, Units};
+use post_grammar::{
+    Argument, CoolantWord, CutterSide, Delay, Delta, Record, Rotate, Statement, Units,
+};
 use post_machine::description::Print;
 use post_machine::diagnostic::{Diagnostic, Place};
 use post_machine::kinematics::Pose;
@@ -61,7 +63,7 @@ pub(super) struct Modal {
     pub(super) last_cycle: Option<(Hole, Option<FeedWord>)>,
     pub(super) tools: Tools,
     coolant: Coolants,
-    side: Option<Side>,
+    side: Option<CutterSide>,
     register: Option<u32>,
     pub(super) compensated: bool,
     offset: Option<u32>,
@@ -165,7 +167,7 @@ impl Modal {
             }
             Statement::Spindle(spindle) => self.spindle(record, *spindle, out),
             // Autodesk names the kind in the record behind it.
-            Statement::Coolant(Coolant::On) if self.strange.autodesk => Ok(()),
+            Statement::Coolant(CoolantWord::On) if self.strange.autodesk => Ok(()),
             Statement::Coolant(word) => self.coolant(record, *word, out),
             Statement::LoadTool(tool) => self.load_read(record, tool, out),
             Statement::SelectTool(number) => {
@@ -234,13 +236,13 @@ impl Modal {
             Statement::Cutcom(cutcom) => {
                 self.load_due(record, out)?;
                 // ON repeats the side before, through an OFF.
-                if let Some(side @ (Side::Left | Side::Right)) = cutcom.side {
+                if let Some(side @ (CutterSide::Left | CutterSide::Right)) = cutcom.side {
                     self.side = Some(side);
                 }
                 let side = match (cutcom.side, self.side) {
-                    (Some(Side::Off), _) => 0,
-                    (_, Some(Side::Left)) => -1,
-                    (_, Some(Side::Right)) => 1,
+                    (Some(CutterSide::Off), _) => 0,
+                    (_, Some(CutterSide::Left)) => -1,
+                    (_, Some(CutterSide::Right)) => 1,
                     // CAMWorks says ON first, and its first side in the next record.
                     _ => return Ok(()),
                 };
@@ -528,17 +530,17 @@ impl Modal {
         Ok(())
     }
 
-    fn coolant(&mut self, record: &Record<'_>, word: Coolant, out: &mut Out) -> Meant {
+    fn coolant(&mut self, record: &Record<'_>, word: CoolantWord, out: &mut Out) -> Meant {
         self.load_due(record, out)?;
         let none = Coolants::default();
         let flood = Coolants { flood: true, ..none };
         let coolants = match word {
-            Coolant::Off => none,
-            Coolant::On if self.coolant == none => flood,
-            Coolant::On => self.coolant,
-            Coolant::Flood => flood,
-            Coolant::Mist => Coolants { mist: true, ..none },
-            Coolant::Through | Coolant::Air => Coolants { other: true, ..none },
+            CoolantWord::Off => none,
+            CoolantWord::On if self.coolant == none => flood,
+            CoolantWord::On => self.coolant,
+            CoolantWord::Flood => flood,
+            CoolantWord::Mist => Coolants { mist: true, ..none },
+            CoolantWord::Through | CoolantWord::Air => Coolants { other: true, ..none },
         };
         // ON means the kind before, through an OFF.
         if coolants != none {

@@ -1,6 +1,6 @@
 //! What is not known by its name, or means something else by who wrote the file.
 
-use post_grammar::{Argument, Record, UnknownPath, Usage};
+use post_grammar::{Argument, Record, UnknownPath, WordUsage};
 use post_machine::diagnostic::Diagnostic;
 
 use super::modal::{Meant, Modal};
@@ -63,7 +63,7 @@ impl Modal {
         if strange {
             return Err(self.fault(record, format!("{word} is not known")));
         }
-        if record.statement.usage() != Usage::Refused {
+        if record.statement.usage() != WordUsage::Refused {
             return Ok(());
         }
         let message =

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use post_grammar::{LoadTool, Record, Sense, Spindle as SpindleWord, SpindleUnit};
+use post_grammar::{LoadTool, Record, Sense, SpindleUnit, SpindleWord};
 use post_machine::description::ToolLength;
 
 use super::modal::{Meant, Modal, Out};

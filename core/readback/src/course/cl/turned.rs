@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
-use post_grammar::{AlongArc, ArcMove, Circle, Record, Sense};
+use post_grammar::{AlongArc, ArcMove, CircleRecord, Record, Sense};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 
@@ -35,7 +35,7 @@ impl Modal {
         record: &Record<'_>,
         arc: &ArcMove,
         to: Pose,
-    ) -> Result<Circle, Box<Diagnostic>> {
+    ) -> Result<CircleRecord, Box<Diagnostic>> {
         let no = |why: String| Err(self.fault(record, format!("no arc: {why}")));
         let Some(from) = self.stands else {
             return no("nobody knows where it begins".to_owned());
@@ -94,7 +94,7 @@ impl Modal {
         };
         // Whole turns beyond the one that ends at the pose.
         let beyond = libm::round((angle - round) / TAU - 0.5).max(0.0);
-        Ok(Circle {
+        Ok(CircleRecord {
             centre: arc.centre,
             axis: arc.axis,
             radius: Some(arc.radius),
@@ -142,7 +142,7 @@ impl Modal {
         if libm::fabs(moment) < 0.98 {
             return no("INDIRV does not set out along its tangent");
         }
-        let circle = Circle {
+        let circle = CircleRecord {
             centre: along.centre,
             axis: axis.into(),
             radius: Some(along.radius),

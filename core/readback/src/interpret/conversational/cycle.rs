@@ -3,17 +3,21 @@
 use nalgebra::{Matrix3, Vector3};
 use post_grammar::nc::{NcItem, NcNumber};
 
-use super::{Answer, Said, afterwards, functions, plane, worth};
+use super::{Answer, BlockNames, afterwards, functions, plane, worth};
 use crate::Told;
-use crate::interpret::block::{Asked, Turning};
-use crate::interpret::cycles::{self, Defined};
-use crate::interpret::frame::Frame;
-use crate::interpret::gathered::{Gathered, bit};
-use crate::interpret::state::Control;
-use crate::interpret::variables::Value;
+use crate::interpret::block::{BlockRequest, SpindleRequest};
+use crate::interpret::cycles::{self, DefinedCycle};
+use crate::interpret::frame::CoordinateFrame;
+use crate::interpret::gathered::{BlockWords, bit};
+use crate::interpret::state::ControlState;
+use crate::interpret::variables::VariableValue;
 
 /// `CYCL DEF n …` and the lines `CYCL DEF n.m` of one.
-pub(super) fn define(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
+pub(super) fn define(
+    control: &mut ControlState,
+    said: &BlockNames<'_>,
+    words: &mut BlockWords,
+) -> Answer<()> {
     let Some(NcNumber { value, .. }) = said.number() else {
         return Err(control.refuse("nc-cycle", "CYCL DEF without a number"));
     };
@@ -53,7 +57,7 @@ pub(super) fn define(control: &mut Control, said: &Said<'_>, words: &mut Gathere
             _ => Err(control.refuse("nc-cycle", "CYCL DEF 11: a scale is not run")),
         },
         (13, _) => {
-            control.turn_spindle(Turning::Oriented);
+            control.turn_spindle(SpindleRequest::Oriented);
             Ok(())
         }
         (19, _) => plane::cycle_19(control, said, words),
@@ -83,7 +87,7 @@ pub(super) fn define(control: &mut Control, said: &Said<'_>, words: &mut Gathere
 }
 
 /// A cycle that is called later; its parameters are variables too.
-fn remember(control: &mut Control, cycle: u32, said: &Said<'_>) -> Answer<()> {
+fn remember(control: &mut ControlState, cycle: u32, said: &BlockNames<'_>) -> Answer<()> {
     let mut values = Vec::new();
     for item in &said.block.items {
         let NcItem::Named { name, value } = item else {
@@ -102,18 +106,22 @@ fn remember(control: &mut Control, cycle: u32, said: &Said<'_>) -> Answer<()> {
         values.push((number, value));
         control
             .variables
-            .put(name, Value::Number(value))
+            .put(name, VariableValue::Number(value))
             .map_err(|finding| control.placed(*finding).boxed())?;
     }
     control.cycles.at_each = false;
-    control.cycles.defined = Some(Defined { cycle, values });
+    control.cycles.defined = Some(DefinedCycle { cycle, values });
     Ok(())
 }
 
 /// `CYCL CALL`: where the tool stands.
-pub(super) fn call(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
+pub(super) fn call(
+    control: &mut ControlState,
+    said: &BlockNames<'_>,
+    words: &mut BlockWords,
+) -> Answer<()> {
     said.only(control, &["FMAX"], &[])?;
-    let mut asked = Asked::default();
+    let mut asked = BlockRequest::default();
     let functions = functions(control, words, &mut asked)?;
     if words.present & control.axes.mask != 0 || functions.machine {
         return Err(control.refuse("nc-cycle", "CYCL CALL with a position is not run"));
@@ -128,7 +136,7 @@ pub(super) fn call(control: &mut Control, said: &Said<'_>, words: &mut Gathered)
 /// Words of a shift: absolute, or by a way; mm.
 type Shift = [Option<(f64, bool)>; 3];
 
-fn shifts(control: &Control, words: &mut Gathered) -> Answer<Shift> {
+fn shifts(control: &ControlState, words: &mut BlockWords) -> Answer<Shift> {
     let others = words.present & control.axes.mask & !(bit(b'X') | bit(b'Y') | bit(b'Z'));
     words.used |= others;
     for letter in b'A'..=b'Z' {
@@ -146,7 +154,7 @@ fn shifts(control: &Control, words: &mut Gathered) -> Answer<Shift> {
     }))
 }
 
-fn shift(control: &mut Control, by: Shift) -> Answer<()> {
+fn shift(control: &mut ControlState, by: Shift) -> Answer<()> {
     let inside = control.frames.plane.is_some();
     if inside && !control.frames.outer.is_default() {
         return Err(control.refuse("nc-frame", "a datum shift inside a tilted plane and one outside of it: how they add up is not settled"));
@@ -160,13 +168,17 @@ fn shift(control: &mut Control, by: Shift) -> Answer<()> {
             None => {}
         }
     }
-    *frame = Frame::new(frame.axes, origin);
+    *frame = CoordinateFrame::new(frame.axes, origin);
     control.frames_changed();
     Ok(())
 }
 
 /// `TRANS DATUM AXIS X+10`, `TRANS DATUM RESET`.
-pub(super) fn datum(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
+pub(super) fn datum(
+    control: &mut ControlState,
+    said: &BlockNames<'_>,
+    words: &mut BlockWords,
+) -> Answer<()> {
     said.only(control, &["AXIS", "RESET"], &[])?;
     let by = match said.has("RESET") {
         true => [Some((0.0, false)); 3],
@@ -176,7 +188,7 @@ pub(super) fn datum(control: &mut Control, said: &Said<'_>, words: &mut Gathered
 }
 
 /// `CYCL DEF 10.1 ROT+30`: the coordinates are turned about the tool axis.
-fn turn(control: &mut Control, said: &Said<'_>) -> Answer<()> {
+fn turn(control: &mut ControlState, said: &BlockNames<'_>) -> Answer<()> {
     let Some(angle) = said.named(control, "ROT")? else {
         return Err(control.refuse("nc-cycle", "CYCL DEF 10 without ROT, or by a way"));
     };
@@ -188,7 +200,7 @@ fn turn(control: &mut Control, said: &Said<'_>) -> Answer<()> {
         false => Matrix3::new(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0),
     };
     let origin: Vector3<f64> = frame.origin;
-    *frame = Frame::new(axes, origin);
+    *frame = CoordinateFrame::new(axes, origin);
     control.frames_changed();
     Ok(())
 }

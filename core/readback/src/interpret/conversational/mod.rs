@@ -17,16 +17,16 @@ use post_grammar::nc::{NcBlock, NcItem, NcNumber, NcValue};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
-use super::block::{Asked, Turning};
-use super::gathered::Gathered;
-use super::state::{Control, MotionMode};
+use super::block::{BlockRequest, SpindleRequest};
+use super::gathered::BlockWords;
+use super::state::{ControlState, MotionMode};
 use crate::{MotionKind, Told};
 
 type Answer<T> = Result<T, Box<Diagnostic>>;
 
 /// What the path functions remember; lengths in mm, coordinates of the program.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Path {
+pub(super) struct PathMemory {
     /// The pole: `CC`.
     pole: [Option<f64>; 3],
     /// Which way the tool went at the end of the last motion: for CT.
@@ -34,7 +34,11 @@ pub(super) struct Path {
 }
 
 /// Runs a block.
-pub(super) fn run(control: &mut Control, block: &NcBlock, words: &mut Gathered) -> Answer<()> {
+pub(super) fn run(
+    control: &mut ControlState,
+    block: &NcBlock,
+    words: &mut BlockWords,
+) -> Answer<()> {
     for remark in &block.remarks {
         control.remark(remark);
     }
@@ -44,7 +48,7 @@ pub(super) fn run(control: &mut Control, block: &NcBlock, words: &mut Gathered) 
     control.gather(block, words)?;
     // Words of axes are positions, or ways by a letter of their own; L and its like name the motion.
     control.modal.motion = MotionMode::Linear;
-    let said = Said { block };
+    let said = BlockNames { block };
     let Some(NcItem::Name(first)) = block.items.first() else {
         return path::alone(control, &said, words);
     };
@@ -87,11 +91,11 @@ pub(super) fn run(control: &mut Control, block: &NcBlock, words: &mut Gathered) 
 }
 
 /// mm/min in a unit of F: in a program in inches it counts tenths of an inch a minute.
-pub(super) fn feed_unit(control: &Control) -> f64 {
+pub(super) fn feed_unit(control: &ControlState) -> f64 {
     if control.modal.unit == 1.0 { 1.0 } else { 0.1 * control.modal.unit }
 }
 
-fn begin(control: &mut Control, said: &Said<'_>) -> Answer<()> {
+fn begin(control: &mut ControlState, said: &BlockNames<'_>) -> Answer<()> {
     let inches = said.has("INCH") || said.has("IN");
     control.modal.unit = if inches { 25.4 } else { 1.0 };
     control.tools.by_tool = true;
@@ -100,11 +104,11 @@ fn begin(control: &mut Control, said: &Said<'_>) -> Answer<()> {
 }
 
 /// What a block says besides letters with values.
-struct Said<'b> {
+struct BlockNames<'b> {
     block: &'b NcBlock,
 }
 
-impl Said<'_> {
+impl BlockNames<'_> {
     /// The name stands in the block.
     fn has(&self, wanted: &str) -> bool {
         self.names().any(|name| name == wanted)
@@ -119,7 +123,7 @@ impl Said<'_> {
     }
 
     /// The value behind a longer name: `SPA+30`.
-    fn named(&self, control: &Control, wanted: &str) -> Answer<Option<f64>> {
+    fn named(&self, control: &ControlState, wanted: &str) -> Answer<Option<f64>> {
         for item in &self.block.items {
             if let NcItem::Named { name, value } = item
                 && &**name == wanted
@@ -139,7 +143,7 @@ impl Said<'_> {
     }
 
     /// Refuses a number without a letter: `X+77..105` is X+77. and what nobody means.
-    fn no_number(&self, control: &Control) -> Answer<()> {
+    fn no_number(&self, control: &ControlState) -> Answer<()> {
         match self.number() {
             Some(number) => {
                 let message = format!("the number {} belongs to no word", number.value);
@@ -158,7 +162,7 @@ impl Said<'_> {
     }
 
     /// Refuses names and named values that are not in these lists: each may change what the block does.
-    fn only(&self, control: &Control, names: &[&str], named: &[&str]) -> Answer<()> {
+    fn only(&self, control: &ControlState, names: &[&str], named: &[&str]) -> Answer<()> {
         for item in self.block.items.iter().skip(1) {
             let other = match item {
                 NcItem::Name(name) if !names.contains(&&**name) => name,
@@ -173,13 +177,13 @@ impl Said<'_> {
     }
 }
 
-fn worth(control: &Control, value: &NcValue) -> Answer<f64> {
+fn worth(control: &ControlState, value: &NcValue) -> Answer<f64> {
     control.variables.worth(value).map_err(|finding| control.placed(*finding).boxed())
 }
 
 /// What the M functions of a block ask for beyond what all controls have.
 #[derive(Clone, Copy, Debug, Default)]
-struct Functions {
+struct MiscFunctions {
     /// M91.
     machine: bool,
     /// M99: the cycle at the end of the block.
@@ -191,8 +195,12 @@ struct Functions {
 }
 
 /// Takes the M functions of a block: what they switch on holds while it moves; `asked` keeps what ends with it.
-fn functions(control: &mut Control, words: &Gathered, asked: &mut Asked) -> Answer<Functions> {
-    let mut functions = Functions::default();
+fn functions(
+    control: &mut ControlState,
+    words: &BlockWords,
+    asked: &mut BlockRequest,
+) -> Answer<MiscFunctions> {
+    let mut functions = MiscFunctions::default();
     for &code in words.m.list() {
         match code {
             89 => control.cycles.at_each = true,
@@ -224,7 +232,7 @@ fn functions(control: &mut Control, words: &Gathered, asked: &mut Asked) -> Answ
             _ => control.m_code(code, asked)?,
         }
     }
-    if let Some(turning) = asked.spindle.filter(|turning| *turning != Turning::Off) {
+    if let Some(turning) = asked.spindle.filter(|turning| *turning != SpindleRequest::Off) {
         control.turn_spindle(turning);
     }
     if let Some(code) = asked.coolant {
@@ -240,15 +248,19 @@ fn functions(control: &mut Control, words: &Gathered, asked: &mut Asked) -> Answ
 }
 
 /// What a block does once it has moved.
-fn afterwards(control: &mut Control, functions: Functions, asked: &Asked) -> Answer<()> {
+fn afterwards(
+    control: &mut ControlState,
+    functions: MiscFunctions,
+    asked: &BlockRequest,
+) -> Answer<()> {
     if functions.cycle {
         super::cycles::defined(control)?;
     }
     if functions.tcp_off || asked.tcp_off {
         control.set_tcp(false, 0, false);
     }
-    if asked.spindle == Some(Turning::Off) {
-        control.turn_spindle(Turning::Off);
+    if asked.spindle == Some(SpindleRequest::Off) {
+        control.turn_spindle(SpindleRequest::Off);
     }
     if asked.coolant_off {
         control.coolant_off();
@@ -263,7 +275,11 @@ fn afterwards(control: &mut Control, functions: Functions, asked: &Asked) -> Ans
 }
 
 /// Feed, and whether the block goes at rapid; radius compensation.
-fn modes(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer<MotionKind> {
+fn modes(
+    control: &mut ControlState,
+    said: &BlockNames<'_>,
+    words: &mut BlockWords,
+) -> Answer<MotionKind> {
     let mut kind = MotionKind::Feed;
     for name in said.names() {
         match name {

@@ -2,13 +2,13 @@
 
 use nalgebra::Vector3;
 
-use super::{Answer, Said, afterwards, functions, modes, plane};
+use super::{Answer, BlockNames, afterwards, functions, modes, plane};
 use crate::MotionKind;
-use crate::interpret::block::Asked;
+use crate::interpret::block::BlockRequest;
 use crate::interpret::cycles;
-use crate::interpret::gathered::{Gathered, bit};
-use crate::interpret::go::{self, Target};
-use crate::interpret::state::{ArcPlane, Control};
+use crate::interpret::gathered::{BlockWords, bit};
+use crate::interpret::go::{self, MotionTarget};
+use crate::interpret::state::{ArcPlane, ControlState};
 
 /// Names that may stand in a block of the path.
 const NAMES: &[&str] = &["R0", "RL", "RR", "FMAX", "FAUTO", "DR+", "DR-", "MB MAX", "MAX"];
@@ -17,7 +17,11 @@ const NAMES: &[&str] = &["R0", "RL", "RR", "FMAX", "FAUTO", "DR+", "DR-", "MB MA
 const SHARED: f64 = 1e-6;
 
 /// `L`: straight to the words of the block.
-pub(super) fn line(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
+pub(super) fn line(
+    control: &mut ControlState,
+    said: &BlockNames<'_>,
+    words: &mut BlockWords,
+) -> Answer<()> {
     said.no_number(control)?;
     said.only(control, NAMES, &["MB"])?;
     let kind = modes(control, said, words)?;
@@ -25,7 +29,11 @@ pub(super) fn line(control: &mut Control, said: &Said<'_>, words: &mut Gathered)
 }
 
 /// Words without the name of a path function: M functions, feed, compensation; `M140 MB MAX`.
-pub(super) fn alone(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
+pub(super) fn alone(
+    control: &mut ControlState,
+    said: &BlockNames<'_>,
+    words: &mut BlockWords,
+) -> Answer<()> {
     said.no_number(control)?;
     said.only(control, NAMES, &["MB"])?;
     if words.present & control.axes.mask != 0 && !words.m.has(94) {
@@ -38,9 +46,9 @@ pub(super) fn alone(control: &mut Control, said: &Said<'_>, words: &mut Gathered
 
 /// `LN`: the surface's normal is for the compensation of the tool's radius, T is the tool axis.
 pub(super) fn line_with_normal(
-    control: &mut Control,
-    said: &Said<'_>,
-    words: &mut Gathered,
+    control: &mut ControlState,
+    said: &BlockNames<'_>,
+    words: &mut BlockWords,
 ) -> Answer<()> {
     said.no_number(control)?;
     said.only(control, NAMES, &["NX", "NY", "NZ", "TX", "TY", "TZ"])?;
@@ -57,13 +65,13 @@ pub(super) fn line_with_normal(
 }
 
 fn straight(
-    control: &mut Control,
+    control: &mut ControlState,
     kind: MotionKind,
-    said: &Said<'_>,
-    words: &mut Gathered,
+    said: &BlockNames<'_>,
+    words: &mut BlockWords,
     vector: Option<Vector3<f64>>,
 ) -> Answer<()> {
-    let mut asked = Asked::default();
+    let mut asked = BlockRequest::default();
     let functions = functions(control, words, &mut asked)?;
     let moving = words.present & control.axes.mask != 0 || vector.is_some();
     if functions.retract {
@@ -81,30 +89,39 @@ fn straight(
     } else if moving && !words.m.has(94) {
         let mut target = control.target(words)?;
         target.vector = vector;
-        travel(control, kind, &go::Path::Straight, &target)?;
+        travel(control, kind, &go::WordPath::Straight, &target)?;
     }
     afterwards(control, functions, &asked)?;
     left_over(control, words)
 }
 
 /// Goes to a target, keeps which way it came, and calls the cycle that is called at each point.
-fn travel(control: &mut Control, kind: MotionKind, path: &go::Path, target: &Target) -> Answer<()> {
+fn travel(
+    control: &mut ControlState,
+    kind: MotionKind,
+    path: &go::WordPath,
+    target: &MotionTarget,
+) -> Answer<()> {
     let from = control.point();
     control.go(kind, path, target)?;
     let to = control.point();
     control.path.heading = match path {
-        go::Path::Straight => (to - from).try_normalize(SHARED),
-        go::Path::Arc { centre, normal, sweep } => {
+        go::WordPath::Straight => (to - from).try_normalize(SHARED),
+        go::WordPath::Arc { centre, normal, sweep } => {
             let tangent = normal.cross(&(to - centre)) * if *sweep < 0.0 { -1.0 } else { 1.0 };
             tangent.try_normalize(SHARED)
         }
-        go::Path::Spline(_) => None,
+        go::WordPath::Spline(_) => None,
     };
     cycles::at_point(control)
 }
 
 /// `CC X+10 Y+5`: the pole; without words where the tool stands.
-pub(super) fn pole(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
+pub(super) fn pole(
+    control: &mut ControlState,
+    said: &BlockNames<'_>,
+    words: &mut BlockWords,
+) -> Answer<()> {
     said.no_number(control)?;
     let here = control.point();
     let mut any = false;
@@ -123,15 +140,15 @@ pub(super) fn pole(control: &mut Control, said: &Said<'_>, words: &mut Gathered)
 
 /// `C`, `CR`, `CT`, `CP`, `LP`.
 pub(super) fn curve(
-    control: &mut Control,
+    control: &mut ControlState,
     name: &str,
-    said: &Said<'_>,
-    words: &mut Gathered,
+    said: &BlockNames<'_>,
+    words: &mut BlockWords,
 ) -> Answer<()> {
     said.no_number(control)?;
     said.only(control, NAMES, &["PR", "PA", "IPR", "IPA"])?;
     let kind = modes(control, said, words)?;
-    let mut asked = Asked::default();
+    let mut asked = BlockRequest::default();
     let functions = functions(control, words, &mut asked)?;
     if functions.machine || functions.retract {
         return Err(control.refuse("nc-conversational", format!("M91 or M140 beside {name}")));
@@ -166,7 +183,7 @@ pub(super) fn curve(
             let polar = polar(control, said, from)?;
             (end.x, end.y) = (polar.end.x, polar.end.y);
             match (name, clockwise) {
-                ("LP", _) => go::Path::Straight,
+                ("LP", _) => go::WordPath::Straight,
                 (_, Some(clockwise)) => polar.arc(control, from, clockwise)?,
                 (_, None) => return Err(control.refuse("nc-arc", "CP without DR+ or DR-")),
             }
@@ -181,11 +198,11 @@ pub(super) fn curve(
 /// About the pole in the plane across the tool axis. Where the pole was given with Z too, all three coordinates count, and
 /// the plane is that of two axes which start, end and pole share.
 fn about_pole(
-    control: &Control,
+    control: &ControlState,
     from: Vector3<f64>,
     to: Vector3<f64>,
     clockwise: bool,
-) -> Answer<go::Path> {
+) -> Answer<go::WordPath> {
     let [Some(x), Some(y), z] = control.path.pole else {
         return Err(control.refuse("nc-arc", "C without CC in front of it"));
     };
@@ -202,13 +219,13 @@ fn about_pole(
 }
 
 fn arc(
-    control: &Control,
+    control: &ControlState,
     plane: ArcPlane,
     from: Vector3<f64>,
     to: Vector3<f64>,
     mut centre: Vector3<f64>,
     clockwise: bool,
-) -> Answer<go::Path> {
+) -> Answer<go::WordPath> {
     if control.tools.across != ArcPlane::Xy {
         let message = "an arc with the tool along X or Y (TOOL CALL) is not run";
         return Err(control.refuse("nc-arc", message));
@@ -217,11 +234,15 @@ fn arc(
     let flat = |point: Vector3<f64>| [point[first], point[second]];
     let sweep = control.sweep([flat(from), flat(to), flat(centre)], clockwise)?;
     centre[third] = from[third];
-    Ok(go::Path::Arc { centre, normal: plane.normal(), sweep })
+    Ok(go::WordPath::Arc { centre, normal: plane.normal(), sweep })
 }
 
 /// On from where the last motion led, without a corner.
-fn tangential(control: &Control, from: Vector3<f64>, to: Vector3<f64>) -> Answer<go::Path> {
+fn tangential(
+    control: &ControlState,
+    from: Vector3<f64>,
+    to: Vector3<f64>,
+) -> Answer<go::WordPath> {
     let heading = control.path.heading.map(|heading| [heading.x, heading.y]);
     let Some([hx, hy]) = heading.filter(|[x, y]| libm::hypot(*x, *y) > SHARED) else {
         return Err(control.refuse(
@@ -236,7 +257,7 @@ fn tangential(control: &Control, from: Vector3<f64>, to: Vector3<f64>) -> Answer
     let across = hx * dy - hy * dx;
     let chord = dx * dx + dy * dy;
     if libm::fabs(across) <= 1e-9 * chord.sqrt() || chord == 0.0 {
-        return Ok(go::Path::Straight);
+        return Ok(go::WordPath::Straight);
     }
     let radius = chord / (2.0 * across);
     let centre = Vector3::new(from.x - hy * radius, from.y + hx * radius, from.z);
@@ -244,14 +265,14 @@ fn tangential(control: &Control, from: Vector3<f64>, to: Vector3<f64>) -> Answer
 }
 
 /// An end in polar coordinates.
-struct Polar {
+struct PolarEnd {
     centre: Vector3<f64>,
     end: Vector3<f64>,
     /// The turn that is said, radians: `IPA`.
     by: Option<f64>,
 }
 
-fn polar(control: &Control, said: &Said<'_>, from: Vector3<f64>) -> Answer<Polar> {
+fn polar(control: &ControlState, said: &BlockNames<'_>, from: Vector3<f64>) -> Answer<PolarEnd> {
     let [Some(x), Some(y), _] = control.path.pole else {
         return Err(control.refuse("nc-arc", "polar coordinates without CC in front of them"));
     };
@@ -270,27 +291,32 @@ fn polar(control: &Control, said: &Said<'_>, from: Vector3<f64>) -> Answer<Polar
         (None, None) => now,
     };
     let (sine, cosine) = libm::sincos(angle);
-    Ok(Polar {
+    Ok(PolarEnd {
         centre: Vector3::new(x, y, from.z),
         end: Vector3::new(x + radius * cosine, y + radius * sine, from.z),
         by,
     })
 }
 
-impl Polar {
+impl PolarEnd {
     /// `CP`: more than a turn where `IPA` says so.
-    fn arc(&self, control: &Control, from: Vector3<f64>, clockwise: bool) -> Answer<go::Path> {
+    fn arc(
+        &self,
+        control: &ControlState,
+        from: Vector3<f64>,
+        clockwise: bool,
+    ) -> Answer<go::WordPath> {
         if let Some(by) = self.by {
             if by != 0.0 && (by < 0.0) != clockwise {
                 return Err(control.refuse("nc-arc", "CP turns the other way than DR says"));
             }
-            return Ok(go::Path::Arc { centre: self.centre, normal: Vector3::z(), sweep: by });
+            return Ok(go::WordPath::Arc { centre: self.centre, normal: Vector3::z(), sweep: by });
         }
         arc(control, ArcPlane::Xy, from, self.end, self.centre, clockwise)
     }
 }
 
 /// Letters that nobody made use of.
-pub(super) fn left_over(control: &mut Control, words: &mut Gathered) -> Answer<()> {
+pub(super) fn left_over(control: &mut ControlState, words: &mut BlockWords) -> Answer<()> {
     control.left_over(words)
 }

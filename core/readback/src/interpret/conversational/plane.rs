@@ -3,13 +3,13 @@
 use nalgebra::{Matrix3, Vector3};
 use post_machine::tilted_plane::rotation;
 
-use super::{Answer, Said, feed_unit};
+use super::{Answer, BlockNames, feed_unit};
 use crate::MotionKind;
-use crate::interpret::frame::Frame;
-use crate::interpret::gathered::{Gathered, bit};
-use crate::interpret::planes::{self, Pick, Turn};
-use crate::interpret::state::{Control, Orientation};
-use crate::interpret::variables::Value;
+use crate::interpret::frame::CoordinateFrame;
+use crate::interpret::gathered::{BlockWords, bit};
+use crate::interpret::planes::{self, PlaneTurn, SolutionChoice};
+use crate::interpret::state::{ControlState, OrientationMode};
+use crate::interpret::variables::VariableValue;
 
 /// Names that say how the axes turn to a plane.
 const NAMES: &[&str] = &[
@@ -28,10 +28,10 @@ const NAMES: &[&str] = &[
 
 /// `PLANE SPATIAL SPA+30 SPB+0 SPC+0 TURN FMAX SEQ-`, and the other forms.
 pub(super) fn plane(
-    control: &mut Control,
+    control: &mut ControlState,
     name: &str,
-    said: &Said<'_>,
-    words: &mut Gathered,
+    said: &BlockNames<'_>,
+    words: &mut BlockWords,
 ) -> Answer<()> {
     said.only(
         control,
@@ -57,9 +57,9 @@ pub(super) fn plane(
     }
     planes::end(control)?;
     let how = match (said.has("TURN"), said.has("MOVE")) {
-        (true, _) => Turn::Alone,
-        (_, true) => Turn::Move,
-        _ => Turn::Stay,
+        (true, _) => PlaneTurn::Alone,
+        (_, true) => PlaneTurn::Move,
+        _ => PlaneTurn::Stay,
     };
     if name == "PLANE RESET" {
         return reset(control, how);
@@ -68,7 +68,7 @@ pub(super) fn plane(
         "PLANE SPATIAL" => spatial(control, said, ["SPA", "SPB", "SPC"])?,
         "PLANE EULER" => {
             let angles = angles(control, said, ["EULPR", "EULNU", "EULROT"])?;
-            Frame::new(rotation([2, 0, 2], angles), Vector3::zeros())
+            CoordinateFrame::new(rotation([2, 0, 2], angles), Vector3::zeros())
         }
         "PLANE VECTOR" => vectors(control, said)?,
         _ => {
@@ -78,17 +78,22 @@ pub(super) fn plane(
     };
     planes::lay(control, frame)?;
     let pick = match (said.has("SEQ+") || said.has("SYM+"), said.has("SEQ-") || said.has("SYM-")) {
-        (true, _) => Pick::Plus,
-        (_, true) => Pick::Minus,
-        _ => Pick::Nearest,
+        (true, _) => SolutionChoice::Plus,
+        (_, true) => SolutionChoice::Minus,
+        _ => SolutionChoice::Nearest,
     };
     turned(control, how, pick, kind)
 }
 
 /// The axes turn, or their angles are told: Q120 to Q122.
-fn turned(control: &mut Control, how: Turn, pick: Pick, kind: MotionKind) -> Answer<()> {
+fn turned(
+    control: &mut ControlState,
+    how: PlaneTurn,
+    pick: SolutionChoice,
+    kind: MotionKind,
+) -> Answer<()> {
     let to = planes::turn_to(control, how, pick, kind);
-    if how != Turn::Stay {
+    if how != PlaneTurn::Stay {
         to?;
         return Ok(());
     }
@@ -96,23 +101,23 @@ fn turned(control: &mut Control, how: Turn, pick: Pick, kind: MotionKind) -> Ans
     if let Ok(to) = to {
         for (name, angle) in ["Q120", "Q121", "Q122"].into_iter().zip(planes::angles(control, &to))
         {
-            let put = control.variables.put(name, Value::Number(angle));
+            let put = control.variables.put(name, VariableValue::Number(angle));
             put.map_err(|finding| control.placed(*finding).boxed())?;
         }
     }
     Ok(())
 }
 
-fn reset(control: &mut Control, how: Turn) -> Answer<()> {
+fn reset(control: &mut ControlState, how: PlaneTurn) -> Answer<()> {
     let upright =
         (control.at.pose.axis - control.to_part.out_direction(Vector3::z())).norm() < 1e-4;
-    if how != Turn::Stay && !upright {
+    if how != PlaneTurn::Stay && !upright {
         return Err(control.refuse("nc-plane", "PLANE RESET turns the axes back: where to is not plain; turn them by words in front of it"));
     }
     Ok(())
 }
 
-fn angles(control: &Control, said: &Said<'_>, names: [&str; 3]) -> Answer<[f64; 3]> {
+fn angles(control: &ControlState, said: &BlockNames<'_>, names: [&str; 3]) -> Answer<[f64; 3]> {
     let mut angles = [0.0; 3];
     for (angle, name) in angles.iter_mut().zip(names) {
         let Some(value) = said.named(control, name)? else {
@@ -124,13 +129,17 @@ fn angles(control: &Control, said: &Said<'_>, names: [&str; 3]) -> Answer<[f64; 
 }
 
 /// Turns about the fixed axes A, then B, then C.
-fn spatial(control: &Control, said: &Said<'_>, names: [&str; 3]) -> Answer<Frame> {
+fn spatial(
+    control: &ControlState,
+    said: &BlockNames<'_>,
+    names: [&str; 3],
+) -> Answer<CoordinateFrame> {
     let [a, b, c] = angles(control, said, names)?;
-    Ok(Frame::new(rotation([2, 1, 0], [c, b, a]), Vector3::zeros()))
+    Ok(CoordinateFrame::new(rotation([2, 1, 0], [c, b, a]), Vector3::zeros()))
 }
 
 /// B is the direction of X, which lies in the plane once its part along N, the normal, is taken off.
-fn vectors(control: &Control, said: &Said<'_>) -> Answer<Frame> {
+fn vectors(control: &ControlState, said: &BlockNames<'_>) -> Answer<CoordinateFrame> {
     let vector = |names: [&str; 3]| -> Answer<Vector3<f64>> {
         let mut vector = Vector3::zeros();
         for (row, name) in names.into_iter().enumerate() {
@@ -143,14 +152,14 @@ fn vectors(control: &Control, said: &Said<'_>) -> Answer<Frame> {
     let x = z.and_then(|z| (base - z * z.dot(&base)).try_normalize(1e-9));
     match (x, z) {
         (Some(x), Some(z)) => {
-            Ok(Frame::new(Matrix3::from_columns(&[x, z.cross(&x), z]), Vector3::zeros()))
+            Ok(CoordinateFrame::new(Matrix3::from_columns(&[x, z.cross(&x), z]), Vector3::zeros()))
         }
         _ => Err(control.refuse("nc-plane", "the vectors of the plane do not span it")),
     }
 }
 
 /// PLANE AXIAL names the rotary axes themselves, which must stand there.
-fn stands_as_said(control: &mut Control, words: &mut Gathered) -> Answer<()> {
+fn stands_as_said(control: &mut ControlState, words: &mut BlockWords) -> Answer<()> {
     for letter in [b'A', b'B', b'C'] {
         let (Some(value), Some(place)) = (words.take(letter), control.axis_of(letter)) else {
             continue;
@@ -168,7 +177,11 @@ fn stands_as_said(control: &mut Control, words: &mut Gathered) -> Answer<()> {
 }
 
 /// `CYCL DEF 19.1 A+30 B+0 C+0`: the same angles; without any, or with zeros, it ends. The axes are turned by other blocks.
-pub(super) fn cycle_19(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
+pub(super) fn cycle_19(
+    control: &mut ControlState,
+    said: &BlockNames<'_>,
+    words: &mut BlockWords,
+) -> Answer<()> {
     said.only(control, &["FMAX"], &["DIST", "ABST"])?;
     planes::end(control)?;
     let angles = [b'A', b'B', b'C'].map(|letter| words.take(letter).unwrap_or(0.0).to_radians());
@@ -177,12 +190,12 @@ pub(super) fn cycle_19(control: &mut Control, said: &Said<'_>, words: &mut Gathe
         return Ok(());
     }
     let [a, b, c] = angles;
-    planes::lay(control, Frame::new(rotation([2, 1, 0], [c, b, a]), Vector3::zeros()))?;
-    turned(control, Turn::Stay, Pick::Nearest, MotionKind::Rapid)
+    planes::lay(control, CoordinateFrame::new(rotation([2, 1, 0], [c, b, a]), Vector3::zeros()))?;
+    turned(control, PlaneTurn::Stay, SolutionChoice::Nearest, MotionKind::Rapid)
 }
 
 /// `FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS`.
-pub(super) fn keep_tip(control: &mut Control, said: &Said<'_>) -> Answer<()> {
+pub(super) fn keep_tip(control: &mut ControlState, said: &BlockNames<'_>) -> Answer<()> {
     said.only(
         control,
         &["F TCP", "F CONT", "AXIS POS", "PATHCTRL AXIS", "PATHCTRL VECTOR", "REFPNT TIP-TIP"],
@@ -190,14 +203,18 @@ pub(super) fn keep_tip(control: &mut Control, said: &Said<'_>) -> Answer<()> {
     )?;
     control.set_tcp(true, 0, false);
     control.modal.orientation = match said.has("PATHCTRL VECTOR") {
-        true => Orientation::Circle,
-        false => Orientation::Usual,
+        true => OrientationMode::Circle,
+        false => OrientationMode::Usual,
     };
     Ok(())
 }
 
 /// `M140 MB MAX`, `M140 MB50`: back along the tool, to the end of the travel or by a way.
-pub(super) fn retract(control: &mut Control, kind: MotionKind, said: &Said<'_>) -> Answer<()> {
+pub(super) fn retract(
+    control: &mut ControlState,
+    kind: MotionKind,
+    said: &BlockNames<'_>,
+) -> Answer<()> {
     let far = said.has("MB MAX") || said.has("MAX");
     let way = said.named(control, "MB")?.map(|way| way * control.modal.unit);
     let way = match (way, far) {
@@ -220,7 +237,7 @@ pub(super) fn retract(control: &mut Control, kind: MotionKind, said: &Said<'_>) 
 }
 
 /// How far the tool can be drawn back along its axis before a linear axis comes to its end, mm.
-fn farthest(control: &Control) -> Answer<f64> {
+fn farthest(control: &ControlState) -> Answer<f64> {
     let solver = &control.state.solver;
     let turns = control.turns;
     let (mut here, mut there) = (control.at.joints, control.at.joints);
@@ -248,7 +265,7 @@ fn farthest(control: &Control) -> Answer<f64> {
 }
 
 /// M94: a rotary axis shows its value within a turn; nothing moves.
-pub(super) fn within_a_turn(control: &Control, words: &Gathered) -> Answer<()> {
+pub(super) fn within_a_turn(control: &ControlState, words: &BlockWords) -> Answer<()> {
     for letter in [b'A', b'B', b'C'] {
         let named = words.present & (bit(b'A') | bit(b'B') | bit(b'C'));
         let Some(place) = control.axis_of(letter) else {

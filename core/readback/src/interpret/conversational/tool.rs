@@ -1,12 +1,16 @@
 //! The tool: its call changes it and switches its length on.
 
-use super::{Answer, Said, feed_unit};
+use super::{Answer, BlockNames, feed_unit};
 use crate::Told;
-use crate::interpret::gathered::Gathered;
-use crate::interpret::state::{ArcPlane, Control};
+use crate::interpret::gathered::BlockWords;
+use crate::interpret::state::{ArcPlane, ControlState};
 
 /// `TOOL CALL 5 Z S8000 F1200 DL+0.1`; without a tool it changes the speed alone.
-pub(super) fn call(control: &mut Control, said: &Said<'_>, words: &mut Gathered) -> Answer<()> {
+pub(super) fn call(
+    control: &mut ControlState,
+    said: &BlockNames<'_>,
+    words: &mut BlockWords,
+) -> Answer<()> {
     said.only(control, &["X", "Y", "Z"], &["DL", "DR", "DR2"])?;
     if let Some(speed) = words.take(b'S') {
         control.modal.speed = speed;
@@ -50,7 +54,7 @@ pub(super) fn call(control: &mut Control, said: &Said<'_>, words: &mut Gathered)
 }
 
 /// `TOOL DEF 5`: it is made ready.
-pub(super) fn prepare(control: &mut Control, said: &Said<'_>) -> Answer<()> {
+pub(super) fn prepare(control: &mut ControlState, said: &BlockNames<'_>) -> Answer<()> {
     if let Some(number) = said.number()
         && number.value >= 0.0
         && number.value < 1e9

@@ -2,7 +2,7 @@
 
 use post_machine::diagnostic::Diagnostic;
 
-use super::hole::{Hole, Out, Pecks, Wait};
+use super::hole::{CycleHole, HoleDwell, Pecking, Withdrawal};
 use crate::CycleKind;
 
 /// This feed, or more, is rapid traverse.
@@ -53,17 +53,17 @@ impl Parameters<'_> {
     }
 
     /// The feed of the way out; 0: as in.
-    fn out(&self, down: f64) -> Out {
+    fn out(&self, down: f64) -> Withdrawal {
         match self.given(208) {
-            None => Out::Rapid,
-            Some(feed) if feed >= RAPID => Out::Rapid,
-            Some(feed) if feed > 0.0 => Out::Feed(feed * self.feed_unit),
-            Some(_) => Out::Feed(down),
+            None => Withdrawal::Rapid,
+            Some(feed) if feed >= RAPID => Withdrawal::Rapid,
+            Some(feed) if feed > 0.0 => Withdrawal::Feed(feed * self.feed_unit),
+            Some(_) => Withdrawal::Feed(down),
         }
     }
 
-    fn wait(&self, number: u32) -> Wait {
-        Wait::seconds(self.given(number).unwrap_or(0.0))
+    fn wait(&self, number: u32) -> HoleDwell {
+        HoleDwell::seconds(self.given(number).unwrap_or(0.0))
     }
 
     fn refuse(&self, what: &str) -> Box<Diagnostic> {
@@ -80,7 +80,7 @@ pub(crate) fn known(cycle: u32) -> bool {
 ///
 /// # Errors
 /// What is missing, contradictory or not plain, by name.
-pub(crate) fn hole(parameters: &Parameters<'_>) -> Result<Option<Hole>, Box<Diagnostic>> {
+pub(crate) fn hole(parameters: &Parameters<'_>) -> Result<Option<CycleHole>, Box<Diagnostic>> {
     if !known(parameters.cycle) {
         return Err(parameters.refuse("this cycle is not made here"));
     }
@@ -101,27 +101,27 @@ pub(crate) fn hole(parameters: &Parameters<'_>) -> Result<Option<Hole>, Box<Diag
     let surface = parameters.length(203)?;
     let clear = libm::fabs(parameters.length(200)?);
     let away = libm::fmax(parameters.length_or(204, 0.0), clear);
-    let hole = Hole {
+    let hole = CycleHole {
         clearance: surface + clear,
         surface: Some(surface),
         bottom: surface + depth,
         away: surface + away,
         wait: parameters.wait(211),
-        ..Hole::default()
+        ..CycleHole::default()
     };
     made(parameters, hole, -depth, clear).map(Some)
 }
 
 fn made(
     parameters: &Parameters<'_>,
-    hole: Hole,
+    hole: CycleHole,
     depth: f64,
     clear: f64,
-) -> Result<Hole, Box<Diagnostic>> {
+) -> Result<CycleHole, Box<Diagnostic>> {
     Ok(match parameters.cycle {
         200 => {
             let step = parameters.length_or(202, depth);
-            Hole {
+            CycleHole {
                 kind: match step < depth {
                     true => CycleKind::Deep,
                     false => CycleKind::Drill,
@@ -131,11 +131,11 @@ fn made(
                     parameters,
                     step,
                     0.0,
-                    Pecks {
+                    Pecking {
                         out_after: 1,
                         ahead: clear,
                         wait_out: parameters.wait(210),
-                        ..Pecks::default()
+                        ..Pecking::default()
                     },
                 )?,
                 ..hole
@@ -143,11 +143,11 @@ fn made(
         }
         201 => {
             let feed = parameters.feed(206)?;
-            Hole {
+            CycleHole {
                 kind: CycleKind::Ream,
                 feed,
                 out: match parameters.out(feed) {
-                    Out::Rapid => Out::Feed(RAPID),
+                    Withdrawal::Rapid => Withdrawal::Feed(RAPID),
                     other => other,
                 },
                 ..hole
@@ -158,7 +158,7 @@ fn made(
         205 => deep(parameters, hole, depth)?,
         206 => {
             let feed = parameters.feed(206)?;
-            Hole { kind: CycleKind::Tap, feed, out: Out::Thread(feed), ..hole }
+            CycleHole { kind: CycleKind::Tap, feed, out: Withdrawal::Thread(feed), ..hole }
         }
         207 | 209 => thread(parameters, hole, depth)?,
         _ => {
@@ -167,12 +167,12 @@ fn made(
                     "Q343 counts by the diameter, and the point of the tool is not known",
                 ));
             }
-            Hole { feed: parameters.feed(206)?, ..hole }
+            CycleHole { feed: parameters.feed(206)?, ..hole }
         }
     })
 }
 
-fn bored(parameters: &Parameters<'_>, hole: Hole) -> Result<Hole, Box<Diagnostic>> {
+fn bored(parameters: &Parameters<'_>, hole: CycleHole) -> Result<CycleHole, Box<Diagnostic>> {
     let feed = parameters.feed(206)?;
     let off = OFF_THE_WALL;
     let lift = match parameters.given(214).unwrap_or(0.0) {
@@ -185,7 +185,7 @@ fn bored(parameters: &Parameters<'_>, hole: Hole) -> Result<Hole, Box<Diagnostic
             return Err(parameters.refuse(&format!("the direction Q214 is {other}, which is none")));
         }
     };
-    Ok(Hole {
+    Ok(CycleHole {
         kind: match lift == [0.0; 3] {
             true => CycleKind::Bore,
             false => CycleKind::BoreFine,
@@ -199,10 +199,10 @@ fn bored(parameters: &Parameters<'_>, hole: Hole) -> Result<Hole, Box<Diagnostic
 
 fn universal(
     parameters: &Parameters<'_>,
-    hole: Hole,
+    hole: CycleHole,
     depth: f64,
     clear: f64,
-) -> Result<Hole, Box<Diagnostic>> {
+) -> Result<CycleHole, Box<Diagnostic>> {
     let feed = parameters.feed(206)?;
     let breaks = parameters.given(213).unwrap_or(0.0);
     let step = parameters.length_or(202, depth);
@@ -210,7 +210,7 @@ fn universal(
     // After so many breaks the tool comes out; with none after each.
     let out_after = if breaks > 0.0 { libm::fmin(libm::round(breaks), 1e6) as u32 } else { 1 };
     let least = parameters.length_or(205, 0.0);
-    Ok(Hole {
+    Ok(CycleHole {
         kind: match (step < depth, out_after > 1) {
             (false, _) => CycleKind::Drill,
             (true, true) => CycleKind::BreakChip,
@@ -222,23 +222,27 @@ fn universal(
             parameters,
             step,
             least,
-            Pecks {
+            Pecking {
                 out_after,
                 out_feed: match out {
-                    Out::Feed(feed) => Some(feed),
+                    Withdrawal::Feed(feed) => Some(feed),
                     _ => None,
                 },
                 back: parameters.length_or(256, OFF_THE_WALL),
                 ahead: clear,
                 wait_out: parameters.wait(210),
-                ..Pecks::default()
+                ..Pecking::default()
             },
         )?,
         ..hole
     })
 }
 
-fn deep(parameters: &Parameters<'_>, hole: Hole, depth: f64) -> Result<Hole, Box<Diagnostic>> {
+fn deep(
+    parameters: &Parameters<'_>,
+    hole: CycleHole,
+    depth: f64,
+) -> Result<CycleHole, Box<Diagnostic>> {
     if parameters.given(379).is_some_and(|start| start != 0.0) {
         return Err(parameters.refuse("Q379: a hole that begins deeper is not made here"));
     }
@@ -250,7 +254,7 @@ fn deep(parameters: &Parameters<'_>, hole: Hole, depth: f64) -> Result<Hole, Box
     }
     let feed = parameters.feed(206)?;
     let breaking = breaks > 0.0 && breaks < depth && step >= depth;
-    Ok(Hole {
+    Ok(CycleHole {
         kind: if breaking { CycleKind::BreakChip } else { CycleKind::Deep },
         feed,
         out: parameters.out(feed),
@@ -258,18 +262,22 @@ fn deep(parameters: &Parameters<'_>, hole: Hole, depth: f64) -> Result<Hole, Box
             parameters,
             if breaking { breaks } else { step },
             parameters.length_or(205, 0.0),
-            Pecks {
+            Pecking {
                 out_after: u32::from(!breaking),
                 back: parameters.length_or(256, OFF_THE_WALL),
                 ahead: parameters.length_or(258, OFF_THE_WALL),
-                ..Pecks::default()
+                ..Pecking::default()
             },
         )?,
         ..hole
     })
 }
 
-fn thread(parameters: &Parameters<'_>, hole: Hole, depth: f64) -> Result<Hole, Box<Diagnostic>> {
+fn thread(
+    parameters: &Parameters<'_>,
+    hole: CycleHole,
+    depth: f64,
+) -> Result<CycleHole, Box<Diagnostic>> {
     let pitch = parameters.length(239)?;
     if pitch == 0.0 {
         return Err(parameters.refuse("the pitch Q239 is zero"));
@@ -283,21 +291,21 @@ fn thread(parameters: &Parameters<'_>, hole: Hole, depth: f64) -> Result<Hole, B
     let breaks = parameters.length_or(257, 0.0);
     let back = parameters.given(256).unwrap_or(0.0);
     let pecked = parameters.cycle == 209 && breaks > 0.0 && breaks < depth;
-    Ok(Hole {
+    Ok(CycleHole {
         kind: match pitch > 0.0 {
             true => CycleKind::Tap,
             false => CycleKind::TapLeft,
         },
         feed,
-        out: Out::Thread(feed),
-        pecks: pecked.then_some(Pecks {
+        out: Withdrawal::Thread(feed),
+        pecks: pecked.then_some(Pecking {
             first: breaks,
             least: breaks,
             // Turns of the pitch; none: all the way out.
             out_after: u32::from(back == 0.0),
             back: back * libm::fabs(pitch),
             thread: true,
-            ..Pecks::default()
+            ..Pecking::default()
         }),
         ..hole
     })
@@ -308,22 +316,22 @@ fn pecks(
     parameters: &Parameters<'_>,
     step: f64,
     least: f64,
-    pecks: Pecks,
-) -> Result<Option<Pecks>, Box<Diagnostic>> {
+    pecks: Pecking,
+) -> Result<Option<Pecking>, Box<Diagnostic>> {
     if step <= 0.0 {
         // Q202 = 0 is the whole depth only with some software.
         return Err(parameters.refuse(&format!("the plunging depth is {step}")));
     }
     let less = parameters.length_or(212, 0.0);
-    Ok(Some(Pecks { first: step, less, least: if less == 0.0 { step } else { least }, ..pecks }))
+    Ok(Some(Pecking { first: step, less, least: if less == 0.0 { step } else { least }, ..pecks }))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::hole::Stroke;
+    use super::super::hole::HoleStroke;
     use super::*;
 
-    fn strokes(cycle: u32, values: &[(u32, f64)]) -> Vec<Stroke> {
+    fn strokes(cycle: u32, values: &[(u32, f64)]) -> Vec<HoleStroke> {
         let parameters = Parameters { cycle, values, unit: 1.0, feed_unit: 1.0, speed: 500.0 };
         hole(&parameters).unwrap().unwrap().strokes(50.0).unwrap()
     }
@@ -332,7 +340,7 @@ mod tests {
 
     #[test]
     fn depths_count_from_the_surface() {
-        use Stroke::{Feed, Rapid, Wait as Dwell};
+        use HoleStroke::{Feed, Rapid, Wait as Dwell};
         let more = [(206, 300.0), (202, 8.0), (210, 0.0), (211, 0.2), (395, 0.0)];
         let wanted = [
             Rapid(3.0),
@@ -343,7 +351,7 @@ mod tests {
             Rapid(3.0),
             Rapid(-13.0),
             Feed(-19.0, 300.0),
-            Dwell(Wait::seconds(0.2)),
+            Dwell(HoleDwell::seconds(0.2)),
             Rapid(11.0),
         ];
         assert_eq!(strokes(200, &[&LEVELS[..], &more].concat()), wanted);
@@ -351,7 +359,7 @@ mod tests {
 
     #[test]
     fn chips_are_broken_as_often_as_it_says() {
-        use Stroke::{Feed, Rapid};
+        use HoleStroke::{Feed, Rapid};
         let more = [
             (206, 250.0),
             (202, 8.0),
@@ -376,7 +384,7 @@ mod tests {
 
     #[test]
     fn a_thread_goes_by_its_pitch() {
-        use Stroke::{Rapid, Thread};
+        use HoleStroke::{Rapid, Thread};
         let wanted = [Rapid(3.0), Thread(-19.0, 625.0), Thread(3.0, 625.0), Rapid(11.0)];
         assert_eq!(strokes(207, &[&LEVELS[..], &[(239, -1.25)]].concat()), wanted);
     }

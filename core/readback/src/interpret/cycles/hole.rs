@@ -2,7 +2,7 @@
 
 use post_machine::diagnostic::Diagnostic;
 
-use crate::interpret::block::Turning;
+use crate::interpret::block::SpindleRequest;
 use crate::{CycleCall, CycleKind};
 
 /// Strokes that one hole may have: a peck that is tiny against the depth is refused.
@@ -13,7 +13,7 @@ pub(super) const SAME: f64 = 1e-9;
 
 /// A hole: levels along the tool axis, in the coordinates of the words, mm; feeds in mm/min.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Hole {
+pub(crate) struct CycleHole {
     /// What it is.
     pub kind: CycleKind,
     /// Where the feed begins.
@@ -33,24 +33,24 @@ pub(crate) struct Hole {
     /// Its feed, or that of a thread, is stated by the revolution.
     pub per_revolution: bool,
     /// Back to the clearance.
-    pub out: Out,
+    pub out: Withdrawal,
     /// Back to where the tool stands when it is done, not to the clearance alone.
     pub out_all: bool,
     /// In steps.
-    pub pecks: Option<Pecks>,
+    pub pecks: Option<Pecking>,
     /// Wait at the bottom.
-    pub wait: Wait,
+    pub wait: HoleDwell,
     /// Off the wall before the way out: along the first and second direction of the plane and along the axis, mm.
     pub lift: [f64; 3],
     /// The operator draws the tool out, or is asked to: the program stops at the bottom.
     pub stop: bool,
     /// How the cycle itself turns the spindle in the hole and behind it; none: it leaves it as it is.
-    pub turning: Option<[Turning; 2]>,
+    pub turning: Option<[SpindleRequest; 2]>,
 }
 
 /// How the tool comes back to the clearance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) enum Out {
+pub(crate) enum Withdrawal {
     /// At rapid.
     #[default]
     Rapid,
@@ -62,14 +62,14 @@ pub(crate) enum Out {
 
 /// A wait.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Wait {
+pub(crate) struct HoleDwell {
     /// Seconds, or turns of the spindle.
     pub time: f64,
     /// They are turns.
     pub revolutions: bool,
 }
 
-impl Wait {
+impl HoleDwell {
     /// So many seconds.
     pub fn seconds(time: f64) -> Self {
         Self { time, revolutions: false }
@@ -78,7 +78,7 @@ impl Wait {
 
 /// How a hole is made in steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Pecks {
+pub(crate) struct Pecking {
     /// The first, mm.
     pub first: f64,
     /// So much less each, mm.
@@ -96,16 +96,16 @@ pub(crate) struct Pecks {
     /// Coming in again it goes at rapid up to so far above the depth that was reached, mm.
     pub ahead: f64,
     /// Wait at the depth of each.
-    pub wait: Wait,
+    pub wait: HoleDwell,
     /// Wait outside of the hole.
-    pub wait_out: Wait,
+    pub wait_out: HoleDwell,
     /// The pecks are threads: in, and out again with the spindle turning back.
     pub thread: bool,
 }
 
 /// A stroke of a hole.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Stroke {
+pub(crate) enum HoleStroke {
     /// At rapid to a level.
     Rapid(f64),
     /// At a feed to a level: level, mm/min.
@@ -115,12 +115,12 @@ pub(crate) enum Stroke {
     /// At rapid to the side, along the plane's directions and the axis, mm.
     Aside([f64; 3]),
     /// A wait.
-    Wait(Wait),
+    Wait(HoleDwell),
     /// The program stops.
     Stop,
 }
 
-impl Hole {
+impl CycleHole {
     /// What is told of it.
     pub fn call(&self) -> CycleCall {
         CycleCall {
@@ -139,10 +139,10 @@ impl Hole {
     ///
     /// # Errors
     /// Its pecks are too many, or lead nowhere.
-    pub fn strokes(&self, from: f64) -> Result<Vec<Stroke>, Box<Diagnostic>> {
+    pub fn strokes(&self, from: f64) -> Result<Vec<HoleStroke>, Box<Diagnostic>> {
         let mut strokes = Vec::new();
         if libm::fabs(from - self.clearance) > SAME {
-            strokes.push(Stroke::Rapid(self.clearance));
+            strokes.push(HoleStroke::Rapid(self.clearance));
         }
         if self.pecks.is_some_and(|pecks| pecks.first < self.depth() - SAME) {
             self.in_pecks(&mut strokes)?;
@@ -151,38 +151,40 @@ impl Hole {
             strokes.push(self.down(self.bottom, feed));
         }
         if self.wait.time > 0.0 {
-            strokes.push(Stroke::Wait(self.wait));
+            strokes.push(HoleStroke::Wait(self.wait));
         }
         if self.stop {
-            strokes.push(Stroke::Stop);
+            strokes.push(HoleStroke::Stop);
         }
         let lifted = self.lift != [0.0; 3];
         if lifted {
-            strokes.push(Stroke::Aside(self.lift));
+            strokes.push(HoleStroke::Aside(self.lift));
         }
         match self.out {
-            Out::Rapid if lifted => {}
-            Out::Rapid => return Ok(self.ended(strokes)),
-            Out::Feed(feed) => strokes.push(Stroke::Feed(self.out_level(), feed)),
-            Out::Thread(feed) => strokes.push(Stroke::Thread(self.out_level(), feed)),
+            Withdrawal::Rapid if lifted => {}
+            Withdrawal::Rapid => return Ok(self.ended(strokes)),
+            Withdrawal::Feed(feed) => strokes.push(HoleStroke::Feed(self.out_level(), feed)),
+            Withdrawal::Thread(feed) => strokes.push(HoleStroke::Thread(self.out_level(), feed)),
         }
         let mut strokes = self.ended(strokes);
         if lifted {
             let [x, y, _] = self.lift;
-            strokes.push(Stroke::Aside([-x, -y, 0.0]));
+            strokes.push(HoleStroke::Aside([-x, -y, 0.0]));
         }
         Ok(strokes)
     }
 
-    fn ended(&self, mut strokes: Vec<Stroke>) -> Vec<Stroke> {
+    fn ended(&self, mut strokes: Vec<HoleStroke>) -> Vec<HoleStroke> {
         let stands = match strokes.last() {
-            Some(Stroke::Feed(level, _) | Stroke::Thread(level, _) | Stroke::Rapid(level)) => {
-                Some(*level)
-            }
+            Some(
+                HoleStroke::Feed(level, _)
+                | HoleStroke::Thread(level, _)
+                | HoleStroke::Rapid(level),
+            ) => Some(*level),
             _ => None,
         };
         if stands.is_none_or(|level| libm::fabs(level - self.away) > SAME) {
-            strokes.push(Stroke::Rapid(self.away));
+            strokes.push(HoleStroke::Rapid(self.away));
         }
         strokes
     }
@@ -206,16 +208,16 @@ impl Hole {
         if self.bottom > self.clearance { 1.0 } else { -1.0 }
     }
 
-    fn down(&self, level: f64, feed: f64) -> Stroke {
-        let thread =
-            matches!(self.out, Out::Thread(_)) || self.pecks.is_some_and(|pecks| pecks.thread);
+    fn down(&self, level: f64, feed: f64) -> HoleStroke {
+        let thread = matches!(self.out, Withdrawal::Thread(_))
+            || self.pecks.is_some_and(|pecks| pecks.thread);
         match thread {
-            true => Stroke::Thread(level, feed),
-            false => Stroke::Feed(level, feed),
+            true => HoleStroke::Thread(level, feed),
+            false => HoleStroke::Feed(level, feed),
         }
     }
 
-    fn in_pecks(&self, strokes: &mut Vec<Stroke>) -> Result<(), Box<Diagnostic>> {
+    fn in_pecks(&self, strokes: &mut Vec<HoleStroke>) -> Result<(), Box<Diagnostic>> {
         let Some(pecks) = self.pecks else {
             return Ok(());
         };
@@ -250,31 +252,31 @@ impl Hole {
             let level = start + sign * reached;
             strokes.push(self.down(level, feed));
             if pecks.wait.time > 0.0 {
-                strokes.push(Stroke::Wait(pecks.wait));
+                strokes.push(HoleStroke::Wait(pecks.wait));
             }
             inside += 1;
             if pecks.out_after > 0 && inside >= pecks.out_after {
                 inside = 0;
                 strokes.push(match (pecks.out_feed, pecks.thread) {
-                    (Some(feed), _) => Stroke::Feed(self.clearance, feed),
-                    (None, true) => Stroke::Thread(self.clearance, feed),
-                    (None, false) => Stroke::Rapid(self.clearance),
+                    (Some(feed), _) => HoleStroke::Feed(self.clearance, feed),
+                    (None, true) => HoleStroke::Thread(self.clearance, feed),
+                    (None, false) => HoleStroke::Rapid(self.clearance),
                 });
                 if pecks.wait_out.time > 0.0 {
-                    strokes.push(Stroke::Wait(pecks.wait_out));
+                    strokes.push(HoleStroke::Wait(pecks.wait_out));
                 }
                 let again = level - sign * pecks.ahead;
                 // Not above where it stands.
                 if !pecks.thread && (again - self.clearance) * sign > 0.0 {
-                    strokes.push(Stroke::Rapid(again));
+                    strokes.push(HoleStroke::Rapid(again));
                 }
             } else if pecks.back > 0.0 {
                 let back = level - sign * pecks.back;
                 // Not out of the hole.
                 let back = if (back - self.clearance) * sign > 0.0 { back } else { self.clearance };
                 strokes.push(match pecks.thread {
-                    true => Stroke::Thread(back, feed),
-                    false => Stroke::Rapid(back),
+                    true => HoleStroke::Thread(back, feed),
+                    false => HoleStroke::Rapid(back),
                 });
             }
             step = libm::fmax(step - pecks.less, libm::fmax(pecks.least, 0.0));
@@ -286,28 +288,29 @@ impl Hole {
 mod tests {
     use super::*;
 
-    fn drilled(pecks: Option<Pecks>) -> Vec<Stroke> {
-        let hole = Hole {
+    fn drilled(pecks: Option<Pecking>) -> Vec<HoleStroke> {
+        let hole = CycleHole {
             clearance: 2.0,
             bottom: -10.0,
             away: 20.0,
             feed: 100.0,
             pecks,
-            ..Hole::default()
+            ..CycleHole::default()
         };
         hole.strokes(20.0).unwrap()
     }
 
     #[test]
     fn a_plain_hole_goes_in_and_out() {
-        use Stroke::{Feed, Rapid};
+        use HoleStroke::{Feed, Rapid};
         assert_eq!(drilled(None), [Rapid(2.0), Feed(-10.0, 100.0), Rapid(20.0)]);
     }
 
     #[test]
     fn pecks_come_out_or_break_the_chip() {
-        use Stroke::{Feed, Rapid};
-        let out = Pecks { first: 5.0, least: 5.0, out_after: 1, ahead: 0.5, ..Pecks::default() };
+        use HoleStroke::{Feed, Rapid};
+        let out =
+            Pecking { first: 5.0, least: 5.0, out_after: 1, ahead: 0.5, ..Pecking::default() };
         let strokes = [
             Rapid(2.0),
             Feed(-3.0, 100.0),
@@ -320,7 +323,7 @@ mod tests {
             Rapid(20.0),
         ];
         assert_eq!(drilled(Some(out)), strokes);
-        let breaks = Pecks { first: 5.0, least: 5.0, back: 1.0, ..Pecks::default() };
+        let breaks = Pecking { first: 5.0, least: 5.0, back: 1.0, ..Pecking::default() };
         let strokes = [
             Rapid(2.0),
             Feed(-3.0, 100.0),
@@ -335,11 +338,11 @@ mod tests {
 
     #[test]
     fn pecks_that_grow_less_and_never_end_are_refused() {
-        let hole = Hole {
+        let hole = CycleHole {
             bottom: -100.0,
             feed: 1.0,
-            pecks: Some(Pecks { first: 5.0, less: 1.0, ..Pecks::default() }),
-            ..Hole::default()
+            pecks: Some(Pecking { first: 5.0, less: 1.0, ..Pecking::default() }),
+            ..CycleHole::default()
         };
         assert!(hole.strokes(0.0).is_err());
     }
@@ -350,7 +353,7 @@ mod tests {
         for first in 1..40_u32 {
             for less in 0..4_u32 {
                 for halved in [false, true] {
-                    let pecks = Pecks {
+                    let pecks = Pecking {
                         first: f64::from(first) * 0.3,
                         less: f64::from(less) * 0.2,
                         least: 0.25,
@@ -358,14 +361,14 @@ mod tests {
                         out_after: first % 3,
                         back: 0.2,
                         ahead: 0.3,
-                        ..Pecks::default()
+                        ..Pecking::default()
                     };
                     let strokes = drilled(Some(pecks));
                     let mut deepest = 2.0;
                     let mut at = 20.0;
                     for stroke in &strokes {
                         match *stroke {
-                            Stroke::Feed(level, _) => {
+                            HoleStroke::Feed(level, _) => {
                                 assert!(
                                     at >= deepest - 1e-9,
                                     "air is fed through, never rapid through the part"
@@ -373,7 +376,7 @@ mod tests {
                                 deepest = f64::min(deepest, level);
                                 at = level;
                             }
-                            Stroke::Rapid(level) => {
+                            HoleStroke::Rapid(level) => {
                                 assert!(level >= deepest - 1e-9, "a rapid below what is drilled");
                                 at = level;
                             }

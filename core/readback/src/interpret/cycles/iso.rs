@@ -4,12 +4,12 @@ use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Language, Meaning};
 
-use super::hole::{Hole, Out, Pecks, Wait};
+use super::hole::{CycleHole, HoleDwell, Pecking, Withdrawal};
 use super::{drill, feed_a_minute};
-use crate::interpret::block::Turning;
-use crate::interpret::gathered::{Gathered, bit};
-use crate::interpret::go::{Path, Target};
-use crate::interpret::state::Control;
+use crate::interpret::block::SpindleRequest;
+use crate::interpret::gathered::{BlockWords, bit};
+use crate::interpret::go::{MotionTarget, WordPath};
+use crate::interpret::state::ControlState;
 use crate::{CycleKind, MotionKind};
 
 /// So far above the depth that was reached the tool comes at rapid, and so far it is drawn back to break a chip, mm: LinuxCNC's ten
@@ -21,7 +21,7 @@ const MOST: i64 = 100_000;
 
 /// A cycle in force; lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Running {
+pub(super) struct IsoCycle {
     /// Ten times its G.
     code: u16,
     meaning: Meaning,
@@ -39,10 +39,10 @@ pub(super) struct Running {
 
 /// A block that begins a cycle or says a further hole of it.
 pub(super) fn hole(
-    control: &mut Control,
+    control: &mut ControlState,
     code: u16,
     meaning: Option<Meaning>,
-    words: &mut Gathered,
+    words: &mut BlockWords,
 ) -> Result<(), Box<Diagnostic>> {
     let [first, second, axis] = control.modal.plane.coordinates();
     let letter = |row: usize| [b'X', b'Y', b'Z'][row];
@@ -50,8 +50,8 @@ pub(super) fn hole(
     let here = control.point();
     let before = control.cycles.iso;
     let mut running = match (meaning, before) {
-        (Some(meaning), Some(before)) => Running { code, meaning, ..before },
-        (Some(meaning), None) => Running {
+        (Some(meaning), Some(before)) => IsoCycle { code, meaning, ..before },
+        (Some(meaning), None) => IsoCycle {
             code,
             meaning,
             start: here[axis],
@@ -113,7 +113,7 @@ pub(super) fn hole(
     words.present &= !bit(letter(axis));
     let made = (0..count).try_for_each(|turn| {
         let mut target =
-            if turn == 0 || incremental { control.target(words)? } else { Target::default() };
+            if turn == 0 || incremental { control.target(words)? } else { MotionTarget::default() };
         let hole = levels(control, &running)?;
         if control.lexicon.language() == Language::Rs274 {
             // Straight to R where the cycles began under it; else from under it on the way to the hole to the level of
@@ -125,11 +125,11 @@ pub(super) fn hole(
             }
         }
         if target.point[first].is_some() || target.point[second].is_some() || target.said != 0 {
-            control.go(MotionKind::Rapid, &Path::Straight, &target)?;
+            control.go(MotionKind::Rapid, &WordPath::Straight, &target)?;
         }
         let sense = match running.meaning {
-            Meaning::CycleTap => Turning::Clockwise,
-            Meaning::CycleTapLeft => Turning::CounterClockwise,
+            Meaning::CycleTap => SpindleRequest::Clockwise,
+            Meaning::CycleTapLeft => SpindleRequest::CounterClockwise,
             _ => return drill(control, &hole),
         };
         if !control.modal.rigid_taps && !matches!(running.code, 842 | 843) {
@@ -146,14 +146,14 @@ pub(super) fn hole(
 }
 
 /// Straight up or down to a level.
-fn to_level(control: &mut Control, axis: usize, level: f64) -> Result<(), Box<Diagnostic>> {
+fn to_level(control: &mut ControlState, axis: usize, level: f64) -> Result<(), Box<Diagnostic>> {
     let mut point: Vector3<f64> = control.point();
     point[axis] = level;
     control.straight(MotionKind::Rapid, point)
 }
 
 /// mm in a unit of a length without a point: the least increment, where the control counts so.
-fn least_increment(control: &Control, words: &Gathered, letter: u8) -> f64 {
+fn least_increment(control: &ControlState, words: &BlockWords, letter: u8) -> f64 {
     let unit = control.modal.unit;
     let counts = control.lexicon.language() == Language::Macro && words.pointed & bit(letter) == 0;
     match counts {
@@ -164,7 +164,7 @@ fn least_increment(control: &Control, words: &Gathered, letter: u8) -> f64 {
 }
 
 /// The hole that the cycle makes.
-fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnostic>> {
+fn levels(control: &mut ControlState, running: &IsoCycle) -> Result<CycleHole, Box<Diagnostic>> {
     use Meaning as M;
     let up = running.bottom > running.clearance;
     let back = running.meaning == M::CycleBoreBack;
@@ -187,24 +187,24 @@ fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnost
         true => libm::fmax(running.start, running.clearance),
         false => running.clearance,
     };
-    let hole = Hole {
+    let hole = CycleHole {
         clearance: running.clearance,
         bottom: running.bottom,
         away,
         feed,
         // G81 has no wait: a P beside it says nothing.
-        wait: Wait::seconds(if running.code == 810 { 0.0 } else { running.dwell }),
+        wait: HoleDwell::seconds(if running.code == 810 { 0.0 } else { running.dwell }),
         // LinuxCNC feeds all the way out, but for G85.
         out_all: control.lexicon.language() == Language::Rs274 && running.code != 850,
-        ..Hole::default()
+        ..CycleHole::default()
     };
-    let pecks = |out_after: u32| Pecks {
+    let pecks = |out_after: u32| Pecking {
         first: running.step,
         least: running.step,
         out_after,
         back: BACK,
         ahead: BACK,
-        ..Pecks::default()
+        ..Pecking::default()
     };
     let lifted =
         matches!(running.meaning, M::CycleBoreFine | M::CycleBoreBack) && running.step > 0.0;
@@ -215,27 +215,29 @@ fn levels(control: &mut Control, running: &Running) -> Result<Hole, Box<Diagnost
             format!("G{name} goes off the wall by Q in a direction that is a parameter of the control: this way aside is left out"),
         ));
     }
-    let thread = |kind: CycleKind, hole: Hole| {
+    let thread = |kind: CycleKind, hole: CycleHole| {
         if feed <= 0.0 {
             return Err(control.refuse("nc-cycle", "a thread without a feed"));
         }
-        Ok(Hole { kind, out: Out::Thread(feed), ..hole })
+        Ok(CycleHole { kind, out: Withdrawal::Thread(feed), ..hole })
     };
     Ok(match running.meaning {
         M::CycleDrill => hole,
         M::CycleDeep | M::CycleBreakChip if running.step <= 0.0 => {
             return Err(control.refuse("nc-cycle", "a cycle in pecks without Q"));
         }
-        M::CycleDeep => Hole { kind: CycleKind::Deep, pecks: Some(pecks(1)), ..hole },
-        M::CycleBreakChip => Hole { kind: CycleKind::BreakChip, pecks: Some(pecks(0)), ..hole },
+        M::CycleDeep => CycleHole { kind: CycleKind::Deep, pecks: Some(pecks(1)), ..hole },
+        M::CycleBreakChip => {
+            CycleHole { kind: CycleKind::BreakChip, pecks: Some(pecks(0)), ..hole }
+        }
         M::CycleTap => thread(CycleKind::Tap, hole)?,
         M::CycleTapLeft => thread(CycleKind::TapLeft, hole)?,
-        M::CycleReam => Hole { kind: CycleKind::Ream, out: Out::Feed(feed), ..hole },
-        M::CycleBore => Hole { kind: CycleKind::Bore, ..hole },
+        M::CycleReam => CycleHole { kind: CycleKind::Ream, out: Withdrawal::Feed(feed), ..hole },
+        M::CycleBore => CycleHole { kind: CycleKind::Bore, ..hole },
         // G88, and G87 of some: the operator draws it out.
-        M::CycleOther => Hole { kind: CycleKind::Bore, stop: true, ..hole },
-        M::CycleBoreFine => Hole { kind: CycleKind::BoreFine, ..hole },
-        M::CycleBoreBack => Hole {
+        M::CycleOther => CycleHole { kind: CycleKind::Bore, stop: true, ..hole },
+        M::CycleBoreFine => CycleHole { kind: CycleKind::BoreFine, ..hole },
+        M::CycleBoreBack => CycleHole {
             kind: CycleKind::BoreBack,
             away: libm::fmax(running.start, running.bottom),
             ..hole

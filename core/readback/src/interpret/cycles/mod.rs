@@ -17,34 +17,34 @@ use post_grammar::nc::NcValue;
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
-use super::gathered::Gathered;
-use super::state::{Control, FeedMode};
+use super::gathered::BlockWords;
+use super::state::{ControlState, FeedMeaning};
 use crate::{MotionKind, Told};
-use hole::{Hole, Stroke};
+use hole::{CycleHole, HoleStroke};
 
 /// The cycle in force.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Cycles {
+pub(super) struct CycleState {
     /// G73 to G89.
-    iso: Option<iso::Running>,
+    iso: Option<iso::IsoCycle>,
     /// `MCALL CYCLE8x`: by name and arguments.
     modal: Option<(String, Vec<Option<f64>>)>,
     /// `CYCL DEF`, called by M99, M89 and CYCL CALL.
-    pub defined: Option<Defined>,
+    pub defined: Option<DefinedCycle>,
     /// Called at every point: M89.
     pub at_each: bool,
 }
 
 /// A cycle that `CYCL DEF` has defined.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Defined {
+pub(super) struct DefinedCycle {
     /// Its number.
     pub cycle: u32,
     /// Numbers of its parameters and their values.
     pub values: Vec<(u32, f64)>,
 }
 
-impl Cycles {
+impl CycleState {
     /// Words of axes alone ask for a hole.
     #[inline]
     pub fn in_force(&self) -> bool {
@@ -55,16 +55,16 @@ impl Cycles {
 /// A block that begins a cycle by its G code (`code` is ten times the number, `meaning` its sense), or says a further hole
 /// of the one in force (`code` is 0): `words` are those of the block. Marks the words that it uses in `words.used`.
 pub(super) fn hole(
-    control: &mut Control,
+    control: &mut ControlState,
     code: u16,
     meaning: Option<Meaning>,
-    words: &mut Gathered,
+    words: &mut BlockWords,
 ) -> Result<(), Box<Diagnostic>> {
     iso::hole(control, code, meaning, words)
 }
 
 /// No cycle any more: G80, MCALL alone, or a motion word.
-pub(super) fn end(control: &mut Control) {
+pub(super) fn end(control: &mut ControlState) {
     control.cycles.iso = None;
     control.cycles.modal = None;
 }
@@ -76,7 +76,7 @@ pub(super) fn known(name: &str) -> bool {
 
 /// `CYCLE81(…)`: called where the tool stands, or in force behind each motion where `modal` (MCALL).
 pub(super) fn call(
-    control: &mut Control,
+    control: &mut ControlState,
     name: &str,
     _meaning: Meaning,
     arguments: &[Option<NcValue>],
@@ -111,10 +111,10 @@ pub(super) fn call(
 }
 
 fn names_hole(
-    control: &Control,
+    control: &ControlState,
     name: &str,
     values: &[Option<f64>],
-) -> Result<Hole, Box<Diagnostic>> {
+) -> Result<CycleHole, Box<Diagnostic>> {
     let around = names::Around {
         unit: control.modal.unit,
         feed: feed_a_minute(control),
@@ -125,7 +125,7 @@ fn names_hole(
 
 /// A motion block has come to its end: a cycle that is called at each point (MCALL, M89) is run there.
 #[inline]
-pub(super) fn at_point(control: &mut Control) -> Result<(), Box<Diagnostic>> {
+pub(super) fn at_point(control: &mut ControlState) -> Result<(), Box<Diagnostic>> {
     if control.cycles.modal.is_none() && !control.cycles.at_each {
         return Ok(());
     }
@@ -140,8 +140,8 @@ pub(super) fn at_point(control: &mut Control) -> Result<(), Box<Diagnostic>> {
 }
 
 /// The cycle that `CYCL DEF` has defined, where the tool stands.
-pub(super) fn defined(control: &mut Control) -> Result<(), Box<Diagnostic>> {
-    let Some(Defined { cycle, values }) = control.cycles.defined.clone() else {
+pub(super) fn defined(control: &mut ControlState) -> Result<(), Box<Diagnostic>> {
+    let Some(DefinedCycle { cycle, values }) = control.cycles.defined.clone() else {
         return Err(control.refuse("nc-cycle", "a cycle is called, and none is defined"));
     };
     let parameters = conversational::Parameters {
@@ -160,17 +160,17 @@ pub(super) fn defined(control: &mut Control) -> Result<(), Box<Diagnostic>> {
 }
 
 /// The feed in force, mm/min; zero where the program states none.
-fn feed_a_minute(control: &Control) -> f64 {
+fn feed_a_minute(control: &ControlState) -> f64 {
     let feed = control.modal.feed.unwrap_or(0.0);
     match control.modal.feed_mode {
-        FeedMode::PerRevolution => feed * control.modal.speed,
-        FeedMode::PerMinute | FeedMode::Inverse => feed,
+        FeedMeaning::PerRevolution => feed * control.modal.speed,
+        FeedMeaning::PerMinute | FeedMeaning::Inverse => feed,
     }
 }
 
 /// Makes a hole where the tool stands.
-fn drill(control: &mut Control, hole: &Hole) -> Result<(), Box<Diagnostic>> {
-    if control.modal.feed_mode == FeedMode::Inverse && !hole.own_feed {
+fn drill(control: &mut ControlState, hole: &CycleHole) -> Result<(), Box<Diagnostic>> {
+    if control.modal.feed_mode == FeedMeaning::Inverse && !hole.own_feed {
         return Err(control.refuse(
             "nc-cycle",
             "a cycle under inverse-time feed: how fast it drills is not known",
@@ -188,7 +188,7 @@ fn drill(control: &mut Control, hole: &Hole) -> Result<(), Box<Diagnostic>> {
     }
     control.tell(Told::Cycle(hole.call()));
     let before = (control.modal.feed, control.modal.feed_mode, control.hole);
-    control.modal.feed_mode = FeedMode::PerMinute;
+    control.modal.feed_mode = FeedMeaning::PerMinute;
     control.hole = true;
     let made = strokes.iter().try_for_each(|stroke| made(control, stroke));
     (control.modal.feed, control.modal.feed_mode, control.hole) = before;
@@ -199,37 +199,37 @@ fn drill(control: &mut Control, hole: &Hole) -> Result<(), Box<Diagnostic>> {
     made
 }
 
-fn made(control: &mut Control, stroke: &Stroke) -> Result<(), Box<Diagnostic>> {
+fn made(control: &mut ControlState, stroke: &HoleStroke) -> Result<(), Box<Diagnostic>> {
     let [first, second, axis] = control.modal.plane.coordinates();
     let mut to: Vector3<f64> = control.point();
     let kind = match *stroke {
-        Stroke::Rapid(level) => {
+        HoleStroke::Rapid(level) => {
             to[axis] = level;
             MotionKind::Rapid
         }
-        Stroke::Feed(level, feed) => {
+        HoleStroke::Feed(level, feed) => {
             to[axis] = level;
             control.modal.feed = (feed > 0.0).then_some(feed);
             MotionKind::Feed
         }
-        Stroke::Thread(level, feed) => {
+        HoleStroke::Thread(level, feed) => {
             to[axis] = level;
             // Of a thread the feed is its pitch.
             let speed = control.modal.speed;
             control.modal.feed = (feed > 0.0 && speed > 0.0).then(|| feed / speed);
             MotionKind::Thread
         }
-        Stroke::Aside([x, y, z]) => {
+        HoleStroke::Aside([x, y, z]) => {
             to[first] += x;
             to[second] += y;
             to[axis] += z;
             MotionKind::Rapid
         }
-        Stroke::Wait(wait) => {
+        HoleStroke::Wait(wait) => {
             control.tell(Told::Dwell { time: wait.time, revolutions: wait.revolutions });
             return Ok(());
         }
-        Stroke::Stop => {
+        HoleStroke::Stop => {
             control.tell(Told::Stop);
             return Ok(());
         }

@@ -2,9 +2,9 @@
 
 use post_machine::diagnostic::Diagnostic;
 
-use super::hole::{Hole, Out, Pecks, SAME, Wait};
+use super::hole::{CycleHole, HoleDwell, Pecking, SAME, Withdrawal};
 use crate::CycleKind;
-use crate::interpret::block::Turning;
+use crate::interpret::block::SpindleRequest;
 
 /// What the control knows besides the arguments; lengths in mm, feeds in mm/min.
 pub(crate) struct Around {
@@ -61,9 +61,9 @@ impl Arguments<'_> {
     }
 
     /// A wait: seconds, or turns of the spindle where it is negative.
-    fn wait(&self, place: usize) -> Wait {
+    fn wait(&self, place: usize) -> HoleDwell {
         let time = self.number(place);
-        Wait { time: libm::fabs(time), revolutions: time < 0.0 }
+        HoleDwell { time: libm::fabs(time), revolutions: time < 0.0 }
     }
 }
 
@@ -85,7 +85,7 @@ pub(crate) fn hole(
     name: &str,
     values: &[Option<f64>],
     around: &Around,
-) -> Result<Hole, Box<Diagnostic>> {
+) -> Result<CycleHole, Box<Diagnostic>> {
     let arguments = Arguments { name, values, unit: around.unit };
     let reference = arguments.length(2);
     let bottom = arguments.depth(reference, 4, 5, "the depth")?;
@@ -93,13 +93,13 @@ pub(crate) fn hole(
     let clear = libm::fabs(arguments.length(3));
     let up = bottom > reference;
     let away = arguments.length(1);
-    let hole = Hole {
+    let hole = CycleHole {
         clearance: if up { reference - clear } else { reference + clear },
         surface: Some(reference),
         bottom,
         away,
         feed: around.feed,
-        ..Hole::default()
+        ..CycleHole::default()
     };
     // Levels that are the same come out of different sums.
     let above = away - hole.clearance;
@@ -112,43 +112,47 @@ pub(crate) fn hole(
     made(&arguments, hole, around)
 }
 
-fn made(arguments: &Arguments<'_>, hole: Hole, around: &Around) -> Result<Hole, Box<Diagnostic>> {
+fn made(
+    arguments: &Arguments<'_>,
+    hole: CycleHole,
+    around: &Around,
+) -> Result<CycleHole, Box<Diagnostic>> {
     let hole = match arguments.name {
         "CYCLE81" => hole,
-        "CYCLE82" => Hole { wait: arguments.wait(6), ..hole },
+        "CYCLE82" => CycleHole { wait: arguments.wait(6), ..hole },
         "CYCLE83" => deep(arguments, hole)?,
         "CYCLE84" => {
             let speed = arguments.given(11).filter(|speed| *speed != 0.0).unwrap_or(around.speed);
             let back = arguments.given(12).filter(|speed| *speed != 0.0).unwrap_or(speed);
             let hole = thread(arguments, hole, 9, [speed, back])?;
             let turning = match hole.kind {
-                CycleKind::TapLeft => Turning::CounterClockwise,
-                _ => Turning::Clockwise,
+                CycleKind::TapLeft => SpindleRequest::CounterClockwise,
+                _ => SpindleRequest::Clockwise,
             };
-            Hole {
+            CycleHole {
                 // The spindle is an axis in the thread: where SDAC does not turn it, it stands.
-                turning: Some([turning, behind(arguments, 7).unwrap_or(Turning::Off)]),
+                turning: Some([turning, behind(arguments, 7).unwrap_or(SpindleRequest::Off)]),
                 ..hole
             }
         }
         "CYCLE840" => {
             let hole = thread(arguments, hole, 11, [around.speed; 2])?;
             let turning = match hole.kind {
-                CycleKind::TapLeft => Turning::CounterClockwise,
-                _ => Turning::Clockwise,
+                CycleKind::TapLeft => SpindleRequest::CounterClockwise,
+                _ => SpindleRequest::Clockwise,
             };
-            Hole { turning: behind(arguments, 8).map(|behind| [turning, behind]), ..hole }
+            CycleHole { turning: behind(arguments, 8).map(|behind| [turning, behind]), ..hole }
         }
-        "CYCLE85" => Hole {
+        "CYCLE85" => CycleHole {
             kind: CycleKind::Ream,
             wait: arguments.wait(6),
             feed: feed(arguments, 7, around),
-            out: Out::Feed(feed(arguments, 8, around)),
+            out: Withdrawal::Feed(feed(arguments, 8, around)),
             ..hole
         },
         "CYCLE86" => {
             let lift = [8, 9, 10].map(|place| arguments.length(place));
-            Hole {
+            CycleHole {
                 kind: match lift == [0.0; 3] {
                     true => CycleKind::Bore,
                     false => CycleKind::BoreFine,
@@ -158,12 +162,14 @@ fn made(arguments: &Arguments<'_>, hole: Hole, around: &Around) -> Result<Hole, 
                 ..hole
             }
         }
-        "CYCLE87" => Hole { kind: CycleKind::Bore, stop: true, ..hole },
-        "CYCLE88" => Hole { kind: CycleKind::Bore, wait: arguments.wait(6), stop: true, ..hole },
-        "CYCLE89" => Hole {
+        "CYCLE87" => CycleHole { kind: CycleKind::Bore, stop: true, ..hole },
+        "CYCLE88" => {
+            CycleHole { kind: CycleKind::Bore, wait: arguments.wait(6), stop: true, ..hole }
+        }
+        "CYCLE89" => CycleHole {
             kind: CycleKind::Ream,
             wait: arguments.wait(6),
-            out: Out::Feed(around.feed),
+            out: Withdrawal::Feed(around.feed),
             ..hole
         },
         _ => return Err(arguments.refuse("this cycle is not known")),
@@ -172,11 +178,11 @@ fn made(arguments: &Arguments<'_>, hole: Hole, around: &Around) -> Result<Hole, 
 }
 
 /// SDAC: what the spindle does when the cycle is over.
-fn behind(arguments: &Arguments<'_>, place: usize) -> Option<Turning> {
+fn behind(arguments: &Arguments<'_>, place: usize) -> Option<SpindleRequest> {
     match arguments.given(place) {
-        Some(3.0) => Some(Turning::Clockwise),
-        Some(4.0) => Some(Turning::CounterClockwise),
-        Some(5.0) => Some(Turning::Off),
+        Some(3.0) => Some(SpindleRequest::Clockwise),
+        Some(4.0) => Some(SpindleRequest::CounterClockwise),
+        Some(5.0) => Some(SpindleRequest::Off),
         _ => None,
     }
 }
@@ -190,7 +196,7 @@ fn feed(arguments: &Arguments<'_>, place: usize, around: &Around) -> f64 {
 }
 
 /// CYCLE83: FDEP, FDPR, DAM, DTB, DTS, FRF, VARI, AXN, MDEP, VRT, DTD, DIS1 from place 6 on.
-fn deep(arguments: &Arguments<'_>, hole: Hole) -> Result<Hole, Box<Diagnostic>> {
+fn deep(arguments: &Arguments<'_>, hole: CycleHole) -> Result<CycleHole, Box<Diagnostic>> {
     let reference = hole.surface.unwrap_or(hole.clearance);
     let up = hole.bottom > reference;
     let first = match arguments.depth(reference, 6, 7, "the first depth")? {
@@ -241,14 +247,14 @@ fn deep(arguments: &Arguments<'_>, hole: Hole) -> Result<Hole, Box<Diagnostic>> 
         share if share > 0.0 => share,
         _ => 1.0,
     };
-    Ok(Hole {
+    Ok(CycleHole {
         kind: match swarf {
             true => CycleKind::Deep,
             false => CycleKind::BreakChip,
         },
         first_share: Some(share),
         wait: last,
-        pecks: Some(Pecks {
+        pecks: Some(Pecking {
             first: libm::fabs(first - reference),
             less,
             least: if less == 0.0 { libm::fabs(first - reference) } else { least },
@@ -258,7 +264,7 @@ fn deep(arguments: &Arguments<'_>, hole: Hole) -> Result<Hole, Box<Diagnostic>> 
             ahead,
             wait,
             wait_out: arguments.wait(10),
-            ..Pecks::default()
+            ..Pecking::default()
         }),
         ..hole
     })
@@ -267,10 +273,10 @@ fn deep(arguments: &Arguments<'_>, hole: Hole) -> Result<Hole, Box<Diagnostic>> 
 /// CYCLE84 and CYCLE840: the pitch by value at `pitch`, by size in front of it.
 fn thread(
     arguments: &Arguments<'_>,
-    hole: Hole,
+    hole: CycleHole,
     pitch: usize,
     [speed, back]: [f64; 2],
-) -> Result<Hole, Box<Diagnostic>> {
+) -> Result<CycleHole, Box<Diagnostic>> {
     let value = arguments.number(pitch);
     let value = match arguments.number(pitch - 1) {
         size if value == 0.0 && size != 0.0 => {
@@ -293,7 +299,7 @@ fn thread(
             arguments.refuse("no speed of the spindle is known, and the feed follows from it")
         );
     }
-    Ok(Hole {
+    Ok(CycleHole {
         kind: match value > 0.0 {
             true => CycleKind::Tap,
             false => CycleKind::TapLeft,
@@ -301,25 +307,25 @@ fn thread(
         wait: arguments.wait(6),
         feed: libm::fabs(value) * speed,
         own_feed: true,
-        out: Out::Thread(libm::fabs(value) * back),
+        out: Withdrawal::Thread(libm::fabs(value) * back),
         ..hole
     })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::hole::Stroke;
+    use super::super::hole::HoleStroke;
     use super::*;
 
     const AROUND: Around = Around { unit: 1.0, feed: 120.0, speed: 500.0 };
 
-    fn strokes(name: &str, values: &[Option<f64>]) -> Vec<Stroke> {
+    fn strokes(name: &str, values: &[Option<f64>]) -> Vec<HoleStroke> {
         hole(name, values, &AROUND).unwrap().strokes(100.0).unwrap()
     }
 
     #[test]
     fn levels_are_absolute() {
-        use Stroke::{Feed, Rapid};
+        use HoleStroke::{Feed, Rapid};
         let levels = [Some(10.0), Some(1.5), Some(2.0), Some(-11.0)];
         assert_eq!(strokes("CYCLE81", &levels), [Rapid(3.5), Feed(-11.0, 120.0), Rapid(10.0)]);
         // Depth from the reference plane, without a sign.
@@ -335,7 +341,7 @@ mod tests {
 
     #[test]
     fn pecks_count_from_the_reference_plane() {
-        use Stroke::{Feed, Rapid};
+        use HoleStroke::{Feed, Rapid};
         let values = [2.0, 0.0, 2.0, -20.0, f64::NAN, f64::NAN, 6.0, 0.0, 0.0, 0.0, 1.0, 1.0];
         let values = values.map(|value: f64| (!value.is_nan()).then_some(value));
         let wanted = [
@@ -357,7 +363,7 @@ mod tests {
 
     #[test]
     fn a_thread_needs_its_pitch() {
-        use Stroke::{Rapid, Thread};
+        use HoleStroke::{Rapid, Thread};
         let mut values = vec![
             Some(5.0),
             Some(0.0),
@@ -377,7 +383,7 @@ mod tests {
 
     #[test]
     fn fine_boring_is_lifted_off_the_wall() {
-        use Stroke::{Aside, Feed, Rapid};
+        use HoleStroke::{Aside, Feed, Rapid};
         let values = [10.0, 0.0, 2.0, -12.5, f64::NAN, 0.0, 3.0, -0.2, 0.0, 0.0, 0.0];
         let values = values.map(|value: f64| (!value.is_nan()).then_some(value));
         let wanted = [

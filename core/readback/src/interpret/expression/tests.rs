@@ -8,7 +8,7 @@ use super::*;
 fn variables(language: Language) -> Variables {
     let mut variables = Variables::new(language);
     for (name, value) in [("R1", 2.5), ("R2", -4.0), ("Q7", 0.25), ("#100", 12.0)] {
-        variables.put(name, Value::Number(value)).unwrap();
+        variables.put(name, VariableValue::Number(value)).unwrap();
     }
     variables
 }

@@ -6,11 +6,11 @@ use post_grammar::nc::{NcExpression, NcFlow, NcItem, NcMark};
 use post_machine::diagnostic::Diagnostic;
 
 use super::super::astray::{Answer, fault};
-use super::{Flow, Running};
+use super::{OpenConstruct, ProgramFlow};
 use crate::interpret::expression::whole;
-use crate::interpret::variables::{Value, Variables};
+use crate::interpret::variables::{VariableValue, Variables};
 
-impl<R: Read + Seek> Flow<R> {
+impl<R: Read + Seek> ProgramFlow<R> {
     pub(super) fn looped(&mut self, flow: NcFlow, variables: &mut Variables) -> Answer<bool> {
         let head = self.here;
         match flow {
@@ -26,14 +26,14 @@ impl<R: Read + Seek> Flow<R> {
                 }
                 self.forget(head);
                 if variables.holds(&condition)? {
-                    self.push(Running::While { name, head })?;
+                    self.push(OpenConstruct::While { name, head })?;
                 } else {
-                    self.skip_loop(name.as_deref(), Kind::While)?;
+                    self.skip_loop(name.as_deref(), LoopKind::While)?;
                 }
             }
             NcFlow::EndWhile(name) => {
                 let head = self.unwind(|running| match running {
-                    Running::While { name: own, head } if *own == name => Some(*head),
+                    OpenConstruct::While { name: own, head } if *own == name => Some(*head),
                     _ => None,
                 });
                 let head = head.ok_or_else(|| fault("a loop ends here that has not begun"))?;
@@ -44,17 +44,19 @@ impl<R: Read + Seek> Flow<R> {
                 self.forget(head);
                 let name = variables.named(&variable)?;
                 let (from, to) = (variables.number(&from)?, variables.number(&to)?);
-                variables.set(&name, Value::Number(from))?;
+                variables.set(&name, VariableValue::Number(from))?;
                 if from > to {
-                    self.skip_loop(None, Kind::For)?;
+                    self.skip_loop(None, LoopKind::For)?;
                 } else {
                     let body = self.reader.mark();
-                    self.push(Running::For { head, body, variable: name, to })?;
+                    self.push(OpenConstruct::For { head, body, variable: name, to })?;
                 }
             }
             NcFlow::EndFor => {
                 let found = self.unwind(|running| match running {
-                    Running::For { body, variable, to, .. } => Some((*body, variable.clone(), *to)),
+                    OpenConstruct::For { body, variable, to, .. } => {
+                        Some((*body, variable.clone(), *to))
+                    }
                     _ => None,
                 });
                 let (body, name, to) =
@@ -63,18 +65,18 @@ impl<R: Read + Seek> Flow<R> {
                 if next > to {
                     self.running.pop();
                 } else {
-                    variables.set(&name, Value::Number(next))?;
+                    variables.set(&name, VariableValue::Number(next))?;
                     self.go_to(body)?;
                 }
             }
             NcFlow::Loop => {
                 self.forget(head);
                 let body = self.reader.mark();
-                self.push(Running::Loop { head, body })?;
+                self.push(OpenConstruct::Loop { head, body })?;
             }
             NcFlow::EndLoop => {
                 let body = self.unwind(|running| match running {
-                    Running::Loop { body, .. } => Some(*body),
+                    OpenConstruct::Loop { body, .. } => Some(*body),
                     _ => None,
                 });
                 self.go_to(body.ok_or_else(|| fault("a loop ends here that has not begun"))?)?;
@@ -82,7 +84,7 @@ impl<R: Read + Seek> Flow<R> {
             NcFlow::Do(name) => {
                 self.forget(head);
                 let body = self.reader.mark();
-                self.push(Running::Do { name, head, body })?;
+                self.push(OpenConstruct::Do { name, head, body })?;
             }
             NcFlow::Until(condition) => {
                 let body = self.close_do(None);
@@ -98,9 +100,9 @@ impl<R: Read + Seek> Flow<R> {
                 let left = whole(variables.number(&times)?, "a count of repeats")?;
                 if left > 0 {
                     let body = self.reader.mark();
-                    self.push(Running::Times { name, head, body, left })?;
+                    self.push(OpenConstruct::Times { name, head, body, left })?;
                 } else {
-                    self.skip_loop(name.as_deref(), Kind::Times)?;
+                    self.skip_loop(name.as_deref(), LoopKind::Times)?;
                 }
             }
             NcFlow::EndRepeat(name) => self.again(name.as_deref())?,
@@ -110,9 +112,9 @@ impl<R: Read + Seek> Flow<R> {
                 self.skip_loop(name.as_deref(), kind)?;
             }
             NcFlow::Continue(name) => match self.innermost(name.as_deref())? {
-                Kind::Times => self.again(name.as_deref())?,
-                Kind::While => {
-                    if let Some(Running::While { head, .. }) = self.running.pop() {
+                LoopKind::Times => self.again(name.as_deref())?,
+                LoopKind::While => {
+                    if let Some(OpenConstruct::While { head, .. }) = self.running.pop() {
                         self.go_to(head)?;
                     }
                 }
@@ -126,11 +128,11 @@ impl<R: Read + Seek> Flow<R> {
     /// `o1 endrepeat`.
     pub(super) fn again(&mut self, name: Option<&str>) -> Answer<()> {
         let body = self.unwind(|running| match running {
-            Running::Times { name: own, body, .. } if own.as_deref() == name => Some(*body),
+            OpenConstruct::Times { name: own, body, .. } if own.as_deref() == name => Some(*body),
             _ => None,
         });
         let body = body.ok_or_else(|| fault("a loop ends here that has not begun"))?;
-        if let Some(Running::Times { left, .. }) = self.running.last_mut() {
+        if let Some(OpenConstruct::Times { left, .. }) = self.running.last_mut() {
             *left -= 1;
             if *left > 0 {
                 return self.go_to(body);
@@ -141,22 +143,26 @@ impl<R: Read + Seek> Flow<R> {
     }
 
     /// The kind of the innermost loop of this name, which is innermost of all afterwards.
-    pub(super) fn innermost(&mut self, name: Option<&str>) -> Answer<Kind> {
+    pub(super) fn innermost(&mut self, name: Option<&str>) -> Answer<LoopKind> {
         let kind = self.unwind(|running| match running {
-            Running::While { name: own, .. } if own.as_deref() == name => Some(Kind::While),
-            Running::Do { name: own, .. } if own.as_deref() == name => Some(Kind::Do),
-            Running::Times { name: own, .. } if own.as_deref() == name => Some(Kind::Times),
-            Running::For { .. } if name.is_none() => Some(Kind::For),
-            Running::Loop { .. } if name.is_none() => Some(Kind::Loop),
+            OpenConstruct::While { name: own, .. } if own.as_deref() == name => {
+                Some(LoopKind::While)
+            }
+            OpenConstruct::Do { name: own, .. } if own.as_deref() == name => Some(LoopKind::Do),
+            OpenConstruct::Times { name: own, .. } if own.as_deref() == name => {
+                Some(LoopKind::Times)
+            }
+            OpenConstruct::For { .. } if name.is_none() => Some(LoopKind::For),
+            OpenConstruct::Loop { .. } if name.is_none() => Some(LoopKind::Loop),
             _ => None,
         });
         kind.ok_or_else(|| fault("no such loop is running here"))
     }
 
     /// Drops what runs inside of the innermost one that `wanted` knows, up to the subprogram.
-    pub(super) fn unwind<T>(&mut self, wanted: impl Fn(&Running) -> Option<T>) -> Option<T> {
+    pub(super) fn unwind<T>(&mut self, wanted: impl Fn(&OpenConstruct) -> Option<T>) -> Option<T> {
         for place in (0..self.running.len()).rev() {
-            if matches!(self.running[place], Running::Call { .. }) {
+            if matches!(self.running[place], OpenConstruct::Call { .. }) {
                 return None;
             }
             if let Some(found) = wanted(&self.running[place]) {
@@ -169,7 +175,7 @@ impl<R: Read + Seek> Flow<R> {
 
     fn close_do(&mut self, name: Option<&str>) -> Option<NcMark> {
         self.unwind(|running| match running {
-            Running::Do { name: own, body, .. } if own.as_deref() == name => Some(*body),
+            OpenConstruct::Do { name: own, body, .. } if own.as_deref() == name => Some(*body),
             _ => None,
         })
     }
@@ -177,11 +183,11 @@ impl<R: Read + Seek> Flow<R> {
     /// A loop that was left by a jump begins anew.
     fn forget(&mut self, begins: NcMark) {
         let known = self.unwind(|running| match running {
-            Running::While { head, .. }
-            | Running::For { head, .. }
-            | Running::Loop { head, .. }
-            | Running::Do { head, .. }
-            | Running::Times { head, .. }
+            OpenConstruct::While { head, .. }
+            | OpenConstruct::For { head, .. }
+            | OpenConstruct::Loop { head, .. }
+            | OpenConstruct::Do { head, .. }
+            | OpenConstruct::Times { head, .. }
                 if *head == begins =>
             {
                 Some(())
@@ -193,7 +199,7 @@ impl<R: Read + Seek> Flow<R> {
         }
     }
 
-    pub(super) fn push(&mut self, running: Running) -> Answer<()> {
+    pub(super) fn push(&mut self, running: OpenConstruct) -> Answer<()> {
         if self.running.len() >= self.limits.depth {
             return Err(Diagnostic::error(
                 "nc-limit",
@@ -224,23 +230,23 @@ impl<R: Read + Seek> Flow<R> {
         }
     }
 
-    fn skip_loop(&mut self, name: Option<&str>, kind: Kind) -> Answer<()> {
+    fn skip_loop(&mut self, name: Option<&str>, kind: LoopKind) -> Answer<()> {
         let (opens, closes): (Is, Is) = match kind {
-            Kind::While => (
+            LoopKind::While => (
                 |flow| matches!(flow, NcFlow::While { .. }),
                 |flow| matches!(flow, NcFlow::EndWhile(_)),
             ),
-            Kind::For => {
+            LoopKind::For => {
                 (|flow| matches!(flow, NcFlow::For { .. }), |flow| matches!(flow, NcFlow::EndFor))
             }
-            Kind::Loop => {
+            LoopKind::Loop => {
                 (|flow| matches!(flow, NcFlow::Loop), |flow| matches!(flow, NcFlow::EndLoop))
             }
-            Kind::Do => (
+            LoopKind::Do => (
                 |flow| matches!(flow, NcFlow::Do(_)),
                 |flow| matches!(flow, NcFlow::Until(_) | NcFlow::While { .. }),
             ),
-            Kind::Times => (
+            LoopKind::Times => (
                 |flow| matches!(flow, NcFlow::Repeat { .. }),
                 |flow| matches!(flow, NcFlow::EndRepeat(_)),
             ),
@@ -296,7 +302,7 @@ type Is = fn(&NcFlow) -> bool;
 
 /// Kinds of loops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum LoopKind {
     While,
     For,
     Loop,

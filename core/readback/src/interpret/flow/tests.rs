@@ -19,7 +19,7 @@ fn run_with(language: Language, program: &str, limits: Limits) -> (Vec<f64>, Opt
         hash_variables: matches!(language, Language::Macro | Language::Rs274),
     };
     let reader = NcReader::new(Cursor::new(program.as_bytes().to_vec()), syntax);
-    let mut flow = Flow::new(reader, language, limits, "test.nc");
+    let mut flow = ProgramFlow::new(reader, language, limits, "test.nc");
     let mut variables = Variables::new(language);
     let mut block = NcBlock::default();
     let mut seen = Vec::new();

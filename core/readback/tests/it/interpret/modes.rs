@@ -1,7 +1,7 @@
 //! What is modal, what is refused, what is only counted, and how long it takes.
 
 use post_machine::description::{Machine, TcpFeedLength};
-use post_motion::Corner;
+use post_motion::CornerMode;
 use post_plugin::Language;
 use post_readback::{Corners, MotionKind, Offsets, Spindle, Told};
 
@@ -176,8 +176,8 @@ fn corners(done: &Ran) -> Vec<(Corners, bool)> {
 
 #[test]
 fn words_say_how_corners_are_passed() {
-    let said = |corner: Corner| (Corners::Said(corner), false);
-    let blend = |tolerance: Option<f64>| said(Corner::Blend { tolerance });
+    let said = |corner: CornerMode| (Corners::Said(corner), false);
+    let blend = |tolerance: Option<f64>| said(CornerMode::Blend { tolerance });
     let unsaid = (Corners::Unsaid, false);
     let machine = machine("vmc");
     // Fanuc's G61 is an exact stop, and G9 one for its block.
@@ -185,7 +185,7 @@ fn words_say_how_corners_are_passed() {
     let once = (blend(None).0, true);
     assert_eq!(
         corners(&letters(&machine, program).whole()),
-        [unsaid, said(Corner::Stop), blend(None), once, blend(None), blend(Some(0.02)), unsaid]
+        [unsaid, said(CornerMode::Stop), blend(None), once, blend(None), blend(Some(0.02)), unsaid]
     );
     // An inch program states its tolerance in inches.
     let inch = letters(&machine, "G20 G1 F50. X1.\nG187 P3 E0.001\nX2.\n").whole();
@@ -196,7 +196,7 @@ fn words_say_how_corners_are_passed() {
         corners(&ran_in(Language::Names, &machine, NAMES, &Offsets::default(), program).whole()),
         [
             unsaid,
-            said(Corner::Stop),
+            said(CornerMode::Stop),
             blend(None),
             (Corners::Own, false),
             blend(Some(0.03)),

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 use post_plugin::Language;
-use post_readback::{Offsets, Way, WorkOffset};
+use post_readback::{Interpolation, Offsets, WorkOffset};
 use post_testkit::randomised;
 use post_testmachines::Reference;
 
@@ -113,7 +113,7 @@ fn where_the_control_keeps_the_tip_words_are_the_tip() {
             let text = format!("T3 M6\nG43.4 H3\nG1 F500 X0 Y0 Z0\n{words}\n");
             let done = ran(&machine, LETTERS, &offsets, &text).whole();
             let motion = done.last();
-            assert_eq!(motion.way, Way::Tip, "{name}");
+            assert_eq!(motion.way, Interpolation::Tip, "{name}");
             for (place, value) in turns {
                 assert!((motion.to.joints[place] - value).abs() < 1e-12, "{name}: {words}");
             }
@@ -139,7 +139,7 @@ fn a_vector_points_the_tool_and_the_axes_go_the_shorter_way() {
     let pose = done.last().to.pose;
     assert!((pose.axis - Vector3::new(0.0, 0.6, 0.8)).norm() < SAME);
     assert!((pose.tip - Vector3::new(10.0, 5.0, 3.0)).norm() < SAME);
-    assert_eq!(done.last().way, Way::TipAndAxis);
+    assert_eq!(done.last().way, Interpolation::TipAndAxis);
     // I J K where a word of letters says so.
     let text = "G43.5 H1\nG1 F500 X10. Y5. Z3. I0 J0.6 K0.8\n";
     let done = ran(&machine, LETTERS, &offsets, text).whole();
@@ -219,9 +219,9 @@ fn arcs_of_axis_positions_lie_as_the_axes_do_on_the_part() {
         );
         let done = letters(&machine, &text).whole();
         let motion = done.last();
-        assert!(matches!(motion.way, Way::Arc { .. }));
+        assert!(matches!(motion.way, Interpolation::Arc { .. }));
         // Along the arc the tip is where the axes, going round in their own plane, bring it.
-        let Way::Arc { sweep, .. } = motion.way else { unreachable!() };
+        let Interpolation::Arc { sweep, .. } = motion.way else { unreachable!() };
         let names = match &plane[..3] {
             "G17" => ["X", "Y"],
             "G18" => ["X", "Z"],

@@ -2,7 +2,7 @@
 
 use post_machine::description::Machine;
 use post_plugin::{Language, Meaning as M};
-use post_readback::{Motion, MotionKind, Offsets, SplineWay, Way};
+use post_readback::{BSpline, Interpolation, Motion, MotionKind, Offsets};
 
 use super::{LETTERS, Ran, machine, ran, ran_in};
 
@@ -47,9 +47,9 @@ fn even(text: &str) -> Ran {
     ran_in(Language::Rs274, &machine("vmc"), &words, &Offsets::default(), text)
 }
 
-fn spline(ran: &Ran) -> (&Motion, &SplineWay) {
+fn spline(ran: &Ran) -> (&Motion, &BSpline) {
     let mut splines = ran.motions.iter().filter_map(|motion| match &motion.way {
-        Way::Spline(way) => Some((motion, &**way)),
+        Interpolation::Spline(way) => Some((motion, &**way)),
         _ => None,
     });
     let found = splines.next().unwrap();

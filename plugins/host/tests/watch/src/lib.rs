@@ -1,18 +1,18 @@
 //! A dialect that declares everything and refuses an event that comes where the guide says it does not.
 
-use post_kit::Order;
+use post_kit::EventOrder;
 use post_plugin::{
     CAPABILITIES, Capabilities, Dialect, Event, Format, PlaneAngles, Setup, export_dialect,
 };
 
 struct Watch {
     words: usize,
-    order: Order,
+    order: EventOrder,
 }
 
 impl Dialect for Watch {
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
-        Ok(Watch { words: setup.words.len(), order: Order::default() })
+        Ok(Watch { words: setup.words.len(), order: EventOrder::default() })
     }
 
     fn format(&self) -> Format {

@@ -16,7 +16,7 @@
 //!
 //! ```
 //! use post_feed::limits::{AxisAcceleration, AxisVelocity, Collocation, Feed};
-//! use post_feed::{Ends, Problem, Samples, profile, reach};
+//! use post_feed::{EndSpeeds, Problem, Samples, profile, reach};
 //!
 //! // 100 mm along X at a millimetre a sample: 50 mm/s at most, 200 mm/s².
 //! let mut samples = Samples::default();
@@ -28,7 +28,7 @@
 //! let feed = Feed { most: 50.0, collocation };
 //! let velocity = AxisVelocity { limits: vec![60.0], collocation };
 //! let acceleration = AxisAcceleration { limits: vec![200.0], collocation };
-//! let problem = Problem::new(&samples, &[&feed, &velocity, &acceleration], Ends::default())?;
+//! let problem = Problem::new(&samples, &[&feed, &velocity, &acceleration], EndSpeeds::default())?;
 //! let plan = reach::solve(&problem)?;
 //! // A quarter of a second to get up to speed, and down again, each over 6.25 mm.
 //! let seconds = profile::duration(&problem.steps, &plan);

@@ -55,11 +55,11 @@ impl Settled<'_> {
 /// **Faults.** A batch that is refused leaves nothing in the stream: another may take its place.
 ///
 /// ```
-/// use post_feed::problem::{Problem, Row};
+/// use post_feed::problem::{Problem, LimitRow};
 /// use post_feed::reach::Stream;
 ///
 /// // |q[i + 1] - q[i]| <= 2 * 50 mm/s² * 0.5 mm, q <= (20 mm/s)².
-/// let row = Row { here: -1.0 / 50.0, next: 1.0 / 50.0 };
+/// let row = LimitRow { here: -1.0 / 50.0, next: 1.0 / 50.0 };
 /// let batch = Problem::from_rows(vec![0.5; 100], vec![400.0; 101], 1, vec![row; 100]);
 /// let mut stream = Stream::new(1, 32);
 /// let mut plan = Vec::new();

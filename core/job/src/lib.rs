@@ -41,7 +41,7 @@ use post_host::Finder;
 use post_machine::check::Check;
 use post_machine::description::{Machine, Setting};
 use post_plugin::{Capabilities, DialectSession};
-use post_posting::ahead::{FilePreview, PreviewPass};
+use post_posting::preview::{FilePreview, PreviewPass};
 use post_posting::program::ReadingOptions;
 use post_posting::{Post, PostingRequest};
 

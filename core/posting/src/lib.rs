@@ -17,7 +17,6 @@
 //! that grows with the file.
 
 pub mod accuracy;
-pub mod ahead;
 mod blocks;
 mod configuration;
 pub mod curve;
@@ -29,6 +28,7 @@ mod mount_bounds;
 mod observer;
 pub mod plan;
 mod post;
+pub mod preview;
 pub mod program;
 mod refusal;
 pub mod report;

@@ -9,7 +9,6 @@ use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Capabilities, DialectSession, ModelSession};
 
-use crate::ahead::FilePreview;
 use crate::blocks::{BlockContext, BlockStage, MotionBlock};
 use crate::configuration::{ConfigurationStage, ConfiguredItem};
 use crate::emit::EmitStage;
@@ -18,6 +17,7 @@ use crate::findings::Findings;
 use crate::job_facts::JobFacts;
 use crate::observer::{Observer, Observers, TextSink};
 use crate::plan::{PlanStage, PlanWatch};
+use crate::preview::FilePreview;
 use crate::program::{ClInterpreter, ProgramStep, ReadingOptions};
 use crate::refusal;
 use crate::report::{AxisRange, PostingReport, ReportedDeviation};

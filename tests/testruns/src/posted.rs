@@ -11,7 +11,7 @@ use post_plugin::{
     Batch, Capabilities, Curve, Cycle, Deviation, DialectSession, Event, Feed, Format,
     ModelSession, PlaneAngles, Tolerance, ToolPose, WriteFault,
 };
-use post_posting::ahead::PreviewPass;
+use post_posting::preview::PreviewPass;
 use post_posting::program::DefaultSpindle;
 use post_posting::report::PostingReport;
 use post_posting::{Observer, Post, PostingRequest, TextSink};

@@ -11,7 +11,7 @@
 mod basis;
 mod equations;
 mod hull;
-mod place;
+mod knots;
 mod smoother;
 mod track;
 

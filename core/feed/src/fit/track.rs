@@ -1,7 +1,7 @@
 //! The polyline of a smooth piece with the knots and sites of the spline that is to follow it.
 
 use super::basis::{Basis, BasisRow, DEGREE, GAUSS, ORDER};
-use super::place::place;
+use super::knots::place;
 use super::{MOST, Point};
 
 /// A point of the polyline.

@@ -18,12 +18,12 @@
 //!
 //! **The cost** is the time, `Σ weight / sqrt(coefficient)`, which by convexity is never below the true time.
 
-mod ahead;
 pub(crate) mod forms;
 mod law;
 mod rounds;
 mod rules;
 mod spline;
+mod stop_plan;
 pub mod stream;
 
 pub use law::{Law, Piece};

@@ -6,9 +6,9 @@
 //! way is followed farther, at worst to the stop, from where there always is a plan. So **no limit is ever broken for
 //! want of look-ahead**; too short a look-ahead costs speed alone.
 
-use super::ahead::Ahead;
 use super::rounds::{Planned, ROOM, Stretch, Work};
 use super::spline::State;
+use super::stop_plan::StopPlan;
 use super::{Piece, Settings, of_limits};
 use crate::infeasible::Infeasible;
 use crate::limits::{Channel, Limit};
@@ -95,7 +95,7 @@ pub struct Stream {
     corners: Vec<bool>,
     state: State,
     /// The way to a stop that goes on from the state; empty at rest.
-    ahead: Ahead,
+    ahead: StopPlan,
     reach: Reach,
     fast: Vec<f64>,
     work: Work,
@@ -114,7 +114,7 @@ impl Stream {
             offsets: vec![0],
             corners: Vec::new(),
             state: State::default(),
-            ahead: Ahead::default(),
+            ahead: StopPlan::default(),
             reach: Reach::default(),
             fast: Vec::new(),
             work: Work::default(),
@@ -230,7 +230,7 @@ impl Stream {
         self.offsets.truncate(1);
         self.corners.clear();
         self.state = State::default();
-        self.ahead = Ahead::default();
+        self.ahead = StopPlan::default();
     }
 
     /// The first stop ahead.
@@ -264,7 +264,7 @@ impl Stream {
     ) -> Result<(), Infeasible> {
         match self.plan(last, end) {
             Ok(planned) => {
-                self.ahead = Ahead::new(planned);
+                self.ahead = StopPlan::new(planned);
                 self.hand_on(count, sink);
                 if count == last {
                     self.state = State::even(end);

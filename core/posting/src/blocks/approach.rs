@@ -5,8 +5,8 @@ use post_machine::axis_words;
 use post_machine::description::Tcp;
 use post_machine::kinematics::{Joints, Pose};
 
-use super::lie::ToolAlignment;
 use super::nominal::{AxisTravels, NominalTime};
+use super::tool_alignment::ToolAlignment;
 use super::{BlockContext, BlockKind, BlockReason, BlockStage, MotionBlock, PathLeg};
 use crate::accuracy::{DeviationBound, PathNode, Placer};
 use crate::program::{MoveFeed, StraightMove};

@@ -5,7 +5,7 @@ use post_machine::axis_words::WordValues;
 use post_machine::kinematics::Joints;
 use post_plugin::Feed;
 
-use super::between_words::FollowTime;
+use super::compensating_motion::FollowTime;
 use super::nominal::{NominalTime, STILL};
 use crate::accuracy::DeviationBound;
 use crate::program::MoveFeed;

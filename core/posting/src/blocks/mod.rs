@@ -3,17 +3,17 @@
 mod along;
 mod approach;
 mod audience;
-mod between_words;
 mod block;
+mod compensating_motion;
 mod cutter;
 mod fitted;
-mod gathered;
-mod lie;
 mod nominal;
 mod off_part;
+mod pending_run;
 mod plane;
 mod splined;
 mod staged;
+mod tool_alignment;
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -33,12 +33,12 @@ use crate::refusal;
 use crate::stream::{BatchSink, StreamItem};
 use along::PendingCurve;
 pub(crate) use audience::Audience;
-pub(crate) use between_words::CompensatingMotion;
-pub use between_words::FollowTime;
 pub use block::{BlockDuration, BlockKind, BlockReason, MotionBlock, PlannedTime};
-use gathered::PendingRun;
+pub(crate) use compensating_motion::CompensatingMotion;
+pub use compensating_motion::FollowTime;
 pub use nominal::NominalTime;
 pub(crate) use nominal::{AxisKinds, AxisTravels, STILL};
+use pending_run::PendingRun;
 use plane::ActivePlane;
 
 /// Turns that differ by less are the same, radians.

@@ -15,9 +15,9 @@ use post_machine::description::{Cycles, Machine};
 use post_machine::diagnostic::{Diagnostic, Short};
 use post_plugin::{Capabilities, Cycle};
 
-use crate::ahead::FilePreview;
 use crate::curve::{CurveMove, CurvePolicy, CurveShape};
 use crate::findings::Findings;
+use crate::preview::FilePreview;
 use crate::program::limits::MOST_CHORDS;
 use crate::program::{
     ArcStep, Command, CycleLeg, CycleStep, HoleMark, MoveFeed, ProgramStep, SplineStep,

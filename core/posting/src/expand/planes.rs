@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use crate::ahead::{FilePreview, FixedAxisRange};
+use crate::preview::{FilePreview, FixedAxisRange};
 use crate::program::ProgramStep;
 
 /// Tool axes that differ by less are one, as unit vectors.

@@ -1,5 +1,6 @@
 //! Settles what is modal in a CL file: units, axis, feed, frames, cycles; curves keep their shape.
 
+mod cam_system;
 mod control;
 mod curves;
 mod cycles;
@@ -11,7 +12,6 @@ mod reading;
 mod tools;
 mod turned;
 pub(crate) mod words;
-mod writer;
 
 use nalgebra::Vector3;
 use post_grammar::text::{as_remark, excerpt};
@@ -28,10 +28,10 @@ use super::frame::ClFrame;
 use super::limits::{LONGEST_DWELL, MOST_WORDS, direction};
 use super::word_census::WordCensus;
 use super::{Command, DrillCycle, MoveFeed, PlaneStep, ProgramStep};
+use cam_system::CamSystem;
 use post_machine::diagnostic::{Diagnostic, Place, Short};
 use turned::ArcAxisConvention;
 use words::SuspectRecord;
-use writer::CamSystem;
 
 /// Turns records into steps.
 #[derive(Debug)]

@@ -6,7 +6,7 @@ use post_grammar::{
 };
 use post_plugin::{Compensation, Spindle, SpindleSense};
 
-use super::writer::CompensatedPoints;
+use super::cam_system::CompensatedPoints;
 use super::{ClInterpreter, CutterDescription, SHOWN_NAME};
 use crate::program::limits::{MOST_COORDINATE, MOST_TOOLS};
 use crate::program::{Command, ProgramStep, ToolChange};

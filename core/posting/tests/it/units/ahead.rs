@@ -1,5 +1,5 @@
 use nalgebra::Vector3;
-use post_posting::ahead::FixedAxisFinder;
+use post_posting::preview::FixedAxisFinder;
 use post_posting::program::{Command, MoveFeed, ProgramStep, StraightMove};
 
 /// The lines of the stretches, from steps that are written as letters: `r` a rapid, `c` a cut, capitals with the tool

@@ -9,13 +9,13 @@ const SMALL: f64 = 1e-4;
 
 /// A plan that ends at rest, an entry an interval.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Ahead {
+pub(super) struct StopPlan {
     pub(super) law: Law,
     middles: Vec<f64>,
     tangents: Vec<f64>,
 }
 
-impl Ahead {
+impl StopPlan {
     pub(super) fn new(planned: Planned) -> Self {
         Self { law: planned.law, middles: planned.middles, tangents: planned.tangents }
     }

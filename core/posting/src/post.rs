@@ -108,6 +108,8 @@ impl PostStages<'_> {
             StageInput::Finish(line) => Some(*line),
         };
         let finish = last_line.is_some();
+        // A batch goes through the stages by calls: what a stage hands on is the input of the closure before it here, so
+        // that the stages are joined from the last to the first.
         let mut to_emit = |made: &mut Vec<StreamItem<MotionBlock>>| {
             timing.take(made, findings);
             observers.blocks(made);
@@ -141,6 +143,7 @@ impl PostStages<'_> {
             StageInput::Take(steps) => expand.take(steps, &mut lines, findings),
             StageInput::Finish(_) => expand.finish(&mut lines, findings),
         }
+        // From the first stage to the last: what a stage still holds goes on before the next stage is finished.
         lines.flush();
         if finish {
             configuration.finish(&mut configured, findings);

@@ -116,6 +116,13 @@ impl PlacedBatch {
                 over(limit.joint, Some(limit.travel), value, AT_END).is_ok()
             });
         }
+        self.trace(placer, count);
+    }
+
+    /// Traces the chain at the first `count` points, and measures how far they are off.
+    #[inline]
+    fn trace(&mut self, placer: &Placer, count: usize) {
+        let chain = placer.solver().chain();
         chain.trace_all(&self.at, count, &mut self.traces);
         for lane in 0..count {
             let node = &mut *self.nodes[lane];

@@ -67,37 +67,10 @@ impl Route<'_> {
     /// positions there: the nearest with which the path comes through to this point.
     fn try_positions(&mut self, line: u64, motion: &StraightMove) -> Result<bool, Box<Diagnostic>> {
         let held = self.settings[self.setting].0;
-        let mut alternatives: Vec<Joints> = Vec::new();
-        for joint in self.machine.redundant() {
-            let axis = &self.machine.axes[joint];
-            let Some(indexed) = &axis.indexed else {
-                continue;
-            };
-            let inside = |value: &f64| passed(axis.travel, *value, AT_END).is_none();
-            let values: Vec<f64> = match &indexed.positions {
-                Positions::Any => continue,
-                Positions::List(values) => values.clone(),
-                Positions::Step { step, .. } => (1..MOST_POSITIONS / 2)
-                    .flat_map(|count| [1.0, -1.0].map(|sign| sign * count as f64 * step))
-                    .filter(|way| axis.travel.is_some() || way.abs() <= std::f64::consts::PI)
-                    .map(|way| held[joint] + way)
-                    .collect(),
-            };
-            for value in values.into_iter().filter(inside) {
-                if (value - held[joint]).abs() > 1e-9 {
-                    let mut other = held;
-                    other[joint] = value;
-                    alternatives.push(other);
-                }
-            }
-        }
+        let alternatives = self.alternatives(held);
         if alternatives.is_empty() {
             return Ok(false);
         }
-        alternatives.sort_by(|a, b| {
-            let way = |other: &Joints| self.trellis.measure.approach(&held, other);
-            way(a).total_cmp(&way(b))
-        });
         // The points since the last rapid, this one last.
         let settled = usize::from(self.anchored);
         let off_part = |kind: ArrivalKind| kind != ArrivalKind::Cut;
@@ -150,6 +123,39 @@ impl Route<'_> {
             }
         }
         Ok(false)
+    }
+
+    /// Other positions of the redundant axes than those at `held`, the nearest first.
+    fn alternatives(&self, held: Joints) -> Vec<Joints> {
+        let mut alternatives: Vec<Joints> = Vec::new();
+        for joint in self.machine.redundant() {
+            let axis = &self.machine.axes[joint];
+            let Some(indexed) = &axis.indexed else {
+                continue;
+            };
+            let inside = |value: &f64| passed(axis.travel, *value, AT_END).is_none();
+            let values: Vec<f64> = match &indexed.positions {
+                Positions::Any => continue,
+                Positions::List(values) => values.clone(),
+                Positions::Step { step, .. } => (1..MOST_POSITIONS / 2)
+                    .flat_map(|count| [1.0, -1.0].map(|sign| sign * count as f64 * step))
+                    .filter(|way| axis.travel.is_some() || way.abs() <= std::f64::consts::PI)
+                    .map(|way| held[joint] + way)
+                    .collect(),
+            };
+            for value in values.into_iter().filter(inside) {
+                if (value - held[joint]).abs() > 1e-9 {
+                    let mut other = held;
+                    other[joint] = value;
+                    alternatives.push(other);
+                }
+            }
+        }
+        alternatives.sort_by(|a, b| {
+            let way = |other: &Joints| self.trellis.measure.approach(&held, other);
+            way(a).total_cmp(&way(b))
+        });
+        alternatives
     }
 
     /// Adds to the point before the states that a rewind there can reach, and pushes the point again.

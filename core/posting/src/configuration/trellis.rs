@@ -183,6 +183,15 @@ impl Trellis {
         &self.states[layer.first..layer.first + layer.count]
     }
 
+    /// How the tool arrives at a further point.
+    fn arrival(&self, motion: &StraightMove) -> ArrivalKind {
+        match (self.layers.is_empty(), motion.pace) {
+            (true, _) => ArrivalKind::First,
+            (false, MoveFeed::Rapid) => ArrivalKind::Rapid,
+            (false, _) => ArrivalKind::Cut,
+        }
+    }
+
     /// Adds a point; `near` is where the axes stand if it is the first. Gives what was found at the point; the
     /// layer has no state if the path cannot go on to it.
     ///
@@ -197,11 +206,7 @@ impl Trellis {
         near: &Joints,
         judge: &mut dyn CutChecker,
     ) -> Result<SolutionSummary, Unreachable> {
-        let kind = match (self.layers.is_empty(), motion.pace) {
-            (true, _) => ArrivalKind::First,
-            (false, MoveFeed::Rapid) => ArrivalKind::Rapid,
-            (false, _) => ArrivalKind::Cut,
-        };
+        let kind = self.arrival(motion);
         let target = pose(motion);
         let before = self.layers.last().map(|layer| layer.first..layer.first + layer.count);
         if self.measure.drives().is_some() {
@@ -251,15 +256,12 @@ impl Trellis {
                     }
                 }
                 ArrivalKind::Rapid => self.turn(placer, &stands, range),
-                ArrivalKind::Cut => {
-                    if placer.solver().closed_form() {
-                        let passage = CutPassage {
-                            meet: ways.meet(&self.axes, found.latitude),
-                            arc: ways.arc,
-                        };
-                        self.go_on(placer, motion, &stands, &passage, range, judge);
-                    }
+                ArrivalKind::Cut if placer.solver().closed_form() => {
+                    let meet = ways.meet(&self.axes, found.latitude);
+                    let passage = CutPassage { meet, arc: ways.arc };
+                    self.go_on(placer, motion, &stands, &passage, range, judge);
                 }
+                ArrivalKind::Cut => {}
             }
         }
         self.stands = stands;

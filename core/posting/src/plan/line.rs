@@ -242,14 +242,8 @@ impl<'a> PlannerRun<'a> {
         let ends = self.come == due.legs;
         let mut at = first.at;
         let mut samples = std::mem::take(&mut self.samples);
-        let finest = self.finest(said.feed);
-        graded(first, rest, finest, &mut samples);
-        if self.bends {
-            evenly_bent(first, &mut samples);
-        }
-        if self.jerk && (leg.begins || leg.ends) {
-            at_least(LEAST_FOR_JERK, first, &mut samples);
-        }
+        graded(first, rest, self.finest(said.feed), &mut samples);
+        self.refine(leg, first, &mut samples);
         for (index, sample) in samples.iter().enumerate() {
             let place = self.place(sample, due)?;
             self.sampler.push(&place, said_at(sample), sample.at - at);
@@ -268,6 +262,16 @@ impl<'a> PlannerRun<'a> {
             (self.come, self.way) = (0, 0.0);
         }
         Ok(())
+    }
+
+    /// Adds samples of a leg after its first where the limits need them closer.
+    fn refine(&self, leg: &Leg<'_>, first: &Sample, samples: &mut Vec<Sample>) {
+        if self.bends {
+            evenly_bent(first, samples);
+        }
+        if self.jerk && (leg.begins || leg.ends) {
+            at_least(LEAST_FOR_JERK, first, samples);
+        }
     }
 
     /// The path at a sample; where the tip stands still in a block, what is left of its way is rounding.

@@ -126,30 +126,7 @@ impl DrillCycle {
                 Short(clearance)
             ));
         }
-        let lengths = [
-            cycle.clearance,
-            cycle.retract,
-            cycle.step,
-            cycle.later_step,
-            cycle.pitch,
-            cycle.shift,
-        ]
-        .map(|length| length.unwrap_or(0.0) * scale);
-        for height in lengths.into_iter().chain([depth]) {
-            if libm::fabs(height) > MOST_COORDINATE {
-                return Err(format!(
-                    "a height of {} mm: none is larger than {MOST_COORDINATE:e} mm",
-                    Short(height)
-                ));
-            }
-        }
-        let dwell = cycle.dwell.unwrap_or(0.0);
-        if !(0.0..=LONGEST_DWELL).contains(&dwell) {
-            return Err(format!(
-                "a dwell of {} s: from 0 to {LONGEST_DWELL} s is possible",
-                Short(dwell)
-            ));
-        }
+        check_sizes(cycle, depth, scale)?;
         let bottom = -depth;
         let retract = cycle.retract.map_or(clearance, |level| level * scale).max(clearance);
         let length = |step: Option<f64>| {
@@ -172,16 +149,7 @@ impl DrillCycle {
                     .to_owned(),
             );
         }
-        if let Some(peck) = peck
-            && let least = peck.step.min(peck.later)
-            && (clearance - bottom) / least > MOST_PECKS
-        {
-            return Err(format!(
-                "a peck of {} mm over a depth of {} mm is more than {MOST_PECKS} pecks",
-                Short(least),
-                Short(-bottom)
-            ));
-        }
+        check_pecks(peck, clearance - bottom, depth)?;
         let kind = match (kind, peck) {
             // The step makes the pecks, whatever the kind is called; without it there are none.
             (Cycle::Drill | Cycle::Deep, Some(_)) => Cycle::Deep,
@@ -194,7 +162,7 @@ impl DrillCycle {
             bottom,
             retract,
             peck,
-            dwell,
+            dwell: cycle.dwell.unwrap_or(0.0),
             pitch: pitch(cycle, scale)?,
             shift,
             planes: None,
@@ -341,6 +309,44 @@ impl DrillCycle {
         }
         emit(CycleLeg::Rapid(self.retract));
     }
+}
+
+/// Refuses lengths and dwells that no machine has.
+fn check_sizes(cycle: &CycleDefinition, depth: f64, scale: f64) -> Result<(), String> {
+    let lengths =
+        [cycle.clearance, cycle.retract, cycle.step, cycle.later_step, cycle.pitch, cycle.shift]
+            .map(|length| length.unwrap_or(0.0) * scale);
+    for height in lengths.into_iter().chain([depth]) {
+        if libm::fabs(height) > MOST_COORDINATE {
+            return Err(format!(
+                "a height of {} mm: none is larger than {MOST_COORDINATE:e} mm",
+                Short(height)
+            ));
+        }
+    }
+    let dwell = cycle.dwell.unwrap_or(0.0);
+    if !(0.0..=LONGEST_DWELL).contains(&dwell) {
+        return Err(format!(
+            "a dwell of {} s: from 0 to {LONGEST_DWELL} s is possible",
+            Short(dwell)
+        ));
+    }
+    Ok(())
+}
+
+/// Refuses pecks without end over a way at feed.
+fn check_pecks(peck: Option<Peck>, way: f64, depth: f64) -> Result<(), String> {
+    if let Some(peck) = peck
+        && let least = peck.step.min(peck.later)
+        && way / least > MOST_PECKS
+    {
+        return Err(format!(
+            "a peck of {} mm over a depth of {} mm is more than {MOST_PECKS} pecks",
+            Short(least),
+            Short(depth)
+        ));
+    }
+    Ok(())
 }
 
 /// The control's cycle of a definition.

@@ -17,7 +17,7 @@ mod band;
 mod basis;
 #[path = "../../../src/fit/hull.rs"]
 mod hull;
-#[path = "../../../src/fit/place.rs"]
-mod place;
+#[path = "../../../src/fit/knots.rs"]
+mod knots;
 #[path = "../../../src/reach/step.rs"]
 mod step;

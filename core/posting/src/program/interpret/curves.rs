@@ -5,7 +5,7 @@ use post_grammar::{CircleRecord, Record, Sense, Statement};
 
 use super::{ClInterpreter, UnfinishedCurve};
 use crate::program::arc::ArcAmbiguity;
-use crate::program::limits::MOST_SPLINE_NUMBERS;
+use crate::program::limits::{MOST_SPLINE_NUMBERS, direction};
 use crate::program::{ArcStep, BSpline, PathArc, ProgramStep, SplineStep};
 use post_machine::diagnostic::Short;
 
@@ -57,6 +57,25 @@ impl ClInterpreter {
                 "put a CYCLE/OFF before it",
             );
         }
+        self.check_arc(record, circle, &arc, end);
+        let (turn, shift) = (
+            |direction| self.frame.direction_to_part(direction),
+            |point| self.frame.to_part(point, Vector3::zeros()).0,
+        );
+        let arc = arc.placed(shift, turn);
+        let start_axis = turn(start_axis);
+        self.arrive(end);
+        emit(ProgramStep::Arc(Box::new(ArcStep { arc, start_axis, end: self.motion(end, pace) })));
+    }
+
+    /// Says what is doubtful or wrong about an arc that is to end at `end`.
+    fn check_arc(
+        &mut self,
+        record: &Record<'_>,
+        circle: &CircleRecord,
+        arc: &PathArc,
+        end: Vector3<f64>,
+    ) {
         if let Some(doubt) = arc.doubt(end) {
             let message = match doubt {
                 ArcAmbiguity::Short(ahead) => format!(
@@ -103,14 +122,47 @@ impl ClInterpreter {
                 ),
             );
         }
-        let (turn, shift) = (
-            |direction| self.frame.direction_to_part(direction),
-            |point| self.frame.to_part(point, Vector3::zeros()).0,
-        );
-        let arc = arc.placed(shift, turn);
-        let start_axis = turn(start_axis);
-        self.arrive(end);
-        emit(ProgramStep::Arc(Box::new(ArcStep { arc, start_axis, end: self.motion(end, pace) })));
+    }
+
+    /// A curve that the next point ends.
+    pub(super) fn wait_for_end(&mut self, record: &Record<'_>, curve: UnfinishedCurve) {
+        if self.pending.is_some() {
+            let word = record.statement.word();
+            self.fault(
+                record,
+                "arc",
+                format!("the curve before this {word} is not ended by a GOTO"),
+                "",
+            );
+        }
+        self.pending = Some(curve);
+    }
+
+    /// Takes the direction in which the tool sets out on the arc that follows (`INDIRV`).
+    pub(super) fn set_out_along(&mut self, record: &Record<'_>, along: [f64; 3]) {
+        match direction(Vector3::from(along)) {
+            Some(along) => {
+                self.set_out = Some(along);
+                self.due = true;
+            }
+            None => self.fault(record, "arc", "INDIRV has no direction".to_owned(), ""),
+        }
+    }
+
+    pub(super) fn begin_spline(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
+        self.end_spline(record, emit);
+        match self.tip {
+            Some(tip) => {
+                self.pending =
+                    Some(UnfinishedCurve::Spline { knots: Vec::new(), points: vec![tip] });
+            }
+            None => self.fault(
+                record,
+                "spline",
+                "NURBS begins at the last point, and there is none".to_owned(),
+                "put a GOTO before it",
+            ),
+        }
     }
 
     pub(super) fn spline_data(&mut self, record: &Record<'_>) {

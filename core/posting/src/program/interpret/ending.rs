@@ -1,11 +1,29 @@
 //! Whether a file is whole, as far as its end tells.
 
-use post_grammar::{Statement, parse_record};
+use post_grammar::{Record, Statement, WordUsage, parse_record};
 use post_machine::diagnostic::Diagnostic;
 
 use super::ClInterpreter;
+use crate::program::ProgramStep;
 
 impl ClInterpreter {
+    /// Ends the file; records after it are left out.
+    pub(super) fn fini(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
+        self.end_spline(record, emit);
+        self.finished = true;
+        self.count("FINI", record, WordUsage::Used);
+    }
+
+    /// Leaves out a record after FINI, and says so once.
+    pub(super) fn after_fini(&mut self, record: &Record<'_>) {
+        if !matches!(record.statement, Statement::Remark(_) | Statement::Fini) {
+            self.count("FINI", record, WordUsage::Used);
+            if self.census.times("FINI") == 2 {
+                self.warn(record, "after-fini", "records behind FINI are left out".to_owned());
+            }
+        }
+    }
+
     /// What is wrong with the end of a file whose last record is `last`; `line_end` says whether a line end stands after
     /// it. The finding has no place yet.
     pub(crate) fn cut_off(&self, last: &str, line_end: bool) -> Option<Diagnostic> {

@@ -6,6 +6,7 @@ mod curves;
 mod cycles;
 mod ending;
 mod feeds;
+mod frames;
 mod moves;
 mod readiness;
 mod reading;
@@ -16,8 +17,7 @@ pub(crate) mod words;
 use nalgebra::Vector3;
 use post_grammar::text::{as_remark, excerpt};
 use post_grammar::{
-    ArcMove, CircleRecord, CoolantWord, CutterSide, Delay, Delta, Record, Statement, Units,
-    WordUsage,
+    ArcMove, CircleRecord, CoolantWord, CutterSide, Delay, Record, Statement, Units, WordUsage,
 };
 use post_machine::description::{Print, Smoothing};
 use post_plugin::{Coolant, SpindleSense};
@@ -27,8 +27,9 @@ pub use reading::{DefaultSpindle, ReadingOptions};
 use super::frame::ClFrame;
 use super::limits::{LONGEST_DWELL, MOST_WORDS, direction};
 use super::word_census::WordCensus;
-use super::{Command, DrillCycle, MoveFeed, PlaneStep, ProgramStep};
+use super::{Command, DrillCycle, MoveFeed, ProgramStep};
 use cam_system::CamSystem;
+use frames::millimetres;
 use post_machine::diagnostic::{Diagnostic, Place, Short};
 use turned::ArcAxisConvention;
 use words::SuspectRecord;
@@ -250,7 +251,7 @@ impl ClInterpreter {
             self.plain_goto(record, *point, *axis, emit);
             return;
         }
-        self.other(record, emit);
+        self.statement(record, emit);
     }
 
     /// What is left open at the end of the file.
@@ -293,84 +294,24 @@ impl ClInterpreter {
         self.findings.extend(self.census.slips(&self.reading.allowed));
     }
 
-    fn other(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
+    /// Carries out what a record says.
+    fn statement(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
         if self.finished {
-            if !matches!(record.statement, Statement::Remark(_) | Statement::Fini) {
-                self.count("FINI", record, WordUsage::Used);
-                if self.census.times("FINI") == 2 {
-                    self.warn(record, "after-fini", "records behind FINI are left out".to_owned());
-                }
-            }
+            self.after_fini(record);
             return;
         }
         match &record.statement {
             Statement::Goto { point, axis } => self.goto(record, *point, *axis, emit),
-            Statement::GotoEdge { point, axis, edge } => match direction(Vector3::from(*edge)) {
-                Some(edge) => {
-                    self.edge = edge;
-                    self.goto(record, *point, Some(*axis), emit);
-                }
-                None => self.fault(
-                    record,
-                    "axis",
-                    "the direction of the leading edge is null".to_owned(),
-                    "the last three of nine numbers say where the edge points",
-                ),
-            },
+            Statement::GotoEdge { point, axis, edge } => {
+                self.goto_edge(record, *point, *axis, *edge, emit);
+            }
             Statement::Head(name) => {
                 self.tip = None;
                 emit(ProgramStep::Command(Command::Head(name.clone())));
             }
-            Statement::Godlta(delta) => {
-                let Some(tip) = self.tip else {
-                    self.fault(
-                        record,
-                        "godlta",
-                        "GODLTA steps from the last point, and there is none".to_owned(),
-                        "put a FROM or GOTO before it",
-                    );
-                    return;
-                };
-                if self.cycle.is_some() {
-                    self.fault(
-                        record,
-                        "godlta",
-                        "GODLTA while a cycle is on: from which of its heights?".to_owned(),
-                        "put a CYCLE/OFF before it, or write GOTO",
-                    );
-                    return;
-                }
-                let step = match delta {
-                    Delta::Step(step) => Vector3::from(*step),
-                    Delta::AlongAxis(length) => self.axis * *length,
-                };
-                let point = tip / self.scale + step;
-                self.goto(record, point.into(), None, emit);
-            }
-            Statement::From { point, axis } => {
-                let Some(tip) = self.point(record, *point) else {
-                    return;
-                };
-                if !self.set_axis(record, *axis) {
-                    return;
-                }
-                self.measured = true;
-                self.tip = Some(tip);
-                let (tip, axis) = self.frame.to_part(tip, self.axis);
-                emit(ProgramStep::Command(Command::From { tip, axis }));
-            }
-            Statement::Gohome(None) => {
-                self.rapid = false;
-                self.tip = None;
-                emit(ProgramStep::Command(Command::Home));
-            }
-            Statement::Gohome(Some((point, axis))) => {
-                self.rapid = true;
-                // A cycle does not act at home.
-                let cycle = self.cycle.take();
-                self.goto(record, *point, *axis, emit);
-                self.cycle = cycle;
-            }
+            Statement::Godlta(delta) => self.godlta(record, delta, emit),
+            Statement::From { point, axis } => self.starting_point(record, *point, *axis, emit),
+            Statement::Gohome(home) => self.gohome(record, *home, emit),
             Statement::Rapid => self.rapid = true,
             Statement::Feed(feed) => self.set_feed(record, *feed),
             Statement::Spindle(spindle) => {
@@ -379,226 +320,105 @@ impl ClInterpreter {
             }
             // The kind stands in the record after it.
             Statement::Coolant(CoolantWord::On) if self.writer.autodesk => {}
-            Statement::Coolant(word) => {
-                let coolant = match word {
-                    CoolantWord::Off => Coolant::Off,
-                    CoolantWord::On => self.coolant,
-                    CoolantWord::Flood => Coolant::Flood,
-                    CoolantWord::Mist => Coolant::Mist,
-                    CoolantWord::Through => Coolant::Through,
-                    CoolantWord::Air => Coolant::Air,
-                };
-                if coolant != Coolant::Off {
-                    self.coolant = coolant;
-                }
-                self.load_told(record, emit);
-                emit(ProgramStep::Command(Command::Coolant(coolant)));
-            }
+            Statement::Coolant(word) => self.set_coolant(record, word, emit),
             Statement::LoadTool(tool) => self.load_read(record, tool, emit),
-            Statement::SelectTool(number) => {
-                if self.loaded.map(|(loaded, ..)| loaded) != Some(*number) {
-                    emit(ProgramStep::Command(Command::Preselect(*number)));
-                }
-            }
+            Statement::SelectTool(number) => self.select_tool(*number, emit),
             Statement::ToolData { numbers, .. } => self.cutter(record, numbers, 2),
             Statement::Cutter(numbers) => self.cutter(record, numbers, 6),
-            Statement::Units(units) => {
-                let scale = millimetres(self.reading.units.unwrap_or(*units));
-                if scale != self.scale && self.measured {
-                    self.fault(
-                        record,
-                        "units",
-                        "UNITS comes after points or feeds that were read in other units"
-                            .to_owned(),
-                        "put it before them, or say --units",
-                    );
-                }
-                self.units = Some(*units);
-                self.scale = scale;
-            }
-            Statement::Multax(on) => {
-                if !on {
-                    self.axis = Vector3::z();
-                }
-            }
+            Statement::Units(units) => self.set_units(record, *units),
+            Statement::Multax(true) => {}
+            Statement::Multax(false) => self.axis = Vector3::z(),
             Statement::Milling => self.writer.milling = true,
             Statement::Mcs { axes, origin } => self.mcs(record, axes, origin),
-            Statement::Msys { origin, x, y } => {
-                let Some(origin) = self.point(record, *origin) else {
-                    return;
-                };
-                let done = self
-                    .frame
-                    .set_msys(origin, Vector3::from(*x), Vector3::from(*y));
-                if let Err(message) = done {
-                    self.fault(record, "msys", message.to_owned(), "");
-                }
+            Statement::Msys { origin, x, y } => self.msys(record, *origin, [*x, *y]),
+            Statement::Circle(circle) => {
+                self.wait_for_end(record, UnfinishedCurve::Arc(circle.clone()));
             }
-            Statement::Circle(circle) => self.wait_for_end(record, UnfinishedCurve::Arc(circle.clone())),
             Statement::ArcMove(arc) => self.wait_for_end(record, UnfinishedCurve::Turned(*arc)),
-            Statement::SetOut(along) => match direction(Vector3::from(*along)) {
-                Some(along) => {
-                    self.set_out = Some(along);
-                    self.due = true;
-                }
-                None => self.fault(record, "arc", "INDIRV has no direction".to_owned(), ""),
-            },
+            Statement::SetOut(along) => self.set_out_along(record, *along),
             Statement::PartSurface(normal) => {
                 self.part_surface = direction(Vector3::from(normal.unwrap_or([0.0, 0.0, 1.0])));
             }
-            Statement::AlongArc(along) => {
-                self.end_spline(record, emit);
-                self.along_arc(record, along, emit);
-            }
-            Statement::Nurbs => {
-                self.end_spline(record, emit);
-                match self.tip {
-                    Some(tip) => {
-                        self.pending = Some(UnfinishedCurve::Spline {
-                            knots: Vec::new(),
-                            points: vec![tip],
-                        });
-                    }
-                    None => self.fault(
-                        record,
-                        "spline",
-                        "NURBS begins at the last point, and there is none".to_owned(),
-                        "put a GOTO before it",
-                    ),
-                }
-            }
+            Statement::AlongArc(along) => self.along_arc(record, along, emit),
+            Statement::Nurbs => self.begin_spline(record, emit),
             Statement::Knot(_) | Statement::Control { .. } => self.spline_data(record),
-            Statement::WorkOffset { number, set } => {
-                self.work_offset(record, *number, *set, emit);
-            }
+            Statement::WorkOffset { number, set } => self.work_offset(record, *number, *set, emit),
             Statement::Subprogram(number) => self.subprogram(record, *number, emit),
             Statement::Cycle(cycle) => self.cycle(record, cycle, emit),
-            Statement::Cutcom(cutcom) => {
-                self.load_told(record, emit);
-                self.cutcom(record, *cutcom, emit);
-            }
+            Statement::Cutcom(cutcom) => self.cutcom(record, *cutcom, emit),
             Statement::CutcomOnCentre(on_centre) => self.writer.says_points(*on_centre),
-            Statement::Rotate(_) if self.frame.sits_turned() => self.fault(
-                record,
-                "rotabl",
-                "the angles of this index move are those of a part that is not turned, and here it sits turned about its Z"
-                    .to_owned(),
-                "leave out --turn and [workpiece] turn for this file",
-            ),
-            Statement::Rotate(rotate) => match self.frame.rotate(rotate) {
-                Ok((axis, angle)) => {
-                    emit(ProgramStep::Command(Command::Index { axis, angle }));
-                    let plane = self.frame.turned().map(|turned| {
-                        Box::new(PlaneStep {
-                            axes: [0, 1, 2].map(|axis| turned.column(axis).into_owned()),
-                        })
-                    });
-                    emit(ProgramStep::Plane(plane));
-                    self.axis = match (self.frame.turned(), self.told_axis) {
-                        (None, Some(axis)) => axis,
-                        _ => Vector3::z(),
-                    };
-                    self.check_axis = self.frame.turned().is_some();
-                    self.due = true;
-                    // Where the tool stands is not known in the frame that begins here.
-                    self.tip = None;
-                }
-                Err(message) => self.fault(
-                    record,
-                    "rotabl",
-                    message.to_owned(),
-                    "write ROTABL/AAXIS,…, BAXIS or CAXIS",
-                ),
-            },
-            Statement::ToolAxis(axis) => match direction(Vector3::from(*axis)) {
-                Some(axis) => {
-                    self.told_axis = Some(axis);
-                    if self.frame.turned().is_none() {
-                        self.axis = axis;
-                    }
-                }
-                None => self.fault(record, "axis", "the tool axis is null".to_owned(), ""),
-            },
-            Statement::Delay(Delay::Seconds(seconds)) => self.dwell(record, *seconds, emit),
-            Statement::Delay(Delay::Revolutions(turns)) => match self.rpm {
-                Some(rpm) if rpm > 0.0 => self.dwell(record, turns * 60.0 / rpm, emit),
-                _ => self.fault(
-                    record,
-                    "dwell",
-                    "a dwell in revolutions needs a spindle speed".to_owned(),
-                    "put a SPINDL before it",
-                ),
-            },
+            Statement::Rotate(rotate) => self.rotate(record, rotate, emit),
+            Statement::ToolAxis(axis) => self.tool_axis(record, *axis),
+            Statement::Delay(delay) => self.delay(record, delay, emit),
             Statement::Stop => emit(ProgramStep::Command(Command::Stop)),
             Statement::OptionalStop => emit(ProgramStep::Command(Command::OptionalStop)),
             Statement::ToolPath { name, tool } => {
-                self.end_spline(record, emit);
-                // Every path of NX stands by itself: its first GOTO gives the axis if it is not Z.
-                self.axis = Vector3::z();
-                self.tool_name = as_remark(tool.clone().unwrap_or_default());
-                let name = as_remark(name.clone());
-                self.path = Some(excerpt(&name, SHOWN_NAME).into_owned());
-                self.paths = true;
-                let smoothing = self.reading.smoothing.of(&name);
-                emit(ProgramStep::Command(Command::Operation(name)));
-                self.smooth(smoothing, emit);
+                self.begin_operation(record, name, tool.as_deref(), emit);
             }
-            Statement::EndOfPath => {
-                self.end_spline(record, emit);
-                self.path = None;
-                emit(ProgramStep::Command(Command::OperationEnd));
-            }
+            Statement::EndOfPath => self.end_operation(record, emit),
             Statement::Print(text) if self.reading.print == Print::Message => {
                 emit(ProgramStep::Command(Command::Message(as_remark(text.clone()))));
             }
             Statement::PartName(text) | Statement::Print(text) => {
-                emit(ProgramStep::Command(Command::Comment(as_remark(text.clone()))))
+                emit(ProgramStep::Command(Command::Comment(as_remark(text.clone()))));
             }
             Statement::Insert(text) => self.insert(record, text, emit),
             Statement::ToolName(name) => self.tool_name = as_remark(name.clone()),
-            Statement::Csys(_) | Statement::Remark(_) => {
-                if let Statement::Remark(text) = &record.statement {
-                    self.writer.remark(text);
-                }
-                self.count(record.statement.word(), record, WordUsage::Ignored);
+            Statement::Csys(_) => self.ignore(record),
+            Statement::Remark(text) => {
+                self.writer.remark(text);
+                self.ignore(record);
             }
-            Statement::Fini => {
-                self.end_spline(record, emit);
-                self.finished = true;
-                self.count("FINI", record, WordUsage::Used);
+            Statement::Fini => self.fini(record, emit),
+            Statement::Other { word, arguments, directive } => {
+                self.other_word(record, word, arguments, *directive, emit);
             }
-            Statement::Other {
-                word,
-                arguments,
-                directive,
-            } => self.other_word(record, word, arguments, *directive, emit),
         }
     }
 
-    /// A curve that the next point ends.
-    fn wait_for_end(&mut self, record: &Record<'_>, curve: UnfinishedCurve) {
-        if self.pending.is_some() {
-            let word = record.statement.word();
-            self.fault(
-                record,
-                "arc",
-                format!("the curve before this {word} is not ended by a GOTO"),
-                "",
-            );
-        }
-        self.pending = Some(curve);
+    /// Notes a record without a meaning for the program.
+    fn ignore(&mut self, record: &Record<'_>) {
+        self.count(record.statement.word(), record, WordUsage::Ignored);
     }
 
-    /// The frame of an operation: only that of the part is understood.
-    fn mcs(&mut self, record: &Record<'_>, axes: &[[f64; 3]; 3], origin: &[f64; 3]) {
-        let own = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        if *axes != own || *origin != [0.0; 3] {
-            self.fault(
+    /// Begins an operation of the CAM system.
+    fn begin_operation(
+        &mut self,
+        record: &Record<'_>,
+        name: &str,
+        tool: Option<&str>,
+        emit: &mut impl FnMut(ProgramStep),
+    ) {
+        self.end_spline(record, emit);
+        // Every path of NX stands by itself: its first GOTO gives the axis if it is not Z.
+        self.axis = Vector3::z();
+        self.tool_name = as_remark(tool.unwrap_or_default().to_owned());
+        let name = as_remark(name.to_owned());
+        self.path = Some(excerpt(&name, SHOWN_NAME).into_owned());
+        self.paths = true;
+        let smoothing = self.reading.smoothing.of(&name);
+        emit(ProgramStep::Command(Command::Operation(name)));
+        self.smooth(smoothing, emit);
+    }
+
+    fn end_operation(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
+        self.end_spline(record, emit);
+        self.path = None;
+        emit(ProgramStep::Command(Command::OperationEnd));
+    }
+
+    fn delay(&mut self, record: &Record<'_>, delay: &Delay, emit: &mut impl FnMut(ProgramStep)) {
+        match (delay, self.rpm) {
+            (Delay::Seconds(seconds), _) => self.dwell(record, *seconds, emit),
+            (Delay::Revolutions(turns), Some(rpm)) if rpm > 0.0 => {
+                self.dwell(record, turns * 60.0 / rpm, emit);
+            }
+            (Delay::Revolutions(_), _) => self.fault(
                 record,
-                "mcs",
-                "MCS is a frame of its own: whether the points behind it are meant in it, nobody here knows".to_owned(),
-                "let the CAM system write the tool axis with each point (MULTAX/ON), in the frame of the part",
-            );
+                "dwell",
+                "a dwell in revolutions needs a spindle speed".to_owned(),
+                "put a SPINDL before it",
+            ),
         }
     }
 
@@ -658,15 +478,4 @@ impl ClInterpreter {
 pub(crate) fn record_place(file: &str, record: &Record<'_>) -> Place {
     let text = record.text();
     Place::new(file, record.line, &text, 0..text.len())
-}
-
-/// Millimetres in one unit.
-fn millimetres(units: Units) -> f64 {
-    match units {
-        Units::Millimetre => 1.0,
-        Units::Inch => 25.4,
-        Units::Centimetre => 10.0,
-        Units::Metre => 1000.0,
-        Units::Foot => 304.8,
-    }
 }

@@ -1,11 +1,11 @@
 //! Points become motions: axis, feed and frame in force at each.
 
 use nalgebra::Vector3;
-use post_grammar::Record;
+use post_grammar::{Delta, Record};
 
 use super::{ClInterpreter, UnfinishedCurve};
-use crate::program::limits::{MOST_COORDINATE, is_near};
-use crate::program::{MoveFeed, ProgramStep, StraightMove};
+use crate::program::limits::{MOST_COORDINATE, direction, is_near};
+use crate::program::{Command, MoveFeed, ProgramStep, StraightMove};
 
 impl ClInterpreter {
     /// A `GOTO` that neither ends a curve nor stands in a cycle: nearly all of a file.
@@ -79,6 +79,100 @@ impl ClInterpreter {
         {
             self.drill(record, drill, pace, tip, emit);
         }
+    }
+
+    pub(super) fn goto_edge(
+        &mut self,
+        record: &Record<'_>,
+        point: [f64; 3],
+        axis: [f64; 3],
+        edge: [f64; 3],
+        emit: &mut impl FnMut(ProgramStep),
+    ) {
+        match direction(Vector3::from(edge)) {
+            Some(edge) => {
+                self.edge = edge;
+                self.goto(record, point, Some(axis), emit);
+            }
+            None => self.fault(
+                record,
+                "axis",
+                "the direction of the leading edge is null".to_owned(),
+                "the last three of nine numbers say where the edge points",
+            ),
+        }
+    }
+
+    /// Steps on from the last point.
+    pub(super) fn godlta(
+        &mut self,
+        record: &Record<'_>,
+        delta: &Delta,
+        emit: &mut impl FnMut(ProgramStep),
+    ) {
+        let Some(tip) = self.tip else {
+            self.fault(
+                record,
+                "godlta",
+                "GODLTA steps from the last point, and there is none".to_owned(),
+                "put a FROM or GOTO before it",
+            );
+            return;
+        };
+        if self.cycle.is_some() {
+            self.fault(
+                record,
+                "godlta",
+                "GODLTA while a cycle is on: from which of its heights?".to_owned(),
+                "put a CYCLE/OFF before it, or write GOTO",
+            );
+            return;
+        }
+        let step = match delta {
+            Delta::Step(step) => Vector3::from(*step),
+            Delta::AlongAxis(length) => self.axis * *length,
+        };
+        let point = tip / self.scale + step;
+        self.goto(record, point.into(), None, emit);
+    }
+
+    /// Takes where the tool stands at the beginning (`FROM`).
+    pub(super) fn starting_point(
+        &mut self,
+        record: &Record<'_>,
+        point: [f64; 3],
+        axis: Option<[f64; 3]>,
+        emit: &mut impl FnMut(ProgramStep),
+    ) {
+        let Some(tip) = self.point(record, point) else {
+            return;
+        };
+        if !self.set_axis(record, axis) {
+            return;
+        }
+        self.measured = true;
+        self.tip = Some(tip);
+        let (tip, axis) = self.frame.to_part(tip, self.axis);
+        emit(ProgramStep::Command(Command::From { tip, axis }));
+    }
+
+    /// Goes home: to the machine's own place, or to a point of the file.
+    pub(super) fn gohome(
+        &mut self,
+        record: &Record<'_>,
+        home: Option<([f64; 3], Option<[f64; 3]>)>,
+        emit: &mut impl FnMut(ProgramStep),
+    ) {
+        self.rapid = home.is_some();
+        let Some((point, axis)) = home else {
+            self.tip = None;
+            emit(ProgramStep::Command(Command::Home));
+            return;
+        };
+        // A cycle does not act at home.
+        let cycle = self.cycle.take();
+        self.goto(record, point, axis, emit);
+        self.cycle = cycle;
     }
 
     /// Takes the axis of a six-number point; false if it is not an axis.

@@ -2,9 +2,10 @@
 
 use post_grammar::text::excerpt;
 use post_grammar::{
-    Argument, Cutcom, CutterSide, LoadTool, Record, Sense, SpindleUnit, SpindleWord, WordUsage,
+    Argument, CoolantWord, Cutcom, CutterSide, LoadTool, Record, Sense, SpindleUnit, SpindleWord,
+    WordUsage,
 };
-use post_plugin::{Compensation, Spindle, SpindleSense};
+use post_plugin::{Compensation, Coolant, Spindle, SpindleSense};
 
 use super::cam_system::CompensatedPoints;
 use super::{ClInterpreter, CutterDescription, SHOWN_NAME};
@@ -14,6 +15,34 @@ use post_machine::description::{CompensationOnCentre, ToolLength};
 use post_machine::diagnostic::{Diagnostic, Short};
 
 impl ClInterpreter {
+    pub(super) fn set_coolant(
+        &mut self,
+        record: &Record<'_>,
+        word: &CoolantWord,
+        emit: &mut impl FnMut(ProgramStep),
+    ) {
+        let coolant = match word {
+            CoolantWord::Off => Coolant::Off,
+            CoolantWord::On => self.coolant,
+            CoolantWord::Flood => Coolant::Flood,
+            CoolantWord::Mist => Coolant::Mist,
+            CoolantWord::Through => Coolant::Through,
+            CoolantWord::Air => Coolant::Air,
+        };
+        if coolant != Coolant::Off {
+            self.coolant = coolant;
+        }
+        self.load_told(record, emit);
+        emit(ProgramStep::Command(Command::Coolant(coolant)));
+    }
+
+    /// Makes a tool ready, unless it is the one that is loaded.
+    pub(super) fn select_tool(&self, number: u32, emit: &mut impl FnMut(ProgramStep)) {
+        if self.loaded.map(|(loaded, ..)| loaded) != Some(number) {
+            emit(ProgramStep::Command(Command::Preselect(number)));
+        }
+    }
+
     pub(super) fn spindle(
         &mut self,
         record: &Record<'_>,
@@ -328,6 +357,7 @@ impl ClInterpreter {
         cutcom: Cutcom,
         emit: &mut impl FnMut(ProgramStep),
     ) {
+        self.load_told(record, emit);
         let side = match cutcom.side {
             Some(CutterSide::Off) => {
                 self.compensated = false;

@@ -39,7 +39,7 @@ pub(super) enum ArcAxisConvention {
     OfThePlane,
 }
 
-/// The ways round by which a stated angle leads from start to end, each as its turns for [`Arc::new`](crate::program::Arc::new).
+/// The ways round by which a stated angle leads from start to end, each as its turns for [`PathArc::new`](crate::program::PathArc::new).
 struct ArcTurnCounts {
     forth: Option<u32>,
     back: Option<u32>,
@@ -99,20 +99,39 @@ impl ClInterpreter {
         let swept = if swept < 0.0 { swept + TAU } else { swept };
         let closed = (to - from).norm() < CLOSED;
         let ways = ArcTurnCounts::new(swept, closed, arc.degrees.to_radians(), radius);
+        let (sense, turns) = self.way_round(record, arc, axis, &ways, swept)?;
+        Some(CircleRecord {
+            centre: arc.centre,
+            axis: arc.axis,
+            radius: Some(arc.radius),
+            sense,
+            turns: Some(turns),
+        })
+    }
+
+    /// Decides which of the ways round an arc about `axis` goes: its sense, and its turns.
+    fn way_round(
+        &mut self,
+        record: &Record<'_>,
+        arc: &ArcMove,
+        axis: Vector3<f64>,
+        ways: &ArcTurnCounts,
+        swept: f64,
+    ) -> Option<(Option<Sense>, u32)> {
         let turned_over = axis.dot(&self.axis) < 0.0;
-        let (sense, turns) = match (ways.forth, ways.back) {
+        match (ways.forth, ways.back) {
             (Some(turns), None) => {
                 if turned_over && self.arc_axes == ArcAxisConvention::Open {
                     self.arc_axes = ArcAxisConvention::TurnedOver;
                 }
-                (None, turns)
+                Some((None, turns))
             }
             (None, Some(turns)) => {
                 self.arc_axes = ArcAxisConvention::OfThePlane;
-                (Some(Sense::Clockwise), turns)
+                Some((Some(Sense::Clockwise), turns))
             }
             (Some(turns), Some(_)) if self.arc_axes == ArcAxisConvention::TurnedOver => {
-                (None, turns)
+                Some((None, turns))
             }
             (Some(turns), Some(_)) if self.reading.allows("MOVARC") => {
                 self.allow(
@@ -120,7 +139,7 @@ impl ClInterpreter {
                     "goes right-handed about its axis where its angle fits both ways",
                     record,
                 );
-                (None, turns)
+                Some((None, turns))
             }
             (Some(_), Some(_)) => {
                 self.fault(
@@ -133,7 +152,7 @@ impl ClInterpreter {
                     "newer posts of Autodesk turn the axis over for arcs that go clockwise, older ones do not: where it is one of the \
                      newer, --allow MOVARC takes such arcs right-handed about their axis; or let the CAM system write arcs of less than a half turn",
                 );
-                return None;
+                None
             }
             (None, None) => {
                 let message = format!(
@@ -143,16 +162,9 @@ impl ClInterpreter {
                     Short(360.0 - swept.to_degrees())
                 );
                 self.no_arc(record, &message);
-                return None;
+                None
             }
-        };
-        Some(CircleRecord {
-            centre: arc.centre,
-            axis: arc.axis,
-            radius: Some(arc.radius),
-            sense,
-            turns: Some(turns),
-        })
+        }
     }
 
     /// CATIA's arc, to its end.
@@ -162,6 +174,7 @@ impl ClInterpreter {
         along: &AlongArc,
         emit: &mut impl FnMut(ProgramStep),
     ) {
+        self.end_spline(record, emit);
         let set_out = self.set_out.take();
         if self.cycle_lost {
             return;

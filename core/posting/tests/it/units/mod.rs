@@ -16,8 +16,6 @@ mod cycle;
 mod cycle_time;
 #[path = "../../../src/plan/graded.rs"]
 mod graded;
-#[path = "../../../src/blocks/lie.rs"]
-mod lie;
 #[path = "../../../src/program/limits.rs"]
 mod limits;
 #[path = "../../../src/plan/pieces.rs"]
@@ -30,3 +28,5 @@ mod spline;
 mod taut;
 #[path = "../../../src/tightening.rs"]
 mod tightening;
+#[path = "../../../src/blocks/tool_alignment.rs"]
+mod tool_alignment;

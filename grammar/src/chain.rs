@@ -32,7 +32,7 @@ pub enum LinkKind {
     Axis {
         /// A capital and digits.
         name: String,
-        /// A prime stands behind it: the axis carries the workpiece.
+        /// A prime follows it: the axis carries the workpiece.
         primed: bool,
     },
     /// `(S)`: a spindle that turns without being positioned.

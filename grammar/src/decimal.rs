@@ -6,7 +6,7 @@ const POWERS: [f64; 23] = [
     1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
-/// What so many digits behind a mantissa multiply it by.
+/// What so many digits after a mantissa multiply it by.
 const SHIFTS: [u64; 8] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000];
 
 /// Digits, leading zeros among them, that cannot overflow the mantissa.
@@ -28,7 +28,7 @@ pub(crate) fn number(text: &[u8], at: usize) -> Option<(f64, usize)> {
     Some((value, at + length))
 }
 
-/// A short number with less than a window behind it.
+/// A short number with less than a window after it.
 fn near_the_end(text: &[u8]) -> Option<(f64, usize)> {
     let mut window = [b' '; 17];
     window.get_mut(..text.len())?.copy_from_slice(text);
@@ -95,7 +95,7 @@ fn short(text: &[u8], at: usize) -> Option<Decimal> {
     let mut length = digits;
     let point = window[begin + digits] == b'.';
     if point {
-        // The eight characters behind the point.
+        // The eight characters after the point.
         let fraction = (low >> 8 >> before) | (high << (56 - before));
         let others = self::others(fraction);
         if others == 0 {
@@ -181,7 +181,7 @@ fn is_exponent(byte: u8) -> bool {
 }
 
 /// Which of eight characters, less [`ZEROS`], are no digits: some bit in the upper half of the byte. Right up to the
-/// first such byte, and to the next behind a point; one above 0xF9 carries into those behind it.
+/// first such byte, and to the next after a point; one above 0xF9 carries into those after it.
 #[inline(always)]
 fn others(eight: u64) -> u64 {
     (eight.wrapping_add(0x0606_0606_0606_0606) | eight) & 0xF0F0_F0F0_F0F0_F0F0

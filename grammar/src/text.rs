@@ -46,7 +46,7 @@ pub fn as_remark(text: String) -> String {
     text.replace(is_unprintable, " ")
 }
 
-/// `text`, or its first `most` bytes with `…` behind them, cut between characters.
+/// `text`, or its first `most` bytes with `…` after them, cut between characters.
 pub fn excerpt(text: &str, most: usize) -> Cow<'_, str> {
     if text.len() <= most {
         return Cow::Borrowed(text);

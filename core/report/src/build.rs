@@ -1,4 +1,4 @@
-//! Puts the scripts of the page together: those of `page/order.txt`, one behind the other, squeezed like the styles.
+//! Puts the scripts of the page together: those of `page/order.txt`, one after the other, squeezed like the styles.
 
 mod squeeze;
 

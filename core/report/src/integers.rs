@@ -3,7 +3,7 @@
 //! A column is one byte for the order of the differences (0, 1 or 2), one for the number of planes, and the planes, the
 //! least bytes first, each as long as the column. Before the first value there are zeros. Where the order has 16 more,
 //! all values are a first one and multiples of a step besides (words that are printed with fewer decimals than the
-//! column has): behind the number of planes stand the first one as a float of 64 bits and the step as an integer of 32,
+//! column has): after the number of planes stand the first one as a float of 64 bits and the step as an integer of 32,
 //! least byte first, and the planes are those of the multiples.
 
 /// Flag in the byte of the order: values are multiples of a step.
@@ -117,7 +117,7 @@ fn best_order(values: &[i64]) -> u8 {
     order.unwrap_or(0) as u8
 }
 
-/// The column of so many rows that stands at `at`, which moves behind it; none if the bytes end before.
+/// The column of so many rows that stands at `at`, which moves past it; none if the bytes end before.
 pub fn decode(bytes: &[u8], rows: usize, at: &mut usize) -> Option<Vec<i64>> {
     let [order, planes] = *bytes.get(*at..*at + 2)? else {
         return None;

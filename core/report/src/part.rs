@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use crate::base64;
 
-/// Writes a part. It may come in several elements of one name, which are meant one behind the other.
+/// Writes a part. It may come in several elements of one name, which are meant one after the other.
 pub fn write(out: &mut dyn Write, name: &str, packed: &[u8]) -> io::Result<u64> {
     let mut text = Vec::with_capacity(packed.len() / 3 * 4 + 96);
     text.extend_from_slice(b"<script type=\"text/plain\" class=\"part\" data-name=\"");

@@ -1,15 +1,15 @@
 //! Lines of a text as templates, and columns of the numbers in them.
 //!
-//! A number is an optional minus, digits without needless zeros in front, and a point with digits behind it or none.
+//! A number is an optional minus, digits without needless zeros in front, and a point with digits after it or none.
 //! What is written otherwise (`-0.0`, `007`, `.5`, seventeen digits) stays a part of the template. Numbers of the same
 //! address go into one column, whatever template they stand in: the letter ahead of them and how often it came in the
-//! line; behind a slash (CL words) the text up to it and how many numbers came since.
+//! line; after a slash (CL words) the text up to it and how many numbers came since.
 //!
 //! A chunk is: the number of templates (32 bits), each with its length (32 bits) and its bytes, where a zero byte
 //! stands for a number; the number of columns (32 bits); for each template and number the place of its column (32
 //! bits); the column of the templates of the lines; and of each column its number of rows (32 bits), a byte for how its
 //! numbers are written, and the column of the numbers without their points. That byte is the number of decimals that
-//! all of them have; 32 more: at most so many, without zeros at the end; 64 more: each has its own, in a column behind.
+//! all of them have; 32 more: at most so many, without zeros at the end; 64 more: each has its own, in a column after.
 //! Numbers are then those of the most decimals. Integers lie as in [`crate::integers`], 32 bits with the least byte
 //! first.
 

@@ -36,7 +36,7 @@ pub fn is_free_text(line: &[u8]) -> bool {
     std::str::from_utf8(word).is_ok_and(is_text_word) && !is_directive(word, rest)
 }
 
-/// Whether any text may stand behind the word.
+/// Whether any text may follow the word.
 fn is_text_word(word: &str) -> bool {
     let known = MajorWord::find(word);
     known.is_some_and(|known| matches!(known.behind, ArgumentForm::Text(_)))
@@ -53,7 +53,7 @@ pub(super) const LONGEST_WORD: usize = 64;
 /// Characters of an item that a message shows.
 pub(crate) const SHOWN: usize = 60;
 
-/// One item behind the slash.
+/// One item after the slash.
 pub(crate) struct LineItem<'t> {
     /// Text as written; empty where two commas follow each other.
     pub text: &'t str,
@@ -88,7 +88,7 @@ pub(crate) struct LogicalLine<'t> {
     pub known: Option<&'static MajorWord>,
     /// Bytes of the text at which the word stands.
     pub word_span: Range<usize>,
-    /// A slash stands behind it.
+    /// A slash follows it.
     pub slash: bool,
     /// What follows.
     pub items: Vec<LineItem<'t>>,
@@ -215,7 +215,7 @@ fn line<'t>(text: &'t str, statement: Pair<'t, Rule>) -> Result<LogicalLine<'t>,
         slash: false,
         items: Vec::new(),
     };
-    // Whether an item is due: at the beginning and behind a comma.
+    // Whether an item is due: at the beginning and after a comma.
     let mut due = true;
     for pair in statement.into_inner() {
         let span = pair.as_span();

@@ -2,7 +2,7 @@
 //!
 //! A line ends at LF, CR LF or CR. What CAM systems and ISO 4343 agree on about `$`:
 //! - a single `$` as the last character of a line, blanks aside: the record goes on in the next line;
-//! - `$$`: a comment from there to the end of the line, at the beginning of a line and behind a statement alike.
+//! - `$$`: a comment from there to the end of the line, at the beginning of a line and after a statement alike.
 //!   So `$$` never continues a line, and a `$` inside a comment does not either;
 //! - `$$->` at the beginning is a directive, which is read, commented and continued like a statement;
 //! - in a free text (`PPRINT`, `INSERT`, a comment, …) both are text: a remark that happens to end in `$`
@@ -91,7 +91,7 @@ impl<R: Read> Reader<R> {
     }
 
     /// The input as far as it was taken ends in the middle of a line: of a file that was read to its end, no line end
-    /// stands behind the last record.
+    /// follows the last record.
     pub fn ends_within_a_line(&self) -> bool {
         self.unended
     }
@@ -253,7 +253,7 @@ impl<R: Read> Reader<R> {
         &self.buffer[self.start..self.end]
     }
 
-    /// Goes on behind the line `last`; its bytes stay in the buffer until it is filled again.
+    /// Goes on after the line `last`; its bytes stay in the buffer until it is filled again.
     fn consume(&mut self, last: &PhysicalLine, lines: u64) {
         self.start += last.next;
         self.line += lines;
@@ -268,7 +268,7 @@ impl<R: Read> Reader<R> {
             if let Some(at) = memchr2(b'\n', b'\r', &pending[searched..]) {
                 let end = searched + at;
                 let pair = pending[end] == b'\r' && pending.get(end + 1) == Some(&b'\n');
-                // Behind a CR at the end of a chunk an LF may follow.
+                // After a CR at the end of a chunk an LF may follow.
                 if pending[end] == b'\n' || end + 1 < pending.len() || self.ended {
                     overlong |= end > LONGEST;
                     let next = end + 1 + usize::from(pair);
@@ -291,7 +291,7 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Moves what is left to the front of the buffer and reads more behind it.
+    /// Moves what is left to the front of the buffer and reads more after it.
     fn fill(&mut self) -> io::Result<()> {
         if self.start > 0 {
             self.buffer.copy_within(self.start..self.end, 0);

@@ -182,7 +182,7 @@ pub enum Statement {
     Other {
         /// The major word in capitals.
         word: Cow<'static, str>,
-        /// What stands behind the slash.
+        /// What follows the slash.
         arguments: Vec<Argument>,
         /// Whether `$$->` or `REMARK ->` stood in front: meant for a program, but a remark to others.
         directive: bool,
@@ -245,7 +245,7 @@ impl Statement {
     }
 }
 
-/// One item behind the slash.
+/// One item after the slash.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Argument {
     /// A number.
@@ -496,7 +496,7 @@ pub struct CycleDefinition {
     pub diameter: Option<f64>,
     /// Angle between the cutter's sides, degrees (`ANGLE`, `TLANGL`).
     pub angle: Option<f64>,
-    /// A fine boring tool's way off the wall before it goes out (a number behind `NODRAG`, `ORIENT`).
+    /// A fine boring tool's way off the wall before it goes out (a number after `NODRAG`, `ORIENT`).
     pub shift: Option<f64>,
     /// Numbers without a word before them, in the order written: those of fields too.
     pub bare: Vec<f64>,

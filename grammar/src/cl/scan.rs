@@ -28,7 +28,7 @@ impl PlainGoto {
     }
 }
 
-/// The plain `GOTO` at the start of `text`, which may run on behind the line; `None` if the line is anything else
+/// The plain `GOTO` at the start of `text`, which may run on after the line; `None` if the line is anything else
 /// or in any way unusual.
 #[inline(always)]
 pub fn plain_goto(text: &[u8]) -> Option<PlainGoto> {
@@ -39,7 +39,7 @@ pub fn plain_goto(text: &[u8]) -> Option<PlainGoto> {
     let mut values = [0.0; 6];
     let mut count = 0;
     loop {
-        // Behind the slash or the comma.
+        // After the slash or the comma.
         at += 1;
         (values[count], at) = match short_number(text, at) {
             Some(found) => found,
@@ -65,7 +65,7 @@ pub fn plain_goto(text: &[u8]) -> Option<PlainGoto> {
     })
 }
 
-/// Where the slash behind `GOTO` stands, with blanks before or behind the word.
+/// Where the slash after `GOTO` stands, with blanks before or after the word.
 fn unusual_slash(text: &[u8]) -> Option<usize> {
     let at = skip_blanks(text, 0);
     if text.get(at..at + 4) != Some(b"GOTO") {
@@ -154,7 +154,7 @@ fn items(text: &str, mut at: usize) -> Option<Vec<LineItem<'_>>> {
         true => Vec::new(),
         false => Vec::with_capacity(USUAL_ITEMS),
     };
-    // Whether an item is due: at the beginning and behind a comma.
+    // Whether an item is due: at the beginning and after a comma.
     let mut due = true;
     loop {
         at = skip_blanks(bytes, at);
@@ -207,7 +207,7 @@ fn ends_item(text: &[u8], at: usize) -> bool {
 
 /// A byte of a text: no control character but the tab.
 const TEXT: u8 = 1;
-/// A character that a word with free text behind it may hold.
+/// A character that a word with free text after it may hold.
 const FREE_WORD: u8 = 2;
 /// A character of a major word.
 const WORD: u8 = 4;

@@ -11,7 +11,7 @@ use super::expression::NcExpression;
 /// How a program is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Notation {
-    /// Words behind letters: ISO 6983 and what the controls have added to it.
+    /// Words after letters: ISO 6983 and what the controls have added to it.
     #[default]
     Words,
     /// Heidenhain's conversational form.

@@ -58,6 +58,6 @@ pub enum BinaryOperator {
     And,
     Or,
     Xor,
-    /// `<<` of Siemens: texts one behind the other.
+    /// `<<` of Siemens: texts one after the other.
     Join,
 }

@@ -12,7 +12,7 @@ const CHUNK: usize = 64 * 1024;
 /// UTF-8 for U+FEFF, which some editors put before a text.
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
-/// Bytes that stay in the buffer behind the place of reading, for short loops.
+/// Bytes that stay in the buffer after the place of reading, for short loops.
 const KEPT: usize = 16 * 1024;
 
 /// How much of a line that is too long is shown.
@@ -142,7 +142,7 @@ impl<R: Read + Seek> ProgramLines<R> {
         Ok(true)
     }
 
-    /// The text of the line of this number, which is that at `mark` or one behind it, if the buffer still holds it.
+    /// The text of the line of this number, which is that at `mark` or one after it, if the buffer still holds it.
     pub(super) fn kept(&self, mark: NcMark, line: u64) -> Option<&[u8]> {
         let at = usize::try_from(mark.offset.checked_sub(self.base)?).ok()?;
         let mut rest = self.buffer[..self.end].get(at..)?;
@@ -154,7 +154,7 @@ impl<R: Read + Seek> ProgramLines<R> {
         Some(&rest[..text(rest)])
     }
 
-    /// Goes behind a line.
+    /// Goes past a line.
     pub(super) fn consume(&mut self, line: &PhysicalBlockLine) -> io::Result<()> {
         if line.overlong {
             return self.pass_overlong();
@@ -197,7 +197,7 @@ impl<R: Read + Seek> ProgramLines<R> {
         }
     }
 
-    /// Goes behind a line that does not fit into the buffer.
+    /// Goes past a line that does not fit into the buffer.
     fn pass_overlong(&mut self) -> io::Result<()> {
         loop {
             let pending = self.pending();
@@ -211,7 +211,7 @@ impl<R: Read + Seek> ProgramLines<R> {
         }
     }
 
-    /// Reads more behind what is pending, and lets go what was consumed long ago.
+    /// Reads more after what is pending, and lets go what was consumed long ago.
     fn fill(&mut self) -> io::Result<()> {
         if self.origin.is_none() {
             self.origin = Some(self.input.stream_position()?);

@@ -1,6 +1,6 @@
 //! NC programs: bytes of a file to blocks, nothing interpreted.
 //!
-//! Two notations: words behind letters as ISO 6983 has them, with what the controls have added to it (names with `=`,
+//! Two notations: words after letters as ISO 6983 has them, with what the controls have added to it (names with `=`,
 //! calls with parentheses, expressions, labels, loops), and Heidenhain's conversational form.
 
 mod block;

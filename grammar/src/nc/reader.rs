@@ -1,6 +1,6 @@
 //! Bytes of a file to blocks, in one buffer that is used again and again.
 //!
-//! A line ends at LF, CR LF or CR. What stands in front of the first `%`, and behind one that ends a program, is
+//! A line ends at LF, CR LF or CR. What stands in front of the first `%`, and after one that ends a program, is
 //! skipped and counted if its first line cannot be read as a block: it is a listing of whatever wrote the file.
 
 use std::borrow::Cow;
@@ -72,7 +72,7 @@ impl<R: Read + Seek> NcReader<R> {
         self.header
     }
 
-    /// Lines behind the program's `%` that were skipped.
+    /// Lines after the program's `%` that were skipped.
     pub fn trailer_lines(&self) -> u64 {
         self.trailer
     }
@@ -82,7 +82,7 @@ impl<R: Read + Seek> NcReader<R> {
         self.lines.mark()
     }
 
-    /// The text of the line of this number, which is that at `mark` or one behind it: for messages about a block that
+    /// The text of the line of this number, which is that at `mark` or one after it: for messages about a block that
     /// was just read. None if it is no longer at hand.
     pub fn text(&self, mark: NcMark, line: u64) -> Option<Cow<'_, str>> {
         self.lines.kept(mark, line).map(decode)
@@ -97,11 +97,11 @@ impl<R: Read + Seek> NcReader<R> {
     }
 
     /// Puts the next block into `block`; false at the end of the file. Lines with neither a word nor a remark are
-    /// passed over, and so is the `%` in front of a program; one behind a program, if more blocks follow, is a block of
+    /// passed over, and so is the `%` in front of a program; one after a program, if more blocks follow, is a block of
     /// the name `%`.
     ///
     /// # Errors
-    /// A block that cannot be read: the next call goes on with the one behind it. Or the input fails.
+    /// A block that cannot be read: the next call goes on with the one after it. Or the input fails.
     pub fn next_block(&mut self, block: &mut NcBlock) -> Result<bool, ReadError> {
         block.clear();
         if !self.opened {
@@ -109,7 +109,7 @@ impl<R: Read + Seek> NcReader<R> {
         }
         block.line = self.lines.line();
         let mut plain = self.plain(block);
-        // The line may go on behind what was read of the file.
+        // The line may go on after what was read of the file.
         if plain.is_none() && self.lines.read_on()? {
             block.clear();
             plain = self.plain(block);
@@ -165,7 +165,7 @@ impl<R: Read + Seek> NcReader<R> {
         line_end(&pending[end..], self.lines.ended()).map(|length| end + length)
     }
 
-    /// Reads the block that begins with the line `first`, and goes behind it.
+    /// Reads the block that begins with the line `first`, and goes past it.
     fn logical(&mut self, first: &PhysicalBlockLine, block: &mut NcBlock) -> Result<(), ReadError> {
         let line = self.lines.line();
         self.scratch.text.clear();
@@ -283,7 +283,7 @@ impl<R: Read + Seek> NcReader<R> {
 }
 
 impl BlockText {
-    /// Puts a line behind those of its block.
+    /// Puts a line after those of its block.
     fn add(
         &mut self,
         line: &[u8],
@@ -385,7 +385,7 @@ fn begins_program(line: &[u8], notation: Notation) -> bool {
     }
 }
 
-/// The name behind the `O` of a program that has no number: `OFinal ToolPath`.
+/// The name after the `O` of a program that has no number: `OFinal ToolPath`.
 fn program_name(line: &[u8]) -> Option<String> {
     let line = line.trim_ascii();
     let name = line.strip_prefix(b"O").or(line.strip_prefix(b"o"))?;

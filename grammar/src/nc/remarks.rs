@@ -3,7 +3,7 @@
 use super::block::NcSyntax;
 use super::fault::Unreadable;
 
-/// Puts `line` behind `code`, in capitals and with blanks in the place of remarks, byte for byte as long; the remarks go
+/// Puts `line` after `code`, in capitals and with blanks in the place of remarks, byte for byte as long; the remarks go
 /// to `remarks`. What stands in quotation marks stays as it is.
 pub(super) fn take_out(
     line: &str,

@@ -7,8 +7,9 @@ use std::borrow::Cow;
 use super::block::{NcBlock, NcItem, NcNumber, NcValue, NcWord, Notation};
 use crate::decimal::decimal;
 
-/// Reads the block at the start of `text`, which runs on behind it, into `block`, and gives where its line ends. None if
-/// it is anything but words with numbers, or if the line does not end within `text`: the block may hold part of it then.
+/// Reads the block at the start of `text`, which runs on after it, into `block`, and gives where its line ends. None if
+/// it is anything but words with numbers, or if the line does not end within `text`: the block may hold part of it
+/// then.
 #[inline(always)]
 pub(super) fn plain(text: &[u8], notation: Notation, block: &mut NcBlock) -> Option<usize> {
     match notation {
@@ -80,7 +81,7 @@ fn conversational(text: &[u8], block: &mut NcBlock) -> Option<usize> {
     }
     if let Some((name, length)) = keyword(&text[at..]) {
         at = skip_blanks(text, at + length);
-        // A value behind it would make it a word.
+        // A value after it would make it a word.
         let next = *text.get(at)?;
         if !next.is_ascii_alphabetic() && !is_end(next) || matches!(next, b'Q' | b'q') {
             return None;
@@ -138,7 +139,7 @@ fn named(name: &'static str, number: NcNumber) -> NcItem {
 /// The number at `at`, and where it ends.
 #[inline(always)]
 fn value(text: &[u8], at: usize) -> Option<(NcNumber, usize)> {
-    // A `+` says nothing; what stands behind it has no sign.
+    // A `+` says nothing; what follows it has no sign.
     let plus = usize::from(text.get(at) == Some(&b'+') && text.get(at + 1) != Some(&b'-'));
     let found = decimal(text, at + plus)?;
     let number = NcNumber { value: found.value, point: found.point };
@@ -225,7 +226,7 @@ fn is_end(byte: u8) -> bool {
     matches!(byte, b'\n' | b'\r')
 }
 
-/// What may stand behind a number: anything else makes more of it than a number.
+/// What may follow a number: anything else makes more of it than a number.
 #[inline(always)]
 fn ends_value(byte: u8) -> bool {
     is_blank(byte) || is_end(byte) || byte.is_ascii_alphabetic()

@@ -146,7 +146,7 @@ impl<'t> LineRest<'t> {
         }
     }
 
-    /// What stands behind the name `name`, blanks within angle brackets aside.
+    /// What follows the name `name`, blanks within angle brackets aside.
     fn after_name(self, name: &str) -> Option<Self> {
         let (first, angled) = name.split_at(name.find('<').unwrap_or(name.len()));
         let mut line = self.after(first.as_bytes())?;
@@ -156,7 +156,7 @@ impl<'t> LineRest<'t> {
         Some(line)
     }
 
-    /// What stands behind `prefix`, in capitals, and blanks.
+    /// What follows `prefix`, in capitals, and blanks.
     fn after(self, prefix: &[u8]) -> Option<Self> {
         let (head, rest) = self.0.split_at_checked(prefix.len())?;
         head.eq_ignore_ascii_case(prefix).then(|| LineRest(rest.trim_ascii_start()))
@@ -175,7 +175,7 @@ impl<'t> LineRest<'t> {
         behind.map_or(self, |(_, rest)| rest)
     }
 
-    /// A whole number, and what stands behind it.
+    /// A whole number, and what follows it.
     fn whole(self) -> Option<(u64, Self)> {
         let digits = self.0.iter().take_while(|byte| byte.is_ascii_digit()).count();
         let number = std::str::from_utf8(&self.0[..digits]).ok()?.parse().ok()?;
@@ -207,7 +207,7 @@ impl<'t> LineRest<'t> {
         })
     }
 
-    /// A word of LinuxCNC behind an `o` name.
+    /// A word of LinuxCNC after an `o` name.
     fn is_o_word(self) -> bool {
         const WORDS: [&[u8]; 10] = [
             b"SUB",

@@ -12,8 +12,8 @@ pub(super) enum Precedence {
     /// Comparisons before `AND`, `OR`, `XOR`, as LinuxCNC has them. Fanuc lets `AND` bind like `*`, and `OR` like `+`:
     /// where the two would differ, brackets are asked for.
     Hash,
-    /// `AND` before `XOR` before `OR` before comparisons, as Siemens has them: where one who knows other languages would
-    /// expect the contrary, parentheses are asked for.
+    /// `AND` before `XOR` before `OR` before comparisons, as Siemens has them: where one who knows other languages
+    /// would expect the contrary, parentheses are asked for.
     Names,
     /// Arithmetic only.
     Conversational,
@@ -51,7 +51,7 @@ impl ExpressionTree {
         self.operands.push((operand, made));
     }
 
-    /// The operator behind it.
+    /// Takes the operator after it.
     pub(super) fn operator(&mut self, spelling: &str) -> Result<(), Unreadable> {
         let Some(operator) = operator(spelling) else {
             return Err(Unreadable::new(format!("`{spelling}` is no operator")));

@@ -2,7 +2,7 @@
 
 use crate::setup::Setup;
 
-/// Names that a control has for axes. Any other letter means something else to it, and a number behind the letter
+/// Names that a control has for axes. Any other letter means something else to it, and a number after the letter
 /// runs together with the value: `X1450.` is X at 1450.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AxisNames {

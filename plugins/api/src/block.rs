@@ -234,7 +234,7 @@ impl Axes {
     }
 
     /// Words of endless axes say the place within one turn and the way there: `C=DC(280.000)`, or where that is no
-    /// shorter `C=ACP(280.000)` and `C=ACN(280.000)`, with these in front of the number and `close` behind it.
+    /// shorter `C=ACP(280.000)` and `C=ACN(280.000)`, with these in front of the number and `close` after it.
     pub fn modulo(&mut self, ways: [&str; 3], close: &'static str) {
         for axis in self.axes.iter_mut().filter(|axis| axis.endless) {
             axis.within_turn(ways, close);

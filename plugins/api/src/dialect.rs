@@ -65,7 +65,7 @@ pub struct Format {
     pub language: Language,
 }
 
-/// An opened dialect as the core sees it: batches, whatever stands behind it.
+/// An opened dialect as the core sees it: batches, whatever implements it.
 pub trait DialectSession {
     /// How numbers are written.
     fn format(&self) -> &Format;
@@ -75,7 +75,7 @@ pub trait DialectSession {
         Capabilities::NONE
     }
 
-    /// Appends the text of all events to `out`, and for each event the length of `out` behind it to `ends`.
+    /// Appends the text of all events to `out`, and for each event the length of `out` after it to `ends`.
     ///
     /// # Errors
     /// Which event could not be written, and why. What was appended before it is valid.

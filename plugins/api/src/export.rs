@@ -48,7 +48,7 @@ pub trait LinkedDialect: Send {
     /// The dialect panicked.
     fn vocabulary(&mut self) -> Result<Vec<VocabularyWord>, String>;
 
-    /// Appends the text of all events to `out`, and to `ends` the length of `out` behind each.
+    /// Appends the text of all events to `out`, and to `ends` the length of `out` after each.
     ///
     /// # Errors
     /// Which event breaks the promise or could not be written, and why; what was appended before it stays.

@@ -1,6 +1,6 @@
 //! What the events of a batch hold, laid end to end.
 
-/// Numbers and texts of all events, one behind the other.
+/// Numbers and texts of all events, one after the other.
 #[derive(Debug, Default)]
 pub(crate) struct Flat {
     pub(crate) numbers: Vec<f64>,

@@ -85,9 +85,10 @@
 //!
 //! # Helpers
 //!
-//! [`Block`] makes lines of words and numbers them, [`Modal`] is a value that holds, [`Axes`] writes the words that have
-//! changed, [`AxisNames`] says which names a control can write; [`fixed`] prints a number to so many decimals and
-//! [`quantise`] rounds as it does; [`Standstill`] knows when spindle and coolant are to be on again behind a stop; [`remark`], [`ascii`] and [`wrapped`] make text safe.
+//! [`Block`] makes lines of words and numbers them, [`Modal`] is a value that holds, [`Axes`] writes the words that
+//! have changed, [`AxisNames`] says which names a control can write; [`fixed`] prints a number to so many decimals and
+//! [`quantise`] rounds as it does; [`Standstill`] knows when spindle and coolant are to be on again after a stop;
+//! [`remark`], [`ascii`] and [`wrapped`] make text safe.
 //!
 //! # Other languages
 //!

@@ -68,7 +68,7 @@ pub trait ErrorModel: Sized + Send + 'static {
     fn value(&self, curve: &Curve, t: f64) -> Deviation;
 }
 
-/// An opened error model as the core sees it, whatever stands behind it.
+/// An opened error model as the core sees it, whatever implements it.
 pub trait ModelSession {
     /// See [`ErrorModel::fit`].
     ///

@@ -26,7 +26,7 @@ const POWERS_F: [f64; 16] = {
     powers
 };
 
-/// Appends `value` with `decimals` digits behind the point (at most 15; none and no point for 0).
+/// Appends `value` with `decimals` digits after the point (at most 15; none and no point for 0).
 ///
 /// Digit for digit what `format!("{value:.decimals$}")` gives (ties of the exact binary value go to the
 /// even digit), except that a number which rounds to nothing has no sign: `0.000`, never `-0.000`.
@@ -106,7 +106,7 @@ impl NumberForm {
         let length = front.len + signed + digits - dropped + point;
         // Eight bytes are written at a time; the last may reach past the end.
         out.reserve(length + 16);
-        // SAFETY: what is appended is ASCII. There is room for `length` bytes and sixteen more behind the old end;
+        // SAFETY: what is appended is ASCII. There is room for `length` bytes and sixteen more after the old end;
         // front and sign come first, then the digits with the point among them. Together they are `length`, and
         // each write begins within it and has eight bytes at most.
         unsafe {

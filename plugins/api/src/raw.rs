@@ -25,7 +25,7 @@ pub const MAGIC: u64 = u64::from_le_bytes(*b"POSTPLUG");
 
 /// Version of the contract. It changes when a struct of [`LAYOUTS`] or the meaning of a call does. What may grow
 /// without a new one: tables of functions, [`PostPlugin`], [`PostSetup`] and [`PostFormat`] at their end, events (more
-/// kinds; more numbers and texts behind those of a kind), capabilities.
+/// kinds; more numbers and texts after those of a kind), capabilities.
 pub const ABI: u32 = 2;
 
 /// [`PostPlugin::kind`] of a dialect.
@@ -209,7 +209,7 @@ pub struct PostSetup {
 }
 
 /// One event: see [`EVENTS`](crate::EVENTS) for the numbers and texts of each kind. Those that a reader does not
-/// know stand behind those that it knows; those that are missing have their default (0, none, empty).
+/// know follow those that it knows; those that are missing have their default (0, none, empty).
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct PostEvent {

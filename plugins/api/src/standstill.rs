@@ -3,7 +3,7 @@
 use crate::Event;
 
 /// Spindle and coolant that a stop has switched off: on again before the next cut, and not in between. An operator
-/// stands at an open door, and a tool change behind the stop would switch both off once more.
+/// stands at an open door, and a tool change after the stop would switch both off once more.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Standstill {
     /// The last motion was a cut: the tool may stand in the part.

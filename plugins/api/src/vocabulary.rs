@@ -33,7 +33,7 @@ impl Meaning {
         Meaning::of(number)
     }
 
-    /// Name in C, behind `POST_MEANING_`.
+    /// Name in C, after `POST_MEANING_`.
     pub fn name(self) -> &'static str {
         let mut codes = Meaning::CODES.codes.iter();
         let own = codes.find(|(_, code)| *code == self.code());

@@ -105,7 +105,7 @@ impl ErrorModel for Harmonic {
     }
 }
 
-/// The chord between the ends, `kept` first and second, and above it the waves of the amplitudes behind them.
+/// The chord between the ends, `kept` first and second, and above it the waves of the amplitudes after them.
 fn waves(kept: impl Fn(usize) -> Deviation, order: usize, t: f64) -> Deviation {
     let (sin, cos) = libm::sincos(PI * t);
     // sin(jx) = 2·cos(x)·sin((j-1)x) - sin((j-2)x).

@@ -132,7 +132,7 @@ impl CycleParameters {
     }
 }
 
-/// A definition whose parameters go on behind tildes, without numbers of their own.
+/// A definition whose parameters go on after tildes, without numbers of their own.
 pub(crate) fn block(header: &str, parameters: &[(u32, f64, &str)]) -> String {
     let style = NumberStyle { plus: true, trim: true, point: false };
     let mut text = header.to_owned();

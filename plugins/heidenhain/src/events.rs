@@ -6,9 +6,9 @@ use crate::tool::tool_call;
 use crate::{Heidenhain, PendingEvent, ToolCall};
 
 impl Heidenhain {
-    pub(crate) fn put(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
-        self.resume(event, out);
-        // The speed belongs to the tool call, so this waits for it; what needs no tool may come between.
+    /// Holds an event back that waits for the tool call, and says whether it did; calls the tool ahead of those that
+    /// need it. The speed belongs to the tool call, so this waits for it; what needs no tool may come between.
+    fn waits_for_tool(&mut self, event: &Event<'_>, out: &mut String) -> Result<bool, String> {
         match *event {
             Event::Spindle(Spindle::On { .. })
             | Event::Comment { .. }
@@ -19,17 +19,25 @@ impl Heidenhain {
             | Event::WorkOffset { .. } => {}
             Event::Preselect { number } if self.tool.is_some() => {
                 self.held.push(PendingEvent::Preselect(number));
-                return Ok(());
+                return Ok(true);
             }
             Event::Coolant(coolant) if self.tool.is_some() => {
                 self.held.push(PendingEvent::Coolant(coolant));
-                return Ok(());
+                return Ok(true);
             }
             Event::Word { text } if self.tool.is_some() => {
                 self.held.push(PendingEvent::Word(text.to_owned()));
-                return Ok(());
+                return Ok(true);
             }
             _ => self.call_tool(None, out)?,
+        }
+        Ok(false)
+    }
+
+    pub(crate) fn put(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
+        self.resume(event, out);
+        if self.waits_for_tool(event, out)? {
+            return Ok(());
         }
         match *event {
             Event::Start => self.start(out),
@@ -100,20 +108,22 @@ impl Heidenhain {
                 return Err("the units of this control stand in the first line: a program has one"
                     .to_owned());
             }
-            Event::Dwell { seconds } => {
-                let [name, word] = match self.german {
-                    true => ["VERWEILZEIT", "V.ZEIT"],
-                    false => ["DWELL TIME", "DWELL"],
-                };
-                self.block.line(&format!("CYCL DEF 9.0 {name}"), out);
-                self.block.word("CYCL DEF 9.1").word(word);
-                self.block.number("", seconds, 3, NumberStyle::default()).end(out);
-            }
+            Event::Dwell { seconds } => self.dwell(seconds, out),
             Event::Stop => self.halt("M0", out),
             Event::OptionalStop => self.halt("M1", out),
             Event::End => self.end(out),
             other => return Err(other.refusal()),
         }
         Ok(())
+    }
+
+    fn dwell(&mut self, seconds: f64, out: &mut String) {
+        let [name, word] = match self.german {
+            true => ["VERWEILZEIT", "V.ZEIT"],
+            false => ["DWELL TIME", "DWELL"],
+        };
+        self.block.line(&format!("CYCL DEF 9.0 {name}"), out);
+        self.block.word("CYCL DEF 9.1").word(word);
+        self.block.number("", seconds, 3, NumberStyle::default()).end(out);
     }
 }

@@ -104,7 +104,7 @@ impl Heidenhain {
         }
     }
 
-    /// Lines of the user's own, a block each; one behind a tilde goes on with its block and has no number.
+    /// Lines of the user's own, a block each; one after a tilde goes on with its block and has no number.
     pub(crate) fn own(&mut self, lines: &str, out: &mut String) {
         let mut goes_on = false;
         for line in lines.lines().filter(|line| !line.is_empty()) {
@@ -133,7 +133,7 @@ impl Heidenhain {
         self.tcp_active.forget();
         self.vector = None;
         self.defined.clear();
-        // What turns and flows was asked for all the same: a stop behind it switches that off.
+        // What turns and flows was asked for all the same: a stop after it switches that off.
         self.spindle_on.forget();
         self.coolant_on.forget();
     }

@@ -132,7 +132,7 @@ impl Dialect for Heidenhain {
             machine: setup.machine.to_owned(),
             inch,
             tcp: setup.tcp,
-            // An inch program counts F in tenths of an inch a minute: one digit less behind the point.
+            // An inch program counts F in tenths of an inch a minute: one digit less after the point.
             feed_decimals: setup.integer("feed_decimals") as u8 + u8::from(inch),
             preset: setup.integer("preset"),
             rotary_way: if setup.words.iter().any(|word| word.wrapped) {

@@ -113,7 +113,7 @@ impl Heidenhain {
         self.at.extend_from_slice(words);
     }
 
-    /// Radius compensation and feed, the words behind the axes. In an inch program F counts tenths of an inch,
+    /// Radius compensation and feed, the words after the axes. In an inch program F counts tenths of an inch,
     /// but degrees where rotary axes move alone.
     pub(crate) fn finish_move(
         &mut self,

@@ -121,8 +121,8 @@ impl Heidenhain {
     }
 }
 
-/// Own lines whose `TOOL CALL` has the speed: behind the tool and its axis, before feed and oversizes (`S3000 DL+0.1`).
-/// A call of the speed alone behind it might take the oversizes back.
+/// Own lines whose `TOOL CALL` has the speed: after the tool and its axis, before feed and oversizes (`S3000 DL+0.1`).
+/// A call of the speed alone after it might take the oversizes back.
 ///
 /// # Errors
 /// If it has another speed.

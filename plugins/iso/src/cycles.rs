@@ -186,16 +186,8 @@ impl Engine {
             self.cycles.running = Some(running);
             return Ok(());
         }
-        if let (Some(Rigid::Ahead(word)), true) = (rigid, running.first) {
-            let Some(Spindle::On { rpm, .. }) = self.turning else {
-                return Err("a rigid tap without a speed of the spindle".to_owned());
-            };
-            self.motion.block.word(word);
-            let block = &mut self.motion.block;
-            block.number("S", rpm, 0, NumberStyle::default()).end(out);
-        }
-        if let (Some(Rigid::Alone(word)), true) = (rigid, running.first) {
-            self.line(word, out);
+        if running.first {
+            self.announce_rigid_tap(rigid, out)?;
         }
         self.tapped |= rigid.is_some();
         let level = match top > plane + 1e-9 {
@@ -257,7 +249,24 @@ impl Engine {
         Ok(())
     }
 
-    /// Step, shift and wait.
+    /// Writes the block that makes the taps of a cycle rigid, where the control has one ahead of it.
+    fn announce_rigid_tap(&mut self, rigid: Option<Rigid>, out: &mut String) -> Result<(), String> {
+        match rigid {
+            Some(Rigid::Ahead(word)) => {
+                let Some(Spindle::On { rpm, .. }) = self.turning else {
+                    return Err("a rigid tap without a speed of the spindle".to_owned());
+                };
+                self.motion.block.word(word);
+                let block = &mut self.motion.block;
+                block.number("S", rpm, 0, NumberStyle::default()).end(out);
+            }
+            Some(Rigid::Alone(word)) => self.line(word, out),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Writes step, shift and wait.
     fn cycle_words(&mut self, running: &CycleInForce, rigid: Option<Rigid>) {
         let places = self.motion.linear_decimals(2);
         let style = self.motion.style;

@@ -41,7 +41,7 @@ pub struct Engine {
     parameters: bool,
     /// The N of the next block that changes a tool, and the step; none: they have no other numbers than all blocks.
     tool_blocks: Option<[u32; 2]>,
-    /// A safe state is written behind each tool change.
+    /// A safe state is written after each tool change.
     restart: bool,
     pub(crate) change: String,
     pub(crate) inch: bool,
@@ -232,8 +232,8 @@ impl Engine {
         Ok(())
     }
 
-    fn command(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
-        let codes: &MotionCodes = &self.table.codes;
+    /// Refuses an event that the control has no words for, or none where it stands.
+    fn allow(&self, event: &Event<'_>) -> Result<(), String> {
         match *event {
             Event::Linear { feed, .. }
             | Event::Arc { feed, .. }
@@ -243,22 +243,30 @@ impl Engine {
             | Event::Position { feed: Some(feed), .. }
                 if !self.motion.has(feed) =>
             {
-                return Err(format!("this control has no feed like {feed}"));
+                Err(format!("this control has no feed like {feed}"))
             }
             Event::Compensate(Compensation::Left { .. } | Compensation::Right { .. })
-                if codes.compensation[1].is_empty() =>
+                if self.table.codes.compensation[1].is_empty() =>
             {
-                return Err(event.refusal());
+                Err(event.refusal())
             }
             Event::Compensate(Compensation::Left { .. } | Compensation::Right { .. })
                 if self.plane.is_on() && !self.plane.curves() =>
             {
-                return Err(
+                Err(
                     "cutter compensation inside a tilted plane is not confirmed on this control: the option \
                      `cycles_in_plane` says that yours has it, [control] planes = false does without the plane"
                         .to_owned(),
-                );
+                )
             }
+            _ => Ok(()),
+        }
+    }
+
+    fn command(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
+        self.allow(event)?;
+        let codes: &MotionCodes = &self.table.codes;
+        match *event {
             Event::Linear { words, feed, tool } => {
                 // A program that comes to no first position: the axes move one by one.
                 self.cancel_what_was(out);
@@ -327,23 +335,7 @@ impl Engine {
             Event::Stop => self.stop(codes.stop[0], out),
             Event::OptionalStop => self.stop(codes.stop[1], out),
             Event::End => self.end(out),
-            Event::WorkOffset { number, .. } => {
-                self.plane.must_be_off("another work offset")?;
-                if self.tcp_active.is(true) {
-                    return Err(
-                        "tool centre point control is on across a change of the work offset"
-                            .to_owned(),
-                    );
-                }
-                let word = (self.table.offset.word)(number);
-                self.work_offset = word.ok_or_else(|| {
-                    let range = self.table.offset.range;
-                    format!("the work offset has the number {number}, and this control has {range}")
-                })?;
-                self.own_offset = false;
-                self.offset_active.forget();
-                self.offset_in_force(out);
-            }
+            Event::WorkOffset { number, .. } => self.another_offset(number, out)?,
             Event::Units(units) if self.table.units_inside => {
                 self.inch = units == Units::Inch;
                 self.line(codes.units[usize::from(self.inch)], out);
@@ -359,6 +351,25 @@ impl Engine {
             Event::CycleOff => self.end_cycle(out),
             ref other => self.setting(other, out)?,
         }
+        Ok(())
+    }
+
+    /// Puts the work offset `number`, from 1, in force.
+    fn another_offset(&mut self, number: u32, out: &mut String) -> Result<(), String> {
+        self.plane.must_be_off("another work offset")?;
+        if self.tcp_active.is(true) {
+            return Err(
+                "tool centre point control is on across a change of the work offset".to_owned()
+            );
+        }
+        let word = (self.table.offset.word)(number);
+        self.work_offset = word.ok_or_else(|| {
+            let range = self.table.offset.range;
+            format!("the work offset has the number {number}, and this control has {range}")
+        })?;
+        self.own_offset = false;
+        self.offset_active.forget();
+        self.offset_in_force(out);
         Ok(())
     }
 
@@ -515,7 +526,7 @@ impl Engine {
         self.offset_active.forget();
         self.length_active.forget();
         self.tcp_active.forget();
-        // What turns and flows was asked for all the same: a stop behind it switches that off.
+        // What turns and flows was asked for all the same: a stop after it switches that off.
         self.spindle.forget();
         self.coolant.forget();
         self.cycles.forget();
@@ -528,7 +539,7 @@ fn counts_on(lines: &str) -> bool {
     words.find(|word| ["G90", "G91"].contains(word)) == Some("G91")
 }
 
-/// A line names a work offset: alone, or with the number behind it (`G54.1 P12`).
+/// A line names a work offset: alone, or with the number after it (`G54.1 P12`).
 fn names_offset(table: &Table, line: &str) -> bool {
     let words: Vec<&str> = line.split_whitespace().collect();
     (0..words.len()).any(|at| {

@@ -53,7 +53,7 @@ pub trait Control: Sized + Send + 'static {
     /// A sentence for the user, if machine or options cannot be served.
     fn open(setup: &Setup<'_>) -> Result<Self, String>;
 
-    /// Lines behind the one that puts the control into a safe state.
+    /// Lines after the one that puts the control into a safe state.
     fn begin(&self, _engine: &mut Engine, _out: &mut String) {}
 
     /// Looks at an event before the engine does: true if it has written it, so that the engine need not.

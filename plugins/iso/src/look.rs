@@ -1,4 +1,4 @@
-//! How blocks look: blanks between words, zeros behind G and M.
+//! How blocks look: blanks between words, zeros after G and M.
 
 /// How blocks look. It changes no value.
 #[derive(Clone, Copy, Debug)]

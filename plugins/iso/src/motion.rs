@@ -64,7 +64,7 @@ pub struct FeedDecimals {
 /// Addresses of the parts of a centre or a vector.
 pub(crate) const CENTRE: [&str; 3] = ["I", "J", "K"];
 
-/// A feed has a point but no zeros behind it: `F850.`
+/// A feed has a point but no zeros after it: `F850.`
 const FEED_STYLE: NumberStyle = NumberStyle { plus: false, point: true, trim: true };
 
 /// An axis that is measured, and not drawn, leans by less: 0.1 degrees.

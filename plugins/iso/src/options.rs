@@ -2,7 +2,7 @@
 
 use post_plugin::{OptionKind, OptionSpec, Setup, Value};
 
-/// The options that most controls of the family have, behind those of the dialect's own.
+/// The options that most controls of the family have, after those of the dialect's own.
 #[macro_export]
 macro_rules! iso_options {
     ($($own:expr,)*) => {
@@ -89,7 +89,7 @@ pub const SPACES: OptionSpec = OptionSpec::flag(
 /// G01.
 pub const LEADING_ZEROS: OptionSpec =
     OptionSpec::flag("leading_zeros", false, "G01 and M06 instead of G1 and M6.");
-/// A safe state behind each tool change.
+/// A safe state after each tool change.
 pub const RESTART: OptionSpec = OptionSpec::flag(
     "restart",
     false,

@@ -46,71 +46,10 @@ impl MotionWriter {
         match words {
             SplineForm::None => return Err("this control has no splines".to_owned()),
             SplineForm::Knots { code, begin, end } => {
-                if !(2..=4).contains(&order) {
-                    return Err(format!(
-                        "a spline of degree {}, and this control has degrees 1 to 3",
-                        spline.degree
-                    ));
-                }
-                let places = self.linear_decimals(0);
-                let numbers = spline.knots.iter().chain(spline.weights);
-                if let Some(number) = numbers
-                    .into_iter()
-                    .find(|number| (quantise(**number, places) - **number).abs() > 1e-9)
-                {
-                    return Err(format!(
-                        "the knot or weight {number} of a spline has more than {places} decimals, as many as this control reads"
-                    ));
-                }
-                self.plane_xy();
-                self.block.end(out);
-                self.line(begin, out);
-                self.feed_mode(feed);
-                self.motion(code);
-                self.block.integer("P", order as u32);
-                for ((point, weight), knot) in points.iter().zip(spline.weights).zip(spline.knots) {
-                    self.block.number("K", *knot, places, self.style);
-                    self.write_point(point);
-                    self.block.number("R", *weight, places, self.style);
-                    self.feed(feed);
-                    self.block.end(out);
-                }
-                for knot in spline.knots.iter().skip(count) {
-                    self.block.number("K", *knot, places, self.style);
-                    self.block.end(out);
-                }
-                self.line(end, out);
+                self.knots_spline([code, begin, end], spline, &points, feed, out)?;
             }
             SplineForm::Even { code, end } => {
-                if !is_even(spline.knots, order) {
-                    return Err("a spline with uneven knots, which this control has not".to_owned());
-                }
-                let plane = self.linear[2].map(|z| from[z]);
-                let level = |point: &&[f64]| self.linear[2].map(|z| point[z]) == plane;
-                if !points.iter().all(level) {
-                    return Err("a spline that leaves the plane of X and Y".to_owned());
-                }
-                self.plane_xy();
-                self.feed_mode(feed);
-                self.motion(code);
-                let (first, rest) = spline.weights.split_at(1);
-                for ((point, weight), line) in points.iter().skip(1).zip(rest).zip(0..) {
-                    self.axes.forget();
-                    self.axes.write_group(&mut self.block, point, Group::Plane);
-                    if line == 0 {
-                        self.block.integer("L", order as u32);
-                        if first != [1.0] {
-                            return Err(
-                                "a spline whose first weight is not 1, which this control has not"
-                                    .to_owned(),
-                            );
-                        }
-                    }
-                    self.block.number("P", *weight, 6, self.style);
-                    self.feed(feed);
-                    self.block.end(out);
-                }
-                self.line(end, out);
+                self.even_spline([code, end], spline, &points, feed, out)?;
             }
         }
         self.forget_motion();
@@ -118,6 +57,93 @@ impl MotionWriter {
         if let Some(last) = points.last() {
             self.stands(last);
         }
+        Ok(())
+    }
+
+    /// Writes a spline by control points with knots (K) and weights (R).
+    fn knots_spline(
+        &mut self,
+        [code, begin, end]: [&'static str; 3],
+        spline: &SplineWords<'_>,
+        points: &[&[f64]],
+        feed: Feed,
+        out: &mut String,
+    ) -> Result<(), String> {
+        let (order, count) = (spline.degree as usize + 1, points.len());
+        if !(2..=4).contains(&order) {
+            return Err(format!(
+                "a spline of degree {}, and this control has degrees 1 to 3",
+                spline.degree
+            ));
+        }
+        let places = self.linear_decimals(0);
+        let numbers = spline.knots.iter().chain(spline.weights);
+        if let Some(number) =
+            numbers.into_iter().find(|number| (quantise(**number, places) - **number).abs() > 1e-9)
+        {
+            return Err(format!(
+                "the knot or weight {number} of a spline has more than {places} decimals, as many as this control reads"
+            ));
+        }
+        self.plane_xy();
+        self.block.end(out);
+        self.line(begin, out);
+        self.feed_mode(feed);
+        self.motion(code);
+        self.block.integer("P", order as u32);
+        for ((point, weight), knot) in points.iter().zip(spline.weights).zip(spline.knots) {
+            self.block.number("K", *knot, places, self.style);
+            self.write_point(point);
+            self.block.number("R", *weight, places, self.style);
+            self.feed(feed);
+            self.block.end(out);
+        }
+        for knot in spline.knots.iter().skip(count) {
+            self.block.number("K", *knot, places, self.style);
+            self.block.end(out);
+        }
+        self.line(end, out);
+        Ok(())
+    }
+
+    /// Writes a spline by control points in X and Y with weights (P), of even knots.
+    fn even_spline(
+        &mut self,
+        [code, end]: [&'static str; 2],
+        spline: &SplineWords<'_>,
+        points: &[&[f64]],
+        feed: Feed,
+        out: &mut String,
+    ) -> Result<(), String> {
+        let order = spline.degree as usize + 1;
+        let from = points.first().copied().unwrap_or_default();
+        if !is_even(spline.knots, order) {
+            return Err("a spline with uneven knots, which this control has not".to_owned());
+        }
+        let plane = self.linear[2].map(|z| from[z]);
+        let level = |point: &&[f64]| self.linear[2].map(|z| point[z]) == plane;
+        if !points.iter().all(level) {
+            return Err("a spline that leaves the plane of X and Y".to_owned());
+        }
+        self.plane_xy();
+        self.feed_mode(feed);
+        self.motion(code);
+        let (first, rest) = spline.weights.split_at(1);
+        for ((point, weight), line) in points.iter().skip(1).zip(rest).zip(0..) {
+            self.axes.forget();
+            self.axes.write_group(&mut self.block, point, Group::Plane);
+            if line == 0 {
+                self.block.integer("L", order as u32);
+                if first != [1.0] {
+                    return Err("a spline whose first weight is not 1, which this control has not"
+                        .to_owned());
+                }
+            }
+            self.block.number("P", *weight, 6, self.style);
+            self.feed(feed);
+            self.block.end(out);
+        }
+        self.line(end, out);
         Ok(())
     }
 

@@ -38,8 +38,8 @@ pub struct Table {
     /// A block behind it that cancels what shifts, turns, scales or mirrors, and moves nothing; may be empty. Option
     /// `cancel`.
     pub cancel: &'static str,
-    /// It stands behind the end of the length compensation, which comes with the first retract: ahead of that the control
-    /// would refuse it.
+    /// It stands behind the end of the length compensation, which comes with the first retract: ahead of that the
+    /// control would refuse it.
     pub cancel_behind_length: bool,
     /// A feed a minute without tool centre point control counts along all axes together, degrees as millimetres; else
     /// along the linear ones.
@@ -246,7 +246,7 @@ pub enum Plane {
     Euler {
         /// Word in front of the angles: `G68.2`.
         on: &'static str,
-        /// The block behind it that has the machine turn to it: `G53.1`.
+        /// The block after it that has the machine turn to it: `G53.1`.
         turn: &'static str,
         /// Block that ends the plane.
         off: &'static str,
@@ -271,14 +271,14 @@ pub enum SplineForm {
         code: &'static str,
         /// The block ahead.
         begin: &'static str,
-        /// The block behind.
+        /// The block after.
         end: &'static str,
     },
     /// Control points in X and Y with weights (P); their knots are even.
     Even {
         /// The code: `G5.2`.
         code: &'static str,
-        /// The block behind.
+        /// The block after.
         end: &'static str,
     },
 }

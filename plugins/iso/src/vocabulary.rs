@@ -53,7 +53,7 @@ impl Engine {
         let mut words: Vec<(Cow<'static, str>, Meaning)> =
             own.map(|(word, meaning)| (Cow::Borrowed(*word), *meaning)).collect();
         let mut add = |word: &str, meaning: Meaning| {
-            // Without the number behind it, nor the name that it is the value of: `G169 HL={h}`.
+            // Without the number after it, nor the name that it is the value of: `G169 HL={h}`.
             let word = word.split('{').next().unwrap_or("").trim();
             let word = match word.strip_suffix('=') {
                 Some(named) => named.rsplit_once(' ').map_or(named, |(word, _)| word),

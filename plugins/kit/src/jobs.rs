@@ -57,7 +57,7 @@ const HOLES: [&[f64]; 3] =
 /// Above the first of them, 10 over its point; and above the last.
 const FIRST: &[f64] = &[0.0, 0.0, 8.0, 0.0, 0.0];
 
-/// Arcs in three planes, a helix, a whole circle, compensation behind them; then holes of all kinds.
+/// Arcs in three planes, a helix, a whole circle, compensation after them; then holes of all kinds.
 pub fn three_axes() -> Vec<Event<'static>> {
     let mut events = vec![
         Event::Start,
@@ -136,7 +136,7 @@ pub fn plane<'a>(origin: [f64; 3], angles: [f64; 3], words: &'a [f64]) -> Event<
     Event::Plane { origin, x: frame[0], z: frame[2], angles, words }
 }
 
-/// The axes of a plane's frame, by three turns one behind the other, each about an axis of the frame before it.
+/// The axes of a plane's frame, by three turns one after the other, each about an axis of the frame before it.
 pub fn frame(angles: PlaneAngles, degrees: [f64; 3]) -> [[f64; 3]; 3] {
     let mut frame = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for (axis, degrees) in angles.order().into_iter().flatten().zip(degrees) {

@@ -3,7 +3,7 @@
 use post_plugin::{Compensation, Event, Spindle};
 
 /// When each kind of event comes, by its name. *Away* is from the start, a retract or a tool change to the first
-/// position behind it; *at the part* is from there to the next retract.
+/// position after it; *at the part* is from there to the next retract.
 pub const ORDER: &[(&str, &str)] = &[
     ("Start", "first, once"),
     ("Comment", "anywhere"),
@@ -55,7 +55,7 @@ pub struct EventOrder {
     started: bool,
     ended: bool,
     at_part: bool,
-    /// A retract has been sent since the last motion, and no tool change or line of the machine's own behind it.
+    /// A retract has been sent since the last motion, and no tool change or line of the machine's own after it.
     retracted: bool,
     turning: bool,
     flowing: bool,
@@ -72,7 +72,7 @@ impl EventOrder {
     /// The next event.
     ///
     /// # Errors
-    /// What it may not come before or behind, in a sentence.
+    /// What it may not come before or after, in a sentence.
     pub fn next(&mut self, event: &Event<'_>) -> Result<(), String> {
         self.check(event).map_err(|lack| format!("{} comes {lack}", event.name()))?;
         self.take(event);

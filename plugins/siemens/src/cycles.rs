@@ -52,7 +52,7 @@ impl CycleCalls {
             drilling.clearance,
             top - drilling.depth,
         ];
-        // Behind the depth comes the same depth relative to the plane: given twice it would be left to a parameter.
+        // After the depth comes the same depth relative to the plane: given twice it would be left to a parameter.
         let mut arguments: Vec<String> = planes.into_iter().map(trimmed).collect();
         arguments.push(String::new());
         let mut more = |values: &[f64]| arguments.extend(values.iter().copied().map(trimmed));

@@ -8,7 +8,7 @@ use crate::table::is_work_offset;
 use crate::text::{callable, called, message};
 
 impl Siemens {
-    /// True if it was written; else the engine writes it.
+    /// Writes an event, and says whether it was written: else the engine writes it.
     pub(crate) fn put(
         &mut self,
         event: &Event<'_>,
@@ -18,6 +18,16 @@ impl Siemens {
         if !matches!(event, Event::CyclePoint { .. } | Event::Comment { .. }) {
             self.end_call(engine, out);
         }
+        self.motion_event(event, engine, out)
+    }
+
+    /// Writes the start of the program and moves, hands on what is none.
+    fn motion_event(
+        &mut self,
+        event: &Event<'_>,
+        engine: &mut Engine,
+        out: &mut String,
+    ) -> Result<bool, String> {
         match *event {
             Event::Start => {
                 engine.motion.axes.shorter_way("=DC(", ")");
@@ -71,6 +81,19 @@ impl Siemens {
                 }
                 return Ok(false);
             }
+            _ => return self.tool_event(event, engine, out),
+        }
+        Ok(true)
+    }
+
+    /// Writes events of tool, spindle and compensation, hands on what is none.
+    fn tool_event(
+        &mut self,
+        event: &Event<'_>,
+        engine: &mut Engine,
+        out: &mut String,
+    ) -> Result<bool, String> {
+        match *event {
             Event::ToolChange { number, register, name, .. }
                 if self.tool_names && !name.is_empty() =>
             {
@@ -114,6 +137,19 @@ impl Siemens {
                 self.upright(engine, out);
                 return Ok(false);
             }
+            _ => return self.cycle_event(event, engine, out),
+        }
+        Ok(true)
+    }
+
+    /// Writes cycles, planes and all other events.
+    fn cycle_event(
+        &mut self,
+        event: &Event<'_>,
+        engine: &mut Engine,
+        out: &mut String,
+    ) -> Result<bool, String> {
+        match *event {
             Event::Arc { .. } => self.arc(event, engine, out)?,
             Event::Cycle { .. } => self.drilling = Drilling::of(event),
             Event::CyclePoint { words, .. } => self.drill(words, engine, out)?,

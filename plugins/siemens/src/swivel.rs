@@ -17,7 +17,7 @@ pub(crate) struct SwivelCall {
     direction: i64,
     /// Place of the word whose sign is the direction.
     reference: Option<usize>,
-    /// Arguments behind the direction: a way of retract, and with new software where the plane lies.
+    /// Arguments after the direction: a way of retract, and with new software where the plane lies.
     more: usize,
     /// Program units in a millimetre.
     scale: f64,

@@ -5,7 +5,7 @@ use post_plugin::{Meaning, VocabularyWord};
 /// Words of the control; `tcp_on` and `tcp_off` are lines of the options.
 pub(crate) fn vocabulary(tcp_on: &str, tcp_off: &str) -> Vec<VocabularyWord> {
     let word = |word: &str, meaning| VocabularyWord { word: word.to_owned().into(), meaning };
-    // ORIMKS behind TRAORI says how, not that.
+    // ORIMKS after TRAORI says how, not that.
     let first = |lines: &str| lines.lines().next().unwrap_or_default().trim().to_owned();
     let own = [(first(tcp_on), Meaning::TcpOn), (first(tcp_off), Meaning::TcpOff)];
     let own = own.map(|(text, meaning)| word(&text, meaning));

@@ -1,4 +1,4 @@
-//! Triangles of an STL file, one behind the other.
+//! Triangles of an STL file, one after the other.
 //!
 //! A binary file is known by its length, as the header of many begins with `solid` like a text: 80 bytes, the number of
 //! triangles (32 bits, least byte first), and for each 50 bytes (the normal, three corners, two more bytes; numbers of

@@ -112,7 +112,7 @@ fn plane_across(item: &NestedItem) -> Option<(Point, Direction)> {
     }
 }
 
-/// What stands behind the word, if the item is geometry of that word.
+/// What follows the word, if the item is geometry of that word.
 fn behind<'i>(word: &str, item: &'i NestedItem) -> Option<&'i [NestedItem]> {
     match item {
         NestedItem::Geometry(geometry) if geometry.word == word => Some(&geometry.items),
@@ -136,7 +136,7 @@ fn numbers<const N: usize>(word: &str, item: &NestedItem) -> Option<[f64; N]> {
     Some(numbers)
 }
 
-/// What stands between word and slash, in capitals and without blanks, and the items behind it.
+/// What stands between word and slash, in capitals and without blanks, and the items after it.
 fn nested(line: &LogicalLine<'_>) -> Read<(String, Vec<NestedItem>)> {
     let text = line.text.split_once("$$").map_or(line.text, |(text, _)| text);
     let text = text.get(line.word_span.end..).unwrap_or_default();

@@ -40,7 +40,7 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
             "TPI" => cycle.turns_per_inch = Some(items.number(&name, FORM)?),
             "DIAMET" | "DIAMTR" | "DIA" => cycle.diameter = Some(items.number(&name, FORM)?),
             "ANGLE" | "TLANGL" => cycle.angle = Some(items.number(&name, FORM)?),
-            // A kind of its own where it stands first; behind that the number is what it adds to the depth.
+            // A kind of its own where it stands first; after that the number is what it adds to the depth.
             "THRU" if !cycle.kinds.is_empty() => match items.take_number() {
                 Some(value) => cycle.break_through = Some(value),
                 None => cycle.kinds.push(name.to_string()),
@@ -72,20 +72,13 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
         if labelled {
             continue;
         }
-        cycle.bare.extend(item.value);
         match item.value {
-            Some(value) => match [&mut cycle.depth, &mut cycle.clearance, &mut cycle.retract]
-                .into_iter()
-                .find(|field| field.is_none())
-            {
-                Some(field) => *field = Some(value),
-                None => cycle.rest.push(Argument::Number(value)),
-            },
+            Some(value) => bare(&mut cycle, value),
             None if name.is_empty() => {
                 return Err(items.unexpected(item, "a word or a number is expected", FORM));
             }
             None if matches!(name.as_ref(), "G98" | "G99") => cycle.rest.push(item.argument()),
-            // The number behind an option is the option's: it is no clearance.
+            // The number after an option is the option's: it is no clearance.
             None if kinds_end => {
                 cycle.rest.push(item.argument());
                 cycle.rest.extend(items.take_number().map(Argument::Number));
@@ -98,4 +91,14 @@ pub(crate) fn cycle(items: &mut Items<'_, '_>) -> Read<Statement> {
         return Err(items.fault(span, "CYCLE needs the kind of cycle", FORM));
     }
     Ok(Statement::Cycle(Cycle::Define(Box::new(cycle))))
+}
+
+/// Puts a number without a label into the first free field.
+fn bare(cycle: &mut CycleDefinition, value: f64) {
+    cycle.bare.push(value);
+    let fields = [&mut cycle.depth, &mut cycle.clearance, &mut cycle.retract];
+    match fields.into_iter().find(|field| field.is_none()) {
+        Some(field) => *field = Some(value),
+        None => cycle.rest.push(Argument::Number(value)),
+    }
 }

@@ -82,7 +82,7 @@ pub(crate) fn knot(items: &mut Items<'_, '_>) -> Read<Statement> {
     Ok(Statement::Knot(items.numbers("KNOT/u,u,...")?))
 }
 
-/// NX gives eleven numbers: behind the radius two tolerances, the cutter's diameter and its corner radius,
+/// NX gives eleven numbers: after the radius two tolerances, the cutter's diameter and its corner radius,
 /// which say nothing about the arc. Creo gives seven, SolidWorks CAM six, without the radius.
 pub(crate) fn circle(items: &mut Items<'_, '_>) -> Read<Statement> {
     const FORM: &str = "CIRCLE/x,y,z,i,j,k[,radius], then CLW, CCLW or TIMES,n as needed";

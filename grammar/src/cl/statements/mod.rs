@@ -1,4 +1,4 @@
-//! What stands behind a major word: items to a typed [`Statement`].
+//! What follows a major word: items to a typed [`Statement`].
 //!
 //! A known word with wrong content is a fault. Where the first item is a word without a meaning here
 //! (`COOLNT/SUPER`, `LOAD/WIRE`, `CUTTER/DISPLY`), the record comes through as [`Statement::Other`],
@@ -25,7 +25,7 @@ pub(super) type ReadItems = fn(&mut Items<'_, '_>) -> Read<Statement>;
 /// Reads a line whose geometry stands in parentheses.
 pub(super) type ReadGeometry = fn(&LogicalLine<'_>) -> Read<Statement>;
 
-/// Takes the text behind one word: its spelling in capitals, the text without blanks around it.
+/// Takes the text after one word: its spelling in capitals, the text without blanks around it.
 pub(super) type ReadText = fn(&'static str, String) -> Statement;
 
 /// A directive. Only those that carry facts are typed; the rest is meant for one program and comes as it stands.

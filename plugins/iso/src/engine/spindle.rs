@@ -14,7 +14,7 @@ pub(super) const COOLANTS: [(Coolant, &str, &str); 5] = [
 ];
 
 impl Engine {
-    /// The spindle turns again behind a rigid tap, which has stopped it.
+    /// The spindle turns again after a rigid tap, which has stopped it.
     pub(crate) fn turn_again(&mut self, out: &mut String) -> Result<(), String> {
         match self.turning {
             Some(spindle) if std::mem::take(&mut self.tapped) => self.turn(spindle, out),

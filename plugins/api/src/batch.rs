@@ -1,7 +1,7 @@
 //! A run of events, stored flat: no allocation for an event once the buffers have grown.
 
 use crate::Event;
-use crate::field::{MAX_TEXTS, Reader};
+use crate::field::{FieldReader, MAX_TEXTS};
 use crate::flat::Flat;
 
 /// Events in order, each with the line of the CL file it comes from.
@@ -65,7 +65,7 @@ impl Batch {
             *text = place;
         }
         // What was pushed comes back.
-        Event::get(stored.kind, &mut Reader::new(numbers, texts))
+        Event::get(stored.kind, &mut FieldReader::new(numbers, texts))
             .unwrap_or(Event::Unknown { kind: stored.kind })
     }
 

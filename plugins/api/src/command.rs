@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::field::{Codes, Field, NotKnown, Promise, Reader, Shape, codes};
+use crate::field::{Codes, Field, FieldReader, NotKnown, Promise, Shape, codes};
 use crate::flat::Flat;
 use crate::language::Language;
 use crate::plane::PlaneAngles;
@@ -53,7 +53,7 @@ impl Field<'_> for Option<Feed> {
     }
 
     #[inline]
-    fn get(from: &mut Reader<'_>) -> Result<Self, NotKnown> {
+    fn get(from: &mut FieldReader<'_>) -> Result<Self, NotKnown> {
         let code = u32::get(from)?;
         let value = f64::get(from)?;
         match code {
@@ -95,7 +95,7 @@ impl Field<'_> for Feed {
     }
 
     #[inline]
-    fn get(from: &mut Reader<'_>) -> Result<Self, NotKnown> {
+    fn get(from: &mut FieldReader<'_>) -> Result<Self, NotKnown> {
         Option::get(from)?.ok_or(NotKnown)
     }
 
@@ -146,7 +146,7 @@ impl Field<'_> for Spindle {
         });
     }
 
-    fn get(from: &mut Reader<'_>) -> Result<Self, NotKnown> {
+    fn get(from: &mut FieldReader<'_>) -> Result<Self, NotKnown> {
         let code = u32::get(from)?;
         let rpm = f64::get(from)?;
         match (code, SpindleSense::of(code)) {
@@ -252,7 +252,7 @@ impl Field<'_> for Compensation {
         to.numbers(&[f64::from(code), f64::from(register)]);
     }
 
-    fn get(from: &mut Reader<'_>) -> Result<Self, NotKnown> {
+    fn get(from: &mut FieldReader<'_>) -> Result<Self, NotKnown> {
         let code = u32::get(from)?;
         let register = u32::get(from)?;
         match code {

@@ -4,7 +4,7 @@
 //! header and the host's checks follow from it.
 
 use crate::command::{Compensation, Coolant, Cycle, Feed, Spindle, SpindleSense};
-use crate::field::{Field, List, NotKnown, Promise, Reader, Shape, ToolPose};
+use crate::field::{Field, FieldReader, List, NotKnown, Promise, Shape, ToolPose};
 use crate::flat::Flat;
 use crate::setup::Units;
 
@@ -122,7 +122,7 @@ macro_rules! events {
 
             /// The event of a kind with these fields.
             #[inline]
-            pub(crate) fn get(kind: u32, from: &mut Reader<$a>) -> Result<Self, NotKnown> {
+            pub(crate) fn get(kind: u32, from: &mut FieldReader<$a>) -> Result<Self, NotKnown> {
                 Ok(match kind {
                     $($kind => Event::$variant
                         $({ $($field: <$type as Field<$a>>::get(from)?,)* })?

@@ -34,13 +34,13 @@ pub struct Promise {
 
 /// Numbers and texts of one event on their way back.
 #[derive(Debug)]
-pub(crate) struct Reader<'a> {
+pub(crate) struct FieldReader<'a> {
     numbers: &'a [f64],
     texts: [&'a str; MAX_TEXTS],
     text: usize,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> FieldReader<'a> {
     #[inline]
     pub(crate) fn new(numbers: &'a [f64], texts: [&'a str; MAX_TEXTS]) -> Self {
         Self { numbers, texts, text: 0 }
@@ -92,7 +92,7 @@ pub(crate) trait Field<'a>: Copy {
     /// Appends it.
     fn put(self, to: &mut Flat);
     /// Takes it back.
-    fn get(from: &mut Reader<'a>) -> Result<Self, NotKnown>;
+    fn get(from: &mut FieldReader<'a>) -> Result<Self, NotKnown>;
     /// Is it what the host promises? A sentence if not.
     fn check(self, _: &Promise) -> Result<(), String> {
         Ok(())
@@ -119,7 +119,7 @@ impl<'a> Field<'a> for &'a str {
         to.text(self);
     }
 
-    fn get(from: &mut Reader<'a>) -> Result<Self, NotKnown> {
+    fn get(from: &mut FieldReader<'a>) -> Result<Self, NotKnown> {
         Ok(from.text())
     }
 }
@@ -132,7 +132,7 @@ impl Field<'_> for f64 {
         to.numbers(&[self]);
     }
 
-    fn get(from: &mut Reader<'_>) -> Result<Self, NotKnown> {
+    fn get(from: &mut FieldReader<'_>) -> Result<Self, NotKnown> {
         Ok(from.next().unwrap_or(0.0))
     }
 
@@ -149,7 +149,7 @@ impl Field<'_> for Option<f64> {
         to.numbers(&[self.unwrap_or(f64::NAN)]);
     }
 
-    fn get(from: &mut Reader<'_>) -> Result<Self, NotKnown> {
+    fn get(from: &mut FieldReader<'_>) -> Result<Self, NotKnown> {
         Ok(from.next().filter(|number| !number.is_nan()))
     }
 
@@ -166,7 +166,7 @@ impl Field<'_> for u32 {
         to.numbers(&[self.into()]);
     }
 
-    fn get(from: &mut Reader<'_>) -> Result<Self, NotKnown> {
+    fn get(from: &mut FieldReader<'_>) -> Result<Self, NotKnown> {
         whole(from.next().unwrap_or(0.0)).ok_or(NotKnown)
     }
 }
@@ -179,7 +179,7 @@ impl Field<'_> for Option<u32> {
         to.numbers(&[self.map_or(f64::NAN, f64::from)]);
     }
 
-    fn get(from: &mut Reader<'_>) -> Result<Self, NotKnown> {
+    fn get(from: &mut FieldReader<'_>) -> Result<Self, NotKnown> {
         match from.next().filter(|number| !number.is_nan()) {
             None => Ok(None),
             Some(number) => whole(number).map(Some).ok_or(NotKnown),
@@ -195,7 +195,7 @@ impl Field<'_> for bool {
         to.numbers(&[f64::from(u8::from(self))]);
     }
 
-    fn get(from: &mut Reader<'_>) -> Result<Self, NotKnown> {
+    fn get(from: &mut FieldReader<'_>) -> Result<Self, NotKnown> {
         match u32::get(from)? {
             0 => Ok(false),
             1 => Ok(true),
@@ -212,7 +212,7 @@ impl Field<'_> for [f64; 3] {
         to.numbers(&self);
     }
 
-    fn get(from: &mut Reader<'_>) -> Result<Self, NotKnown> {
+    fn get(from: &mut FieldReader<'_>) -> Result<Self, NotKnown> {
         Ok(from.some().unwrap_or_default())
     }
 
@@ -233,7 +233,7 @@ impl<'a> Field<'a> for &'a [f64] {
     }
 
     #[inline]
-    fn get(from: &mut Reader<'a>) -> Result<Self, NotKnown> {
+    fn get(from: &mut FieldReader<'a>) -> Result<Self, NotKnown> {
         from.list()
     }
 
@@ -258,7 +258,7 @@ impl<'a> Field<'a> for List<'a> {
         self.0.put(to);
     }
 
-    fn get(from: &mut Reader<'a>) -> Result<Self, NotKnown> {
+    fn get(from: &mut FieldReader<'a>) -> Result<Self, NotKnown> {
         from.list().map(List)
     }
 
@@ -290,7 +290,7 @@ impl Field<'_> for Option<ToolPose> {
     }
 
     #[inline]
-    fn get(from: &mut Reader<'_>) -> Result<Self, NotKnown> {
+    fn get(from: &mut FieldReader<'_>) -> Result<Self, NotKnown> {
         let numbers = from.some().filter(|[x, ..]: &[f64; 6]| !x.is_nan());
         Ok(numbers.map(|[x, y, z, i, j, k]| ToolPose { tip: [x, y, z], axis: [i, j, k] }))
     }
@@ -360,7 +360,7 @@ macro_rules! codes {
                 self.code().put(to);
             }
 
-            fn get(from: &mut crate::field::Reader<'_>) -> Result<Self, crate::field::NotKnown> {
+            fn get(from: &mut crate::field::FieldReader<'_>) -> Result<Self, crate::field::NotKnown> {
                 $name::of(u32::get(from)?).ok_or(crate::field::NotKnown)
             }
         }

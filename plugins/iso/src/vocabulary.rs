@@ -48,7 +48,6 @@ impl Engine {
     pub(crate) fn vocabulary(&self) -> Vec<VocabularyWord> {
         use Meaning as M;
         let table = self.table;
-        let codes = &self.motion.codes;
         let own = table.words.iter().flat_map(|group| group.iter());
         let mut words: Vec<(Cow<'static, str>, Meaning)> =
             own.map(|(word, meaning)| (Cow::Borrowed(*word), *meaning)).collect();
@@ -63,6 +62,33 @@ impl Engine {
                 words.push((word.to_owned().into(), meaning));
             }
         };
+        self.mode_words(&mut add);
+        self.position_words(&mut add);
+        self.wait_and_cycle_words(&mut add);
+        if !table.cycles.is_empty() {
+            CYCLES.iter().for_each(|(word, meaning)| add(word, *meaning));
+        }
+        add(table.probe, M::Probe);
+        add(first(table.subprogram.number), M::Subprogram);
+        add(table.end, M::End);
+        self.own_words(&mut add);
+        SHARED.iter().for_each(|(word, meaning)| add(word, *meaning));
+        // What changes the tool may be what stops the program: M0 of a machine without a changer.
+        for word in self.change.split_whitespace() {
+            let change = (Cow::Owned(word.to_owned()), M::ToolChange);
+            if !words.contains(&change) {
+                words.push(change);
+            }
+        }
+        let words = words.into_iter();
+        words.map(|(word, meaning)| VocabularyWord { word, meaning }).collect()
+    }
+
+    /// Adds the words of units, motion, planes, feed, compensation, stops and spindle.
+    fn mode_words(&self, add: &mut dyn FnMut(&str, Meaning)) {
+        use Meaning as M;
+        let table = self.table;
+        let codes = &self.motion.codes;
         if let Some((letter, _)) = table.title {
             add(letter, M::Nothing);
         }
@@ -91,6 +117,12 @@ impl Engine {
         if !codes.compensation[1].is_empty() {
             add(codes.radius, M::RadiusRegister);
         }
+    }
+
+    /// Adds the words of machine coordinates, length, offsets, planes and splines.
+    fn position_words(&self, add: &mut dyn FnMut(&str, Meaning)) {
+        use Meaning as M;
+        let table = self.table;
         add(first(table.machine), M::MachineCoordinates);
         add(table.length.on, M::LengthOn);
         add(table.length.off, M::LengthOff);
@@ -123,6 +155,12 @@ impl Engine {
             SplineForm::None => {}
             SplineForm::Knots { code, .. } | SplineForm::Even { code, .. } => add(code, M::Spline),
         }
+    }
+
+    /// Adds the words of waits, cutting speed and cycles.
+    fn wait_and_cycle_words(&self, add: &mut dyn FnMut(&str, Meaning)) {
+        use Meaning as M;
+        let table = self.table;
         match table.dwell {
             Dwell::Milliseconds(letter) => add(&format!("G4 {letter}"), M::DwellMilliseconds),
             Dwell::Seconds(letter, _) => add(&format!("G4 {letter}"), M::DwellSeconds),
@@ -153,23 +191,6 @@ impl Engine {
             }
             Rigid::Move(word) => add(word, M::ThreadAndBack),
         }
-        if !table.cycles.is_empty() {
-            CYCLES.iter().for_each(|(word, meaning)| add(word, *meaning));
-        }
-        add(table.probe, M::Probe);
-        add(first(table.subprogram.number), M::Subprogram);
-        add(table.end, M::End);
-        self.own_words(&mut add);
-        SHARED.iter().for_each(|(word, meaning)| add(word, *meaning));
-        // What changes the tool may be what stops the program: M0 of a machine without a changer.
-        for word in self.change.split_whitespace() {
-            let change = (Cow::Owned(word.to_owned()), M::ToolChange);
-            if !words.contains(&change) {
-                words.push(change);
-            }
-        }
-        let words = words.into_iter();
-        words.map(|(word, meaning)| VocabularyWord { word, meaning }).collect()
     }
 }
 

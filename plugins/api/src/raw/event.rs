@@ -3,7 +3,7 @@
 #![allow(unsafe_code)]
 
 use super::{PostEvent, PostText, slice};
-use crate::field::{MAX_TEXTS, Reader};
+use crate::field::{FieldReader, MAX_TEXTS};
 use crate::{Batch, Event};
 
 /// The first `count` events of `batch` in their raw form; they borrow from it without the compiler's help, so both
@@ -46,6 +46,6 @@ impl PostEvent {
             *text = unsafe { raw.get() }?;
         }
         let unknown = Event::Unknown { kind: self.kind };
-        Some(Event::get(self.kind, &mut Reader::new(numbers, texts)).unwrap_or(unknown))
+        Some(Event::get(self.kind, &mut FieldReader::new(numbers, texts)).unwrap_or(unknown))
     }
 }

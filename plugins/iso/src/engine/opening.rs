@@ -56,24 +56,7 @@ impl Engine {
             inverse_time: integer(setup, "inverse_time_decimals", 3) as u8,
             per_revolution: table.per_revolution,
         };
-        let (tcp_on, tcp_off) = match table.tcp {
-            Tcp::Blocks { on, off, .. } => (on, off),
-            Tcp::None | Tcp::Length(_) => ("", ""),
-        };
-        // Where the post keeps the tip, the words may not exist: only a machine file that names them has them written.
-        let tcp_off = match text(setup, "tcp_off", "") {
-            given if given.is_empty() && setup.tcp => tcp_off.to_owned(),
-            given => given,
-        };
-        if let (true, Tcp::Blocks { on: "", .. }) = (setup.tcp, table.tcp)
-            && text(setup, "tcp_on", "").is_empty()
-        {
-            return Err(
-                "the words of this control's tool centre point control are not beyond doubt: name them by the options \
-                 `tcp_on` and `tcp_off`, or say tcp = \"post\""
-                    .to_owned(),
-            );
-        }
+        let [tcp_on, tcp_off] = tcp_lines(table, setup)?;
         let mut codes = table.codes;
         if !flag(setup, "inverse_time", true) {
             codes.feed[1] = "";
@@ -111,7 +94,7 @@ impl Engine {
             cancel: text(setup, "cancel", table.cancel),
             cancel_due: false,
             retract: text(setup, "retract", ""),
-            tcp_on: text(setup, "tcp_on", tcp_on),
+            tcp_on,
             tcp_off,
             most_inverse_time: match setup.option("most_inverse_time") {
                 Some(Value::Number(most)) if most > 0.0 => Some(most),
@@ -133,6 +116,28 @@ impl Engine {
             standstill: Standstill::default(),
         })
     }
+}
+
+/// The lines that switch tool centre point control on and off.
+fn tcp_lines(table: &Table, setup: &Setup<'_>) -> Result<[String; 2], String> {
+    let (on, off) = match table.tcp {
+        Tcp::Blocks { on, off, .. } => (on, off),
+        Tcp::None | Tcp::Length(_) => ("", ""),
+    };
+    // Where the post keeps the tip, the words may not exist: only a machine file that names them has them written.
+    let off = match text(setup, "tcp_off", "") {
+        given if given.is_empty() && setup.tcp => off.to_owned(),
+        given => given,
+    };
+    let on = text(setup, "tcp_on", on);
+    if setup.tcp && matches!(table.tcp, Tcp::Blocks { on: "", .. }) && on.is_empty() {
+        return Err(
+            "the words of this control's tool centre point control are not beyond doubt: name them by the options \
+             `tcp_on` and `tcp_off`, or say tcp = \"post\""
+                .to_owned(),
+        );
+    }
+    Ok([on, off])
 }
 
 /// The line with the program's number and name; empty if it has neither.

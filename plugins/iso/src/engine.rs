@@ -281,23 +281,8 @@ impl Engine {
                 self.motion.rapid(words, out);
             }
             Event::Rapid { words, tool } => self.motion.lead(words, leaning(tool)?, None, out),
-            Event::Arc { feed, centre, normal, turn, radius, words, .. }
-                if !codes.arc[0].is_empty() =>
-            {
-                self.turn_again(out)?;
-                let arc = ArcWords { centre, normal, turn, radius, words };
-                self.motion.arc(&arc, feed, out)?;
-            }
-            Event::Spline { feed, degree, knots, weights, points } if self.splines => {
-                self.turn_again(out)?;
-                let spline = splines::SplineWords {
-                    degree,
-                    knots: knots.0,
-                    weights: weights.0,
-                    points: points.0,
-                };
-                self.motion.spline(self.table.splines, &spline, feed, out)?;
-            }
+            Event::Arc { .. } if !codes.arc[0].is_empty() => self.curve(event, out)?,
+            Event::Spline { .. } if self.splines => self.curve(event, out)?,
             Event::Comment { text } => self.remark(text, out),
             Event::Operation { name: "" } | Event::OperationEnd => {}
             Event::Operation { name } => self.remark(name, out),
@@ -352,6 +337,23 @@ impl Engine {
             ref other => self.setting(other, out)?,
         }
         Ok(())
+    }
+
+    /// Cuts along an arc or a spline, with the spindle turning.
+    fn curve(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
+        self.turn_again(out)?;
+        match *event {
+            Event::Arc { feed, centre, normal, turn, radius, words, .. } => {
+                let arc = ArcWords { centre, normal, turn, radius, words };
+                self.motion.arc(&arc, feed, out)
+            }
+            Event::Spline { feed, degree, knots, weights, points } => {
+                let [knots, weights, points] = [knots.0, weights.0, points.0];
+                let spline = splines::SplineWords { degree, knots, weights, points };
+                self.motion.spline(self.table.splines, &spline, feed, out)
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Puts the work offset `number`, from 1, in force.

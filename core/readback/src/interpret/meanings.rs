@@ -16,41 +16,13 @@ impl ControlState {
         words: &mut BlockWords,
         asked: &mut BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
+        if self.sets_mode(meaning) || asked.takes(code, meaning) {
+            return Ok(());
+        }
         match meaning {
-            Meaning::Rapid => self.motion(MotionMode::Rapid),
-            Meaning::Linear => self.motion(MotionMode::Linear),
-            Meaning::ArcClockwise => self.motion(MotionMode::Clockwise),
-            Meaning::ArcCounterClockwise => self.motion(MotionMode::CounterClockwise),
-            Meaning::Millimetre => self.modal.unit = 1.0,
-            Meaning::Inch => self.modal.unit = 25.4,
-            Meaning::Absolute => self.modal.incremental = false,
-            Meaning::Incremental => self.modal.incremental = true,
-            Meaning::PlaneXy => self.modal.plane = ArcPlane::Xy,
-            Meaning::PlaneZx => self.modal.plane = ArcPlane::Zx,
-            Meaning::PlaneYz => self.modal.plane = ArcPlane::Yz,
-            Meaning::FeedPerMinute | Meaning::FeedPerMinuteAllAxes => {
-                self.feed_mode(FeedMeaning::PerMinute)
-            }
-            Meaning::InverseTime => self.feed_mode(FeedMeaning::Inverse),
-            Meaning::FeedPerRevolution => self.feed_mode(FeedMeaning::PerRevolution),
-            Meaning::MachineCoordinates => asked.machine = true,
-            Meaning::RapidBlock => asked.rapid = true,
-            Meaning::LengthOn => asked.length_on = Some(code),
-            Meaning::LengthStated => asked.length_stated = true,
-            Meaning::LengthOff => asked.length_off = true,
             Meaning::CompensationOff => self.compensate(0, words)?,
             Meaning::CompensationLeft => self.compensate(-1, words)?,
             Meaning::CompensationRight => self.compensate(1, words)?,
-            Meaning::TcpOn => asked.tcp_on = Some(code),
-            Meaning::TcpVectorOn => {
-                asked.tcp_on = Some(code);
-                asked.vectors = true;
-            }
-            Meaning::TcpOff => asked.tcp_off = true,
-            Meaning::TiltedPlane => asked.plane = Some(code),
-            Meaning::TiltedPlaneTurn => asked.plane_turn = Some(code),
-            Meaning::TiltedPlaneOff => asked.plane_off = true,
-            Meaning::WorkOffset => asked.work = Some(code),
             Meaning::Smoothing => {
                 let letter = self.lexicon.tolerance_letter(code);
                 let tolerance = letter.and_then(|letter| words.take(letter));
@@ -65,21 +37,6 @@ impl ControlState {
                 self.keeps_corners(code);
             }
             Meaning::ExactStop => self.exact_stop = true,
-            Meaning::ToolChange => asked.change = true,
-            Meaning::SpindleClockwise => asked.spindle = Some(SpindleRequest::Clockwise),
-            Meaning::SpindleCounterClockwise => {
-                asked.spindle = Some(SpindleRequest::CounterClockwise)
-            }
-            Meaning::SpindleOff => asked.spindle = Some(SpindleRequest::Off),
-            Meaning::SpindleOrient => asked.spindle = Some(SpindleRequest::Oriented),
-            Meaning::CoolantOn => asked.coolant = Some(code / 10),
-            Meaning::CoolantOff => asked.coolant_off = true,
-            Meaning::Dwell
-            | Meaning::DwellSeconds
-            | Meaning::DwellMilliseconds
-            | Meaning::DwellTurns => asked.dwell = true,
-            Meaning::Stop | Meaning::OptionalStop | Meaning::End => asked.stop = Some(meaning),
-            Meaning::Probe => asked.probe = true,
             Meaning::CycleDrill
             | Meaning::CycleDeep
             | Meaning::CycleBreakChip
@@ -94,61 +51,15 @@ impl ControlState {
                 }
                 asked.cycle = Some((code, meaning));
             }
-            // Bored in, and drawn out by hand.
-            Meaning::CycleOther if matches!(code, 870 | 880) => asked.cycle = Some((code, meaning)),
-            Meaning::CycleOther => return Err(self.not_followed(code)),
             Meaning::CycleOff => {
                 self.stand_behind_taps();
                 asked.cycle_off = true;
             }
-            Meaning::ReturnStart => self.modal.return_start = true,
-            Meaning::ReturnClearance => self.modal.return_start = false,
-            Meaning::ReferenceReturn => asked.reference = Some(1),
-            Meaning::OtherReferenceReturn => asked.reference = Some(2),
-            Meaning::LocalOffset
-            | Meaning::LocalOffsetAdded
-            | Meaning::LocalOffsetOff
-            | Meaning::SetPosition
-            | Meaning::SetPositionOff
-            | Meaning::SetPositionAgain
-            | Meaning::TableData
-            | Meaning::TableDataOff
-            | Meaning::Rotation
-            | Meaning::RotationAdded
-            | Meaning::RotationOff => asked.frame = Some((code, meaning)),
             Meaning::WorkOffsetOff => self.use_work_offset(&format!("G{}", code / 10))?,
-            Meaning::WorkOffsetBlock => asked.machine = true,
-            Meaning::CentreAbsolute => self.modal.centres_absolute = true,
-            Meaning::CentreIncremental => self.modal.centres_absolute = false,
-            Meaning::SurfaceSpeed => self.modal.surface_speed = true,
-            Meaning::SurfaceSpeedOff => self.modal.surface_speed = false,
             Meaning::SpeedLimit => {
                 self.modal.most_speed = words.take(b'S');
                 words.present &= !bit(b'S');
             }
-            Meaning::RotaryShortest => self.modal.shortest = Some(true),
-            Meaning::RotaryAsWritten => self.modal.shortest = Some(false),
-            Meaning::InchLengths => self.modal.unit = 25.4,
-            Meaning::MillimetreLengths => self.modal.unit = 1.0,
-            Meaning::SpindleClockwiseCoolant => {
-                asked.spindle = Some(SpindleRequest::Clockwise);
-                asked.coolant = Some(8);
-            }
-            Meaning::SpindleCounterClockwiseCoolant => {
-                asked.spindle = Some(SpindleRequest::CounterClockwise);
-                asked.coolant = Some(8);
-            }
-            // The tool axis under tool centre point control: how it goes between two blocks.
-            Meaning::OrientationAxes | Meaning::OrientationMachine => {
-                self.modal.orientation = OrientationMode::Axes;
-            }
-            Meaning::OrientationVector => self.modal.orientation = OrientationMode::Circle,
-            Meaning::OrientationPart => self.modal.orientation = OrientationMode::Usual,
-            Meaning::Thread | Meaning::ThreadAndBack | Meaning::ThreadBack => {
-                asked.thread = Some((code, meaning));
-            }
-            // What was called has led back before: here it ends the program.
-            Meaning::SubprogramEnd => asked.stop = Some(Meaning::End),
             Meaning::Subprogram
             | Meaning::LocalSubprogram
             | Meaning::Macro
@@ -159,7 +70,8 @@ impl ControlState {
                 ));
             }
             Meaning::Spline => self.spline_word(code)?,
-            Meaning::Scale
+            Meaning::CycleOther
+            | Meaning::Scale
             | Meaning::Mirror
             | Meaning::Polar
             | Meaning::FaceTransformation
@@ -179,11 +91,120 @@ impl ControlState {
         Ok(())
     }
 
+    /// Whether a word sets a mode and nothing else, which it then does.
+    fn sets_mode(&mut self, meaning: Meaning) -> bool {
+        match meaning {
+            Meaning::Rapid => self.motion(MotionMode::Rapid),
+            Meaning::Linear => self.motion(MotionMode::Linear),
+            Meaning::ArcClockwise => self.motion(MotionMode::Clockwise),
+            Meaning::ArcCounterClockwise => self.motion(MotionMode::CounterClockwise),
+            Meaning::Millimetre => self.modal.unit = 1.0,
+            Meaning::Inch => self.modal.unit = 25.4,
+            Meaning::Absolute => self.modal.incremental = false,
+            Meaning::Incremental => self.modal.incremental = true,
+            Meaning::PlaneXy => self.modal.plane = ArcPlane::Xy,
+            Meaning::PlaneZx => self.modal.plane = ArcPlane::Zx,
+            Meaning::PlaneYz => self.modal.plane = ArcPlane::Yz,
+            Meaning::FeedPerMinute | Meaning::FeedPerMinuteAllAxes => {
+                self.feed_mode(FeedMeaning::PerMinute)
+            }
+            Meaning::InverseTime => self.feed_mode(FeedMeaning::Inverse),
+            Meaning::FeedPerRevolution => self.feed_mode(FeedMeaning::PerRevolution),
+            Meaning::ReturnStart => self.modal.return_start = true,
+            Meaning::ReturnClearance => self.modal.return_start = false,
+            Meaning::CentreAbsolute => self.modal.centres_absolute = true,
+            Meaning::CentreIncremental => self.modal.centres_absolute = false,
+            Meaning::SurfaceSpeed => self.modal.surface_speed = true,
+            Meaning::SurfaceSpeedOff => self.modal.surface_speed = false,
+            Meaning::RotaryShortest => self.modal.shortest = Some(true),
+            Meaning::RotaryAsWritten => self.modal.shortest = Some(false),
+            Meaning::InchLengths => self.modal.unit = 25.4,
+            Meaning::MillimetreLengths => self.modal.unit = 1.0,
+            // The tool axis under tool centre point control: how it goes between two blocks.
+            Meaning::OrientationAxes | Meaning::OrientationMachine => {
+                self.modal.orientation = OrientationMode::Axes;
+            }
+            Meaning::OrientationVector => self.modal.orientation = OrientationMode::Circle,
+            Meaning::OrientationPart => self.modal.orientation = OrientationMode::Usual,
+            _ => return false,
+        }
+        true
+    }
+
     pub(super) fn feed_mode(&mut self, mode: FeedMeaning) {
         if self.modal.feed_mode != mode {
             self.modal.feed_mode = mode;
             // A number that was a speed is no time.
             self.modal.feed = None;
         }
+    }
+}
+
+impl BlockRequest {
+    /// Whether a word asks for something in its block and nothing else, which is then noted.
+    fn takes(&mut self, code: u16, meaning: Meaning) -> bool {
+        match meaning {
+            Meaning::MachineCoordinates => self.machine = true,
+            Meaning::RapidBlock => self.rapid = true,
+            Meaning::LengthOn => self.length_on = Some(code),
+            Meaning::LengthStated => self.length_stated = true,
+            Meaning::LengthOff => self.length_off = true,
+            Meaning::TcpOn => self.tcp_on = Some(code),
+            Meaning::TcpVectorOn => {
+                self.tcp_on = Some(code);
+                self.vectors = true;
+            }
+            Meaning::TcpOff => self.tcp_off = true,
+            Meaning::TiltedPlane => self.plane = Some(code),
+            Meaning::TiltedPlaneTurn => self.plane_turn = Some(code),
+            Meaning::TiltedPlaneOff => self.plane_off = true,
+            Meaning::WorkOffset => self.work = Some(code),
+            Meaning::ToolChange => self.change = true,
+            Meaning::SpindleClockwise => self.spindle = Some(SpindleRequest::Clockwise),
+            Meaning::SpindleCounterClockwise => {
+                self.spindle = Some(SpindleRequest::CounterClockwise)
+            }
+            Meaning::SpindleOff => self.spindle = Some(SpindleRequest::Off),
+            Meaning::SpindleOrient => self.spindle = Some(SpindleRequest::Oriented),
+            Meaning::CoolantOn => self.coolant = Some(code / 10),
+            Meaning::CoolantOff => self.coolant_off = true,
+            Meaning::Dwell
+            | Meaning::DwellSeconds
+            | Meaning::DwellMilliseconds
+            | Meaning::DwellTurns => self.dwell = true,
+            Meaning::Stop | Meaning::OptionalStop | Meaning::End => self.stop = Some(meaning),
+            Meaning::Probe => self.probe = true,
+            // Bored in, and drawn out by hand.
+            Meaning::CycleOther if matches!(code, 870 | 880) => self.cycle = Some((code, meaning)),
+            Meaning::ReferenceReturn => self.reference = Some(1),
+            Meaning::OtherReferenceReturn => self.reference = Some(2),
+            Meaning::LocalOffset
+            | Meaning::LocalOffsetAdded
+            | Meaning::LocalOffsetOff
+            | Meaning::SetPosition
+            | Meaning::SetPositionOff
+            | Meaning::SetPositionAgain
+            | Meaning::TableData
+            | Meaning::TableDataOff
+            | Meaning::Rotation
+            | Meaning::RotationAdded
+            | Meaning::RotationOff => self.frame = Some((code, meaning)),
+            Meaning::WorkOffsetBlock => self.machine = true,
+            Meaning::SpindleClockwiseCoolant => {
+                self.spindle = Some(SpindleRequest::Clockwise);
+                self.coolant = Some(8);
+            }
+            Meaning::SpindleCounterClockwiseCoolant => {
+                self.spindle = Some(SpindleRequest::CounterClockwise);
+                self.coolant = Some(8);
+            }
+            Meaning::Thread | Meaning::ThreadAndBack | Meaning::ThreadBack => {
+                self.thread = Some((code, meaning));
+            }
+            // What was called has led back before: here it ends the program.
+            Meaning::SubprogramEnd => self.stop = Some(Meaning::End),
+            _ => return false,
+        }
+        true
     }
 }

@@ -81,10 +81,54 @@ impl HoleAxis {
         };
         (depth, apart)
     }
+
+    fn too_deep(&self, to: f64) -> String {
+        format!(
+            "a hole is {:.3} mm too deep: {:.3} mm below where its feed begins, and the CL file asks for {:.3} mm",
+            to - self.depth,
+            to,
+            self.depth
+        )
+    }
 }
 
 impl HoleRun {
-    /// What is wrong with going down to `to` at feed, if no peck goes so far, or comes out before the next: told once a hole.
+    /// What is wrong with a rapid between two depths, mm below the level where the feed begins, and by how much.
+    fn rapid_fault(
+        &self,
+        asked: &CourseHole,
+        motion: &Motion,
+        [from, to]: [f64; 2],
+        on_axis: bool,
+        bound: f64,
+    ) -> Option<(String, Option<f64>)> {
+        let above = from <= bound && to <= bound;
+        if !on_axis && !above {
+            let shifts = motion.hole
+                && self.bottom
+                && matches!(asked.kind, CycleKind::BoreFine | CycleKind::BoreBack);
+            let message = format!(
+                "a rapid leaves the axis of a hole {:.3} mm below where its feed begins",
+                from.max(to)
+            );
+            return (!shifts).then_some((message, None));
+        }
+        if to > self.deepest + bound && on_axis {
+            let message = format!(
+                "a rapid goes {:.3} mm into a hole that is cut {:.3} mm deep",
+                to, self.deepest
+            );
+            return Some((message, Some(to - self.deepest)));
+        }
+        let at_feed = matches!(asked.back, Some(MotionKind::Feed | MotionKind::Thread));
+        let leaves = to < from && self.bottom && from > bound && at_feed;
+        leaves.then(|| {
+            ("a hole is left at rapid, and the CL file asks for the feed".to_owned(), None)
+        })
+    }
+
+    /// What is wrong with going down to `to` at feed, if no peck goes so far, or comes out before the next: told once a
+    /// hole.
     fn too_long(&mut self, asked: &CourseHole, to: f64, bound: f64) -> Option<String> {
         let [first, later] = asked.pecks?;
         if to <= self.deepest {
@@ -224,33 +268,11 @@ impl<C: Course> Verifier<'_, C> {
             let ((from, _), (to, off)) = (axis.split(&ends[0]), axis.split(&ends[1]));
             let on_axis = off.point <= bound.point
                 && super::place::PlaceBound::new(1.0, off.axis).axis <= bound.axis;
-            let above = from <= bound.point && to <= bound.point;
             if rapid {
-                if !on_axis && !above {
-                    let shifts = motion.hole
-                        && run.bottom
-                        && matches!(asked.kind, CycleKind::BoreFine | CycleKind::BoreBack);
-                    if !shifts {
-                        let message = format!(
-                            "a rapid leaves the axis of a hole {:.3} mm below where its feed begins",
-                            from.max(to)
-                        );
-                        self.fault("hole", message, Some(motion), cl_line, None);
-                    }
-                } else if to > run.deepest + bound.point && on_axis {
-                    let message = format!(
-                        "a rapid goes {:.3} mm into a hole that is cut {:.3} mm deep",
-                        to, run.deepest
-                    );
-                    self.fault("hole", message, Some(motion), cl_line, Some(to - run.deepest));
-                } else if to < from
-                    && run.bottom
-                    && from > bound.point
-                    && matches!(asked.back, Some(MotionKind::Feed | MotionKind::Thread))
+                if let Some((message, by)) =
+                    run.rapid_fault(asked, motion, [from, to], on_axis, bound.point)
                 {
-                    let message =
-                        "a hole is left at rapid, and the CL file asks for the feed".to_owned();
-                    self.fault("hole", message, Some(motion), cl_line, None);
+                    self.fault("hole", message, Some(motion), cl_line, by);
                 }
             } else {
                 down |= to > from;
@@ -259,12 +281,7 @@ impl<C: Course> Verifier<'_, C> {
                 }
                 worst = worst.larger(&off);
                 if to > axis.depth + bound.point {
-                    let message = format!(
-                        "a hole is {:.3} mm too deep: {:.3} mm below where its feed begins, and the CL file asks for {:.3} mm",
-                        to - axis.depth,
-                        to,
-                        axis.depth
-                    );
+                    let message = axis.too_deep(to);
                     self.fault("hole", message, Some(motion), cl_line, Some(to - axis.depth));
                 }
                 run.deepest = run.deepest.max(to);
@@ -276,18 +293,7 @@ impl<C: Course> Verifier<'_, C> {
             run.at = to;
         }
         if !rapid {
-            if worst.point > bound.point
-                || super::place::PlaceBound::new(1.0, worst.axis).axis > bound.axis
-            {
-                let message = format!(
-                    "a hole is {:.3} mm or {:.3}° off its axis",
-                    worst.point,
-                    worst.axis.to_degrees()
-                );
-                self.fault("deviation", message, Some(motion), cl_line, Some(worst.point));
-            } else {
-                self.note_deviation(worst, motion.line, element.line);
-            }
+            self.compare_hole(motion, &element, worst);
             if down {
                 self.compare_with(motion, &element);
                 self.compare_feed(motion, places, &at_the_speed_of(motion, &element));
@@ -314,8 +320,25 @@ impl<C: Course> Verifier<'_, C> {
         }
     }
 
-    /// A further peck in the hole that was made last: one before may have come to the bottom within the tolerance. False
-    /// if the motion is none.
+    /// Compares how far a cut in a hole is off its axis.
+    fn compare_hole(&mut self, motion: &Motion, element: &Element, worst: PlaceDistance) {
+        let bound = self.bound;
+        if worst.point > bound.point
+            || super::place::PlaceBound::new(1.0, worst.axis).axis > bound.axis
+        {
+            let message = format!(
+                "a hole is {:.3} mm or {:.3}° off its axis",
+                worst.point,
+                worst.axis.to_degrees()
+            );
+            self.fault("deviation", message, Some(motion), Some(element.line), Some(worst.point));
+        } else {
+            self.note_deviation(worst, motion.line, element.line);
+        }
+    }
+
+    /// A further peck in the hole that was made last: one before may have come to the bottom within the tolerance.
+    /// False if the motion is none.
     pub(super) fn pecks_again(&mut self, motion: &Motion, places: &[ToolPlace]) -> bool {
         let Some(made) = self.made else {
             return false;

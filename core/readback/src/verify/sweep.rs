@@ -64,37 +64,55 @@ impl<C: Course> Verifier<'_, C> {
             self.next = None;
         }
         if self.apart {
-            // Where a hole is due, a feed motion is its business unless the tool is elsewhere.
-            if !fast && self.hole_is_due() && self.begins_hole(motion, places) {
-                return self.hole_motion(motion, places);
-            }
-            if self.reaches_at_feed(motion, places) || self.follows_a_rapid(motion, places) {
+            if self.is_no_cut(motion, places, fast) {
                 return;
-            }
-            if fast && stands(places) {
-                // The part turns about the tool: no cut, though the next may begin here.
-                self.found.rapids_at_feed += 1;
-                return self.set_kind("rapid");
-            }
-            // What is due goes first.
-            if !self.may_cut(&places[0]) {
-                if self.pecks_again(motion, places) {
-                    return;
-                }
-                if draws_back(places, &self.rapid_bound)
-                    || self.comes_down(places)
-                    || turns(places, self.rapid_bound.point)
-                {
-                    return self.set_kind("rapid");
-                }
-                if fast {
-                    self.found.rapids_at_feed += 1;
-                    self.set_kind("rapid");
-                    return self.rapid(motion, places);
-                }
             }
             self.begin_cut(motion, &places[0]);
         }
+        self.cut(motion, places);
+    }
+
+    /// Whether a motion at feed between two cuts is something else than the next cut: a hole, a way to it, a rapid of the
+    /// course, a peck. It is then dealt with.
+    fn is_no_cut(&mut self, motion: &Motion, places: &[ToolPlace], fast: bool) -> bool {
+        // Where a hole is due, a feed motion is its business unless the tool is elsewhere.
+        if !fast && self.hole_is_due() && self.begins_hole(motion, places) {
+            self.hole_motion(motion, places);
+            return true;
+        }
+        if self.reaches_at_feed(motion, places) || self.follows_a_rapid(motion, places) {
+            return true;
+        }
+        if fast && stands(places) {
+            // The part turns about the tool: no cut, though the next may begin here.
+            self.found.rapids_at_feed += 1;
+            self.set_kind("rapid");
+            return true;
+        }
+        // What is due goes first.
+        if self.may_cut(&places[0]) {
+            return false;
+        }
+        if self.pecks_again(motion, places) {
+            return true;
+        }
+        if draws_back(places, &self.rapid_bound)
+            || self.comes_down(places)
+            || turns(places, self.rapid_bound.point)
+        {
+            self.set_kind("rapid");
+            return true;
+        }
+        if fast {
+            self.found.rapids_at_feed += 1;
+            self.set_kind("rapid");
+            self.rapid(motion, places);
+        }
+        fast
+    }
+
+    /// A cut: it has a place on the course, or is a fault.
+    fn cut(&mut self, motion: &Motion, places: &[ToolPlace]) {
         self.next = None;
         let begun = self.reach.clone();
         self.set_kind("cut");

@@ -37,20 +37,8 @@ impl Engine {
         let rotary = integer(setup, "rotary_decimals", rotary);
         let mut axes = Axes::new(setup, linear as u8, rotary as u8, style);
         single_decimals(setup, &mut axes)?;
-        let step = integer(setup, "block_step", 10) as u32;
-        let numbers = setup.option("block_numbers");
-        let block = match numbers {
-            Some(Value::Text("all") | Value::Flag(true)) => {
-                Block::numbered("N", step, step, table.largest_number)
-            }
-            _ => Block::plain(),
-        };
-        let tool_blocks = (numbers == Some(Value::Text("tools"))).then_some([step; 2]);
-        let work_offset = text(setup, "work_offset", "G54");
-        if !(table.offset.known)(&work_offset) {
-            let range = table.offset.range;
-            return Err(format!("the work offset is `{work_offset}`, must be {range}"));
-        }
+        let (block, tool_blocks) = numbering(table, setup);
+        let work_offset = work_offset(table, setup)?;
         let feeds = FeedDecimals {
             per_minute: integer(setup, "feed_decimals", 1) as u8 + u8::from(inch),
             inverse_time: integer(setup, "inverse_time_decimals", 3) as u8,
@@ -116,6 +104,29 @@ impl Engine {
             standstill: Standstill::default(),
         })
     }
+}
+
+/// The block under construction, and the N and step of blocks that change a tool, where only these have numbers.
+fn numbering(table: &Table, setup: &Setup<'_>) -> (Block, Option<[u32; 2]>) {
+    let step = integer(setup, "block_step", 10) as u32;
+    let numbers = setup.option("block_numbers");
+    let block = match numbers {
+        Some(Value::Text("all") | Value::Flag(true)) => {
+            Block::numbered("N", step, step, table.largest_number)
+        }
+        _ => Block::plain(),
+    };
+    (block, (numbers == Some(Value::Text("tools"))).then_some([step; 2]))
+}
+
+/// The work offset of the options, if the control has it.
+fn work_offset(table: &Table, setup: &Setup<'_>) -> Result<String, String> {
+    let offset = text(setup, "work_offset", "G54");
+    if !(table.offset.known)(&offset) {
+        let range = table.offset.range;
+        return Err(format!("the work offset is `{offset}`, must be {range}"));
+    }
+    Ok(offset)
 }
 
 /// The lines that switch tool centre point control on and off.

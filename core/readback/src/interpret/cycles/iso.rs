@@ -46,47 +46,7 @@ pub(super) fn hole(
 ) -> Result<(), Box<Diagnostic>> {
     let [first, second, axis] = control.modal.plane.coordinates();
     let letter = |row: usize| [b'X', b'Y', b'Z'][row];
-    let unit = control.modal.unit;
-    let here = control.point();
-    let before = control.cycles.iso;
-    let mut running = match (meaning, before) {
-        (Some(meaning), Some(before)) => IsoCycle { code, meaning, ..before },
-        (Some(meaning), None) => IsoCycle {
-            code,
-            meaning,
-            start: here[axis],
-            clearance: f64::NAN,
-            bottom: f64::NAN,
-            step: 0.0,
-            dwell: 0.0,
-        },
-        (None, Some(before)) => before,
-        (None, None) => {
-            return Err(control.refuse("nc-cycle", "a further hole, and no cycle is in force"));
-        }
-    };
-    let incremental = control.modal.incremental;
-    let refused = words.incremental & (bit(letter(axis)) | bit(b'R'));
-    if refused != 0 {
-        return Err(
-            control.refuse("nc-cycle", "a level of this cycle is incremental by a word of its own")
-        );
-    }
-    if let Some(level) = words.take(b'R') {
-        running.clearance = level * unit + if incremental { running.start } else { 0.0 };
-    }
-    if let Some(level) = words.take(letter(axis)) {
-        let from = if incremental { running.clearance } else { 0.0 };
-        running.bottom = level * unit + from;
-    }
-    if let Some(step) = words.take(b'Q') {
-        running.step = step * least_increment(control, words, b'Q');
-    }
-    if let Some(time) = words.take(b'P') {
-        let seconds =
-            control.lexicon.language() == Language::Rs274 || words.pointed & bit(b'P') != 0;
-        running.dwell = if seconds { time } else { time / 1000.0 };
-    }
+    let running = levels_said(control, code, meaning, words)?;
     let count = match (words.take(b'L'), words.take(b'K')) {
         (Some(count), _) | (None, Some(count)) => {
             crate::interpret::expression::whole(count, "a count of holes")
@@ -111,6 +71,7 @@ pub(super) fn hole(
     // Its own axis is no place.
     let hidden = words.present & bit(letter(axis));
     words.present &= !bit(letter(axis));
+    let incremental = control.modal.incremental;
     let made = (0..count).try_for_each(|turn| {
         let mut target =
             if turn == 0 || incremental { control.target(words)? } else { MotionTarget::default() };
@@ -127,21 +88,82 @@ pub(super) fn hole(
         if target.point[first].is_some() || target.point[second].is_some() || target.said != 0 {
             control.go(MotionKind::Rapid, &WordPath::Straight, &target)?;
         }
-        let sense = match running.meaning {
-            Meaning::CycleTap => SpindleRequest::Clockwise,
-            Meaning::CycleTapLeft => SpindleRequest::CounterClockwise,
-            _ => return drill(control, &hole),
-        };
-        if !control.modal.rigid_taps && !matches!(running.code, 842 | 843) {
-            return drill(control, &hole);
-        }
-        // The cycle turns the spindle itself, whatever was said before.
-        control.turn_spindle(sense);
-        let made = drill(control, &hole);
-        control.modal.tapped = true;
-        made
+        make(control, &running, &hole)
     });
     words.present |= hidden;
+    made
+}
+
+/// The cycle in force, with the levels, pecks and wait that the words of a block say.
+fn levels_said(
+    control: &mut ControlState,
+    code: u16,
+    meaning: Option<Meaning>,
+    words: &mut BlockWords,
+) -> Result<IsoCycle, Box<Diagnostic>> {
+    let unit = control.modal.unit;
+    let axis = control.modal.plane.coordinates()[2];
+    let letter = [b'X', b'Y', b'Z'][axis];
+    let before = control.cycles.iso;
+    let mut running = match (meaning, before) {
+        (Some(meaning), Some(before)) => IsoCycle { code, meaning, ..before },
+        (Some(meaning), None) => IsoCycle {
+            code,
+            meaning,
+            start: control.point()[axis],
+            clearance: f64::NAN,
+            bottom: f64::NAN,
+            step: 0.0,
+            dwell: 0.0,
+        },
+        (None, Some(before)) => before,
+        (None, None) => {
+            return Err(control.refuse("nc-cycle", "a further hole, and no cycle is in force"));
+        }
+    };
+    let incremental = control.modal.incremental;
+    let refused = words.incremental & (bit(letter) | bit(b'R'));
+    if refused != 0 {
+        return Err(
+            control.refuse("nc-cycle", "a level of this cycle is incremental by a word of its own")
+        );
+    }
+    if let Some(level) = words.take(b'R') {
+        running.clearance = level * unit + if incremental { running.start } else { 0.0 };
+    }
+    if let Some(level) = words.take(letter) {
+        let from = if incremental { running.clearance } else { 0.0 };
+        running.bottom = level * unit + from;
+    }
+    if let Some(step) = words.take(b'Q') {
+        running.step = step * least_increment(control, words, b'Q');
+    }
+    if let Some(time) = words.take(b'P') {
+        let seconds =
+            control.lexicon.language() == Language::Rs274 || words.pointed & bit(b'P') != 0;
+        running.dwell = if seconds { time } else { time / 1000.0 };
+    }
+    Ok(running)
+}
+
+/// Makes one hole, with the tool over it. A rigid tap turns the spindle.
+fn make(
+    control: &mut ControlState,
+    running: &IsoCycle,
+    hole: &CycleHole,
+) -> Result<(), Box<Diagnostic>> {
+    let sense = match running.meaning {
+        Meaning::CycleTap => SpindleRequest::Clockwise,
+        Meaning::CycleTapLeft => SpindleRequest::CounterClockwise,
+        _ => return drill(control, hole),
+    };
+    if !control.modal.rigid_taps && !matches!(running.code, 842 | 843) {
+        return drill(control, hole);
+    }
+    // The cycle turns the spindle itself, whatever was said before.
+    control.turn_spindle(sense);
+    let made = drill(control, hole);
+    control.modal.tapped = true;
     made
 }
 
@@ -163,11 +185,10 @@ fn least_increment(control: &ControlState, words: &BlockWords, letter: u8) -> f6
     }
 }
 
-/// The hole that the cycle makes.
-fn levels(control: &mut ControlState, running: &IsoCycle) -> Result<CycleHole, Box<Diagnostic>> {
-    use Meaning as M;
+/// Refuses a hole that goes up, and a boring from below that goes down.
+fn goes_its_way(control: &ControlState, running: &IsoCycle) -> Result<(), Box<Diagnostic>> {
     let up = running.bottom > running.clearance;
-    let back = running.meaning == M::CycleBoreBack;
+    let back = running.meaning == Meaning::CycleBoreBack;
     if up != back {
         let message = format!(
             "G{} goes from the level {:.4} to {:.4}: {}",
@@ -182,6 +203,13 @@ fn levels(control: &mut ControlState, running: &IsoCycle) -> Result<CycleHole, B
         );
         return Err(control.refuse("nc-cycle", message));
     }
+    Ok(())
+}
+
+/// The hole that the cycle makes.
+fn levels(control: &mut ControlState, running: &IsoCycle) -> Result<CycleHole, Box<Diagnostic>> {
+    use Meaning as M;
+    goes_its_way(control, running)?;
     let feed = feed_a_minute(control);
     let away = match control.modal.return_start {
         true => libm::fmax(running.start, running.clearance),

@@ -31,15 +31,6 @@ impl<R: Read + Seek> ProgramFlow<R> {
                     self.skip_loop(name.as_deref(), LoopKind::While)?;
                 }
             }
-            NcFlow::EndWhile(name) => {
-                let head = self.unwind(|running| match running {
-                    OpenConstruct::While { name: own, head } if *own == name => Some(*head),
-                    _ => None,
-                });
-                let head = head.ok_or_else(|| fault("a loop ends here that has not begun"))?;
-                self.running.pop();
-                self.go_to(head)?;
-            }
             NcFlow::For { variable, from, to } => {
                 self.forget(head);
                 let name = variables.named(&variable)?;
@@ -51,6 +42,43 @@ impl<R: Read + Seek> ProgramFlow<R> {
                     let body = self.reader.mark();
                     self.push(OpenConstruct::For { head, body, variable: name, to })?;
                 }
+            }
+            NcFlow::Loop => {
+                self.forget(head);
+                let body = self.reader.mark();
+                self.push(OpenConstruct::Loop { head, body })?;
+            }
+            NcFlow::Do(name) => {
+                self.forget(head);
+                let body = self.reader.mark();
+                self.push(OpenConstruct::Do { name, head, body })?;
+            }
+            NcFlow::Repeat { name, times } => {
+                self.forget(head);
+                let left = whole(variables.number(&times)?, "a count of repeats")?;
+                if left > 0 {
+                    let body = self.reader.mark();
+                    self.push(OpenConstruct::Times { name, head, body, left })?;
+                } else {
+                    self.skip_loop(name.as_deref(), LoopKind::Times)?;
+                }
+            }
+            other => self.end_loop(other, variables)?,
+        }
+        Ok(false)
+    }
+
+    /// Runs what ends a loop, breaks out of it or goes on with its next turn.
+    fn end_loop(&mut self, flow: NcFlow, variables: &mut Variables) -> Answer<()> {
+        match flow {
+            NcFlow::EndWhile(name) => {
+                let head = self.unwind(|running| match running {
+                    OpenConstruct::While { name: own, head } if *own == name => Some(*head),
+                    _ => None,
+                });
+                let head = head.ok_or_else(|| fault("a loop ends here that has not begun"))?;
+                self.running.pop();
+                self.go_to(head)?;
             }
             NcFlow::EndFor => {
                 let found = self.unwind(|running| match running {
@@ -69,22 +97,12 @@ impl<R: Read + Seek> ProgramFlow<R> {
                     self.go_to(body)?;
                 }
             }
-            NcFlow::Loop => {
-                self.forget(head);
-                let body = self.reader.mark();
-                self.push(OpenConstruct::Loop { head, body })?;
-            }
             NcFlow::EndLoop => {
                 let body = self.unwind(|running| match running {
                     OpenConstruct::Loop { body, .. } => Some(*body),
                     _ => None,
                 });
                 self.go_to(body.ok_or_else(|| fault("a loop ends here that has not begun"))?)?;
-            }
-            NcFlow::Do(name) => {
-                self.forget(head);
-                let body = self.reader.mark();
-                self.push(OpenConstruct::Do { name, head, body })?;
             }
             NcFlow::Until(condition) => {
                 let body = self.close_do(None);
@@ -93,16 +111,6 @@ impl<R: Read + Seek> ProgramFlow<R> {
                     self.running.pop();
                 } else {
                     self.go_to(body)?;
-                }
-            }
-            NcFlow::Repeat { name, times } => {
-                self.forget(head);
-                let left = whole(variables.number(&times)?, "a count of repeats")?;
-                if left > 0 {
-                    let body = self.reader.mark();
-                    self.push(OpenConstruct::Times { name, head, body, left })?;
-                } else {
-                    self.skip_loop(name.as_deref(), LoopKind::Times)?;
                 }
             }
             NcFlow::EndRepeat(name) => self.again(name.as_deref())?,
@@ -122,7 +130,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
             },
             _ => {}
         }
-        Ok(false)
+        Ok(())
     }
 
     /// `o1 endrepeat`.

@@ -28,9 +28,9 @@ pub struct SetPoints {
 pub struct VelocityJump {
     /// When, s from the beginning.
     pub time: f64,
-    /// Velocities behind it less those before, by place in the chain, mm/s or rad/s.
+    /// Velocities after it less those before, by place in the chain, mm/s or rad/s.
     pub change: Joints,
-    /// Accelerations behind it less those before, mm/s² or rad/s².
+    /// Accelerations after it less those before, mm/s² or rad/s².
     pub bend: Joints,
 }
 
@@ -41,12 +41,12 @@ pub struct ProgramPlace {
     pub task: u64,
     /// Line of the program.
     pub line: u64,
-    /// At feed: the tool cuts.
+    /// Whether the move is at feed: the tool cuts.
     pub cuts: bool,
 }
 
 impl SetPoints {
-    /// None yet.
+    /// A batch without set-points yet.
     pub fn new(solver: Arc<Solver>, period: f64) -> Self {
         Self {
             solver,
@@ -59,17 +59,17 @@ impl SetPoints {
         }
     }
 
-    /// How many.
+    /// Number of set-points.
     pub fn len(&self) -> usize {
         self.joints.len()
     }
 
-    /// There is none.
+    /// Whether there is no set-point.
     pub fn is_empty(&self) -> bool {
         self.joints.is_empty()
     }
 
-    /// Forgets all; `first` goes on behind them.
+    /// Forgets all; `first` goes on after them.
     pub fn clear(&mut self) {
         self.first += self.len() as u64;
         self.joints.clear();

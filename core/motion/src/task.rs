@@ -15,7 +15,7 @@ use crate::path::{Interpolation, Stance};
 pub enum Task {
     /// The machine moves.
     Move(Move),
-    /// It waits where it stands.
+    /// The machine waits where it stands.
     Wait {
         /// Line of the program.
         line: u64,
@@ -46,14 +46,14 @@ pub struct Move {
     pub line: u64,
     /// How the control goes.
     pub way: Interpolation,
-    /// Where it begins: where the last one has ended.
+    /// Start of the move: where the last one has ended.
     pub from: Stance,
-    /// Where it ends.
+    /// End of the move.
     pub to: Stance,
     /// The chain that it is meant for, with the tool in use.
     pub solver: Arc<Solver>,
-    /// The control keeps the tip (G43.4, TRAORI, M128): what is programmed are the coordinates of the tip, else those of the
-    /// axes.
+    /// The control keeps the tip (G43.4, TRAORI, M128): what is programmed are the coordinates of the tip, else those
+    /// of the axes.
     pub keeps_tip: bool,
     /// How fast it is asked for.
     pub pace: MovePace,
@@ -66,20 +66,20 @@ pub struct Move {
 pub enum MovePace {
     /// As fast as the axes go.
     Rapid,
-    /// It takes so long at the feed that the program states, no limit of the machine regarded, minutes.
+    /// Time that the move takes at the programmed feed, no limit of the machine regarded, minutes.
     Minutes(f64),
 }
 
 /// How a control passes from one move into the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CornerMode {
-    /// It stands still at the end (G9, G61.1 of LinuxCNC, G60).
+    /// The machine stands still at the end (G9, G61.1 of LinuxCNC, G60).
     Stop,
-    /// It keeps the path, and stands still where the direction changes (G61).
+    /// The machine keeps the path, and stands still where the direction changes (G61).
     Path,
-    /// It may leave the path (G64, CYCLE832, CYCL DEF 32).
+    /// The machine may leave the path (G64, CYCLE832, CYCL DEF 32).
     Blend {
-        /// By no more than this, mm; none: as far as its own rule leads.
+        /// Largest distance from the path, mm; none: as far as the control's own rule leads.
         tolerance: Option<f64>,
     },
 }

@@ -20,7 +20,7 @@ pub struct AxisPeaks {
     pub jump: ContourPeak,
 }
 
-/// Gathers them.
+/// Gathers the largest values of all axes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct AxesPeaks {
     pub peaks: [AxisPeaks; MAX_AXES],
@@ -38,9 +38,9 @@ pub(super) struct AxesPeaks {
 impl AxesPeaks {
     /// Takes the next set-point of `axes` axes and where they are, and the `jumps` since the last one.
     ///
-    /// A jump at a share of the time from one set-point to the next changes the mean velocity by the rest of that time there
-    /// and by that share behind it: so much is no acceleration. What the acceleration jumps there comes in three parts into that
-    /// over two periods.
+    /// A jump at a share of the time from one set-point to the next changes the mean velocity by the rest of that time
+    /// there and by that share behind it: so much is no acceleration. What the acceleration jumps there comes in three
+    /// parts into that over two periods.
     pub fn take(
         &mut self,
         axes: usize,

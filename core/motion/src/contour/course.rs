@@ -1,9 +1,10 @@
 //! A path that is asked for, as far as it is needed, and how far the tool has come on it.
 //!
-//! A place on it is carried on with the way that was gone meanwhile, and the nearest point is looked for from there by the
-//! rule of `path.rs`, but nowhere before where the tool has been. What does not cut is left out: the end of one cut and the beginning of the next are neighbours, as
-//! far apart as they are, so that the tool finds the next cut when it cuts again. A place further along counts only
-//! where it is nearer by more than a tenth of a micrometre: a contour that is cut twice is gone along in order.
+//! A place on it is carried on with the way that was gone meanwhile, and the nearest point is looked for from there by
+//! the rule of `path.rs`, but nowhere before where the tool has been. What does not cut is left out: the end of one cut
+//! and the beginning of the next are neighbours, as far apart as they are, so that the tool finds the next cut when it
+//! cuts again. A place further along counts only where it is nearer by more than a tenth of a micrometre: a contour
+//! that is cut twice is gone along in order.
 
 use nalgebra::Vector3;
 use post_machine::kinematics::Pose;
@@ -38,7 +39,7 @@ pub(super) struct FollowedPath {
 }
 
 impl FollowedPath {
-    /// A leg behind those that are known.
+    /// A leg after those that are known.
     pub fn push(&mut self, leg: &ContourLeg) {
         if !leg.at.cuts {
             return;

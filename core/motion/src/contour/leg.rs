@@ -24,9 +24,9 @@ pub struct ContourLeg {
     pub at: ProgramPlace,
     /// How the tip goes; along [`Interpolation::Axes`] and [`Interpolation::Tip`] straight.
     pub way: Interpolation,
-    /// Where it begins: tip and tool axis, part frame.
+    /// Start: tip and tool axis, part frame.
     pub from: Pose,
-    /// Where it ends; the tool axis goes on the great circle.
+    /// End; the tool axis goes on the great circle.
     pub to: Pose,
     /// How far the point of the tool that goes so stands above the tip, mm.
     pub along: f64,
@@ -44,7 +44,7 @@ impl ContourLeg {
         self.on(&GreatCircle::new(self.from.axis, self.to.axis), t)
     }
 
-    /// The same where the way of the tool axis is known.
+    /// The pose at `t` where the way of the tool axis is known.
     fn on(&self, turn: &GreatCircle, t: f64) -> Pose {
         let (from, to) = (&self.from, &self.to);
         let axis = turn.at(t);

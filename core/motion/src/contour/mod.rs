@@ -1,14 +1,14 @@
 //! The contour error: how far the tool is off its path, and what part of that comes from where.
 //!
 //! Where the axes are goes through the chain to the tip and the tool axis; the commanded set-points become a cubic
-//! [spline](self#the-spline); the contour error is the distance of the tip to the nearest point of it (section 4.2 of the
-//! prediction paper, Zhang, Chen 2025), and the angle of the tool axis against the one that is commanded there. A tool
-//! that lags behind on its path has a following error and no contour error.
+//! [spline](self#the-spline); the contour error is the distance of the tip to the nearest point of it (section 4.2 of
+//! the prediction paper, Zhang, Chen 2025), and the angle of the tool axis against the one that is commanded there. A
+//! tool that lags behind on its path has a following error and no contour error.
 //!
 //! # The spline
-//! Set-points of 15 ms are coarse: on an arc of 10 mm at 5 m/min the chord is 20 µm off. So a cubic spline is laid through
-//! them, with derivatives of five set-points each, so that its error falls with the fourth power of the period. At
-//! corners, stops and reversals it goes by the chords and overshoots nothing; `spline.rs` states the rule.
+//! Set-points of 15 ms are coarse: on an arc of 10 mm at 5 m/min the chord is 20 µm off. So a cubic spline is laid
+//! through them, with derivatives of five set-points each, so that its error falls with the fourth power of the period.
+//! At corners, stops and reversals it goes by the chords and overshoots nothing; `spline.rs` states the rule.
 //!
 //! # The parts
 //! From the actual tip to its nearest point on the commanded path (*following*: the servos), from there to the nearest
@@ -17,8 +17,8 @@
 //! points that are rounded, put in and left out). Each by itself; the whole is no more than their sum.
 //!
 //! # The nearest point
-//! It is carried on from set-point to set-point; `path/nearest.rs` states which one is meant where the path crosses itself, where
-//! the tool cuts a corner, and where it stands.
+//! It is carried on from set-point to set-point; `path/nearest.rs` states which one is meant where the path crosses
+//! itself, where the tool cuts a corner, and where it stands.
 
 mod axes;
 mod course;
@@ -47,7 +47,7 @@ pub use spread::{ContourPeak, ValueSpread};
 /// The commanded path is known so far ahead of the actual position, s: feed forward may lead, but not by more.
 const LEAD: f64 = 0.05;
 
-/// The same as set-points, at least and at most.
+/// Lead in set-points, at least and at most.
 const LEADS: [f64; 2] = [4.0, 64.0];
 
 /// A set-point that waits for what follows it.
@@ -113,7 +113,7 @@ impl<'r> Contour<'r> {
     }
 
     /// Takes set-points and where the axes are at their times, `actual` as many; `listen` is told of each, some batches
-    /// behind.
+    /// after.
     pub fn take(
         &mut self,
         points: &SetPoints,
@@ -158,14 +158,14 @@ impl<'r> Contour<'r> {
         }
     }
 
-    /// There is no more.
+    /// Ends the program, and reports.
     pub fn finish(mut self, listen: &mut dyn FnMut(&ContourPoint)) -> ContourReport {
         self.settle(listen);
         self.report.axes = self.axes.peaks;
         self.report
     }
 
-    /// The path ends: the machine stands before and behind it.
+    /// The path ends: the machine stands before and after it.
     fn settle(&mut self, listen: &mut dyn FnMut(&ContourPoint)) {
         if self.filled > 0 {
             for _ in 0..2 {
@@ -253,8 +253,8 @@ impl<'r> Contour<'r> {
 }
 
 impl Contour<'_> {
-    /// What lies between the commanded path and what is asked for: where the tool is nearest to it, and on the way there
-    /// since the last set-point, which a tool that lags cuts off at a corner.
+    /// What lies between the commanded path and what is asked for: where the tool is nearest to it, and on the way
+    /// there since the last set-point, which a tool that lags cuts off at a corner.
     fn parts(&mut self, told: &mut ContourPoint, way: f64) {
         let mut left = way;
         let mut most = PathDistances::default();
@@ -303,9 +303,9 @@ impl Contour<'_> {
 /// Distances between paths, mm.
 #[derive(Clone, Copy, Debug, Default)]
 struct PathDistances {
-    /// Of the commanded path from that of the program.
+    /// Distance of the commanded path from that of the program.
     interpolation: f64,
-    /// Of that from the CL path; none where it is not known.
+    /// Distance of the program's path from the CL path; none where that is not known.
     program: Option<f64>,
 }
 

@@ -26,7 +26,7 @@ pub struct ContourPoint {
     pub nearest: Pose,
     /// Actual minus nearest tip, mm, part frame.
     pub error: Vector3<f64>,
-    /// Its length: the contour error, mm.
+    /// Length of the deviation: the contour error, mm.
     pub distance: f64,
     /// Angle between the tool axis and the one at the nearest point, radians.
     pub axis: f64,
@@ -43,7 +43,7 @@ pub struct AskedPoint {
     pub at: ProgramPlace,
     /// Actual tip minus that point, mm, part frame.
     pub error: Vector3<f64>,
-    /// Its length, mm.
+    /// Length of the deviation, mm.
     pub distance: f64,
     /// Angle between the tool axis and the one that is asked for there, radians.
     pub axis: f64,

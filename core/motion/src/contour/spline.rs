@@ -2,13 +2,13 @@
 //!
 //! A knot is passed with the derivative of five set-points (its error falls with the fourth power of the period, and so
 //! does that of the spline), under three limits, so that the spline neither overshoots at stops, corners and reversals
-//! nor swings before and behind them:
+//! nor swings before and after them:
 //!
 //! - a second difference counts with no more than [`PEAK`] times the larger of its neighbours: a corner between two
 //!   set-points stands alone among them, and is passed on its chords;
-//! - so do the two third differences, each against the other: what lies behind a corner does not bend the way up to it;
-//! - a tangent never points back along its chord and is no longer than three chords: the way along the chord never falls
-//!   (Fritsch, Carlson 1980), and where the machine stands the spline stands.
+//! - so do the two third differences, each against the other: what lies after a corner does not bend the way up to it;
+//! - a tangent never points back along its chord and is no longer than three chords: the way along the chord never
+//! falls (Fritsch, Carlson 1980), and where the machine stands the spline stands.
 
 use nalgebra::Vector3;
 
@@ -29,7 +29,7 @@ pub(super) struct FivePoints {
 }
 
 impl FivePoints {
-    /// All of them stand here.
+    /// Five set-points that all stand at `point`.
     pub fn all_at(point: &Vector3<f64>) -> Self {
         Self { last: *point, ..Self::default() }
     }
@@ -92,7 +92,7 @@ pub(super) struct Cubic {
 }
 
 impl Cubic {
-    /// From one knot, left so, to another, reached so.
+    /// The cubic from one knot, left with the derivative `leaves`, to another, reached with `reaches`.
     #[inline]
     pub fn new(ends: [&Vector3<f64>; 2], leaves: &Vector3<f64>, reaches: &Vector3<f64>) -> Self {
         let chord = ends[1] - ends[0];
@@ -110,19 +110,19 @@ impl Cubic {
         self.start + (self.first + (self.second + self.third * s) * s) * s
     }
 
-    /// Its first derivative.
+    /// First derivative at `s`.
     #[inline]
     pub fn slope(&self, s: f64) -> Vector3<f64> {
         self.first + (self.second * 2.0 + self.third * (3.0 * s)) * s
     }
 
-    /// Its second derivative.
+    /// Second derivative at `s`.
     #[inline]
     pub fn bend(&self, s: f64) -> Vector3<f64> {
         self.second * 2.0 + self.third * (6.0 * s)
     }
 
-    /// Its third derivative.
+    /// Third derivative, the same everywhere.
     #[inline]
     pub fn jerk(&self) -> Vector3<f64> {
         self.third * 6.0

@@ -27,7 +27,7 @@ const COSINES: [f64; 12] = {
     [1.0, root, 0.5, 0.0, -0.5, -root, -1.0, -root, -0.5, 0.0, 0.5, root]
 };
 
-/// How much the value at each of the first four places has of each coefficient; those behind the middle have as much, of
+/// How much the value at each of the first four places has of each coefficient; those after the middle have as much, of
 /// the odd ones with the other sign.
 const WEIGHTS: [[f64; DEGREE / 2 + 1]; DEGREE + 1] = {
     let mut weights = [[0.0; DEGREE / 2 + 1]; DEGREE + 1];

@@ -1,9 +1,9 @@
 //! What the machine allows on a move: how far the axes and the tip go, bend and jerk along it, and how fast that may be
 //! run through.
 //!
-//! A move is run through by some law `t(τ)` of time, `t` its own parameter from 0 to 1. With `q` an axis value over `t`,
-//! its velocity is `q'·ṫ`, its acceleration `q'·ẗ + q''·ṫ²` and its jerk `q'·t⃛ + 3·q''·ṫ·ẗ + q'''·ṫ³`: bounds of `q'`, `q''`
-//! and `q'''` over the move, once, are all that a planner needs of chain and path.
+//! A move is run through by some law `t(τ)` of time, `t` its own parameter from 0 to 1. With `q` an axis value over
+//! `t`, its velocity is `q'·ṫ`, its acceleration `q'·ẗ + q''·ṫ²` and its jerk `q'·t⃛ + 3·q''·ṫ·ẗ + q'''·ṫ³`: bounds of
+//! `q'`, `q''` and `q'''` over the move, once, are all that a planner needs of chain and path.
 
 mod fit;
 
@@ -23,8 +23,8 @@ pub struct AxisLimits {
     pub acceleration: Joints,
     /// Largest jerks, mm/s³ or rad/s³; infinite where the machine file names none.
     pub jerk: Joints,
-    /// Largest jumps of the velocity where one move passes into the next, mm/s or rad/s: what the machine file says, else
-    /// what the acceleration makes of it in one period of the control.
+    /// Largest jumps of the velocity where one move passes into the next, mm/s or rad/s: what the machine file says,
+    /// else what the acceleration makes of it in one period of the control.
     pub jump: Joints,
     /// Largest acceleration of the tip, mm/s²; infinite if none is named.
     pub tip_acceleration: f64,
@@ -37,12 +37,12 @@ pub struct AxisLimits {
     pub programmed: Option<[Option<usize>; MAX_AXES]>,
 }
 
-/// The share of an acceleration that a jump of the velocity may take where moves overlap by rule and the machine file says
-/// nothing of it: LinuxCNC's kink ratio. Joined moves have the rest.
+/// The share of an acceleration that a jump of the velocity may take where moves overlap by rule and the machine file
+/// says nothing of it: LinuxCNC's kink ratio. Joined moves have the rest.
 pub(crate) const KINK: f64 = 0.1;
 
 impl AxisLimits {
-    /// Those of a machine.
+    /// Limits of a machine.
     pub fn new(machine: &Machine) -> Self {
         let rules = &machine.motion;
         let instant = rules.period
@@ -91,11 +91,11 @@ impl AxisLimits {
 pub struct MoveLimits {
     /// Bounds of the magnitude of the first derivatives by place in the chain, mm or radians.
     pub first: Joints,
-    /// Bounds of the second ones.
+    /// Bounds of the second derivatives.
     pub second: Joints,
-    /// Bounds of the third ones.
+    /// Bounds of the third derivatives.
     pub third: Joints,
-    /// First derivatives where it begins and ends.
+    /// First derivatives where the move begins and ends.
     pub ends: [Joints; 2],
     /// Second derivatives there.
     pub bends: [Joints; 2],
@@ -103,15 +103,15 @@ pub struct MoveLimits {
     pub tip: [f64; 3],
     /// First derivative of the tip where it begins and ends, mm, part frame.
     pub tip_ends: [Vector3<f64>; 2],
-    /// Of an arc on which no rotary axis turns: how large the first derivatives are somewhere on the whole circle.
+    /// Largest first derivatives on the whole circle, for an arc on which no rotary axis turns.
     pub circle: Option<Joints>,
 }
 
 /// What the limits ask for on a move.
 ///
-/// Where axes and tip go straight in the parameter, it is exact. Elsewhere it is summed from the Chebyshev series of what
-/// they do over pieces of at most half a radian of turn: never less than what the series does anywhere, and what the
-/// series leaves out is below a thousandth of that.
+/// Where axes and tip go straight in the parameter, it is exact. Elsewhere it is summed from the Chebyshev series of
+/// what they do over pieces of at most half a radian of turn: never less than what the series does anywhere, and what
+/// the series leaves out is below a thousandth of that.
 ///
 /// # Errors
 /// The axes cannot follow the way: see [`Interpolation::stance_at`].
@@ -156,8 +156,8 @@ fn coordinates<'l>(task: &Move, limits: &'l AxisLimits) -> Option<&'l [Option<us
     limits.programmed.as_ref().filter(|_| task.keeps_tip && task.way != Interpolation::Axes)
 }
 
-/// How large what is limited gets for each place where the tip goes round an ellipse of these half-axes, the rotary axes
-/// standing where the move begins.
+/// How large what is limited gets for each place where the tip goes round an ellipse of these half-axes, the rotary
+/// axes standing where the move begins.
 fn circle(
     task: &Move,
     [first, second]: [Vector3<f64>; 2],

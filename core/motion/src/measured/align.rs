@@ -1,10 +1,10 @@
 //! How much later the clock of a log runs, and how far its axes count from other zeros.
 //!
-//! The shift τ and the zeros z make the squares of `log(t) - predicted(t - τ) - z` least, each axis in the measure of what is
-//! left of it, without the rows that are far off. There are many such shifts where a path goes to and fro, so all are tried
-//! first, by correlation; the best of them are settled between the samples, and the one that explains most rows is taken.
-//! A zero that explains hardly more than none is taken for none, and the shift found without it: the prediction being early
-//! here and late there looks like one too.
+//! The shift τ and the zeros z make the squares of `log(t) - predicted(t - τ) - z` least, each axis in the measure of
+//! what is left of it, without the rows that are far off. There are many such shifts where a path goes to and fro, so
+//! all are tried first, by correlation; the best of them are settled between the samples, and the one that explains
+//! most rows is taken. A zero that explains hardly more than none is taken for none, and the shift found without it:
+//! the prediction being early here and late there looks like one too.
 
 use post_machine::kinematics::{Joints, MAX_AXES};
 
@@ -24,7 +24,7 @@ const STILL: f64 = 1e-3;
 /// Below this correlation nothing is alike.
 const ALIKE: f64 = 0.7;
 
-/// At least this share of the rows lies where it is predicted; of those of another program none do.
+/// Least share of the rows that lies where it is predicted; of those of another program none do.
 const LEAST_INSIDE: f64 = 0.4;
 
 /// What is left of a row counts for no more than so many standard deviations, squared, where shifts are compared.
@@ -36,7 +36,8 @@ const RIVAL: f64 = 2.0;
 /// Less than this of a standard deviation, squared, is nothing.
 const NOTHING: f64 = 0.01;
 
-/// A row is far off by no less than this share of what the axis moves, standard deviation: early and late is not elsewhere.
+/// A row is far off by no less than this share of what the axis moves, standard deviation: early and late is not
+/// elsewhere.
 const FAR: f64 = 0.01;
 
 /// How a log lies over a prediction.
@@ -44,7 +45,7 @@ const FAR: f64 = 0.01;
 pub struct Alignment {
     /// Time of the log minus time of the prediction, s.
     pub shift: f64,
-    /// Its standard deviation, were what is left independent from row to row, s.
+    /// Standard deviation of the shift, were what is left independent from row to row, s.
     pub shift_deviation: f64,
     /// What the log counts more, mm and radians; 0 of axes that were not asked for.
     pub zeros: Joints,
@@ -54,10 +55,10 @@ pub struct Alignment {
     pub left: Joints,
     /// Share of the rows, 0 to 1, in which an axis is so far off that the row says nothing of shift and zeros.
     pub far_off: f64,
-    /// Of each axis 1 if nothing is left, 0 if they have nothing in common, -1 if it counts the other way; none of axes
-    /// that stand still.
+    /// Likeness of each axis: 1 if nothing is left, 0 if they have nothing in common, -1 if it counts the other way;
+    /// none of axes that stand still.
     pub alike: [Option<f64>; MAX_AXES],
-    /// The same of all axes together, without rows that are far off.
+    /// Likeness of all axes together, without rows that are far off.
     pub correlation: f64,
     /// Another shift, s, that leaves hardly more: the path is much the same there.
     pub rival: Option<f64>,
@@ -66,7 +67,7 @@ pub struct Alignment {
 /// Why a log cannot be laid over a prediction.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AlignmentFault {
-    /// One of them has fewer than this many samples.
+    /// Log or prediction has fewer than this many samples.
     Short(usize),
     /// No axis moves in both.
     Still,
@@ -77,8 +78,9 @@ pub enum AlignmentFault {
 /// Samples that are needed.
 const FEWEST: usize = 8;
 
-/// Lays `log` over `predicted` by the axes at the places `axes`. Both count an axis in the same sense and unit; a rotary
-/// axis goes on over full turns. An axis with a zero in `zeros` counts from there; of the others zeros are found.
+/// Lays `log` over `predicted` by the axes at the places `axes`. Both count an axis in the same sense and unit; a
+/// rotary axis goes on over full turns. An axis with a zero in `zeros` counts from there; of the others zeros are
+/// found.
 ///
 /// # Errors
 /// Nothing to compare, or nothing alike.
@@ -130,7 +132,7 @@ fn weight(predicted: &AxisTrack, log: &AxisTrack, axis: usize) -> Option<f64> {
 /// What shifts are settled with.
 struct AlignedTracks<'a> {
     predicted: &'a AxisTrack,
-    /// That move in both.
+    /// Axes that move in both.
     axes: &'a [usize],
     step: f64,
 }
@@ -195,7 +197,7 @@ impl AlignedTracks<'_> {
         needed
     }
 
-    /// Of each axis the least that any of them leaves: all are measured by it.
+    /// The least spread that any of them leaves, by axis: all are measured by it.
     fn spreads(&self, settled: &[SettledShift]) -> Joints {
         let mut spreads = [f64::INFINITY; MAX_AXES];
         for axis in self.axes {

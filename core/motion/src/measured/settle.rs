@@ -1,9 +1,9 @@
 //! A shift between the samples, and zeros, by least squares that rows far off do not move.
 //!
-//! Where the prediction starts from another place than the machine did, or the operator stopped it for a while, rows are
-//! far off and say nothing of the shift: they are left out by Tukey's biweight (A. E. Beaton, J. W. Tukey, The fitting of
-//! power series, meaning polynomials, illustrated on band-spectroscopic data, 1974), each axis measured by the median of
-//! what is left of it while it moves.
+//! Where the prediction starts from another place than the machine did, or the operator stopped it for a while, rows
+//! are far off and say nothing of the shift: they are left out by Tukey's biweight (A. E. Beaton, J. W. Tukey, The
+//! fitting of power series, meaning polynomials, illustrated on band-spectroscopic data, 1974), each axis measured by
+//! the median of what is left of it while it moves.
 
 use post_machine::kinematics::{Joints, MAX_AXES};
 
@@ -21,7 +21,8 @@ const OF_NINETY: f64 = 1.645;
 /// Nothing is known more closely, mm or radians.
 const FINEST: f64 = 1e-6;
 
-/// An axis moves where it goes at this share of its median rate, of what is above a share of the root of its mean square.
+/// An axis moves where it goes at this share of its median rate, of what is above a share of the root of its mean
+/// square.
 const MOVES: f64 = 0.1;
 const CREEPS: f64 = 1e-3;
 
@@ -39,7 +40,8 @@ pub(super) struct LogRows {
 }
 
 impl LogRows {
-    /// At most so many of a log, at uneven distances, so that none of them is that of something that comes again and again.
+    /// At most `most` rows of a log, at uneven distances, so that none of them is that of something that comes again
+    /// and again.
     pub fn of(log: &AxisTrack, most: usize) -> Self {
         let count = log.joints.len();
         let golden = 0.618_033_988_749_895;
@@ -137,7 +139,7 @@ pub(super) fn settled(
     found
 }
 
-/// Of one axis.
+/// Level of one axis.
 pub(super) fn level(rows: &[Residual], axis: usize, zero: Option<f64>) -> AxisLevel {
     let rates = || rows.iter().map(|row| row.rate[axis].abs());
     let squares: f64 = rates().map(|rate| rate * rate).sum();
@@ -175,7 +177,8 @@ fn normal(rows: &[Residual], axis: usize, level: AxisLevel, free: bool) -> [f64;
     }
 }
 
-/// The standard deviation of most rows, those that are early or late among them: by the size that nine of ten do not pass.
+/// The standard deviation of most rows, those that are early or late among them: by the size that nine of ten do not
+/// pass.
 pub(super) fn width(rows: &[Residual], axis: usize, level: AxisLevel) -> f64 {
     let by = rows.iter().map(|row| (row.by[axis] - level.zero).abs());
     let mut by: Vec<f64> = by.collect();
@@ -214,8 +217,8 @@ pub(super) fn moved(rows: &[Residual], axis: usize) -> f64 {
     libm::sqrt(squares / count)
 }
 
-/// How alike both are in the rows that count: 1 if nothing is left, 0 if they have nothing in common, -1 if they count in
-/// opposite senses.
+/// How alike both are in the rows that count: 1 if nothing is left, 0 if they have nothing in common, -1 if they count
+/// in opposite senses.
 pub(super) fn likeness(rows: &[Residual], axis: usize, level: AxisLevel) -> f64 {
     let inside = || rows.iter().filter(|row| counts(row, axis, level));
     let count = inside().count().max(1) as f64;

@@ -12,18 +12,18 @@ const MOST_MEANS: usize = 1 << 18;
 /// Shifts that are looked at more closely.
 const MOST_PEAKS: usize = 32;
 
-/// Between two peaks the correlation falls by this much below the lower one.
+/// Depth of the valley between two peaks of the correlation, below the lower one.
 const VALLEY: f64 = 1e-4;
 
-/// Of the shorter of both at least this share lies over the other, and of what moves in it.
+/// Least share of the shorter of both that lies over the other, and of what moves in it.
 const SHORTEST_OVERLAP: f64 = 0.5;
 const LEAST_MOVED: f64 = 0.1;
 
 /// Means that lie over one another at least.
 const FEWEST: usize = 8;
 
-/// Shifts, s, the beginnings of both apart, at which `log` is most like `predicted`: the best one first. Each of `axes` has
-/// its weight.
+/// Shifts, s, the beginnings of both apart, at which `log` is most like `predicted`: the best one first. Each of `axes`
+/// has its weight.
 pub(super) fn shifts(predicted: &AxisTrack, log: &AxisTrack, axes: &[(usize, f64)]) -> Vec<f64> {
     let mut step = predicted.period.max(log.period);
     let mut both = [predicted, log].map(|track| MeanTrack::of(track, step, axes));
@@ -42,7 +42,7 @@ pub(super) fn shifts(predicted: &AxisTrack, log: &AxisTrack, axes: &[(usize, f64
 
 /// Axis values, weighted, with sums up to each place.
 struct MeanTrack {
-    /// By axis.
+    /// Values by axis.
     values: Vec<Vec<f64>>,
     /// Sums of values and of their squares before each place, by axis.
     sums: Vec<Vec<[f64; 2]>>,
@@ -144,7 +144,8 @@ fn products([predicted, log]: &[MeanTrack; 2]) -> Vec<[f64; 2]> {
     sums
 }
 
-/// The correlation at a shift, place in the log minus place in the prediction; none if too little lies over one another.
+/// The correlation at a shift, place in the log minus place in the prediction; none if too little lies over one
+/// another.
 fn correlation([predicted, log]: &[MeanTrack; 2], shift: i64, product: f64) -> Option<f64> {
     let counts = [predicted.count() as i64, log.count() as i64];
     let from = 0.max(-shift);

@@ -12,15 +12,15 @@ const ON_GRID: f64 = 1e-6;
 pub struct AxisTrack {
     /// Time of the first, s.
     pub begins: f64,
-    /// From one to the next, s.
+    /// Time from one to the next, s.
     pub period: f64,
     /// Axis values, mm and radians, in chain order.
     pub joints: Vec<Joints>,
 }
 
 impl AxisTrack {
-    /// Of samples at `times`, which increase, at equal distances: those of `joints` where the samples lie so, else what a
-    /// cubic through their neighbours has there.
+    /// Track of samples at `times`, which increase, at equal distances: those of `joints` where the samples lie so,
+    /// else what a cubic through their neighbours has there.
     pub fn of_samples(times: &[f64], joints: &[Joints], period: f64) -> Self {
         let Some((first, last)) = times.first().zip(times.last()) else {
             return Self { period, ..Self::default() };
@@ -56,8 +56,8 @@ impl AxisTrack {
         self.ends() - self.begins
     }
 
-    /// Axis values on the way to the one at `place`: `steps` of them at even distances in time behind the one before, the
-    /// last is itself. Before the first the axes stand.
+    /// Axis values on the way to the one at `place`: `steps` of them at even distances in time after the one before,
+    /// the last is itself. Before the first the axes stand.
     pub fn towards(&self, place: usize, steps: usize) -> impl Iterator<Item = Joints> {
         let exact = self.joints[place];
         (1..=steps).map(move |step| {
@@ -75,8 +75,8 @@ impl AxisTrack {
     ///
     /// Where acceleration jumps by `a` and samples are `h` apart, the cubic is off by up to `0.041·a·h²` and this says
     /// `0.031·a·h²` to `0.035·a·h²` (straight lines: `a·h²/8`); where motion is smoother, the cubic is closer than this
-    /// says. Where velocity jumps by `v`, it is off by up to `0.19·v·h`, and this says `0.03·v·h` to `0.09·v·h`, by when
-    /// between two samples that is.
+    /// says. Where velocity jumps by `v`, it is off by up to `0.19·v·h`, and this says `0.03·v·h` to `0.09·v·h`, by
+    /// when between two samples that is.
     pub fn between(&self) -> [DifferenceSum; MAX_AXES] {
         let mut found = [DifferenceSum::default(); MAX_AXES];
         for (first, around) in self.joints.windows(7).enumerate() {
@@ -90,12 +90,12 @@ impl AxisTrack {
         found
     }
 
-    /// Axis values at `time`, by a cubic through the neighbours; none before the first and behind the last.
+    /// Axis values at `time`, by a cubic through the neighbours; none before the first and after the last.
     pub fn at(&self, time: f64) -> Option<Joints> {
         self.at_with_rate(time).map(|(joints, _)| joints)
     }
 
-    /// The same, and how fast they change, mm/s and radians/s.
+    /// Axis values at `time`, and how fast they change, mm/s and radians/s.
     pub fn at_with_rate(&self, time: f64) -> Option<(Joints, Joints)> {
         let last = self.joints.len().checked_sub(1)?;
         let place = (time - self.begins) / self.period;
@@ -127,7 +127,7 @@ impl AxisTrack {
     }
 }
 
-/// Axis values between the samples `from` and `from + 1`, or close behind them.
+/// Axis values between the samples `from` and `from + 1`, or close after them.
 fn between(times: &[f64], joints: &[Joints], from: usize, time: f64) -> Joints {
     if times.len() < 2 {
         return joints[0];

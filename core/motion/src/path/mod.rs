@@ -31,9 +31,9 @@ pub enum Interpolation {
     TipAndAxis,
     /// The tip on an arc or helix of the part frame, rotary axes linearly if they turn at all.
     Arc {
-        /// A point of its axis, mm.
+        /// A point of the axis, mm.
         centre: Vector3<f64>,
-        /// Its axis, unit vector.
+        /// Axis, unit vector.
         normal: Vector3<f64>,
         /// Turn about it, right-handed, radians; more than a turn where the program says so.
         sweep: f64,
@@ -83,7 +83,8 @@ impl Interpolation {
     }
 }
 
-/// The pose with its tip on `tip` whose directions are `t` of the way along the great circles between those of the ends.
+/// The pose with its tip on `tip` whose directions are `t` of the way along the great circles between those of the
+/// ends.
 fn on_great_circle(ends: [&Stance; 2], tip: Vector3<f64>, t: f64) -> Pose {
     let [from, to] = ends.map(|stance| stance.pose);
     Pose {

@@ -55,7 +55,7 @@ pub struct GreatCircle {
 }
 
 impl GreatCircle {
-    /// From one to the other.
+    /// The shorter way between two unit vectors.
     pub fn new(from: Vector3<f64>, to: Vector3<f64>) -> Self {
         let mut circle = Self { from, to, about: None, angle: 0.0 };
         if from == to {

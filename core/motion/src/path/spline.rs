@@ -11,8 +11,8 @@ const MOST_DEGREE: usize = 9;
 const CHORDS: u32 = 64;
 
 impl BSpline {
-    /// It can be evaluated: the degree is from 1 to 9, the knots never fall and are as many as poles + degree + 1, and
-    /// its weights lie above zero.
+    /// Whether it can be evaluated: the degree is from 1 to 9, the knots never fall and are as many as poles + degree +
+    /// 1, and its weights lie above zero.
     pub fn is_sound(&self) -> bool {
         let rises = self.knots.windows(2).all(|pair| pair[0] <= pair[1]);
         let [first, last] = self.range();
@@ -35,7 +35,7 @@ impl BSpline {
         (self.degree..self.poles.len()).filter(|place| self.knots[*place] < self.knots[place + 1])
     }
 
-    /// Its length, mm, by chords of each span: too short by less than a thousandth.
+    /// Length, mm, by chords of each span: too short by less than a thousandth.
     pub fn length(&self) -> f64 {
         let mut length = 0.0;
         for span in self.spans() {

@@ -7,8 +7,8 @@ use post_machine::servo::StateSpace;
 /// No servo whose machine file was not refused, over a step of a second at most, has a larger number in its matrix.
 const LARGEST: f64 = 1e100;
 
-/// The exact solution of `x' = a·x + value·r + rate·r' + force·f` after a step of time in which r changes linearly by Δ and
-/// f is constant: `x⁺ = transition·x + value·r + change·Δ + force·f`, r taken at the beginning.
+/// The exact solution of `x' = a·x + value·r + rate·r' + force·f` after a step of time in which r changes linearly by Δ
+/// and f is constant: `x⁺ = transition·x + value·r + change·Δ + force·f`, r taken at the beginning.
 #[derive(Clone, Debug)]
 pub(super) struct DiscreteSolution {
     pub transition: DMatrix<f64>,
@@ -18,9 +18,9 @@ pub(super) struct DiscreteSolution {
 }
 
 impl DiscreteSolution {
-    /// Over `step` seconds. The inputs are states of their own of a larger system whose matrix exponential holds all
-    /// (Van Loan 1978, "Computing integrals involving the matrix exponential"): over the step r grows by Δ, and neither Δ
-    /// nor f changes. None where the equations are out of all proportion to the step.
+    /// Solves over `step` seconds. The inputs are states of their own of a larger system whose matrix exponential holds
+    /// all (Van Loan 1978, "Computing integrals involving the matrix exponential"): over the step r grows by Δ, and
+    /// neither Δ nor f changes. None where the equations are out of all proportion to the step.
     pub(super) fn new(
         a: &DMatrix<f64>,
         value: &DVector<f64>,
@@ -107,7 +107,7 @@ impl<const N: usize> ServoState<N> {
         }
     }
 
-    /// At rest at `value`.
+    /// Brings the servo to rest at `value`.
     pub(super) fn settle(&mut self, value: f64) {
         self.states = self.rest.map(|part| part * value);
         self.commanded = value;

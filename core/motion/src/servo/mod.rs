@@ -1,17 +1,19 @@
 //! Servos: where the axes are while they follow their set-points.
 //!
-//! [`Servos`] does it for a machine, [`Follower`] for one axis. The equations are those of [`post_machine::servo`]. They are
-//! solved exactly from set-point to set-point, by the matrix exponential, with the commanded position linear between
-//! set-points (a first-order hold): the answer is that of the differential equations, whatever the period. The velocity of
-//! the command jumps at a set-point, and with the acceleration fed forward the current (or the speed, where the torque
-//! follows its command at once) jumps with it; that is what the equations say of such a command.
+//! [`Servos`] does it for a machine, [`Follower`] for one axis. The equations are those of [`post_machine::servo`].
+//! They are solved exactly from set-point to set-point, by the matrix exponential, with the commanded position linear
+//! between set-points (a first-order hold): the answer is that of the differential equations, whatever the period. The
+//! velocity of the command jumps at a set-point, and with the acceleration fed forward the current (or the speed, where
+//! the torque follows its command at once) jumps with it; that is what the equations say of such a command.
 //!
-//! Dry friction, and play inside the loops, are not linear. With them a period is gone through in equal steps of at most
-//! 0.1 ms, and of at most 0.2 radians of the swing of the table on its transmission; within a step the equations are solved
-//! exactly, with the friction's force constant (that of the velocity at the step's end, or what stops the table there) and
-//! the flanks touching or not as at its beginning. Errors are in proportion to the step.
+//! Dry friction, and play inside the loops, are not linear. With them a period is gone through in equal steps of at
+//! most
+//! 0.1 ms, and of at most 0.2 radians of the swing of the table on its transmission; within a step the equations are
+//! solved exactly, with the friction's force constant (that of the velocity at the step's end, or what stops the table
+//! there) and the flanks touching or not as at its beginning. Errors are in proportion to the step.
 //!
-//! [`post_machine::servo::Response`] answers in the frequency domain, [`fit`] adjusts numbers of a servo to a measured log.
+//! [`post_machine::servo::Response`] answers in the frequency domain, [`fit`] adjusts numbers of a servo to a measured
+//! log.
 
 mod discrete;
 pub mod fit;
@@ -32,12 +34,12 @@ const LONGEST_PERIOD: f64 = 1.0;
 /// The servos of a machine.
 #[derive(Clone, Debug)]
 pub struct Servos {
-    /// By their axes' places in the chain; an axis without is followed exactly.
+    /// Followers by their axes' places in the chain; an axis without one is followed exactly.
     followers: Vec<(usize, Follower)>,
 }
 
 impl Servos {
-    /// Those of `machine`, for set-points every `period` seconds. They stand at zero: [`Servos::settle`] puts them
+    /// Servos of `machine`, for set-points every `period` seconds. They stand at zero: [`Servos::settle`] puts them
     /// elsewhere.
     ///
     /// # Errors
@@ -64,9 +66,9 @@ impl Servos {
         }
     }
 
-    /// Where the axes are at the times of the set-points `commanded`, which follow those of the last call: one of `actual`
-    /// each, in place of what it held. Axis values in mm and radians; those of a rotary axis go on over full turns. The
-    /// commanded values are taken as linear from one set-point to the next.
+    /// Where the axes are at the times of the set-points `commanded`, which follow those of the last call: one of
+    /// `actual` each, in place of what it held. Axis values in mm and radians; those of a rotary axis go on over full
+    /// turns. The commanded values are taken as linear from one set-point to the next.
     pub fn follow(&mut self, commanded: &[Joints], actual: &mut Vec<Joints>) {
         actual.clear();
         actual.extend_from_slice(commanded);
@@ -109,8 +111,8 @@ impl Follower {
     /// Where the table is, for set-points every `period` seconds.
     ///
     /// # Errors
-    /// A period that is not above zero, or longer than a second; numbers whose equations cannot be solved (a machine file
-    /// with such is refused).
+    /// A period that is not above zero, or longer than a second; numbers whose equations cannot be solved (a machine
+    /// file with such is refused).
     pub fn new(servo: &Servo, period: f64) -> Result<Self, Box<Diagnostic>> {
         Self::with(servo, period, ServoOutput::Table)
     }
@@ -176,7 +178,7 @@ impl Follower {
         actual
     }
 
-    /// The same for `count` set-points, given by `command` and handed to `put` by their numbers.
+    /// Follows `count` set-points, given by `command` and handed to `put` by their numbers.
     pub fn run(
         &mut self,
         count: usize,
@@ -191,8 +193,8 @@ impl Follower {
         }
     }
 
-    /// The states, as [`StateSpace`] has them, at the last set-point, before the kink of the command there has its effect;
-    /// those beyond its order are zero.
+    /// The states, as [`StateSpace`] has them, at the last set-point, before the kink of the command there has its
+    /// effect; those beyond its order are zero.
     pub fn states(&self) -> [f64; MAX_ORDER] {
         let mut states = [0.0; MAX_ORDER];
         let held: &[f64] = match &self.kernel {

@@ -1,13 +1,14 @@
 //! A servo with dry friction, or with play inside its loops.
 //!
-//! A period is gone through in equal steps of at most [`LONGEST_STEP`] and at most [`STEP_SHARE`] over the angular frequency
-//! of the table on its transmission. Within a step the equations are solved exactly, with these two taken as constant:
+//! A period is gone through in equal steps of at most [`LONGEST_STEP`] and at most [`STEP_SHARE`] over the angular
+//! frequency of the table on its transmission. Within a step the equations are solved exactly, with these two taken as
+//! constant:
 //!
-//! - **Friction.** Its force over a step is the one that belongs to the velocity at the step's end. That equation has one
-//!   solution, in closed form, however steep the friction is, so that no step is too long to be stable; where the force
-//!   that would stop the table within the step is less than the friction can be, the table sticks.
-//! - **Play.** Whether the flanks touch, and which, is what holds at the beginning of the step. Touching, the transmission
-//!   is the linear one with a constant force that takes half the play off; else it hands no force on.
+//! - **Friction.** Its force over a step is the one that belongs to the velocity at the step's end. That equation has
+//! one solution, in closed form, however steep the friction is, so that no step is too long to be stable; where the
+//! force that would stop the table within the step is less than the friction can be, the table sticks.
+//! - **Play.** Whether the flanks touch, and which, is what holds at the beginning of the step. Touching, the
+//! transmission is the linear one with a constant force that takes half the play off; else it hands no force on.
 //!
 //! Both are right in the limit of short steps, with errors in proportion to the step.
 
@@ -34,12 +35,12 @@ struct ServoStep<const N: usize> {
     slowing: f64,
 }
 
-/// Where it stands, and how it goes on.
+/// A servo that is solved in short steps: where it stands, and how it goes on.
 #[derive(Clone, Debug)]
 pub(super) struct SteppedServo<const N: usize> {
-    /// The flanks touch, or there is no play.
+    /// Step while the flanks touch, or without play.
     touching: ServoStep<N>,
-    /// They do not.
+    /// Step while the flanks do not touch.
     released: Option<BacklashStep<N>>,
     /// Steps in a period.
     count: u32,

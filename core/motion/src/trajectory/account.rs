@@ -22,7 +22,7 @@ struct OpenTask {
     begins: f64,
     /// Time at the programmed feed, s; none for rapids and waits.
     asked: Option<f64>,
-    /// It takes no time.
+    /// Whether the task takes no time.
     empty: bool,
     /// Time beyond what was asked, by reason, s.
     spent: [(TimeLimit, f64); MOST],

@@ -5,7 +5,7 @@ use super::profile::{Phase, Ramp};
 /// One block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LookAheadBlock {
-    /// Its length.
+    /// Length of the block.
     pub length: f64,
     /// Largest velocity.
     pub velocity: f64,
@@ -23,14 +23,14 @@ impl LookAheadBlock {
     }
 }
 
-/// Why it is no faster.
+/// Why a block is no faster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum VelocityLimit {
     /// The block's largest velocity.
     Velocity,
-    /// On the way from one to another.
+    /// The ramp from one velocity to another.
     Change,
-    /// On the way from or to a standstill or a corner.
+    /// The ramp from or to a standstill or a corner.
     Corner,
 }
 

@@ -4,10 +4,10 @@
 //! With `q` what a limit holds for, over the parameter `t`, its acceleration is `q'·ẗ + q''·ṫ²` and its jerk
 //! `q'·t⃛ + 3·q''·ṫ·ẗ + q'''·ṫ³`. Bounds of the derivatives hold all over the move, so each limit is split once:
 //! at most [`NORMAL`] of an acceleration goes to the curve, and what the curve leaves at the velocity that is then
-//! allowed is the tangential acceleration; a jerk goes in thirds to `q'''`, to the mixed term and to `t⃛`. On an arc with
-//! no turn of a rotary axis the two accelerations stand across each other and share as sides of a right triangle do:
-//! [`ARC`] of it to the curve, half of it along, or more where even the axes' largest velocities ask for less across, as
-//! LinuxCNC shares it.
+//! allowed is the tangential acceleration; a jerk goes in thirds to `q'''`, to the mixed term and to `t⃛`. On an arc
+//! with no turn of a rotary axis the two accelerations stand across each other and share as sides of a right triangle
+//! do: [`ARC`] of it to the curve, half of it along, or more where even the axes' largest velocities ask for less
+//! across, as LinuxCNC shares it.
 
 use post_machine::kinematics::MAX_AXES;
 
@@ -43,7 +43,7 @@ pub(super) struct MoveBounds {
 struct LimitedQuantity {
     /// Bounds of the derivatives over the parameter.
     derivatives: [f64; 3],
-    /// Of an arc: the largest first derivative on the whole circle.
+    /// Largest first derivative on the whole circle of an arc.
     circle: f64,
     velocity: f64,
     acceleration: f64,
@@ -83,8 +83,8 @@ fn all<'a>(
 }
 
 impl MoveBounds {
-    /// Of a move that the program wants to take `seconds` (0: as fast as it goes), and whose accelerations may take
-    /// `share` of the limits. `sweep`: it is an arc of so many radians, and nothing else turns.
+    /// Bounds of a move that the program wants to take `seconds` (0: as fast as it goes), and whose accelerations may
+    /// take `share` of the limits. `sweep`: it is an arc of so many radians, and nothing else turns.
     pub fn new(
         found: &MoveLimits,
         rules: &AxisLimits,

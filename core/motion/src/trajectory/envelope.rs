@@ -1,5 +1,5 @@
-//! The blocks in sight, and the highest velocities that their accelerations allow: what plans with jerk limits and without
-//! both begin with.
+//! The blocks in sight, and the highest velocities that their accelerations allow: what plans with jerk limits and
+//! without both begin with.
 
 use std::collections::VecDeque;
 
@@ -14,7 +14,7 @@ pub(super) struct VelocityEnvelope {
     /// How much of it is behind, and with what velocity it goes on.
     pub begun: f64,
     pub velocity: f64,
-    /// Squared velocities where blocks meet: before the first, …, behind the last.
+    /// Squared velocities where blocks meet: before the first, …, after the last.
     pub squares: Vec<f64>,
     /// Largest velocities where blocks meet, numbered alike.
     pub caps: Vec<f64>,
@@ -27,7 +27,7 @@ impl VelocityEnvelope {
         (self.blocks[place].length - begun).max(0.0)
     }
 
-    /// The largest velocities where blocks meet; 0 behind the last.
+    /// The largest velocities where blocks meet; 0 after the last.
     pub fn set_caps(&mut self) {
         self.caps.clear();
         self.caps.push(self.velocity);

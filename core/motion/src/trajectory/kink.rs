@@ -25,7 +25,7 @@ pub(super) struct Kink {
 }
 
 impl Kink {
-    /// None where the two moves cannot be compared.
+    /// The kink between two moves; none where they cannot be compared.
     pub fn new(sides: [CornerSide; 2], rules: &AxisLimits) -> Option<Self> {
         let ratio = ratio(sides, rules)?;
         let [out, into] = [&sides[0].found.ends[1], &sides[1].found.ends[0]];
@@ -65,8 +65,9 @@ impl Kink {
     }
 }
 
-/// How much faster the parameter of the second move runs than that of the first where they meet, such that the velocities
-/// of what is limited, each weighed by its acceleration, keep their length; none where they cannot be compared.
+/// How much faster the parameter of the second move runs than that of the first where they meet, such that the
+/// velocities of what is limited, each weighed by its acceleration, keep their length; none where they cannot be
+/// compared.
 fn ratio(sides: [CornerSide; 2], rules: &AxisLimits) -> Option<f64> {
     // Between coordinates of the tip and of the axes there is no comparison.
     let coordinates = sides.map(|side| side.task.keeps_tip && side.task.way != Interpolation::Axes);
@@ -91,8 +92,8 @@ fn ratio(sides: [CornerSide; 2], rules: &AxisLimits) -> Option<f64> {
     (out > 0.0 && into > 0.0 && ratio.is_finite() && ratio > 0.0).then_some(ratio)
 }
 
-/// How first and second derivatives of the axes, over the first of two moves' parameter, change where the second one, whose
-/// parameter runs faster by `ratio`, follows it.
+/// How first and second derivatives of the axes, over the first of two moves' parameter, change where the second one,
+/// whose parameter runs faster by `ratio`, follows it.
 ///
 /// # Errors
 /// As [`Way::stance_at`].
@@ -116,8 +117,8 @@ pub(super) fn of_axes(
 /// Step of a difference, of the move's parameter.
 const STEP: f64 = 1e-3;
 
-/// First and second derivatives of the axes where a move begins or ends, over its parameter: by one-sided differences that are
-/// exact for cubics.
+/// First and second derivatives of the axes where a move begins or ends, over its parameter: by one-sided differences
+/// that are exact for cubics.
 fn slopes(task: &Move, ends: bool) -> Result<[Joints; 2], Unreachable> {
     let (at, sense) = match ends {
         true => (1.0, -STEP),

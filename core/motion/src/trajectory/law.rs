@@ -17,7 +17,7 @@ pub(super) struct LawPiece {
     /// Number of the move.
     pub entry: u64,
     pub span: PieceSpan,
-    /// Its length in the coordinate of the law.
+    /// Length in the coordinate of the law.
     pub length: f64,
     pub at: ProgramPlace,
     /// The task of the second move, where it takes part of two.
@@ -28,12 +28,12 @@ pub(super) struct LawPiece {
     pub border: Option<f64>,
 }
 
-/// What of a move, or of two.
+/// Part of a move, or of two.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum PieceSpan {
-    /// From one place of its parameter to another.
+    /// A move from one place of its parameter to another.
     Along { from: f64, to: f64 },
-    /// These shares of the move and of the next one, added.
+    /// Shares of the move and of the next one, added.
     Corner { shares: [f64; 2], curve: CornerCurve },
 }
 
@@ -46,7 +46,7 @@ pub(super) struct LawSection {
     pub piece: u64,
     /// Where in the piece it begins.
     pub from: f64,
-    /// When, s.
+    /// Time at which it begins, s.
     pub begins: f64,
     pub phase: Phase,
 }
@@ -75,7 +75,7 @@ pub(super) struct TimeLaw {
 }
 
 impl TimeLaw {
-    /// None yet; `programmed`: the programmed coordinates are limited, not the axes.
+    /// A law without pieces; `programmed`: the programmed coordinates are limited, not the axes.
     pub fn new(programmed: bool) -> Self {
         Self { programmed, ..Self::default() }
     }
@@ -145,8 +145,8 @@ impl TimeLaw {
         Some(&self.task(self.piece(section.piece).entry).solver)
     }
 
-    /// Where the machine stands at `time`, which nothing that is over precedes, and in which piece; `near`: the axis values
-    /// a little before.
+    /// Where the machine stands at `time`, which nothing that is over precedes, and in which piece; `near`: the axis
+    /// values a little before.
     pub fn at(&self, time: f64, near: &Joints) -> Result<(Stance, ProgramPlace), Unreachable> {
         let section = &self.sections[0];
         let stance = self.stance(section, time, near)?;
@@ -207,8 +207,8 @@ fn less(joints: &Joints, first: &Stance, corner: &Stance) -> Joints {
     std::array::from_fn(|place| joints[place] - (first.joints[place] - corner.joints[place]))
 }
 
-/// Where two ways lead together that meet at `corner`: what is limited is added, the tip and the rotary axes (`tip_led`) or
-/// all axes, so that velocities and accelerations add up as they were shared out.
+/// Where two ways lead together that meet at `corner`: what is limited is added, the tip and the rotary axes
+/// (`tip_led`) or all axes, so that velocities and accelerations add up as they were shared out.
 fn added(
     solver: &Solver,
     [first, second]: [&Stance; 2],

@@ -1,13 +1,15 @@
 //! Velocities over a run of blocks that are gone through without standing still: look-ahead.
 //!
-//! A block has a length, and along it a largest velocity, acceleration and jerk; where it ends the velocity may be bounded
-//! once more. In the plane of path and squared velocity a constant acceleration is a straight line, so that a pass from the
-//! end backwards and one from the beginning forwards give the highest velocities that the accelerations allow: the
+//! A block has a length, and along it a largest velocity, acceleration and jerk; where it ends the velocity may be
+//! bounded once more. In the plane of path and squared velocity a constant acceleration is a straight line, so that a
+//! pass from the end backwards and one from the beginning forwards give the highest velocities that the accelerations
+//! allow: the
 //! *envelope*. Without jerk limits it is the solution.
 //!
-//! The control sees `depth` blocks, the one in progress among them, and plans such that it could stand still at the end of
-//! the last: so that what it has begun is always sound. A plan is made once a quarter more than so many wait, and carried out
-//! until a quarter less are left: `depth` on average, and each block is planned two and a half times, not `depth` times.
+//! The control sees `depth` blocks, the one in progress among them, and plans such that it could stand still at the end
+//! of the last: so that what it has begun is always sound. A plan is made once a quarter more than so many wait, and
+//! carried out until a quarter less are left: `depth` on average, and each block is planned two and a half times, not
+//! `depth` times.
 
 use super::block::{BlockPhase, LookAheadBlock, VelocityLimit};
 use super::envelope::VelocityEnvelope;
@@ -25,7 +27,7 @@ pub(super) struct LookAhead {
 }
 
 impl LookAhead {
-    /// That sees so many blocks at once; `jerk`: some jerk is limited.
+    /// A look-ahead over `depth` blocks; `jerk`: some jerk is limited.
     pub fn new(depth: usize, jerk: bool) -> Self {
         Self {
             depth: depth.max(1),

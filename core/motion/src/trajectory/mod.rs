@@ -16,26 +16,27 @@
 //! | `law` | sections of constant jerk, and where the machine stands by them at any time |
 //! | `account` | how long each task took, and what for |
 //!
-//! **Coordinate.** Along a run one coordinate `s` counts the way; its velocity and acceleration go on from piece to piece.
-//! A move's own parameter runs from 0 to 1, and `s` is that parameter times a scale of the move: the first one's is the
-//! time that it takes at full rate, and each next one's such that what is limited (axes, or programmed coordinates; each
-//! weighed by its acceleration) has the same speed on both sides of the joint. So tip ways, rotary ways and ways of which
-//! the program counts the feed otherwise pass into each other without a jump, and no unit has to be chosen.
+//! **Coordinate.** Along a run one coordinate `s` counts the way; its velocity and acceleration go on from piece to
+//! piece. A move's own parameter runs from 0 to 1, and `s` is that parameter times a scale of the move: the first one's
+//! is the time that it takes at full rate, and each next one's such that what is limited (axes, or programmed
+//! coordinates; each weighed by its acceleration) has the same speed on both sides of the joint. So tip ways, rotary
+//! ways and ways of which the program counts the feed otherwise pass into each other without a jump, and no unit has to
+//! be chosen.
 //!
 //! **Limits.** They are split once a move (`bounds`), so that a section is a closed form; the split leaves some of an
 //! acceleration unused in curves (at most a quarter goes lost, most of it where the feed is what bounds the velocity
-//! anyway). Curves of a path (`q''`) that begin or end where two moves meet let the acceleration jump there: jerk limits
-//! hold along the path, and inside of moves and corners.
+//! anyway). Curves of a path (`q''`) that begin or end where two moves meet let the acceleration jump there: jerk
+//! limits hold along the path, and inside of moves and corners.
 //!
-//! **Monotone.** With larger limits no program of straight axis ways takes longer (stops, joined paths, both blends). It may
-//! with jerk limits, by a percent or so, as the knots then lie elsewhere; and on curves, where a velocity that is allowed
-//! to be higher leaves less acceleration along the way.
-//! To keep the path takes no longer than to stop at each corner. To leave it may take longer than to keep it where a ramp goes
-//! over a corner, as its curve takes some of the accelerations that a kink leaves alone. With jerk limits neither is proven:
-//! a ramp over unlike blocks has the least acceleration and jerk of them, unless splitting it pays.
+//! **Monotone.** With larger limits no program of straight axis ways takes longer (stops, joined paths, both blends).
+//! It may with jerk limits, by a percent or so, as the knots then lie elsewhere; and on curves, where a velocity that
+//! is allowed to be higher leaves less acceleration along the way. To keep the path takes no longer than to stop at
+//! each corner. To leave it may take longer than to keep it where a ramp goes over a corner, as its curve takes some of
+//! the accelerations that a kink leaves alone. With jerk limits neither is proven: a ramp over unlike blocks has the
+//! least acceleration and jerk of them, unless splitting it pays.
 //!
-//! **Streaming.** What has been seen far enough ahead is settled and can be filled; how set-points are asked for, and when,
-//! has no influence. Memory is that of the blocks in sight.
+//! **Streaming.** What has been seen far enough ahead is settled and can be filled; how set-points are asked for, and
+//! when, has no influence. Memory is that of the blocks in sight.
 
 mod account;
 mod block;
@@ -60,11 +61,11 @@ pub struct TaskTime {
     pub task: u64,
     /// Line of the program.
     pub line: u64,
-    /// When it began, s from the beginning; while two overlap, the middle of that time.
+    /// Time at which the task began, s from the beginning; while two overlap, the middle of that time.
     pub begins: f64,
-    /// How long, s.
+    /// Duration, s.
     pub seconds: f64,
-    /// How long it would have been at the programmed feed alone, s; of a rapid or a wait the same as `seconds`.
+    /// Duration at the programmed feed alone, s; of a rapid or a wait the same as `seconds`.
     pub asked: f64,
     /// What took most of the time that it needed beyond that.
     pub limit: TimeLimit,
@@ -86,7 +87,7 @@ pub enum TimeLimit {
     TipAcceleration,
     /// The tip's jerk.
     TipJerk,
-    /// It stops at an end, or slows down for a corner.
+    /// The machine stops at an end, or slows down for a corner.
     Corner,
     /// The control prepares no more blocks a second.
     BlockTime,

@@ -27,7 +27,7 @@ use crate::limits::{self, AxisLimits};
 use crate::{CornerMode, Move, MovePace, ProgramPlace, SetPoints, Task, VelocityJump};
 use entry::OpenMove;
 
-/// Makes set-points of tasks, some tasks behind.
+/// Makes set-points of tasks, and lags some tasks behind.
 #[derive(Debug)]
 pub struct Planner {
     limits: AxisLimits,
@@ -48,7 +48,7 @@ pub struct Planner {
     run: u64,
     /// The piece before which the last border between tasks was set.
     bordered: Option<u64>,
-    /// Up to here all is settled, s: here the next section begins.
+    /// Time up to which all is settled, s: the next section begins there.
     clock: f64,
     /// When the run before the one in progress ends, s.
     before: f64,
@@ -56,7 +56,7 @@ pub struct Planner {
     early: Vec<(f64, ProgramPlace)>,
     /// How the axes' derivatives change in front of these pieces, over the coordinate of the law.
     kinks: VecDeque<(u64, [Joints; 2])>,
-    /// Jumps that no set-point stands behind yet.
+    /// Jumps that no set-point follows yet.
     jumps: VecDeque<VelocityJump>,
     tasks: u64,
     ended: bool,
@@ -67,7 +67,7 @@ pub struct Planner {
 }
 
 impl Planner {
-    /// For a machine.
+    /// A planner for a machine.
     pub fn new(machine: &Machine) -> Self {
         let rules = &machine.motion;
         let limits = AxisLimits::new(machine);
@@ -111,7 +111,7 @@ impl Planner {
         Ok(())
     }
 
-    /// There are no more.
+    /// Ends the tasks: no more are pushed.
     pub fn end(&mut self) {
         self.stop();
         self.accounts.skip(self.clock);
@@ -163,7 +163,7 @@ impl Planner {
         let still = found.first.iter().all(|value| *value == 0.0) && found.tip[0] == 0.0;
         self.accounts.open(number, task.line, asked, still);
         if still {
-            // To stand still where nothing moves is to stand still behind the move before.
+            // To stand still where nothing moves is to stand still after the move before.
             if task.corner == CornerMode::Stop {
                 self.stop();
             }
@@ -200,7 +200,7 @@ impl Planner {
         Ok(())
     }
 
-    /// Fills `out` behind what it holds, up to `most` set-points, as far as is settled; the times of tasks that are done
+    /// Fills `out` after what it holds, up to `most` set-points, as far as is settled; the times of tasks that are done
     /// go to `times`. The first set-point stands at time 0, the last one where all axes stand at their end.
     ///
     /// # Errors

@@ -1,9 +1,10 @@
-//! From one velocity to another over a length, as fast as the limits allow: trapezoid and double S.
+//! Profiles from one velocity to another over a length, as fast as the limits allow: trapezoid and double S.
 //!
 //! A *ramp* takes the velocity from one value to another, its acceleration zero at both ends: with a jerk limit `j` it
 //! rises to at most `a`, holds, and falls (a constant `a` where `j` is infinite). For a change `Δ` it lasts
 //! `T = Δ/a + a/j` where `Δ ≥ a²/j`, else `2·√(Δ/j)`, and as it is symmetric about its middle it covers `T·(v0 + v1)/2`
-//! either way. A profile is a ramp up to a peak, a cruise there, and a ramp down: at most seven phases of constant jerk.
+//! either way. A profile is a ramp up to a peak, a cruise there, and a ramp down: at most seven phases of constant
+//! jerk.
 //!
 //! The unit of length is that of the caller, mm or any other.
 
@@ -19,7 +20,7 @@ pub struct Ramp {
 /// A piece of a profile in which the jerk is constant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Phase {
-    /// How long, s.
+    /// Duration, s.
     pub seconds: f64,
     /// Velocity that it begins with, a second.
     pub velocity: f64,
@@ -133,8 +134,8 @@ impl Ramp {
         0.5 * (from + to) * self.seconds(to - from)
     }
 
-    /// The highest velocity that a ramp from `from` reaches within `length`; from which, therefore, it also comes down to
-    /// `from` within it.
+    /// The highest velocity that a ramp from `from` reaches within `length`; from which, therefore, it also comes down
+    /// to `from` within it.
     pub fn reach(&self, from: f64, length: f64) -> f64 {
         let (a, j) = (self.acceleration, self.jerk);
         if j == f64::INFINITY {
@@ -176,7 +177,7 @@ impl Ramp {
         0.5 * self.seconds(change) + 0.5 * (from + to) * slope
     }
 
-    /// Its phases, in order; those of no duration are none.
+    /// Phases of the ramp, in order, without those of no duration.
     fn phases(&self, from: f64, to: f64, mut take: impl FnMut(Phase)) {
         let change = libm::fabs(to - from);
         if change == 0.0 {
@@ -219,12 +220,13 @@ impl Ramp {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct VelocityProfile {
     phases: [Phase; 7],
-    /// How many of them there are up to the peak, of the cruise, and behind it.
+    /// How many of them there are up to the peak, of the cruise, and after it.
     counts: [u8; 3],
 }
 
 impl VelocityProfile {
-    /// Over `length` between the velocities `ends`, never above `most` or the ends, with these ramps up and down.
+    /// Profile over `length` between the velocities `ends`, never above `most` or the ends, with these ramps up and
+    /// down.
     ///
     /// Where an end cannot be reached from the other at all within the length, it is by a constant acceleration that
     /// passes the limits: a look-ahead does not ask for that.
@@ -265,7 +267,7 @@ impl VelocityProfile {
         self.counts[part] += 1;
     }
 
-    /// Its phases, in order.
+    /// Phases in order.
     pub fn phases(&self) -> &[Phase] {
         let count: u8 = self.counts.iter().sum();
         &self.phases[..usize::from(count)]

@@ -26,7 +26,7 @@ const AMPLE: f64 = 1.0 + 1e-9;
 /// Ways that turn by less, or by nearly half a turn, have no arc between them, radians.
 const LEAST_SWEEP: f64 = 1e-3;
 
-/// Without a tolerance an arc strays by no more than this share of the shorter way.
+/// Share of the shorter way by which an arc without a tolerance may stray.
 const STRAY_OF_LENGTH: f64 = 0.25;
 
 /// What a corner is rounded by.
@@ -46,7 +46,7 @@ pub(super) struct RoundedCorner {
     /// What it takes of the one move and of the other.
     pub shares: [f64; 2],
     pub curve: CornerCurve,
-    /// Its length over the first move's parameter.
+    /// Length over the first move's parameter.
     pub length: f64,
     /// What limits it, over its own parameter from 0 to 1.
     pub bounds: MoveBounds,
@@ -58,8 +58,8 @@ impl RoundedCorner {
         self.bounds.rate * self.length
     }
 
-    /// By the smooth step, as long as it takes to be passed at the rate `wanted`, or as long as it may be, or by this share
-    /// of that.
+    /// A corner by the smooth step, as long as it takes to be passed at the rate `wanted`, or as long as it may be, or
+    /// by this share of that.
     pub fn smooth(
         sides: [CornerSide; 2],
         rules: &AxisLimits,
@@ -73,8 +73,8 @@ impl RoundedCorner {
             let axes = axes.map(|(change, limit)| libm::fabs(*change) / limit);
             axes.fold(kink.tip.norm() / of_tip, f64::max)
         };
-        // x'' = 1.5·Δ/l and x''' = 6·Δ/l²: so long that the curve's share of accelerations and jerks does at the velocity
-        // that is wanted.
+        // x'' = 1.5·Δ/l and x''' = 6·Δ/l²: so long that the curve's share of accelerations and jerks does at the
+        // velocity that is wanted.
         let bent = sharpest(&rules.acceleration, rules.tip_acceleration) * STEEPEST / NORMAL;
         let jerked = sharpest(&rules.jerk, rules.tip_jerk) * SHARPEST * CURVE;
         let cube = wanted * wanted * wanted;
@@ -98,9 +98,10 @@ impl RoundedCorner {
         })
     }
 
-    /// Between straight ways of the tip: the arc that is run through as fast as the faster one of them with [`ARC`] of the
-    /// least acceleration, and is so long that half of it would do to get up to that within; or a smaller one. Recorded so of
-    /// LinuxCNC 2.9: an arc that nothing else makes smaller is `2·v²/a` long at turns of up to 99°.
+    /// An arc between straight ways of the tip: the one that is run through as fast as the faster one of them with
+    /// [`ARC`] of the least acceleration, and is so long that half of it would do to get up to that within; or a
+    /// smaller one. Recorded so of LinuxCNC 2.9: an arc that nothing else makes smaller is `2·v²/a` long at turns of up
+    /// to 99°.
     pub fn circle(
         sides: [CornerSide; 2],
         rules: &AxisLimits,
@@ -152,9 +153,9 @@ impl RoundedCorner {
 impl CornerCurve {
     /// How much of its part of the first move and of the second one is behind at `share` of the curve.
     ///
-    /// By the smooth step `h` the integrals of 1 - h and of h, each over its whole. On an arc of radius 1 that turns by φ the
-    /// place at the angle α lies `sin α - (1 - cos α)/tan φ` along the first way and `(1 - cos α)/sin φ` along the second, of
-    /// `tan(φ/2)` each.
+    /// By the smooth step `h` the integrals of 1 - h and of h, each over its whole. On an arc of radius 1 that turns by
+    /// φ the place at the angle α lies `sin α - (1 - cos α)/tan φ` along the first way and `(1 - cos α)/sin φ` along
+    /// the second, of `tan(φ/2)` each.
     pub fn places(self, share: f64) -> [f64; 2] {
         match self {
             Self::Smooth => {
@@ -173,7 +174,7 @@ impl CornerCurve {
     }
 }
 
-/// By how much an arc is longer than what it takes of each way: R·φ over R·tan(φ/2).
+/// Ratio of an arc's length to what it takes of each way: R·φ over R·tan(φ/2).
 fn longer(sweep: f64) -> f64 {
     sweep / libm::tan(0.5 * sweep)
 }
@@ -207,7 +208,7 @@ fn on_smooth([first, next]: [&MoveLimits; 2], shares: [f64; 2]) -> MoveLimits {
     found
 }
 
-/// The same along an arc of a circle that turns by `sweep` between two straight ways.
+/// Limits along an arc of a circle that turns by `sweep` between two straight ways.
 fn on_circle([first, next]: [&MoveLimits; 2], shares: [f64; 2], sweep: f64) -> MoveLimits {
     let (sine, cosine) = libm::sincos(sweep);
     let [out, into] = shares.map(|share| share * longer(sweep));

@@ -12,9 +12,9 @@ use crate::path::turns;
 pub(super) struct CornerSide<'a> {
     pub task: &'a Move,
     pub found: &'a MoveLimits,
-    /// With all accelerations.
+    /// Bounds with whole accelerations.
     pub whole: &'a MoveBounds,
-    /// With half of them.
+    /// Bounds with half of the accelerations.
     pub half: &'a MoveBounds,
     /// The move before overlaps it.
     pub overlapped: bool,
@@ -26,11 +26,11 @@ impl CornerSide<'_> {
         turns(self.task.solver.chain(), [&self.task.from, &self.task.to])
     }
 
-    /// The direction of the way where it begins (0) or ends (1), and how long all of it would be at that pace; none where it
-    /// has none.
+    /// The direction of the way where it begins (0) or ends (1), and how long all of it would be at that pace; none
+    /// where it has none.
     ///
-    /// That of the programmed coordinates where these are limited. A move on which rotary axes alone turn goes along X then,
-    /// its length counted in degrees: recorded so of LinuxCNC 2.9.
+    /// That of the programmed coordinates where these are limited. A move on which rotary axes alone turn goes along X
+    /// then, its length counted in degrees: recorded so of LinuxCNC 2.9.
     pub fn heading(&self, end: usize, rules: &AxisLimits) -> Option<(Vector3<f64>, f64)> {
         let unit = |way: Vector3<f64>| {
             let length = way.norm();

@@ -3,18 +3,19 @@
 //! An acceleration that went to zero where each block ends would never get far in thousands of short ones: it is
 //! planned over many. The envelope of the accelerations alone is found first. Its *knots* are where a bound of the
 //! velocity is met: a corner, the beginning of a slower block, a standstill. From knot to knot it goes up at most once,
-//! holds, and goes down: a *hill*, over which a double S is laid, whatever blocks it spans. A ramp up that begins as early
-//! as it can, with no more than the least acceleration under it, stays below the envelope, which goes up with the largest
-//! one; so does a ramp down that ends as late as it can. Where a hill is too short to get from one knot's velocity to the
-//! other's, the higher one is lowered: backwards, then forwards. Where blocks are very unlike, the least acceleration and
-//! jerk of them all are too little for most: such a hill is split where that makes it shorter in time.
+//! holds, and goes down: a *hill*, over which a double S is laid, whatever blocks it spans. A ramp up that begins as
+//! early as it can, with no more than the least acceleration under it, stays below the envelope, which goes up with the
+//! largest one; so does a ramp down that ends as late as it can. Where a hill is too short to get from one knot's
+//! velocity to the other's, the higher one is lowered: backwards, then forwards. Where blocks are very unlike, the
+//! least acceleration and jerk of them all are too little for most: such a hill is split where that makes it shorter in
+//! time.
 //!
-//! Knots closer together than an acceleration takes to rise (`a/j`, or `√(v/j)` where that is less) are worth little, as
-//! what lies between could hardly be used: if their velocities are alike it is run through at the least of them.
+//! Knots closer together than an acceleration takes to rise (`a/j`, or `√(v/j)` where that is less) are worth little,
+//! as what lies between could hardly be used: if their velocities are alike it is run through at the least of them.
 //!
-//! At a knot the acceleration is zero. A plan is carried out up to such a place; what was planned behind it, down to the
-//! standstill at its end, is kept and carried out in its turn where a new plan, which sees more, cannot go on from there
-//! (its knots lie elsewhere).
+//! At a knot the acceleration is zero. A plan is carried out up to such a place; what was planned after it, down to the
+//! standstill at its end, is kept and carried out in its turn where a new plan, which sees more, cannot go on from
+//! there (its knots lie elsewhere).
 
 mod carried;
 mod hills;
@@ -35,7 +36,7 @@ struct JerkStep {
     why: VelocityLimit,
     /// The acceleration is zero where it ends: the plan can be left there.
     rests: bool,
-    /// It ends in front of this block, where it does at a block's end.
+    /// The block in front of which it ends, where that is at a block's end.
     ends: Option<usize>,
 }
 
@@ -57,7 +58,7 @@ enum PlanMode {
     Thinned,
     /// All knots stay.
     Plain,
-    /// The same, and the run's velocity goes on whatever that asks for.
+    /// All knots stay, and the run's velocity goes on whatever that asks for.
     Forced,
 }
 

@@ -17,21 +17,21 @@ use crate::{MotionKind, Told};
 /// What the words of one block ask for, besides what is modal.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct BlockRequest {
-    /// In machine coordinates.
+    /// Whether positions are machine coordinates.
     pub machine: bool,
-    /// By way of a point to this reference position.
+    /// Reference position to go to, by way of a point.
     pub reference: Option<u8>,
     /// A wait.
     pub dwell: bool,
     /// A cycle: ten times its number, and what it does.
     pub cycle: Option<(u16, Meaning)>,
-    /// The cycle ends.
+    /// Whether the cycle ends.
     pub cycle_off: bool,
-    /// A tilted plane, its turn, and its end: ten times the number.
+    /// A tilted plane begins: ten times the number of its word.
     pub plane: Option<u16>,
-    /// The axes turn to it.
+    /// The axes turn to the plane: ten times the number of the word.
     pub plane_turn: Option<u16>,
-    /// It ends.
+    /// Whether the tilted plane ends.
     pub plane_off: bool,
     /// A shift or a turn of the coordinates: ten times the number of its word, and its meaning.
     pub frame: Option<(u16, Meaning)>,
@@ -41,13 +41,13 @@ pub(super) struct BlockRequest {
     pub length_on: Option<u16>,
     /// Length compensation by the length that the block names.
     pub length_stated: bool,
-    /// And off.
+    /// Whether length compensation goes off.
     pub length_off: bool,
     /// Tool centre point control on: ten times the number of its word, 0 of a word without G.
     pub tcp_on: Option<u16>,
-    /// With vectors.
+    /// Whether tool axes are written as vectors.
     pub vectors: bool,
-    /// And off.
+    /// Whether tool centre point control goes off.
     pub tcp_off: bool,
     /// The tool is changed.
     pub change: bool,
@@ -55,7 +55,7 @@ pub(super) struct BlockRequest {
     pub change_or_stop: bool,
     /// Spindle from here on.
     pub spindle: Option<SpindleRequest>,
-    /// Coolant from here on: the number behind M.
+    /// Coolant from here on: the number after M.
     pub coolant: Option<u16>,
     /// No coolant.
     pub coolant_off: bool,
@@ -65,7 +65,7 @@ pub(super) struct BlockRequest {
     pub thread: Option<(u16, Meaning)>,
     /// A probing move.
     pub probe: bool,
-    /// This block at rapid.
+    /// Whether this block goes at rapid.
     pub rapid: bool,
 }
 
@@ -217,7 +217,7 @@ impl ControlState {
         }
     }
 
-    /// A word whose meaning is known and that is not run; `code` is ten times the number behind G, 0 of other words.
+    /// A word whose meaning is known and that is not run; `code` is ten times the number after G, 0 of other words.
     #[cold]
     pub(super) fn not_followed(&self, code: u16) -> Box<Diagnostic> {
         let word = if code == 0 {

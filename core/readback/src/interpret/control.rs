@@ -20,13 +20,13 @@ use super::state::{
 use crate::lexicon::Lexicon;
 use crate::{Coolants, Corners, Done, Offsets, Spindle, Stance, State, Told};
 
-/// So many lengths are kept ready.
+/// Lengths that are kept ready.
 const SOLVERS: usize = 64;
 
-/// So many notes are kept.
+/// Notes that are kept.
 const NOTES: usize = 100;
 
-/// So many words that are not known are counted apart.
+/// Unknown words that are counted apart.
 const UNKNOWN: usize = 1000;
 
 impl AxisLetters {
@@ -195,7 +195,7 @@ impl ControlState {
         }
     }
 
-    /// A block stands behind `/`.
+    /// A block follows `/`.
     #[cold]
     pub fn say_skipped(&mut self) {
         let message = "blocks behind / are run, as with the operator's switch off";

@@ -15,8 +15,8 @@
 //! | CYCL DEF 32 T | Heidenhain | the path is left by no more than T |
 //! | G187 E | Haas | the path is left by no more than E |
 //!
-//! Of what else smooths (G5.1 Q1, G8 P1, G5 P10000, G187 P, compressors without CTOL) the rule lies in parameters of the
-//! control: [`Corners::Own`].
+//! Of what else smooths (G5.1 Q1, G8 P1, G5 P10000, G187 P, compressors without CTOL) the rule lies in parameters of
+//! the control: [`Corners::Own`].
 
 use post_motion::CornerMode;
 use post_plugin::Language;
@@ -25,7 +25,7 @@ use super::state::ControlState;
 use crate::Corners;
 
 impl ControlState {
-    /// A word that ends smoothing or asks for the exact path; `code` is ten times the number behind G, 0 of other words.
+    /// A word that ends smoothing or asks for the exact path; `code` is ten times the number after G, 0 of other words.
     pub(super) fn keeps_corners(&mut self, code: u16) {
         let keeps_path = self.lexicon.has_path_modes();
         self.corners(match (self.lexicon.language(), code) {

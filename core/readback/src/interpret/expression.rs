@@ -200,7 +200,7 @@ impl Variables {
         Ok(left == right || !self.ordered(left, right)?)
     }
 
-    /// They are far enough apart, or equal, that no control's rounding decides which is larger.
+    /// True, or a fault where two values are so near that a control's rounding decides which is larger.
     fn ordered(&self, left: f64, right: f64) -> Answer<bool> {
         let larger = libm::fmax(libm::fabs(left), libm::fabs(right));
         let close = left != right && libm::fabs(left - right) <= CLOSE * larger;
@@ -356,7 +356,7 @@ fn text(value: VariableValue) -> String {
     }
 }
 
-/// One text behind the other.
+/// One text after the other.
 fn joined(mut left: String, right: &str) -> Answer<VariableValue> {
     left.push_str(right);
     if left.len() > LONGEST_TEXT {

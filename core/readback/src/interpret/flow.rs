@@ -1,8 +1,8 @@
 //! The order in which blocks are run: jumps, loops, parts that are repeated, subprograms of the same file.
 //!
 //! Blocks are read where they stand and nothing of them is kept, so that memory does not grow with the program: a jump
-//! looks for its place in the file and goes on there. Every block that is read is counted, and every line that is looked
-//! through: a loop that never ends is refused when the count is passed.
+//! looks for its place in the file and goes on there. Every block that is read is counted, and every line that is
+//! looked through: a loop that never ends is refused when the count is passed.
 
 mod loops;
 
@@ -21,7 +21,7 @@ use super::expression::whole;
 use super::variables::{VariableValue, Variables};
 use super::{Limits, assigned};
 
-/// So many lines that are looked through for a label take the time of a block that is run.
+/// Lines looked through for a label that take the time of one block that is run.
 const SEARCHED: u64 = 64;
 
 /// What is running.
@@ -29,13 +29,13 @@ const SEARCHED: u64 = 64;
 enum OpenConstruct {
     /// A subprogram.
     Call {
-        /// Where it begins.
+        /// First block of the subprogram.
         start: NcMark,
-        /// Where it was called from.
+        /// Block after the call.
         back: NcMark,
-        /// How often it runs again.
+        /// Times that it runs again.
         left: i64,
-        /// It has variables of its own.
+        /// Whether it has variables of its own.
         own: bool,
     },
     /// A part between a label and here, or another label.
@@ -43,7 +43,7 @@ enum OpenConstruct {
         start: NcMark,
         /// The block that repeats it.
         by: NcMark,
-        /// Behind that block.
+        /// The block after that one.
         back: NcMark,
         /// The label with which it ends.
         until: Option<String>,
@@ -82,12 +82,12 @@ pub(super) struct ProgramFlow<R> {
     pending: Option<BlockTransfer>,
     /// What that block sets, once it is run.
     set: Vec<(String, VariableValue)>,
-    /// For looking through.
+    /// Room for a block that is looked through.
     passed: NcBlock,
 }
 
 impl<R: Read + Seek> ProgramFlow<R> {
-    /// From the first block on.
+    /// A flow from the first block on.
     pub fn new(reader: NcReader<R>, language: Language, limits: Limits, file: &str) -> Self {
         let here = reader.mark();
         Self {
@@ -434,7 +434,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
         self.begin(start)
     }
 
-    /// Reads on at the start of a subprogram; of an `o1 sub` behind it.
+    /// Reads on at the start of a subprogram; of an `o1 sub` after it.
     fn begin(&mut self, start: NcMark) -> Answer<()> {
         self.go_to(start)?;
         if self.language == Language::Rs274 {

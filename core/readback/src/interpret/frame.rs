@@ -5,11 +5,11 @@ use nalgebra::{Matrix3, Vector3};
 /// A frame: where its origin lies and how its directions stand in the frame around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct CoordinateFrame {
-    /// Its directions as columns, in the frame around it.
+    /// Directions as columns, in the frame around it.
     pub axes: Matrix3<f64>,
-    /// Its origin in the frame around it, mm.
+    /// Origin in the frame around it, mm.
     pub origin: Vector3<f64>,
-    /// Its directions are those of the frame around it.
+    /// Whether the directions are those of the frame around it.
     upright: bool,
 }
 
@@ -30,12 +30,12 @@ impl CoordinateFrame {
         Self { upright: axes == Matrix3::identity(), axes, origin }
     }
 
-    /// Its directions are those of the frame around it.
+    /// Whether the directions are those of the frame around it.
     pub fn upright(&self) -> bool {
         self.upright
     }
 
-    /// It is the frame around it.
+    /// Whether it is the frame around it.
     pub fn is_default(&self) -> bool {
         *self == Self::default()
     }

@@ -158,7 +158,7 @@ fn turned(control: &mut ControlState, words: &mut BlockWords) -> Result<(), Box<
     Ok(())
 }
 
-/// `TRANS X10`, `ATRANS`, `ROT`, `AROT`, `SCALE`, `MIRROR`: the words behind it. False if it is none of these.
+/// `TRANS X10`, `ATRANS`, `ROT`, `AROT`, `SCALE`, `MIRROR`: the words after it. False if it is none of these.
 pub(super) fn name(
     control: &mut ControlState,
     name: &str,

@@ -7,7 +7,7 @@ use post_machine::kinematics::Joints;
 
 use super::state::ControlState;
 
-/// So many G or M may stand in one block.
+/// Most G or M words in one block.
 const CODES: usize = 24;
 
 /// The words of a block.
@@ -15,7 +15,7 @@ const CODES: usize = 24;
 pub(super) struct BlockWords {
     /// Bits of the letters that stand in the block.
     pub present: u32,
-    /// Their values, program units.
+    /// Values of the letters, program units.
     pub values: [f64; 26],
     /// Bits of letters that are ways from where the tool stands.
     pub incremental: u32,
@@ -23,19 +23,19 @@ pub(super) struct BlockWords {
     pub absolute: u32,
     /// Bits of letters whose axis turns in a way of its own; which, stands in `approaches`.
     pub approached: u32,
-    /// By letter.
+    /// Approaches by letter.
     pub approaches: [Option<Approach>; 26],
     /// Bits of letters that a word of the block has made use of.
     pub used: u32,
-    /// Ten times the numbers behind G, in order.
+    /// Ten times the numbers after G, in order.
     pub g: CodeNumbers,
-    /// The numbers behind M.
+    /// The numbers after M.
     pub m: CodeNumbers,
     /// Bits of letters whose number has a decimal point.
     pub pointed: u32,
     /// Bits of letters whose number has none and is not zero.
     pub pointless: u32,
-    /// There is more than letters with values.
+    /// Whether the block has more than letters with values.
     pub more: bool,
     /// The tool axis by `A3=` and so on, program coordinates.
     pub vector: Option<Vector3<f64>>,
@@ -45,11 +45,11 @@ pub(super) struct BlockWords {
     pub turns: Option<f64>,
     /// Bits of the places in the chain of axes with longer names.
     pub named_axes: u32,
-    /// Their values: mm and radians from the drawing's zeros.
+    /// Values of the named axes: mm and radians from the drawing's zeros.
     pub named_values: Joints,
 }
 
-/// Numbers behind a letter.
+/// Numbers after a letter.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CodeNumbers {
     list: [u16; CODES],
@@ -63,7 +63,7 @@ impl CodeNumbers {
         &self.list[..self.count.min(CODES)]
     }
 
-    /// One of them is `code`.
+    /// Whether `code` is among them.
     pub fn has(&self, code: u16) -> bool {
         self.list().contains(&code)
     }
@@ -114,7 +114,7 @@ impl BlockWords {
         self.get(letter)
     }
 
-    /// A number behind `letter` that says which: a register, a tool, a count.
+    /// A number after `letter` that says which: a register, a tool, a count.
     pub fn take_number(
         &mut self,
         letter: u8,

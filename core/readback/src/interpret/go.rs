@@ -48,22 +48,22 @@ impl MotionTarget {
 pub(super) enum WordPath {
     /// Straight in the words.
     Straight,
-    /// On an arc of the program's coordinates.
+    /// An arc of the program's coordinates.
     Arc {
-        /// Its centre, program coordinates, mm.
+        /// Centre, program coordinates, mm.
         centre: Vector3<f64>,
-        /// Its axis, program coordinates, unit vector.
+        /// Axis, program coordinates, unit vector.
         normal: Vector3<f64>,
         /// Turn about it, right-handed, radians.
         sweep: f64,
     },
-    /// On a spline of the program's coordinates.
+    /// A spline of the program's coordinates.
     Spline(Arc<BSpline>),
 }
 
 impl ControlState {
-    /// Where the tool stands in the coordinates of the program: what the control shows for X, Y, Z, mm. Of a machine that
-    /// lacks one of those axes, zero for it.
+    /// Where the tool stands in the coordinates of the program: what the control shows for X, Y, Z, mm. Of a machine
+    /// that lacks one of those axes, zero for it.
     #[inline]
     pub fn point(&self) -> Vector3<f64> {
         if self.tip_words() {
@@ -245,8 +245,8 @@ impl ControlState {
         *pose = chain.pose(joints, &self.turns);
     }
 
-    /// Brings the tip onto `tip` (mm, part frame) with the rotary axes where they are; those at the bits of `turned` have
-    /// turned.
+    /// Brings the tip onto `tip` (mm, part frame) with the rotary axes where they are; those at the bits of `turned`
+    /// have turned.
     #[inline]
     fn place(&mut self, tip: Vector3<f64>, turned: u32) -> Result<(), Box<Diagnostic>> {
         let solver = &self.state.solver;
@@ -270,8 +270,8 @@ impl ControlState {
         Ok(())
     }
 
-    /// Points the tool along `vector` and brings the tip onto the target: of the ways to do so the one next to where the
-    /// axes stand.
+    /// Points the tool along `vector` and brings the tip onto the target: of the ways to do so the one next to where
+    /// the axes stand.
     fn aim(&mut self, target: &MotionTarget, vector: Vector3<f64>) -> Result<(), Box<Diagnostic>> {
         let axis = self.to_part.out_direction(vector).try_normalize(1e-9);
         let Some(axis) = axis else {
@@ -427,7 +427,8 @@ impl ControlState {
 
     /// The value to which the axis at `place` goes for a word, and the way it takes.
     ///
-    /// `value` is counted from the drawing's zero, mm or radians. An axis whose display goes round turns the shorter way.
+    /// `value` is counted from the drawing's zero, mm or radians. An axis whose display goes round turns the shorter
+    /// way.
     #[inline]
     pub fn turned(&self, place: usize, value: f64) -> f64 {
         let axis = &self.machine.axes[place];

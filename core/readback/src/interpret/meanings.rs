@@ -8,7 +8,7 @@ use super::gathered::{BlockWords, bit};
 use super::state::{ArcPlane, ControlState, FeedMeaning, MotionMode, OrientationMode};
 
 impl ControlState {
-    /// A code or name whose meaning the lexicon knows; `code` is ten times the number behind G, or 0.
+    /// A code or name whose meaning the lexicon knows; `code` is ten times the number after G, or 0.
     pub(super) fn meant(
         &mut self,
         code: u16,

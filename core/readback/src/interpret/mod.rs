@@ -2,7 +2,7 @@
 //!
 //! | file | does |
 //! |---|---|
-//! | `state` | what a control remembers from block to block: `Control` |
+//! | `state` | what a control remembers from block to block: `ControlState` |
 //! | `control` | how it begins; the solver, the zero and the frames that words count from |
 //! | `gathered` | the words of a block, by letter |
 //! | `block`, `meanings` | a block of words: modes first, then what moves |
@@ -81,8 +81,8 @@ pub struct ReadReport {
     pub unknown: Vec<(String, u64, u64)>,
     /// What was taken for granted.
     pub notes: Vec<Diagnostic>,
-    /// The line of the first motion at feed, if the program has not said before where these linear axes stand: it is taken
-    /// to begin with them at zero.
+    /// The line of the first motion at feed, if the program has not said before where these linear axes stand: it is
+    /// taken to begin with them at zero.
     pub unsaid: Option<(u64, String)>,
 }
 
@@ -146,8 +146,8 @@ impl<R: Read + Seek> Interpreter<R> {
         })
     }
 
-    /// Runs the next block and puts what it did behind what `done` holds; false at the end. It can be called again after
-    /// an error, and goes on with the block behind.
+    /// Runs the next block and puts what it did after what `done` holds; false at the end. It can be called again after
+    /// an error, and goes on with the block after.
     ///
     /// # Errors
     /// What stands there that cannot be understood, or is not run, with its place.
@@ -168,14 +168,14 @@ impl<R: Read + Seek> Interpreter<R> {
             return Ok(false);
         }
         runner.control.report.blocks += 1;
-        // What is done goes straight behind what the caller's list holds.
+        // What is done goes straight after what the caller's list holds.
         std::mem::swap(done, &mut runner.control.done);
         let ran = runner.run(block);
         std::mem::swap(done, &mut runner.control.done);
         ran.map(|()| true).map_err(|finding| flow.show(finding))
     }
 
-    /// The line of the block that was run last, and what holds behind it.
+    /// The line of the block that was run last, and what holds after it.
     pub fn stand(&self) -> (u64, Arc<State>) {
         (self.runner.control.line, self.runner.control.state_now())
     }

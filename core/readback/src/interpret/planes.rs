@@ -30,19 +30,20 @@ pub(super) enum SolutionChoice {
     Any,
     /// The axis that tilts stands on its positive side: `SEQ+`.
     Plus,
-    /// On its negative side: `SEQ-`.
+    /// The axis that tilts stands on its negative side: `SEQ-`.
     Minus,
-    /// The one next to where the axes stand, if no other is nearer in any of them; of two that are as near the positive.
+    /// The one next to where the axes stand, if no other is nearer in any of them; of two that are as near the
+    /// positive.
     Nearest,
 }
 
 /// How the axes turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum PlaneTurn {
-    /// Not at all.
+    /// The axes stay.
     #[default]
     Stay,
-    /// They turn alone.
+    /// The rotary axes turn alone.
     Alone,
     /// The linear axes keep the tip on its place.
     Move,
@@ -109,7 +110,7 @@ pub(super) fn turn(
     turn_to(control, PlaneTurn::Alone, pick, MotionKind::Rapid).map(|_| ())
 }
 
-/// It ends: `G69`, `G255`, `CYCLE800()`.
+/// Ends the tilted plane: `G69`, `G255`, `CYCLE800()`.
 pub(super) fn end(control: &mut ControlState) -> Result<(), Box<Diagnostic>> {
     // G69 ends a turn in the plane too.
     let letters = matches!(control.lexicon.language(), Language::Macro | Language::Rs274);

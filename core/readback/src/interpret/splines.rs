@@ -41,7 +41,7 @@ pub(super) struct OpenSpline {
 }
 
 impl OpenSpline {
-    /// It has all its knots.
+    /// Whether the spline has all its knots.
     fn complete(&self) -> bool {
         !self.even && !self.poles.is_empty() && self.knots.len() == self.poles.len() + self.order
     }
@@ -81,7 +81,7 @@ impl ControlState {
         }
     }
 
-    /// Beside the words of a spline that is not at its end nothing else stands: the block ends it, or is refused.
+    /// Ends the spline, or refuses the block: beside the words of a spline that is not at its end nothing else stands.
     pub(super) fn within_spline(&mut self, words: &BlockWords) -> Result<(), Box<Diagnostic>> {
         let Some(spline) = &self.spline else {
             return Ok(());
@@ -137,7 +137,7 @@ impl ControlState {
         }
     }
 
-    /// `G6.2 P4 K0 X Y Z R1`, `K0 X Y Z`, and behind the last point as many blocks with K alone as the order.
+    /// `G6.2 P4 K0 X Y Z R1`, `K0 X Y Z`, and after the last point as many blocks with K alone as the order.
     fn knot_point(
         &mut self,
         spline: &mut OpenSpline,

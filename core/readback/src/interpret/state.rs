@@ -30,7 +30,7 @@ pub(super) struct ControlState {
     pub offsets: Offsets,
     /// The machine with the head that it has now.
     pub machine: Arc<Machine>,
-    /// Its heads.
+    /// Heads of the machine.
     pub heads: Vec<MountedHead>,
     /// The head, by its place among them, that a remark asks the operator to swap in at the next stop.
     pub head_by_hand: Option<usize>,
@@ -42,11 +42,11 @@ pub(super) struct ControlState {
     pub frames: FrameStack,
     /// Number of the work offset in force, by place in `offsets.work`; none: the machine file's.
     pub work: Option<usize>,
-    /// That work offsets of which nothing is said are one was told.
+    /// Whether it was reported that work offsets of which nothing is known are taken for one.
     pub offsets_told: bool,
     /// Tools and lengths.
     pub tools: ToolState,
-    /// Its variables.
+    /// Variables of the program.
     pub variables: Variables,
     /// The cycle that is in force, if there is one.
     pub cycles: CycleState,
@@ -84,11 +84,11 @@ pub(super) struct ControlState {
     pub to_work: CoordinateFrame,
     /// Line of the block that is run.
     pub line: u64,
-    /// Its number.
+    /// Number of the block.
     pub number: Option<u64>,
     /// What was found.
     pub report: ReadReport,
-    /// What was done since whoever asks took it.
+    /// What was done since it was taken last.
     pub done: Vec<Done>,
     /// Solvers by length, so that none is made twice.
     pub(super) solvers: Vec<(f64, Arc<Solver>)>,
@@ -97,7 +97,7 @@ pub(super) struct ControlState {
 /// A head that a word swaps in.
 #[derive(Clone, Debug)]
 pub(super) struct MountedHead {
-    /// Its name.
+    /// Name of the head.
     pub name: String,
     /// The line of the program that swaps it in.
     pub word: Option<String>,
@@ -138,7 +138,7 @@ pub(super) struct ModalState {
     pub centres_absolute: bool,
     /// mm in one unit of a word.
     pub unit: f64,
-    /// By how much smoothing may leave the contour, mm: CTOL of Siemens.
+    /// Distance by which smoothing may leave the contour, mm: CTOL of Siemens.
     pub contour_tolerance: Option<f64>,
     /// How F counts.
     pub feed_mode: FeedMeaning,
@@ -200,7 +200,7 @@ pub(super) enum ArcPlane {
 }
 
 impl ArcPlane {
-    /// Its two coordinates in right-handed order, and the third.
+    /// The plane's two coordinates in right-handed order, and the third.
     pub const fn coordinates(self) -> [usize; 3] {
         match self {
             Self::Xy => [0, 1, 2],
@@ -209,7 +209,7 @@ impl ArcPlane {
         }
     }
 
-    /// Its normal, in the coordinates of the words.
+    /// The plane's normal, in the coordinates of the words.
     pub fn normal(self) -> Vector3<f64> {
         let mut normal = Vector3::zeros();
         normal[self.coordinates()[2]] = 1.0;
@@ -232,11 +232,11 @@ pub(super) enum FeedMeaning {
 /// How the tool axis goes between two vectors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum OrientationMode {
-    /// As the control is set up: words of rotary axes linearly, vectors on the great circle.
+    /// The way the control is set up: words of rotary axes linearly, vectors on the great circle.
     #[default]
     Usual,
     /// The rotary axes linearly, vectors too: ORIAXES.
     Axes,
-    /// On the great circle, rotary words too: ORIVECT.
+    /// The great circle, for rotary words too: ORIVECT.
     Circle,
 }

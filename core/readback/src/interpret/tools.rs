@@ -13,7 +13,7 @@ use crate::Told;
 pub(super) struct ToolState {
     /// The tool that is made ready, or that M6 will bring.
     pub ready: Option<u32>,
-    /// Its name, where it is called by one.
+    /// Name of the tool that is made ready, where it is called by one.
     pub ready_name: Option<String>,
     /// Length compensation is on.
     pub length_on: bool,
@@ -23,10 +23,10 @@ pub(super) struct ToolState {
     pub longer: f64,
     /// The length that a block has named: G43.1, mm.
     pub stated: Option<f64>,
-    /// The plane across the tool as the length came on: a control with edges, or with a tool call that names the axis, puts
-    /// the length along its third axis.
+    /// The plane across the tool as the length came on: a control with edges, or with a tool call that names the axis,
+    /// puts the length along its third axis.
     pub across: ArcPlane,
-    /// Registers and tools of which was told that their length is taken for granted.
+    /// Registers and tools whose length is reported to be taken for granted.
     told: Vec<u32>,
 }
 
@@ -50,8 +50,8 @@ impl ControlState {
         }
     }
 
-    /// The words have the whole tool in them, whether its length is called or not: the work offset was measured with it in
-    /// the spindle, or no linear axis is there that could be shifted.
+    /// The words have the whole tool in them, whether its length is called or not: the work offset was measured with it
+    /// in the spindle, or no linear axis is there that could be shifted.
     fn is_whole(&self) -> bool {
         let mut axes = self.machine.axes.iter();
         self.machine.length_axis == LengthAxis::None || axes.all(|axis| axis.joint.rotary)
@@ -123,8 +123,8 @@ impl ControlState {
             .or_else(|| find(&self.machine.tools, tool))
     }
 
-    /// Where the axes stand that axis positions count from, without the work offset: `exact` with the tip of the tool on
-    /// the part origin, but that the control has put the length along one axis, wherever the tool lies.
+    /// Where the axes stand that axis positions count from, without the work offset: `exact` with the tip of the tool
+    /// on the part origin, but that the control has put the length along one axis, wherever the tool lies.
     pub(super) fn counted_from(&self, exact: Joints) -> Joints {
         let [.., z] = self.axes.cartesian;
         let place = match (self.machine.length_axis, self.lexicon.language()) {

@@ -22,14 +22,14 @@ pub(super) enum VariableValue {
 pub(super) struct Variables {
     language: Language,
     global: BTreeMap<String, VariableValue>,
-    /// Those of each subprogram that is running, the last one's innermost; of the main program the first.
+    /// Variables of each subprogram that is running, the main program's first, the innermost one's last.
     local: Vec<BTreeMap<String, VariableValue>>,
     /// Names that `DEF INT` or `DEF BOOL` declared: they hold whole numbers.
     whole: BTreeMap<String, ()>,
 }
 
 impl Variables {
-    /// None is set.
+    /// No variable is set yet.
     pub fn new(language: Language) -> Self {
         Self { language, local: vec![BTreeMap::new()], ..Self::default() }
     }
@@ -102,7 +102,8 @@ impl Variables {
         Ok(())
     }
 
-    /// `DEF`: a name exists from here on. Without a value a number is zero and a text is empty, as the control sets them.
+    /// `DEF`: a name exists from here on. Without a value a number is zero and a text is empty, as the control sets
+    /// them.
     ///
     /// # Errors
     /// There are too many.
@@ -149,7 +150,7 @@ impl Variables {
         }
     }
 
-    /// It is read from the control or changes it.
+    /// Whether the variable is read from the control or changes it.
     fn held_by_control(&self, name: &str) -> bool {
         match self.language {
             Language::Macro => {

@@ -17,11 +17,11 @@ const SHARE: f64 = 0.01;
 /// Angles of one solution, radians: beside a pole they are known no better.
 const SAME: f64 = 1e-4;
 
-/// Places of a curve at which its axis values are looked at, of an arc for each turn: between three of them an axis goes on
-/// a parabola, up to 4e-6 of the radius.
+/// Places of a curve at which its axis values are looked at, of an arc for each turn: between three of them an axis
+/// goes on a parabola, up to 4e-6 of the radius.
 const LOOKS: u32 = 64;
 
-/// At so many places of a curve its axis values are looked at, at most.
+/// Most places of a curve at which its axis values are looked at.
 const MOST_LOOKS: u32 = 4096;
 
 /// A fault: its code, what it is, and by how much a limit is passed.
@@ -112,9 +112,9 @@ impl AxisLimitCheck {
         Some(("max-feed", message, most * (factor - 1.0)))
     }
 
-    /// The least time in which no axis passes its largest feed, minutes, and the axis that asks for it. Where the control
-    /// keeps the tip, what the linear axes do between the words is bounded from the chain, at most 0.2 % too long; where
-    /// it is less than `enough` minutes, no closer than that.
+    /// The least time in which no axis passes its largest feed, minutes, and the axis that asks for it. Where the
+    /// control keeps the tip, what the linear axes do between the words is bounded from the chain, at most 0.2 % too
+    /// long; where it is less than `enough` minutes, no closer than that.
     pub fn least_minutes(
         &self,
         machine: &Machine,
@@ -153,7 +153,7 @@ impl AxisLimitCheck {
     }
 }
 
-/// At how many places a curve is looked at.
+/// Number of places at which a curve is looked at.
 fn looks(motion: &Motion) -> u32 {
     let turns = match motion.way {
         Interpolation::Arc { sweep, .. } => libm::fabs(sweep) / TAU,
@@ -164,7 +164,8 @@ fn looks(motion: &Motion) -> u32 {
     looks.clamp(4, MOST_LOOKS)
 }
 
-/// Where the parabola through three values at the same distances has its vertex, if that lies between them; else the last.
+/// Where the parabola through three values at the same distances has its vertex, if that lies between them; else the
+/// last.
 fn vertex([a, b, c]: [f64; 3]) -> f64 {
     let bend = a - 2.0 * b + c;
     let slope = 0.5 * (c - a);
@@ -207,8 +208,8 @@ fn told(axis: &Axis, value: f64, limit: f64) -> String {
     )
 }
 
-/// How the linear axes go while the control keeps the tip; none if nothing turns, or nothing is known of it. Times below
-/// `enough` minutes are looked into no closer.
+/// How the linear axes go while the control keeps the tip; none if nothing turns, or nothing is known of it. Times
+/// below `enough` minutes are looked into no closer.
 fn slides(motion: &Motion, slowness: &Joints, enough: f64) -> Option<Slides> {
     let solver: &Solver = &motion.state.solver;
     let chain = solver.chain();

@@ -11,7 +11,7 @@ const DEEPEST: u32 = 14;
 /// chord by chance.
 const TURN: f64 = 0.12;
 
-/// Puts the places at the ends of the pieces of a way behind `places`, without that of its beginning.
+/// Puts the places at the ends of the pieces of a way after `places`, without that of its beginning.
 fn chop(
     at: impl Fn(f64) -> ToolPlace,
     first: usize,
@@ -46,7 +46,7 @@ fn halve(
     halve(at, (share, &middle), to, sag, left - 1, places);
 }
 
-/// The way of a motion behind its beginning.
+/// The way of a motion after its beginning.
 pub(super) fn motion(motion: &Motion, along: f64, sag: &PlaceBound, places: &mut Vec<ToolPlace>) {
     let chain = motion.state.solver.chain();
     let mut turn: f64 = 0.0;
@@ -67,7 +67,7 @@ pub(super) fn motion(motion: &Motion, along: f64, sag: &PlaceBound, places: &mut
     chop(|t| ToolPlace::new(&motion.at(t), along), first, sag, places);
 }
 
-/// The way of a piece of a course behind its beginning.
+/// The way of a piece of a course after its beginning.
 pub(super) fn piece(piece: &Piece, along: f64, sag: &PlaceBound, places: &mut Vec<ToolPlace>) {
     let (from, to) = (ToolPlace::new(&piece.from, along), ToolPlace::new(&piece.to, along));
     let turn = from.apart(&to).axis;

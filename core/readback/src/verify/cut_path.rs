@@ -41,7 +41,7 @@ pub struct CutPath {
 }
 
 impl CutPath {
-    /// None yet; the guided point stands `along` mm above the tip.
+    /// An empty path; the guided point stands `along` mm above the tip.
     pub fn new(along: f64) -> Self {
         Self {
             cubes: Vec::new(),
@@ -54,7 +54,7 @@ impl CutPath {
         }
     }
 
-    /// Of a course to its end, and what cannot be understood of it, as far as the first fifty faults.
+    /// Path of a course to its end, and what cannot be understood of it, as far as the first fifty faults.
     pub fn of(course: &mut impl Course, along: f64) -> (Self, Vec<Diagnostic>) {
         let (mut path, mut faults) = (Self::new(along), Vec::new());
         loop {

@@ -1,4 +1,4 @@
-//! Between two cuts: rapids that go where neither the course nor the machine file leads.
+//! Detours between two cuts: rapids that go where neither the course nor the machine file leads.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use post_machine::kinematics::{Joints, Pose};
 use super::retract;
 use crate::Motion;
 
-/// So many ends of rapids are remembered between two cuts, and as many places that are asked for.
+/// Ends of rapids that are remembered between two cuts, and as many places that are asked for.
 const MOST: usize = 64;
 
 /// A tool that leans by less than this, radians, is on the same line.
@@ -19,10 +19,10 @@ const SAME_LINE: f64 = 1e-3;
 /// far off as it likes, and from over such a place down to it by the depth axis. Anywhere else each axis that it moves
 /// stands between where it stands at those places, or where the machine file sends it (`retract`, `leave`, `change`,
 /// `park`); the depth may be drawn back farther than at all of them. A retract in
-/// positions of the machine leads as far as the machine file says. In a program that was posted for this machine file, rotary
-/// axes turn where the tool is retracted, or with the tip on a way of the course or on the line of the tool at one of its
-/// places, and other axes stand between those places only if the tool was retracted; in another program nothing is said of the
-/// other axes while one turns.
+/// positions of the machine leads as far as the machine file says. In a program that was posted for this machine file,
+/// rotary axes turn where the tool is retracted, or with the tip on a way of the course or on the line of the tool at
+/// one of its places, and other axes stand between those places only if the tool was retracted; in another program
+/// nothing is said of the other axes while one turns.
 #[derive(Debug, Default)]
 pub(super) struct Detour {
     asked: Vec<(Joints, Pose)>,
@@ -67,8 +67,8 @@ pub(super) struct StrayRapid {
 }
 
 impl Detour {
-    /// A rapid ended; `asked` if the course leads there too, `led` if it leads the tip past there, `known` if it leads to
-    /// where the rapid began.
+    /// A rapid ended; `asked` if the course leads there too, `led` if it leads the tip past there, `known` if it leads
+    /// to where the rapid began.
     pub fn take(&mut self, motion: &Motion, [asked, led]: [bool; 2], known: bool) {
         if known && self.asked.is_empty() {
             self.ask(&motion.from.joints, &motion.from.pose);
@@ -95,8 +95,8 @@ impl Detour {
         }
     }
 
-    /// A cut begins with `motion`, or the program ends: was there a rapid that went farther than `slack` (mm, radians) from
-    /// all that is asked for, the tool leaning otherwise by `lean` at most? The first.
+    /// A cut begins with `motion`, or the program ends: was there a rapid that went farther than `slack` (mm, radians)
+    /// from all that is asked for, the tool leaning otherwise by `lean` at most? The first.
     pub fn end(
         &mut self,
         machine: &Machine,
@@ -159,8 +159,8 @@ impl RapidEnd {
         places.find(turns).filter(|_| !self.machine)
     }
 
-    /// An axis turns neither on a way of the course, nor with the tip on the line of the tool at one of its places, nor with
-    /// the tool retracted.
+    /// An axis turns neither on a way of the course, nor with the tip on the line of the tool at one of its places, nor
+    /// with the tool retracted.
     fn turns_astray<'p>(
         &self,
         machine: &Machine,
@@ -199,8 +199,8 @@ impl RapidEnd {
         if !self.machine && asked.iter().any(|(_, pose)| self.on_the_line(pose, slack[0], lean)) {
             return None;
         }
-        // While the part turns or the head swings, the linear axes go round with it: but the depth goes no deeper than at all
-        // places that are asked for.
+        // While the part turns or the head swings, the linear axes go round with it: but the depth goes no deeper than
+        // at all places that are asked for.
         let goes_round = !self.machine && self.turns(machine, slack).is_some();
         let mut worst: Option<(f64, StrayRapid)> = None;
         for (place, axis) in machine.axes.iter().enumerate() {

@@ -12,7 +12,7 @@ use crate::{CycleKind, Motion, MotionKind, Spindle, Told};
 /// A hole in the making.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HoleRun {
-    /// Its element.
+    /// Number of the hole's element.
     pub index: usize,
     /// How far below the level where its feed begins something was cut, mm.
     deepest: f64,
@@ -213,8 +213,8 @@ impl<C: Course> Verifier<'_, C> {
         true
     }
 
-    /// A thread is no hole that is drilled, and back in the other sense; what else tells kinds of holes apart is seen by how
-    /// the tool moves.
+    /// A thread is no hole that is drilled, and back in the other sense; what else tells kinds of holes apart is seen
+    /// by how the tool moves.
     fn compare_cycle(&mut self, motion: &Motion, index: usize) {
         use CycleKind::{BoreBack, Tap, TapLeft};
         let (Some(done), true) = (self.cycle, motion.hole) else {
@@ -389,8 +389,8 @@ impl<C: Course> Verifier<'_, C> {
         in_it && goes
     }
 
-    /// The next hole that is due has another axis than the one that was made last: the course itself goes straight there, and
-    /// what it passes is not kept.
+    /// The next hole that is due has another axis than the one that was made last: the course itself goes straight
+    /// there, and what it passes is not kept.
     pub(super) fn turns_between_holes(&mut self) -> bool {
         let (Some(made), Some(index)) = (self.made, self.next) else {
             return false;

@@ -69,7 +69,7 @@ impl<C: Course> Verifier<'_, C> {
                     self.look_at_change(line);
                 }
                 let running = &mut self.running;
-                // What stands in the block of the change is on behind it.
+                // What stands in the block of the change is on after it.
                 if same || running.lines.contains(&line) {
                     return;
                 }

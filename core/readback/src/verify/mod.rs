@@ -6,10 +6,10 @@
 //! block that strays, that has no place on the course, or that comes out of turn. This proves more than a comparison of
 //! end points or of nearest distances: neither sees that a path is cut twice, backwards, or not at all.
 //!
-//! Rapids are free but for what matters of them (`rapid`, `near`, `fed_rapid`, `next_cut`): they lead from where a cut ends to where the next begins,
-//! past the points that the course asks for, in their order. A cut may be left for a while, if it goes on where it was
-//! left. In a hole the control pecks as it likes (`hole`), but in no larger pecks than asked for: the bottom is reached at
-//! feed, and no rapid goes where nothing was cut.
+//! Rapids are free but for what matters of them (`rapid`, `near`, `fed_rapid`, `next_cut`): they lead from where a cut
+//! ends to where the next begins, past the points that the course asks for, in their order. A cut may be left for a
+//! while, if it goes on where it was left. In a hole the control pecks as it likes (`hole`), but in no larger pecks
+//! than asked for: the bottom is reached at feed, and no rapid goes where nothing was cut.
 //!
 //! Memory does not grow with the program: of the course only what the program may stand at is kept.
 
@@ -50,7 +50,7 @@ pub use report::{BlockReport, Fault, LeftOn, Verification, WorstDeviation};
 use sweep::StrayStretch;
 use track::{CourseTrack, ElementKind};
 
-/// What is held to.
+/// What a program is held to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VerifyRules {
     /// Largest deviation of the tip in a cut, mm.
@@ -83,17 +83,17 @@ pub struct VerifyRules {
     pub planned: bool,
     /// Coolants are compared; else which of them flows is the program's own business.
     pub coolants: bool,
-    /// The program was posted for this machine file, and is held to what posting promises of rapids besides: what that is
-    /// says `retract` and `detour`. A program of another hand leads the tool off the part as it likes.
+    /// The program was posted for this machine file, and is held to what posting promises of rapids besides: what that
+    /// is says `retract` and `detour`. A program of another hand leads the tool off the part as it likes.
     pub own: bool,
     /// Each line of the program is told with the solution that it ends in.
     pub solutions: bool,
-    /// So many faults are told apart; then it is given up.
+    /// Most faults that are told apart; then the check is given up.
     pub most_faults: usize,
 }
 
 impl VerifyRules {
-    /// As the machine file has them.
+    /// Rules of a machine file.
     pub fn of(machine: &Machine) -> Self {
         Self {
             tolerance: machine.accuracy.tolerance,
@@ -149,7 +149,7 @@ pub struct Verifier<'m, C> {
     bound: PlaceBound,
     rapid_bound: PlaceBound,
     track: CourseTrack<C>,
-    /// For each element of the track the places on it where the program may stand.
+    /// Places on each element of the track where the program may stand.
     reach: Vec<ShareSpan>,
     /// The element that a rapid may come to next; all before it were passed.
     next: Option<usize>,
@@ -173,7 +173,7 @@ pub struct Verifier<'m, C> {
     turned: Vec<SpindleCommand>,
     /// The program has moved since the spindle was told something.
     moved: bool,
-    /// By how much the control may leave the path, as it was looked at last, mm.
+    /// Distance by which the control may leave the path, as it was looked at last, mm.
     smoothing: f64,
     /// The work offsets that were cut in, each by the number that the course asks for.
     worked: Vec<(Option<u32>, String)>,

@@ -1,4 +1,4 @@
-//! Between the cuts: where one is left, what is due before the next, and where that begins.
+//! What happens between cuts: where one is left, what is due before the next, and where that begins.
 
 use super::detour::Detour;
 use super::place::{PlaceDistance, ShareSpan, ToolPlace, free};
@@ -8,11 +8,11 @@ use super::{Verifier, state};
 use crate::course::Course;
 use crate::{Motion, Told};
 
-/// So far ahead a cut is looked for that has no place where the program stands.
+/// Elements ahead within which a cut is looked for that has no place where the program stands.
 const AHEAD: usize = 20_000;
 
 impl<C: Course> Verifier<'_, C> {
-    /// Where a cut of the course may have ended, what comes behind it may be passed.
+    /// Where a cut of the course may have ended, what comes after it may be passed.
     pub(super) fn leave_cut(&mut self) {
         if self.next.is_some() {
             return;
@@ -102,7 +102,7 @@ impl<C: Course> Verifier<'_, C> {
     pub(super) fn begin_cut(&mut self, motion: &Motion, place: &ToolPlace) {
         let bound = self.bound;
         let mut reach = std::mem::take(&mut self.reach);
-        // Behind what was cut so far.
+        // After what was cut so far.
         let stood = reach.iter().rposition(|span| !span.is_empty());
         let stood = stood.map_or(0, |index| index + usize::from(reach[index].to >= 1.0));
         let mut goes_on = false;
@@ -162,8 +162,8 @@ impl<C: Course> Verifier<'_, C> {
         }
     }
 
-    /// No cut of the course is due here. Looks for it farther on, and tells what was left out; else takes the nearest that
-    /// is due, and tells how far that is.
+    /// No cut of the course is due here. Looks for it farther on, and tells what was left out; else takes the nearest
+    /// that is due, and tells how far that is.
     fn find_cut(&mut self, motion: &Motion, place: &ToolPlace, first: usize) {
         let bound = self.bound;
         let mut found = None;
@@ -295,7 +295,7 @@ impl<C: Course> Verifier<'_, C> {
         self.fault_at("event", message, place, None, None);
     }
 
-    /// What lies before an event cannot be cut behind it. False if the program is not there yet.
+    /// What lies before an event cannot be cut after it. False if the program is not there yet.
     fn stand_behind(&mut self, index: usize) -> bool {
         let last = self.reach.iter().rposition(|span| !span.is_empty());
         let Some(last) = last.filter(|last| *last < index) else {

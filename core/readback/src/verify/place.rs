@@ -20,7 +20,7 @@ pub(super) struct ToolPlace {
 pub(super) struct PlaceBound {
     /// mm.
     pub point: f64,
-    /// Of directions, as the length of a difference of unit vectors.
+    /// Bound of directions, as the length of a difference of unit vectors.
     pub axis: f64,
 }
 
@@ -44,7 +44,7 @@ pub(super) struct ShareSpan {
 const SHORT: f64 = 1e-12;
 
 impl ToolPlace {
-    /// Of the point `along` mm above the tip, towards the holder.
+    /// Place of the point `along` mm above the tip, towards the holder.
     pub fn new(pose: &Pose, along: f64) -> Self {
         Self { point: pose.tip + pose.axis * along, axis: pose.axis, edge: pose.edge_across() }
     }
@@ -94,7 +94,7 @@ impl PlaceBound {
         }
     }
 
-    /// From `point` mm and `angle` radians.
+    /// A bound of `point` mm and `angle` radians.
     pub fn new(point: f64, angle: f64) -> Self {
         Self { point, axis: 2.0 * libm::sin(0.5 * angle.min(std::f64::consts::PI)) }
     }

@@ -46,7 +46,7 @@ impl<C: Course> Verifier<'_, C> {
         self.detour.take(motion, [asked, led], known);
     }
 
-    /// From one place of a rapid of the course to another a rapid goes as it does, and on. True if it does.
+    /// Whether a rapid goes from one place of a rapid of the course to another as that does, and on.
     fn keeps_to_the_way(&mut self, motion: &Motion, places: &[ToolPlace]) -> bool {
         let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
             return false;
@@ -87,8 +87,8 @@ impl<C: Course> Verifier<'_, C> {
         false
     }
 
-    /// To the first hole and from one to the next along the same axis, no rapid goes across lower than the CL file does: up
-    /// first, then across.
+    /// Looks how low rapids go to holes: to the first, and from one to the next along the same axis, none goes across
+    /// lower than the CL file does: up first, then across.
     fn look_how_low(&mut self, motion: &Motion, places: &[ToolPlace]) {
         let slack = self.rapid_bound.point;
         let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {

@@ -3,12 +3,12 @@
 use post_machine::diagnostic::{Diagnostic, Place};
 use serde::Serialize;
 
-/// What was found.
+/// Result of holding a program against a course.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Verification {
     /// Motions of the program.
     pub motions: u64,
-    /// Of them cuts at feed that were held against the course.
+    /// Cuts at feed that were held against the course.
     pub cuts: u64,
     /// Rapids.
     pub rapids: u64,
@@ -40,7 +40,7 @@ pub struct Verification {
     pub time_s: f64,
     /// What is wrong, in the order of the program; what is wrong in the same way again and again is one of them.
     pub faults: Vec<Fault>,
-    /// It was given up: there are more faults.
+    /// Whether it was given up: there are more faults.
     pub gave_up: bool,
 }
 
@@ -51,9 +51,9 @@ pub struct LeftOn {
     pub line: u64,
     /// What: the code of its warning.
     pub code: &'static str,
-    /// As it is told.
+    /// Text of the warning.
     pub message: String,
-    /// At so many tool changes.
+    /// Number of tool changes at which it runs.
     pub count: u64,
 }
 
@@ -94,12 +94,12 @@ pub struct Fault {
     pub cl_line: Option<u64>,
     /// How often the same was found.
     pub count: u64,
-    /// By how much a limit is passed, in the unit of the message.
+    /// Amount by which a limit is passed, in the unit of the message.
     pub by: Option<f64>,
 }
 
 impl Fault {
-    /// As a message about a line of the program `file`, of which `text` is the line's text.
+    /// The fault as a message about a line of the program `file`, of which `text` is the line's text.
     pub fn diagnostic(&self, file: &str, text: &str, course: &str) -> Diagnostic {
         let mut message = self.message.clone();
         if let Some(line) = self.cl_line {

@@ -8,9 +8,9 @@ use post_machine::kinematics::Joints;
 use super::Verifier;
 use crate::course::Course;
 
-/// By how much the depth axes stand nearer to the part than the machine file retracts them: the axis that lacks most, and
-/// how much, mm; none if all of them are retracted, or stand where it has them for a tool change or at the end. Of a machine
-/// with `leave` those are the axes that go behind the way out.
+/// Distance by which the depth axes stand nearer to the part than the machine file retracts them: the axis that lacks
+/// most, and how much, mm; none if all of them are retracted, or stand where it has them for a tool change or at the
+/// end. Of a machine with `leave` those are the axes that go behind the way out.
 pub(super) fn lacks(machine: &Machine, joints: &Joints, slack: f64) -> Option<(usize, f64)> {
     let frame = &machine.frame;
     let named = [&frame.change, &frame.park, &frame.aside];
@@ -47,8 +47,8 @@ fn off_change(machine: &Machine, joints: &Joints, slack: f64) -> Option<(usize, 
 }
 
 impl<C: Course> Verifier<'_, C> {
-    /// A tool is changed: retracted, and with the axes where the machine file has them for it, if the program was posted for
-    /// that file.
+    /// A tool is changed: retracted, and with the axes where the machine file has them for it, if the program was
+    /// posted for that file.
     pub(super) fn look_at_change(&mut self, line: u64) {
         self.look_for_retract(line, "where the tool is changed");
         let Some(joints) = self.stands.filter(|_| self.rules.own) else {

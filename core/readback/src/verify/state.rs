@@ -41,8 +41,8 @@ impl<C: Course> Verifier<'_, C> {
         self.compare_feed(motion, places, &element);
     }
 
-    /// The feed of an element, or of another that a motion lies on as a whole, if that is larger: what is left of a piece at
-    /// a corner is within the tolerance of the next.
+    /// The feed of an element, or of another that a motion lies on as a whole, if that is larger: what is left of a
+    /// piece at a corner is within the tolerance of the next.
     fn feed_of(&self, places: &[ToolPlace], element: &Element) -> Option<f64> {
         let feed = element.feed?;
         let last = self.reach.iter().rposition(|span| !span.is_empty())?;
@@ -59,8 +59,8 @@ impl<C: Course> Verifier<'_, C> {
         Some(feeds.fold(feed, f64::max))
     }
 
-    /// The element of the course that a motion follows: where all that it may follow ask for the same, any of them; else
-    /// that at the middle of its way.
+    /// The element of the course that a motion follows: where all that it may follow ask for the same, any of them;
+    /// else that at the middle of its way.
     fn element_of(&mut self, places: &[ToolPlace]) -> Option<Element> {
         let bound = self.bound.times(self.stray.map_or(1.0, |stray| stray.factor));
         let last = self.reach.iter().rposition(|span| !span.is_empty())?;
@@ -86,7 +86,7 @@ impl<C: Course> Verifier<'_, C> {
                 continue;
             }
             let near = super::place::nearest(&middle, &element.from, &element.to, &span).point;
-            // Of two that are as near the later: behind a corner the next holds.
+            // Of two that are as near the later: after a corner the next holds.
             if best.is_none_or(|(least, _)| near <= least + 1e-9) {
                 best = Some((near, index));
             }
@@ -189,8 +189,8 @@ impl<C: Course> Verifier<'_, C> {
         }
     }
 
-    /// Between the tool change and its first cut the spindle turns as the course has it of this tool: the speed of the
-    /// tool before bursts a large one.
+    /// Compares the spindle between the tool change and its first cut with what the course has of this tool: the speed
+    /// of the tool before bursts a large one.
     fn compare_speeds(&mut self, motion: &Motion, element: &Element) {
         let asked = &element.asked;
         if self.turned.is_empty() || motion.state.tool != asked.tool {
@@ -334,7 +334,8 @@ impl<C: Course> Verifier<'_, C> {
         self.fault("register", message, Some(motion), Some(element.line), None);
     }
 
-    /// Words of the depth mean nothing known before the length of the tool is compensated: the tip is lower than they say.
+    /// Words of the depth mean nothing known before the length of the tool is compensated: the tip is lower than they
+    /// say.
     pub(super) fn look_for_length(&mut self, motion: &Motion) {
         if !self.rules.length_from.are_named()
             || motion.machine

@@ -4,8 +4,8 @@
 //! so that what can be reached on its far sides follows from what can be reached on its near ones. Kept is the side at
 //! which the program stands now: one span for each element of the course.
 //!
-//! A motion that finds no way strays. Then the bound is widened until there is one, which says how far the program is off,
-//! and it stays wide until the program is back on the course.
+//! A motion that finds no way strays. Then the bound is widened until there is one, which says how far the program is
+//! off, and it stays wide until the program is back on the course.
 
 use super::place::{PlaceBound, PlaceDistance, ShareSpan, ToolPlace, free, nearest};
 use super::track::ElementKind;
@@ -27,7 +27,7 @@ pub(super) struct StrayStretch {
     pub worst: PlaceDistance,
 }
 
-/// By this share of the tolerance an element must be nearer to count in place of one before it.
+/// Share of the tolerance by which an element must be nearer to count in place of one before it.
 const LEADS_ON: f64 = 0.25;
 
 /// A bound so wide that nothing is told apart by it.
@@ -41,9 +41,9 @@ const STEPS: usize = 9;
 enum SweepOutcome {
     /// The whole motion has a place on the course.
     Through,
-    /// None, and one reason is that this element was in the way.
+    /// The motion has no place, and one reason is that this element was in the way.
     Stopped(usize),
-    /// None.
+    /// The motion has no place.
     Nowhere,
 }
 
@@ -56,7 +56,7 @@ impl<C: Course> Verifier<'_, C> {
         self.come_back_to_the_course(&places[0]);
         let fast = self.is_as_fast_as_rapids(motion);
         if fast && !self.apart && self.next.is_none() {
-            // A rapid behind the cut, not the cut's way back.
+            // A rapid after the cut, not the cut's way back.
             self.leave_cut();
             if self.follows_a_rapid(motion, places) {
                 return;
@@ -158,7 +158,7 @@ impl<C: Course> Verifier<'_, C> {
         self.stray.map_or(1.0, |stray| stray.factor)
     }
 
-    /// Behind a stretch that was off: within the tolerance again, where the program stands.
+    /// Ends a stretch that was off, where the program is within the tolerance again.
     pub(super) fn come_back_to_the_course(&mut self, place: &ToolPlace) {
         if self.stray.is_none() {
             return;

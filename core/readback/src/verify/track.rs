@@ -24,7 +24,7 @@ pub(super) struct CutState {
     pub coolants: Coolants,
     /// Side of the contour: -1 left, 1 right, 0 off.
     pub side: i8,
-    /// Its register.
+    /// Register of the compensation.
     pub register: Option<u32>,
     /// Number of the work offset, from 1; none: the file names none.
     pub work_offset: Option<u32>,
@@ -40,7 +40,7 @@ pub(super) struct Element {
     pub asked: Arc<CutState>,
     /// mm/min.
     pub feed: Option<f64>,
-    /// Its end is the end of what the course calls one piece.
+    /// Whether its end is the end of what the course calls one piece.
     pub ends: bool,
     /// How near the program has come to its end while it might stand there.
     pub near: PlaceDistance,
@@ -67,14 +67,14 @@ pub(super) enum ElementKind {
 #[derive(Clone, Debug)]
 pub(super) struct CourseHole {
     pub kind: CycleKind,
-    /// How far below the level where its feed begins the first peck may come, and how far each behind it, mm; none: in one
-    /// go.
+    /// How far below the level where its feed begins the first peck may come, and how far each after it, mm; none: in
+    /// one go.
     pub pecks: Option<[f64; 2]>,
-    /// At the bottom.
+    /// Wait at the bottom.
     pub dwell: Option<Told>,
     /// How the tool comes back.
     pub back: Option<MotionKind>,
-    /// And how fast, mm/min; none at rapid.
+    /// Feed at which it comes back, mm/min; none at rapid.
     pub out: Option<f64>,
     /// How the course comes to it at rapid: a control may go otherwise.
     pub approach: Vec<[ToolPlace; 2]>,
@@ -103,10 +103,10 @@ pub(super) struct CourseTrack<C> {
 /// More elements are not kept: a program that lingers over more of its path is lost.
 pub(super) const MOST: usize = 60_000;
 
-/// So many commands of the spindle are kept of a tool.
+/// Commands of the spindle that are kept of a tool.
 pub(super) const MOST_SPEEDS: usize = 64;
 
-/// So many rapids towards one hole are kept.
+/// Rapids towards one hole that are kept.
 const MOST_APPROACH: usize = 64;
 
 /// Infinitely far.

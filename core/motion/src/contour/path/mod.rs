@@ -42,7 +42,7 @@ pub(super) struct Knot {
     pub gap: bool,
 }
 
-/// A place on the path: behind which knot, and what share of the piece that begins there.
+/// A place on the path: after which knot, and what share of the piece that begins there.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Foot {
     pub knot: usize,
@@ -60,7 +60,7 @@ pub(super) struct Passed {
     pub way: f64,
 }
 
-/// The path.
+/// The commanded path: the spline through its knots.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Path {
     knots: VecDeque<Knot>,
@@ -173,7 +173,7 @@ impl Path {
         length + foot.share * next.map_or(0.0, |next| next.length - length)
     }
 
-    /// The place so many mm behind another.
+    /// The place so many mm after another.
     pub fn after(&self, foot: Foot, way: f64) -> Foot {
         let wanted = self.length(foot) + way;
         let mut knot = foot.knot;
@@ -203,7 +203,7 @@ impl Path {
         Foot { knot: knot.saturating_sub(1), ..Foot::default() }
     }
 
-    /// The piece behind a knot; none behind the last.
+    /// The piece after a knot; none after the last.
     #[inline]
     fn cubic(&self, knot: usize) -> Option<&Cubic> {
         self.pieces.get(knot)?.as_ref()

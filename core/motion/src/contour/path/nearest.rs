@@ -3,11 +3,11 @@
 //! **Which point is the nearest.** The one before, a period further, is where the search begins; from there it goes
 //! downhill until the distance rises both ways, however far that is: no window bounds it. A path comes close to itself,
 //! and at a corner the tool passes from one leg to the other without standing on the corner: so other places are looked
-//! at as far as [`REACH`] times that first distance along the path, and the nearest of them is taken. The distance at the
-//! beginning is about the contour error itself, not the following error, so that a crossing is no corner: the way round a
-//! loop is far longer. Where the tool goes back on its path, though, it is held against a piece ahead that it stands on as
-//! well: out and back on one line (a peck) are told apart by their order. Points of the path that cannot be nearer are
-//! passed over by its length: a point `l` further along it is no more than `l` nearer.
+//! at as far as [`REACH`] times that first distance along the path, and the nearest of them is taken. The distance at
+//! the beginning is about the contour error itself, not the following error, so that a crossing is no corner: the way
+//! round a loop is far longer. Where the tool goes back on its path, though, it is held against a piece ahead that it
+//! stands on as well: out and back on one line (a peck) are told apart by their order. Points of the path that cannot
+//! be nearer are passed over by its length: a point `l` further along it is no more than `l` nearer.
 
 use nalgebra::Vector3;
 use post_machine::kinematics::Pose;
@@ -25,7 +25,7 @@ pub(in super::super) const REACH: f64 = 16.0;
 struct SearchReach {
     ahead: f64,
     back: f64,
-    /// They count if they are nearer by more than this, mm.
+    /// Distance by which they must be nearer to count, mm.
     gain: f64,
 }
 
@@ -38,7 +38,7 @@ impl SearchReach {
 /// Pieces that the tool stands on alike are no farther apart than this, mm: the rounding of the spline.
 const SAME: f64 = 5e-10;
 
-/// What was found.
+/// The nearest place of the path, and how far it is.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Nearest {
     pub tip: Vector3<f64>,
@@ -103,8 +103,8 @@ impl Path {
     }
 
     /// The place nearest to a tool that was off the path meanwhile: from where it left on, and before that only where
-    /// what lies ahead is farther (it comes down a hole again, above where it left), and no further back than other places
-    /// are looked for at all: the end of an earlier cut may be near as well.
+    /// what lies ahead is farther (it comes down a hole again, above where it left), and no further back than other
+    /// places are looked for at all: the end of an earlier cut may be near as well.
     pub fn seek_anew(&self, tool: &Pose) -> Foot {
         let first = (self.point(self.foot) - tool.tip).norm();
         let left = Foot { distance: first, ..self.foot };

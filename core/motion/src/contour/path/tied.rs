@@ -1,12 +1,12 @@
-//! Of places that are equally near, the one whose tool axis is nearest.
+//! Places that are equally near: the one whose tool axis is nearest counts.
 
 use nalgebra::Vector3;
 use post_machine::kinematics::Pose;
 
 use super::{Foot, Path};
 
-/// Places whose distances differ by less, mm, are equally near: the one with the nearer tool axis counts. Where the tool
-/// turns about its tip, this alone tells them apart.
+/// Places whose distances differ by less, mm, are equally near: the one with the nearer tool axis counts. Where the
+/// tool turns about its tip, this alone tells them apart.
 pub(super) const TIE: f64 = 1e-4;
 
 impl Path {
@@ -15,7 +15,7 @@ impl Path {
         self.tied(tool, foot).1
     }
 
-    /// Of places that are equally near, the one whose tool axis is nearest, downhill; and that axis.
+    /// The place, of those that are equally near, whose tool axis is nearest, downhill; and that axis.
     pub(super) fn tied(&self, actual: &Pose, foot: Foot) -> (Foot, Vector3<f64>) {
         let bound = (foot.distance + TIE) * (foot.distance + TIE);
         let equal = |tip: &Vector3<f64>| (tip - actual.tip).norm_squared() <= bound;

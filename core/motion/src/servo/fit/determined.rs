@@ -99,7 +99,7 @@ impl FitSearch<'_> {
     }
 }
 
-/// Without end, where the log says nothing.
+/// The deviation as it is reported: infinite where the log says nothing.
 fn told_deviation(deviation: f64) -> f64 {
     if deviation < ENDLESS * SMALL_SHARE * SMALL_SHARE { deviation } else { f64::INFINITY }
 }

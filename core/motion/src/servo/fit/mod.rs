@@ -1,15 +1,15 @@
 //! Numbers of a servo from a measured log: least squares, and how well each is determined.
 //!
-//! The servo is run over the commanded positions of the log, and its numbers are changed until the sum of the squares of its
-//! distances from the measured ones is least (Levenberg 1944, Marquardt 1963). Numbers that are above zero are changed by
-//! factors: their logarithms are what is searched for. The derivatives are differences of runs. All runs go through the log
-//! side by side and their differences are gathered block by block into a triangle (QR), so that memory does not grow with
-//! the log and small singular values are not lost, as they are in the normal equations.
+//! The servo is run over the commanded positions of the log, and its numbers are changed until the sum of the squares
+//! of its distances from the measured ones is least (Levenberg 1944, Marquardt 1963). Numbers that are above zero are
+//! changed by factors: their logarithms are what is searched for. The derivatives are differences of runs. All runs go
+//! through the log side by side and their differences are gathered block by block into a triangle (QR), so that memory
+//! does not grow with the log and small singular values are not lost, as they are in the normal equations.
 //!
-//! What a log does not determine stays close to where it was, and is said: each number has a standard deviation from the
-//! covariance `σ²·(JᵀJ)⁻¹`, and combinations that could be anything are listed. σ² is that of the errors that are left, times
-//! the sum of their autocorrelation: what the model does not know comes back in every move, so that many samples of a real
-//! log say no more than a few independent ones.
+//! What a log does not determine stays close to where it was, and is said: each number has a standard deviation from
+//! the covariance `σ²·(JᵀJ)⁻¹`, and combinations that could be anything are listed. σ² is that of the errors that are
+//! left, times the sum of their autocorrelation: what the model does not know comes back in every move, so that many
+//! samples of a real log say no more than a few independent ones.
 
 mod determined;
 mod independence;
@@ -26,22 +26,23 @@ use search::FitSearch;
 pub struct ServoLog<'a> {
     /// Time from one measured position to the next, s.
     pub period: f64,
-    /// So many commanded positions stand for each measured one: where a control makes more set-points than are recorded,
+    /// Commanded positions for each measured one: where a control makes more set-points than are recorded,
     /// its commands are no straight line between two of them.
     pub steps: usize,
-    /// Commanded positions, mm or radians, the last of each `steps` at the time of the measured one. The axis is taken to
-    /// stand still at the first of them before the log begins.
+    /// Commanded positions, mm or radians, the last of each `steps` at the time of the measured one. The axis is taken
+    /// to stand still at the first of them before the log begins.
     pub commanded: &'a [f64],
-    /// Measured ones.
+    /// Measured positions, mm or radians.
     pub measured: &'a [f64],
-    /// So many at the beginning are run through, but not compared: what the axis did before the log has died away by then.
+    /// Positions at the beginning that are run through, but not compared: what the axis did before the log has died
+    /// away by then.
     pub lead: usize,
 }
 
 /// A servo that has been adjusted to a log.
 #[derive(Clone, Debug)]
 pub struct ServoFit {
-    /// With its new numbers.
+    /// The servo with its new numbers.
     pub servo: Servo,
     /// The numbers that were adjusted, as they were named.
     pub fitted: Vec<FittedNumber>,
@@ -49,9 +50,9 @@ pub struct ServoFit {
     pub undetermined: Vec<UndeterminedDirection>,
     /// Root of the mean square of measured minus predicted, with the numbers as they were, mm or radians.
     pub before: f64,
-    /// The same with the new ones.
+    /// Root of the mean square with the new numbers, mm or radians.
     pub after: f64,
-    /// So many errors that follow one another say no more than one that is independent: 1 for noise; much more where the
+    /// Number of successive errors that say no more than one that is independent: 1 for noise; much more where the
     /// model lacks something that comes back in every move.
     pub hanging_together: f64,
     /// The search came to an end; else it was given up, and the numbers are the best that were met.
@@ -63,15 +64,16 @@ pub struct ServoFit {
 pub struct FittedNumber {
     /// The table below `[servo.X]` that it stands in, `loops.screw`; empty for `[servo.X]` itself.
     pub table: &'static str,
-    /// Its key in the machine file.
+    /// Key in the machine file.
     pub name: &'static str,
-    /// As it was.
+    /// Value before the fit.
     pub before: f64,
-    /// As it is now.
+    /// Value after the fit.
     pub value: f64,
-    /// Its standard deviation, in the same unit; infinite if the log says nothing of it.
+    /// Standard deviation, in the same unit; infinite if the log says nothing of it.
     pub deviation: f64,
-    /// The log determines it: the deviation is less than [`LARGEST_DEVIATION`] of it (of 1 for the shares of feed-forward).
+    /// The log determines it: the deviation is less than [`LARGEST_DEVIATION`] of it (of 1 for the shares of
+    /// feed-forward).
     pub determined: bool,
     /// The other number that it can be exchanged for most easily, and the correlation of their errors, -1 to 1; none if
     /// there is no other.
@@ -81,7 +83,8 @@ pub struct FittedNumber {
 /// A combination of numbers that could be larger or smaller without the log saying so.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UndeterminedDirection {
-    /// The numbers, and how each changes: by the factor `e^share` (feed-forward: by `share`), the largest share being 1.
+    /// The numbers, and how each changes: by the factor `e^share` (feed-forward: by `share`), the largest share being
+    /// 1.
     pub shares: Vec<(&'static str, f64)>,
     /// Standard deviation along it, in the same measure; infinite if the log says nothing of it.
     pub deviation: f64,
@@ -98,8 +101,8 @@ const MOST_ROUNDS: usize = 30;
 /// Adjusts the numbers of `servo` that are called `names` (keys of the machine file, `kv`) to `log`.
 ///
 /// # Errors
-/// A name that the servo does not have, a number that is zero and so has no factor, a log that is too short, or whose two
-/// courses are not of one length.
+/// A name that the servo does not have, a number that is zero and so has no factor, a log that is too short, or whose
+/// two courses are not of one length.
 pub fn fit(servo: &Servo, names: &[&str], log: ServoLog<'_>) -> Result<ServoFit, Box<Diagnostic>> {
     let search = FitSearch::new(servo, names, log)?;
     let before = search.squares(&search.start)?;

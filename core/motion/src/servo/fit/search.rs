@@ -10,8 +10,8 @@ use crate::servo::{Follower, ServoOutput};
 
 /// Fewer samples than this a number say nothing.
 const LEAST_SAMPLES: usize = 4;
-/// No log is finer, mm or radians: errors are not taken for smaller, so that a log without noise does not seem to determine
-/// what only rounding does.
+/// No log is finer, mm or radians: errors are not taken for smaller, so that a log without noise does not seem to
+/// determine what only rounding does.
 const FINEST: f64 = 1e-7;
 /// Half of the difference by which derivatives are taken, as a share.
 const STEP: f64 = 1e-4;
@@ -38,7 +38,7 @@ pub(super) struct FitSearch<'a> {
 /// Where the search stands.
 pub(super) struct SearchState {
     pub(super) place: DVector<f64>,
-    /// Triangle of the derivatives, and of the errors behind them.
+    /// Triangle of the derivatives, and of the errors after them.
     pub(super) triangle: DMatrix<f64>,
     pub(super) converged: bool,
 }
@@ -132,7 +132,7 @@ impl<'a> FitSearch<'a> {
         Ok(follower)
     }
 
-    /// It comes to rest.
+    /// Whether the servo comes to rest.
     fn stable(&self, place: &DVector<f64>) -> bool {
         let poles = StateSpace::of(&self.servo_at(place)).poles();
         poles.is_some_and(|poles| stable(&poles))
@@ -213,8 +213,8 @@ impl<'a> FitSearch<'a> {
         Ok(Some(triangle))
     }
 
-    /// Standard deviation of the log's errors, mm or radians, that which independent errors would have that say as little;
-    /// and how many of them say no more than one that is independent.
+    /// Standard deviation of the log's errors, mm or radians, that which independent errors would have that say as
+    /// little; and how many of them say no more than one that is independent.
     pub(super) fn spread(&self, found: &SearchState) -> Result<[f64; 2], Box<Diagnostic>> {
         let count = self.names.len();
         let errors = self.errors(&found.place)?;
@@ -289,8 +289,8 @@ impl<'a> FitSearch<'a> {
     }
 }
 
-/// The step of Levenberg and Marquardt: least squares of what the derivatives leave of the errors, of what is drawn back,
-/// and of the step itself, each number in the measure of its own effect.
+/// The step of Levenberg and Marquardt: least squares of what the derivatives leave of the errors, of what is drawn
+/// back, and of the step itself, each number in the measure of its own effect.
 fn step(triangle: &DMatrix<f64>, back: &DVector<f64>, draw: f64, damping: f64) -> DVector<f64> {
     let count = back.len();
     let mut matrix = DMatrix::zeros(3 * count, count);

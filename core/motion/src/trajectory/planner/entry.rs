@@ -13,7 +13,7 @@ use crate::{Move, ProgramPlace};
 /// A move whose end is open.
 #[derive(Clone, Debug)]
 pub(super) struct OpenMove {
-    /// Its number in the law.
+    /// Number in the law.
     pub number: u64,
     pub found: MoveLimits,
     pub whole: MoveBounds,
@@ -22,7 +22,7 @@ pub(super) struct OpenMove {
     pub scale: f64,
     /// The share of it that the corner before has taken.
     pub taken: f64,
-    /// It begins a run.
+    /// Whether the move begins a run.
     pub begins: bool,
     /// Overlapped by the move before: the change of its rate that it begins with, 1/s², and for how long, s.
     pub entrance: Option<[f64; 2]>,

@@ -25,7 +25,7 @@ impl Planner {
         }
     }
 
-    /// At an exact stop the control waits until its axes are in position.
+    /// Waits at an exact stop until the axes are in position.
     fn stand(&mut self, last: &OpenMove) {
         self.finish();
         if self.in_position > 0.0 {
@@ -35,7 +35,7 @@ impl Planner {
         self.accounts.border(self.clock);
     }
 
-    /// From the last move into the next one.
+    /// Goes from the last move into the next one.
     pub(super) fn pass(
         &mut self,
         last: OpenMove,

@@ -11,7 +11,7 @@ const ALIKE: f64 = 0.5;
 /// A place of the envelope where a bound is met, and what follows on it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EnvelopeKnot {
-    /// It stands in front of this block.
+    /// The block in front of which it stands.
     pub place: usize,
     pub velocity: f64,
     /// Length, least acceleration and jerk, and the envelope's highest velocity, from here to the next one.

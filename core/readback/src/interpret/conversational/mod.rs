@@ -114,7 +114,7 @@ impl BlockNames<'_> {
         self.names().any(|name| name == wanted)
     }
 
-    /// Its names but the first item.
+    /// Names in the block but the first item.
     fn names(&self) -> impl Iterator<Item = &str> {
         self.block.items.iter().filter_map(|item| match item {
             NcItem::Name(name) => Some(&**name),
@@ -122,7 +122,7 @@ impl BlockNames<'_> {
         })
     }
 
-    /// The value behind a longer name: `SPA+30`.
+    /// The value after a longer name: `SPA+30`.
     fn named(&self, control: &ControlState, wanted: &str) -> Answer<Option<f64>> {
         for item in &self.block.items {
             if let NcItem::Named { name, value } = item

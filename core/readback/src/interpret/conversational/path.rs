@@ -195,8 +195,8 @@ pub(super) fn curve(
     left_over(control, words)
 }
 
-/// About the pole in the plane across the tool axis. Where the pole was given with Z too, all three coordinates count, and
-/// the plane is that of two axes which start, end and pole share.
+/// About the pole in the plane across the tool axis. Where the pole was given with Z too, all three coordinates count,
+/// and the plane is that of two axes which start, end and pole share.
 fn about_pole(
     control: &ControlState,
     from: Vector3<f64>,
@@ -237,7 +237,7 @@ fn arc(
     Ok(go::WordPath::Arc { centre, normal: plane.normal(), sweep })
 }
 
-/// On from where the last motion led, without a corner.
+/// An arc that goes on from where the last motion led, without a corner.
 fn tangential(
     control: &ControlState,
     from: Vector3<f64>,

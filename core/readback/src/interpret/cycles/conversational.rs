@@ -5,10 +5,10 @@ use post_machine::diagnostic::Diagnostic;
 use super::hole::{CycleHole, HoleDwell, Pecking, Withdrawal};
 use crate::CycleKind;
 
-/// This feed, or more, is rapid traverse.
+/// Least feed that is rapid traverse.
 const RAPID: f64 = 99_999.0;
 
-/// So far it goes off the wall of a bored hole, mm.
+/// Distance off the wall of a bored hole, mm.
 const OFF_THE_WALL: f64 = 0.2;
 
 /// The parameters of a definition.

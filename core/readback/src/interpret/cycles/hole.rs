@@ -14,47 +14,47 @@ pub(super) const SAME: f64 = 1e-9;
 /// A hole: levels along the tool axis, in the coordinates of the words, mm; feeds in mm/min.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct CycleHole {
-    /// What it is.
+    /// Kind of the cycle.
     pub kind: CycleKind,
     /// Where the feed begins.
     pub clearance: f64,
     /// The surface, where the cycle names it.
     pub surface: Option<f64>,
-    /// Its bottom.
+    /// Level of the bottom.
     pub bottom: f64,
     /// Where the tool stands when it is done.
     pub away: f64,
-    /// Down.
+    /// Feed down.
     pub feed: f64,
     /// The cycle states its feed itself, or the pitch that it follows from: that of the program does not matter.
     pub own_feed: bool,
     /// Feed of the first peck against the others.
     pub first_share: Option<f64>,
-    /// Its feed, or that of a thread, is stated by the revolution.
+    /// Whether the feed, or that of a thread, is stated by the revolution.
     pub per_revolution: bool,
-    /// Back to the clearance.
+    /// The way back to the clearance.
     pub out: Withdrawal,
-    /// Back to where the tool stands when it is done, not to the clearance alone.
+    /// Whether that way leads to where the tool stands when it is done, not to the clearance alone.
     pub out_all: bool,
-    /// In steps.
+    /// Pecks; none: in one go.
     pub pecks: Option<Pecking>,
     /// Wait at the bottom.
     pub wait: HoleDwell,
-    /// Off the wall before the way out: along the first and second direction of the plane and along the axis, mm.
+    /// Way off the wall before the way out: along the first and second direction of the plane and along the axis, mm.
     pub lift: [f64; 3],
     /// The operator draws the tool out, or is asked to: the program stops at the bottom.
     pub stop: bool,
-    /// How the cycle itself turns the spindle in the hole and behind it; none: it leaves it as it is.
+    /// How the cycle itself turns the spindle in the hole and after it; none: it leaves it as it is.
     pub turning: Option<[SpindleRequest; 2]>,
 }
 
 /// How the tool comes back to the clearance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum Withdrawal {
-    /// At rapid.
+    /// The tool comes back at rapid.
     #[default]
     Rapid,
-    /// At this feed, mm/min.
+    /// The tool comes back at this feed, mm/min.
     Feed(f64),
     /// Along the thread, at this feed, mm/min.
     Thread(f64),
@@ -65,12 +65,12 @@ pub(crate) enum Withdrawal {
 pub(crate) struct HoleDwell {
     /// Seconds, or turns of the spindle.
     pub time: f64,
-    /// They are turns.
+    /// Whether the time is in turns.
     pub revolutions: bool,
 }
 
 impl HoleDwell {
-    /// So many seconds.
+    /// A wait of `time` seconds.
     pub fn seconds(time: f64) -> Self {
         Self { time, revolutions: false }
     }
@@ -79,11 +79,11 @@ impl HoleDwell {
 /// How a hole is made in steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Pecking {
-    /// The first, mm.
+    /// Depth of the first peck, mm.
     pub first: f64,
-    /// So much less each, mm.
+    /// Decrease from each peck to the next, mm.
     pub less: f64,
-    /// No peck is less, mm.
+    /// Least peck, mm.
     pub least: f64,
     /// What is left for the last two is halved.
     pub halved: bool,
@@ -106,13 +106,13 @@ pub(crate) struct Pecking {
 /// A stroke of a hole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum HoleStroke {
-    /// At rapid to a level.
+    /// A move at rapid to a level.
     Rapid(f64),
-    /// At a feed to a level: level, mm/min.
+    /// A move at feed to a level: level, mm/min.
     Feed(f64, f64),
-    /// Tied to the spindle to a level: level, mm/min.
+    /// A move tied to the spindle to a level: level, mm/min.
     Thread(f64, f64),
-    /// At rapid to the side, along the plane's directions and the axis, mm.
+    /// A move at rapid to the side, along the plane's directions and the axis, mm.
     Aside([f64; 3]),
     /// A wait.
     Wait(HoleDwell),
@@ -135,7 +135,7 @@ impl CycleHole {
         }
     }
 
-    /// Its strokes, with the tool at the level `from` over it.
+    /// Strokes of the hole, with the tool at the level `from` over it.
     ///
     /// # Errors
     /// Its pecks are too many, or lead nowhere.

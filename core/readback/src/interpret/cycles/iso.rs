@@ -12,8 +12,8 @@ use crate::interpret::go::{MotionTarget, WordPath};
 use crate::interpret::state::ControlState;
 use crate::{CycleKind, MotionKind};
 
-/// So far above the depth that was reached the tool comes at rapid, and so far it is drawn back to break a chip, mm: LinuxCNC's ten
-/// thousandths of an inch; of other controls it is a parameter.
+/// Distance above the depth that was reached to which the tool comes at rapid, and by which it is drawn back to break a
+/// chip, mm: LinuxCNC's ten thousandths of an inch; of other controls it is a parameter.
 const BACK: f64 = 0.254;
 
 /// Holes that one block may ask for.

@@ -38,7 +38,7 @@ pub(super) struct CycleState {
 /// A cycle that `CYCL DEF` has defined.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct DefinedCycle {
-    /// Its number.
+    /// Number of the cycle.
     pub cycle: u32,
     /// Numbers of its parameters and their values.
     pub values: Vec<(u32, f64)>,
@@ -52,8 +52,9 @@ impl CycleState {
     }
 }
 
-/// A block that begins a cycle by its G code (`code` is ten times the number, `meaning` its sense), or says a further hole
-/// of the one in force (`code` is 0): `words` are those of the block. Marks the words that it uses in `words.used`.
+/// A block that begins a cycle by its G code (`code` is ten times the number, `meaning` its sense), or says a further
+/// hole of the one in force (`code` is 0): `words` are those of the block. Marks the words that it uses in
+/// `words.used`.
 pub(super) fn hole(
     control: &mut ControlState,
     code: u16,
@@ -74,7 +75,7 @@ pub(super) fn known(name: &str) -> bool {
     names::known(name)
 }
 
-/// `CYCLE81(…)`: called where the tool stands, or in force behind each motion where `modal` (MCALL).
+/// `CYCLE81(…)`: called where the tool stands, or in force after each motion where `modal` (MCALL).
 pub(super) fn call(
     control: &mut ControlState,
     name: &str,

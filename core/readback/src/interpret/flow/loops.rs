@@ -222,7 +222,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
         Ok(())
     }
 
-    /// A condition does not hold: on to what does, or behind the end.
+    /// A condition does not hold: on to what does, or after the end.
     pub(super) fn otherwise(&mut self, name: Option<&str>, variables: &Variables) -> Answer<()> {
         loop {
             let flow = self.skip(

@@ -6,7 +6,7 @@ const POWERS: [f64; 23] = [
     1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
-/// What so many digits after a mantissa multiply it by.
+/// Power of ten by which digits after a mantissa multiply it.
 const SHIFTS: [u64; 8] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000];
 
 /// Digits, leading zeros among them, that cannot overflow the mantissa.

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::fmt::Write as _;
 
 /// A character that no line of a program and no message holds as it is: controls (a line feed, ESC), the further line
-/// ends of Unicode (NEL, U+2028, U+2029), and what nobody sees but what turns or hides the text around it (marks of the
+/// ends of Unicode (NEL, U+2028, U+2029), and invisible characters that turn or hide the text around it (marks of the
 /// writing direction, characters without a width).
 pub fn is_unprintable(character: char) -> bool {
     character.is_control()

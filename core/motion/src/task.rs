@@ -64,7 +64,7 @@ pub struct Move {
 /// How fast a move is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MovePace {
-    /// As fast as the axes go.
+    /// Rapid traverse: as fast as the axes go.
     Rapid,
     /// Time that the move takes at the programmed feed, no limit of the machine regarded, minutes.
     Minutes(f64),

@@ -117,7 +117,7 @@ fn best_order(values: &[i64]) -> u8 {
     order.unwrap_or(0) as u8
 }
 
-/// The column of so many rows that stands at `at`, which moves past it; none if the bytes end before.
+/// The column of `rows` rows that stands at `at`, which moves past it; none if the bytes end before.
 pub fn decode(bytes: &[u8], rows: usize, at: &mut usize) -> Option<Vec<i64>> {
     let [order, planes] = *bytes.get(*at..*at + 2)? else {
         return None;

@@ -115,7 +115,7 @@ pub struct AxisUsed {
     pub max: f64,
     /// Travel; none if it is endless.
     pub travel: Option<[f64; 2]>,
-    /// The sum of its moves; none where nobody added them up.
+    /// The sum of its moves; none where they were not added up.
     pub way: Option<f64>,
 }
 

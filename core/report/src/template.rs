@@ -240,7 +240,7 @@ impl NumberColumn {
     }
 }
 
-/// The text of so many lines that was packed as `bytes`; none if they are damaged. What is written is read again before
+/// The text of `lines` lines that was packed as `bytes`; none if they are damaged. What is written is read again before
 /// it is believed.
 pub fn decode(bytes: &[u8], lines: usize) -> Option<Vec<u8>> {
     let mut at = 0;

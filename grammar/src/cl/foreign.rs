@@ -1,4 +1,4 @@
-//! Files that are none of ours and look a little so: NC programs, and Mastercam's NCI.
+//! Files of other formats that look a little like CL files: NC programs, and Mastercam's NCI.
 
 use super::line::number_of;
 

@@ -47,7 +47,7 @@ fn is_directive(word: &[u8], rest: &[u8]) -> bool {
     word.eq_ignore_ascii_case(b"REMARK") && rest.starts_with(b"->")
 }
 
-/// Longest major word, in bytes. What is longer is none, and each that is not known is counted by its name.
+/// Longest major word, in bytes. Anything longer is no word, and each unknown word is counted by its name.
 pub(super) const LONGEST_WORD: usize = 64;
 
 /// Characters of an item that a message shows.

@@ -133,7 +133,7 @@ impl<R: Read> Reader<R> {
         Ok(None)
     }
 
-    /// Looks at the beginning: of a file that is none of ours all is passed over.
+    /// Looks at the beginning: all of a file in another format is passed over.
     #[cold]
     fn begin(&mut self) -> Result<(), ReadError> {
         self.begun = true;

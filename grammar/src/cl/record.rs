@@ -539,7 +539,7 @@ pub struct Rotate {
     pub angle: f64,
     /// Whether the angle is in radians: CAMWorks (number first, then `AAXIS,TABLE`) writes those.
     pub radians: bool,
-    /// A step from the present angle (`INCR`). CAMWorks' form is none: it states the angle at the start of every
+    /// A step from the present angle (`INCR`). CAMWorks' form is no step: it states the angle at the start of every
     /// operation, and turns back only after some.
     pub incremental: bool,
     /// Sense word, if given.

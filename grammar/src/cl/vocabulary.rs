@@ -34,8 +34,8 @@ pub enum WordUsage {
     /// The word changes where or whether metal is cut, and `post` does not know how: the file is refused, unless the
     /// user takes it upon himself.
     Refused,
-    /// Nobody's word, or one that a program can do without: `post` does nothing with it, and says so; a file with a
-    /// nobody's word is refused unless the user lets it pass.
+    /// An unknown word, or one that a program can do without: `post` does nothing with it, and says so; a file with an
+    /// unknown word is refused unless the user lets it pass.
     Unknown,
 }
 
@@ -176,7 +176,7 @@ impl Statement {
         }
     }
 
-    /// How it may carry a path that nobody here knows; none if it carries none, or its meaning is known.
+    /// How it may carry a path that is not known here; none if it carries none, or its meaning is known.
     pub fn unknown_path(&self) -> Option<UnknownPath> {
         let Self::Other { word, arguments, directive: false } = self else {
             return None;

@@ -1,8 +1,8 @@
 //! What a block of an NC program says.
 //!
 //! Nothing is interpreted here: numbers keep the program's units, modal words are not carried on, and which word means
-//! what is for whoever knows the control. A block is filled anew again and again, so that reading allocates nothing for
-//! blocks of plain words.
+//! what is for readers that know the control. A block is filled anew again and again, so that reading allocates nothing
+//! for blocks of plain words.
 
 use std::borrow::Cow;
 

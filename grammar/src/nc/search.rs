@@ -61,7 +61,7 @@ impl<R: Read + Seek> NcReader<R> {
         Ok(found)
     }
 
-    /// Lines that were looked at in all by [`find`](Self::find): whoever bounds the time counts them.
+    /// Lines that were looked at in all by [`find`](Self::find): callers that bound the time count them.
     pub fn lines_searched(&self) -> u64 {
         self.found.searched
     }

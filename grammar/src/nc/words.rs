@@ -385,7 +385,7 @@ impl WordsBuilder<'_> {
         })
     }
 
-    /// `IF [..]` and what hangs on it.
+    /// `IF [..]` and what depends on it.
     fn hash_if(&self, mut parts: Pairs<'_, Rule>) -> Parsed<NcFlow> {
         let condition = self.expression(only(due(&mut parts)?))?;
         let then = due(&mut parts)?;

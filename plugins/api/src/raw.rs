@@ -1,7 +1,7 @@
 //! The C contract: what crosses the border between `post` and a library, and nothing else.
 //!
 //! Only fixed-width integers, `f64`, pointers with a length, and function pointers. No `bool`, no Rust
-//! enum, no ownership: whoever made a thing frees it. Text is UTF-8 without a terminating zero and lives
+//! enum, no ownership: the side that made a thing frees it. Text is UTF-8 without a terminating zero and lives
 //! as long as the call that hands it over. Text of a plugin leaves it through a [`PostSink`].
 //!
 //! `include/post_plugin.h` says the same in C; `tests/it/header.rs` keeps the two together.

@@ -34,7 +34,7 @@ impl Standstill {
             | Event::CyclePoint { .. }
             | Event::Probe { .. }
             | Event::Position { .. }
-            // Nobody knows what they do.
+            // It is not known what they do.
             | Event::Literal { .. }
             | Event::Subprogram { .. } => {
                 self.cut = false;

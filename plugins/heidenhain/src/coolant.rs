@@ -5,7 +5,7 @@ use post_plugin::Coolant;
 use crate::Heidenhain;
 
 impl Heidenhain {
-    /// What ends the coolant that is on; that of all, if it has no end of its own or nobody knows.
+    /// What ends the coolant that is on; that of all, if it has no end of its own or is not known.
     pub(crate) fn end_coolant(&mut self, out: &mut String) {
         let flowing = self.flowing.take();
         let own = self.coolant_ends.iter().find(|(coolant, _)| Some(*coolant) == flowing);

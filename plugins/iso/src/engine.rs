@@ -30,7 +30,7 @@ pub struct Engine {
     pub(crate) settings: SettingWords,
     pub(crate) cycles: CycleWords,
     pub(crate) plane: PlaneWords,
-    /// Words of the tool vector have so many decimals; none: rotary words are written.
+    /// Decimals of the tool vector's words; none: rotary words are written.
     vector: Option<u8>,
     splines: bool,
     /// The program's title, with its number.

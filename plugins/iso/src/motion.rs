@@ -33,7 +33,7 @@ pub struct MotionWriter {
     plane: Modal<&'static str>,
     /// Whether the plane is another one than that of X and Y.
     other_plane: bool,
-    /// Words of the last move; empty where nobody knows where the axes stand.
+    /// Words of the last move; empty where it is not known where the axes stand.
     at: Vec<f64>,
     /// Places of the words X, Y and Z among those of the program.
     pub(crate) linear: [Option<usize>; 3],
@@ -500,7 +500,7 @@ impl MotionWriter {
     /// An arc or a helix.
     ///
     /// # Errors
-    /// If the control cannot be told it: a plane that is none of the three, a start that nobody knows, more than a
+    /// If the control cannot be told it: a plane that is none of the three, an unknown start, more than a
     /// turn, an arc that would be read as a whole circle, the first move of a cutter compensation.
     pub fn arc(&mut self, arc: &ArcWords<'_>, feed: Feed, out: &mut String) -> Result<(), String> {
         let (plane, sense) = arc.plane()?;

@@ -314,7 +314,7 @@ impl Engine {
             "" => (0..times).for_each(|_| self.line(&block, out)),
             word => self.line(&format!("{block}{word}{times}"), out),
         }
-        // Nobody knows where it has left the axes, and what it has put in force.
+        // It is not known where it has left the axes, and what it has put in force.
         self.forget();
         self.motion.moved_by_line();
         Ok(())

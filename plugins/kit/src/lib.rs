@@ -185,7 +185,7 @@ impl Bench {
     }
 }
 
-/// The event with so many words.
+/// The event with as many words as the dialect is told of.
 fn first_words(event: Event<'_>, axes: usize) -> Event<'_> {
     let mut event = event;
     match &mut event {

@@ -61,7 +61,7 @@ pub struct EventOrder {
     flowing: bool,
     compensated: bool,
     plane: bool,
-    /// A cycle is in force, and has so many points.
+    /// Number of points of the cycle in force.
     cycle: Option<u32>,
     operation: bool,
     smoothing: bool,

@@ -21,7 +21,7 @@ impl Siemens {
         self.motion_event(event, engine, out)
     }
 
-    /// Writes the start of the program and moves, hands on what is none.
+    /// Writes the start of the program and moves, hands on all others.
     fn motion_event(
         &mut self,
         event: &Event<'_>,
@@ -86,7 +86,7 @@ impl Siemens {
         Ok(true)
     }
 
-    /// Writes events of tool, spindle and compensation, hands on what is none.
+    /// Writes events of tool, spindle and compensation, hands on all others.
     fn tool_event(
         &mut self,
         event: &Event<'_>,

@@ -75,7 +75,7 @@ impl Siemens {
         Ok(())
     }
 
-    /// A straight move with the tool's vector in the place of rotary words; where nobody knows it, with those.
+    /// A straight move with the tool's vector in the place of rotary words; where it is not known, with those.
     pub(crate) fn go(
         &mut self,
         words: &[f64],

@@ -119,7 +119,7 @@ impl SmoothingCall {
         }
     }
 
-    /// Digits packed by a rule that nobody told are not guessed.
+    /// Whether the digits are known: those packed by an unknown rule are not guessed.
     pub(crate) fn known(&self) -> bool {
         self.packed != Some(0) || !self.compressor.is_empty()
     }

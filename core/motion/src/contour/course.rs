@@ -16,7 +16,7 @@ use crate::ProgramPlace;
 /// Knots ahead of the tool that are kept; a way between two cuts is followed that far.
 const AHEAD: usize = 20_000;
 
-/// What lies ahead is known at least so far, mm.
+/// Least distance to which what lies ahead is known, mm.
 const LEAST: f64 = 1.0;
 
 /// The nearest point of a path that is asked for.

@@ -44,7 +44,7 @@ pub use report::{AskedPoint, ContourPoint, ContourReport};
 use spline::FivePoints;
 pub use spread::{ContourPeak, ValueSpread};
 
-/// The commanded path is known so far ahead of the actual position, s: feed forward may lead, but not by more.
+/// Time by which the commanded path is known ahead of the actual position, s: feed forward may lead, but not by more.
 const LEAD: f64 = 0.05;
 
 /// Lead in set-points, at least and at most.

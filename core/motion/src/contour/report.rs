@@ -1,4 +1,4 @@
-//! What is told of contour errors: at a set-point, and of all.
+//! What is reported of contour errors: at a set-point, and of all.
 
 use nalgebra::Vector3;
 use post_machine::kinematics::{Joints, MAX_AXES, Pose};

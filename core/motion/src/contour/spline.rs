@@ -12,7 +12,7 @@
 
 use nalgebra::Vector3;
 
-/// A difference counts with so many times its neighbours.
+/// Weight of a difference against its neighbours.
 const PEAK: f64 = 4.0;
 
 /// How a knot is reached and left, a period as unit of time.

@@ -27,7 +27,7 @@ const ALIKE: f64 = 0.7;
 /// Least share of the rows that lies where it is predicted; of those of another program none do.
 const LEAST_INSIDE: f64 = 0.4;
 
-/// What is left of a row counts for no more than so many standard deviations, squared, where shifts are compared.
+/// Most that what is left of a row counts for, in standard deviations, squared, where shifts are compared.
 const MOST_LEFT: f64 = 25.0;
 
 /// A second shift that leaves less than this many times the mean square of the best one is a rival.
@@ -223,7 +223,8 @@ impl AlignedTracks<'_> {
     }
 }
 
-/// All that is told of a shift, of the axes that stand still their zeros too; and how alike both are with all rows.
+/// Everything that is reported of a shift, of the axes that stand still their zeros too; and how alike both are with
+/// all rows.
 fn told(
     found: &SettledShift,
     both: &AlignedTracks<'_>,

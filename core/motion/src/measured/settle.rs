@@ -9,13 +9,13 @@ use post_machine::kinematics::{Joints, MAX_AXES};
 
 use super::AxisTrack;
 
-/// A row that is off by more than so many standard deviations is left out.
+/// Standard deviations beyond which a row is left out.
 const OUTSIDE: f64 = 4.685;
 
 /// The standard deviation of what is normally distributed, over the median of its size.
 const OF_MEDIAN: f64 = 1.4826;
 
-/// Nine of ten of what is normally distributed are within so many standard deviations.
+/// Standard deviations within which nine of ten normally distributed values lie.
 const OF_NINETY: f64 = 1.645;
 
 /// Nothing is known more closely, mm or radians.
@@ -185,7 +185,7 @@ pub(super) fn width(rows: &[Residual], axis: usize, level: AxisLevel) -> f64 {
     (quantile(&mut by, 0.9) / OF_NINETY).max(FINEST)
 }
 
-/// How much a row counts that is off by so many standard deviations.
+/// Weight of a row that is off by `by` standard deviations.
 fn weight(by: f64) -> f64 {
     let share = by / OUTSIDE;
     let left = (1.0 - share * share).max(0.0);

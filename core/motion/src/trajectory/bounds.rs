@@ -17,7 +17,7 @@ use crate::limits::{AxisLimits, MoveLimits};
 /// The share of an acceleration that the curve may have.
 pub(super) const NORMAL: f64 = 0.75;
 
-/// A jerk goes to so many parts of its own: the curve, the curve and the change of velocity together, that change.
+/// Parts of its own that a jerk goes to: the curve, the curve and the change of velocity together, that change.
 pub(super) const CURVE: f64 = 3.0;
 
 /// The share of it on an arc, cos 30°, which leaves a half across.
@@ -84,7 +84,7 @@ fn all<'a>(
 
 impl MoveBounds {
     /// Bounds of a move that the program wants to take `seconds` (0: as fast as it goes), and whose accelerations may
-    /// take `share` of the limits. `sweep`: it is an arc of so many radians, and nothing else turns.
+    /// take `share` of the limits. `sweep`: the angle of an arc, radians, and nothing else turns.
     pub fn new(
         found: &MoveLimits,
         rules: &AxisLimits,

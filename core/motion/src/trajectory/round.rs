@@ -20,7 +20,7 @@ const SHARPEST: f64 = 6.0;
 /// No move gives more of itself to a corner.
 const HALF: f64 = 0.5;
 
-/// A length is longer by so much than what is just long enough.
+/// Factor by which a length is longer than what is just long enough.
 const AMPLE: f64 = 1.0 + 1e-9;
 
 /// Ways that turn by less, or by nearly half a turn, have no arc between them, radians.
@@ -34,7 +34,7 @@ const STRAY_OF_LENGTH: f64 = 0.25;
 pub(super) enum CornerCurve {
     /// The one way runs out by the smooth step while the other one runs in.
     Smooth,
-    /// An arc of a circle that turns by so much, radians.
+    /// An arc of a circle, by the angle that it turns, radians.
     Circle(f64),
 }
 

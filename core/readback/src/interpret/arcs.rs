@@ -14,11 +14,11 @@ use super::state::ControlState;
 /// decimals of an inch program, and the rounding of a centre far away.
 const OFF: [f64; 2] = [0.02, 0.001];
 
-/// Start and end nearer to each other than this are one point, mm: no word is so fine, and in a tilted plane the start comes
-/// out of a computation.
+/// Start and end nearer to each other than this are one point, mm: no word is so fine, and in a tilted plane the start
+/// comes out of a computation.
 const SAME: f64 = 1e-6;
 
-/// A helix of more turns is none.
+/// Most turns of a helix.
 const MOST_TURNS: f64 = 10_000.0;
 
 impl ControlState {
@@ -94,7 +94,8 @@ impl ControlState {
         Ok(turns)
     }
 
-    /// The turn from a start to an end about a centre, radians, counter-clockwise positive; a full one where they are the same.
+    /// The turn from a start to an end about a centre, radians, counter-clockwise positive; a full one where they are
+    /// the same.
     pub(super) fn sweep(
         &self,
         [[x0, y0], [x1, y1], [x, y]]: [[f64; 2]; 3],

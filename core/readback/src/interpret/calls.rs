@@ -10,7 +10,7 @@ use super::variables::Variables;
 /// What a block leads to, once it is run.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum BlockTransfer {
-    /// The subprogram `O` of this number, so often, with these variables of its own where it is a macro.
+    /// The subprogram `O` of this number, called `times` times, with these variables of its own where it is a macro.
     Subprogram { number: u64, times: i64, own: Option<Vec<(String, f64)>> },
     /// The blocks from `N` of this number on.
     Local { number: u64, times: i64 },

@@ -38,7 +38,7 @@ impl ControlState {
         Ok(())
     }
 
-    /// The control may leave the path by `tolerance` mm; none: it keeps it, or by how much is not said.
+    /// The control may leave the path by `tolerance` mm; none: it keeps it, or the tolerance is not said.
     pub(super) fn smooth(&mut self, tolerance: Option<f64>) {
         if self.state.smoothing != tolerance {
             self.state.smoothing = tolerance;

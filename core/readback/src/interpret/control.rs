@@ -135,7 +135,7 @@ impl ControlState {
         Ok(control)
     }
 
-    /// The linear words are the tip, whoever keeps it.
+    /// Whether the linear words are the tip, whether control or post keeps it.
     #[inline]
     pub fn tip_words(&self) -> bool {
         self.state.tcp || self.frames.plane.is_some()
@@ -202,7 +202,7 @@ impl ControlState {
         self.note(Diagnostic::warning("nc-skip", message));
     }
 
-    /// A word that nobody knows and that moves nothing.
+    /// An unknown word that moves nothing.
     pub fn unknown(&mut self, word: &str) {
         let known = self.report.unknown.iter_mut().find(|(name, ..)| name == word);
         if let Some((_, count, _)) = known {

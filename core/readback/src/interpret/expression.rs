@@ -1,5 +1,5 @@
 //! Expressions are worked out: arithmetic in f64, angles in degrees. Where controls would answer differently, or an
-//! answer hangs on their rounding, it is refused.
+//! answer depends on their rounding, it is refused.
 
 use post_grammar::nc::{BinaryOperator, NcExpression, NcValue, UnaryOperator};
 use post_machine::diagnostic::Diagnostic;
@@ -14,7 +14,7 @@ const DEEPEST: usize = 100;
 const LONGEST_TEXT: usize = 10_000;
 
 /// Two numbers that differ by less than this share of the larger, and are not equal: whether a control takes them for
-/// equal hangs on how many digits it keeps.
+/// equal depends on how many digits it keeps.
 const CLOSE: f64 = 1e-9;
 
 /// `EQ` and `NE` of RS-274/NGC take numbers for equal that differ by less.

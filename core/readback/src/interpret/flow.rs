@@ -187,7 +187,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
         gone.map_err(|error| self.failed(error))
     }
 
-    /// What the reader says, as whoever runs the program says it.
+    /// The reader's error in the words of the interpreter.
     #[cold]
     fn failed(&self, error: ReadError) -> Box<Diagnostic> {
         match error {

@@ -73,7 +73,7 @@ impl CoordinateFrame {
 pub(super) struct FrameStack {
     /// What is shifted or turned outside of a tilted plane, or where there is none: `CYCL DEF 7`, `G52`, `G92`.
     pub outer: CoordinateFrame,
-    /// The tilted plane. While there is one the linear words are the tip, whoever keeps it.
+    /// The tilted plane. While there is one the linear words are the tip, whether control or post keeps it.
     pub plane: Option<CoordinateFrame>,
     /// What is shifted or turned inside of the tilted plane.
     pub inner: CoordinateFrame,

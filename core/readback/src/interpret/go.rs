@@ -203,7 +203,7 @@ impl ControlState {
     fn reach_tip(&mut self, target: &MotionTarget) -> Result<(), Box<Diagnostic>> {
         let told = target.point.iter().any(Option::is_some);
         if !told && !self.state.tcp {
-            // In a tilted plane alone nobody keeps the tip while a rotary axis turns.
+            // In a tilted plane alone nothing keeps the tip while a rotary axis turns.
             let turned = self.take_said(target);
             self.follow(turned);
             return Ok(());

@@ -27,10 +27,10 @@ const ORDER_OF_EVEN: u32 = 3;
 /// The first control point is where the tool stands, but for rounding, mm.
 const STANDS: f64 = 0.002;
 
-/// More control points are none of a program.
+/// Most control points of a spline.
 const MOST_POLES: usize = 1_000_000;
 
-/// What was told of a spline so far.
+/// Words of a spline so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OpenSpline {
     even: bool,

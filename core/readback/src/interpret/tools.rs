@@ -60,7 +60,7 @@ impl ControlState {
     /// The length in force may be another: finds it, and what the words count from with it.
     ///
     /// # Errors
-    /// It matters and nobody knows it.
+    /// The length matters and is not known.
     pub fn length_changed(&mut self) -> Result<(), Box<Diagnostic>> {
         let length = match self.tools.length_on {
             true => self.length_in_force()? + self.tools.longer,

@@ -8,10 +8,10 @@ use post_machine::kinematics::{Joints, KeptTip, Slides, Solver, Trace};
 
 use crate::{Interpolation, Motion, MotionKind};
 
-/// Words are rounded: so far beyond an end of travel is on it, mm or degrees.
+/// Distance beyond an end of travel that is rounding, mm or degrees.
 const ROUNDED: f64 = 0.0015;
 
-/// Printed feeds are rounded: an axis may be so much faster than its largest feed.
+/// Share by which an axis may be faster than its largest feed, as printed feeds are rounded.
 const SHARE: f64 = 0.01;
 
 /// Angles of one solution, radians: beside a pole they are known no better.
@@ -24,7 +24,7 @@ const LOOKS: u32 = 64;
 /// Most places of a curve at which its axis values are looked at.
 const MOST_LOOKS: u32 = 4096;
 
-/// A fault: its code, what it is, and by how much a limit is passed.
+/// A fault: its code, what it is, and the amount by which a limit is passed.
 pub(super) type AxisFault = (&'static str, String, f64);
 
 /// Where a motion takes an axis beyond its travel: which, and by how much, mm or degrees.
@@ -229,7 +229,8 @@ fn slides(motion: &Motion, slowness: &Joints, enough: f64) -> Option<Slides> {
     KeptTip::new(solver, 0.0, &from, &to)?.slides(slowness, enough)
 }
 
-/// Where the axes stand at so many places along a curve, its end the last: up to where they cannot follow.
+/// Where the axes stand at each of the [`looks`] places along a curve, its end the last: up to where they cannot
+/// follow.
 fn looked(motion: &Motion) -> impl Iterator<Item = Joints> + '_ {
     let looks = looks(motion);
     let ends = [&motion.from, &motion.to];

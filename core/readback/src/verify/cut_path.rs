@@ -199,7 +199,7 @@ impl CutPath {
             let share = if length > 0.0 { gone / length } else { 0.0 };
             let distance = self.distance(from + way * share);
             found = found.min(distance);
-            // So far on nothing can be as near as that.
+            // Nothing this far on can be as near as that.
             gone += (distance - least.min(found)).max(2.0 * self.cell);
         }
         found

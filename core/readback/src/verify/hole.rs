@@ -338,7 +338,7 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// A further peck in the hole that was made last: one before may have come to the bottom within the tolerance.
-    /// False if the motion is none.
+    /// False if the motion is no peck.
     pub(super) fn pecks_again(&mut self, motion: &Motion, places: &[ToolPlace]) -> bool {
         let Some(made) = self.made else {
             return false;

@@ -87,7 +87,7 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// The tool cuts: what ran as it came should have stood still, if the course has it so. Many controls stop it by
-    /// themselves, and programs that count on that are told of only.
+    /// themselves, and programs that count on that are only reported.
     pub(super) fn compare_change(&mut self, element: &Element) {
         let Some(change) = self.running.change else {
             return;

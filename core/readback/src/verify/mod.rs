@@ -124,7 +124,7 @@ const SAG: f64 = 1.0 / 64.0;
 /// Numbers of two programs come out of different computations: mm and radians.
 const COMPUTED: f64 = 1e-6;
 
-/// Where a rapid passes a point of the course the tool axis may be off by so much, radians.
+/// Angle by which the tool axis may be off where a rapid passes a point of the course, radians.
 const RAPID_TURN: f64 = 1.0 / 180.0 * PI;
 
 /// A command of the spindle.
@@ -171,7 +171,7 @@ pub struct Verifier<'m, C> {
     spare: Vec<ShareSpan>,
     /// What the spindle was told since the tool came or since it was compared.
     turned: Vec<SpindleCommand>,
-    /// The program has moved since the spindle was told something.
+    /// Whether the program has moved since the last command of the spindle.
     moved: bool,
     /// Distance by which the control may leave the path, as it was looked at last, mm.
     smoothing: f64,

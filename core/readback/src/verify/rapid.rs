@@ -25,7 +25,7 @@ impl<C: Course> Verifier<'_, C> {
         let follows = self.keeps_to_the_way(motion, places);
         let was_known = self.placed;
         self.look_how_low(motion, places);
-        // Where a first retract comes from nobody knows: a point on that way was not asked for.
+        // Where a first retract comes from is not known: a point on that way was not asked for.
         if self.placed || !motion.machine {
             self.pass(motion, places);
         }

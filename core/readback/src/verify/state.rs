@@ -13,13 +13,13 @@ use super::track::Element;
 use crate::course::Course;
 use crate::{Coolants, Corners, Interpolation, Motion, MotionKind, Spindle, Told};
 
-/// Speeds and feeds are rounded as they are printed: so much of them, and so much besides.
+/// Share of a printed speed or feed that is rounding.
 const SHARE: f64 = 0.005;
 
 /// Half of the last place of a feed or speed without decimals.
 pub(super) const PLACE: f64 = 0.51;
 
-/// The ends of a way are rounded: so much of it, mm.
+/// Rounding of the ends of a way, mm.
 const ROUNDED: f64 = 0.003;
 
 /// Times of dwells are rounded, s.

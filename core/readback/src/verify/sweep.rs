@@ -16,7 +16,7 @@ use crate::course::Course;
 /// A stretch of the program that is off the course.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StrayStretch {
-    /// The bound is so many times the tolerance.
+    /// Factor of the tolerance that the bound is.
     pub factor: f64,
     pub line: u64,
     pub number: Option<u64>,
@@ -72,8 +72,8 @@ impl<C: Course> Verifier<'_, C> {
         self.cut(motion, places);
     }
 
-    /// Whether a motion at feed between two cuts is something else than the next cut: a hole, a way to it, a rapid of the
-    /// course, a peck. It is then dealt with.
+    /// Whether a motion at feed between two cuts is something else than the next cut: a hole, a way to it, a rapid of
+    /// the course, a peck. It is then dealt with.
     fn is_no_cut(&mut self, motion: &Motion, places: &[ToolPlace], fast: bool) -> bool {
         // Where a hole is due, a feed motion is its business unless the tool is elsewhere.
         if !fast && self.hole_is_due() && self.begins_hole(motion, places) {
@@ -386,7 +386,7 @@ impl<C: Course> Verifier<'_, C> {
         true
     }
 
-    /// The motion has a place on the course within so many times the bound.
+    /// Whether the motion has a place on the course within `factor` times the bound.
     fn has_place(
         &mut self,
         motion: &Motion,

@@ -236,7 +236,7 @@ impl<C: Course> CourseTrack<C> {
         self.places = places;
     }
 
-    /// A piece of a hole; false if it is none of the way down and up.
+    /// Takes a piece of a hole; false if it belongs neither to the way down nor up.
     fn of_hole(&mut self, piece: &Piece, from: ToolPlace, to: ToolPlace) -> bool {
         let down = piece.kind != MotionKind::Rapid;
         match &mut self.hole {

@@ -68,7 +68,7 @@ impl<'l, 't> Items<'l, 't> {
         Ok(numbers)
     }
 
-    /// All items, if they are exactly so many numbers.
+    /// All items, if they are exactly `N` numbers.
     fn exactly<const N: usize>(&self) -> Option<[f64; N]> {
         let mut numbers = [0.0; N];
         if self.line.items.len() != N {
@@ -80,7 +80,7 @@ impl<'l, 't> Items<'l, 't> {
         Some(numbers)
     }
 
-    /// All items, as exactly so many numbers.
+    /// All items, as exactly `N` numbers.
     pub(super) fn array<const N: usize>(&self, form: &str) -> Read<[f64; N]> {
         match self.exactly() {
             Some(numbers) => Ok(numbers),

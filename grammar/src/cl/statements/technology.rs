@@ -169,7 +169,7 @@ pub(crate) fn work_offset(items: &mut Items<'_, '_>) -> Read<Statement> {
 pub(crate) fn subprogram(items: &mut Items<'_, '_>) -> Read<Statement> {
     match only_whole(&items.line.items) {
         Some(number) => Ok(Statement::Subprogram(number)),
-        // With a name, or values to hand over, it is a form that nobody here knows.
+        // With a name, or values to hand over, it is a form that is not known here.
         None => items.other(),
     }
 }

@@ -84,7 +84,7 @@ impl Engine {
         Ok(())
     }
 
-    /// What ends the coolant that is on; where nobody knows, all of them.
+    /// What ends the coolant that is on; where it is not known, all of them.
     pub(super) fn end_coolant(&mut self, out: &mut String) {
         let flowing = self.flowing.take().unwrap_or_default();
         one_by_one(&self.coolant_ends[flowing], &mut self.motion, out);

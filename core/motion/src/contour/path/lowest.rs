@@ -7,13 +7,13 @@ use super::super::spline::Cubic;
 /// Newton steps in a piece; they are bisections where Newton leaves its bracket.
 const STEPS: usize = 60;
 
-/// A Newton step that would go no further than this, mm, is none.
+/// Least Newton step, mm.
 const SMALL: f64 = 1e-13;
 
 /// How far the next one would go is told by the square of one that is no longer than this share of a piece.
 const SHORT: f64 = 1e-3;
 
-/// A share of a piece that is none.
+/// Share of a piece that counts as nothing.
 const NONE: f64 = 1e-13;
 
 /// The share of a piece at which the distance is least, downhill from `start`; 0 or 1 where it falls beyond the ends.

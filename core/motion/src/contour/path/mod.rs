@@ -173,7 +173,7 @@ impl Path {
         length + foot.share * next.map_or(0.0, |next| next.length - length)
     }
 
-    /// The place so many mm after another.
+    /// The place `way` mm after another.
     pub fn after(&self, foot: Foot, way: f64) -> Foot {
         let wanted = self.length(foot) + way;
         let mut knot = foot.knot;

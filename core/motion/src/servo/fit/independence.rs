@@ -1,11 +1,11 @@
 //! How many of a log's errors are worth one that is independent.
 
-/// Errors are compared with those so many samples before.
+/// Samples by which errors are compared with earlier ones.
 const LONGEST_LAG: usize = 1_000;
 
-/// How many errors that follow one another say no more than one that is independent: the sum of their autocorrelation over
-/// all lags up to the first that is not above zero, 1 where they are independent. Right for errors that hang together over
-/// times in which the derivatives hardly change.
+/// How many errors that follow one another say no more than one that is independent: the sum of their autocorrelation
+/// over all lags up to the first that is not above zero, 1 where they are independent. Right for errors that hang
+/// together over times in which the derivatives hardly change.
 pub(super) fn hanging_together(errors: &[f64]) -> f64 {
     let products = |lag: usize| -> f64 {
         let pairs = errors.iter().zip(&errors[lag..]);

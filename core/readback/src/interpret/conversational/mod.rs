@@ -142,7 +142,7 @@ impl BlockNames<'_> {
         })
     }
 
-    /// Refuses a number without a letter: `X+77..105` is X+77. and what nobody means.
+    /// Refuses a number without a letter: `X+77..105` is X+77. and something that is not meant.
     fn no_number(&self, control: &ControlState) -> Answer<()> {
         match self.number() {
             Some(number) => {

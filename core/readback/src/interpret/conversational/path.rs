@@ -316,7 +316,7 @@ impl PolarEnd {
     }
 }
 
-/// Letters that nobody made use of.
+/// Letters that were not used.
 pub(super) fn left_over(control: &mut ControlState, words: &mut BlockWords) -> Answer<()> {
     control.left_over(words)
 }

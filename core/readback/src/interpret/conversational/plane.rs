@@ -97,7 +97,7 @@ fn turned(
         to?;
         return Ok(());
     }
-    // Where it is not plain they stay unknown: whoever reads them is refused.
+    // Where it is not plain they stay unknown: a program that reads them is refused.
     if let Ok(to) = to {
         for (name, angle) in ["Q120", "Q121", "Q122"].into_iter().zip(planes::angles(control, &to))
         {
@@ -176,7 +176,8 @@ fn stands_as_said(control: &mut ControlState, words: &mut BlockWords) -> Answer<
     Ok(())
 }
 
-/// `CYCL DEF 19.1 A+30 B+0 C+0`: the same angles; without any, or with zeros, it ends. The axes are turned by other blocks.
+/// `CYCL DEF 19.1 A+30 B+0 C+0`: the same angles; without any, or with zeros, it ends. The axes are turned by other
+/// blocks.
 pub(super) fn cycle_19(
     control: &mut ControlState,
     said: &BlockNames<'_>,

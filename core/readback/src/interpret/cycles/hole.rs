@@ -121,7 +121,7 @@ pub(crate) enum HoleStroke {
 }
 
 impl CycleHole {
-    /// What is told of it.
+    /// The cycle as it is reported.
     pub fn call(&self) -> CycleCall {
         CycleCall {
             kind: self.kind,

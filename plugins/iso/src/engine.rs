@@ -11,9 +11,9 @@ use post_plugin::{
 
 use approach::leaning;
 
+use crate::block_style::BlockStyle;
 use crate::cycles::CycleWords;
 use crate::lines::{fits, remark_lines};
-use crate::look::BlockStyle;
 use crate::motion::{ArcWords, MotionWriter};
 use crate::planes::PlaneWords;
 use crate::settings::SettingWords;
@@ -26,7 +26,7 @@ pub struct Engine {
     pub(crate) table: &'static Table,
     /// Moves, with the block under construction.
     pub motion: MotionWriter,
-    pub(crate) look: BlockStyle,
+    pub(crate) style: BlockStyle,
     pub(crate) settings: SettingWords,
     pub(crate) cycles: CycleWords,
     pub(crate) plane: PlaneWords,

@@ -4,10 +4,10 @@
 //! `export_dialect!(name, Iso<MyControl>)`. It is a crate beside `post-plugin`, not a part of it: the contract has no
 //! opinion on any control, and this may change without it.
 
+mod block_style;
 mod cycles;
 mod engine;
 mod lines;
-mod look;
 mod motion;
 pub mod options;
 mod planes;
@@ -169,8 +169,8 @@ impl<C: Control> Dialect for Iso<C> {
         }
         self.write_plain(event, out)?;
         let own = matches!(event, Event::Literal { .. } | Event::Word { .. });
-        if !self.engine.look.is_plain() && !own {
-            self.engine.look.apply(out, start);
+        if !self.engine.style.is_plain() && !own {
+            self.engine.style.apply(out, start);
         }
         Ok(())
     }

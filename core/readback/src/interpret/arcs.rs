@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
-use super::gathered::BlockWords;
+use super::block_words::BlockWords;
 use super::go::{MotionTarget, WordPath};
 use super::state::ControlState;
 
@@ -55,7 +55,7 @@ impl ControlState {
                 return Err(self.refuse("nc-arc", message));
             }
             told = true;
-            let own = words.absolute & super::gathered::bit(letter) != 0;
+            let own = words.absolute & super::block_words::bit(letter) != 0;
             centre[row] = if absolute || own { value * unit } else { from[row] + value * unit };
         }
         let flat = |point: Vector3<f64>| [point[first], point[second]];

@@ -7,7 +7,7 @@ use post_grammar::nc::NcBlock;
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Language, Meaning};
 
-use super::gathered::{BlockWords, bit};
+use super::block_words::{BlockWords, bit};
 use super::go::{MotionTarget, WordPath};
 use super::state::{ControlState, FeedMeaning, MotionMode};
 use super::{cycles, frames, names, planes};

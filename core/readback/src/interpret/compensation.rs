@@ -4,7 +4,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Language, Meaning};
 
 use super::block::BlockRequest;
-use super::gathered::{BlockWords, bit};
+use super::block_words::{BlockWords, bit};
 use super::state::ControlState;
 use crate::Told;
 use crate::lexicon::Sense;

@@ -5,8 +5,8 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::tilted_plane::rotation;
 use post_plugin::{Language, Meaning};
 
+use super::block_words::{BlockWords, bit};
 use super::frame::CoordinateFrame;
-use super::gathered::{BlockWords, bit};
 use super::planes;
 use super::state::ControlState;
 

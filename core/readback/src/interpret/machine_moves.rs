@@ -8,7 +8,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES};
 use post_plugin::{Language, Meaning};
 
-use super::gathered::{BlockWords, bit};
+use super::block_words::{BlockWords, bit};
 use super::go::{MotionTarget, WordPath, shorter};
 use super::state::{ControlState, MotionMode};
 use crate::{CycleCall, CycleKind, MotionKind, Spindle, Told};

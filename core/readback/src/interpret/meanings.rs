@@ -4,7 +4,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
 use super::block::{BlockRequest, SpindleRequest};
-use super::gathered::{BlockWords, bit};
+use super::block_words::{BlockWords, bit};
 use super::state::{ArcPlane, ControlState, FeedMeaning, MotionMode, OrientationMode};
 
 impl ControlState {

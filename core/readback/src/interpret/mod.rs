@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `state` | what a control remembers from block to block: `ControlState` |
 //! | `control` | how it begins; the solver, the zero and the frames that words count from |
-//! | `gathered` | the words of a block, by letter |
+//! | `block_words` | the words of a block, by letter |
 //! | `block`, `meanings` | a block of words: modes first, then what moves |
 //! | `compensation`, `spindle` | lengths, radii, work offsets; tools, spindle, coolant, waits |
 //! | `corners` | how the control passes from one motion to the next |
@@ -19,6 +19,7 @@ mod arcs;
 mod assigned;
 mod astray;
 mod block;
+mod block_words;
 mod calls;
 mod compensation;
 mod control;
@@ -30,7 +31,6 @@ mod feed;
 mod flow;
 mod frame;
 mod frames;
-mod gathered;
 mod go;
 mod machine_moves;
 mod meanings;
@@ -51,8 +51,8 @@ use post_machine::diagnostic::Diagnostic;
 
 use crate::lexicon::Lexicon;
 use crate::{Done, Offsets, State};
+use block_words::BlockWords;
 use flow::ProgramFlow;
-use gathered::BlockWords;
 use state::ControlState;
 
 /// How far a program may go.

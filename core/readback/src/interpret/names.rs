@@ -5,7 +5,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Language, Meaning};
 
 use super::block::{BlockRequest, SpindleRequest};
-use super::gathered::{BlockWords, which};
+use super::block_words::{BlockWords, which};
 use super::state::ControlState;
 use super::{cycles, frames, planes};
 use crate::Told;

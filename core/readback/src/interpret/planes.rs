@@ -10,8 +10,8 @@ use post_machine::kinematics::{Joints, Pose};
 use post_machine::tilted_plane::rotation;
 use post_plugin::Language;
 
+use super::block_words::BlockWords;
 use super::frame::CoordinateFrame;
-use super::gathered::BlockWords;
 use super::go::nearest_turn;
 use super::state::ControlState;
 use crate::MotionKind;

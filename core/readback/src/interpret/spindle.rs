@@ -4,7 +4,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Language, Meaning};
 
 use super::block::{BlockRequest, SpindleRequest};
-use super::gathered::{BlockWords, bit, which};
+use super::block_words::{BlockWords, bit, which};
 use super::state::ControlState;
 use crate::{Spindle, Told};
 

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Language;
 
-use super::gathered::{BlockWords, bit};
+use super::block_words::{BlockWords, bit};
 use super::go::{MotionTarget, WordPath};
 use super::state::{ControlState, FeedMeaning, MotionMode};
 use crate::{BSpline, Interpolation, MotionKind, Stance};

@@ -5,9 +5,9 @@ use post_plugin::{Axes, Block, Modal, NumberStyle, Setup, Standstill, Units, Val
 use super::Engine;
 use super::spindle::COOLANTS;
 use crate::FeedDecimals;
+use crate::block_style::BlockStyle;
 use crate::cycles::CycleWords;
 use crate::lines::program_name;
-use crate::look::BlockStyle;
 use crate::motion::MotionWriter;
 use crate::options::{flag, integer, text};
 use crate::planes::PlaneWords;
@@ -60,7 +60,7 @@ impl Engine {
         Ok(Engine {
             table,
             motion: MotionWriter::new(setup, codes, block, axes, style, feeds),
-            look: BlockStyle {
+            style: BlockStyle {
                 spaces: flag(setup, "spaces", true),
                 leading_zeros: flag(setup, "leading_zeros", false),
             },

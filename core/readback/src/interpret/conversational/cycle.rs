@@ -6,9 +6,9 @@ use post_grammar::nc::{NcItem, NcNumber};
 use super::{Answer, BlockNames, afterwards, functions, plane, worth};
 use crate::Told;
 use crate::interpret::block::{BlockRequest, SpindleRequest};
+use crate::interpret::block_words::{BlockWords, bit};
 use crate::interpret::cycles::{self, DefinedCycle};
 use crate::interpret::frame::CoordinateFrame;
-use crate::interpret::gathered::{BlockWords, bit};
 use crate::interpret::state::ControlState;
 use crate::interpret::variables::VariableValue;
 

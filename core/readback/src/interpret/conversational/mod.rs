@@ -18,7 +18,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
 use super::block::{BlockRequest, SpindleRequest};
-use super::gathered::BlockWords;
+use super::block_words::BlockWords;
 use super::state::{ControlState, MotionMode};
 use crate::{MotionKind, Told};
 

@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 use super::{Answer, BlockNames, afterwards, functions, modes, plane};
 use crate::MotionKind;
 use crate::interpret::block::BlockRequest;
+use crate::interpret::block_words::{BlockWords, bit};
 use crate::interpret::cycles;
-use crate::interpret::gathered::{BlockWords, bit};
 use crate::interpret::go::{self, MotionTarget};
 use crate::interpret::state::{ArcPlane, ControlState};
 

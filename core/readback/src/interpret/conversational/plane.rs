@@ -5,8 +5,8 @@ use post_machine::tilted_plane::rotation;
 
 use super::{Answer, BlockNames, feed_unit};
 use crate::MotionKind;
+use crate::interpret::block_words::{BlockWords, bit};
 use crate::interpret::frame::CoordinateFrame;
-use crate::interpret::gathered::{BlockWords, bit};
 use crate::interpret::planes::{self, PlaneTurn, SolutionChoice};
 use crate::interpret::state::{ControlState, OrientationMode};
 use crate::interpret::variables::VariableValue;

@@ -2,7 +2,7 @@
 
 use super::{Answer, BlockNames, feed_unit};
 use crate::Told;
-use crate::interpret::gathered::BlockWords;
+use crate::interpret::block_words::BlockWords;
 use crate::interpret::state::{ArcPlane, ControlState};
 
 /// `TOOL CALL 5 Z S8000 F1200 DL+0.1`; without a tool it changes the speed alone.

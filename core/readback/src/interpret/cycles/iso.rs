@@ -7,7 +7,7 @@ use post_plugin::{Language, Meaning};
 use super::hole::{CycleHole, HoleDwell, Pecking, Withdrawal};
 use super::{drill, feed_a_minute};
 use crate::interpret::block::SpindleRequest;
-use crate::interpret::gathered::{BlockWords, bit};
+use crate::interpret::block_words::{BlockWords, bit};
 use crate::interpret::go::{MotionTarget, WordPath};
 use crate::interpret::state::ControlState;
 use crate::{CycleKind, MotionKind};

@@ -17,7 +17,7 @@ use post_grammar::nc::NcValue;
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
-use super::gathered::BlockWords;
+use super::block_words::BlockWords;
 use super::state::{ControlState, FeedMeaning};
 use crate::{MotionKind, Told};
 use hole::{CycleHole, HoleStroke};

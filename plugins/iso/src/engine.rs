@@ -74,7 +74,7 @@ pub struct Engine {
     pub(crate) tapped: bool,
     spindle: Modal<bool>,
     coolant: Modal<bool>,
-    /// The coolant that is on: its place in [`COOLANTS`].
+    /// The coolant that is on: its place in [`spindle::COOLANTS`].
     flowing: Option<usize>,
     /// What a stop has switched off.
     pub(crate) standstill: Standstill,

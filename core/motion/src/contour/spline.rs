@@ -8,7 +8,7 @@
 //!   set-points stands alone among them, and is passed on its chords;
 //! - so do the two third differences, each against the other: what lies after a corner does not bend the way up to it;
 //! - a tangent never points back along its chord and is no longer than three chords: the way along the chord never
-//! falls (Fritsch, Carlson 1980), and where the machine stands the spline stands.
+//!   falls (Fritsch, Carlson 1980), and where the machine stands the spline stands.
 
 use nalgebra::Vector3;
 

@@ -5,10 +5,10 @@
 //! constant:
 //!
 //! - **Friction.** Its force over a step is the one that belongs to the velocity at the step's end. That equation has
-//! one solution, in closed form, however steep the friction is, so that no step is too long to be stable; where the
-//! force that would stop the table within the step is less than the friction can be, the table sticks.
+//!   one solution, in closed form, however steep the friction is, so that no step is too long to be stable; where the
+//!   force that would stop the table within the step is less than the friction can be, the table sticks.
 //! - **Play.** Whether the flanks touch, and which, is what holds at the beginning of the step. Touching, the
-//! transmission is the linear one with a constant force that takes half the play off; else it hands no force on.
+//!   transmission is the linear one with a constant force that takes half the play off; else it hands no force on.
 //!
 //! Both are right in the limit of short steps, with errors in proportion to the step.
 

@@ -2,34 +2,34 @@
 //!
 //! - **Stop**: the machine stands still between them.
 //! - **Join** (exact path, and wherever two moves go on in each other's direction): both are run through as one path.
-//! The velocities of what is limited jump by `|Δ|·v`, `Δ` the difference of their derivatives along the path, and `v`
-//! is bounded so that none jumps by more than its limit ([`AxisLimits::jump`]). Controls have that limit: Fanuc as the
-//! feedrate difference that is allowed for each axis (parameter 1783, B-63833EN-1/02 §7), Siemens as a factor on the
-//! acceleration of one interpolation cycle (MD32310, 6FC5397-0BP40-2BA0, B1 §3.3: factor 2 is what is assumed where the
-//! machine file says nothing). Where the blocks are so short that jump upon jump makes a curve of them, they pass no
-//! more than the acceleration in the time of the longer of two blocks (Fanuc's feedrate clamping by acceleration,
-//! A-78962EN §2.7). Where moves overlap by rule the jump is [`KINK`](crate::limits) of an acceleration, and joined
-//! moves have the rest of it, so that the limits hold in the set-points too; and moves in which a rotary axis turns are
-//! never joined: LinuxCNC's way.
+//!   The velocities of what is limited jump by `|Δ|·v`, `Δ` the difference of their derivatives along the path, and `v`
+//!   is bounded so that none jumps by more than its limit ([`AxisLimits::jump`]). Controls have that limit: Fanuc as the
+//!   feedrate difference that is allowed for each axis (parameter 1783, B-63833EN-1/02 §7), Siemens as a factor on the
+//!   acceleration of one interpolation cycle (MD32310, 6FC5397-0BP40-2BA0, B1 §3.3: factor 2 is what is assumed where the
+//!   machine file says nothing). Where the blocks are so short that jump upon jump makes a curve of them, they pass no
+//!   more than the acceleration in the time of the longer of two blocks (Fanuc's feedrate clamping by acceleration,
+//!   A-78962EN §2.7). Where moves overlap by rule the jump is [`KINK`](crate::limits) of an acceleration, and joined
+//!   moves have the rest of it, so that the limits hold in the set-points too; and moves in which a rotary axis turns are
+//!   never joined: LinuxCNC's way.
 //! - **Round** (a curve within the tolerance): near the corner the one move runs out while the other one runs in, both
-//! over the same stretch of path and added, so that the derivative along the path goes from that of the one to that of
-//! the other by the smooth step `h(τ) = 3τ² - 2τ³`: curvature begins and ends with zero. Between straight ways the
-//! deviation is largest in the middle, `3/32·l·|Δ|` with `l` the length of the corner. No move gives more than half of
-//! itself to a corner, and no corner is longer than its feed needs. Without jerk limits there is no curve where the
-//! moves may be joined at full feed; with them there is one wherever it costs no time. Where the curve would be passed
-//! more slowly than the kink (very short moves, tight tolerances) the moves are joined, as Siemens does with MD32310
-//! (ibid.).
+//!   over the same stretch of path and added, so that the derivative along the path goes from that of the one to that of
+//!   the other by the smooth step `h(τ) = 3τ² - 2τ³`: curvature begins and ends with zero. Between straight ways the
+//!   deviation is largest in the middle, `3/32·l·|Δ|` with `l` the length of the corner. No move gives more than half of
+//!   itself to a corner, and no corner is longer than its feed needs. Without jerk limits there is no curve where the
+//!   moves may be joined at full feed; with them there is one wherever it costs no time. Where the curve would be passed
+//!   more slowly than the kink (very short moves, tight tolerances) the moves are joined, as Siemens does with MD32310
+//!   (ibid.).
 //! - **Overlap** (parabolic blend; LinuxCNC for moves in which rotary axes turn): the next move begins at rest when
-//! this one is slowed down to `v₁` on its way to rest, and their ways add up. Each has half of all accelerations. `v₁`
-//! and the velocity `v₂` that the next one has reached when this one stands are what comes of the longest common time
-//! in which neither leaves more than half of its way; a tolerance `P` bounds both by `2·√(a·P/cos θ)`, `θ` half the
-//! angle between the ways: then the deviation in the middle of two like parabolas is `P`. Two moves in which no rotary
-//! axis turns are rounded instead, straight ones by an arc of a circle, without a tolerance by up to a quarter of the
-//! shorter one, at the faster one's feed. A move whose end may be left is accelerated by half even where a standstill
-//! comes, and one that must end where it is programmed with all of it even while it is overlapped, when both together
-//! may pass a limit by half of it: recorded so of LinuxCNC 2.9. With jerk limits, which that rule knows nothing of,
-//! both have half, the next move begins when this one is slowed down to half of `v₁`, and is speeded up over twice the
-//! time that is left: half of either ramp.
+//!   this one is slowed down to `v₁` on its way to rest, and their ways add up. Each has half of all accelerations. `v₁`
+//!   and the velocity `v₂` that the next one has reached when this one stands are what comes of the longest common time
+//!   in which neither leaves more than half of its way; a tolerance `P` bounds both by `2·√(a·P/cos θ)`, `θ` half the
+//!   angle between the ways: then the deviation in the middle of two like parabolas is `P`. Two moves in which no rotary
+//!   axis turns are rounded instead, straight ones by an arc of a circle, without a tolerance by up to a quarter of the
+//!   shorter one, at the faster one's feed. A move whose end may be left is accelerated by half even where a standstill
+//!   comes, and one that must end where it is programmed with all of it even while it is overlapped, when both together
+//!   may pass a limit by half of it: recorded so of LinuxCNC 2.9. With jerk limits, which that rule knows nothing of,
+//!   both have half, the next move begins when this one is slowed down to half of `v₁`, and is speeded up over twice the
+//!   time that is left: half of either ramp.
 
 use post_machine::description::BlendRule;
 

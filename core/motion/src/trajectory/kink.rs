@@ -96,7 +96,7 @@ fn ratio(sides: [CornerSide; 2], rules: &AxisLimits) -> Option<f64> {
 /// whose parameter runs faster by `ratio`, follows it.
 ///
 /// # Errors
-/// As [`Way::stance_at`].
+/// As [`Interpolation::stance_at`].
 pub(super) fn of_axes(
     moves: [&Move; 2],
     found: [&MoveLimits; 2],

@@ -103,7 +103,7 @@ impl NodeMove<'_> {
         self.looked_at(self.known())
     }
 
-    /// The bound and bend of [`Move::known`], and where they do not clear the move, samples.
+    /// The bound and bend of [`NodeMove::known`], and where they do not clear the move, samples.
     pub(super) fn looked_at(
         &self,
         (bound, bend): (DeviationBound, DerivativeBound),
@@ -154,7 +154,7 @@ impl NodeMove<'_> {
         (bend, sweep)
     }
 
-    /// The bound by the block's second derivatives, and its bend; see [`Move::quick`].
+    /// The bound by the block's second derivatives, and its bend; see [`NodeMove::quick`].
     pub(super) fn course(
         &self,
         (quick, sweep): (DerivativeBound, f64),
@@ -325,7 +325,7 @@ struct OrientationPath<'a> {
 }
 
 impl OrientationPath<'_> {
-    /// Deviation at the share `t`: see [`Move::deviation`].
+    /// Deviation at the share `t`: see [`NodeMove::deviation`].
     fn deviation(&self, t: f64) -> Deviation {
         let (from, to) = (self.block.from, self.block.to);
         let joints = between(&from.trace.joints, &to.trace.joints, t);

@@ -212,7 +212,7 @@ impl Lineariser {
         self.judge_measured(piece, piece.course(piece.quick()), model)
     }
 
-    /// [`Linearise::judge`] with the tightest bound that needs no samples, and its bend, at hand.
+    /// [`Lineariser::judge`] with the tightest bound that needs no samples, and its bend, at hand.
     pub(super) fn judge_measured(
         &mut self,
         piece: &NodeMove<'_>,

@@ -80,7 +80,7 @@ impl BlockStage<'_> {
         }
     }
 
-    /// [`Blocks::way`] as the CL file asks for it.
+    /// [`BlockStage::way`] as the CL file asks for it.
     pub(super) fn wanted_way(&self, from: &PathNode, to: &PathNode) -> f64 {
         let along = self.machine.control_point.along;
         let tip = |node: &PathNode| node.target.tip - node.target.axis * along;

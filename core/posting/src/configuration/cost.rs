@@ -5,7 +5,7 @@
 pub(crate) struct PathCost {
     rewinds: u32,
     against: u32,
-    /// Travel as [`super::metric::Measure`] counts it; infinite where there is no way.
+    /// Travel as [`super::metric::TravelMeasure`] counts it; infinite where there is no way.
     travel: f64,
 }
 

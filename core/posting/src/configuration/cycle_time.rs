@@ -102,7 +102,7 @@ impl DriveLimits {
         seconds
     }
 
-    /// What is lost where one step passes into the next, s: `ways` are those of the axes, `seconds` what [`Drives::step`] gives.
+    /// What is lost where one step passes into the next, s: `ways` are those of the axes, `seconds` what [`DriveLimits::step`] gives.
     #[inline]
     pub(crate) fn ramp(&self, ways: [&Joints; 2], seconds: [f64; 2]) -> f64 {
         let velocity = |step: usize, place: usize| match seconds[step] > 0.0 {

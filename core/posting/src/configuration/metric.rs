@@ -61,7 +61,7 @@ impl TravelMeasure {
         self.drives.as_deref()
     }
 
-    /// The cost of a rapid, or of a turn off the part: [`Measure::between`], or seconds under `cycle-time`.
+    /// The cost of a rapid, or of a turn off the part: [`TravelMeasure::between`], or seconds under `cycle-time`.
     #[inline]
     pub(crate) fn off_part(&self, chain: &Chain, from: &Joints, to: &Joints) -> f64 {
         match self.drives() {
@@ -77,7 +77,7 @@ impl TravelMeasure {
         self.weigh(from, to, true)
     }
 
-    /// [`Measure::between`] of the rotary axes alone: where the tool comes from is not known.
+    /// [`TravelMeasure::between`] of the rotary axes alone: where the tool comes from is not known.
     pub(crate) fn approach(&self, from: &Joints, to: &Joints) -> f64 {
         let turn = self
             .drives()

@@ -26,7 +26,7 @@ use super::trellis::{CutChecker, Trellis};
 pub(crate) struct ChosenPoint {
     /// Line of the CL file.
     pub line: u64,
-    /// The control point's path: see [`super::Configuration`].
+    /// The control point's path: see [`super::ConfigurationStage`].
     pub motion: StraightMove,
     /// Which placer solves it: see [`Route::placer`].
     pub setting: usize,
@@ -59,7 +59,7 @@ pub(crate) struct Route<'a> {
     pub(super) mark: usize,
     /// Where the axes stand if there is no layer.
     pub(super) near: Joints,
-    /// Axis values before a rewind: see [`trellis::State::rewind`].
+    /// Axis values before a rewind: see [`trellis::TrellisState::rewind`].
     pub(super) rewound: Vec<Joints>,
     pub(super) judge: CutTrial<'a>,
     /// Redundant axes can be put elsewhere as long as the last rapid is not settled.

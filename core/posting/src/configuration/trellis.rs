@@ -352,7 +352,7 @@ impl Trellis {
         ways
     }
 
-    /// A state, unless there is one like it that is no dearer: see [`Axes::alike`].
+    /// A state, unless there is one like it that is no dearer: see [`ChoiceAxes::alike`].
     ///
     /// Of two like states the dearer can never win. The ways on from a state depend on its joints and its branch
     /// alone. Stands are carried to the turn nearest to it, what a move costs is made of differences, and an endless

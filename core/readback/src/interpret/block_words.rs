@@ -107,7 +107,7 @@ impl BlockWords {
             .then(|| self.values[usize::from(letter.wrapping_sub(b'A')) % 26])
     }
 
-    /// [`Gathered::get`], and the word is made use of.
+    /// [`BlockWords::get`], and the word is made use of.
     #[inline]
     pub fn take(&mut self, letter: u8) -> Option<f64> {
         self.used |= bit(letter);
@@ -126,7 +126,7 @@ impl BlockWords {
         }
     }
 
-    /// [`Gathered::take_number`] of a letter that may stand there for something else: it is not made use of.
+    /// [`BlockWords::take_number`] of a letter that may stand there for something else: it is not made use of.
     pub fn present_number(
         &self,
         letter: u8,

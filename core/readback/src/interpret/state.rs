@@ -38,7 +38,7 @@ pub(super) struct ControlState {
     pub axes: AxisLetters,
     /// What is modal in its programs.
     pub modal: ModalState,
-    /// What the words count from, inside the work offset. After a change: [`Control::frames_changed`].
+    /// What the words count from, inside the work offset. After a change: [`super::control::ControlState::frames_changed`].
     pub frames: FrameStack,
     /// Number of the work offset in force, by place in `offsets.work`; none: the machine file's.
     pub work: Option<usize>,
@@ -54,7 +54,7 @@ pub(super) struct ControlState {
     pub spline: Option<Box<OpenSpline>>,
     /// What conversational path functions remember.
     pub path: super::conversational::PathMemory,
-    /// What its motions share; handed on when something of it changes. After a change: [`Control::state_changed`].
+    /// What its motions share; handed on when something of it changes. After a change: [`super::control::ControlState::state_changed`].
     pub state: State,
     /// `state` as it was handed on last; none if it has changed since.
     pub(super) shared: Option<Arc<State>>,
@@ -108,7 +108,7 @@ pub(super) struct MountedHead {
 /// Which word is which axis.
 #[derive(Clone, Debug)]
 pub(super) struct AxisLetters {
-    /// Place in the chain of the axis of each letter; [`Axes::NONE`] if there is none.
+    /// Place in the chain of the axis of each letter; [`AxisLetters::NONE`] if there is none.
     pub letters: [u8; 26],
     /// Places of the axes whose names are longer than a letter.
     pub names: Vec<(String, usize)>,

@@ -4,7 +4,7 @@ use post_plugin::{Coolant, Event, NumberStyle, Spindle, SpindleSense};
 
 use super::{Engine, one_by_one};
 
-/// Coolants in the order of [`Table::coolant`], with the options that say what switches them on and off.
+/// Coolants in the order of [`crate::Table::coolant`], with the options that say what switches them on and off.
 pub(super) const COOLANTS: [(Coolant, &str, &str); 5] = [
     (Coolant::Off, "coolant_off", "coolant_off"),
     (Coolant::Flood, "coolant_flood", "coolant_off"),

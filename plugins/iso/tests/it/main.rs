@@ -8,11 +8,11 @@ mod tables;
 
 // Files that nobody outside sees, compiled here once more with the tests that stand in them, and what they name.
 #[allow(dead_code, reason = "tests do not use all of a file")]
+#[path = "../../src/block_style.rs"]
+mod block_style;
+#[allow(dead_code, reason = "tests do not use all of a file")]
 #[path = "../../src/lines.rs"]
 mod lines;
-#[allow(dead_code, reason = "tests do not use all of a file")]
-#[path = "../../src/look.rs"]
-mod look;
 mod table {
     pub use post_iso::Table;
 }

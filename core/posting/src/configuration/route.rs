@@ -59,7 +59,7 @@ pub(crate) struct Route<'a> {
     pub(super) mark: usize,
     /// Where the axes stand if there is no layer.
     pub(super) near: Joints,
-    /// Axis values before a rewind: see [`trellis::TrellisState::rewind`].
+    /// Axis values before a rewind: see `rewind`.
     pub(super) rewound: Vec<Joints>,
     pub(super) judge: CutTrial<'a>,
     /// Redundant axes can be put elsewhere as long as the last rapid is not settled.

@@ -38,7 +38,7 @@ pub(super) struct ControlState {
     pub axes: AxisLetters,
     /// What is modal in its programs.
     pub modal: ModalState,
-    /// What the words count from, inside the work offset. After a change: [`super::control::ControlState::frames_changed`].
+    /// What the words count from, inside the work offset. After a change: `ControlState::frames_changed`.
     pub frames: FrameStack,
     /// Number of the work offset in force, by place in `offsets.work`; none: the machine file's.
     pub work: Option<usize>,
@@ -54,7 +54,7 @@ pub(super) struct ControlState {
     pub spline: Option<Box<OpenSpline>>,
     /// What conversational path functions remember.
     pub path: super::conversational::PathMemory,
-    /// What its motions share; handed on when something of it changes. After a change: [`super::control::ControlState::state_changed`].
+    /// What its motions share; handed on when something of it changes. After a change: `ControlState::state_changed`.
     pub state: State,
     /// `state` as it was handed on last; none if it has changed since.
     pub(super) shared: Option<Arc<State>>,

@@ -526,7 +526,7 @@ fn dense(motions: &[&Motion], rapids: Option<&Chain>) -> Vec<At> {
             .fold(0.0, f64::max);
         let bent = !matches!(
             motion.way,
-            post_readback::Interpolation::Axes | post_readback::Interpolation::Tip
+            post_readback::Interpolation::Axes | post_readback::Interpolation::Tip(Curve::Straight)
         );
         // A whole circle ends where it begins: of 60 mm its chords stray by a hundredth of a tolerance then.
         let count = 2.0 + way / 0.5 + if bent { 1500.0 } else { 0.0 } + turn.min(10.0) * 10.0;

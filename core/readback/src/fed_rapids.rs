@@ -105,10 +105,8 @@ impl<P> FedRapids<P> {
                 continue;
             };
             let plain = motion.kind == MotionKind::Feed && !motion.hole && !motion.machine;
-            let straight =
-                !matches!(motion.way, Interpolation::Arc { .. } | Interpolation::Spline(_));
             if !plain
-                || !straight
+                || motion.way.is_curved()
                 || self.kept && !motion.state.tcp
                 || !is_so_fast(axes, machine, motion, 0.0) && !comes_from_anywhere(machine, motion)
             {

@@ -33,7 +33,7 @@ pub use corners::Corners;
 pub use fed_rapids::{FedRapids, turns_the_spindle};
 pub use motion::{Motion, MotionKind};
 pub use offsets::{Offsets, Reference, WorkOffset};
-pub use post_motion::path::{BSpline, Interpolation, Stance};
+pub use post_motion::path::{BSpline, Curve, Interpolation, Stance};
 pub use run::{MOST_FAULTS, Program, Run};
 pub use told::{Coolants, CycleCall, CycleKind, Spindle, Told};
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use post_machine::kinematics::{Pose, Trace};
-use post_motion::path::{Interpolation, Stance, between, turns};
+use post_motion::path::{Curve, Interpolation, Stance, between, turns};
 
 use crate::State;
 
@@ -185,7 +185,7 @@ impl Motion {
     /// Pieces whose chords stay within `chord` mm of a spline, as far as points on it tell: doubled until the middles of
     /// all agree.
     pub(crate) fn spline_chords(&self, chord: f64) -> u64 {
-        let Interpolation::Spline(way) = &self.way else {
+        let Curve::Spline(way) = self.way.curve() else {
             return 1;
         };
         let mut count = 2 * way.poles.len() as u64;

@@ -4,7 +4,7 @@
 //! dozen crates of compression with it, for one output of one verb.
 
 use post_machine::description::Machine;
-use post_readback::{Done, Interpolation, Motion, MotionKind, Spindle, Told};
+use post_readback::{Curve, Done, Interpolation, Motion, MotionKind, Spindle, Told};
 
 use post_job::axes::{self, AxisColumn};
 use post_job::columns::{Column, CsvTable};
@@ -30,10 +30,10 @@ fn columns(axes: &[AxisColumn]) -> Vec<Column<Row>> {
         }),
         C::new("way", "", 0, |row| match &row.motion.way {
             Interpolation::Axes => "axes",
-            Interpolation::Tip => "tip",
+            Interpolation::Tip(Curve::Straight) => "tip",
             Interpolation::TipAndAxis => "tip and axis",
-            Interpolation::Arc { .. } => "arc",
-            Interpolation::Spline(_) => "spline",
+            Interpolation::Tip(Curve::Arc { .. }) => "arc",
+            Interpolation::Tip(Curve::Spline(_)) => "spline",
         }),
     ];
     for (column, axis) in axes.iter().enumerate() {

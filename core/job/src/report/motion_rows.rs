@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
-use post_motion::path::Interpolation;
+use post_motion::path::{Curve, Interpolation};
 use post_readback::{Done, Motion, MotionKind, Told};
 use post_report::meta::{AxisUsed, Meta};
 
@@ -279,11 +279,11 @@ impl<'m> MotionRows<'m> {
     fn motion(&mut self, motion: &Motion) {
         let from = self.time;
         self.time += motion.minutes * 60.0;
-        let kind = match (motion.hole, motion.kind, &motion.way) {
+        let kind = match (motion.hole, motion.kind, motion.way.curve()) {
             (true, ..) => 6,
             (_, MotionKind::Rapid, _) => 2,
-            (_, _, Interpolation::Arc { .. }) => 4,
-            (_, _, Interpolation::Spline(_)) => 5,
+            (_, _, Curve::Arc { .. }) => 4,
+            (_, _, Curve::Spline(_)) => 5,
             _ => 3,
         };
         // The chain has the tool in it: where the gauge point is, is the same with every tool.
@@ -362,13 +362,15 @@ impl<'m> MotionRows<'m> {
                 let bow = (motion.at(0.5).tip - 0.5 * (from + to)).norm();
                 if bow > tolerance / 50.0 { 2 } else { 1 }
             }
-            Interpolation::Tip | Interpolation::TipAndAxis => 1,
-            Interpolation::Arc { centre, sweep, .. } => {
+            Interpolation::Tip(Curve::Straight) | Interpolation::TipAndAxis => 1,
+            Interpolation::Tip(Curve::Arc { centre, sweep, .. }) => {
                 let radius = (from - centre).norm().max(tolerance);
                 let step = libm::sqrt(8.0 * tolerance / radius);
                 libm::ceil(libm::fabs(*sweep) / step).clamp(2.0, MOST_PLACES) as u32
             }
-            Interpolation::Spline(way) => (16 * way.spans().count() as u32).min(MOST_PLACES as u32),
+            Interpolation::Tip(Curve::Spline(way)) => {
+                (16 * way.spans().count() as u32).min(MOST_PLACES as u32)
+            }
         };
         (1..count).map(|place| motion.at(f64::from(place) / f64::from(count)).tip).collect()
     }

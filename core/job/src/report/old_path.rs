@@ -6,7 +6,6 @@ use std::fs::File;
 
 use nalgebra::Vector3;
 use post_machine::description::Machine;
-use post_motion::path::Interpolation;
 use post_readback::interpret::Interpreter;
 use post_readback::{Done, MotionKind, Run};
 
@@ -127,9 +126,9 @@ impl OldPath {
                 MotionKind::Rapid => 1.0,
                 _ => 0.0,
             };
-            let chords = match &motion.way {
-                Interpolation::Arc { .. } | Interpolation::Spline(_) => MOST_CHORDS,
-                _ => motion.pieces(CHORD, 1.0).min(MOST_CHORDS),
+            let chords = match motion.way.is_curved() {
+                true => MOST_CHORDS,
+                false => motion.pieces(CHORD, 1.0).min(MOST_CHORDS),
             };
             for chord in 1..=chords {
                 let to = match chord == chords {

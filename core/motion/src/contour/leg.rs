@@ -5,7 +5,7 @@ use post_machine::kinematics::Pose;
 
 use super::path::Knot;
 use crate::ProgramPlace;
-use crate::path::{GreatCircle, Interpolation, on_arc};
+use crate::path::{Curve, GreatCircle};
 
 /// A knot stands at least after such a turn, radians: the cubic between leaves an arc by less than a radius times the
 /// fourth power of this over 1944, 3 nm of a metre.
@@ -22,8 +22,8 @@ const MOST: f64 = 4096.0;
 pub struct ContourLeg {
     /// What asks for it: the line, and the task where it is one of a program; whether it cuts.
     pub at: ProgramPlace,
-    /// How the tip goes; along [`Interpolation::Axes`] and [`Interpolation::Tip`] straight.
-    pub way: Interpolation,
+    /// How the tip goes.
+    pub curve: Curve,
     /// Start: tip and tool axis, part frame.
     pub from: Pose,
     /// End; the tool axis goes on the great circle.
@@ -46,34 +46,19 @@ impl ContourLeg {
 
     /// The pose at `t` where the way of the tool axis is known.
     fn on(&self, turn: &GreatCircle, t: f64) -> Pose {
-        let (from, to) = (&self.from, &self.to);
         let axis = turn.at(t);
-        let tip = match &self.way {
-            Interpolation::Axes | Interpolation::Tip | Interpolation::TipAndAxis => {
-                let [start, end] = [from, to].map(|pose| pose.tip + pose.axis * self.along);
-                start + (end - start) * t - axis * self.along
-            }
-            Interpolation::Arc { centre, normal, sweep } => {
-                on_arc([from.tip, to.tip], *centre, *normal, *sweep, t)
-            }
-            Interpolation::Spline(way) => way.at(t),
-        };
-        let edge = Vector3::zeros();
-        Pose { tip, axis, edge }
+        let tip = self.curve.tip([&self.from, &self.to], axis, self.along, t);
+        Pose { tip, axis, edge: Vector3::zeros() }
     }
 
     /// Hands out its knots, that of its beginning first.
     pub(super) fn knots(&self, take: &mut dyn FnMut(Knot)) {
         let circle = GreatCircle::new(self.from.axis, self.to.axis);
-        let sweep = match &self.way {
-            Interpolation::Arc { sweep, .. } => sweep.abs(),
-            _ => 0.0,
-        };
-        let spans = match &self.way {
-            Interpolation::Spline(way) => SPANS * way.spans().count(),
+        let spans = match &self.curve {
+            Curve::Spline(way) => SPANS * way.spans().count(),
             _ => 1,
         };
-        let pieces = libm::ceil(circle.angle.max(sweep) / TURN).max(spans as f64);
+        let pieces = libm::ceil(circle.angle.max(self.curve.turn()) / TURN).max(spans as f64);
         let pieces = pieces.clamp(1.0, MOST) as usize;
         let step = 1.0 / pieces as f64;
         let at = |t: f64| self.on(&circle, t);

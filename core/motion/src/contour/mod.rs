@@ -104,7 +104,7 @@ impl<'r> Contour<'r> {
         if let Task::Move(go) = task {
             self.programmed.push(&ContourLeg {
                 at: ProgramPlace { task: number, line: go.line, cuts: go.pace != MovePace::Rapid },
-                way: go.way.clone(),
+                curve: go.way.curve().clone(),
                 from: go.from.pose,
                 to: go.to.pose,
                 along: 0.0,

@@ -10,7 +10,7 @@ use post_machine::kinematics::{Joints, MAX_AXES, Unreachable};
 
 use super::MoveLimits;
 use crate::Move;
-use crate::path::{Interpolation, Stance};
+use crate::path::{Curve, Stance};
 
 /// Degree of the series.
 const DEGREE: usize = 6;
@@ -99,10 +99,7 @@ pub(super) fn over(
         .filter(|(_, joint)| joint.rotary)
         .map(|(place, _)| libm::fabs(task.to.joints[place] - task.from.joints[place]))
         .sum();
-    let turned = match &task.way {
-        Interpolation::Arc { sweep, .. } => turned + libm::fabs(*sweep),
-        _ => turned,
-    };
+    let turned = turned + task.way.curve().turn();
     let mut last = sample(0.0)?;
     let mut run = |from: f64, to: f64, ends: [bool; 2]| -> Result<(), Unreachable> {
         let half = 0.5 * (to - from);
@@ -131,7 +128,7 @@ pub(super) fn over(
         Ok(())
     };
     let mut each = |begins: f64, ends: f64| run(begins, ends, [begins == 0.0, ends == 1.0]);
-    let Interpolation::Spline(spline) = &task.way else {
+    let Curve::Spline(spline) = task.way.curve() else {
         return split(0.0, 1.0, &mut each);
     };
     // A spline is a polynomial (or a quotient of two) from knot to knot.

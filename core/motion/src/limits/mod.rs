@@ -12,7 +12,7 @@ use post_machine::description::{BlendRule, LimitsActOn, Machine};
 use post_machine::kinematics::{Joints, MAX_AXES, Unreachable};
 
 use crate::Move;
-use crate::path::Interpolation;
+use crate::path::{Curve, Interpolation};
 
 /// How fast, and how suddenly, axes and tip may move: of a machine, once.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,17 +118,13 @@ pub struct MoveLimits {
 pub fn of(task: &Move, limits: &AxisLimits) -> Result<MoveLimits, Unreachable> {
     let mut found = MoveLimits::default();
     let turns = crate::path::turns(task.solver.chain(), [&task.from, &task.to]);
-    let straight_tip = match task.way {
-        Interpolation::Axes => !turns,
-        Interpolation::Tip | Interpolation::TipAndAxis => true,
-        Interpolation::Arc { .. } | Interpolation::Spline(_) => false,
-    };
-    let straight_axes = match task.way {
-        Interpolation::Axes => true,
-        Interpolation::Tip | Interpolation::TipAndAxis => {
-            !turns || coordinates(task, limits).is_some() && task.way == Interpolation::Tip
+    let (straight_tip, straight_axes) = match task.way {
+        Interpolation::Axes => (!turns, true),
+        Interpolation::Tip(Curve::Straight) => {
+            (true, !turns || coordinates(task, limits).is_some())
         }
-        Interpolation::Arc { .. } | Interpolation::Spline(_) => false,
+        Interpolation::Tip(_) => (false, false),
+        Interpolation::TipAndAxis => (true, !turns),
     };
     if straight_axes {
         found.straight(task, coordinates(task, limits));
@@ -141,7 +137,7 @@ pub fn of(task: &Move, limits: &AxisLimits) -> Result<MoveLimits, Unreachable> {
     if !straight_axes || !straight_tip {
         fit::over(task, coordinates(task, limits), [!straight_axes, !straight_tip], &mut found)?;
     }
-    if let Interpolation::Arc { centre, normal, sweep } = &task.way
+    if let Curve::Arc { centre, normal, sweep } = task.way.curve()
         && !turns
     {
         let (arm, _) = crate::path::arm_and_height(task.from.pose.tip, *centre, *normal);

@@ -1,15 +1,16 @@
 //! How a control goes from one stance of the machine to another.
 
+mod curve;
 mod round;
 mod spline;
 mod stance;
 
-use std::sync::Arc;
-
 use nalgebra::Vector3;
 use post_machine::kinematics::{Chain, Joints, Pose};
 
+pub use curve::Curve;
 pub use round::{GreatCircle, arm_and_height, between, on_arc};
+pub use spline::BSpline;
 
 /// Where the machine stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -25,32 +26,10 @@ pub struct Stance {
 pub enum Interpolation {
     /// All axes linearly in the same parameter.
     Axes,
-    /// The tip straight, the rotary axes linearly.
-    Tip,
+    /// The tip along a curve of the part frame, the rotary axes linearly if they turn at all.
+    Tip(Curve),
     /// The tip straight, the tool axis on the great circle (vectors: G43.5, ORIVECT, LN).
     TipAndAxis,
-    /// The tip on an arc or helix of the part frame, rotary axes linearly if they turn at all.
-    Arc {
-        /// A point of the axis, mm.
-        centre: Vector3<f64>,
-        /// Axis, unit vector.
-        normal: Vector3<f64>,
-        /// Turn about it, right-handed, radians; more than a turn where the program says so.
-        sweep: f64,
-    },
-    /// The tip on a spline of the part frame: poles and knots, as the program states them.
-    Spline(Arc<BSpline>),
-}
-
-/// A rational B-spline.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BSpline {
-    /// Degree.
-    pub degree: usize,
-    /// Knots, as many as poles + degree + 1.
-    pub knots: Vec<f64>,
-    /// Poles, mm, part frame, and their weights.
-    pub poles: Vec<(Vector3<f64>, f64)>,
 }
 
 impl Interpolation {
@@ -73,13 +52,22 @@ impl Interpolation {
 
     /// The tip at `t`, mm, part frame, where the control leads the tip; none where it leads the axes.
     fn tip(&self, ends: [&Stance; 2], t: f64) -> Option<Vector3<f64>> {
-        let [from, to] = ends.map(|stance| stance.pose.tip);
-        Some(match self {
-            Self::Axes => return None,
-            Self::Tip | Self::TipAndAxis => from + (to - from) * t,
-            Self::Arc { centre, normal, sweep } => on_arc([from, to], *centre, *normal, *sweep, t),
-            Self::Spline(way) => way.at(t),
-        })
+        let tips = ends.map(|stance| stance.pose.tip);
+        (*self != Self::Axes).then(|| self.curve().at(tips, t))
+    }
+
+    /// The curve of the tip: straight where the control leads the axes, as if they did not turn.
+    #[inline]
+    pub fn curve(&self) -> &Curve {
+        match self {
+            Self::Tip(curve) => curve,
+            Self::Axes | Self::TipAndAxis => &Curve::Straight,
+        }
+    }
+
+    /// The tip goes on an arc or a spline.
+    pub fn is_curved(&self) -> bool {
+        *self.curve() != Curve::Straight
     }
 }
 

@@ -2,13 +2,22 @@
 
 use nalgebra::{Vector3, Vector4};
 
-use super::BSpline;
-
 /// The highest degree that is evaluated.
 const MOST_DEGREE: usize = 9;
 
 /// Pieces whose chords are added up, for each span of the knots.
 const CHORDS: u32 = 64;
+
+/// A rational B-spline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BSpline {
+    /// Degree.
+    pub degree: usize,
+    /// Knots, as many as poles + degree + 1.
+    pub knots: Vec<f64>,
+    /// Poles, mm, part frame, and their weights.
+    pub poles: Vec<(Vector3<f64>, f64)>,
+}
 
 impl BSpline {
     /// Whether it can be evaluated: the degree is from 1 to 9, the knots never fall and are as many as poles + degree +

@@ -6,7 +6,6 @@ use super::bounds::{ARC, CURVE, MoveBounds, NORMAL};
 use super::kink::Kink;
 use super::side::CornerSide;
 use crate::limits::{AxisLimits, MoveLimits};
-use crate::path::Interpolation;
 
 /// The part of the length of a corner by whose product with the change of direction it strays.
 const STRAY: f64 = 3.0 / 32.0;
@@ -107,10 +106,7 @@ impl RoundedCorner {
         rules: &AxisLimits,
         tolerance: Option<f64>,
     ) -> Option<Self> {
-        let curved = |side: &CornerSide| {
-            matches!(side.task.way, Interpolation::Arc { .. } | Interpolation::Spline(_))
-        };
-        if sides.iter().any(curved) {
+        if sides.iter().any(|side| side.task.way.is_curved()) {
             return None;
         }
         let [out, into] = [sides[0].found.tip_ends[1], sides[1].found.tip_ends[0]];

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use nalgebra::{Rotation3, Vector3};
 use post_machine::kinematics::{Chain, Joint, Joints, Pose, Solver};
 use post_motion::contour::{Contour, ContourLeg, ContourPoint, ContourReport, ReferencePath};
-use post_motion::path::Interpolation;
+use post_motion::path::Curve;
 use post_motion::{ProgramPlace, SetPoints};
 
 type Point = Vector3<f64>;
@@ -63,10 +63,10 @@ impl ReferencePath for Legs {
     }
 }
 
-fn leg(line: u64, way: Interpolation, from: Point, to: Point) -> ContourLeg {
+fn leg(line: u64, curve: Curve, from: Point, to: Point) -> ContourLeg {
     let pose = |tip| Pose { tip, axis: Point::z(), ..Pose::default() };
     let at = ProgramPlace { line, cuts: true, task: 0 };
-    ContourLeg { at, way, from: pose(from), to: pose(to), along: 0.0 }
+    ContourLeg { at, curve, from: pose(from), to: pose(to), along: 0.0 }
 }
 
 fn run_axes(

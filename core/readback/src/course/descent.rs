@@ -2,7 +2,7 @@
 
 use post_machine::kinematics::Joints;
 
-use crate::{Interpolation, Motion};
+use crate::{Curve, Interpolation, Motion};
 
 /// What an axis moves by less is the rounding of words, mm or degrees.
 const ROUNDED: f64 = 0.01;
@@ -40,7 +40,7 @@ pub(crate) fn descends(motion: &Motion, retracted: &Joints, on_line: bool) -> Op
     }
     let along = goes_in(motion);
     let descends = slides && (retracts && (along || count == 1) || on_line && along);
-    let to_point = along || !matches!(motion.way, Interpolation::Tip);
+    let to_point = along || motion.way != Interpolation::Tip(Curve::Straight);
     descends.then_some(match to_point {
         true => Descent::ToPoint,
         false => Descent::ToLine,

@@ -235,16 +235,13 @@ impl<P: Program> DoneCourse<P> {
         };
         let mut count = motion.pieces(chord, angle);
         // A spline stays one where the tool axis does.
-        let along = match &motion.way {
-            Interpolation::Spline(_) if motion.turns() => {
+        let curve = match motion.way.curve() {
+            Curve::Spline(_) if motion.turns() => {
                 count = count.max(motion.spline_chords(chord));
-                None
+                Curve::Straight
             }
-            Interpolation::Spline(way) => Some(Curve::Spline(Arc::clone(way))),
-            Interpolation::Arc { centre, normal, sweep } => {
-                Some(arc(*centre, *normal, sweep / count as f64))
-            }
-            Interpolation::Axes | Interpolation::Tip | Interpolation::TipAndAxis => None,
+            Curve::Arc { centre, normal, sweep } => arc(*centre, *normal, sweep / count as f64),
+            curve => curve.clone(),
         };
         let mut from = motion.from.pose;
         for place in 1..=count {
@@ -255,7 +252,7 @@ impl<P: Program> DoneCourse<P> {
             let mut piece = Piece {
                 line: motion.line,
                 kind: motion.kind,
-                curve: along.clone().unwrap_or(Curve::Straight),
+                curve: curve.clone(),
                 from,
                 to,
                 feed,

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Course, Item};
+use super::{Course, Curve, Item};
 use crate::{MOST_FAULTS, MotionKind, Told};
 use post_machine::diagnostic::Diagnostic;
 
@@ -77,9 +77,9 @@ impl CourseFacts {
                     }
                 }
                 match piece.curve {
-                    super::Curve::Straight => {}
-                    super::Curve::Arc { .. } => self.arcs += 1,
-                    super::Curve::Spline(_) => self.splines += 1,
+                    Curve::Straight => {}
+                    Curve::Arc { .. } => self.arcs += 1,
+                    Curve::Spline(_) => self.splines += 1,
                 }
             }
             Item::Reach(reach) => {

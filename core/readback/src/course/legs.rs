@@ -4,8 +4,8 @@ use post_machine::diagnostic::Diagnostic;
 use post_motion::ProgramPlace;
 use post_motion::contour::{ContourLeg, ReferencePath};
 
-use super::{Course, Curve, Item, Piece};
-use crate::{Interpolation, MOST_FAULTS, MotionKind};
+use super::{Course, Item};
+use crate::{MOST_FAULTS, MotionKind};
 
 /// The cuts of a course.
 #[derive(Debug)]
@@ -28,7 +28,13 @@ impl<C: Course> ReferencePath for Legs<'_, C> {
         loop {
             match self.course.next() {
                 Ok(Some(Item::Piece(piece))) if piece.kind != MotionKind::Rapid => {
-                    return Some(leg(piece, self.along));
+                    return Some(ContourLeg {
+                        at: ProgramPlace { task: 0, line: piece.line, cuts: true },
+                        curve: piece.curve,
+                        from: piece.from,
+                        to: piece.to,
+                        along: self.along,
+                    });
                 }
                 Ok(Some(_)) => {}
                 Ok(None) => return None,
@@ -40,20 +46,5 @@ impl<C: Course> ReferencePath for Legs<'_, C> {
                 }
             }
         }
-    }
-}
-
-fn leg(piece: Piece, along: f64) -> ContourLeg {
-    let way = match piece.curve {
-        Curve::Straight => Interpolation::TipAndAxis,
-        Curve::Arc { centre, normal, sweep } => Interpolation::Arc { centre, normal, sweep },
-        Curve::Spline(way) => Interpolation::Spline(way),
-    };
-    ContourLeg {
-        at: ProgramPlace { task: 0, line: piece.line, cuts: true },
-        way,
-        from: piece.from,
-        to: piece.to,
-        along,
     }
 }

@@ -18,15 +18,12 @@ mod legs;
 mod piece;
 mod window;
 
-use std::sync::Arc;
-
-use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 
-use crate::BSpline;
 use crate::{MotionKind, Told};
 
+pub use crate::Curve;
 pub use facts::{CourseFacts, Operation};
 pub use legs::Legs;
 pub use window::Window;
@@ -87,7 +84,8 @@ pub struct Piece {
     pub line: u64,
     /// At rapid, at feed, or along a thread.
     pub kind: MotionKind,
-    /// How the tip goes.
+    /// How the tip goes; the tool axis goes on the great circle from one end to the other, evenly. Where the machine file
+    /// names a control point above the tip, that point goes straight: [`Piece::at`].
     pub curve: Curve,
     /// Where it begins: mm, part frame.
     pub from: Pose,
@@ -98,23 +96,4 @@ pub struct Piece {
     /// It is part of a cycle's hole: approach, feed, dwell and return of it. Pecks are the control's business: a hole is
     /// one piece down at feed and one up.
     pub hole: bool,
-}
-
-/// How the tip goes; the tool axis goes on the great circle from one end to the other, evenly.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Curve {
-    /// Straight. Where the machine file names a control point above the tip, that point goes straight: [`Piece::at`].
-    Straight,
-    /// On an arc, a helix, or a spiral where the ends differ in their distance from the axis: both distance and height
-    /// change evenly with the turn.
-    Arc {
-        /// A point of its axis, mm.
-        centre: Vector3<f64>,
-        /// Its axis, unit vector.
-        normal: Vector3<f64>,
-        /// Turn about it, right-handed, radians; more than a turn where the source says so.
-        sweep: f64,
-    },
-    /// On a spline.
-    Spline(Arc<BSpline>),
 }

@@ -8,7 +8,7 @@ use post_machine::kinematics::{Joints, Pose};
 
 use super::outline::Splitter;
 use crate::course::descent::{Descent, descends};
-use crate::{Done, Interpolation, Motion, MotionKind, Program, Run, State, Told};
+use crate::{Curve, Done, Motion, MotionKind, Program, Run, State, Told};
 
 /// Steps stray from the way by no more: mm, radians.
 const SAG: f64 = 0.000_1;
@@ -366,16 +366,16 @@ fn step(motion: &Motion, from: Spot, to: Spot) -> Step {
 /// Steps that a motion is cut into.
 fn steps_of(motion: &Motion) -> u64 {
     let straight = motion.pieces(SAG, TURN);
-    let curved = match &motion.way {
-        Interpolation::Axes | Interpolation::Tip | Interpolation::TipAndAxis => 1,
-        Interpolation::Arc { centre, normal, sweep } => {
+    let curved = match motion.way.curve() {
+        Curve::Straight => 1,
+        Curve::Arc { centre, normal, sweep } => {
             let arm = motion.from.pose.tip - centre;
             let radius = (arm - normal * normal.dot(&arm)).norm();
             // A chord over the angle a strays by r·a²/8.
             let angle = libm::sqrt(8.0 * SAG / radius.max(SAG));
             libm::ceil(libm::fabs(*sweep) / angle) as u64
         }
-        Interpolation::Spline(_) => motion.spline_chords(SAG),
+        Curve::Spline(_) => motion.spline_chords(SAG),
     };
     straight.max(curved).clamp(1, MOST)
 }

@@ -7,8 +7,9 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
 use super::block_words::BlockWords;
-use super::go::{MotionTarget, WordPath};
+use super::go::MotionTarget;
 use super::state::ControlState;
+use crate::Curve;
 
 /// Start and end lie on one circle if their radii differ by no more than this, mm, and by this share of the radius: the
 /// decimals of an inch program, and the rounding of a centre far away.
@@ -28,7 +29,7 @@ impl ControlState {
         clockwise: bool,
         words: &mut BlockWords,
         target: &mut MotionTarget,
-    ) -> Result<WordPath, Box<Diagnostic>> {
+    ) -> Result<Curve, Box<Diagnostic>> {
         let [first, second, third] = self.modal.plane.coordinates();
         let from = self.point();
         let to = Vector3::from_fn(|row, _| target.point[row].unwrap_or(from[row]));
@@ -72,7 +73,7 @@ impl ControlState {
         let mut sweep = self.sweep([flat(from), flat(to), flat(centre)], clockwise)?;
         sweep += if clockwise { -full_turns * TAU } else { full_turns * TAU };
         centre[third] = from[third];
-        Ok(WordPath::Arc { centre, normal: self.modal.plane.normal(), sweep })
+        Ok(Curve::Arc { centre, normal: self.modal.plane.normal(), sweep })
     }
 
     /// Full turns beside the arc's own: `TURN=2`, or P of RS-274/NGC, which counts the last part of a turn too.

@@ -8,11 +8,11 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Language, Meaning};
 
 use super::block_words::{BlockWords, bit};
-use super::go::{MotionTarget, WordPath};
+use super::go::MotionTarget;
 use super::state::{ControlState, FeedMeaning, MotionMode};
 use super::{cycles, frames, names, planes};
 use crate::lexicon::Sense;
-use crate::{MotionKind, Told};
+use crate::{Curve, MotionKind, Told};
 
 /// What the words of one block ask for, besides what is modal.
 #[derive(Clone, Copy, Debug, Default)]
@@ -431,7 +431,7 @@ impl ControlState {
                 let path = self.arc_words(mode == MotionMode::Clockwise, words, &mut target)?;
                 self.go(kind, &path, &target)?;
             }
-            _ => self.go(kind, &WordPath::Straight, &target)?,
+            _ => self.go(kind, &Curve::Straight, &target)?,
         }
         cycles::at_point(self)
     }

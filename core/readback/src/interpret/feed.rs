@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use post_machine::description::{FeedLength, InverseTime, TcpFeedLength};
 
 use super::state::{ControlState, FeedMeaning};
-use crate::{Interpolation, MotionKind, Stance};
+use crate::{Curve, Interpolation, MotionKind, Stance};
 
 /// A tip that goes less far than this stands, mm: turned about itself it comes back to its last digits.
 const STANDS: f64 = 1e-9;
@@ -82,7 +82,7 @@ impl ControlState {
         if self.state.tcp && counted == TcpFeedLength::Combined {
             return (tip * tip + turned).sqrt();
         }
-        if let Interpolation::Arc { .. } | Interpolation::Spline(_) = way {
+        if way.is_curved() {
             return tip;
         }
         let usual = match self.lexicon.counts_all_axes() {
@@ -116,14 +116,14 @@ impl ControlState {
 /// The way of the tip against the part, mm.
 pub(super) fn tip_length(way: &Interpolation, from: &Stance, to: &Stance) -> f64 {
     let chord = to.pose.tip - from.pose.tip;
-    match way {
-        Interpolation::Axes | Interpolation::Tip | Interpolation::TipAndAxis => chord.norm(),
-        Interpolation::Arc { centre, normal, sweep } => {
+    match way.curve() {
+        Curve::Straight => chord.norm(),
+        Curve::Arc { centre, normal, sweep } => {
             let arm = from.pose.tip - centre;
             let across: Vector3<f64> = arm - normal * normal.dot(&arm);
             let along = normal.dot(&chord);
             libm::hypot(across.norm() * sweep, along)
         }
-        Interpolation::Spline(spline) => spline.length(),
+        Curve::Spline(spline) => spline.length(),
     }
 }

@@ -1,14 +1,12 @@
 //! Motions: from where words lead to axis values, and to the tip and tool axis that they bring about.
 
-use std::f64::consts::TAU;
-use std::sync::Arc;
-
 use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES, Pose};
+use std::f64::consts::TAU;
 
 use super::state::{AxisLetters, ControlState, OrientationMode};
-use crate::{BSpline, Done, Interpolation, Motion, MotionKind, Stance};
+use crate::{Curve, Done, Interpolation, Motion, MotionKind, Stance};
 
 /// A tip that the axes miss by more than this is not reached, mm.
 const REACHED: f64 = 1e-6;
@@ -43,23 +41,8 @@ impl MotionTarget {
     }
 }
 
-/// A pass along a straight line of words, or along a curve whose end it is.
-#[derive(Clone, Debug)]
-pub(super) enum WordPath {
-    /// Straight in the words.
-    Straight,
-    /// An arc of the program's coordinates.
-    Arc {
-        /// Centre, program coordinates, mm.
-        centre: Vector3<f64>,
-        /// Axis, program coordinates, unit vector.
-        normal: Vector3<f64>,
-        /// Turn about it, right-handed, radians.
-        sweep: f64,
-    },
-    /// A spline of the program's coordinates.
-    Spline(Arc<BSpline>),
-}
+/// The tip straight, as the control keeps it.
+const STRAIGHT: Interpolation = Interpolation::Tip(Curve::Straight);
 
 impl ControlState {
     /// Where the tool stands in the coordinates of the program: what the control shows for X, Y, Z, mm. Of a machine
@@ -84,7 +67,7 @@ impl ControlState {
     ) -> Result<(), Box<Diagnostic>> {
         // It says nothing that was not known of the others.
         let said = self.said;
-        let went = self.go(kind, &WordPath::Straight, &MotionTarget::point(point));
+        let went = self.go(kind, &Curve::Straight, &MotionTarget::point(point));
         self.said = said;
         went
     }
@@ -94,7 +77,7 @@ impl ControlState {
     pub fn go(
         &mut self,
         kind: MotionKind,
-        path: &WordPath,
+        path: &Curve,
         target: &MotionTarget,
     ) -> Result<(), Box<Diagnostic>> {
         let from = self.at;
@@ -108,19 +91,21 @@ impl ControlState {
             self.reach_axes(target);
         }
         let way = match path {
-            WordPath::Straight if target.vector.is_some() => match self.modal.orientation {
-                OrientationMode::Axes => Interpolation::Tip,
+            Curve::Straight if target.vector.is_some() => match self.modal.orientation {
+                OrientationMode::Axes => STRAIGHT,
                 OrientationMode::Usual | OrientationMode::Circle => Interpolation::TipAndAxis,
             },
-            WordPath::Straight
+            Curve::Straight
                 if self.state.tcp && self.modal.orientation == OrientationMode::Circle =>
             {
                 Interpolation::TipAndAxis
             }
-            WordPath::Straight if self.state.tcp => Interpolation::Tip,
-            WordPath::Straight => Interpolation::Axes,
-            WordPath::Arc { centre, normal, sweep } => self.arc(&from, *centre, *normal, *sweep)?,
-            WordPath::Spline(way) => self.spline_way(&from, way),
+            Curve::Straight if self.state.tcp => STRAIGHT,
+            Curve::Straight => Interpolation::Axes,
+            Curve::Arc { centre, normal, sweep } => {
+                Interpolation::Tip(self.arc(&from, *centre, *normal, *sweep)?)
+            }
+            Curve::Spline(way) => Interpolation::Tip(self.spline_way(&from, way)),
         };
         self.moved(kind, way, from);
         Ok(())
@@ -170,7 +155,7 @@ impl ControlState {
             }
         }
         self.place(tip, self.axes.rotary)?;
-        self.moved(kind, Interpolation::Tip, from);
+        self.moved(kind, STRAIGHT, from);
         Ok(())
     }
 
@@ -342,9 +327,9 @@ impl ControlState {
         centre: Vector3<f64>,
         normal: Vector3<f64>,
         sweep: f64,
-    ) -> Result<Interpolation, Box<Diagnostic>> {
+    ) -> Result<Curve, Box<Diagnostic>> {
         if self.tip_words() {
-            return Ok(Interpolation::Arc {
+            return Ok(Curve::Arc {
                 centre: self.to_part.out(centre),
                 normal: self.to_part.out_direction(normal),
                 sweep,
@@ -380,7 +365,7 @@ impl ControlState {
         let [first, second, third] = [0, 1, 2].map(|row| ways[row]);
         // Where the three axes make a left-handed frame, a turn is seen from behind.
         let handed = if first.cross(&second).dot(&third) < 0.0 { -1.0 } else { 1.0 };
-        Ok(Interpolation::Arc {
+        Ok(Curve::Arc {
             centre: from.pose.tip + direction(self.to_work.out_direction(centre - start)),
             normal: direction(self.to_work.out_direction(normal)),
             sweep: sweep * handed,
@@ -399,8 +384,7 @@ impl ControlState {
     /// Hands on the motion from `from` to where the machine stands now; none if it is the same place.
     #[inline]
     pub fn moved(&mut self, kind: MotionKind, way: Interpolation, from: Stance) {
-        let arc = matches!(way, Interpolation::Arc { .. } | Interpolation::Spline(_));
-        if from.joints == self.at.joints && !arc {
+        if from.joints == self.at.joints && !way.is_curved() {
             return;
         }
         if kind != MotionKind::Rapid && !self.fed {

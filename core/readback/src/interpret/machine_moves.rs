@@ -9,9 +9,9 @@ use post_machine::kinematics::{Joints, MAX_AXES};
 use post_plugin::{Language, Meaning};
 
 use super::block_words::{BlockWords, bit};
-use super::go::{MotionTarget, WordPath, shorter};
+use super::go::{MotionTarget, shorter};
 use super::state::{ControlState, MotionMode};
-use crate::{CycleCall, CycleKind, MotionKind, Spindle, Told};
+use crate::{Curve, CycleCall, CycleKind, MotionKind, Spindle, Told};
 
 impl ControlState {
     /// A motion in machine coordinates: G53, SUPA. Words alone change nothing.
@@ -127,7 +127,7 @@ impl ControlState {
         }
         let tip = self.to_part.inside(solver.chain().forward(&world).tip);
         target.point = [Some(tip.x), Some(tip.y), Some(tip.z)];
-        self.go(kind, &WordPath::Straight, &target)
+        self.go(kind, &Curve::Straight, &target)
     }
 
     /// The axis value (from the drawing's zero, mm or radians) of a machine coordinate in program units.
@@ -164,7 +164,7 @@ impl ControlState {
                 }
             }
         }
-        self.go(MotionKind::Rapid, &WordPath::Straight, &MotionTarget { vector: None, ..target })?;
+        self.go(MotionKind::Rapid, &Curve::Straight, &MotionTarget { vector: None, ..target })?;
         let mut joints = self.at.joints;
         let mut stated = 0;
         for place in places {
@@ -227,7 +227,7 @@ impl ControlState {
         let before = (self.modal.feed, self.hole);
         self.modal.feed = Some(pitch);
         self.hole |= tap;
-        let mut went = self.go(MotionKind::Thread, &WordPath::Straight, &target);
+        let mut went = self.go(MotionKind::Thread, &Curve::Straight, &target);
         if tap && went.is_ok() {
             went = self.straight(MotionKind::Thread, from);
         }

@@ -7,9 +7,9 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::Language;
 
 use super::block_words::{BlockWords, bit};
-use super::go::{MotionTarget, WordPath};
+use super::go::MotionTarget;
 use super::state::{ControlState, FeedMeaning, MotionMode};
-use crate::{BSpline, Interpolation, MotionKind, Stance};
+use crate::{BSpline, Curve, MotionKind, Stance};
 
 /// Control points with knots K and weights R; P is the order: ten times the number of the word.
 const KNOTS: u16 = 62;
@@ -262,19 +262,19 @@ impl ControlState {
             let message = "a spline that does not begin and end in its first and last control point, its knots there as many as the order, is not run";
             return Err(self.refuse("nc-spline", message));
         }
-        let path = WordPath::Spline(Arc::new(way));
+        let path = Curve::Spline(Arc::new(way));
         self.go(MotionKind::Feed, &path, &MotionTarget::point(last))
     }
 
     /// A spline of the program's coordinates as one of the part frame. Positions of axes lie as the axes do, and the
     /// rotary ones stand still: seen from the part they are turned, and what is turned is a spline of turned points.
-    pub(super) fn spline_way(&self, from: &Stance, way: &BSpline) -> Interpolation {
+    pub(super) fn spline_way(&self, from: &Stance, way: &BSpline) -> Curve {
         let mut way = way.clone();
         if self.tip_words() {
             for (pole, _) in &mut way.poles {
                 *pole = self.to_part.out(*pole);
             }
-            return Interpolation::Spline(Arc::new(way));
+            return Curve::Spline(Arc::new(way));
         }
         let chain = self.state.solver.chain();
         let start = way.poles[0].0;
@@ -285,6 +285,6 @@ impl ControlState {
             let offset = self.to_work.out_direction(*pole - start);
             *pole = from.pose.tip + ways[0] * offset.x + ways[1] * offset.y + ways[2] * offset.z;
         }
-        Interpolation::Spline(Arc::new(way))
+        Curve::Spline(Arc::new(way))
     }
 }

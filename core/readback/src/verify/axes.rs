@@ -6,7 +6,7 @@ use post_machine::description::{Axis, Machine};
 use post_machine::kinematics::travel::passed;
 use post_machine::kinematics::{Joints, KeptTip, Slides, Solver, Trace};
 
-use crate::{Interpolation, Motion, MotionKind};
+use crate::{Curve, Interpolation, Motion, MotionKind};
 
 /// Distance beyond an end of travel that is rounding, mm or degrees.
 const ROUNDED: f64 = 0.0015;
@@ -53,7 +53,7 @@ impl AxisLimitCheck {
         let (mut least, mut most) = (motion.to.joints, motion.to.joints);
         match &motion.way {
             Interpolation::Axes => {}
-            Interpolation::Tip | Interpolation::TipAndAxis => {
+            Interpolation::Tip(Curve::Straight) | Interpolation::TipAndAxis => {
                 if let Some(slides) = slides(motion, &Joints::default(), f64::INFINITY) {
                     for joint in 0..machine.axes.len() {
                         if slides.least[joint] <= slides.most[joint] {
@@ -63,7 +63,7 @@ impl AxisLimitCheck {
                     }
                 }
             }
-            Interpolation::Arc { .. } | Interpolation::Spline(_) => {
+            Interpolation::Tip(_) => {
                 let mut last = [motion.from.joints; 2];
                 for (place, joints) in looked(motion).enumerate() {
                     for joint in 0..machine.axes.len() {
@@ -127,8 +127,8 @@ impl AxisLimitCheck {
                 slowest = Some((minutes, joint));
             }
         };
-        let follows = matches!(motion.way, Interpolation::Tip | Interpolation::TipAndAxis);
-        let curved = matches!(motion.way, Interpolation::Arc { .. } | Interpolation::Spline(_));
+        let curved = motion.way.is_curved();
+        let follows = motion.way != Interpolation::Axes && !curved;
         for joint in 0..machine.axes.len() {
             let way = libm::fabs(motion.to.joints[joint] - motion.from.joints[joint]);
             if !curved || machine.axes[joint].joint.rotary {
@@ -155,8 +155,8 @@ impl AxisLimitCheck {
 
 /// Number of places at which a curve is looked at.
 fn looks(motion: &Motion) -> u32 {
-    let turns = match motion.way {
-        Interpolation::Arc { sweep, .. } => libm::fabs(sweep) / TAU,
+    let turns = match motion.way.curve() {
+        Curve::Arc { sweep, .. } => libm::fabs(*sweep) / TAU,
         _ => 1.0,
     };
     // Of a short arc a parabola needs three places.

@@ -1,8 +1,8 @@
 //! Ways cut into pieces so short that each may be taken for straight.
 
 use super::place::{PlaceBound, ToolPlace};
-use crate::course::{Curve, Piece};
-use crate::{Interpolation, Motion};
+use crate::course::Piece;
+use crate::{Curve, Motion};
 
 /// Halvings of a piece at most: what bends more than this says is no way of a machine.
 const DEEPEST: u32 = 14;
@@ -48,42 +48,34 @@ fn halve(
 
 /// The way of a motion after its beginning.
 pub(super) fn motion(motion: &Motion, along: f64, sag: &PlaceBound, places: &mut Vec<ToolPlace>) {
-    let chain = motion.state.solver.chain();
-    let mut turn: f64 = 0.0;
-    for (index, joint) in chain.joints().iter().enumerate() {
-        if joint.rotary {
-            turn = turn.max((motion.to.joints[index] - motion.from.joints[index]).abs());
-        }
+    let joints = motion.state.solver.chain().joints().iter().enumerate();
+    let turns = joints.filter(|(_, joint)| joint.rotary).map(|(index, _)| {
+        let [from, to] = [&motion.from, &motion.to].map(|end| end.joints[index]);
+        (to - from).abs()
+    });
+    match first_pieces(motion.way.curve(), turns.fold(0.0, f64::max)) {
+        None => places.push(ToolPlace::new(&motion.to.pose, along)),
+        Some(first) => chop(|t| ToolPlace::new(&motion.at(t), along), first, sag, places),
     }
-    let first = match &motion.way {
-        Interpolation::Axes | Interpolation::Tip | Interpolation::TipAndAxis if turn == 0.0 => {
-            places.push(ToolPlace::new(&motion.to.pose, along));
-            return;
-        }
-        Interpolation::Axes | Interpolation::Tip | Interpolation::TipAndAxis => pieces_of(turn),
-        Interpolation::Arc { sweep, .. } => pieces_of(turn.max(sweep.abs())),
-        Interpolation::Spline(way) => 2 * way.poles.len() + pieces_of(turn),
-    };
-    chop(|t| ToolPlace::new(&motion.at(t), along), first, sag, places);
 }
 
 /// The way of a piece of a course after its beginning.
 pub(super) fn piece(piece: &Piece, along: f64, sag: &PlaceBound, places: &mut Vec<ToolPlace>) {
     let (from, to) = (ToolPlace::new(&piece.from, along), ToolPlace::new(&piece.to, along));
-    let turn = from.apart(&to).axis;
-    let first = match &piece.curve {
-        Curve::Straight if turn == 0.0 => {
-            places.push(to);
-            return;
-        }
-        Curve::Straight => pieces_of(turn),
-        Curve::Arc { sweep, .. } => pieces_of(turn.max(sweep.abs())),
-        Curve::Spline(way) => 2 * way.poles.len() + pieces_of(turn),
-    };
-    chop(|t| ToolPlace::new(&piece.at(t, along), along), first, sag, places);
+    match first_pieces(&piece.curve, from.apart(&to).axis) {
+        None => places.push(to),
+        Some(first) => chop(|t| ToolPlace::new(&piece.at(t, along), along), first, sag, places),
+    }
 }
 
-fn pieces_of(turn: f64) -> usize {
+/// In how many pieces a curve is looked at first on which the tool turns by so much, radians; none of what is straight.
+fn first_pieces(curve: &Curve, turn: f64) -> Option<usize> {
+    let poles = match curve {
+        Curve::Straight if turn == 0.0 => return None,
+        Curve::Spline(way) => 2 * way.poles.len(),
+        _ => 0,
+    };
     // A number of pieces, bounded whatever the program says of turns.
-    (libm::ceil(turn / TURN).max(1.0) as usize).min(4096)
+    let pieces = (libm::ceil(turn.max(curve.turn()) / TURN).max(1.0) as usize).min(4096);
+    Some(poles + pieces)
 }

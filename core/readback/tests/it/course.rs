@@ -160,8 +160,13 @@ fn a_table_that_turns_under_a_standing_tool_draws_a_circle() {
     assert!(sagitta(count as f64 * 0.9) > 0.01, "{count}");
     // The tool points where it did: its axis asks for no pieces.
     assert_eq!(
-        motion(&state, Interpolation::Tip, at(0.0, 30.0, 0.0, 5.0), at(TAU, 30.0, 0.0, 5.0))
-            .pieces(0.01, 1e-3),
+        motion(
+            &state,
+            Interpolation::Tip(Curve::Straight),
+            at(0.0, 30.0, 0.0, 5.0),
+            at(TAU, 30.0, 0.0, 5.0)
+        )
+        .pieces(0.01, 1e-3),
         1
     );
 }
@@ -169,8 +174,11 @@ fn a_table_that_turns_under_a_standing_tool_draws_a_circle() {
 #[test]
 fn arcs_splines_and_kept_tips_go_as_they_say() {
     let state = turntable();
-    let way =
-        Interpolation::Arc { centre: V::new(0.0, 0.0, 9.0), normal: -V::z(), sweep: 0.75 * TAU };
+    let way = Interpolation::Tip(Curve::Arc {
+        centre: V::new(0.0, 0.0, 9.0),
+        normal: -V::z(),
+        sweep: 0.75 * TAU,
+    });
     let mut arc = motion(&state, way, at(0.0, 10.0, 0.0, 0.0), at(0.0, 0.0, 10.0, 3.0));
     assert!((arc.at(1.0 / 3.0).tip - V::new(0.0, -10.0, 1.0)).norm() < 1e-12);
     assert!((arc.at(2.0 / 3.0).tip - V::new(-10.0, 0.0, 2.0)).norm() < 1e-12);
@@ -183,7 +191,7 @@ fn arcs_splines_and_kept_tips_go_as_they_say() {
         poles: corners.iter().map(|corner| (*corner, 1.0)).collect(),
     });
     assert!(way.is_sound());
-    arc.way = Interpolation::Spline(Arc::clone(&way));
+    arc.way = Interpolation::Tip(Curve::Spline(Arc::clone(&way)));
     for step in 0..=10 {
         let t = f64::from(step) / 10.0;
         let s = 1.0 - t;

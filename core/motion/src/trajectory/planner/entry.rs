@@ -4,7 +4,7 @@ use post_machine::kinematics::Joints;
 
 use super::Planner;
 use crate::limits::MoveLimits;
-use crate::path::{Interpolation, turns};
+use crate::path::{Curve, turns};
 use crate::trajectory::TimeLimit;
 use crate::trajectory::bounds::MoveBounds;
 use crate::trajectory::side::CornerSide;
@@ -53,14 +53,9 @@ impl Planner {
         asked: Option<f64>,
         at: ProgramPlace,
     ) -> OpenMove {
-        let sweep = match &task.way {
-            Interpolation::Arc { sweep, .. }
-                if !turns(task.solver.chain(), [&task.from, &task.to]) =>
-            {
-                Some(libm::fabs(*sweep))
-            }
-            _ => None,
-        };
+        let standing = !turns(task.solver.chain(), [&task.from, &task.to]);
+        let is_arc = matches!(task.way.curve(), Curve::Arc { .. });
+        let sweep = (is_arc && standing).then(|| task.way.curve().turn());
         let feed = asked.unwrap_or(0.0);
         let bounds = |share: f64| {
             let seconds = feed.max(self.block_time);

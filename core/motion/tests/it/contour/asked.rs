@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Rotation3;
 use post_machine::kinematics::Joints;
-use post_motion::path::Interpolation;
+use post_motion::path::Curve;
 
 use super::{Point, joints, leg, machine, run_against};
 
@@ -16,14 +16,14 @@ fn the_tool_is_held_against_the_path_that_is_asked_for() {
         let (sine, cosine) = libm::sincos(angle);
         Point::new(radius * cosine, radius * sine, rise * angle)
     };
-    let arc = |sweep| Interpolation::Arc { centre: Point::zeros(), normal: Point::z(), sweep };
+    let arc = |sweep| Curve::Arc { centre: Point::zeros(), normal: Point::z(), sweep };
     let far = Point::new(80.0, 30.0, -5.0);
     let turn = 1.5 * TAU;
     let legs = vec![
         leg(7, arc(TAU), on(0.0, 20.0, 0.0), on(0.0, 20.0, 0.0)),
         leg(8, arc(TAU), on(0.0, 20.0, 0.0), on(0.0, 20.0, 0.0)),
-        leg(11, Interpolation::Tip, far, far + Point::x() * 40.0),
-        leg(12, Interpolation::Tip, far + Point::x() * 40.0, far + Point::new(40.0, 40.0, 0.0)),
+        leg(11, Curve::Straight, far, far + Point::x() * 40.0),
+        leg(12, Curve::Straight, far + Point::x() * 40.0, far + Point::new(40.0, 40.0, 0.0)),
         leg(20, arc(turn), on(0.0, 20.0, 2.0), on(turn, 20.0, 2.0)),
     ];
     let (program, off) = (0.004, 0.03);

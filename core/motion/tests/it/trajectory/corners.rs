@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use post_machine::description::Machine;
-use post_motion::path::Interpolation;
+use post_motion::path::{Curve, Interpolation};
 use post_motion::trajectory::TimeLimit;
 use post_motion::{CornerMode, MovePace, Task, WaitReason};
 use post_testkit::{Rng, randomised};
@@ -25,7 +25,7 @@ fn square(
     for pair in points.windows(2) {
         let to = program.stance([pair[1].x, pair[1].y, 0.0], &program.here.joints);
         let minutes = (pair[1] - pair[0]).norm() / feed;
-        program.go(Interpolation::Tip, to, MovePace::Minutes(minutes), corner);
+        program.go(Interpolation::Tip(Curve::Straight), to, MovePace::Minutes(minutes), corner);
     }
     (program, points)
 }
@@ -77,7 +77,7 @@ fn where_a_standstill_is_asked_for_the_end_is_reached() {
             let tip = program.here.pose.tip + rng.point(20.0);
             let to = program.stance([tip.x, tip.y, tip.z], &program.here.joints);
             program.go(
-                Interpolation::Tip,
+                Interpolation::Tip(Curve::Straight),
                 to,
                 MovePace::Minutes(0.001),
                 CornerMode::Blend { tolerance: None },
@@ -145,7 +145,12 @@ fn a_stop_takes_as_long_as_axes_need_to_be_in_position() {
         let (mut program, _) = square(&machine, 1.0, CornerMode::Stop, 3000.0);
         program.tasks.push(Task::Wait { line: 9, seconds: 1.0, why: WaitReason::Dwell });
         let to = program.stance([0.0; 3], &program.here.joints);
-        program.go(Interpolation::Tip, to, MovePace::Minutes(0.01), CornerMode::Stop);
+        program.go(
+            Interpolation::Tip(Curve::Straight),
+            to,
+            MovePace::Minutes(0.01),
+            CornerMode::Stop,
+        );
         let run = run(&machine, &program.tasks, &program.solver, 100);
         let last = run.times.last().expect("moves");
         (last.begins + last.seconds, run.times[0].limit)

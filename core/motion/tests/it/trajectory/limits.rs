@@ -1,7 +1,7 @@
 //! No limit is passed, whatever comes.
 
 use post_machine::description::Machine;
-use post_motion::path::Interpolation;
+use post_motion::path::{Curve, Interpolation};
 use post_motion::{CornerMode, MovePace, SetPoints, Task, WaitReason};
 use post_testkit::{Rng, randomised};
 
@@ -107,7 +107,7 @@ fn moves_with_a_standstill_behind_each_keep_all_limits() {
     for round in rounds {
         let drawn = Drawn::new(&mut rng, round % 2 == 0);
         let machine = drawn.machine("period = 0.0005", 1.0);
-        let way = [Interpolation::Axes, Interpolation::Tip][rng.pick(2)].clone();
+        let way = [Interpolation::Axes, Interpolation::Tip(Curve::Straight)][rng.pick(2)].clone();
         let program = moves(&mut rng, &machine, 30, &way, |_| CornerMode::Stop);
         let run = run(&machine, &program.tasks, &program.solver, 100);
         let ratios = ratios(&run.points, &machine);
@@ -184,7 +184,7 @@ fn it_does_not_matter_how_many_set_points_are_asked_for_at_once() {
     for round in rounds {
         let drawn = Drawn::new(&mut rng, round % 2 == 0);
         let machine = drawn.machine("look_ahead = 7", 1.0);
-        let way = [Interpolation::Axes, Interpolation::Tip][rng.pick(2)].clone();
+        let way = [Interpolation::Axes, Interpolation::Tip(Curve::Straight)][rng.pick(2)].clone();
         let program = moves(&mut rng, &machine, 40, &way, |rng| {
             [CornerMode::Path, CornerMode::Stop, CornerMode::Blend { tolerance: None }][rng.pick(3)]
         });

@@ -3,7 +3,7 @@
 
 use std::process::Command;
 
-use post_motion::path::Interpolation;
+use post_motion::path::{Curve, Interpolation};
 use post_motion::{CornerMode, MovePace, Task, WaitReason};
 use post_testkit::shared;
 
@@ -51,7 +51,7 @@ fn overlapping_moves_go_as_those_of_linuxcnc() {
             None => (MovePace::Rapid, CornerMode::Stop),
             Some(feed) => (MovePace::Minutes(length / feed), blend),
         };
-        program.go(Interpolation::Tip, to, pace, corner);
+        program.go(Interpolation::Tip(Curve::Straight), to, pace, corner);
     };
     go(&mut program, [0.0, 0.0, 60.0, 0.0, 0.0], None);
     go(&mut program, [10.0, 20.0, 30.0, 0.0, 0.0], Some(3000.0));

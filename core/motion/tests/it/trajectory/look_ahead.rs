@@ -1,7 +1,7 @@
 //! Many blocks in one go.
 
 use post_machine::description::Machine;
-use post_motion::path::Interpolation;
+use post_motion::path::{Curve, Interpolation};
 use post_motion::{CornerMode, MovePace};
 use post_testkit::{Rng, randomised};
 
@@ -162,7 +162,12 @@ fn a_curve_of_many_blocks_is_gone_round_at_its_feed() {
         joints[1] = 0.2 * cosine - 0.2;
         let to = program.stance([50.0 * cosine, 50.0 * sine, 5.0 * sine * sine], &joints);
         let length = (to.pose.tip - program.here.pose.tip).norm();
-        program.go(Interpolation::Tip, to, MovePace::Minutes(length / feed), CornerMode::Path);
+        program.go(
+            Interpolation::Tip(Curve::Straight),
+            to,
+            MovePace::Minutes(length / feed),
+            CornerMode::Path,
+        );
     }
     let begun = std::time::Instant::now();
     let run = run(&machine, &program.tasks, &program.solver, 1000);

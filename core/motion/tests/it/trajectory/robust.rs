@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use post_machine::kinematics::Joints;
-use post_motion::path::{Interpolation, on_arc};
+use post_motion::path::{Curve, Interpolation, on_arc};
 use post_motion::{CornerMode, MovePace, Task, WaitReason};
 use post_testkit::{Rng, randomised};
 
@@ -51,10 +51,10 @@ fn step(rng: &mut Rng, program: &mut Program, count: usize) {
             let end = centre + turned;
             assert!((on_arc([here.pose.tip, end], centre, normal, sweep, 1.0) - end).norm() < 1e-9);
             let to = program.stance([end.x, end.y, end.z], &joints);
-            let way = Interpolation::Arc { centre, normal, sweep };
+            let way = Interpolation::Tip(Curve::Arc { centre, normal, sweep });
             return program.go(way, to, pace, corner);
         }
-        _ => Interpolation::Tip,
+        _ => Interpolation::Tip(Curve::Straight),
     };
     let to = program.stance([tip.x, tip.y, tip.z], &joints);
     program.go(way, to, pace, corner);

@@ -8,7 +8,7 @@ use post_machine::kinematics::{Joints, MAX_AXES};
 use post_testkit::repository;
 
 use post_motion::limits::{AxisLimits, of};
-use post_motion::path::{BSpline, Interpolation, Stance};
+use post_motion::path::{BSpline, Curve, Interpolation, Stance};
 use post_motion::{CornerMode, Move, MovePace};
 
 /// Values of the dense samples: axes, then the tip.
@@ -174,12 +174,12 @@ fn bounds_hold_along_every_way() {
         ] {
             let straight = |way| task(&machine, way, tips, angles);
             check(&format!("{name} axes"), &machine, &straight(Interpolation::Axes));
-            check(&format!("{name} tip"), &machine, &straight(Interpolation::Tip));
-            let circle = Interpolation::Arc {
+            check(&format!("{name} tip"), &machine, &straight(Interpolation::Tip(Curve::Straight)));
+            let circle = Interpolation::Tip(Curve::Arc {
                 centre: Vector3::new(25.0, 5.0, 0.0),
                 normal: Vector3::z(),
                 sweep: 1.25 * std::f64::consts::PI,
-            };
+            });
             let helix = task(
                 &machine,
                 circle,
@@ -188,7 +188,7 @@ fn bounds_hold_along_every_way() {
             );
             check(&format!("{name} arc"), &machine, &helix);
         }
-        let spline = Interpolation::Spline(Arc::new(BSpline {
+        let spline = Interpolation::Tip(Curve::Spline(Arc::new(BSpline {
             degree: 3,
             knots: vec![0.0, 0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 2.0, 2.0],
             poles: [
@@ -200,7 +200,7 @@ fn bounds_hold_along_every_way() {
             ]
             .map(|pole| (Vector3::from(pole), 1.0))
             .to_vec(),
-        }));
+        })));
         let spline = task(&machine, spline, tips, [[5.0, -10.0]; 2]);
         check(&format!("{name} spline"), &machine, &spline);
     }

@@ -3,12 +3,12 @@
 use nalgebra::Vector3;
 
 use super::{Answer, BlockNames, afterwards, functions, modes, plane};
-use crate::MotionKind;
 use crate::interpret::block::BlockRequest;
 use crate::interpret::block_words::{BlockWords, bit};
 use crate::interpret::cycles;
-use crate::interpret::go::{self, MotionTarget};
+use crate::interpret::go::MotionTarget;
 use crate::interpret::state::{ArcPlane, ControlState};
+use crate::{Curve, MotionKind};
 
 /// Names that may stand in a block of the path.
 const NAMES: &[&str] = &["R0", "RL", "RR", "FMAX", "FAUTO", "DR+", "DR-", "MB MAX", "MAX"];
@@ -89,7 +89,7 @@ fn straight(
     } else if moving && !words.m.has(94) {
         let mut target = control.target(words)?;
         target.vector = vector;
-        travel(control, kind, &go::WordPath::Straight, &target)?;
+        travel(control, kind, &Curve::Straight, &target)?;
     }
     afterwards(control, functions, &asked)?;
     left_over(control, words)
@@ -99,19 +99,19 @@ fn straight(
 fn travel(
     control: &mut ControlState,
     kind: MotionKind,
-    path: &go::WordPath,
+    path: &Curve,
     target: &MotionTarget,
 ) -> Answer<()> {
     let from = control.point();
     control.go(kind, path, target)?;
     let to = control.point();
     control.path.heading = match path {
-        go::WordPath::Straight => (to - from).try_normalize(SHARED),
-        go::WordPath::Arc { centre, normal, sweep } => {
+        Curve::Straight => (to - from).try_normalize(SHARED),
+        Curve::Arc { centre, normal, sweep } => {
             let tangent = normal.cross(&(to - centre)) * if *sweep < 0.0 { -1.0 } else { 1.0 };
             tangent.try_normalize(SHARED)
         }
-        go::WordPath::Spline(_) => None,
+        Curve::Spline(_) => None,
     };
     cycles::at_point(control)
 }
@@ -183,7 +183,7 @@ pub(super) fn curve(
             let polar = polar(control, said, from)?;
             (end.x, end.y) = (polar.end.x, polar.end.y);
             match (name, clockwise) {
-                ("LP", _) => go::WordPath::Straight,
+                ("LP", _) => Curve::Straight,
                 (_, Some(clockwise)) => polar.arc(control, from, clockwise)?,
                 (_, None) => return Err(control.refuse("nc-arc", "CP without DR+ or DR-")),
             }
@@ -202,7 +202,7 @@ fn about_pole(
     from: Vector3<f64>,
     to: Vector3<f64>,
     clockwise: bool,
-) -> Answer<go::WordPath> {
+) -> Answer<Curve> {
     let [Some(x), Some(y), z] = control.path.pole else {
         return Err(control.refuse("nc-arc", "C without CC in front of it"));
     };
@@ -225,7 +225,7 @@ fn arc(
     to: Vector3<f64>,
     mut centre: Vector3<f64>,
     clockwise: bool,
-) -> Answer<go::WordPath> {
+) -> Answer<Curve> {
     if control.tools.across != ArcPlane::Xy {
         let message = "an arc with the tool along X or Y (TOOL CALL) is not run";
         return Err(control.refuse("nc-arc", message));
@@ -234,15 +234,11 @@ fn arc(
     let flat = |point: Vector3<f64>| [point[first], point[second]];
     let sweep = control.sweep([flat(from), flat(to), flat(centre)], clockwise)?;
     centre[third] = from[third];
-    Ok(go::WordPath::Arc { centre, normal: plane.normal(), sweep })
+    Ok(Curve::Arc { centre, normal: plane.normal(), sweep })
 }
 
 /// An arc that goes on from where the last motion led, without a corner.
-fn tangential(
-    control: &ControlState,
-    from: Vector3<f64>,
-    to: Vector3<f64>,
-) -> Answer<go::WordPath> {
+fn tangential(control: &ControlState, from: Vector3<f64>, to: Vector3<f64>) -> Answer<Curve> {
     let heading = control.path.heading.map(|heading| [heading.x, heading.y]);
     let Some([hx, hy]) = heading.filter(|[x, y]| libm::hypot(*x, *y) > SHARED) else {
         return Err(control.refuse(
@@ -257,7 +253,7 @@ fn tangential(
     let across = hx * dy - hy * dx;
     let chord = dx * dx + dy * dy;
     if libm::fabs(across) <= 1e-9 * chord.sqrt() || chord == 0.0 {
-        return Ok(go::WordPath::Straight);
+        return Ok(Curve::Straight);
     }
     let radius = chord / (2.0 * across);
     let centre = Vector3::new(from.x - hy * radius, from.y + hx * radius, from.z);
@@ -300,17 +296,12 @@ fn polar(control: &ControlState, said: &BlockNames<'_>, from: Vector3<f64>) -> A
 
 impl PolarEnd {
     /// `CP`: more than a turn where `IPA` says so.
-    fn arc(
-        &self,
-        control: &ControlState,
-        from: Vector3<f64>,
-        clockwise: bool,
-    ) -> Answer<go::WordPath> {
+    fn arc(&self, control: &ControlState, from: Vector3<f64>, clockwise: bool) -> Answer<Curve> {
         if let Some(by) = self.by {
             if by != 0.0 && (by < 0.0) != clockwise {
                 return Err(control.refuse("nc-arc", "CP turns the other way than DR says"));
             }
-            return Ok(go::WordPath::Arc { centre: self.centre, normal: Vector3::z(), sweep: by });
+            return Ok(Curve::Arc { centre: self.centre, normal: Vector3::z(), sweep: by });
         }
         arc(control, ArcPlane::Xy, from, self.end, self.centre, clockwise)
     }

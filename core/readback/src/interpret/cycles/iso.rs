@@ -8,9 +8,9 @@ use super::hole::{CycleHole, HoleDwell, Pecking, Withdrawal};
 use super::{drill, feed_a_minute};
 use crate::interpret::block::SpindleRequest;
 use crate::interpret::block_words::{BlockWords, bit};
-use crate::interpret::go::{MotionTarget, WordPath};
+use crate::interpret::go::MotionTarget;
 use crate::interpret::state::ControlState;
-use crate::{CycleKind, MotionKind};
+use crate::{Curve, CycleKind, MotionKind};
 
 /// Distance above the depth that was reached to which the tool comes at rapid, and by which it is drawn back to break a
 /// chip, mm: LinuxCNC's ten thousandths of an inch; of other controls it is a parameter.
@@ -86,7 +86,7 @@ pub(super) fn hole(
             }
         }
         if target.point[first].is_some() || target.point[second].is_some() || target.said != 0 {
-            control.go(MotionKind::Rapid, &WordPath::Straight, &target)?;
+            control.go(MotionKind::Rapid, &Curve::Straight, &target)?;
         }
         make(control, &running, &hole)
     });

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 use post_plugin::Language;
-use post_readback::{Interpolation, Offsets, WorkOffset};
+use post_readback::{Curve, Interpolation, Offsets, WorkOffset};
 use post_testkit::randomised;
 use post_testmachines::Reference;
 
@@ -113,7 +113,7 @@ fn where_the_control_keeps_the_tip_words_are_the_tip() {
             let text = format!("T3 M6\nG43.4 H3\nG1 F500 X0 Y0 Z0\n{words}\n");
             let done = ran(&machine, LETTERS, &offsets, &text).whole();
             let motion = done.last();
-            assert_eq!(motion.way, Interpolation::Tip, "{name}");
+            assert_eq!(motion.way, Interpolation::Tip(Curve::Straight), "{name}");
             for (place, value) in turns {
                 assert!((motion.to.joints[place] - value).abs() < 1e-12, "{name}: {words}");
             }
@@ -219,9 +219,9 @@ fn arcs_of_axis_positions_lie_as_the_axes_do_on_the_part() {
         );
         let done = letters(&machine, &text).whole();
         let motion = done.last();
-        assert!(matches!(motion.way, Interpolation::Arc { .. }));
+        assert!(matches!(motion.way, Interpolation::Tip(Curve::Arc { .. })));
         // Along the arc the tip is where the axes, going round in their own plane, bring it.
-        let Interpolation::Arc { sweep, .. } = motion.way else { unreachable!() };
+        let Interpolation::Tip(Curve::Arc { sweep, .. }) = motion.way else { unreachable!() };
         let names = match &plane[..3] {
             "G17" => ["X", "Y"],
             "G18" => ["X", "Z"],

@@ -2,7 +2,7 @@
 
 use post_machine::description::Machine;
 use post_plugin::{Language, Meaning as M};
-use post_readback::{BSpline, Interpolation, Motion, MotionKind, Offsets};
+use post_readback::{BSpline, Curve, Interpolation, Motion, MotionKind, Offsets};
 
 use super::{LETTERS, Ran, machine, ran, ran_in};
 
@@ -49,7 +49,7 @@ fn even(text: &str) -> Ran {
 
 fn spline(ran: &Ran) -> (&Motion, &BSpline) {
     let mut splines = ran.motions.iter().filter_map(|motion| match &motion.way {
-        Interpolation::Spline(way) => Some((motion, &**way)),
+        Interpolation::Tip(Curve::Spline(way)) => Some((motion, &**way)),
         _ => None,
     });
     let found = splines.next().unwrap();

@@ -123,10 +123,8 @@ fn posted_step(line: u64, step: ProgramStep, beats: &mut Vec<Beat>) {
             beats.push(to(&step.end));
         }
         ProgramStep::Spline(step) => {
-            let mut points = Vec::new();
-            step.spline.flatten(0.0005, &mut |point, _| points.push(point));
-            points.pop();
-            beats.push(Beat::Through(points));
+            let points = (1..500).map(|place| step.spline.at(f64::from(place) / 500.0));
+            beats.push(Beat::Through(points.collect()));
             beats.push(to(&step.end));
         }
         ProgramStep::Cycle(step) => {

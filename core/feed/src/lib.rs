@@ -39,7 +39,6 @@
 //! *Never here:* input or output, `unsafe`, trigonometry of the platform, an allocation a sample on the way of
 //! [`reach::Stream`], a plan that breaks a limit because an iteration was stopped.
 
-pub mod curve;
 mod feed_spline;
 pub mod fit;
 mod infeasible;

@@ -7,9 +7,10 @@
 use nalgebra::Vector3;
 use post_machine::description::{Arcs, Machine, Tcp};
 use post_machine::kinematics::Joints;
+use post_motion::path::BSpline;
 use post_plugin::Capabilities;
 
-use crate::program::{BSpline, MoveFeed, PathArc, StraightMove};
+use crate::program::{MoveFeed, PathArc, StraightMove};
 
 /// A curve of the CL file that may stay one: the tool axis stands along it, and it is cut at a feed.
 #[derive(Clone, Debug, PartialEq)]

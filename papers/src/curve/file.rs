@@ -32,7 +32,6 @@
 //! The axes are X, Y, Z of a machine whose axes carry the tool along the part's; with limits of two rotary axes (A and
 //! C, B and C), or rotary values, those of a table whose axes meet in the part origin, C carrying the part on the other.
 
-use post_feed::curve::{CurveFault, NurbsCurve};
 use post_machine::diagnostic::Diagnostic;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -42,6 +41,9 @@ use super::limits::FileLimits;
 
 /// Longest curve file, bytes.
 pub const MOST_BYTES: u64 = 64 << 20;
+
+/// The highest degree that is planned along.
+const MOST_DEGREE: usize = 7;
 
 /// No coordinate is larger, mm: a slip of the unit would be.
 const MOST_COORDINATE: f64 = 1e6;
@@ -197,37 +199,39 @@ fn splines<'a>(
         plane,
         pointing: pointing(json, keys, tip.len())?,
     };
-    let made = NurbsCurve::new(
-        degree,
-        splines.knots.clone(),
-        splines.tip.clone(),
-        splines.weights.clone(),
-    );
-    made.map_err(|fault| {
-        let (raw, help) = match fault {
-            CurveFault::Order { knot } => (
-                knots.get(knot).map(|(_, raw)| *raw),
-                "knots never fall, and the first and the last of the curve differ",
-            ),
-            CurveFault::Weight { point } => (
-                weights.get(point).map(|(_, raw)| *raw),
-                "a weight above zero for each control point; leave weights out where all are 1",
-            ),
-            CurveFault::Point { point } => (tip.get(point).map(|(_, raw)| *raw), ""),
-            _ => (None, ""),
-        };
-        let count = splines.tip.len();
-        let message = match fault {
-            CurveFault::Knots => format!(
-                "there are {} knots; degree {degree} and {count} control points need {}",
-                knots.len(),
-                count + degree + 1
-            ),
-            other => other.to_string(),
-        };
-        json.fault(raw.unwrap_or(raw_knots), message, help)
-    })?;
-    if let Some(place) = corner(degree, &splines.knots, count_of(&splines)) {
+    let count = splines.tip.len();
+    if !(1..=MOST_DEGREE).contains(&degree) {
+        let message = format!("the degree is not one of 1 to {MOST_DEGREE}");
+        return Err(json.fault(raw_knots, message, ""));
+    }
+    if count <= degree {
+        let message = "there are fewer control points than the degree and one";
+        return Err(json.fault(raw_knots, message, ""));
+    }
+    if knots.len() != count + degree + 1 {
+        let message = format!(
+            "there are {} knots; degree {degree} and {count} control points need {}",
+            knots.len(),
+            count + degree + 1
+        );
+        return Err(json.fault(raw_knots, message, ""));
+    }
+    let falls = knots.windows(2).position(|pair| pair[0].0 > pair[1].0).map(|before| before + 1);
+    let empty = (knots[degree].0 == knots[count].0).then_some(count);
+    if let Some(place) = falls.or(empty) {
+        let message = format!("knot {place} does not follow the one before");
+        let help = "knots never fall, and the first and the last of the curve differ";
+        return Err(json.fault(knots[place].1, message, help));
+    }
+    let missing = (weights.len() != count).then_some(weights.len().min(count));
+    let bad = weights.iter().position(|(weight, _)| *weight <= 0.0).or(missing);
+    if let Some(place) = bad.filter(|_| !weights.is_empty()) {
+        let message = format!("the weight of control point {place} is missing or not positive");
+        let help = "a weight above zero for each control point; leave weights out where all are 1";
+        let raw = weights.get(place).map_or(raw_knots, |(_, raw)| *raw);
+        return Err(json.fault(raw, message, help));
+    }
+    if let Some(place) = corner(degree, &splines.knots, count) {
         let raw = knots.get(place).map_or(raw_knots, |(_, raw)| *raw);
         let message = format!(
             "knot {} stands {degree} times or more inside the curve, which may jump there",
@@ -236,10 +240,6 @@ fn splines<'a>(
         return Err(json.fault(raw, message, "make a curve file of each part"));
     }
     Ok(splines)
-}
-
-fn count_of(splines: &Splines) -> usize {
-    splines.tip.len()
 }
 
 /// A knot inside the curve that stands more often than the degree: the curve itself jumps there.

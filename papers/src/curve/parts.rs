@@ -1,8 +1,8 @@
 //! Splines cut where their first or second derivatives jump.
 
 use nalgebra::Vector3;
-use post_feed::curve::NurbsCurve;
 use post_machine::kinematics::ORDERS;
+use post_motion::path::BSpline;
 
 use super::file::{Pointing, Splines};
 
@@ -17,32 +17,20 @@ pub struct Part {
 }
 
 impl Part {
-    pub fn curve<const D: usize>(self, splines: &Splines, points: &[[f64; D]]) -> NurbsCurve<D> {
-        let weights = match splines.weights.is_empty() {
-            true => Vec::new(),
-            false => splines.weights[self.first..self.first + self.count].to_vec(),
-        };
-        self.made(splines, points, weights)
+    pub fn curve<const D: usize>(self, splines: &Splines, points: &[[f64; D]]) -> BSpline<D> {
+        let mut curve = self.unweighted(splines, points);
+        for ((_, weight), told) in
+            curve.poles.iter_mut().zip(splines.weights.iter().skip(self.first))
+        {
+            *weight = *told;
+        }
+        curve
     }
 
-    pub fn unweighted<const D: usize>(
-        self,
-        splines: &Splines,
-        points: &[[f64; D]],
-    ) -> NurbsCurve<D> {
-        self.made(splines, points, Vec::new())
-    }
-
-    #[expect(clippy::expect_used, reason = "a part of knots that were good is good")]
-    fn made<const D: usize>(
-        self,
-        splines: &Splines,
-        points: &[[f64; D]],
-        weights: Vec<f64>,
-    ) -> NurbsCurve<D> {
+    pub fn unweighted<const D: usize>(self, splines: &Splines, points: &[[f64; D]]) -> BSpline<D> {
         let knots = &splines.knots[self.first..self.first + self.count + splines.degree + 1];
-        let points = &points[self.first..self.first + self.count];
-        NurbsCurve::new(splines.degree, knots.to_vec(), points.to_vec(), weights).expect("a curve")
+        let points = points[self.first..self.first + self.count].iter().copied();
+        BSpline::unweighted(splines.degree, knots.to_vec(), points)
     }
 }
 
@@ -73,11 +61,11 @@ pub fn smooth_parts(splines: &Splines) -> Vec<Part> {
 
 /// Whether derivatives differ where one part meets the next.
 fn jumps(splines: &Splines, before: Part, after: Part) -> bool {
-    let differ = |left: [[f64; 3]; ORDERS], right: [[f64; 3]; ORDERS]| {
+    let differ = |left: [Vector3<f64>; ORDERS], right: [Vector3<f64>; ORDERS]| {
         // What is rounding of a line's second derivative is no jump.
-        let rounding = 1e-9 * Vector3::from(left[1]).norm();
+        let rounding = 1e-9 * left[1].norm();
         (0..3).any(|order| {
-            let (a, b) = (Vector3::from(left[order]), Vector3::from(right[order]));
+            let (a, b) = (left[order], right[order]);
             (a - b).norm() > SMOOTH * (a.norm() + b.norm()) + rounding
         })
     };

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use post_command::shared::plan::gauges::Station;
 use post_feed::Samples;
-use post_feed::curve::NurbsCurve;
 use post_machine::axis_words;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Short};
 use post_machine::kinematics::choose::{Limit, Turning};
 use post_machine::kinematics::{Course, Joints, Pose, Solver, Unreachable, direction, travel};
+use post_motion::path::BSpline;
 use post_posting::plan::SampledAxes;
 
 use super::file::{Pointing, Splines};
@@ -54,8 +54,8 @@ impl Stretch {
 /// How the tool points along a stretch.
 enum CurvePointing {
     Fixed,
-    Second(NurbsCurve<3>),
-    Axis(NurbsCurve<3>),
+    Second(BSpline<3>),
+    Axis(BSpline<3>),
     Rotary(Vec<(usize, Track<1>)>),
 }
 
@@ -267,10 +267,10 @@ impl<'m> CurvePath<'m> {
             pointing => {
                 let along = match pointing {
                     CurvePointing::Second(curve) => {
-                        let second = curve.derivatives(parameter).map(Vector3::from);
+                        let second = curve.derivatives(parameter);
                         std::array::from_fn(|order| second[order] - vectors[order])
                     }
-                    CurvePointing::Axis(curve) => curve.derivatives(parameter).map(Vector3::from),
+                    CurvePointing::Axis(curve) => curve.derivatives(parameter),
                     _ => [Vector3::z(), Vector3::zeros(), Vector3::zeros(), Vector3::zeros()],
                 };
                 let axis = direction(&along).ok_or(NoStation::NoAxis)?;

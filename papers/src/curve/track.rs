@@ -1,7 +1,7 @@
 //! Curves that are planned along: those of the file, and those that are laid through its points.
 
-use post_feed::curve::NurbsCurve;
 use post_feed::fit::{self, Fit, Leg, Rules};
+use post_motion::path::BSpline;
 
 /// Derivatives that are known at the start of a piece, with its value.
 const ORDERS: usize = 4;
@@ -11,7 +11,7 @@ const FACTORIALS: [f64; ORDERS] = [1.0, 1.0, 2.0, 6.0];
 /// A curve of `D` coordinates by its parameter.
 pub enum Track<const D: usize> {
     /// As the file has it.
-    Spline(NurbsCurve<D>),
+    Spline(BSpline<D>),
     /// Through points.
     Pieces(Pieces<D>),
 }
@@ -20,7 +20,7 @@ impl<const D: usize> Track<D> {
     /// Value and first to third derivative.
     pub fn derivatives(&self, parameter: f64) -> [[f64; D]; ORDERS] {
         match self {
-            Self::Spline(curve) => curve.derivatives(parameter),
+            Self::Spline(curve) => curve.derivatives(parameter).map(Into::into),
             Self::Pieces(pieces) => pieces.derivatives(parameter),
         }
     }

@@ -18,6 +18,10 @@ mod properties;
 mod streaming;
 mod support;
 mod units;
+// The evaluation of B-splines, which no limit and no solver needs.
+#[path = "../../../motion/src/path/spline.rs"]
+#[allow(dead_code, reason = "tests do not use all of a file")]
+mod spline;
 
-// As the files in `units` name them.
-use post_feed::{curve, problem};
+// As the files in `units` name it.
+use post_feed::problem;

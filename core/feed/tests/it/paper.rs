@@ -2,7 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use post_feed::curve::NurbsCurve;
 use post_feed::jerk;
 use post_feed::limits::{
     AxisAcceleration, AxisJerk, AxisVelocity, ChordError, Collocation, ContourError, Feed, Limit,
@@ -11,6 +10,7 @@ use post_feed::limits::{
 use post_feed::response::Response;
 use post_feed::{EndSpeeds, Problem, Samples, linear_program, profile, reach};
 
+use crate::spline::BSpline;
 use crate::support::paths::{butterfly, even, length, plane, spans};
 use crate::support::servo::{Pid, Transfer};
 
@@ -166,7 +166,7 @@ fn contour_error(samples: &Samples, plan: &[f64], axes: &[&dyn Response]) -> f64
 }
 
 /// The largest share of the limits of velocity and acceleration that a plan uses between samples, by the curve itself.
-fn used(curve: &NurbsCurve<2>, parameters: &[f64], plan: &[f64]) -> f64 {
+fn used(curve: &BSpline<2>, parameters: &[f64], plan: &[f64]) -> f64 {
     let mut most: f64 = 0.0;
     for (at, q) in parameters.windows(2).zip(plan.windows(2)) {
         let step = at[1] - at[0];

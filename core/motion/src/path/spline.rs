@@ -1,6 +1,6 @@
-//! Points of rational B-splines.
+//! Rational B-splines: points, derivatives to third order, blossoms.
 
-use nalgebra::{Vector3, Vector4};
+use nalgebra::SVector;
 
 /// The highest degree that is evaluated.
 const MOST_DEGREE: usize = 9;
@@ -8,20 +8,41 @@ const MOST_DEGREE: usize = 9;
 /// Pieces whose chords are added up, for each span of the knots.
 const CHORDS: u32 = 64;
 
-/// A rational B-spline.
+/// A rational B-spline of `D` coordinates.
 #[derive(Clone, Debug, PartialEq)]
-pub struct BSpline {
+pub struct BSpline<const D: usize = 3> {
     /// Degree.
     pub degree: usize,
     /// Knots, as many as poles + degree + 1.
     pub knots: Vec<f64>,
     /// Poles, mm, part frame, and their weights.
-    pub poles: Vec<(Vector3<f64>, f64)>,
+    pub poles: Vec<(SVector<f64, D>, f64)>,
 }
 
-impl BSpline {
-    /// Whether it can be evaluated: the degree is from 1 to 9, the knots never fall and are as many as poles + degree +
-    /// 1, and its weights lie above zero.
+/// A pole times its weight, and the weight.
+type Weighted<const D: usize> = (SVector<f64, D>, f64);
+
+impl<const D: usize> BSpline<D> {
+    /// Makes one whose weights are all 1.
+    pub fn unweighted(
+        degree: usize,
+        knots: Vec<f64>,
+        poles: impl IntoIterator<Item = impl Into<SVector<f64, D>>>,
+    ) -> Self {
+        let poles = poles.into_iter().map(|pole| (pole.into(), 1.0)).collect();
+        Self { degree, knots, poles }
+    }
+
+    /// Places the spline elsewhere: `map` takes points, by a rotation and a shift.
+    pub fn placed(mut self, map: impl Fn(SVector<f64, D>) -> SVector<f64, D>) -> Self {
+        for (pole, _) in &mut self.poles {
+            *pole = map(*pole);
+        }
+        self
+    }
+
+    /// Whether it can be evaluated: the degree is from 1 to 9, the knots never fall and are as many as poles + degree + 1,
+    /// and its weights lie above zero.
     pub fn is_sound(&self) -> bool {
         let rises = self.knots.windows(2).all(|pair| pair[0] <= pair[1]);
         let [first, last] = self.range();
@@ -60,23 +81,87 @@ impl BSpline {
         length
     }
 
+    /// The parameters between which it is one polynomial (or quotient), from the first to the last.
+    pub fn breaks(&self) -> impl Iterator<Item = f64> + '_ {
+        self.spans().map(|span| self.knots[span]).chain([self.range()[1]])
+    }
+
     /// The point at a share of its range, from 0 to 1.
-    pub fn at(&self, share: f64) -> Vector3<f64> {
+    pub fn at(&self, share: f64) -> SVector<f64, D> {
         let [first, last] = self.range();
         self.point(first + (last - first) * share.clamp(0.0, 1.0))
     }
 
-    /// The point at the parameter `u`, by de Boor's rule on poles times weights.
-    pub fn point(&self, u: f64) -> Vector3<f64> {
-        let degree = self.degree;
-        // The last span that begins at or before u, and is not empty.
-        let span = self.knots[degree..self.poles.len()].partition_point(|knot| *knot <= u);
-        let span = (degree + span).saturating_sub(1).max(degree);
-        let mut work = [Vector4::zeros(); MOST_DEGREE + 1];
-        for (place, (pole, weight)) in self.poles[span - degree..=span].iter().enumerate() {
-            work[place] = (pole * *weight).push(*weight);
+    /// The point at the parameter `u`.
+    pub fn point(&self, u: f64) -> SVector<f64, D> {
+        self.blossom(self.span(u), |_| u)
+    }
+
+    /// The blossom of the span that begins with a knot at as many parameters as the degree: where all are the same, the
+    /// point there; where some are the first and the others the last of the span, a control point of it.
+    pub fn blossom(&self, span: usize, parameter: impl Fn(usize) -> f64) -> SVector<f64, D> {
+        let (point, weight) = self.de_boor(self.degree, span, self.control(span), parameter);
+        point / weight
+    }
+
+    /// The point at `u`, which is moved into the range, and its first to third derivative. At a knot they are those after it.
+    pub fn derivatives(&self, u: f64) -> [SVector<f64, D>; 4] {
+        let [first, last] = self.range();
+        let u = u.clamp(first, last);
+        self.derivatives_on(self.span(u), u)
+    }
+
+    /// The point at `u` of the span that begins with a knot, and its first to third derivative.
+    pub fn derivatives_on(&self, span: usize, u: f64) -> [SVector<f64, D>; 4] {
+        let mut control = self.control(span);
+        let mut orders = [(SVector::zeros(), 0.0); 4];
+        for (order, derivative) in orders.iter_mut().enumerate().take(self.degree + 1) {
+            let rest = self.degree - order;
+            *derivative = self.de_boor(rest, span, control, |_| u);
+            // The control points of the next derivative, one degree lower.
+            for index in 0..rest {
+                let knot = span - rest + 1 + index;
+                let width = self.knots[knot + rest] - self.knots[knot];
+                let (low, high) = (control[index], control[index + 1]);
+                let share = |change: f64| rest as f64 * change / width;
+                control[index] = ((high.0 - low.0).map(share), share(high.1 - low.1));
+            }
         }
+        // Derivatives of a quotient from those of both, by Leibniz' rule.
+        let [(a0, w0), (a1, w1), (a2, w2), (a3, w3)] = orders;
+        let value = a0 / w0;
+        let first = (a1 - value * w1) / w0;
+        let second = (a2 - first * (2.0 * w1) - value * w2) / w0;
+        let third = (a3 - second * (3.0 * w1) - first * (3.0 * w2) - value * w3) / w0;
+        [value, first, second, third]
+    }
+
+    /// The last span that begins at or before `u`, and is not empty.
+    fn span(&self, u: f64) -> usize {
+        let span = self.knots[self.degree..self.poles.len()].partition_point(|knot| *knot <= u);
+        (self.degree + span).saturating_sub(1).max(self.degree)
+    }
+
+    /// Poles times weights that a span depends on.
+    fn control(&self, span: usize) -> [Weighted<D>; MOST_DEGREE + 1] {
+        let mut control = [(SVector::zeros(), 0.0); MOST_DEGREE + 1];
+        let poles = &self.poles[span - self.degree..=span];
+        for (control, (pole, weight)) in control.iter_mut().zip(poles) {
+            *control = (pole * *weight, *weight);
+        }
+        control
+    }
+
+    /// De Boor's rule on a span of a spline of `degree`, each level at a parameter of its own.
+    fn de_boor(
+        &self,
+        degree: usize,
+        span: usize,
+        mut work: [Weighted<D>; MOST_DEGREE + 1],
+        parameter: impl Fn(usize) -> f64,
+    ) -> Weighted<D> {
         for level in 1..=degree {
+            let u = parameter(level - 1);
             for place in (level..=degree).rev() {
                 let knot = span - degree + place;
                 let (low, high) = (self.knots[knot], self.knots[knot + degree + 1 - level]);
@@ -84,10 +169,13 @@ impl BSpline {
                     true => (u - low) / (high - low),
                     false => 0.0,
                 };
-                work[place] = work[place - 1] * (1.0 - share) + work[place] * share;
+                let (before, at) = (work[place - 1], work[place]);
+                work[place] = (
+                    before.0 * (1.0 - share) + at.0 * share,
+                    before.1 * (1.0 - share) + at.1 * share,
+                );
             }
         }
-        let end = work[degree];
-        end.xyz() / end.w
+        work[degree]
     }
 }

@@ -8,11 +8,13 @@ use super::{
 use crate::accuracy::{DeviationBound, PathNode, Placer, WordFrame};
 use crate::configuration::pose;
 use crate::curve::{CurveWords, PrintedCurve};
-use crate::program::{BSpline, Command, StraightMove};
+use crate::program::spline::{cubics, over};
+use crate::program::{Command, StraightMove};
 use crate::stream::StreamItem;
 use nalgebra::Vector3;
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::travel::{AT_END, passed};
+use post_motion::path::BSpline;
 
 /// The last knot as it is printed: any multiple of the knots is the same spline, and so they have three digits more.
 const LAST_KNOT: f64 = 1000.0;
@@ -29,8 +31,7 @@ const PLACES: u32 = 16;
 
 /// Places along a spline between its ends, mm, part frame.
 fn places(printed: &BSpline, frame: &WordFrame) -> Vec<Vector3<f64>> {
-    let cubics = printed.cubics();
-    let mut places: Vec<Vector3<f64>> = cubics
+    let mut places: Vec<Vector3<f64>> = cubics(printed)
         .flat_map(|[a, b, c, d]| {
             (1..=PLACES).map(move |place| {
                 let t = f64::from(place) / f64::from(PLACES);
@@ -55,12 +56,12 @@ impl BlockStage<'_> {
         to: &mut BlockContext<'_, '_>,
     ) -> bool {
         let end = &following.curve.end;
-        let motion = StraightMove { tip: spline.end(), ..*end };
+        let motion = StraightMove { tip: spline.poles[spline.poles.len() - 1].0, ..*end };
         let Some(block) = self.spline_block(placer, frame, spline, &motion) else {
             return false;
         };
         // Its chords are shorter by less than a thousandth of what they stray.
-        let ways = following.moves.iter().scan(spline.points()[0], |at, next| {
+        let ways = following.moves.iter().scan(spline.poles[0].0, |at, next| {
             let way = (next.motion.tip - *at).norm();
             *at = next.motion.tip;
             Some(way)
@@ -110,30 +111,30 @@ impl BlockStage<'_> {
         }
         let node = placer.settled(pose(end), 1.0, &last.trace.joints).ok()?;
         let wanted = spline.clone().placed(|point| frame.point(point));
-        let inner = &wanted.points()[1..wanted.points().len() - 1];
+        let inner = &wanted.poles[1..wanted.poles.len() - 1];
         let mut words = last.words[..placer.count()].to_vec();
         let mut points: Vec<Vector3<f64>> = vec![placer.printed(last)?];
-        for point in inner {
+        for (point, _) in inner {
             let (printed, mm) = placer.printed_point(*point)?;
             words.extend_from_slice(&placer.with_point(last, printed)[..placer.count()]);
             points.push(mm);
         }
         words.extend_from_slice(&node.words[..placer.count()]);
         points.push(placer.printed(&node)?);
-        let knots = wanted.knots().iter();
+        let knots = wanted.knots.iter();
         let knots: Option<Vec<f64>> =
             knots.map(|knot| placer.printed_number(knot * LAST_KNOT)).collect();
-        let printed = wanted.about(points).over(knots?)?;
+        let printed = BSpline::unweighted(3, wanted.knots.clone(), points);
+        let printed = over(printed, knots?)?;
         // Knot span by knot span both are cubics, whose difference lies in the hull of that of their control points.
-        let cubics = printed.cubics().zip(wanted.cubics());
-        let off = cubics
+        let off = cubics(&printed)
+            .zip(cubics(&wanted))
             .flat_map(|(printed, wanted)| [0, 1, 2, 3].map(|at| (printed[at] - wanted[at]).norm()))
             .fold(0.0, f64::max);
         let farthest = last.axis_error.max(node.axis_error);
         let bound = self.kept_bound(placer, off, farthest, 0.0, [last, &node])?;
         // No axis goes beyond the hulls.
-        let between: Vec<Joints> = printed
-            .cubics()
+        let between: Vec<Joints> = cubics(&printed)
             .flat_map(|cubic| [cubic[1], cubic[2], cubic[3]])
             .map(|place| frame.joints(place))
             .collect();
@@ -146,8 +147,8 @@ impl BlockStage<'_> {
             curve: PrintedCurve {
                 words: CurveWords::Spline {
                     degree: 3,
-                    weights: vec![1.0; printed.points().len()],
-                    knots: printed.knots().to_vec(),
+                    weights: vec![1.0; printed.poles.len()],
+                    knots: printed.knots.clone(),
                     points: words,
                 },
                 between,

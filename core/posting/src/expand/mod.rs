@@ -19,6 +19,7 @@ use crate::curve::{CurveMove, CurvePolicy, CurveShape};
 use crate::findings::Findings;
 use crate::preview::FilePreview;
 use crate::program::limits::MOST_CHORDS;
+use crate::program::spline::{chords, flatten};
 use crate::program::{
     ArcStep, Command, CycleLeg, CycleStep, HoleMark, MoveFeed, ProgramStep, SplineStep,
     StraightMove,
@@ -286,12 +287,12 @@ impl ExpandStage {
     ) {
         let SplineStep { spline, end } = step;
         if self.only_said {
-            let tip = spline.start();
+            let tip = spline.poles[0].0;
             let to_start = StraightMove { tip, chord: 0.0, ..*end };
             self.go(line, to_start, out, findings);
         }
         let keeps = |count| self.keeps.as_ref().is_some_and(|keeps| keeps.spline(end, count));
-        let along = match spline.chords(self.chord_tolerance) {
+        let along = match chords(spline, self.chord_tolerance) {
             Some(count) if count <= MOST_CHORDS => keeps(count),
             count => {
                 let count = count.map_or("countless".to_owned(), |count| count.to_string());
@@ -304,7 +305,7 @@ impl ExpandStage {
             let curve = Box::new(CurveMove { course, end: *end });
             self.command(line, Command::Along(curve), out, findings);
         }
-        spline.flatten(self.chord_tolerance, &mut |tip, chord| {
+        flatten(spline, self.chord_tolerance, &mut |tip, chord| {
             self.go(line, StraightMove { tip, chord, ..*end }, out, findings);
         });
         if along {

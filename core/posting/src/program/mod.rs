@@ -5,14 +5,13 @@ mod cycle;
 mod frame;
 pub(crate) mod interpret;
 pub mod limits;
-mod spline;
+pub(crate) mod spline;
 mod step;
 mod word_census;
 
 pub use arc::PathArc;
 pub use cycle::{CycleLeg, DrillCycle, HoleCycle};
 pub use interpret::{ClInterpreter, DefaultSpindle, ReadingOptions};
-pub use spline::BSpline;
 pub use step::{
     ArcStep, Command, CycleStep, HoleMark, MoveFeed, PlaneStep, ProgramStep, SplineStep,
     StraightMove, ToolChange,

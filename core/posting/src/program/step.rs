@@ -4,9 +4,10 @@
 use nalgebra::Vector3;
 use post_machine::description::{Retract, Rewind, Smoothing};
 use post_machine::tilted_plane::TiltedPlane;
+use post_motion::path::BSpline;
 use post_plugin::{Compensation, Coolant, Spindle, SpindleSense};
 
-use super::{BSpline, DrillCycle, HoleCycle, PathArc};
+use super::{DrillCycle, HoleCycle, PathArc};
 use crate::curve::{CurveMove, PrintedCurve};
 
 /// One step of the program, with every modal word settled. Curves and cycles keep their shape: whether they are

@@ -1,11 +1,11 @@
 //! The paths of `../shared/data/geometry`, as samples.
 
 use post_feed::Samples;
-use post_feed::curve::NurbsCurve;
 use post_testkit::shared;
 use serde_json::Value;
 
 use super::jet::Jet;
+use crate::spline::BSpline;
 
 fn json(name: &str) -> Option<Value> {
     let path = shared(&format!("data/geometry/{name}"))?;
@@ -22,25 +22,27 @@ fn points<const D: usize>(value: &Value) -> Vec<[f64; D]> {
 }
 
 /// The butterfly curve, its size times `scale`.
-pub fn butterfly(scale: f64) -> Option<NurbsCurve<2>> {
+pub fn butterfly(scale: f64) -> Option<BSpline<2>> {
     let value = json("butterfly_nurbs.json")?;
     let mut points: Vec<[f64; 2]> = points(&value["control_points_mm"]);
     for point in &mut points {
         *point = point.map(|value| value * scale);
     }
     let degree = value["degree"].as_u64().unwrap() as usize;
-    Some(
-        NurbsCurve::new(degree, numbers(&value["knots"]), points, numbers(&value["weights"]))
-            .unwrap(),
-    )
+    let mut curve = BSpline::unweighted(degree, numbers(&value["knots"]), points);
+    for ((_, weight), told) in curve.poles.iter_mut().zip(numbers(&value["weights"])) {
+        *weight = told;
+    }
+    assert!(curve.is_sound());
+    Some(curve)
 }
 
 /// A plane curve at these parameters, its two coordinates being axes.
-pub fn plane(curve: &NurbsCurve<2>, parameters: &[f64]) -> Samples {
+pub fn plane(curve: &BSpline<2>, parameters: &[f64]) -> Samples {
     let mut samples = Samples::default();
     for &parameter in parameters {
         let [_, first, second, third] = curve.derivatives(parameter);
-        let tip = [first, second, third].map(|[x, y]| [x, y, 0.0]);
+        let tip = [first, second, third].map(|way| [way.x, way.y, 0.0]);
         let axis = |axis: usize| [first[axis], second[axis], third[axis]];
         samples.push(parameter, tip, &[axis(0), axis(1)]);
     }
@@ -54,7 +56,7 @@ pub fn even(first: f64, last: f64, count: usize) -> Vec<f64> {
 }
 
 /// The knots of a curve, and so many even steps between each and the next.
-pub fn spans(curve: &NurbsCurve<2>, steps: usize) -> Vec<f64> {
+pub fn spans(curve: &BSpline<2>, steps: usize) -> Vec<f64> {
     let breaks: Vec<f64> = curve.breaks().collect();
     let mut all: Vec<f64> = Vec::new();
     for pair in breaks.windows(2) {
@@ -65,7 +67,7 @@ pub fn spans(curve: &NurbsCurve<2>, steps: usize) -> Vec<f64> {
 }
 
 /// Arc length by Gauss' rule of five points on each of many pieces.
-pub fn length(curve: &NurbsCurve<2>, pieces: usize) -> f64 {
+pub fn length(curve: &BSpline<2>, pieces: usize) -> f64 {
     let nodes = [
         (0.0, 128.0 / 225.0),
         (0.538_469_310_105_683, 0.478_628_670_499_366_5),
@@ -91,8 +93,8 @@ pub fn length(curve: &NurbsCurve<2>, pieces: usize) -> f64 {
 
 /// The five-axis path of two B-splines, with the machine and the limits of its file.
 pub struct Dual {
-    tip: NurbsCurve<3>,
-    top: NurbsCurve<3>,
+    tip: BSpline<3>,
+    top: BSpline<3>,
     pub velocity: Vec<f64>,
     pub acceleration: Vec<f64>,
     pub jerk: Vec<f64>,
@@ -100,9 +102,7 @@ pub struct Dual {
 
 pub fn dual() -> Option<Dual> {
     let value = json("dual_bspline_jcde2022.json")?;
-    let curve = |name: &str| {
-        NurbsCurve::new(3, numbers(&value["knots"]), points(&value[name]), Vec::new()).unwrap()
-    };
+    let curve = |name: &str| BSpline::unweighted(3, numbers(&value["knots"]), points(&value[name]));
     let limits = |kind: &str| -> Vec<f64> {
         let of = |axis: &str| value["limits"][axis][kind].as_f64().unwrap();
         vec![of("XYZ"), of("XYZ"), of("XYZ"), of("A"), of("C")]
@@ -119,7 +119,7 @@ pub fn dual() -> Option<Dual> {
 impl Dual {
     /// Values and derivatives of X, Y, Z, A, C by the curves' parameter: the kinematics that stand in the file.
     pub fn axes(&self, parameter: f64) -> [Jet; 5] {
-        let jets = |curve: &NurbsCurve<3>| -> [Jet; 3] {
+        let jets = |curve: &BSpline<3>| -> [Jet; 3] {
             let all = curve.derivatives(parameter);
             std::array::from_fn(|axis| Jet::from_derivatives(all.map(|values| values[axis])))
         };
@@ -146,7 +146,7 @@ impl Dual {
                 let [_, first, second, third] = jet.derivatives();
                 [first, second, third]
             });
-            samples.push(parameter, [first, second, third], &axes);
+            samples.push(parameter, [first, second, third].map(Into::into), &axes);
         }
         samples
     }

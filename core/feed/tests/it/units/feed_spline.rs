@@ -1,6 +1,7 @@
 use post_feed::FeedSpline;
-use post_feed::curve::NurbsCurve;
 use post_feed::jerk::Piece;
+
+use crate::spline::BSpline;
 
 fn example() -> FeedSpline {
     FeedSpline::rounded(
@@ -27,8 +28,7 @@ fn value_and_slope_are_continuous_and_corners_are_cut() {
 fn the_coefficients_are_those_of_a_b_spline() {
     let spline = example();
     let (knots, points) = spline.b_spline();
-    let points = points.into_iter().map(|q| [q]).collect();
-    let curve = NurbsCurve::new(2, knots, points, Vec::new()).unwrap();
+    let curve = BSpline::unweighted(2, knots, points.into_iter().map(|q| [q]));
     for step in 0..=500 {
         let at = f64::from(step) / 100.0;
         let (own, other) = (spline.at(at), curve.derivatives(at));
@@ -65,8 +65,7 @@ fn beyond_a_start_with_jerk_the_b_spline_counts_from_the_inner_knot_on() {
         pieces: vec![Piece::Leave(q1), Piece::Quadratic([q1, q1 + 0.5 * slope, 9.0])],
     };
     let (knots, points) = spline.b_spline();
-    let points = points.into_iter().map(|q| [q]).collect();
-    let curve = NurbsCurve::new(2, knots, points, Vec::new()).unwrap();
+    let curve = BSpline::unweighted(2, knots, points.into_iter().map(|q| [q]));
     for at in [2.0, 2.3, 2.9, 3.0] {
         let (own, other) = (spline.at(at), curve.derivatives(at));
         assert!((own[0] - other[0][0]).abs() < 1e-12, "{at}");

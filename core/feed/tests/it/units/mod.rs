@@ -4,7 +4,6 @@
 
 mod channel;
 mod chord_error;
-mod curve;
 mod feed_limit;
 mod feed_spline;
 mod forms;

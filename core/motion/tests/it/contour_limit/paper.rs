@@ -3,14 +3,14 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 use post_feed::Samples;
-use post_feed::curve::NurbsCurve;
 use post_feed::limits::{
     AxisAcceleration, AxisVelocity, ChordError, Collocation, ContourError, Feed, Limit, deviation,
 };
 use post_feed::response::{Answer, Response};
 use post_machine::servo::{self, Servo};
+use post_motion::path::BSpline;
 use post_testkit::shared;
 
 use super::{Path, even, limit, of_the_paper, planned, samples, simulated};
@@ -18,7 +18,7 @@ use super::{Path, even, limit, of_the_paper, planned, samples, simulated};
 const TOLERANCE: f64 = 0.02;
 
 /// A plane curve, its coordinates being X and Y.
-struct Plane(NurbsCurve<2>);
+struct Plane(BSpline<2>);
 
 impl Path for Plane {
     fn axes(&self, parameter: f64) -> Vec<[f64; 4]> {
@@ -43,9 +43,8 @@ fn butterfly() -> Option<Plane> {
     let points = value["control_points_mm"].as_array().unwrap().iter();
     let scale = 793.0 / 382.859_558;
     let points = points.map(|point| [0, 1].map(|axis| scale * numbers(point)[axis]));
-    let weights = numbers(&value["weights"]);
-    let curve = NurbsCurve::new(3, numbers(&value["knots"]), points.collect(), weights);
-    Some(Plane(curve.unwrap()))
+    let poles = points.map(Vector2::from).zip(numbers(&value["weights"])).collect();
+    Some(Plane(BSpline { degree: 3, knots: numbers(&value["knots"]), poles }))
 }
 
 /// A rosette of eleven lobes with narrow tips: a hundred control points, cubic.
@@ -61,7 +60,7 @@ fn rosette() -> Plane {
     let mut knots = vec![0.0; 3];
     knots.extend(even(0.0, 1.0, points.len() - 3));
     knots.extend([1.0; 3]);
-    Plane(NurbsCurve::new(3, knots, points, Vec::new()).unwrap())
+    Plane(BSpline::unweighted(3, knots, points))
 }
 
 /// The largest contour error by the formula for all directions, µm.

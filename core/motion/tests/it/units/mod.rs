@@ -2,6 +2,7 @@
 //! that stand in them.
 #![allow(dead_code, unused_imports, reason = "tests do not use all of a file")]
 
+mod b_spline;
 mod fourier;
 mod limits;
 mod measured;

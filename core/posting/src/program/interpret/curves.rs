@@ -6,7 +6,8 @@ use post_grammar::{CircleRecord, Record, Sense, Statement};
 use super::{ClInterpreter, UnfinishedCurve};
 use crate::program::arc::ArcAmbiguity;
 use crate::program::limits::{MOST_SPLINE_NUMBERS, direction};
-use crate::program::{ArcStep, BSpline, PathArc, ProgramStep, SplineStep};
+use crate::program::spline::nx_spline;
+use crate::program::{ArcStep, PathArc, ProgramStep, SplineStep};
 use post_machine::diagnostic::Short;
 
 /// Ends of an arc whose distances from its centre differ by more are no arc: mm.
@@ -212,9 +213,9 @@ impl ClInterpreter {
         let Some(pace) = pace else {
             return;
         };
-        match BSpline::new(&knots, points) {
+        match nx_spline(&knots, &points) {
             Ok(spline) => {
-                let end = spline.end();
+                let end = points[points.len() - 1];
                 self.arrive(end);
                 let spline = spline.placed(|point| self.frame.to_part(point, Vector3::zeros()).0);
                 emit(ProgramStep::Spline(Box::new(SplineStep {

@@ -7,6 +7,7 @@
 //! Memory: 32 bytes a place, some places a mm of path that is tightened, none where nothing is.
 
 use nalgebra::Vector3;
+use post_motion::path::nearest_share;
 
 /// A piece of the path that may use no more than a share of the limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,11 +104,7 @@ fn on(places: &[TightPlace], line: u64) -> &[TightPlace] {
 
 /// Distance of a point from the straight way between two others, mm.
 fn distance(point: &Vector3<f64>, from: &Vector3<f64>, to: &Vector3<f64>) -> f64 {
-    let way = to - from;
-    let length = way.norm_squared();
-    let share =
-        if length > 0.0 { ((point - from).dot(&way) / length).clamp(0.0, 1.0) } else { 0.0 };
-    (point - from - way * share).norm()
+    (point - from - (to - from) * nearest_share([from, to], point)).norm()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use post_machine::kinematics::{Pose, Trace};
-use post_motion::path::{Curve, Interpolation, Stance, between, turns};
+use post_motion::path::{Curve, Interpolation, Stance, between, chords, turns};
 
 use crate::State;
 
@@ -188,21 +188,6 @@ impl Motion {
         let Curve::Spline(way) = self.way.curve() else {
             return 1;
         };
-        let mut count = 2 * way.poles.len() as u64;
-        while (count as f64) < MOST_PIECES {
-            let at = |place: u64| way.at(place as f64 / (4 * count) as f64);
-            let strays = (0..count).any(|piece| {
-                let [first, a, b, c, last] =
-                    std::array::from_fn(|part| at(4 * piece + part as u64));
-                [(a, 0.25), (b, 0.5), (c, 0.75)]
-                    .iter()
-                    .any(|(point, share)| (first + (last - first) * *share - point).norm() > chord)
-            });
-            if !strays {
-                break;
-            }
-            count *= 2;
-        }
-        count
+        chords(2 * way.poles.len() as u64, MOST_PIECES as u64, chord, |t| way.at(t))
     }
 }

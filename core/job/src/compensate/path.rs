@@ -1,6 +1,7 @@
 //! The points of a program's path, by how much each is moved, and how far the tool is off beside it.
 
 use nalgebra::Vector3;
+use post_motion::path::nearest_share;
 use post_posting::{PathPoint, PathShift};
 
 /// Over so much of the path, mm, a move fades towards the ends of a cut, where the tool comes to the part and leaves it.
@@ -165,13 +166,11 @@ impl Recorded {
     fn near(&self, end: usize, place: &Vector3<f64>) -> Option<(f64, f64)> {
         let to = self.points.get(end).filter(|to| to.cuts && !to.begins)?;
         let from = self.points.get(end.checked_sub(1)?)?;
-        let leg = to.tip - from.tip;
-        let square = leg.norm_squared();
-        let share = match square > 0.0 {
-            true => ((place - from.tip).dot(&leg) / square).clamp(0.0, 1.0),
-            false => 1.0,
+        let share = match from.tip == to.tip {
+            true => 1.0,
+            false => nearest_share([&from.tip, &to.tip], place),
         };
-        Some(((from.tip + leg * share - place).norm(), share))
+        Some(((from.tip + (to.tip - from.tip) * share - place).norm(), share))
     }
 
     /// Moves points further by minus the errors beside them, each by its share of `gains`, none by more than `bound` mm in

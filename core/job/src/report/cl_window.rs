@@ -1,17 +1,17 @@
 //! The path of the CL file, read along with the blocks: its points become a table, and a window of it is what deviations
 //! are drawn from.
 
-use std::collections::VecDeque;
 use std::io::Read;
 
 use nalgebra::Vector3;
 use post_machine::description::Machine;
-use post_readback::MotionKind;
+use post_motion::path::{arc_chords, piece_ends};
 use post_readback::course::cl::{ClCourse, Settings};
 use post_readback::course::{Course, Curve, Item, Piece};
 
-use super::cl_points::{self, Points};
+use super::cl_points::{self, Points, Row};
 use super::parts::Parts;
+use super::segments::Segments;
 use crate::failure::Failure;
 use crate::files::ClSource;
 use crate::read_back;
@@ -21,24 +21,13 @@ use crate::settings::JobSettings;
 const MOST_CHORDS: f64 = 4096.0;
 
 /// Chords of a span of a spline.
-const SPAN: usize = 64;
+const SPAN: u64 = 64;
 
 /// So many records that cannot be read are passed over: posting tells of them.
 const MOST_FAULTS: u32 = 1000;
 
 /// Segments of the path that are kept behind.
 const MOST_KEPT: usize = 100_000;
-
-/// A straight piece of the path.
-#[derive(Clone, Copy, Debug)]
-pub struct Segment {
-    /// Line that it comes from.
-    pub line: u64,
-    /// Where it begins, mm, part frame.
-    pub from: Vector3<f64>,
-    /// Where it ends.
-    pub to: Vector3<f64>,
-}
 
 /// Reads the path as far as it is asked for.
 pub struct ClWindow {
@@ -49,9 +38,7 @@ pub struct ClWindow {
     along: f64,
     /// The next piece, read and not taken yet.
     next: Option<Piece>,
-    segments: VecDeque<Segment>,
-    /// Where the tool stands, if that is known.
-    at: Option<Vector3<f64>>,
+    segments: Segments,
     faults: u32,
     ended: bool,
 }
@@ -86,8 +73,7 @@ impl ClWindow {
             chord: machine.accuracy.tolerance / 10.0,
             along: machine.control_point.along,
             next: None,
-            segments: VecDeque::new(),
-            at: None,
+            segments: Segments::default(),
             faults: 0,
             ended: false,
         })
@@ -107,8 +93,8 @@ impl ClWindow {
             match self.course.next() {
                 Ok(Some(Item::Piece(piece))) => self.next = Some(piece),
                 Ok(Some(Item::Reach(reach))) => {
-                    self.point(reach.line, reach.to.tip, 2.0);
-                    self.at = Some(reach.to.tip);
+                    self.points.push(reach.line, reach.to.tip, 2.0);
+                    self.segments.at = Some(reach.to.tip);
                 }
                 Ok(Some(_)) => {}
                 Ok(None) => self.ended = true,
@@ -122,23 +108,22 @@ impl ClWindow {
 
     /// Lines before this one are not asked for any more.
     pub fn forget(&mut self, before: u64) {
-        while let Some(first) = self.segments.front()
-            && (first.line < before || self.segments.len() > MOST_KEPT)
+        while let Some(first) = self.segments.known.front()
+            && (first.line < before || self.segments.known.len() > MOST_KEPT)
         {
-            self.segments.pop_front();
+            self.segments.known.pop_front();
         }
     }
 
     /// From the nearest point of the path to `tip`, mm; none where no path is known.
     pub fn off(&self, tip: Vector3<f64>) -> Option<Vector3<f64>> {
-        let off = self.segments.iter().map(|segment| tip - segment.nearest(tip));
-        off.min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))
+        self.segments.off(tip, usize::MAX)
     }
 
     /// Points of the path between those that are nearest to two places, the first behind it.
     pub fn between(&self, from: Vector3<f64>, to: Vector3<f64>) -> Vec<Vector3<f64>> {
         let nearest = |tip: Vector3<f64>, start: usize| {
-            let later = self.segments.iter().enumerate().skip(start);
+            let later = self.segments.known.iter().enumerate().skip(start);
             let far =
                 later.map(|(place, segment)| (place, (tip - segment.nearest(tip)).norm_squared()));
             far.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| place)
@@ -147,7 +132,7 @@ impl ClWindow {
             return Vec::new();
         };
         let last = nearest(to, first).unwrap_or(first);
-        let inner = self.segments.range(first..last);
+        let inner = self.segments.known.range(first..last);
         inner.map(|segment| segment.to).collect()
     }
 
@@ -170,55 +155,22 @@ impl ClWindow {
     }
 
     fn piece(&mut self, piece: &Piece) {
-        let rapid = match piece.kind {
-            MotionKind::Rapid => 1.0,
-            _ => 0.0,
-        };
-        if self.at.is_none_or(|at| (at - piece.from.tip).norm() > 1e-6) {
-            self.point(piece.line, piece.from.tip, 2.0);
-        }
-        let chords = self.chords(piece);
-        let mut from = piece.from.tip;
-        for chord in 1..=chords {
-            let to = match chord == chords {
-                true => piece.to.tip,
-                false => piece.at(chord as f64 / chords as f64, self.along).tip,
-            };
-            self.segments.push_back(Segment { line: piece.line, from, to });
-            self.point(piece.line, to, rapid);
-            from = to;
-        }
-        self.at = Some(from);
+        let (along, chords) = (self.along, self.chords(piece));
+        let tips = piece_ends(chords, piece.to.tip, |t| piece.at(t, along).tip);
+        let row = |row: Row| self.points.push(row.line, row.at, row.rapid);
+        self.segments.go(piece.line, piece.kind, piece.from.tip, tips, row);
     }
 
-    fn chords(&self, piece: &Piece) -> usize {
+    fn chords(&self, piece: &Piece) -> u64 {
         match &piece.curve {
             Curve::Straight if self.along == 0.0 => 1,
             // The point above goes straight, and the tip on a bow.
             Curve::Straight => 16,
             Curve::Arc { centre, sweep, .. } => {
                 let radius = (piece.from.tip - centre).norm();
-                let step = libm::sqrt(8.0 * self.chord / radius.max(self.chord));
-                libm::ceil(libm::fabs(*sweep) / step).clamp(1.0, MOST_CHORDS) as usize
+                arc_chords(radius, *sweep, self.chord).clamp(1.0, MOST_CHORDS) as u64
             }
-            Curve::Spline(way) => way.spans().count() * SPAN,
+            Curve::Spline(way) => way.spans().count() as u64 * SPAN,
         }
-    }
-
-    fn point(&mut self, line: u64, tip: Vector3<f64>, rapid: f64) {
-        self.points.push(line, tip, rapid);
-    }
-}
-
-impl Segment {
-    /// Its point that is nearest to `tip`.
-    pub fn nearest(&self, tip: Vector3<f64>) -> Vector3<f64> {
-        let way = self.to - self.from;
-        let square = way.norm_squared();
-        if square <= 0.0 {
-            return self.from;
-        }
-        let share = ((tip - self.from).dot(&way) / square).clamp(0.0, 1.0);
-        self.from + way * share
     }
 }

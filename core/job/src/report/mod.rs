@@ -20,6 +20,7 @@ mod path_rows;
 mod predicted_lines;
 mod predicted_parts;
 mod predicted_rows;
+mod segments;
 pub mod solids;
 mod told_by_prediction;
 

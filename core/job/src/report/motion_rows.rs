@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
-use post_motion::path::{Curve, Interpolation};
+use post_motion::path::{Curve, Interpolation, arc_chords};
 use post_readback::{Done, Motion, MotionKind, Told};
 use post_report::meta::{AxisUsed, Meta};
 
@@ -364,9 +364,8 @@ impl<'m> MotionRows<'m> {
             }
             Interpolation::Tip(Curve::Straight) | Interpolation::TipAndAxis => 1,
             Interpolation::Tip(Curve::Arc { centre, sweep, .. }) => {
-                let radius = (from - centre).norm().max(tolerance);
-                let step = libm::sqrt(8.0 * tolerance / radius);
-                libm::ceil(libm::fabs(*sweep) / step).clamp(2.0, MOST_PLACES) as u32
+                let chords = arc_chords((from - centre).norm(), *sweep, tolerance);
+                chords.clamp(2.0, MOST_PLACES) as u32
             }
             Interpolation::Tip(Curve::Spline(way)) => {
                 (16 * way.spans().count() as u32).min(MOST_PLACES as u32)

@@ -1,18 +1,18 @@
 //! The path of the program that another one is held against: a table, the lines that belong together, and how far the new
 //! path is from the old one.
 
-use std::collections::VecDeque;
 use std::fs::File;
 
 use nalgebra::Vector3;
 use post_machine::description::Machine;
+use post_motion::path::piece_ends;
 use post_readback::interpret::Interpreter;
-use post_readback::{Done, MotionKind, Run};
+use post_readback::{Done, Run};
 
 use super::cl_points::{self, Row};
-use super::cl_window::Segment;
 use super::page_table::PageTable;
 use super::parts::Parts;
+use super::segments::Segments;
 use crate::failure::Failure;
 
 /// How far chords of a path may stray that is only looked at, mm.
@@ -34,10 +34,9 @@ const APART: f64 = 10.0;
 pub struct OldPath {
     run: Run<Interpreter<File>>,
     table: PageTable<Row>,
-    segments: VecDeque<Segment>,
+    segments: Segments,
     /// Segments that stand behind the place that was found last.
     behind: usize,
-    last: Option<Vector3<f64>>,
     done: Vec<Done>,
     ended: bool,
 }
@@ -51,9 +50,8 @@ impl OldPath {
         Ok(Self {
             run,
             table: cl_points::table(machine, false)?,
-            segments: VecDeque::new(),
+            segments: Segments::default(),
             behind: 0,
-            last: None,
             done: Vec::new(),
             ended: false,
         })
@@ -63,10 +61,10 @@ impl OldPath {
     pub fn advance(&mut self, tip: Vector3<f64>) -> Option<u64> {
         for ahead in AHEAD {
             let last = self.behind + ahead;
-            while self.segments.len() < last && !self.ended {
+            while self.segments.known.len() < last && !self.ended {
                 self.read();
             }
-            let near = self.segments.iter().take(last).enumerate();
+            let near = self.segments.known.iter().take(last).enumerate();
             let far = near.map(|(place, segment)| {
                 // Of places as near that at the end of a line, and that which was not passed yet.
                 let off = (tip - segment.nearest(tip)).norm() + 1e-3 * (tip - segment.to).norm();
@@ -78,7 +76,7 @@ impl OldPath {
             let limit = if ahead == AHEAD[0] { APART / 100.0 } else { APART };
             if off < limit {
                 let gone = place.saturating_sub(BEHIND);
-                self.segments.drain(..gone);
+                self.segments.known.drain(..gone);
                 self.behind = place - gone;
                 return Some(line);
             }
@@ -88,9 +86,7 @@ impl OldPath {
 
     /// From the nearest point of the old path to `tip`, mm; none where the paths are far apart.
     pub fn off(&self, tip: Vector3<f64>) -> Option<Vector3<f64>> {
-        let near = self.segments.iter().take(self.behind + AHEAD[0]);
-        let off = near.map(|segment| tip - segment.nearest(tip));
-        let off = off.min_by(|one, other| one.norm_squared().total_cmp(&other.norm_squared()));
+        let off = self.segments.off(tip, self.behind + AHEAD[0]);
         off.filter(|off| off.norm() < APART)
     }
 
@@ -100,7 +96,7 @@ impl OldPath {
     /// It could not be kept.
     pub fn finish(mut self, parts: &mut Parts) -> Result<(), Failure> {
         while !self.ended {
-            self.segments.clear();
+            self.segments.known.clear();
             self.read();
         }
         self.table.finish(parts)
@@ -117,33 +113,14 @@ impl OldPath {
             let Done::Motion(motion) = next else {
                 continue;
             };
-            let from = motion.from.pose.tip;
-            if self.last.is_none_or(|last| (last - from).norm() > 1e-6) {
-                self.point(motion.line, from, 2.0);
-                self.last = Some(from);
-            }
-            let rapid = match motion.kind {
-                MotionKind::Rapid => 1.0,
-                _ => 0.0,
-            };
             let chords = match motion.way.is_curved() {
                 true => MOST_CHORDS,
                 false => motion.pieces(CHORD, 1.0).min(MOST_CHORDS),
             };
-            for chord in 1..=chords {
-                let to = match chord == chords {
-                    true => motion.to.pose.tip,
-                    false => motion.at(chord as f64 / chords as f64).tip,
-                };
-                self.point(motion.line, to, rapid);
-                let from = self.last.replace(to).unwrap_or(to);
-                self.segments.push_back(Segment { line: motion.line, from, to });
-            }
+            let tips = piece_ends(chords, motion.to.pose.tip, |t| motion.at(t).tip);
+            let row = |row: Row| _ = self.table.row(&row);
+            self.segments.go(motion.line, motion.kind, motion.from.pose.tip, tips, row);
         }
         self.done = done;
-    }
-
-    fn point(&mut self, line: u64, tip: Vector3<f64>, rapid: f64) {
-        self.table.row(&Row { line, at: tip, rapid });
     }
 }

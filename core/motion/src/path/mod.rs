@@ -1,5 +1,6 @@
 //! How a control goes from one stance of the machine to another.
 
+mod chords;
 mod curve;
 mod round;
 mod spline;
@@ -8,6 +9,7 @@ mod stance;
 use nalgebra::Vector3;
 use post_machine::kinematics::{Chain, Joints, Pose};
 
+pub use chords::{arc_chords, chords, nearest_share, piece_ends};
 pub use curve::Curve;
 pub use round::{GreatCircle, arm_and_height, between, on_arc};
 pub use spline::BSpline;

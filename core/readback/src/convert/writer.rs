@@ -5,6 +5,7 @@ use std::fmt::Write;
 use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
+use post_motion::path::{chords, piece_ends};
 
 use super::number::{self, DIRECTION, LENGTH};
 use super::records::{definition, is_nurbs, offset_number, spindle_record};
@@ -26,7 +27,7 @@ const SPIRAL: f64 = 0.09;
 const SAME_FEED: f64 = 1e-9;
 
 /// Shares of a spline or of an arc that turns the tool, tried at most for chords that are near enough.
-const MOST_CHORDS: u32 = 1 << 20;
+const MOST_CHORDS: u64 = 1 << 20;
 
 /// The tool in the spindle, as the control counts it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -447,29 +448,12 @@ impl ClWriter {
 
     /// Points on a curve that no record has, so many that chords stay near enough as far as points between tell.
     fn chords(&mut self, piece: &Piece, out: &mut String) {
-        let mut count: u32 = match &piece.curve {
-            Curve::Spline(way) => (2 * way.poles.len()).min(MOST_CHORDS as usize) as u32,
+        let first = match &piece.curve {
+            Curve::Spline(way) => (2 * way.poles.len() as u64).min(MOST_CHORDS),
             _ => 4,
         };
-        let at = |place: u32, count: u32| piece.at(f64::from(place) / f64::from(count), 0.0);
-        while count < MOST_CHORDS {
-            let strays = (0..count).any(|place| {
-                let [first, a, b, c, last] =
-                    std::array::from_fn(|part| at(4 * place + part as u32, 4 * count).tip);
-                [(a, 0.25), (b, 0.5), (c, 0.75)].iter().any(|(point, share)| {
-                    (first + (last - first) * *share - point).norm() > self.chord
-                })
-            });
-            if !strays {
-                break;
-            }
-            count *= 2;
-        }
-        for place in 1..=count {
-            let to = match place == count {
-                true => piece.to,
-                false => at(place, count),
-            };
+        let count = chords(first, MOST_CHORDS, self.chord, |t| piece.at(t, 0.0).tip);
+        for to in piece_ends(count, piece.to, |t| piece.at(t, 0.0)) {
             self.point(piece.kind, piece.feed, &to, out);
         }
     }

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES, Pose};
+use post_motion::path::piece_ends;
 
 use super::descent::{Descent, descends};
 use super::{Course, Curve, Item, Piece, Reach};
@@ -244,11 +245,7 @@ impl<P: Program> DoneCourse<P> {
             curve => curve.clone(),
         };
         let mut from = motion.from.pose;
-        for place in 1..=count {
-            let to = match place == count {
-                true => motion.to.pose,
-                false => motion.at(place as f64 / count as f64),
-            };
+        for to in piece_ends(count, motion.to.pose, |t| motion.at(t)) {
             let mut piece = Piece {
                 line: motion.line,
                 kind: motion.kind,

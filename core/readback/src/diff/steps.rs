@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use post_machine::kinematics::{Joints, Pose};
+use post_motion::path::arc_chords;
 
 use super::outline::Splitter;
 use crate::course::descent::{Descent, descends};
@@ -371,9 +372,7 @@ fn steps_of(motion: &Motion) -> u64 {
         Curve::Arc { centre, normal, sweep } => {
             let arm = motion.from.pose.tip - centre;
             let radius = (arm - normal * normal.dot(&arm)).norm();
-            // A chord over the angle a strays by r·a²/8.
-            let angle = libm::sqrt(8.0 * SAG / radius.max(SAG));
-            libm::ceil(libm::fabs(*sweep) / angle) as u64
+            arc_chords(radius, *sweep, SAG) as u64
         }
         Curve::Spline(_) => motion.spline_chords(SAG),
     };

@@ -1,6 +1,7 @@
 //! What a rapid promises: past the points of the course, along its ways, and no end where something is cut.
 
 use post_machine::kinematics::Pose;
+use post_motion::path::nearest_share;
 
 use super::detour::StrayKind;
 use super::place::{PlaceBound, ShareSpan, ToolPlace, free, nearest};
@@ -65,15 +66,9 @@ impl<C: Course> Verifier<'_, C> {
         if start.is_empty() || end.is_empty() {
             return false;
         }
-        let way = to.point - from.point;
-        let length = way.norm();
         let off = |place: &ToolPlace| {
-            let offset = place.point - from.point;
-            let share = match length > 0.0 {
-                true => (offset.dot(&way) / (length * length)).clamp(0.0, 1.0),
-                false => 0.0,
-            };
-            (offset - way * share).norm()
+            let share = nearest_share([&from.point, &to.point], &place.point);
+            (place.point - from.point - (to.point - from.point) * share).norm()
         };
         let most = places.iter().map(off).fold(0.0, f64::max);
         let message = if end.to < start.from {

@@ -64,6 +64,7 @@ impl Observer for ProgramPreview {
                     }
                 }
                 StreamItem::Command { line, command } => self.command(*line, command),
+                StreamItem::Placer(_) => {}
             }
         }
     }

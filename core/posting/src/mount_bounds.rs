@@ -102,7 +102,7 @@ impl Observer for MountBounds<'_> {
                         curve.between.iter().for_each(|joints| room.take(joints, *line));
                     }
                 }
-                StreamItem::Command { .. } => {}
+                _ => {}
             }
         }
     }

@@ -116,19 +116,13 @@ impl PostStages<'_> {
             emit.take(made, findings);
             emit.take_lines(|lines| observers.lines(lines));
         };
-        let told = plan.as_ref().map(PlanStage::told);
         let mut planned = BatchSink::new(planned, &mut to_emit);
         let mut to_plan = |made: &mut Vec<StreamItem<MotionBlock>>| match plan {
             Some(plan) => plan.take(made, &mut planned, findings),
             None => planned.pass(made),
         };
         let mut made = BatchSink::new(made, &mut to_plan);
-        let mut to = BlockContext {
-            out: &mut made,
-            findings,
-            audience: observers.audience(),
-            placer: told.as_deref(),
-        };
+        let mut to = BlockContext { out: &mut made, findings, audience: observers.audience() };
         let mut to_blocks =
             |configured: &mut Vec<StreamItem<ConfiguredItem>>| blocks.take(configured, &mut to);
         let mut configured = BatchSink::new(configured, &mut to_blocks);

@@ -54,6 +54,7 @@ impl<'a> ShiftStage<'a> {
         for flow in batch {
             match flow {
                 StreamItem::Command { command, .. } => self.command(command),
+                StreamItem::Placer(_) => {}
                 StreamItem::Point(PathMove { line, motion }) => {
                     let cuts = motion.pace != MoveFeed::Rapid;
                     let moves = cuts && !self.hole && !self.offset;

@@ -1,8 +1,12 @@
-//! What runs from stage to stage: points of the path and the commands between them, in one stream, in order.
+//! What runs from stage to stage: points of the path, the commands between them, and what solves the points, in one
+//! stream, in order.
 //!
 //! Every stage takes a batch and hands on a batch. What a stage cannot decide yet it keeps, commands among it, so
 //! that nothing overtakes anything.
 
+use std::rc::Rc;
+
+use crate::accuracy::Placer;
 use crate::program::Command;
 
 /// Points and commands are handed on in batches of about this length: long enough that work on neighbouring points
@@ -10,7 +14,7 @@ use crate::program::Command;
 pub(crate) const BATCH: usize = 128;
 
 /// One element of the stream.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum StreamItem<P> {
     /// A point of the path, or what a stage made of it.
     Point(P),
@@ -21,9 +25,20 @@ pub enum StreamItem<P> {
         /// What it says.
         command: Command,
     },
+    /// What solves the points from here on.
+    Placer(Rc<Placer>),
 }
 
 impl<P> StreamItem<P> {
+    /// Line of the CL file, that of a point by `of`; none of what solves points.
+    pub(crate) fn line(&self, of: impl FnOnce(&P) -> u64) -> Option<u64> {
+        match self {
+            Self::Point(point) => Some(of(point)),
+            Self::Command { line, .. } => Some(*line),
+            Self::Placer(_) => None,
+        }
+    }
+
     /// Whether this is a mark that says where the moves of a hole stand.
     #[inline]
     pub(crate) fn marks_hole(&self) -> bool {

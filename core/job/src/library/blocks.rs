@@ -97,6 +97,7 @@ impl Observer for BlockArrays<'_> {
             match next {
                 StreamItem::Point(block) => self.waiting.push_back(self.program.block(block)),
                 StreamItem::Command { command, .. } => self.program.command(command),
+                StreamItem::Placer(_) => {}
             }
         }
     }

@@ -389,6 +389,7 @@ impl Observer for BlockRows<'_> {
             match next {
                 StreamItem::Point(block) => self.block(block),
                 StreamItem::Command { command, .. } => self.command(command),
+                StreamItem::Placer(_) => {}
             }
         }
     }

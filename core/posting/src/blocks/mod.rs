@@ -15,7 +15,6 @@ mod splined;
 mod staged;
 mod tool_alignment;
 
-use std::cell::RefCell;
 use std::rc::Rc;
 
 use nalgebra::Vector3;
@@ -92,8 +91,6 @@ pub(crate) struct BlockContext<'s, 'o> {
     pub findings: &'s Findings,
     /// Observers of cuts, if there are any.
     pub audience: Option<&'s dyn Audience>,
-    /// Where the placer that makes blocks from here on is put, if a later stage asks for it.
-    pub placer: Option<&'s RefCell<Option<Rc<Placer>>>>,
 }
 
 /// Counts of this stage.
@@ -199,17 +196,17 @@ impl<'a> BlockStage<'a> {
         self.plans = true;
     }
 
-    /// Blocks from here on are made with another placer; those before it have been handed on by then.
-    fn use_placer(&mut self, placer: Option<Rc<Placer>>, to: &mut BlockContext<'_, '_>) {
-        if let Some(told) = to.placer {
-            to.out.flush();
-            told.borrow_mut().clone_from(&placer);
-            // Blocks may be cut after this stage, at rounded points.
-            let tolerance = self.machine.accuracy.tolerance;
-            self.placer = placer.map(|placer| Rc::new(placer.leaving_room(tolerance)));
-            return;
-        }
-        self.placer = placer;
+    /// Blocks from here on are made with another placer, which goes on to whom it serves after this stage.
+    fn use_placer(&mut self, placer: Rc<Placer>, to: &mut BlockContext<'_, '_>) {
+        self.placer = Some(match self.plans {
+            false => placer,
+            true => {
+                // Blocks may be cut after this stage, at rounded points.
+                let roomy = placer.leaving_room(self.machine.accuracy.tolerance);
+                to.out.push(StreamItem::Placer(placer));
+                Rc::new(roomy)
+            }
+        });
     }
 
     /// Counts so far.
@@ -299,7 +296,7 @@ impl<'a> BlockStage<'a> {
             StreamItem::Point(ConfiguredItem::Point(chosen)) => {
                 self.point(chosen, lane, placed, to)
             }
-            StreamItem::Point(ConfiguredItem::Placer(placer)) => {
+            StreamItem::Placer(placer) => {
                 self.end_run(to);
                 self.take_placer(placer, to);
             }

@@ -66,7 +66,7 @@ impl BlockStage<'_> {
     pub(super) fn take_placer(&mut self, placer: &Rc<Placer>, to: &mut BlockContext<'_, '_>) {
         self.planes.outside = Some(Rc::clone(placer));
         if self.planes.axes.is_none() {
-            self.use_placer(Some(Rc::clone(placer)), to);
+            self.use_placer(Rc::clone(placer), to);
         }
         self.planes.stands = None;
     }
@@ -86,7 +86,9 @@ impl BlockStage<'_> {
     /// No plane is in force any more; the tool has left the part.
     fn leave_plane(&mut self, line: u64, to: &mut BlockContext<'_, '_>) {
         self.planes.stands = None;
-        self.use_placer(self.planes.outside.clone(), to);
+        if let Some(outside) = self.planes.outside.clone() {
+            self.use_placer(outside, to);
+        }
         if self.planes.axes.take().is_some() {
             to.out.command(line, Command::Plane(None));
         }
@@ -157,7 +159,7 @@ impl BlockStage<'_> {
         let Some(inside) = outside.in_plane(plane) else {
             return;
         };
-        self.use_placer(Some(Rc::new(inside)), to);
+        self.use_placer(Rc::new(inside), to);
         self.planes.axes = Some(plane.axes);
         to.out.command(line, Command::Plane(Some(Box::new(plane))));
     }

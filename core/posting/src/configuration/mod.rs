@@ -28,7 +28,6 @@ use post_machine::kinematics::Pose;
 use post_machine::kinematics::travel::{AT_END, passed};
 use post_plugin::{Capabilities, Format, Spindle};
 
-use crate::accuracy::Placer;
 use crate::expand::PathMove;
 use crate::findings::Findings;
 use crate::program::limits::MOST_TOOLS;
@@ -46,8 +45,6 @@ pub use whole_pass::whole_pass;
 pub(crate) enum ConfiguredItem {
     /// A point with the axis values that were chosen for it.
     Point(ChosenPoint),
-    /// What solves the points from here on.
-    Placer(Rc<Placer>),
     /// The path ended in a fault; the next point begins one anew.
     Broken,
 }
@@ -165,6 +162,8 @@ impl<'a> ConfigurationStage<'a> {
             match next {
                 StreamItem::Point(at) => self.point(&at, out, findings),
                 StreamItem::Command { line, command } => self.arrange(line, command, out, findings),
+                // It is this stage that makes them.
+                StreamItem::Placer(_) => {}
             }
         }
     }
@@ -261,7 +260,7 @@ impl<'a> ConfigurationStage<'a> {
         if self.setting != Some(next.setting) {
             self.setting = Some(next.setting);
             let placer = Rc::clone(self.route.placer(next.setting));
-            out.push(StreamItem::Point(ConfiguredItem::Placer(placer)));
+            out.push(StreamItem::Placer(placer));
         }
         out.push(StreamItem::Point(ConfiguredItem::Point(next)));
     }

@@ -157,6 +157,7 @@ impl EmitStage<'_> {
             match next {
                 StreamItem::Point(block) => self.placed_block(block, findings),
                 StreamItem::Command { line, command } => self.command(*line, command, findings),
+                StreamItem::Placer(_) => {}
             }
             if self.writer.is_full() {
                 self.flush(findings);
@@ -385,7 +386,7 @@ impl EmitStage<'_> {
 fn points(stream: &[StreamItem<MotionBlock>]) -> impl Iterator<Item = &MotionBlock> {
     stream.iter().filter_map(|next| match next {
         StreamItem::Point(block) => Some(block),
-        StreamItem::Command { .. } => None,
+        _ => None,
     })
 }
 

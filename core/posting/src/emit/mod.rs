@@ -174,6 +174,7 @@ impl<'a> EmitStage<'a> {
                     self.end_cycle(*line);
                     self.command(*line, command, findings);
                 }
+                StreamItem::Placer(_) => {}
             }
             if self.writer.is_full() {
                 self.flush(findings);

@@ -76,10 +76,7 @@ impl Tangential {
 
     /// Line of the first step that waits.
     pub(super) fn first_line(&self) -> Option<u64> {
-        let behind = || match self.behind.front()? {
-            StreamItem::Point(at) => Some(at.line),
-            StreamItem::Command { line, .. } => Some(*line),
-        };
+        let behind = || self.behind.front()?.line(|at| at.line);
         self.cut.map(|(line, ..)| line).or_else(behind)
     }
 

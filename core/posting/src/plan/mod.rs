@@ -61,9 +61,6 @@ const SPACING: f64 = 2.0;
 /// What the fit takes for no way at all, in tolerances.
 const STANDS: f64 = 1.001e-3;
 
-/// The placer that blocks are made with, from the stage that makes them.
-pub(crate) type PlacerCell = Rc<RefCell<Option<Rc<Placer>>>>;
-
 /// The observer of a plan, shared by what plans.
 type SharedWatch<'a> = Rc<RefCell<&'a mut dyn PlanWatch>>;
 
@@ -74,7 +71,8 @@ pub(crate) struct PlanStage<'a> {
     /// Where the contour error may use less than its limit.
     tightening: Option<Arc<Tightening>>,
     watch: Option<SharedWatch<'a>>,
-    told: PlacerCell,
+    /// What blocks are made with.
+    placer: Option<Rc<Placer>>,
     run: Option<CurvePlanner<'a>>,
     queue: BlockQueue,
     account: PlanTally,
@@ -112,7 +110,7 @@ impl<'a> PlanStage<'a> {
             machine,
             tightening,
             watch: None,
-            told: PlacerCell::default(),
+            placer: None,
             run: None,
             queue: BlockQueue::default(),
             account: PlanTally::default(),
@@ -133,11 +131,6 @@ impl<'a> PlanStage<'a> {
         self.watch = Some(Rc::new(RefCell::new(watch)));
     }
 
-    /// Where the stage before tells its placer.
-    pub(crate) fn told(&self) -> PlacerCell {
-        Rc::clone(&self.told)
-    }
-
     /// Line of the CL file of the first block that waits.
     pub(crate) fn first_line(&self) -> Option<u64> {
         self.queue.first_line()
@@ -155,6 +148,7 @@ impl<'a> PlanStage<'a> {
         out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
         findings: &Findings,
     ) {
+        // Another head may have come since.
         self.take_placer(out, findings);
         for next in batch.drain(..) {
             match next {
@@ -163,6 +157,10 @@ impl<'a> PlanStage<'a> {
                     self.queue.push(StreamItem::Command { line, command });
                 }
                 StreamItem::Point(block) => self.block(block, out, findings),
+                StreamItem::Placer(placer) => {
+                    self.placer = Some(placer);
+                    self.take_placer(out, findings);
+                }
             }
         }
         if !self.moves {
@@ -188,14 +186,13 @@ impl<'a> PlanStage<'a> {
         out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
         findings: &Findings,
     ) {
-        let told = self.told.borrow().clone();
         let known = self.run.as_ref().map(|run| Rc::as_ptr(run.line.placer()));
-        if told.as_ref().map(Rc::as_ptr) == known {
+        if self.placer.as_ref().map(Rc::as_ptr) == known {
             return;
         }
         self.stop(out, findings);
         self.run = None;
-        let (Some(placer), false) = (told, self.refused) else {
+        let (Some(placer), false) = (self.placer.clone(), self.refused) else {
             return;
         };
         if !placer.solver().closed_form() {

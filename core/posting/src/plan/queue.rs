@@ -165,9 +165,6 @@ impl BlockQueue {
 
     /// Line of the CL file of the first that waits.
     pub(super) fn first_line(&self) -> Option<u64> {
-        self.waiting.front().map(|next| match &next.flow {
-            StreamItem::Point(block) => block.line,
-            StreamItem::Command { line, .. } => *line,
-        })
+        self.waiting.front()?.flow.line(|block| block.line)
     }
 }

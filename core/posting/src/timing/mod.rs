@@ -131,6 +131,7 @@ impl<'a> TimingStage<'a> {
             match next {
                 StreamItem::Point(block) => self.block(block, findings),
                 StreamItem::Command { command, .. } => self.command(command),
+                StreamItem::Placer(_) => {}
             }
         }
     }

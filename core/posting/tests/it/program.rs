@@ -53,7 +53,7 @@ impl Run {
     fn moves(&self) -> Vec<StraightMove> {
         let motion = |step: &StreamItem<PathMove>| match step {
             StreamItem::Point(line) => Some(line.motion),
-            StreamItem::Command { .. } => None,
+            _ => None,
         };
         self.steps.iter().filter_map(motion).collect()
     }
@@ -134,6 +134,7 @@ fn step(step: &StreamItem<PathMove>) -> String {
             return format!("{pace} {}", placed(motion.tip, motion.axis));
         }
         StreamItem::Command { command, .. } => command,
+        StreamItem::Placer(_) => return String::new(),
     };
     match command {
         Command::From { tip, axis } => format!("from {}", placed(*tip, *axis)),

@@ -49,7 +49,8 @@ fn observers_see_the_blocks_that_the_dialect_is_asked_for() {
                 &mut [&mut first, &mut second],
             )
             .good(kind);
-            assert_eq!(first.0, second.0, "every observer sees the same");
+            let [seen, also] = [&first.0, &second.0].map(|seen| format!("{seen:?}"));
+            assert_eq!(seen, also, "every observer sees the same");
             let (written, motions) = (first.written(), run.motions());
             assert_eq!(written.len(), motions.len());
             for (block, asked) in written.iter().zip(&motions) {
@@ -93,9 +94,10 @@ fn commands_stand_where_they_stood() {
     let lines: Vec<(u64, bool)> = seen
         .0
         .iter()
-        .map(|next| match next {
-            StreamItem::Point(block) => (block.line, true),
-            StreamItem::Command { line, .. } => (*line, false),
+        .filter_map(|next| match next {
+            StreamItem::Point(block) => Some((block.line, true)),
+            StreamItem::Command { line, .. } => Some((*line, false)),
+            StreamItem::Placer(_) => None,
         })
         .collect();
     let lines: Vec<(u64, bool)> = lines.into_iter().filter(|(line, _)| *line > 4).collect();

@@ -19,8 +19,6 @@ pub const REASONS: [&str; 9] =
 pub struct PostedBlock {
     /// The block.
     pub block: MotionBlock,
-    /// Line of the program; 0 of a block that prints nothing.
-    pub nc: u64,
     /// How the tool comes to its end: a place in [`KINDS`].
     pub kind: u8,
     /// When it ends, s; dwells counted in.
@@ -68,7 +66,7 @@ impl PostedBlock {
 pub fn arrays(axes: usize) -> Vec<Column<PostedBlock>> {
     type C = Column<PostedBlock>;
     vec![
-        C::new("nc_line", "", 0, |row| row.nc)
+        C::new("nc_line", "", 0, |row| row.block.nc_line)
             .doc("line of the program; 0 of a block that prints nothing"),
         C::new("cl_line", "", 0, |row| row.block.line).doc("line of the CL file"),
         C::new("kind", "", 0, |row| row.kind).doc(listed("how the tool comes to its end", &KINDS)),
@@ -129,14 +127,13 @@ impl<'m> PostedProgram<'m> {
         }
     }
 
-    /// The row of the next block, whose line of the program is not known yet.
+    /// The row of the next block.
     pub fn block(&mut self, block: &MotionBlock) -> PostedBlock {
         self.time += block.time.minutes * 60.0;
         let readings = axes::readings(self.machine, &block.joints);
         let limit = block.time.limit.or(block.planned.limit);
         PostedBlock {
             block: *block,
-            nc: 0,
             kind: match (self.hole, block.kind) {
                 (true, _) => 6,
                 (_, BlockKind::Position) => 0,

@@ -23,16 +23,9 @@ pub trait Observer {
         let _ = (line, cut);
     }
 
-    /// Blocks and the commands between them, in order, as they go to the dialect.
+    /// Blocks and the commands between them, in order, as they went to the dialect: a hole once it is done.
     fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
         let _ = blocks;
-    }
-
-    /// The lines of the program that the next blocks end on, counted from 1, in the order in which [`Observer::blocks`] has
-    /// told them: zero of a block that is not written. Of a hole that the control's own cycle makes they are all that of its
-    /// point. They come when the text is made, for holes a while after the blocks.
-    fn lines(&mut self, lines: &[u64]) {
-        let _ = lines;
     }
 }
 
@@ -50,12 +43,6 @@ impl<'a> Observers<'a> {
     pub(crate) fn blocks(&self, blocks: &[StreamItem<MotionBlock>]) {
         for observer in self.all.borrow_mut().iter_mut() {
             observer.blocks(blocks);
-        }
-    }
-
-    pub(crate) fn lines(&self, lines: &[u64]) {
-        for observer in self.all.borrow_mut().iter_mut() {
-            observer.lines(lines);
         }
     }
 

@@ -112,9 +112,7 @@ impl PostStages<'_> {
         // that the stages are joined from the last to the first.
         let mut to_emit = |made: &mut Vec<StreamItem<MotionBlock>>| {
             timing.take(made, findings);
-            observers.blocks(made);
-            emit.take(made, findings);
-            emit.take_lines(|lines| observers.lines(lines));
+            emit.take(made, findings, observers);
         };
         let mut planned = BatchSink::new(planned, &mut to_emit);
         let mut to_plan = |made: &mut Vec<StreamItem<MotionBlock>>| match plan {
@@ -153,7 +151,6 @@ impl PostStages<'_> {
         planned.flush();
         if let Some(line) = last_line {
             emit.finish(line, findings);
-            emit.take_lines(|lines| observers.lines(lines));
         }
     }
 
@@ -313,6 +310,7 @@ impl<'a> Post<'a> {
             let end = StageInput::Finish(self.last_line);
             self.stages.run(end, &self.findings);
         }
+        self.stages.emit.show_rest(&self.stages.observers);
         let configuration = &self.stages.configuration;
         if !self.findings.failed() && configuration.moves() == 0 {
             let file = self.findings.file();

@@ -1,7 +1,5 @@
 //! The blocks of a program, as arrays.
 
-use std::collections::VecDeque;
-
 use post_machine::description::Machine;
 use post_posting::{MotionBlock, Observer, StreamItem};
 
@@ -48,8 +46,6 @@ pub fn block_arrays() -> Vec<(String, String)> {
 pub(super) struct BlockArrays<'m> {
     program: PostedProgram<'m>,
     columns: Vec<Column<PostedBlock>>,
-    /// Rows whose line of the program is not known yet.
-    waiting: VecDeque<PostedBlock>,
     blocks: Blocks,
 }
 
@@ -66,28 +62,22 @@ impl<'m> BlockArrays<'m> {
             values: Vec::new(),
         });
         let blocks = Blocks { axes, arrays: arrays.collect(), ..Blocks::default() };
-        Self { program, columns, waiting: VecDeque::new(), blocks }
+        Self { program, columns, blocks }
     }
 
     pub(super) fn finish(mut self) -> Blocks {
-        while self.row(0) {}
         self.blocks.limits = self.program.limits;
         self.blocks
     }
 
-    /// The first row that waits stands on this line; false where none waits.
-    fn row(&mut self, nc: u64) -> bool {
-        let Some(row) = self.waiting.pop_front() else {
-            return false;
-        };
-        let row = PostedBlock { nc, ..row };
+    fn block(&mut self, block: &MotionBlock) {
+        let row = self.program.block(block);
         self.blocks.rows += 1;
         for (array, column) in self.blocks.arrays.iter_mut().zip(&self.columns) {
             let values = (0..column.width.unwrap_or(1)).map(|place| column.of(&row, place));
             let numbers = values.map(|value| value.and_then(|value| value.number()));
             array.values.extend(numbers.map(|number| number.unwrap_or(f64::NAN)));
         }
-        true
     }
 }
 
@@ -95,16 +85,10 @@ impl Observer for BlockArrays<'_> {
     fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
         for next in blocks {
             match next {
-                StreamItem::Point(block) => self.waiting.push_back(self.program.block(block)),
+                StreamItem::Point(block) => self.block(block),
                 StreamItem::Command { command, .. } => self.program.command(command),
                 StreamItem::Placer(_) => {}
             }
-        }
-    }
-
-    fn lines(&mut self, lines: &[u64]) {
-        for line in lines {
-            self.row(*line);
         }
     }
 }

@@ -1,6 +1,5 @@
 //! The blocks of a program that is posted, row by row.
 
-use std::collections::VecDeque;
 use std::io::{self, BufReader, Read, Write as _};
 
 use nalgebra::Vector3;
@@ -54,7 +53,7 @@ fn columns(machine: &Machine, axes: &[AxisColumn], derived: &Derived<'_>) -> Vec
     let [tip, turn] = [accuracy.tolerance, accuracy.axis_tolerance.to_degrees()].map(decimals);
     let [tips, turns] = [tip, turn].map(power);
     let mut columns = vec![
-        C::new("nc", "", 0, |row| row.posted.nc),
+        C::new("nc", "", 0, |row| row.posted.block.nc_line),
         C::new("cl", "", 0, |row| row.posted.block.line),
         C::new("t0", "s", 4, |row| row.times[0]).from("t1"),
         C::new("t1", "s", 4, |row| row.times[1]).from("way"),
@@ -81,10 +80,6 @@ pub struct BlockRows<'m> {
     base: &'m Machine,
     program: PostedProgram<'m>,
     table: PageTable<Row>,
-    /// Rows whose line of the program is not known yet.
-    waiting: VecDeque<Row>,
-    /// Rows that came.
-    came: u64,
     /// End of the last block, s, and its tip, as the page will have them.
     end: f64,
     tip: Vector3<f64>,
@@ -152,8 +147,6 @@ impl<'m> BlockRows<'m> {
             base: machine,
             program,
             table: PageTable::new("blocks", columns)?,
-            waiting: VecDeque::new(),
-            came: 0,
             end: 0.0,
             tip: Vector3::zeros(),
             reason: BlockReason::Point,
@@ -179,7 +172,6 @@ impl<'m> BlockRows<'m> {
     /// # Errors
     /// They could not be kept.
     pub fn lines(&mut self) -> Result<Option<Box<dyn Read>>, Failure> {
-        self.settle();
         let Some(lines) = self.lines.take() else {
             return Ok(None);
         };
@@ -188,17 +180,11 @@ impl<'m> BlockRows<'m> {
         Ok(Some(Box::new(BufReader::new(lines))))
     }
 
-    /// Rows that still wait stand on no line.
-    fn settle(&mut self) {
-        self.written(std::iter::repeat_n(0, self.waiting.len()));
-    }
-
     /// All blocks have come: their table goes to `parts`, and what was seen to `meta`.
     ///
     /// # Errors
     /// They could not be kept.
-    pub fn finish(mut self, parts: &mut Parts, meta: &mut Meta) -> Result<(), Failure> {
-        self.settle();
+    pub fn finish(self, parts: &mut Parts, meta: &mut Meta) -> Result<(), Failure> {
         if let Some(fault) = self.fault {
             return Err(fault);
         }
@@ -216,30 +202,8 @@ impl<'m> BlockRows<'m> {
         self.table.finish(parts)
     }
 
-    /// The first blocks that wait stand on these lines of the program.
-    fn written(&mut self, lines: impl Iterator<Item = u64>) {
-        for line in lines {
-            let Some(mut row) = self.waiting.pop_front() else {
-                return;
-            };
-            row.posted.nc = line;
-            let place = self.table.rows();
-            for largest in &mut self.largest {
-                if largest.row == place {
-                    largest.nc = line;
-                }
-            }
-            if let (true, Some(lines)) = (self.table.row(&row), &mut self.lines)
-                && let Err(error) = lines.write_all(&(line as u32).to_le_bytes())
-            {
-                self.fault.get_or_insert(fault(error));
-            }
-        }
-    }
-
     fn block(&mut self, block: &MotionBlock) {
-        let row = self.came;
-        self.came += 1;
+        let row = self.table.rows();
         // Told against the end of the block before.
         let from = self.program.time - self.end;
         let posted = self.program.block(block);
@@ -266,7 +230,7 @@ impl<'m> BlockRows<'m> {
             };
             let largest = &mut self.largest[slot];
             if value > largest.value + EQUAL {
-                *largest = Largest { value, row, nc: 0 };
+                *largest = Largest { value, row, nc: block.nc_line };
             }
         }
         let length = self.length(block);
@@ -285,13 +249,13 @@ impl<'m> BlockRows<'m> {
         let to = packed(self.program.time - self.end - took);
         self.end += took + to;
         self.tip = tip;
-        self.waiting.push_back(Row {
-            posted,
-            times: [from, to],
-            left,
-            tolerance,
-            tool_length: length,
-        });
+        let times = [from, to];
+        let kept = self.table.row(&Row { posted, times, left, tolerance, tool_length: length });
+        if let (true, Some(lines)) = (kept, &mut self.lines)
+            && let Err(error) = lines.write_all(&(block.nc_line as u32).to_le_bytes())
+        {
+            self.fault.get_or_insert(fault(error));
+        }
     }
 
     /// Length of the tool in use, mm: by how much the tip stands before the gauge point.
@@ -356,7 +320,7 @@ impl<'m> BlockRows<'m> {
     }
 
     fn command(&mut self, command: &Command) {
-        let row = self.came;
+        let row = self.table.rows();
         self.program.command(command);
         let mut event = |kind, text: String| self.marks.event(row, kind, text);
         match command {
@@ -392,9 +356,5 @@ impl Observer for BlockRows<'_> {
                 StreamItem::Placer(_) => {}
             }
         }
-    }
-
-    fn lines(&mut self, lines: &[u64]) {
-        self.written(lines.iter().copied());
     }
 }

@@ -45,6 +45,9 @@ pub struct MotionBlock {
     pub planned: PlannedTime,
     /// How long it takes; filled in by the timing stage.
     pub time: BlockDuration,
+    /// The line of the program that it ends on, counted from 1: zero of one that is not written, and before it is. Of a hole
+    /// that the control's own cycle makes all end on that of its point. Filled in for observers.
+    pub nc_line: u64,
 }
 
 /// What a planned feed leaves a block.

@@ -634,6 +634,7 @@ impl<'a> BlockStage<'a> {
             follow: FollowTime::default(),
             planned: PlannedTime::default(),
             time: BlockDuration::default(),
+            nc_line: 0,
         }
     }
 }

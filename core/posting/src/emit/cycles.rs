@@ -121,6 +121,9 @@ impl EmitStage<'_> {
         let native = self.native(hole, findings);
         if native.is_none() && hole.drilling.alone {
             findings.at(hole.line, not_here());
+            for _ in points(&hole.above).chain(points(&hole.into)) {
+                self.writer.place(self.writer.next());
+            }
             return;
         }
         // The control itself goes from hole to hole, if nothing else is on the way.

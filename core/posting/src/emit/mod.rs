@@ -18,7 +18,7 @@ use crate::blocks::{BlockKind, BlockReason, MotionBlock};
 use crate::curve::{CurveWords, PrintedCurve};
 use crate::findings::Findings;
 use crate::job_facts::JobFacts;
-use crate::observer::TextSink;
+use crate::observer::{Observers, TextSink};
 use crate::program::Command;
 use crate::stream::StreamItem;
 use cycles::{CycleInForce, HoleMoves};
@@ -32,6 +32,8 @@ pub(crate) struct EmitStage<'a> {
     /// The machine with the head that it starts with.
     base: &'a Machine,
     writer: EventWriter<'a>,
+    /// What observers have not seen: a hole that is not done, and what came after it.
+    unseen: Vec<StreamItem<MotionBlock>>,
     texts: ProgramTexts<'a>,
     extremes: Extremes,
     /// Where the axes stand after the last block.
@@ -111,6 +113,7 @@ impl<'a> EmitStage<'a> {
             machine,
             base: machine,
             writer,
+            unseen: Vec::new(),
             texts: ProgramTexts::new(machine, job),
             extremes: Extremes::new(),
             last: Joints::default(),
@@ -161,9 +164,14 @@ impl<'a> EmitStage<'a> {
         self.writer.lines()
     }
 
-    /// Takes a batch.
-    pub(crate) fn take(&mut self, batch: &[StreamItem<MotionBlock>], findings: &Findings) {
-        for next in batch {
+    /// Takes a batch, and shows observers what is written of it.
+    pub(crate) fn take(
+        &mut self,
+        batch: &mut Vec<StreamItem<MotionBlock>>,
+        findings: &Findings,
+        observers: &Observers<'_>,
+    ) {
+        for next in batch.iter() {
             match next {
                 _ if self.hole.is_some() || next.marks_hole() => self.drill(next, findings),
                 StreamItem::Point(block) => {
@@ -181,6 +189,36 @@ impl<'a> EmitStage<'a> {
             }
         }
         self.flush(findings);
+        if observers.any() {
+            self.show(batch, observers);
+        }
+    }
+
+    /// Shows a batch, up to the first block that is not written yet; it may be empty then.
+    fn show(&mut self, batch: &mut Vec<StreamItem<MotionBlock>>, observers: &Observers<'_>) {
+        match self.unseen.is_empty() {
+            true => std::mem::swap(&mut self.unseen, batch),
+            false => self.unseen.append(batch),
+        }
+        let mut lines = self.writer.take_lines();
+        let open = self.unseen.iter_mut().position(|next| match next {
+            StreamItem::Point(block) => match lines.next() {
+                Some(line) => {
+                    block.nc_line = line;
+                    false
+                }
+                None => true,
+            },
+            _ => false,
+        });
+        let seen = open.unwrap_or(self.unseen.len());
+        observers.blocks(&self.unseen[..seen]);
+        self.unseen.drain(..seen);
+    }
+
+    /// Nothing more is written: shows what is left.
+    pub(crate) fn show_rest(&self, observers: &Observers<'_>) {
+        observers.blocks(&self.unseen);
     }
 
     /// The last events; `line` is the last of the CL file.
@@ -198,11 +236,6 @@ impl<'a> EmitStage<'a> {
     /// Notes from here on which line each block ends on.
     pub(crate) fn watch(&mut self) {
         self.writer.watch();
-    }
-
-    /// Hands over the lines on which blocks end, those of them that are written.
-    pub(crate) fn take_lines(&mut self, take: impl FnOnce(&[u64])) {
-        self.writer.take_lines(take);
     }
 
     /// Writes a block, and notes where it stands.

@@ -66,13 +66,8 @@ impl<'a> EventWriter<'a> {
     }
 
     /// Hands over where the blocks stand that are written.
-    pub(super) fn take_lines(&mut self, take: impl FnOnce(&[u64])) {
-        if let Some(places) = &mut self.places
-            && !places.lines.is_empty()
-        {
-            take(&places.lines);
-            places.lines.clear();
-        }
+    pub(super) fn take_lines(&mut self) -> impl Iterator<Item = u64> {
+        self.places.iter_mut().flat_map(|places| places.lines.drain(..))
     }
 
     /// The dialect declared that it writes this.

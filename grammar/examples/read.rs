@@ -6,11 +6,11 @@ use std::error::Error;
 use std::fs::File;
 use std::io::{Write, stdout};
 
-use post_grammar::Reader;
+use post_grammar::ClReader;
 
 fn main() -> Result<(), Box<dyn Error>> {
     for path in std::env::args().skip(1) {
-        let mut reader = Reader::new(File::open(&path)?);
+        let mut reader = ClReader::new(File::open(&path)?);
         let mut records = 0;
         while reader.next_record()?.is_some() {
             records += 1;

@@ -43,7 +43,7 @@ impl fmt::Display for SyntaxFault {
 
 impl Error for SyntaxFault {}
 
-/// Why [`Reader::next_record`](crate::Reader::next_record) has no record.
+/// Why [`Reader::next_record`](crate::ClReader::next_record) has no record.
 #[derive(Debug)]
 pub enum ReadError {
     /// The input failed.

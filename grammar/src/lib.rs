@@ -1,6 +1,6 @@
 //! Cutter-location files, NC programs and the small languages of a machine file: text in, typed records out.
 //!
-//! A cutter-location file goes through [`Reader`], which splits it into logical lines in one reused buffer.
+//! A cutter-location file goes through [`ClReader`], which splits it into logical lines in one reused buffer.
 //! The language is that of the pest grammar `line.pest`; a hand-written scanner gives the same for every usual line
 //! and leaves the others to pest, which reads them or says what is wrong.
 //! An NC program becomes blocks ([`nc`]).

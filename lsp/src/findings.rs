@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use gen_lsp_types::{Code, Diagnostic as LspDiagnostic, DiagnosticSeverity, Range as LspRange};
-use post_machine::diagnostic::{Diagnostic, Place, Severity};
+use post_machine::diagnostic::{Diagnostic, Severity, SourcePlace};
 
 use super::document::Snapshot;
 
@@ -45,7 +45,7 @@ fn one(finding: &Diagnostic, of: &Snapshot) -> LspDiagnostic {
 }
 
 /// What a finding underlines.
-fn range(place: &Place, of: &Snapshot) -> LspRange {
+fn range(place: &SourcePlace, of: &Snapshot) -> LspRange {
     match span(place, of) {
         Some(span) => of.lines.range(&of.text, span),
         None => of.lines.whole(&of.text, place.line),
@@ -53,7 +53,7 @@ fn range(place: &Place, of: &Snapshot) -> LspRange {
 }
 
 /// The bytes that a finding underlines; none where the text has changed since, or the record goes over several lines.
-pub fn span(place: &Place, of: &Snapshot) -> Option<Range<usize>> {
+pub fn span(place: &SourcePlace, of: &Snapshot) -> Option<Range<usize>> {
     let line = usize::try_from(place.line).ok()?.checked_sub(1)?;
     let whole = of.lines.span(&of.text, line);
     let text = &of.text[whole.clone()];

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::apart::apart;
-use crate::refusal::{Told, told};
+use crate::refusal::{DiagnosticFields, told};
 
 /// A program.
 #[pyclass(frozen, module = "post._native")]
@@ -37,17 +37,21 @@ impl Job {
     }
 
     /// What the user should know.
-    fn warnings(&self) -> Vec<Told> {
+    fn warnings(&self) -> Vec<DiagnosticFields> {
         told(self.made.findings())
     }
 
     /// What was found when it is read back: JSON, and warnings.
-    fn verify(&self, py: Python<'_>) -> PyResult<(String, Vec<Told>)> {
+    fn verify(&self, py: Python<'_>) -> PyResult<(String, Vec<DiagnosticFields>)> {
         apart(py, |stop| self.made.verify(stop)).map(given)
     }
 
     /// What is predicted: JSON, and warnings.
-    fn predict(&self, py: Python<'_>, period: Option<f64>) -> PyResult<(String, Vec<Told>)> {
+    fn predict(
+        &self,
+        py: Python<'_>,
+        period: Option<f64>,
+    ) -> PyResult<(String, Vec<DiagnosticFields>)> {
         apart(py, |stop| self.made.predict(stop, period)).map(given)
     }
 
@@ -97,6 +101,6 @@ impl Job {
     }
 }
 
-fn given(found: Found) -> (String, Vec<Told>) {
+fn given(found: Found) -> (String, Vec<DiagnosticFields>) {
     (found.json, told(&found.findings))
 }

@@ -24,16 +24,16 @@ pub struct Machine {
 }
 
 /// Numbers of many points.
-type Rows<'py> = Bound<'py, PyArray2<f64>>;
+type OutputRows<'py> = Bound<'py, PyArray2<f64>>;
 
 /// Numbers of solutions of many points, and how many solutions each has.
 type Counted<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<i64>>);
 
 /// Numbers of many points, in one piece.
-type Given<'py> = PyReadonlyArray2<'py, f64>;
+type InputRows<'py> = PyReadonlyArray2<'py, f64>;
 
 /// Of an axis its name, that it turns, that it carries the part, its unit and its travel.
-type AxisTold = (String, bool, bool, &'static str, Option<[f64; 2]>);
+type AxisDescription = (String, bool, bool, &'static str, Option<[f64; 2]>);
 
 #[pymethods]
 impl Machine {
@@ -72,7 +72,7 @@ impl Machine {
     }
 
     /// Its axes, from the workpiece to the tool.
-    fn axes(&self) -> Vec<AxisTold> {
+    fn axes(&self) -> Vec<AxisDescription> {
         let axes = self.loaded.kinematics().axes().into_iter();
         axes.map(|axis| (axis.name, axis.rotary, axis.carries_part, axis.unit, axis.travel))
             .collect()
@@ -90,7 +90,11 @@ impl Machine {
     }
 
     /// Tip and tool axis of axis values.
-    fn forward<'py>(&self, py: Python<'py>, q: Given<'py>) -> PyResult<(Rows<'py>, Rows<'py>)> {
+    fn forward<'py>(
+        &self,
+        py: Python<'py>,
+        q: InputRows<'py>,
+    ) -> PyResult<(OutputRows<'py>, OutputRows<'py>)> {
         let mut tip = Array2::zeros((q.shape()[0], 3));
         let mut axis = Array2::zeros((q.shape()[0], 3));
         let q = q.as_slice()?;
@@ -107,9 +111,9 @@ impl Machine {
     fn inverse<'py>(
         &self,
         py: Python<'py>,
-        tip: Given<'py>,
-        axis: Given<'py>,
-        edge: Option<Given<'py>>,
+        tip: InputRows<'py>,
+        axis: InputRows<'py>,
+        edge: Option<InputRows<'py>>,
         near: PyReadonlyArray1<'py, f64>,
         within_travel: bool,
     ) -> PyResult<Counted<'py>> {
@@ -131,11 +135,11 @@ impl Machine {
     fn route<'py>(
         &self,
         py: Python<'py>,
-        tip: Given<'py>,
-        axis: Given<'py>,
-        edge: Option<Given<'py>>,
+        tip: InputRows<'py>,
+        axis: InputRows<'py>,
+        edge: Option<InputRows<'py>>,
         cut: PyReadonlyArray1<'py, bool>,
-    ) -> PyResult<Rows<'py>> {
+    ) -> PyResult<OutputRows<'py>> {
         let points = tip.shape()[0];
         let wanted = Wanted {
             tip: tip.as_slice()?,
@@ -154,7 +158,7 @@ impl Machine {
         py: Python<'_>,
         input: PathBuf,
         output: Option<PathBuf>,
-        options: Vec<(String, options::Given)>,
+        options: Vec<(String, options::OptionInput)>,
         keep_blocks: bool,
     ) -> PyResult<Job> {
         let options = options::told(options);
@@ -167,10 +171,10 @@ impl Machine {
     fn deviation<'py>(
         &self,
         py: Python<'py>,
-        q0: Given<'py>,
-        q1: Given<'py>,
+        q0: InputRows<'py>,
+        q1: InputRows<'py>,
         shares: PyReadonlyArray1<'py, f64>,
-    ) -> PyResult<(Bound<'py, PyArray3<f64>>, Rows<'py>)> {
+    ) -> PyResult<(Bound<'py, PyArray3<f64>>, OutputRows<'py>)> {
         let (moves, places) = (q0.shape()[0], shares.shape()[0]);
         let (from, to, shares) = (q0.as_slice()?, q1.as_slice()?, shares.as_slice()?);
         let Deviations { tip, axis } =

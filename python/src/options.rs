@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 /// A value of an option.
 #[derive(FromPyObject)]
-pub enum Given {
+pub enum OptionInput {
     Yes(bool),
     Whole(i64),
     Number(f64),
@@ -13,19 +13,19 @@ pub enum Given {
     List(Vec<String>),
 }
 
-impl From<Given> for Value {
-    fn from(given: Given) -> Self {
+impl From<OptionInput> for Value {
+    fn from(given: OptionInput) -> Self {
         match given {
-            Given::Yes(yes) => Self::Yes(yes),
-            Given::Whole(number) => Self::Whole(number),
-            Given::Number(number) => Self::Number(number),
-            Given::Text(text) => Self::Text(text),
-            Given::List(texts) => Self::List(texts.into_iter().map(Self::Text).collect()),
+            OptionInput::Yes(yes) => Self::Yes(yes),
+            OptionInput::Whole(number) => Self::Whole(number),
+            OptionInput::Number(number) => Self::Number(number),
+            OptionInput::Text(text) => Self::Text(text),
+            OptionInput::List(texts) => Self::List(texts.into_iter().map(Self::Text).collect()),
         }
     }
 }
 
 /// Options for a job.
-pub fn told(options: Vec<(String, Given)>) -> Vec<OptionTold> {
+pub fn told(options: Vec<(String, OptionInput)>) -> Vec<OptionTold> {
     options.into_iter().map(|(name, given)| (name, given.into())).collect()
 }

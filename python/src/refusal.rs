@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 /// Of a finding its severity, code, message and help, and of its place file, line and text: what `post.Diagnostic` is made
 /// of.
-pub type Told = (
+pub type DiagnosticFields = (
     &'static str,
     &'static str,
     String,
@@ -16,7 +16,7 @@ pub type Told = (
 );
 
 /// Findings for Python.
-pub fn told(findings: &[Diagnostic]) -> Vec<Told> {
+pub fn told(findings: &[Diagnostic]) -> Vec<DiagnosticFields> {
     let tell = |finding: &Diagnostic| {
         let severity = match finding.severity {
             Severity::Warning => "warning",

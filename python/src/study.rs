@@ -69,7 +69,7 @@ impl Study {
     fn new(
         py: Python<'_>,
         lines: &str,
-        options: Vec<(String, options::Given)>,
+        options: Vec<(String, options::OptionInput)>,
         journal: Option<PathBuf>,
     ) -> PyResult<Self> {
         let options = options::told(options);
@@ -169,7 +169,7 @@ fn floats(py: Python<'_>, numbers: impl Iterator<Item = Option<f64>>) -> Bound<'
 pub fn run_part(
     py: Python<'_>,
     lines: &str,
-    options: Vec<(String, options::Given)>,
+    options: Vec<(String, options::OptionInput)>,
     files: Vec<(String, Vec<u8>)>,
     machines: &str,
     threads: Option<NonZeroUsize>,

@@ -4,7 +4,7 @@ use std::io::{IsTerminal, Write};
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use post_grammar::text::escaped;
-use post_machine::diagnostic::{Diagnostic, Place, Severity};
+use post_machine::diagnostic::{Diagnostic, Severity, SourcePlace};
 
 use post_job::files::Texts;
 
@@ -72,11 +72,11 @@ fn render(finding: &Diagnostic, renderer: &Renderer) -> String {
 }
 
 /// The place with what a terminal would obey written as escapes; tabs are blanks to the renderer.
-fn legible(place: &Place) -> Place {
+fn legible(place: &SourcePlace) -> SourcePlace {
     let plain = |text: &str| escaped(text, &['\t']).into_owned();
     let span = &place.span;
     let start = plain(&place.text[..span.start]).len();
-    Place {
+    SourcePlace {
         file: plain(&place.file),
         line: place.line,
         text: plain(&place.text),
@@ -92,7 +92,7 @@ mod tests {
     #[test]
     fn what_a_terminal_would_obey_is_written_as_an_escape() {
         let text = "PPRINT \u{1B}[31mred\u{202E} end";
-        let place = Place::new("a\u{1B}b.cls", 3, text, 7..15);
+        let place = SourcePlace::new("a\u{1B}b.cls", 3, text, 7..15);
         let finding = Diagnostic::error("x", "say \u{9B}1m\nit").help("\u{7}").at(Some(place));
         let shown = render(&finding, &Renderer::plain());
         assert!(!shown.contains(|letter: char| letter != '\n' && letter.is_control()));

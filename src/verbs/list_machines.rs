@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use post_machine::check::Class;
+use post_machine::check::MachineClass;
 use post_machine::description::Machine;
 
 use crate::terminal;
@@ -50,7 +50,7 @@ fn row(listed: Listed) -> [String; 5] {
             axes(&machine),
             machine.control.dialect.clone(),
             from,
-            Class::of(&machine).name,
+            MachineClass::of(&machine).name,
         ],
         Err(failure) => {
             let findings = failure.findings();

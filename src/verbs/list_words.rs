@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use clap::Args;
-use post_grammar::{MajorWord, ReadError, Reader, WordUsage};
+use post_grammar::{ClReader, MajorWord, ReadError, WordUsage};
 use post_machine::diagnostic::{Diagnostic, unreadable};
 use post_posting::MOST_FAULTS;
 use post_posting::program::limits::MOST_WORDS;
@@ -39,7 +39,7 @@ pub fn run(session: &Session, arguments: &WordsArguments) -> Result<(), Failure>
     };
     let input = ClInput::open(session, file)?;
     let name = input.name;
-    let mut reader = Reader::new(input.bytes);
+    let mut reader = ClReader::new(input.bytes);
     let mut words: BTreeMap<String, (u64, u64, WordUsage)> = BTreeMap::new();
     let mut faults = Vec::new();
     loop {

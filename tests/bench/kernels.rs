@@ -16,8 +16,8 @@ use std::io::Write;
 use std::time::Instant;
 
 use nalgebra::Vector3;
-use post_machine::axis_words::{WordValues, Words};
-use post_machine::kinematics::batch::{Axes, LANES, Traces};
+use post_machine::axis_words::{AxisWords, WordValues};
+use post_machine::kinematics::batch::{AxisBatch, LANES, Traces};
 use post_machine::kinematics::{Joints, Pose, Trace};
 use post_plugin::Format;
 
@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let machine = job::machine(name, &[])?;
         let solver = machine.solver(100.0).map_err(|lack| format!("{name}: {lack:?}"))?;
         let format = Format { words: vec![3; machine.axes.len()], ..Format::default() };
-        let mut words = Words::new(&machine, &format);
+        let mut words = AxisWords::new(&machine, &format);
         words.set_zero(&solver).ok_or("no zero")?;
         let printed: Vec<Joints> = poses
             .iter()
@@ -65,7 +65,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         });
         let tips: Vec<Vector3<f64>> = poses.iter().map(|pose| pose.tip).collect();
-        let (mut at, mut forward) = (Axes::default(), Traces::default());
+        let (mut at, mut forward) = (AxisBatch::default(), Traces::default());
         let together = nanoseconds(|| {
             for tips in tips.chunks(LANES) {
                 black_box(solver.place_all(tips, &mut at));

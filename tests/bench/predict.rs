@@ -39,7 +39,7 @@ use post_plugin::DialectSession as _;
 use post_readback::Offsets;
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
-use post_readback::tasks::Tasks;
+use post_readback::tasks::ProgramTasks;
 
 /// Set-points of the long program; other numbers by the first argument behind `--`.
 const SET_POINTS: u64 = 1_000_000;
@@ -186,7 +186,7 @@ fn staged(path: &Path, tcp: &str) -> Result<Costs, Box<dyn Error>> {
     let limits = Limits { blocks: u64::MAX, ..Limits::default() };
     let mut program =
         Interpreter::new(&machine, &lexicon, &offsets, limits, "program", file).map_err(text)?;
-    let mut tasks = Tasks::new(&machine);
+    let mut tasks = ProgramTasks::new(&machine);
     let mut planner = Planner::new(&machine);
     let period = machine.motion.period;
     let mut servos = Servos::new(&machine, period).map_err(text)?;

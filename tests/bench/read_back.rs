@@ -32,7 +32,7 @@ use post_host::{Plugin, ProgramSetup, ProgramWord};
 use post_plugin::DialectSession as _;
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
-use post_readback::{Done, Offsets};
+use post_readback::{BlockEffect, Offsets};
 
 /// Blocks of the program; more by the first argument behind `--`.
 const BLOCKS: u64 = 1_000_000;
@@ -198,7 +198,7 @@ fn interpret(program: &Path, lexicon: &Lexicon) -> Result<(), Box<dyn Error>> {
     let name = "whole.ngc";
     let mut program = Interpreter::new(&machine, lexicon, &offsets, Limits::default(), name, file)
         .map_err(|fault| format!("{fault:?}"))?;
-    let mut done: Vec<Done> = Vec::new();
+    let mut done: Vec<BlockEffect> = Vec::new();
     let mut count = 0;
     while program.next(&mut done).map_err(|fault| format!("{fault:?}"))? {
         count += done.len();

@@ -9,15 +9,15 @@ use std::io::Cursor;
 use std::path::PathBuf;
 
 use nalgebra::Vector3;
-use post_grammar::{ReadError, Reader, Units};
+use post_grammar::{ClReader, ReadError, Units};
 use post_plugin::{Compensation, Coolant, Spindle, SpindleSense};
 use post_posting::program::{
     ClInterpreter, Command, CycleLeg, DefaultSpindle, MoveFeed, ProgramStep, ReadingOptions,
 };
-use post_readback::convert::{ClWriter, Tool};
-use post_readback::course::cl::{ClCourse, Settings};
-use post_readback::course::{Course, Curve, Item, Piece};
-use post_readback::{MotionKind, Told};
+use post_readback::convert::{ClWriter, MountedTool};
+use post_readback::course::cl::{ClCourse, ClSettings};
+use post_readback::course::{Course, CourseItem, CoursePiece, Curve};
+use post_readback::{MotionKind, ProgramEvent};
 use post_testkit::{repository, shared};
 
 /// Both compute in doubles, in another order.
@@ -79,7 +79,7 @@ fn posted(text: &[u8], how: &How) -> (Vec<Beat>, Vec<String>) {
         allowed: how.allowed.clone(),
         ..ReadingOptions::default()
     });
-    let mut reader = Reader::new(text);
+    let mut reader = ClReader::new(text);
     let mut beats = Vec::new();
     let mut faults = Vec::new();
     loop {
@@ -226,8 +226,8 @@ fn said(command: Command) -> Option<String> {
 }
 
 /// How reading back takes a file.
-fn settings(how: &How) -> Settings {
-    Settings {
+fn settings(how: &How) -> ClSettings {
+    ClSettings {
         file: "part.cls".to_owned(),
         units: how.units,
         apply_msys: how.apply_msys,
@@ -237,7 +237,7 @@ fn settings(how: &How) -> Settings {
         feed: how.feed,
         spindle: how.spindle,
         allowed: how.allowed.clone(),
-        ..Settings::default()
+        ..ClSettings::default()
     }
 }
 
@@ -254,9 +254,9 @@ fn course(text: &[u8], how: &How) -> (Vec<Beat>, Vec<String>) {
     }
 }
 
-fn course_item(item: Item, beats: &mut Vec<Beat>) {
+fn course_item(item: CourseItem, beats: &mut Vec<Beat>) {
     match item {
-        Item::Piece(piece) => {
+        CourseItem::Piece(piece) => {
             if let Some(points) = points_on(&piece) {
                 beats.push(Beat::Through(points));
             }
@@ -269,7 +269,7 @@ fn course_item(item: Item, beats: &mut Vec<Beat>) {
                 edge: piece.to.edge,
             });
         }
-        Item::Reach(reach) => beats.push(Beat::To {
+        CourseItem::Reach(reach) => beats.push(Beat::To {
             line: reach.line,
             rapid: reach.kind == MotionKind::Rapid,
             feed: reach.feed,
@@ -277,12 +277,12 @@ fn course_item(item: Item, beats: &mut Vec<Beat>) {
             axis: reach.to.axis,
             edge: reach.to.edge,
         }),
-        Item::Away { .. } => beats.push(Beat::Said("away".to_owned())),
-        Item::Told { told, .. } => beats.extend(heard(told).map(Beat::Said)),
+        CourseItem::Away { .. } => beats.push(Beat::Said("away".to_owned())),
+        CourseItem::Event { event: told, .. } => beats.extend(heard(told).map(Beat::Said)),
     }
 }
 
-fn points_on(piece: &Piece) -> Option<Vec<Vector3<f64>>> {
+fn points_on(piece: &CoursePiece) -> Option<Vec<Vector3<f64>>> {
     let shares = |count: u32| (1..count).map(move |place| f64::from(place) / f64::from(count));
     match &piece.curve {
         Curve::Straight => None,
@@ -291,29 +291,33 @@ fn points_on(piece: &Piece) -> Option<Vec<Vector3<f64>>> {
     }
 }
 
-fn heard(told: Told) -> Option<String> {
-    use post_readback::Spindle as Turns;
+fn heard(told: ProgramEvent) -> Option<String> {
+    use post_readback::SpindleState as Turns;
     Some(match told {
-        Told::ToolChange { number, name } => {
+        ProgramEvent::ToolChange { number, name } => {
             format!("tool {} {:?}", number?, name.unwrap_or_default())
         }
-        Told::Preselect(number) => format!("preselect {number}"),
-        Told::Spindle(Turns::Off) => "spindle off".to_owned(),
-        Told::Spindle(Turns::Oriented) => "spindle oriented".to_owned(),
-        Told::Spindle(Turns::Clockwise(rpm)) => format!("spindle {rpm:.6} left false"),
-        Told::Spindle(Turns::CounterClockwise(rpm)) => format!("spindle {rpm:.6} left true"),
-        Told::Coolant(coolants) => {
+        ProgramEvent::Preselect(number) => format!("preselect {number}"),
+        ProgramEvent::Spindle(Turns::Off) => "spindle off".to_owned(),
+        ProgramEvent::Spindle(Turns::Oriented) => "spindle oriented".to_owned(),
+        ProgramEvent::Spindle(Turns::Clockwise(rpm)) => format!("spindle {rpm:.6} left false"),
+        ProgramEvent::Spindle(Turns::CounterClockwise(rpm)) => {
+            format!("spindle {rpm:.6} left true")
+        }
+        ProgramEvent::Coolant(coolants) => {
             format!("coolant {:?}", [coolants.flood, coolants.mist, coolants.other])
         }
-        Told::Compensation { side, register } => format!("compensation {side} {register:?}"),
-        Told::Operation(name) => format!("operation {name}"),
-        Told::Message(text) => format!("message {text}"),
-        Told::WorkOffset(number) => format!("offset {number}"),
-        Told::Subprogram(number) => format!("subprogram {number}"),
-        Told::Dwell { time, .. } => format!("dwell {time:.4}"),
-        Told::Stop => "stop".to_owned(),
-        Told::OptionalStop => "optional stop".to_owned(),
-        Told::Head(name) => format!("head {name}"),
+        ProgramEvent::Compensation { side, register } => {
+            format!("compensation {side} {register:?}")
+        }
+        ProgramEvent::Operation(name) => format!("operation {name}"),
+        ProgramEvent::Message(text) => format!("message {text}"),
+        ProgramEvent::WorkOffset(number) => format!("offset {number}"),
+        ProgramEvent::Subprogram(number) => format!("subprogram {number}"),
+        ProgramEvent::Dwell { time, .. } => format!("dwell {time:.4}"),
+        ProgramEvent::Stop => "stop".to_owned(),
+        ProgramEvent::OptionalStop => "optional stop".to_owned(),
+        ProgramEvent::Head(name) => format!("head {name}"),
         _ => return None,
     })
 }
@@ -546,10 +550,10 @@ fn counts_and_extents_are_those_of_the_files() {
     };
     for (name, points, arcs, splines, extents) in FIGURES {
         let text = fs::read(folder.join(name)).unwrap();
-        let settings = Settings {
+        let settings = ClSettings {
             file: name.to_owned(),
             allowed: vec!["DEEP".to_owned()],
-            ..Settings::default()
+            ..ClSettings::default()
         };
         let mut course = ClCourse::new(settings, Cursor::new(&text));
         let (mut ends, mut found_arcs, mut found_splines) = (0, 0, 0);
@@ -563,7 +567,7 @@ fn counts_and_extents_are_those_of_the_files() {
         let mut drills = false;
         while let Some(item) = course.next().unwrap() {
             match item {
-                Item::Piece(Piece { hole: false, curve, to, .. }) => {
+                CourseItem::Piece(CoursePiece { hole: false, curve, to, .. }) => {
                     found_arcs += u64::from(matches!(curve, Curve::Arc { .. }));
                     let spline = matches!(curve, Curve::Spline(_));
                     found_splines += u64::from(spline);
@@ -572,11 +576,11 @@ fn counts_and_extents_are_those_of_the_files() {
                         reach(to.tip);
                     }
                 }
-                Item::Reach(at) if !at.hole => {
+                CourseItem::Reach(at) if !at.hole => {
                     ends += 1;
                     reach(at.to.tip);
                 }
-                Item::Told { told: Told::CycleEnd, .. } => {
+                CourseItem::Event { event: ProgramEvent::CycleEnd, .. } => {
                     ends += 1;
                     drills = true;
                 }
@@ -602,13 +606,16 @@ fn written_anew(text: &[u8], how: &How) -> String {
     let mut writer = ClWriter::new(0.0005);
     let mut out = String::new();
     writer.begin("anew", &mut out);
-    let mut tool = Tool::default();
+    let mut tool = MountedTool::default();
     loop {
         match course.next() {
             Ok(Some(item)) => {
-                if let Item::Told { told: Told::ToolChange { number, .. }, .. } = &item {
+                if let CourseItem::Event {
+                    event: ProgramEvent::ToolChange { number, .. }, ..
+                } = &item
+                {
                     let known = tools.iter().find(|known| Some(known.number) == *number);
-                    tool = known.map_or(Tool::default(), |known| Tool {
+                    tool = known.map_or(MountedTool::default(), |known| MountedTool {
                         register: Some(known.register),
                         length: known.length,
                     });

@@ -16,12 +16,12 @@ use nalgebra::Vector3;
 use post_machine::description::{Machine, Rapid, Setting, Source, Tcp, load};
 use post_machine::kinematics::Chain;
 use post_plugin::Capabilities;
-use post_readback::course::cl::{ClCourse, Settings};
-use post_readback::course::{Course as _, Curve, Item};
+use post_readback::course::cl::{ClCourse, ClSettings};
+use post_readback::course::{Course as _, CourseItem, Curve};
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
 use post_readback::verify::{CutPath, Verifier, VerifyRules};
-use post_readback::{Done, Motion, MotionKind, Offsets, Told};
+use post_readback::{BlockEffect, Motion, MotionKind, Offsets, ProgramEvent};
 use post_testkit::{Rng, drawn, seeded};
 
 /// A program, and all that is needed to run it and to hold it against its CL file.
@@ -33,7 +33,7 @@ struct Job {
     cl_name: String,
     lines: Vec<String>,
     length: f64,
-    done: Vec<Done>,
+    done: Vec<BlockEffect>,
     /// The machine with the tool as long as it is.
     chain: Chain,
     /// Places where the program cuts, about a millimetre apart.
@@ -97,17 +97,17 @@ impl Job {
     }
 
     fn course(&self) -> ClCourse<Cursor<Vec<u8>>> {
-        let settings = Settings::of(&self.machine, &self.cl_name);
+        let settings = ClSettings::of(&self.machine, &self.cl_name);
         ClCourse::new(settings, Cursor::new(self.cl.clone()))
     }
 
     /// All that is cut lies within the tolerance of what the CL file asks for, and that of it: another program may be
     /// right too.
-    fn keeps_the_path(&self, done: &[Done]) -> bool {
+    fn keeps_the_path(&self, done: &[BlockEffect]) -> bool {
         let mut course = self.course();
         let mut asked: Vec<At> = Vec::new();
         while let Ok(Some(item)) = course.next() {
-            if let Item::Piece(piece) = item
+            if let CourseItem::Piece(piece) = item
                 && piece.kind != MotionKind::Rapid
             {
                 // A chord of a tenth of a millimetre strays from no arc of these by a hundredth of the tolerance.
@@ -143,7 +143,7 @@ impl Job {
     }
 
     /// What the program of these lines does, and what is wrong with it, with its line.
-    fn run(&self, lines: &[String], length: f64) -> (Vec<Done>, Vec<(Option<u64>, String)>) {
+    fn run(&self, lines: &[String], length: f64) -> (Vec<BlockEffect>, Vec<(Option<u64>, String)>) {
         let text = lines.join("\n") + "\n";
         let offsets = Offsets { length: Some(length), ..Offsets::default() };
         let (near, _) = CutPath::of(&mut self.course(), self.machine.control_point.along);
@@ -182,7 +182,7 @@ impl Job {
                 verifier.take(done, &mut |_| {});
             }
             for done in &mut done {
-                if let Done::Motion(motion) = done
+                if let BlockEffect::Motion(motion) = done
                     && self.is_rapid(motion)
                 {
                     motion.kind = MotionKind::Rapid;
@@ -501,9 +501,9 @@ enum Difference {
 /// A point of a way: tip and tool axis.
 type At = (Vector3<f64>, Vector3<f64>);
 
-fn motions_of(done: &[Done]) -> Vec<&Motion> {
+fn motions_of(done: &[BlockEffect]) -> Vec<&Motion> {
     let motions = done.iter().filter_map(|done| match done {
-        Done::Motion(motion) => Some(motion),
+        BlockEffect::Motion(motion) => Some(motion),
         _ => None,
     });
     motions.collect()
@@ -550,7 +550,7 @@ fn dense(motions: &[&Motion], rapids: Option<&Chain>) -> Vec<At> {
 }
 
 /// Where the depth axes stand where a tool is changed, and at the end, mm away from the part.
-fn drawn_back(job: &Job, done: &[Done]) -> Vec<f64> {
+fn drawn_back(job: &Job, done: &[BlockEffect]) -> Vec<f64> {
     let machine = &job.machine;
     let axes = machine.frame.retract.iter().map(|(place, _)| {
         let away = machine.axes[*place].joint.direction.dot(&machine.tool_axis);
@@ -561,8 +561,11 @@ fn drawn_back(job: &Job, done: &[Done]) -> Vec<f64> {
     let mut last: Option<&Motion> = None;
     for done in done {
         match done {
-            Done::Motion(motion) => last = Some(motion),
-            Done::Told { told: Told::ToolChange { .. } | Told::End, .. } => {
+            BlockEffect::Motion(motion) => last = Some(motion),
+            BlockEffect::Event {
+                event: ProgramEvent::ToolChange { .. } | ProgramEvent::End,
+                ..
+            } => {
                 if let Some(last) = last {
                     let away = axes.iter().map(|(place, away)| away * last.to.joints[*place]);
                     stands.extend(away);
@@ -670,9 +673,9 @@ fn state(motion: &Motion) -> String {
     )
 }
 
-fn same_step(one: &Done, other: &Done) -> bool {
+fn same_step(one: &BlockEffect, other: &BlockEffect) -> bool {
     match (one, other) {
-        (Done::Motion(a), Done::Motion(b)) => {
+        (BlockEffect::Motion(a), BlockEffect::Motion(b)) => {
             let near = |a: &post_readback::Stance, b: &post_readback::Stance| {
                 (0..8).all(|joint| (a.joints[joint] - b.joints[joint]).abs() < 1e-9)
             };
@@ -684,24 +687,27 @@ fn same_step(one: &Done, other: &Done) -> bool {
                 && state(a) == state(b)
                 && (a.state.length - b.state.length).abs() < 1e-9
         }
-        (Done::Told { told: a, .. }, Done::Told { told: b, .. }) => a == b,
-        (Done::State(_), Done::State(_)) => true,
+        (BlockEffect::Event { event: a, .. }, BlockEffect::Event { event: b, .. }) => a == b,
+        (BlockEffect::State(_), BlockEffect::State(_)) => true,
         _ => false,
     }
 }
 
 /// Whether two programs differ in what the machine does.
-fn difference(job: &Job, kind: &str, one: &[Done], other: &[Done]) -> Difference {
-    let counts = |done: &&Done| match done {
-        Done::Motion(_) => true,
-        Done::Told { told, .. } => {
-            matches!(told, Told::Stop | Told::OptionalStop | Told::Dwell { .. })
+fn difference(job: &Job, kind: &str, one: &[BlockEffect], other: &[BlockEffect]) -> Difference {
+    let counts = |done: &&BlockEffect| match done {
+        BlockEffect::Motion(_) => true,
+        BlockEffect::Event { event: told, .. } => {
+            matches!(
+                told,
+                ProgramEvent::Stop | ProgramEvent::OptionalStop | ProgramEvent::Dwell { .. }
+            )
         }
-        Done::State(_) => false,
+        BlockEffect::State(_) => false,
     };
     let (whole, new_whole) = (one, other);
-    let one: Vec<&Done> = one.iter().filter(counts).collect();
-    let other: Vec<&Done> = other.iter().filter(counts).collect();
+    let one: Vec<&BlockEffect> = one.iter().filter(counts).collect();
+    let other: Vec<&BlockEffect> = other.iter().filter(counts).collect();
     let before = one.iter().zip(&other).take_while(|(a, b)| same_step(a, b)).count();
     let behind = one[before..]
         .iter()
@@ -711,21 +717,21 @@ fn difference(job: &Job, kind: &str, one: &[Done], other: &[Done]) -> Difference
         .count();
     let one = &one[before..one.len() - behind];
     let other = &other[before..other.len() - behind];
-    let motions = |done: &[&Done]| -> Vec<Motion> {
+    let motions = |done: &[&BlockEffect]| -> Vec<Motion> {
         let motions = done.iter().filter_map(|done| match done {
-            Done::Motion(motion) => Some(motion.clone()),
+            BlockEffect::Motion(motion) => Some(motion.clone()),
             _ => None,
         });
         motions.collect()
     };
     let [stands, new_stands] = [whole, new_whole].map(|done| drawn_back(job, done));
-    let told = |done: &[&Done]| -> Vec<String> {
+    let told = |done: &[&BlockEffect]| -> Vec<String> {
         let told = done.iter().filter_map(|done| match done {
             // Hundredths of a second are rounded.
-            Done::Told { told: Told::Dwell { time, .. }, .. } => {
+            BlockEffect::Event { event: ProgramEvent::Dwell { time, .. }, .. } => {
                 Some(format!("dwell {:.0}", time * 50.0))
             }
-            Done::Told { told, .. } => Some(format!("{told:?}")),
+            BlockEffect::Event { event: told, .. } => Some(format!("{told:?}")),
             _ => None,
         });
         told.collect()

@@ -20,7 +20,7 @@ use std::time::Instant;
 
 use post_feed::jerk;
 use post_feed::limits::{AxisJerk, Collocation, Limit};
-use post_feed::reach::{Reach, Stream};
+use post_feed::reach::{ReachPlanner, ReachStream};
 use post_feed::{EndSpeeds, Problem, linear_program, profile};
 use post_testkit::Rng;
 use random::Limits;
@@ -84,7 +84,7 @@ fn counts(most: usize) -> impl Iterator<Item = usize> {
 /// How many samples wait at most in a stream of a path of `count` samples.
 fn waiting(lookahead: usize, count: usize) {
     let part = random::problem(7, 3, BATCH + 1, Collocation::Throughout);
-    let mut stream = Stream::new(part.stride(), lookahead);
+    let mut stream = ReachStream::new(part.stride(), lookahead);
     let mut most = 0;
     let mut settled = 0;
     while settled < count {
@@ -108,7 +108,7 @@ fn with_jerk(axes: usize, count: usize) {
         return;
     };
     let begin = Instant::now();
-    let plan = match jerk::solve(&samples, &all, &problem, jerk::Settings::default()) {
+    let plan = match jerk::solve(&samples, &all, &problem, jerk::JerkSettings::default()) {
         Ok(plan) => plan,
         Err(fault) => {
             say(&format!("{axes} axes, {count} samples: {fault}"));
@@ -122,11 +122,12 @@ fn with_jerk(axes: usize, count: usize) {
         .map(|(first, last)| (random::part(&samples, first, last), problem.part(first, last)))
         .collect();
     let begin = Instant::now();
-    let mut stream = jerk::Stream::new(300, jerk::Settings::default());
+    let mut stream = jerk::JerkStream::new(300, jerk::JerkSettings::default());
     let (mut seconds, mut waiting) = (0.0, 0);
-    let mut take = |passed: jerk::Passed<'_>| seconds += passed.piece.duration(passed.step);
+    let mut take =
+        |passed: jerk::SettledInterval<'_>| seconds += passed.piece.duration(passed.step);
     for (samples, problem) in &batches {
-        let batch = jerk::Batch { samples, limits: &all, problem, corner: false };
+        let batch = jerk::PathBatch { samples, limits: &all, problem, corner: false };
         black_box(stream.push(batch, &mut take).is_ok());
         waiting = waiting.max(stream.waiting());
     }
@@ -161,7 +162,7 @@ fn compare(axes: usize, collocation: Collocation, count: usize, ask_oracle: bool
     let filled = seconds(count, || {
         black_box(problem.refill(&samples, &limits, ends).is_ok());
     });
-    let mut reach = Reach::default();
+    let mut reach = ReachPlanner::default();
     let mut plan = Vec::new();
     let fast = seconds(count, || {
         black_box(reach.solve_into(&problem, &mut plan).is_ok());
@@ -170,7 +171,7 @@ fn compare(axes: usize, collocation: Collocation, count: usize, ask_oracle: bool
         .step_by(BATCH)
         .map(|first| problem.part(first, (first + BATCH).min(count - 1)))
         .collect();
-    let mut stream = Stream::new(problem.stride(), LOOKAHEAD);
+    let mut stream = ReachStream::new(problem.stride(), LOOKAHEAD);
     let mut streamed = Vec::with_capacity(count);
     let flowing = seconds(count, || {
         streamed.clear();

@@ -4,7 +4,7 @@
 //! way, and a polynomial feed of the way never leaves rest. `q = (ds/dt)²` begins as the way itself, so the spline is one
 //! of `q`: of degree 2, so that acceleration is continuous. The feed is `|dP/ds| * sqrt(q)`.
 
-use crate::jerk::{Law, Piece};
+use crate::jerk::{IntervalLaw, Law};
 
 /// `q = (ds/dt)²` by the path parameter: pieces between knots, value and slope continuous.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -12,7 +12,7 @@ pub struct FeedSpline {
     /// Parameters at which pieces meet, from the first to the last, growing.
     pub knots: Vec<f64>,
     /// `q` between each knot and the next.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<IntervalLaw>,
 }
 
 impl FeedSpline {
@@ -39,7 +39,7 @@ impl FeedSpline {
             let left = side(here - before, q[sample - 1]);
             let right = side(next - here, q[sample + 1]);
             spline.line(here - half, &mut at, left);
-            spline.pieces.push(Piece::Quadratic([left, q[sample], right]));
+            spline.pieces.push(IntervalLaw::Quadratic([left, q[sample], right]));
             spline.knots.push(here + half);
             at = right;
         }
@@ -56,7 +56,7 @@ impl FeedSpline {
         let size = knot.abs().max(from.abs());
         if knot - from > 1e-13 * size {
             let middle = f64::midpoint(*at, to);
-            self.pieces.push(Piece::Quadratic([*at, middle, to]));
+            self.pieces.push(IntervalLaw::Quadratic([*at, middle, to]));
             self.knots.push(knot);
         }
         *at = to;
@@ -98,16 +98,16 @@ impl FeedSpline {
     pub fn time_within(&self, piece: usize, [from, to]: [f64; 2]) -> f64 {
         let step = self.knots[piece + 1] - self.knots[piece];
         match self.pieces[piece] {
-            // By q = q1 * share^(4/3), as in `Piece::duration`.
-            Piece::Leave(q) => 3.0 * step * (libm::cbrt(to) - libm::cbrt(from)) / q.sqrt(),
-            Piece::Arrive(q) => {
+            // By q = q1 * share^(4/3), as in `IntervalLaw::duration`.
+            IntervalLaw::Leave(q) => 3.0 * step * (libm::cbrt(to) - libm::cbrt(from)) / q.sqrt(),
+            IntervalLaw::Arrive(q) => {
                 3.0 * step * (libm::cbrt(1.0 - from) - libm::cbrt(1.0 - to)) / q.sqrt()
             }
-            Piece::Quadratic(_) => {
+            IntervalLaw::Quadratic(_) => {
                 let part = step * (to - from);
                 let [start, slope, _] = self.within(piece, from);
                 let [end, ..] = self.within(piece, to);
-                Piece::Quadratic([start, start + 0.5 * slope * part, end]).duration(part)
+                IntervalLaw::Quadratic([start, start + 0.5 * slope * part, end]).duration(part)
             }
         }
     }
@@ -132,8 +132,8 @@ impl FeedSpline {
         let factor = share * share;
         for piece in &mut self.pieces {
             match piece {
-                Piece::Quadratic(q) => *q = q.map(|q| q * factor),
-                Piece::Leave(q) | Piece::Arrive(q) => *q *= factor,
+                IntervalLaw::Quadratic(q) => *q = q.map(|q| q * factor),
+                IntervalLaw::Leave(q) | IntervalLaw::Arrive(q) => *q *= factor,
             }
         }
     }
@@ -154,7 +154,8 @@ impl FeedSpline {
     #[must_use]
     pub fn b_spline(&self) -> (Vec<f64>, Vec<f64>) {
         let last = self.pieces.len();
-        let jerk = |piece: &Piece| matches!(piece, Piece::Leave(_) | Piece::Arrive(_));
+        let jerk =
+            |piece: &IntervalLaw| matches!(piece, IntervalLaw::Leave(_) | IntervalLaw::Arrive(_));
         let mut inner = self.knots.clone();
         if jerk(&self.pieces[0]) {
             inner[0] = self.knots[1] - 1.5 * (self.knots[1] - self.knots[0]);
@@ -167,8 +168,8 @@ impl FeedSpline {
         knots.extend([inner[last]; 2]);
         let mut coefficients = vec![self.within(0, 0.0)[0]];
         coefficients.extend(self.pieces.iter().map(|piece| match piece {
-            Piece::Quadratic([_, middle, _]) => *middle,
-            Piece::Leave(_) | Piece::Arrive(_) => 0.0,
+            IntervalLaw::Quadratic([_, middle, _]) => *middle,
+            IntervalLaw::Leave(_) | IntervalLaw::Arrive(_) => 0.0,
         }));
         coefficients.push(self.within(last - 1, 1.0)[0]);
         (knots, coefficients)

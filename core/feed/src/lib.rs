@@ -37,7 +37,7 @@
 //! ```
 //!
 //! *Never here:* input or output, `unsafe`, trigonometry of the platform, an allocation a sample on the way of
-//! [`reach::Stream`], a plan that breaks a limit because an iteration was stopped.
+//! [`reach::ReachStream`], a plan that breaks a limit because an iteration was stopped.
 
 mod feed_spline;
 pub mod fit;
@@ -63,6 +63,8 @@ pub use samples::Samples;
 /// What tests look into; no part of the crate's face.
 #[doc(hidden)]
 pub mod internals {
-    pub use crate::jerk::forms::{Form, Q, acceleration, jerk, leaving_acceleration, leaving_jerk};
+    pub use crate::jerk::forms::{
+        LinearForm, Q, acceleration, jerk, leaving_acceleration, leaving_jerk,
+    };
     pub use crate::limits::channel::Directions;
 }

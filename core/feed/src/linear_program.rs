@@ -9,9 +9,9 @@
 //!   have converged.
 
 use crate::infeasible::Infeasible;
-use crate::interior::{Cost, Inequality, Program};
+use crate::interior::{ConvexProgram, Cost, Inequality};
 use crate::problem::Problem;
-use crate::reach::Reach;
+use crate::reach::ReachPlanner;
 
 /// The gap to which the iteration goes, as a share of the objective.
 const TOLERANCE: f64 = 1e-9;
@@ -49,7 +49,7 @@ pub fn solve(problem: &Problem, weights: &[f64]) -> Result<Optimum, Infeasible> 
     assert_eq!(weights.len(), problem.upper.len(), "a weight a sample");
     assert!(weights.iter().all(|&weight| weight >= 0.0), "no weight is negative");
     problem.check()?;
-    let mut reach = Reach::default();
+    let mut reach = ReachPlanner::default();
     let mut plan = Vec::new();
     reach.solve_into(problem, &mut plan)?;
     let (low, high) = reach.sets();
@@ -69,7 +69,7 @@ pub fn solve(problem: &Problem, weights: &[f64]) -> Result<Optimum, Infeasible> 
 
 /// The program in unknowns `q / scale`, with rows and weights of the order of 1.
 struct Scaled {
-    program: Program<2>,
+    program: ConvexProgram<2>,
     scale: Vec<f64>,
     /// What a weight of 1 stands for.
     unit: f64,
@@ -93,7 +93,7 @@ impl Scaled {
         let free = (0..count).filter(|&sample| !fixed(sample));
         let unit = free.map(weighed).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
         let mut constant = 0.0;
-        let mut program = Program {
+        let mut program = ConvexProgram {
             cost: Cost::Linear,
             weights: Vec::with_capacity(count),
             lower: Vec::with_capacity(count),

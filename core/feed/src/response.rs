@@ -1,28 +1,28 @@
 //! How a drive answers a sine: gain and phase by frequency.
 
 /// A drive's steady answer to a sine of one.
-pub trait Response {
+pub trait DriveResponse {
     /// Answer at `frequency` rad/s.
-    fn at(&self, frequency: f64) -> Answer;
+    fn at(&self, frequency: f64) -> ComplexGain;
 }
 
 /// What tells the answer at a frequency in rad/s is a drive: so a servo of another crate serves without knowing this one.
-impl<F: Fn(f64) -> Answer> Response for F {
-    fn at(&self, frequency: f64) -> Answer {
+impl<F: Fn(f64) -> ComplexGain> DriveResponse for F {
+    fn at(&self, frequency: f64) -> ComplexGain {
         self(frequency)
     }
 }
 
 /// A complex number: the answer's size and phase against what was asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Answer {
+pub struct ComplexGain {
     /// Part in phase with what was asked.
     pub real: f64,
     /// A quarter turn ahead of it.
     pub imaginary: f64,
 }
 
-impl Answer {
+impl ComplexGain {
     /// Answer of a drive that is where it is commanded.
     pub const EXACT: Self = Self { real: 1.0, imaginary: 0.0 };
 

@@ -5,14 +5,14 @@ use crate::problem::{LimitSource, Problem};
 
 /// The samples that wait, as one problem.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Window {
+pub(crate) struct SampleWindow {
     pub(crate) problem: Problem,
     /// Samples before it that were handed on.
     pub(crate) done: usize,
 }
 
 /// Where a batch begins in a window, and how its names are numbered there.
-pub(crate) struct Joint {
+pub(crate) struct BatchJoint {
     steps: usize,
     /// The bound before, if another batch is before.
     bound: Option<(f64, LimitSource)>,
@@ -20,7 +20,7 @@ pub(crate) struct Joint {
     numbers: Vec<u16>,
 }
 
-impl Joint {
+impl BatchJoint {
     /// The number of the batch's limit in the window.
     pub(crate) fn limit(&self, limit: u16) -> u16 {
         let number = self.numbers.get(usize::from(limit));
@@ -32,14 +32,14 @@ impl Joint {
     }
 }
 
-impl Window {
+impl SampleWindow {
     /// Begins with a batch: its first sample is the last of the window, and the lower bound counts.
-    pub(crate) fn begin(&mut self, batch: &Problem) -> Result<Joint, Infeasible> {
+    pub(crate) fn begin(&mut self, batch: &Problem) -> Result<BatchJoint, Infeasible> {
         batch.check()?;
         let numbers = self.numbers(batch)?;
         let problem = &mut self.problem;
         let last = problem.upper.last().copied();
-        let joint = Joint {
+        let joint = BatchJoint {
             steps: problem.steps.len(),
             bound: last.zip(problem.causes.last().copied()),
             numbers,
@@ -61,7 +61,7 @@ impl Window {
     }
 
     /// Appends an interval of the batch and the sample after it.
-    pub(crate) fn append(&mut self, batch: &Problem, interval: usize, joint: &Joint) {
+    pub(crate) fn append(&mut self, batch: &Problem, interval: usize, joint: &BatchJoint) {
         let problem = &mut self.problem;
         problem.steps.push(batch.steps[interval]);
         problem.rows.extend_from_slice(batch.rows_of(interval));
@@ -71,7 +71,7 @@ impl Window {
     }
 
     /// Takes a batch out again of which nothing was handed on, nor of what was before it since.
-    pub(crate) fn withdraw(&mut self, joint: &Joint) {
+    pub(crate) fn withdraw(&mut self, joint: &BatchJoint) {
         let problem = &mut self.problem;
         let stride = problem.stride();
         problem.steps.truncate(joint.steps);

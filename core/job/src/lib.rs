@@ -36,7 +36,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use post_grammar::text::as_remark;
-use post_grammar::{ReadError, Reader};
+use post_grammar::{ClReader, ReadError};
 use post_host::Finder;
 use post_machine::check::Check;
 use post_machine::description::{Machine, Setting};
@@ -146,7 +146,7 @@ pub fn ahead(
     let input = source.open()?;
     let reading = posting(arguments, &input.name).reading;
     let mut pass = PreviewPass::new(machine, reading);
-    let mut reader = Reader::new(input.bytes);
+    let mut reader = ClReader::new(input.bytes);
     loop {
         match reader.next_record() {
             Ok(Some(record)) => pass.record(&record),
@@ -171,7 +171,7 @@ pub fn program_name(source: &PathArg, target: Option<&PathArg>) -> String {
 /// Reads a CL file to its end, or until there are so many faults that it is given up.
 pub fn read(session: &Session, input: ClInput, post: &mut Post<'_>) -> Result<(), FileFault> {
     let mut progress = session.progress(input.length);
-    let mut reader = Reader::new(input.bytes);
+    let mut reader = ClReader::new(input.bytes);
     while !post.gave_up() {
         match reader.next_record() {
             Ok(Some(record)) => post.record(&record),

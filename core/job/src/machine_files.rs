@@ -6,7 +6,7 @@ use std::fs::{self, File};
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
-use post_machine::description::{self, MOST_BYTES, Machine, Reading, Setting, Source};
+use post_machine::description::{self, MOST_BYTES, Machine, MachineReading, Setting, Source};
 use post_machine::diagnostic::{Diagnostic, nearest};
 
 use crate::failure::Failure;
@@ -54,7 +54,7 @@ pub fn examine(
     named: &[PathBuf],
     settings: &[Setting],
     read: ReadText<'_>,
-) -> Result<Reading, Failure> {
+) -> Result<MachineReading, Failure> {
     let near = near(&source.name, named)?;
     Ok(description::examine(source, settings, &mut |parent| extended(parent, &near, read)))
 }

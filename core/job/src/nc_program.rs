@@ -5,11 +5,11 @@ use std::io::{self, Read, Seek, SeekFrom};
 
 use post_host::Finder;
 use post_machine::description::{Machine, Rapid};
-use post_machine::diagnostic::{Diagnostic, Place};
+use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_plugin::{Capabilities, DialectSession as _, Language, Lengths, VocabularyWord};
 use post_readback::interpret::{Interpreter, Limits, ReadReport};
 use post_readback::lexicon::Lexicon;
-use post_readback::{FedRapids, MOST_FAULTS, Offsets, Run, turns_the_spindle};
+use post_readback::{FedRapids, MOST_FAULTS, Offsets, ProgramRun, turns_the_spindle};
 
 use super::{machine_files, plugin_finder, unused_options};
 use crate::failure::Failure;
@@ -78,8 +78,8 @@ impl NcControl {
         &self,
         name: &str,
         input: R,
-    ) -> Result<Run<Interpreter<R>>, Box<Diagnostic>> {
-        self.program(name, input).map(Run::new)
+    ) -> Result<ProgramRun<Interpreter<R>>, Box<Diagnostic>> {
+        self.program(name, input).map(ProgramRun::new)
     }
 
     fn program<R: Read + Seek>(
@@ -121,7 +121,7 @@ pub fn given_up() -> Diagnostic {
 pub fn unknown_words(name: &str, report: &ReadReport) -> impl Iterator<Item = Diagnostic> {
     report.unknown.iter().take(MOST_FAULTS).map(move |(word, count, line)| {
         let message = format!("{word} is not known and is taken to move nothing; {count} times");
-        let place = Place::new(name, *line, "", 0..0);
+        let place = SourcePlace::new(name, *line, "", 0..0);
         Diagnostic::warning("nc-unknown", message).at(Some(place))
     })
 }

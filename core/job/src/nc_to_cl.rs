@@ -2,10 +2,10 @@
 
 use post_machine::diagnostic::Diagnostic;
 use post_motion::CornerMode;
-use post_readback::convert::{ClWriter, Tool};
+use post_readback::convert::{ClWriter, MountedTool};
 use post_readback::course::Course;
-use post_readback::course::done::DoneCourse;
-use post_readback::{Corners, MOST_FAULTS, Program};
+use post_readback::course::program::ProgramCourse;
+use post_readback::{BlockRunner, Corners, MOST_FAULTS};
 
 use super::nc_program;
 use crate::files::FileFault;
@@ -36,8 +36,8 @@ pub struct Tools {
 ///
 /// # Errors
 /// The text cannot be written.
-pub fn write<P: Program>(
-    course: &mut DoneCourse<P>,
+pub fn write<P: BlockRunner>(
+    course: &mut ProgramCourse<P>,
     part: &str,
     chord: f64,
     tools: Tools,
@@ -55,7 +55,7 @@ pub fn write<P: Program>(
                 let state = course.state();
                 smooths |= state.is_some_and(|state| leaves_the_path(state.corners));
                 let compensated = state.map(|state| state.length).filter(|length| *length != 0.0);
-                let tool = Tool {
+                let tool = MountedTool {
                     register: state
                         .and_then(|state| state.length_register)
                         .filter(|_| !tools.edges),

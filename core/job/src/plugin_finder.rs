@@ -9,7 +9,7 @@ use post_host::{
 };
 use post_machine::axis_words;
 use post_machine::description::{GivenOption, Machine, OptionValue, OutputUnits, Tcp};
-use post_machine::diagnostic::{self, Diagnostic, Place, nearest};
+use post_machine::diagnostic::{self, Diagnostic, SourcePlace, nearest};
 use post_plugin::{Accuracy, Tolerance, Units, Value};
 use post_posting::ProgramPreview;
 use post_posting::report::PluginUse;
@@ -213,7 +213,7 @@ fn given(options: &[GivenOption]) -> Vec<(String, GivenValue)> {
 }
 
 /// Where the axis is described about which the dialect complains: its sentence begins with `axis C:`.
-fn refused_axis(machine: &Machine, fault: &PluginFault) -> Option<Place> {
+fn refused_axis(machine: &Machine, fault: &PluginFault) -> Option<SourcePlace> {
     let Reason::Refused { message } = &fault.reason else {
         return None;
     };
@@ -255,7 +255,7 @@ pub fn not_built_in(dialect: &str) -> Option<Diagnostic> {
 pub fn diagnostic(
     fault: &PluginFault,
     options: &[GivenOption],
-    place: Option<Place>,
+    place: Option<SourcePlace>,
 ) -> Diagnostic {
     let place = match &fault.reason {
         Reason::Option(option) => options

@@ -5,14 +5,14 @@ use std::ops::Range;
 
 use post_host::Finder;
 use post_machine::description::{Machine, OutputUnits, Rapid, TextPlace};
-use post_machine::diagnostic::{Diagnostic, Place, Severity};
+use post_machine::diagnostic::{Diagnostic, Severity, SourcePlace};
 use post_plugin::{Lengths, Meaning};
 use post_posting::program::{DefaultSpindle, UnknownWordPolicy};
-use post_readback::course::cl::{ClCourse, ClTool, Settings};
-use post_readback::course::{Course, Window};
+use post_readback::course::cl::{ClCourse, ClSettings, ClTool};
+use post_readback::course::{Course, CourseWindow};
 use post_readback::interpret::Limits;
 use post_readback::verify::{BlockReport, CutPath, Fault, Verification, Verifier, VerifyRules};
-use post_readback::{Done, Offsets};
+use post_readback::{BlockEffect, Offsets};
 
 use super::nc_program::{self, NcControl, Spoken};
 use super::plugin_finder;
@@ -87,8 +87,8 @@ fn work_offset(finder: &Finder, machine: &Machine, spoken: &Spoken) -> Option<St
 }
 
 /// How the CL file is meant, as posting was told.
-pub fn course_settings(arguments: &JobSettings, machine: &Machine, file: &str) -> Settings {
-    Settings {
+pub fn course_settings(arguments: &JobSettings, machine: &Machine, file: &str) -> ClSettings {
+    ClSettings {
         units: arguments.reading.units,
         apply_msys: arguments.reading.msys == Msys::Apply,
         tool: arguments.reading.tool,
@@ -103,7 +103,7 @@ pub fn course_settings(arguments: &JobSettings, machine: &Machine, file: &str) -
             arguments.reading.unknown,
             UnknownWordPolicy::Warn | UnknownWordPolicy::Pass
         ),
-        ..Settings::of(machine, file)
+        ..ClSettings::of(machine, file)
     }
 }
 
@@ -159,7 +159,7 @@ pub fn verify<R: Read + Seek>(
     let tools = course.tools().to_vec();
     let course = ClCourse::new(settings, source.open()?.bytes);
     let against = Against {
-        course: Window::new(course, reading.lines.clone()),
+        course: CourseWindow::new(course, reading.lines.clone()),
         name: cl_name,
         tools,
         cut_path: Some(cut_path),
@@ -172,7 +172,7 @@ pub fn verify<R: Read + Seek>(
 /// Who looks on while a program is held against a course.
 pub trait VerifyWatch {
     /// What the program did next, before it is judged.
-    fn done(&mut self, _done: &Done) {}
+    fn done(&mut self, _done: &BlockEffect) {}
 
     /// A line of the program is judged; all that it did was told before.
     fn line(&mut self, line: &BlockReport);
@@ -251,7 +251,7 @@ pub fn hold<C: Course, R: Read + Seek>(
         let message = format!(
             "the program cuts before it says where {axes} stands: where the machine has it then is not known"
         );
-        let place = Place::new(name, *line, "", 0..0);
+        let place = SourcePlace::new(name, *line, "", 0..0);
         findings.push(Diagnostic::error("missing", message).at(Some(place)));
     }
     findings.extend(nc_program::unknown_words(name, report));
@@ -268,7 +268,7 @@ pub fn hold<C: Course, R: Read + Seek>(
             1 => String::new(),
             count => format!("; so in {count} places"),
         };
-        let place = Place::new(name, *line, "", 0..0);
+        let place = SourcePlace::new(name, *line, "", 0..0);
         findings.push(Diagnostic::warning("rapid", format!("{message}{more}")).at(Some(place)));
     }
     for left in &found.left_on {
@@ -276,7 +276,7 @@ pub fn hold<C: Course, R: Read + Seek>(
             1 => String::new(),
             count => format!("; so in {count} places"),
         };
-        let place = Place::new(name, left.line, "", 0..0);
+        let place = SourcePlace::new(name, left.line, "", 0..0);
         let message = format!("{}{more}", left.message);
         findings.push(Diagnostic::warning(left.code, message).at(Some(place)));
     }

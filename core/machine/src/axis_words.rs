@@ -14,7 +14,7 @@ pub type WordValues = [f64; MAX_AXES];
 
 /// How axis values are written.
 #[derive(Clone, Debug)]
-pub struct Words {
+pub struct AxisWords {
     tcp: Tcp,
     /// Words of rotary axes, in the order of writing.
     rotary: Vec<Word>,
@@ -109,7 +109,7 @@ pub fn unit_length(units: OutputUnits) -> f64 {
     }
 }
 
-impl Words {
+impl AxisWords {
     /// Words of a machine as a dialect's `format` prints them.
     pub fn new(machine: &Machine, format: &Format) -> Self {
         let length = unit_length(machine.control.units);
@@ -194,7 +194,7 @@ impl Words {
 
     /// Where the control keeps the tip, and in a tilted plane: writes `tip` (mm, part frame) to `values` and gives the
     /// printed tip, which is where the control brings it. None where the words are axis positions:
-    /// [`Words::print_linear`].
+    /// [`AxisWords::print_linear`].
     #[inline]
     pub fn print_tip(&self, tip: Vector3<f64>, values: &mut WordValues) -> Option<Vector3<f64>> {
         match &self.plane {

@@ -34,18 +34,18 @@ pub struct Diagnostic {
     /// A stable name for programs to read, `over-travel`.
     pub code: &'static str,
     /// Where, if it has a place.
-    pub place: Option<Place>,
+    pub place: Option<SourcePlace>,
     /// What, with the value and the limit.
     pub message: String,
     /// What would help.
     pub help: Option<String>,
     /// How far the limit is passed, for findings that come by the thousand and are told once.
-    pub extreme: Option<Extreme>,
+    pub extreme: Option<LimitExcess>,
 }
 
 /// How far a limit is passed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Extreme {
+pub struct LimitExcess {
     /// Findings with the same code and key are about the same limit.
     pub key: u64,
     /// Amount by which it is passed; the largest is told.
@@ -58,7 +58,7 @@ pub struct Extreme {
 
 /// A place in a text file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct SourcePlace {
     /// The file as the user named it.
     pub file: String,
     /// Line, counted from 1.
@@ -96,7 +96,7 @@ impl Diagnostic {
     }
 
     /// Adds how far the limit is passed.
-    pub fn extreme(mut self, extreme: Extreme) -> Self {
+    pub fn extreme(mut self, extreme: LimitExcess) -> Self {
         self.extreme = Some(extreme);
         self
     }
@@ -107,13 +107,13 @@ impl Diagnostic {
     }
 
     /// Adds where it is.
-    pub fn at(mut self, place: Option<Place>) -> Self {
+    pub fn at(mut self, place: Option<SourcePlace>) -> Self {
         self.place = place;
         self
     }
 }
 
-impl Place {
+impl SourcePlace {
     /// The place `span` (bytes of `text`) in a line; of a long line what surrounds it, at character borders.
     pub fn new(file: &str, line: u64, text: &str, span: Range<usize>) -> Self {
         let border = |mut at: usize| {
@@ -149,7 +149,7 @@ fn cut(sentence: String) -> String {
 
 /// A line of the CL file `file` that cannot be read.
 pub fn unreadable(file: &str, fault: &SyntaxFault) -> Diagnostic {
-    let place = Place::new(file, fault.line, &fault.text, fault.span.clone());
+    let place = SourcePlace::new(file, fault.line, &fault.text, fault.span.clone());
     let diagnostic = Diagnostic::error("syntax", fault.message.clone()).at(Some(place));
     match &fault.help {
         Some(help) => diagnostic.help(help.as_str()),

@@ -7,7 +7,7 @@
 use std::cell::RefCell;
 
 use post_grammar::{Record, SyntaxFault};
-use post_machine::diagnostic::{Diagnostic, Extreme, Place, Severity, unreadable};
+use post_machine::diagnostic::{Diagnostic, LimitExcess, Severity, SourcePlace, unreadable};
 
 use crate::source_buffer::SourceBuffer;
 
@@ -53,7 +53,7 @@ struct Repeat {
     /// Where it was found last.
     last: u64,
     /// How far a limit is passed, and where it is passed farthest.
-    extreme: Option<(Extreme, u64)>,
+    extreme: Option<(LimitExcess, u64)>,
 }
 
 /// Findings of one kind are reported once: of the same limit, or whose sentences differ in their numbers alone.
@@ -142,7 +142,7 @@ impl Findings {
     #[cold]
     pub(crate) fn at(&self, line: u64, finding: Diagnostic) {
         let text = self.text(line);
-        let place = Place::new(&self.file, line, &text, 0..text.len());
+        let place = SourcePlace::new(&self.file, line, &text, 0..text.len());
         self.add(finding.at(Some(place)));
     }
 

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Tcp};
 use post_machine::kinematics::{Joints, NoClosedForm};
-use post_machine::place::{End, Room};
+use post_machine::place::{MountConstraint, MountRoom};
 
 use crate::blocks::{BlockKind, BlockReason, MotionBlock};
 use crate::observer::Observer;
@@ -16,7 +16,7 @@ pub struct MountBounds<'m> {
     /// The machine with the head in use.
     head: &'m Machine,
     /// Room of each machine: that without a swapped head first.
-    rooms: Vec<(&'m Machine, Room)>,
+    rooms: Vec<(&'m Machine, MountRoom)>,
     /// Which of them is in use.
     at: usize,
     /// Where the tool stood before: axis values and tip.
@@ -32,26 +32,26 @@ impl<'m> MountBounds<'m> {
         Ok(Self {
             machine,
             head: machine,
-            rooms: vec![(machine, Room::new(machine)?)],
+            rooms: vec![(machine, MountRoom::new(machine)?)],
             at: 0,
             last: None,
         })
     }
 
     /// What was gathered: the name of the axis and the end of its travel.
-    pub fn ends(&self) -> impl Iterator<Item = (&'m str, End)> {
+    pub fn ends(&self) -> impl Iterator<Item = (&'m str, MountConstraint)> {
         self.rooms.iter().flat_map(|(machine, room)| {
-            let named = |end: End| (machine.axes[end.side.joint].name.as_str(), end);
+            let named = |end: MountConstraint| (machine.axes[end.side.joint].name.as_str(), end);
             room.ends().map(named)
         })
     }
 
-    /// Whether the room bounds the mount: see [`Room::bounds`].
+    /// Whether the room bounds the mount: see [`MountRoom::bounds`].
     pub fn bounds(&self) -> bool {
         self.rooms.iter().any(|(_, room)| room.bounds())
     }
 
-    /// Whether the room goes evenly: see [`Room::goes_evenly`].
+    /// Whether the room goes evenly: see [`MountRoom::goes_evenly`].
     pub fn goes_evenly(&self) -> bool {
         self.rooms.iter().all(|(_, room)| room.goes_evenly())
     }
@@ -64,7 +64,7 @@ impl<'m> MountBounds<'m> {
         self.last = None;
         let known = self.rooms.iter().position(|(machine, _)| std::ptr::eq(*machine, self.head));
         self.at = known.unwrap_or(self.rooms.len());
-        if let (None, Ok(room)) = (known, Room::new(self.head)) {
+        if let (None, Ok(room)) = (known, MountRoom::new(self.head)) {
             self.rooms.push((self.head, room));
         }
     }

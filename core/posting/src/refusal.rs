@@ -3,9 +3,9 @@
 use crate::accuracy::{LineariseError, PlacementError};
 use crate::program::StraightMove;
 use post_machine::axis_words;
-use post_machine::axis_words::Words;
+use post_machine::axis_words::AxisWords;
 use post_machine::description::{Axis, Machine, Positions, Tcp, TextPlace};
-use post_machine::diagnostic::{Diagnostic, Extreme, Short};
+use post_machine::diagnostic::{Diagnostic, LimitExcess, Short};
 use post_machine::kinematics::travel::OverTravel;
 use post_machine::kinematics::travel::passed;
 use post_machine::kinematics::{Joints, Second, Unreachable};
@@ -94,7 +94,7 @@ pub(crate) fn refused(machine: &Machine, refused: &PlacementError) -> Diagnostic
                 machine.accuracy.axis_tolerance.to_degrees()
             ),
         )
-        .extreme(Extreme {
+        .extreme(LimitExcess {
             key: u64::MAX,
             by: miss,
             value: format!("{:.4}° off", miss.to_degrees()),
@@ -177,10 +177,10 @@ pub(crate) fn beyond(machine: &Machine, over: &OverTravel) -> String {
 }
 
 /// How far an axis leaves its travel, of all points at which it does on that side.
-pub(crate) fn extreme(machine: &Machine, over: &OverTravel) -> Extreme {
+pub(crate) fn extreme(machine: &Machine, over: &OverTravel) -> LimitExcess {
     let axis = &machine.axes[over.joint];
     let sign = sign(axis);
-    Extreme {
+    LimitExcess {
         key: over.joint as u64 * 2 + u64::from(over.value > over.limit),
         by: by(axis, over),
         value: format!(
@@ -352,7 +352,7 @@ pub(crate) fn too_fine(machine: &Machine, format: &Format) -> Option<Diagnostic>
     let heads = machine.heads.iter().map(|head| &head.machine);
     heads.chain([machine]).find_map(|machine| {
         let accuracy = &machine.accuracy;
-        let [linear, rotary] = Words::new(machine, format).half_decimal();
+        let [linear, rotary] = AxisWords::new(machine, format).half_decimal();
         let turns = rotary.to_degrees();
         [
             ("tolerance", accuracy.tolerance, linear, " mm"),

@@ -12,7 +12,7 @@ use post_machine::diagnostic::Diagnostic;
 
 use crate::interpret::Interpreter;
 use crate::verify::AxisLimitCheck;
-use crate::{Done, Interpolation, Motion, MotionKind, Program, Spindle};
+use crate::{BlockEffect, BlockRunner, Interpolation, Motion, MotionKind, SpindleState};
 
 /// A rapid at feed may take so much longer than its axes need: feeds are rounded down.
 const SLOW: f64 = 0.1;
@@ -96,12 +96,12 @@ impl<P> FedRapids<P> {
         self.left
     }
 
-    fn look(&mut self, done: &mut [Done]) {
+    fn look(&mut self, done: &mut [BlockEffect]) {
         let Some((machine, axes)) = &self.machine else {
             return;
         };
         for done in done {
-            let Done::Motion(motion) = done else {
+            let BlockEffect::Motion(motion) = done else {
                 continue;
             };
             let plain = motion.kind == MotionKind::Feed && !motion.hole && !motion.machine;
@@ -112,7 +112,7 @@ impl<P> FedRapids<P> {
             {
                 continue;
             }
-            if self.turns && motion.state.spindle == Spindle::Off {
+            if self.turns && motion.state.spindle == SpindleState::Off {
                 motion.kind = MotionKind::Rapid;
                 motion.feed = 0.0;
                 continue;
@@ -133,10 +133,10 @@ pub fn turns_the_spindle<R: Read + Seek>(program: &mut Interpreter<R>) -> bool {
     loop {
         done.clear();
         let more = program.next(&mut done);
-        let turns = |done: &Done| match done {
-            Done::Motion(motion) => motion.state.spindle != Spindle::Off,
-            Done::State(state) => state.spindle != Spindle::Off,
-            Done::Told { .. } => false,
+        let turns = |done: &BlockEffect| match done {
+            BlockEffect::Motion(motion) => motion.state.spindle != SpindleState::Off,
+            BlockEffect::State(state) => state.spindle != SpindleState::Off,
+            BlockEffect::Event { .. } => false,
         };
         if done.iter().any(turns) {
             return true;
@@ -147,8 +147,8 @@ pub fn turns_the_spindle<R: Read + Seek>(program: &mut Interpreter<R>) -> bool {
     }
 }
 
-impl<R: Read + Seek> Program for FedRapids<Interpreter<R>> {
-    fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>> {
+impl<R: Read + Seek> BlockRunner for FedRapids<Interpreter<R>> {
+    fn next(&mut self, done: &mut Vec<BlockEffect>) -> Result<bool, Box<Diagnostic>> {
         let known = done.len();
         let more = Interpreter::next(&mut self.program, done);
         self.look(&mut done[known..]);

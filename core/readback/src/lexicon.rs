@@ -13,7 +13,7 @@ use post_plugin::{Capabilities, Language, Lengths, Meaning, VocabularyWord};
 
 /// What a word does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sense {
+pub(crate) enum WordMeaning {
     /// Nobody knows.
     Unknown,
     /// What the dialect says, or all controls of the language.
@@ -24,7 +24,7 @@ pub(crate) enum Sense {
 
 /// A code, and what it means with certain words beside it.
 #[derive(Clone, Debug)]
-struct Choice {
+struct CodeChoice {
     /// Ten times the number behind G.
     code: u16,
     /// Letters that stand beside it, and their values where they are said.
@@ -44,13 +44,13 @@ pub struct Lexicon {
     g: Vec<u8>,
     /// By the number behind M.
     m: Vec<u8>,
-    /// What the places in `g` and `m` stand for; the first is [`Sense::Unknown`].
-    senses: Vec<Sense>,
+    /// What the places in `g` and `m` stand for; the first is [`WordMeaning::Unknown`].
+    senses: Vec<WordMeaning>,
     letters: [Option<Meaning>; 26],
-    names: BTreeMap<String, Sense>,
+    names: BTreeMap<String, WordMeaning>,
     /// Names that mean this where nothing stands between their parentheses.
     empty: BTreeMap<String, Meaning>,
-    choices: Vec<Choice>,
+    choices: Vec<CodeChoice>,
     writes: Capabilities,
     /// A word changes the tool; else T does.
     changes_by_word: bool,
@@ -68,7 +68,7 @@ impl Lexicon {
             writes,
             g: vec![0; CODES],
             m: vec![0; CODES / 10],
-            senses: vec![Sense::Unknown],
+            senses: vec![WordMeaning::Unknown],
             syntax: syntax(words, language),
             all_axes: words.iter().any(|word| word.meaning == Meaning::FeedPerMinuteAllAxes),
             path_modes: words.iter().any(|word| word.word == "G64"),
@@ -129,14 +129,14 @@ impl Lexicon {
 
     /// The sense of G and ten times a number; words beside it may change it: [`Lexicon::g_beside`].
     #[inline]
-    pub(crate) fn g(&self, code: u16) -> Sense {
+    pub(crate) fn g(&self, code: u16) -> WordMeaning {
         let sense = self.g.get(usize::from(code)).copied().unwrap_or(0);
         self.senses[usize::from(sense)]
     }
 
     /// The sense of G and ten times a number where `beside` tells which letters stand in the block and their values.
-    pub(crate) fn g_beside(&self, code: u16, beside: impl Fn(u8) -> Option<f64>) -> Sense {
-        let holds = |choice: &&Choice| {
+    pub(crate) fn g_beside(&self, code: u16, beside: impl Fn(u8) -> Option<f64>) -> WordMeaning {
+        let holds = |choice: &&CodeChoice| {
             let mut letters = choice.beside.iter();
             choice.code == code
                 && letters.all(|(letter, value)| match (beside(*letter), value) {
@@ -147,7 +147,7 @@ impl Lexicon {
         };
         let choices = self.choices.iter().filter(holds);
         let best = choices.max_by_key(|choice| choice.beside.len());
-        best.map_or_else(|| self.g(code), |choice| Sense::Means(choice.meaning))
+        best.map_or_else(|| self.g(code), |choice| WordMeaning::Means(choice.meaning))
     }
 
     /// The letter behind which the tolerance of a smoothing word stands: P of `G64 P`.
@@ -161,13 +161,14 @@ impl Lexicon {
 
     /// What a letter beside G and ten times a number means, if the dialect says so: P of `G4 P`, of `G2 P`.
     pub(crate) fn letter_beside(&self, code: u16, letter: u8) -> Option<Meaning> {
-        let wanted = |choice: &&Choice| choice.code == code && choice.beside == [(letter, None)];
+        let wanted =
+            |choice: &&CodeChoice| choice.code == code && choice.beside == [(letter, None)];
         self.choices.iter().find(wanted).map(|choice| choice.meaning)
     }
 
     /// The sense of M and a number.
     #[inline]
-    pub(crate) fn m(&self, code: u16) -> Sense {
+    pub(crate) fn m(&self, code: u16) -> WordMeaning {
         let sense = self.m.get(usize::from(code)).copied().unwrap_or(0);
         self.senses[usize::from(sense)]
     }
@@ -179,13 +180,13 @@ impl Lexicon {
     }
 
     /// What a name means.
-    pub(crate) fn name(&self, name: &str) -> Sense {
-        self.names.get(name).copied().unwrap_or(Sense::Unknown)
+    pub(crate) fn name(&self, name: &str) -> WordMeaning {
+        self.names.get(name).copied().unwrap_or(WordMeaning::Unknown)
     }
 
     /// What a name with nothing between its parentheses means.
-    pub(crate) fn empty_call(&self, name: &str) -> Sense {
-        self.empty.get(name).map_or_else(|| self.name(name), |meaning| Sense::Means(*meaning))
+    pub(crate) fn empty_call(&self, name: &str) -> WordMeaning {
+        self.empty.get(name).map_or_else(|| self.name(name), |meaning| WordMeaning::Means(*meaning))
     }
 
     /// A word of the dialect.
@@ -204,15 +205,15 @@ impl Lexicon {
         // `G5` of `G505` to `G599`.
         if self.language == Language::Names && word == "G5" && meaning == Meaning::WorkOffset {
             for number in 505..=599 {
-                self.add_sense(&format!("G{number}"), Sense::Means(meaning));
+                self.add_sense(&format!("G{number}"), WordMeaning::Means(meaning));
             }
             return;
         }
-        self.add_sense(word, Sense::Means(meaning));
+        self.add_sense(word, WordMeaning::Means(meaning));
     }
 
     /// A word and its sense; it takes the place of what was said of it before.
-    fn add_sense(&mut self, word: &str, sense: Sense) {
+    fn add_sense(&mut self, word: &str, sense: WordMeaning) {
         let mut parts = word.split_whitespace();
         let first = parts.next().unwrap_or_default();
         let Some((letter, code)) = code(first) else {
@@ -231,13 +232,13 @@ impl Lexicon {
         {
             *entry = place;
         }
-        if let (b'G', Sense::Means(meaning), false) = (letter, sense, beside.is_empty()) {
-            self.choices.push(Choice { code, beside, meaning });
+        if let (b'G', WordMeaning::Means(meaning), false) = (letter, sense, beside.is_empty()) {
+            self.choices.push(CodeChoice { code, beside, meaning });
         }
     }
 
     /// Place of a sense in the table of senses.
-    fn place(&mut self, sense: Sense) -> u8 {
+    fn place(&mut self, sense: WordMeaning) -> u8 {
         let found = self.senses.iter().position(|known| *known == sense);
         let place = found.unwrap_or(self.senses.len());
         if found.is_none() {

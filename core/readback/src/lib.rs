@@ -3,8 +3,8 @@
 //! | part | takes | hands on |
 //! |---|---|---|
 //! | [`lexicon`] | a dialect's words and meanings | which word switches what |
-//! | [`interpret`] | blocks of `post_grammar::nc` | [`Done`]: every motion of the machine, and what is told between them |
-//! | [`course`] | a CL file, or what a program did | [`course::Item`]: the path of the tool against the part, piece by piece |
+//! | [`interpret`] | blocks of `post_grammar::nc` | [`BlockEffect`]: every motion of the machine, and what is told between them |
+//! | [`course`] | a CL file, or what a program did | [`course::CourseItem`]: the path of the tool against the part, piece by piece |
 //! | [`verify`] | a program and a course | deviations, block by block |
 //! | [`diff`] | two programs | what they do differently |
 //! | [`tasks`] | what a program did | what its control carries out, for `post_motion` |
@@ -24,9 +24,9 @@ pub mod interpret;
 pub mod lexicon;
 mod motion;
 mod offsets;
+mod program_event;
 mod run;
 pub mod tasks;
-mod told;
 pub mod verify;
 
 pub use corners::Corners;
@@ -34,8 +34,8 @@ pub use fed_rapids::{FedRapids, turns_the_spindle};
 pub use motion::{Motion, MotionKind};
 pub use offsets::{Offsets, Reference, WorkOffset};
 pub use post_motion::path::{BSpline, Curve, Interpolation, Stance};
-pub use run::{MOST_FAULTS, Program, Run};
-pub use told::{Coolants, CycleCall, CycleKind, Spindle, Told};
+pub use program_event::{Coolants, CycleCall, CycleKind, ProgramEvent, SpindleState};
+pub use run::{BlockRunner, MOST_FAULTS, ProgramRun};
 
 use std::sync::Arc;
 
@@ -48,23 +48,23 @@ use post_machine::tilted_plane::TiltedPlane;
     clippy::large_enum_variant,
     reason = "most are motions, and they lie in a buffer that is filled again and again"
 )]
-pub enum Done {
+pub enum BlockEffect {
     /// The machine moved.
     Motion(Motion),
-    /// Something else happened.
-    Told {
+    /// A tool change, a spindle command, a wait or another event.
+    Event {
         /// Line of the program.
         line: u64,
-        /// What.
-        told: Told,
+        /// The event.
+        event: ProgramEvent,
     },
     /// From here on this holds.
-    State(Arc<State>),
+    State(Arc<MachineState>),
 }
 
 /// What holds while the machine moves: it changes seldom, and motions share it.
 #[derive(Clone, Debug)]
-pub struct State {
+pub struct MachineState {
     /// The machine with the tool that the program's length compensation speaks of: `chain().forward` leads from axis
     /// values to the tip and tool axis in the part frame.
     pub solver: Arc<Solver>,
@@ -85,7 +85,7 @@ pub struct State {
     /// Name of the work offset in force: `G54`.
     pub work_offset: Option<String>,
     /// The spindle.
-    pub spindle: Spindle,
+    pub spindle: SpindleState,
     /// Coolants that flow.
     pub coolants: Coolants,
     /// The operation, as a remark or a word of the program names it.

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use post_machine::kinematics::{Pose, Trace};
 use post_motion::path::{Curve, Interpolation, Stance, between, chords, turns};
 
-use crate::State;
+use crate::MachineState;
 
 /// Bounds on second derivatives along a motion, by its parameter.
 struct Bend {
@@ -53,7 +53,7 @@ pub struct Motion {
     /// At feed, and as fast as a rapid of a machine whose rapids may stand so ([`crate::FedRapids`]).
     pub fast: bool,
     /// What holds while it goes on.
-    pub state: Arc<State>,
+    pub state: Arc<MachineState>,
 }
 
 /// Rapid or at feed.

@@ -10,11 +10,11 @@ use post_machine::description::{CornerRule, Machine, RapidRule};
 use post_machine::diagnostic::Diagnostic;
 use post_motion::{CornerMode, Move, MovePace, Task, WaitReason};
 
-use crate::{Corners, Done, Motion, MotionKind, Spindle, State, Told};
+use crate::{BlockEffect, Corners, MachineState, Motion, MotionKind, ProgramEvent, SpindleState};
 
 /// A task, and what the program says of it.
 #[derive(Clone, Debug)]
-pub struct Planned {
+pub struct ProgramTask {
     /// The task.
     pub task: Task,
     /// Feed of the tip against the part, mm/min, as the program states it; zero for rapids and waits, and where it states
@@ -23,12 +23,12 @@ pub struct Planned {
     /// It is a rapid.
     pub rapid: bool,
     /// What holds meanwhile; none before the program says anything.
-    pub state: Option<Arc<State>>,
+    pub state: Option<Arc<MachineState>>,
 }
 
 /// Turns what a program did into tasks, one motion behind.
 #[derive(Clone, Debug)]
-pub struct Tasks {
+pub struct ProgramTasks {
     /// Where the program says nothing of it.
     usual: CornerMode,
     /// By how much a corner may be left where the program names no tolerance, mm.
@@ -37,8 +37,8 @@ pub struct Tasks {
     tool_change: f64,
     spindle_seconds: f64,
     /// The motion that waits for the one behind it.
-    pending: Option<Planned>,
-    state: Option<Arc<State>>,
+    pending: Option<ProgramTask>,
+    state: Option<Arc<MachineState>>,
     /// Lines of the first that is taken for granted, by its kind.
     own_corners: Option<u64>,
     no_feed: Option<u64>,
@@ -47,7 +47,7 @@ pub struct Tasks {
     subprogram: Option<u64>,
 }
 
-impl Tasks {
+impl ProgramTasks {
     /// For the control of a machine.
     pub fn new(machine: &Machine) -> Self {
         let rules = &machine.motion;
@@ -72,18 +72,18 @@ impl Tasks {
     }
 
     /// Takes what a block did, which it draws out of `done`; tasks that are settled by it go behind what `out` holds.
-    pub fn take(&mut self, done: &mut Vec<Done>, out: &mut Vec<Planned>) {
+    pub fn take(&mut self, done: &mut Vec<BlockEffect>, out: &mut Vec<ProgramTask>) {
         for done in done.drain(..) {
             match done {
-                Done::Motion(motion) => self.motion(motion, out),
-                Done::Told { line, told } => self.told(line, &told, out),
-                Done::State(state) => self.state = Some(state),
+                BlockEffect::Motion(motion) => self.motion(motion, out),
+                BlockEffect::Event { line, event } => self.take_event(line, &event, out),
+                BlockEffect::State(state) => self.state = Some(state),
             }
         }
     }
 
     /// The program has ended: the last motion is settled.
-    pub fn end(&mut self, out: &mut Vec<Planned>) {
+    pub fn end(&mut self, out: &mut Vec<ProgramTask>) {
         out.extend(self.pending.take());
     }
 
@@ -115,7 +115,7 @@ impl Tasks {
         told.collect()
     }
 
-    fn motion(&mut self, motion: Motion, out: &mut Vec<Planned>) {
+    fn motion(&mut self, motion: Motion, out: &mut Vec<ProgramTask>) {
         let rapid = motion.kind == MotionKind::Rapid;
         if let Some(pending) = &mut self.pending
             && let Task::Move(last) = &mut pending.task
@@ -133,7 +133,7 @@ impl Tasks {
                 MovePace::Rapid
             }
         };
-        let next = Planned {
+        let next = ProgramTask {
             task: Task::Move(Move {
                 line: motion.line,
                 way: motion.way,
@@ -177,33 +177,33 @@ impl Tasks {
         }
     }
 
-    fn told(&mut self, line: u64, told: &Told, out: &mut Vec<Planned>) {
-        let (seconds, why) = match told {
-            Told::Dwell { time, revolutions } => {
+    fn take_event(&mut self, line: u64, event: &ProgramEvent, out: &mut Vec<ProgramTask>) {
+        let (seconds, why) = match event {
+            ProgramEvent::Dwell { time, revolutions } => {
                 let seconds = match revolutions {
                     true => self.turns(line, *time),
                     false => *time,
                 };
                 (seconds, WaitReason::Dwell)
             }
-            Told::ToolChange { .. } => (self.tool_change, WaitReason::ToolChange),
-            Told::Spindle(_) => (self.spindle_seconds, WaitReason::Spindle),
-            Told::Stop | Told::OptionalStop => {
+            ProgramEvent::ToolChange { .. } => (self.tool_change, WaitReason::ToolChange),
+            ProgramEvent::Spindle(_) => (self.spindle_seconds, WaitReason::Spindle),
+            ProgramEvent::Stop | ProgramEvent::OptionalStop => {
                 self.stop.get_or_insert(line);
                 (0.0, WaitReason::Word)
             }
-            Told::Subprogram(_) => {
+            ProgramEvent::Subprogram(_) => {
                 self.subprogram.get_or_insert(line);
                 (0.0, WaitReason::Word)
             }
-            Told::Coolant(_) | Told::Head(_) => (0.0, WaitReason::Word),
+            ProgramEvent::Coolant(_) | ProgramEvent::Head(_) => (0.0, WaitReason::Word),
             _ => return,
         };
         // Where it stands already, a wait that takes no time is none.
         let moved = self.pending.is_some();
         out.extend(self.pending.take());
         if seconds > 0.0 || moved {
-            out.push(Planned {
+            out.push(ProgramTask {
                 task: Task::Wait { line, seconds, why },
                 feed: 0.0,
                 rapid: false,
@@ -216,7 +216,9 @@ impl Tasks {
     fn turns(&mut self, line: u64, turns: f64) -> f64 {
         let spindle = self.state.as_ref().map(|state| state.spindle);
         match spindle {
-            Some(Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed)) if speed > 0.0 => {
+            Some(SpindleState::Clockwise(speed) | SpindleState::CounterClockwise(speed))
+                if speed > 0.0 =>
+            {
                 60.0 * turns / speed
             }
             _ => {

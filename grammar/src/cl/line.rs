@@ -96,7 +96,7 @@ pub(crate) struct LogicalLine<'t> {
 
 /// Reads one logical line: a record without line ends, its continuations joined.
 ///
-/// [`Reader`](crate::Reader) gives the same for every line of a file; this is for a single one.
+/// [`Reader`](crate::ClReader) gives the same for every line of a file; this is for a single one.
 pub fn parse_record(text: &str) -> Result<Statement, SyntaxFault> {
     if let Some(at) = text.bytes().position(is_control) {
         let byte = text.as_bytes()[at];

@@ -9,6 +9,6 @@ mod statements;
 mod vocabulary;
 
 pub use line::parse_record;
-pub use reader::Reader;
+pub use reader::ClReader;
 pub use record::*;
 pub use vocabulary::{MajorWord, UnknownPath, WordUsage};

@@ -38,7 +38,7 @@ const SHOWN: usize = 80;
 ///
 /// The input need not be buffered.
 #[derive(Debug)]
-pub struct Reader<R> {
+pub struct ClReader<R> {
     input: R,
     buffer: Vec<u8>,
     /// What is read and not yet consumed: `buffer[start..end]`.
@@ -68,7 +68,7 @@ struct PhysicalLine {
     overlong: bool,
 }
 
-impl<R: Read> Reader<R> {
+impl<R: Read> ClReader<R> {
     /// Reads from `input`.
     pub fn new(input: R) -> Self {
         Self {

@@ -20,7 +20,7 @@ use super::statements::technology::{
 use super::statements::tooling::{
     cutcom, cutcom_on_centre, cutter, load_tool, select_tool, tldata,
 };
-use super::statements::{ReadGeometry, ReadItems, ReadText};
+use super::statements::{ReadGeometry, ReadItems, ReadTextStatement};
 
 /// What `post` does with a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -58,7 +58,7 @@ pub(super) enum ArgumentForm {
     /// Items between commas, for a statement of its own.
     Items(ReadItems),
     /// Any text.
-    Text(ReadText),
+    Text(ReadTextStatement),
     /// Geometry in parentheses.
     Geometry(ReadGeometry),
     /// The whole line has a form of its own, which `line.pest` takes apart.

@@ -1,6 +1,6 @@
 //! Cutter-location files as CAM systems wrote them, read without a fault.
 
-use post_grammar::{Cycle, MajorWord, Reader, Statement, parse_record};
+use post_grammar::{ClReader, Cycle, MajorWord, Statement, parse_record};
 use post_testkit::shared;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -31,7 +31,7 @@ const COUNTS: [(&str, usize, usize, usize, usize); 18] = [
 /// How often each word comes, and how many numbers the GOTOs have.
 fn count(path: &Path) -> BTreeMap<String, usize> {
     let mut counts = BTreeMap::new();
-    let mut reader = Reader::new(File::open(path).expect("the file opens"));
+    let mut reader = ClReader::new(File::open(path).expect("the file opens"));
     let mut last = 0;
     while let Some(record) =
         reader.next_record().unwrap_or_else(|fault| panic!("{}: {fault}", path.display()))
@@ -96,7 +96,7 @@ fn every_cycle_has_its_depth_feed_and_clearance() {
     };
     let mut cycles = 0;
     for (name, ..) in COUNTS {
-        let mut reader = Reader::new(File::open(folder.join(name)).unwrap());
+        let mut reader = ClReader::new(File::open(folder.join(name)).unwrap());
         while let Some(record) = reader.next_record().unwrap() {
             if let Statement::Cycle(Cycle::Define(cycle)) = record.statement {
                 assert!(

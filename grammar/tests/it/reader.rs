@@ -1,6 +1,6 @@
 //! Logical lines: ends, continuations, comments, chunks, faults between good records.
 
-use post_grammar::{ReadError, Reader, Record, Statement};
+use post_grammar::{ClReader, ReadError, Record, Statement};
 use post_testkit::randomised;
 use std::io::{self, Cursor, Read};
 
@@ -26,7 +26,7 @@ fn told(record: &Record<'_>) -> String {
 
 /// Every record and fault, as text that tells them apart.
 fn all(input: impl Read) -> Vec<String> {
-    let mut reader = Reader::new(input);
+    let mut reader = ClReader::new(input);
     let mut found = Vec::new();
     loop {
         match reader.next_record() {
@@ -43,7 +43,7 @@ fn all(input: impl Read) -> Vec<String> {
 
 /// Line and text of each record; of a fault its message.
 fn lines(text: impl AsRef<[u8]>) -> Vec<(u64, String)> {
-    let mut reader = Reader::new(text.as_ref());
+    let mut reader = ClReader::new(text.as_ref());
     let mut found = Vec::new();
     loop {
         match reader.next_record() {
@@ -138,7 +138,7 @@ fn reading_goes_on_after_a_fault() {
 
 #[test]
 fn text_that_is_not_utf8_is_taken_for_latin1() {
-    let mut reader = Reader::new(&b"INSERT/Fr\xE4sen\nPPRINT Fr\xC3\xA4sen\n"[..]);
+    let mut reader = ClReader::new(&b"INSERT/Fr\xE4sen\nPPRINT Fr\xC3\xA4sen\n"[..]);
     let insert = reader.next_record().unwrap().unwrap().statement;
     assert_eq!(insert, Statement::Insert("Fräsen".to_owned()));
     let print = reader.next_record().unwrap().unwrap().statement;
@@ -182,7 +182,7 @@ fn a_failing_input_is_passed_on() {
         }
     }
     let input = Cursor::new("RAPID\nFINI").chain(Failing);
-    let mut reader = Reader::new(input);
+    let mut reader = ClReader::new(input);
     assert!(matches!(reader.next_record(), Ok(Some(_))));
     let error = reader.next_record().expect_err("FINI may not be all of the line");
     assert!(matches!(&error, ReadError::Io(error) if error.to_string() == "the disk is gone"));
@@ -250,7 +250,7 @@ fn a_file_that_ends_within_a_line_is_told() {
         ("FINI", true),
     ] {
         for chunk in [1, 2, 7, 100] {
-            let mut reader = Reader::new(Trickle {
+            let mut reader = ClReader::new(Trickle {
                 bytes: text.as_bytes(),
                 sizes: vec![chunk].into_iter().cycle(),
             });

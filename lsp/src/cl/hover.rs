@@ -1,6 +1,6 @@
 //! What is said of a line of a CL file.
 
-use post_grammar::{MajorWord, Reader};
+use post_grammar::{ClReader, MajorWord};
 
 use super::{Posted, posted};
 use crate::document::Snapshot;
@@ -38,7 +38,7 @@ pub fn text(
     machine: Option<&str>,
 ) -> Option<String> {
     let (first, text) = record(of, line);
-    let mut reader = Reader::new(text.as_bytes());
+    let mut reader = ClReader::new(text.as_bytes());
     let record = reader.next_record().ok()??;
     let word = record.statement.word().to_owned();
     let mut said = format!("**{word}**");

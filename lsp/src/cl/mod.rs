@@ -10,8 +10,8 @@ pub mod hover;
 pub mod outline;
 mod posted;
 
-use post_grammar::{MajorWord, ReadError, Reader, Statement, WordUsage};
-use post_machine::diagnostic::{Diagnostic, Place, meant, unreadable};
+use post_grammar::{ClReader, MajorWord, ReadError, Statement, WordUsage};
+use post_machine::diagnostic::{Diagnostic, SourcePlace, meant, unreadable};
 
 use super::background::Token;
 use super::document::Snapshot;
@@ -28,7 +28,7 @@ pub const EVERY: u64 = 1024;
 
 /// Lines that cannot be read, and where `words` is set words that post does not know; none if the work is given up.
 pub fn findings(of: &Snapshot, words: bool, token: &Token) -> Option<Vec<Diagnostic>> {
-    let mut reader = Reader::new(of.text.as_bytes());
+    let mut reader = ClReader::new(of.text.as_bytes());
     let mut found = Vec::new();
     let mut records = 0_u64;
     while found.len() < MOST {
@@ -44,7 +44,7 @@ pub fn findings(of: &Snapshot, words: bool, token: &Token) -> Option<Vec<Diagnos
                     let text = record.text();
                     let start = text.len() - text.trim_ascii_start().len();
                     let span = start..start + word.len();
-                    let place = Place::new(&of.name, record.line, &text, span);
+                    let place = SourcePlace::new(&of.name, record.line, &text, span);
                     found.push(unknown(word).at(Some(place)));
                 }
             }

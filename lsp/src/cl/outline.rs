@@ -3,7 +3,7 @@
 use gen_lsp_types::{
     DocumentSymbol, FoldingRange, FoldingRangeKind, Position, Range as LspRange, SymbolKind,
 };
-use post_grammar::{ReadError, Reader, Statement};
+use post_grammar::{ClReader, ReadError, Statement};
 
 use super::EVERY;
 use crate::background::Token;
@@ -20,7 +20,7 @@ struct Section {
 
 /// The parts of a file; none if the work is given up.
 fn sections(of: &Snapshot, token: &Token) -> Option<Vec<Section>> {
-    let mut reader = Reader::new(of.text.as_bytes());
+    let mut reader = ClReader::new(of.text.as_bytes());
     let mut sections: Vec<Section> = Vec::new();
     // Operations and tools that have not ended, by their places among all.
     let mut operation: Option<usize> = None;

@@ -1,6 +1,6 @@
 //! A CL file posted on the chosen machine: where the axes come to stand, and how far the program strays, line by line.
 
-use post_grammar::{ReadError, Reader};
+use post_grammar::{ClReader, ReadError};
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 use post_posting::program::{DefaultSpindle, ReadingOptions};
@@ -88,7 +88,7 @@ pub fn post(
             Err(finding) => return Some(Err(vec![*finding])),
         };
         post.watch(&mut watch);
-        let mut reader = Reader::new(of.text.as_bytes());
+        let mut reader = ClReader::new(of.text.as_bytes());
         let mut records = 0_u64;
         while !post.gave_up() {
             records += 1;

@@ -44,7 +44,7 @@ pub fn load(of: &Snapshot, library: &Library) -> Result<Machine, Vec<Diagnostic>
 fn examine(
     of: &Snapshot,
     library: &Library,
-) -> Result<post_machine::description::Reading, Vec<Diagnostic>> {
+) -> Result<post_machine::description::MachineReading, Vec<Diagnostic>> {
     let source = Source { name: of.name.clone(), text: of.text.clone() };
     let read = |path: &std::path::Path| library.read(path);
     machine_files::examine(source, &library.machines, &[], &read)

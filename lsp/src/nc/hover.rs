@@ -1,7 +1,7 @@
 //! What is said of a line of a program.
 
 use post_machine::diagnostic::Short;
-use post_readback::{MotionKind, Spindle, State};
+use post_readback::{MachineState, MotionKind, SpindleState};
 
 use super::Program;
 use super::map::Map;
@@ -129,7 +129,7 @@ fn held(program: &Program, run: &ProgramLine, itself: bool) -> String {
 }
 
 /// What holds while the machine moves.
-fn modes(state: &State) -> Vec<String> {
+fn modes(state: &MachineState) -> Vec<String> {
     let mut modes = Vec::new();
     modes.extend(state.tool.map(|tool| format!("tool {tool}")));
     if state.length != 0.0 {
@@ -149,13 +149,13 @@ fn modes(state: &State) -> Vec<String> {
         _ => modes.push("right of the contour".to_owned()),
     }
     modes.push(match state.spindle {
-        Spindle::Off => "spindle off".to_owned(),
-        Spindle::Clockwise(speed) => format!("spindle {} rpm clockwise", Short(speed)),
-        Spindle::CounterClockwise(speed) => {
+        SpindleState::Off => "spindle off".to_owned(),
+        SpindleState::Clockwise(speed) => format!("spindle {} rpm clockwise", Short(speed)),
+        SpindleState::CounterClockwise(speed) => {
             format!("spindle {} rpm counter-clockwise", Short(speed))
         }
-        Spindle::Oriented => "spindle oriented".to_owned(),
-        Spindle::Surface { speed, .. } => format!("cutting speed {} m/min", Short(speed)),
+        SpindleState::Oriented => "spindle oriented".to_owned(),
+        SpindleState::Surface { speed, .. } => format!("cutting speed {} m/min", Short(speed)),
     });
     let coolants = state.coolants;
     for (flows, name) in

@@ -7,7 +7,7 @@ use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 use post_plugin::VocabularyWord;
 use post_readback::interpret::Limits;
-use post_readback::{Done, MotionKind, Offsets, State, Told};
+use post_readback::{BlockEffect, MachineState, MotionKind, Offsets, ProgramEvent};
 
 use crate::background::{Token, Worked};
 use crate::document::Snapshot;
@@ -45,7 +45,7 @@ pub struct ProgramLine {
     /// The feed of its last motion, mm/min.
     pub feed: f64,
     /// What holds while it moves; behind it if nothing moves.
-    pub state: Option<Arc<State>>,
+    pub state: Option<Arc<MachineState>>,
     /// Remarks and operations that it holds.
     pub told: Vec<String>,
 }
@@ -118,7 +118,7 @@ pub fn read(
 #[derive(Default)]
 struct Lines {
     run: Vec<ProgramLine>,
-    state: Option<Arc<State>>,
+    state: Option<Arc<MachineState>>,
 }
 
 impl Lines {
@@ -142,17 +142,17 @@ impl Lines {
     }
 
     /// What holds behind a block; while it moves, what its motion has.
-    fn hold(&mut self, line: u64, state: Arc<State>) {
+    fn hold(&mut self, line: u64, state: Arc<MachineState>) {
         if let Some(run) = self.at(line).filter(|run| run.kind.is_none()) {
             run.state = Some(Arc::clone(&state));
         }
         self.state = Some(state);
     }
 
-    fn take(&mut self, done: Done) {
+    fn take(&mut self, done: BlockEffect) {
         match done {
-            Done::State(state) => self.state = Some(state),
-            Done::Motion(motion) => {
+            BlockEffect::State(state) => self.state = Some(state),
+            BlockEffect::Motion(motion) => {
                 if let Some(line) = self.at(motion.line) {
                     line.kind = Some(motion.kind);
                     line.joints = motion.to.joints;
@@ -162,16 +162,16 @@ impl Lines {
                     line.state = Some(motion.state);
                 }
             }
-            Done::Told { line, told } => {
+            BlockEffect::Event { line, event: told } => {
                 let text = match told {
-                    Told::Operation(name) => format!("operation {name}"),
-                    Told::Remark(text) | Told::Message(text) => text,
-                    Told::ToolChange { number, name } => {
+                    ProgramEvent::Operation(name) => format!("operation {name}"),
+                    ProgramEvent::Remark(text) | ProgramEvent::Message(text) => text,
+                    ProgramEvent::ToolChange { number, name } => {
                         let number = number.map(|number| number.to_string());
                         format!("tool {}", name.or(number).unwrap_or_default())
                     }
-                    Told::Dwell { time, .. } => format!("waits {time}"),
-                    Told::End => "the program ends".to_owned(),
+                    ProgramEvent::Dwell { time, .. } => format!("waits {time}"),
+                    ProgramEvent::End => "the program ends".to_owned(),
                     _ => return self.at(line).map_or((), |_| ()),
                 };
                 if let Some(line) = self.at(line) {

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display};
 
-use post_machine::diagnostic::{Diagnostic, Place};
+use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
@@ -112,7 +112,7 @@ impl<'a> JsonText<'a> {
         (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize)
     }
 
-    fn place(&self, start: usize, length: usize) -> Place {
+    fn place(&self, start: usize, length: usize) -> SourcePlace {
         let start = start.min(self.text.len());
         let before = &self.text[..start];
         let line_start = before.rfind('\n').map_or(0, |at| at + 1);
@@ -120,7 +120,7 @@ impl<'a> JsonText<'a> {
         let line = rest.lines().next().unwrap_or_default();
         let number = before.matches('\n').count() as u64 + 1;
         let from = start - line_start;
-        Place::new(self.file, number, line, from..from + length)
+        SourcePlace::new(self.file, number, line, from..from + length)
     }
 
     /// What serde says of a part of the text, at the place that it names.

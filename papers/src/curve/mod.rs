@@ -15,7 +15,7 @@ mod walk;
 
 use std::io::Read as _;
 
-use post_feed::jerk::Piece;
+use post_feed::jerk::IntervalLaw;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
@@ -224,7 +224,7 @@ fn spline(spline: &post_feed::FeedSpline) -> SplineFound {
         degree: 2,
         range: [spline.knots[0], spline.knots[spline.knots.len() - 1]],
         constant_jerk_at_ends: ends
-            .map(|piece| matches!(piece, Some(Piece::Leave(_) | Piece::Arrive(_)))),
+            .map(|piece| matches!(piece, Some(IntervalLaw::Leave(_) | IntervalLaw::Arrive(_)))),
         knots,
         coefficients,
     }

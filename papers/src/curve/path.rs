@@ -8,8 +8,10 @@ use post_feed::Samples;
 use post_machine::axis_words;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Short};
-use post_machine::kinematics::choose::{Limit, Turning};
-use post_machine::kinematics::{Course, Joints, Pose, Solver, Unreachable, direction, travel};
+use post_machine::kinematics::choose::{RotaryAxes, RotaryTravel};
+use post_machine::kinematics::{
+    JointDerivatives, Joints, Pose, Solver, Unreachable, direction, travel,
+};
 use post_motion::path::BSpline;
 use post_posting::plan::SampledAxes;
 
@@ -26,7 +28,7 @@ pub struct CurvePath<'m> {
     sampled: SampledAxes,
     /// Joints that point the tool.
     rotary: Vec<usize>,
-    turning: Turning,
+    turning: RotaryAxes,
     /// Places in the chain of the axes that are planned, in the order of their words.
     pub axes: Vec<usize>,
     pub stretches: Vec<Stretch>,
@@ -76,10 +78,10 @@ impl<'m> CurvePath<'m> {
         let solver = machine.solver(length);
         let solver = solver.map_err(|lack| machine.unsolvable(&lack).boxed())?;
         let rotary = machine.pointing();
-        let mut turning = Turning::default();
+        let mut turning = RotaryAxes::default();
         for joint in &rotary {
             match machine.axes[*joint].travel {
-                Some(travel) => turning.limits.push(Limit { joint: *joint, travel }),
+                Some(travel) => turning.limits.push(RotaryTravel { joint: *joint, travel }),
                 None => turning.cyclic.push(*joint),
             }
         }
@@ -254,7 +256,7 @@ impl<'m> CurvePath<'m> {
     fn near(&self, stretch: &Stretch, parameter: f64, last: &Joints) -> Result<Station, NoStation> {
         let tip = stretch.tip.derivatives(parameter);
         let vectors = tip.map(Vector3::from);
-        let mut course = Course::default();
+        let mut course = JointDerivatives::default();
         course.joints[0] = *self.solver.held();
         match &stretch.pointing {
             CurvePointing::Rotary(curves) => {

@@ -171,7 +171,7 @@ pub fn plan(
                     }
                 }
                 Solver::Jerk => {
-                    let settings = jerk::Settings::default();
+                    let settings = jerk::JerkSettings::default();
                     let plan = jerk::solve(&samples, &limits, &problem, settings);
                     let plan = plan.map_err(|fault| told.infeasible(&fault))?;
                     Answer {

@@ -1,6 +1,6 @@
 //! Curves that are planned along: those of the file, and those that are laid through its points.
 
-use post_feed::fit::{self, Fit, Leg, Rules};
+use post_feed::fit::{self, FitRules, FittedLeg, PathFit};
 use post_motion::path::BSpline;
 
 /// Derivatives that are known at the start of a piece, with its value.
@@ -97,11 +97,12 @@ pub struct SmoothPiece {
 }
 
 /// Lays smooth curves through points: the tip in mm, then `rotary` axes in radians. Between two curves there is a corner.
-pub fn through(points: &[fit::Point], rotary: usize, tolerance: f64) -> Vec<SmoothPiece> {
-    let mut fit = Fit::new(Rules { dimensions: 3 + rotary, tolerance, ..Rules::default() });
+pub fn through(points: &[fit::FitPoint], rotary: usize, tolerance: f64) -> Vec<SmoothPiece> {
+    let mut fit =
+        PathFit::new(FitRules { dimensions: 3 + rotary, tolerance, ..FitRules::default() });
     let mut pieces: Vec<SmoothPiece> = Vec::new();
     let mut at = 0.0;
-    let mut take = |leg: &Leg<'_>| {
+    let mut take = |leg: &FittedLeg<'_>| {
         if leg.length <= 0.0 {
             return;
         }
@@ -116,10 +117,10 @@ pub fn through(points: &[fit::Point], rotary: usize, tolerance: f64) -> Vec<Smoo
         for pair in leg.samples.windows(2) {
             let ends = [at + pair[0].at, at + pair[1].at];
             let [start, end] = [0, 1].map(|side: usize| pair[side].values);
-            let tip = |values: [fit::Point; ORDERS]| values.map(|all| [all[0], all[1], all[2]]);
+            let tip = |values: [fit::FitPoint; ORDERS]| values.map(|all| [all[0], all[1], all[2]]);
             piece.tip.push(ends, tip(start), tip(end));
             for (axis, turning) in piece.rotary.iter_mut().enumerate() {
-                let angle = |values: [fit::Point; ORDERS]| values.map(|all| [all[3 + axis]]);
+                let angle = |values: [fit::FitPoint; ORDERS]| values.map(|all| [all[3 + axis]]);
                 turning.push(ends, angle(start), angle(end));
             }
         }
@@ -139,7 +140,7 @@ mod tests {
 
     #[test]
     fn the_curve_through_points_of_an_arc_is_smooth_and_near() {
-        let points: Vec<fit::Point> = (0..=60)
+        let points: Vec<fit::FitPoint> = (0..=60)
             .map(|index| {
                 let angle = f64::from(index) / 40.0;
                 let mut point = [0.0; fit::MOST];

@@ -6,7 +6,7 @@ use post_plugin::ModelSession;
 use super::curve::{Peak, explained, peak};
 use super::edge::Rim;
 use super::placed::{Placed, place, strays};
-use post_machine::description::{Accuracy, Machine, Method, Placement};
+use post_machine::description::{AccuracyRules, Machine, Method, Placement};
 use post_posting::Observer;
 use post_posting::accuracy::{Lineariser, NodeMove};
 
@@ -153,11 +153,11 @@ impl Observer for Survey<'_> {
 }
 
 /// Points on the exact solution, and no CL point left out.
-pub(super) fn placing(accuracy: &Accuracy, placement: Placement) -> Accuracy {
-    Accuracy { method: Method::Linearise, placement, reduce: false, ..accuracy.clone() }
+pub(super) fn placing(accuracy: &AccuracyRules, placement: Placement) -> AccuracyRules {
+    AccuracyRules { method: Method::Linearise, placement, reduce: false, ..accuracy.clone() }
 }
 
 /// Points on the straight line of the axes, moved by minus the model's curve.
-pub(super) fn compensating(accuracy: &Accuracy) -> Accuracy {
-    Accuracy { method: Method::Compensate, reduce: false, ..accuracy.clone() }
+pub(super) fn compensating(accuracy: &AccuracyRules) -> AccuracyRules {
+    AccuracyRules { method: Method::Compensate, reduce: false, ..accuracy.clone() }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::field::{Codes, Field, FieldReader, NotKnown, Promise, Shape, codes};
+use crate::field::{Codes, Field, FieldReader, FieldShape, NotKnown, Promise, codes};
 use crate::flat::Flat;
 use crate::language::Language;
 use crate::plane::PlaneAngles;
@@ -39,7 +39,7 @@ impl Feed {
 }
 
 impl Field<'_> for Option<Feed> {
-    const SHAPE: Shape = Shape::Numbers(2);
+    const SHAPE: FieldShape = FieldShape::Numbers(2);
     const SAMPLE: Self = Some(Feed::PerMinute(500.0));
 
     #[inline]
@@ -86,7 +86,7 @@ impl Field<'_> for Option<Feed> {
 }
 
 impl Field<'_> for Feed {
-    const SHAPE: Shape = Shape::Numbers(2);
+    const SHAPE: FieldShape = FieldShape::Numbers(2);
     const SAMPLE: Self = Feed::PerMinute(500.0);
 
     #[inline]
@@ -135,7 +135,7 @@ impl Spindle {
 }
 
 impl Field<'_> for Spindle {
-    const SHAPE: Shape = Shape::Numbers(2);
+    const SHAPE: FieldShape = FieldShape::Numbers(2);
     const SAMPLE: Self = Spindle::On { rpm: 3000.0, sense: SpindleSense::Clockwise };
 
     fn put(self, to: &mut Flat) {
@@ -240,7 +240,7 @@ impl Compensation {
 }
 
 impl Field<'_> for Compensation {
-    const SHAPE: Shape = Shape::Numbers(2);
+    const SHAPE: FieldShape = FieldShape::Numbers(2);
     const SAMPLE: Self = Compensation::Left { register: 5 };
 
     fn put(self, to: &mut Flat) {

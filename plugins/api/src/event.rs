@@ -4,7 +4,7 @@
 //! header and the host's checks follow from it.
 
 use crate::command::{Compensation, Coolant, Cycle, Feed, Spindle, SpindleSense};
-use crate::field::{Field, FieldReader, List, NotKnown, Promise, Shape, ToolPose};
+use crate::field::{Field, FieldReader, FieldShape, List, NotKnown, Promise, ToolPose};
 use crate::flat::Flat;
 use crate::setup::Units;
 
@@ -31,7 +31,7 @@ pub struct FieldSpec {
     /// Name of the field.
     pub name: &'static str,
     /// What it takes up.
-    pub shape: Shape,
+    pub shape: FieldShape,
     /// What it means.
     pub doc: &'static str,
 }

@@ -10,7 +10,7 @@ pub(crate) const MAX_TEXTS: usize = 2;
 
 /// What a field takes up, for the C header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
+pub enum FieldShape {
     /// Numbers, and how many.
     Numbers(usize),
     /// A number that says how many follow, and those.
@@ -86,7 +86,7 @@ pub(crate) fn whole(number: f64) -> Option<u32> {
 /// A type that a field of an event may have.
 pub(crate) trait Field<'a>: Copy {
     /// What it takes up.
-    const SHAPE: Shape;
+    const SHAPE: FieldShape;
     /// A value for tests.
     const SAMPLE: Self;
     /// Appends it.
@@ -112,7 +112,7 @@ fn finite(numbers: &[f64], what: &str) -> Result<(), String> {
 }
 
 impl<'a> Field<'a> for &'a str {
-    const SHAPE: Shape = Shape::Text;
+    const SHAPE: FieldShape = FieldShape::Text;
     const SAMPLE: Self = "sample";
 
     fn put(self, to: &mut Flat) {
@@ -125,7 +125,7 @@ impl<'a> Field<'a> for &'a str {
 }
 
 impl Field<'_> for f64 {
-    const SHAPE: Shape = Shape::Numbers(1);
+    const SHAPE: FieldShape = FieldShape::Numbers(1);
     const SAMPLE: Self = 1.5;
 
     fn put(self, to: &mut Flat) {
@@ -142,7 +142,7 @@ impl Field<'_> for f64 {
 }
 
 impl Field<'_> for Option<f64> {
-    const SHAPE: Shape = Shape::Numbers(1);
+    const SHAPE: FieldShape = FieldShape::Numbers(1);
     const SAMPLE: Self = Some(2.5);
 
     fn put(self, to: &mut Flat) {
@@ -159,7 +159,7 @@ impl Field<'_> for Option<f64> {
 }
 
 impl Field<'_> for u32 {
-    const SHAPE: Shape = Shape::Numbers(1);
+    const SHAPE: FieldShape = FieldShape::Numbers(1);
     const SAMPLE: Self = 3;
 
     fn put(self, to: &mut Flat) {
@@ -172,7 +172,7 @@ impl Field<'_> for u32 {
 }
 
 impl Field<'_> for Option<u32> {
-    const SHAPE: Shape = Shape::Numbers(1);
+    const SHAPE: FieldShape = FieldShape::Numbers(1);
     const SAMPLE: Self = Some(4);
 
     fn put(self, to: &mut Flat) {
@@ -188,7 +188,7 @@ impl Field<'_> for Option<u32> {
 }
 
 impl Field<'_> for bool {
-    const SHAPE: Shape = Shape::Numbers(1);
+    const SHAPE: FieldShape = FieldShape::Numbers(1);
     const SAMPLE: Self = true;
 
     fn put(self, to: &mut Flat) {
@@ -205,7 +205,7 @@ impl Field<'_> for bool {
 }
 
 impl Field<'_> for [f64; 3] {
-    const SHAPE: Shape = Shape::Numbers(3);
+    const SHAPE: FieldShape = FieldShape::Numbers(3);
     const SAMPLE: Self = [0.0, 0.6, 0.8];
 
     fn put(self, to: &mut Flat) {
@@ -223,7 +223,7 @@ impl Field<'_> for [f64; 3] {
 
 /// The axis words of a move.
 impl<'a> Field<'a> for &'a [f64] {
-    const SHAPE: Shape = Shape::List;
+    const SHAPE: FieldShape = FieldShape::List;
     const SAMPLE: Self = &[1.0, 2.0, 3.0, 4.0, 5.0];
 
     #[inline]
@@ -251,7 +251,7 @@ impl<'a> Field<'a> for &'a [f64] {
 pub struct List<'a>(pub &'a [f64]);
 
 impl<'a> Field<'a> for List<'a> {
-    const SHAPE: Shape = Shape::List;
+    const SHAPE: FieldShape = FieldShape::List;
     const SAMPLE: Self = List(&[0.0, 0.5, 1.0]);
 
     fn put(self, to: &mut Flat) {
@@ -277,7 +277,7 @@ pub struct ToolPose {
 }
 
 impl Field<'_> for Option<ToolPose> {
-    const SHAPE: Shape = Shape::Numbers(6);
+    const SHAPE: FieldShape = FieldShape::Numbers(6);
     const SAMPLE: Self = Some(ToolPose { tip: [1.0, 2.0, 3.0], axis: [0.0, 0.6, 0.8] });
 
     #[inline]
@@ -353,7 +353,7 @@ macro_rules! codes {
         }
 
         impl crate::field::Field<'_> for $name {
-            const SHAPE: crate::field::Shape = crate::field::Shape::Numbers(1);
+            const SHAPE: crate::field::FieldShape = crate::field::FieldShape::Numbers(1);
             const SAMPLE: Self = [$($name::$variant),*][0];
 
             fn put(self, to: &mut crate::flat::Flat) {

@@ -128,7 +128,7 @@ pub use dialect::{Dialect, DialectSession, Format, WriteFault};
 pub use drilling::Drilling;
 pub use event::{EVENTS, Event, EventSpec, FieldSpec};
 pub use export::{Linked, LinkedDialect};
-pub use field::{Codes, List, Promise, Shape, ToolPose};
+pub use field::{Codes, FieldShape, List, Promise, ToolPose};
 pub use language::{Language, Lengths};
 pub use model::{Curve, Deviation, ErrorModel, ModelSession, Tolerance};
 pub use number::{fixed, quantise};

@@ -17,12 +17,12 @@ pub(crate) struct CycleWords {
     rigid: Option<Rigid>,
     /// Way off the wall, program units; 0: fine boring is not written.
     shift: f64,
-    running: Option<CycleInForce>,
+    running: Option<ModalCycle>,
 }
 
 /// A cycle in force. Lengths are in program units.
 #[derive(Clone, Copy, Debug)]
-struct CycleInForce {
+struct ModalCycle {
     kind: Cycle,
     code: &'static str,
     feed: Feed,
@@ -135,7 +135,7 @@ impl Engine {
         if matches!(feed, Feed::InverseTime(_)) {
             return Err("a cycle has no inverse-time feed".to_owned());
         }
-        self.cycles.running = Some(CycleInForce {
+        self.cycles.running = Some(ModalCycle {
             kind,
             code,
             feed: self.cycle_feed(kind, feed, pitch),
@@ -267,7 +267,7 @@ impl Engine {
     }
 
     /// Writes step, shift and wait.
-    fn cycle_words(&mut self, running: &CycleInForce, rigid: Option<Rigid>) {
+    fn cycle_words(&mut self, running: &ModalCycle, rigid: Option<Rigid>) {
         let places = self.motion.linear_decimals(2);
         let style = self.motion.style;
         let q = match running.step.filter(|_| pecks(running.kind)) {
@@ -295,7 +295,7 @@ impl Engine {
     fn tap_by_move(
         &mut self,
         code: &str,
-        running: &CycleInForce,
+        running: &ModalCycle,
         words: &[f64],
         z: usize,
         [bottom, plane, top]: [f64; 3],

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use post_machine::check::{
-    AxisLine, Check, Class, Comparison, Pole, Reach, Reading, Share, Sign, Solutions, Volume,
-    number,
+    AxisLine, AxisReadout, Check, Comparison, DifferenceShare, DirectionSolutions, MachineClass,
+    Pole, ReachableCone, Sign, Volume, number,
 };
 
 /// Width of the first column.
@@ -70,7 +70,7 @@ fn row(text: &mut String, name: &str, value: &str) {
     let _ = writeln!(text, "{name:<NAME$}{value}");
 }
 
-fn class(text: &mut String, class: &Class) {
+fn class(text: &mut String, class: &MachineClass) {
     let list = |names: &[String]| match names {
         [] => "none".to_owned(),
         names => names.join(", "),
@@ -148,7 +148,7 @@ fn signs(text: &mut String, signs: &[Sign]) {
     text.push('\n');
 }
 
-fn solutions(text: &mut String, found: &Solutions) {
+fn solutions(text: &mut String, found: &DirectionSolutions) {
     let plural = |count: usize, word: &str| match count {
         1 => format!("1 {word}"),
         count => format!("{count} {word}s"),
@@ -186,7 +186,7 @@ fn solutions(text: &mut String, found: &Solutions) {
     }
 }
 
-fn reach(text: &mut String, reach: &Reach) {
+fn reach(text: &mut String, reach: &ReachableCone) {
     let tilt = |tilt: Option<f64>| {
         tilt.map_or("not even +Z".to_owned(), |tilt| format!("{}°", number(tilt, 2)))
     };
@@ -291,7 +291,7 @@ fn volume(text: &mut String, volume: &Volume, length: f64) {
     row(text, "", &format!("{} mm", spans.collect::<Vec<_>>().join(", ")));
 }
 
-fn readings(readings: &[Reading]) -> String {
+fn readings(readings: &[AxisReadout]) -> String {
     let each =
         readings.iter().map(|reading| format!("{} {}", reading.axis, number(reading.value, 3)));
     each.collect::<Vec<_>>().join(" ")
@@ -326,7 +326,7 @@ pub fn comparison(compared: &Comparison) -> String {
     text
 }
 
-fn shares(text: &mut String, shares: &[Share], unit: &str) {
+fn shares(text: &mut String, shares: &[DifferenceShare], unit: &str) {
     row(text, "", "each difference by itself there; as vectors they add up:");
     let mut said = false;
     for share in shares {

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 use post_host::Finder;
 use post_machine::axis_words;
-use post_machine::check::{Commission, Probe, Sign, Trial, number};
+use post_machine::check::{Commission, CommissionMove, Probe, Sign, number};
 use post_machine::description::{Axis, Machine, OutputUnits, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
@@ -132,7 +132,7 @@ impl Writer<'_> {
     }
 
     /// Away from the start, a stop, and back; the stop before it tells what must be seen.
-    fn trial(&mut self, trial: &Trial, following: Option<&Trial>) {
+    fn trial(&mut self, trial: &CommissionMove, following: Option<&CommissionMove>) {
         let axis = &self.machine.axes[trial.place];
         let Sign { by, tool, seen, .. } = &trial.sign;
         let unit = match (axis.joint.rotary, self.machine.control.units) {
@@ -224,7 +224,7 @@ impl Writer<'_> {
         each.collect::<Vec<_>>().join(" ")
     }
 
-    fn feed(&self, trial: &Trial) -> Feed {
+    fn feed(&self, trial: &CommissionMove) -> Feed {
         let axis = &self.machine.axes[trial.place];
         let inch = self.machine.control.units == OutputUnits::Inch;
         let per_minute = match (axis.joint.rotary, inch) {

@@ -8,8 +8,8 @@ use post_machine::diagnostic::Diagnostic;
 use post_posting::program::DefaultSpindle;
 use post_posting::report::PostingReport;
 use post_readback::course::CourseFacts;
-use post_readback::course::cl::{ClCourse, Settings};
-use post_readback::course::done::{Chords, DoneCourse};
+use post_readback::course::cl::{ClCourse, ClSettings};
+use post_readback::course::program::{Chords, ProgramCourse};
 use post_readback::interpret::Limits;
 use post_readback::verify::{BlockReport, CutPath};
 
@@ -190,7 +190,7 @@ pub fn run(session: &Session, arguments: &ConvertArguments) -> Result<(), Failur
 
     let chords = Chords::within(tolerance * CHORDS, axis_tolerance * CHORDS);
     let part = arguments.input.stem().unwrap_or_default();
-    let mut course = DoneCourse::new(run()?, chords);
+    let mut course = ProgramCourse::new(run()?, chords);
     let (mut source, written) = ClSource::of_text(session, format!("{name} as CL file"), |copy| {
         nc_to_cl::write(
             &mut course,
@@ -232,7 +232,7 @@ pub fn run(session: &Session, arguments: &ConvertArguments) -> Result<(), Failur
     let mut rows = match page {
         Some(page) => {
             let input = source.open_beside()?;
-            let settings = Settings::of(&machine, &input.name);
+            let settings = ClSettings::of(&machine, &input.name);
             let cl = ClWindow::new(&machine, settings, input.bytes)?;
             Some((page, BlockRows::new(&machine, cl, false)?))
         }
@@ -249,12 +249,12 @@ pub fn run(session: &Session, arguments: &ConvertArguments) -> Result<(), Failur
     };
 
     let finer = Chords { tip: chords.tip * FINER, axis: chords.axis * FINER, ..chords };
-    let mut read = ClCourse::new(Settings::of(&machine, &name), source.open()?.bytes);
+    let mut read = ClCourse::new(ClSettings::of(&machine, &name), source.open()?.bytes);
     let (facts, _) = CourseFacts::of(&mut read);
-    let again = ClCourse::new(Settings::of(&machine, &name), source.open()?.bytes);
+    let again = ClCourse::new(ClSettings::of(&machine, &name), source.open()?.bytes);
     let (cut_path, _) = CutPath::of(&mut { again }, machine.control_point.along);
     let against = Against {
-        course: DoneCourse::new(run()?, finer),
+        course: ProgramCourse::new(run()?, finer),
         name: name.clone(),
         tools: read.tools().to_vec(),
         cut_path: Some(cut_path),

@@ -1,6 +1,6 @@
 //! What is drawn of two paths, in a room that does not grow with them.
 
-use post_readback::diff::Sample;
+use post_readback::diff::PathPair;
 
 /// Points of a path that are kept.
 const MOST_POINTS: usize = 40_000;
@@ -57,7 +57,7 @@ impl Along {
     }
 
     /// A pair of places.
-    pub fn take(&mut self, sample: &Sample) {
+    pub fn take(&mut self, sample: &PathPair) {
         if sample.operation != self.operation {
             self.operation = sample.operation;
             self.begins.push(self.way);

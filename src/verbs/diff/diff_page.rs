@@ -1,7 +1,7 @@
 //! `--report`: what was compared, as a page: the new program in the place of the program, the path of the old one in the
 //! place of the CL path.
 
-use post_readback::diff::{Difference, Rules};
+use post_readback::diff::{DiffRules, Difference};
 use post_report::meta::{Maximum, Names, TolerancesMeta, VerdictMeta};
 
 use super::Side;
@@ -18,7 +18,7 @@ pub struct Shown<'a> {
     /// Those of the old program and the new one.
     pub controls: [&'a NcControl; 2],
     pub found: &'a Difference,
-    pub rules: &'a Rules,
+    pub rules: &'a DiffRules,
     /// The old program and the new one.
     pub names: [&'a PathArg; 2],
 }

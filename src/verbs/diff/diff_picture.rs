@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use post_readback::diff::{Difference, Operation};
+use post_readback::diff::{Difference, OperationDifference};
 
 use super::along::{Along, Bin};
 use post_job::files::PlanView;
@@ -99,7 +99,7 @@ fn paths(picture: &mut String, found: &Difference, along: &Along) {
 }
 
 /// Where an operation differs most, and in what.
-fn marks(operation: &Operation) -> Vec<(String, [f64; 3])> {
+fn marks(operation: &OperationDifference) -> Vec<(String, [f64; 3])> {
     let worst = [
         (&operation.tip, operation.tip.on_mm > 0.0, "position"),
         (&operation.axis, operation.axis.on_mm > 0.0, "tool axis"),

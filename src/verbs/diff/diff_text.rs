@@ -2,7 +2,9 @@
 
 use std::fmt::Write as _;
 
-use post_readback::diff::{Difference, Operation, Rules, Side, Stretch, Worst};
+use post_readback::diff::{
+    DiffRules, Difference, LoneWay, OperationDifference, ProgramSums, WorstDifference,
+};
 
 use post_job::text::{clock, number, table};
 
@@ -10,10 +12,15 @@ use post_job::text::{clock, number, table};
 const MOST_TOLD: usize = 8;
 
 /// The text.
-pub fn text(names: [&str; 2], machines: [&str; 2], rules: &Rules, found: &Difference) -> String {
+pub fn text(
+    names: [&str; 2],
+    machines: [&str; 2],
+    rules: &DiffRules,
+    found: &Difference,
+) -> String {
     let mut text = String::new();
     for (what, side) in ["old", "new"].iter().zip(0..) {
-        let Side { motions, cut_mm, seconds, .. } = found.sides[side];
+        let ProgramSums { motions, cut_mm, seconds, .. } = found.sides[side];
         let _ = writeln!(
             text,
             "{what:<10} {} on {}: {motions} motions, {} mm at feed, {}",
@@ -70,7 +77,7 @@ pub fn text(names: [&str; 2], machines: [&str; 2], rules: &Rules, found: &Differ
     text
 }
 
-fn title(index: usize, operation: &Operation) -> String {
+fn title(index: usize, operation: &OperationDifference) -> String {
     let name = operation.name.clone();
     let name = name.unwrap_or_else(|| format!("operation {}", index + 1));
     match operation.tool {
@@ -79,12 +86,13 @@ fn title(index: usize, operation: &Operation) -> String {
     }
 }
 
-fn row(index: usize, operation: &Operation) -> [String; 9] {
+fn row(index: usize, operation: &OperationDifference) -> [String; 9] {
     let [old, new] = operation.sides;
-    let lines = |side: Option<Side>| {
+    let lines = |side: Option<ProgramSums>| {
         side.map_or_else(|| "-".to_owned(), |side| format!("{}-{}", side.lines[0], side.lines[1]))
     };
-    let time = |side: Option<Side>| side.map_or_else(|| "-".to_owned(), |side| clock(side.seconds));
+    let time =
+        |side: Option<ProgramSums>| side.map_or_else(|| "-".to_owned(), |side| clock(side.seconds));
     let both = old.is_some() && new.is_some();
     let value = |value: f64, decimals: u8| match both {
         true => number(value, decimals),
@@ -110,13 +118,13 @@ fn row(index: usize, operation: &Operation) -> [String; 9] {
 }
 
 /// `lines 120 and 121, at X 1.000 Y 2.000 Z 3.000`.
-fn place(worst: &Worst) -> String {
+fn place(worst: &WorstDifference) -> String {
     let [x, y, z] = worst.at.map(|part| number(part, 3));
     let [old, new] = worst.lines;
     format!("lines {old} and {new}, at X{x} Y{y} Z{z}")
 }
 
-fn details(text: &mut String, operation: &Operation, rules: &Rules) {
+fn details(text: &mut String, operation: &OperationDifference, rules: &DiffRules) {
     let mut told = |what: &str, value: String| {
         let _ = writeln!(text, "  {what:<10} {value}");
     };
@@ -193,7 +201,7 @@ fn more(told: &mut impl FnMut(&str, String), what: &str, count: usize) {
     }
 }
 
-fn way(stretch: &Stretch) -> String {
+fn way(stretch: &LoneWay) -> String {
     let [first, last] = stretch.lines;
     let [x, y, z] = stretch.at.map(|part| number(part, 3));
     format!(

@@ -9,7 +9,7 @@ use std::fs::File;
 
 use clap::Args;
 use post_machine::diagnostic::Diagnostic;
-use post_readback::diff::{Rules, Unread, compare};
+use post_readback::diff::{DiffRules, UnreadBlocks, compare};
 
 use crate::arguments::flag_values::file;
 use crate::arguments::{Flags, ProgramArguments, flag_values};
@@ -125,7 +125,7 @@ pub fn run(session: &Session, arguments: &DiffArguments) -> Result<(), Failure> 
         control.program_with_rapids(&side.name, &side.file)
     };
     let (found, unread) = compare(&rules, opened, &mut |sample| along.take(sample))?;
-    let Unread { old: mut refused, new: more } = unread;
+    let UnreadBlocks { old: mut refused, new: more } = unread;
     refused.extend(more);
     if !refused.is_empty() {
         // What stands behind a block that is not run counts from elsewhere.
@@ -192,14 +192,14 @@ fn of_new(arguments: &DiffArguments) -> ProgramSettings {
     program
 }
 
-fn rules(arguments: &DiffArguments, [old, new]: [&NcControl; 2]) -> Rules {
+fn rules(arguments: &DiffArguments, [old, new]: [&NcControl; 2]) -> DiffRules {
     let axes = |control: &NcControl| -> Vec<(String, bool)> {
         let axes = control.machine.axes.iter();
         axes.map(|axis| (axis.name.clone(), axis.joint.rotary)).collect()
     };
     let one_machine = arguments.machine_new.is_none() && axes(old) == axes(new);
     let (axes, rotary) = axes(old).into_iter().unzip();
-    Rules {
+    DiffRules {
         tip: arguments.tolerance,
         axis: arguments.axis_tolerance.to_radians(),
         feed: arguments.feed_tolerance / 100.0,

@@ -5,7 +5,7 @@ use post_host::Finder;
 use post_machine::description::{Axis, Machine, Setting, Side};
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_machine::kinematics::Second;
-use post_machine::place::{End, HalfSpace, opened};
+use post_machine::place::{HalfSpace, MountConstraint, opened};
 use post_posting::MountBounds;
 use post_posting::report::PostingReport;
 
@@ -42,7 +42,7 @@ pub struct Trial {
 pub struct Bound {
     /// Name of the axis.
     pub axis: String,
-    pub end: End,
+    pub end: MountConstraint,
 }
 
 /// What posting with linear travel opened says.

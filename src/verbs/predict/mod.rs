@@ -11,7 +11,7 @@ mod trail;
 
 use clap::Args;
 use post_machine::diagnostic::Diagnostic;
-use post_readback::Done;
+use post_readback::BlockEffect;
 use post_readback::interpret::Limits;
 
 use crate::arguments::flag_values;
@@ -122,7 +122,7 @@ struct Watch<'a, 'm, 'f> {
 }
 
 impl PredictWatch for Watch<'_, '_, '_> {
-    fn done(&mut self, done: &Done) {
+    fn done(&mut self, done: &BlockEffect) {
         if let Some((rows, _)) = &mut self.rows {
             rows.take(done);
         }

@@ -1,8 +1,8 @@
 //! Axes that a program takes beyond their travel.
 
 use post_machine::description::Machine;
-use post_machine::diagnostic::{Diagnostic, Place};
-use post_readback::Done;
+use post_machine::diagnostic::{Diagnostic, SourcePlace};
+use post_readback::BlockEffect;
 use post_readback::verify::over_travel;
 
 /// Of each end of each axis the farthest.
@@ -23,8 +23,8 @@ struct Beyond {
 
 impl BeyondTravel {
     /// Takes what a program did.
-    pub fn take(&mut self, machine: &Machine, done: &Done) {
-        let Done::Motion(motion) = done else {
+    pub fn take(&mut self, machine: &Machine, done: &BlockEffect) {
+        let BlockEffect::Motion(motion) = done else {
             return;
         };
         let Some((message, by)) = over_travel(machine, motion) else {
@@ -51,7 +51,7 @@ impl BeyondTravel {
             if found.count > 1 {
                 message.push_str(&format!("; so in {} motions", found.count));
             }
-            let place = Place::new(name, found.line, "", 0..0);
+            let place = SourcePlace::new(name, found.line, "", 0..0);
             Diagnostic::error("over-travel", message).at(Some(place))
         })
     }

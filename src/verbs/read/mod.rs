@@ -9,7 +9,7 @@ use std::fs::File;
 
 use clap::Args;
 use post_machine::diagnostic::Diagnostic;
-use post_readback::course::done::{Chords, DoneCourse};
+use post_readback::course::program::{Chords, ProgramCourse};
 use post_readback::interpret::Interpreter;
 use post_readback::{FedRapids, MOST_FAULTS};
 
@@ -155,7 +155,7 @@ fn write_cl(
     }
     let accuracy = &machine.accuracy;
     let [tip, axis] = [accuracy.tolerance, accuracy.axis_tolerance].map(|mm| mm * CHORDS);
-    let mut course = DoneCourse::new(program, Chords::within(tip, axis));
+    let mut course = ProgramCourse::new(program, Chords::within(tip, axis));
     let part = arguments.input.stem().unwrap_or_default();
     let tools = Tools { length: control.offsets.length, edges: control.lexicon.tools_have_edges() };
     let written =

@@ -4,7 +4,9 @@
 //! dozen crates of compression with it, for one output of one verb.
 
 use post_machine::description::Machine;
-use post_readback::{Curve, Done, Interpolation, Motion, MotionKind, Spindle, Told};
+use post_readback::{
+    BlockEffect, Curve, Interpolation, Motion, MotionKind, ProgramEvent, SpindleState,
+};
 
 use post_job::axes::{self, AxisColumn};
 use post_job::columns::{Column, CsvTable};
@@ -57,13 +59,13 @@ fn columns(axes: &[AxisColumn]) -> Vec<Column<Row>> {
 }
 
 /// Clockwise above zero, 1/min.
-fn speed(spindle: Spindle) -> f64 {
+fn speed(spindle: SpindleState) -> f64 {
     match spindle {
-        Spindle::Clockwise(speed) => speed,
-        Spindle::CounterClockwise(speed) => -speed,
-        Spindle::Surface { speed, clockwise: true, .. } => speed,
-        Spindle::Surface { speed, .. } => -speed,
-        Spindle::Off | Spindle::Oriented => 0.0,
+        SpindleState::Clockwise(speed) => speed,
+        SpindleState::CounterClockwise(speed) => -speed,
+        SpindleState::Surface { speed, clockwise: true, .. } => speed,
+        SpindleState::Surface { speed, .. } => -speed,
+        SpindleState::Off | SpindleState::Oriented => 0.0,
     }
 }
 
@@ -83,14 +85,14 @@ impl<'a, 'f> MotionsCsv<'a, 'f> {
     }
 
     /// Takes what was done.
-    pub fn take(&mut self, done: &Done) -> Result<(), FileFault> {
+    pub fn take(&mut self, done: &BlockEffect) -> Result<(), FileFault> {
         match done {
-            Done::Motion(motion) => {
+            BlockEffect::Motion(motion) => {
                 let readings = axes::readings(self.machine, &motion.to.joints);
                 let readings = axes::in_columns(&self.axes, self.machine, &readings);
                 self.table.row(&Row { motion: motion.clone(), readings })
             }
-            Done::Told { told: Told::Head(name), .. } => {
+            BlockEffect::Event { event: ProgramEvent::Head(name), .. } => {
                 (self.machine, _) = axes::with_head(self.base, name);
                 Ok(())
             }

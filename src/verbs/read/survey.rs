@@ -2,7 +2,7 @@
 
 use post_machine::description::Machine;
 use post_machine::kinematics::MAX_AXES;
-use post_readback::{Done, Motion, MotionKind, Told};
+use post_readback::{BlockEffect, Motion, MotionKind, ProgramEvent};
 
 /// What a program did.
 pub struct Survey<'a> {
@@ -59,21 +59,21 @@ impl<'a> Survey<'a> {
     }
 
     /// Takes what was done.
-    pub fn take(&mut self, done: &Done) {
+    pub fn take(&mut self, done: &BlockEffect) {
         match done {
-            Done::Motion(motion) => self.motion(motion),
-            Done::Told { told, .. } => match told {
-                Told::ToolChange { number, name } => {
+            BlockEffect::Motion(motion) => self.motion(motion),
+            BlockEffect::Event { event: told, .. } => match told {
+                ProgramEvent::ToolChange { number, name } => {
                     let name = name.clone().or_else(|| number.map(|number| number.to_string()));
                     self.tool(name);
                 }
-                Told::Dwell { time, revolutions: false } => self.waits += time,
-                Told::Head(name) => {
+                ProgramEvent::Dwell { time, revolutions: false } => self.waits += time,
+                ProgramEvent::Head(name) => {
                     self.machine = self.base.head(name).map_or(self.base, |head| &head.machine);
                 }
                 _ => {}
             },
-            Done::State(_) => {}
+            BlockEffect::State(_) => {}
         }
     }
 

@@ -4,7 +4,7 @@ mod verify_page;
 mod verify_text;
 
 use clap::{Args, ValueEnum};
-use post_readback::Done;
+use post_readback::BlockEffect;
 use post_readback::interpret::Limits;
 use post_readback::verify::BlockReport;
 
@@ -117,7 +117,7 @@ struct Watch<'m, 'f> {
 }
 
 impl VerifyWatch for Watch<'_, '_> {
-    fn done(&mut self, done: &Done) {
+    fn done(&mut self, done: &BlockEffect) {
         if let Some(rows) = &mut self.rows {
             rows.take(done);
         }

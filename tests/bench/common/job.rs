@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fs::{self, File};
 use std::path::Path;
 
-use post_grammar::Reader;
+use post_grammar::ClReader;
 use post_host::{Plugin, ProgramSetup, ProgramWord};
 use post_machine::axis_words;
 use post_machine::description::{self, Machine, Setting, Source};
@@ -70,7 +70,7 @@ pub fn watched(
     if let Some(watch) = watch {
         post.watch(watch);
     }
-    let mut reader = Reader::new(File::open(path)?);
+    let mut reader = ClReader::new(File::open(path)?);
     while let Some(record) = reader.next_record()? {
         post.record(&record);
     }

@@ -52,7 +52,7 @@ fn renamed(lines: &[&str], place: usize) -> Option<String> {
 
 /// The lines in which records begin.
 fn records(text: &[u8]) -> Vec<usize> {
-    let mut reader = Reader::new(text);
+    let mut reader = ClReader::new(text);
     let mut lines = Vec::new();
     while let Ok(Some(record)) = reader.next_record() {
         lines.push(record.line as usize - 1);

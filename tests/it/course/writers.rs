@@ -242,7 +242,7 @@ fn pecks_are_read_or_the_cycle_is_refused() {
             spindle: DefaultSpindle::Still,
             ..ReadingOptions::default()
         });
-        let mut reader = Reader::new(text.as_bytes());
+        let mut reader = ClReader::new(text.as_bytes());
         let mut down = Vec::new();
         while let Ok(Some(record)) = reader.next_record() {
             interpreter.record(&record, &mut |step| {

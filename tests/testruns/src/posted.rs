@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use post_grammar::{ReadError, Reader};
+use post_grammar::{ClReader, ReadError};
 use post_machine::description::{Machine, Source, Tcp, load};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
@@ -337,7 +337,7 @@ pub fn framed(
     let mut output = Nowhere;
     if machine.control.planes {
         let mut pass = PreviewPass::new(machine, job.reading.clone());
-        let mut reader = Reader::new(cl.as_bytes());
+        let mut reader = ClReader::new(cl.as_bytes());
         while let Ok(Some(record)) = reader.next_record() {
             pass.record(&record);
         }
@@ -348,7 +348,7 @@ pub fn framed(
     for observer in observers {
         post.watch(*observer);
     }
-    let mut reader = Reader::new(cl.as_bytes());
+    let mut reader = ClReader::new(cl.as_bytes());
     while !post.gave_up() {
         match reader.next_record() {
             Ok(Some(record)) => post.record(&record),

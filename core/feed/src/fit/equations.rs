@@ -1,7 +1,7 @@
 //! The linear equations of a fit: data pulls, the third derivative resists.
 
 use super::basis::{BasisRow, ORDER};
-use super::track::Span;
+use super::track::SplineSpan;
 use crate::interior::band::Band;
 
 /// A place where data pulls.
@@ -47,7 +47,7 @@ impl<const W: usize> Equations<W> {
     /// Solves, with smoothing over these lengths; `held` control points at the start, and at the end, stay.
     pub(super) fn solve(
         &mut self,
-        spans: &[Span],
+        spans: &[SplineSpan],
         forces: &[[[f64; W]; ORDER]],
         lengths: &[f64],
         held: [usize; 2],

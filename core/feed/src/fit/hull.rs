@@ -3,7 +3,7 @@
 use super::basis::{DEGREE, ORDER};
 
 /// Residual, first and second derivative of the spline.
-pub(super) type Jet<const W: usize> = [[f64; W]; 3];
+pub(super) type ResidualJet<const W: usize> = [[f64; W]; 3];
 
 /// How often an interval is halved before its hull is believed.
 const DEPTH: usize = 3;
@@ -17,9 +17,14 @@ pub(super) struct Hull<const W: usize>([[f64; W]; ORDER]);
 
 impl<const W: usize> Hull<W> {
     /// Makes the hull from what the spline is at both ends of an interval, where the polyline has this slope.
-    pub(super) fn new(before: &Jet<W>, behind: &Jet<W>, slope: &[f64; W], width: f64) -> Self {
+    pub(super) fn new(
+        before: &ResidualJet<W>,
+        behind: &ResidualJet<W>,
+        slope: &[f64; W],
+        width: f64,
+    ) -> Self {
         let degree = DEGREE as f64;
-        let side = |jet: &Jet<W>, width: f64| -> [[f64; W]; 3] {
+        let side = |jet: &ResidualJet<W>, width: f64| -> [[f64; W]; 3] {
             let first = width / degree;
             let second = first * width / (degree - 1.0);
             let mut points = [jet[0]; 3];

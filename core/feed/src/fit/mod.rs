@@ -1,7 +1,7 @@
 //! Smooth curves through sequences of points, as a stream: what feeds are planned along.
 //!
 //! The blocks of a program are chords of a path that was smooth. Their ends carry the rounding of the printed words and
-//! the noise of the CAM system, so curvature taken from differences of points is noise. [`Fit`] cuts the path at
+//! the noise of the CAM system, so curvature taken from differences of points is noise. [`PathFit`] cuts the path at
 //! corners and lays a spline of degree five with four continuous derivatives along each piece: the smoothest
 //! (the integral of the squared third derivative) that strays from the points by a share of the tolerance in the mean,
 //! and nowhere from the polyline by more than the tolerance.
@@ -18,13 +18,13 @@ mod track;
 use basis::DEGREE;
 use hull::norm;
 use smoother::Smoother;
-use track::{Track, Vertex};
+use track::{FitTrack, PolylineVertex};
 
 /// Coordinates of a point at most.
 pub const MOST: usize = 12;
 
 /// Tip in mm, then the rotary axes in rad, then zeros.
-pub type Point = [f64; MOST];
+pub type FitPoint = [f64; MOST];
 
 /// Spans that are kept back, so that what comes after them no longer moves what is handed on.
 const OVERLAP: usize = 96;
@@ -36,7 +36,7 @@ const FINER: [f64; 3] = [2.0, 4.0, 8.0];
 
 /// What the curve has to keep.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rules {
+pub struct FitRules {
     /// Number of coordinates, 3 to [`MOST`].
     pub dimensions: usize,
     /// The curve stays this close to the polyline: Euclidean over the first three coordinates, mm.
@@ -53,7 +53,7 @@ pub struct Rules {
     pub smoothing: f64,
 }
 
-impl Default for Rules {
+impl Default for FitRules {
     /// Three coordinates within 0.01 mm, corners from 30°.
     fn default() -> Self {
         Self {
@@ -70,7 +70,7 @@ impl Default for Rules {
 
 /// One leg of the polyline as the curve goes along it.
 #[derive(Clone, Copy, Debug)]
-pub struct Leg<'a> {
+pub struct FittedLeg<'a> {
     /// Length of the parameter. Zero where the point is the one before.
     pub length: f64,
     /// The smooth piece begins here: the samples at its start are one-sided.
@@ -79,46 +79,46 @@ pub struct Leg<'a> {
     pub ends: bool,
     /// First at the start, last at the end of the leg, which is the first of the next leg unless the piece ends; every
     /// knot of the spline is one. None where the leg has no length.
-    pub samples: &'a [Sample],
+    pub samples: &'a [CurveSample],
 }
 
 /// The curve at one value of its parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
+pub struct CurveSample {
     /// The parameter from the start of the leg.
     pub at: f64,
     /// Value, first, second and third derivative by the parameter.
-    pub values: [Point; 4],
+    pub values: [FitPoint; 4],
 }
 
 /// A path on its way to smooth pieces.
 #[derive(Debug)]
-pub struct Fit {
-    rules: Rules,
-    track: Track,
+pub struct PathFit {
+    rules: FitRules,
+    track: FitTrack,
     tip: Smoother<3>,
     turns: Vec<Smoother<1>>,
     /// Control points that are settled and still bear on the first spans.
-    fixed: Vec<Point>,
-    points: Vec<Point>,
+    fixed: Vec<FitPoint>,
+    points: Vec<FitPoint>,
     /// The last point as it was given: its vertex may be a hair from it.
-    last: Option<Point>,
+    last: Option<FitPoint>,
     /// Where the path led last, over a tolerance at least, each coordinate in mm.
-    direction: Option<Point>,
+    direction: Option<FitPoint>,
     /// The point from where it leads on.
-    base: Point,
+    base: FitPoint,
     /// Whether a leg of the piece was handed on.
     begun: bool,
-    samples: Vec<Sample>,
+    samples: Vec<CurveSample>,
     off: f64,
 }
 
-impl Fit {
+impl PathFit {
     /// # Panics
     /// Where the number of coordinates is not 3 to [`MOST`], or a tolerance, the weight of turns, the share of
     /// smoothing or the largest distance of samples is not positive.
     #[must_use]
-    pub fn new(rules: Rules) -> Self {
+    pub fn new(rules: FitRules) -> Self {
         assert!((3..=MOST).contains(&rules.dimensions), "a point has 3 to {MOST} coordinates");
         for positive in [
             rules.tolerance,
@@ -139,7 +139,7 @@ impl Fit {
                 .map(|axis| Smoother::new(axis, rules.turn_tolerance, rules.smoothing))
                 .collect(),
             rules,
-            track: Track::default(),
+            track: FitTrack::default(),
             fixed: Vec::new(),
             points: Vec::new(),
             last: None,
@@ -160,7 +160,7 @@ impl Fit {
 
     /// The path begins at, or goes straight on to, this point. `sink` gets each leg, in order, as soon as it is
     /// settled. A point with a coordinate that is not finite is refused: nothing happens, and the answer is `false`.
-    pub fn push(&mut self, point: &Point, sink: &mut dyn FnMut(&Leg<'_>)) -> bool {
+    pub fn push(&mut self, point: &FitPoint, sink: &mut dyn FnMut(&FittedLeg<'_>)) -> bool {
         let mut given = [0.0; MOST];
         given[..self.rules.dimensions].copy_from_slice(&point[..self.rules.dimensions]);
         if !given.iter().all(|value| value.abs() < 1e12) {
@@ -198,7 +198,7 @@ impl Fit {
     }
 
     /// The path has a corner at the last point whatever the angle, or ends: the rest is handed on.
-    pub fn cut(&mut self, sink: &mut dyn FnMut(&Leg<'_>)) {
+    pub fn cut(&mut self, sink: &mut dyn FnMut(&FittedLeg<'_>)) {
         if let Some(last) = self.last {
             self.finish(last, sink);
             self.begin(last);
@@ -214,7 +214,7 @@ impl Fit {
         self.rules.spacing.unwrap_or(f64::INFINITY)
     }
 
-    fn begin(&mut self, point: Point) {
+    fn begin(&mut self, point: FitPoint) {
         self.track.begin(point);
         self.tip.begin();
         for turn in &mut self.turns {
@@ -229,7 +229,7 @@ impl Fit {
 
     /// Whether the path turns by more than a corner on its way to this point. Directions are those over a tolerance at
     /// least: the directions of shorter legs are those of their rounding.
-    fn turned(&mut self, point: &Point) -> bool {
+    fn turned(&mut self, point: &FitPoint) -> bool {
         let way = self.way(&self.base, point);
         let far = norm(&way);
         if far < self.rules.tolerance {
@@ -245,7 +245,7 @@ impl Fit {
     }
 
     /// Way from one point to another, each coordinate in mm.
-    fn way(&self, from: &Point, to: &Point) -> Point {
+    fn way(&self, from: &FitPoint, to: &FitPoint) -> FitPoint {
         std::array::from_fn(|axis| {
             let way = to[axis] - from[axis];
             if axis < 3 { way } else { way * self.rules.turn_weight }
@@ -253,12 +253,12 @@ impl Fit {
     }
 
     /// Adds a vertex, and tells the one before how sharp it is.
-    fn extend(&mut self, point: Point, length: f64) {
+    fn extend(&mut self, point: FitPoint, length: f64) {
         let end = self.track.vertices.len() - 1;
         let at = self.track.vertices[end].at + length;
-        self.track.vertices.push(Vertex { point, at, bend: 0.0, zeros: 0 });
+        self.track.vertices.push(PolylineVertex { point, at, bend: 0.0, zeros: 0 });
         if end > 0 {
-            let slope = |leg: usize| -> Point {
+            let slope = |leg: usize| -> FitPoint {
                 let [a, b] = [leg, leg + 1].map(|vertex| &self.track.vertices[vertex]);
                 std::array::from_fn(|axis| (b.point[axis] - a.point[axis]) / (b.at - a.at))
             };
@@ -272,7 +272,7 @@ impl Fit {
     }
 
     /// Fits and hands on what no longer depends on points to come.
-    fn advance(&mut self, sink: &mut dyn FnMut(&Leg<'_>)) {
+    fn advance(&mut self, sink: &mut dyn FnMut(&FittedLeg<'_>)) {
         let track = &self.track;
         let count = track.knots.len().saturating_sub(2 * DEGREE);
         if count < WINDOW {
@@ -297,7 +297,7 @@ impl Fit {
     }
 
     /// Ends the piece at its last point, which its last vertex may be a hair from, and hands on what is left of it.
-    fn finish(&mut self, last: Point, sink: &mut dyn FnMut(&Leg<'_>)) {
+    fn finish(&mut self, last: FitPoint, sink: &mut dyn FnMut(&FittedLeg<'_>)) {
         let legs = self.track.vertices.len() - 1;
         if legs > 0 {
             self.track.vertices[legs].point = last;
@@ -336,7 +336,7 @@ impl Fit {
     }
 
     /// Hands on the legs before a vertex; where the piece ends, what stands there too.
-    fn hand_on(&mut self, vertex: usize, ends: bool, sink: &mut dyn FnMut(&Leg<'_>)) {
+    fn hand_on(&mut self, vertex: usize, ends: bool, sink: &mut dyn FnMut(&FittedLeg<'_>)) {
         for leg in 0..vertex {
             self.stand(leg, sink);
             let [first, last] = self.track.legs[leg].sites;
@@ -357,9 +357,9 @@ impl Fit {
                     *value += origin;
                 }
                 let at = site.at - start;
-                self.samples.push(Sample { at, values });
+                self.samples.push(CurveSample { at, values });
             }
-            sink(&Leg {
+            sink(&FittedLeg {
                 length: self.track.length(leg),
                 begins: !self.begun,
                 ends: ends && leg + 1 == vertex,
@@ -373,9 +373,9 @@ impl Fit {
     }
 
     /// Hands on the legs without length at a vertex.
-    fn stand(&mut self, vertex: usize, sink: &mut dyn FnMut(&Leg<'_>)) {
+    fn stand(&mut self, vertex: usize, sink: &mut dyn FnMut(&FittedLeg<'_>)) {
         for _ in 0..std::mem::take(&mut self.track.vertices[vertex].zeros) {
-            sink(&Leg { length: 0.0, begins: false, ends: false, samples: &[] });
+            sink(&FittedLeg { length: 0.0, begins: false, ends: false, samples: &[] });
         }
     }
 }

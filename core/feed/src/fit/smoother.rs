@@ -2,9 +2,9 @@
 
 use super::basis::{Basis, BasisRow, ORDER};
 use super::equations::{Equations, Pull};
-use super::hull::{Hull, Jet, norm};
-use super::track::{Site, Track};
-use super::{OVERLAP, Point};
+use super::hull::{Hull, ResidualJet, norm};
+use super::track::{FitTrack, Site};
+use super::{FitPoint, OVERLAP};
 
 /// Length over which the fit smooths at most, in distances of knots.
 const WIDEST: f64 = 12.0;
@@ -83,12 +83,12 @@ impl<const W: usize> Smoother<W> {
         }
     }
 
-    fn part(&self, point: &Point) -> [f64; W] {
+    fn part(&self, point: &FitPoint) -> [f64; W] {
         std::array::from_fn(|axis| point[self.first + axis])
     }
 
     /// How sharply the slope changes, in tolerances.
-    pub(super) fn bend(&self, before: &Point, behind: &Point) -> f64 {
+    pub(super) fn bend(&self, before: &FitPoint, behind: &FitPoint) -> f64 {
         let [before, behind] = [before, behind].map(|slope| self.part(slope));
         let change: [f64; W] = std::array::from_fn(|axis| behind[axis] - before[axis]);
         norm(&change) / self.tolerance
@@ -115,7 +115,7 @@ impl<const W: usize> Smoother<W> {
 
     /// Fits; the control points `fixed` are given, as is the last one where the piece `ends`. Returns by how many
     /// tolerances the spline is off at most.
-    pub(super) fn fit(&mut self, track: &Track, fixed: &[Point], ends: bool) -> f64 {
+    pub(super) fn fit(&mut self, track: &FitTrack, fixed: &[FitPoint], ends: bool) -> f64 {
         self.active = track.spans.len() - if ends { 0 } else { BLURRED };
         self.widest(track, ends);
         self.refer(track, fixed);
@@ -163,7 +163,7 @@ impl<const W: usize> Smoother<W> {
     }
 
     /// What the reference spline is, at sites and spans.
-    fn refer(&mut self, track: &Track, fixed: &[Point]) {
+    fn refer(&mut self, track: &FitTrack, fixed: &[FitPoint]) {
         self.deltas.clear();
         self.deltas.resize(track.reference.len(), [0.0; W]);
         for (index, fixed) in fixed.iter().enumerate() {
@@ -192,7 +192,7 @@ impl<const W: usize> Smoother<W> {
     }
 
     /// A row times the reference, from an origin that keeps numbers small.
-    fn error(&self, track: &Track, span: usize, row: &BasisRow, origin: &Point) -> [f64; W] {
+    fn error(&self, track: &FitTrack, span: usize, row: &BasisRow, origin: &FitPoint) -> [f64; W] {
         let origin = self.part(origin);
         let mut error = [0.0; W];
         for (point, share) in track.reference[span..].iter().zip(row) {
@@ -205,13 +205,13 @@ impl<const W: usize> Smoother<W> {
     }
 
     /// Mean width of the spans around one.
-    fn width(track: &Track, span: usize) -> f64 {
+    fn width(track: &FitTrack, span: usize) -> f64 {
         let around = &track.spans[span.saturating_sub(3)..(span + 4).min(track.spans.len())];
         around.iter().map(|span| span.width).sum::<f64>() / around.len() as f64
     }
 
     /// Begins with much smoothing on spans that are new.
-    fn widest(&mut self, track: &Track, ends: bool) {
+    fn widest(&mut self, track: &FitTrack, ends: bool) {
         let pace = (2.0 * self.pace).min(WIDEST);
         for span in self.lengths.len()..track.spans.len() {
             self.lengths.push(pace * Self::width(track, span));
@@ -224,7 +224,7 @@ impl<const W: usize> Smoother<W> {
     }
 
     /// Keeps the smoothing from changing faster than `SLOPE`.
-    fn even(&mut self, track: &Track) {
+    fn even(&mut self, track: &FitTrack) {
         let step =
             |index: usize| 0.5 * SLOPE * (track.spans[index].width + track.spans[index + 1].width);
         for index in 1..self.lengths.len() {
@@ -238,7 +238,7 @@ impl<const W: usize> Smoother<W> {
     }
 
     /// Tells the equations what weight each site has.
-    fn weigh(&mut self, track: &Track) {
+    fn weigh(&mut self, track: &FitTrack) {
         let sites = track.sites.iter().zip(&self.factors).zip(&self.errors);
         let sites = sites.map(|((site, factor), error)| Pull {
             span: site.span,
@@ -255,7 +255,7 @@ impl<const W: usize> Smoother<W> {
         self.equations.weigh(track.reference.len(), sites.chain(extras));
     }
 
-    fn solve(&mut self, track: &Track, held: [usize; 2]) {
+    fn solve(&mut self, track: &FitTrack, held: [usize; 2]) {
         self.equations.solve(&track.spans, &self.forces, &self.lengths, held, &mut self.deltas);
         // What cannot be solved in the numbers that there are stays on the reference.
         if !self.deltas.as_flattened().iter().all(|delta| delta.is_finite()) {
@@ -275,7 +275,7 @@ impl<const W: usize> Smoother<W> {
 
     /// Smooths less where residuals are more than noise, and more where they are far less and that is allowed still;
     /// whether there was such a place.
-    fn adjust(&mut self, track: &Track, widen: bool) -> bool {
+    fn adjust(&mut self, track: &FitTrack, widen: bool) -> bool {
         let sites = &track.sites[..track.ready];
         let square = |site: &Site, residual: &[f64; W]| {
             let weight = if site.data { site.weight } else { 0.0 };
@@ -324,10 +324,10 @@ impl<const W: usize> Smoother<W> {
     }
 
     /// Finds where the spline is off, gives weight there and smooths less; returns by how many tolerances at most.
-    fn hold(&mut self, track: &Track) -> f64 {
+    fn hold(&mut self, track: &FitTrack) -> f64 {
         let sites = &track.sites[..track.ready];
         let mut worst: f64 = 0.0;
-        let mut before: Option<Jet<W>> = None;
+        let mut before: Option<ResidualJet<W>> = None;
         for index in 0..sites.len() {
             if sites[index].span >= self.active {
                 break;
@@ -350,7 +350,7 @@ impl<const W: usize> Smoother<W> {
     }
 
     /// Presses the spline towards the polyline at a quarter after a site.
-    fn press(&mut self, track: &Track, site: usize, quarter: usize, off: f64) {
+    fn press(&mut self, track: &FitTrack, site: usize, quarter: usize, off: f64) {
         let [start, end] = [&track.sites[site], &track.sites[site + 1]];
         let span = start.span;
         let narrowest = NARROWEST * track.spans[span].width;
@@ -370,14 +370,14 @@ impl<const W: usize> Smoother<W> {
             return;
         }
         let slope = &track.legs[start.leg].slope;
-        let target: Point = std::array::from_fn(|axis| start.target[axis] + slope[axis] * x);
+        let target: FitPoint = std::array::from_fn(|axis| start.target[axis] + slope[axis] * x);
         let row = Basis::new(&track.knots[span + 1..]).rows(at)[0];
         let error = self.error(track, span, &row, &target);
         self.extras.push(Extra { at, span, row, weight: 0.1 * width, error });
     }
 
     /// Residual, first and second derivative of the spline at a site.
-    fn jet(&self, track: &Track, site: &Site, residual: [f64; W]) -> Jet<W> {
+    fn jet(&self, track: &FitTrack, site: &Site, residual: [f64; W]) -> ResidualJet<W> {
         let origin = self.part(&track.reference[site.span]);
         let mut jet = [residual, [0.0; W], [0.0; W]];
         for index in 0..ORDER {
@@ -393,7 +393,7 @@ impl<const W: usize> Smoother<W> {
     }
 
     /// Adds what was fitted to the reference.
-    pub(super) fn store(&self, points: &mut [Point]) {
+    pub(super) fn store(&self, points: &mut [FitPoint]) {
         for (point, delta) in points.iter_mut().zip(&self.deltas) {
             for axis in 0..W {
                 point[self.first + axis] += delta[axis];

@@ -2,12 +2,12 @@
 
 use super::basis::{Basis, BasisRow, DEGREE, GAUSS, ORDER};
 use super::knots::place;
-use super::{MOST, Point};
+use super::{FitPoint, MOST};
 
 /// A point of the polyline.
 #[derive(Clone, Debug)]
-pub(super) struct Vertex {
-    pub(super) point: Point,
+pub(super) struct PolylineVertex {
+    pub(super) point: FitPoint,
     /// The parameter there.
     pub(super) at: f64,
     /// How sharply the polyline bends here, in tolerances a unit of the parameter: the largest over all groups.
@@ -18,11 +18,11 @@ pub(super) struct Vertex {
 
 /// A straight piece of the polyline.
 #[derive(Clone, Debug)]
-pub(super) struct Leg {
+pub(super) struct PolylineLeg {
     /// First and last site.
     pub(super) sites: [usize; 2],
     /// Derivative by the parameter.
-    pub(super) slope: Point,
+    pub(super) slope: FitPoint,
     /// Weight that the first site has of the leg before.
     carried: f64,
 }
@@ -35,7 +35,7 @@ pub(super) struct Site {
     pub(super) span: usize,
     pub(super) leg: usize,
     /// Where the polyline is.
-    pub(super) target: Point,
+    pub(super) target: FitPoint,
     /// Weight in the fit: the length that it stands for.
     pub(super) weight: f64,
     /// Whether that is data; else the site counts where the tolerance is in danger alone.
@@ -45,7 +45,7 @@ pub(super) struct Site {
 
 /// What a span adds to the integral of the squared third derivative.
 #[derive(Clone, Debug)]
-pub(super) struct Span {
+pub(super) struct SplineSpan {
     pub(super) width: f64,
     /// Third derivative at the Gauss points, and their weights.
     pub(super) thirds: [BasisRow; GAUSS],
@@ -60,27 +60,27 @@ const RULE: [[f64; 2]; GAUSS] =
 
 /// A piece from where it is settled to as far as it is known.
 #[derive(Debug, Default)]
-pub(super) struct Track {
-    pub(super) vertices: Vec<Vertex>,
+pub(super) struct FitTrack {
+    pub(super) vertices: Vec<PolylineVertex>,
     /// Legs that have knots.
-    pub(super) legs: Vec<Leg>,
+    pub(super) legs: Vec<PolylineLeg>,
     /// Knot `DEGREE` is where the first span begins.
     pub(super) knots: Vec<f64>,
     pub(super) sites: Vec<Site>,
     /// Spans whose B-splines are known.
-    pub(super) spans: Vec<Span>,
+    pub(super) spans: Vec<SplineSpan>,
     /// Sites with rows.
     pub(super) ready: usize,
     /// Control points on the polyline, at the means of their knots.
-    pub(super) reference: Vec<Point>,
+    pub(super) reference: Vec<FitPoint>,
     /// How much closer than usual knots are at bends.
     fineness: f64,
     inside: Vec<f64>,
 }
 
-impl Track {
+impl FitTrack {
     /// Begins a piece at a point.
-    pub(super) fn begin(&mut self, point: Point) {
+    pub(super) fn begin(&mut self, point: FitPoint) {
         self.vertices.clear();
         self.legs.clear();
         self.knots.clear();
@@ -88,7 +88,7 @@ impl Track {
         self.spans.clear();
         self.ready = 0;
         self.fineness = 1.0;
-        self.vertices.push(Vertex { point, at: 0.0, bend: 0.0, zeros: 0 });
+        self.vertices.push(PolylineVertex { point, at: 0.0, bend: 0.0, zeros: 0 });
         self.knots.resize(ORDER, 0.0);
     }
 
@@ -177,7 +177,7 @@ impl Track {
         self.sites[end].target = last;
         inside.pop();
         self.inside = inside;
-        self.legs.push(Leg { sites: [begin, end], slope, carried });
+        self.legs.push(PolylineLeg { sites: [begin, end], slope, carried });
         if ends {
             let last = from + length;
             self.knots.extend([last; DEGREE - 1]);
@@ -189,7 +189,7 @@ impl Track {
     /// depend on stay as they are.
     pub(super) fn refine(&mut self, fineness: f64, most: f64, begun: bool, ends: bool) {
         let free = if begun { 2 * DEGREE } else { 0 };
-        let span_of = |leg: &Leg| self.sites[leg.sites[0]].span;
+        let span_of = |leg: &PolylineLeg| self.sites[leg.sites[0]].span;
         let count = self.legs.len();
         let Some(first) = self.legs.iter().position(|leg| span_of(leg) >= free) else {
             return;
@@ -231,7 +231,7 @@ impl Track {
                     }
                 }
             }
-            self.spans.push(Span { width: last - first, thirds, weights, gram });
+            self.spans.push(SplineSpan { width: last - first, thirds, weights, gram });
             while let Some(site) = self.sites.get_mut(self.ready)
                 && site.span == index
             {

@@ -47,7 +47,7 @@ impl Cost {
 
 /// A program. All numbers are expected to be scaled: unknowns and coefficients of rows of the order of 1.
 #[derive(Clone, Debug)]
-pub(crate) struct Program<const K: usize> {
+pub(crate) struct ConvexProgram<const K: usize> {
     pub(crate) cost: Cost,
     pub(crate) weights: Vec<f64>,
     pub(crate) lower: Vec<f64>,
@@ -60,7 +60,7 @@ pub(crate) struct Program<const K: usize> {
 
 /// What the iteration ended with.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Solution {
+pub(crate) struct IterationResult {
     pub(crate) x: Vec<f64>,
     /// Multipliers of the rows.
     pub(crate) multipliers: Vec<f64>,
@@ -71,14 +71,14 @@ pub(crate) struct Solution {
 
 /// Slack and multiplier of one constraint, and their steps.
 #[derive(Clone, Copy, Debug, Default)]
-struct Pair {
+struct SlackPair {
     s: f64,
     z: f64,
     ds: f64,
     dz: f64,
 }
 
-impl Pair {
+impl SlackPair {
     /// Steps for the target `s * z -> s * z - target`, after `slide`, the change of the slack.
     fn turn(&mut self, slide: f64, target: f64) {
         self.ds = slide;
@@ -93,13 +93,13 @@ impl Pair {
 
 /// How far a step may go until a slack or a multiplier is 0, and what products would be left.
 #[derive(Clone, Copy)]
-struct Room {
+struct StepRoom {
     primal: f64,
     dual: f64,
 }
 
-impl Room {
-    fn meet(&mut self, pair: &Pair) {
+impl StepRoom {
+    fn meet(&mut self, pair: &SlackPair) {
         if pair.ds < 0.0 {
             self.primal = self.primal.min(-pair.s / pair.ds);
         }
@@ -109,13 +109,13 @@ impl Room {
     }
 }
 
-struct State<'a, const K: usize> {
-    program: &'a Program<K>,
+struct IterationState<'a, const K: usize> {
+    program: &'a ConvexProgram<K>,
     x: Vec<f64>,
     dx: Vec<f64>,
-    rows: Vec<Pair>,
-    low: Vec<Pair>,
-    high: Vec<Pair>,
+    rows: Vec<SlackPair>,
+    low: Vec<SlackPair>,
+    high: Vec<SlackPair>,
     /// `a x + s - most` of each row.
     miss: Vec<f64>,
     /// Gradient of the Lagrangian.
@@ -123,12 +123,12 @@ struct State<'a, const K: usize> {
     band: Band<K>,
 }
 
-impl<const K: usize> Program<K> {
+impl<const K: usize> ConvexProgram<K> {
     /// The best `x`, from a start between the bounds; it need not keep the rows. `tolerance` is that of the gap
     /// between cost and bound, as a share of the cost.
-    pub(crate) fn minimise(&self, start: &[f64], tolerance: f64) -> Solution {
-        let mut state = State::new(self, start);
-        let mut solution = Solution::default();
+    pub(crate) fn minimise(&self, start: &[f64], tolerance: f64) -> IterationResult {
+        let mut state = IterationState::new(self, start);
+        let mut solution = IterationResult::default();
         while solution.iterations < ITERATIONS {
             let measure = state.measure();
             if measure.done(tolerance) {
@@ -190,11 +190,11 @@ impl Measure {
     }
 }
 
-impl<'a, const K: usize> State<'a, K> {
-    fn new(program: &'a Program<K>, start: &[f64]) -> Self {
+impl<'a, const K: usize> IterationState<'a, K> {
+    fn new(program: &'a ConvexProgram<K>, start: &[f64]) -> Self {
         let count = start.len();
         let centre = 0.1;
-        let pair = |s: f64| Pair { s, z: centre / s, ..Pair::default() };
+        let pair = |s: f64| SlackPair { s, z: centre / s, ..SlackPair::default() };
         let mut rows = Vec::with_capacity(program.rows.len());
         for (first, range) in program.offsets.windows(2).enumerate() {
             for row in &program.rows[range[0]..range[1]] {
@@ -203,7 +203,7 @@ impl<'a, const K: usize> State<'a, K> {
                 rows.push(pair((row.most - value).max(floor)));
             }
         }
-        let side = |bound: &[f64], sign: f64| -> Vec<Pair> {
+        let side = |bound: &[f64], sign: f64| -> Vec<SlackPair> {
             let ends = bound.iter().zip(start);
             ends.map(|(bound, x)| pair((sign * (bound - x)).max(1e-9))).collect()
         };
@@ -284,7 +284,7 @@ impl<'a, const K: usize> State<'a, K> {
         if self.program.cost != Cost::Linear {
             // A curved cost ties both steps together.
             let both = room.primal.min(room.dual);
-            room = Room { primal: both, dual: both };
+            room = StepRoom { primal: both, dual: both };
         }
         let primal = (SHORT * room.primal).min(1.0);
         let dual = (SHORT * room.dual).min(1.0);
@@ -299,9 +299,9 @@ impl<'a, const K: usize> State<'a, K> {
     }
 
     /// Solves for the steps towards `s * z = 0`, or with the correction of second order towards `centre`.
-    fn direction(&mut self, centre: Option<f64>) -> Room {
+    fn direction(&mut self, centre: Option<f64>) -> StepRoom {
         let program = self.program;
-        let target = |pair: Pair| match centre {
+        let target = |pair: SlackPair| match centre {
             Some(centre) => pair.correction(centre),
             None => pair.s * pair.z,
         };
@@ -323,7 +323,7 @@ impl<'a, const K: usize> State<'a, K> {
             }
         }
         self.band.solve(&mut self.dx);
-        let mut room = Room { primal: f64::INFINITY, dual: f64::INFINITY };
+        let mut room = StepRoom { primal: f64::INFINITY, dual: f64::INFINITY };
         for unknown in 0..self.x.len() {
             let dx = self.dx[unknown];
             if program.fixed(unknown) {
@@ -348,9 +348,9 @@ impl<'a, const K: usize> State<'a, K> {
     }
 
     /// The sum of products after a step as far as it goes.
-    fn products(&self, room: Room) -> f64 {
+    fn products(&self, room: StepRoom) -> f64 {
         let (primal, dual) = (room.primal.min(1.0), room.dual.min(1.0));
-        let product = |pair: &Pair| (pair.s + primal * pair.ds) * (pair.z + dual * pair.dz);
+        let product = |pair: &SlackPair| (pair.s + primal * pair.ds) * (pair.z + dual * pair.dz);
         let free = (0..self.x.len()).filter(|&unknown| !self.program.fixed(unknown));
         let bounds = free.map(|unknown| product(&self.low[unknown]) + product(&self.high[unknown]));
         bounds.sum::<f64>() + self.rows.iter().map(product).sum::<f64>()

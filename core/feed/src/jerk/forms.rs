@@ -9,16 +9,16 @@
 use crate::limits::{Channel, first_derivative};
 
 /// A linear form in the three Bernstein coefficients of `q`.
-pub type Form = [f64; 3];
+pub type LinearForm = [f64; 3];
 
 /// Bernstein coefficients of a cubic.
-pub type Cubic<T> = [T; 4];
+pub type BernsteinCubic<T> = [T; 4];
 
 /// Bernstein coefficients of a quartic.
-pub type Quartic<T> = [T; 5];
+pub type BernsteinQuartic<T> = [T; 5];
 
 /// `Q' q' / 2 + Q'' q`.
-pub fn acceleration(channel: &Channel, step: f64) -> Cubic<Form> {
+pub fn acceleration(channel: &Channel, step: f64) -> BernsteinCubic<LinearForm> {
     let [p0, p1, p2] = first_derivative(channel.first, channel.second, step);
     let [e0, e1] = slope(step);
     // Q' q' / 2, a quadratic times a linear function.
@@ -33,7 +33,7 @@ pub fn acceleration(channel: &Channel, step: f64) -> Cubic<Form> {
 }
 
 /// `Q' q'' / 2 + 3/2 Q'' q' + Q''' q`.
-pub fn jerk(channel: &Channel, step: f64) -> Quartic<Form> {
+pub fn jerk(channel: &Channel, step: f64) -> BernsteinQuartic<LinearForm> {
     let (first, second) = (channel.first(step), channel.second(step));
     let [e0, e1] = slope(step);
     let bend = 1.0 / (step * step);
@@ -54,7 +54,7 @@ pub fn jerk(channel: &Channel, step: f64) -> Quartic<Form> {
 }
 
 /// `q` itself as a quartic.
-pub const Q: Quartic<Form> = [
+pub const Q: BernsteinQuartic<LinearForm> = [
     [1.0, 0.0, 0.0],
     [0.5, 0.5, 0.0],
     [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
@@ -77,7 +77,7 @@ pub fn leaving_jerk(channel: &Channel, step: f64) -> f64 {
     let (first, second) = (channel.first(step), channel.second(step));
     let [t0, t1, t2] = channel.third;
     let last = [0.0, 0.0, t0 / 6.0, 0.5 * t1, t2];
-    let at: Quartic<f64> = std::array::from_fn(|index| {
+    let at: BernsteinQuartic<f64> = std::array::from_fn(|index| {
         let [_, before] = linear_parts(index);
         let middle = index.checked_sub(1).map_or(0.0, |at| before * second[at]);
         2.0 / 9.0 * first[index] / (step * step) + 2.0 * middle / step + last[index]
@@ -98,18 +98,18 @@ fn largest(values: &[f64]) -> f64 {
 }
 
 /// Bernstein coefficients of `q'`.
-fn slope(step: f64) -> [Form; 2] {
+fn slope(step: f64) -> [LinearForm; 2] {
     let rate = 2.0 / step;
     [[-rate, rate, 0.0], [0.0, -rate, rate]]
 }
 
 /// A linear function times `q`.
-fn times_q([a, b]: [f64; 2]) -> Cubic<Form> {
+fn times_q([a, b]: [f64; 2]) -> BernsteinCubic<LinearForm> {
     [[a, 0.0, 0.0], [b / 3.0, 2.0 / 3.0 * a, 0.0], [0.0, 2.0 / 3.0 * b, a / 3.0], [0.0, 0.0, b]]
 }
 
 /// A quadratic times `q`.
-fn quadratic_times_q([a, b, c]: [f64; 3]) -> Quartic<Form> {
+fn quadratic_times_q([a, b, c]: [f64; 3]) -> BernsteinQuartic<LinearForm> {
     [
         [a, 0.0, 0.0],
         [0.5 * b, 0.5 * a, 0.0],
@@ -126,10 +126,10 @@ fn linear_parts(index: usize) -> [f64; 2] {
     [1.0 - before, before]
 }
 
-fn scaled(factor: f64, form: Form) -> Form {
+fn scaled(factor: f64, form: LinearForm) -> LinearForm {
     form.map(|value| factor * value)
 }
 
-fn sum(a: Form, b: Form) -> Form {
+fn sum(a: LinearForm, b: LinearForm) -> LinearForm {
     std::array::from_fn(|index| a[index] + b[index])
 }

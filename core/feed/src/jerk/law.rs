@@ -2,7 +2,7 @@
 
 /// `q = (ds/dt)²` over one interval of the parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Piece {
+pub enum IntervalLaw {
     /// A quadratic, by its three Bernstein coefficients.
     Quadratic([f64; 3]),
     /// Leaves rest for this `q` at the interval's end, with constant jerk along the path: `q * share^(4/3)`.
@@ -11,7 +11,7 @@ pub enum Piece {
     Arrive(f64),
 }
 
-impl Piece {
+impl IntervalLaw {
     /// `q` and its first and second derivative by the parameter at a share of the interval, 0 to 1. At rest the second
     /// is infinite; the path's jerk, `q'' * sqrt(q) / 2`, is not.
     #[must_use]
@@ -74,7 +74,7 @@ pub struct Law {
     /// Increase of the parameter over each interval.
     pub steps: Vec<f64>,
     /// `q` over each.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<IntervalLaw>,
 }
 
 impl Law {

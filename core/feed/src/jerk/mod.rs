@@ -14,7 +14,7 @@
 //!
 //! Samples are best closer together where the path is at rest: [`graded`].
 //!
-//! **Long paths** and paths with corners are planned in windows: [`Stream`].
+//! **Long paths** and paths with corners are planned in windows: [`JerkStream`].
 //!
 //! **The cost** is the time, `Σ weight / sqrt(coefficient)`, which by convexity is never below the true time.
 
@@ -26,11 +26,11 @@ mod spline;
 mod stop_plan;
 pub mod stream;
 
-pub use law::{Law, Piece};
-pub use stream::{Batch, Passed, Stream};
+pub use law::{IntervalLaw, Law};
+pub use stream::{JerkStream, PathBatch, SettledInterval};
 
-use rounds::{ROOM, Stretch, Work};
-use spline::State;
+use rounds::{NonstopSection, PlanWork, ROOM};
+use spline::StartState;
 
 use crate::infeasible::Infeasible;
 use crate::limits::{Channel, Limit};
@@ -40,14 +40,14 @@ use crate::{profile, reach};
 
 /// How long to go on.
 #[derive(Clone, Copy, Debug)]
-pub struct Settings {
+pub struct JerkSettings {
     /// Largest number of rounds.
     pub rounds: usize,
     /// The rounds end where one shortens the time by no more than this share.
     pub progress: f64,
 }
 
-impl Default for Settings {
+impl Default for JerkSettings {
     fn default() -> Self {
         Self { rounds: 40, progress: 1e-5 }
     }
@@ -55,7 +55,7 @@ impl Default for Settings {
 
 /// A plan with jerk limits.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
+pub struct JerkPlan {
     /// The feed at every point of the path.
     pub law: Law,
     /// Time of the plan, s.
@@ -109,12 +109,12 @@ pub fn solve(
     samples: &Samples,
     limits: &[&dyn Limit],
     problem: &Problem,
-    settings: Settings,
-) -> Result<Plan, Infeasible> {
+    settings: JerkSettings,
+) -> Result<JerkPlan, Infeasible> {
     let fast = reach::solve(problem)?;
     let last = problem.steps.len();
     let mut law = Law { steps: problem.steps.clone(), pieces: Vec::with_capacity(last) };
-    let mut work = Work::default();
+    let mut work = PlanWork::default();
     let corners = vec![false; last + 1];
     let mut first = 0;
     while first < last {
@@ -124,8 +124,8 @@ pub fn solve(
             let whole = sample == 0 || sample == last;
             if whole { end } else { 0.0 }
         };
-        let start = State::even(at(first, problem.ends.start));
-        let stretch = Stretch {
+        let start = StartState::even(at(first, problem.ends.start));
+        let stretch = NonstopSection {
             channels: &|interval, sink| of_limits(samples, limits, first + interval, sink),
             steps: &problem.steps[first..next],
             upper: &problem.upper[first..=next],
@@ -141,7 +141,7 @@ pub fn solve(
         law.pieces.extend(planned.law.pieces);
         first = next;
     }
-    Ok(Plan {
+    Ok(JerkPlan {
         seconds: law.duration(),
         law,
         bound: profile::duration(&problem.steps, &fast),

@@ -1,11 +1,11 @@
 //! The convex-concave procedure over one stretch between two stops.
 
-use super::forms::{self, Form};
-use super::rules::{Channels, ROUNDING, Rules};
-use super::spline::{Spline, State};
-use super::{Law, Settings};
+use super::forms::{self, LinearForm};
+use super::rules::{Channels, IntervalRules, ROUNDING};
+use super::spline::{Spline, StartState};
+use super::{JerkSettings, Law};
 use crate::infeasible::Infeasible;
-use crate::interior::{Cost, Inequality, Program};
+use crate::interior::{ConvexProgram, Cost, Inequality};
 use crate::limits::Order;
 use crate::problem::LimitSource;
 
@@ -22,7 +22,7 @@ const ABOVE: f64 = 2.0;
 pub(super) const ROOM: f64 = 1e-4;
 
 /// A part of a path without a stop on the way.
-pub(super) struct Stretch<'a> {
+pub(super) struct NonstopSection<'a> {
     pub(super) channels: &'a Channels<'a>,
     pub(super) steps: &'a [f64],
     /// Bounds of `q` at the samples, and where they come from.
@@ -31,7 +31,7 @@ pub(super) struct Stretch<'a> {
     /// The plan without jerk limits.
     pub(super) fast: &'a [f64],
     pub(super) corners: &'a [bool],
-    pub(super) start: State,
+    pub(super) start: StartState,
     /// `q` at its end.
     pub(super) end: f64,
     /// Share of a limit by which rows are drawn in.
@@ -39,7 +39,7 @@ pub(super) struct Stretch<'a> {
 }
 
 /// The plan of a stretch.
-pub(super) struct Planned {
+pub(super) struct SectionPlan {
     pub(super) law: Law,
     pub(super) seconds: f64,
     /// The middle coefficient of each interval.
@@ -50,28 +50,28 @@ pub(super) struct Planned {
 
 /// How much work it was.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Work {
+pub(super) struct PlanWork {
     pub(super) rounds: usize,
     pub(super) iterations: usize,
 }
 
-impl Stretch<'_> {
+impl NonstopSection<'_> {
     /// The stretch's feed. The first tangents are `tangents`, one an interval, or the plan without jerk limits. Faults
     /// count samples from the beginning of the stretch.
     pub(super) fn plan(
         &self,
-        settings: Settings,
+        settings: JerkSettings,
         tangents: Option<&[f64]>,
-        work: &mut Work,
-    ) -> Result<Planned, Infeasible> {
+        work: &mut PlanWork,
+    ) -> Result<SectionPlan, Infeasible> {
         let spline = Spline::new(self.steps, self.corners, self.start, self.end)?;
-        let rules = Rules::new(&spline, self.steps, self.channels);
+        let rules = IntervalRules::new(&spline, self.steps, self.channels);
         let fast = self.middles();
         let scale = self.scale(&spline, &fast);
         let mut bounds = self.bounds(&spline, &scale)?;
         self.cap_ends(&spline, &mut bounds);
         let mut tangents = tangents.unwrap_or(&fast).to_vec();
-        let mut best: Option<Planned> = None;
+        let mut best: Option<SectionPlan> = None;
         let mut broken = None;
         for _ in 0..settings.rounds {
             let program = self.program(&spline, &scale, &bounds, &rules, &tangents);
@@ -100,13 +100,13 @@ impl Stretch<'_> {
             let own = &spline.unknowns[1..=self.steps.len()];
             let middles: Vec<f64> = own.iter().map(|&unknown| unknowns[unknown]).collect();
             let next = middles.clone();
-            let before = best.replace(Planned {
+            let before = best.replace(SectionPlan {
                 law,
                 seconds,
                 middles,
                 tangents: std::mem::replace(&mut tangents, next),
             });
-            let least = |before: Planned| before.seconds * (1.0 - settings.progress);
+            let least = |before: SectionPlan| before.seconds * (1.0 - settings.progress);
             if before.is_some_and(|before| seconds > least(before)) {
                 break;
             }
@@ -194,11 +194,11 @@ impl Stretch<'_> {
         spline: &Spline,
         scale: &[f64],
         bounds: &[[f64; 2]],
-        rules: &Rules,
+        rules: &IntervalRules,
         tangents: &[f64],
-    ) -> Program<3> {
+    ) -> ConvexProgram<3> {
         let side = |k: usize| bounds.iter().zip(scale).map(move |(bound, scale)| bound[k] / scale);
-        let mut program = Program {
+        let mut program = ConvexProgram {
             cost: Cost::Time,
             weights: spline.weights(scale),
             lower: side(0).collect(),
@@ -230,7 +230,7 @@ impl Stretch<'_> {
 }
 
 /// Half of what the tangents are made at, between the bounds.
-fn start(spline: &Spline, program: &Program<3>, tangents: &[f64], scale: &[f64]) -> Vec<f64> {
+fn start(spline: &Spline, program: &ConvexProgram<3>, tangents: &[f64], scale: &[f64]) -> Vec<f64> {
     let mut start: Vec<f64> = program.lower.clone();
     for (tangent, &unknown) in tangents.iter().zip(&spline.unknowns[1..]) {
         start[unknown] = 0.5 * tangent / scale[unknown];
@@ -242,7 +242,13 @@ fn start(spline: &Spline, program: &Program<3>, tangents: &[f64], scale: &[f64])
 }
 
 /// Scales a row, takes what is fixed out of it, and leaves it away if nothing is left.
-fn push(program: &mut Program<3>, first: usize, mut a: Form, mut most: f64, scale: &[f64]) {
+fn push(
+    program: &mut ConvexProgram<3>,
+    first: usize,
+    mut a: LinearForm,
+    mut most: f64,
+    scale: &[f64],
+) {
     for (k, a) in a.iter_mut().enumerate() {
         let Some(scale) = scale.get(first + k) else {
             continue;
@@ -259,7 +265,7 @@ fn push(program: &mut Program<3>, first: usize, mut a: Form, mut most: f64, scal
 }
 
 /// Makes everything slower by so much as an iteration's tolerance may have left a row broken.
-fn keep(program: &Program<3>, x: &mut [f64]) {
+fn keep(program: &ConvexProgram<3>, x: &mut [f64]) {
     let mut share: f64 = 1.0;
     for (first, range) in program.offsets.windows(2).enumerate() {
         for row in &program.rows[range[0]..range[1]] {

@@ -1,6 +1,6 @@
 //! What a stretch has to keep, in coefficients of its spline: rows that do not change from round to round.
 
-use super::forms::{self, Form};
+use super::forms::{self, LinearForm};
 use super::spline::Spline;
 use crate::infeasible::Infeasible;
 use crate::limits::{Channel, Order};
@@ -13,16 +13,16 @@ pub(super) const ROUNDING: f64 = 1e-7;
 pub(super) type Channels<'a> = dyn Fn(usize, &mut dyn FnMut(u16, Channel)) + 'a;
 
 /// A Bernstein coefficient of what is limited, divided by its limit.
-pub(super) struct Rule {
-    form: Form,
+pub(super) struct IntervalRule {
+    form: LinearForm,
     /// Coefficients of `q` at the same place, for jerk.
-    q: Option<Form>,
+    q: Option<LinearForm>,
     source: LimitSource,
 }
 
-impl Rule {
+impl IntervalRule {
     /// As a row of a round, `form <= most`: what is limited in one direction, by the tangent at `q = tangent`.
-    pub(super) fn linear(&self, side: f64, tangent: f64) -> (Form, f64) {
+    pub(super) fn linear(&self, side: f64, tangent: f64) -> (LinearForm, f64) {
         match self.q {
             None => (self.form.map(|value| side * value), 1.0),
             Some(q) => {
@@ -35,12 +35,12 @@ impl Rule {
 }
 
 /// The rules of every interval.
-pub(super) struct Rules {
-    all: Vec<Rule>,
+pub(super) struct IntervalRules {
+    all: Vec<IntervalRule>,
     offsets: Vec<usize>,
 }
 
-impl Rules {
+impl IntervalRules {
     /// Makes the rules of every interval of the spline.
     pub(super) fn new(spline: &Spline, steps: &[f64], channels: &Channels<'_>) -> Self {
         let mut all = Vec::new();
@@ -52,7 +52,7 @@ impl Rules {
                     let share = 1.0 / channel.limit;
                     let axis = channel.axis;
                     let source = LimitSource { limit, axis };
-                    let rule = |form: Form, q: Option<Form>| Rule {
+                    let rule = |form: LinearForm, q: Option<LinearForm>| IntervalRule {
                         form: composed(form, into).map(|value| value * share),
                         q: q.map(|q| composed(q, into)),
                         source,
@@ -80,7 +80,7 @@ impl Rules {
     }
 
     /// Rules of an interval.
-    pub(super) fn of(&self, interval: usize) -> &[Rule] {
+    pub(super) fn of(&self, interval: usize) -> &[IntervalRule] {
         &self.all[self.offsets[interval]..self.offsets[interval + 1]]
     }
 
@@ -116,6 +116,6 @@ impl Rules {
 }
 
 /// A form in Bernstein coefficients as one in those of the spline.
-fn composed(form: Form, into: [Form; 3]) -> Form {
+fn composed(form: LinearForm, into: [LinearForm; 3]) -> LinearForm {
     std::array::from_fn(|k| (0..3).map(|b| form[b] * into[b][k]).sum())
 }

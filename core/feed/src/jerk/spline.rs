@@ -1,17 +1,17 @@
 //! The quadratic spline of one stretch: which coefficients it has, and what each interval is in them.
 
-use super::forms::Form;
-use super::{Law, Piece};
+use super::forms::LinearForm;
+use super::{IntervalLaw, Law};
 use crate::infeasible::Infeasible;
 
 /// `q` and the middle Bernstein coefficient of the first interval: value and slope that a stretch begins with.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct State {
+pub(super) struct StartState {
     pub(super) q: f64,
     pub(super) middle: f64,
 }
 
-impl State {
+impl StartState {
     /// State with this speed and no acceleration along the path.
     pub(super) fn even(q: f64) -> Self {
         Self { q, middle: q }
@@ -40,7 +40,7 @@ impl Spline {
     pub(super) fn new(
         steps: &[f64],
         corners: &[bool],
-        start: State,
+        start: StartState,
         end: f64,
     ) -> Result<Self, Infeasible> {
         let last = steps.len();
@@ -90,7 +90,7 @@ impl Spline {
     }
 
     /// The Bernstein coefficients of an interval in the three coefficients that begin with the one of its number.
-    pub(super) fn bernstein(&self, interval: usize) -> [Form; 3] {
+    pub(super) fn bernstein(&self, interval: usize) -> [LinearForm; 3] {
         let [before, here, next] = [0, 1, 2].map(|k| self.widths[interval + k]);
         [
             [here / (before + here), before / (before + here), 0.0],
@@ -115,7 +115,7 @@ impl Spline {
     }
 
     /// A form in the three coefficients of an interval, as one in three unknowns from [`Spline::first`] on.
-    pub(super) fn in_unknowns(&self, interval: usize, form: Form) -> Form {
+    pub(super) fn in_unknowns(&self, interval: usize, form: LinearForm) -> LinearForm {
         let first = self.first(interval);
         let mut all = [0.0; 3];
         for (k, value) in form.into_iter().enumerate() {
@@ -139,7 +139,7 @@ impl Spline {
     }
 
     /// Value of a form of an interval.
-    pub(super) fn value(&self, interval: usize, form: Form, unknowns: &[f64]) -> f64 {
+    pub(super) fn value(&self, interval: usize, form: LinearForm, unknowns: &[f64]) -> f64 {
         let place = &self.unknowns[interval..interval + 3];
         form.iter().zip(place).map(|(a, &at)| a * unknowns[at]).sum()
     }
@@ -149,13 +149,13 @@ impl Spline {
         let last = self.intervals() - 1;
         let piece = |interval: usize| {
             let bernstein = self.bernstein(interval);
-            let value = |form: Form| self.value(interval, form, unknowns);
+            let value = |form: LinearForm| self.value(interval, form, unknowns);
             if self.is_spline(interval) {
-                Piece::Quadratic(bernstein.map(value))
+                IntervalLaw::Quadratic(bernstein.map(value))
             } else if interval == 0 {
-                Piece::Leave(value(bernstein[2]))
+                IntervalLaw::Leave(value(bernstein[2]))
             } else {
-                Piece::Arrive(value(bernstein[0]))
+                IntervalLaw::Arrive(value(bernstein[0]))
             }
         };
         Law { steps: steps.to_vec(), pieces: (0..=last).map(piece).collect() }

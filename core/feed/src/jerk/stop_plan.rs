@@ -1,8 +1,8 @@
 //! The part of a window's plan that was not handed on: a way to a stop, and where the next window's rounds begin.
 
-use super::rounds::Planned;
-use super::spline::State;
-use super::{Law, Piece};
+use super::rounds::SectionPlan;
+use super::spline::StartState;
+use super::{IntervalLaw, Law};
 
 /// The smallest tangent, as a share of the plan without jerk limits: a plan may have three times its tangent.
 const SMALL: f64 = 1e-4;
@@ -16,7 +16,7 @@ pub(super) struct StopPlan {
 }
 
 impl StopPlan {
-    pub(super) fn new(planned: Planned) -> Self {
+    pub(super) fn new(planned: SectionPlan) -> Self {
         Self { law: planned.law, middles: planned.middles, tangents: planned.tangents }
     }
 
@@ -32,10 +32,10 @@ impl StopPlan {
     }
 
     /// The state that it goes on from; rest at its end.
-    pub(super) fn state(&self) -> State {
+    pub(super) fn state(&self) -> StartState {
         match self.law.pieces.first() {
-            Some(&Piece::Quadratic([q, middle, _])) => State { q, middle },
-            _ => State::default(),
+            Some(&IntervalLaw::Quadratic([q, middle, _])) => StartState { q, middle },
+            _ => StartState::default(),
         }
     }
 
@@ -43,7 +43,7 @@ impl StopPlan {
     pub(super) fn next_part(&self) -> usize {
         let part = (self.len() / 8).max(1);
         match self.law.pieces.get(part) {
-            Some(Piece::Quadratic(_)) => part,
+            Some(IntervalLaw::Quadratic(_)) => part,
             _ => self.len(),
         }
     }

@@ -6,16 +6,16 @@
 //! way is followed farther, at worst to the stop, from where there always is a plan. So **no limit is ever broken for
 //! want of look-ahead**; too short a look-ahead costs speed alone.
 
-use super::rounds::{Planned, ROOM, Stretch, Work};
-use super::spline::State;
+use super::rounds::{NonstopSection, PlanWork, ROOM, SectionPlan};
+use super::spline::StartState;
 use super::stop_plan::StopPlan;
-use super::{Piece, Settings, of_limits};
+use super::{IntervalLaw, JerkSettings, of_limits};
 use crate::infeasible::Infeasible;
 use crate::limits::{Channel, Limit};
 use crate::problem::{LimitSource, LimitUsage, Problem};
-use crate::reach::Reach;
+use crate::reach::ReachPlanner;
 use crate::samples::Samples;
-use crate::window::Window;
+use crate::window::SampleWindow;
 
 /// Look-aheads that a window is long.
 const WINDOW: usize = 4;
@@ -25,7 +25,7 @@ const RESERVE: usize = 4;
 
 /// A part of a path.
 #[derive(Clone, Copy)]
-pub struct Batch<'a> {
+pub struct PathBatch<'a> {
     /// Samples of the part; the first is the last of the batch before, with the derivatives after it.
     pub samples: &'a Samples,
     /// What it keeps.
@@ -38,18 +38,18 @@ pub struct Batch<'a> {
 
 /// An interval whose feed is settled.
 #[derive(Clone, Copy, Debug)]
-pub struct Passed<'a> {
+pub struct SettledInterval<'a> {
     /// The number of its first sample, counted from the beginning of the path.
     pub sample: usize,
     /// Length of the interval, in units of the parameter.
     pub step: f64,
     /// `q` over it.
-    pub piece: Piece,
+    pub piece: IntervalLaw,
     bounds: [(f64, LimitSource); 2],
     channels: &'a [(u16, Channel)],
 }
 
-impl Passed<'_> {
+impl SettledInterval<'_> {
     /// The limit that is used most at its ends and halfway. It is found when it is asked for.
     #[must_use]
     pub fn active(&self) -> LimitUsage {
@@ -84,40 +84,40 @@ impl Passed<'_> {
 /// **Short pieces.** Between two stops there must be four intervals, between a stop and a corner two; between two
 /// corners the speed can change from three on.
 #[derive(Clone, Debug)]
-pub struct Stream {
+pub struct JerkStream {
     lookahead: usize,
-    settings: Settings,
-    window: Window,
+    settings: JerkSettings,
+    window: SampleWindow,
     /// Channels of the intervals that wait, each with the number of its limit, and where those of each begin.
     channels: Vec<(u16, Channel)>,
     offsets: Vec<usize>,
     /// Whether each sample that waits is a corner.
     corners: Vec<bool>,
-    state: State,
+    state: StartState,
     /// The way to a stop that goes on from the state; empty at rest.
     ahead: StopPlan,
-    reach: Reach,
+    reach: ReachPlanner,
     fast: Vec<f64>,
-    work: Work,
+    work: PlanWork,
     retries: usize,
 }
 
-impl Stream {
+impl JerkStream {
     /// A stream that looks ahead `lookahead` samples or more, at least four.
     #[must_use]
-    pub fn new(lookahead: usize, settings: Settings) -> Self {
+    pub fn new(lookahead: usize, settings: JerkSettings) -> Self {
         Self {
             lookahead: lookahead.max(RESERVE),
             settings,
-            window: Window::default(),
+            window: SampleWindow::default(),
             channels: Vec::new(),
             offsets: vec![0],
             corners: Vec::new(),
-            state: State::default(),
+            state: StartState::default(),
             ahead: StopPlan::default(),
-            reach: Reach::default(),
+            reach: ReachPlanner::default(),
             fast: Vec::new(),
-            work: Work::default(),
+            work: PlanWork::default(),
             retries: 0,
         }
     }
@@ -148,17 +148,17 @@ impl Stream {
     }
 
     /// Takes the next batch and hands on the intervals that are settled, in order. `problem.ends.start` counts in the
-    /// first batch alone, with no acceleration; `ends.end` nowhere: [`Stream::finish`] is told the end.
+    /// first batch alone, with no acceleration; `ends.end` nowhere: [`JerkStream::finish`] is told the end.
     ///
     /// # Errors
     /// As [`Problem::check`], with the samples of the batch, and [`Infeasible::Shape`] where it is not of one path with
     /// those before: the batch is not taken, another may follow in its place. As [`super::solve`], with samples counted
     /// from the beginning of the path, where a stretch cannot be planned from rest or from the start: the batch is not
-    /// taken if nothing was handed on since; [`Stream::clear`] begins anew.
+    /// taken if nothing was handed on since; [`JerkStream::clear`] begins anew.
     pub fn push(
         &mut self,
-        batch: Batch<'_>,
-        sink: &mut impl FnMut(Passed<'_>),
+        batch: PathBatch<'_>,
+        sink: &mut impl FnMut(SettledInterval<'_>),
     ) -> Result<(), Infeasible> {
         let problem = batch.problem;
         if problem.upper.len() != batch.samples.len() {
@@ -167,7 +167,7 @@ impl Stream {
         let begins = self.window.problem.upper.is_empty();
         let joint = self.window.begin(problem)?;
         if begins {
-            self.state = State::even(problem.ends.start);
+            self.state = StartState::even(problem.ends.start);
             self.corners.push(false);
         }
         let (done, first) = (self.window.done, self.corners.len() - 1);
@@ -203,11 +203,11 @@ impl Stream {
     ///
     /// # Errors
     /// As [`super::solve`], where the rest cannot be planned from rest, or not to this end. Part of it may have been
-    /// handed on, up to a stop; it may be finished with another end, or [`Stream::clear`] begins anew.
+    /// handed on, up to a stop; it may be finished with another end, or [`JerkStream::clear`] begins anew.
     pub fn finish(
         &mut self,
         end: f64,
-        sink: &mut impl FnMut(Passed<'_>),
+        sink: &mut impl FnMut(SettledInterval<'_>),
     ) -> Result<(), Infeasible> {
         if !(end >= 0.0 && end.is_finite()) {
             return Err(Infeasible::Shape);
@@ -229,7 +229,7 @@ impl Stream {
         self.channels.clear();
         self.offsets.truncate(1);
         self.corners.clear();
-        self.state = State::default();
+        self.state = StartState::default();
         self.ahead = StopPlan::default();
     }
 
@@ -240,7 +240,7 @@ impl Stream {
     }
 
     /// Hands on part of a full window.
-    fn advance(&mut self, sink: &mut impl FnMut(Passed<'_>)) -> Result<(), Infeasible> {
+    fn advance(&mut self, sink: &mut impl FnMut(SettledInterval<'_>)) -> Result<(), Infeasible> {
         if let Some(stop) = self.stop() {
             return self.settle(stop, 0.0, stop, sink);
         }
@@ -260,14 +260,14 @@ impl Stream {
         last: usize,
         end: f64,
         count: usize,
-        sink: &mut impl FnMut(Passed<'_>),
+        sink: &mut impl FnMut(SettledInterval<'_>),
     ) -> Result<(), Infeasible> {
         match self.plan(last, end) {
             Ok(planned) => {
                 self.ahead = StopPlan::new(planned);
                 self.hand_on(count, sink);
                 if count == last {
-                    self.state = State::even(end);
+                    self.state = StartState::even(end);
                 }
             }
             Err(fault) => {
@@ -282,10 +282,10 @@ impl Stream {
     }
 
     /// Hands on the first intervals of the plan ahead.
-    fn hand_on(&mut self, count: usize, sink: &mut impl FnMut(Passed<'_>)) {
+    fn hand_on(&mut self, count: usize, sink: &mut impl FnMut(SettledInterval<'_>)) {
         let Problem { steps, upper, causes, .. } = &self.window.problem;
         for (place, &piece) in self.ahead.law.pieces[..count].iter().enumerate() {
-            sink(Passed {
+            sink(SettledInterval {
                 sample: self.window.done + place,
                 step: steps[place],
                 piece,
@@ -304,7 +304,7 @@ impl Stream {
     }
 
     /// Plans the window's first `last` intervals from the state.
-    fn plan(&mut self, last: usize, end: f64) -> Result<Planned, Infeasible> {
+    fn plan(&mut self, last: usize, end: f64) -> Result<SectionPlan, Infeasible> {
         let mut part = self.window.problem.part(0, last);
         part.ends.end = end;
         self.reach.backward(&part)?;
@@ -312,7 +312,7 @@ impl Stream {
         let mut fast = std::mem::take(&mut self.fast);
         self.reach.forward(&part, self.state.q.min(most), &mut fast);
         let mut work = self.work;
-        let stretch = Stretch {
+        let stretch = NonstopSection {
             channels: &|interval, sink| {
                 let channels = self.offsets[interval]..self.offsets[interval + 1];
                 for &(limit, channel) in &self.channels[channels] {

@@ -1,6 +1,6 @@
 //! Block processing time of the control.
 
-use super::{Collocation, Limit, Place, least_of_blocks};
+use super::{Collocation, Limit, SampleRange, least_of_blocks};
 use crate::samples::Samples;
 use crate::table::LimitTable;
 
@@ -20,7 +20,7 @@ impl Limit for BlockTime {
     }
 
     fn apply(&self, samples: &Samples, table: &mut LimitTable<'_>) {
-        for place in Place::all(samples, self.collocation) {
+        for place in SampleRange::all(samples, self.collocation) {
             let length = least_of_blocks(&samples.blocks, &place);
             place.bound(table, length / self.seconds);
         }

@@ -3,11 +3,11 @@
 mod across;
 mod lags;
 
-use super::{Channel, Collocation, Limit, Order, Place, least_of_blocks};
-use crate::response::Response;
+use super::{Channel, Collocation, Limit, Order, SampleRange, least_of_blocks};
+use crate::response::DriveResponse;
 use crate::samples::Samples;
 use crate::table::{LimitRow, LimitTable};
-use across::{Across, Bound};
+use across::{Across, MotionBound};
 use lags::Lags;
 
 /// Steps of the table of frequencies.
@@ -42,7 +42,7 @@ const STRAIGHT: f64 = 1e-6;
 /// [`Samples::contour_share`] says how much of the tolerance may be used where. It is a formula of the steady state: what
 /// the drives really leave where curvature changes may be more, and a simulation of them says how much.
 ///
-/// [`Answer::EXACT`]: crate::response::Answer::EXACT
+/// [`Answer::EXACT`]: crate::response::ComplexGain::EXACT
 #[derive(Clone, Debug)]
 pub struct ContourError {
     /// Largest contour error, mm.
@@ -59,7 +59,7 @@ impl ContourError {
     /// Makes the limit for these axes, in the order of [`Samples::axes`], and a tolerance in mm, up to `highest` rad/s.
     #[must_use]
     pub fn new(
-        axes: &[&dyn Response],
+        axes: &[&dyn DriveResponse],
         tolerance: f64,
         highest: f64,
         collocation: Collocation,
@@ -113,7 +113,7 @@ impl ContourError {
     }
 
     /// The bound at a sample where it is known how each axis moves the tip.
-    fn at(&self, across: &mut Across, samples: &Samples, sample: usize) -> Bound {
+    fn at(&self, across: &mut Across, samples: &Samples, sample: usize) -> MotionBound {
         across.take(samples, sample, self.lags.axes());
         let share = samples.contour_share.get(sample).copied().unwrap_or(1.0);
         let tolerance = self.tolerance * share;
@@ -122,7 +122,7 @@ impl ContourError {
         }
         let turning = across.turning();
         let frequency = self.faithful_up_to(tolerance * turning * turning / across.bend());
-        Bound {
+        MotionBound {
             speed: if turning > 0.0 { frequency / turning } else { f64::INFINITY },
             rate: 0.0,
             push: 0.0,
@@ -132,7 +132,7 @@ impl ContourError {
     /// Bounds and rows where it is known how each axis moves the tip.
     fn through_axes(&self, samples: &Samples, table: &mut LimitTable<'_>) {
         let mut across = Across::default();
-        let mut before: Option<Bound> = None;
+        let mut before: Option<MotionBound> = None;
         for sample in 0..samples.len() {
             let here = self.at(&mut across, samples, sample);
             let bound = here.speed * here.speed;
@@ -163,7 +163,7 @@ impl ContourError {
 }
 
 /// Channels that keep the bounds at both ends of an interval, one for each sign.
-fn channels(first: &Bound, last: &Bound) -> [Channel; 2] {
+fn channels(first: &MotionBound, last: &MotionBound) -> [Channel; 2] {
     [1.0, -1.0].map(|sign| Channel {
         first: [sign * first.push, sign * last.push],
         second: [first.rate, last.rate],
@@ -175,8 +175,8 @@ fn channels(first: &Bound, last: &Bound) -> [Channel; 2] {
 }
 
 /// `|rate * q ± push * s̈| <= 1` at both ends of an interval, with `s̈ = (q[i + 1] - q[i]) / (2 * step)`.
-fn rows(first: &Bound, last: &Bound, step: f64) -> [LimitRow; 4] {
-    let row = |bound: &Bound, at_end: bool, sign: f64| {
+fn rows(first: &MotionBound, last: &MotionBound, step: f64) -> [LimitRow; 4] {
+    let row = |bound: &MotionBound, at_end: bool, sign: f64| {
         let push = sign * 0.5 * bound.push / step;
         let [here, next] = if at_end { [0.0, bound.rate] } else { [bound.rate, 0.0] };
         LimitRow { here: here - push, next: next + push }
@@ -186,7 +186,7 @@ fn rows(first: &Bound, last: &Bound, step: f64) -> [LimitRow; 4] {
 
 /// Share of its radius by which the steady path of the axes strays from a circle that is followed at `frequency` rad/s.
 #[must_use]
-pub fn deviation(axes: &[&dyn Response], frequency: f64) -> f64 {
+pub fn deviation(axes: &[&dyn DriveResponse], frequency: f64) -> f64 {
     let answers: Vec<_> = axes.iter().map(|axis| axis.at(frequency)).collect();
     let mut size: f64 = 0.0;
     let mut phase: f64 = 0.0;
@@ -216,7 +216,7 @@ impl Limit for ContourError {
             // No bound is known for axes of which nothing is known.
             return (0..samples.len()).for_each(|sample| table.lower(sample, f64::NAN, None));
         }
-        let moving = Place::all(samples, self.collocation).filter(|place| !place.is_still());
+        let moving = SampleRange::all(samples, self.collocation).filter(|place| !place.is_still());
         for place in moving {
             let share = least_of_blocks(&samples.contour_share, &place);
             let share = if share == f64::INFINITY { 1.0 } else { share };

@@ -22,7 +22,7 @@ pub use block_time::BlockTime;
 pub use channel::{Channel, Order};
 pub use chord_error::ChordError;
 pub use contour_error::{ContourError, deviation};
-pub use feed::Feed;
+pub use feed::TipFeed;
 pub use tip_acceleration::TipAcceleration;
 pub use tip_jerk::TipJerk;
 
@@ -90,7 +90,7 @@ pub(crate) fn first_derivative(first: [f64; 2], second: [f64; 2], step: f64) -> 
 }
 
 /// Where a bound of the tip's feed holds: a sample, or an interval with both its ends.
-pub(crate) struct Place {
+pub(crate) struct SampleRange {
     pub(crate) samples: std::ops::RangeInclusive<usize>,
     /// The largest `|P'|`, mm per unit of the parameter.
     pub(crate) stretch: f64,
@@ -98,7 +98,7 @@ pub(crate) struct Place {
     pub(crate) curvature: f64,
 }
 
-impl Place {
+impl SampleRange {
     /// All of a batch: its samples, or its intervals if a limit is kept between samples too.
     fn all(samples: &Samples, collocation: Collocation) -> impl Iterator<Item = Self> + '_ {
         let throughout = collocation == Collocation::Throughout;
@@ -156,14 +156,14 @@ pub(crate) fn bound_feed(
     table: &mut LimitTable<'_>,
     most: impl Fn(f64) -> f64,
 ) {
-    for place in Place::all(samples, collocation).filter(|place| !place.is_still()) {
+    for place in SampleRange::all(samples, collocation).filter(|place| !place.is_still()) {
         place.bound(table, most(place.curvature) / place.stretch);
     }
 }
 
 /// The least of what each sample of a place has of its block; infinite where there are no blocks. Between two samples a
 /// block may end and the next begin, so both count.
-pub(crate) fn least_of_blocks(each: &[f64], place: &Place) -> f64 {
+pub(crate) fn least_of_blocks(each: &[f64], place: &SampleRange) -> f64 {
     let here = each.get(place.samples.clone()).unwrap_or_default();
     // What is not a number must not get lost in a comparison.
     let least = |least: f64, &value: &f64| {

@@ -17,18 +17,18 @@ pub mod stream;
 use crate::infeasible::Infeasible;
 use crate::problem::{LimitRow, Problem};
 
-pub use stream::{Settled, Stream};
+pub use stream::{ReachStream, Settled};
 
 /// Controllable sets, and the plan through them; its memory is used again from problem to problem.
 #[derive(Clone, Debug, Default)]
-pub struct Reach {
+pub struct ReachPlanner {
     /// Smallest `q` of each sample from which the rest of the path can be followed.
     low: Vec<f64>,
     /// The largest.
     high: Vec<f64>,
 }
 
-impl Reach {
+impl ReachPlanner {
     /// Finds the controllable sets of `problem`, which has passed [`Problem::check`] as those of [`Problem::new`] have.
     ///
     /// # Errors
@@ -78,13 +78,13 @@ impl Reach {
     }
 
     /// The smallest and largest `q` of each sample from which the rest of the path can be followed, as
-    /// [`Reach::controllable`] found them.
+    /// [`ReachPlanner::controllable`] found them.
     #[must_use]
     pub fn sets(&self) -> (&[f64], &[f64]) {
         (&self.low, &self.high)
     }
 
-    /// The fastest plan by reachability analysis, put into `plan`; for problems as of [`Reach::controllable`].
+    /// The fastest plan by reachability analysis, put into `plan`; for problems as of [`ReachPlanner::controllable`].
     ///
     /// Rows are kept up to rounding: 1e-12 of a limit.
     ///
@@ -110,7 +110,7 @@ impl Reach {
     /// The plan nearest to `wish` that a forward pass can have: each `q` is moved into what the one before allows and
     /// the controllable set. So a solution that breaks limits by an iteration's tolerance is made to keep them.
     ///
-    /// Wants the sets that [`Reach::controllable`] found.
+    /// Wants the sets that [`ReachPlanner::controllable`] found.
     pub(crate) fn settle(&self, problem: &Problem, wish: &mut [f64]) {
         wish[0] = problem.ends.start;
         for sample in 0..problem.steps.len() {
@@ -131,7 +131,7 @@ impl Reach {
 pub fn solve(problem: &Problem) -> Result<Vec<f64>, Infeasible> {
     problem.check()?;
     let mut plan = Vec::with_capacity(problem.upper.len());
-    Reach::default().solve_into(problem, &mut plan)?;
+    ReachPlanner::default().solve_into(problem, &mut plan)?;
     Ok(plan)
 }
 

@@ -19,7 +19,7 @@ const MEETINGS: usize = 64;
 
 /// What one `q[i]` leaves for `q[i + 1]`, and how the ends move with `q[i]`.
 #[derive(Clone, Copy)]
-struct Span {
+struct ReachableRange {
     low: f64,
     low_slope: f64,
     high: f64,
@@ -27,8 +27,8 @@ struct Span {
 }
 
 #[inline]
-fn span(rows: &[LimitRow], x: f64, low: f64, high: f64) -> Span {
-    let mut span = Span { low, low_slope: 0.0, high, high_slope: 0.0 };
+fn span(rows: &[LimitRow], x: f64, low: f64, high: f64) -> ReachableRange {
+    let mut span = ReachableRange { low, low_slope: 0.0, high, high_slope: 0.0 };
     for &row in rows {
         let [slope, half] = lines(row);
         let middle = slope * x;

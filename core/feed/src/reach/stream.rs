@@ -5,12 +5,12 @@
 //! the sets of the next, whatever follows, and **no limit is ever broken for want of look-ahead**; too short a
 //! look-ahead costs speed alone. It costs nothing where the sets found from rest at the window's end and those found
 //! from any speed there have met before the samples that are handed on: the true sets lie between the two. Then the
-//! plan is that of the whole path, bit by bit, and [`Stream::all_certain`] says so.
+//! plan is that of the whole path, bit by bit, and [`ReachStream::all_certain`] says so.
 
-use super::{Reach, step};
+use super::{ReachPlanner, step};
 use crate::infeasible::Infeasible;
 use crate::problem::{EndSpeeds, LimitSource, LimitUsage, Problem};
-use crate::window::Window;
+use crate::window::SampleWindow;
 
 /// Look-aheads that a window is long: all but one of them are handed on at once, so that the sets of few samples are
 /// found twice.
@@ -71,29 +71,29 @@ impl Settled<'_> {
 /// # Ok::<(), post_feed::Infeasible>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Stream {
+pub struct ReachStream {
     stride: usize,
     lookahead: usize,
     /// The samples that are not handed on yet; begins with the speed that was reached.
-    window: Window,
-    reach: Reach,
+    window: SampleWindow,
+    reach: ReachPlanner,
     arrived: LimitUsage,
     uncertain: usize,
 }
 
-impl Stream {
+impl ReachStream {
     /// A stream of problems with `stride` rows an interval, which looks ahead `lookahead` samples or more.
     #[must_use]
     pub fn new(stride: usize, lookahead: usize) -> Self {
         let lookahead = lookahead.max(1);
-        let mut window = Window::default();
+        let mut window = SampleWindow::default();
         window.problem.upper.reserve(WINDOW * lookahead + 1);
         window.problem.rows.reserve(WINDOW * lookahead * stride);
         Self {
             stride,
             lookahead,
             window,
-            reach: Reach::default(),
+            reach: ReachPlanner::default(),
             arrived: LimitUsage::default(),
             uncertain: 0,
         }
@@ -119,13 +119,13 @@ impl Stream {
 
     /// Takes the next batch, whose first sample is the last of the batch before (its bound is the lower of the two),
     /// and hands on each sample that is settled, in order. `ends.start` counts in the first batch alone, `ends.end`
-    /// nowhere: [`Stream::finish`] is told the end.
+    /// nowhere: [`ReachStream::finish`] is told the end.
     ///
     /// # Errors
     /// As [`Problem::check`], with the samples of the batch, and [`Infeasible::Shape`] where it has other rows an
     /// interval than the first: the batch is not taken, another may follow in its place. A start that is too fast for what
     /// lies ahead, with samples counted from the beginning of the path: nothing of the path was handed on, and the
-    /// batch is not taken; [`Stream::clear`] begins anew.
+    /// batch is not taken; [`ReachStream::clear`] begins anew.
     pub fn push(
         &mut self,
         batch: &Problem,

@@ -1,6 +1,6 @@
 //! Motions whose least time is known.
 
-use post_feed::jerk::{self, Settings};
+use post_feed::jerk::{self, JerkSettings};
 use post_feed::limits::{
     AxisAcceleration, AxisJerk, AxisVelocity, Collocation, Limit, TipAcceleration,
 };
@@ -41,7 +41,7 @@ fn on_a_line_the_plan_with_jerk_limits_is_the_s_curve() {
     for (parameters, most) in cases {
         let samples = line(&parameters);
         let problem = Problem::new(&samples, &limits, EndSpeeds::default()).unwrap();
-        let plan = jerk::solve(&samples, &limits, &problem, Settings::default()).unwrap();
+        let plan = jerk::solve(&samples, &limits, &problem, JerkSettings::default()).unwrap();
         let over = plan.seconds / s_curve - 1.0;
         println!(
             "{} samples: {:.5} s of {s_curve:.5} s, {over:.1e}; without jerk {:.5} s of {trapezoid:.5} s",
@@ -70,7 +70,7 @@ fn on_a_circle_the_tip_accelerates_with_what_the_curvature_leaves() {
         samples.push(s, [first, second, [0.0; 3]], &[]);
     }
     let tip = TipAcceleration { limit, collocation: Collocation::Throughout };
-    let feed = post_feed::limits::Feed { most: 200.0, collocation: Collocation::Throughout };
+    let feed = post_feed::limits::TipFeed { most: 200.0, collocation: Collocation::Throughout };
     let problem = Problem::new(&samples, &[&tip, &feed], EndSpeeds::default()).unwrap();
     let plan = reach::solve(&problem).unwrap();
     let fastest = plan.iter().copied().fold(0.0, f64::max).sqrt();

@@ -2,12 +2,12 @@
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
-use post_feed::limits::{Collocation, ContourError, Feed, Limit};
-use post_feed::response::{Answer, Response};
+use post_feed::limits::{Collocation, ContourError, Limit, TipFeed};
+use post_feed::response::{ComplexGain, DriveResponse};
 use post_feed::{EndSpeeds, Infeasible, Problem, Samples, reach};
 
 /// The PID servo of the feedrate paper (eq. 2), X or Y of its Table 1, by complex division.
-fn servo(x: bool) -> impl Response {
+fn servo(x: bool) -> impl DriveResponse {
     let pick = |a: f64, b: f64| if x { a } else { b };
     let drive = pick(6.5723, 6.2274) * 0.4769 * 1.5915;
     let (kp, ki, kd) =
@@ -17,7 +17,7 @@ fn servo(x: bool) -> impl Response {
         let (a, b) = (ki - kd * w * w, kp * w);
         let (c, d) = (ki - (damping + kd) * w * w, kp * w - inertia * w * w * w);
         let square = c * c + d * d;
-        Answer { real: (a * c + b * d) / square, imaginary: (b * c - a * d) / square }
+        ComplexGain { real: (a * c + b * d) / square, imaginary: (b * c - a * d) / square }
     }
 }
 
@@ -41,7 +41,7 @@ fn circle(radius: f64, count: usize) -> Samples {
 }
 
 fn speeds(samples: &Samples, limit: &ContourError) -> Vec<f64> {
-    let feed = Feed { most: 1e6, collocation: Collocation::Start };
+    let feed = TipFeed { most: 1e6, collocation: Collocation::Start };
     let problem = Problem::new(samples, &[&feed, limit], EndSpeeds::default()).unwrap();
     problem.upper.iter().map(|q| q.sqrt()).collect()
 }
@@ -49,7 +49,7 @@ fn speeds(samples: &Samples, limit: &ContourError) -> Vec<f64> {
 #[test]
 fn three_axes_that_answer_alike_are_the_papers_rule() {
     let x = servo(true);
-    let axes: [&dyn Response; 3] = [&x, &x, &x];
+    let axes: [&dyn DriveResponse; 3] = [&x, &x, &x];
     for radius in [0.001, 0.05, 2.0, 8.0, 300.0] {
         let limit = ContourError::new(&axes, 0.02, 49.8, Collocation::Start);
         let want = limit.feed(1.0 / radius);
@@ -70,7 +70,7 @@ fn three_axes_that_answer_alike_are_the_papers_rule() {
 #[test]
 fn two_axes_that_differ_stray_on_a_circle_as_they_do_when_simulated() {
     let (x, y) = (servo(true), servo(false));
-    let axes: [&dyn Response; 3] = [&x, &y, &x];
+    let axes: [&dyn DriveResponse; 3] = [&x, &y, &x];
     let limit = ContourError::new(&axes, 0.0324, 49.8, Collocation::Start);
     let each = speeds(&circle(8.0, 720), &limit);
     let least = each.iter().copied().fold(f64::INFINITY, f64::min);
@@ -95,7 +95,7 @@ fn a_rotary_axis_that_goes_evenly_leaves_no_contour_error() {
         samples.push(angle, tip, &[[0.0; 3], [1.0, 0.0, 0.0]]);
         samples.push_rates(&[[1.0, 0.0, 0.0], [-sine, cosine, 0.0]]);
     }
-    for axes in [[&x as &dyn Response, &y], [&x, &x]] {
+    for axes in [[&x as &dyn DriveResponse, &y], [&x, &x]] {
         let limit = ContourError::new(&axes, 0.01, 49.8, Collocation::Throughout);
         for speed in speeds(&samples, &limit) {
             assert!(speed > 1e3, "{speed}");
@@ -112,8 +112,8 @@ fn a_rotary_axis_that_goes_evenly_leaves_no_contour_error() {
 #[test]
 fn a_line_under_45_degrees_shows_how_late_one_axis_is_against_the_other() {
     let late = 0.001;
-    let first = |_: f64| Answer::EXACT;
-    let second = move |frequency: f64| Answer {
+    let first = |_: f64| ComplexGain::EXACT;
+    let second = move |frequency: f64| ComplexGain {
         real: libm::cos(frequency * late),
         imaginary: -libm::sin(frequency * late),
     };
@@ -140,7 +140,7 @@ fn a_line_under_45_degrees_shows_how_late_one_axis_is_against_the_other() {
 fn a_share_tightens_where_it_stands() {
     let (x, y) = (servo(true), servo(false));
     for rates in [true, false] {
-        for other in [&x as &dyn Response, &y] {
+        for other in [&x as &dyn DriveResponse, &y] {
             for collocation in [Collocation::Start, Collocation::Throughout] {
                 let limit = ContourError::new(&[&x, other, &x], 0.02, 49.8, collocation);
                 let mut samples = circle(8.0, 40);
@@ -170,10 +170,10 @@ fn a_share_tightens_where_it_stands() {
 #[test]
 fn the_formula_holds_along_a_plan_that_accelerates() {
     let (x, y) = (servo(true), servo(false));
-    let axes: [&dyn Response; 3] = [&x, &y, &x];
+    let axes: [&dyn DriveResponse; 3] = [&x, &y, &x];
     let samples = circle(8.0, 2000);
     let limit = ContourError::new(&axes, 0.01, 49.8, Collocation::Ends);
-    let feed = Feed { most: 50.0, collocation: Collocation::Ends };
+    let feed = TipFeed { most: 50.0, collocation: Collocation::Ends };
     let limits: [&dyn Limit; 2] = [&feed, &limit];
     let problem = Problem::new(&samples, &limits, EndSpeeds::default()).unwrap();
     let plan = reach::solve(&problem).unwrap();
@@ -187,7 +187,7 @@ fn the_formula_holds_along_a_plan_that_accelerates() {
 #[test]
 fn axes_that_the_limit_does_not_know_are_refused_by_its_name() {
     let x = servo(true);
-    let limit = ContourError::new(&[&x as &dyn Response; 4], 0.01, 49.8, Collocation::Start);
+    let limit = ContourError::new(&[&x as &dyn DriveResponse; 4], 0.01, 49.8, Collocation::Start);
     let fault = Problem::new(&circle(8.0, 4), &[&limit], EndSpeeds::default()).unwrap_err();
     assert!(matches!(fault, Infeasible::NotANumber { .. }), "{fault:?}");
     let mut samples = circle(8.0, 4);

@@ -1,7 +1,7 @@
 //! Batches that meet at corners, against closed forms.
 
-use post_feed::limits::{AxisAcceleration, AxisVelocity, BlockTime, Collocation, Feed, Limit};
-use post_feed::reach::{self, Stream};
+use post_feed::limits::{AxisAcceleration, AxisVelocity, BlockTime, Collocation, Limit, TipFeed};
+use post_feed::reach::{self, ReachStream};
 use post_feed::{EndSpeeds, Infeasible, Problem, Samples, profile};
 use post_testkit::Rng;
 
@@ -41,7 +41,7 @@ impl Side {
 
 /// The batches of a polygon; the corner behind each side is a bound of the side before or of the one behind.
 fn batches(sides: &[Side], velocity: f64, collocation: Collocation) -> Vec<Problem> {
-    let feed = Feed { most: FEED, collocation };
+    let feed = TipFeed { most: FEED, collocation };
     let velocity = AxisVelocity { limits: vec![velocity; 2], collocation };
     let acceleration = AxisAcceleration { limits: vec![ACCELERATION; 2], collocation };
     let limits: [&dyn Limit; 3] = [&feed, &velocity, &acceleration];
@@ -108,7 +108,7 @@ fn closed_form(sides: &[Side], velocity: f64) -> Vec<f64> {
 fn check(sides: &[Side], velocity: f64, lookahead: usize) {
     for collocation in [Collocation::Start, Collocation::Ends, Collocation::Throughout] {
         let batches = batches(sides, velocity, collocation);
-        let mut stream = Stream::new(batches[0].stride(), lookahead);
+        let mut stream = ReachStream::new(batches[0].stride(), lookahead);
         let (mut plan, mut active) = (Vec::new(), Vec::new());
         let mut take = |sample: reach::Settled<'_>| {
             assert_eq!(sample.sample, plan.len());
@@ -194,7 +194,7 @@ fn a_corner_is_named_as_the_limit_that_is_active_there() {
     batches[2].causes[0] = batches[0].causes[0];
     batches[2].upper[0] = FEED * FEED;
     batches[2].lower(0, 25.0, "corner");
-    let mut stream = Stream::new(batches[0].stride(), 100);
+    let mut stream = ReachStream::new(batches[0].stride(), 100);
     let mut active = Vec::new();
     for batch in &batches {
         stream.push(batch, &mut |sample| active.push(sample.active())).unwrap();
@@ -216,7 +216,7 @@ fn a_batch_that_is_refused_leaves_the_stream_as_it_was() {
     let sides = [side(10.0, 40.0), side(10.0, 20.0), side(10.0, 0.0)];
     let good = batches(&sides, 60.0, Collocation::Throughout);
     let whole = reach::solve(&joined(&good)).unwrap();
-    let mut stream = Stream::new(good[0].stride(), 70);
+    let mut stream = ReachStream::new(good[0].stride(), 70);
     let mut plan = Vec::new();
     let mut refused = 0;
     for (index, batch) in good.iter().enumerate() {
@@ -260,7 +260,7 @@ fn after_a_start_that_is_too_fast_the_stream_begins_anew() {
     // Needs 3.1 mm to stop.
     good[0].lower(300, 0.0, "stop");
     good[0].ends.start = 1240.0;
-    let mut stream = Stream::new(good[0].stride(), 100);
+    let mut stream = ReachStream::new(good[0].stride(), 100);
     let mut plan = Vec::new();
     let fault = stream.push(&good[0], &mut |sample| plan.push(sample.q)).unwrap_err();
     let Infeasible::TooFastStart { sample, source, .. } = fault else {
@@ -285,13 +285,13 @@ fn after_a_start_that_is_too_fast_the_stream_begins_anew() {
 #[test]
 fn the_memory_of_a_stream_is_that_of_its_look_ahead() {
     let time = BlockTime { seconds: 0.002, collocation: Collocation::Throughout };
-    let feed = Feed { most: FEED, collocation: Collocation::Throughout };
+    let feed = TipFeed { most: FEED, collocation: Collocation::Throughout };
     let side = Side { length: 10.0, direction: [1.0, 0.0], intervals: 64, corner: 0.0 };
     let mut samples = side.samples();
     samples.blocks = vec![0.08; 65];
     let batch = Problem::new(&samples, &[&feed, &time], EndSpeeds::default()).unwrap();
     for lookahead in [10, 100] {
-        let mut stream = Stream::new(batch.stride(), lookahead);
+        let mut stream = ReachStream::new(batch.stride(), lookahead);
         let mut most = 0;
         let mut count = 0;
         for _ in 0..5000 {

@@ -82,7 +82,7 @@ fn with_jerk_limits_no_limit_is_broken_between_samples_and_published_times_are_b
         limits.extend(chord.as_ref().map(|chord| chord as &dyn Limit));
         let problem = Problem::new(&samples, &limits, EndSpeeds::default()).unwrap();
         let begin = std::time::Instant::now();
-        let plan = jerk::solve(&samples, &limits, &problem, jerk::Settings::default()).unwrap();
+        let plan = jerk::solve(&samples, &limits, &problem, jerk::JerkSettings::default()).unwrap();
         let used = used(&path, &parameters, &plan.law, 8);
         println!(
             "{count} samples, chord {}: {:.4} s, without jerk {:.4} s; {} rounds, {} iterations, {:?}; used {used:?}",

@@ -1,6 +1,6 @@
 //! Plans with jerk limits in windows: against the whole path at once, closed forms, and their limits at dense points.
 
-use post_feed::jerk::{self, Batch, Law, Passed, Settings, Stream};
+use post_feed::jerk::{self, JerkSettings, JerkStream, Law, PathBatch, SettledInterval};
 use post_feed::limits::{AxisAcceleration, AxisJerk, AxisVelocity, Collocation, Limit};
 use post_feed::{EndSpeeds, Infeasible, Problem, Samples};
 use post_testkit::{Rng, randomised};
@@ -13,10 +13,10 @@ fn streamed(
     limits: &[&dyn Limit],
     lookahead: usize,
     end: f64,
-) -> Result<(Law, Stream), Infeasible> {
-    let mut stream = Stream::new(lookahead, Settings::default());
+) -> Result<(Law, JerkStream), Infeasible> {
+    let mut stream = JerkStream::new(lookahead, JerkSettings::default());
     let mut law = Law::default();
-    let mut take = |passed: Passed<'_>| {
+    let mut take = |passed: SettledInterval<'_>| {
         assert_eq!(passed.sample, law.pieces.len());
         law.steps.push(passed.step);
         law.pieces.push(passed.piece);
@@ -24,7 +24,7 @@ fn streamed(
         assert!(used.share < 1.0 + 1e-6, "{used:?}");
     };
     for (samples, problem, corner) in batches {
-        let batch = Batch { samples, limits, problem, corner: *corner };
+        let batch = PathBatch { samples, limits, problem, corner: *corner };
         stream.push(batch, &mut take)?;
     }
     stream.finish(end, &mut take)?;
@@ -83,7 +83,7 @@ fn with_enough_look_ahead_a_stream_is_as_fast_as_the_whole_path_at_once() {
         let drives = Drives::new(&mut random, axes);
         let all = drives.all();
         let whole = Problem::new(&samples, &all, EndSpeeds::default()).unwrap();
-        let at_once = jerk::solve(&samples, &all, &whole, Settings::default()).unwrap();
+        let at_once = jerk::solve(&samples, &all, &whole, JerkSettings::default()).unwrap();
         // The same path, denser: derivatives of the path itself between samples.
         let mut random = Rng::new(seed);
         let dense = random::samples(&mut random, axes, FINE * (count - 1) + 1, 150.0);
@@ -148,7 +148,7 @@ fn too_short_a_look_ahead_costs_speed_and_breaks_no_limit() {
         }
         let all = drives.all();
         let whole = Problem::new(&samples, &all, EndSpeeds::default()).unwrap();
-        let at_once = jerk::solve(&samples, &all, &whole, Settings::default()).unwrap();
+        let at_once = jerk::solve(&samples, &all, &whole, JerkSettings::default()).unwrap();
         for lookahead in [1, 4, 7, 15] {
             let batches = [(samples.clone(), whole.clone(), false)];
             let (law, stream) = streamed(&batches, &all, lookahead, 0.0).unwrap();
@@ -330,10 +330,10 @@ fn a_long_path_goes_on_behind_batches_that_are_refused() {
     let lookahead = 60;
     let mut plans = Vec::new();
     for disturbed in [false, true] {
-        let mut stream = Stream::new(lookahead, Settings::default());
+        let mut stream = JerkStream::new(lookahead, JerkSettings::default());
         let mut law = Law::default();
         let mut names = Vec::new();
-        let mut take = |passed: Passed<'_>| {
+        let mut take = |passed: SettledInterval<'_>| {
             law.steps.push(passed.step);
             law.pieces.push(passed.piece);
             names.push(passed.active().source);
@@ -342,17 +342,18 @@ fn a_long_path_goes_on_behind_batches_that_are_refused() {
         for first in (0..count - 1).step_by(100) {
             let samples = part(&samples, first, first + 100);
             let problem = whole.part(first, first + 100);
-            let batch = Batch { samples: &samples, limits: &all, problem: &problem, corner: false };
+            let batch =
+                PathBatch { samples: &samples, limits: &all, problem: &problem, corner: false };
             if disturbed {
                 let mut wrong = problem.clone();
                 // Were it taken, the path would be slower here.
                 wrong.upper[0] = 1e-3;
                 wrong.steps[99] = 0.0;
                 let refused =
-                    stream.push(Batch { problem: &wrong, corner: true, ..batch }, &mut take);
+                    stream.push(PathBatch { problem: &wrong, corner: true, ..batch }, &mut take);
                 assert_eq!(refused, Err(Infeasible::Standstill { sample: 99 }));
                 let short = part(&samples, 0, 50);
-                let batch = Batch { samples: &short, ..batch };
+                let batch = PathBatch { samples: &short, ..batch };
                 assert_eq!(stream.push(batch, &mut take), Err(Infeasible::Shape));
             }
             stream.push(batch, &mut take).unwrap();
@@ -380,18 +381,18 @@ fn what_has_no_plan_with_jerk_limits_is_named_and_the_stream_begins_anew() {
     let parameters: Vec<f64> = (0..=200).map(|index| 0.1 * f64::from(index)).collect();
     let samples = line([1.0, 0.0], &parameters);
     let mut problem = Problem::new(&samples, &limits, EndSpeeds::default()).unwrap();
-    let batch = |problem: &Problem, stream: &mut Stream| -> Result<f64, Infeasible> {
+    let batch = |problem: &Problem, stream: &mut JerkStream| -> Result<f64, Infeasible> {
         let mut law = Law::default();
-        let mut take = |passed: Passed<'_>| {
+        let mut take = |passed: SettledInterval<'_>| {
             law.steps.push(passed.step);
             law.pieces.push(passed.piece);
         };
-        let batch = Batch { samples: &samples, limits: &limits, problem, corner: false };
+        let batch = PathBatch { samples: &samples, limits: &limits, problem, corner: false };
         let pushed = stream.push(batch, &mut take);
         pushed.and_then(|()| stream.finish(0.0, &mut take))?;
         Ok(law.duration())
     };
-    let mut stream = Stream::new(20, Settings::default());
+    let mut stream = JerkStream::new(20, JerkSettings::default());
     let good = batch(&problem, &mut stream).unwrap();
     let mut short = problem.clone();
     short.lower(100, 0.0, "stop");
@@ -404,7 +405,7 @@ fn what_has_no_plan_with_jerk_limits_is_named_and_the_stream_begins_anew() {
     problem.lower(5, 0.0, "stop");
     for fault in [
         batch(&problem, &mut stream).unwrap_err(),
-        jerk::solve(&samples, &limits, &problem, Settings::default()).unwrap_err(),
+        jerk::solve(&samples, &limits, &problem, JerkSettings::default()).unwrap_err(),
     ] {
         let Infeasible::Contradiction { source, .. } = fault else {
             panic!("{fault:?}");

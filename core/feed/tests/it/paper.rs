@@ -4,10 +4,10 @@ use std::f64::consts::TAU;
 
 use post_feed::jerk;
 use post_feed::limits::{
-    AxisAcceleration, AxisJerk, AxisVelocity, ChordError, Collocation, ContourError, Feed, Limit,
-    TipAcceleration, TipJerk, deviation,
+    AxisAcceleration, AxisJerk, AxisVelocity, ChordError, Collocation, ContourError, Limit,
+    TipAcceleration, TipFeed, TipJerk, deviation,
 };
-use post_feed::response::Response;
+use post_feed::response::DriveResponse;
 use post_feed::{EndSpeeds, Problem, Samples, linear_program, profile, reach};
 
 use crate::spline::BSpline;
@@ -104,7 +104,7 @@ fn where_axes_differ_the_contour_error_is_that_of_a_simulated_circle() {
 #[test]
 fn the_largest_frequency_is_where_the_contour_error_reaches_its_tolerance() {
     let (x, y) = (servo('X'), servo('Y'));
-    let axes: [&dyn Response; 2] = [&x, &y];
+    let axes: [&dyn DriveResponse; 2] = [&x, &y];
     for tolerance in [0.002, 0.02] {
         let limit = ContourError::new(&axes, tolerance, 40.0, Collocation::Start);
         for radius in [1e4, 300.0, 20.0, 2.0, 0.5, 0.02, 0.001] {
@@ -135,7 +135,7 @@ fn the_butterfly_has_its_length_and_its_largest_curvature() {
 
 /// The limits of the paper's Table 3, but for the contour error.
 struct Case {
-    feed: Feed,
+    feed: TipFeed,
     velocity: AxisVelocity,
     acceleration: AxisAcceleration,
     chord: ChordError,
@@ -144,7 +144,7 @@ struct Case {
 impl Case {
     fn new(collocation: Collocation) -> Self {
         Self {
-            feed: Feed { most: 50.0, collocation },
+            feed: TipFeed { most: 50.0, collocation },
             velocity: AxisVelocity { limits: vec![50.0; 2], collocation },
             acceleration: AxisAcceleration { limits: vec![200.0; 2], collocation },
             chord: ChordError { tolerance: 0.0005, period: 0.004, collocation },
@@ -157,7 +157,7 @@ impl Case {
 }
 
 /// The largest contour error by the formula, at the samples, mm.
-fn contour_error(samples: &Samples, plan: &[f64], axes: &[&dyn Response]) -> f64 {
+fn contour_error(samples: &Samples, plan: &[f64], axes: &[&dyn DriveResponse]) -> f64 {
     let each = plan.iter().enumerate().map(|(sample, q)| {
         let curvature = samples.curvature[sample].max(1e-9);
         deviation(axes, q.sqrt() * samples.stretch(sample) * curvature) / curvature
@@ -187,7 +187,7 @@ fn used(curve: &BSpline<2>, parameters: &[f64], plan: &[f64]) -> f64 {
 #[test]
 fn the_case_set_of_the_paper_on_the_butterfly() {
     let (x, y) = (servo('X'), servo('Y'));
-    let axes: [&dyn Response; 2] = [&x, &y];
+    let axes: [&dyn DriveResponse; 2] = [&x, &y];
     // At its own size, and as long as the paper's first curve.
     for scale in [1.0, 793.0 / 382.859_558] {
         let Some(curve) = butterfly(scale) else {
@@ -247,7 +247,7 @@ fn with_jerk_limits_the_butterfly_takes_longer_and_keeps_them_between_samples() 
             limits.extend([&tip as &dyn Limit, &push]);
         }
         let problem = Problem::new(&samples, &limits, EndSpeeds::default()).unwrap();
-        let plan = jerk::solve(&samples, &limits, &problem, jerk::Settings::default()).unwrap();
+        let plan = jerk::solve(&samples, &limits, &problem, jerk::JerkSettings::default()).unwrap();
         let mut most = [0.0_f64; 3];
         for (interval, piece) in plan.law.pieces.iter().enumerate() {
             let step = plan.law.steps[interval];

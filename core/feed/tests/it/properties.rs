@@ -1,9 +1,9 @@
 //! Problems of any numbers, small enough that a failing one shrinks to something to look at.
 
-use post_feed::jerk::{self, Settings};
+use post_feed::jerk::{self, JerkSettings};
 use post_feed::limits::{AxisJerk, Collocation, Limit};
 use post_feed::problem::{EndSpeeds, LimitRow};
-use post_feed::reach::{self, Stream};
+use post_feed::reach::{self, ReachStream};
 use post_feed::{Infeasible, Problem, linear_program, profile};
 use post_testkit::{Rng, randomised};
 
@@ -112,7 +112,7 @@ fn a_stream_keeps_every_limit_with_any_look_ahead() {
         let lookahead = 1 + random.pick(11);
         problem.ends = EndSpeeds::default();
         let whole = reach::solve(&problem).unwrap();
-        let mut stream = Stream::new(problem.stride(), lookahead);
+        let mut stream = ReachStream::new(problem.stride(), lookahead);
         let mut plan = Vec::new();
         stream.push(&problem, &mut |sample| plan.push(sample.q)).unwrap();
         stream.finish(0.0, &mut |sample| plan.push(sample.q)).unwrap();
@@ -139,7 +139,7 @@ fn plans_with_jerk_limits_keep_them_and_are_no_faster() {
         all.push(&jerk);
         let mut problem = Problem::new(&samples, &all, EndSpeeds::default()).unwrap();
         problem.upper[150] = 0.0;
-        let plan = jerk::solve(&samples, &all, &problem, Settings::default()).unwrap();
+        let plan = jerk::solve(&samples, &all, &problem, JerkSettings::default()).unwrap();
         assert!(plan.seconds >= plan.bound * 0.999, "{seed}: {} {}", plan.seconds, plan.bound);
         assert!((plan.law.q()[150]).abs() < 1e-12, "{seed}");
         for (q, upper) in plan.law.q().iter().zip(&problem.upper) {
@@ -172,7 +172,7 @@ fn too_few_samples_between_two_stops_are_named() {
     all.push(&jerk);
     let mut problem = Problem::new(&samples, &all, EndSpeeds::default()).unwrap();
     (problem.upper[50], problem.upper[53]) = (0.0, 0.0);
-    let fault = jerk::solve(&samples, &all, &problem, Settings::default()).unwrap_err();
+    let fault = jerk::solve(&samples, &all, &problem, JerkSettings::default()).unwrap_err();
     assert_eq!(fault, Infeasible::TooShort { sample: 50 });
 }
 
@@ -186,11 +186,11 @@ fn plans_with_jerk_limits_begin_and_end_at_given_speeds() {
     let mut all: Vec<&dyn Limit> = limits.all().to_vec();
     all.push(&jerk);
     let whole = Problem::new(&samples, &all, EndSpeeds::default()).unwrap();
-    let slow = jerk::solve(&samples, &all, &whole, Settings::default()).unwrap();
+    let slow = jerk::solve(&samples, &all, &whole, JerkSettings::default()).unwrap();
     let least = slow.law.q()[100..300].iter().copied().fold(f64::INFINITY, f64::min);
     let ends = EndSpeeds { start: 0.3 * least, end: 0.3 * least };
     let moving = Problem { ends, ..whole };
-    let plan = jerk::solve(&samples, &all, &moving, Settings::default()).unwrap();
+    let plan = jerk::solve(&samples, &all, &moving, JerkSettings::default()).unwrap();
     let q = plan.law.q();
     assert!((q[0] - ends.start).abs() < 1e-12 * q[0] && (q[400] - ends.end).abs() < 1e-12 * q[0]);
     assert_eq!(plan.law.pieces[0].at(0.0, plan.law.steps[0])[1], 0.0);

@@ -2,7 +2,7 @@
 
 use post_feed::limits::Collocation;
 use post_feed::problem::EndSpeeds;
-use post_feed::reach::{self, Stream};
+use post_feed::reach::{self, ReachStream};
 use post_feed::{Infeasible, Problem};
 use post_testkit::Rng;
 
@@ -15,7 +15,7 @@ fn streamed(
     seed: u64,
 ) -> Result<(Vec<f64>, usize), Infeasible> {
     let mut random = Rng::new(seed);
-    let mut stream = Stream::new(problem.stride(), lookahead);
+    let mut stream = ReachStream::new(problem.stride(), lookahead);
     let mut plan = Vec::new();
     let last = problem.steps.len();
     let mut first = 0;

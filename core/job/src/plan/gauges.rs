@@ -2,7 +2,7 @@
 //! a solver was given.
 
 use post_machine::description::{LimitsActOn, Machine};
-use post_machine::kinematics::{Course, ORDERS};
+use post_machine::kinematics::{JointDerivatives, ORDERS};
 
 use super::keep::Keep;
 
@@ -56,7 +56,7 @@ pub struct Station {
     /// The tip and its derivatives, mm, part frame.
     pub tip: [[f64; 3]; ORDERS],
     /// Axis values and their derivatives.
-    pub course: Course,
+    pub course: JointDerivatives,
     /// Length of the block that it lies on, in units of the parameter; infinite where there are no blocks.
     pub block: f64,
 }

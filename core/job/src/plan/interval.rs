@@ -1,9 +1,9 @@
 //! The plan of a posted program between two samples of its path.
 
-use post_feed::jerk::Piece;
+use post_feed::jerk::IntervalLaw;
 use post_feed::quintic;
 use post_machine::description::Machine;
-use post_machine::kinematics::{Course, ORDERS};
+use post_machine::kinematics::{JointDerivatives, ORDERS};
 use post_posting::plan::PlannedPoint;
 
 use super::gauges::Station;
@@ -18,7 +18,7 @@ const END: f64 = 1e-6;
 #[derive(Clone, Copy, Debug)]
 struct End {
     tip: [[f64; 3]; ORDERS],
-    course: Course,
+    course: JointDerivatives,
     q: [f64; 3],
 }
 
@@ -104,11 +104,11 @@ impl Interval<'_> {
         // Of constant jerk off from rest and to it three places tell too.
         let by_root = |end: f64| (middle - HALF_BY_ROOT * end).abs() <= 1e-9 * end;
         let piece = match [from, to] {
-            [0.0, to] if to > 0.0 && by_root(to) => Piece::Leave(to),
-            [from, 0.0] if from > 0.0 && by_root(from) => Piece::Arrive(from),
+            [0.0, to] if to > 0.0 && by_root(to) => IntervalLaw::Leave(to),
+            [from, 0.0] if from > 0.0 && by_root(from) => IntervalLaw::Arrive(from),
             _ => {
                 let inner = 2.0 * middle - 0.5 * (from + to);
-                return Piece::Quadratic([from, inner, to]).at(share, self.length);
+                return IntervalLaw::Quadratic([from, inner, to]).at(share, self.length);
             }
         };
         piece.at(share.clamp(END, 1.0 - END), self.length)

@@ -1,6 +1,6 @@
 //! What a plan has to keep, as it is shown beside what it uses: the limits of the machine, of its servos and of the job.
 
-use post_feed::response::{Answer, Response};
+use post_feed::response::{ComplexGain, DriveResponse};
 use post_machine::description::Machine;
 use post_machine::servo;
 
@@ -66,7 +66,7 @@ pub struct Deviation {
     /// The formula goes up to here, rad/s.
     highest: f64,
     /// The answers of the axes at even steps of the frequency's logarithm up to the highest.
-    answers: Vec<Vec<Answer>>,
+    answers: Vec<Vec<ComplexGain>>,
     /// By how much of its radius the path of straight axes strays from a circle, likewise.
     table: Vec<f64>,
 }
@@ -75,15 +75,15 @@ pub struct Deviation {
 const LOWEST: f64 = 1e-6;
 
 /// An axis without a servo is where it is commanded.
-struct AxisResponse(Option<servo::Response>);
+struct AxisResponse(Option<servo::FrequencyResponse>);
 
-impl Response for AxisResponse {
-    fn at(&self, frequency: f64) -> Answer {
+impl DriveResponse for AxisResponse {
+    fn at(&self, frequency: f64) -> ComplexGain {
         let Some(servo) = &self.0 else {
-            return Answer::EXACT;
+            return ComplexGain::EXACT;
         };
         let value = servo.at(frequency);
-        Answer { real: value.re, imaginary: value.im }
+        ComplexGain { real: value.re, imaginary: value.im }
     }
 }
 
@@ -92,7 +92,7 @@ impl Deviation {
     fn new(machine: &Machine, axes: &[usize]) -> Option<Self> {
         let servos = axes.iter().map(|place| {
             let servo = machine.axes[*place].servo.as_ref();
-            AxisResponse(servo.map(|servo| servo::Response::new(servo)))
+            AxisResponse(servo.map(|servo| servo::FrequencyResponse::new(servo)))
         });
         let servos: Vec<AxisResponse> = servos.collect();
         let turns = axes.iter().any(|place| machine.axes[*place].joint.rotary);
@@ -101,15 +101,16 @@ impl Deviation {
             return None;
         }
         let highest = servos.iter().filter_map(|servo| servo.0.as_ref());
-        let highest = highest.map(servo::Response::natural_frequency).fold(f64::INFINITY, f64::min);
+        let highest =
+            highest.map(servo::FrequencyResponse::natural_frequency).fold(f64::INFINITY, f64::min);
         let ratio = libm::log(1.0 / LOWEST) / STEPS as f64;
         let at = |step: usize| highest * libm::exp(-ratio * (STEPS - step) as f64);
         let answers = servos.iter().map(|servo| {
             let each = (0..=STEPS).map(|step| servo.at(at(step)));
-            each.collect::<Vec<Answer>>()
+            each.collect::<Vec<ComplexGain>>()
         });
         let answers = answers.collect();
-        let all: Vec<&dyn Response> = servos.iter().map(|servo| servo as _).collect();
+        let all: Vec<&dyn DriveResponse> = servos.iter().map(|servo| servo as _).collect();
         let deviation = |step: usize| post_feed::limits::deviation(&all, at(step));
         let table = (0..=STEPS).map(deviation).collect();
         Some(Self { highest, answers, table })
@@ -165,7 +166,7 @@ impl Deviation {
         let mut common = None;
         for ((rate, velocity, acceleration), answers) in axes.iter().zip(&self.answers) {
             let [a, b] = [answers[below], answers[below + 1]];
-            let answer = Answer {
+            let answer = ComplexGain {
                 real: a.real + share * (b.real - a.real),
                 imaginary: a.imaginary + share * (b.imaginary - a.imaginary),
             };

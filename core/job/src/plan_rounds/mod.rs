@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
-use post_machine::servo::Response;
+use post_machine::servo::FrequencyResponse;
 use post_posting::{ProgramPreview, Tightening};
 use serde::Serialize;
 
@@ -148,10 +148,12 @@ fn allowed(machine: &Machine) -> Result<(f64, Settling), Box<Diagnostic>> {
             .help("[plan] contour_error = 0.01, in mm, or --set plan.contour_error=0.01")
             .boxed());
     };
-    let servos = Response::of_machine(machine);
-    let slowest = |of: fn(&Response) -> f64| servos.iter().flatten().map(of).reduce(f64::min);
-    let pole = |servo: &Response| servo.poles().first().map_or(f64::INFINITY, |pole| -pole.real);
-    let (Some(band), Some(pole)) = (slowest(Response::bandwidth), slowest(pole)) else {
+    let servos = FrequencyResponse::of_machine(machine);
+    let slowest =
+        |of: fn(&FrequencyResponse) -> f64| servos.iter().flatten().map(of).reduce(f64::min);
+    let pole =
+        |servo: &FrequencyResponse| servo.poles().first().map_or(f64::INFINITY, |pole| -pole.real);
+    let (Some(band), Some(pole)) = (slowest(FrequencyResponse::bandwidth), slowest(pole)) else {
         let message = "the machine file describes no servo: there is no contour error to keep";
         return Err(Diagnostic::error("plan-rounds", message)
             .help("[servo.X] for each axis says how it follows")

@@ -4,7 +4,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_motion::contour::ReferencePath;
 use post_readback::MOST_FAULTS;
 use post_readback::course::cl::{ClCourse, ClTool};
-use post_readback::course::{Course, Legs, Window};
+use post_readback::course::{Course, CourseWindow, Legs};
 
 use super::Asked;
 use crate::failure::Failure;
@@ -47,7 +47,7 @@ pub fn open<'f>(
     let input = source.open()?;
     let settings = read_back::course_settings(asked.arguments, asked.machine, &input.name);
     let course = ClCourse::new(settings, input.bytes);
-    let course = Window::new(course, asked.lines.clone());
+    let course = CourseWindow::new(course, asked.lines.clone());
     let legs = Legs::new(course, asked.machine.control_point.along, faults);
     Ok((Box::new(legs), input.name))
 }

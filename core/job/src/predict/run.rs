@@ -7,13 +7,13 @@ use std::sync::Arc;
 
 use post_host::Finder;
 use post_machine::description::Machine;
-use post_machine::diagnostic::{Diagnostic, Place};
+use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_machine::kinematics::{Solver, Unreachable};
 use post_motion::trajectory::{FillOutcome, Planner};
 use post_motion::{SetPoints, Task};
 use post_readback::interpret::{Interpreter, Limits};
-use post_readback::tasks::{Planned, Tasks};
-use post_readback::{Done, Offsets, Run, Told};
+use post_readback::tasks::{ProgramTask, ProgramTasks};
+use post_readback::{BlockEffect, Offsets, ProgramEvent, ProgramRun};
 
 use super::prediction::Prediction;
 use super::sample::Sample;
@@ -72,7 +72,7 @@ pub enum Against<'a> {
 /// Who looks on while a program is predicted.
 pub trait PredictWatch {
     /// What the program does next, before its set-points.
-    fn done(&mut self, _done: &Done) {}
+    fn done(&mut self, _done: &BlockEffect) {}
 
     /// The next set-point.
     ///
@@ -133,7 +133,7 @@ pub fn predict<R: Read + Seek>(
     let input = BufReader::new(input);
     let mut reading = Reading {
         run: control.run(name, input).map_err(|fault| *fault)?,
-        tasks: Tasks::new(machine),
+        tasks: ProgramTasks::new(machine),
         planned: Vec::new(),
         ended: false,
     };
@@ -203,7 +203,7 @@ pub fn predict<R: Read + Seek>(
             "nothing moves in this program: no time, no feed and no error can be predicted";
         let help =
             "is it the program of this machine's control? `post read` says what is read of it";
-        let place = Place::new(name, 1, "", 0..0);
+        let place = SourcePlace::new(name, 1, "", 0..0);
         let finding = Diagnostic::warning("no-motion", message).help(help);
         findings.push(finding.at(Some(place)));
     }
@@ -220,7 +220,7 @@ pub fn predict<R: Read + Seek>(
             found.contour.tip_mm.largest
         );
         let help = "is it the CL file that the program was made from, with the same tool length, mount and units? `post verify` says where they part";
-        let place = Place::new(name, found.contour.tip_mm.nc_line, "", 0..0);
+        let place = SourcePlace::new(name, found.contour.tip_mm.nc_line, "", 0..0);
         let finding = Diagnostic::warning("contour-far", message).help(help);
         findings.push(finding.at(Some(place)));
     }
@@ -229,9 +229,9 @@ pub fn predict<R: Read + Seek>(
 
 /// A program on the way to tasks.
 struct Reading<R> {
-    run: Run<Interpreter<R>>,
-    tasks: Tasks,
-    planned: Vec<Planned>,
+    run: ProgramRun<Interpreter<R>>,
+    tasks: ProgramTasks,
+    planned: Vec<ProgramTask>,
     ended: bool,
 }
 
@@ -255,12 +255,12 @@ impl<R: Read + Seek> Reading<R> {
 }
 
 /// A head was swapped in: from here on the axes are others.
-fn head(done: &[Done], name: &str) -> Option<Diagnostic> {
+fn head(done: &[BlockEffect], name: &str) -> Option<Diagnostic> {
     done.iter().find_map(|done| match done {
-        Done::Told { line, told: Told::Head(head) } => {
+        BlockEffect::Event { line, event: ProgramEvent::Head(head) } => {
             let message = format!("head {head} is swapped in: other axes move from here on");
             let help = "predict the programs of its heads one by one (post --split tools)";
-            let place = Place::new(name, *line, "", 0..0);
+            let place = SourcePlace::new(name, *line, "", 0..0);
             Some(Diagnostic::error("head", message).help(help).at(Some(place)))
         }
         _ => None,
@@ -280,7 +280,7 @@ fn unreachable(fault: Unreachable, name: &str, line: u64) -> Diagnostic {
             number(miss, 4)
         ),
     };
-    let place = Place::new(name, line, "", 0..0);
+    let place = SourcePlace::new(name, line, "", 0..0);
     let help = "tool lengths and work offsets may be others: --tool-length, --offsets, --mount";
     Diagnostic::error("motion-unreachable", message).help(help).at(Some(place))
 }

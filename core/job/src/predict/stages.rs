@@ -10,8 +10,8 @@ use post_motion::contour::{Contour, ContourPoint, ReferencePath};
 use post_motion::servo::Servos;
 use post_motion::trajectory::TaskTime;
 use post_motion::{ProgramPlace, SetPoints, Task};
-use post_readback::State;
-use post_readback::tasks::Planned;
+use post_readback::MachineState;
+use post_readback::tasks::ProgramTask;
 
 use super::feeds::FeedTally;
 use super::found;
@@ -42,7 +42,7 @@ pub struct Stages<'r> {
     /// Tasks before this one have their time.
     timed: u64,
     /// What held for the task that came last, and its row in the table of operations.
-    state: Option<Arc<State>>,
+    state: Option<Arc<MachineState>>,
     operation: usize,
     actual: Vec<Joints>,
     /// Set-points whose contour error is not known yet: what is carried out, and the feed that the tip has and should.
@@ -88,7 +88,7 @@ impl<'r> Stages<'r> {
     }
 
     /// A task is planned now.
-    pub fn ahead(&mut self, planned: &Planned) {
+    pub fn ahead(&mut self, planned: &ProgramTask) {
         self.contour.ahead(&planned.task);
         let same = match (&self.state, &planned.state) {
             (Some(known), Some(state)) => Arc::ptr_eq(known, state),

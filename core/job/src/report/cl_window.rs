@@ -6,8 +6,8 @@ use std::io::Read;
 use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_motion::path::{arc_chords, piece_ends};
-use post_readback::course::cl::{ClCourse, Settings};
-use post_readback::course::{Course, Curve, Item, Piece};
+use post_readback::course::cl::{ClCourse, ClSettings};
+use post_readback::course::{Course, CourseItem, CoursePiece, Curve};
 
 use super::cl_points::{self, Points, Row};
 use super::parts::Parts;
@@ -37,7 +37,7 @@ pub struct ClWindow {
     chord: f64,
     along: f64,
     /// The next piece, read and not taken yet.
-    next: Option<Piece>,
+    next: Option<CoursePiece>,
     segments: Segments,
     faults: u32,
     ended: bool,
@@ -64,7 +64,7 @@ impl ClWindow {
     /// There is no place for its table.
     pub fn new(
         machine: &Machine,
-        settings: Settings,
+        settings: ClSettings,
         input: Box<dyn Read>,
     ) -> Result<Self, Failure> {
         Ok(Self {
@@ -91,8 +91,8 @@ impl ClWindow {
                 self.piece(&piece);
             }
             match self.course.next() {
-                Ok(Some(Item::Piece(piece))) => self.next = Some(piece),
-                Ok(Some(Item::Reach(reach))) => {
+                Ok(Some(CourseItem::Piece(piece))) => self.next = Some(piece),
+                Ok(Some(CourseItem::Reach(reach))) => {
                     self.points.push(reach.line, reach.to.tip, 2.0);
                     self.segments.at = Some(reach.to.tip);
                 }
@@ -154,14 +154,14 @@ impl ClWindow {
         cl_points::pack(machine, self.points, blocks, parts)
     }
 
-    fn piece(&mut self, piece: &Piece) {
+    fn piece(&mut self, piece: &CoursePiece) {
         let (along, chords) = (self.along, self.chords(piece));
         let tips = piece_ends(chords, piece.to.tip, |t| piece.at(t, along).tip);
         let row = |row: Row| self.points.push(row.line, row.at, row.rapid);
         self.segments.go(piece.line, piece.kind, piece.from.tip, tips, row);
     }
 
-    fn chords(&self, piece: &Piece) -> u64 {
+    fn chords(&self, piece: &CoursePiece) -> u64 {
         match &piece.curve {
             Curve::Straight if self.along == 0.0 => 1,
             // The point above goes straight, and the tip on a bow.

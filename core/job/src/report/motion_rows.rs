@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 use post_motion::path::{Curve, Interpolation, arc_chords};
-use post_readback::{Done, Motion, MotionKind, Told};
+use post_readback::{BlockEffect, Motion, MotionKind, ProgramEvent};
 use post_report::meta::{AxisUsed, Meta};
 
 use super::block_rows::{decimals, packed};
@@ -235,16 +235,16 @@ impl<'m> MotionRows<'m> {
     }
 
     /// What the program does next.
-    pub fn take(&mut self, done: &Done) {
+    pub fn take(&mut self, done: &BlockEffect) {
         match done {
-            Done::Motion(motion) => {
+            BlockEffect::Motion(motion) => {
                 self.motion(motion);
                 if !self.told_of {
                     self.write(None);
                 }
             }
-            Done::Told { told, .. } => self.told(told),
-            Done::State(state) => {
+            BlockEffect::Event { event: told, .. } => self.told(told),
+            BlockEffect::State(state) => {
                 let operation = state.operation.as_deref().unwrap_or_default();
                 if operation != self.operation {
                     self.operation = operation.to_owned();
@@ -419,9 +419,9 @@ impl<'m> MotionRows<'m> {
         self.table.row(&row);
     }
 
-    fn told(&mut self, told: &Told) {
+    fn told(&mut self, told: &ProgramEvent) {
         match told {
-            Told::ToolChange { number, name } => {
+            ProgramEvent::ToolChange { number, name } => {
                 if *number != self.tool || number.is_none() {
                     let number = number.map_or(String::new(), |number| format!(" {number}"));
                     let name = name.as_ref().map_or(String::new(), |name| format!(" {name}"));
@@ -429,19 +429,19 @@ impl<'m> MotionRows<'m> {
                 }
                 self.tool = *number;
             }
-            Told::Dwell { time, revolutions: false } => {
+            ProgramEvent::Dwell { time, revolutions: false } => {
                 self.time += time;
                 self.marks.event(self.came, "dwell", format!("{time} s"));
             }
-            Told::Stop => self.marks.event(self.came, "stop", "stop"),
-            Told::OptionalStop => self.marks.event(self.came, "stop", "optional stop"),
-            Told::Head(name) => {
+            ProgramEvent::Stop => self.marks.event(self.came, "stop", "stop"),
+            ProgramEvent::OptionalStop => self.marks.event(self.came, "stop", "optional stop"),
+            ProgramEvent::Head(name) => {
                 let (machine, number) = axes::with_head(self.base, name);
                 self.machine = machine;
                 self.branch = Branch::new(machine);
                 self.marks.head(self.came, name, number);
             }
-            Told::Cycle(_) => self.marks.event(self.came, "cycle", "hole"),
+            ProgramEvent::Cycle(_) => self.marks.event(self.came, "cycle", "hole"),
             _ => {}
         }
     }

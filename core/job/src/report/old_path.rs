@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_motion::path::piece_ends;
 use post_readback::interpret::Interpreter;
-use post_readback::{Done, Run};
+use post_readback::{BlockEffect, ProgramRun};
 
 use super::cl_points::{self, Row};
 use super::page_table::PageTable;
@@ -32,12 +32,12 @@ const APART: f64 = 10.0;
 
 /// Reads the old program as far as it is asked for.
 pub struct OldPath {
-    run: Run<Interpreter<File>>,
+    run: ProgramRun<Interpreter<File>>,
     table: PageTable<Row>,
     segments: Segments,
     /// Segments that stand behind the place that was found last.
     behind: usize,
-    done: Vec<Done>,
+    done: Vec<BlockEffect>,
     ended: bool,
 }
 
@@ -46,7 +46,7 @@ impl OldPath {
     ///
     /// # Errors
     /// There is no place for its table.
-    pub fn new(machine: &Machine, run: Run<Interpreter<File>>) -> Result<Self, Failure> {
+    pub fn new(machine: &Machine, run: ProgramRun<Interpreter<File>>) -> Result<Self, Failure> {
         Ok(Self {
             run,
             table: cl_points::table(machine, false)?,
@@ -110,7 +110,7 @@ impl OldPath {
         std::mem::swap(done, &mut self.done);
         let done = std::mem::take(&mut self.done);
         for next in &done {
-            let Done::Motion(motion) = next else {
+            let BlockEffect::Motion(motion) = next else {
                 continue;
             };
             let chords = match motion.way.is_curved() {

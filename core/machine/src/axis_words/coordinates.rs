@@ -2,11 +2,11 @@
 
 use nalgebra::Vector3;
 
-use super::{Word, WordValues, Words};
+use super::{AxisWords, Word, WordValues};
 use crate::description::Tcp;
 use crate::kinematics::Joints;
 
-impl Words {
+impl AxisWords {
     /// The linear words in the order X, Y, Z; none where they are others, fewer or more.
     fn cartesian(&self) -> Option<&[Word; 3]> {
         let words = self.linear.as_slice().try_into().ok()?;

@@ -14,7 +14,7 @@ const SQUARE: f64 = 1.0;
 
 /// Chain and class of a machine.
 #[derive(Clone, Debug, Serialize)]
-pub struct Class {
+pub struct MachineClass {
     /// The chain as a sentence.
     pub chain: String,
     /// `five-axis, table-table: C on A, orthogonal`.
@@ -26,16 +26,16 @@ pub struct Class {
     /// Axes that carry the tool, from the bed to the tool.
     pub carry_the_tool: Vec<String>,
     /// Angles between neighbouring rotary axes, and between the last and the tool, degrees from 0 to 90.
-    pub angles: Vec<Between>,
+    pub angles: Vec<PairMeasure>,
     /// Shortest distances between neighbouring rotary lines, and from the last to the gauge point, mm.
-    pub distances: Vec<Between>,
+    pub distances: Vec<PairMeasure>,
     /// The axes in chain order.
     pub axes: Vec<AxisLine>,
 }
 
 /// A measure between two parts of the machine.
 #[derive(Clone, Debug, Serialize)]
-pub struct Between {
+pub struct PairMeasure {
     /// The one.
     pub from: String,
     /// The other.
@@ -67,7 +67,7 @@ pub struct AxisLine {
     pub max_feed: Option<f64>,
 }
 
-impl Class {
+impl MachineClass {
     /// What kind of machine it is.
     pub fn of(machine: &Machine) -> Self {
         let rotary: Vec<usize> =
@@ -145,7 +145,7 @@ fn sentence(axes: &[Axis]) -> String {
     text
 }
 
-fn name(machine: &Machine, rotary: &[usize], angles: &[Between]) -> String {
+fn name(machine: &Machine, rotary: &[usize], angles: &[PairMeasure]) -> String {
     let count = machine.axes.len();
     let number_word = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"]
         .get(count)
@@ -225,7 +225,7 @@ fn name(machine: &Machine, rotary: &[usize], angles: &[Between]) -> String {
 }
 
 /// Angles and distances from each rotary axis to the next, and from the last to the tool.
-fn between(machine: &Machine, rotary: &[usize]) -> (Vec<Between>, Vec<Between>) {
+fn between(machine: &Machine, rotary: &[usize]) -> (Vec<PairMeasure>, Vec<PairMeasure>) {
     let (mut angles, mut distances) = (Vec::new(), Vec::new());
     let acute = |a: Vector3<f64>, b: Vector3<f64>| {
         let degrees = angle(a, b).to_degrees();
@@ -233,19 +233,19 @@ fn between(machine: &Machine, rotary: &[usize]) -> (Vec<Between>, Vec<Between>) 
     };
     for pair in rotary.windows(2) {
         let [from, to] = [pair[0], pair[1]].map(|place| &machine.axes[place]);
-        let measure = |value| Between { from: from.name.clone(), to: to.name.clone(), value };
+        let measure = |value| PairMeasure { from: from.name.clone(), to: to.name.clone(), value };
         angles.push(measure(acute(from.joint.direction, to.joint.direction)));
         distances.push(measure(line_distance(&from.joint, &to.joint)));
     }
     if let Some(last) = rotary.last() {
         let axis = &machine.axes[*last];
-        angles.push(Between {
+        angles.push(PairMeasure {
             from: axis.name.clone(),
             to: "tool".to_owned(),
             value: acute(axis.joint.direction, machine.tool_axis),
         });
         let arm = machine.gauge - axis.joint.point;
-        distances.push(Between {
+        distances.push(PairMeasure {
             from: axis.name.clone(),
             to: "gauge point".to_owned(),
             value: axis.joint.direction.cross(&arm).norm(),

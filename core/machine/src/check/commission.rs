@@ -26,12 +26,12 @@ pub struct Commission {
     /// rotary axes at rest.
     pub start: Joints,
     /// The moves, linear axes first.
-    pub trials: Vec<Trial>,
+    pub trials: Vec<CommissionMove>,
 }
 
 /// One axis moved in one direction from the start.
 #[derive(Clone, Debug)]
-pub struct Trial {
+pub struct CommissionMove {
     /// Place of the axis in the chain.
     pub place: usize,
     /// Way of the axis, mm or radians.
@@ -83,7 +83,7 @@ impl Commission {
                     continue;
                 }
                 let largest = SLOW * axis.max_feed / axis.unit();
-                trials.push(Trial {
+                trials.push(CommissionMove {
                     place,
                     by,
                     feed: largest.min(if axis.joint.rotary { ROTARY_FEED } else { LINEAR_FEED }),

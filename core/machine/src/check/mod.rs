@@ -20,16 +20,16 @@ mod volume;
 
 use serde::Serialize;
 
-pub use class::{AxisLine, Class};
-pub use commission::{Commission, Trial};
-pub use nominal::{Comparison, Differing, Share, compare};
-pub use pointing::{Pole, Poles, Reading, Solutions, WayOfPointing};
-pub use reach::{Map, Reach};
+pub use class::{AxisLine, MachineClass};
+pub use commission::{Commission, CommissionMove};
+pub use nominal::{Comparison, DifferenceShare, Differing, compare};
+pub use pointing::{AxisReadout, DirectionSolutions, Pole, Poles, WayOfPointing};
+pub use reach::{DirectionMap, ReachableCone};
 pub use round_trip::RoundTrip;
 pub use signs::Sign;
 pub use volume::Volume;
 
-pub use probe::{Probe, Work};
+pub use probe::{InverseWork, Probe};
 
 use crate::description::Machine;
 use crate::diagnostic::Diagnostic;
@@ -43,7 +43,7 @@ pub struct Check {
     /// Length of the tool that it was derived with, mm from the gauge point.
     pub tool_length_mm: f64,
     /// Chain and class.
-    pub class: Class,
+    pub class: MachineClass,
     /// How the chain is solved: in closed form, or numerically.
     pub solved: String,
     /// How the tool leaves the part, where the machine file has another way than that of the depth axis.
@@ -52,11 +52,11 @@ pub struct Check {
     /// What each axis does, a line an axis and direction.
     pub signs: Vec<Sign>,
     /// The solutions for one direction, written out.
-    pub typical: Option<Solutions>,
+    pub typical: Option<DirectionSolutions>,
     /// Directions that can be made in no single way.
     pub poles: Poles,
     /// Which directions the tool can take, and in how many ways.
-    pub reach: Reach,
+    pub reach: ReachableCone,
     /// Where the tip can go with the tool upright.
     pub volume: Option<Volume>,
     /// Forward and inverse against each other.
@@ -65,7 +65,7 @@ pub struct Check {
     pub warnings: Vec<String>,
     /// What it cost.
     #[serde(skip)]
-    pub work: Work,
+    pub work: InverseWork,
 }
 
 impl Check {
@@ -75,8 +75,8 @@ impl Check {
     /// What the chain lacks.
     pub fn of(machine: &Machine, length: f64) -> Result<Self, NoClosedForm> {
         let probe = Probe::new(machine, length)?;
-        let class = Class::of(machine);
-        let reach = Reach::of(&probe);
+        let class = MachineClass::of(machine);
+        let reach = ReachableCone::of(&probe);
         let volume = Volume::of(&probe);
         let round_trip = RoundTrip::of(&probe);
         let warnings = warnings(&probe, &reach, volume.as_ref(), &round_trip);
@@ -115,7 +115,7 @@ const ROUND_TRIP: f64 = 1e-6;
 
 fn warnings(
     probe: &Probe<'_>,
-    reach: &Reach,
+    reach: &ReachableCone,
     volume: Option<&Volume>,
     round_trip: &RoundTrip,
 ) -> Vec<String> {

@@ -9,7 +9,7 @@
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::pointing::Reading;
+use super::pointing::AxisReadout;
 use crate::description::{Axis, Machine};
 use crate::kinematics::orientation::angle;
 use crate::kinematics::{Chain, Joints, MAX_AXES, Pose, Solver};
@@ -34,20 +34,20 @@ pub struct Comparison {
     /// Tip of the machine minus tip of the other there, mm, part frame.
     pub tip: [f64; 3],
     /// Axis values there: readings of the machine under check.
-    pub tip_at: Vec<Reading>,
+    pub tip_at: Vec<AxisReadout>,
     /// What each difference contributes there, the largest first.
-    pub tip_shares: Vec<Share>,
+    pub tip_shares: Vec<DifferenceShare>,
     /// Largest angle between the two tool axes, degrees.
     pub axis_deg: f64,
     /// Values of the rotary axes there.
-    pub axis_at: Vec<Reading>,
+    pub axis_at: Vec<AxisReadout>,
     /// What each difference contributes there, the largest first.
-    pub axis_shares: Vec<Share>,
+    pub axis_shares: Vec<DifferenceShare>,
 }
 
 /// What one difference between the files does by itself.
 #[derive(Clone, Debug, Serialize)]
-pub struct Share {
+pub struct DifferenceShare {
     /// `direction of Z`, `position of A`, `gauge point`.
     pub of: String,
     /// What the files differ by there: mm or degrees.
@@ -170,10 +170,10 @@ fn both(real: &Worded<'_>, drawn: &Worded<'_>, joints: &Joints) -> [Pose; 2] {
     [real.chain().forward(joints), drawn.at_words_of(real, joints)]
 }
 
-fn readings(machine: &Machine, joints: &Joints, of: impl Fn(&Axis) -> bool) -> Vec<Reading> {
+fn readings(machine: &Machine, joints: &Joints, of: impl Fn(&Axis) -> bool) -> Vec<AxisReadout> {
     let axes = machine.axes.iter().zip(joints);
     axes.filter(|(axis, _)| of(axis))
-        .map(|(axis, value)| Reading { axis: axis.name.clone(), value: axis.reading(*value) })
+        .map(|(axis, value)| AxisReadout { axis: axis.name.clone(), value: axis.reading(*value) })
         .collect()
 }
 
@@ -254,7 +254,7 @@ fn shares(
     length: f64,
     joints: &Joints,
     deviation: impl Fn(&Pose, &Pose) -> Vector3<f64>,
-) -> Result<Vec<Share>, Differing> {
+) -> Result<Vec<DifferenceShare>, Differing> {
     let (machine, nominal) = (real.machine, drawn.machine);
     let mut changed: Vec<(String, f64, Machine)> = Vec::new();
     for (place, (axis, other)) in machine.axes.iter().zip(&nominal.axes).enumerate() {
@@ -310,7 +310,7 @@ fn shares(
     for (of, differs_by, hybrid) in changed {
         let pose = Worded::new(&hybrid, length)?.at_words_of(real, joints);
         let vector = deviation(&pose, &drawn_pose);
-        shares.push(Share { of, differs_by, size: vector.norm(), vector: vector.into() });
+        shares.push(DifferenceShare { of, differs_by, size: vector.norm(), vector: vector.into() });
     }
     shares.sort_by(|a, b| b.size.total_cmp(&a.size));
     Ok(shares)

@@ -9,7 +9,7 @@ use crate::kinematics::{Joints, Unreachable};
 
 /// All solutions for one direction.
 #[derive(Clone, Debug, Serialize)]
-pub struct Solutions {
+pub struct DirectionSolutions {
     /// Tool axis, part frame.
     pub axis: [f64; 3],
     /// Tilt from +Z, degrees.
@@ -31,7 +31,7 @@ const MOST_SHOWN: usize = 8;
 #[derive(Clone, Debug, Serialize)]
 pub struct WayOfPointing {
     /// What the control shows of the free rotary axes, nearest to rest.
-    pub readings: Vec<Reading>,
+    pub readings: Vec<AxisReadout>,
     /// How many full turns of it lie inside travel; 0: it is out of travel.
     pub turns: usize,
     /// Index axes have positions there.
@@ -40,7 +40,7 @@ pub struct WayOfPointing {
 
 /// What the control shows of an axis.
 #[derive(Clone, Debug, Serialize)]
-pub struct Reading {
+pub struct AxisReadout {
     /// Address of the axis.
     pub axis: String,
     /// mm or degrees.
@@ -49,7 +49,7 @@ pub struct Reading {
 
 /// A direction for a look at the solutions: tilted 20° towards azimuth 30°, or, if the machine does not reach
 /// it, one that it makes a third into the travel of its rotary axes.
-pub(super) fn typical(probe: &Probe<'_>) -> Option<Solutions> {
+pub(super) fn typical(probe: &Probe<'_>) -> Option<DirectionSolutions> {
     if probe.freedom() == 0 {
         return None;
     }
@@ -79,7 +79,7 @@ pub(super) fn typical(probe: &Probe<'_>) -> Option<Solutions> {
             has_positions: probe.has_positions(&probe.free(), joints),
         })
         .collect();
-    Some(Solutions {
+    Some(DirectionSolutions {
         axis: axis.into(),
         tilt_deg: angle(axis, Vector3::z()).to_degrees(),
         azimuth_deg: libm::atan2(axis.y, axis.x).to_degrees(),
@@ -97,10 +97,10 @@ pub(super) fn direction(tilt: f64, azimuth: f64) -> Vector3<f64> {
 }
 
 /// What the control shows of the free rotary axes.
-fn readings(probe: &Probe<'_>, joints: &Joints) -> Vec<Reading> {
+fn readings(probe: &Probe<'_>, joints: &Joints) -> Vec<AxisReadout> {
     let reading = |place: usize| {
         let axis = &probe.machine().axes[place];
-        Reading { axis: axis.name.clone(), value: axis.reading(joints[place]) }
+        AxisReadout { axis: axis.name.clone(), value: axis.reading(joints[place]) }
     };
     probe.free().into_iter().map(reading).collect()
 }
@@ -129,7 +129,7 @@ pub struct Pole {
     /// The directions that miss it by so much are the nearest that can be made, degrees; 0 if it can be met.
     pub missed_by_deg: f64,
     /// What the control shows of the others there, nearest to rest.
-    pub others: Vec<Reading>,
+    pub others: Vec<AxisReadout>,
 }
 
 impl Poles {

@@ -27,7 +27,7 @@ const SETTINGS: [f64; 4] = [0.31, 0.47, 0.62, 0.83];
 
 /// What was asked of the inverse, so that a check has an end by design on every chain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
+pub struct InverseWork {
     /// Poses that the inverse was asked for.
     pub poses: usize,
     /// Steps of numeric searches; none where there is a closed form.
@@ -44,7 +44,7 @@ pub struct Probe<'a> {
     /// See [`settings::solvers`].
     solvers: Vec<Solver>,
     length: f64,
-    work: Cell<Work>,
+    work: Cell<InverseWork>,
     /// Axis values at rest: the drawing's zero, or the nearest value inside travel; an indexed axis where it starts.
     home: Joints,
     freedom: usize,
@@ -98,13 +98,13 @@ impl<'a> Probe<'a> {
     }
 
     /// What was asked of the inverse up to now.
-    pub fn work(&self) -> Work {
+    pub fn work(&self) -> InverseWork {
         self.work.get()
     }
 
     pub(super) fn count(&self, poses: usize, steps: usize) {
         let work = self.work.get();
-        self.work.set(Work { poses: work.poses + poses, steps: work.steps + steps });
+        self.work.set(InverseWork { poses: work.poses + poses, steps: work.steps + steps });
     }
 
     /// Axis values at rest.

@@ -22,7 +22,7 @@ const CURVE: usize = 361;
 
 /// The reachable cone.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Reach {
+pub struct ReachableCone {
     /// Number of independent ways in which the tool axis can move in a cut: 0, 1 (along a curve), 2 (over an area).
     pub freedom: usize,
     /// Share of the sphere of directions that can be made, 0 to 1.
@@ -51,19 +51,19 @@ pub struct Reach {
     pub ways_upright: usize,
     /// Cells of the sphere for a picture.
     #[serde(skip)]
-    pub map: Map,
+    pub map: DirectionMap,
 }
 
 /// The numbers of solutions over the sphere of directions.
 #[derive(Clone, Debug, Default)]
-pub struct Map {
+pub struct DirectionMap {
     /// A row a band of tilt, from +Z to -Z, and in it a cell an azimuth, from +X towards +Y: solutions in its middle.
     pub cells: Vec<Vec<usize>>,
     /// Where fewer than two axes turn the tool, the directions that it can take instead: tilt and azimuth, radians.
     pub curve: Vec<[f64; 2]>,
 }
 
-impl Reach {
+impl ReachableCone {
     pub(super) fn of(probe: &Probe<'_>) -> Self {
         let mut reach = if probe.freedom() < 2 {
             Self::along_a_curve(probe)
@@ -134,14 +134,14 @@ impl Reach {
             tilt_in_all_azimuths_deg: all.map(f64::to_degrees),
             tilt_in_some_azimuth_deg: some.map(|(tilt, _)| tilt.to_degrees()),
             azimuth_of_largest_tilt_deg: some.map(|(_, azimuth)| azimuth.to_degrees()),
-            map: Map { cells, curve: Vec::new() },
+            map: DirectionMap { cells, curve: Vec::new() },
             ..Self::default()
         }
     }
 
     /// Finds the reach of a chain without a closed form by a search over a coarse map.
     fn by_search(probe: &Probe<'_>) -> Self {
-        let search::Directions { cells, borders } = search::directions(probe);
+        let search::ReachableDirections { cells, borders } = search::directions(probe);
         let band = |edge: usize| PI * edge as f64 / search::TILTS as f64;
         let mut share = 0.0;
         for (row, cells) in cells.iter().enumerate() {
@@ -198,7 +198,7 @@ impl Reach {
             azimuth_of_largest_tilt_deg: largest
                 .filter(|[tilt, _]| *tilt > 1e-6)
                 .map(|[_, azimuth]| azimuth.to_degrees()),
-            map: Map { cells: Vec::new(), curve },
+            map: DirectionMap { cells: Vec::new(), curve },
             ..Self::default()
         }
     }

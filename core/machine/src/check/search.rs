@@ -23,15 +23,15 @@ pub(super) const AZIMUTHS: usize = 72;
 pub(super) const TILTS: usize = 36;
 
 /// Which directions were found to be made inside the travel of the rotary axes, the tip on the part origin.
-pub(super) struct Directions {
+pub(super) struct ReachableDirections {
     /// 1 for each that is made, 0 for the others: a row a band of tilt, in it a cell an azimuth.
     pub cells: Vec<Vec<usize>>,
     /// Tilt at each azimuth up to which all are made, and the largest that is, radians; none if not even the first.
     pub borders: Vec<[Option<f64>; 2]>,
 }
 
-/// See [`Directions`].
-pub(super) fn directions(probe: &Probe<'_>) -> Directions {
+/// See [`ReachableDirections`].
+pub(super) fn directions(probe: &Probe<'_>) -> ReachableDirections {
     let mut flood = Flood {
         probe,
         left: MAP_STEPS,
@@ -55,7 +55,7 @@ pub(super) fn directions(probe: &Probe<'_>) -> Directions {
     probe.count(0, MAP_STEPS - flood.left);
     let made = |cell: &Option<Joints>| usize::from(cell.is_some());
     let row = |row: &Vec<Option<Joints>>| row.iter().map(made).collect();
-    Directions { cells: flood.cells.iter().map(row).collect(), borders }
+    ReachableDirections { cells: flood.cells.iter().map(row).collect(), borders }
 }
 
 struct Flood<'a> {
@@ -93,7 +93,7 @@ impl Flood<'_> {
         found.ok().and_then(|joints| self.probe.inside(&joints))
     }
 
-    /// See [`Directions::borders`].
+    /// See [`ReachableDirections::borders`].
     fn borders(&mut self, cell: usize) -> [Option<f64>; 2] {
         let made = |band: usize| self.cells[band][cell].is_some();
         let first = (0..TILTS).take_while(|band| made(*band)).last();

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::pointing::Reading;
+use super::pointing::AxisReadout;
 use super::probe::Probe;
 use crate::kinematics::Joints;
 use crate::kinematics::travel::passed;
@@ -14,18 +14,18 @@ pub struct Volume {
     /// Tool axis, part frame: +Z if it can be made, else that of the axes at rest.
     pub axis: [f64; 3],
     /// Where the rotary axes stand for it.
-    pub rotary: Vec<Reading>,
+    pub rotary: Vec<AxisReadout>,
     /// Least tip, mm; none where rotary axes place the tip too.
     pub least: Option<[f64; 3]>,
     /// Largest tip, mm; none where rotary axes place the tip too.
     pub most: Option<[f64; 3]>,
     /// Axes that stand outside their travel with the tip on the part origin.
-    pub origin_out: Vec<Out>,
+    pub origin_out: Vec<OutsideTravel>,
 }
 
 /// A value outside travel.
 #[derive(Clone, Debug, Serialize)]
-pub struct Out {
+pub struct OutsideTravel {
     /// Address of the axis.
     pub axis: String,
     /// Reading that is asked for.
@@ -66,7 +66,7 @@ impl Volume {
                 let axis = &machine.axes[*place];
                 let [least, most] = axis.travel?;
                 let value = at_origin[*place];
-                passed(axis.travel, value, 1e-6).map(|_| Out {
+                passed(axis.travel, value, 1e-6).map(|_| OutsideTravel {
                     axis: axis.name.clone(),
                     value: axis.reading(value),
                     travel: [axis.reading(least), axis.reading(most)],
@@ -78,7 +78,10 @@ impl Volume {
             .iter()
             .zip(at_origin)
             .filter(|(axis, _)| axis.joint.rotary)
-            .map(|(axis, value)| Reading { axis: axis.name.clone(), value: axis.reading(value) })
+            .map(|(axis, value)| AxisReadout {
+                axis: axis.name.clone(),
+                value: axis.reading(value),
+            })
             .collect();
         Some(Self {
             axis: axis.into(),

@@ -7,18 +7,18 @@ use serde::Serialize;
 use super::GivenOption;
 use super::build::Builder;
 use super::file::{AccuracyFile, ControlPointFile, Method, Placement};
-use crate::diagnostic::{Place, Short};
+use crate::diagnostic::{Short, SourcePlace};
 
 /// Share of the tool axis' tolerance that may be used close to a pole; the rest is for what happens between points.
 pub const SHARE_AT_POLES: f64 = 0.75;
 
 /// Tolerances and how they are kept.
 #[derive(Clone, Debug)]
-pub struct Accuracy {
+pub struct AccuracyRules {
     /// Name of the error model.
     pub model: String,
     /// Where the file names it.
-    pub model_place: Option<Place>,
+    pub model_place: Option<SourcePlace>,
     /// Options for the model.
     pub options: Vec<GivenOption>,
     /// What is done about a move that strays.
@@ -61,7 +61,7 @@ impl Builder<'_> {
         &mut self,
         file: &AccuracyFile,
         options: &mut BTreeMap<String, Vec<GivenOption>>,
-    ) -> Accuracy {
+    ) -> AccuracyRules {
         let model = file
             .model
             .as_ref()
@@ -81,7 +81,7 @@ impl Builder<'_> {
             );
             self.fault("machine-accuracy", said.span(), message, "the unit is mm: 3 µm are 0.003");
         }
-        Accuracy {
+        AccuracyRules {
             servo_compensation,
             options: options.remove(&model).unwrap_or_default(),
             model,

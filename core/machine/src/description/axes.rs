@@ -9,7 +9,7 @@ use toml::Spanned;
 use super::build::Builder;
 use super::file::{AxisFile, MachineFile};
 use super::limits::MOST_ENTRIES;
-use super::quantity::Quantity;
+use super::quantity::KeyedNumber;
 use super::{Axis, Clamp, Indexed, Positions};
 use crate::kinematics::travel::{AT_END, passed};
 use crate::kinematics::{Joint, MAX_AXES, Second};
@@ -166,7 +166,7 @@ impl Builder<'_> {
         let zero = axis.zero.as_ref().map_or(0.0, |zero| self.number(zero));
         let travel = self.travel(name, spanned, zero, unit);
         let of = format!(" of {name}");
-        let mut rate = |given: &Option<Quantity>| {
+        let mut rate = |given: &Option<KeyedNumber>| {
             given.as_ref().map(|given| self.within_bounds(given, &of) * unit)
         };
         let max_feed = rate(&axis.max_feed).unwrap_or(f64::INFINITY);
@@ -177,7 +177,7 @@ impl Builder<'_> {
                 format!("feed_diameter of {name}: it is for rotary axes, whose ways are angles");
             self.fault("machine-axis", given.span(), message, "");
         }
-        let mut rate = |given: &Option<Quantity>| {
+        let mut rate = |given: &Option<KeyedNumber>| {
             given.as_ref().map(|given| self.within_bounds(given, &of) * unit)
         };
         let max_accel = rate(&axis.max_accel).unwrap_or(f64::INFINITY);

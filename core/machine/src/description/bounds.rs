@@ -5,7 +5,7 @@ use std::ops::Range;
 use serde_json::{Value, json};
 
 use super::build::Builder;
-use super::quantity::Quantity;
+use super::quantity::KeyedNumber;
 use super::table::{Count, Key};
 use crate::diagnostic::Short;
 
@@ -126,12 +126,12 @@ impl Bounds {
 
 impl Builder<'_> {
     /// The number that a key is given, if it is; a fault where its bounds refuse it.
-    pub(super) fn checked(&mut self, given: &Option<Quantity>) -> Option<f64> {
+    pub(super) fn checked(&mut self, given: &Option<KeyedNumber>) -> Option<f64> {
         given.as_ref().map(|given| self.within_bounds(given, ""))
     }
 
     /// The number that a key is given; a fault where its bounds refuse it, with `of` behind the key's name.
-    pub(super) fn within_bounds(&mut self, given: &Quantity, of: &str) -> f64 {
+    pub(super) fn within_bounds(&mut self, given: &KeyedNumber, of: &str) -> f64 {
         let value = self.number(given);
         if given.key.bounds.refuse(value) {
             self.out_of_bounds(given.key, given.span(), of, &Short(value).to_string());

@@ -11,20 +11,20 @@ use toml::de::{DeTable, DeValue};
 use super::echoes;
 use super::file::{ControlFile, MachineFile, Rapid, Tcp};
 use super::keys::typed;
-use super::layers::{Merged, Source, Sources, overlay};
+use super::layers::{MachineSources, Merged, Source, overlay};
 use super::limits::{
     MOST_ENTRIES, MOST_FAULTS, MOST_GROUPS, MOST_HEADS, MOST_OFFSETS, MOST_PARAMETERS, MOST_TURNS,
 };
 use super::numbers::EvaluatedAt;
 use super::options::take_options;
-use super::quantity::Quantity;
+use super::quantity::KeyedNumber;
 use super::setting::Setting;
-use super::table::Given;
+use super::table::KeyedValue;
 use super::{
-    Accuracy, Arcs, Axis, Control, ControlPoint, Frame, GivenOption, Head, Machine, ProgramRules,
-    SmoothingRules, SpindleSpeeds, UnusedOptions, WordRule,
+    AccuracyRules, Arcs, Axis, ControlPoint, ControlRules, Frame, GivenOption, Head, Machine,
+    ProgramRules, SmoothingRules, SpindleSpeeds, UnusedOptions, WordRule,
 };
-use crate::diagnostic::{Diagnostic, Place, Short};
+use crate::diagnostic::{Diagnostic, Short, SourcePlace};
 
 /// The value of an expression of a machine file.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +39,7 @@ pub struct Evaluated {
 
 /// What a machine file was read as.
 #[derive(Clone, Debug)]
-pub struct Reading {
+pub struct MachineReading {
     /// The machine; or everything that is wrong with its file, each with its place and a remedy.
     pub machine: Result<Machine, Vec<Diagnostic>>,
     /// The expressions that have a value, in the order read; one that several machines share (heads) stands there for each.
@@ -64,12 +64,12 @@ pub fn examine(
     source: Source,
     settings: &[Setting],
     find: &mut dyn FnMut(&str) -> Result<Source, String>,
-) -> Reading {
+) -> MachineReading {
     let mut evaluated = Vec::new();
-    let sources = match Sources::collect(source, settings, find) {
+    let sources = match MachineSources::collect(source, settings, find) {
         Ok(sources) => sources,
         Err(faults) => {
-            return Reading { machine: Err(faults), values: Vec::new() };
+            return MachineReading { machine: Err(faults), values: Vec::new() };
         }
     };
     let machine = with_heads(&sources, &mut evaluated);
@@ -78,12 +78,12 @@ pub fn examine(
         let (file, span) = sources.local(span)?;
         Some(Evaluated { file: file.to_owned(), span, value })
     });
-    Reading { machine, values: values.collect() }
+    MachineReading { machine, values: values.collect() }
 }
 
 /// The machine with all its heads.
 fn with_heads(
-    sources: &Sources,
+    sources: &MachineSources,
     evaluated: &mut Vec<EvaluatedAt>,
 ) -> Result<Machine, Vec<Diagnostic>> {
     let Merged { mut table, faults } = sources.merge()?;
@@ -132,7 +132,7 @@ fn with_heads(
 /// `[head.NAME]`: what differs with another head, and the word that swaps it in.
 struct HeadLayer<'i> {
     name: String,
-    place: Option<Place>,
+    place: Option<SourcePlace>,
     word: Option<String>,
     offset: Option<u32>,
     overrides: DeTable<'i>,
@@ -140,7 +140,7 @@ struct HeadLayer<'i> {
 
 fn take_heads<'i>(
     table: &mut Spanned<DeTable<'i>>,
-    sources: &Sources,
+    sources: &MachineSources,
 ) -> Result<Vec<HeadLayer<'i>>, Vec<Diagnostic>> {
     let Some(heads) = table.get_mut().remove("head") else {
         return Ok(Vec::new());
@@ -205,7 +205,7 @@ fn take_heads<'i>(
     Ok(taken)
 }
 
-fn no_offset(place: Option<Place>) -> Diagnostic {
+fn no_offset(place: Option<SourcePlace>) -> Diagnostic {
     let message =
         format!("the offset of a head is the number of a work offset, 1 to {MOST_OFFSETS}");
     Diagnostic::error("machine-head", message).at(place).help("1 is G54, 2 is G55, and so on")
@@ -215,7 +215,7 @@ fn no_offset(place: Option<Place>) -> Diagnostic {
 /// it.
 fn read(
     mut table: Spanned<DeTable<'_>>,
-    sources: &Sources,
+    sources: &MachineSources,
     unread: Vec<Diagnostic>,
     evaluated: &mut Vec<EvaluatedAt>,
 ) -> Result<Machine, Vec<Diagnostic>> {
@@ -252,8 +252,8 @@ fn read(
 }
 
 pub(super) struct Builder<'a> {
-    pub(super) sources: &'a Sources,
-    pub(super) parameters: &'a BTreeMap<String, Quantity>,
+    pub(super) sources: &'a MachineSources,
+    pub(super) parameters: &'a BTreeMap<String, KeyedNumber>,
     /// The parameters that have a value.
     pub(super) values: BTreeMap<&'a str, f64>,
     /// The parameters that have none, which is said.
@@ -265,7 +265,7 @@ pub(super) struct Builder<'a> {
 
 /// What is told by tables that say nothing of axes.
 struct AxisFreeRules {
-    accuracy: Accuracy,
+    accuracy: AccuracyRules,
     control_point: ControlPoint,
     spindle: SpindleSpeeds,
     arcs: Arcs,
@@ -408,9 +408,9 @@ impl Builder<'_> {
         axes: &[Axis],
         options: Vec<GivenOption>,
         arcs: Arcs,
-    ) -> Control {
+    ) -> ControlRules {
         let turns = axes.iter().any(|axis| axis.joint.rotary);
-        Control {
+        ControlRules {
             dialect: file.dialect.get_ref().clone(),
             dialect_place: self.sources.place(file.dialect.span()),
             options,
@@ -482,9 +482,9 @@ impl Builder<'_> {
 
     /// Tables that are gone through entry by entry have an end.
     fn check_sizes(&mut self, file: &MachineFile) {
-        let parameters = file.parameters.values().map(Given::span);
+        let parameters = file.parameters.values().map(KeyedValue::span);
         self.check_size("[parameters]", parameters, MOST_PARAMETERS);
-        let tools = file.tools.values().map(Given::span);
+        let tools = file.tools.values().map(KeyedValue::span);
         self.check_size("[tools]", tools, MOST_ENTRIES);
         let words = file.cl.words.keys().map(Spanned::span);
         self.check_size("[cl.words]", words, MOST_ENTRIES);
@@ -564,7 +564,7 @@ impl Builder<'_> {
     }
 
     /// The leading edge, made square to the tool axis.
-    fn edge(&mut self, edge: &[Quantity; 3], tool_axis: Vector3<f64>) -> Option<Vector3<f64>> {
+    fn edge(&mut self, edge: &[KeyedNumber; 3], tool_axis: Vector3<f64>) -> Option<Vector3<f64>> {
         let edge_along = self.direction("the leading edge", edge)?;
         let across = edge_along - tool_axis * tool_axis.dot(&edge_along);
         if across.norm() < 0.5 {

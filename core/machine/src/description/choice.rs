@@ -8,15 +8,15 @@ use super::Axis;
 use super::build::Builder;
 use super::file::{EdgeSource, MachineFile, Pole, RewindFile, Side};
 use super::keys::axes_are;
-use super::quantity::Quantity;
+use super::quantity::KeyedNumber;
 use crate::kinematics::Joints;
 use crate::kinematics::travel::passed;
 
 /// Which of several solutions is taken.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Solution {
+pub struct SolutionRules {
     /// What is to be small over the path.
-    pub rule: Rule,
+    pub rule: SolutionCriterion,
     /// Sides of zero on which axes should stand, if they can: place in the chain and side.
     pub prefer: Vec<(usize, Side)>,
     /// Sides of zero that axes must not leave.
@@ -37,7 +37,7 @@ pub struct Solution {
 
 /// What is to be small over the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rule {
+pub enum SolutionCriterion {
     /// Travel of every axis over its largest feed, summed.
     Time,
     /// The time that the machine takes, as far as feeds and accelerations of its axes tell it beforehand.
@@ -79,10 +79,10 @@ pub(super) const FARTHEST: f64 = 1e4 * std::f64::consts::TAU;
 const LOOK_AHEAD: u32 = 2000;
 
 impl Builder<'_> {
-    pub(super) fn solution(&mut self, file: &MachineFile, axes: &[Axis]) -> Solution {
+    pub(super) fn solution(&mut self, file: &MachineFile, axes: &[Axis]) -> SolutionRules {
         let said = &file.solution;
         let rule = match &said.rule {
-            None => Rule::Time,
+            None => SolutionCriterion::Time,
             Some(rule) => self.rule(rule, axes),
         };
         let prefer = self.sides(&said.prefer, axes);
@@ -117,7 +117,7 @@ impl Builder<'_> {
             }
         };
         let corner = self.checked(&said.corner).unwrap_or(10.0).min(180.0);
-        Solution {
+        SolutionRules {
             rule,
             prefer,
             require,
@@ -152,7 +152,7 @@ impl Builder<'_> {
     }
 
     /// Where the axes stand before the first position, mm or radians.
-    fn start(&mut self, said: &BTreeMap<Spanned<String>, Quantity>, axes: &[Axis]) -> Joints {
+    fn start(&mut self, said: &BTreeMap<Spanned<String>, KeyedNumber>, axes: &[Axis]) -> Joints {
         let mut start: Joints = Default::default();
         for (place, axis) in axes.iter().enumerate() {
             start[place] = match &axis.indexed {
@@ -190,25 +190,25 @@ impl Builder<'_> {
         start
     }
 
-    fn rule(&mut self, rule: &Spanned<String>, axes: &[Axis]) -> Rule {
+    fn rule(&mut self, rule: &Spanned<String>, axes: &[Axis]) -> SolutionCriterion {
         let text = rule.get_ref();
         let named = text
             .strip_prefix("axis:")
             .and_then(|name| axes.iter().position(|axis| axis.name == name));
         match (text.as_str(), named) {
-            ("time", _) => Rule::Time,
+            ("time", _) => SolutionCriterion::Time,
             ("cycle-time", _) => {
                 self.accelerations(rule, axes);
-                Rule::CycleTime
+                SolutionCriterion::CycleTime
             }
-            ("travel", _) => Rule::Travel,
-            ("largest-axis", _) => Rule::LargestAxis,
-            (_, Some(place)) => Rule::Axis(place),
+            ("travel", _) => SolutionCriterion::Travel,
+            ("largest-axis", _) => SolutionCriterion::LargestAxis,
+            (_, Some(place)) => SolutionCriterion::Axis(place),
             _ => {
                 let message = format!("there is no rule {text}");
                 let help = "\"time\", \"cycle-time\", \"travel\", \"largest-axis\", or \"axis:C\" for an axis of the chain";
                 self.fault("machine-solution", rule.span(), message, help);
-                Rule::Time
+                SolutionCriterion::Time
             }
         }
     }

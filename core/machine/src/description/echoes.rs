@@ -1,6 +1,6 @@
 //! Faults of a machine file that only repeat another one.
 
-use super::layers::Sources;
+use super::layers::MachineSources;
 use crate::diagnostic::Diagnostic;
 
 /// Keeps those of the faults `found` that stand on their own, and do not repeat one of `hiding`.
@@ -10,7 +10,7 @@ use crate::diagnostic::Diagnostic;
 pub(super) fn own(
     found: Vec<Diagnostic>,
     hiding: &[Diagnostic],
-    sources: &Sources,
+    sources: &MachineSources,
 ) -> Vec<Diagnostic> {
     let tables: Vec<_> = hiding.iter().map(|fault| sources.table_of(fault)).collect();
     // A parameter may be missing, so that an expression that names one says nothing.

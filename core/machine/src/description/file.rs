@@ -10,10 +10,10 @@ use super::bounds::Bounds;
 use super::motion::MotionFile;
 use super::plan::PlanFile;
 use super::program_file::ProgramFile;
-use super::quantity::Quantity;
+use super::quantity::KeyedNumber;
 use super::servo_file::ServoFile;
 use super::table::{
-    Count, DeValue, Entry, EntryError, Key, Schemas, Slip, Spanned, Value, defined, keys, words,
+    Count, DeValue, EntryError, Key, KeyType, Schemas, Slip, Spanned, Value, defined, keys, words,
 };
 
 /// Names of axes.
@@ -68,13 +68,13 @@ keys! {
         /// `[w C' A' b Y X Z (S) t]`; a prime marks an axis that carries the workpiece.
         chain: Spanned<String> = Bounds::pattern(r"^\s*\[.*\]\s*$"),
         /// Named numbers for expressions; `--set NAME=VALUE` overrules them.
-        parameters: BTreeMap<String, Quantity>,
+        parameters: BTreeMap<String, KeyedNumber>,
         /// Where the part sits.
         workpiece: WorkpieceFile,
         /// The gauge point and the tool's directions.
         tool: ToolFile,
         /// Tool lengths by tool number, mm from the gauge point to the tip.
-        tools: BTreeMap<String, Quantity> = Bounds::names("^[0-9]+$"),
+        tools: BTreeMap<String, KeyedNumber> = Bounds::names("^[0-9]+$"),
         /// The axes of the chain by their letters.
         axis: Spanned<BTreeMap<String, Spanned<AxisFile>>> = AXES,
         /// STL files of the machine's bodies, for pictures alone; mm, machine frame, every axis at zero. An axis letter
@@ -110,10 +110,10 @@ keys! {
     WorkpieceFile {
         /// The part origin (the origin of the CL file) with all axes at zero, mm; [0, 0, 0] if not said, and
         /// `--mount X,Y,Z` for one job.
-        mount: Option<[Quantity; 3]>,
+        mount: Option<[KeyedNumber; 3]>,
         /// How the part is turned about its Z, degrees, right-handed: counter-clockwise for who looks down on it, from the
         /// machine's X to the part's with all axes at zero; 0 if not said, and `--turn DEG` for one job.
-        turn: Option<Quantity>,
+        turn: Option<KeyedNumber>,
     }
 }
 
@@ -121,12 +121,12 @@ keys! {
     /// The gauge point and the tool's directions.
     ToolFile {
         /// The gauge point (spindle nose, gauge line) with all axes at zero, mm.
-        gauge: [Quantity; 3],
+        gauge: [KeyedNumber; 3],
         /// From the tip to the holder with all axes at zero, a direction of any length; [0, 0, 1] if not said.
-        axis: Option<[Quantity; 3]>,
+        axis: Option<[KeyedNumber; 3]>,
         /// Where the leading edge of a knife or disc points with all axes at zero, across the tool axis, a
         /// direction of any length; leave it out for a tool that turns.
-        edge: Option<[Quantity; 3]>,
+        edge: Option<[KeyedNumber; 3]>,
         /// The linear axis along which the control puts the tool's length: as its dialect does it if not said. Another
         /// axis is a promise about the control (a parameter, the tool's table, or with tcp = "control" its own data of
         /// the machine); "none", where tcp = "post", says that its length of each tool is 0 and that work offsets are
@@ -141,9 +141,9 @@ keys! {
     /// How fast the spindle turns.
     SpindleFile {
         /// Least speed, rpm; a slower one is refused.
-        min_speed: Option<Quantity> = LEAST,
+        min_speed: Option<KeyedNumber> = LEAST,
         /// Largest speed, rpm; a faster one is refused.
-        max_speed: Option<Quantity> = LARGEST,
+        max_speed: Option<KeyedNumber> = LARGEST,
         /// It turns the part, and SFM and SMM are constant cutting speeds that the control keeps (G96); else they are
         /// those of the cutter's diameter, as revolutions a minute.
         surface_speed: bool = Bounds::OFF,
@@ -156,18 +156,18 @@ keys! {
         /// The line of the program, or the lines, for a word that has no meaning to post: `OFSETL = "G{n+53}"`. Between
         /// braces n is the first number behind the slash, n2 the second. `"SET/OFSETL"` is for one form of a word
         /// alone.
-        words: BTreeMap<Spanned<String>, Spanned<Lines>>,
+        words: BTreeMap<Spanned<String>, Spanned<OneOrMoreLines>>,
     }
 }
 
 /// A line of the program, or several.
 #[derive(Debug)]
-pub(crate) enum Lines {
+pub(crate) enum OneOrMoreLines {
     One(String),
     Several(Vec<String>),
 }
 
-impl Entry for Lines {
+impl KeyType for OneOrMoreLines {
     fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         let one = String::read(value, key).map(Self::One);
         one.or_else(|_| Vec::read(value, key).map(Self::Several)).map_err(|_| EntryError {
@@ -187,7 +187,7 @@ pub(super) fn lines_schema() -> Value {
     json!({ "anyOf": [{ "type": "string" }, lines] })
 }
 
-impl Lines {
+impl OneOrMoreLines {
     pub(crate) fn as_slice(&self) -> &[String] {
         match self {
             Self::One(line) => std::slice::from_ref(line),
@@ -200,50 +200,50 @@ keys! {
     /// One axis: its kind and line, how far it goes and how fast.
     AxisFile {
         /// A linear axis: the way the tool goes as seen from the part when the axis counts up, of any length.
-        linear: Option<[Quantity; 3]>,
+        linear: Option<[KeyedNumber; 3]>,
         /// A rotary axis: the direction about which the tool, as seen from the part, turns counter-clockwise when
         /// the axis counts up, of any length.
-        rotary: Option<[Quantity; 3]>,
+        rotary: Option<[KeyedNumber; 3]>,
         /// Any point on the line of a rotary axis, mm.
-        point: Option<[Quantity; 3]>,
+        point: Option<[KeyedNumber; 3]>,
         /// Least and largest position, mm or degrees, as the control shows them.
-        travel: Option<Spanned<[Quantity; 2]>>,
+        travel: Option<Spanned<[KeyedNumber; 2]>>,
         /// A rotary axis that turns without end; instead of travel.
         cyclic: bool = Bounds::OFF,
         /// It counts the other way.
         reversed: bool = Bounds::OFF,
         /// What the control shows where the drawing has the axis at zero, mm or degrees; 0 if not said.
-        zero: Option<Quantity>,
+        zero: Option<KeyedNumber>,
         /// The one turn over which the control shows a cyclic axis, degrees: [0, 360] or [-180, 180].
-        range: Option<Spanned<[Quantity; 2]>>,
+        range: Option<Spanned<[KeyedNumber; 2]>>,
         /// It moves off the part alone, and stands here until something moves it, mm or degrees.
-        indexed: Option<Quantity>,
+        indexed: Option<KeyedNumber>,
         /// The only positions that an indexed axis can stand at, mm or degrees.
-        positions: Option<Spanned<Vec<Quantity>>> = Bounds::items(1),
+        positions: Option<Spanned<Vec<KeyedNumber>>> = Bounds::items(1),
         /// An indexed axis stands at whole multiples of this alone, mm or degrees.
-        step: Option<Quantity> = RATE,
+        step: Option<KeyedNumber> = RATE,
         /// The line of the program that clamps the axis where it stands in a cut, such as M10: a rotary one, or an
         /// indexed one.
         clamp: Option<Spanned<String>>,
         /// The line of the program that lets it go, such as M11.
         unclamp: Option<Spanned<String>>,
         /// A quill: it takes this share, 0 to 1, of the way of the axis it runs along.
-        share: Option<Quantity> = Bounds::within(0.0, 1.0, "", ""),
+        share: Option<KeyedNumber> = Bounds::within(0.0, 1.0, "", ""),
         /// A quill: it moves only where the travel of the axis it runs along ends.
         reserve: Option<Spanned<bool>>,
         /// Largest feed, mm/min or degrees a minute; no block asks for more.
-        max_feed: Option<Quantity> = RATE,
+        max_feed: Option<KeyedNumber> = RATE,
         /// A feed a minute counts the way of this rotary axis along a circle of this diameter, mm, where the control
         /// does not keep the tip or counts turns all the same (tcp_feed_length = "combined"); in degrees if not said. 2
         /// mm counts radians.
-        feed_diameter: Option<Quantity> = RATE,
+        feed_diameter: Option<KeyedNumber> = RATE,
         /// Largest acceleration, mm/s² or degrees/s².
-        max_accel: Option<Quantity> = RATE,
+        max_accel: Option<KeyedNumber> = RATE,
         /// Largest jerk, mm/s³ or degrees/s³.
-        max_jerk: Option<Quantity> = RATE,
+        max_jerk: Option<KeyedNumber> = RATE,
         /// Largest jump of its velocity where one block passes into the next without a curve between them, mm/min or
         /// degrees a minute; if not said what max_accel makes of it in one period of [motion].
-        max_jump: Option<Quantity> = RATE,
+        max_jump: Option<KeyedNumber> = RATE,
     }
 }
 
@@ -260,7 +260,7 @@ keys! {
         /// Sides of zero that axes must not leave.
         require: BTreeMap<Spanned<String>, Side>,
         /// Where axes stand before the first position, mm or degrees.
-        start: BTreeMap<Spanned<String>, Quantity>,
+        start: BTreeMap<Spanned<String>, KeyedNumber>,
         /// Groups of axes of which one at most moves in a block: `[["A", "C"]]`.
         exclusive: Vec<Vec<Spanned<String>>> = Bounds { default: Some("[]"), ..Bounds::ANY },
         /// Points that are looked at before the first of them is settled; 2000 if not said, 1 takes the nearest
@@ -272,7 +272,7 @@ keys! {
         edge: EdgeSource,
         /// Where the direction of travel turns by more, a tool with an edge is turned on the spot, degrees; 10 if
         /// not said.
-        corner: Option<Quantity> = CHOICE,
+        corner: Option<KeyedNumber> = CHOICE,
     }
 }
 
@@ -280,16 +280,16 @@ keys! {
     /// How the tool leaves the part when a cut cannot go on: back along its axis, turn, and return.
     RewindFile {
         /// How far the tool is drawn back along its axis, mm; this or `plane`.
-        distance: Option<Quantity> = REWIND,
+        distance: Option<KeyedNumber> = REWIND,
         /// The tool is drawn back along its axis until its tip stands so high over the part origin, mm along Z of
         /// the part; this or `distance`.
-        plane: Option<Quantity>,
+        plane: Option<KeyedNumber>,
         /// Feed of the way out, mm/min; rapid if not said.
-        retract_feed: Option<Quantity> = CHOICE,
+        retract_feed: Option<KeyedNumber> = CHOICE,
         /// Feed of the turn, degrees a minute; rapid if not said.
-        turn_feed: Option<Quantity> = CHOICE,
+        turn_feed: Option<KeyedNumber> = CHOICE,
         /// Feed of the way back, mm/min; that of the cut if not said.
-        plunge_feed: Option<Quantity> = CHOICE,
+        plunge_feed: Option<KeyedNumber> = CHOICE,
     }
 }
 
@@ -495,19 +495,19 @@ keys! {
         arcs: ArcsFile,
         /// Where linear axes stand when the tool is retracted, machine coordinates, mm; the end of travel of the depth
         /// axis away from the part if not said.
-        retract: Positions,
+        retract: AxisPositions,
         /// How the tool leaves the part, and, the other way round, comes to it; by the depth axis alone (retract) if
         /// not said.
         leave: Option<Spanned<LeaveFile>>,
         /// So far from the ends of their travel linear axes stay over a first position, so that a part which sits
         /// higher than [workpiece] mount says ends in no alarm, mm; half of the way where there is less, and 50 if not
         /// said.
-        approach_room: Option<Quantity> = ROOM,
+        approach_room: Option<KeyedNumber> = ROOM,
         /// Where axes stand before a tool change, machine coordinates, mm or degrees; if not said the rotary axes of
         /// park there, and those that swivel the tool at 0. `{}` leaves all where they are.
-        change: Option<Positions>,
+        change: Option<AxisPositions>,
         /// Where axes stand at the end and after GOHOME, machine coordinates, mm or degrees.
-        park: Positions,
+        park: AxisPositions,
     }
 }
 
@@ -518,10 +518,10 @@ keys! {
         /// What it goes back along; tool if not said.
         along: LeaveAlong,
         /// How far, mm; less where the travel of an axis ends.
-        distance: Quantity = CHOICE,
+        distance: KeyedNumber = CHOICE,
         /// Where axes go then, one after the other in the order written: max or min is the end of travel, a number a
         /// position in machine coordinates, mm or degrees.
-        then: Positions,
+        then: AxisPositions,
     }
 }
 
@@ -543,9 +543,9 @@ keys! {
         /// How far one block goes; full if not said.
         split: ArcSplit,
         /// Smallest radius that is written as an arc, mm; 0.01 if not said.
-        least_radius: Option<Quantity> = RADIUS,
+        least_radius: Option<KeyedNumber> = RADIUS,
         /// Largest radius that is written as an arc, mm; 10000 if not said.
-        largest_radius: Option<Quantity> = RADIUS,
+        largest_radius: Option<KeyedNumber> = RADIUS,
         /// Runs of points become the fewest arcs and lines that stay within the tolerance; false if not said.
         fit: bool = Bounds::OFF,
     }
@@ -575,7 +575,7 @@ words! {
 }
 
 /// Positions of axes by their names.
-pub(crate) type Positions = BTreeMap<Spanned<String>, Quantity>;
+pub(crate) type AxisPositions = BTreeMap<Spanned<String>, KeyedNumber>;
 
 words! {
     /// Where points are put in.
@@ -603,9 +603,9 @@ keys! {
     /// The point of the tool that must stay within tolerance.
     ControlPointFile {
         /// So far from the point that the CL file gives, along the tool towards the holder, mm; 0 if not said.
-        along: Option<Quantity>,
+        along: Option<KeyedNumber>,
         /// The cutting edge runs at this radius about the tool axis, mm; 0, the point itself, if not said.
-        radius: Option<Quantity> = CUTTING_EDGE,
+        radius: Option<KeyedNumber> = CUTTING_EDGE,
     }
 }
 
@@ -617,11 +617,11 @@ keys! {
         /// Where points are put in; bisect if not said.
         placement: Placement,
         /// Largest deviation of the tip in cuts, mm; 0.005 if not said.
-        tolerance: Option<Quantity> = TOLERANCE,
+        tolerance: Option<KeyedNumber> = TOLERANCE,
         /// Largest deviation of the tool axis in cuts, degrees; 0.05 if not said.
-        axis_tolerance: Option<Quantity> = TOLERANCE,
+        axis_tolerance: Option<KeyedNumber> = TOLERANCE,
         /// Largest deviation of the tip in rapids, mm; 0.5 if not said.
-        rapid_tolerance: Option<Quantity> = TOLERANCE,
+        rapid_tolerance: Option<KeyedNumber> = TOLERANCE,
         /// What is done about a move that strays; linearise if not said.
         method: Method,
         /// Points put into a move that is compensated, at least; 1 if not said.
@@ -629,9 +629,9 @@ keys! {
         /// Drop CL points that the tolerance makes needless; false if not said.
         reduce: bool = Bounds::OFF,
         /// Where the path turns by more than this, degrees, a CL point is a corner: it is never dropped; 10 if not said.
-        corner: Option<Quantity> = CORNER,
+        corner: Option<KeyedNumber> = CORNER,
         /// Contour errors that the servos leave may be compensated (`post --compensate-servo`), no point being moved by
         /// more than this, mm, at most 1; if not said, they may not.
-        servo_compensation: Option<Quantity> = COMPENSATION,
+        servo_compensation: Option<KeyedNumber> = COMPENSATION,
     }
 }

@@ -4,9 +4,9 @@ use toml::Spanned;
 
 use super::build::Builder;
 use super::choice::FARTHEST;
-use super::file::{ControlFile, LeaveAlong, LeaveFile, Positions as Said};
+use super::file::{AxisPositions as Said, ControlFile, LeaveAlong, LeaveFile};
 use super::keys::axes_are;
-use super::quantity::{Number, Quantity};
+use super::quantity::{KeyedNumber, Number};
 use super::{Axis, Machine};
 use crate::axis_words::is_depth;
 use crate::diagnostic::Short;
@@ -194,7 +194,7 @@ impl Builder<'_> {
     /// A position of an axis; `ends`: it may be that of an end of travel, by its name.
     fn position(
         &mut self,
-        (name, value): (&Spanned<String>, &Quantity),
+        (name, value): (&Spanned<String>, &KeyedNumber),
         ends: bool,
         machine: &Machine,
     ) -> Option<(usize, f64)> {
@@ -206,7 +206,7 @@ impl Builder<'_> {
             return None;
         };
         let axis = &machine.axes[place];
-        if let (true, Some(end)) = (ends, End::of(value)) {
+        if let (true, Some(end)) = (ends, TravelEndName::of(value)) {
             let Some([least, most]) = axis.travel else {
                 let message = format!("{} has no end of travel", axis.name);
                 let help = "a position, as the control shows it";
@@ -216,8 +216,8 @@ impl Builder<'_> {
             return Some((
                 place,
                 match end {
-                    End::Max => most,
-                    End::Min => least,
+                    TravelEndName::Max => most,
+                    TravelEndName::Min => least,
                 },
             ));
         }
@@ -256,13 +256,13 @@ impl Builder<'_> {
 
 /// An end of travel, by its name.
 #[derive(Clone, Copy)]
-enum End {
+enum TravelEndName {
     Max,
     Min,
 }
 
-impl End {
-    fn of(value: &Quantity) -> Option<Self> {
+impl TravelEndName {
+    fn of(value: &KeyedNumber) -> Option<Self> {
         match value.get_ref() {
             Number::Expression(name) if name.trim() == "max" => Some(Self::Max),
             Number::Expression(name) if name.trim() == "min" => Some(Self::Min),

@@ -7,7 +7,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::Axis;
 use super::file::MachineFile;
-use super::layers::Sources;
+use super::layers::MachineSources;
 use super::table::{EntryError, Slip};
 use crate::diagnostic::{Diagnostic, meant, nearest};
 
@@ -28,7 +28,11 @@ pub(super) struct TypedFile {
 }
 
 /// What the merged table says; `whole` if all of the texts that it was merged from could be read.
-pub(super) fn typed(mut table: Spanned<DeTable<'_>>, sources: &Sources, whole: bool) -> TypedFile {
+pub(super) fn typed(
+    mut table: Spanned<DeTable<'_>>,
+    sources: &MachineSources,
+    whole: bool,
+) -> TypedFile {
     let mut faults = Vec::new();
     let mut hiding: Vec<Diagnostic> = Vec::new();
     let mut taken: Vec<String> = Vec::new();

@@ -13,7 +13,7 @@ use super::file::MachineFile;
 use super::keys::TAKEN_OUT;
 use super::limits::{MOST_BYTES, MOST_FAULTS};
 use super::setting::Setting;
-use crate::diagnostic::{Diagnostic, Place, meant};
+use crate::diagnostic::{Diagnostic, SourcePlace, meant};
 
 /// A text and the name that the user knows it by.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -101,7 +101,7 @@ const DEPTH: usize = 8;
 
 /// All texts of a machine: the file, what it extends, and the settings, in that order.
 #[derive(Debug)]
-pub(crate) struct Sources {
+pub(crate) struct MachineSources {
     sources: Vec<(usize, Source)>,
     /// Text of each source that can be read.
     readable: Vec<Readable>,
@@ -113,7 +113,7 @@ pub(crate) struct Sources {
     orphan: Option<Diagnostic>,
 }
 
-impl Sources {
+impl MachineSources {
     /// Collects the file, what it extends (found by `find`), and `settings`.
     ///
     /// # Errors
@@ -243,7 +243,7 @@ impl Sources {
     }
 
     /// The line that a span begins in.
-    pub(crate) fn place(&self, span: Range<usize>) -> Option<Place> {
+    pub(crate) fn place(&self, span: Range<usize>) -> Option<SourcePlace> {
         let index = self.sources.iter().rposition(|(start, _)| *start <= span.start)?;
         let (start, source) = &self.sources[index];
         let text = &source.text;
@@ -254,7 +254,7 @@ impl Sources {
         let line = text[begin..end].trim_end_matches('\r');
         let from = (at - begin).min(line.len());
         let to = span.end.saturating_sub(start + begin).clamp(from, line.len());
-        Some(Place::new(&source.name, number as u64, line, from..to))
+        Some(SourcePlace::new(&source.name, number as u64, line, from..to))
     }
 
     /// Every text and key of a layer stays in its line wherever it is written: one that holds a line end could put a line

@@ -35,10 +35,10 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-pub use accuracy::{Accuracy, ControlPoint, SHARE_AT_POLES};
+pub use accuracy::{AccuracyRules, ControlPoint, SHARE_AT_POLES};
 pub use arcs::Arcs;
-pub use build::{Evaluated, Reading, examine, load};
-pub use choice::{Retract, Rewind, Rule, Solution};
+pub use build::{Evaluated, MachineReading, examine, load};
+pub use choice::{Retract, Rewind, SolutionCriterion, SolutionRules};
 pub use cl_words::WordRule;
 pub use file::{
     ArcForm, ArcSplit, CompensationOnCentre, Cycles, EdgeSource, FeedLength, FeedMode, Insert,
@@ -58,7 +58,7 @@ pub use smoothing::{Smoothing, SmoothingRules};
 pub use solids::Solid;
 pub use spindle::SpindleSpeeds;
 
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, SourcePlace};
 use crate::kinematics::{Chain, Freedom, Joint, Joints, NoClosedForm, Second, Solver};
 use crate::servo::Servo;
 
@@ -89,7 +89,7 @@ pub struct Machine {
     /// Tool lengths by tool number, mm, from the gauge point to the tip.
     pub tools: Vec<(u32, f64)>,
     /// The control.
-    pub control: Control,
+    pub control: ControlRules,
     /// How fast its spindle turns.
     pub spindle: SpindleSpeeds,
     /// Lines of the program for words of the CL file.
@@ -99,9 +99,9 @@ pub struct Machine {
     /// Text of its programs.
     pub program: ProgramRules,
     /// What it must keep.
-    pub accuracy: Accuracy,
+    pub accuracy: AccuracyRules,
     /// Which of several solutions is taken.
-    pub solution: Solution,
+    pub solution: SolutionRules,
     /// How the tool leaves the part when a cut cannot go on; none if it must not.
     pub rewind: Option<Rewind>,
     /// How its control makes motion of a program.
@@ -152,7 +152,7 @@ pub struct Axis {
     /// Address, `X`, `C`.
     pub name: String,
     /// Where the file describes it.
-    pub place: Option<Place>,
+    pub place: Option<SourcePlace>,
     /// It carries the workpiece (primed in the chain), else the tool.
     pub carries_part: bool,
     /// Kind, direction and line.
@@ -268,11 +268,11 @@ pub struct Clamp {
 
 /// The control of a machine.
 #[derive(Clone, Debug)]
-pub struct Control {
+pub struct ControlRules {
     /// Name of the dialect.
     pub dialect: String,
     /// Where the file names it.
-    pub dialect_place: Option<Place>,
+    pub dialect_place: Option<SourcePlace>,
     /// Options for the dialect, as the file gives them, each with its place.
     pub options: Vec<GivenOption>,
     /// Who keeps the tip on its path.
@@ -314,7 +314,7 @@ pub struct GivenOption {
     /// Value of the option.
     pub value: OptionValue,
     /// Where it stands.
-    pub place: Option<Place>,
+    pub place: Option<SourcePlace>,
 }
 
 /// The value of an option for a plugin.

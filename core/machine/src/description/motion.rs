@@ -2,7 +2,7 @@
 
 use super::bounds::Bounds;
 use super::build::Builder;
-use super::quantity::Quantity;
+use super::quantity::KeyedNumber;
 use super::table::{Count, keys, words};
 
 const ABOVE: Bounds = Bounds {
@@ -39,37 +39,37 @@ keys! {
     /// How the control makes motion of a program. What is posted does not depend on it, but for feeds that are planned.
     MotionFile {
         /// Time from one set-point of the axes to the next (interpolation cycle, IPO), s, 0.00001 to 1; 0.001 if not said.
-        period: Option<Quantity> = PERIOD,
+        period: Option<KeyedNumber> = PERIOD,
         /// The control prepares no more than one block in this time, s; 0 if not said.
-        block_time: Option<Quantity> = WAIT,
+        block_time: Option<KeyedNumber> = WAIT,
         /// Blocks that it looks ahead; 200 if not said, 1 stops at the end of each.
         look_ahead: Option<Count> = BLOCKS,
         /// What max_feed, max_accel and max_jerk of the axes hold for where the control keeps the tip: the axes, or the
         /// coordinates that are programmed (X, Y and Z of the tip); axes if not said.
         limits: LimitsActOn,
         /// Largest acceleration of the tip against the part, mm/s²; none if not said.
-        tip_accel: Option<Quantity> = ABOVE,
+        tip_accel: Option<KeyedNumber> = ABOVE,
         /// Largest jerk of the tip against the part, mm/s³; none if not said.
-        tip_jerk: Option<Quantity> = ABOVE,
+        tip_jerk: Option<KeyedNumber> = ABOVE,
         /// Largest jump of the velocity of the tip against the part where one block passes into the next without a curve
         /// between them, mm/min; if not said what tip_accel makes of it in one period.
-        tip_jump: Option<Quantity> = ABOVE,
+        tip_jump: Option<KeyedNumber> = ABOVE,
         /// How the control passes from one cut to the next before the program says anything of it; blend if not said.
         corner: CornerRule,
         /// By how much it may leave the path at a corner where the program names no tolerance, mm; as far as its rule leads
         /// if not said.
-        corner_tolerance: Option<Quantity> = ABOVE,
+        corner_tolerance: Option<KeyedNumber> = ABOVE,
         /// How it leaves the path at a corner; round if not said.
         blend: BlendRule,
         /// Whether it passes into and out of rapids without standing still; stop if not said.
         rapids: RapidRule,
         /// It waits so long wherever it stands still between two moves, until its axes are in position (exact stop), s;
         /// 0 if not said: it goes on as soon as the commanded position stands.
-        in_position: Option<Quantity> = WAIT,
+        in_position: Option<KeyedNumber> = WAIT,
         /// A tool change takes so long, s; 0 if not said.
-        tool_change: Option<Quantity> = WAIT,
+        tool_change: Option<KeyedNumber> = WAIT,
         /// The program waits so long where the spindle starts, stops or changes its sense, s; 0 if not said.
-        spindle: Option<Quantity> = WAIT,
+        spindle: Option<KeyedNumber> = WAIT,
     }
 }
 
@@ -157,7 +157,7 @@ impl Builder<'_> {
     pub(super) fn motion(&mut self, file: &MotionFile) -> MotionRules {
         let period = self.checked(&file.period).unwrap_or(0.001);
         let look_ahead = self.counted(&file.look_ahead).unwrap_or(200) as usize;
-        let mut number = |given: &Option<Quantity>| self.checked(given);
+        let mut number = |given: &Option<KeyedNumber>| self.checked(given);
         let tip_accel = number(&file.tip_accel).unwrap_or(f64::INFINITY);
         let tip_jerk = number(&file.tip_jerk).unwrap_or(f64::INFINITY);
         let tip_jump = number(&file.tip_jump);

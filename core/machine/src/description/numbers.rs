@@ -8,21 +8,21 @@ use post_grammar::{Expression, parse_expression};
 
 use super::build::Builder;
 use super::limits::MOST_NUMBER;
-use super::quantity::{Number, Quantity};
+use super::quantity::{KeyedNumber, Number};
 use crate::diagnostic::meant;
 
 /// Longest piece of an expression that a message shows, bytes.
 const SHOWN: usize = 80;
 
 impl Builder<'_> {
-    pub(super) fn vector(&mut self, quantities: &[Quantity; 3]) -> Vector3<f64> {
+    pub(super) fn vector(&mut self, quantities: &[KeyedNumber; 3]) -> Vector3<f64> {
         Vector3::from_fn(|row, _| self.number(&quantities[row]))
     }
 
     pub(super) fn direction(
         &mut self,
         what: &str,
-        quantities: &[Quantity; 3],
+        quantities: &[KeyedNumber; 3],
     ) -> Option<Vector3<f64>> {
         let vector = self.vector(quantities);
         if vector.iter().any(|part| part.is_nan()) {
@@ -41,7 +41,7 @@ impl Builder<'_> {
     }
 
     /// The value; no number and a fault if it has none, so that what is said of numbers is not said of it too.
-    pub(super) fn number(&mut self, quantity: &Quantity) -> f64 {
+    pub(super) fn number(&mut self, quantity: &KeyedNumber) -> f64 {
         if self.leans_on_a_fault(quantity.get_ref()) {
             return f64::NAN;
         }
@@ -71,7 +71,7 @@ impl Builder<'_> {
     }
 
     /// The expression has no value.
-    fn without_value(&mut self, quantity: &Quantity, message: String) {
+    fn without_value(&mut self, quantity: &KeyedNumber, message: String) {
         let known: Vec<&str> = self.parameters.keys().map(String::as_str).collect();
         let help = match known.as_slice() {
             [] => "the file has no [parameters]".to_owned(),
@@ -180,7 +180,7 @@ enum Unsettled {
 pub(super) type EvaluatedAt = (Range<usize>, f64);
 
 /// The first name of an expression that is none of the `known` parameters; empty if there is none.
-fn unknown(quantity: &Quantity, known: &[&str]) -> String {
+fn unknown(quantity: &KeyedNumber, known: &[&str]) -> String {
     let Number::Expression(text) = quantity.get_ref() else {
         return String::new();
     };

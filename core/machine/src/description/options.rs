@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::layers::Sources;
+use super::layers::MachineSources;
 use super::limits::MOST_OPTIONS;
 use super::{GivenOption, OptionValue};
 use crate::diagnostic::Diagnostic;
@@ -17,7 +17,7 @@ const OWN: [&str; 5] = ["arcs", "leave", "retract", "change", "park"];
 pub(super) fn take_options(
     table: &mut Spanned<DeTable<'_>>,
     section: &str,
-    sources: &Sources,
+    sources: &MachineSources,
     faults: &mut Vec<Diagnostic>,
 ) -> BTreeMap<String, Vec<GivenOption>> {
     let mut taken = BTreeMap::new();

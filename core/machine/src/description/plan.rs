@@ -3,7 +3,7 @@
 use super::bounds::Bounds;
 use super::build::Builder;
 use super::motion::{self, MotionRules};
-use super::quantity::Quantity;
+use super::quantity::KeyedNumber;
 use super::table::{Spanned, keys, words};
 
 /// Errors and smoothing.
@@ -22,17 +22,17 @@ keys! {
     /// does not depend on it.
     PlanFile {
         /// Largest contour error that the servos make of the path, mm; not limited if not said. The axes need servos for it.
-        contour_error: Option<Quantity> = DISTANCE,
+        contour_error: Option<KeyedNumber> = DISTANCE,
         /// By how much the way of one interpolation period may stray from the path, mm; not limited if not said.
-        chord_error: Option<Quantity> = DISTANCE,
+        chord_error: Option<KeyedNumber> = DISTANCE,
         /// A block is cut where its feed changes if that saves at least this time, s; a fifth of shortest_block if not said.
-        least_saving: Option<Quantity> = WAIT,
+        least_saving: Option<KeyedNumber> = WAIT,
         /// No block is cut into pieces that take less than this, s; if not said two periods of [motion], and its block_time
         /// at least.
-        shortest_block: Option<Quantity> = WAIT,
+        shortest_block: Option<KeyedNumber> = WAIT,
         /// By how much the curve that is planned along may leave the path of the blocks, mm; half the tolerance of
         /// [accuracy] if not said.
-        smoothing: Option<Quantity> = DISTANCE,
+        smoothing: Option<KeyedNumber> = DISTANCE,
         /// Which solver plans; reach if not said.
         solver: Option<Spanned<PlanSolver>>,
     }

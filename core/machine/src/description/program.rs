@@ -8,7 +8,7 @@ use super::Machine;
 use super::build::Builder;
 use super::program_file::{ProgramFile, TextLines};
 use super::smoothing::SmoothingRules;
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, SourcePlace};
 use crate::program_text::{
     Extents, Facts, OperationFacts, ProgramFacts, TemplateFault, TextTemplate, ToolFacts,
 };
@@ -107,7 +107,7 @@ pub struct ProgramText {
     pub at: TextPlace,
     template: TextTemplate,
     /// Where each of its lines begins and ends, and where that stands in the file.
-    places: Vec<(Range<usize>, Option<Place>)>,
+    places: Vec<(Range<usize>, Option<SourcePlace>)>,
 }
 
 impl ProgramText {

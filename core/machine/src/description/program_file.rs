@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use super::bounds::Bounds;
 use super::file::lines_schema;
-use super::quantity::Quantity;
+use super::quantity::KeyedNumber;
 use super::table::{
-    DeValue, Entry, EntryError, Key, Range, Schemas, Spanned, Value, defined, keys, of_another_kind,
+    DeValue, EntryError, Key, KeyType, Range, Schemas, Spanned, Value, defined, keys,
+    of_another_kind,
 };
 
 /// Tolerances of `[program.smoothing]`.
@@ -54,11 +55,11 @@ keys! {
 #[derive(Debug)]
 pub(crate) struct TextLines(pub Vec<(String, Option<Range<usize>>)>);
 
-impl Entry for TextLines {
+impl KeyType for TextLines {
     fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         let lines: Vec<Spanned<String>> = match value.get_ref() {
             DeValue::String(line) => return Ok(Self(vec![(line.to_string(), None)])),
-            DeValue::Array(_) => Entry::read(value, key)?,
+            DeValue::Array(_) => KeyType::read(value, key)?,
             _ => return Err(of_another_kind(value, "a line of the program or a list of lines")),
         };
         let lines = lines.into_iter().map(|line| {
@@ -78,11 +79,11 @@ keys! {
     /// By how much the control may leave the path between the points of the program, to go on evenly.
     SmoothingFile {
         /// Of the tip, mm; without it only the operations below are smoothed.
-        tolerance: Option<Quantity> = TOLERANCE,
+        tolerance: Option<KeyedNumber> = TOLERANCE,
         /// Of the tool axis, degrees, where it turns.
-        axis_tolerance: Option<Quantity> = TOLERANCE,
+        axis_tolerance: Option<KeyedNumber> = TOLERANCE,
         /// Of the tip, mm, in operations by their names: `{ "ROUGH*" = 0.05 }`; * stands for any text, capitals or not, and
         /// of two that fit the longer one holds.
-        operations: BTreeMap<Spanned<String>, Quantity>,
+        operations: BTreeMap<Spanned<String>, KeyedNumber>,
     }
 }

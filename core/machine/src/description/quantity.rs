@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::table::{
-    DeValue, Entry, EntryError, Given, Key, Schemas, Spanned, Value, of_another_kind, plain,
+    DeValue, EntryError, Key, KeyType, KeyedValue, Schemas, Spanned, Value, of_another_kind, plain,
 };
 
 /// A number, or an expression of the file's parameters.
@@ -14,9 +14,9 @@ pub(crate) enum Number {
 }
 
 /// A number or expression, where it stands, and of which key.
-pub(crate) type Quantity = Given<Number>;
+pub(crate) type KeyedNumber = KeyedValue<Number>;
 
-impl Entry for Number {
+impl KeyType for Number {
     fn read(value: &Spanned<DeValue<'_>>, _: &'static Key) -> Result<Self, EntryError> {
         let number = match value.get_ref() {
             DeValue::String(text) => return Ok(Self::Expression(text.to_string())),

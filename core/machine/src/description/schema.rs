@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::file::MachineFile;
-use super::table::Entry;
+use super::table::KeyType;
 
 /// The schema of a machine file, made from the tables that read it.
 ///

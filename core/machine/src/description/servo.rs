@@ -10,7 +10,7 @@ use super::file::MachineFile;
 use super::keys::axes_are;
 use super::servo_file::{FrictionFile, ServoFile};
 use crate::diagnostic::Short;
-use crate::servo::{Drive, Feedback, Friction, Pole, Servo, ServoModel, StateSpace, stable};
+use crate::servo::{Drive, Feedback, Friction, Servo, ServoModel, ServoPole, StateSpace, stable};
 
 /// A position loop whose gain at rest is further from 1 leaves the axis beside where it is commanded.
 const UNIT_GAIN: f64 = 1e-6;
@@ -130,7 +130,7 @@ impl Builder<'_> {
             self.fault("machine-servo", span, message, help);
             return;
         };
-        let largest = poles.iter().map(Pole::size).fold(0.0, f64::max);
+        let largest = poles.iter().map(ServoPole::size).fold(0.0, f64::max);
         if largest > FASTEST_POLE {
             let message = format!(
                 "the servo of {name} has a pole of {} 1/s; up to {FASTEST_POLE} are possible",

@@ -3,7 +3,7 @@
 use toml::Spanned;
 
 use super::build::Builder;
-use super::quantity::Quantity;
+use super::quantity::KeyedNumber;
 use super::servo_file::{DirectFile, GearFile, LoopsFile, PidFile, ScrewFile, TransferFile};
 use crate::servo::{Current, Drive, Loops, MAX_ORDER, Pid, Transfer};
 
@@ -161,7 +161,7 @@ impl Builder<'_> {
         let (Some(numerator), Some(denominator)) = (&file.numerator, &file.denominator) else {
             return None;
         };
-        let mut powers = |given: &Spanned<Vec<Quantity>>| -> Vec<f64> {
+        let mut powers = |given: &Spanned<Vec<KeyedNumber>>| -> Vec<f64> {
             let most = given.get_ref().iter().take(2 * MAX_ORDER);
             let values: Vec<f64> = most.map(|quantity| self.number(quantity)).collect();
             let zeros = values.iter().take_while(|value| **value == 0.0).count();
@@ -215,7 +215,7 @@ impl Builder<'_> {
     }
 
     /// Damping stands beside a stiffness; beside a rigid transmission it would do nothing.
-    fn check_damping(&mut self, key: &str, given: &Option<Quantity>, drive: &Drive) {
+    fn check_damping(&mut self, key: &str, given: &Option<KeyedNumber>, drive: &Drive) {
         if let (Some(given), None) = (given, drive.mechanics().stiffness) {
             let message = format!("{key}: the transmission is rigid, nothing in it is damped");
             let help = "say its stiffness too, or leave the damping out";

@@ -2,7 +2,7 @@
 
 use super::build::Builder;
 use super::program_file::SmoothingFile;
-use super::quantity::Quantity;
+use super::quantity::KeyedNumber;
 use crate::diagnostic::Short;
 
 /// Tolerances within which the control may leave the path.
@@ -86,7 +86,7 @@ impl Builder<'_> {
         }
     }
 
-    fn above_zero(&mut self, name: &str, quantity: &Quantity) -> f64 {
+    fn above_zero(&mut self, name: &str, quantity: &KeyedNumber) -> f64 {
         let value = self.number(quantity);
         if value <= 0.0 {
             let message = format!("[program.smoothing] {name} is {}", Short(value));

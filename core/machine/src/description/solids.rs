@@ -8,7 +8,7 @@ use toml::Spanned;
 use super::Axis;
 use super::build::Builder;
 use super::keys::axes_are;
-use crate::diagnostic::Place;
+use crate::diagnostic::SourcePlace;
 
 /// The shape of a body of the machine, for pictures alone: nothing of a program depends on it.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Solid {
     /// An STL file: mm, machine frame, every axis at zero.
     pub file: PathBuf,
     /// Where the machine file names it.
-    pub place: Option<Place>,
+    pub place: Option<SourcePlace>,
 }
 
 impl Builder<'_> {

@@ -57,7 +57,7 @@ pub(crate) enum Slip {
 }
 
 /// What can stand in a machine file for a key.
-pub(crate) trait Entry: Sized {
+pub(crate) trait KeyType: Sized {
     /// The value of a key.
     ///
     /// # Errors
@@ -80,14 +80,14 @@ pub(crate) trait Entry: Sized {
 
 /// A value, where it stands, and of which key.
 #[derive(Clone, Debug)]
-pub(crate) struct Given<T> {
+pub(crate) struct KeyedValue<T> {
     value: T,
     span: Range<usize>,
     /// Key that it is given.
     pub key: &'static Key,
 }
 
-impl<T> Given<T> {
+impl<T> KeyedValue<T> {
     /// The value.
     pub fn get_ref(&self) -> &T {
         &self.value
@@ -103,7 +103,7 @@ impl<T> Given<T> {
 pub(crate) type Schemas = Map<String, Value>;
 
 /// A whole number.
-pub(crate) type Count = Given<i64>;
+pub(crate) type Count = KeyedValue<i64>;
 
 /// Makes tables of a machine file of their rows, `key: type = bounds`; a key without bounds may be anything.
 macro_rules! keys {
@@ -143,18 +143,18 @@ macro_rules! keys {
                     for (name, value) in table {
                         let key = known(name, Self::KEYS)?;
                         match key.name {
-                            $(stringify!($key) => $key = Some(Entry::read(value, key)?),)*
+                            $(stringify!($key) => $key = Some(KeyType::read(value, key)?),)*
                             _ => {}
                         }
                     }
-                    $(let $key = $key.or_else(Entry::absent).ok_or_else(|| {
+                    $(let $key = $key.or_else(KeyType::absent).ok_or_else(|| {
                         EntryError { span: span.clone(), slip: Slip::Missing(stringify!($key)) }
                     })?;)*
                     Ok(Self { $($key,)* })
                 }
             }
 
-            impl Entry for $table {
+            impl KeyType for $table {
                 fn read(value: &Spanned<DeValue<'_>>, _: &'static Key) -> Result<Self, EntryError> {
                     let table = entries(value, concat!("struct ", stringify!($table)))?;
                     Self::of(table, value.span())
@@ -208,7 +208,7 @@ macro_rules! words {
                 }
             })?
 
-            impl Entry for $type {
+            impl KeyType for $type {
                 fn read(value: &Spanned<DeValue<'_>>, _: &'static Key) -> Result<Self, EntryError> {
                     Ok([$(Self::$variant),*][word(value, &[$($word),*])?])
                 }
@@ -265,15 +265,15 @@ pub(crate) fn entries<'v, 'i>(
 
 /// The message for a value that is no `what`.
 pub(crate) fn of_another_kind(value: &Spanned<DeValue<'_>>, what: &'static str) -> EntryError {
-    struct Nothing(&'static str);
-    impl Visitor<'_> for Nothing {
+    struct ExpectedKind(&'static str);
+    impl Visitor<'_> for ExpectedKind {
         type Value = ();
 
         fn expecting(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
             to.write_str(self.0)
         }
     }
-    let error = ValueDeserializer::from(value.clone()).deserialize_any(Nothing(what)).err();
+    let error = ValueDeserializer::from(value.clone()).deserialize_any(ExpectedKind(what)).err();
     let message = error.map_or_else(String::new, |error| error.message().to_owned());
     EntryError { span: value.span(), slip: Slip::Kind(message) }
 }
@@ -339,7 +339,7 @@ pub(crate) fn words_schema(
     })
 }
 
-impl<T: Entry> Entry for Given<T> {
+impl<T: KeyType> KeyType for KeyedValue<T> {
     fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         Ok(Self { value: T::read(value, key)?, span: value.span(), key })
     }
@@ -349,7 +349,7 @@ impl<T: Entry> Entry for Given<T> {
     }
 }
 
-impl<T: Entry> Entry for Spanned<T> {
+impl<T: KeyType> KeyType for Spanned<T> {
     fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         Ok(Self::new(value.span(), T::read(value, key)?))
     }
@@ -359,7 +359,7 @@ impl<T: Entry> Entry for Spanned<T> {
     }
 }
 
-impl<T: Entry> Entry for Option<T> {
+impl<T: KeyType> KeyType for Option<T> {
     fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         T::read(value, key).map(Some)
     }
@@ -373,7 +373,7 @@ impl<T: Entry> Entry for Option<T> {
     }
 }
 
-impl<T: Entry> Entry for Vec<T> {
+impl<T: KeyType> KeyType for Vec<T> {
     fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         let DeValue::Array(items) = value.get_ref() else {
             return Err(of_another_kind(value, "a sequence"));
@@ -390,7 +390,7 @@ impl<T: Entry> Entry for Vec<T> {
     }
 }
 
-impl<T: Entry, const N: usize> Entry for [T; N] {
+impl<T: KeyType, const N: usize> KeyType for [T; N] {
     fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         let DeValue::Array(items) = value.get_ref() else {
             return Err(of_another_kind(
@@ -430,7 +430,7 @@ impl Name for Spanned<String> {
     }
 }
 
-impl<N: Name, T: Entry> Entry for BTreeMap<N, T> {
+impl<N: Name, T: KeyType> KeyType for BTreeMap<N, T> {
     fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         let table = entries(value, "a map")?.iter();
         table
@@ -450,7 +450,7 @@ impl<N: Name, T: Entry> Entry for BTreeMap<N, T> {
 /// Makes entries of types that serde knows, with their schemas and what holds where the file does not say it.
 macro_rules! plain {
     ($($type:ty: $schema:tt, $absent:expr;)*) => {$(
-        impl Entry for $type {
+        impl KeyType for $type {
             fn read(value: &Spanned<DeValue<'_>>, _: &'static Key) -> Result<Self, EntryError> {
                 plain(value)
             }

@@ -14,7 +14,7 @@ pub type Lanes = [f64; LANES];
 
 /// Where the axes of a batch of points stand, by joint; what is not a rotary joint has the sine 0 and the cosine 1.
 #[derive(Clone, Debug)]
-pub struct Axes {
+pub struct AxisBatch {
     /// Axis values, mm or radians.
     pub joints: [Lanes; MAX_AXES],
     /// Sines of the rotary ones.
@@ -36,7 +36,7 @@ pub struct Traces {
     pub axes: [[Vector3<f64>; LANES]; MAX_AXES],
 }
 
-impl Default for Axes {
+impl Default for AxisBatch {
     fn default() -> Self {
         Self {
             joints: [[0.0; LANES]; MAX_AXES],
@@ -56,7 +56,7 @@ impl Default for Traces {
 impl Turns {
     /// Turns of one point of a batch.
     #[inline]
-    pub fn of_lane(at: &Axes, lane: usize) -> Self {
+    pub fn of_lane(at: &AxisBatch, lane: usize) -> Self {
         let mut turns = Self::default();
         for index in 0..MAX_AXES {
             turns.set(index, at.sines[index][lane], at.cosines[index][lane]);
@@ -67,7 +67,7 @@ impl Turns {
 
 impl Chain {
     /// [`Chain::trace`] of the first `count` points of `at`; the leading edge of a tool that has one is left out.
-    pub fn trace_all(&self, at: &Axes, count: usize, out: &mut Traces) {
+    pub fn trace_all(&self, at: &AxisBatch, count: usize, out: &mut Traces) {
         let count = count.min(LANES);
         out.tip[..count].fill(self.tip());
         out.axis[..count].fill(self.axis());

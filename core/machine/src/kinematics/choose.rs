@@ -9,7 +9,7 @@ use super::travel::{OverTravel, passed};
 
 /// What the choice needs to know of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limit {
+pub struct RotaryTravel {
     /// Place in the chain.
     pub joint: usize,
     /// Least and largest value: mm or radians.
@@ -18,23 +18,23 @@ pub struct Limit {
 
 /// Travel and turns of the rotary axes.
 #[derive(Clone, Debug, Default)]
-pub struct Turning {
+pub struct RotaryAxes {
     /// Rotary axes with travel.
-    pub limits: Vec<Limit>,
+    pub limits: Vec<RotaryTravel>,
     /// Places in the chain of rotary axes without travel.
     pub cyclic: Vec<usize>,
 }
 
 /// A branch with its angles on their nearest turns.
 #[derive(Clone, Copy, Debug)]
-pub struct Choice {
+pub struct BranchChoice {
     /// Which branch.
     pub index: usize,
     /// The rotary angles, or why they are outside travel.
     pub joints: Result<Joints, OverTravel>,
 }
 
-impl Turning {
+impl RotaryAxes {
     /// The branch nearest to `last` by the sum of the turns, each angle taken on the turn that is nearest and
     /// inside travel. `likely` is the branch to look at first: where the other is provably farther, it is not
     /// even worked out. A tie (a start on the pole) goes to the larger angle of the axis nearer the tool.
@@ -46,7 +46,7 @@ impl Turning {
         branches: &Branches,
         last: &Joints,
         likely: usize,
-    ) -> Choice {
+    ) -> BranchChoice {
         let likely = likely.min(branches.count() - 1);
         let (first, cost) = self.choice(solver, branches, last, likely);
         if branches.count() == 1 || 2.0 * cost < branches.apart() {
@@ -117,11 +117,11 @@ impl Turning {
         branches: &Branches,
         last: &Joints,
         index: usize,
-    ) -> (Choice, f64) {
+    ) -> (BranchChoice, f64) {
         let set = solver.angles(branches, index);
         match near(set, last, &self.limits, &self.cyclic) {
-            Ok((joints, cost)) => (Choice { index, joints: Ok(joints) }, cost),
-            Err(over) => (Choice { index, joints: Err(over) }, f64::INFINITY),
+            Ok((joints, cost)) => (BranchChoice { index, joints: Ok(joints) }, cost),
+            Err(over) => (BranchChoice { index, joints: Err(over) }, f64::INFINITY),
         }
     }
 }
@@ -131,7 +131,7 @@ impl Turning {
 fn near(
     mut set: RotarySet,
     last: &Joints,
-    limits: &[Limit],
+    limits: &[RotaryTravel],
     cyclic: &[usize],
 ) -> Result<(Joints, f64), OverTravel> {
     let mut cost = 0.0;

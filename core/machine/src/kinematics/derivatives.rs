@@ -17,11 +17,11 @@ pub const ORDERS: usize = 4;
 pub(super) const FACTORIALS: [f64; ORDERS] = [1.0, 1.0, 2.0, 6.0];
 
 /// A vector as a power series.
-pub(super) type Series = [Vector3<f64>; ORDERS];
+pub(super) type VectorSeries = [Vector3<f64>; ORDERS];
 
 /// Where the machine stands on a path, and how it goes on from there.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Course {
+pub struct JointDerivatives {
     /// Axis values and their first three derivatives by the parameter, by place in the chain: mm and radians.
     pub joints: [Joints; ORDERS],
     /// How the tip moves with each axis: mm a mm or mm a radian, part frame.
@@ -30,7 +30,7 @@ pub struct Course {
 
 /// A linear axis that follows, and with what share of a common way.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Share {
+pub(super) struct LinearShare {
     pub(super) joint: usize,
     pub(super) share: f64,
 }
@@ -43,12 +43,12 @@ pub(super) struct Share {
 /// The linear axes span no volume here.
 pub(super) fn follow(
     chain: &Chain,
-    ways: &[[Share; 2]; 3],
+    ways: &[[LinearShare; 2]; 3],
     tip: &[Vector3<f64>; ORDERS],
-    course: &mut Course,
+    course: &mut JointDerivatives,
 ) -> Result<(), Unreachable> {
     let (end, columns) = pass(chain, course);
-    let main: [Series; 3] = std::array::from_fn(|way| {
+    let main: [VectorSeries; 3] = std::array::from_fn(|way| {
         let [one, other] = ways[way];
         std::array::from_fn(|order| {
             columns[one.joint][order] * one.share + columns[other.joint][order] * other.share
@@ -80,10 +80,10 @@ pub(super) fn follow(
 
 /// The tip as a power series with every linear axis standing, and how it moves with each linear axis, seen from the
 /// part; the rates of `course`.
-fn pass(chain: &Chain, course: &mut Course) -> (Series, [Series; MAX_AXES]) {
-    let mut end: Series = Default::default();
+fn pass(chain: &Chain, course: &mut JointDerivatives) -> (VectorSeries, [VectorSeries; MAX_AXES]) {
+    let mut end: VectorSeries = Default::default();
     end[0] = chain.tip();
-    let mut columns = [Series::default(); MAX_AXES];
+    let mut columns = [VectorSeries::default(); MAX_AXES];
     for (index, joint) in chain.joints().iter().enumerate().rev() {
         let k = joint.direction;
         if !joint.rotary {
@@ -94,7 +94,7 @@ fn pass(chain: &Chain, course: &mut Course) -> (Series, [Series; MAX_AXES]) {
         }
         let angle: [f64; ORDERS] =
             std::array::from_fn(|order| course.joints[order][index] / FACTORIALS[order]);
-        let turning = Turning::new(k, angle);
+        let turning = RotationSeries::new(k, angle);
         end[0] -= joint.point;
         end = turning.of(&end);
         course.rates[index] = k.cross(&end[0]);
@@ -110,7 +110,7 @@ fn pass(chain: &Chain, course: &mut Course) -> (Series, [Series; MAX_AXES]) {
 }
 
 /// A turn about an axis by an angle that is a power series.
-pub(super) struct Turning {
+pub(super) struct RotationSeries {
     k: Vector3<f64>,
     sine: [f64; ORDERS],
     cosine: [f64; ORDERS],
@@ -118,7 +118,7 @@ pub(super) struct Turning {
     stands: bool,
 }
 
-impl Turning {
+impl RotationSeries {
     pub(super) fn new(k: Vector3<f64>, angle: [f64; ORDERS]) -> Self {
         let (mut sine, mut cosine) = ([0.0; ORDERS], [0.0; ORDERS]);
         (sine[0], cosine[0]) = libm::sincos(angle[0]);
@@ -137,7 +137,7 @@ impl Turning {
         turn(vector, self.k, self.sine[0], self.cosine[0])
     }
 
-    pub(super) fn of(&self, series: &Series) -> Series {
+    pub(super) fn of(&self, series: &VectorSeries) -> VectorSeries {
         if self.stands {
             return series.map(|vector| self.once(vector));
         }

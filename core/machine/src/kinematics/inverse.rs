@@ -3,9 +3,9 @@
 
 use nalgebra::Vector3;
 
-use super::batch::Axes;
+use super::batch::AxisBatch;
 use super::chain::{Chain, Joints, MAX_AXES, Pose, Turns};
-use super::derivatives::{self, Course, ORDERS};
+use super::derivatives::{self, JointDerivatives, ORDERS};
 use super::fault::{NoClosedForm, POLE, Unreachable};
 use super::linear::{Linear, Second};
 use super::numeric;
@@ -47,7 +47,7 @@ pub struct Solver {
     chain: Chain,
     /// Values of the axes that are not free (indexed), mm or radians.
     held: Joints,
-    form: Form,
+    form: SolutionMethod,
 }
 
 /// The way to the solution.
@@ -56,7 +56,7 @@ pub struct Solver {
     clippy::large_enum_variant,
     reason = "there is one a machine, and a box would cost every point"
 )]
-enum Form {
+enum SolutionMethod {
     Closed {
         orientation: Orientation,
         /// Free rotary axes along the tool, which turn nothing: one bit each.
@@ -86,7 +86,7 @@ impl Solver {
         let form = match Linear::new(&chain, &freedom.still, &freedom.seconds) {
             Ok(linear) => {
                 let (orientation, idle) = Orientation::new(&chain, &freedom.rotary, &held)?;
-                Form::Closed { orientation, idle, linear }
+                SolutionMethod::Closed { orientation, idle, linear }
             }
             // Rotary axes have to place the tip as well.
             Err(NoClosedForm::FewAxes { linear: count, quills, .. }) => {
@@ -114,7 +114,10 @@ impl Solver {
                     return Err(NoClosedForm::FlatTip { ways });
                 }
                 let slides = |joint: &usize| !chain.joints()[*joint].rotary;
-                Form::Numeric { linear: free.iter().copied().filter(slides).collect(), free }
+                SolutionMethod::Numeric {
+                    linear: free.iter().copied().filter(slides).collect(),
+                    free,
+                }
             }
             Err(lack) => return Err(lack),
         };
@@ -128,7 +131,7 @@ impl Solver {
 
     /// The solutions come from formulas; else from a numeric search that is verified.
     pub fn closed_form(&self) -> bool {
-        matches!(self.form, Form::Closed { .. })
+        matches!(self.form, SolutionMethod::Closed { .. })
     }
 
     /// The ways to point the tool along the axis (and with the edge) of `pose` within `tolerance` (radians; it
@@ -139,8 +142,8 @@ impl Solver {
     #[inline]
     pub fn orient(&self, pose: &Pose, tolerance: f64) -> Result<Branches, Unreachable> {
         match &self.form {
-            Form::Closed { orientation, .. } => orientation.orient(pose, tolerance),
-            Form::Numeric { .. } => Err(Unreachable::Numeric { miss: f64::INFINITY }),
+            SolutionMethod::Closed { orientation, .. } => orientation.orient(pose, tolerance),
+            SolutionMethod::Numeric { .. } => Err(Unreachable::Numeric { miss: f64::INFINITY }),
         }
     }
 
@@ -148,7 +151,7 @@ impl Solver {
     #[inline]
     pub(super) fn linear(&self) -> Option<&Linear> {
         match &self.form {
-            Form::Closed { linear, .. } if !linear.more => Some(linear),
+            SolutionMethod::Closed { linear, .. } if !linear.more => Some(linear),
             _ => None,
         }
     }
@@ -157,7 +160,7 @@ impl Solver {
     #[inline]
     pub fn angles(&self, branches: &Branches, index: usize) -> RotarySet {
         let mut set = RotarySet { joints: self.held, ..RotarySet::default() };
-        if let Form::Closed { orientation, idle, .. } = &self.form {
+        if let SolutionMethod::Closed { orientation, idle, .. } = &self.form {
             set.free = *idle;
             orientation.angles(branches, index, &mut set);
         }
@@ -176,16 +179,16 @@ impl Solver {
     /// The free joint nearest to the tool.
     pub fn last_rotary(&self) -> usize {
         match &self.form {
-            Form::Closed { orientation, .. } => orientation.last(),
-            Form::Numeric { free, .. } => free.last().copied().unwrap_or(0),
+            SolutionMethod::Closed { orientation, .. } => orientation.last(),
+            SolutionMethod::Numeric { free, .. } => free.last().copied().unwrap_or(0),
         }
     }
 
     /// The rotary joint whose angle is free on the pole, if two or three of them point the tool.
     pub fn pole_joint(&self) -> Option<usize> {
         match &self.form {
-            Form::Closed { orientation, .. } => orientation.first(),
-            Form::Numeric { .. } => None,
+            SolutionMethod::Closed { orientation, .. } => orientation.first(),
+            SolutionMethod::Numeric { .. } => None,
         }
     }
 
@@ -193,15 +196,15 @@ impl Solver {
     /// branches meet. None where nothing turns so.
     pub fn band(&self) -> Option<[f64; 2]> {
         match &self.form {
-            Form::Closed { orientation, .. } => orientation.band(),
-            Form::Numeric { .. } => None,
+            SolutionMethod::Closed { orientation, .. } => orientation.band(),
+            SolutionMethod::Numeric { .. } => None,
         }
     }
 
     /// With the [`Solver::pole_joint`] where `joints` has it, puts the other rotary joints so that the tool
     /// axis comes as near as it can to that of `pose`; their angles in -π to π.
     pub fn follow(&self, pose: &Pose, joints: &mut Joints) {
-        if let Form::Closed { orientation, .. } = &self.form {
+        if let SolutionMethod::Closed { orientation, .. } = &self.form {
             orientation.follow(pose, joints);
         }
     }
@@ -219,8 +222,8 @@ impl Solver {
         turns: &Turns,
     ) -> Result<(), Unreachable> {
         match &self.form {
-            Form::Closed { linear, .. } => linear.place(&self.chain, tip, joints, turns),
-            Form::Numeric { linear, .. } => {
+            SolutionMethod::Closed { linear, .. } => linear.place(&self.chain, tip, joints, turns),
+            SolutionMethod::Numeric { linear, .. } => {
                 // There are too few of them to reach the tip alone; they make up for what they can.
                 numeric::approach(&self.chain, linear, tip, joints);
                 Ok(())
@@ -237,9 +240,9 @@ impl Solver {
     pub fn course(
         &self,
         tip: &[Vector3<f64>; ORDERS],
-        course: &mut Course,
+        course: &mut JointDerivatives,
     ) -> Result<(), Unreachable> {
-        let Form::Closed { linear, .. } = &self.form else {
+        let SolutionMethod::Closed { linear, .. } = &self.form else {
             return Err(Unreachable::Linear);
         };
         let turns = self.chain.turns(&course.joints[0]);
@@ -258,7 +261,7 @@ impl Solver {
         &self,
         rotary: &[usize],
         axis: &[Vector3<f64>; ORDERS],
-        course: &mut Course,
+        course: &mut JointDerivatives,
     ) -> Result<(), Unreachable> {
         turning_axis::follow(&self.chain, rotary, axis, course)
     }
@@ -266,10 +269,10 @@ impl Solver {
     /// [`Solver::place`] of a batch: puts the linear axes of `at` where the tips stand on `tips` (mm, part frame; at
     /// most [`super::batch::LANES`]), the rotary ones being where its sines and cosines have them. False, and nothing
     /// done, where the chain asks for more than that: its points are left to [`Solver::place`].
-    pub fn place_all(&self, tips: &[Vector3<f64>], at: &mut Axes) -> bool {
+    pub fn place_all(&self, tips: &[Vector3<f64>], at: &mut AxisBatch) -> bool {
         match &self.form {
-            Form::Closed { linear, .. } => linear.place_batch(&self.chain, tips, at),
-            Form::Numeric { .. } => false,
+            SolutionMethod::Closed { linear, .. } => linear.place_batch(&self.chain, tips, at),
+            SolutionMethod::Numeric { .. } => false,
         }
     }
 
@@ -281,7 +284,7 @@ impl Solver {
     /// For a chain without a closed form: in how many independent ways the tip can be moved from `joints` while the tool
     /// axis keeps its direction (3 for any path), and the tool axis while the tip stays (2 for any).
     pub fn ways(&self, joints: &Joints) -> Option<[usize; 2]> {
-        let Form::Numeric { free, .. } = &self.form else {
+        let SolutionMethod::Numeric { free, .. } = &self.form else {
             return None;
         };
         let ways = numeric::ways(&self.chain, free, joints);
@@ -312,7 +315,7 @@ impl Solver {
         tolerance: f64,
         left: &mut usize,
     ) -> Result<Joints, Unreachable> {
-        let Form::Numeric { free, .. } = &self.form else {
+        let SolutionMethod::Numeric { free, .. } = &self.form else {
             return Err(Unreachable::Linear);
         };
         let mut start = self.held;
@@ -352,7 +355,7 @@ impl Solver {
 
     /// Rotary joints that a numeric search moves.
     fn rotary(&self) -> Vec<usize> {
-        let Form::Numeric { free, .. } = &self.form else {
+        let SolutionMethod::Numeric { free, .. } = &self.form else {
             return Vec::new();
         };
         let free = free.iter().copied();
@@ -371,7 +374,7 @@ impl Solver {
         tolerance: f64,
         left: &mut usize,
     ) -> Result<Vec<Joints>, Unreachable> {
-        let Form::Numeric { free, .. } = &self.form else {
+        let SolutionMethod::Numeric { free, .. } = &self.form else {
             return Err(Unreachable::Linear);
         };
         let rotary = self.rotary();
@@ -419,7 +422,7 @@ impl Solver {
         last: &Joints,
         tolerance: f64,
     ) -> Result<Vec<Joints>, Unreachable> {
-        let Form::Closed { idle, .. } = &self.form else {
+        let SolutionMethod::Closed { idle, .. } = &self.form else {
             return self.searches(pose, last, tolerance);
         };
         let mut solutions = Vec::with_capacity(2);

@@ -23,7 +23,7 @@ const SHORTEST: f64 = 1.0 / 4096.0;
 
 /// A block along which the control keeps the tip on a straight line.
 #[derive(Clone, Copy, Debug)]
-pub struct KeptTip<'a> {
+pub struct TcpBlock<'a> {
     chain: &'a Chain,
     linear: &'a Linear,
     from: &'a Trace,
@@ -40,7 +40,7 @@ pub struct KeptTip<'a> {
 
 /// What the linear axes do along a block: bounds that hold at every t.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Slides {
+pub struct LinearMotion {
     /// Least value of each joint, mm; of those that do not slide, infinite.
     pub least: Joints,
     /// Largest value of each joint, mm; of those that do not slide, infinitely small.
@@ -59,7 +59,7 @@ pub struct Slides {
 
 /// The linear axes at one place of a block, and how fast they go there.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct LinearAxisState {
     t: f64,
     values: Vector3<f64>,
     slope: Vector3<f64>,
@@ -71,7 +71,7 @@ struct Place {
     inverse: [f64; 2],
 }
 
-impl<'a> KeptTip<'a> {
+impl<'a> TcpBlock<'a> {
     /// From `from` to `to`, both solved by `solver`, whose point stands `along` mm above the tip. None for a chain
     /// whose linear axes alone do not place the tip.
     #[inline]
@@ -142,10 +142,10 @@ impl<'a> KeptTip<'a> {
     /// Looks into the block: the range and way of each linear axis to `STRAY`, the least time that `slowness`
     /// (minutes that each joint needs for one mm or radian) leaves it to `CLOSE`; no closer than `enough` minutes.
     /// None where the linear axes span no volume somewhere on the way, or nothing is proven of it.
-    pub fn slides(&self, slowness: &Joints, enough: f64) -> Option<Slides> {
+    pub fn slides(&self, slowness: &Joints, enough: f64) -> Option<LinearMotion> {
         let from = self.at(0.0, &self.from.turns)?;
         let to = self.at(1.0, &self.to.turns)?;
-        let mut slides = Slides {
+        let mut slides = LinearMotion {
             least: [f64::INFINITY; MAX_AXES],
             most: [f64::NEG_INFINITY; MAX_AXES],
             way: Joints::default(),
@@ -169,7 +169,13 @@ impl<'a> KeptTip<'a> {
     ///
     /// With T the bound on the third derivative and h the length of the piece, the speed strays from the line between
     /// those at the ends by at most `T·h²/8`, and the axis from the parabola that this line makes by at most `T·h³/12`.
-    fn look(&self, a: &Place, b: &Place, slowness: &Joints, slides: &mut Slides) -> Option<()> {
+    fn look(
+        &self,
+        a: &LinearAxisState,
+        b: &LinearAxisState,
+        slowness: &Joints,
+        slides: &mut LinearMotion,
+    ) -> Option<()> {
         let joints = self.linear.joints;
         for place in [a, b] {
             for (slope, joint) in place.slope.iter().zip(joints) {
@@ -216,14 +222,14 @@ impl<'a> KeptTip<'a> {
         Some(())
     }
 
-    fn between(&self, t: f64) -> Option<Place> {
+    fn between(&self, t: f64) -> Option<LinearAxisState> {
         let joints: Joints =
             std::array::from_fn(|index| self.from.joints[index] + self.steps[index] * t);
         self.at(t, &self.chain.turns(&joints))
     }
 
     /// The linear axes at the share `t`, where the rotary ones have these turns.
-    fn at(&self, t: f64, turns: &Turns) -> Option<Place> {
+    fn at(&self, t: f64, turns: &Turns) -> Option<LinearAxisState> {
         let axes = self.chain.joints();
         let zero = Vector3::zeros();
         let mut radii = Joints::default();
@@ -275,7 +281,7 @@ impl<'a> KeptTip<'a> {
                 inverse
             }
         };
-        Some(Place {
+        Some(LinearAxisState {
             t,
             values: inverse * offset,
             slope: inverse * slope,
@@ -286,7 +292,7 @@ impl<'a> KeptTip<'a> {
     }
 
     /// A bound on the third derivative of every linear axis between two places, by Leibniz' rule joint by joint.
-    fn third(&self, a: &Place, b: &Place) -> f64 {
+    fn third(&self, a: &LinearAxisState, b: &LinearAxisState) -> f64 {
         let length = b.t - a.t;
         let square = length * length;
         let pass = |[d1, d2, d3]: [f64; 3], index: usize| {

@@ -3,9 +3,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::batch::{Axes, LANES};
+use super::batch::{AxisBatch, LANES};
 use super::chain::{Chain, Joints, MAX_AXES, Turns, turn};
-use super::derivatives::Share;
+use super::derivatives::LinearShare;
 use super::fault::{NoClosedForm, Unreachable};
 
 /// A linear axis beside the three that place the tip: a quill.
@@ -170,16 +170,16 @@ impl Linear {
     }
 
     /// Which joints each of the three ways is made of, the linear axes standing where `joints` has them.
-    pub(super) fn ways(&self, joints: &Joints) -> [[Share; 2]; 3] {
+    pub(super) fn ways(&self, joints: &Joints) -> [[LinearShare; 2]; 3] {
         std::array::from_fn(|place| {
             let joint = self.joints[place];
-            let mut way = [Share { joint, share: 1.0 }, Share { joint, share: 0.0 }];
+            let mut way = [LinearShare { joint, share: 1.0 }, LinearShare { joint, share: 0.0 }];
             for quill in self.seconds.iter().filter(|quill| quill.beside == place) {
                 // Where the other stands at the end of its travel, the quill goes in its place.
                 let at_end = || quill.travel.contains(&joints[joint]);
                 let share = quill.share.unwrap_or_else(|| f64::from(u8::from(at_end())));
                 way[0].share -= share;
-                way[1] = Share { joint: quill.joint, share };
+                way[1] = LinearShare { joint: quill.joint, share };
             }
             way
         })
@@ -187,7 +187,12 @@ impl Linear {
 
     /// [`Linear::place`] of a batch: the linear axes of `at` for `tips`. False, and nothing done, where the linear
     /// axes do not stand side by side, or there are more than three.
-    pub(super) fn place_batch(&self, chain: &Chain, tips: &[Vector3<f64>], at: &mut Axes) -> bool {
+    pub(super) fn place_batch(
+        &self,
+        chain: &Chain,
+        tips: &[Vector3<f64>],
+        at: &mut AxisBatch,
+    ) -> bool {
         let Some(inverse) = self.inverse.filter(|_| !self.more) else {
             return false;
         };

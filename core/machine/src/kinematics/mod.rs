@@ -15,9 +15,9 @@ pub mod travel;
 mod turning_axis;
 
 pub use chain::{Chain, Joint, Joints, MAX_AXES, Pose, Trace, Turns};
-pub use derivatives::{Course, ORDERS};
+pub use derivatives::{JointDerivatives, ORDERS};
 pub use fault::{NoClosedForm, POLE, Unreachable};
 pub use inverse::{Freedom, Solver};
-pub use kept_tip::{KeptTip, Slides};
+pub use kept_tip::{LinearMotion, TcpBlock};
 pub use linear::Second;
 pub use turning_axis::direction;

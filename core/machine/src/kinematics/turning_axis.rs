@@ -7,7 +7,7 @@
 use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::chain::Chain;
-use super::derivatives::{Course, FACTORIALS, ORDERS, Series, Turning};
+use super::derivatives::{FACTORIALS, JointDerivatives, ORDERS, RotationSeries, VectorSeries};
 use super::fault::{POLE, Unreachable};
 
 /// The largest part of a change of the tool axis that the rotary axes may be unable to follow, beside rounding.
@@ -24,13 +24,14 @@ pub fn direction(along: &[Vector3<f64>; ORDERS]) -> Option<[Vector3<f64>; ORDERS
     if length < NULL {
         return None;
     }
-    let vector: Series = std::array::from_fn(|order| along[order] / (length * FACTORIALS[order]));
-    let product = |a: &Series, order: usize| -> f64 {
+    let vector: VectorSeries =
+        std::array::from_fn(|order| along[order] / (length * FACTORIALS[order]));
+    let product = |a: &VectorSeries, order: usize| -> f64 {
         (0..=order).map(|lower| a[lower].dot(&vector[order - lower])).sum()
     };
     // Of |v|² = v·v, then of u |v| = v.
     let mut size = [1.0, 0.0, 0.0, 0.0];
-    let mut unit: Series = Default::default();
+    let mut unit: VectorSeries = Default::default();
     unit[0] = vector[0];
     for order in 1..ORDERS {
         let known: f64 = (1..order).map(|lower| size[lower] * size[order - lower]).sum();
@@ -50,7 +51,7 @@ pub(super) fn follow(
     chain: &Chain,
     rotary: &[usize],
     axis: &[Vector3<f64>; ORDERS],
-    course: &mut Course,
+    course: &mut JointDerivatives,
 ) -> Result<(), Unreachable> {
     let base: f64 = axis[1..].iter().map(|vector| vector.norm()).fold(1.0, f64::max);
     for order in 1..ORDERS {
@@ -88,8 +89,12 @@ pub(super) fn follow(
 }
 
 /// The tool axis as a power series, and how it turns with each of `rotary`, in the part frame.
-fn pass(chain: &Chain, rotary: &[usize], course: &Course) -> (Series, Vec<Vector3<f64>>) {
-    let mut series: Series = Default::default();
+fn pass(
+    chain: &Chain,
+    rotary: &[usize],
+    course: &JointDerivatives,
+) -> (VectorSeries, Vec<Vector3<f64>>) {
+    let mut series: VectorSeries = Default::default();
     series[0] = chain.axis();
     let mut rates = vec![Vector3::zeros(); rotary.len()];
     for (index, joint) in chain.joints().iter().enumerate().rev() {
@@ -98,7 +103,7 @@ fn pass(chain: &Chain, rotary: &[usize], course: &Course) -> (Series, Vec<Vector
         }
         let angle: [f64; ORDERS] =
             std::array::from_fn(|order| course.joints[order][index] / FACTORIALS[order]);
-        let turning = Turning::new(joint.direction, angle);
+        let turning = RotationSeries::new(joint.direction, angle);
         series = turning.of(&series);
         for (rate, behind) in rates.iter_mut().zip(rotary) {
             if *behind > index {

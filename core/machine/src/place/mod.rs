@@ -2,7 +2,7 @@
 //!
 //! With the rotary axes where they stand, a linear axis is at `q + g · (mount − mount now)`: `g` is a row of the inverse
 //! of the small system that places the tip, and neither the tool's length nor the point has a say in it. So each point
-//! of a program and each end of travel leave one half-space of mounts ([`Room`]), and all of them a convex body, of which
+//! of a program and each end of travel leave one half-space of mounts ([`MountRoom`]), and all of them a convex body, of which
 //! the point next to a wished mount is found exactly ([`nearest`]). No linear-programming crate stands behind it: with
 //! three unknowns the incremental method is some fifty lines, needs memory for its answer alone, and says why there is
 //! none.
@@ -13,4 +13,4 @@ mod room;
 
 pub use descent::{descend, rounded, spread};
 pub use half_space::{HalfSpace, Tight, most_room, nearest, shuffled};
-pub use room::{End, Room, Side, opened};
+pub use room::{MountConstraint, MountRoom, TravelEnd, opened};

@@ -15,7 +15,7 @@ const CELLS: f64 = 32.0;
 
 /// An end of the travel of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Side {
+pub struct TravelEnd {
     /// The axis, its place in the chain.
     pub joint: usize,
     /// The end where its values are largest, else the one where they are least.
@@ -28,21 +28,21 @@ const OPEN: f64 = 1e6;
 /// What bounds the mount: for each end of travel the points of the program that come nearest to it, whichever way the
 /// part is turned there. Memory does not grow with the program.
 #[derive(Clone, Debug)]
-pub struct Room {
+pub struct MountRoom {
     solver: Solver,
     mount: Vector3<f64>,
     /// Linear axes with an end, and their travel.
     slides: Vec<(usize, [f64; 2])>,
     /// How each linear axis goes with the mount, at the rotary angles behind it.
     rates: Option<(Joints, Vec<Vector3<f64>>)>,
-    found: BTreeMap<(Side, [i32; 3]), Bound>,
+    found: BTreeMap<(TravelEnd, [i32; 3]), TravelConstraint>,
 }
 
 /// An end of travel, and what a point of the program leaves to the mount because of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct End {
+pub struct MountConstraint {
     /// The end.
-    pub side: Side,
+    pub side: TravelEnd,
     /// Line of the CL file that the point stands on.
     pub line: u64,
     /// The mounts (mm, machine frame) with which the axis stays before it.
@@ -51,13 +51,13 @@ pub struct End {
 
 /// One end of travel at one point of the program, at the mount in hand.
 #[derive(Clone, Copy, Debug)]
-struct Bound {
+struct TravelConstraint {
     body: HalfSpace,
     room: f64,
     line: u64,
 }
 
-impl Room {
+impl MountRoom {
     /// For a machine as its file describes it; its ends of travel are those that bound.
     ///
     /// # Errors
@@ -109,12 +109,12 @@ impl Room {
             for (largest, sign, end) in [(false, -1.0, -least), (true, 1.0, *most)] {
                 let normal = rate * sign;
                 let room = end - value * sign;
-                let bound = Bound {
+                let bound = TravelConstraint {
                     body: HalfSpace { normal, most: room + normal.dot(&self.mount) },
                     room,
                     line,
                 };
-                let side = Side { joint: *joint, largest };
+                let side = TravelEnd { joint: *joint, largest };
                 let cell = [normal.x, normal.y, normal.z];
                 let cell = cell.map(|part| libm::rint(part * CELLS) as i32);
                 match self.found.entry((side, cell)) {
@@ -195,8 +195,8 @@ impl Room {
     }
 
     /// What was gathered.
-    pub fn ends(&self) -> impl Iterator<Item = End> {
-        self.found.iter().map(|((side, _), bound)| End {
+    pub fn ends(&self) -> impl Iterator<Item = MountConstraint> {
+        self.found.iter().map(|((side, _), bound)| MountConstraint {
             side: *side,
             line: bound.line,
             body: bound.body,
@@ -205,7 +205,7 @@ impl Room {
 
     /// The axes go with the mount alike wherever the part stands: no rotary axis turns the part under them.
     pub fn goes_evenly(&self) -> bool {
-        let mut sides: Vec<Side> = self.found.keys().map(|(side, _)| *side).collect();
+        let mut sides: Vec<TravelEnd> = self.found.keys().map(|(side, _)| *side).collect();
         let all = sides.len();
         sides.dedup();
         sides.len() == all

@@ -38,12 +38,12 @@ mod state_space;
 use std::f64::consts::TAU;
 
 pub use parameters::Parameter;
-pub use poles::{Pole, stable};
-pub use response::Response;
+pub use poles::{ServoPole, stable};
+pub use response::FrequencyResponse;
 pub use state_space::{Released, StateSpace};
 
 use crate::description::table::words;
-use crate::diagnostic::Place;
+use crate::diagnostic::SourcePlace;
 
 /// Largest number of states of a servo.
 pub const MAX_ORDER: usize = 12;
@@ -52,7 +52,7 @@ pub const MAX_ORDER: usize = 12;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Servo {
     /// Where the file describes it.
-    pub place: Option<Place>,
+    pub place: Option<SourcePlace>,
     /// The axis is rotary: degrees, N·m and kg·m² where a linear one has mm, N and kg.
     pub rotary: bool,
     /// How it behaves.

@@ -14,7 +14,7 @@ pub struct Parameter<'a> {
 }
 
 /// Numbers by their keys, those that the file says.
-type Named<'a> = Vec<(&'static str, Option<&'a mut f64>)>;
+type NamedParameters<'a> = Vec<(&'static str, Option<&'a mut f64>)>;
 
 impl Servo {
     /// The numbers of the servo that the file says, by their keys; those of a transfer function have none.
@@ -77,14 +77,17 @@ impl Servo {
     }
 }
 
-fn said<'a>(table: &'static str, numbers: Named<'a>) -> impl Iterator<Item = Parameter<'a>> {
+fn said<'a>(
+    table: &'static str,
+    numbers: NamedParameters<'a>,
+) -> impl Iterator<Item = Parameter<'a>> {
     numbers.into_iter().filter_map(move |(name, value)| {
         let value = value?;
         Some(Parameter { table, name, value })
     })
 }
 
-fn of_drive(drive: &mut Drive) -> (&'static str, Named<'_>) {
+fn of_drive(drive: &mut Drive) -> (&'static str, NamedParameters<'_>) {
     match drive {
         Drive::Screw {
             lead,

@@ -9,21 +9,21 @@ use crate::diagnostic::Short;
 
 /// A pole, 1/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pole {
+pub struct ServoPole {
     /// Real part: what is left of an error falls like `exp(real·t)`.
     pub real: f64,
     /// Imaginary part: it swings at so many radians a second.
     pub imaginary: f64,
 }
 
-impl Pole {
+impl ServoPole {
     /// Distance from zero, 1/s.
     pub fn size(&self) -> f64 {
         libm::hypot(self.real, self.imaginary)
     }
 }
 
-impl fmt::Display for Pole {
+impl fmt::Display for ServoPole {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", Short(self.real))?;
         if self.imaginary == 0.0 {
@@ -43,16 +43,16 @@ const AT_ZERO: f64 = 1e-12;
 impl StateSpace {
     /// The poles, the slowest first: eigenvalues of the matrix. None where they are
     /// too large to be numbers, or the search for them does not end.
-    pub fn poles(&self) -> Option<Vec<Pole>> {
+    pub fn poles(&self) -> Option<Vec<ServoPole>> {
         if !self.a.iter().all(|part| part.is_finite()) {
             return None;
         }
         let steps = MOST_STEPS * self.order();
         let schur = Schur::try_new(self.a.clone(), f64::EPSILON, steps)?;
-        let mut poles: Vec<Pole> = schur
+        let mut poles: Vec<ServoPole> = schur
             .complex_eigenvalues()
             .iter()
-            .map(|value| Pole { real: value.re, imaginary: value.im })
+            .map(|value| ServoPole { real: value.re, imaginary: value.im })
             .collect();
         poles.sort_by(|one, other| {
             (other.real.total_cmp(&one.real)).then(other.imaginary.total_cmp(&one.imaginary))
@@ -62,7 +62,7 @@ impl StateSpace {
 }
 
 /// Every motion of its own dies away.
-pub fn stable(poles: &[Pole]) -> bool {
-    let largest = poles.iter().map(Pole::size).fold(0.0, f64::max);
+pub fn stable(poles: &[ServoPole]) -> bool {
+    let largest = poles.iter().map(ServoPole::size).fold(0.0, f64::max);
     poles.iter().all(|pole| pole.real < -AT_ZERO * largest)
 }

@@ -4,14 +4,14 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::{Pole, Servo, ServoModel, StateSpace};
+use super::{Servo, ServoModel, ServoPole, StateSpace};
 use crate::description::Machine;
 
 /// The frequency response of a servo, friction and play left out.
 #[derive(Clone, Debug)]
-pub struct Response {
+pub struct FrequencyResponse {
     space: StateSpace,
-    poles: Vec<Pole>,
+    poles: Vec<ServoPole>,
     /// Frequency of the table on its transmission, rad/s; none where that is rigid, or no part of the model.
     swing: Option<f64>,
 }
@@ -23,7 +23,7 @@ const PER_E_FOLD: f64 = 64.0;
 /// Halvings of an interval of frequencies.
 const HALVINGS: usize = 60;
 
-impl Response {
+impl FrequencyResponse {
     /// The response of `servo`.
     pub fn new(servo: &Servo) -> Self {
         let space = StateSpace::of(servo);
@@ -44,7 +44,7 @@ impl Response {
     }
 
     /// The poles, 1/s, the slowest first.
-    pub fn poles(&self) -> &[Pole] {
+    pub fn poles(&self) -> &[ServoPole] {
         &self.poles
     }
 
@@ -93,7 +93,7 @@ impl Response {
 
     /// The least frequency beyond which `holds` of the gain is false.
     fn first_beyond(&self, holds: impl Fn(f64) -> bool) -> f64 {
-        let sizes = self.poles.iter().map(Pole::size);
+        let sizes = self.poles.iter().map(ServoPole::size);
         let least = sizes.clone().fold(f64::INFINITY, f64::min);
         let most = sizes.fold(0.0, f64::max);
         if !(least > 0.0 && most.is_finite()) {

@@ -149,7 +149,7 @@ impl StateSpace {
 }
 
 /// Places of the states of [`Loops`].
-struct Places {
+struct StateIndices {
     order: usize,
     /// Position and velocity of the motor, seen at the axis.
     motor: usize,
@@ -160,7 +160,7 @@ struct Places {
     current_integral: Option<usize>,
 }
 
-impl Places {
+impl StateIndices {
     fn of(loops: &Loops, mechanics: &Mechanics) -> Self {
         let mut order = 2;
         let mut next = |wanted: bool, count: usize| {
@@ -181,7 +181,7 @@ impl Places {
 /// `length` is one unit of the axis in m or radians.
 fn of_loops(loops: &Loops, length: f64) -> StateSpace {
     let mechanics = loops.drive.mechanics();
-    let places = Places::of(loops, &mechanics);
+    let places = StateIndices::of(loops, &mechanics);
     let order = places.order;
     let travel = mechanics.travel;
     let state = |place: usize| Signal::state(order, place);

@@ -1,6 +1,6 @@
 //! Many points at once: the bits of one after the other.
 
-use post_machine::kinematics::batch::{Axes, LANES, Traces};
+use post_machine::kinematics::batch::{AxisBatch, LANES, Traces};
 use post_machine::kinematics::{Solver, Trace};
 use post_testkit::{at_least, randomised};
 use post_testmachines::{Kind, Random};
@@ -9,7 +9,7 @@ use post_testmachines::{Kind, Random};
 #[test]
 fn a_batch_is_placed_and_traced_with_the_bits_of_its_points() {
     let (rounds, mut rng) = randomised(200, 63);
-    let (mut at, mut out) = (Axes::default(), Traces::default());
+    let (mut at, mut out) = (AxisBatch::default(), Traces::default());
     let (mut placed, mut left) = (0, 0);
     for round in rounds {
         let mut kinds = vec![Kind::Linear; 3 + usize::from(round % 8 == 0)];

@@ -4,14 +4,14 @@
 use std::fmt::Write as _;
 
 use nalgebra::Vector3;
-use post_machine::check::{Check, Work, compare};
+use post_machine::check::{Check, InverseWork, compare};
 use post_machine::description::{Machine, Source, load};
 use post_machine::diagnostic::Diagnostic;
 use post_testkit::{Rng, at_least, randomised};
 use post_testmachines::{Reference, angle};
 
 /// What any check may ask of the inverse: poses, and steps of searches.
-const MOST: Work = Work { poses: 450_000, steps: 260_000 };
+const MOST: InverseWork = InverseWork { poses: 450_000, steps: 260_000 };
 
 /// One axis: its name, the line that says how it moves, and where it may go.
 struct Line<'a>(&'a str, &'a str, &'a str);

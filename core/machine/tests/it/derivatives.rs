@@ -2,7 +2,7 @@
 //! its path but for the fourth order, on random machines with tables, heads and rotary axes between the linear ones.
 
 use nalgebra::Vector3;
-use post_machine::kinematics::{Chain, Course, Joints, ORDERS, Solver, direction};
+use post_machine::kinematics::{Chain, JointDerivatives, Joints, ORDERS, Solver, direction};
 use post_testkit::{Rng, at_least, randomised};
 use post_testmachines::Random;
 
@@ -15,7 +15,7 @@ fn on<T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>>(
     value + first * way + second * (way * way / 2.0) + third * (way * way * way / 6.0)
 }
 
-fn joints_on(course: &Course, way: f64) -> Joints {
+fn joints_on(course: &JointDerivatives, way: f64) -> Joints {
     std::array::from_fn(|place| on(course.joints.map(|joints| joints[place]), way))
 }
 
@@ -23,7 +23,7 @@ struct Case {
     machine: Random,
     solver: Solver,
     tip: [Vector3<f64>; ORDERS],
-    course: Course,
+    course: JointDerivatives,
 }
 
 fn solved(rng: &mut Rng, free: usize, held: usize) -> (Random, Solver) {
@@ -40,7 +40,7 @@ fn case(rng: &mut Rng) -> Case {
     let held = rng.pick(2);
     let (machine, solver) = solved(rng, free, held);
     let reference = &machine.reference;
-    let mut course = Course::default();
+    let mut course = JointDerivatives::default();
     course.joints[0] = machine.values(rng);
     for order in 1..ORDERS {
         for joint in &machine.free {
@@ -107,7 +107,7 @@ fn rotary_axes_that_go_by_their_derivatives_lead_the_tool_axis_along_its_path() 
         let held = rng.pick(2);
         let (machine, solver) = solved(&mut rng, 2, held);
         let reference = &machine.reference;
-        let mut course = Course::default();
+        let mut course = JointDerivatives::default();
         course.joints[0] = machine.values(&mut rng);
         let start = reference.forward(&course.joints[0]).1;
         let goes = [1, 2, 3].map(|_| rng.direction() * rng.range(0.0, 0.02));

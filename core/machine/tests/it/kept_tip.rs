@@ -3,7 +3,7 @@
 //! ones.
 
 use nalgebra::Vector3;
-use post_machine::kinematics::{Chain, Joints, KeptTip, Solver, Trace};
+use post_machine::kinematics::{Chain, Joints, Solver, TcpBlock, Trace};
 use post_testkit::{Rng, at_least, randomised};
 use post_testmachines::{Random, between};
 
@@ -70,7 +70,8 @@ fn no_sample_exceeds_what_is_said() {
     for round in rounds {
         let block = block(&mut rng);
         let [from, to] = block.traces();
-        let kept = KeptTip::new(&block.solver, block.along, &from, &to).expect("three linear axes");
+        let kept =
+            TcpBlock::new(&block.solver, block.along, &from, &to).expect("three linear axes");
         let mut slowness = Joints::default();
         for value in &mut slowness {
             *value = rng.order(-4.0, -1.0);

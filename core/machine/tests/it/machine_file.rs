@@ -4,7 +4,7 @@
 use std::fs;
 
 use post_machine::description::{
-    BlendRule, CornerRule, LimitsActOn, Machine, RapidRule, Rule, Setting, Tcp, load,
+    BlendRule, CornerRule, LimitsActOn, Machine, RapidRule, Setting, SolutionCriterion, Tcp, load,
 };
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_testkit::repository;
@@ -348,7 +348,7 @@ fn the_rule_of_the_cycle_time_asks_for_accelerations() {
     assert!(found[0].message.ends_with("max_accel of Y, X, Z"), "{}", found[0].message);
     let driven = driven.replace("linear =", "max_accel = 4000\nlinear =");
     let machine = try_load(&ruled(&driven), &[]).unwrap();
-    assert_eq!(machine.solution.rule, Rule::CycleTime);
+    assert_eq!(machine.solution.rule, SolutionCriterion::CycleTime);
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3, Vector3};
 use post_machine::description::{Machine, Source, load};
 use post_machine::kinematics::Joints;
-use post_machine::place::{HalfSpace, Room, descend, most_room, nearest, rounded, shuffled};
+use post_machine::place::{HalfSpace, MountRoom, descend, most_room, nearest, rounded, shuffled};
 use post_testkit::{Rng, at_least, randomised};
 use post_testmachines::Reference;
 
@@ -184,7 +184,7 @@ fn a_point_leaves_to_the_mount_what_isometries_say() {
             }
             let tip = rng.point(150.0);
             let placed = stands.put(tip, joints);
-            let mut room = Room::new(&here).unwrap();
+            let mut room = MountRoom::new(&here).unwrap();
             assert!(room.bounds(), "{name}");
             room.take(&placed, 7);
             // The part elsewhere, the same point of it, the rotary axes as they were.
@@ -217,7 +217,7 @@ fn the_way_between_two_points_is_looked_at_where_the_tip_goes_straight() {
         joints[turn] = 0.2 + 1.4 * t;
         stands.put(tips[0] * (1.0 - t) + tips[1] * t, joints)
     };
-    let mut room = Room::new(&here).unwrap();
+    let mut room = MountRoom::new(&here).unwrap();
     room.take(&at(0.0), 1);
     room.take(&at(1.0), 2);
     room.take_between([(&at(0.0), &tips[0]), (&at(1.0), &tips[1])], 2);

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use post_machine::kinematics::Pose;
 
 use super::leg::ContourLeg;
-use super::path::{Foot, Path, REACH};
+use super::path::{CommandedPath, Foot, REACH};
 use crate::ProgramPlace;
 
 /// Knots ahead of the tool that are kept; a way between two cuts is followed that far.
@@ -33,7 +33,7 @@ pub(super) struct NearestAsked {
 /// How far a path that is asked for has been followed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FollowedPath {
-    path: Path,
+    path: CommandedPath,
     /// The tool is on it.
     on: bool,
 }

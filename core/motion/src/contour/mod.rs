@@ -39,7 +39,7 @@ use axes::AxesPeaks;
 pub use axes::AxisPeaks;
 use course::FollowedPath;
 pub use leg::{ContourLeg, ReferencePath};
-use path::{Knot, Passed, Path};
+use path::{CommandedPath, Knot, PassedSetPoint};
 pub use report::{AskedPoint, ContourPoint, ContourReport};
 use spline::FivePoints;
 pub use spread::{ContourPeak, ValueSpread};
@@ -70,7 +70,7 @@ pub struct Contour<'r> {
     reference: Option<Box<dyn ReferencePath + 'r>>,
     asked: FollowedPath,
     solver: Option<Arc<Solver>>,
-    path: Path,
+    path: CommandedPath,
     /// The last three set-points, of which the first becomes the next knot, and how many of them are real.
     window: [(u64, ProgramPlace, Vector3<f64>, Vector3<f64>); 3],
     /// The differences of tips and tool axes by which the path passes it.
@@ -259,7 +259,7 @@ impl Contour<'_> {
         let mut left = way;
         let mut most = PathDistances::default();
         for place in 0..self.path.passed.len() {
-            let Passed { tip, axis, way } = self.path.passed[place];
+            let PassedSetPoint { tip, axis, way } = self.path.passed[place];
             let pose = Pose { tip, axis, edge: Vector3::zeros() };
             left -= way;
             most = most.or(self.apart(&pose, way));

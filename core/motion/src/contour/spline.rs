@@ -84,14 +84,14 @@ fn held(tangent: Vector3<f64>, chord: &Vector3<f64>) -> Vector3<f64> {
 
 /// The spline between two knots.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cubic {
+pub(super) struct SplineSegment {
     start: Vector3<f64>,
     first: Vector3<f64>,
     second: Vector3<f64>,
     third: Vector3<f64>,
 }
 
-impl Cubic {
+impl SplineSegment {
     /// The cubic from one knot, left with the derivative `leaves`, to another, reached with `reaches`.
     #[inline]
     pub fn new(ends: [&Vector3<f64>; 2], leaves: &Vector3<f64>, reaches: &Vector3<f64>) -> Self {

@@ -61,10 +61,10 @@ const STEEPEST: [[f64; 3]; DEGREE + 1] = {
 };
 
 /// N values at the places of a piece, from its beginning to its end.
-type Samples<const N: usize> = [[f64; N]; DEGREE + 1];
+type ChebyshevSamples<const N: usize> = [[f64; N]; DEGREE + 1];
 
 /// Coefficients of N Chebyshev series, from that of `T_0` on.
-type Series<const N: usize> = [[f64; N]; DEGREE + 1];
+type ChebyshevSeries<const N: usize> = [[f64; N]; DEGREE + 1];
 
 /// Bounds along `task` where it is no straight one: of its axes or the coordinates that stand for them, of its tip, as
 /// `wanted` says.
@@ -103,7 +103,8 @@ pub(super) fn over(
     let mut last = sample(0.0)?;
     let mut run = |from: f64, to: f64, ends: [bool; 2]| -> Result<(), Unreachable> {
         let half = 0.5 * (to - from);
-        let (mut axes, mut tips): (Samples<MAX_AXES>, Samples<3>) = Default::default();
+        let (mut axes, mut tips): (ChebyshevSamples<MAX_AXES>, ChebyshevSamples<3>) =
+            Default::default();
         (axes[0], tips[0]) = last;
         for place in 1..=DEGREE {
             (axes[place], tips[place]) = sample(from + half * (1.0 - COSINES[place]))?;
@@ -144,7 +145,7 @@ pub(super) fn over(
 }
 
 /// Coefficients of the Chebyshev series through `samples`; that of `T_0`, which has no derivative, is left out.
-fn series<const N: usize>(samples: &Samples<N>) -> Series<N> {
+fn series<const N: usize>(samples: &ChebyshevSamples<N>) -> ChebyshevSeries<N> {
     const MIDDLE: usize = DEGREE / 2;
     let mut series = [[0.0; N]; DEGREE + 1];
     for place in 0..=MIDDLE {
@@ -168,7 +169,7 @@ fn series<const N: usize>(samples: &Samples<N>) -> Series<N> {
 }
 
 /// First and second derivatives of N series where the piece begins and ends; `half`: its half-width.
-fn at_ends<const N: usize>(series: &Series<N>, half: f64) -> [[[f64; N]; 2]; 2] {
+fn at_ends<const N: usize>(series: &ChebyshevSeries<N>, half: f64) -> [[[f64; N]; 2]; 2] {
     let [mut first, mut second] = [[[0.0; N]; 2]; 2];
     for (k, coefficients) in series.iter().enumerate().skip(1) {
         // T_k' is k² at 1 and -k² or k² at -1, T_k'' there the other way round.
@@ -187,7 +188,7 @@ fn at_ends<const N: usize>(series: &Series<N>, half: f64) -> [[[f64; N]; 2]; 2] 
 
 impl MoveLimits {
     /// Takes what the axes do on a piece of half-width `half`; `ends`: it is the first, the last.
-    fn take_axes(&mut self, series: &Series<MAX_AXES>, half: f64, ends: [bool; 2]) {
+    fn take_axes(&mut self, series: &ChebyshevSeries<MAX_AXES>, half: f64, ends: [bool; 2]) {
         let mut bounds = [[0.0; MAX_AXES]; 3];
         for (coefficients, steepest) in series.iter().zip(&STEEPEST).skip(1) {
             for (bounds, steep) in bounds.iter_mut().zip(steepest) {
@@ -212,7 +213,7 @@ impl MoveLimits {
     }
 
     /// Likewise, what the tip does.
-    fn take_tip(&mut self, series: &Series<3>, half: f64, ends: [bool; 2]) {
+    fn take_tip(&mut self, series: &ChebyshevSeries<3>, half: f64, ends: [bool; 2]) {
         let mut bounds = [0.0; 3];
         for (coefficients, steepest) in series.iter().zip(&STEEPEST).skip(1) {
             let length = Vector3::from(*coefficients).norm();

@@ -12,7 +12,7 @@
 //! solved exactly, with the friction's force constant (that of the velocity at the step's end, or what stops the table
 //! there) and the flanks touching or not as at its beginning. Errors are in proportion to the step.
 //!
-//! [`post_machine::servo::Response`] answers in the frequency domain, [`fit`] adjusts numbers of a servo to a measured
+//! [`post_machine::servo::FrequencyResponse`] answers in the frequency domain, [`fit`] adjusts numbers of a servo to a measured
 //! log.
 
 mod discrete;

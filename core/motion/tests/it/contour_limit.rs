@@ -8,7 +8,7 @@ mod paper;
 
 use nalgebra::Vector3;
 use post_feed::limits::{ContourError, Limit};
-use post_feed::response::{Answer, Response};
+use post_feed::response::{ComplexGain, DriveResponse};
 use post_feed::{EndSpeeds, Problem, Samples, profile, reach};
 use post_machine::servo::{self, Pid, Servo, ServoModel, Transfer};
 use post_motion::servo::Follower;
@@ -86,18 +86,19 @@ fn plain(model: ServoModel) -> Servo {
 
 /// The limit for these servos.
 fn limit(servos: &[Servo], tolerance: f64, highest: f64) -> ContourError {
-    let responses: Vec<servo::Response> = servos.iter().map(servo::Response::new).collect();
+    let responses: Vec<servo::FrequencyResponse> =
+        servos.iter().map(servo::FrequencyResponse::new).collect();
     let answers: Vec<_> = responses
         .iter()
         .map(|response| {
             |frequency: f64| {
                 let answer = response.at(frequency);
-                Answer { real: answer.re, imaginary: answer.im }
+                ComplexGain { real: answer.re, imaginary: answer.im }
             }
         })
         .collect();
-    let answers: Vec<&dyn Response> =
-        answers.iter().map(|answer| answer as &dyn Response).collect();
+    let answers: Vec<&dyn DriveResponse> =
+        answers.iter().map(|answer| answer as &dyn DriveResponse).collect();
     ContourError::new(&answers, tolerance, highest, Default::default())
 }
 

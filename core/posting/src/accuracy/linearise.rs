@@ -10,7 +10,7 @@ use super::certificate::DerivativeBound;
 use super::deviation::NodeMove;
 use super::node::{PathNode, PlacementError};
 use super::run::NodeRun;
-use post_machine::description::{Accuracy, Method, Placement};
+use post_machine::description::{AccuracyRules, Method, Placement};
 
 /// A block within tolerance.
 #[derive(Clone, Copy, Debug)]
@@ -79,14 +79,14 @@ pub(super) struct PieceAssessment {
 
 impl Lineariser {
     /// Works as the machine file says. With `trust_model` the certificate only reports.
-    pub fn new(accuracy: &Accuracy, trust_model: bool) -> Self {
+    pub fn new(accuracy: &AccuracyRules, trust_model: bool) -> Self {
         let mut linearise = Self { trust_model, ..Self::default() };
         linearise.set(accuracy);
         linearise
     }
 
     /// Works as another head's part of the machine file says.
-    pub(crate) fn set(&mut self, accuracy: &Accuracy) {
+    pub(crate) fn set(&mut self, accuracy: &AccuracyRules) {
         self.method = accuracy.method;
         self.points = accuracy.points;
         self.placement = accuracy.placement;

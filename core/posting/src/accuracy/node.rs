@@ -9,10 +9,10 @@ use super::bound::DeviationBound;
 use super::certificate::{chord_angle, larger};
 use post_plugin::Format;
 
-use post_machine::axis_words::{WordValues, Words};
+use post_machine::axis_words::{AxisWords, WordValues};
 use post_machine::description::{ControlPoint, Machine};
 use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::choose::{Limit, Turning};
+use post_machine::kinematics::choose::{RotaryAxes, RotaryTravel};
 use post_machine::kinematics::travel::{AT_END, OverTravel, over, passed};
 use post_machine::kinematics::{Joints, Pose, Solver, Trace, Unreachable};
 use post_machine::tilted_plane::TiltedPlane;
@@ -92,9 +92,9 @@ pub enum PlacementError {
 #[derive(Clone, Debug)]
 pub struct Placer {
     solver: Solver,
-    pub(super) words: Words,
-    turning: Turning,
-    pub(super) linear: Vec<Limit>,
+    pub(super) words: AxisWords,
+    turning: RotaryAxes,
+    pub(super) linear: Vec<RotaryTravel>,
     /// Joints that the control shows over one turn.
     shown: Vec<usize>,
     /// How far the chain reaches beside its linear axes, mm.
@@ -125,7 +125,7 @@ impl Placer {
             machine.solver_at(length, held).map_err(|lack| machine.unsolvable(&lack).boxed())
         };
         let tip = solver(length)?;
-        let mut words = Words::new(machine, format);
+        let mut words = AxisWords::new(machine, format);
         // The operator measures to the tip, whichever point is guided.
         words.set_zero(&tip).ok_or_else(|| {
             fault("with every rotary axis at zero the linear axes do not span the space".to_owned())
@@ -136,7 +136,7 @@ impl Placer {
     }
 
     /// Makes the placer of a machine with the tool of `solver` in it.
-    pub fn new(machine: &Machine, solver: Solver, words: Words) -> Self {
+    pub fn new(machine: &Machine, solver: Solver, words: AxisWords) -> Self {
         let limits = |rotary: bool| {
             machine
                 .axes
@@ -145,7 +145,7 @@ impl Placer {
                 .filter(|(_, axis)| axis.joint.rotary == rotary)
                 .filter_map(|(joint, axis)| {
                     // Angles are checked before they are rounded, linear positions after it.
-                    axis.travel.map(|travel| Limit {
+                    axis.travel.map(|travel| RotaryTravel {
                         joint,
                         travel: if rotary { words.printed_travel(joint, travel) } else { travel },
                     })
@@ -155,7 +155,7 @@ impl Placer {
         let cyclic =
             (0..machine.axes.len()).filter(|joint| machine.axes[*joint].travel.is_none()).collect();
         Self {
-            turning: Turning { limits: limits(true), cyclic },
+            turning: RotaryAxes { limits: limits(true), cyclic },
             linear: limits(false),
             shown: (0..machine.axes.len())
                 .filter(|joint| machine.axes[*joint].range.is_some())
@@ -418,7 +418,7 @@ impl Placer {
         self.words.len()
     }
 
-    /// Rounds a point to the words' decimals: see [`Words::printed_point`].
+    /// Rounds a point to the words' decimals: see [`AxisWords::printed_point`].
     pub(crate) fn printed_point(&self, point: Vector3<f64>) -> Option<([f64; 3], Vector3<f64>)> {
         self.words.printed_point(point)
     }

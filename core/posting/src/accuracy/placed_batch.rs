@@ -2,7 +2,7 @@
 //! next step, so that their latencies overlap.
 
 use nalgebra::Vector3;
-use post_machine::kinematics::batch::{Axes, LANES, Traces};
+use post_machine::kinematics::batch::{AxisBatch, LANES, Traces};
 use post_machine::kinematics::travel::{AT_END, over};
 use post_machine::kinematics::{Joints, Pose, Turns};
 
@@ -11,7 +11,7 @@ use super::node::{PathNode, Placer};
 /// The working arrays of a batch, and its nodes.
 #[derive(Debug)]
 pub struct PlacedBatch {
-    at: Axes,
+    at: AxisBatch,
     traces: Traces,
     /// Where the linear axes bring the points.
     wanted: [Vector3<f64>; LANES],
@@ -25,7 +25,7 @@ pub struct PlacedBatch {
 impl Default for PlacedBatch {
     fn default() -> Self {
         Self {
-            at: Axes::default(),
+            at: AxisBatch::default(),
             traces: Traces::default(),
             wanted: [Vector3::zeros(); LANES],
             nodes: (0..LANES).map(|_| Box::default()).collect(),

@@ -1,12 +1,12 @@
 //! Where the control keeps the tip, the machine's own linear axes leave the straight line between the words: how far
 //! they go on the way, and how fast.
 //!
-//! A cheap bound clears nearly all blocks; the others are worked out ([`KeptTip`]).
+//! A cheap bound clears nearly all blocks; the others are worked out ([`TcpBlock`]).
 
 use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::travel::{OverTravel, over};
-use post_machine::kinematics::{Joints, KeptTip, MAX_AXES};
+use post_machine::kinematics::{Joints, MAX_AXES, TcpBlock};
 
 use super::PathLeg;
 use crate::accuracy::{PathNode, Placer};
@@ -88,7 +88,7 @@ impl CompensatingMotion {
             return FollowTime::default();
         }
         let along = placer.control_point().along;
-        let Some(kept) = KeptTip::new(placer.solver(), along, &from.trace, &to.trace) else {
+        let Some(kept) = TcpBlock::new(placer.solver(), along, &from.trace, &to.trace) else {
             return FollowTime::default();
         };
         if let Some(follow) = self.cleared(machine, &kept, [from, to], asked) {
@@ -103,7 +103,7 @@ impl CompensatingMotion {
     fn cleared(
         &self,
         machine: &Machine,
-        kept: &KeptTip<'_>,
+        kept: &TcpBlock<'_>,
         [from, to]: [&PathNode; 2],
         asked: f64,
     ) -> Option<FollowTime> {
@@ -136,7 +136,7 @@ impl CompensatingMotion {
     fn look_into(
         &mut self,
         machine: &Machine,
-        kept: &KeptTip<'_>,
+        kept: &TcpBlock<'_>,
         (leg, [from, to]): (&PathLeg<'_>, [&PathNode; 2]),
         asked: f64,
         findings: &Findings,

@@ -1,6 +1,6 @@
 //! What is to be small over the path: the measure of a move of the axes.
 
-use post_machine::description::{Machine, Rule, Side};
+use post_machine::description::{Machine, Side, SolutionCriterion};
 use post_machine::kinematics::{Chain, Joints, MAX_AXES};
 
 use super::cycle_time::DriveLimits;
@@ -14,7 +14,7 @@ const NEAR_ZERO: f64 = 1e-6;
 /// Measures moves of one machine.
 #[derive(Clone, Debug)]
 pub(crate) struct TravelMeasure {
-    rule: Rule,
+    rule: SolutionCriterion,
     count: usize,
     rotary: [bool; MAX_AXES],
     /// Minutes for one mm or radian at the largest feed.
@@ -50,7 +50,7 @@ impl TravelMeasure {
             slowness,
             prefer: machine.solution.prefer.clone(),
             zero,
-            drives: (machine.solution.rule == Rule::CycleTime)
+            drives: (machine.solution.rule == SolutionCriterion::CycleTime)
                 .then(|| Box::new(DriveLimits::new(machine))),
         }
     }
@@ -87,7 +87,7 @@ impl TravelMeasure {
 
     #[inline]
     fn weigh(&self, from: &Joints, to: &Joints, linear: bool) -> f64 {
-        if linear && self.rule == Rule::Time {
+        if linear && self.rule == SolutionCriterion::Time {
             // Unused places cost nothing.
             let mut time = 0.0;
             for index in 0..MAX_AXES {
@@ -109,11 +109,11 @@ impl TravelMeasure {
         }
         let tie = TIE * time;
         match self.rule {
-            Rule::Time => time,
-            Rule::CycleTime => tie,
-            Rule::Travel => squares.sqrt().to_degrees() + tie,
-            Rule::LargestAxis => largest.to_degrees() + tie,
-            Rule::Axis(place) => {
+            SolutionCriterion::Time => time,
+            SolutionCriterion::CycleTime => tie,
+            SolutionCriterion::Travel => squares.sqrt().to_degrees() + tie,
+            SolutionCriterion::LargestAxis => largest.to_degrees() + tie,
+            SolutionCriterion::Axis(place) => {
                 let way = (to[place] - from[place]).abs();
                 let unit = if self.rotary[place] { 1f64.to_radians() } else { 1.0 };
                 way / unit + tie

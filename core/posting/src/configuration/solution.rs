@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::metric::wrong_side;
 use post_machine::description::{Machine, Positions, Side};
-use post_machine::kinematics::choose::Limit;
+use post_machine::kinematics::choose::RotaryTravel;
 use post_machine::kinematics::orientation::{Branches, angle};
 use post_machine::kinematics::travel::{OverTravel, over, passed};
 use post_machine::kinematics::{Joints, Pose, Solver, Unreachable};
@@ -27,7 +27,7 @@ pub(crate) struct ChoiceAxes {
     /// Axes among them whose full turns are nothing to the machine, one bit each: they have no travel, and no side of
     /// zero counts.
     pub(super) endless: u8,
-    linear: Vec<Limit>,
+    linear: Vec<RotaryTravel>,
     /// Joints that move off the part alone.
     pub(super) indexed: Vec<usize>,
     pub(super) axis_tolerance: f64,
@@ -126,7 +126,7 @@ impl ChoiceAxes {
             .iter()
             .enumerate()
             .filter(|(_, axis)| !axis.joint.rotary)
-            .filter_map(|(joint, axis)| axis.travel.map(|travel| Limit { joint, travel }))
+            .filter_map(|(joint, axis)| axis.travel.map(|travel| RotaryTravel { joint, travel }))
             .collect();
         let sides = machine.solution.prefer.iter();
         let sides = sides.chain(&machine.solution.require);

@@ -1,6 +1,6 @@
 //! The frame around the moves: retracts, positions of the machine, the way to a first position.
 
-use post_machine::axis_words::{self, WordValues, Words};
+use post_machine::axis_words::{self, AxisWords, WordValues};
 use post_machine::description::{Machine, TextPlace};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::tilted_plane::TiltedPlane;
@@ -247,7 +247,7 @@ impl EmitStage<'_> {
         (self.changed, self.waits) = (true, None);
         self.tool = None;
         self.machine = &head.machine;
-        self.words = Words::new(self.machine, self.writer.format());
+        self.words = AxisWords::new(self.machine, self.writer.format());
         self.z_word = cycles::z_word(self.machine);
         self.depth_word = cycles::depth_word(self.machine);
         self.across = across(self.machine);

@@ -8,7 +8,7 @@ mod texts;
 mod writer;
 
 use nalgebra::Vector3;
-use post_machine::axis_words::{self, Words};
+use post_machine::axis_words::{self, AxisWords};
 use post_machine::description::{Machine, Smoothing, TextPlace};
 use post_machine::kinematics::Joints;
 use post_machine::tilted_plane::TiltedPlane;
@@ -43,7 +43,7 @@ pub(crate) struct EmitStage<'a> {
     /// Rotary axes that have turned in a cut since the tool came: they are left free, one bit each.
     free: u8,
     /// Prints positions in machine coordinates.
-    words: Words,
+    words: AxisWords,
     /// The tool is retracted, and nothing is in force that a first position puts in force.
     clear: bool,
     /// The spindle was switched on since the last tool change.
@@ -106,7 +106,7 @@ impl<'a> EmitStage<'a> {
         dialect: &'a mut dyn DialectSession,
         output: &'a mut dyn TextSink,
     ) -> Self {
-        let words = Words::new(machine, dialect.format());
+        let words = AxisWords::new(machine, dialect.format());
         let mut writer = EventWriter::new(dialect, output);
         writer.push(0, Event::Start);
         let mut emit = Self {

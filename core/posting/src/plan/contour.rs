@@ -1,7 +1,7 @@
 //! The contour error that the servos of a machine make of a path, as a limit of the planner.
 
 use post_feed::limits::{Collocation, ContourError};
-use post_feed::response::{Answer, Response};
+use post_feed::response::{ComplexGain, DriveResponse};
 use post_machine::description::Machine;
 use post_machine::servo;
 
@@ -15,20 +15,24 @@ pub(super) fn contour_error(
     tolerance: f64,
     collocation: Collocation,
 ) -> Option<ContourError> {
-    let servos = servo::Response::of_machine(machine);
-    let highest =
-        servos.iter().flatten().map(servo::Response::natural_frequency).reduce(f64::min)?;
+    let servos = servo::FrequencyResponse::of_machine(machine);
+    let highest = servos
+        .iter()
+        .flatten()
+        .map(servo::FrequencyResponse::natural_frequency)
+        .reduce(f64::min)?;
     let answers: Vec<_> = servos
         .iter()
         .map(|servo| move |frequency: f64| answer(servo.as_ref(), frequency))
         .collect();
-    let axes: Vec<&dyn Response> = answers.iter().map(|axis| axis as &dyn Response).collect();
+    let axes: Vec<&dyn DriveResponse> =
+        answers.iter().map(|axis| axis as &dyn DriveResponse).collect();
     Some(ContourError::new(&axes, tolerance, highest.min(FASTEST), collocation))
 }
 
-fn answer(servo: Option<&servo::Response>, frequency: f64) -> Answer {
-    servo.map_or(Answer::EXACT, |servo| {
+fn answer(servo: Option<&servo::FrequencyResponse>, frequency: f64) -> ComplexGain {
+    servo.map_or(ComplexGain::EXACT, |servo| {
         let answer = servo.at(frequency);
-        Answer { real: answer.re, imaginary: answer.im }
+        ComplexGain { real: answer.re, imaginary: answer.im }
     })
 }

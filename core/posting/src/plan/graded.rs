@@ -1,7 +1,7 @@
 //! More samples of a leg: along straight ways, closer towards its ends, where the speed changes; next to stops; and where
 //! the way bends otherwise between samples than at them.
 
-use post_feed::fit::{Point, Sample};
+use post_feed::fit::{CurveSample, FitPoint};
 use post_feed::quintic;
 
 /// A way is straight whose direction changes by less than this share from sample to sample.
@@ -18,7 +18,12 @@ const MOST_HALVED: usize = 3;
 const GRADE: f64 = 0.5;
 
 /// The samples of a leg after its first, with more of them where it goes straight: `finest` apart at its ends.
-pub(super) fn graded(first: &Sample, rest: &[Sample], finest: f64, out: &mut Vec<Sample>) {
+pub(super) fn graded(
+    first: &CurveSample,
+    rest: &[CurveSample],
+    finest: f64,
+    out: &mut Vec<CurveSample>,
+) {
     out.clear();
     let Some(end) = rest.last().map(|last| last.at) else {
         return;
@@ -45,7 +50,7 @@ pub(super) fn graded(first: &Sample, rest: &[Sample], finest: f64, out: &mut Vec
 }
 
 /// As many samples after the first as that, by halving the longest ways.
-pub(super) fn at_least(count: usize, first: &Sample, samples: &mut Vec<Sample>) {
+pub(super) fn at_least(count: usize, first: &CurveSample, samples: &mut Vec<CurveSample>) {
     while !samples.is_empty() && samples.len() < count {
         let from = |place: usize| {
             if place == 0 { first } else { &samples[place - 1] }
@@ -62,7 +67,7 @@ pub(super) fn at_least(count: usize, first: &Sample, samples: &mut Vec<Sample>) 
 
 /// Puts in samples where the second derivative halfway is not about what is between those of both sides: limits are held
 /// against what is linear from sample to sample.
-pub(super) fn evenly_bent(first: &Sample, samples: &mut Vec<Sample>) {
+pub(super) fn evenly_bent(first: &CurveSample, samples: &mut Vec<CurveSample>) {
     let mut place = 0;
     let mut from = *first;
     while place < samples.len() {
@@ -74,15 +79,15 @@ pub(super) fn evenly_bent(first: &Sample, samples: &mut Vec<Sample>) {
 
 /// Puts what is needed between two samples, the second of which stands at `place`: where it stands then.
 fn halve(
-    from: &Sample,
-    to: &Sample,
+    from: &CurveSample,
+    to: &CurveSample,
     place: usize,
     times: usize,
-    samples: &mut Vec<Sample>,
+    samples: &mut Vec<CurveSample>,
 ) -> usize {
     let middle = halfway(from, to);
     let [here, half, there] = [from, &middle, to].map(|sample| sample.values[2]);
-    let off: Point = std::array::from_fn(|axis| half[axis] - 0.5 * (here[axis] + there[axis]));
+    let off: FitPoint = std::array::from_fn(|axis| half[axis] - 0.5 * (here[axis] + there[axis]));
     let most = size(&here).max(size(&half)).max(size(&there));
     if times == 0 || size(&off) <= UNEVEN * most {
         return place;
@@ -92,24 +97,27 @@ fn halve(
     halve(&middle, to, place + 1, times - 1, samples)
 }
 
-fn straight(from: &Sample, to: &Sample) -> bool {
+fn straight(from: &CurveSample, to: &CurveSample) -> bool {
     let step = to.at - from.at;
     let speed = size(&from.values[1]);
     [from, to].iter().all(|sample| size(&sample.values[2]) * step <= STRAIGHT * speed)
 }
 
-fn size(point: &Point) -> f64 {
+fn size(point: &FitPoint) -> f64 {
     point.iter().map(|part| part * part).sum::<f64>().sqrt()
 }
 
-fn halfway(from: &Sample, to: &Sample) -> Sample {
+fn halfway(from: &CurveSample, to: &CurveSample) -> CurveSample {
     on(from, to, from.at.midpoint(to.at))
 }
 
 /// The curve between two samples.
-fn on(from: &Sample, to: &Sample, at: f64) -> Sample {
+fn on(from: &CurveSample, to: &CurveSample, at: f64) -> CurveSample {
     let step = to.at - from.at;
-    Sample { at, values: quintic::between(&from.values, &to.values, step, (at - from.at) / step) }
+    CurveSample {
+        at,
+        values: quintic::between(&from.values, &to.values, step, (at - from.at) / step),
+    }
 }
 
 #[cfg(test)]
@@ -117,16 +125,16 @@ mod tests {
     use super::*;
     use post_feed::fit;
 
-    fn sample(at: f64, bend: f64) -> Sample {
+    fn sample(at: f64, bend: f64) -> CurveSample {
         let mut values = [[0.0; fit::MOST]; 4];
         values[0][0] = at;
         values[1][0] = 1.0;
         values[2][1] = bend;
-        Sample { at, values }
+        CurveSample { at, values }
     }
 
     /// Sample of `y = s⁵ / 20`, whose second derivative is a cubic.
-    fn fifth(at: f64) -> Sample {
+    fn fifth(at: f64) -> CurveSample {
         let mut values = [[0.0; fit::MOST]; 4];
         (values[0][0], values[1][0]) = (at, 1.0);
         let [square, cube] = [at * at, at * at * at];
@@ -134,7 +142,7 @@ mod tests {
         values[1][1] = square * square / 4.0;
         values[2][1] = cube;
         values[3][1] = 3.0 * square;
-        Sample { at, values }
+        CurveSample { at, values }
     }
 
     #[test]

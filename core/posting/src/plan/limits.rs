@@ -1,8 +1,8 @@
 //! What a planned feed keeps on a machine, as the planner's limits.
 
 use post_feed::limits::{
-    AxisAcceleration, AxisJerk, AxisVelocity, BlockTime, ChordError, Collocation, Feed, Limit,
-    TipAcceleration, TipJerk,
+    AxisAcceleration, AxisJerk, AxisVelocity, BlockTime, ChordError, Collocation, Limit,
+    TipAcceleration, TipFeed, TipJerk,
 };
 use post_machine::description::{Machine, PlanRules};
 use post_machine::diagnostic::Diagnostic;
@@ -95,7 +95,8 @@ pub fn limits(machine: &Machine, rules: &PlanRules) -> Vec<Box<dyn Limit>> {
     let axes = PlanAxes::new(machine);
     let collocation = Collocation::Throughout;
     let finite = |all: &[f64]| all.iter().any(|one| one.is_finite());
-    let mut limits: Vec<Box<dyn Limit>> = vec![Box::new(Feed { most: f64::INFINITY, collocation })];
+    let mut limits: Vec<Box<dyn Limit>> =
+        vec![Box::new(TipFeed { most: f64::INFINITY, collocation })];
     limits.push(Box::new(AxisVelocity { limits: axes.each(&axes.limits.velocity), collocation }));
     let accelerations = axes.accelerations();
     if finite(&accelerations) {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use post_feed::Infeasible;
-use post_feed::fit::{self, Leg, Sample};
+use post_feed::fit::{self, CurveSample, FittedLeg};
 use post_feed::limits::{ChordError, Collocation, Limit};
 use post_machine::description::{Machine, PlanSolver};
 use post_machine::diagnostic::Diagnostic;
@@ -88,7 +88,7 @@ pub(super) struct PlannerRun<'a> {
     bends: bool,
     /// The least acceleration of a linear axis, mm/s².
     acceleration: f64,
-    samples: Vec<Sample>,
+    samples: Vec<CurveSample>,
     due: VecDeque<BlockDemand>,
     /// Legs of the first of them that have come, and their length.
     come: usize,
@@ -170,7 +170,7 @@ impl<'a> PlannerRun<'a> {
     }
 
     /// A stance as a point of the curve: its control point (mm, part frame) and axis values.
-    pub(super) fn point(&self, tip: Vector3<f64>, joints: &Joints) -> fit::Point {
+    pub(super) fn point(&self, tip: Vector3<f64>, joints: &Joints) -> fit::FitPoint {
         self.sampler.point(tip, joints)
     }
 
@@ -190,7 +190,7 @@ impl<'a> PlannerRun<'a> {
     /// The curve goes on by a leg.
     pub(super) fn leg(
         &mut self,
-        leg: &Leg<'_>,
+        leg: &FittedLeg<'_>,
         queue: &mut BlockQueue,
         account: &mut PlanTally,
         out: &mut dyn FnMut(StreamItem<MotionBlock>),
@@ -213,7 +213,7 @@ impl<'a> PlannerRun<'a> {
             .as_deref()
             .zip(due.line)
             .filter(|(tightening, line)| tightening.concerns(*line));
-        let said_at = |sample: &fit::Sample| match tightened {
+        let said_at = |sample: &fit::CurveSample| match tightened {
             Some((tightening, line)) => {
                 let [x, y, z, ..] = sample.values[0];
                 let share = tightening.share(line, &Vector3::new(x, y, z));
@@ -265,7 +265,7 @@ impl<'a> PlannerRun<'a> {
     }
 
     /// Adds samples of a leg after its first where the limits need them closer.
-    fn refine(&self, leg: &Leg<'_>, first: &Sample, samples: &mut Vec<Sample>) {
+    fn refine(&self, leg: &FittedLeg<'_>, first: &CurveSample, samples: &mut Vec<CurveSample>) {
         if self.bends {
             evenly_bent(first, samples);
         }
@@ -275,7 +275,7 @@ impl<'a> PlannerRun<'a> {
     }
 
     /// The path at a sample; where the tip stands still in a block, what is left of its way is rounding.
-    fn place(&self, sample: &Sample, due: BlockDemand) -> Result<PathDerivatives, Unplanned> {
+    fn place(&self, sample: &CurveSample, due: BlockDemand) -> Result<PathDerivatives, Unplanned> {
         let mut place = self.sampler.place(sample).map_err(|_| Unplanned)?;
         if due.feed.is_none() && due.stands {
             place.tip = [[0.0; 3]; 3];

@@ -28,7 +28,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use post_feed::fit::{self, Fit};
+use post_feed::fit::{self, PathFit};
 use post_machine::description::{CornerRule, FeedMode, InverseTime, Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Format;
@@ -79,7 +79,7 @@ pub(crate) struct PlanStage<'a> {
     /// Where the axes stand; none where it is not known.
     stands: Option<BlockStart>,
     /// Where the last leg of the curve ends.
-    point: fit::Point,
+    point: fit::FitPoint,
     /// A path has begun.
     moves: bool,
     /// The moves are those of a hole, which may become a cycle.
@@ -95,7 +95,7 @@ pub(crate) struct PlanStage<'a> {
 
 /// What plans with one placer.
 struct CurvePlanner<'a> {
-    fit: Fit,
+    fit: PathFit,
     line: PlannerRun<'a>,
 }
 
@@ -210,14 +210,14 @@ impl<'a> PlanStage<'a> {
         }
         let accuracy = &self.machine.accuracy;
         self.run = Some(CurvePlanner {
-            fit: Fit::new(fit::Rules {
+            fit: PathFit::new(fit::FitRules {
                 dimensions: line.dimensions(),
                 tolerance: self.machine.plan.smoothing,
                 turn_tolerance: (0.5 * accuracy.axis_tolerance).min(TURN),
                 corner: accuracy.corner,
                 turn_weight: TURN_WEIGHT,
                 spacing: Some(SPACING),
-                ..fit::Rules::default()
+                ..fit::FitRules::default()
             }),
             line,
         });
@@ -340,7 +340,7 @@ impl<'a> PlanStage<'a> {
         run.line.due(due, places.len());
         let mut failed = false;
         let (queue, account, line) = (&mut self.queue, &mut self.account, &mut run.line);
-        let mut take = |leg: &fit::Leg<'_>| {
+        let mut take = |leg: &fit::FittedLeg<'_>| {
             failed = failed || line.leg(leg, queue, account, &mut |flow| out.push(flow)).is_err();
         };
         for point in &places {
@@ -403,7 +403,7 @@ fn least_block(machine: &Machine, format: &Format) -> f64 {
 }
 
 /// How far two points of the curve are apart, as its parameter counts.
-fn distance(from: &fit::Point, to: &fit::Point) -> f64 {
+fn distance(from: &fit::FitPoint, to: &fit::FitPoint) -> f64 {
     let ways = from.iter().zip(to).enumerate().map(|(coordinate, (from, to))| {
         let way = to - from;
         if coordinate < 3 { way } else { way * TURN_WEIGHT }

@@ -3,11 +3,11 @@
 use std::rc::Rc;
 
 use nalgebra::Vector3;
-use post_feed::fit::{self, Sample};
-use post_feed::jerk::Batch;
+use post_feed::fit::{self, CurveSample};
+use post_feed::jerk::PathBatch;
 use post_feed::limits::Limit;
 use post_feed::{EndSpeeds, Infeasible, Problem, Samples};
-use post_machine::kinematics::{Course, Joints, MAX_AXES, ORDERS, Unreachable};
+use post_machine::kinematics::{JointDerivatives, Joints, MAX_AXES, ORDERS, Unreachable};
 
 use super::limits::SampledAxes;
 use crate::accuracy::Placer;
@@ -33,7 +33,7 @@ pub(super) struct PathDerivatives {
     /// Where that is, mm, part frame.
     at: [f64; 3],
     /// All of it that the chain knows.
-    course: Course,
+    course: JointDerivatives,
 }
 
 /// A sample as observers see it.
@@ -41,12 +41,12 @@ pub(super) struct PathDerivatives {
 pub(super) struct WatchedSample {
     /// The control point and its derivatives.
     pub tip: [[f64; 3]; ORDERS],
-    pub course: Course,
+    pub course: JointDerivatives,
 }
 
 impl PathDerivatives {
     /// Makes the path at a sample of the control point with its derivatives (mm, part frame), and of the axes that follow it.
-    fn new(tip: &[[f64; 3]; ORDERS], course: Course, sampled: SampledAxes) -> Self {
+    fn new(tip: &[[f64; 3]; ORDERS], course: JointDerivatives, sampled: SampledAxes) -> Self {
         let mut place = Self {
             tip: [tip[1], tip[2], tip[3]],
             axes: [[0.0; 3]; MOST],
@@ -94,7 +94,7 @@ impl SampledAxes {
         samples: &mut Samples,
         parameter: f64,
         tip: &[[f64; 3]; ORDERS],
-        course: &Course,
+        course: &JointDerivatives,
     ) {
         PathDerivatives::new(tip, *course, self).put(parameter, self, samples);
     }
@@ -153,7 +153,7 @@ impl Sampler {
     }
 
     /// A stance as a point of the curve.
-    pub(super) fn point(&self, tip: Vector3<f64>, joints: &Joints) -> fit::Point {
+    pub(super) fn point(&self, tip: Vector3<f64>, joints: &Joints) -> fit::FitPoint {
         let mut point = [0.0; fit::MOST];
         point[..3].copy_from_slice(tip.as_slice());
         for (coordinate, place) in point[3..].iter_mut().zip(&self.rotary) {
@@ -171,8 +171,8 @@ impl Sampler {
     ///
     /// # Errors
     /// The linear axes cannot follow.
-    pub(super) fn place(&self, sample: &Sample) -> Result<PathDerivatives, Unreachable> {
-        let mut course = Course::default();
+    pub(super) fn place(&self, sample: &CurveSample) -> Result<PathDerivatives, Unreachable> {
+        let mut course = JointDerivatives::default();
         course.joints[0] = self.held;
         for order in 0..ORDERS {
             for (coordinate, place) in self.rotary.iter().enumerate() {
@@ -239,7 +239,7 @@ impl Sampler {
     pub(super) fn batch<'b>(
         &'b mut self,
         limits: &'b [&'b dyn Limit],
-    ) -> Result<Option<Batch<'b>>, Infeasible> {
+    ) -> Result<Option<PathBatch<'b>>, Infeasible> {
         if self.samples.len() < 2 {
             return Ok(None);
         }
@@ -249,7 +249,7 @@ impl Sampler {
             self.problem.lower(0, q, super::CORNER);
         }
         found.map(|()| {
-            Some(Batch {
+            Some(PathBatch {
                 samples: &self.samples,
                 limits,
                 problem: &self.problem,

@@ -1,6 +1,6 @@
 //! What finds the fastest feed along samples: with jerk limits or without.
 
-use post_feed::jerk::{self, Batch};
+use post_feed::jerk::{self, PathBatch};
 use post_feed::problem::LimitSource;
 use post_feed::reach::{self, stream::Settled};
 use post_feed::{Infeasible, Problem};
@@ -29,10 +29,10 @@ pub(super) struct SettledSample {
 #[derive(Debug)]
 pub(super) enum SampleSolver {
     /// Velocity, acceleration and errors.
-    Reach(Box<reach::Stream>),
+    Reach(Box<reach::ReachStream>),
     /// Jerk too.
     Jerk {
-        stream: Box<jerk::Stream>,
+        stream: Box<jerk::JerkStream>,
         /// The first sample of the path was handed on.
         begun: bool,
     },
@@ -42,9 +42,12 @@ impl SampleSolver {
     /// Makes the solver for problems of `stride` rows an interval.
     pub(super) fn new(asked: PlanSolver, stride: usize) -> Self {
         match asked {
-            PlanSolver::Reach => Self::Reach(Box::new(reach::Stream::new(stride, LOOK_AHEAD))),
+            PlanSolver::Reach => Self::Reach(Box::new(reach::ReachStream::new(stride, LOOK_AHEAD))),
             PlanSolver::Jerk => Self::Jerk {
-                stream: Box::new(jerk::Stream::new(LOOK_AHEAD_FOR_JERK, jerk::Settings::default())),
+                stream: Box::new(jerk::JerkStream::new(
+                    LOOK_AHEAD_FOR_JERK,
+                    jerk::JerkSettings::default(),
+                )),
                 begun: false,
             },
         }
@@ -53,7 +56,7 @@ impl SampleSolver {
     /// The path goes on.
     pub(super) fn push(
         &mut self,
-        batch: Batch<'_>,
+        batch: PathBatch<'_>,
         sink: &mut dyn FnMut(SettledSample),
     ) -> Result<(), Infeasible> {
         match self {
@@ -97,7 +100,7 @@ impl SampleSolver {
 }
 
 fn push(
-    stream: &mut reach::Stream,
+    stream: &mut reach::ReachStream,
     problem: &Problem,
     sink: &mut dyn FnMut(SettledSample),
 ) -> Result<(), Infeasible> {
@@ -108,7 +111,11 @@ fn step(settled: &Settled<'_>) -> SettledSample {
     SettledSample { q: settled.q, halfway: None, seconds: None, source: settled.active().source }
 }
 
-fn handed_on(passed: &jerk::Passed<'_>, begun: &mut bool, sink: &mut dyn FnMut(SettledSample)) {
+fn handed_on(
+    passed: &jerk::SettledInterval<'_>,
+    begun: &mut bool,
+    sink: &mut dyn FnMut(SettledSample),
+) {
     let at = |share: f64| passed.piece.at(share, passed.step)[0].max(0.0);
     let source = passed.active().source;
     if !std::mem::replace(begun, true) {

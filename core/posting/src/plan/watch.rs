@@ -1,7 +1,7 @@
 //! Observers of planned feeds.
 
 use post_machine::description::Machine;
-use post_machine::kinematics::{Course, ORDERS};
+use post_machine::kinematics::{JointDerivatives, ORDERS};
 
 /// A place of the planned path, on one side of a sample: the plan's acceleration may jump there.
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +17,7 @@ pub struct PlannedPoint<'p> {
     /// The control point and its first three derivatives by the parameter, mm, part frame.
     pub tip: &'p [[f64; 3]; ORDERS],
     /// The axes and theirs, and how each moves the control point.
-    pub course: &'p Course,
+    pub course: &'p JointDerivatives,
     /// Squared speed of the parameter, and its first and second derivative by it.
     pub q: [f64; 3],
     /// The limit that is used most.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use post_grammar::{MajorWord, WordUsage};
-use post_machine::diagnostic::{Diagnostic, Place, nearest};
+use post_machine::diagnostic::{Diagnostic, SourcePlace, nearest};
 
 use super::limits::MOST_WORDS;
 
@@ -34,7 +34,7 @@ struct WordCount {
     usage: WordUsage,
     count: u64,
     /// Where it was met first.
-    first: Place,
+    first: SourcePlace,
 }
 
 impl WordCensus {
@@ -44,7 +44,7 @@ impl WordCensus {
         &mut self,
         word: &str,
         usage: WordUsage,
-        place: impl FnOnce() -> Place,
+        place: impl FnOnce() -> SourcePlace,
     ) -> bool {
         if let Some(count) = self.counts.get_mut(word) {
             count.count += 1;
@@ -59,7 +59,7 @@ impl WordCensus {
     }
 
     /// Counts a word at `place` that is not carried out because the user allows it; `instead` is what is done.
-    pub(crate) fn allow(&mut self, word: &str, instead: &'static str, place: Place) {
+    pub(crate) fn allow(&mut self, word: &str, instead: &'static str, place: SourcePlace) {
         let count = self.allowed.entry((word.to_owned(), instead));
         let count =
             count.or_insert(WordCount { usage: WordUsage::Refused, count: 0, first: place });

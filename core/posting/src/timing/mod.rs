@@ -9,7 +9,7 @@ pub mod limits;
 mod rapids;
 
 use post_machine::description::Machine;
-use post_machine::diagnostic::{Diagnostic, Extreme};
+use post_machine::diagnostic::{Diagnostic, LimitExcess};
 use post_machine::kinematics::Joints;
 use post_plugin::{Capabilities, Feed, Format};
 
@@ -289,7 +289,7 @@ fn too_fast(asked: f64, written: &WrittenFeed) -> Diagnostic {
             plain(least)
         ),
     )
-    .extreme(Extreme {
+    .extreme(LimitExcess {
         key: u64::MAX,
         by: factor,
         value: format!("{factor:.1} times"),

@@ -11,7 +11,7 @@ mod words;
 use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::Vector3;
-use post_grammar::{Reader, Units};
+use post_grammar::{ClReader, Units};
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::{Compensation, Spindle};
 use post_posting::StreamItem;
@@ -37,7 +37,7 @@ impl Run {
         };
         let reading = ReadingOptions { chord_tolerance: 0.01, spindle, ..reading };
         let text = text.replace(';', "\n");
-        let mut reader = Reader::new(text.as_bytes());
+        let mut reader = ClReader::new(text.as_bytes());
         let mut interpreter = ClInterpreter::new(reading.clone());
         let mut steps = Vec::new();
         while let Some(record) = reader.next_record().unwrap() {

@@ -11,7 +11,7 @@ mod turns;
 use std::f64::consts::TAU;
 
 use nalgebra::{Rotation3, Unit, Vector3};
-use post_machine::description::{Rule, Side};
+use post_machine::description::{Side, SolutionCriterion};
 use post_machine::kinematics::{Joints, Pose, Solver};
 use post_plugin::Feed;
 use post_testkit::{Rng, at_least, randomised, repository};
@@ -176,7 +176,7 @@ fn cost(bench: &Bench, from: &Joints, to: &Joints, linear: bool) -> f64 {
             squares += way.to_degrees() * way.to_degrees();
             largest = largest.max(way.to_degrees());
         }
-        if machine.solution.rule == Rule::Axis(place) {
+        if machine.solution.rule == SolutionCriterion::Axis(place) {
             named = if axis.joint.rotary { way.to_degrees() } else { way };
         }
         if axis.joint.rotary || linear {
@@ -185,11 +185,11 @@ fn cost(bench: &Bench, from: &Joints, to: &Joints, linear: bool) -> f64 {
     }
     // The time breaks the ties of the other rules.
     match machine.solution.rule {
-        Rule::Time => time,
-        Rule::CycleTime => unreachable!("not a sum over the axes"),
-        Rule::Travel => squares.sqrt() + 1e-6 * time,
-        Rule::LargestAxis => largest + 1e-6 * time,
-        Rule::Axis(_) => named + 1e-6 * time,
+        SolutionCriterion::Time => time,
+        SolutionCriterion::CycleTime => unreachable!("not a sum over the axes"),
+        SolutionCriterion::Travel => squares.sqrt() + 1e-6 * time,
+        SolutionCriterion::LargestAxis => largest + 1e-6 * time,
+        SolutionCriterion::Axis(_) => named + 1e-6 * time,
     }
 }
 

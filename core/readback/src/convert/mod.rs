@@ -8,4 +8,4 @@ mod records;
 mod text;
 mod writer;
 
-pub use writer::{ClWriter, Tool};
+pub use writer::{ClWriter, MountedTool};

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::number::{self, LENGTH};
 use crate::BSpline;
-use crate::{CycleCall, CycleKind, Spindle};
+use crate::{CycleCall, CycleKind, SpindleState};
 
 /// The record of a cycle.
 pub(super) fn definition(
@@ -58,18 +58,18 @@ pub(super) fn definition(
 }
 
 /// The record of a spindle.
-pub(super) fn spindle_record(spindle: Spindle, out: &mut String) {
+pub(super) fn spindle_record(spindle: SpindleState, out: &mut String) {
     let side = |clockwise| if clockwise { "CLW" } else { "CCLW" };
     match spindle {
-        Spindle::Off => out.push_str("SPINDL/OFF\n"),
-        Spindle::Oriented => out.push_str("SPINDL/ORIENT\n"),
-        Spindle::Clockwise(rpm) | Spindle::CounterClockwise(rpm) => {
+        SpindleState::Off => out.push_str("SPINDL/OFF\n"),
+        SpindleState::Oriented => out.push_str("SPINDL/ORIENT\n"),
+        SpindleState::Clockwise(rpm) | SpindleState::CounterClockwise(rpm) => {
             out.push_str("SPINDL/RPM,");
             number::write(out, rpm, LENGTH);
-            let clockwise = matches!(spindle, Spindle::Clockwise(_));
+            let clockwise = matches!(spindle, SpindleState::Clockwise(_));
             let _ = writeln!(out, ",{}", side(clockwise));
         }
-        Spindle::Surface { speed, most, clockwise } => {
+        SpindleState::Surface { speed, most, clockwise } => {
             out.push_str("SPINDL/SMM,");
             number::write(out, speed, LENGTH);
             if let Some(most) = most {

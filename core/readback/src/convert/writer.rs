@@ -11,8 +11,8 @@ use super::number::{self, DIRECTION, LENGTH};
 use super::records::{definition, is_nurbs, offset_number, spindle_record};
 use super::text;
 use crate::BSpline;
-use crate::course::{Curve, Item, Piece, Reach};
-use crate::{Coolants, CycleCall, MotionKind, Told};
+use crate::course::{CourseItem, CoursePiece, Curve, ReachedPose};
+use crate::{Coolants, CycleCall, MotionKind, ProgramEvent};
 
 /// Unit vectors nearer than this are one.
 const SAME_DIRECTION: f64 = 1e-12;
@@ -31,7 +31,7 @@ const MOST_CHORDS: u64 = 1 << 20;
 
 /// The tool in the spindle, as the control counts it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Tool {
+pub struct MountedTool {
     /// Register of its length.
     pub register: Option<u32>,
     /// Its length, mm.
@@ -47,7 +47,7 @@ pub struct ClWriter {
     /// How far chords may stray where no record has the curve, mm.
     chord: f64,
     /// What waits for the next motion: the tool's length is known only then.
-    waiting: Vec<(u64, Told)>,
+    waiting: Vec<(u64, ProgramEvent)>,
     /// A tool change waits.
     changes: bool,
     /// The tool left the part.
@@ -71,7 +71,7 @@ pub struct ClWriter {
     work_offset: Option<String>,
     /// Numbers of tools that have names alone, by the order in which they came.
     names: Vec<String>,
-    last_tool: Option<(u32, Tool)>,
+    last_tool: Option<(u32, MountedTool)>,
     notes: Vec<Diagnostic>,
     ended: bool,
 }
@@ -113,11 +113,11 @@ impl ClWriter {
 
     /// The last records.
     pub fn end(&mut self, out: &mut String) {
-        for (_, told) in std::mem::take(&mut self.waiting) {
-            match told {
+        for (_, event) in std::mem::take(&mut self.waiting) {
+            match event {
                 // A tool that does nothing is not loaded.
-                Told::ToolChange { .. } | Told::Preselect(_) => {}
-                told => self.told(told, Tool::default(), out),
+                ProgramEvent::ToolChange { .. } | ProgramEvent::Preselect(_) => {}
+                event => self.write_event(event, MountedTool::default(), out),
             }
         }
         self.end_cycle(out);
@@ -131,56 +131,56 @@ impl ClWriter {
     /// What no record can ask for.
     pub fn item(
         &mut self,
-        item: &Item,
-        tool: Tool,
+        item: &CourseItem,
+        tool: MountedTool,
         out: &mut String,
     ) -> Result<(), Box<Diagnostic>> {
         if self.ended {
             return Ok(());
         }
         match item {
-            Item::Away { .. } => {
+            CourseItem::Away { .. } => {
                 self.away = self.moved;
                 Ok(())
             }
-            Item::Told { line, told } => self.take_told(*line, told, tool, out),
-            Item::Reach(reach) => {
+            CourseItem::Event { line, event } => self.take_event(*line, event, tool, out),
+            CourseItem::Reach(reach) => {
                 self.settle(tool, out);
                 self.reach(reach, out);
                 Ok(())
             }
-            Item::Piece(piece) => {
+            CourseItem::Piece(piece) => {
                 self.settle(tool, out);
                 self.piece(piece, out)
             }
         }
     }
 
-    fn take_told(
+    fn take_event(
         &mut self,
         line: u64,
-        told: &Told,
-        tool: Tool,
+        event: &ProgramEvent,
+        tool: MountedTool,
         out: &mut String,
     ) -> Result<(), Box<Diagnostic>> {
-        match told {
-            Told::Cycle(call) => {
+        match event {
+            ProgramEvent::Cycle(call) => {
                 self.settle(tool, out);
                 self.hole = Some((*call, None));
                 return Ok(());
             }
-            Told::CycleEnd => return self.end_hole(line, out),
-            Told::Dwell { .. } if self.hole.is_some() => return Ok(()),
-            Told::ToolChange { .. } => {
+            ProgramEvent::CycleEnd => return self.end_hole(line, out),
+            ProgramEvent::Dwell { .. } if self.hole.is_some() => return Ok(()),
+            ProgramEvent::ToolChange { .. } => {
                 // The frame of the other machine goes round a tool change by itself.
                 self.away = false;
                 self.changes = true;
             }
-            Told::End => {
+            ProgramEvent::End => {
                 self.ended = true;
                 return Ok(());
             }
-            Told::Unknown(word) => {
+            ProgramEvent::Unknown(word) => {
                 let message = format!("{word} is not carried over: nobody knows what it does");
                 self.notes.push(Diagnostic::warning("convert", message));
                 return Ok(());
@@ -188,22 +188,23 @@ impl ClWriter {
             _ => {}
         }
         if self.changes {
-            self.waiting.push((line, told.clone()));
+            self.waiting.push((line, event.clone()));
         } else {
-            self.told(told.clone(), tool, out);
+            self.write_event(event.clone(), tool, out);
         }
         Ok(())
     }
 
     /// A motion follows: what waited for it is written, the tool change first.
-    fn settle(&mut self, tool: Tool, out: &mut String) {
+    fn settle(&mut self, tool: MountedTool, out: &mut String) {
         let waiting = std::mem::take(&mut self.waiting);
         // The last tool that came into the spindle cuts.
-        let change = waiting.iter().rposition(|(_, told)| matches!(told, Told::ToolChange { .. }));
-        for (place, (_, told)) in waiting.into_iter().enumerate() {
-            match told {
-                Told::ToolChange { .. } if Some(place) != change => {}
-                told => self.told(told, tool, out),
+        let change =
+            waiting.iter().rposition(|(_, event)| matches!(event, ProgramEvent::ToolChange { .. }));
+        for (place, (_, event)) in waiting.into_iter().enumerate() {
+            match event {
+                ProgramEvent::ToolChange { .. } if Some(place) != change => {}
+                event => self.write_event(event, tool, out),
             }
         }
         self.changes = false;
@@ -215,17 +216,17 @@ impl ClWriter {
         }
     }
 
-    fn told(&mut self, told: Told, tool: Tool, out: &mut String) {
-        if !matches!(told, Told::Operation(_) | Told::ToolChange { .. }) {
+    fn write_event(&mut self, event: ProgramEvent, tool: MountedTool, out: &mut String) {
+        if !matches!(event, ProgramEvent::Operation(_) | ProgramEvent::ToolChange { .. }) {
             self.open_operation(None, out);
         }
-        match told {
-            Told::ToolChange { number, name } => self.load(number, name, tool, out),
-            Told::Preselect(number) => {
+        match event {
+            ProgramEvent::ToolChange { number, name } => self.load(number, name, tool, out),
+            ProgramEvent::Preselect(number) => {
                 let _ = writeln!(out, "SELECT/TOOL,{number}");
             }
-            Told::Spindle(spindle) => spindle_record(spindle, out),
-            Told::Coolant(coolants) => {
+            ProgramEvent::Spindle(spindle) => spindle_record(spindle, out),
+            ProgramEvent::Coolant(coolants) => {
                 let Coolants { flood, mist, other } = coolants;
                 out.push_str(match (flood, mist, other) {
                     (false, false, false) => "COOLNT/OFF\n",
@@ -234,21 +235,21 @@ impl ClWriter {
                     (_, _, true) => "COOLNT/THRU\n",
                 });
             }
-            Told::Dwell { time, revolutions } => {
+            ProgramEvent::Dwell { time, revolutions } => {
                 out.push_str("DELAY/");
                 number::write(out, time, LENGTH);
                 out.push_str(if revolutions { ",REV\n" } else { "\n" });
             }
-            Told::Stop => out.push_str("STOP\n"),
-            Told::OptionalStop => out.push_str("OPSTOP\n"),
-            Told::Operation(name) => self.begins = Some(name),
-            Told::Remark(remark) | Told::Message(remark) => {
+            ProgramEvent::Stop => out.push_str("STOP\n"),
+            ProgramEvent::OptionalStop => out.push_str("OPSTOP\n"),
+            ProgramEvent::Operation(name) => self.begins = Some(name),
+            ProgramEvent::Remark(remark) | ProgramEvent::Message(remark) => {
                 let remark = text::free(&remark);
                 if !remark.is_empty() {
                     let _ = writeln!(out, "PPRINT {remark}");
                 }
             }
-            Told::Compensation { side, register } => {
+            ProgramEvent::Compensation { side, register } => {
                 let side = match side {
                     0 => "OFF",
                     ..0 => "LEFT",
@@ -259,17 +260,20 @@ impl ClWriter {
                     None => writeln!(out, "CUTCOM/{side}"),
                 };
             }
-            Told::WorkOffset(name) => self.offset(name, out),
-            Told::Head(name) => {
+            ProgramEvent::WorkOffset(name) => self.offset(name, out),
+            ProgramEvent::Head(name) => {
                 let _ = writeln!(out, "HEAD/{}", text::name(&name));
                 self.stands = None;
             }
-            Told::Subprogram(number) => {
+            ProgramEvent::Subprogram(number) => {
                 let _ = writeln!(out, "CALSUB/{number}");
                 self.stands = None;
             }
             // Taken apart before.
-            Told::Cycle(_) | Told::CycleEnd | Told::Unknown(_) | Told::End => {}
+            ProgramEvent::Cycle(_)
+            | ProgramEvent::CycleEnd
+            | ProgramEvent::Unknown(_)
+            | ProgramEvent::End => {}
         }
     }
 
@@ -293,7 +297,13 @@ impl ClWriter {
         self.axis = Vector3::z();
     }
 
-    fn load(&mut self, number: Option<u32>, name: Option<String>, tool: Tool, out: &mut String) {
+    fn load(
+        &mut self,
+        number: Option<u32>,
+        name: Option<String>,
+        tool: MountedTool,
+        out: &mut String,
+    ) {
         let number = number.unwrap_or_else(|| {
             let name = name.clone().unwrap_or_default();
             let known = self.names.iter().position(|known| *known == name);
@@ -348,7 +358,7 @@ impl ClWriter {
         }
     }
 
-    fn reach(&mut self, reach: &Reach, out: &mut String) {
+    fn reach(&mut self, reach: &ReachedPose, out: &mut String) {
         // A hole's approach is the cycle's own.
         if self.hole.is_some() {
             return;
@@ -357,7 +367,7 @@ impl ClWriter {
         self.point(MotionKind::Rapid, None, &reach.to, out);
     }
 
-    fn piece(&mut self, piece: &Piece, out: &mut String) -> Result<(), Box<Diagnostic>> {
+    fn piece(&mut self, piece: &CoursePiece, out: &mut String) -> Result<(), Box<Diagnostic>> {
         if let Some((_, deepest)) = &mut self.hole {
             for pose in [&piece.from, &piece.to] {
                 let lower = |deepest: &Pose| pose.axis.dot(&(pose.tip - deepest.tip)) < 0.0;
@@ -400,7 +410,7 @@ impl ClWriter {
     }
 
     /// A `CIRCLE` says this arc: it starts where the tool stands, and both ends are equally far from its axis, or nearly.
-    fn arc_fits(&self, piece: &Piece, centre: Vector3<f64>, normal: Vector3<f64>) -> bool {
+    fn arc_fits(&self, piece: &CoursePiece, centre: Vector3<f64>, normal: Vector3<f64>) -> bool {
         let radius = |tip: Vector3<f64>| normal.cross(&(tip - centre)).norm();
         let (from, to) = (radius(piece.from.tip), radius(piece.to.tip));
         self.at(&piece.from) && libm::fabs(from - to) <= SPIRAL && from > SAME_POINT
@@ -408,7 +418,7 @@ impl ClWriter {
 
     fn arc(
         &mut self,
-        piece: &Piece,
+        piece: &CoursePiece,
         (centre, normal, sweep): (Vector3<f64>, Vector3<f64>, f64),
         out: &mut String,
     ) {
@@ -447,7 +457,7 @@ impl ClWriter {
     }
 
     /// Points on a curve that no record has, so many that chords stay near enough as far as points between tell.
-    fn chords(&mut self, piece: &Piece, out: &mut String) {
+    fn chords(&mut self, piece: &CoursePiece, out: &mut String) {
         let first = match &piece.curve {
             Curve::Spline(way) => (2 * way.poles.len() as u64).min(MOST_CHORDS),
             _ => 4,

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::{Course, Curve, Item};
-use crate::{MOST_FAULTS, MotionKind, Told};
+use super::{Course, CourseItem, Curve};
+use crate::{MOST_FAULTS, MotionKind, ProgramEvent};
 use post_machine::diagnostic::Diagnostic;
 
 /// What a course is about.
@@ -30,12 +30,12 @@ pub struct CourseFacts {
     /// The largest angle of the tool axis from Z of the part, radians.
     pub lean: f64,
     /// Operations, in order.
-    pub operations: Vec<Operation>,
+    pub operations: Vec<CourseOperation>,
 }
 
 /// An operation.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Operation {
+pub struct CourseOperation {
     /// Line on which it begins.
     pub line: u64,
     /// Its name.
@@ -58,9 +58,9 @@ impl CourseFacts {
         }
     }
 
-    fn take(&mut self, item: &Item, tool: &mut Option<u32>) {
+    fn take(&mut self, item: &CourseItem, tool: &mut Option<u32>) {
         match item {
-            Item::Piece(piece) => {
+            CourseItem::Piece(piece) => {
                 let extents = piece.extents();
                 widen(&mut self.extents, extents);
                 let z = Vector3::z();
@@ -82,17 +82,19 @@ impl CourseFacts {
                     Curve::Spline(_) => self.splines += 1,
                 }
             }
-            Item::Reach(reach) => {
+            CourseItem::Reach(reach) => {
                 self.reached += 1;
                 widen(&mut self.extents, [reach.to.tip; 2]);
             }
-            Item::Away { .. } => {}
-            Item::Told { line, told } => match told {
-                Told::Cycle(_) => self.holes += 1,
-                Told::ToolChange { number, .. } => *tool = *number,
-                Told::Operation(name) => {
-                    self.operations.push(Operation { line: *line, name: name.clone(), tool: *tool })
-                }
+            CourseItem::Away { .. } => {}
+            CourseItem::Event { line, event } => match event {
+                ProgramEvent::Cycle(_) => self.holes += 1,
+                ProgramEvent::ToolChange { number, .. } => *tool = *number,
+                ProgramEvent::Operation(name) => self.operations.push(CourseOperation {
+                    line: *line,
+                    name: name.clone(),
+                    tool: *tool,
+                }),
                 _ => {}
             },
         }

@@ -4,7 +4,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_motion::ProgramPlace;
 use post_motion::contour::{ContourLeg, ReferencePath};
 
-use super::{Course, Item};
+use super::{Course, CourseItem};
 use crate::{MOST_FAULTS, MotionKind};
 
 /// The cuts of a course.
@@ -27,7 +27,7 @@ impl<C: Course> ReferencePath for Legs<'_, C> {
     fn next(&mut self) -> Option<ContourLeg> {
         loop {
             match self.course.next() {
-                Ok(Some(Item::Piece(piece))) if piece.kind != MotionKind::Rapid => {
+                Ok(Some(CourseItem::Piece(piece))) if piece.kind != MotionKind::Rapid => {
                     return Some(ContourLeg {
                         at: ProgramPlace { task: 0, line: piece.line, cuts: true },
                         curve: piece.curve,

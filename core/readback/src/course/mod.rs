@@ -3,30 +3,30 @@
 //! | source | what it is |
 //! |---|---|
 //! | [`cl::ClCourse`] | a CL file, every modal word settled here and not by the stages that post it |
-//! | [`done::DoneCourse`] | what a program did |
+//! | [`program::ProgramCourse`] | what a program did |
 //!
 //! Points, axes and edges are in mm in the part frame of the machine file, the part as it sits (`machine.turn` is
 //! applied). A piece begins where the one before it ends; where that is not known (behind a tool change, at the beginning,
-//! behind a way in machine coordinates) the tool [reaches](Item::Reach) a pose, and how it comes there is nobody's
+//! behind a way in machine coordinates) the tool [reaches](CourseItem::Reach) a pose, and how it comes there is nobody's
 //! business.
 
 pub mod cl;
 pub(crate) mod descent;
-pub mod done;
 mod facts;
 mod legs;
 mod piece;
+pub mod program;
 mod window;
 
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 
-use crate::{MotionKind, Told};
+use crate::{MotionKind, ProgramEvent};
 
 pub use crate::Curve;
-pub use facts::{CourseFacts, Operation};
+pub use facts::{CourseFacts, CourseOperation};
 pub use legs::Legs;
-pub use window::Window;
+pub use window::CourseWindow;
 
 /// A path that is handed out in order.
 pub trait Course {
@@ -34,7 +34,7 @@ pub trait Course {
     ///
     /// # Errors
     /// What its source says that cannot be understood, with its place.
-    fn next(&mut self) -> Result<Option<Item>, Box<Diagnostic>>;
+    fn next(&mut self) -> Result<Option<CourseItem>, Box<Diagnostic>>;
 }
 
 /// What a course says.
@@ -43,28 +43,28 @@ pub trait Course {
     clippy::large_enum_variant,
     reason = "nearly all are pieces, and they are handed on one by one"
 )]
-pub enum Item {
+pub enum CourseItem {
     /// The tool goes from where it stands.
-    Piece(Piece),
+    Piece(CoursePiece),
     /// The tool comes to a pose from wherever it was.
-    Reach(Reach),
+    Reach(ReachedPose),
     /// The tool leaves the part, and the axes go where the machine parks them: `GOHOME`, ways in machine coordinates.
     Away {
         /// Line of the source.
         line: u64,
     },
     /// Something else.
-    Told {
+    Event {
         /// Line of the source.
         line: u64,
         /// What.
-        told: Told,
+        event: ProgramEvent,
     },
 }
 
 /// A pose that is reached, by whatever way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reach {
+pub struct ReachedPose {
     /// Line of the source that asks for it.
     pub line: u64,
     /// As the source has it: a first point may come at feed, and does harm by that to nobody.
@@ -79,13 +79,13 @@ pub struct Reach {
 
 /// A piece of the path.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Piece {
+pub struct CoursePiece {
     /// Line of the source that asks for it.
     pub line: u64,
     /// At rapid, at feed, or along a thread.
     pub kind: MotionKind,
     /// How the tip goes; the tool axis goes on the great circle from one end to the other, evenly. Where the machine file
-    /// names a control point above the tip, that point goes straight: [`Piece::at`].
+    /// names a control point above the tip, that point goes straight: [`CoursePiece::at`].
     pub curve: Curve,
     /// Where it begins: mm, part frame.
     pub from: Pose,

@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 use post_machine::kinematics::Pose;
 use post_motion::path::between;
 
-use super::Piece;
+use super::CoursePiece;
 
-impl Piece {
+impl CoursePiece {
     /// The pose at `t` from 0 to 1.
     ///
     /// `along` is how far the point that is guided stands above the tip, mm (`[tool] control_point`): that point goes

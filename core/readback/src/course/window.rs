@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use post_machine::diagnostic::Diagnostic;
 
-use super::{Course, Item, Reach};
-use crate::{MotionKind, Told};
+use super::{Course, CourseItem, ReachedPose};
+use crate::{MotionKind, ProgramEvent};
 
 /// The items of some lines of a course, with what holds there.
 #[derive(Debug)]
-pub struct Window<C> {
+pub struct CourseWindow<C> {
     course: C,
     /// None: all.
     lines: Option<Range<u64>>,
@@ -17,15 +17,15 @@ pub struct Window<C> {
     moved: bool,
 }
 
-impl<C> Window<C> {
+impl<C> CourseWindow<C> {
     /// What the lines of `course` ask for; without lines all of it.
     pub fn new(course: C, lines: Option<Range<u64>>) -> Self {
         Self { course, lines, moved: false }
     }
 }
 
-impl<C: Course> Course for Window<C> {
-    fn next(&mut self) -> Result<Option<Item>, Box<Diagnostic>> {
+impl<C: Course> Course for CourseWindow<C> {
+    fn next(&mut self) -> Result<Option<CourseItem>, Box<Diagnostic>> {
         loop {
             let Some(item) = self.course.next()? else {
                 return Ok(None);
@@ -34,25 +34,27 @@ impl<C: Course> Course for Window<C> {
                 return Ok(Some(item));
             };
             let line = match &item {
-                Item::Piece(piece) => piece.line,
-                Item::Reach(reach) => reach.line,
-                Item::Away { line } | Item::Told { line, .. } => *line,
+                CourseItem::Piece(piece) => piece.line,
+                CourseItem::Reach(reach) => reach.line,
+                CourseItem::Away { line } | CourseItem::Event { line, .. } => *line,
             };
             let inside = lines.contains(&line);
             match item {
                 // What was switched before still holds.
-                Item::Told {
-                    told:
-                        Told::ToolChange { .. }
-                        | Told::Spindle(_)
-                        | Told::Coolant(_)
-                        | Told::Compensation { .. },
+                CourseItem::Event {
+                    event:
+                        ProgramEvent::ToolChange { .. }
+                        | ProgramEvent::Spindle(_)
+                        | ProgramEvent::Coolant(_)
+                        | ProgramEvent::Compensation { .. },
                     ..
                 } if line < lines.end => return Ok(Some(item)),
                 // How the tool comes to its first point is nobody's business.
-                Item::Piece(piece) if inside && !self.moved && piece.kind == MotionKind::Rapid => {
+                CourseItem::Piece(piece)
+                    if inside && !self.moved && piece.kind == MotionKind::Rapid =>
+                {
                     self.moved = true;
-                    return Ok(Some(Item::Reach(Reach {
+                    return Ok(Some(CourseItem::Reach(ReachedPose {
                         line,
                         kind: piece.kind,
                         to: piece.to,
@@ -61,7 +63,7 @@ impl<C: Course> Course for Window<C> {
                     })));
                 }
                 item if inside => {
-                    self.moved |= matches!(item, Item::Piece(_) | Item::Reach(_));
+                    self.moved |= matches!(item, CourseItem::Piece(_) | CourseItem::Reach(_));
                     return Ok(Some(item));
                 }
                 _ => {}

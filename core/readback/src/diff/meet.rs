@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use super::steps::{Spot, Step};
+use super::steps::{PathPosition, PathStep};
 
 /// So many steps of either path are looked through.
 pub(super) const LOOK: usize = 3000;
@@ -10,12 +10,12 @@ pub(super) const LOOK: usize = 3000;
 /// Steps of each path up to where they meet: the pair with the fewest, the place where both are now left out. None if
 /// they do not meet as far as is looked. `here` is where each stands.
 pub(super) fn meeting(
-    here: [&Spot; 2],
-    old: &VecDeque<Step>,
-    new: &VecDeque<Step>,
+    here: [&PathPosition; 2],
+    old: &VecDeque<PathStep>,
+    new: &VecDeque<PathStep>,
     near: f64,
 ) -> Option<[usize; 2]> {
-    let cell = |spot: &Spot| -> [i64; 3] {
+    let cell = |spot: &PathPosition| -> [i64; 3] {
         let tip = spot.pose.tip;
         [tip.x, tip.y, tip.z].map(|part| libm::floor(part / near) as i64)
     };
@@ -44,12 +44,15 @@ pub(super) fn meeting(
 }
 
 /// Where a path stands and the ends of its steps.
-fn spots<'a>(here: &'a Spot, steps: &'a VecDeque<Step>) -> impl Iterator<Item = &'a Spot> {
+fn spots<'a>(
+    here: &'a PathPosition,
+    steps: &'a VecDeque<PathStep>,
+) -> impl Iterator<Item = &'a PathPosition> {
     std::iter::once(here).chain(steps.iter().map(|step| &step.to))
 }
 
 /// Both are close, and what follows is of one kind and goes the same way.
-fn go_on_alike(steps: [&VecDeque<Step>; 2], from: [usize; 2], near: f64) -> bool {
+fn go_on_alike(steps: [&VecDeque<PathStep>; 2], from: [usize; 2], near: f64) -> bool {
     let spot = |side: usize| match from[side] {
         0 => steps[side].front().map(|step| &step.from),
         behind => steps[side].get(behind - 1).map(|step| &step.to),

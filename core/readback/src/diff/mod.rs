@@ -20,17 +20,17 @@ mod walk;
 
 use post_machine::diagnostic::Diagnostic;
 
-use crate::{Program, Run};
+use crate::{BlockRunner, ProgramRun};
 use outline::Outline;
-use steps::Steps;
+use steps::PathSteps;
 pub use tally::{
-    Difference, EventDifference, FeedWorst, Operation, Sample, Side, StateDifference, Stretch,
-    Worst,
+    Difference, EventDifference, LoneWay, OperationDifference, PathPair, ProgramSums,
+    StateDifference, WorstDifference, WorstFeedDifference,
 };
 
 /// What makes a difference.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rules {
+pub struct DiffRules {
     /// Positions of the tip that differ by no more are the same, mm.
     pub tip: f64,
     /// Tool axes, and rotary axes of one machine, radians.
@@ -60,14 +60,14 @@ pub const APART: f64 = 0.2;
 
 /// Which of the two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Of {
+pub(crate) enum WhichProgram {
     Old,
     New,
 }
 
 /// What was found wrong with each program while it was read.
 #[derive(Clone, Debug, Default)]
-pub struct Unread {
+pub struct UnreadBlocks {
     /// Blocks of the old one.
     pub old: Vec<Diagnostic>,
     /// Blocks of the new one.
@@ -79,17 +79,17 @@ pub struct Unread {
 ///
 /// # Errors
 /// A program that cannot be opened.
-pub fn compare<P: Program, E>(
-    rules: &Rules,
+pub fn compare<P: BlockRunner, E>(
+    rules: &DiffRules,
     mut open: impl FnMut(bool) -> Result<P, E>,
-    listen: &mut dyn FnMut(&Sample),
-) -> Result<(Difference, Unread), E> {
-    let mut unread = Unread::default();
-    let old = Outline::of(Run::new(open(false)?), &mut unread.old);
-    let new = Outline::of(Run::new(open(true)?), &mut unread.new);
+    listen: &mut dyn FnMut(&PathPair),
+) -> Result<(Difference, UnreadBlocks), E> {
+    let mut unread = UnreadBlocks::default();
+    let old = Outline::of(ProgramRun::new(open(false)?), &mut unread.old);
+    let new = Outline::of(ProgramRun::new(open(true)?), &mut unread.new);
     let pairs = outline::align(old, new);
-    let old = Steps::new(Run::new(open(false)?), pairs.by_name);
-    let new = Steps::new(Run::new(open(true)?), pairs.by_name);
+    let old = PathSteps::new(ProgramRun::new(open(false)?), pairs.by_name);
+    let new = PathSteps::new(ProgramRun::new(open(true)?), pairs.by_name);
     let difference = walk::all(rules, pairs, old, new, listen);
     Ok((difference, unread))
 }

@@ -3,14 +3,14 @@
 use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 
-use crate::{Done, Motion, MotionKind, Program, Run, Told};
+use crate::{BlockEffect, BlockRunner, Motion, MotionKind, ProgramEvent, ProgramRun};
 
 /// More operations than this are not aligned but compared one after the other.
 const MOST: usize = 1000;
 
 /// An operation as a first reading sees it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Part {
+pub(super) struct OperationOutline {
     /// Its number among those of the splitter.
     pub number: usize,
     pub name: Option<String>,
@@ -46,19 +46,19 @@ impl Splitter {
     }
 
     /// The number of the operation that begins with this.
-    pub fn take(&mut self, done: &Done) -> Option<usize> {
+    pub fn take(&mut self, done: &BlockEffect) -> Option<usize> {
         let begins = match done {
-            Done::Motion(motion) => {
+            BlockEffect::Motion(motion) => {
                 self.at = motion.to.pose.tip;
                 self.cut |= cuts(motion);
                 return None;
             }
-            Done::Told { told, .. } => match told {
-                Told::ToolChange { .. } => true,
-                Told::Operation(_) => self.by_name,
+            BlockEffect::Event { event, .. } => match event {
+                ProgramEvent::ToolChange { .. } => true,
+                ProgramEvent::Operation(_) => self.by_name,
                 _ => false,
             },
-            Done::State(_) => false,
+            BlockEffect::State(_) => false,
         };
         if !begins || !self.cut {
             return None;
@@ -77,7 +77,7 @@ fn cuts(motion: &Motion) -> bool {
 /// The operations of a program.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outline {
-    parts: Vec<Part>,
+    parts: Vec<OperationOutline>,
     /// Words that are not understood, by name.
     pub unknown: Vec<String>,
     /// The length of a tool is compensated.
@@ -86,8 +86,8 @@ pub(super) struct Outline {
 
 impl Outline {
     /// Reads a program to its end; what cannot be read goes to `faults`.
-    pub fn of(mut run: Run<impl Program>, faults: &mut Vec<Diagnostic>) -> Self {
-        let mut outline = Self { parts: vec![Part::default()], ..Self::default() };
+    pub fn of(mut run: ProgramRun<impl BlockRunner>, faults: &mut Vec<Diagnostic>) -> Self {
+        let mut outline = Self { parts: vec![OperationOutline::default()], ..Self::default() };
         let mut splitter = Splitter::new(true);
         while let Some(done) = run.block() {
             for done in done {
@@ -98,19 +98,22 @@ impl Outline {
         outline
     }
 
-    fn take(&mut self, done: &Done, splitter: &mut Splitter) {
+    fn take(&mut self, done: &BlockEffect, splitter: &mut Splitter) {
         let line = match done {
-            Done::Motion(motion) => motion.line,
-            Done::Told { line, .. } => *line,
-            Done::State(_) => 0,
+            BlockEffect::Motion(motion) => motion.line,
+            BlockEffect::Event { line, .. } => *line,
+            BlockEffect::State(_) => 0,
         };
         if let Some(number) = splitter.take(done) {
             let tool = self.parts.last().and_then(|part| part.tool);
-            self.parts.push(Part {
+            self.parts.push(OperationOutline {
                 number,
                 tool,
-                by_name: !matches!(done, Done::Told { told: Told::ToolChange { .. }, .. }),
-                ..Part::default()
+                by_name: !matches!(
+                    done,
+                    BlockEffect::Event { event: ProgramEvent::ToolChange { .. }, .. }
+                ),
+                ..OperationOutline::default()
             });
         }
         let Some(part) = self.parts.last_mut() else {
@@ -123,7 +126,7 @@ impl Outline {
             part.lines[1] = part.lines[1].max(line);
         }
         match done {
-            Done::Motion(motion) => {
+            BlockEffect::Motion(motion) => {
                 self.lengths |= motion.state.length != 0.0;
                 part.motions += 1;
                 if cuts(motion) {
@@ -131,26 +134,26 @@ impl Outline {
                     part.cut += (motion.to.pose.tip - motion.from.pose.tip).norm();
                 }
             }
-            Done::Told { told, .. } => match told {
-                Told::ToolChange { number, .. } => {
+            BlockEffect::Event { event, .. } => match event {
+                ProgramEvent::ToolChange { number, .. } => {
                     part.tool = *number;
                     part.by_name &= part.start.is_some();
                 }
-                Told::Operation(name) => {
+                ProgramEvent::Operation(name) => {
                     part.name.get_or_insert_with(|| name.clone());
                 }
-                Told::Unknown(word) if !self.unknown.contains(word) => {
+                ProgramEvent::Unknown(word) if !self.unknown.contains(word) => {
                     self.unknown.push(word.clone());
                 }
                 _ => {}
             },
-            Done::State(_) => {}
+            BlockEffect::State(_) => {}
         }
     }
 
     /// Without operations that begin by a name alone.
     fn by_tools(self) -> Self {
-        let mut parts: Vec<Part> = Vec::new();
+        let mut parts: Vec<OperationOutline> = Vec::new();
         for part in self.parts {
             match parts.last_mut() {
                 Some(last) if part.by_name => {
@@ -161,7 +164,7 @@ impl Outline {
                 }
                 _ => {
                     let number = parts.len();
-                    parts.push(Part { number, ..part });
+                    parts.push(OperationOutline { number, ..part });
                 }
             }
         }
@@ -179,7 +182,7 @@ impl Outline {
 pub(super) struct Pairs {
     /// Operations begin with names too, not with tools alone.
     pub by_name: bool,
-    pub pairs: Vec<[Option<Part>; 2]>,
+    pub pairs: Vec<[Option<OperationOutline>; 2]>,
     pub unknown: [Vec<String>; 2],
     /// Both compensate lengths.
     pub lengths: bool,
@@ -205,7 +208,7 @@ pub(super) fn align(old: Outline, new: Outline) -> Pairs {
 const ALONE: f64 = 1.0;
 
 /// How unlike two operations are, from 0 to 2.1.
-fn unlike(old: &Part, new: &Part) -> f64 {
+fn unlike(old: &OperationOutline, new: &OperationOutline) -> f64 {
     let unless = |same: bool, cost: f64| if same { 0.0 } else { cost };
     let longer = old.cut.max(new.cut).max(1.0);
     let starts = match (old.start, new.start) {
@@ -219,7 +222,10 @@ fn unlike(old: &Part, new: &Part) -> f64 {
 }
 
 /// The alignment that costs least.
-fn paired(old: Vec<Part>, new: Vec<Part>) -> Vec<[Option<Part>; 2]> {
+fn paired(
+    old: Vec<OperationOutline>,
+    new: Vec<OperationOutline>,
+) -> Vec<[Option<OperationOutline>; 2]> {
     let (rows, columns) = (old.len(), new.len());
     if rows > MOST || columns > MOST {
         let count = rows.max(columns);

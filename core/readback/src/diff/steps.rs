@@ -9,7 +9,9 @@ use post_motion::path::arc_chords;
 
 use super::outline::Splitter;
 use crate::course::descent::{Descent, descends};
-use crate::{Curve, Done, Motion, MotionKind, Program, Run, State, Told};
+use crate::{
+    BlockEffect, BlockRunner, Curve, MachineState, Motion, MotionKind, ProgramEvent, ProgramRun,
+};
 
 /// Steps stray from the way by no more: mm, radians.
 const SAG: f64 = 0.000_1;
@@ -23,12 +25,12 @@ const ARM: f64 = 50.0;
 
 /// Where the tool is on one of the paths.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Spot {
+pub(super) struct PathPosition {
     pub pose: Pose,
     pub joints: Joints,
 }
 
-impl Spot {
+impl PathPosition {
     /// How far apart the tips are, mm, and the tool axes and edges, radians.
     pub fn apart(&self, other: &Self) -> [f64; 2] {
         let angle = |a: Vector3<f64>, b: Vector3<f64>| libm::atan2(a.cross(&b).norm(), a.dot(&b));
@@ -66,14 +68,14 @@ impl Spot {
 
 /// A step.
 #[derive(Clone, Debug)]
-pub(super) struct Step {
-    pub from: Spot,
-    pub to: Spot,
+pub(super) struct PathStep {
+    pub from: PathPosition,
+    pub to: PathPosition,
     pub kind: MotionKind,
     /// mm/min.
     pub feed: f64,
     pub line: u64,
-    pub state: Arc<State>,
+    pub state: Arc<MachineState>,
     /// It is part of a hole.
     pub hole: bool,
     /// In positions of the machine.
@@ -86,7 +88,7 @@ pub(super) struct Step {
     pub length: f64,
 }
 
-impl Step {
+impl PathStep {
     /// At rapid, or at feed where a rapid may stand so.
     pub fn may_be_rapid(&self) -> bool {
         self.kind == MotionKind::Rapid || self.fast
@@ -102,18 +104,18 @@ impl Step {
 
 /// Something that is told between steps and takes time or stops the program.
 #[derive(Clone, Debug)]
-pub(super) struct Event {
+pub(super) struct StepEvent {
     pub line: u64,
-    pub told: Told,
+    pub event: ProgramEvent,
     /// Where the tip is.
     pub at: Vector3<f64>,
 }
 
 /// What is next.
 #[derive(Debug)]
-enum Next {
-    Step(Box<Step>),
-    Event(Event),
+enum NextStep {
+    Step(Box<PathStep>),
+    Event(StepEvent),
     /// Minutes of a motion, for the operation at hand.
     Minutes(f64),
     /// An operation begins, its number.
@@ -122,7 +124,7 @@ enum Next {
 
 /// What a motion is to the way from a retract to the first position of the part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Leg {
+enum ApproachLeg {
     /// No part of it.
     None,
     /// Rapids where the tool stands clear.
@@ -133,15 +135,15 @@ enum Leg {
 
 /// The steps of a program, operation by operation.
 #[derive(Debug)]
-pub(super) struct Steps<P> {
+pub(super) struct PathSteps<P> {
     /// What cannot be read of it was told when its outline was made.
-    run: Run<P>,
+    run: ProgramRun<P>,
     splitter: Splitter,
-    done: Vec<Done>,
-    ready: VecDeque<Next>,
+    done: Vec<BlockEffect>,
+    ready: VecDeque<NextStep>,
     /// Steps of the operation at hand.
-    pub steps: VecDeque<Step>,
-    pub events: Vec<Event>,
+    pub steps: VecDeque<PathStep>,
+    pub events: Vec<StepEvent>,
     pub minutes: f64,
     /// Axis values behind the last way in machine coordinates.
     retracted: Option<Joints>,
@@ -150,15 +152,15 @@ pub(super) struct Steps<P> {
     /// It has come down to its own line, from above, and goes in along it perhaps.
     on_line: bool,
     /// Its rapids since.
-    held: Vec<Next>,
+    held: Vec<NextStep>,
     operation: usize,
     /// The operation at hand has no further steps.
     pub ended: bool,
     over: bool,
 }
 
-impl<P: Program> Steps<P> {
-    pub fn new(run: Run<P>, by_name: bool) -> Self {
+impl<P: BlockRunner> PathSteps<P> {
+    pub fn new(run: ProgramRun<P>, by_name: bool) -> Self {
         Self {
             run,
             splitter: Splitter::new(by_name),
@@ -198,7 +200,7 @@ impl<P: Program> Steps<P> {
 
     /// What has been read belongs to the next operation from here on.
     fn begin_next(&mut self) {
-        if let Some(Next::Operation(number)) = self.ready.front() {
+        if let Some(NextStep::Operation(number)) = self.ready.front() {
             self.operation = *number;
             self.ready.pop_front();
         } else {
@@ -215,18 +217,18 @@ impl<P: Program> Steps<P> {
 
     fn read(&mut self) {
         while let Some(next) = self.ready.front() {
-            if let Next::Operation(_) = next {
+            if let NextStep::Operation(_) = next {
                 self.ended = true;
                 return;
             }
             match self.ready.pop_front() {
-                Some(Next::Step(step)) => {
+                Some(NextStep::Step(step)) => {
                     self.steps.push_back(*step);
                     return;
                 }
-                Some(Next::Event(event)) => self.events.push(event),
-                Some(Next::Minutes(minutes)) => self.minutes += minutes,
-                Some(Next::Operation(_)) | None => {}
+                Some(NextStep::Event(event)) => self.events.push(event),
+                Some(NextStep::Minutes(minutes)) => self.minutes += minutes,
+                Some(NextStep::Operation(_)) | None => {}
             }
         }
         if self.over {
@@ -243,46 +245,49 @@ impl<P: Program> Steps<P> {
         for done in &done {
             if let Some(number) = self.splitter.take(done) {
                 self.release();
-                self.ready.push_back(Next::Operation(number));
+                self.ready.push_back(NextStep::Operation(number));
             }
             self.take(done);
         }
         self.done = done;
     }
 
-    fn take(&mut self, done: &Done) {
+    fn take(&mut self, done: &BlockEffect) {
         match done {
-            Done::Motion(motion) => {
-                self.ready.push_back(Next::Minutes(motion.minutes));
+            BlockEffect::Motion(motion) => {
+                self.ready.push_back(NextStep::Minutes(motion.minutes));
                 self.cut(motion);
             }
-            Done::Told { line, told } => {
-                if let Told::Dwell { time, revolutions: false } = told {
-                    self.ready.push_back(Next::Minutes(time / 60.0));
+            BlockEffect::Event { line, event } => {
+                if let ProgramEvent::Dwell { time, revolutions: false } = event {
+                    self.ready.push_back(NextStep::Minutes(time / 60.0));
                 }
                 if matches!(
-                    told,
-                    Told::Dwell { .. } | Told::Stop | Told::OptionalStop | Told::ToolChange { .. }
+                    event,
+                    ProgramEvent::Dwell { .. }
+                        | ProgramEvent::Stop
+                        | ProgramEvent::OptionalStop
+                        | ProgramEvent::ToolChange { .. }
                 ) {
                     let at = self.splitter.at();
-                    self.ready.push_back(Next::Event(Event {
+                    self.ready.push_back(NextStep::Event(StepEvent {
                         line: *line,
-                        told: told.clone(),
+                        event: event.clone(),
                         at,
                     }));
                 }
             }
-            Done::State(_) => {}
+            BlockEffect::State(_) => {}
         }
     }
 
     /// What a motion is to the way from a retract to the first position.
-    fn leg(&mut self, motion: &Motion) -> Leg {
+    fn leg(&mut self, motion: &Motion) -> ApproachLeg {
         let retracted = *self.retracted.get_or_insert(motion.from.joints);
         if motion.machine {
             self.retracted = Some(motion.to.joints);
             self.above = true;
-            return Leg::None;
+            return ApproachLeg::None;
         }
         let rapid = motion.kind == MotionKind::Rapid || motion.fast;
         let on_line = std::mem::take(&mut self.on_line);
@@ -294,9 +299,9 @@ impl<P: Program> Steps<P> {
         let down = descent == Some(Descent::ToPoint);
         self.above &= !down && rapid;
         match (down, self.above) {
-            (true, _) => Leg::Down,
-            (_, true) => Leg::Across,
-            _ => Leg::None,
+            (true, _) => ApproachLeg::Down,
+            (_, true) => ApproachLeg::Across,
+            _ => ApproachLeg::None,
         }
     }
 
@@ -309,18 +314,18 @@ impl<P: Program> Steps<P> {
     fn cut(&mut self, motion: &Motion) {
         let leg = self.leg(motion);
         match leg {
-            Leg::None => self.release(),
-            Leg::Across => {}
-            Leg::Down => {
+            ApproachLeg::None => self.release(),
+            ApproachLeg::Across => {}
+            ApproachLeg::Down => {
                 // How the tool came there says something of the machine, and not of the part.
                 self.held.clear();
-                let to = Spot { pose: motion.to.pose, joints: motion.to.joints };
-                let step = Step { arrives: true, ..step(motion, to, to) };
-                return self.ready.push_back(Next::Step(Box::new(step)));
+                let to = PathPosition { pose: motion.to.pose, joints: motion.to.joints };
+                let step = PathStep { arrives: true, ..step(motion, to, to) };
+                return self.ready.push_back(NextStep::Step(Box::new(step)));
             }
         }
         let count = steps_of(motion);
-        let spot = |share: f64| Spot {
+        let spot = |share: f64| PathPosition {
             pose: match share {
                 0.0 => motion.from.pose,
                 1.0 => motion.to.pose,
@@ -336,9 +341,9 @@ impl<P: Program> Steps<P> {
             let to = spot(place as f64 / count as f64);
             let step = step(motion, from, to);
             if step.length > 0.0 {
-                let next = Next::Step(Box::new(step));
+                let next = NextStep::Step(Box::new(step));
                 match leg {
-                    Leg::Across => self.held.push(next),
+                    ApproachLeg::Across => self.held.push(next),
                     _ => self.ready.push_back(next),
                 }
             }
@@ -348,8 +353,8 @@ impl<P: Program> Steps<P> {
 }
 
 /// A step of a motion.
-fn step(motion: &Motion, from: Spot, to: Spot) -> Step {
-    Step {
+fn step(motion: &Motion, from: PathPosition, to: PathPosition) -> PathStep {
+    PathStep {
         from,
         to,
         kind: motion.kind,

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::outline::Part;
-use super::steps::{Event, Spot, Step};
-use super::{Of, Rules};
-use crate::{MotionKind, Spindle, State, Told};
+use super::outline::OperationOutline;
+use super::steps::{PathPosition, PathStep, StepEvent};
+use super::{DiffRules, WhichProgram};
+use crate::{MachineState, MotionKind, ProgramEvent, SpindleState};
 
 /// Stretches and states that are told apart in one operation; of further ones the number alone.
 const MOST: usize = 100;
@@ -21,16 +21,16 @@ pub struct Difference {
     /// They do the same.
     pub same: bool,
     /// Operation by operation, in the order of the old program.
-    pub operations: Vec<Operation>,
+    pub operations: Vec<OperationDifference>,
     /// Sums of the old program and of the new one.
-    pub sides: [Side; 2],
+    pub sides: [ProgramSums; 2],
     /// Words of either that are not understood: what they do is not compared.
     pub unknown: [Vec<String>; 2],
 }
 
 /// One program, or its part in an operation.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Side {
+pub struct ProgramSums {
     /// Its first and last line.
     pub lines: [u64; 2],
     /// Motions.
@@ -43,7 +43,7 @@ pub struct Side {
 
 /// An operation of both, or of one of them.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Operation {
+pub struct OperationDifference {
     /// Its name, if the programs say one.
     pub name: Option<String>,
     /// Number of its tool.
@@ -51,30 +51,30 @@ pub struct Operation {
     /// Nothing is different.
     pub same: bool,
     /// In the old program, and in the new one.
-    pub sides: [Option<Side>; 2],
+    pub sides: [Option<ProgramSums>; 2],
     /// The largest distance of the tips, mm.
-    pub tip: Worst,
+    pub tip: WorstDifference,
     /// The largest angle between the tool axes, degrees.
-    pub axis: Worst,
+    pub axis: WorstDifference,
     /// The largest difference of feeds, as a share of the larger.
-    pub feed: FeedWorst,
+    pub feed: WorstFeedDifference,
     /// Of the rotary axes of one machine the largest difference each, degrees.
-    pub rotary: Vec<(String, Worst)>,
+    pub rotary: Vec<(String, WorstDifference)>,
     /// What holds while the tool moves, and is another.
     pub states: Vec<StateDifference>,
     /// Waits, stops and tool changes that have no counterpart.
     pub events: Vec<EventDifference>,
     /// Ways of both between places where they part and meet again: of the old program, and of the new one.
-    pub other_ways: Vec<[Stretch; 2]>,
+    pub other_ways: Vec<[LoneWay; 2]>,
     /// Ways of the old program alone.
-    pub left_out: Vec<Stretch>,
+    pub left_out: Vec<LoneWay>,
     /// Ways of the new program alone.
-    pub added: Vec<Stretch>,
+    pub added: Vec<LoneWay>,
 }
 
 /// The largest of a kind, and where.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Worst {
+pub struct WorstDifference {
     /// How large.
     pub value: f64,
     /// Line of the old program, and of the new one.
@@ -87,9 +87,9 @@ pub struct Worst {
 
 /// Feeds.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct FeedWorst {
+pub struct WorstFeedDifference {
     /// The largest difference, and where.
-    pub worst: Worst,
+    pub worst: WorstDifference,
     /// mm/min there, in the old program and in the new one.
     pub feeds: [f64; 2],
 }
@@ -118,7 +118,7 @@ pub struct EventDifference {
 
 /// A way that one program goes alone.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Stretch {
+pub struct LoneWay {
     /// Its first and last line.
     pub lines: [u64; 2],
     /// How long, mm.
@@ -131,7 +131,7 @@ pub struct Stretch {
 
 /// A pair of places along the paths.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample {
+pub struct PathPair {
     /// Number of the operation.
     pub operation: usize,
     /// The tips of the old program and of the new one, mm; none where one goes alone.
@@ -148,37 +148,37 @@ pub struct Sample {
 
 /// Where a step of one path was gone to, and the way there, mm.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
-    pub spot: Spot,
+pub(super) struct StepEnd {
+    pub spot: PathPosition,
     pub way: f64,
 }
 
 /// Finds what is different in an operation.
-pub(super) struct Tally<'t> {
-    rules: &'t Rules,
-    listen: &'t mut dyn FnMut(&Sample),
+pub(super) struct OperationTally<'t> {
+    rules: &'t DiffRules,
+    listen: &'t mut dyn FnMut(&PathPair),
     index: usize,
-    found: Operation,
+    found: OperationDifference,
     /// By what and both values, the place in `found.states`.
     states: BTreeMap<(&'static str, String, String), usize>,
     /// The states that were compared last, and the kinds of motion.
-    compared: Option<([*const State; 2], [MotionKind; 2])>,
+    compared: Option<([*const MachineState; 2], [MotionKind; 2])>,
     /// Those of `found.states` that hold.
     hold: Vec<usize>,
     /// The stretch at hand of either side.
-    open: [Option<Stretch>; 2],
+    open: [Option<LoneWay>; 2],
     /// Both are on different ways.
     parted: bool,
     ways: [f64; 2],
     cuts: [f64; 2],
 }
 
-fn point(spot: &Spot) -> [f64; 3] {
+fn point(spot: &PathPosition) -> [f64; 3] {
     spot.pose.tip.into()
 }
 
-impl Worst {
-    fn take(&mut self, value: f64, limit: f64, lines: [u64; 2], at: &Spot, way: f64) {
+impl WorstDifference {
+    fn take(&mut self, value: f64, limit: f64, lines: [u64; 2], at: &PathPosition, way: f64) {
         if value > self.value {
             (self.value, self.lines, self.at) = (value, lines, point(at));
         }
@@ -188,12 +188,12 @@ impl Worst {
     }
 }
 
-impl<'t> Tally<'t> {
+impl<'t> OperationTally<'t> {
     pub fn new(
-        rules: &'t Rules,
+        rules: &'t DiffRules,
         index: usize,
-        parts: [Option<&Part>; 2],
-        listen: &'t mut dyn FnMut(&Sample),
+        parts: [Option<&OperationOutline>; 2],
+        listen: &'t mut dyn FnMut(&PathPair),
     ) -> Self {
         let named = parts[1].or(parts[0]);
         let rotary = rules.rotary.iter().enumerate();
@@ -202,20 +202,20 @@ impl<'t> Tally<'t> {
             rules,
             listen,
             index,
-            found: Operation {
+            found: OperationDifference {
                 name: named.and_then(|part| part.name.clone()),
                 tool: named.and_then(|part| part.tool),
                 sides: parts.map(|part| {
-                    part.map(|part| Side {
+                    part.map(|part| ProgramSums {
                         lines: part.lines,
                         motions: part.motions,
-                        ..Side::default()
+                        ..ProgramSums::default()
                     })
                 }),
                 rotary: rotary
-                    .map(|(place, _)| (rules.axes[place].clone(), Worst::default()))
+                    .map(|(place, _)| (rules.axes[place].clone(), WorstDifference::default()))
                     .collect(),
-                ..Operation::default()
+                ..OperationDifference::default()
             },
             states: BTreeMap::new(),
             compared: None,
@@ -228,14 +228,14 @@ impl<'t> Tally<'t> {
     }
 
     /// Both have gone on.
-    pub fn both(&mut self, steps: [&Step; 2], places: [Place; 2]) {
+    pub fn both(&mut self, steps: [&PathStep; 2], places: [StepEnd; 2]) {
         let [old, new] = steps;
         let lines = [old.line, new.line];
         let [spot, other] = [&places[0].spot, &places[1].spot];
         let way = places[0].way;
         for side in 0..2 {
             if self.parted {
-                let Place { spot, way } = places[side];
+                let StepEnd { spot, way } = places[side];
                 self.stretch(side, steps[side], &spot, way);
             } else if places[side].way > SHORT {
                 self.close(side);
@@ -253,7 +253,8 @@ impl<'t> Tally<'t> {
             let apart = libm::fabs(spot.joints[place] - other.joints[place]).to_degrees();
             worst.take(apart, limit, lines, spot, way);
         }
-        let cutting = |step: &Step| step.kind != MotionKind::Rapid && !step.hole && !self.parted;
+        let cutting =
+            |step: &PathStep| step.kind != MotionKind::Rapid && !step.hole && !self.parted;
         if cutting(old) && cutting(new) && places[0].way > 0.0 {
             let larger = old.feed.max(new.feed);
             let apart = match larger > 0.0 {
@@ -273,7 +274,7 @@ impl<'t> Tally<'t> {
             MotionKind::Rapid => 0.0,
             _ => step.feed,
         });
-        (self.listen)(&Sample {
+        (self.listen)(&PathPair {
             operation: self.index,
             tips: [Some(point(spot)), Some(point(other))],
             way,
@@ -284,8 +285,8 @@ impl<'t> Tally<'t> {
     }
 
     /// One has gone on alone, from `share` of a step to its end.
-    pub fn alone(&mut self, of: Of, step: &Step, share: f64) {
-        let side = usize::from(of == Of::New);
+    pub fn alone(&mut self, of: WhichProgram, step: &PathStep, share: f64) {
+        let side = usize::from(of == WhichProgram::New);
         let way = step.length * (1.0 - share);
         self.stretch(side, step, &step.from.towards(&step.to, share), way);
         self.go(side, step, way);
@@ -295,7 +296,7 @@ impl<'t> Tally<'t> {
         if step.kind != MotionKind::Rapid {
             feeds[side] = step.feed;
         }
-        (self.listen)(&Sample {
+        (self.listen)(&PathPair {
             operation: self.index,
             tips,
             way: if side == 0 { way } else { 0.0 },
@@ -305,7 +306,7 @@ impl<'t> Tally<'t> {
         });
     }
 
-    /// From here on both are on different ways, until [`Tally::met`].
+    /// From here on both are on different ways, until [`OperationTally::met`].
     pub fn part(&mut self) {
         self.close(0);
         self.close(1);
@@ -329,7 +330,7 @@ impl<'t> Tally<'t> {
         }
     }
 
-    fn go(&mut self, side: usize, step: &Step, way: f64) {
+    fn go(&mut self, side: usize, step: &PathStep, way: f64) {
         self.ways[side] += way;
         if step.kind != MotionKind::Rapid {
             self.cuts[side] += way;
@@ -337,8 +338,8 @@ impl<'t> Tally<'t> {
     }
 
     /// The stretch at hand goes on by a way of a step, from `at`.
-    fn stretch(&mut self, side: usize, step: &Step, at: &Spot, way: f64) {
-        let stretch = self.open[side].get_or_insert(Stretch {
+    fn stretch(&mut self, side: usize, step: &PathStep, at: &PathPosition, way: f64) {
+        let stretch = self.open[side].get_or_insert(LoneWay {
             lines: [step.line; 2],
             mm: 0.0,
             cut_mm: 0.0,
@@ -365,7 +366,7 @@ impl<'t> Tally<'t> {
         }
     }
 
-    fn compare_states(&mut self, steps: [&Step; 2], lines: [u64; 2], way: f64) {
+    fn compare_states(&mut self, steps: [&PathStep; 2], lines: [u64; 2], way: f64) {
         let states = steps.map(|step| std::sync::Arc::as_ptr(&step.state));
         let kinds = match steps[0].is_like(steps[1]) {
             true => [steps[0].kind; 2],
@@ -405,7 +406,7 @@ impl<'t> Tally<'t> {
     }
 
     /// What was found, with the minutes and the events of each side.
-    pub fn finish(mut self, sides: [(f64, Vec<Event>); 2]) -> Operation {
+    pub fn finish(mut self, sides: [(f64, Vec<StepEvent>); 2]) -> OperationDifference {
         self.close(0);
         self.close(1);
         let [(old, old_events), (new, new_events)] = sides;
@@ -425,7 +426,7 @@ impl<'t> Tally<'t> {
             _ => state.on_mm > rules.tip,
         });
         if found.feed.worst.on_mm <= rules.tip {
-            found.feed = FeedWorst::default();
+            found.feed = WorstFeedDifference::default();
         }
         let turned = found.rotary.iter();
         let turned = turned.map(|(_, worst)| worst.value).fold(0.0, f64::max);
@@ -453,18 +454,18 @@ impl<'t> Tally<'t> {
 const LEAST_SECONDS: f64 = 0.1;
 
 /// What holds during a step, in words.
-fn facts(step: &Step, kind: MotionKind, one_control: bool) -> Vec<(&'static str, String)> {
+fn facts(step: &PathStep, kind: MotionKind, one_control: bool) -> Vec<(&'static str, String)> {
     let state = &step.state;
     let number = |number: Option<u32>| number.map_or_else(|| "none".to_owned(), |n| n.to_string());
     let spindle = match state.spindle {
-        Spindle::Off => "off".to_owned(),
-        Spindle::Clockwise(speed) => format!("clockwise {speed}"),
-        Spindle::CounterClockwise(speed) => format!("counter-clockwise {speed}"),
-        Spindle::Surface { speed, clockwise, .. } => {
+        SpindleState::Off => "off".to_owned(),
+        SpindleState::Clockwise(speed) => format!("clockwise {speed}"),
+        SpindleState::CounterClockwise(speed) => format!("counter-clockwise {speed}"),
+        SpindleState::Surface { speed, clockwise, .. } => {
             let sense = if clockwise { "clockwise" } else { "counter-clockwise" };
             format!("{sense} {speed} m/min")
         }
-        Spindle::Oriented => "oriented".to_owned(),
+        SpindleState::Oriented => "oriented".to_owned(),
     };
     let flows = [
         (state.coolants.flood, "flood"),
@@ -507,9 +508,9 @@ fn facts(step: &Step, kind: MotionKind, one_control: bool) -> Vec<(&'static str,
 }
 
 /// Events without a counterpart: the longest run of pairs in order is taken out.
-fn events(old: &[Event], new: &[Event], slack: f64) -> Vec<EventDifference> {
-    let alike = |one: &Event, other: &Event| {
-        let tools = matches!(one.told, Told::ToolChange { .. });
+fn events(old: &[StepEvent], new: &[StepEvent], slack: f64) -> Vec<EventDifference> {
+    let alike = |one: &StepEvent, other: &StepEvent| {
+        let tools = matches!(one.event, ProgramEvent::ToolChange { .. });
         named(one) == named(other) && (tools || (one.at - other.at).norm() <= slack)
     };
     // Few stand in one operation; of more than this the first are looked at.
@@ -529,7 +530,7 @@ fn events(old: &[Event], new: &[Event], slack: f64) -> Vec<EventDifference> {
     let (mut row, mut column) = (0, 0);
     let mut found: Vec<EventDifference> = Vec::new();
     // Those without a counterpart since the last pair: what takes the place of one another stands side by side.
-    let mut open: [Vec<&Event>; 2] = [Vec::new(), Vec::new()];
+    let mut open: [Vec<&StepEvent>; 2] = [Vec::new(), Vec::new()];
     loop {
         let both = row < old.len() && column < new.len();
         let pair = both && alike(&old[row], &new[column]);
@@ -561,13 +562,13 @@ fn events(old: &[Event], new: &[Event], slack: f64) -> Vec<EventDifference> {
 }
 
 /// An event in words.
-fn named(event: &Event) -> String {
-    match &event.told {
-        Told::Dwell { time, revolutions: true } => format!("a wait of {time} turns"),
-        Told::Dwell { time, .. } => format!("a wait of {time} s"),
-        Told::Stop => "a stop".to_owned(),
-        Told::OptionalStop => "an optional stop".to_owned(),
-        Told::ToolChange { number, name } => {
+fn named(event: &StepEvent) -> String {
+    match &event.event {
+        ProgramEvent::Dwell { time, revolutions: true } => format!("a wait of {time} turns"),
+        ProgramEvent::Dwell { time, .. } => format!("a wait of {time} s"),
+        ProgramEvent::Stop => "a stop".to_owned(),
+        ProgramEvent::OptionalStop => "an optional stop".to_owned(),
+        ProgramEvent::ToolChange { number, name } => {
             let number = number.map(|number| number.to_string());
             let tool = number.or_else(|| name.clone()).unwrap_or_default();
             format!("tool {tool}")
@@ -582,7 +583,7 @@ impl Difference {
     }
 
     /// Sums over the operations, and whether anything is different.
-    pub(super) fn sum_up(&mut self, rules: &Rules) {
+    pub(super) fn sum_up(&mut self, rules: &DiffRules) {
         // An operation in which nothing moves is none, unless something happens there.
         self.operations.retain(|operation| {
             let moves = operation.sides.iter().flatten().any(|side| side.motions > 0);
@@ -590,7 +591,7 @@ impl Difference {
         });
         for side in 0..2 {
             let parts = self.operations.iter().filter_map(|operation| operation.sides[side]);
-            let mut sum = Side::default();
+            let mut sum = ProgramSums::default();
             for part in parts {
                 sum.lines[0] = match sum.lines[0] {
                     0 => part.lines[0],

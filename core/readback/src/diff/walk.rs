@@ -8,27 +8,27 @@
 use std::collections::VecDeque;
 
 use super::meet::{LOOK, meeting};
-use super::outline::{Pairs, Part};
-use super::steps::{Spot, Step, Steps};
-use super::tally::{Difference, Place, Tally};
-use super::{Of, Rules, Sample};
-use crate::{MotionKind, Program};
+use super::outline::{OperationOutline, Pairs};
+use super::steps::{PathPosition, PathStep, PathSteps};
+use super::tally::{Difference, OperationTally, StepEnd};
+use super::{DiffRules, PathPair, WhichProgram};
+use crate::{BlockRunner, MotionKind};
 
 /// Compares operation by operation.
-pub(super) fn all<P: Program>(
-    rules: &Rules,
+pub(super) fn all<P: BlockRunner>(
+    rules: &DiffRules,
     pairs: Pairs,
-    mut old: Steps<P>,
-    mut new: Steps<P>,
-    listen: &mut dyn FnMut(&Sample),
+    mut old: PathSteps<P>,
+    mut new: PathSteps<P>,
+    listen: &mut dyn FnMut(&PathPair),
 ) -> Difference {
     // Two controls retract and approach each in its own way, one with the length in force and one without.
     let whole = rules.one_control;
     let lengths = pairs.lengths;
     let mut difference = Difference::new(pairs.unknown);
     for (index, [one, other]) in pairs.pairs.into_iter().enumerate() {
-        let mut tally = Tally::new(rules, index, [one.as_ref(), other.as_ref()], listen);
-        let there = |part: &Option<Part>| part.as_ref().map(|part| part.number);
+        let mut tally = OperationTally::new(rules, index, [one.as_ref(), other.as_ref()], listen);
+        let there = |part: &Option<OperationOutline>| part.as_ref().map(|part| part.number);
         if let Some(number) = there(&one) {
             old.go_to(number);
         }
@@ -38,8 +38,8 @@ pub(super) fn all<P: Program>(
         let mut walk = Walk {
             rules,
             tally: &mut tally,
-            old: Path::new(&mut old, one.is_some(), whole, lengths),
-            new: Path::new(&mut new, other.is_some(), whole, lengths),
+            old: OperationPath::new(&mut old, one.is_some(), whole, lengths),
+            new: OperationPath::new(&mut new, other.is_some(), whole, lengths),
             rest: 0,
         };
         walk.through();
@@ -51,8 +51,8 @@ pub(super) fn all<P: Program>(
 }
 
 /// One of the paths of an operation, and where on it the walk stands.
-struct Path<'a, P> {
-    source: &'a mut Steps<P>,
+struct OperationPath<'a, P> {
+    source: &'a mut PathSteps<P>,
     there: bool,
     /// All motions count.
     whole: bool,
@@ -62,16 +62,16 @@ struct Path<'a, P> {
     share: f64,
     /// Steps were left out: how the tool comes to the next place is the machine's business.
     jumped: bool,
-    events: Vec<super::steps::Event>,
+    events: Vec<super::steps::StepEvent>,
 }
 
-impl<'a, P: Program> Path<'a, P> {
-    fn new(source: &'a mut Steps<P>, there: bool, whole: bool, lengths: bool) -> Self {
+impl<'a, P: BlockRunner> OperationPath<'a, P> {
+    fn new(source: &'a mut PathSteps<P>, there: bool, whole: bool, lengths: bool) -> Self {
         Self { source, there, whole, lengths, share: 0.0, jumped: false, events: Vec::new() }
     }
 
     /// It says something of this control alone: a position of the machine, or of a tool whose length is not in force.
-    fn is_own(&self, step: &Step) -> bool {
+    fn is_own(&self, step: &PathStep) -> bool {
         let bare = self.lengths && step.state.length == 0.0;
         step.machine || bare && step.kind == MotionKind::Rapid
     }
@@ -110,11 +110,11 @@ impl<'a, P: Program> Path<'a, P> {
         }
     }
 
-    fn steps(&self) -> &VecDeque<Step> {
+    fn steps(&self) -> &VecDeque<PathStep> {
         &self.source.steps
     }
 
-    fn front(&self) -> Option<&Step> {
+    fn front(&self) -> Option<&PathStep> {
         match self.there {
             true => self.source.steps.front(),
             false => None,
@@ -122,7 +122,7 @@ impl<'a, P: Program> Path<'a, P> {
     }
 
     /// Where the walk stands.
-    fn here(&self) -> Option<Spot> {
+    fn here(&self) -> Option<PathPosition> {
         let step = self.front()?;
         Some(step.from.towards(&step.to, self.share))
     }
@@ -150,7 +150,7 @@ impl<'a, P: Program> Path<'a, P> {
         if count == 0 { 0.0 } else { all - behind }
     }
 
-    fn sums(&mut self) -> (f64, Vec<super::steps::Event>) {
+    fn sums(&mut self) -> (f64, Vec<super::steps::StepEvent>) {
         if !self.there {
             return (0.0, Vec::new());
         }
@@ -160,23 +160,23 @@ impl<'a, P: Program> Path<'a, P> {
 }
 
 struct Walk<'w, 't, 'a, P> {
-    rules: &'w Rules,
-    tally: &'w mut Tally<'t>,
-    old: Path<'a, P>,
-    new: Path<'a, P>,
+    rules: &'w DiffRules,
+    tally: &'w mut OperationTally<'t>,
+    old: OperationPath<'a, P>,
+    new: OperationPath<'a, P>,
     /// Steps before a meeting is looked for again.
     rest: usize,
 }
 
-impl<P: Program> Walk<'_, '_, '_, P> {
+impl<P: BlockRunner> Walk<'_, '_, '_, P> {
     fn through(&mut self) {
         loop {
             self.old.fill(2);
             self.new.fill(2);
             match (self.old.front().is_some(), self.new.front().is_some()) {
                 (false, false) => return,
-                (true, false) => self.alone(Of::Old, 1),
-                (false, true) => self.alone(Of::New, 1),
+                (true, false) => self.alone(WhichProgram::Old, 1),
+                (false, true) => self.alone(WhichProgram::New, 1),
                 (true, true) if self.arrived() => {}
                 (true, true) => self.together(),
             }
@@ -186,7 +186,7 @@ impl<P: Program> Walk<'_, '_, '_, P> {
     /// One of the controls comes to a place by a way of its own: so does the other, by whatever rapids. True if steps were
     /// left behind by that.
     fn arrived(&mut self) -> bool {
-        let arrives = |path: &Path<'_, P>| path.front().is_some_and(|step| step.arrives);
+        let arrives = |path: &OperationPath<'_, P>| path.front().is_some_and(|step| step.arrives);
         let (path, place) = match (arrives(&self.old), arrives(&self.new)) {
             (true, false) => (&mut self.new, self.old.front()),
             (false, true) => (&mut self.old, self.new.front()),
@@ -211,10 +211,10 @@ impl<P: Program> Walk<'_, '_, '_, P> {
     }
 
     /// Goes over steps of one path alone.
-    fn alone(&mut self, of: Of, count: usize) {
+    fn alone(&mut self, of: WhichProgram, count: usize) {
         let path = match of {
-            Of::Old => &mut self.old,
-            Of::New => &mut self.new,
+            WhichProgram::Old => &mut self.old,
+            WhichProgram::New => &mut self.new,
         };
         for _ in 0..count {
             let Some(step) = path.front() else {
@@ -245,7 +245,7 @@ impl<P: Program> Walk<'_, '_, '_, P> {
         let (Some(old), Some(new)) = (self.old.front(), self.new.front()) else {
             return;
         };
-        let place = |step: &Step, from: f64, to: f64| Place {
+        let place = |step: &PathStep, from: f64, to: f64| StepEnd {
             spot: step.from.towards(&step.to, to),
             way: step.length * (to - from),
         };
@@ -265,8 +265,8 @@ impl<P: Program> Walk<'_, '_, '_, P> {
         let near = self.rules.apart / 2.0;
         let met = meeting([&old, &new], self.old.steps(), self.new.steps(), near);
         match met {
-            Some([0, new]) => self.alone(Of::New, new),
-            Some([old, 0]) => self.alone(Of::Old, old),
+            Some([0, new]) => self.alone(WhichProgram::New, new),
+            Some([old, 0]) => self.alone(WhichProgram::Old, old),
             Some(counts) => self.around(counts),
             None => {
                 let counts = [self.old.steps().len(), self.new.steps().len()];
@@ -305,7 +305,7 @@ impl<P: Program> Walk<'_, '_, '_, P> {
             let shares = [left[0] / ways[0], left[1] / ways[1]];
             let least = shares[0].min(shares[1]);
             let ends = shares.map(|share| share - least <= 1e-12);
-            let to = |path: &Path<'_, P>, side: usize| match ends[side] {
+            let to = |path: &OperationPath<'_, P>, side: usize| match ends[side] {
                 true => 1.0,
                 false => {
                     let length = path.front().map_or(1.0, |step| step.length).max(1e-12);
@@ -317,8 +317,8 @@ impl<P: Program> Walk<'_, '_, '_, P> {
             old -= usize::from(shares[0] >= 1.0);
             new -= usize::from(shares[1] >= 1.0);
         }
-        self.alone(Of::Old, old);
-        self.alone(Of::New, new);
+        self.alone(WhichProgram::Old, old);
+        self.alone(WhichProgram::New, new);
     }
 }
 
@@ -326,7 +326,7 @@ impl<P: Program> Walk<'_, '_, '_, P> {
 const ALIKE: f64 = 0.02;
 
 /// The kinds of motion of so many steps, each where it begins.
-fn kinds(steps: &VecDeque<Step>, count: usize) -> Vec<MotionKind> {
+fn kinds(steps: &VecDeque<PathStep>, count: usize) -> Vec<MotionKind> {
     let mut kinds: Vec<MotionKind> = steps
         .iter()
         .take(count)
@@ -340,12 +340,12 @@ fn kinds(steps: &VecDeque<Step>, count: usize) -> Vec<MotionKind> {
 }
 
 /// The shares of two steps that are gone to next: one of them at least to its end, the two as near as can be.
-fn next_places(steps: [&Step; 2], behind: [f64; 2]) -> [f64; 2] {
+fn next_places(steps: [&PathStep; 2], behind: [f64; 2]) -> [f64; 2] {
     let [old, new] = steps;
     let both = old.to.distance(&new.to);
     // Steps that stand still are over at once.
     if old.length <= 0.0 || new.length <= 0.0 {
-        let over = |step: &Step, share: f64| if step.length <= 0.0 { 1.0 } else { share };
+        let over = |step: &PathStep, share: f64| if step.length <= 0.0 { 1.0 } else { share };
         return match old.length <= 0.0 && new.length <= 0.0 {
             true => [1.0, 1.0],
             false
@@ -375,7 +375,7 @@ fn next_places(steps: [&Step; 2], behind: [f64; 2]) -> [f64; 2] {
 }
 
 /// The share of a step from `behind` on that is nearest to a place.
-fn nearest(step: &Step, behind: f64, place: &Spot) -> f64 {
+fn nearest(step: &PathStep, behind: f64, place: &PathPosition) -> f64 {
     let way = step.to.pose.tip - step.from.pose.tip;
     let square = way.norm_squared();
     let share = match square > 0.0 {

@@ -3,7 +3,7 @@
 use post_grammar::nc::{NcBlock, NcExpression, NcItem, NcValue};
 use post_plugin::Language;
 
-use super::astray::{Answer, fault};
+use super::astray::{FlowResult, fault};
 use super::variables::{VariableValue, Variables};
 
 /// Takes what a block sets out of it, with its value as it is in front of the block; `DEF` declares at once.
@@ -12,7 +12,7 @@ pub(super) fn take(
     language: Language,
     variables: &mut Variables,
     set: &mut Vec<(String, VariableValue)>,
-) -> Answer<()> {
+) -> FlowResult<()> {
     if let Some(NcItem::Name(kind)) = block.items.first()
         && let Some(kind) = kind.strip_prefix("DEF ")
     {
@@ -54,7 +54,7 @@ pub(super) fn take(
 }
 
 /// `DEF REAL _X, _Y=5`.
-fn declare(kind: &str, items: &[NcItem], variables: &mut Variables) -> Answer<()> {
+fn declare(kind: &str, items: &[NcItem], variables: &mut Variables) -> FlowResult<()> {
     for item in items {
         match item {
             NcItem::Name(name) => variables.define(kind, name, None)?,

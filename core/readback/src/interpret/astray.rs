@@ -2,7 +2,7 @@
 
 use post_machine::diagnostic::Diagnostic;
 
-pub(super) type Answer<T> = Result<T, Box<Diagnostic>>;
+pub(super) type FlowResult<T> = Result<T, Box<Diagnostic>>;
 
 /// What leads the program on is wrong.
 pub(super) fn fault(message: &str) -> Box<Diagnostic> {

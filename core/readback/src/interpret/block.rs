@@ -11,8 +11,8 @@ use super::block_words::{BlockWords, bit};
 use super::go::MotionTarget;
 use super::state::{ControlState, FeedMeaning, MotionMode};
 use super::{cycles, frames, names, planes};
-use crate::lexicon::Sense;
-use crate::{Curve, MotionKind, Told};
+use crate::lexicon::WordMeaning;
+use crate::{Curve, MotionKind, ProgramEvent};
 
 /// What the words of one block ask for, besides what is modal.
 #[derive(Clone, Copy, Debug, Default)]
@@ -136,7 +136,7 @@ impl ControlState {
         }
         match operation(text) {
             Some(name) => self.begin_operation(name),
-            None => self.tell(Told::Remark(text.to_owned())),
+            None => self.tell(ProgramEvent::Remark(text.to_owned())),
         }
         self.head_by_hand = self.head_named(text);
     }
@@ -149,11 +149,11 @@ impl ControlState {
     }
 
     /// The program stops; that may be for the operator to swap a head.
-    pub(super) fn stop(&mut self, told: Told) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn stop(&mut self, event: ProgramEvent) -> Result<(), Box<Diagnostic>> {
         match self.head_by_hand.take() {
             Some(head) => self.take_head(head),
             None => {
-                self.tell(told);
+                self.tell(event);
                 Ok(())
             }
         }
@@ -163,7 +163,7 @@ impl ControlState {
     pub(super) fn begin_operation(&mut self, name: &str) {
         self.state.operation = Some(name.to_owned());
         self.state_changed();
-        self.tell(Told::Operation(name.to_owned()));
+        self.tell(ProgramEvent::Operation(name.to_owned()));
     }
 
     /// Takes a G code: what is modal holds from here on, the rest is asked for.
@@ -175,10 +175,12 @@ impl ControlState {
         asked: &mut BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
         match self.lexicon.g(code) {
-            Sense::Means(Meaning::Rapid) => self.motion(MotionMode::Rapid),
-            Sense::Means(Meaning::Linear) => self.motion(MotionMode::Linear),
-            Sense::Means(Meaning::ArcClockwise) => self.motion(MotionMode::Clockwise),
-            Sense::Means(Meaning::ArcCounterClockwise) => self.motion(MotionMode::CounterClockwise),
+            WordMeaning::Means(Meaning::Rapid) => self.motion(MotionMode::Rapid),
+            WordMeaning::Means(Meaning::Linear) => self.motion(MotionMode::Linear),
+            WordMeaning::Means(Meaning::ArcClockwise) => self.motion(MotionMode::Clockwise),
+            WordMeaning::Means(Meaning::ArcCounterClockwise) => {
+                self.motion(MotionMode::CounterClockwise)
+            }
             _ => {
                 let sense = self.lexicon.g_beside(code, |letter| words.get(letter));
                 return self.other_g(code, sense, words, asked);
@@ -200,15 +202,15 @@ impl ControlState {
     fn other_g(
         &mut self,
         code: u16,
-        sense: Sense,
+        sense: WordMeaning,
         words: &mut BlockWords,
         asked: &mut BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
         let name = f64::from(code) / 10.0;
         match sense {
-            Sense::Means(meaning) => self.meant(code, meaning, words, asked),
-            Sense::Refused => Err(self.not_followed(code)),
-            Sense::Unknown => {
+            WordMeaning::Means(meaning) => self.meant(code, meaning, words, asked),
+            WordMeaning::Refused => Err(self.not_followed(code)),
+            WordMeaning::Unknown => {
                 let help = "a G code may change where the machine goes, so none is passed over";
                 let message = format!("G{name} is no word that is known of this control");
                 let finding = Diagnostic::error("nc-word", message).help(help);
@@ -246,18 +248,18 @@ impl ControlState {
         // Fanuc's word, and that of the controls whose dialect names it.
         self.modal.rigid_taps |= code == 29
             && self.lexicon.language() == Language::Macro
-            && self.lexicon.m(code) == Sense::Means(Meaning::Nothing);
+            && self.lexicon.m(code) == WordMeaning::Means(Meaning::Nothing);
         match self.lexicon.m(code) {
-            Sense::Means(Meaning::ToolChange) if code == 0 => {
+            WordMeaning::Means(Meaning::ToolChange) if code == 0 => {
                 asked.change_or_stop = true;
                 Ok(())
             }
-            Sense::Means(meaning) => {
+            WordMeaning::Means(meaning) => {
                 // `meant` takes ten times the number, as of G.
                 let code = if meaning == Meaning::CoolantOn { code * 10 } else { 0 };
                 self.meant(code, meaning, &mut BlockWords::default(), asked)
             }
-            Sense::Refused => Err(self.refuse(
+            WordMeaning::Refused => Err(self.refuse(
                 "nc-word",
                 format!("M{code} is not run: it may change what the words behind it mean"),
             )),
@@ -292,7 +294,7 @@ impl ControlState {
         let head = &self.heads[head];
         let (name, machine) = (head.name.clone(), std::sync::Arc::clone(&head.machine));
         self.head_changed(machine)?;
-        self.tell(Told::Head(name));
+        self.tell(ProgramEvent::Head(name));
         Ok(())
     }
 
@@ -334,8 +336,8 @@ impl ControlState {
             self.coolant_off();
         }
         match asked.stop {
-            Some(Meaning::Stop) => self.stop(Told::Stop)?,
-            Some(Meaning::OptionalStop) => self.stop(Told::OptionalStop)?,
+            Some(Meaning::Stop) => self.stop(ProgramEvent::Stop)?,
+            Some(Meaning::OptionalStop) => self.stop(ProgramEvent::OptionalStop)?,
             Some(_) => self.end(),
             None => {}
         }
@@ -344,7 +346,7 @@ impl ControlState {
 
     /// The program ends.
     pub(super) fn end(&mut self) {
-        self.tell(Told::End);
+        self.tell(ProgramEvent::End);
         self.ended = true;
     }
 

@@ -3,7 +3,7 @@
 use post_grammar::nc::{NcBlock, NcItem, NcValue, NcWord};
 use post_plugin::Language;
 
-use super::astray::{Answer, elsewhere, fault};
+use super::astray::{FlowResult, elsewhere, fault};
 use super::expression::whole;
 use super::variables::Variables;
 
@@ -69,7 +69,7 @@ pub(super) fn take(
     block: &mut NcBlock,
     language: Language,
     variables: &Variables,
-) -> Answer<Option<BlockTransfer>> {
+) -> FlowResult<Option<BlockTransfer>> {
     if language == Language::Names {
         // `L100`: a subprogram, of which only the main program's file is at hand.
         let mut items = block.items.iter();
@@ -91,7 +91,7 @@ pub(super) fn take(
     let Some(found) = found else {
         return Ok(None);
     };
-    let value = |letter: u8| -> Answer<Option<f64>> {
+    let value = |letter: u8| -> FlowResult<Option<f64>> {
         for item in &block.items {
             if let NcItem::Word(word) = item
                 && word.letter == letter
@@ -139,7 +139,7 @@ pub(super) fn take(
 const MACRO_LETTERS: &[u8; 26] = b"ABCIJKDEFGHLMNOPQRSTUVWXYZ";
 
 /// The variables of a macro that `G65` calls.
-fn arguments(block: &NcBlock, variables: &Variables) -> Answer<Vec<(String, f64)>> {
+fn arguments(block: &NcBlock, variables: &Variables) -> FlowResult<Vec<(String, f64)>> {
     let mut own: Vec<(String, f64)> = Vec::new();
     for item in &block.items {
         let NcItem::Word(word) = item else {

@@ -6,8 +6,8 @@ use post_plugin::{Language, Meaning};
 use super::block::BlockRequest;
 use super::block_words::{BlockWords, bit};
 use super::state::ControlState;
-use crate::Told;
-use crate::lexicon::Sense;
+use crate::ProgramEvent;
+use crate::lexicon::WordMeaning;
 
 impl ControlState {
     pub(super) fn compensate(
@@ -34,7 +34,7 @@ impl ControlState {
             self.state.radius_register = register;
         }
         self.state_changed();
-        self.tell(Told::Compensation { side, register });
+        self.tell(ProgramEvent::Compensation { side, register });
         Ok(())
     }
 
@@ -153,7 +153,7 @@ impl ControlState {
         let mut name = format!("G{number}");
         for letter in [b'P', b'H'] {
             let of_it = letter == b'P'
-                || self.lexicon.g(code) == Sense::Means(Meaning::WorkOffset) && code < 500;
+                || self.lexicon.g(code) == WordMeaning::Means(Meaning::WorkOffset) && code < 500;
             if of_it && let Some(which) = words.take_number(letter, self)? {
                 name = format!("{name} {}{which}", char::from(letter));
             }
@@ -179,7 +179,7 @@ impl ControlState {
         }
         self.state.work_offset = Some(name.to_owned());
         self.state_changed();
-        self.tell(Told::WorkOffset(name.to_owned()));
+        self.tell(ProgramEvent::WorkOffset(name.to_owned()));
         if self.work != place {
             self.work = place;
             return self.solver_changed();

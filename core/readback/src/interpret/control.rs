@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector3};
 use post_machine::axis_words::unit_length;
 use post_machine::description::{Machine, OutputUnits};
-use post_machine::diagnostic::{Diagnostic, Place};
+use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_machine::kinematics::chain::turn;
 use post_machine::kinematics::{Joints, MAX_AXES, Turns};
 use post_machine::tilted_plane::TiltedPlane;
@@ -18,7 +18,9 @@ use super::state::{
     OrientationMode,
 };
 use crate::lexicon::Lexicon;
-use crate::{Coolants, Corners, Done, Offsets, Spindle, Stance, State, Told};
+use crate::{
+    BlockEffect, Coolants, Corners, MachineState, Offsets, ProgramEvent, SpindleState, Stance,
+};
 
 /// Lengths that are kept ready.
 const SOLVERS: usize = 64;
@@ -95,7 +97,7 @@ impl ControlState {
             cycles: super::cycles::CycleState::default(),
             spline: None,
             path: super::conversational::PathMemory::default(),
-            state: State {
+            state: MachineState {
                 solver: Arc::clone(&solver),
                 length: 0.0,
                 tool: None,
@@ -105,7 +107,7 @@ impl ControlState {
                 tcp: false,
                 plane: None,
                 work_offset: None,
-                spindle: Spindle::Off,
+                spindle: SpindleState::Off,
                 coolants: Coolants::default(),
                 operation: None,
                 smoothing: None,
@@ -142,10 +144,10 @@ impl ControlState {
     }
 
     /// Something was told.
-    pub fn tell(&mut self, told: Told) {
+    pub fn tell(&mut self, event: ProgramEvent) {
         self.hand_on_state();
         let line = self.line;
-        self.done.push(Done::Told { line, told });
+        self.done.push(BlockEffect::Event { line, event });
     }
 
     /// Something of `state` is another.
@@ -156,18 +158,18 @@ impl ControlState {
 
     /// The state that motions share; what changed is handed on first.
     #[inline]
-    pub fn hand_on_state(&mut self) -> Arc<State> {
+    pub fn hand_on_state(&mut self) -> Arc<MachineState> {
         if let Some(shared) = &self.shared {
             return Arc::clone(shared);
         }
         let shared = Arc::new(self.state.clone());
-        self.done.push(Done::State(Arc::clone(&shared)));
+        self.done.push(BlockEffect::State(Arc::clone(&shared)));
         self.shared = Some(Arc::clone(&shared));
         shared
     }
 
     /// The state as it is, whether a motion has shared it or not.
-    pub fn state_now(&self) -> Arc<State> {
+    pub fn state_now(&self) -> Arc<MachineState> {
         let shared = self.shared.as_ref();
         shared.map_or_else(|| Arc::new(self.state.clone()), Arc::clone)
     }
@@ -182,7 +184,7 @@ impl ControlState {
         if finding.place.is_some() {
             return finding;
         }
-        finding.at(Some(Place::new(&self.file, self.line, "", 0..0)))
+        finding.at(Some(SourcePlace::new(&self.file, self.line, "", 0..0)))
     }
 
     /// Something that was taken for granted.
@@ -209,7 +211,7 @@ impl ControlState {
             *count += 1;
         } else if self.report.unknown.len() < UNKNOWN {
             self.report.unknown.push((word.to_owned(), 1, self.line));
-            self.tell(Told::Unknown(word.to_owned()));
+            self.tell(ProgramEvent::Unknown(word.to_owned()));
         }
     }
 

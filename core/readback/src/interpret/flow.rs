@@ -12,10 +12,10 @@ use post_grammar::ReadError;
 use post_grammar::nc::{
     JumpDirection, NcBlock, NcExpression, NcFlow, NcItem, NcMark, NcReader, NcTarget,
 };
-use post_machine::diagnostic::{Diagnostic, Place, unreadable};
+use post_machine::diagnostic::{Diagnostic, SourcePlace, unreadable};
 use post_plugin::Language;
 
-use super::astray::{Answer, elsewhere, fault, no_target};
+use super::astray::{FlowResult, elsewhere, fault, no_target};
 use super::calls::{self, BlockTransfer};
 use super::expression::whole;
 use super::variables::{VariableValue, Variables};
@@ -119,7 +119,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
             && let Some(text) = self.reader.text(self.here, place.line)
         {
             let from = text.len() - text.trim_start().len();
-            *place = Place::new(&self.file, place.line, &text, from..text.trim_end().len());
+            *place = SourcePlace::new(&self.file, place.line, &text, from..text.trim_end().len());
         }
         finding
     }
@@ -129,7 +129,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
     /// # Errors
     /// It cannot be read, leads nowhere or elsewhere than this file, or too many were run.
     #[inline]
-    pub fn next(&mut self, variables: &mut Variables, block: &mut NcBlock) -> Answer<bool> {
+    pub fn next(&mut self, variables: &mut Variables, block: &mut NcBlock) -> FlowResult<bool> {
         for (name, value) in self.set.drain(..) {
             variables.set(&name, value)?;
         }
@@ -152,7 +152,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
 
     /// Reads a block, and counts it if it was read before.
     #[inline]
-    fn take(&mut self, block: &mut NcBlock) -> Answer<bool> {
+    fn take(&mut self, block: &mut NcBlock) -> FlowResult<bool> {
         let read = self.reader.next_block(block);
         // What is read for the first time comes to an end with the file.
         if block.line > self.furthest {
@@ -168,7 +168,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
 
     /// The count is passed: said once, and then the program is at its end.
     #[cold]
-    fn too_many(&mut self) -> Answer<bool> {
+    fn too_many(&mut self) -> FlowResult<bool> {
         self.running.clear();
         if std::mem::replace(&mut self.over, true) {
             return Ok(false);
@@ -182,7 +182,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
             .boxed())
     }
 
-    fn go_to(&mut self, mark: NcMark) -> Answer<()> {
+    fn go_to(&mut self, mark: NcMark) -> FlowResult<()> {
         let gone = self.reader.go_to(mark);
         gone.map_err(|error| self.failed(error))
     }
@@ -199,7 +199,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
         }
     }
 
-    fn ended(&mut self) -> Answer<bool> {
+    fn ended(&mut self) -> FlowResult<bool> {
         let inside =
             self.running.iter().any(|running| matches!(running, OpenConstruct::Call { .. }));
         self.running.clear();
@@ -210,7 +210,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
     }
 
     /// Takes what leads elsewhere out of a block and follows it; true if something is left to run.
-    fn follow(&mut self, block: &mut NcBlock, variables: &mut Variables) -> Answer<bool> {
+    fn follow(&mut self, block: &mut NcBlock, variables: &mut Variables) -> FlowResult<bool> {
         self.pending = calls::take(block, self.language, variables)?;
         let mut flows = Vec::new();
         let mut set = Vec::new();
@@ -257,7 +257,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
     }
 
     /// One word of flow; false if the rest of its block is not run.
-    fn step(&mut self, flow: NcFlow, variables: &mut Variables) -> Answer<bool> {
+    fn step(&mut self, flow: NcFlow, variables: &mut Variables) -> FlowResult<bool> {
         match flow {
             NcFlow::Label(name) => self.label(&name),
             NcFlow::LabelEnd => {
@@ -331,7 +331,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
     }
 
     /// A label is passed.
-    fn label(&mut self, name: &str) -> Answer<bool> {
+    fn label(&mut self, name: &str) -> FlowResult<bool> {
         if let Some(OpenConstruct::Part { until: Some(until), .. }) = self.running.last()
             && until == name
         {
@@ -341,7 +341,12 @@ impl<R: Read + Seek> ProgramFlow<R> {
     }
 
     /// Where a block's words lead once it is run.
-    fn lead(&mut self, pending: BlockTransfer, line: u64, variables: &mut Variables) -> Answer<()> {
+    fn lead(
+        &mut self,
+        pending: BlockTransfer,
+        line: u64,
+        variables: &mut Variables,
+    ) -> FlowResult<()> {
         match pending {
             BlockTransfer::Subprogram { number, times, own } => {
                 let wanted = NcTarget::Program(format!("O{number}"));
@@ -385,7 +390,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
         repeat: Option<&NcExpression>,
         arguments: &[NcExpression],
         variables: &mut Variables,
-    ) -> Answer<()> {
+    ) -> FlowResult<()> {
         if let Some(repeat) = repeat {
             let times = whole(variables.number(repeat)?, "a count of repeats")?;
             return self.part(target.to_owned(), None, times);
@@ -421,7 +426,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
         times: i64,
         own: Option<Vec<(String, f64)>>,
         variables: &mut Variables,
-    ) -> Answer<()> {
+    ) -> FlowResult<()> {
         if times < 1 {
             return Ok(());
         }
@@ -435,7 +440,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
     }
 
     /// Reads on at the start of a subprogram; of an `o1 sub` after it.
-    fn begin(&mut self, start: NcMark) -> Answer<()> {
+    fn begin(&mut self, start: NcMark) -> FlowResult<()> {
         self.go_to(start)?;
         if self.language == Language::Rs274 {
             let mut head = std::mem::take(&mut self.passed);
@@ -451,7 +456,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
     }
 
     /// The innermost subprogram ends.
-    fn back(&mut self, variables: &mut Variables) -> Answer<()> {
+    fn back(&mut self, variables: &mut Variables) -> FlowResult<()> {
         while let Some(running) = self.running.pop() {
             let OpenConstruct::Call { start, back, left, own } = running else {
                 continue;
@@ -469,7 +474,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
     }
 
     /// The part from a label to this block, or to another label, `times` more.
-    fn part(&mut self, label: String, until: Option<String>, times: i64) -> Answer<()> {
+    fn part(&mut self, label: String, until: Option<String>, times: i64) -> FlowResult<()> {
         let here = self.here;
         let runs = self.unwind(|running| match running {
             OpenConstruct::Part { by, .. } if *by == here => Some(()),
@@ -489,7 +494,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
     }
 
     /// The innermost part was run once.
-    fn part_ends(&mut self) -> Answer<()> {
+    fn part_ends(&mut self) -> FlowResult<()> {
         let Some(OpenConstruct::Part { start, back, left, .. }) = self.running.last_mut() else {
             return Ok(());
         };
@@ -503,7 +508,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
         self.go_to(back)
     }
 
-    fn jump(&mut self, wanted: &NcTarget, direction: JumpDirection) -> Answer<()> {
+    fn jump(&mut self, wanted: &NcTarget, direction: JumpDirection) -> FlowResult<()> {
         let found = self.find(wanted, direction)?;
         let found = found.ok_or_else(|| match wanted {
             NcTarget::Label(name) | NcTarget::Subprogram(name) | NcTarget::Program(name) => {
@@ -515,7 +520,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
     }
 
     /// Where something stands. Afterwards the next block is the same as before.
-    fn find(&mut self, target: &NcTarget, direction: JumpDirection) -> Answer<Option<NcMark>> {
+    fn find(&mut self, target: &NcTarget, direction: JumpDirection) -> FlowResult<Option<NcMark>> {
         let before = self.reader.lines_searched();
         let found = self.reader.find(target, direction);
         let searched = self.reader.lines_searched() - before;
@@ -531,7 +536,7 @@ fn is_tape_end(block: &NcBlock) -> bool {
 }
 
 /// What a jump's target means: a label by name, or the number of a block.
-fn wanted(target: &NcExpression, variables: &Variables) -> Answer<NcTarget> {
+fn wanted(target: &NcExpression, variables: &Variables) -> FlowResult<NcTarget> {
     match target {
         NcExpression::Text(name) => Ok(match calls::block_number(name) {
             Some(number) => NcTarget::Number(number),

@@ -6,7 +6,7 @@ use post_machine::kinematics::{Joints, MAX_AXES, Pose};
 use std::f64::consts::TAU;
 
 use super::state::{AxisLetters, ControlState, OrientationMode};
-use crate::{Curve, Done, Interpolation, Motion, MotionKind, Stance};
+use crate::{BlockEffect, Curve, Interpolation, Motion, MotionKind, Stance};
 
 /// A tip that the axes miss by more than this is not reached, mm.
 const REACHED: f64 = 1e-6;
@@ -392,7 +392,7 @@ impl ControlState {
         }
         let (feed, minutes) = self.timed(kind, &way, &from, &self.at);
         let state = self.hand_on_state();
-        self.done.push(Done::Motion(Motion {
+        self.done.push(BlockEffect::Motion(Motion {
             line: self.line,
             number: self.number,
             kind,

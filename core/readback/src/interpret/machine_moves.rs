@@ -11,7 +11,7 @@ use post_plugin::{Language, Meaning};
 use super::block_words::{BlockWords, bit};
 use super::go::{MotionTarget, shorter};
 use super::state::{ControlState, MotionMode};
-use crate::{Curve, CycleCall, CycleKind, MotionKind, Spindle, Told};
+use crate::{Curve, CycleCall, CycleKind, MotionKind, ProgramEvent, SpindleState};
 
 impl ControlState {
     /// A motion in machine coordinates: G53, SUPA. Words alone change nothing.
@@ -215,8 +215,8 @@ impl ControlState {
         let to = Vector3::from_fn(|row, _| target.point[row].unwrap_or(from[row]));
         let tap = meaning == Meaning::ThreadAndBack;
         if tap {
-            let left = matches!(self.state.spindle, Spindle::CounterClockwise(_));
-            self.tell(Told::Cycle(CycleCall {
+            let left = matches!(self.state.spindle, SpindleState::CounterClockwise(_));
+            self.tell(ProgramEvent::Cycle(CycleCall {
                 kind: if left { CycleKind::TapLeft } else { CycleKind::Tap },
                 depth: (to - from).norm(),
                 feed: pitch,
@@ -233,7 +233,7 @@ impl ControlState {
         }
         (self.modal.feed, self.hole) = before;
         if tap {
-            self.tell(Told::CycleEnd);
+            self.tell(ProgramEvent::CycleEnd);
         }
         went
     }

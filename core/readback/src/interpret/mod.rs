@@ -50,7 +50,7 @@ use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
 use crate::lexicon::Lexicon;
-use crate::{Done, Offsets, State};
+use crate::{BlockEffect, MachineState, Offsets};
 use block_words::BlockWords;
 use flow::ProgramFlow;
 use state::ControlState;
@@ -152,7 +152,7 @@ impl<R: Read + Seek> Interpreter<R> {
     /// # Errors
     /// What stands there that cannot be understood, or is not run, with its place.
     #[inline]
-    pub fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>> {
+    pub fn next(&mut self, done: &mut Vec<BlockEffect>) -> Result<bool, Box<Diagnostic>> {
         let Self { flow, block, runner } = self;
         if runner.control.ended {
             return Ok(false);
@@ -176,7 +176,7 @@ impl<R: Read + Seek> Interpreter<R> {
     }
 
     /// The line of the block that was run last, and what holds after it.
-    pub fn stand(&self) -> (u64, Arc<State>) {
+    pub fn stand(&self) -> (u64, Arc<MachineState>) {
         (self.runner.control.line, self.runner.control.state_now())
     }
 

@@ -8,8 +8,8 @@ use super::block::{BlockRequest, SpindleRequest};
 use super::block_words::{BlockWords, which};
 use super::state::ControlState;
 use super::{cycles, frames, planes};
-use crate::Told;
-use crate::lexicon::Sense;
+use crate::ProgramEvent;
+use crate::lexicon::WordMeaning;
 
 /// Takes what `gather` left.
 pub(super) fn take(
@@ -31,7 +31,7 @@ pub(super) fn take(
             NcItem::Named { name, value } => control.named(name, value, words, asked)?,
             NcItem::Name(name) => {
                 let sense = control.lexicon.name(name);
-                if sense != Sense::Means(Meaning::CycleCallModal) {
+                if sense != WordMeaning::Means(Meaning::CycleCallModal) {
                     control.name(name, words, asked)?;
                 } else if matches!(items.peek(), Some(NcItem::Call { .. } | NcItem::Name(_))) {
                     modal_call = true;
@@ -77,33 +77,37 @@ impl ControlState {
             Ok(())
         };
         match self.lexicon.name(name) {
-            Sense::Means(Meaning::ToolAxisX) => part(0)?,
-            Sense::Means(Meaning::ToolAxisY) => part(1)?,
-            Sense::Means(Meaning::ToolAxisZ) => part(2)?,
-            Sense::Means(Meaning::Radius) => words.radius = Some(worth(self)? * self.modal.unit),
-            Sense::Means(Meaning::Turns) => words.turns = Some(worth(self)?),
-            Sense::Means(Meaning::LengthRegister) => {
+            WordMeaning::Means(Meaning::ToolAxisX) => part(0)?,
+            WordMeaning::Means(Meaning::ToolAxisY) => part(1)?,
+            WordMeaning::Means(Meaning::ToolAxisZ) => part(2)?,
+            WordMeaning::Means(Meaning::Radius) => {
+                words.radius = Some(worth(self)? * self.modal.unit)
+            }
+            WordMeaning::Means(Meaning::Turns) => words.turns = Some(worth(self)?),
+            WordMeaning::Means(Meaning::LengthRegister) => {
                 let value = worth(self)?;
                 self.modal.named_register = Some(which(b'H', value, self)?);
             }
-            Sense::Means(Meaning::SpeedLimit) => self.modal.most_speed = Some(worth(self)?),
-            Sense::Means(Meaning::Nothing) if name == "CTOL" => {
+            WordMeaning::Means(Meaning::SpeedLimit) => self.modal.most_speed = Some(worth(self)?),
+            WordMeaning::Means(Meaning::Nothing) if name == "CTOL" => {
                 let tolerance = worth(self)?;
                 self.contour_tolerance(tolerance);
             }
-            Sense::Means(Meaning::Nothing | Meaning::Smoothing) => {}
-            Sense::Means(Meaning::SmoothingOff) => {
+            WordMeaning::Means(Meaning::Nothing | Meaning::Smoothing) => {}
+            WordMeaning::Means(Meaning::SmoothingOff) => {
                 self.smooth(None);
                 self.keeps_corners(0);
             }
-            Sense::Means(Meaning::SpindleOrient) => asked.spindle = Some(SpindleRequest::Oriented),
-            Sense::Means(Meaning::Probe) => {
+            WordMeaning::Means(Meaning::SpindleOrient) => {
+                asked.spindle = Some(SpindleRequest::Oriented)
+            }
+            WordMeaning::Means(Meaning::Probe) => {
                 return Err(self.refuse(
                     "nc-probe",
                     "a probing move ends where it touches, which the program does not say",
                 ));
             }
-            Sense::Unknown if name == "HL" => {
+            WordMeaning::Unknown if name == "HL" => {
                 let value = worth(self)?;
                 self.modal.named_register = Some(which(b'H', value, self)?);
             }
@@ -165,17 +169,17 @@ impl ControlState {
             return Ok(());
         }
         match self.lexicon.name(name) {
-            Sense::Means(meaning) => self.meant(0, meaning, words, asked),
+            WordMeaning::Means(meaning) => self.meant(0, meaning, words, asked),
             // A name alone may be that of a subprogram.
-            Sense::Unknown if self.lexicon.language() == Language::Names => {
+            WordMeaning::Unknown if self.lexicon.language() == Language::Names => {
                 Err(self.placed(*super::astray::elsewhere(name)).boxed())
             }
-            Sense::Unknown => {
+            WordMeaning::Unknown => {
                 let message =
                     format!("{name} is not known, and might lead elsewhere or change what moves");
                 Err(self.refuse("nc-word", message))
             }
-            Sense::Refused => {
+            WordMeaning::Refused => {
                 let message =
                     format!("{name} is not run, and might change the motion of its block");
                 Err(self.refuse("nc-word", message))
@@ -198,12 +202,14 @@ impl ControlState {
             ("MSG", _) => {
                 if let Some(Some(NcValue::Text(text))) = arguments.first() {
                     let text = text.clone();
-                    self.tell(Told::Message(text));
+                    self.tell(ProgramEvent::Message(text));
                 }
             }
-            (_, Sense::Means(Meaning::TiltedPlane)) => return planes::call(self, name, arguments),
-            (_, Sense::Means(Meaning::TiltedPlaneOff)) => return planes::end(self),
-            (_, Sense::Means(Meaning::Smoothing)) => {
+            (_, WordMeaning::Means(Meaning::TiltedPlane)) => {
+                return planes::call(self, name, arguments);
+            }
+            (_, WordMeaning::Means(Meaning::TiltedPlaneOff)) => return planes::end(self),
+            (_, WordMeaning::Means(Meaning::Smoothing)) => {
                 let tolerance = match arguments.first() {
                     Some(Some(value)) => Some(
                         self.variables
@@ -218,7 +224,7 @@ impl ControlState {
             }
             (
                 _,
-                Sense::Means(
+                WordMeaning::Means(
                     meaning @ (Meaning::CycleDrill
                     | Meaning::CycleDeep
                     | Meaning::CycleBreakChip
@@ -230,11 +236,11 @@ impl ControlState {
                     | Meaning::CycleBoreBack),
                 ),
             ) => return cycles::call(self, name, meaning, arguments, modal),
-            (_, Sense::Means(meaning @ Meaning::CycleOther)) if cycles::known(name) => {
+            (_, WordMeaning::Means(meaning @ Meaning::CycleOther)) if cycles::known(name) => {
                 return cycles::call(self, name, meaning, arguments, modal);
             }
-            (_, Sense::Means(Meaning::Nothing)) => {}
-            (_, Sense::Means(meaning)) => return self.meant(0, meaning, words, asked),
+            (_, WordMeaning::Means(Meaning::Nothing)) => {}
+            (_, WordMeaning::Means(meaning)) => return self.meant(0, meaning, words, asked),
             _ => {
                 let message = format!(
                     "{name}(…) is no cycle or subprogram that is known here, and might move the machine"

@@ -6,7 +6,7 @@ use post_plugin::{Language, Meaning};
 use super::block::{BlockRequest, SpindleRequest};
 use super::block_words::{BlockWords, bit, which};
 use super::state::ControlState;
-use crate::{Spindle, Told};
+use crate::{ProgramEvent, SpindleState};
 
 impl ControlState {
     pub(super) fn tool_and_spindle(
@@ -28,7 +28,7 @@ impl ControlState {
             if !self.lexicon.changes_by_word() {
                 self.change_tool(Some(number), None)?;
             } else if !asked.change {
-                self.tell(Told::Preselect(number));
+                self.tell(ProgramEvent::Preselect(number));
             }
         }
         if asked.change {
@@ -47,14 +47,16 @@ impl ControlState {
     /// S changed while the spindle turns.
     pub(super) fn speed_changed(&mut self) {
         match self.state.spindle {
-            Spindle::Clockwise(_) => self.turn_spindle(SpindleRequest::Clockwise),
-            Spindle::CounterClockwise(_) => self.turn_spindle(SpindleRequest::CounterClockwise),
-            Spindle::Surface { clockwise, .. } => self.turn_spindle(if clockwise {
+            SpindleState::Clockwise(_) => self.turn_spindle(SpindleRequest::Clockwise),
+            SpindleState::CounterClockwise(_) => {
+                self.turn_spindle(SpindleRequest::CounterClockwise)
+            }
+            SpindleState::Surface { clockwise, .. } => self.turn_spindle(if clockwise {
                 SpindleRequest::Clockwise
             } else {
                 SpindleRequest::CounterClockwise
             }),
-            Spindle::Off | Spindle::Oriented => {}
+            SpindleState::Off | SpindleState::Oriented => {}
         }
     }
 
@@ -65,21 +67,21 @@ impl ControlState {
             SpindleRequest::Clockwise | SpindleRequest::CounterClockwise
                 if self.modal.surface_speed =>
             {
-                Spindle::Surface {
+                SpindleState::Surface {
                     speed: self.modal.speed,
                     most: self.modal.most_speed,
                     clockwise: turning == SpindleRequest::Clockwise,
                 }
             }
-            SpindleRequest::Clockwise => Spindle::Clockwise(self.modal.speed),
-            SpindleRequest::CounterClockwise => Spindle::CounterClockwise(self.modal.speed),
-            SpindleRequest::Off => Spindle::Off,
-            SpindleRequest::Oriented => Spindle::Oriented,
+            SpindleRequest::Clockwise => SpindleState::Clockwise(self.modal.speed),
+            SpindleRequest::CounterClockwise => SpindleState::CounterClockwise(self.modal.speed),
+            SpindleRequest::Off => SpindleState::Off,
+            SpindleRequest::Oriented => SpindleState::Oriented,
         };
         if self.state.spindle != spindle {
             self.state.spindle = spindle;
             self.state_changed();
-            self.tell(Told::Spindle(spindle));
+            self.tell(ProgramEvent::Spindle(spindle));
         }
     }
 
@@ -111,13 +113,13 @@ impl ControlState {
         if self.state.coolants != coolants {
             self.state.coolants = coolants;
             self.state_changed();
-            self.tell(Told::Coolant(coolants));
+            self.tell(ProgramEvent::Coolant(coolants));
         }
     }
 
     /// G4: seconds, turns of the spindle where the control counts them.
     pub(super) fn dwell(&mut self, words: &mut BlockWords) -> Result<(), Box<Diagnostic>> {
-        let told = |time, revolutions| Told::Dwell { time, revolutions };
+        let told = |time, revolutions| ProgramEvent::Dwell { time, revolutions };
         let told = match self.lexicon.language() {
             Language::Names => match (words.take(b'F'), words.take(b'S')) {
                 (Some(time), _) => told(time, false),
@@ -136,7 +138,7 @@ impl ControlState {
     pub(super) fn letters_dwell(
         &mut self,
         words: &mut BlockWords,
-    ) -> Result<Told, Box<Diagnostic>> {
+    ) -> Result<ProgramEvent, Box<Diagnostic>> {
         const G4: u16 = 40;
         for letter in [b'P', b'X', b'U', b'F', b'S'] {
             let meaning = self.lexicon.letter_beside(G4, letter);
@@ -153,7 +155,7 @@ impl ControlState {
                 _ => value,
             };
             let revolutions = meaning == Meaning::DwellTurns;
-            return Ok(Told::Dwell { time, revolutions });
+            return Ok(ProgramEvent::Dwell { time, revolutions });
         }
         Err(self.refuse("nc-dwell", "the wait does not say how long in a way that is known"))
     }

@@ -13,7 +13,7 @@ use super::splines::OpenSpline;
 use super::tools::ToolState;
 use super::variables::Variables;
 use crate::lexicon::Lexicon;
-use crate::{Done, Offsets, Stance, State};
+use crate::{BlockEffect, MachineState, Offsets, Stance};
 
 /// A control at work: all that holds from block to block.
 ///
@@ -55,9 +55,9 @@ pub(super) struct ControlState {
     /// What conversational path functions remember.
     pub path: super::conversational::PathMemory,
     /// What its motions share; handed on when something of it changes. After a change: `ControlState::state_changed`.
-    pub state: State,
+    pub state: MachineState,
     /// `state` as it was handed on last; none if it has changed since.
-    pub(super) shared: Option<Arc<State>>,
+    pub(super) shared: Option<Arc<MachineState>>,
     /// Bits of the places of axes of which the program has said where they go.
     pub said: u32,
     /// Something was fed.
@@ -89,7 +89,7 @@ pub(super) struct ControlState {
     /// What was found.
     pub report: ReadReport,
     /// What was done since it was taken last.
-    pub done: Vec<Done>,
+    pub done: Vec<BlockEffect>,
     /// Solvers by length, so that none is made twice.
     pub(super) solvers: Vec<(f64, Arc<Solver>)>,
 }

@@ -6,7 +6,7 @@ use post_machine::kinematics::Joints;
 use post_plugin::Language;
 
 use super::state::{ArcPlane, ControlState};
-use crate::Told;
+use crate::ProgramEvent;
 
 /// What the control knows of the tool and its length.
 #[derive(Clone, Debug, Default)]
@@ -40,7 +40,7 @@ impl ControlState {
         self.state.tool = number;
         self.tools.longer = 0.0;
         self.state_changed();
-        self.tell(Told::ToolChange { number, name });
+        self.tell(ProgramEvent::ToolChange { number, name });
         if self.tools.by_tool && self.tools.length_on {
             return self.length_changed();
         }

@@ -6,26 +6,26 @@
 
 use post_plugin::{Language, Meaning as M};
 
-use super::Sense;
+use super::WordMeaning;
 
 /// A table of words.
-type Words = &'static [(&'static str, M)];
+type WordTable = &'static [(&'static str, M)];
 
 /// The words of a language that dialects need not name.
-pub(super) fn words(language: Language) -> impl Iterator<Item = (&'static str, Sense)> {
-    let (tables, refused): (&[Words], &[&str]) = match language {
+pub(super) fn words(language: Language) -> impl Iterator<Item = (&'static str, WordMeaning)> {
+    let (tables, refused): (&[WordTable], &[&str]) = match language {
         Language::Macro => (&[SHARED, LETTERS, MACRO], &[]),
         Language::Rs274 => (&[SHARED, LETTERS, RS274], &[]),
         Language::Names => (&[SHARED, NAMES], REFUSED_NAMES),
         Language::Conversational => (&[SHARED, CONVERSATIONAL], &[]),
     };
     let known = tables.iter().flat_map(|table| table.iter());
-    let known = known.map(|(word, meaning)| (*word, Sense::Means(*meaning)));
-    known.chain(refused.iter().map(|word| (*word, Sense::Refused)))
+    let known = known.map(|(word, meaning)| (*word, WordMeaning::Means(*meaning)));
+    known.chain(refused.iter().map(|word| (*word, WordMeaning::Refused)))
 }
 
 /// Of all languages.
-const SHARED: Words = &[
+const SHARED: WordTable = &[
     ("M0", M::Stop),
     ("M1", M::OptionalStop),
     ("M2", M::End),
@@ -41,7 +41,7 @@ const SHARED: Words = &[
 ];
 
 /// Of controls whose words are letters.
-const LETTERS: Words = &[
+const LETTERS: WordTable = &[
     ("G0", M::Rapid),
     ("G1", M::Linear),
     ("G2", M::ArcClockwise),
@@ -98,7 +98,7 @@ const LETTERS: Words = &[
     ("M99", M::SubprogramEnd),
 ];
 
-const MACRO: Words = &[
+const MACRO: WordTable = &[
     ("G9", M::ExactStop),
     ("G11", M::TableDataOff),
     ("G15", M::PolarOff),
@@ -122,7 +122,7 @@ const MACRO: Words = &[
     ("M97", M::LocalSubprogram),
 ];
 
-const RS274: Words = &[
+const RS274: WordTable = &[
     ("G7", M::Diameter),
     ("G8", M::DiameterOff),
     ("G33", M::Thread),
@@ -153,7 +153,7 @@ const RS274: Words = &[
     ("M429", M::TcpOff),
 ];
 
-const NAMES: Words = &[
+const NAMES: WordTable = &[
     ("G0", M::Rapid),
     ("G1", M::Linear),
     ("G2", M::ArcClockwise),
@@ -263,7 +263,7 @@ const NAMES: Words = &[
 
 const REFUSED_NAMES: &[&str] = &["G63"];
 
-const CONVERSATIONAL: Words = &[
+const CONVERSATIONAL: WordTable = &[
     ("M13", M::SpindleClockwiseCoolant),
     ("M14", M::SpindleCounterClockwiseCoolant),
     ("M17", M::End),

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use post_machine::description::Machine;
-use post_machine::diagnostic::{Diagnostic, Place, nearest};
+use post_machine::diagnostic::{Diagnostic, SourcePlace, nearest};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -19,7 +19,7 @@ const TABLES: [&str; 5] = ["work", "length", "radius", "tool", "reference"];
 const MOST: f64 = 1e7;
 
 /// A file that is read.
-struct File<'a> {
+struct OffsetFile<'a> {
     name: &'a str,
     text: &'a str,
     machine: &'a Machine,
@@ -32,7 +32,7 @@ impl Offsets {
     /// # Errors
     /// All that is wrong with it, each with its place.
     pub fn parse(text: &str, name: &str, machine: &Machine) -> Result<Self, Vec<Diagnostic>> {
-        let mut file = File { name, text, machine, faults: Vec::new() };
+        let mut file = OffsetFile { name, text, machine, faults: Vec::new() };
         if text.len() > MOST_BYTES {
             let message =
                 format!("{name} is longer than {MOST_BYTES} bytes, which no table of offsets is");
@@ -87,7 +87,7 @@ impl Offsets {
     }
 }
 
-impl File<'_> {
+impl OffsetFile<'_> {
     fn fault(&mut self, span: Range<usize>, message: &str, help: Option<&str>) {
         let at = span.start.min(self.text.len());
         let begin = self.text[..at].rfind('\n').map_or(0, |end| end + 1);
@@ -95,7 +95,7 @@ impl File<'_> {
         let number = self.text[..begin].matches('\n').count() as u64 + 1;
         let from = (at - begin).min(line.len());
         let to = span.end.saturating_sub(begin).clamp(from, line.len());
-        let place = Place::new(self.name, number, line, from..to);
+        let place = SourcePlace::new(self.name, number, line, from..to);
         let mut fault = Diagnostic::error("offsets", message).at(Some(place));
         fault.help = help.map(str::to_owned);
         self.faults.push(fault);

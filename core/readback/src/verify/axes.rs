@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use post_machine::description::{Axis, Machine};
 use post_machine::kinematics::travel::passed;
-use post_machine::kinematics::{Joints, KeptTip, Slides, Solver, Trace};
+use post_machine::kinematics::{Joints, LinearMotion, Solver, TcpBlock, Trace};
 
 use crate::{Curve, Interpolation, Motion, MotionKind};
 
@@ -210,7 +210,7 @@ fn told(axis: &Axis, value: f64, limit: f64) -> String {
 
 /// How the linear axes go while the control keeps the tip; none if nothing turns, or nothing is known of it. Times
 /// below `enough` minutes are looked into no closer.
-fn slides(motion: &Motion, slowness: &Joints, enough: f64) -> Option<Slides> {
+fn slides(motion: &Motion, slowness: &Joints, enough: f64) -> Option<LinearMotion> {
     let solver: &Solver = &motion.state.solver;
     let chain = solver.chain();
     let turns =
@@ -226,7 +226,7 @@ fn slides(motion: &Motion, slowness: &Joints, enough: f64) -> Option<Slides> {
         trace
     };
     let (from, to) = (trace(&motion.from.joints), trace(&motion.to.joints));
-    KeptTip::new(solver, 0.0, &from, &to)?.slides(slowness, enough)
+    TcpBlock::new(solver, 0.0, &from, &to)?.slides(slowness, enough)
 }
 
 /// Where the axes stand at each of the [`looks`] places along a curve, its end the last: up to where they cannot

@@ -1,7 +1,7 @@
 //! Ways cut into pieces so short that each may be taken for straight.
 
 use super::place::{PlaceBound, ToolPlace};
-use crate::course::Piece;
+use crate::course::CoursePiece;
 use crate::{Curve, Motion};
 
 /// Halvings of a piece at most: what bends more than this says is no way of a machine.
@@ -60,7 +60,12 @@ pub(super) fn motion(motion: &Motion, along: f64, sag: &PlaceBound, places: &mut
 }
 
 /// The way of a piece of a course after its beginning.
-pub(super) fn piece(piece: &Piece, along: f64, sag: &PlaceBound, places: &mut Vec<ToolPlace>) {
+pub(super) fn piece(
+    piece: &CoursePiece,
+    along: f64,
+    sag: &PlaceBound,
+    places: &mut Vec<ToolPlace>,
+) {
     let (from, to) = (ToolPlace::new(&piece.from, along), ToolPlace::new(&piece.to, along));
     match first_pieces(&piece.curve, from.apart(&to).axis) {
         None => places.push(to),

@@ -5,7 +5,7 @@ use post_machine::diagnostic::Diagnostic;
 
 use super::chop;
 use super::place::{PlaceBound, ToolPlace};
-use crate::course::{Course, Item};
+use crate::course::{Course, CourseItem};
 use crate::{MOST_FAULTS, MotionKind};
 
 /// Edge of the cells that a path is first put into, mm.
@@ -68,8 +68,8 @@ impl CutPath {
     }
 
     /// Takes what is cut of an item.
-    pub fn take(&mut self, item: &Item) {
-        let Item::Piece(piece) = item else {
+    pub fn take(&mut self, item: &CourseItem) {
+        let CourseItem::Piece(piece) = item else {
             return;
         };
         if piece.kind == MotionKind::Rapid {

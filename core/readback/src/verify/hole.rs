@@ -7,7 +7,7 @@ use super::place::{PlaceDistance, ToolPlace};
 use super::state;
 use super::track::{CourseHole, Element, ElementKind};
 use crate::course::Course;
-use crate::{CycleKind, Motion, MotionKind, Spindle, Told};
+use crate::{CycleKind, Motion, MotionKind, ProgramEvent, SpindleState};
 
 /// A hole in the making.
 #[derive(Clone, Copy, Debug)]
@@ -45,7 +45,7 @@ pub(super) struct DrilledHole {
     axis: HoleAxis,
     deepest: f64,
     /// How the spindle has turned in it.
-    spindle: Spindle,
+    spindle: SpindleState,
     /// A cycle was called since.
     pub again: bool,
     /// A hole of a cycle that was made twice is told once.
@@ -434,8 +434,8 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// The program waits in a hole. False if it is in none.
-    pub(super) fn hole_dwell(&mut self, told: &Told) -> bool {
-        let (Some(run), Told::Dwell { .. }) = (self.hole, told) else {
+    pub(super) fn hole_dwell(&mut self, event: &ProgramEvent) -> bool {
+        let (Some(run), ProgramEvent::Dwell { .. }) = (self.hole, event) else {
             return false;
         };
         let Some(element) = self.track.get(run.index) else {
@@ -447,17 +447,19 @@ impl<C: Course> Verifier<'_, C> {
         let same = hole
             .dwell
             .as_ref()
-            .is_some_and(|asked| state::same_event(asked, told, element.asked.spindle));
+            .is_some_and(|asked| state::same_event(asked, event, element.asked.spindle));
         let wrong = match &hole.dwell {
-            None if run.bottom && !matches!(told, Told::Dwell { time, .. } if *time <= 0.0) => {
+            None if run.bottom
+                && !matches!(event, ProgramEvent::Dwell { time, .. } if *time <= 0.0) =>
+            {
                 Some(format!(
                     "{} at the bottom of a hole that the CL file does not ask for",
-                    state::event_name(told)
+                    state::event_name(event)
                 ))
             }
             Some(asked) if run.bottom && !same => Some(format!(
                 "{} at the bottom of a hole in place of {}",
-                state::event_name(told),
+                state::event_name(event),
                 state::event_name(asked)
             )),
             _ => None,

@@ -4,13 +4,13 @@ use super::Verifier;
 use super::state::{coolant_name, spindle_name};
 use super::track::Element;
 use crate::course::Course;
-use crate::{Coolants, Spindle, Told};
+use crate::{Coolants, ProgramEvent, SpindleState};
 
 /// What of the program runs.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct RunningFunctions {
     tool: Option<u32>,
-    spindle: Spindle,
+    spindle: SpindleState,
     coolants: Coolants,
     /// Lines at which the spindle and the coolants were told last.
     lines: [u64; 2],
@@ -23,7 +23,7 @@ pub(super) struct RunningFunctions {
 struct RunningChange {
     line: u64,
     tool: Option<u32>,
-    spindle: Spindle,
+    spindle: SpindleState,
     coolants: Coolants,
 }
 
@@ -47,22 +47,24 @@ impl RunningChange {
 }
 
 /// A spindle that turns its tool.
-fn turns(spindle: Spindle) -> bool {
-    matches!(spindle, Spindle::Clockwise(_) | Spindle::CounterClockwise(_))
+fn turns(spindle: SpindleState) -> bool {
+    matches!(spindle, SpindleState::Clockwise(_) | SpindleState::CounterClockwise(_))
 }
 
 impl<C: Course> Verifier<'_, C> {
     /// The program tells of its spindle, its coolants or a tool.
-    pub(super) fn runs(&mut self, line: u64, told: &Told) {
+    pub(super) fn runs(&mut self, line: u64, event: &ProgramEvent) {
         let running = &mut self.running;
-        match told {
-            Told::Spindle(spindle) => (running.spindle, running.lines[0]) = (*spindle, line),
-            Told::Coolant(coolants) if self.rules.coolants => {
+        match event {
+            ProgramEvent::Spindle(spindle) => {
+                (running.spindle, running.lines[0]) = (*spindle, line)
+            }
+            ProgramEvent::Coolant(coolants) if self.rules.coolants => {
                 (running.coolants, running.lines[1]) = (*coolants, line)
             }
             // The end of a program stops both.
-            Told::End => (running.spindle, running.coolants) = Default::default(),
-            Told::ToolChange { number, .. } => {
+            ProgramEvent::End => (running.spindle, running.coolants) = Default::default(),
+            ProgramEvent::ToolChange { number, .. } => {
                 let same = number.is_some() && running.tool == *number;
                 running.tool = *number;
                 if !same {
@@ -122,7 +124,7 @@ impl<C: Course> Verifier<'_, C> {
     /// The program is over: nothing stops what still runs.
     pub(super) fn tell_end(&mut self) {
         let running = self.running;
-        if !matches!(running.spindle, Spindle::Off | Spindle::Oriented) {
+        if !matches!(running.spindle, SpindleState::Off | SpindleState::Oriented) {
             let name = spindle_name(running.spindle);
             let message =
                 format!("the spindle {name} when the program is over, and nothing stops it");

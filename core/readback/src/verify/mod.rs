@@ -38,7 +38,9 @@ use post_machine::kinematics::Joints;
 use post_plugin::Lengths;
 
 use crate::course::Course;
-use crate::{CycleKind, Done, MOST_FAULTS, Motion, MotionKind, Offsets, Spindle, Told};
+use crate::{
+    BlockEffect, CycleKind, MOST_FAULTS, Motion, MotionKind, Offsets, ProgramEvent, SpindleState,
+};
 pub(crate) use axes::AxisLimitCheck;
 pub use axes::over_travel;
 pub use cut_path::CutPath;
@@ -130,7 +132,7 @@ const RAPID_TURN: f64 = 1.0 / 180.0 * PI;
 /// A command of the spindle.
 #[derive(Clone, Copy, Debug)]
 struct SpindleCommand {
-    spindle: Spindle,
+    spindle: SpindleState,
     /// Line of the program.
     line: u64,
     /// The next came before anything moved: S and M3 in blocks of their own are one command.
@@ -242,12 +244,12 @@ impl<'m, C: Course> Verifier<'m, C> {
     }
 
     /// Takes what the program did next. `listen` hears of each line of the program once it is done.
-    pub fn take(&mut self, done: &Done, listen: &mut dyn FnMut(&BlockReport)) {
+    pub fn take(&mut self, done: &BlockEffect, listen: &mut dyn FnMut(&BlockReport)) {
         if self.found.gave_up {
             return;
         }
         match done {
-            Done::Motion(motion) => {
+            BlockEffect::Motion(motion) => {
                 if self.block.nc_line != motion.line {
                     self.end_block(listen);
                     self.block.nc_line = motion.line;
@@ -255,28 +257,30 @@ impl<'m, C: Course> Verifier<'m, C> {
                 }
                 self.motion(motion);
             }
-            Done::Told { line, told } => {
-                self.runs(*line, told);
-                self.told(*line, told);
+            BlockEffect::Event { line, event } => {
+                self.runs(*line, event);
+                self.take_event(*line, event);
             }
-            Done::State(_) => {}
+            BlockEffect::State(_) => {}
         }
         self.drop_behind();
     }
 
-    fn told(&mut self, line: u64, told: &Told) {
-        match told {
-            Told::Dwell { .. } | Told::Stop | Told::OptionalStop => self.event(line, told),
-            Told::Cycle(call) => {
+    fn take_event(&mut self, line: u64, event: &ProgramEvent) {
+        match event {
+            ProgramEvent::Dwell { .. } | ProgramEvent::Stop | ProgramEvent::OptionalStop => {
+                self.event(line, event)
+            }
+            ProgramEvent::Cycle(call) => {
                 self.cycle = Some(call.kind);
                 if let Some(made) = &mut self.made {
                     made.again = true;
                 }
             }
-            Told::CycleEnd => self.cycle = None,
-            Told::ToolChange { .. } => self.turned.clear(),
-            Told::End => self.look_for_retract(line, "where the program ends"),
-            Told::Spindle(spindle) if self.turned.len() < track::MOST_SPEEDS => {
+            ProgramEvent::CycleEnd => self.cycle = None,
+            ProgramEvent::ToolChange { .. } => self.turned.clear(),
+            ProgramEvent::End => self.look_for_retract(line, "where the program ends"),
+            ProgramEvent::Spindle(spindle) if self.turned.len() < track::MOST_SPEEDS => {
                 if !std::mem::take(&mut self.moved)
                     && let Some(last) = self.turned.last_mut()
                 {
@@ -463,8 +467,8 @@ impl<'m, C: Course> Verifier<'m, C> {
             let Some(element) = self.track.pop() else {
                 break;
             };
-            if let ElementKind::Event(told, false) = &element.what {
-                let message = format!("{} is left out", state::event_name(told));
+            if let ElementKind::Event(event, false) = &element.what {
+                let message = format!("{} is left out", state::event_name(event));
                 let place =
                     (self.block.nc_line > 0).then_some((self.block.nc_line, self.block.block));
                 self.fault_at("event", message, place, Some(element.line), None);

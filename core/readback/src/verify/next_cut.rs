@@ -6,7 +6,7 @@ use super::sweep::StrayStretch;
 use super::track::{ElementKind, MOST};
 use super::{Verifier, state};
 use crate::course::Course;
-use crate::{Motion, Told};
+use crate::{Motion, ProgramEvent};
 
 /// Elements ahead within which a cut is looked for that has no place where the program stands.
 const AHEAD: usize = 20_000;
@@ -150,10 +150,10 @@ impl<C: Course> Verifier<'_, C> {
         let mut missed = Vec::new();
         for index in 0..first {
             if let Some(element) = self.track.get(index)
-                && let ElementKind::Event(told, met @ false) = &mut element.what
+                && let ElementKind::Event(event, met @ false) = &mut element.what
             {
                 *met = true;
-                missed.push((state::event_name(told), element.line));
+                missed.push((state::event_name(event), element.line));
             }
         }
         for (name, line) in missed {
@@ -260,8 +260,8 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// The program stops or waits.
-    pub(super) fn event(&mut self, line: u64, told: &Told) {
-        if self.hole_dwell(told) {
+    pub(super) fn event(&mut self, line: u64, event: &ProgramEvent) {
+        if self.hole_dwell(event) {
             return;
         }
         self.leave_cut();
@@ -277,8 +277,8 @@ impl<C: Course> Verifier<'_, C> {
             if let ElementKind::Event(asked, met @ false) = &mut element.what {
                 let cl_line = element.line;
                 *met = true;
-                let same = state::same_event(asked, told, element.asked.spindle);
-                let name = state::event_name(told);
+                let same = state::same_event(asked, event, element.asked.spindle);
+                let name = state::event_name(event);
                 let asked = state::event_name(asked);
                 if !same {
                     let message = format!("{name} in place of {asked}");
@@ -291,7 +291,7 @@ impl<C: Course> Verifier<'_, C> {
             }
             index += 1;
         }
-        let message = format!("{} that the CL file does not ask for", state::event_name(told));
+        let message = format!("{} that the CL file does not ask for", state::event_name(event));
         self.fault_at("event", message, place, None, None);
     }
 
@@ -325,8 +325,8 @@ impl<C: Course> Verifier<'_, C> {
             let place = match &element.what {
                 ElementKind::Way | ElementKind::Reach(_) => Some(1),
                 ElementKind::Event(_, true) => None,
-                ElementKind::Event(told, false) => {
-                    let message = format!("{} is left out", state::event_name(told));
+                ElementKind::Event(event, false) => {
+                    let message = format!("{} is left out", state::event_name(event));
                     self.fault_at("event", message, None, Some(line), None);
                     None
                 }

@@ -1,6 +1,6 @@
 //! What holding a program against a course has found.
 
-use post_machine::diagnostic::{Diagnostic, Place};
+use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use serde::Serialize;
 
 /// Result of holding a program against a course.
@@ -108,7 +108,8 @@ impl Fault {
         if self.count > 1 {
             message.push_str(&format!("; so in {} places", self.count));
         }
-        let place = self.nc_line.map(|line| Place::new(file, line, text, 0..text.trim_end().len()));
+        let place =
+            self.nc_line.map(|line| SourcePlace::new(file, line, text, 0..text.trim_end().len()));
         Diagnostic::error(self.code, message).at(place)
     }
 }

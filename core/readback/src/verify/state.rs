@@ -11,7 +11,7 @@ use post_motion::CornerMode;
 use super::Verifier;
 use super::track::Element;
 use crate::course::Course;
-use crate::{Coolants, Corners, Interpolation, Motion, MotionKind, Spindle, Told};
+use crate::{Coolants, Corners, Interpolation, Motion, MotionKind, ProgramEvent, SpindleState};
 
 /// Share of a printed speed or feed that is rounding.
 const SHARE: f64 = 0.005;
@@ -198,10 +198,10 @@ impl<C: Course> Verifier<'_, C> {
         }
         for turned in std::mem::take(&mut self.turned) {
             let (spindle, line) = (turned.spindle, turned.line);
-            let known = [asked.spindle, motion.state.spindle, Spindle::Off];
+            let known = [asked.spindle, motion.state.spindle, SpindleState::Off];
             let mut known = known.iter().chain(&asked.turned);
             // On its way from one command to the next the speed counts, and not the sense.
-            let passes = |known: Spindle| match (spindle.rpm(), known.rpm()) {
+            let passes = |known: SpindleState| match (spindle.rpm(), known.rpm()) {
                 (Some(has), Some(wants)) => turned.passing && libm::fabs(has - wants) <= PLACE,
                 _ => false,
             };
@@ -438,20 +438,23 @@ impl<C: Course> Verifier<'_, C> {
 }
 
 /// How an event is told.
-pub(super) fn event_name(told: &Told) -> String {
-    match told {
-        Told::Stop => "a stop".to_owned(),
-        Told::OptionalStop => "an optional stop".to_owned(),
-        Told::Dwell { time, revolutions: true } => format!("a dwell of {time} turns"),
-        Told::Dwell { time, .. } => format!("a dwell of {time} s"),
+pub(super) fn event_name(event: &ProgramEvent) -> String {
+    match event {
+        ProgramEvent::Stop => "a stop".to_owned(),
+        ProgramEvent::OptionalStop => "an optional stop".to_owned(),
+        ProgramEvent::Dwell { time, revolutions: true } => format!("a dwell of {time} turns"),
+        ProgramEvent::Dwell { time, .. } => format!("a dwell of {time} s"),
         other => format!("{other:?}"),
     }
 }
 
 /// The program does what is asked, while the spindle turns as the course has it: turns of a dwell take their time.
-pub(super) fn same_event(asked: &Told, done: &Told, spindle: Spindle) -> bool {
+pub(super) fn same_event(asked: &ProgramEvent, done: &ProgramEvent, spindle: SpindleState) -> bool {
     match (asked, done) {
-        (Told::Dwell { time: asked, revolutions: turns }, Told::Dwell { time, revolutions }) => {
+        (
+            ProgramEvent::Dwell { time: asked, revolutions: turns },
+            ProgramEvent::Dwell { time, revolutions },
+        ) => {
             let rpm = spindle.rpm().unwrap_or(0.0);
             let [asked, time] = match turns == revolutions {
                 true => [*asked, *time],
@@ -467,7 +470,8 @@ pub(super) fn same_event(asked: &Told, done: &Told, spindle: Spindle) -> bool {
             };
             libm::fabs(asked - time) <= DWELL + SHARE * asked
         }
-        (Told::Stop, Told::Stop) | (Told::OptionalStop, Told::OptionalStop) => true,
+        (ProgramEvent::Stop, ProgramEvent::Stop)
+        | (ProgramEvent::OptionalStop, ProgramEvent::OptionalStop) => true,
         _ => false,
     }
 }
@@ -494,16 +498,19 @@ fn number_of(name: &str, first: u32) -> Option<u32> {
     }
 }
 
-pub(super) fn same_spindle(has: Spindle, wants: Spindle) -> bool {
+pub(super) fn same_spindle(has: SpindleState, wants: SpindleState) -> bool {
     // Printed without decimals, or with some.
     let same = |a: f64, b: f64| libm::fabs(a - b) <= PLACE;
     match (has, wants) {
-        (Spindle::Clockwise(a), Spindle::Clockwise(b))
-        | (Spindle::CounterClockwise(a), Spindle::CounterClockwise(b)) => same(a, b),
-        (Spindle::Off | Spindle::Oriented, Spindle::Off | Spindle::Oriented) => true,
+        (SpindleState::Clockwise(a), SpindleState::Clockwise(b))
+        | (SpindleState::CounterClockwise(a), SpindleState::CounterClockwise(b)) => same(a, b),
         (
-            Spindle::Surface { speed: a, most: most_a, clockwise: sense_a },
-            Spindle::Surface { speed: b, most: most_b, clockwise: sense_b },
+            SpindleState::Off | SpindleState::Oriented,
+            SpindleState::Off | SpindleState::Oriented,
+        ) => true,
+        (
+            SpindleState::Surface { speed: a, most: most_a, clockwise: sense_a },
+            SpindleState::Surface { speed: b, most: most_b, clockwise: sense_b },
         ) => {
             let bounded = match (most_a, most_b) {
                 (Some(a), Some(b)) => same(a, b),
@@ -516,13 +523,13 @@ pub(super) fn same_spindle(has: Spindle, wants: Spindle) -> bool {
     }
 }
 
-pub(super) fn spindle_name(spindle: Spindle) -> String {
+pub(super) fn spindle_name(spindle: SpindleState) -> String {
     match spindle {
-        Spindle::Off => "stands".to_owned(),
-        Spindle::Oriented => "stands at an angle".to_owned(),
-        Spindle::Clockwise(rpm) => format!("turns clockwise at {rpm}/min"),
-        Spindle::CounterClockwise(rpm) => format!("turns counter-clockwise at {rpm}/min"),
-        Spindle::Surface { speed, clockwise, .. } => {
+        SpindleState::Off => "stands".to_owned(),
+        SpindleState::Oriented => "stands at an angle".to_owned(),
+        SpindleState::Clockwise(rpm) => format!("turns clockwise at {rpm}/min"),
+        SpindleState::CounterClockwise(rpm) => format!("turns counter-clockwise at {rpm}/min"),
+        SpindleState::Surface { speed, clockwise, .. } => {
             let sense = match clockwise {
                 true => "clockwise",
                 false => "counter-clockwise",

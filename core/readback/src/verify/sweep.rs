@@ -438,9 +438,9 @@ impl<C: Course> Verifier<'_, C> {
         };
         let line = element.line;
         match &mut element.what {
-            ElementKind::Event(told, met @ false) => {
+            ElementKind::Event(event, met @ false) => {
                 *met = true;
-                let message = format!("{} is left out", state::event_name(told));
+                let message = format!("{} is left out", state::event_name(event));
                 self.fault("event", message, Some(motion), Some(line), None);
                 true
             }

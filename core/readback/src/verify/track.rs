@@ -9,18 +9,18 @@ use post_machine::diagnostic::Diagnostic;
 
 use super::chop;
 use super::place::{PlaceBound, PlaceDistance, ToolPlace};
-use crate::course::{Course, Item, Piece};
-use crate::{Coolants, CycleCall, CycleKind, MOST_FAULTS, MotionKind, Spindle, Told};
+use crate::course::{Course, CourseItem, CoursePiece};
+use crate::{Coolants, CycleCall, CycleKind, MOST_FAULTS, MotionKind, ProgramEvent, SpindleState};
 
 /// What a course asks to hold while the tool cuts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct CutState {
     pub tool: Option<u32>,
     /// What the spindle and the coolants did as the tool came.
-    pub at_change: (Spindle, Coolants),
-    pub spindle: Spindle,
+    pub at_change: (SpindleState, Coolants),
+    pub spindle: SpindleState,
     /// What the spindle was told since the tool came.
-    pub turned: Vec<Spindle>,
+    pub turned: Vec<SpindleState>,
     pub coolants: Coolants,
     /// Side of the contour: -1 left, 1 right, 0 off.
     pub side: i8,
@@ -60,7 +60,7 @@ pub(super) enum ElementKind {
     /// A hole of a cycle.
     Hole(Box<CourseHole>),
     /// The program stops or waits; it was met.
-    Event(Told, bool),
+    Event(ProgramEvent, bool),
 }
 
 /// A hole: from the level where the feed begins to the bottom.
@@ -71,7 +71,7 @@ pub(super) struct CourseHole {
     /// one go.
     pub pecks: Option<[f64; 2]>,
     /// Wait at the bottom.
-    pub dwell: Option<Told>,
+    pub dwell: Option<ProgramEvent>,
     /// How the tool comes back.
     pub back: Option<MotionKind>,
     /// Feed at which it comes back, mm/min; none at rapid.
@@ -173,13 +173,13 @@ impl<C: Course> CourseTrack<C> {
         }
     }
 
-    fn take(&mut self, item: Item) {
+    fn take(&mut self, item: CourseItem) {
         match item {
-            Item::Piece(piece) => {
+            CourseItem::Piece(piece) => {
                 self.line = piece.line;
                 self.piece(&piece);
             }
-            Item::Reach(reach) => {
+            CourseItem::Reach(reach) => {
                 self.line = reach.line;
                 self.end_hole();
                 if reach.hole {
@@ -188,18 +188,18 @@ impl<C: Course> CourseTrack<C> {
                 let to = ToolPlace::new(&reach.to, self.along);
                 self.push(reach.line, ElementKind::Reach(reach.kind), (to, to), None);
             }
-            Item::Away { line } => {
+            CourseItem::Away { line } => {
                 self.line = line;
                 self.end_hole();
             }
-            Item::Told { line, told } => {
+            CourseItem::Event { line, event } => {
                 self.line = line;
-                self.told(line, told);
+                self.take_event(line, event);
             }
         }
     }
 
-    fn piece(&mut self, piece: &Piece) {
+    fn piece(&mut self, piece: &CoursePiece) {
         let from = ToolPlace::new(&piece.from, self.along);
         let to = ToolPlace::new(&piece.to, self.along);
         if piece.hole && self.of_hole(piece, from, to) {
@@ -237,7 +237,7 @@ impl<C: Course> CourseTrack<C> {
     }
 
     /// Takes a piece of a hole; false if it belongs neither to the way down nor up.
-    fn of_hole(&mut self, piece: &Piece, from: ToolPlace, to: ToolPlace) -> bool {
+    fn of_hole(&mut self, piece: &CoursePiece, from: ToolPlace, to: ToolPlace) -> bool {
         let down = piece.kind != MotionKind::Rapid;
         match &mut self.hole {
             None if down => {
@@ -310,47 +310,47 @@ impl<C: Course> CourseTrack<C> {
         });
     }
 
-    fn told(&mut self, line: u64, told: Told) {
-        match told {
-            Told::ToolChange { number, .. } => {
+    fn take_event(&mut self, line: u64, event: ProgramEvent) {
+        match event {
+            ProgramEvent::ToolChange { number, .. } => {
                 self.end_hole();
                 let asked = Arc::make_mut(&mut self.asked);
                 asked.tool = number;
                 asked.at_change = (asked.spindle, asked.coolants);
                 asked.turned.clear();
             }
-            Told::Spindle(spindle) => {
+            ProgramEvent::Spindle(spindle) => {
                 let asked = Arc::make_mut(&mut self.asked);
                 asked.spindle = spindle;
                 if asked.turned.len() < MOST_SPEEDS {
                     asked.turned.push(spindle);
                 }
             }
-            Told::Coolant(coolants) => Arc::make_mut(&mut self.asked).coolants = coolants,
-            Told::Compensation { side, register } => {
+            ProgramEvent::Coolant(coolants) => Arc::make_mut(&mut self.asked).coolants = coolants,
+            ProgramEvent::Compensation { side, register } => {
                 let asked = Arc::make_mut(&mut self.asked);
                 (asked.side, asked.register) = (side, register);
             }
-            Told::WorkOffset(name) => {
+            ProgramEvent::WorkOffset(name) => {
                 Arc::make_mut(&mut self.asked).work_offset = name.parse().ok();
             }
-            Told::Cycle(call) => {
+            ProgramEvent::Cycle(call) => {
                 self.end_hole();
                 self.cycle = Some(call);
             }
-            Told::CycleEnd => {
+            ProgramEvent::CycleEnd => {
                 self.end_hole();
                 self.cycle = None;
             }
-            Told::Dwell { .. } if self.hole.is_some() => {
+            ProgramEvent::Dwell { .. } if self.hole.is_some() => {
                 if let Some(Element { what: ElementKind::Hole(hole), .. }) = &mut self.hole {
-                    hole.dwell = Some(told);
+                    hole.dwell = Some(event);
                 }
             }
-            Told::Dwell { .. } | Told::Stop | Told::OptionalStop => {
+            ProgramEvent::Dwell { .. } | ProgramEvent::Stop | ProgramEvent::OptionalStop => {
                 self.end_hole();
                 let at = self.elements.back().map_or_else(ToolPlace::default, |last| last.to);
-                self.push(line, ElementKind::Event(told, false), (at, at), None);
+                self.push(line, ElementKind::Event(event, false), (at, at), None);
             }
             _ => {}
         }

@@ -6,11 +6,11 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Chain, Freedom, Joint, Joints, Pose, Solver};
-use post_readback::course::done::{Chords, DoneCourse};
-use post_readback::course::{Course, Curve, Item, Piece};
+use post_readback::course::program::{Chords, ProgramCourse};
+use post_readback::course::{Course, CourseItem, CoursePiece, Curve};
 use post_readback::{
-    BSpline, Coolants, Corners, Done, Interpolation, Motion, MotionKind, Program, Spindle, Stance,
-    State, Told,
+    BSpline, BlockEffect, BlockRunner, Coolants, Corners, Interpolation, MachineState, Motion,
+    MotionKind, ProgramEvent, SpindleState, Stance,
 };
 use post_testkit::{Rng, randomised};
 use post_testmachines::Random;
@@ -25,8 +25,8 @@ fn solver(joints: Vec<Joint>, mount: V, tip: V, axis: V) -> Arc<Solver> {
     Arc::new(Solver::with(chain, &freedom).unwrap())
 }
 
-fn state(solver: &Arc<Solver>) -> Arc<State> {
-    Arc::new(State {
+fn state(solver: &Arc<Solver>) -> Arc<MachineState> {
+    Arc::new(MachineState {
         solver: Arc::clone(solver),
         length: 0.0,
         tool: Some(1),
@@ -36,7 +36,7 @@ fn state(solver: &Arc<Solver>) -> Arc<State> {
         tcp: false,
         plane: None,
         work_offset: None,
-        spindle: Spindle::Off,
+        spindle: SpindleState::Off,
         coolants: Coolants::default(),
         operation: None,
         smoothing: None,
@@ -44,7 +44,7 @@ fn state(solver: &Arc<Solver>) -> Arc<State> {
     })
 }
 
-fn motion(state: &Arc<State>, way: Interpolation, from: Joints, to: Joints) -> Motion {
+fn motion(state: &Arc<MachineState>, way: Interpolation, from: Joints, to: Joints) -> Motion {
     let stance = |joints: Joints| Stance { joints, pose: state.solver.chain().forward(&joints) };
     Motion {
         line: 1,
@@ -67,7 +67,7 @@ fn motion(state: &Arc<State>, way: Interpolation, from: Joints, to: Joints) -> M
 fn strays(motion: &Motion, count: u64, piece: u64, t: f64) -> (f64, f64) {
     let at = |t: f64| motion.at(t);
     let [low, high] = [piece, piece + 1].map(|place| place as f64 / count as f64);
-    let straight = Piece {
+    let straight = CoursePiece {
         line: 1,
         kind: MotionKind::Feed,
         curve: Curve::Straight,
@@ -130,7 +130,7 @@ fn random_machines_go_where_matrices_say_and_chords_stay_near() {
 }
 
 /// A table turned about Z, and three axes that carry the tool.
-fn turntable() -> Arc<State> {
+fn turntable() -> Arc<MachineState> {
     let linear = |direction: V| Joint { rotary: false, direction, point: V::zeros() };
     let c = Joint { rotary: true, direction: V::z(), point: V::zeros() };
     let joints = vec![c, linear(V::x()), linear(V::y()), linear(V::z())];
@@ -216,7 +216,7 @@ fn arcs_splines_and_kept_tips_go_as_they_say() {
 #[test]
 fn a_control_point_above_the_tip_goes_straight() {
     let pose = |tip: V, axis: V| Pose { tip, axis: axis.normalize(), edge: V::zeros() };
-    let piece = Piece {
+    let piece = CoursePiece {
         line: 1,
         kind: MotionKind::Feed,
         curve: Curve::Straight,
@@ -237,10 +237,10 @@ fn a_control_point_above_the_tip_goes_straight() {
 }
 
 /// What was done, block by block.
-struct Blocks(Vec<Vec<Done>>);
+struct Blocks(Vec<Vec<BlockEffect>>);
 
-impl Program for Blocks {
-    fn next(&mut self, done: &mut Vec<Done>) -> Result<bool, Box<Diagnostic>> {
+impl BlockRunner for Blocks {
+    fn next(&mut self, done: &mut Vec<BlockEffect>) -> Result<bool, Box<Diagnostic>> {
         if self.0.is_empty() {
             return Ok(false);
         }
@@ -249,14 +249,14 @@ impl Program for Blocks {
     }
 }
 
-fn course(blocks: Vec<Vec<Done>>) -> Vec<Item> {
+fn course(blocks: Vec<Vec<BlockEffect>>) -> Vec<CourseItem> {
     let chords = Chords { tip: 0.001, axis: 1e-3, rapid: 0.5, rapid_axis: 0.1 };
-    let mut course = DoneCourse::new(Blocks(blocks), chords);
+    let mut course = ProgramCourse::new(Blocks(blocks), chords);
     std::iter::from_fn(|| course.next().unwrap()).collect()
 }
 
-fn rapid(state: &Arc<State>, from: Joints, to: Joints, machine: bool) -> Vec<Done> {
-    vec![Done::Motion(Motion {
+fn rapid(state: &Arc<MachineState>, from: Joints, to: Joints, machine: bool) -> Vec<BlockEffect> {
+    vec![BlockEffect::Motion(Motion {
         kind: MotionKind::Rapid,
         machine,
         ..motion(state, Interpolation::Axes, from, to)
@@ -266,8 +266,8 @@ fn rapid(state: &Arc<State>, from: Joints, to: Joints, machine: bool) -> Vec<Don
 #[test]
 fn what_only_the_first_machine_does_is_no_path_of_the_part() {
     let state = turntable();
-    let told = |told: Told| vec![Done::Told { line: 1, told }];
-    let change = || told(Told::ToolChange { number: Some(1), name: None });
+    let told = |told: ProgramEvent| vec![BlockEffect::Event { line: 1, event: told }];
+    let change = || told(ProgramEvent::ToolChange { number: Some(1), name: None });
     let zero = at(0.0, 0.0, 0.0, 0.0);
     let up = at(0.0, 0.0, 0.0, 400.0);
     let items = course(vec![
@@ -278,7 +278,7 @@ fn what_only_the_first_machine_does_is_no_path_of_the_part() {
         rapid(&state, at(1.0, 0.0, 0.0, 400.0), at(1.0, 50.0, 20.0, 400.0), false),
         rapid(&state, at(1.0, 50.0, 20.0, 400.0), at(1.0, 50.0, 20.0, 10.0), false),
         rapid(&state, at(1.0, 50.0, 20.0, 10.0), at(1.0, 50.0, 20.0, 2.0), false),
-        vec![Done::Motion(motion(
+        vec![BlockEffect::Motion(motion(
             &state,
             Interpolation::Axes,
             at(1.0, 50.0, 20.0, 2.0),
@@ -291,19 +291,19 @@ fn what_only_the_first_machine_does_is_no_path_of_the_part() {
     let kinds: Vec<&str> = items
         .iter()
         .map(|item| match item {
-            Item::Told { .. } => "told",
-            Item::Reach(_) => "reach",
-            Item::Piece(piece) if piece.kind == MotionKind::Rapid => "rapid",
-            Item::Piece(_) => "cut",
-            Item::Away { .. } => "away",
+            CourseItem::Event { .. } => "told",
+            CourseItem::Reach(_) => "reach",
+            CourseItem::Piece(piece) if piece.kind == MotionKind::Rapid => "rapid",
+            CourseItem::Piece(_) => "cut",
+            CourseItem::Away { .. } => "away",
         })
         .collect();
     assert_eq!(kinds, ["told", "reach", "rapid", "cut", "away"]);
-    let Item::Reach(reach) = &items[1] else {
+    let CourseItem::Reach(reach) = &items[1] else {
         panic!("{items:?}");
     };
     assert_eq!(reach.to.tip.z, 10.0);
-    let Item::Piece(cut) = &items[3] else {
+    let CourseItem::Piece(cut) = &items[3] else {
         panic!("{items:?}");
     };
     assert_eq!((cut.from.tip.z, cut.feed), (2.0, Some(1000.0)));
@@ -314,11 +314,11 @@ fn a_swing_of_the_table_at_feed_is_cut_into_chords_of_its_own_speed() {
     let state = turntable();
     let swing =
         motion(&state, Interpolation::Axes, at(0.0, 30.0, 0.0, 5.0), at(1.0, 60.0, 0.0, 5.0));
-    let items = course(vec![vec![Done::Motion(swing.clone())]]);
-    let pieces: Vec<&Piece> = items
+    let items = course(vec![vec![BlockEffect::Motion(swing.clone())]]);
+    let pieces: Vec<&CoursePiece> = items
         .iter()
         .filter_map(|item| match item {
-            Item::Piece(piece) => Some(piece),
+            CourseItem::Piece(piece) => Some(piece),
             _ => None,
         })
         .collect();

@@ -9,7 +9,7 @@ use post_machine::description::Machine;
 use post_plugin::{Capabilities, Language, Meaning, VocabularyWord};
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
-use post_readback::{Done, Offsets};
+use post_readback::{BlockEffect, Offsets};
 use post_testkit::{Rng, repository, rounds, seeded, shared};
 
 use crate::interpret::machine;
@@ -111,7 +111,7 @@ fn run(machine: &Machine, lexicon: &Lexicon, text: &[u8]) {
         done.clear();
         let more = program.next(&mut done);
         for each in &done {
-            let Done::Motion(motion) = each else {
+            let BlockEffect::Motion(motion) = each else {
                 continue;
             };
             let tip = motion.to.pose.tip;

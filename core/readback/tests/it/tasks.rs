@@ -7,7 +7,7 @@ use post_motion::{CornerMode, MovePace, Task, WaitReason};
 use post_plugin::{Capabilities, Language, VocabularyWord};
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
-use post_readback::tasks::{Planned, Tasks};
+use post_readback::tasks::{ProgramTask, ProgramTasks};
 use post_readback::{Interpolation, Offsets};
 use post_testkit::repository;
 
@@ -22,7 +22,7 @@ fn machine(motion: &str) -> Machine {
 }
 
 /// The tasks of a program, and what was taken for granted.
-fn tasks(machine: &Machine, program: &str) -> (Vec<Planned>, Vec<String>) {
+fn tasks(machine: &Machine, program: &str) -> (Vec<ProgramTask>, Vec<String>) {
     let words: Vec<VocabularyWord> =
         LETTERS.iter().map(|(word, meaning)| VocabularyWord::new(word, *meaning)).collect();
     let mut interpreter = Interpreter::new(
@@ -34,7 +34,7 @@ fn tasks(machine: &Machine, program: &str) -> (Vec<Planned>, Vec<String>) {
         Cursor::new(program.as_bytes().to_vec()),
     )
     .unwrap();
-    let mut tasks = Tasks::new(machine);
+    let mut tasks = ProgramTasks::new(machine);
     let (mut done, mut out) = (Vec::new(), Vec::new());
     while interpreter.next(&mut done).unwrap() {
         tasks.take(&mut done, &mut out);
@@ -46,7 +46,7 @@ fn tasks(machine: &Machine, program: &str) -> (Vec<Planned>, Vec<String>) {
 }
 
 /// Line and corner of each move, or line and seconds of each wait.
-fn outline(planned: &[Planned]) -> Vec<(u64, Result<CornerMode, f64>)> {
+fn outline(planned: &[ProgramTask]) -> Vec<(u64, Result<CornerMode, f64>)> {
     let each = planned.iter().map(|planned| match &planned.task {
         Task::Move(step) => (step.line, Ok(step.corner)),
         Task::Wait { line, seconds, .. } => (*line, Err(*seconds)),

@@ -8,11 +8,11 @@ use post_machine::description::{Machine, Source, load};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 use post_plugin::Lengths;
-use post_readback::course::{Course, Curve, Item, Piece, Reach};
+use post_readback::course::{Course, CourseItem, CoursePiece, Curve, ReachedPose};
 use post_readback::verify::{BlockReport, CutPath, Verification, Verifier, VerifyRules};
 use post_readback::{
-    Coolants, Corners, CycleCall, CycleKind, Done, Interpolation, Motion, MotionKind, Spindle,
-    Stance, State, Told,
+    BlockEffect, Coolants, Corners, CycleCall, CycleKind, Interpolation, MachineState, Motion,
+    MotionKind, ProgramEvent, SpindleState, Stance,
 };
 use post_testkit::Rng;
 use post_testmachines::frechet::frechet;
@@ -20,10 +20,10 @@ use post_testmachines::frechet::frechet;
 type V = Vector3<f64>;
 
 /// Items that were written down.
-struct Written(VecDeque<Item>);
+struct Written(VecDeque<CourseItem>);
 
 impl Course for Written {
-    fn next(&mut self) -> Result<Option<Item>, Box<Diagnostic>> {
+    fn next(&mut self) -> Result<Option<CourseItem>, Box<Diagnostic>> {
         Ok(self.0.pop_front())
     }
 }
@@ -45,7 +45,7 @@ fn v(x: f64, y: f64, z: f64) -> V {
 /// A course, written point by point.
 #[derive(Default)]
 struct Asks {
-    items: VecDeque<Item>,
+    items: VecDeque<CourseItem>,
     at: Option<V>,
     line: u64,
     hole: bool,
@@ -56,10 +56,14 @@ impl Asks {
         self.line += 1;
         let feed = (kind != MotionKind::Rapid).then_some(500.0);
         let item = match self.at {
-            None => {
-                Item::Reach(Reach { line: self.line, kind, to: pose(to), feed, hole: self.hole })
-            }
-            Some(from) => Item::Piece(Piece {
+            None => CourseItem::Reach(ReachedPose {
+                line: self.line,
+                kind,
+                to: pose(to),
+                feed,
+                hole: self.hole,
+            }),
+            Some(from) => CourseItem::Piece(CoursePiece {
                 line: self.line,
                 kind,
                 curve: Curve::Straight,
@@ -82,9 +86,9 @@ impl Asks {
         self.go(MotionKind::Feed, v(x, y, z))
     }
 
-    fn tell(mut self, told: Told) -> Self {
+    fn tell(mut self, told: ProgramEvent) -> Self {
         self.line += 1;
-        self.items.push_back(Item::Told { line: self.line, told });
+        self.items.push_back(CourseItem::Event { line: self.line, event: told });
         self
     }
 
@@ -95,7 +99,7 @@ impl Asks {
     /// A hole whose feed begins 2 mm above its point, in pecks.
     fn pecked(mut self, depth: f64, kind: CycleKind, [peck, later_peck]: [f64; 2]) -> Self {
         let top = self.at.unwrap();
-        self = self.tell(Told::Cycle(CycleCall {
+        self = self.tell(ProgramEvent::Cycle(CycleCall {
             kind,
             clearance: 2.0,
             peck,
@@ -106,14 +110,14 @@ impl Asks {
         self = self.cut(top.x, top.y, top.z - depth);
         self = self.rapid(top.x, top.y, top.z);
         self.hole = false;
-        self.tell(Told::CycleEnd)
+        self.tell(ProgramEvent::CycleEnd)
     }
 }
 
 /// A program, written motion by motion.
 struct Does {
-    done: Vec<Done>,
-    state: Arc<State>,
+    done: Vec<BlockEffect>,
+    state: Arc<MachineState>,
     at: V,
     line: u64,
 }
@@ -121,7 +125,7 @@ struct Does {
 impl Does {
     fn at(x: f64, y: f64, z: f64) -> Self {
         let machine = machine();
-        let state = State {
+        let state = MachineState {
             solver: Arc::new(machine.solver(0.0).unwrap()),
             length: 0.0,
             tool: None,
@@ -131,7 +135,7 @@ impl Does {
             tcp: false,
             plane: None,
             work_offset: None,
-            spindle: Spindle::Off,
+            spindle: SpindleState::Off,
             coolants: Coolants::default(),
             operation: None,
             smoothing: None,
@@ -153,7 +157,7 @@ impl Does {
             MotionKind::Rapid => 0.0,
             _ => (to - self.at).norm() / 500.0,
         };
-        self.done.push(Done::Motion(Motion {
+        self.done.push(BlockEffect::Motion(Motion {
             line: self.line,
             number: None,
             kind,
@@ -180,13 +184,13 @@ impl Does {
         self.go(MotionKind::Feed, v(x, y, z))
     }
 
-    fn tell(mut self, told: Told) -> Self {
+    fn tell(mut self, told: ProgramEvent) -> Self {
         self.line += 1;
-        self.done.push(Done::Told { line: self.line, told });
+        self.done.push(BlockEffect::Event { line: self.line, event: told });
         self
     }
 
-    fn with(mut self, change: impl FnOnce(&mut State)) -> Self {
+    fn with(mut self, change: impl FnOnce(&mut MachineState)) -> Self {
         change(Arc::make_mut(&mut self.state));
         self
     }
@@ -456,24 +460,24 @@ fn holes_that_are_not_made_so_are_told() {
 fn what_holds_in_a_cut_is_compared() {
     let asks = || {
         let told = Asks::default()
-            .tell(Told::ToolChange { number: Some(3), name: None })
-            .tell(Told::Spindle(Spindle::Clockwise(8000.0)))
-            .tell(Told::Coolant(Coolants { flood: true, ..Coolants::default() }));
+            .tell(ProgramEvent::ToolChange { number: Some(3), name: None })
+            .tell(ProgramEvent::Spindle(SpindleState::Clockwise(8000.0)))
+            .tell(ProgramEvent::Coolant(Coolants { flood: true, ..Coolants::default() }));
         let mut square = square();
         for item in &mut square.items {
             match item {
-                Item::Piece(piece) => piece.line += told.line,
-                Item::Reach(reach) => reach.line += told.line,
+                CourseItem::Piece(piece) => piece.line += told.line,
+                CourseItem::Reach(reach) => reach.line += told.line,
                 _ => {}
             }
         }
         Asks { items: told.items.into_iter().chain(square.items).collect(), ..square }
     };
-    let does = |change: fn(&mut State)| {
-        let set = |state: &mut State| {
+    let does = |change: fn(&mut MachineState)| {
+        let set = |state: &mut MachineState| {
             state.tool = Some(3);
             state.length_register = Some(3);
-            state.spindle = Spindle::Clockwise(8000.0);
+            state.spindle = SpindleState::Clockwise(8000.0);
             state.coolants.flood = true;
         };
         Does::at(0.0, 0.0, 15.0)
@@ -491,11 +495,11 @@ fn what_holds_in_a_cut_is_compared() {
     };
     assert_eq!(codes(&does(|_| {}), asks()), []);
     for (change, code) in [
-        ((|state| state.tool = Some(4)) as fn(&mut State), "tool"),
+        ((|state| state.tool = Some(4)) as fn(&mut MachineState), "tool"),
         (|state| state.length_register = Some(4), "register"),
-        (|state| state.spindle = Spindle::Off, "spindle"),
-        (|state| state.spindle = Spindle::Clockwise(7000.0), "spindle"),
-        (|state| state.spindle = Spindle::CounterClockwise(8000.0), "spindle"),
+        (|state| state.spindle = SpindleState::Off, "spindle"),
+        (|state| state.spindle = SpindleState::Clockwise(7000.0), "spindle"),
+        (|state| state.spindle = SpindleState::CounterClockwise(8000.0), "spindle"),
         (|state| state.coolants.flood = false, "coolant"),
         (|state| state.compensation = -1, "compensation"),
     ] {
@@ -505,21 +509,21 @@ fn what_holds_in_a_cut_is_compared() {
 }
 
 /// A tool change with the spindle and the coolant as they are.
-fn changed(number: u32) -> Told {
-    Told::ToolChange { number: Some(number), name: None }
+fn changed(number: u32) -> ProgramEvent {
+    ProgramEvent::ToolChange { number: Some(number), name: None }
 }
 
 #[test]
 fn nothing_runs_on_behind_the_end_of_a_program() {
     let flood = Coolants { flood: true, ..Coolants::default() };
-    let on = [Told::Spindle(Spindle::Clockwise(8000.0)), Told::Coolant(flood)];
+    let on = [ProgramEvent::Spindle(SpindleState::Clockwise(8000.0)), ProgramEvent::Coolant(flood)];
     let asks = || {
         let asks = Asks::default().tell(on[0].clone()).tell(on[1].clone());
         asks.rapid(0.0, 0.0, 10.0).cut(0.0, 0.0, -2.0).rapid(0.0, 0.0, 10.0)
     };
-    let found = |ends: &[Told]| {
+    let found = |ends: &[ProgramEvent]| {
         let mut does = Does::at(0.0, 0.0, 15.0).with(|state| {
-            state.spindle = Spindle::Clockwise(8000.0);
+            state.spindle = SpindleState::Clockwise(8000.0);
             state.coolants = flood;
         });
         does = does.tell(on[0].clone()).tell(on[1].clone());
@@ -530,10 +534,10 @@ fn nothing_runs_on_behind_the_end_of_a_program() {
         }
         codes(&does, asks())
     };
-    let off = Told::Spindle(Spindle::Off);
-    let dry = Told::Coolant(Coolants::default());
+    let off = ProgramEvent::Spindle(SpindleState::Off);
+    let dry = ProgramEvent::Coolant(Coolants::default());
     // M30 stops both, and so do M5 and M9.
-    assert_eq!(found(&[Told::End]), []);
+    assert_eq!(found(&[ProgramEvent::End]), []);
     assert_eq!(found(&[off.clone(), dry.clone()]), []);
     assert_eq!(found(&[dry]), [("spindle", 1, 0)]);
     assert_eq!(found(&[off]), [("coolant", 2, 0)]);
@@ -542,25 +546,25 @@ fn nothing_runs_on_behind_the_end_of_a_program() {
 #[test]
 fn a_tool_is_not_changed_while_something_runs_that_should_stand() {
     let flood = Coolants { flood: true, ..Coolants::default() };
-    let on = Told::Spindle(Spindle::Clockwise(8000.0));
-    let asks = |before: &[Told]| {
+    let on = ProgramEvent::Spindle(SpindleState::Clockwise(8000.0));
+    let asks = |before: &[ProgramEvent]| {
         let mut asks = Asks::default().tell(changed(3)).tell(on.clone());
-        asks = asks.tell(Told::Coolant(flood));
+        asks = asks.tell(ProgramEvent::Coolant(flood));
         asks = asks.rapid(0.0, 0.0, 10.0).cut(0.0, 0.0, -2.0);
         asks = asks.rapid(0.0, 0.0, 10.0);
         for told in before {
             asks = asks.tell(told.clone());
         }
         asks = asks.tell(changed(4)).tell(on.clone());
-        asks = asks.tell(Told::Coolant(flood));
+        asks = asks.tell(ProgramEvent::Coolant(flood));
         asks.cut(0.0, 0.0, -2.0).rapid(0.0, 0.0, 10.0)
     };
-    let does = |first: &[Told], between: &[Told]| {
+    let does = |first: &[ProgramEvent], between: &[ProgramEvent]| {
         let with = |does: Does, tool: u32| {
             does.with(|state| {
                 state.tool = Some(tool);
                 state.length_register = Some(tool);
-                state.spindle = Spindle::Clockwise(8000.0);
+                state.spindle = SpindleState::Clockwise(8000.0);
                 state.coolants = flood;
             })
         };
@@ -569,18 +573,19 @@ fn a_tool_is_not_changed_while_something_runs_that_should_stand() {
             does = does.tell(told.clone());
         }
         does = with(does.tell(changed(3)), 3).tell(on.clone());
-        does = does.tell(Told::Coolant(flood));
+        does = does.tell(ProgramEvent::Coolant(flood));
         does = does.rapid(0.0, 0.0, 10.0).cut(0.0, 0.0, -2.0);
         does = does.rapid(0.0, 0.0, 10.0);
         for told in between {
             does = does.tell(told.clone());
         }
         does = with(does.tell(changed(4)), 4).tell(on.clone());
-        does = does.tell(Told::Coolant(flood));
+        does = does.tell(ProgramEvent::Coolant(flood));
         does = does.cut(0.0, 0.0, -2.0).rapid(0.0, 0.0, 10.0);
-        does.tell(Told::End)
+        does.tell(ProgramEvent::End)
     };
-    let off = [Told::Spindle(Spindle::Off), Told::Coolant(Coolants::default())];
+    let off =
+        [ProgramEvent::Spindle(SpindleState::Off), ProgramEvent::Coolant(Coolants::default())];
     let found = |does: &Does, asks: Asks| {
         let (found, _) = verify(does, asks);
         let faults: Vec<&str> = found.faults.iter().map(|fault| fault.code).collect();
@@ -605,21 +610,21 @@ fn stops_and_dwells_stand_where_they_are_asked_for() {
         Asks::default()
             .rapid(0.0, 0.0, 0.0)
             .cut(10.0, 0.0, 0.0)
-            .tell(Told::Dwell { time: 2.0, revolutions: false })
+            .tell(ProgramEvent::Dwell { time: 2.0, revolutions: false })
             .cut(20.0, 0.0, 0.0)
             .rapid(20.0, 0.0, 10.0)
-            .tell(Told::Stop)
+            .tell(ProgramEvent::Stop)
             .rapid(20.0, 0.0, 0.0)
             .cut(30.0, 0.0, 0.0)
     };
-    let wait = |time: f64| Told::Dwell { time, revolutions: false };
+    let wait = |time: f64| ProgramEvent::Dwell { time, revolutions: false };
     let good = Does::at(0.0, 0.0, 10.0)
         .rapid(0.0, 0.0, 0.0)
         .cut(10.0, 0.0, 0.0)
         .tell(wait(2.0))
         .cut(20.0, 0.0, 0.0)
         .rapid(20.0, 0.0, 10.0)
-        .tell(Told::Stop)
+        .tell(ProgramEvent::Stop)
         .rapid(20.0, 0.0, 0.0)
         .cut(30.0, 0.0, 0.0);
     assert_eq!(codes(&good, asks()), []);
@@ -637,8 +642,8 @@ fn stops_and_dwells_stand_where_they_are_asked_for() {
         .tell(wait(2.0))
         .cut(20.0, 0.0, 0.0)
         .rapid(20.0, 0.0, 10.0)
-        .tell(Told::Stop)
-        .tell(Told::OptionalStop)
+        .tell(ProgramEvent::Stop)
+        .tell(ProgramEvent::OptionalStop)
         .rapid(20.0, 0.0, 0.0)
         .cut(30.0, 0.0, 0.0);
     assert_eq!(codes(&elsewhere, asks()), [("event", 3, 3), ("event", 7, 0)]);
@@ -653,7 +658,7 @@ fn limits_of_the_axes_are_told_and_feeds_compared() {
     for (minutes, code) in [(0.5, "feed"), (2.0, "feed"), (0.02, "max-feed")] {
         let mut does =
             Does::at(0.0, 0.0, 10.0).rapid(0.0, 0.0, 0.0).cut(600.0, 0.0, 0.0).rapid(0.0, 0.0, 0.0);
-        if let Done::Motion(motion) = &mut does.done[1] {
+        if let BlockEffect::Motion(motion) = &mut does.done[1] {
             motion.minutes = minutes;
         }
         let found = codes(&does, asks());
@@ -749,8 +754,9 @@ fn a_rapid_that_comes_near_what_is_cut_is_told() {
 
 #[test]
 fn work_offsets_are_those_that_are_asked_for() {
-    let none = |_: &mut State| {};
-    let of = |name: &'static str| move |state: &mut State| state.work_offset = Some(name.into());
+    let none = |_: &mut MachineState| {};
+    let of =
+        |name: &'static str| move |state: &mut MachineState| state.work_offset = Some(name.into());
     let program = |first: &'static str, second: &'static str| {
         begin()
             .with(of(first))
@@ -764,8 +770,8 @@ fn work_offsets_are_those_that_are_asked_for() {
     };
     let asked = |number: u32| {
         let mut asks = square();
-        let told = Told::WorkOffset(number.to_string());
-        asks.items.insert(0, Item::Told { line: 0, told });
+        let told = ProgramEvent::WorkOffset(number.to_string());
+        asks.items.insert(0, CourseItem::Event { line: 0, event: told });
         asks
     };
     let faults = |does: Does, asks: Asks| codes(&does, asks).len();

@@ -26,7 +26,7 @@ pub(super) type ReadItems = fn(&mut Items<'_, '_>) -> Read<Statement>;
 pub(super) type ReadGeometry = fn(&LogicalLine<'_>) -> Read<Statement>;
 
 /// Takes the text after one word: its spelling in capitals, the text without blanks around it.
-pub(super) type ReadText = fn(&'static str, String) -> Statement;
+pub(super) type ReadTextStatement = fn(&'static str, String) -> Statement;
 
 /// A directive. Only those that carry facts are typed; the rest is meant for one program and comes as it stands.
 pub(super) fn directive(line: &LogicalLine<'_>) -> Read<Statement> {

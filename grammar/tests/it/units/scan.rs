@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use post_grammar::internals::{plain_goto, record};
-use post_grammar::{MajorWord, Reader, Statement, parse_record};
+use post_grammar::{ClReader, MajorWord, Statement, parse_record};
 use post_testkit::{Rng, randomised};
 
 #[test]
@@ -63,7 +63,7 @@ fn the_scanner_takes_nearly_every_record_of_the_real_files() {
     let mut left = BTreeMap::new();
     let (mut points, mut others) = (0, 0);
     for file in files {
-        let mut reader = Reader::new(std::fs::File::open(file.unwrap().path()).unwrap());
+        let mut reader = ClReader::new(std::fs::File::open(file.unwrap().path()).unwrap());
         while let Some(read) = reader.next_record().unwrap() {
             let word = read.statement.word().to_owned();
             match record(read.raw) {

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use post_plugin::raw::{self, LAYOUTS, TABLES};
-use post_plugin::{CAPABILITIES, CODES, EVENTS, Shape};
+use post_plugin::{CAPABILITIES, CODES, EVENTS, FieldShape};
 
 const BEGIN: &str = "/* generated: begin */\n";
 const END: &str = "/* generated: end */\n";
@@ -73,11 +73,11 @@ fn events(text: &mut String) {
             let name = format!("{}_{}", event.c_name, field.name.to_uppercase());
             let doc = field.doc.trim();
             match field.shape {
-                Shape::Text => {
+                FieldShape::Text => {
                     comment(text, &format!("texts[{texts}], {}: {doc}", field.name));
                     texts += 1;
                 }
-                Shape::Numbers(count) => {
+                FieldShape::Numbers(count) => {
                     let at = numbers.expect("numbers stand before lists");
                     let count_of = match count {
                         1 => String::new(),
@@ -87,7 +87,7 @@ fn events(text: &mut String) {
                     writeln!(text, "#define POST_{name} {at}u").unwrap();
                     numbers = Some(at + count);
                 }
-                Shape::List => {
+                FieldShape::List => {
                     let list = "how many there are, and behind it as many";
                     match numbers {
                         Some(at) => {

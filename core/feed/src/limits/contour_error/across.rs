@@ -48,7 +48,7 @@ pub(super) struct Across {
 /// How a contour error within a tolerance bounds the motion at a sample: `q <= speed²`, and
 /// `|rate * q ± push * s̈| <= 1`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bound {
+pub(super) struct MotionBound {
     /// Largest speed of the parameter where it goes evenly.
     pub(super) speed: f64,
     pub(super) rate: f64,
@@ -57,13 +57,13 @@ pub(super) struct Bound {
 
 /// What a frequency makes of the path: `L`, `S` and `C`.
 #[derive(Clone, Copy, Debug, Default)]
-struct Share {
+struct FrequencyShare {
     late: f64,
     short: f64,
     push: f64,
 }
 
-impl Share {
+impl FrequencyShare {
     fn max(self, other: Self) -> Self {
         Self {
             late: self.late.max(other.late),
@@ -80,13 +80,13 @@ impl Share {
     }
 
     /// `√q` is below its tangent, so that what it asks for is linear in `q`, and exact at the bound.
-    fn bound(self, speed: f64, tolerance: f64) -> Bound {
+    fn bound(self, speed: f64, tolerance: f64) -> MotionBound {
         let (late, rest) = if speed.is_finite() {
             (0.5 * self.late / speed, tolerance - 0.5 * self.late * speed)
         } else {
             (0.0, tolerance)
         };
-        Bound { speed, rate: (late + self.short) / rest, push: self.push / rest }
+        MotionBound { speed, rate: (late + self.short) / rest, push: self.push / rest }
     }
 }
 
@@ -146,8 +146,8 @@ impl Across {
         sum
     }
 
-    fn share(&self, lags: &[Lag]) -> Share {
-        Share {
+    fn share(&self, lags: &[Lag]) -> FrequencyShare {
+        FrequencyShare {
             late: norm(self.sum(|axis| lags[axis].late, 0)),
             short: norm(self.sum(|axis| lags[axis].short, 1)),
             push: norm(self.sum(|axis| lags[axis].short, 0)),
@@ -155,12 +155,12 @@ impl Across {
     }
 
     /// The bound for a contour error of `tolerance` mm: the largest speed up to which every speed keeps it.
-    pub(super) fn bound(&self, lags: &Lags, tolerance: f64) -> Bound {
-        let free = Bound { speed: f64::INFINITY, rate: 0.0, push: 0.0 };
+    pub(super) fn bound(&self, lags: &Lags, tolerance: f64) -> MotionBound {
+        let free = MotionBound { speed: f64::INFINITY, rate: 0.0, push: 0.0 };
         if self.turning == 0.0 {
             return free;
         }
-        let mut last: Option<(f64, Share)> = None;
+        let mut last: Option<(f64, FrequencyShare)> = None;
         for (frequency, lags) in lags.by_frequency() {
             let here = self.share(lags);
             let share = last.map_or(here, |(_, before)| before.max(here));

@@ -1,6 +1,6 @@
 //! How late and how short axes answer, by frequency.
 
-use crate::response::Response;
+use crate::response::DriveResponse;
 
 /// Steps of the table of frequencies.
 const STEPS: usize = 96;
@@ -34,7 +34,7 @@ pub(super) struct Lags {
 
 impl Lags {
     /// Works out the lags of these axes, up to `highest` rad/s.
-    pub(super) fn new(axes: &[&dyn Response], highest: f64) -> Self {
+    pub(super) fn new(axes: &[&dyn DriveResponse], highest: f64) -> Self {
         let ratio = libm::log(1.0 / LOWEST) / STEPS as f64;
         // From the top, so that the highest is exact.
         let at = |step: usize| highest * libm::exp(-ratio * (STEPS - step) as f64);

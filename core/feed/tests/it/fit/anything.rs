@@ -1,12 +1,12 @@
 //! What holds for any points whatever.
 
-use post_feed::fit::{Fit, MOST, Point, Rules};
+use post_feed::fit::{FitPoint, FitRules, MOST, PathFit};
 
 use super::course::{checked, fitted};
 use post_testkit::{Rng, randomised};
 
 /// A path of steps whose lengths span decades, with bends, corners, points that stand and turns alone.
-fn wild(seed: u64, count: usize, dimensions: usize, scale: f64) -> Vec<Point> {
+fn wild(seed: u64, count: usize, dimensions: usize, scale: f64) -> Vec<FitPoint> {
     let mut random = Rng::new(seed);
     let mut direction = [0.0; MOST];
     direction[0] = 1.0;
@@ -36,15 +36,15 @@ fn wild(seed: u64, count: usize, dimensions: usize, scale: f64) -> Vec<Point> {
     all
 }
 
-fn rules(dimensions: usize, tolerance: f64, spacing: Option<f64>) -> Rules {
-    Rules {
+fn rules(dimensions: usize, tolerance: f64, spacing: Option<f64>) -> FitRules {
+    FitRules {
         dimensions,
         tolerance,
         turn_tolerance: 0.02 * tolerance,
         corner: 0.6,
         turn_weight: 20.0,
         spacing,
-        ..Rules::default()
+        ..FitRules::default()
     }
 }
 
@@ -70,7 +70,7 @@ fn what_is_settled_does_not_depend_on_what_comes_later() {
         let points = wild(seed, 1500, 4, 1.0);
         let rules = rules(4, 0.01, None);
         let (whole, _) = fitted(&rules, &points);
-        let mut fit = Fit::new(rules);
+        let mut fit = PathFit::new(rules);
         let mut early = Vec::new();
         for point in &points[..cut] {
             fit.push(point, &mut |leg| early.push(leg.samples.to_vec()));
@@ -83,9 +83,9 @@ fn what_is_settled_does_not_depend_on_what_comes_later() {
 
 #[test]
 fn points_that_are_no_numbers_are_refused() {
-    let mut fit = Fit::new(Rules::default());
+    let mut fit = PathFit::new(FitRules::default());
     let mut legs = 0;
-    let mut push = |fit: &mut Fit, x: f64| {
+    let mut push = |fit: &mut PathFit, x: f64| {
         let mut point = [0.0; MOST];
         point[0] = x;
         fit.push(&point, &mut |leg| {
@@ -109,14 +109,15 @@ fn points_that_are_no_numbers_are_refused() {
 /// A fit is ended where nothing was begun, twice, and by points that stand.
 #[test]
 fn cuts_without_points_hand_nothing_on() {
-    let mut fit = Fit::new(Rules::default());
+    let mut fit = PathFit::new(FitRules::default());
     let mut lengths = Vec::new();
     let point = |x: f64| {
         let mut point = [0.0; MOST];
         point[0] = x;
         point
     };
-    let mut sink = |leg: &post_feed::fit::Leg<'_>| lengths.push((leg.length, leg.samples.len()));
+    let mut sink =
+        |leg: &post_feed::fit::FittedLeg<'_>| lengths.push((leg.length, leg.samples.len()));
     fit.cut(&mut sink);
     fit.push(&point(1.0), &mut sink);
     fit.cut(&mut sink);

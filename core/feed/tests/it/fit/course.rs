@@ -1,6 +1,6 @@
 //! A fit as its receiver sees it, and what is measured on it, from the samples alone.
 
-use post_feed::fit::{Fit, MOST, Point, Rules, Sample};
+use post_feed::fit::{CurveSample, FitPoint, FitRules, MOST, PathFit};
 
 /// One leg.
 #[derive(Clone, Debug, PartialEq)]
@@ -8,14 +8,14 @@ pub struct Leg {
     pub length: f64,
     pub begins: bool,
     pub ends: bool,
-    pub samples: Vec<Sample>,
+    pub samples: Vec<CurveSample>,
 }
 
 /// What a fit hands on of points that follow one another, and how far it says that it was off.
-pub fn fitted(rules: &Rules, points: &[Point]) -> (Vec<Leg>, f64) {
-    let mut fit = Fit::new(rules.clone());
+pub fn fitted(rules: &FitRules, points: &[FitPoint]) -> (Vec<Leg>, f64) {
+    let mut fit = PathFit::new(rules.clone());
     let mut legs = Vec::new();
-    let mut sink = |leg: &post_feed::fit::Leg<'_>| {
+    let mut sink = |leg: &post_feed::fit::FittedLeg<'_>| {
         legs.push(Leg {
             length: leg.length,
             begins: leg.begins,
@@ -32,7 +32,7 @@ pub fn fitted(rules: &Rules, points: &[Point]) -> (Vec<Leg>, f64) {
 
 /// Value and three derivatives between two samples, of the one polynomial of degree five that has their values, first
 /// and second derivatives.
-pub fn between(pair: [&Sample; 2], share: f64) -> [Point; 4] {
+pub fn between(pair: [&CurveSample; 2], share: f64) -> [FitPoint; 4] {
     let width = pair[1].at - pair[0].at;
     let t = share;
     let mut result = [[0.0; MOST]; 4];
@@ -66,7 +66,7 @@ pub fn between(pair: [&Sample; 2], share: f64) -> [Point; 4] {
 }
 
 /// Curvature of the tip's path.
-pub fn curvature(values: &[Point; 4]) -> f64 {
+pub fn curvature(values: &[FitPoint; 4]) -> f64 {
     let [first, second] = [1, 2].map(|order| [0, 1, 2].map(|axis| values[order][axis]));
     post_feed::samples::curvature(first, second)
 }
@@ -74,12 +74,12 @@ pub fn curvature(values: &[Point; 4]) -> f64 {
 /// What a whole fit has to show, whatever the points: one leg each, in order; ends that are the points; samples that
 /// are shared, continuous third derivatives; and nowhere off by more than the tolerances, by brute force. Returns by
 /// how many tolerances it is off: the largest, and all of them.
-pub fn checked(rules: &Rules, points: &[Point]) -> (Vec<Leg>, Vec<f64>) {
+pub fn checked(rules: &FitRules, points: &[FitPoint]) -> (Vec<Leg>, Vec<f64>) {
     let (legs, told) = fitted(rules, points);
     assert_eq!(legs.len(), points.len().saturating_sub(1));
     let mut all = Vec::new();
     let mut open = false;
-    let mut last: Option<Sample> = None;
+    let mut last: Option<CurveSample> = None;
     // Legs that are shorter than what counts as length stand at the first of their points.
     let mut stands = points.first().copied().unwrap_or([0.0; MOST]);
     for (index, leg) in legs.iter().enumerate() {
@@ -95,7 +95,7 @@ pub fn checked(rules: &Rules, points: &[Point]) -> (Vec<Leg>, Vec<f64>) {
         open = !leg.ends;
         assert_eq!(first.at, 0.0);
         assert!((end.at - leg.length).abs() <= 1e-9 * leg.length.max(1.0));
-        let same = |sample: &Sample, point: &Point| {
+        let same = |sample: &CurveSample, point: &FitPoint| {
             let far = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9 * (1.0 + b.abs());
             assert!(sample.values[0].iter().zip(point).all(far), "{sample:?} {point:?}");
         };
@@ -120,7 +120,7 @@ pub fn checked(rules: &Rules, points: &[Point]) -> (Vec<Leg>, Vec<f64>) {
                 let share = f64::from(step) / 16.0;
                 let at = pair[0].at + share * (pair[1].at - pair[0].at);
                 let values = between(pair, share)[0];
-                let off: Point = std::array::from_fn(|axis| {
+                let off: FitPoint = std::array::from_fn(|axis| {
                     values[axis] - stands[axis] - at / leg.length * (next[axis] - stands[axis])
                 });
                 let tip = (off[0] * off[0] + off[1] * off[1] + off[2] * off[2]).sqrt();

@@ -1,6 +1,6 @@
 //! Points of real programs.
 
-use post_feed::fit::{MOST, Point, Rules};
+use post_feed::fit::{FitPoint, FitRules, MOST};
 use post_testkit::shared;
 
 use super::course::checked;
@@ -14,7 +14,7 @@ fn rounded(value: f64, step: f64) -> f64 {
 
 /// The cuts of a CL file: GOTO points between rapid moves, with the angles of the tool axis about Z, then across it,
 /// all rounded as a control program has them.
-fn cuts(text: &str) -> Vec<Vec<Point>> {
+fn cuts(text: &str) -> Vec<Vec<FitPoint>> {
     let text = text.replace("$\r\n", "").replace("$\n", "");
     let mut cuts = vec![Vec::new()];
     let mut axis = [0.0, 0.0, 1.0];
@@ -60,7 +60,7 @@ fn bend(values: [f64; 3]) -> f64 {
 }
 
 /// The same by differences, at the point between two legs.
-fn difference(points: &[Point], lengths: [f64; 2]) -> f64 {
+fn difference(points: &[FitPoint], lengths: [f64; 2]) -> f64 {
     bend([0, 1, 2].map(|axis| {
         let [a, b, c] = [0, 1, 2].map(|index| points[index][axis]);
         2.0 * ((c - b) / lengths[1] - (b - a) / lengths[0]) / (lengths[0] + lengths[1])
@@ -78,13 +78,13 @@ fn report(name: &str, tolerance: f64) -> f64 {
         return f64::INFINITY;
     };
     let text = std::fs::read_to_string(path).unwrap();
-    let rules = Rules {
+    let rules = FitRules {
         dimensions: 5,
         tolerance,
         turn_tolerance: 0.02 * DEGREE,
         corner: 20.0 * DEGREE,
         turn_weight: 20.0,
-        ..Rules::default()
+        ..FitRules::default()
     };
     let (mut points, mut pieces, mut samples) = (0, 0, 0);
     let (mut off, mut fitted, mut differences) = (Vec::new(), Vec::new(), Vec::new());

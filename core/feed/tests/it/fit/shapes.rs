@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use post_feed::fit::{MOST, Point, Rules};
+use post_feed::fit::{FitPoint, FitRules, MOST};
 
 use super::course::{Leg, between, checked, curvature};
 
-fn point(values: &[f64]) -> Point {
+fn point(values: &[f64]) -> FitPoint {
     let mut point = [0.0; MOST];
     point[..values.len()].copy_from_slice(values);
     point
@@ -17,7 +17,7 @@ fn rounded(value: f64, step: f64) -> f64 {
 }
 
 /// Deviations of the curvature from what it is, over the middle eight tenths of the legs: median and largest.
-fn errors(legs: &[Leg], error: impl Fn(&[Point; 4]) -> f64) -> [f64; 2] {
+fn errors(legs: &[Leg], error: impl Fn(&[FitPoint; 4]) -> f64) -> [f64; 2] {
     let inside = legs.len() / 10..legs.len() - legs.len() / 10;
     let samples = legs[inside].iter().flat_map(|leg| &leg.samples);
     let mut errors: Vec<f64> = samples.map(|sample| error(&sample.values)).collect();
@@ -35,13 +35,13 @@ fn circles_with_rounded_points_have_their_curvature() {
                 continue;
             }
             let count = ((0.75 * TAU * radius / step) as usize).min(1500);
-            let points: Vec<Point> = (0..=count)
+            let points: Vec<FitPoint> = (0..=count)
                 .map(|index| {
                     let (sin, cos) = libm::sincos(index as f64 * step / radius + 0.3);
                     point(&[radius * cos, radius * sin].map(|value| rounded(value, 0.001)))
                 })
                 .collect();
-            let rules = Rules { corner: 1.0, ..Rules::default() };
+            let rules = FitRules { corner: 1.0, ..FitRules::default() };
             let (legs, off) = checked(&rules, &points);
             let most = off.iter().copied().fold(0.0, f64::max);
             let [median, largest] =
@@ -59,13 +59,13 @@ fn circles_with_rounded_points_have_their_curvature() {
 fn waves_keep_their_curvature() {
     for (height, long, step) in [(0.5, 8.0, 0.1), (5.0, 40.0, 0.5), (20.0, 60.0, 0.2)] {
         let rate = TAU / long;
-        let points: Vec<Point> = (0..(4.0 * long / step) as usize)
+        let points: Vec<FitPoint> = (0..(4.0 * long / step) as usize)
             .map(|index| {
                 let x = index as f64 * step;
                 point(&[x, height * libm::sin(rate * x)].map(|value| rounded(value, 0.001)))
             })
             .collect();
-        let (legs, _) = checked(&Rules::default(), &points);
+        let (legs, _) = checked(&FitRules::default(), &points);
         let most = height * rate * rate;
         let [median, largest] = errors(&legs, |values| {
             let (sin, cos) = libm::sincos(rate * values[0][0]);
@@ -90,7 +90,7 @@ fn a_line_beside_short_chords_stays_a_line() {
         points.push(point(&[radius * sin, radius * (1.0 - cos)]));
     }
     points.push(point(&[radius, radius + 50.0]));
-    let (legs, _) = checked(&Rules::default(), &points);
+    let (legs, _) = checked(&FitRules::default(), &points);
     let line = &legs[0];
     assert!(line.samples.len() < 20);
     for pair in line.samples.windows(2) {
@@ -119,7 +119,7 @@ fn what_is_straight_stays_straight() {
             x += scale * length;
             points.push(point(&[0.6 * x, 0.8 * x, 0.0, 1e-5 * x]));
         }
-        let rules = Rules { dimensions: 4, tolerance: 0.01 * scale, ..Rules::default() };
+        let rules = FitRules { dimensions: 4, tolerance: 0.01 * scale, ..FitRules::default() };
         let (legs, off) = checked(&rules, &points);
         assert!(off.iter().all(|off| *off < 1e-3));
         for sample in legs.iter().flat_map(|leg| &leg.samples) {
@@ -134,9 +134,9 @@ fn what_is_straight_stays_straight() {
 #[test]
 fn turns_alone_have_length() {
     let values = [0.0, 0.1, 0.2, 0.3, 0.2, 0.1];
-    let points: Vec<Point> =
+    let points: Vec<FitPoint> =
         values.iter().map(|&turn| point(&[1.0, 2.0, 3.0, 0.0, turn])).collect();
-    let rules = Rules { dimensions: 5, turn_weight: 30.0, ..Rules::default() };
+    let rules = FitRules { dimensions: 5, turn_weight: 30.0, ..FitRules::default() };
     let (legs, _) = checked(&rules, &points);
     assert!(legs.iter().all(|leg| (leg.length - 3.0).abs() < 1e-12));
     let ends: Vec<usize> = (0..legs.len()).filter(|&leg| legs[leg].ends).collect();
@@ -149,7 +149,7 @@ fn turns_alone_have_length() {
 fn rotary_axes_have_their_derivatives() {
     let degree = TAU / 360.0;
     let step = 0.2;
-    let points: Vec<Point> = (0..3000)
+    let points: Vec<FitPoint> = (0..3000)
         .map(|index| {
             let s = index as f64 * step;
             let tip = [40.0 * libm::sin(s / 40.0), 40.0 * libm::cos(s / 40.0), 0.0];
@@ -164,7 +164,7 @@ fn rotary_axes_have_their_derivatives() {
             values
         })
         .collect();
-    let rules = Rules { dimensions: 5, turn_weight: 1e-3, ..Rules::default() };
+    let rules = FitRules { dimensions: 5, turn_weight: 1e-3, ..FitRules::default() };
     let (legs, _) = checked(&rules, &points);
     let second = 0.4 / 225.0;
     let [median, largest] = errors(&legs, |values| {

@@ -1,9 +1,9 @@
 //! A long path goes through, and little of it is kept.
 
-use post_feed::fit::{Fit, MOST, Point, Rules};
+use post_feed::fit::{FitPoint, FitRules, MOST, PathFit};
 
 /// A wave in five coordinates, rounded as programs are.
-fn at(index: usize) -> Point {
+fn at(index: usize) -> FitPoint {
     let s = 0.2 * index as f64;
     let rounded = |value: f64, step: f64| (value / step).round() * step;
     let mut point = [0.0; MOST];
@@ -17,13 +17,13 @@ fn at(index: usize) -> Point {
 
 #[test]
 fn a_hundred_thousand_points_wait_a_few_hundred_at_most() {
-    let rules = Rules { dimensions: 5, ..Rules::default() };
-    let mut fit = Fit::new(rules);
+    let rules = FitRules { dimensions: 5, ..FitRules::default() };
+    let mut fit = PathFit::new(rules);
     let mut handed = 0;
     let mut waited = 0;
     let mut steepest: f64 = 0.0;
     let mut last = 0.0;
-    let mut take = |leg: &post_feed::fit::Leg<'_>, handed: &mut usize| {
+    let mut take = |leg: &post_feed::fit::FittedLeg<'_>, handed: &mut usize| {
         *handed += 1;
         assert_eq!(leg.begins, *handed == 1);
         for sample in leg.samples {

@@ -1,6 +1,6 @@
 //! Random paths and problems from a seed.
 
-use post_feed::limits::{AxisAcceleration, AxisVelocity, Collocation, Feed, Limit};
+use post_feed::limits::{AxisAcceleration, AxisVelocity, Collocation, Limit, TipFeed};
 use post_feed::problem::LimitRow;
 use post_feed::{EndSpeeds, Problem, Samples};
 use post_testkit::Rng;
@@ -57,7 +57,7 @@ pub fn part(samples: &Samples, first: usize, last: usize) -> Samples {
 
 /// Limits of the size of small machines.
 pub struct Limits {
-    feed: Feed,
+    feed: TipFeed,
     velocity: AxisVelocity,
     acceleration: AxisAcceleration,
 }
@@ -70,7 +70,7 @@ impl Limits {
         Self {
             velocity,
             acceleration: AxisAcceleration { limits, collocation },
-            feed: Feed { most: random.range(30.0, 200.0), collocation },
+            feed: TipFeed { most: random.range(30.0, 200.0), collocation },
         }
     }
 

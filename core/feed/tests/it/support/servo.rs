@@ -1,6 +1,6 @@
 //! The servo of the feedrate paper.
 
-use post_feed::response::{Answer, Response};
+use post_feed::response::{ComplexGain, DriveResponse};
 
 /// A quotient of polynomials in `s`.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,12 +42,12 @@ impl Pid {
     }
 }
 
-impl Response for Transfer {
-    fn at(&self, frequency: f64) -> Answer {
+impl DriveResponse for Transfer {
+    fn at(&self, frequency: f64) -> ComplexGain {
         let [a, b] = polynomial(&self.numerator, frequency);
         let [c, d] = polynomial(&self.denominator, frequency);
         let square = c * c + d * d;
-        Answer { real: (a * c + b * d) / square, imaginary: (b * c - a * d) / square }
+        ComplexGain { real: (a * c + b * d) / square, imaginary: (b * c - a * d) / square }
     }
 }
 

@@ -1,4 +1,4 @@
-use post_feed::limits::{Collocation, Feed};
+use post_feed::limits::{Collocation, TipFeed};
 use post_feed::samples::Samples;
 use post_feed::{EndSpeeds, Infeasible, Problem};
 
@@ -14,7 +14,7 @@ fn slower() -> Samples {
 }
 
 fn speeds(samples: &Samples, collocation: Collocation) -> Result<Vec<f64>, Infeasible> {
-    let feed = Feed { most: 30.0, collocation };
+    let feed = TipFeed { most: 30.0, collocation };
     let problem = Problem::new(samples, &[&feed], EndSpeeds::default())?;
     Ok(problem.upper.into_iter().map(f64::sqrt).collect())
 }

@@ -1,5 +1,5 @@
 use post_feed::FeedSpline;
-use post_feed::jerk::Piece;
+use post_feed::jerk::IntervalLaw;
 
 use crate::spline::BSpline;
 
@@ -40,10 +40,10 @@ fn the_coefficients_are_those_of_a_b_spline() {
 #[test]
 fn times_of_parts_add_up_and_shares_are_found_by_them() {
     for piece in [
-        Piece::Leave(6.0),
-        Piece::Arrive(6.0),
-        Piece::Quadratic([0.0, 2.0, 4.0]),
-        Piece::Quadratic([2.0, 3.0, 2.5]),
+        IntervalLaw::Leave(6.0),
+        IntervalLaw::Arrive(6.0),
+        IntervalLaw::Quadratic([0.0, 2.0, 4.0]),
+        IntervalLaw::Quadratic([2.0, 3.0, 2.5]),
     ] {
         let spline = FeedSpline { knots: vec![1.0, 3.0], pieces: vec![piece] };
         let parts = [[0.0, 0.25], [0.25, 0.5], [0.5, 1.0]];
@@ -62,7 +62,7 @@ fn beyond_a_start_with_jerk_the_b_spline_counts_from_the_inner_knot_on() {
     let (q1, slope) = (6.0, 4.0 / 3.0 * 6.0 / 2.0);
     let spline = FeedSpline {
         knots: vec![0.0, 2.0, 3.0],
-        pieces: vec![Piece::Leave(q1), Piece::Quadratic([q1, q1 + 0.5 * slope, 9.0])],
+        pieces: vec![IntervalLaw::Leave(q1), IntervalLaw::Quadratic([q1, q1 + 0.5 * slope, 9.0])],
     };
     let (knots, points) = spline.b_spline();
     let curve = BSpline::unweighted(2, knots, points.into_iter().map(|q| [q]));

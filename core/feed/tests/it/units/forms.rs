@@ -1,5 +1,5 @@
-use post_feed::internals::{Form, Q, acceleration, jerk, leaving_acceleration, leaving_jerk};
-use post_feed::jerk::Piece;
+use post_feed::internals::{LinearForm, Q, acceleration, jerk, leaving_acceleration, leaving_jerk};
+use post_feed::jerk::IntervalLaw;
 use post_feed::limits::{Channel, Order};
 
 /// Evaluates by the scheme of de Casteljau.
@@ -38,8 +38,8 @@ fn the_polynomials_are_the_derivatives_by_time() {
     let (cubic, of_cubic) = channel(0.0);
     let (channel, at) = channel(0.3);
     let q = [4.0, 7.0, 6.0];
-    let piece = Piece::Quadratic(q);
-    let value = |forms: &[Form]| -> Vec<f64> {
+    let piece = IntervalLaw::Quadratic(q);
+    let value = |forms: &[LinearForm]| -> Vec<f64> {
         let each = forms.iter();
         each.map(|form| form.iter().zip(q).map(|(a, b)| a * b).sum()).collect()
     };
@@ -62,7 +62,7 @@ fn the_polynomials_are_the_derivatives_by_time() {
 #[test]
 fn off_from_rest_the_bounds_hold_and_are_met() {
     let (channel, at) = channel(0.0);
-    let piece = Piece::Leave(3.0);
+    let piece = IntervalLaw::Leave(3.0);
     let (mut second, mut third): (f64, f64) = (0.0, 0.0);
     for step in 1..=1000 {
         let share = f64::from(step) / 1000.0;

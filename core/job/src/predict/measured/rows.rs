@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use post_machine::description::Machine;
-use post_machine::diagnostic::{Diagnostic, Place};
+use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_machine::kinematics::{Joints, MAX_AXES};
 use post_motion::measured::AxisTrack;
 
@@ -82,7 +82,7 @@ impl<'a> Rows<'a> {
 
     fn fault_at(&self, line: u64, message: impl Into<String>, text: &str) -> Diagnostic {
         let text = text.trim_end();
-        let place = Place::new(self.name, line, text, 0..text.len());
+        let place = SourcePlace::new(self.name, line, text, 0..text.len());
         Diagnostic::error("log", message).at(Some(place))
     }
 
@@ -94,7 +94,7 @@ impl<'a> Rows<'a> {
             Some(end) if end <= text.len() => start..end,
             _ => 0..text.len(),
         };
-        let place = Place::new(self.name, self.line, text, span);
+        let place = SourcePlace::new(self.name, self.line, text, span);
         Diagnostic::error("log", message).at(Some(place))
     }
 
@@ -286,7 +286,7 @@ impl<'a> Rows<'a> {
                 (_, Some(names)) => (names.line, names.text.as_str()),
                 (None, None) => (self.line, text.trim_end()),
             };
-            let place = Place::new(self.name, line, shown, 0..shown.len());
+            let place = SourcePlace::new(self.name, line, shown, 0..shown.len());
             fault.at(Some(place)).boxed()
         })
     }
@@ -318,7 +318,7 @@ impl<'a> Rows<'a> {
                 (to - from) / gap.usual,
                 crate::text::number(gap.usual, 6)
             );
-            let place = Place::new(self.name, self.lines[gap.row], "", 0..0);
+            let place = SourcePlace::new(self.name, self.lines[gap.row], "", 0..0);
             let help = "what happened between is not known; take the part before it or behind it";
             let fault = Diagnostic::error("log", message).at(Some(place));
             fault.help(help).boxed()

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::super::spline::Cubic;
+use super::super::spline::SplineSegment;
 
 /// Newton steps in a piece; they are bisections where Newton leaves its bracket.
 const STEPS: usize = 60;
@@ -18,7 +18,7 @@ const NONE: f64 = 1e-13;
 
 /// The share of a piece at which the distance is least, downhill from `start`; 0 or 1 where it falls beyond the ends.
 #[inline]
-pub(super) fn lowest(cubic: &Cubic, from: &Vector3<f64>, start: f64) -> f64 {
+pub(super) fn lowest(cubic: &SplineSegment, from: &Vector3<f64>, start: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     let mut share = start.clamp(0.0, 1.0);
     for _ in 0..STEPS {

@@ -15,7 +15,7 @@ use std::collections::VecDeque;
 
 use nalgebra::Vector3;
 
-use super::spline::{Cubic, Tangents};
+use super::spline::{SplineSegment, Tangents};
 use crate::ProgramPlace;
 pub(super) use nearest::REACH;
 
@@ -53,7 +53,7 @@ pub(super) struct Foot {
 
 /// A set-point that the place has passed without standing on it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Passed {
+pub(super) struct PassedSetPoint {
     pub tip: Vector3<f64>,
     pub axis: Vector3<f64>,
     /// Along the path from the place or the set-point before, mm.
@@ -62,16 +62,16 @@ pub(super) struct Passed {
 
 /// The commanded path: the spline through its knots.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Path {
+pub(super) struct CommandedPath {
     knots: VecDeque<Knot>,
     /// The pieces behind all knots but the last; none where there is a gap.
-    pieces: VecDeque<Option<Cubic>>,
+    pieces: VecDeque<Option<SplineSegment>>,
     foot: Foot,
     /// Knots in cuts that the tool has passed since it was looked for the last time.
-    pub passed: Vec<Passed>,
+    pub passed: Vec<PassedSetPoint>,
 }
 
-impl Path {
+impl CommandedPath {
     pub fn clear(&mut self) {
         self.knots.clear();
         self.pieces.clear();
@@ -105,7 +105,7 @@ impl Path {
             let middle = knot.tip - last.tip - legs[0] - legs[1];
             knot.length = last.length + legs[0].norm() + middle.norm() + legs[1].norm();
             let ends = [&last.tip, &knot.tip];
-            let piece = Cubic::new(ends, &last.tip_ways[1], &knot.tip_ways[0]);
+            let piece = SplineSegment::new(ends, &last.tip_ways[1], &knot.tip_ways[0]);
             self.pieces.push_back(Some(piece));
         }
         self.knots.push_back(knot);
@@ -141,7 +141,7 @@ impl Path {
         for knot in self.foot.knot + 1..next.knot {
             let knot = &self.knots[knot];
             if knot.at.cuts {
-                self.passed.push(Passed {
+                self.passed.push(PassedSetPoint {
                     tip: knot.tip,
                     axis: knot.axis,
                     way: (knot.length - length).max(0.0),
@@ -205,7 +205,7 @@ impl Path {
 
     /// The piece after a knot; none after the last.
     #[inline]
-    fn cubic(&self, knot: usize) -> Option<&Cubic> {
+    fn cubic(&self, knot: usize) -> Option<&SplineSegment> {
         self.pieces.get(knot)?.as_ref()
     }
 
@@ -224,7 +224,7 @@ impl Path {
             return last.axis;
         };
         let ends = [&last.axis, &next.axis];
-        let cubic = Cubic::new(ends, &last.axis_ways[1], &next.axis_ways[0]);
+        let cubic = SplineSegment::new(ends, &last.axis_ways[1], &next.axis_ways[0]);
         let axis = cubic.at(foot.share);
         axis.try_normalize(0.1).unwrap_or(last.axis)
     }

@@ -14,7 +14,7 @@ use post_machine::kinematics::Pose;
 
 use super::lowest::lowest;
 use super::tied::TIE;
-use super::{Foot, Path};
+use super::{CommandedPath, Foot};
 use crate::ProgramPlace;
 
 /// Other places are looked for so many times the first distance along the path.
@@ -52,7 +52,7 @@ pub(in super::super) struct Nearest {
     pub way: f64,
 }
 
-impl Path {
+impl CommandedPath {
     /// The point nearest to where the tool is, while `commanded` is the set-point of the same time.
     pub fn nearest(&mut self, actual: &Pose, commanded: (u64, &Vector3<f64>)) -> Nearest {
         let start = self.further(self.foot);

@@ -34,9 +34,9 @@ fn wandering(rng: &mut Rng, count: usize) -> Vec<Vector3<f64>> {
     points
 }
 
-fn path(points: &[Vector3<f64>]) -> Path {
+fn path(points: &[Vector3<f64>]) -> CommandedPath {
     let last = points[points.len() - 1];
-    let mut path = Path::default();
+    let mut path = CommandedPath::default();
     let mut tips = FivePoints::all_at(&points[0]);
     tips.take(&points[0]);
     tips.take(&points[1]);
@@ -57,7 +57,7 @@ fn path(points: &[Vector3<f64>]) -> Path {
 }
 
 /// The places of a path, finely: length along it, as the search counts it, and point.
-fn fine(path: &Path, parts: usize) -> Vec<(f64, Vector3<f64>)> {
+fn fine(path: &CommandedPath, parts: usize) -> Vec<(f64, Vector3<f64>)> {
     let mut places = Vec::new();
     for knot in 0..path.knots.len() - 1 {
         let cubic = path.cubic(knot).unwrap();

@@ -3,13 +3,13 @@
 use nalgebra::Vector3;
 use post_machine::kinematics::Pose;
 
-use super::{Foot, Path};
+use super::{CommandedPath, Foot};
 
 /// Places whose distances differ by less, mm, are equally near: the one with the nearer tool axis counts. Where the
 /// tool turns about its tip, this alone tells them apart.
 pub(super) const TIE: f64 = 1e-4;
 
-impl Path {
+impl CommandedPath {
     /// The tool axis that is asked for at a place: of places that are equally near, the one that is nearest to the tool's.
     pub fn axis_beside(&self, tool: &Pose, foot: Foot) -> Vector3<f64> {
         self.tied(tool, foot).1

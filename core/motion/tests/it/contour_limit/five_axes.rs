@@ -2,9 +2,9 @@
 
 use nalgebra::Vector3;
 use post_feed::Samples;
-use post_feed::limits::{AxisAcceleration, Collocation, ContourError, Feed, Limit};
+use post_feed::limits::{AxisAcceleration, Collocation, ContourError, Limit, TipFeed};
 use post_machine::kinematics::Chain;
-use post_machine::servo::{Response, Servo};
+use post_machine::servo::{FrequencyResponse, Servo};
 use post_testkit::Rng;
 use post_testmachines::Random;
 
@@ -113,10 +113,10 @@ const TOLERANCE: f64 = 0.02;
 fn outcome(path: &Waves, samples: &Samples, servos: &[Servo]) -> Outcome {
     let highest = servos
         .iter()
-        .map(|servo| Response::new(servo).natural_frequency())
+        .map(|servo| FrequencyResponse::new(servo).natural_frequency())
         .fold(f64::INFINITY, f64::min);
     let collocation = Collocation::default();
-    let feed = Feed { most: 100.0, collocation };
+    let feed = TipFeed { most: 100.0, collocation };
     let rotary = path.chain.joints().iter().map(|joint| joint.rotary);
     let acceleration = AxisAcceleration {
         limits: rotary.map(|rotary| if rotary { 2.0 } else { 1000.0 }).collect(),

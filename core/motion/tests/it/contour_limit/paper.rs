@@ -6,9 +6,10 @@ use std::f64::consts::TAU;
 use nalgebra::{Vector2, Vector3};
 use post_feed::Samples;
 use post_feed::limits::{
-    AxisAcceleration, AxisVelocity, ChordError, Collocation, ContourError, Feed, Limit, deviation,
+    AxisAcceleration, AxisVelocity, ChordError, Collocation, ContourError, Limit, TipFeed,
+    deviation,
 };
-use post_feed::response::{Answer, Response};
+use post_feed::response::{ComplexGain, DriveResponse};
 use post_machine::servo::{self, Servo};
 use post_motion::path::BSpline;
 use post_testkit::shared;
@@ -65,14 +66,15 @@ fn rosette() -> Plane {
 
 /// The largest contour error by the formula for all directions, µm.
 fn by_formula(samples: &Samples, plan: &[f64], servos: &[Servo]) -> f64 {
-    let responses: Vec<servo::Response> = servos.iter().map(servo::Response::new).collect();
-    let answer = |response: &servo::Response, frequency: f64| {
+    let responses: Vec<servo::FrequencyResponse> =
+        servos.iter().map(servo::FrequencyResponse::new).collect();
+    let answer = |response: &servo::FrequencyResponse, frequency: f64| {
         let answer = response.at(frequency);
-        Answer { real: answer.re, imaginary: answer.im }
+        ComplexGain { real: answer.re, imaginary: answer.im }
     };
     let x = |frequency: f64| answer(&responses[0], frequency);
     let y = |frequency: f64| answer(&responses[1], frequency);
-    let axes: [&dyn Response; 2] = [&x, &y];
+    let axes: [&dyn DriveResponse; 2] = [&x, &y];
     let each = plan.iter().enumerate().map(|(sample, q)| {
         let curvature = samples.curvature[sample].max(1e-9);
         deviation(&axes, q.sqrt() * samples.stretch(sample) * curvature) / curvature
@@ -122,7 +124,7 @@ impl Case {
 
     fn run(&self, with: bool) -> Outcome {
         let collocation = Collocation::default();
-        let feed = Feed { most: 50.0, collocation };
+        let feed = TipFeed { most: 50.0, collocation };
         let velocity = AxisVelocity { limits: vec![50.0; 2], collocation };
         let acceleration = AxisAcceleration { limits: vec![200.0; 2], collocation };
         let chord = ChordError { tolerance: 0.0005, period: 0.004, collocation };

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use libm::{atan2, cos, hypot, sin};
 use nalgebra::Complex;
-use post_machine::servo::{Feedback, Loops, Response};
+use post_machine::servo::{Feedback, FrequencyResponse, Loops};
 use post_motion::servo::Follower;
 
 use super::{all_loops, feedrate_paper, of_loops, transfer};
@@ -64,7 +64,7 @@ fn block_diagram(loops: &Loops, s: Number) -> Number {
 #[test]
 fn loops_are_their_block_diagram() {
     for loops in all_loops() {
-        let response = Response::new(&of_loops(loops.clone()));
+        let response = FrequencyResponse::new(&of_loops(loops.clone()));
         for omega in [0.1, 3.0, 30.0, 90.0, 250.0, 590.0, 1500.0, 2e4] {
             let found = response.at(omega);
             let expected = block_diagram(&loops, Complex::new(0.0, omega));
@@ -113,7 +113,7 @@ fn a_sine_comes_out_as_the_block_diagram_says() {
 /// Recomputed for the X axis of Chen, Ren, Sun (2016): what the paper plots.
 #[test]
 fn the_feedrate_papers_gains() {
-    let response = Response::new(&feedrate_paper());
+    let response = FrequencyResponse::new(&feedrate_paper());
     for (omega, gain) in [(1.0, 1.00010), (5.0, 1.00321), (10.0, 1.01462), (20.0, 1.04902)] {
         let found = response.gain(omega);
         assert!((found - gain).abs() < 6e-6, "{omega}: {found}");
@@ -133,17 +133,20 @@ fn the_feedrate_papers_gains() {
 #[test]
 fn how_far_a_gain_holds() {
     // 50/(s + 50) is at -3 dB at 50 rad/s; |G| = 1 - share at 50·sqrt(1/(1 - share)² - 1).
-    let first = Response::new(&transfer(&[50.0], &[1.0, 50.0]));
+    let first = FrequencyResponse::new(&transfer(&[50.0], &[1.0, 50.0]));
     assert!((first.bandwidth() - 50.0).abs() < 1e-9);
     for share in [1e-6, 0.01, 0.3] {
         let expected = 50.0 * (1.0 / ((1.0 - share) * (1.0 - share)) - 1.0_f64).sqrt();
         let found = first.faithful_up_to(share);
         assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
     }
-    assert_eq!(Response::new(&transfer(&[0.9, 50.0], &[1.0, 50.0])).bandwidth(), f64::INFINITY);
+    assert_eq!(
+        FrequencyResponse::new(&transfer(&[0.9, 50.0], &[1.0, 50.0])).bandwidth(),
+        f64::INFINITY
+    );
     // The feedrate paper's: |G| rises to 1.0996 first, so 0.05 holds up to a little above 20 rad/s, where it is 0.04902,
     // and 0.2 until |G| has fallen to 0.8.
-    let paper = Response::new(&feedrate_paper());
+    let paper = FrequencyResponse::new(&feedrate_paper());
     for share in [0.001, 0.05, 0.0995, 0.2] {
         let found = paper.faithful_up_to(share);
         let step = 1e-3;
@@ -159,7 +162,7 @@ fn how_far_a_gain_holds() {
 #[test]
 fn the_natural_frequency_is_that_of_the_table_or_of_the_loops() {
     for loops in all_loops() {
-        let response = Response::new(&of_loops(loops.clone()));
+        let response = FrequencyResponse::new(&of_loops(loops.clone()));
         let (least, band) = (response.natural_frequency(), response.bandwidth());
         assert!(least > 0.0 && least <= band);
         let swing = loops.drive.mechanics().natural_frequency();
@@ -170,7 +173,7 @@ fn the_natural_frequency_is_that_of_the_table_or_of_the_loops() {
             assert!(response.gain(omega) > 0.999 * FRAC_1_SQRT_2, "{omega}");
         }
     }
-    let paper = Response::new(&feedrate_paper());
+    let paper = FrequencyResponse::new(&feedrate_paper());
     assert_eq!(paper.natural_frequency(), paper.bandwidth());
 }
 
@@ -181,7 +184,7 @@ fn a_narrow_resonance_is_found() {
     let (w, thin) = (400.0, 1e-6);
     let numerator = [1.0, 2.0 * 1e-5 * w, w * w];
     let denominator = [1.0, 2.0 * thin * w, w * w];
-    let response = Response::new(&transfer(&numerator, &denominator));
+    let response = FrequencyResponse::new(&transfer(&numerator, &denominator));
     assert!(response.gain(w) > 9.0);
     let found = response.faithful_up_to(0.5);
     assert!((found / w - 1.0).abs() < 1e-4 && found < w, "{found}");

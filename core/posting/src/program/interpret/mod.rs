@@ -30,7 +30,7 @@ use super::word_census::WordCensus;
 use super::{Command, DrillCycle, MoveFeed, ProgramStep};
 use cam_system::CamSystem;
 use frames::millimetres;
-use post_machine::diagnostic::{Diagnostic, Place, Short};
+use post_machine::diagnostic::{Diagnostic, Short, SourcePlace};
 use turned::ArcAxisConvention;
 use words::SuspectRecord;
 
@@ -448,7 +448,7 @@ impl ClInterpreter {
         }
     }
 
-    fn place(&self, record: &Record<'_>) -> Option<Place> {
+    fn place(&self, record: &Record<'_>) -> Option<SourcePlace> {
         Some(record_place(&self.reading.file, record))
     }
 
@@ -475,7 +475,7 @@ impl ClInterpreter {
 }
 
 /// Where a record stands.
-pub(crate) fn record_place(file: &str, record: &Record<'_>) -> Place {
+pub(crate) fn record_place(file: &str, record: &Record<'_>) -> SourcePlace {
     let text = record.text();
-    Place::new(file, record.line, &text, 0..text.len())
+    SourcePlace::new(file, record.line, &text, 0..text.len())
 }

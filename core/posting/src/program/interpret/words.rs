@@ -3,7 +3,7 @@
 use post_grammar::text::{as_remark, escaped, excerpt, is_unprintable};
 use post_grammar::{Argument, Record, UnknownPath, WordUsage};
 use post_machine::description::Insert;
-use post_machine::diagnostic::{Diagnostic, Place};
+use post_machine::diagnostic::{Diagnostic, SourcePlace};
 
 use super::{ClInterpreter, SHOWN_NAME, record_place};
 use crate::program::{Command, ProgramStep, UnknownWordPolicy};
@@ -12,7 +12,7 @@ use crate::program::{Command, ProgramStep, UnknownWordPolicy};
 #[derive(Debug)]
 pub(super) struct SuspectRecord {
     word: String,
-    place: Place,
+    place: SourcePlace,
 }
 
 /// Largest number of suspects that are reported.

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use post_grammar::{ArcMove, CircleRecord, Record, Sense, Statement};
 use post_machine::kinematics::Pose;
 
-use super::modal::{Meant, Modal, Out};
+use super::modal::{ClModal, CourseItems, RecordResult};
 use crate::BSpline;
 use crate::course::Curve;
 
@@ -22,7 +22,7 @@ const MOST_NUMBERS: usize = 1_000_000;
 
 /// A curve that is not complete.
 #[derive(Clone, Debug)]
-pub(super) enum Pending {
+pub(super) enum OpenCurve {
     Arc(CircleRecord),
     Turned(ArcMove),
     Spline {
@@ -33,8 +33,12 @@ pub(super) enum Pending {
     },
 }
 
-impl Modal {
-    pub(super) fn curve_word(&mut self, record: &Record<'_>, out: &mut Out) -> Meant {
+impl ClModal {
+    pub(super) fn curve_word(
+        &mut self,
+        record: &Record<'_>,
+        out: &mut CourseItems,
+    ) -> RecordResult {
         let faulty = |message: &str| Err(message.to_owned());
         let point = match &record.statement {
             Statement::Control { point, .. } => {
@@ -45,16 +49,16 @@ impl Modal {
         let done = match (&record.statement, &mut self.pending) {
             (
                 Statement::Circle(_) | Statement::ArcMove(_),
-                Some(Pending::Arc(_) | Pending::Turned(_)),
+                Some(OpenCurve::Arc(_) | OpenCurve::Turned(_)),
             ) => faulty("the arc before this one is not ended by a point"),
             (Statement::ArcMove(arc), _) => {
                 self.end_spline(record, out)?;
-                self.pending = Some(Pending::Turned(*arc));
+                self.pending = Some(OpenCurve::Turned(*arc));
                 Ok(())
             }
             (Statement::Circle(circle), _) => {
                 self.end_spline(record, out)?;
-                self.pending = Some(Pending::Arc(circle.clone()));
+                self.pending = Some(OpenCurve::Arc(circle.clone()));
                 Ok(())
             }
             (Statement::Nurbs, _) => {
@@ -62,29 +66,29 @@ impl Modal {
                 match self.stands {
                     Some(from) => {
                         self.pending =
-                            Some(Pending::Spline { knots: Vec::new(), poles: vec![from.tip] });
+                            Some(OpenCurve::Spline { knots: Vec::new(), poles: vec![from.tip] });
                         Ok(())
                     }
                     None => faulty("NURBS begins where the tool stands, and nobody knows where"),
                 }
             }
-            (_, None | Some(Pending::Arc(_) | Pending::Turned(_))) => {
+            (_, None | Some(OpenCurve::Arc(_) | OpenCurve::Turned(_))) => {
                 faulty("no NURBS stands before this")
             }
-            (_, Some(Pending::Spline { knots, poles }))
+            (_, Some(OpenCurve::Spline { knots, poles }))
                 if knots.len().max(poles.len()) > MOST_NUMBERS =>
             {
                 faulty("a spline of more than a million numbers")
             }
-            (Statement::Knot(numbers), Some(Pending::Spline { knots, .. })) => {
+            (Statement::Knot(numbers), Some(OpenCurve::Spline { knots, .. })) => {
                 knots.extend_from_slice(numbers);
                 Ok(())
             }
-            (Statement::Control { axis: None, .. }, Some(Pending::Spline { poles, .. })) => {
+            (Statement::Control { axis: None, .. }, Some(OpenCurve::Spline { poles, .. })) => {
                 poles.extend(point);
                 Ok(())
             }
-            (_, Some(Pending::Spline { .. })) => faulty("splines with tool axes are not read"),
+            (_, Some(OpenCurve::Spline { .. })) => faulty("splines with tool axes are not read"),
         };
         done.map_err(|message: String| self.fault(record, message))
     }
@@ -95,8 +99,8 @@ impl Modal {
         record: &Record<'_>,
         circle: &CircleRecord,
         to: Pose,
-        out: &mut Out,
-    ) -> Meant {
+        out: &mut CourseItems,
+    ) -> RecordResult {
         let Some(from) = self.stands else {
             let message = "the arc begins where the tool stands, and nobody knows where";
             return Err(self.fault(record, message.to_owned()));
@@ -142,14 +146,18 @@ impl Modal {
     }
 
     /// The spline that waits is complete: a record behind it that is none of it came.
-    pub(super) fn end_spline(&mut self, record: &Record<'_>, out: &mut Out) -> Meant {
-        if !matches!(self.pending, Some(Pending::Spline { .. })) {
+    pub(super) fn end_spline(
+        &mut self,
+        record: &Record<'_>,
+        out: &mut CourseItems,
+    ) -> RecordResult {
+        if !matches!(self.pending, Some(OpenCurve::Spline { .. })) {
             return Ok(());
         }
         if let Some(fault) = self.strange.between_moves() {
             return Err(fault);
         }
-        let (Some(Pending::Spline { knots, poles }), Some(from)) =
+        let (Some(OpenCurve::Spline { knots, poles }), Some(from)) =
             (self.pending.take(), self.stands)
         else {
             return Ok(());

@@ -3,7 +3,7 @@
 use post_grammar::{FeedRate, FeedUnit, Record, Units};
 use post_machine::diagnostic::Diagnostic;
 
-use super::modal::{Modal, millimetres};
+use super::modal::{ClModal, millimetres};
 
 /// A feed as the file states it, in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub(super) enum FeedWord {
     InverseTime(f64),
 }
 
-impl Modal {
+impl ClModal {
     /// A feed word; none where the file writes 0 for want of one, and the user names a feed.
     pub(super) fn feed_word(
         &mut self,

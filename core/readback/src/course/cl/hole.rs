@@ -6,7 +6,7 @@ use crate::{CycleCall, CycleKind};
 
 /// A cycle, lengths in mm along the tool axis, heights counted from the programmed point, plus is off the part.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Hole {
+pub(super) struct ClHole {
     pub(super) kind: CycleKind,
     /// Where the feed begins.
     pub(super) clearance: f64,
@@ -30,7 +30,7 @@ pub(super) struct Hole {
 /// A dwell in a hole lasts no longer: a day, s.
 const LONGEST_DWELL: f64 = 86_400.0;
 
-impl Hole {
+impl ClHole {
     /// Of a definition whose lengths are in units of `scale` mm.
     ///
     /// # Errors

@@ -5,16 +5,16 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 
 use super::feed::FeedWord;
-use super::hole::Hole;
-use super::modal::{Meant, Modal, Out};
+use super::hole::ClHole;
+use super::modal::{ClModal, CourseItems, RecordResult};
 use crate::course::Curve;
-use crate::{CycleKind, MotionKind, Spindle, Told};
+use crate::{CycleKind, MotionKind, ProgramEvent, SpindleState};
 
 /// Ways shorter than this are none, mm.
 const NONE: f64 = 1e-6;
 
-impl Modal {
-    pub(super) fn cycle_word(&mut self, record: &Record<'_>, cycle: &Cycle) -> Meant {
+impl ClModal {
+    pub(super) fn cycle_word(&mut self, record: &Record<'_>, cycle: &Cycle) -> RecordResult {
         match cycle {
             Cycle::Off => self.cycle = None,
             Cycle::On => self.cycle = self.last_cycle,
@@ -42,9 +42,9 @@ impl Modal {
         &self,
         record: &Record<'_>,
         definition: &CycleDefinition,
-    ) -> Result<Hole, Box<Diagnostic>> {
+    ) -> Result<ClHole, Box<Diagnostic>> {
         let faulty = |why: &str| Err(self.fault(record, why.to_owned()));
-        if let Some(kind) = Hole::without_pecks(definition)
+        if let Some(kind) = ClHole::without_pecks(definition)
             && !self.settings.allows(kind)
         {
             return faulty(&format!("CYCLE/{kind} without a peck"));
@@ -55,7 +55,8 @@ impl Modal {
         if by_feed || by_table {
             return faulty("which of the numbers of this cycle is a height is not known");
         }
-        let mut hole = Hole::new(definition, self.scale).map_err(|why| self.fault(record, why))?;
+        let mut hole =
+            ClHole::new(definition, self.scale).map_err(|why| self.fault(record, why))?;
         match (self.strange.autodesk, bare) {
             (true, [_, level]) => {
                 let below = definition.rapid_to.unwrap_or(0.0);
@@ -71,9 +72,9 @@ impl Modal {
     fn above(
         &self,
         record: &Record<'_>,
-        hole: Hole,
+        hole: ClHole,
         bottom: Pose,
-    ) -> Result<(Hole, Pose), Box<Diagnostic>> {
+    ) -> Result<(ClHole, Pose), Box<Diagnostic>> {
         let Some(planes) = hole.planes else {
             return Ok((hole, bottom));
         };
@@ -82,7 +83,7 @@ impl Modal {
         let [level, clearance] = planes.map(|height| height - at.tip.z);
         let upright = bottom.axis.z > 1.0 - 1e-9;
         match upright && clearance >= 0.0 && level >= clearance {
-            true => Ok((Hole { level, clearance, ..hole }, at)),
+            true => Ok((ClHole { level, clearance, ..hole }, at)),
             false => {
                 let message =
                     "the planes of this cycle do not lie above its hole, or the tool leans";
@@ -95,11 +96,11 @@ impl Modal {
     pub(super) fn drill(
         &mut self,
         record: &Record<'_>,
-        hole: Hole,
+        hole: ClHole,
         feed: Option<FeedWord>,
         at: Pose,
-        out: &mut Out,
-    ) -> Meant {
+        out: &mut CourseItems,
+    ) -> RecordResult {
         let (hole, at) = self.above(record, hole, at)?;
         let feed = match (feed, hole.taps(), hole.pitch, self.tools.rpm()) {
             (_, true, Some(pitch), Some(rpm)) => Some(libm::fabs(pitch) * rpm),
@@ -110,12 +111,12 @@ impl Modal {
             (Some(word), ..) => self.per_minute(word, || None),
             (None, ..) => None,
         };
-        let left = matches!(self.tools.spindle(), Spindle::CounterClockwise(_));
+        let left = matches!(self.tools.spindle(), SpindleState::CounterClockwise(_));
         let kind = match hole.kind {
             CycleKind::Tap if left => CycleKind::TapLeft,
             kind => kind,
         };
-        let hole = Hole { kind, ..hole };
+        let hole = ClHole { kind, ..hole };
         if hole.taps() && hole.pitch.is_some_and(|pitch| pitch < 0.0) && !left {
             let message = "a left-hand thread, and the spindle turns right";
             return Err(self.fault(record, message.to_owned()));
@@ -140,7 +141,7 @@ impl Modal {
             }
         }
         self.go(line, rapid, Curve::Straight, height(hole.level), true, out);
-        self.tell(record, Told::Cycle(hole.call(feed.unwrap_or(0.0))), out);
+        self.tell(record, ProgramEvent::Cycle(hole.call(feed.unwrap_or(0.0))), out);
         if hole.level - hole.clearance > NONE {
             self.go(line, rapid, Curve::Straight, height(hole.clearance), true, out);
         }
@@ -154,7 +155,7 @@ impl Modal {
         let time = hole.dwell + turns;
         if time > 0.0 {
             let revolutions = false;
-            self.tell(record, Told::Dwell { time, revolutions }, out);
+            self.tell(record, ProgramEvent::Dwell { time, revolutions }, out);
         }
         if hole.out_at_feed() {
             self.go(line, pace, Curve::Straight, height(hole.clearance), true, out);
@@ -162,7 +163,7 @@ impl Modal {
         if !hole.out_at_feed() || hole.level - hole.clearance > NONE {
             self.go(line, rapid, Curve::Straight, height(hole.level), true, out);
         }
-        self.tell(record, Told::CycleEnd, out);
+        self.tell(record, ProgramEvent::CycleEnd, out);
         Ok(())
     }
 }

@@ -22,29 +22,29 @@ mod turned;
 use std::collections::VecDeque;
 use std::io::Read;
 
-use post_grammar::{ReadError, Reader};
+use post_grammar::{ClReader, ReadError};
 use post_machine::diagnostic::{Diagnostic, unreadable};
 
-use super::{Course, Item};
-use modal::Modal;
-pub use settings::Settings;
+use super::{Course, CourseItem};
+use modal::ClModal;
+pub use settings::ClSettings;
 pub use tools::ClTool;
 
 /// A CL file, read record by record.
 #[derive(Debug)]
 pub struct ClCourse<R> {
-    reader: Reader<R>,
-    modal: Modal,
-    waiting: VecDeque<Item>,
+    reader: ClReader<R>,
+    modal: ClModal,
+    waiting: VecDeque<CourseItem>,
     ended: bool,
 }
 
 impl<R: Read> ClCourse<R> {
     /// The file from `input`, which need not be buffered.
-    pub fn new(settings: Settings, input: R) -> Self {
+    pub fn new(settings: ClSettings, input: R) -> Self {
         Self {
-            reader: Reader::new(input),
-            modal: Modal::new(settings),
+            reader: ClReader::new(input),
+            modal: ClModal::new(settings),
             waiting: VecDeque::new(),
             ended: false,
         }
@@ -62,7 +62,7 @@ impl<R: Read> ClCourse<R> {
 }
 
 impl<R: Read> Course for ClCourse<R> {
-    fn next(&mut self) -> Result<Option<Item>, Box<Diagnostic>> {
+    fn next(&mut self) -> Result<Option<CourseItem>, Box<Diagnostic>> {
         loop {
             if let Some(item) = self.waiting.pop_front() {
                 return Ok(Some(item));

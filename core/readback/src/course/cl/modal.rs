@@ -7,33 +7,33 @@ use post_grammar::{
     Argument, CoolantWord, CutterSide, Delay, Delta, Record, Rotate, Statement, Units,
 };
 use post_machine::description::Print;
-use post_machine::diagnostic::{Diagnostic, Place};
+use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_machine::kinematics::Pose;
 
-use super::curves::Pending;
+use super::curves::OpenCurve;
 use super::feed::FeedWord;
 use super::frame::Frames;
-use super::hole::Hole;
-use super::settings::Settings;
-use super::strange::Strange;
-use super::tools::Tools;
-use super::turned::Rule;
-use crate::course::{Curve, Item, Piece, Reach};
-use crate::{Coolants, MotionKind, Told};
+use super::hole::ClHole;
+use super::settings::ClSettings;
+use super::strange::StrangeWords;
+use super::tools::ClTools;
+use super::turned::ArcTurnRule;
+use crate::course::{CourseItem, CoursePiece, Curve, ReachedPose};
+use crate::{Coolants, MotionKind, ProgramEvent};
 
 /// No machine reaches a coordinate beyond this: ten kilometres, mm.
 const FARTHEST: f64 = 1e7;
 
 /// What a record means, or what is wrong with it.
-pub(super) type Meant = Result<(), Box<Diagnostic>>;
+pub(super) type RecordResult = Result<(), Box<Diagnostic>>;
 
 /// Items that a record means, in order.
-pub(super) type Out = VecDeque<Item>;
+pub(super) type CourseItems = VecDeque<CourseItem>;
 
 /// What is modal in a CL file.
 #[derive(Debug)]
-pub(super) struct Modal {
-    pub(super) settings: Settings,
+pub(super) struct ClModal {
+    pub(super) settings: ClSettings,
     /// Units that the file names.
     pub(super) units: Option<Units>,
     /// mm in one unit of the file.
@@ -58,10 +58,10 @@ pub(super) struct Modal {
     /// `FEDRAT/RAPID`: all points until the next feed.
     rapid_feed: bool,
     pub(super) feed: Option<FeedWord>,
-    pub(super) pending: Option<Pending>,
-    pub(super) cycle: Option<(Hole, Option<FeedWord>)>,
-    pub(super) last_cycle: Option<(Hole, Option<FeedWord>)>,
-    pub(super) tools: Tools,
+    pub(super) pending: Option<OpenCurve>,
+    pub(super) cycle: Option<(ClHole, Option<FeedWord>)>,
+    pub(super) last_cycle: Option<(ClHole, Option<FeedWord>)>,
+    pub(super) tools: ClTools,
     coolant: Coolants,
     side: Option<CutterSide>,
     register: Option<u32>,
@@ -71,13 +71,13 @@ pub(super) struct Modal {
     pub(super) set_out: Option<Vector3<f64>>,
     /// Normal of the plane that the tip stays in along a curve, frame of the file.
     pub(super) surface: Option<Vector3<f64>>,
-    pub(super) arc_rule: Rule,
-    pub(super) strange: Strange,
+    pub(super) arc_rule: ArcTurnRule,
+    pub(super) strange: StrangeWords,
     finished: bool,
 }
 
-impl Modal {
-    pub(super) fn new(settings: Settings) -> Self {
+impl ClModal {
+    pub(super) fn new(settings: ClSettings) -> Self {
         Self {
             scale: settings.units.map_or(1.0, millimetres),
             frames: Frames::new(settings.turn),
@@ -96,7 +96,7 @@ impl Modal {
             pending: None,
             cycle: None,
             last_cycle: None,
-            tools: Tools::default(),
+            tools: ClTools::default(),
             coolant: Coolants::default(),
             side: None,
             register: None,
@@ -104,8 +104,8 @@ impl Modal {
             offset: None,
             set_out: None,
             surface: None,
-            arc_rule: Rule::default(),
-            strange: Strange::default(),
+            arc_rule: ArcTurnRule::default(),
+            strange: StrangeWords::default(),
             finished: false,
         }
     }
@@ -119,7 +119,7 @@ impl Modal {
     }
 
     /// What is left open at the end of the file.
-    pub(super) fn finish(&mut self) -> Meant {
+    pub(super) fn finish(&mut self) -> RecordResult {
         if let Some(fault) = self.strange.left_over() {
             return Err(fault);
         }
@@ -127,8 +127,10 @@ impl Modal {
             None => Ok(()),
             Some(pending) => {
                 let what = match pending {
-                    Pending::Arc(_) | Pending::Turned(_) => "a CIRCLE or MOVARC that no GOTO ends",
-                    Pending::Spline { .. } => "a NURBS that nothing ends",
+                    OpenCurve::Arc(_) | OpenCurve::Turned(_) => {
+                        "a CIRCLE or MOVARC that no GOTO ends"
+                    }
+                    OpenCurve::Spline { .. } => "a NURBS that nothing ends",
                 };
                 Err(Diagnostic::error("course", format!("the file ends in {what}")).boxed())
             }
@@ -136,7 +138,7 @@ impl Modal {
     }
 
     /// What one record means.
-    pub(super) fn record(&mut self, record: &Record<'_>, out: &mut Out) -> Meant {
+    pub(super) fn record(&mut self, record: &Record<'_>, out: &mut CourseItems) -> RecordResult {
         if self.finished {
             return Ok(());
         }
@@ -172,7 +174,7 @@ impl Modal {
             Statement::LoadTool(tool) => self.load_read(record, tool, out),
             Statement::SelectTool(number) => {
                 if self.tools.loaded() != Some(*number) {
-                    self.tell(record, Told::Preselect(*number), out);
+                    self.tell(record, ProgramEvent::Preselect(*number), out);
                 }
                 Ok(())
             }
@@ -228,7 +230,7 @@ impl Modal {
             Statement::Subprogram(number) => {
                 if !self.does_nothing("CALSUB", &[Argument::Number((*number).into())]) {
                     self.lost();
-                    self.tell(record, Told::Subprogram(*number), out);
+                    self.tell(record, ProgramEvent::Subprogram(*number), out);
                 }
                 Ok(())
             }
@@ -250,7 +252,7 @@ impl Modal {
                 let register =
                     (side != 0).then(|| self.register.or(self.tools.loaded()).unwrap_or(1));
                 self.compensated = side != 0;
-                self.tell(record, Told::Compensation { side, register }, out);
+                self.tell(record, ProgramEvent::Compensation { side, register }, out);
                 Ok(())
             }
             // Points stay where they are written: the tool's centre, or the contour.
@@ -270,25 +272,25 @@ impl Modal {
                     (Delay::Revolutions(turns), Some(rpm)) => (turns * 60.0 / rpm, false),
                     (Delay::Revolutions(turns), None) => (turns, true),
                 };
-                self.tell(record, Told::Dwell { time, revolutions }, out);
+                self.tell(record, ProgramEvent::Dwell { time, revolutions }, out);
                 Ok(())
             }
             Statement::Stop => {
-                self.tell(record, Told::Stop, out);
+                self.tell(record, ProgramEvent::Stop, out);
                 Ok(())
             }
             Statement::OptionalStop => {
-                self.tell(record, Told::OptionalStop, out);
+                self.tell(record, ProgramEvent::OptionalStop, out);
                 Ok(())
             }
             Statement::Head(name) => {
                 self.lost();
-                self.tell(record, Told::Head(name.clone()), out);
+                self.tell(record, ProgramEvent::Head(name.clone()), out);
                 let mut offsets = self.settings.head_offsets.iter();
                 if let Some((_, number)) = offsets.find(|(head, _)| head == name) {
                     let number = *number;
                     self.offset = Some(number);
-                    self.tell(record, Told::WorkOffset(number.to_string()), out);
+                    self.tell(record, ProgramEvent::WorkOffset(number.to_string()), out);
                 }
                 Ok(())
             }
@@ -296,16 +298,16 @@ impl Modal {
                 self.end_spline(record, out)?;
                 self.axis = Vector3::z();
                 self.tools.name(tool.as_deref());
-                self.tell(record, Told::Operation(name.clone()), out);
+                self.tell(record, ProgramEvent::Operation(name.clone()), out);
                 Ok(())
             }
             Statement::EndOfPath => self.end_spline(record, out),
             Statement::Print(text) if self.settings.print == Print::Message => {
-                self.tell(record, Told::Message(text.clone()), out);
+                self.tell(record, ProgramEvent::Message(text.clone()), out);
                 Ok(())
             }
             Statement::PartName(text) | Statement::Print(text) => {
-                self.tell(record, Told::Remark(text.clone()), out);
+                self.tell(record, ProgramEvent::Remark(text.clone()), out);
                 Ok(())
             }
             Statement::ToolName(name) => {
@@ -349,8 +351,8 @@ impl Modal {
         record: &Record<'_>,
         point: [f64; 3],
         axis: Option<[f64; 3]>,
-        out: &mut Out,
-    ) -> Meant {
+        out: &mut CourseItems,
+    ) -> RecordResult {
         if self.pending.is_some() {
             self.end_spline(record, out)?;
         }
@@ -360,11 +362,11 @@ impl Modal {
     }
 
     /// The tool goes to a pose of the part frame: along the curve that waits, into a hole, or straight.
-    fn arrive(&mut self, record: &Record<'_>, to: Pose, out: &mut Out) -> Meant {
+    fn arrive(&mut self, record: &Record<'_>, to: Pose, out: &mut CourseItems) -> RecordResult {
         self.before_move(record, out)?;
         match self.pending.take() {
-            Some(Pending::Arc(circle)) => return self.arc(record, &circle, to, out),
-            Some(Pending::Turned(arc)) => {
+            Some(OpenCurve::Arc(circle)) => return self.arc(record, &circle, to, out),
+            Some(OpenCurve::Turned(arc)) => {
                 let circle = self.turned(record, &arc, to)?;
                 return self.arc(record, &circle, to, out);
             }
@@ -394,7 +396,7 @@ impl Modal {
         (MotionKind::Feed, feed)
     }
 
-    /// [`Modal::pace`] of a curve that ended before the record that a `RAPID` in front of it is meant for.
+    /// [`ClModal::pace`] of a curve that ended before the record that a `RAPID` in front of it is meant for.
     pub(super) fn pace_behind(&mut self, curve: &Curve, to: Pose) -> (MotionKind, Option<f64>) {
         let rapid = std::mem::take(&mut self.rapid);
         let pace = self.pace(curve, to);
@@ -415,7 +417,7 @@ impl Modal {
     /// The way to a pose, mm; of the first point of all none.
     fn way(&self, curve: &Curve, to: Pose) -> Option<f64> {
         let from = self.stands?;
-        let piece = Piece {
+        let piece = CoursePiece {
             line: 0,
             kind: MotionKind::Feed,
             curve: curve.clone(),
@@ -435,14 +437,16 @@ impl Modal {
         curve: Curve,
         to: Pose,
         hole: bool,
-        out: &mut Out,
+        out: &mut CourseItems,
     ) {
         self.measured = true;
         self.strange.moved = true;
         let known = !(self.only_said && curve == Curve::Straight);
         let item = match self.stands.filter(|_| known) {
-            Some(from) => Item::Piece(Piece { line, kind, curve, from, to, feed, hole }),
-            None => Item::Reach(Reach { line, kind, to, feed, hole }),
+            Some(from) => {
+                CourseItem::Piece(CoursePiece { line, kind, curve, from, to, feed, hole })
+            }
+            None => CourseItem::Reach(ReachedPose { line, kind, to, feed, hole }),
         };
         self.stands = Some(to);
         self.only_said = false;
@@ -450,7 +454,11 @@ impl Modal {
     }
 
     /// What is seen to before a point: index moves that disagree, a tool that is named outside the file.
-    pub(super) fn before_move(&mut self, record: &Record<'_>, out: &mut Out) -> Meant {
+    pub(super) fn before_move(
+        &mut self,
+        record: &Record<'_>,
+        out: &mut CourseItems,
+    ) -> RecordResult {
         if let Some(fault) = self.strange.between_moves() {
             return Err(fault);
         }
@@ -472,7 +480,7 @@ impl Modal {
         Ok(())
     }
 
-    fn godlta(&mut self, record: &Record<'_>, delta: Delta, out: &mut Out) -> Meant {
+    fn godlta(&mut self, record: &Record<'_>, delta: Delta, out: &mut CourseItems) -> RecordResult {
         let Some(from) = self.stands else {
             let message = "GODLTA steps from the last point, and there is none";
             return Err(self.fault(record, message.to_owned()));
@@ -497,13 +505,13 @@ impl Modal {
         &mut self,
         record: &Record<'_>,
         home: Option<([f64; 3], Option<[f64; 3]>)>,
-        out: &mut Out,
-    ) -> Meant {
+        out: &mut CourseItems,
+    ) -> RecordResult {
         self.end_spline(record, out)?;
         let Some((point, axis)) = home else {
             self.rapid = false;
             self.lost();
-            out.push_back(Item::Away { line: record.line });
+            out.push_back(CourseItem::Away { line: record.line });
             return Ok(());
         };
         self.rapid = true;
@@ -514,7 +522,7 @@ impl Modal {
         done
     }
 
-    fn rotate(&mut self, record: &Record<'_>, rotate: &Rotate) -> Meant {
+    fn rotate(&mut self, record: &Record<'_>, rotate: &Rotate) -> RecordResult {
         if self.frames.sits_turned() {
             let message = "the angles of this index move are those of a part that is not turned, and here it sits turned about its Z";
             return Err(self.fault(record, message.to_owned()));
@@ -530,7 +538,12 @@ impl Modal {
         Ok(())
     }
 
-    fn coolant(&mut self, record: &Record<'_>, word: CoolantWord, out: &mut Out) -> Meant {
+    fn coolant(
+        &mut self,
+        record: &Record<'_>,
+        word: CoolantWord,
+        out: &mut CourseItems,
+    ) -> RecordResult {
         self.load_due(record, out)?;
         let none = Coolants::default();
         let flood = Coolants { flood: true, ..none };
@@ -546,11 +559,11 @@ impl Modal {
         if coolants != none {
             self.coolant = coolants;
         }
-        self.tell(record, Told::Coolant(coolants), out);
+        self.tell(record, ProgramEvent::Coolant(coolants), out);
         Ok(())
     }
 
-    fn set_units(&mut self, record: &Record<'_>, units: Units) -> Meant {
+    fn set_units(&mut self, record: &Record<'_>, units: Units) -> RecordResult {
         let scale = millimetres(self.settings.units.unwrap_or(units));
         self.units = Some(units);
         if scale != self.scale && self.measured {
@@ -566,8 +579,8 @@ impl Modal {
         &mut self,
         record: &Record<'_>,
         (number, set): (u32, bool),
-        out: &mut Out,
-    ) -> Meant {
+        out: &mut CourseItems,
+    ) -> RecordResult {
         let value = Argument::Number(number.into());
         let nothing = match set {
             true => {
@@ -578,13 +591,13 @@ impl Modal {
         };
         if !nothing && self.offset.replace(number) != Some(number) {
             self.lost();
-            self.tell(record, Told::WorkOffset(number.to_string()), out);
+            self.tell(record, ProgramEvent::WorkOffset(number.to_string()), out);
         }
         Ok(())
     }
 
     /// Takes the axis of a point of six numbers.
-    fn set_axis(&mut self, record: &Record<'_>, axis: Option<[f64; 3]>) -> Meant {
+    fn set_axis(&mut self, record: &Record<'_>, axis: Option<[f64; 3]>) -> RecordResult {
         if let Some(axis) = axis {
             self.axis = self.unit(record, axis, "the tool axis")?;
         }
@@ -617,7 +630,7 @@ impl Modal {
         Ok(point)
     }
 
-    fn near(&self, record: &Record<'_>, point: Vector3<f64>) -> Meant {
+    fn near(&self, record: &Record<'_>, point: Vector3<f64>) -> RecordResult {
         if point.amax() <= FARTHEST {
             return Ok(());
         }
@@ -639,15 +652,15 @@ impl Modal {
         })
     }
 
-    pub(super) fn tell(&self, record: &Record<'_>, told: Told, out: &mut Out) {
+    pub(super) fn tell(&self, record: &Record<'_>, event: ProgramEvent, out: &mut CourseItems) {
         let line = record.line;
-        out.push_back(Item::Told { line, told });
+        out.push_back(CourseItem::Event { line, event });
     }
 
     #[cold]
     pub(super) fn fault(&self, record: &Record<'_>, message: String) -> Box<Diagnostic> {
         let text = record.text();
-        let place = Place::new(&self.settings.file, record.line, &text, 0..text.len());
+        let place = SourcePlace::new(&self.settings.file, record.line, &text, 0..text.len());
         Diagnostic::error("course", message).at(Some(place)).boxed()
     }
 }

@@ -5,7 +5,7 @@ use post_machine::description::{EdgeSource, Machine, Print, ToolLength, WordRule
 
 /// How a CL file is meant. What `post` was told must be told here, so that the same job is judged.
 #[derive(Clone, Debug, Default)]
-pub struct Settings {
+pub struct ClSettings {
     /// The file's name in messages.
     pub file: String,
     /// Units of its numbers, whatever it says (`--units`).
@@ -40,7 +40,7 @@ pub struct Settings {
     pub head_offsets: Vec<(String, u32)>,
 }
 
-impl Settings {
+impl ClSettings {
     /// As the machine file has it, of a file that messages call `file`; what the user says is to be filled in.
     pub fn of(machine: &Machine, file: &str) -> Self {
         Self {

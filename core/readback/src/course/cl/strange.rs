@@ -3,11 +3,11 @@
 use post_grammar::{Argument, Record, UnknownPath, WordUsage};
 use post_machine::diagnostic::Diagnostic;
 
-use super::modal::{Meant, Modal};
+use super::modal::{ClModal, RecordResult};
 
 /// Of the file.
 #[derive(Debug, Default)]
-pub(super) struct Strange {
+pub(super) struct StrangeWords {
     /// CATIA wrote it.
     pub(super) catia: bool,
     /// `MODE/MILL`.
@@ -20,7 +20,7 @@ pub(super) struct Strange {
     suspect: Option<(Box<Diagnostic>, bool)>,
 }
 
-impl Strange {
+impl StrangeWords {
     /// A move follows: what may be a move stands between moves.
     pub(super) fn between_moves(&mut self) -> Option<Box<Diagnostic>> {
         self.suspect.take().map(|(fault, _)| fault)
@@ -33,14 +33,14 @@ impl Strange {
     }
 }
 
-impl Modal {
+impl ClModal {
     /// A record without a meaning here.
     pub(super) fn other(
         &mut self,
         record: &Record<'_>,
         word: &str,
         arguments: &[Argument],
-    ) -> Meant {
+    ) -> RecordResult {
         if self.has_lines(word, arguments) {
             return Ok(());
         }

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use post_grammar::{LoadTool, Record, Sense, SpindleUnit, SpindleWord};
 use post_machine::description::ToolLength;
 
-use super::modal::{Meant, Modal, Out};
-use crate::{Spindle, Told};
+use super::modal::{ClModal, CourseItems, RecordResult};
+use crate::{ProgramEvent, SpindleState};
 
 /// No file has more tools.
 const MOST_TOOLS: usize = 1_000;
@@ -31,7 +31,7 @@ pub struct ClTool {
 
 /// The tool in the spindle, and the spindle.
 #[derive(Debug, Default)]
-pub(super) struct Tools {
+pub(super) struct ClTools {
     all: Vec<ClTool>,
     /// Number, register and length (as written) of the tool in the spindle.
     loaded: Option<(u32, u32, Option<f64>)>,
@@ -49,12 +49,12 @@ pub(super) struct Tools {
     /// m/min, and the most revolutions a minute.
     surface: Option<(f64, Option<f64>)>,
     counter: bool,
-    spindle: Spindle,
+    spindle: SpindleState,
     /// The file said what the spindle does since the tool came.
     said: bool,
 }
 
-impl Tools {
+impl ClTools {
     pub(super) fn all(&self) -> &[ClTool] {
         &self.all
     }
@@ -69,7 +69,7 @@ impl Tools {
         self.rpm.filter(|rpm| *rpm > 0.0)
     }
 
-    pub(super) fn spindle(&self) -> Spindle {
+    pub(super) fn spindle(&self) -> SpindleState {
         self.spindle
     }
 
@@ -79,9 +79,9 @@ impl Tools {
     }
 }
 
-impl Modal {
+impl ClModal {
     /// A cutter's description; its length stands at `length` among the numbers.
-    pub(super) fn cutter(&mut self, numbers: &[f64], length: usize) -> Meant {
+    pub(super) fn cutter(&mut self, numbers: &[f64], length: usize) -> RecordResult {
         let of = |place: usize| numbers.get(place).map(|size| size * self.scale);
         let (diameter, length_of) = (of(0), of(length));
         self.tools.diameter = diameter;
@@ -100,7 +100,7 @@ impl Modal {
     }
 
     /// Loads the tool that the user names, or that belongs to the cutter, ahead of the first record that needs one.
-    pub(super) fn load_due(&mut self, record: &Record<'_>, out: &mut Out) -> Meant {
+    pub(super) fn load_due(&mut self, record: &Record<'_>, out: &mut CourseItems) -> RecordResult {
         let told = match self.tools.loaded {
             None => self.settings.tool.take(),
             Some(_) => None,
@@ -117,8 +117,8 @@ impl Modal {
         &mut self,
         record: &Record<'_>,
         tool: &LoadTool,
-        out: &mut Out,
-    ) -> Meant {
+        out: &mut CourseItems,
+    ) -> RecordResult {
         if self.strange.catia && tool.described {
             return Ok(());
         }
@@ -144,7 +144,12 @@ impl Modal {
         Ok(())
     }
 
-    fn load(&mut self, record: &Record<'_>, tool: &LoadTool, out: &mut Out) -> Meant {
+    fn load(
+        &mut self,
+        record: &Record<'_>,
+        tool: &LoadTool,
+        out: &mut CourseItems,
+    ) -> RecordResult {
         let register = tool.register.unwrap_or(tool.number);
         if tool.number == 0 || register == 0 {
             let message = "tool 0 and length register 0 mean none";
@@ -165,7 +170,7 @@ impl Modal {
         self.tools.said = false;
         if std::mem::take(&mut self.compensated) {
             let (side, register) = (0, None);
-            self.tell(record, Told::Compensation { side, register }, out);
+            self.tell(record, ProgramEvent::Compensation { side, register }, out);
         }
         self.forget_register();
         let known = self.tools.all.iter().any(|known| known.number == tool.number);
@@ -187,12 +192,12 @@ impl Modal {
         self.lost();
         let name = Some(self.tools.name.clone()).filter(|name| !name.is_empty());
         let number = Some(tool.number);
-        self.tell(record, Told::ToolChange { number, name }, out);
+        self.tell(record, ProgramEvent::ToolChange { number, name }, out);
         Ok(())
     }
 
     /// The spindle that the user names, ahead of the first point of a tool for which the file has none.
-    pub(super) fn spindle_due(&mut self, record: &Record<'_>, out: &mut Out) {
+    pub(super) fn spindle_due(&mut self, record: &Record<'_>, out: &mut CourseItems) {
         if self.tools.said {
             return;
         }
@@ -205,22 +210,22 @@ impl Modal {
     }
 
     /// The spindle turns as is known of it.
-    fn turns(&mut self, record: &Record<'_>, out: &mut Out) {
+    fn turns(&mut self, record: &Record<'_>, out: &mut CourseItems) {
         let rpm = self.tools.rpm.unwrap_or(0.0);
         let spindle = match self.tools.counter {
-            true => Spindle::CounterClockwise(rpm),
-            false => Spindle::Clockwise(rpm),
+            true => SpindleState::CounterClockwise(rpm),
+            false => SpindleState::Clockwise(rpm),
         };
         self.tools.spindle = spindle;
-        self.tell(record, Told::Spindle(spindle), out);
+        self.tell(record, ProgramEvent::Spindle(spindle), out);
     }
 
     pub(super) fn spindle(
         &mut self,
         record: &Record<'_>,
         word: SpindleWord,
-        out: &mut Out,
-    ) -> Meant {
+        out: &mut CourseItems,
+    ) -> RecordResult {
         self.load_due(record, out)?;
         self.tools.said = true;
         // Autodesk's posts write ON where the spindle stops, and OFF where it starts.
@@ -233,10 +238,10 @@ impl Modal {
         let (speed, unit, sense, most) = match word {
             SpindleWord::Off | SpindleWord::Orient => {
                 self.tools.spindle = match word {
-                    SpindleWord::Off => Spindle::Off,
-                    _ => Spindle::Oriented,
+                    SpindleWord::Off => SpindleState::Off,
+                    _ => SpindleState::Oriented,
                 };
-                self.tell(record, Told::Spindle(self.tools.spindle), out);
+                self.tell(record, ProgramEvent::Spindle(self.tools.spindle), out);
                 return Ok(());
             }
             SpindleWord::On { speed, unit, sense, most } => (speed, unit, sense, most),
@@ -255,8 +260,8 @@ impl Modal {
             self.tools.surface = Some((metres, most));
             self.tools.rpm = None;
             let clockwise = !self.tools.counter;
-            self.tools.spindle = Spindle::Surface { speed: metres, most, clockwise };
-            self.tell(record, Told::Spindle(self.tools.spindle), out);
+            self.tools.spindle = SpindleState::Surface { speed: metres, most, clockwise };
+            self.tell(record, ProgramEvent::Spindle(self.tools.spindle), out);
             return Ok(());
         }
         self.tools.surface = None;

@@ -8,7 +8,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 
 use super::curves::NO_ARC;
-use super::modal::{Meant, Modal, Out};
+use super::modal::{ClModal, CourseItems, RecordResult};
 
 /// Where the stated angle leads may lie so far from the end: mm, and radians.
 const OFF: [f64; 2] = [5e-3, 2e-4];
@@ -18,7 +18,7 @@ const MOST_ROUND: f64 = 0.17;
 
 /// Which way an arc goes whose angle leads to its end either way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Rule {
+pub(super) enum ArcTurnRule {
     /// Nothing read so far tells.
     #[default]
     Unknown,
@@ -28,7 +28,7 @@ pub(super) enum Rule {
     None,
 }
 
-impl Modal {
+impl ClModal {
     /// The arc of a `MOVARC` as a circle that ends at a pose.
     pub(super) fn turned(
         &mut self,
@@ -72,16 +72,20 @@ impl Modal {
         let opposed = axis.dot(&to.axis) < 0.0;
         let clockwise = match (leads(1.0), leads(-1.0)) {
             (true, false) => {
-                if opposed && self.arc_rule == Rule::Unknown {
-                    self.arc_rule = Rule::Right;
+                if opposed && self.arc_rule == ArcTurnRule::Unknown {
+                    self.arc_rule = ArcTurnRule::Right;
                 }
                 false
             }
             (false, true) => {
-                self.arc_rule = Rule::None;
+                self.arc_rule = ArcTurnRule::None;
                 true
             }
-            (true, true) if self.arc_rule == Rule::Right || self.settings.allows("MOVARC") => false,
+            (true, true)
+                if self.arc_rule == ArcTurnRule::Right || self.settings.allows("MOVARC") =>
+            {
+                false
+            }
             (true, true) => {
                 return no(format!(
                     "{}° lead to its end either way, and its axis does not tell which",
@@ -108,8 +112,8 @@ impl Modal {
         &mut self,
         record: &Record<'_>,
         along: &AlongArc,
-        out: &mut Out,
-    ) -> Meant {
+        out: &mut CourseItems,
+    ) -> RecordResult {
         let set_out = self.set_out.take();
         self.end_spline(record, out)?;
         self.before_move(record, out)?;

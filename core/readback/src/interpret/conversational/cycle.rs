@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use post_grammar::nc::{NcItem, NcNumber};
 
 use super::{Answer, BlockNames, afterwards, functions, plane, worth};
-use crate::Told;
+use crate::ProgramEvent;
 use crate::interpret::block::{BlockRequest, SpindleRequest};
 use crate::interpret::block_words::{BlockWords, bit};
 use crate::interpret::cycles::{self, DefinedCycle};
@@ -45,7 +45,7 @@ pub(super) fn define(
             });
             match times.next() {
                 Some(time) => {
-                    control.tell(Told::Dwell { time, revolutions: false });
+                    control.tell(ProgramEvent::Dwell { time, revolutions: false });
                     Ok(())
                 }
                 None => Err(control.refuse("nc-cycle", "CYCL DEF 9 does not say how long")),

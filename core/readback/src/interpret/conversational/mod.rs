@@ -20,7 +20,7 @@ use post_plugin::Meaning;
 use super::block::{BlockRequest, SpindleRequest};
 use super::block_words::BlockWords;
 use super::state::{ControlState, MotionMode};
-use crate::{MotionKind, Told};
+use crate::{MotionKind, ProgramEvent};
 
 type Answer<T> = Result<T, Box<Diagnostic>>;
 
@@ -78,7 +78,7 @@ pub(super) fn run(
         }
         "BLK FORM" => Ok(()),
         "STOP" => {
-            control.stop(Told::Stop)?;
+            control.stop(ProgramEvent::Stop)?;
             path::alone(control, &said, words)
         }
         // Words of modes alone: `R0 FMAX`, `FMAX M3`.
@@ -266,8 +266,8 @@ fn afterwards(
         control.coolant_off();
     }
     match asked.stop {
-        Some(Meaning::Stop) => control.stop(Told::Stop)?,
-        Some(Meaning::OptionalStop) => control.stop(Told::OptionalStop)?,
+        Some(Meaning::Stop) => control.stop(ProgramEvent::Stop)?,
+        Some(Meaning::OptionalStop) => control.stop(ProgramEvent::OptionalStop)?,
         Some(_) => control.end(),
         None => {}
     }

@@ -1,7 +1,7 @@
 //! The tool: its call changes it and switches its length on.
 
 use super::{Answer, BlockNames, feed_unit};
-use crate::Told;
+use crate::ProgramEvent;
 use crate::interpret::block_words::BlockWords;
 use crate::interpret::state::{ArcPlane, ControlState};
 
@@ -59,7 +59,7 @@ pub(super) fn prepare(control: &mut ControlState, said: &BlockNames<'_>) -> Answ
         && number.value >= 0.0
         && number.value < 1e9
     {
-        control.tell(Told::Preselect(number.value as u32));
+        control.tell(ProgramEvent::Preselect(number.value as u32));
     }
     Ok(())
 }

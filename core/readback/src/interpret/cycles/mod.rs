@@ -19,7 +19,7 @@ use post_plugin::Meaning;
 
 use super::block_words::BlockWords;
 use super::state::{ControlState, FeedMeaning};
-use crate::{MotionKind, Told};
+use crate::{MotionKind, ProgramEvent};
 use hole::{CycleHole, HoleStroke};
 
 /// The cycle in force.
@@ -116,7 +116,7 @@ fn names_hole(
     name: &str,
     values: &[Option<f64>],
 ) -> Result<CycleHole, Box<Diagnostic>> {
-    let around = names::Around {
+    let around = names::CycleContext {
         unit: control.modal.unit,
         feed: feed_a_minute(control),
         speed: control.modal.speed,
@@ -187,13 +187,13 @@ fn drill(control: &mut ControlState, hole: &CycleHole) -> Result<(), Box<Diagnos
     if let Some(turning) = in_it {
         control.turn_spindle(turning);
     }
-    control.tell(Told::Cycle(hole.call()));
+    control.tell(ProgramEvent::Cycle(hole.call()));
     let before = (control.modal.feed, control.modal.feed_mode, control.hole);
     control.modal.feed_mode = FeedMeaning::PerMinute;
     control.hole = true;
     let made = strokes.iter().try_for_each(|stroke| made(control, stroke));
     (control.modal.feed, control.modal.feed_mode, control.hole) = before;
-    control.tell(Told::CycleEnd);
+    control.tell(ProgramEvent::CycleEnd);
     if let Some(turning) = behind {
         control.turn_spindle(turning);
     }
@@ -227,11 +227,11 @@ fn made(control: &mut ControlState, stroke: &HoleStroke) -> Result<(), Box<Diagn
             MotionKind::Rapid
         }
         HoleStroke::Wait(wait) => {
-            control.tell(Told::Dwell { time: wait.time, revolutions: wait.revolutions });
+            control.tell(ProgramEvent::Dwell { time: wait.time, revolutions: wait.revolutions });
             return Ok(());
         }
         HoleStroke::Stop => {
-            control.tell(Told::Stop);
+            control.tell(ProgramEvent::Stop);
             return Ok(());
         }
     };

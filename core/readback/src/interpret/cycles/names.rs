@@ -7,7 +7,7 @@ use crate::CycleKind;
 use crate::interpret::block::SpindleRequest;
 
 /// What the control knows besides the arguments; lengths in mm, feeds in mm/min.
-pub(crate) struct Around {
+pub(crate) struct CycleContext {
     /// mm in a unit of the program.
     pub unit: f64,
     /// The feed in force.
@@ -84,7 +84,7 @@ const NAMES: [&str; 10] = [
 pub(crate) fn hole(
     name: &str,
     values: &[Option<f64>],
-    around: &Around,
+    around: &CycleContext,
 ) -> Result<CycleHole, Box<Diagnostic>> {
     let arguments = Arguments { name, values, unit: around.unit };
     let reference = arguments.length(2);
@@ -115,7 +115,7 @@ pub(crate) fn hole(
 fn made(
     arguments: &Arguments<'_>,
     hole: CycleHole,
-    around: &Around,
+    around: &CycleContext,
 ) -> Result<CycleHole, Box<Diagnostic>> {
     let hole = match arguments.name {
         "CYCLE81" => hole,
@@ -188,7 +188,7 @@ fn behind(arguments: &Arguments<'_>, place: usize) -> Option<SpindleRequest> {
 }
 
 /// FFR and RFF: without them the feed in force.
-fn feed(arguments: &Arguments<'_>, place: usize, around: &Around) -> f64 {
+fn feed(arguments: &Arguments<'_>, place: usize, around: &CycleContext) -> f64 {
     match arguments.length(place) {
         feed if feed > 0.0 => feed,
         _ => around.feed,
@@ -317,7 +317,7 @@ mod tests {
     use super::super::hole::HoleStroke;
     use super::*;
 
-    const AROUND: Around = Around { unit: 1.0, feed: 120.0, speed: 500.0 };
+    const AROUND: CycleContext = CycleContext { unit: 1.0, feed: 120.0, speed: 500.0 };
 
     fn strokes(name: &str, values: &[Option<f64>]) -> Vec<HoleStroke> {
         hole(name, values, &AROUND).unwrap().strokes(100.0).unwrap()

@@ -5,13 +5,13 @@ use std::io::{Read, Seek};
 use post_grammar::nc::{NcExpression, NcFlow, NcItem, NcMark};
 use post_machine::diagnostic::Diagnostic;
 
-use super::super::astray::{Answer, fault};
+use super::super::astray::{FlowResult, fault};
 use super::{OpenConstruct, ProgramFlow};
 use crate::interpret::expression::whole;
 use crate::interpret::variables::{VariableValue, Variables};
 
 impl<R: Read + Seek> ProgramFlow<R> {
-    pub(super) fn looped(&mut self, flow: NcFlow, variables: &mut Variables) -> Answer<bool> {
+    pub(super) fn looped(&mut self, flow: NcFlow, variables: &mut Variables) -> FlowResult<bool> {
         let head = self.here;
         match flow {
             NcFlow::While { name, condition } => {
@@ -69,7 +69,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
     }
 
     /// Runs what ends a loop, breaks out of it or goes on with its next turn.
-    fn end_loop(&mut self, flow: NcFlow, variables: &mut Variables) -> Answer<()> {
+    fn end_loop(&mut self, flow: NcFlow, variables: &mut Variables) -> FlowResult<()> {
         match flow {
             NcFlow::EndWhile(name) => {
                 let head = self.unwind(|running| match running {
@@ -134,7 +134,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
     }
 
     /// `o1 endrepeat`.
-    pub(super) fn again(&mut self, name: Option<&str>) -> Answer<()> {
+    pub(super) fn again(&mut self, name: Option<&str>) -> FlowResult<()> {
         let body = self.unwind(|running| match running {
             OpenConstruct::Times { name: own, body, .. } if own.as_deref() == name => Some(*body),
             _ => None,
@@ -151,7 +151,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
     }
 
     /// The kind of the innermost loop of this name, which is innermost of all afterwards.
-    pub(super) fn innermost(&mut self, name: Option<&str>) -> Answer<LoopKind> {
+    pub(super) fn innermost(&mut self, name: Option<&str>) -> FlowResult<LoopKind> {
         let kind = self.unwind(|running| match running {
             OpenConstruct::While { name: own, .. } if own.as_deref() == name => {
                 Some(LoopKind::While)
@@ -207,7 +207,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
         }
     }
 
-    pub(super) fn push(&mut self, running: OpenConstruct) -> Answer<()> {
+    pub(super) fn push(&mut self, running: OpenConstruct) -> FlowResult<()> {
         if self.running.len() >= self.limits.depth {
             return Err(Diagnostic::error(
                 "nc-limit",
@@ -223,7 +223,11 @@ impl<R: Read + Seek> ProgramFlow<R> {
     }
 
     /// A condition does not hold: on to what does, or after the end.
-    pub(super) fn otherwise(&mut self, name: Option<&str>, variables: &Variables) -> Answer<()> {
+    pub(super) fn otherwise(
+        &mut self,
+        name: Option<&str>,
+        variables: &Variables,
+    ) -> FlowResult<()> {
         loop {
             let flow = self.skip(
                 name,
@@ -238,8 +242,8 @@ impl<R: Read + Seek> ProgramFlow<R> {
         }
     }
 
-    fn skip_loop(&mut self, name: Option<&str>, kind: LoopKind) -> Answer<()> {
-        let (opens, closes): (Is, Is) = match kind {
+    fn skip_loop(&mut self, name: Option<&str>, kind: LoopKind) -> FlowResult<()> {
+        let (opens, closes): (LoopTest, LoopTest) = match kind {
             LoopKind::While => (
                 |flow| matches!(flow, NcFlow::While { .. }),
                 |flow| matches!(flow, NcFlow::EndWhile(_)),
@@ -270,7 +274,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
         opens: fn(&NcFlow) -> bool,
         closes: fn(&NcFlow) -> bool,
         ends: fn(&NcFlow) -> bool,
-    ) -> Answer<NcFlow> {
+    ) -> FlowResult<NcFlow> {
         let mut block = std::mem::take(&mut self.passed);
         let mut inside = 0_u32;
         let found = loop {
@@ -306,7 +310,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
 }
 
 /// Whether a word of flow is one of those that are looked for.
-type Is = fn(&NcFlow) -> bool;
+type LoopTest = fn(&NcFlow) -> bool;
 
 /// Kinds of loops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -11,7 +11,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Capabilities, Language, Meaning as M, VocabularyWord};
 use post_readback::interpret::{Interpreter, Limits, ReadReport};
 use post_readback::lexicon::Lexicon;
-use post_readback::{Done, Motion, Offsets, Told};
+use post_readback::{BlockEffect, Motion, Offsets, ProgramEvent};
 use post_testkit::repository;
 
 /// A control of letters that keeps the tip with G43.4 and with M428.
@@ -71,7 +71,7 @@ pub fn machine(name: &str) -> Machine {
 /// What a program did, what was refused, and what was found.
 pub struct Ran {
     pub motions: Vec<Motion>,
-    pub told: Vec<Told>,
+    pub told: Vec<ProgramEvent>,
     pub refused: Vec<Diagnostic>,
     pub report: ReadReport,
 }
@@ -129,9 +129,9 @@ pub fn ran_in(
     }
     for what in done {
         match what {
-            Done::Motion(motion) => ran.motions.push(motion),
-            Done::Told { told, .. } => ran.told.push(told),
-            Done::State(_) => {}
+            BlockEffect::Motion(motion) => ran.motions.push(motion),
+            BlockEffect::Event { event: told, .. } => ran.told.push(told),
+            BlockEffect::State(_) => {}
         }
     }
     ran.report = run.report().clone();

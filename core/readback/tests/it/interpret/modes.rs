@@ -3,7 +3,7 @@
 use post_machine::description::{Machine, TcpFeedLength};
 use post_motion::CornerMode;
 use post_plugin::Language;
-use post_readback::{Corners, MotionKind, Offsets, Spindle, Told};
+use post_readback::{Corners, MotionKind, Offsets, ProgramEvent, SpindleState};
 
 use super::{LETTERS, NAMES, Ran, letters, machine, ran, ran_in};
 
@@ -134,26 +134,26 @@ fn what_happens_besides_motion_is_told_in_order() {
     assert_eq!(
         done.told,
         [
-            Told::ToolChange { number: Some(1), name: None },
-            Told::Operation("ROUGH".to_owned()),
-            Told::Spindle(Spindle::Clockwise(3000.0)),
-            Told::Coolant(coolants(true)),
-            Told::Preselect(2),
-            Told::WorkOffset("G54".to_owned()),
-            Told::Compensation { side: -1, register: Some(1) },
-            Told::Coolant(coolants(false)),
-            Told::Dwell { time: 0.5, revolutions: false },
-            Told::Dwell { time: 1.5, revolutions: false },
-            Told::Compensation { side: 0, register: None },
-            Told::Spindle(Spindle::Off),
-            Told::OptionalStop,
-            Told::End,
+            ProgramEvent::ToolChange { number: Some(1), name: None },
+            ProgramEvent::Operation("ROUGH".to_owned()),
+            ProgramEvent::Spindle(SpindleState::Clockwise(3000.0)),
+            ProgramEvent::Coolant(coolants(true)),
+            ProgramEvent::Preselect(2),
+            ProgramEvent::WorkOffset("G54".to_owned()),
+            ProgramEvent::Compensation { side: -1, register: Some(1) },
+            ProgramEvent::Coolant(coolants(false)),
+            ProgramEvent::Dwell { time: 0.5, revolutions: false },
+            ProgramEvent::Dwell { time: 1.5, revolutions: false },
+            ProgramEvent::Compensation { side: 0, register: None },
+            ProgramEvent::Spindle(SpindleState::Off),
+            ProgramEvent::OptionalStop,
+            ProgramEvent::End,
         ]
     );
     // What ends spindle or coolant does so behind the motion of its block.
     let down = done.motions.iter().find(|motion| motion.kind == MotionKind::Feed).unwrap();
     assert!(down.state.coolants.flood);
-    assert_eq!(done.last().state.spindle, Spindle::Clockwise(3000.0));
+    assert_eq!(done.last().state.spindle, SpindleState::Clockwise(3000.0));
     // Nothing behind the end is run.
     assert!(done.last().to.pose.tip.x.abs() < 1e-9);
 }

@@ -3,7 +3,7 @@
 //! What a program does because of its own machine is not part of the path of the tool against the part, and does not
 //! become one on another machine: ways in positions of the machine, and what follows them up to where the tool is at a
 //! place of the part again. A linear axis that was last moved in positions of the machine (at the beginning all were) has
-//! no place of the part, and rapids are left out until each has one; then the tool [reaches](Item::Reach) where it is.
+//! no place of the part, and rapids are left out until each has one; then the tool [reaches](CourseItem::Reach) where it is.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -13,8 +13,10 @@ use post_machine::kinematics::{Joints, MAX_AXES, Pose};
 use post_motion::path::piece_ends;
 
 use super::descent::{Descent, descends};
-use super::{Course, Curve, Item, Piece, Reach};
-use crate::{Done, Interpolation, Motion, MotionKind, Program, State, Told};
+use super::{Course, CourseItem, CoursePiece, Curve, ReachedPose};
+use crate::{
+    BlockEffect, BlockRunner, Interpolation, MachineState, Motion, MotionKind, ProgramEvent,
+};
 
 /// How near a course stays to a program whose tip goes on curves that no piece has.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,20 +51,20 @@ const NO_WAY: f64 = 1e-9;
 
 /// A program's path, block by block.
 #[derive(Debug)]
-pub struct DoneCourse<P> {
+pub struct ProgramCourse<P> {
     program: P,
     chords: Chords,
-    done: Vec<Done>,
-    waiting: VecDeque<(Option<Arc<State>>, Item)>,
+    done: Vec<BlockEffect>,
+    waiting: VecDeque<(Option<Arc<MachineState>>, CourseItem)>,
     /// A pose that is reached, and what was told since: if the tool leaves again before it goes anywhere from there, it was
     /// not reached for the part.
-    held: VecDeque<(Option<Arc<State>>, Item)>,
+    held: VecDeque<(Option<Arc<MachineState>>, CourseItem)>,
     /// What held during the item that was handed out last.
-    state: Option<Arc<State>>,
+    state: Option<Arc<MachineState>>,
     /// What a cycle does at a point, up to its end.
-    hole: Option<Vec<(Option<Arc<State>>, Item)>>,
+    hole: Option<Vec<(Option<Arc<MachineState>>, CourseItem)>>,
     /// What holds in the program.
-    latest: Option<Arc<State>>,
+    latest: Option<Arc<MachineState>>,
     /// Where the tool stands.
     stands: Option<Pose>,
     /// Bits of the linear axes that have no place of the part.
@@ -74,7 +76,7 @@ pub struct DoneCourse<P> {
     ended: bool,
 }
 
-impl<P: Program> DoneCourse<P> {
+impl<P: BlockRunner> ProgramCourse<P> {
     /// The path of `program`.
     pub fn new(program: P, chords: Chords) -> Self {
         Self {
@@ -95,7 +97,7 @@ impl<P: Program> DoneCourse<P> {
     }
 
     /// What held in the program during the item that was handed out last; none before its first motion.
-    pub fn state(&self) -> Option<&Arc<State>> {
+    pub fn state(&self) -> Option<&Arc<MachineState>> {
         self.state.as_ref()
     }
 
@@ -104,23 +106,23 @@ impl<P: Program> DoneCourse<P> {
         &self.program
     }
 
-    fn take(&mut self, done: Done) {
+    fn take(&mut self, done: BlockEffect) {
         match done {
-            Done::State(state) => self.latest = Some(state),
-            Done::Told { line, told } => {
-                if leaves(&told) {
+            BlockEffect::State(state) => self.latest = Some(state),
+            BlockEffect::Event { line, event } => {
+                if leaves(&event) {
                     self.stands = None;
                     self.astray = u32::MAX;
                 }
-                self.hand_on(Item::Told { line, told });
+                self.hand_on(CourseItem::Event { line, event });
             }
-            Done::Motion(motion) => self.motion(&motion),
+            BlockEffect::Motion(motion) => self.motion(&motion),
         }
     }
 
-    fn hand_on(&mut self, item: Item) {
+    fn hand_on(&mut self, item: CourseItem) {
         match (&mut self.hole, &item) {
-            (Some(_), Item::Told { told: Told::CycleEnd, .. }) => {
+            (Some(_), CourseItem::Event { event: ProgramEvent::CycleEnd, .. }) => {
                 let done = self.hole.take().unwrap_or_default();
                 let done = in_one_go(done);
                 self.waiting.append(&mut self.held);
@@ -130,20 +132,22 @@ impl<P: Program> DoneCourse<P> {
                 hole.push((self.latest.clone(), item));
                 return;
             }
-            (None, Item::Told { told: Told::Cycle(_), .. }) => self.hole = Some(Vec::new()),
+            (None, CourseItem::Event { event: ProgramEvent::Cycle(_), .. }) => {
+                self.hole = Some(Vec::new())
+            }
             (None, _) => {}
         }
         let leaves = match &item {
-            Item::Told { told, .. } => leaves(told),
-            Item::Away { .. } => true,
-            Item::Reach(_) | Item::Piece(_) => false,
+            CourseItem::Event { event, .. } => leaves(event),
+            CourseItem::Away { .. } => true,
+            CourseItem::Reach(_) | CourseItem::Piece(_) => false,
         };
-        let told = matches!(item, Item::Told { .. });
+        let told = matches!(item, CourseItem::Event { .. });
         if leaves {
-            self.held.retain(|(_, held)| !matches!(held, Item::Reach(_)));
+            self.held.retain(|(_, held)| !matches!(held, CourseItem::Reach(_)));
         }
         let next = (self.latest.clone(), item);
-        if matches!(next.1, Item::Reach(_)) || (told && !leaves && !self.held.is_empty()) {
+        if matches!(next.1, CourseItem::Reach(_)) || (told && !leaves && !self.held.is_empty()) {
             self.held.push_back(next);
             return;
         }
@@ -160,7 +164,7 @@ impl<P: Program> DoneCourse<P> {
             self.astray |= moved;
             self.retracted = Some(motion.to.joints);
             if moved != 0 && self.stands.take().is_some() {
-                self.hand_on(Item::Away { line: motion.line });
+                self.hand_on(CourseItem::Away { line: motion.line });
             }
             return;
         }
@@ -187,7 +191,7 @@ impl<P: Program> DoneCourse<P> {
                 true => motion.from.pose,
                 false => motion.to.pose,
             };
-            self.hand_on(Item::Reach(Reach {
+            self.hand_on(CourseItem::Reach(ReachedPose {
                 line: motion.line,
                 kind: MotionKind::Rapid,
                 to,
@@ -216,8 +220,8 @@ impl<P: Program> DoneCourse<P> {
             return false;
         };
         let held = self.held.iter_mut().rev();
-        let Some(Item::Reach(reach)) =
-            held.map(|(_, item)| item).find(|item| matches!(item, Item::Reach(_)))
+        let Some(CourseItem::Reach(reach)) =
+            held.map(|(_, item)| item).find(|item| matches!(item, CourseItem::Reach(_)))
         else {
             return false;
         };
@@ -246,7 +250,7 @@ impl<P: Program> DoneCourse<P> {
         };
         let mut from = motion.from.pose;
         for to in piece_ends(count, motion.to.pose, |t| motion.at(t)) {
-            let mut piece = Piece {
+            let mut piece = CoursePiece {
                 line: motion.line,
                 kind: motion.kind,
                 curve: curve.clone(),
@@ -260,7 +264,7 @@ impl<P: Program> DoneCourse<P> {
                 let way = piece.length();
                 piece.feed = (way > NO_WAY).then(|| way * count as f64 / motion.minutes).or(feed);
             }
-            self.hand_on(Item::Piece(piece));
+            self.hand_on(CourseItem::Piece(piece));
             from = to;
         }
     }
@@ -268,8 +272,14 @@ impl<P: Program> DoneCourse<P> {
 
 /// The tool comes from the changer, another head has another chain, a subprogram goes anywhere, and at the end nothing is
 /// left to do.
-fn leaves(told: &Told) -> bool {
-    matches!(told, Told::ToolChange { .. } | Told::Head(_) | Told::Subprogram(_) | Told::End)
+fn leaves(event: &ProgramEvent) -> bool {
+    matches!(
+        event,
+        ProgramEvent::ToolChange { .. }
+            | ProgramEvent::Head(_)
+            | ProgramEvent::Subprogram(_)
+            | ProgramEvent::End
+    )
 }
 
 /// Arcs turn right-handed by an angle above zero.
@@ -283,12 +293,14 @@ fn arc(centre: nalgebra::Vector3<f64>, normal: nalgebra::Vector3<f64>, sweep: f6
 
 /// A hole without its pecks: the ways to where the feed begins, one down to the bottom, what is waited for there, and the
 /// ways out of it.
-fn in_one_go(done: Vec<(Option<Arc<State>>, Item)>) -> Vec<(Option<Arc<State>>, Item)> {
-    let piece = |item: &Item| match item {
-        Item::Piece(piece) => Some(piece.clone()),
+fn in_one_go(
+    done: Vec<(Option<Arc<MachineState>>, CourseItem)>,
+) -> Vec<(Option<Arc<MachineState>>, CourseItem)> {
+    let piece = |item: &CourseItem| match item {
+        CourseItem::Piece(piece) => Some(piece.clone()),
         _ => None,
     };
-    let cuts = |(_, item): &(Option<Arc<State>>, Item)| {
+    let cuts = |(_, item): &(Option<Arc<MachineState>>, CourseItem)| {
         piece(item).is_some_and(|piece| piece.kind != MotionKind::Rapid)
     };
     let Some(first) = done.iter().position(cuts) else {
@@ -307,9 +319,9 @@ fn in_one_go(done: Vec<(Option<Arc<State>>, Item)>) -> Vec<(Option<Arc<State>>, 
             (last, bottom) = (place, piece.to);
         }
     }
-    let down = Piece { to: bottom, ..begin };
+    let down = CoursePiece { to: bottom, ..begin };
     let mut whole: Vec<_> = done[..first].to_vec();
-    whole.push((done[first].0.clone(), Item::Piece(down)));
+    whole.push((done[first].0.clone(), CourseItem::Piece(down)));
     whole.extend(done[last + 1..].iter().cloned());
     whole
 }
@@ -327,8 +339,8 @@ fn linear(motion: &Motion) -> u32 {
     places.fold(0, |bits, (place, _)| bits | 1 << place)
 }
 
-impl<P: Program> Course for DoneCourse<P> {
-    fn next(&mut self) -> Result<Option<Item>, Box<Diagnostic>> {
+impl<P: BlockRunner> Course for ProgramCourse<P> {
+    fn next(&mut self) -> Result<Option<CourseItem>, Box<Diagnostic>> {
         loop {
             if let Some((state, item)) = self.waiting.pop_front() {
                 self.state = state;

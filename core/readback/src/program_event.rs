@@ -1,8 +1,8 @@
-//! What happens besides motion: told by programs and by CL files in the same words, so that they can be compared.
+//! What a program or a CL file asks for besides motion, in the same words for both, so that they can be compared.
 
-/// Something that is no motion.
+/// What a block asks for that is no motion: tool, spindle, coolant, wait, stop, remark, offset.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Told {
+pub enum ProgramEvent {
     /// This tool is in the spindle now.
     ToolChange {
         /// Its number; none where only a name is given.
@@ -13,7 +13,7 @@ pub enum Told {
     /// This tool is made ready.
     Preselect(u32),
     /// The spindle from here on.
-    Spindle(Spindle),
+    Spindle(SpindleState),
     /// Coolants from here on.
     Coolant(Coolants),
     /// The program waits, seconds; for so many revolutions where `revolutions` is set.
@@ -58,7 +58,7 @@ pub enum Told {
 
 /// The spindle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Spindle {
+pub enum SpindleState {
     /// It stands.
     #[default]
     Off,
@@ -79,7 +79,7 @@ pub enum Spindle {
     },
 }
 
-impl Spindle {
+impl SpindleState {
     /// Its speed, revolutions a minute, where it turns at a constant one.
     pub fn rpm(self) -> Option<f64> {
         match self {

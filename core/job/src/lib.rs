@@ -17,6 +17,7 @@ pub mod nc_program;
 pub mod nc_to_cl;
 pub mod one_program;
 pub mod other_dialect;
+pub mod place;
 pub mod plan;
 pub mod plan_rounds;
 mod plan_worth;

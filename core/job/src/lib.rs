@@ -5,6 +5,7 @@ pub mod batch;
 pub mod columns;
 pub mod compensate;
 pub mod convert;
+pub mod diff;
 mod dry_run;
 pub mod failure;
 pub mod files;

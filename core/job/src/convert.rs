@@ -14,10 +14,10 @@ use post_readback::course::done::{Chords, DoneCourse};
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::verify::{BlockReport, CutPath};
 
+use super::JobMachine;
 use super::making::{Part, ProgramMaker};
-use super::nc_program::{self, NcControl};
+use super::nc_program::{NcControl, ProgramFile};
 use super::nc_to_cl::{self, Tools};
-use super::plugin_finder;
 use super::posting_pass::Beside;
 use super::read_back::{self, Against, Held, Reading};
 use super::report::{self, Made};
@@ -93,9 +93,8 @@ struct Conversion<'a> {
     session: &'a Session,
     request: &'a ConvertRequest,
     from: NcControl,
-    /// The first program, as messages call it.
-    name: String,
-    program: File,
+    /// The first program.
+    program: ProgramFile,
     /// The machine that it shall run on, which may use a part of the tolerance.
     machine: Machine,
     finder: Finder,
@@ -107,7 +106,7 @@ impl<'a> Conversion<'a> {
     fn open(session: &'a Session, request: &'a ConvertRequest) -> Result<Self, Failure> {
         let job = &request.to;
         let from = NcControl::new(session, &request.from)?;
-        let (name, program) = nc_program::open(session, &job.input)?;
+        let program = ProgramFile::open(session, &job.input)?;
         let asked = super::machine(session, job, &[])?;
         [&from.machine, &asked].into_iter().try_for_each(refuse_turned)?;
         let tolerances = [asked.accuracy.tolerance, asked.accuracy.axis_tolerance];
@@ -117,15 +116,13 @@ impl<'a> Conversion<'a> {
             Setting::Tolerance(tip),
             Setting::Number { name: "accuracy.axis_tolerance".to_owned(), value },
         ];
-        let machine = super::machine(session, job, &more)?;
-        let finder = plugin_finder::finder(session, &job.over.plugins)?;
-        super::say_what_is_left(session, job, &machine, &finder);
-        Ok(Self { session, request, from, name, program, machine, finder, tolerances })
+        let JobMachine { machine, finder } = JobMachine::load(session, job, &more)?;
+        Ok(Self { session, request, from, program, machine, finder, tolerances })
     }
 
     /// The first program, from its beginning.
     fn run(&self) -> Result<FedRapids<Interpreter<File>>, Failure> {
-        self.from.program_with_rapids(&self.name, &self.program)
+        self.from.program_with_rapids(&self.program)
     }
 
     /// Chords of the CL file.
@@ -145,7 +142,7 @@ impl<'a> Conversion<'a> {
         let mut course = DoneCourse::new(self.run()?, chords);
         let edges = self.from.lexicon.tools_have_edges();
         let tools = Tools { length: self.request.from.tool_length, edges };
-        let name = format!("{} as CL file", self.name);
+        let name = format!("{} as CL file", self.program.name);
         let (source, written) = ClSource::of_text(self.session, name, |copy| {
             nc_to_cl::write(&mut course, &part, chords.tip, tools, &mut |text| {
                 copy(text)?;
@@ -190,7 +187,7 @@ impl<'a> Conversion<'a> {
         if held.is_wrong() {
             return Err(findings.into());
         }
-        let names = [self.name.clone(), program.name().to_owned()];
+        let names = [self.program.name.clone(), program.name().to_owned()];
         let machines = [self.from.machine.clone(), machine.clone()];
         let made = Converted { names, machines, report, held, facts, findings, printed: false };
         if let (Some(page), Some(rows)) = (&mut page, rows) {
@@ -208,7 +205,7 @@ impl<'a> Conversion<'a> {
         source: &mut ClSource,
         program: &mut AtomicFile,
     ) -> Result<(Held, CourseFacts), Failure> {
-        let Self { name, machine, .. } = self;
+        let (name, machine) = (&self.program.name, &self.machine);
         let chords = self.chords();
         let finer = Chords { tip: chords.tip * FINER, axis: chords.axis * FINER, ..chords };
         let mut read = ClCourse::new(Settings::of(machine, name), source.open()?.bytes);

@@ -27,14 +27,17 @@ mod plugin_folders;
 pub mod posted;
 pub mod posting_pass;
 pub mod predict;
+pub mod read;
 pub mod read_back;
 pub mod report;
+mod result_files;
 mod rounds;
 pub mod session;
 pub mod settings;
 pub mod summary;
 pub mod text;
 pub mod unused_options;
+pub mod verify;
 
 use std::path::Path;
 
@@ -60,6 +63,31 @@ pub fn machine(
     let mut settings = arguments.over.settings();
     settings.extend_from_slice(more);
     machine_files::load(session, &arguments.machine, &arguments.over.machines, &settings)
+}
+
+/// The machine of a job, and where its plugins come from.
+pub struct JobMachine {
+    /// The machine with its settings.
+    pub machine: Machine,
+    /// Its plugins.
+    pub finder: Finder,
+}
+
+impl JobMachine {
+    /// Loads the machine with all settings of the job, and `more` after them; what of its file has no effect is said.
+    ///
+    /// # Errors
+    /// The machine or a folder of plugins cannot be used.
+    pub fn load(
+        session: &Session,
+        arguments: &JobSettings,
+        more: &[Setting],
+    ) -> Result<Self, Failure> {
+        let machine = machine(session, arguments, more)?;
+        let finder = plugin_finder::finder(session, &arguments.over.plugins)?;
+        say_what_is_left(session, arguments, &machine, &finder);
+        Ok(Self { machine, finder })
+    }
 }
 
 /// Says once what of the machine file has no effect: what `--dialect` leaves behind, and options that no plugin takes.

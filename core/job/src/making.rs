@@ -13,6 +13,7 @@ use post_posting::{Observer, ProgramPreview, TextSink};
 use post_readback::interpret::Limits;
 use post_readback::verify::{BlockReport, Verification};
 
+use crate::JobMachine;
 use crate::compensate::{self, Compensation, Moved};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
@@ -28,19 +29,27 @@ use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings};
 use crate::summary::{self, Told};
 
+/// What a job sets over the machine file so that its program is numbered so.
+fn number_setting(
+    session: &Session,
+    arguments: &JobSettings,
+    number: Option<i64>,
+) -> Result<Option<Setting>, Failure> {
+    let Some(number) = number else {
+        return Ok(None);
+    };
+    let dialect = super::machine(session, arguments, &[])?.control.dialect;
+    Ok(Some(Setting::Written(format!("control.{dialect}.program_number={number}"))))
+}
+
 /// The machine of the command line, its program so numbered if a number is given.
 pub fn numbered(
     session: &Session,
     arguments: &JobSettings,
     number: Option<i64>,
 ) -> Result<Machine, Failure> {
-    let machine = super::machine(session, arguments, &[])?;
-    let Some(number) = number else {
-        return Ok(machine);
-    };
-    let dialect = machine.control.dialect;
-    let setting = Setting::Written(format!("control.{dialect}.program_number={number}"));
-    super::machine(session, arguments, &[setting])
+    let setting = number_setting(session, arguments, number)?;
+    super::machine(session, arguments, setting.as_slice())
 }
 
 /// Where a program goes: to `output`, else beside the CL file, with the ending of the machine or of its dialect.
@@ -168,9 +177,8 @@ impl<'a> ProgramMaker<'a> {
         job: &'a JobSettings,
         making: &'a MakingSettings,
     ) -> Result<(Self, Machine), Failure> {
-        let machine = numbered(session, job, making.number.map(i64::from))?;
-        let finder = plugin_finder::finder(session, &job.over.plugins)?;
-        super::say_what_is_left(session, job, &machine, &finder);
+        let setting = number_setting(session, job, making.number.map(i64::from))?;
+        let JobMachine { machine, finder } = JobMachine::load(session, job, setting.as_slice())?;
         Ok((Self::new(session, job, making, finder), machine))
     }
 

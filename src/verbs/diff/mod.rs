@@ -90,7 +90,7 @@ pub fn run(session: &Session, arguments: &DiffArguments) -> Result<(), Failure> 
     let request = arguments.request();
     let compared = diff::compare(session, &request)?;
     let Compared { sides, rules, found, along, findings } = &compared;
-    let names = sides.each_ref().map(|side| side.name.as_str());
+    let names = sides.each_ref().map(|side| side.program.name.as_str());
     let machines = sides.each_ref().map(|side| side.control.machine.name.as_str());
     let picture = diff_picture::draw(names, found, along);
     let json = files::json(found);

@@ -3,14 +3,12 @@
 mod along;
 mod page;
 
-use std::fs::File;
-
 use post_machine::diagnostic::Diagnostic;
 use post_readback::diff::{self, Difference, Rules, Unread};
 
-use super::nc_program::{self, NcControl};
+use super::nc_program::{NcControl, ProgramFile};
 use crate::failure::Failure;
-use crate::files::{AtomicFile, FileFault, PathArg};
+use crate::files::{AtomicFile, PathArg};
 use crate::session::Session;
 use crate::settings::ProgramSettings;
 use page::DiffPage;
@@ -41,25 +39,12 @@ pub struct DiffRequest {
     pub tolerances: DiffTolerances,
 }
 
-/// One of the programs, ready to be read as often as it takes.
+/// One of the programs.
 pub struct Side {
-    /// The program, as messages call it.
-    pub name: String,
+    /// The program.
+    pub program: ProgramFile,
     /// The control that runs it.
     pub control: NcControl,
-    file: File,
-}
-
-impl Side {
-    fn open(session: &Session, source: &PathArg, control: NcControl) -> Result<Self, Failure> {
-        let (name, file) = nc_program::open(session, source)?;
-        Ok(Self { name, control, file })
-    }
-
-    /// Its text from the beginning.
-    fn text(&self) -> Result<File, FileFault> {
-        nc_program::again(&self.name, &self.file)
-    }
 }
 
 /// What came of it.
@@ -84,12 +69,15 @@ pub fn compare(session: &Session, request: &DiffRequest) -> Result<Compared, Fai
     let [old, new] = &request.settings;
     let [old, new] = [NcControl::new(session, old)?, NcControl::new(session, new)?];
     let [first, second] = &request.programs;
-    let sides = [Side::open(session, first, old)?, Side::open(session, second, new)?];
+    let sides = [
+        Side { program: ProgramFile::open(session, first)?, control: old },
+        Side { program: ProgramFile::open(session, second)?, control: new },
+    ];
     let rules = rules(request, sides.each_ref().map(|side| &side.control));
     let mut along = Along::new(rules.tip);
     let opened = |new: bool| {
         let side = &sides[usize::from(new)];
-        side.control.program_with_rapids(&side.name, &side.file)
+        side.control.program_with_rapids(&side.program)
     };
     let (found, unread) = diff::compare(&rules, opened, &mut |sample| along.take(sample))?;
     let Unread { old: mut refused, new: more } = unread;

@@ -3,7 +3,7 @@
 
 use post_report::meta::{Maximum, Names, TolerancesMeta, VerdictMeta};
 
-use super::Compared;
+use super::{Compared, Side};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, PathArg};
 use crate::report::{self, Besides, MotionRows, OldPath, Parts};
@@ -45,8 +45,8 @@ impl DiffPage<'_> {
         let mut parts = Parts::of(self.session, machine, &mut meta)?;
         let besides = Besides { other: true, ..Besides::default() };
         let run = |place: usize| -> Result<_, Failure> {
-            let side = &sides[place];
-            let run = side.control.run(&side.name, side.text()?);
+            let Side { control, program } = &sides[place];
+            let run = control.run(&program.name, program.text()?);
             Ok(run.map_err(|fault| *fault)?)
         };
         let (old, mut new) = (run(0)?, run(1)?);
@@ -56,8 +56,8 @@ impl DiffPage<'_> {
             done.iter().for_each(|done| rows.take(done));
         }
         rows.finish(&mut parts, &mut meta)?;
-        for (part, side) in ["nc2", "nc"].into_iter().zip(sides) {
-            parts.text(part, &side.name, &mut side.text()?)?;
+        for (part, Side { program, .. }) in ["nc2", "nc"].into_iter().zip(sides) {
+            parts.text(part, &program.name, &mut program.text()?)?;
         }
         parts.write(meta, most, page)
     }

@@ -6,9 +6,9 @@
 use post_machine::description::Machine;
 use post_readback::{Curve, Done, Interpolation, Motion, MotionKind, Spindle, Told};
 
-use post_job::axes::{self, AxisColumn};
-use post_job::columns::{Column, CsvTable};
-use post_job::files::{AtomicFile, FileFault};
+use crate::axes::{self, AxisColumn};
+use crate::columns::{Column, CsvTable};
+use crate::files::{AtomicFile, FileFault};
 
 /// A motion, and where its axes stand behind it.
 struct Row {
@@ -77,6 +77,7 @@ pub struct MotionsCsv<'a, 'f> {
 }
 
 impl<'a, 'f> MotionsCsv<'a, 'f> {
+    /// Of a machine, into `file`.
     pub fn new(machine: &'a Machine, file: &'f mut AtomicFile) -> Self {
         let axes = axes::by_words(machine);
         Self { base: machine, machine, table: CsvTable::new(columns(&axes), file), axes }

@@ -4,13 +4,14 @@ use post_host::{Finder, OpenedDialect};
 use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Batch, Capabilities, DialectSession, Format, WriteFault};
+use post_posting::Observer;
 use post_posting::program::DefaultSpindle;
 use post_posting::report::PostingReport;
-use post_posting::{Observer, Post};
 
 use super::plugin_finder;
+use super::posting_pass::{self, OpenedPlugins, PostingPass, ProgramHead};
 use crate::failure::Failure;
-use crate::files::{ClInput, NullSink};
+use crate::files::ClInput;
 use crate::session::Session;
 use crate::settings::JobSettings;
 
@@ -66,25 +67,18 @@ impl<'a> DryRun<'a> {
     ) -> Result<(PostingReport, Vec<Diagnostic>), Failure> {
         let source = &self.arguments.input;
         let program = super::program_name(source, None);
-        let (dialect, _) = plugin_finder::dialect(&self.finder, machine, &program, Some(source))?;
-        let (mut model, _) = plugin_finder::model(&self.finder, machine)?;
+        let head = ProgramHead { name: &program, cl_file: Some(source), preview: None };
+        let OpenedPlugins { dialect, mut model, .. } =
+            OpenedPlugins::open(&self.finder, machine, head)?;
         let input = ClInput::open(self.session, source)?;
-        let mut posting = super::posting(self.arguments, &input.name);
-        if posting.reading.spindle == DefaultSpindle::Unknown {
+        let mut request = posting_pass::posting_request(self.arguments, &input.name);
+        if request.reading.spindle == DefaultSpindle::Unknown {
             // Nothing is written: how fast the spindle turns is nobody's business.
-            posting.reading.spindle = DefaultSpindle::Still;
+            request.reading.spindle = DefaultSpindle::Still;
         }
         let mut dialect = Rounding::new(dialect, self.exact);
-        let mut sink = NullSink;
-        // What a template asks for may not be known here, and nobody reads it.
-        let machine = &machine.without_text();
-        let mut post = Post::new(machine, posting, &mut dialect, &mut model, &mut sink)
-            .map_err(|finding| *finding)?;
-        if let Some(watch) = watch {
-            post.watch(watch);
-        }
-        super::read(self.session, input, &mut post)?;
-        match post.finish() {
+        let pass = PostingPass { machine, request, dialect: &mut dialect, model: &mut model };
+        match pass.run_dry(self.session, input, watch)? {
             (Some(report), findings) => Ok((report, findings)),
             (None, findings) => Err(findings.into()),
         }

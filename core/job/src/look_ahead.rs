@@ -4,17 +4,16 @@ use std::ops::Range;
 
 use post_host::Finder;
 use post_machine::description::Machine;
-use post_machine::diagnostic::Diagnostic;
-use post_posting::{Post, PostingRequest, ProgramPreview};
+use post_posting::{PostingRequest, ProgramPreview};
 
-use super::plugin_finder;
+use super::posting_pass::{self, OpenedPlugins, PostingPass, ProgramHead};
 use crate::failure::Failure;
-use crate::files::{ClSource, NullSink};
+use crate::files::ClSource;
 use crate::session::Session;
 use crate::settings::JobSettings;
 
-/// Posts the file, or these lines of it, once without text of one's own, and throws the program away. What is refused then would be refused
-/// again.
+/// Posts the file, or these lines of it, once without text of one's own, and throws the program away. What is refused then
+/// would be refused again.
 pub fn look_ahead(
     session: &Session,
     arguments: &JobSettings,
@@ -25,19 +24,18 @@ pub fn look_ahead(
 ) -> Result<ProgramPreview, Failure> {
     let plain = machine.without_text();
     let program = super::program_name(&arguments.input, None);
-    let (mut dialect, _) =
-        plugin_finder::dialect(finder, &plain, &program, Some(&arguments.input))?;
-    let (mut model, _) = plugin_finder::model(finder, &plain)?;
-    let mut ahead = ProgramPreview::default();
-    let planes = super::ahead(arguments, source, &plain, &dialect)?;
+    let head = ProgramHead { name: &program, cl_file: Some(&arguments.input), preview: None };
+    let OpenedPlugins { mut dialect, mut model, .. } = OpenedPlugins::open(finder, &plain, head)?;
+    let planes = posting_pass::file_preview(arguments, source, &plain, &dialect)?;
     let input = source.open()?;
-    let job = PostingRequest { ahead: planes, lines, ..super::posting(arguments, &input.name) };
-    let mut sink = NullSink;
-    let mut post = Post::new(&plain, job, &mut dialect, &mut model, &mut sink)
-        .map_err(|finding: Box<Diagnostic>| *finding)?;
-    post.watch(&mut ahead);
-    super::read(session, input, &mut post)?;
-    let time = match post.finish() {
+    let request = PostingRequest {
+        ahead: planes,
+        lines,
+        ..posting_pass::posting_request(arguments, &input.name)
+    };
+    let mut ahead = ProgramPreview::default();
+    let pass = PostingPass { machine: &plain, request, dialect: &mut dialect, model: &mut model };
+    let time = match pass.run_dry(session, input, Some(&mut ahead))? {
         (Some(report), _) => report.time_s,
         (None, findings) => return Err(findings.into()),
     };

@@ -13,13 +13,15 @@ use post_posting::{Observer, ProgramPreview, TextSink};
 use post_readback::interpret::Limits;
 use post_readback::verify::{BlockReport, Verification};
 
+use crate::JobMachine;
 use crate::compensate::{self, Compensation, Moved};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
-use crate::one_program::{Beside, OneProgram};
+use crate::one_program::OneProgram;
 use crate::plan_rounds;
 use crate::plan_worth;
 use crate::plugin_finder;
+use crate::posting_pass::Beside;
 use crate::predict::{self, Against, Asked, Predicted, Prediction, Sample};
 use crate::read_back::{self, Held, Reading};
 use crate::report::{self, BlockRows, ClWindow, Made, PredictedParts};
@@ -27,19 +29,27 @@ use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings};
 use crate::summary::{self, Told};
 
+/// What a job sets over the machine file so that its program is numbered so.
+fn number_setting(
+    session: &Session,
+    arguments: &JobSettings,
+    number: Option<i64>,
+) -> Result<Option<Setting>, Failure> {
+    let Some(number) = number else {
+        return Ok(None);
+    };
+    let dialect = super::machine(session, arguments, &[])?.control.dialect;
+    Ok(Some(Setting::Written(format!("control.{dialect}.program_number={number}"))))
+}
+
 /// The machine of the command line, its program so numbered if a number is given.
 pub fn numbered(
     session: &Session,
     arguments: &JobSettings,
     number: Option<i64>,
 ) -> Result<Machine, Failure> {
-    let machine = super::machine(session, arguments, &[])?;
-    let Some(number) = number else {
-        return Ok(machine);
-    };
-    let dialect = machine.control.dialect;
-    let setting = Setting::Written(format!("control.{dialect}.program_number={number}"));
-    super::machine(session, arguments, &[setting])
+    let setting = number_setting(session, arguments, number)?;
+    super::machine(session, arguments, setting.as_slice())
 }
 
 /// Where a program goes: to `output`, else beside the CL file, with the ending of the machine or of its dialect.
@@ -167,10 +177,34 @@ impl<'a> ProgramMaker<'a> {
         job: &'a JobSettings,
         making: &'a MakingSettings,
     ) -> Result<(Self, Machine), Failure> {
-        let machine = numbered(session, job, making.number.map(i64::from))?;
-        let finder = plugin_finder::finder(session, &job.over.plugins)?;
-        super::say_what_is_left(session, job, &machine, &finder);
-        Ok((Self { session, job, making, finder, ahead: None }, machine))
+        let setting = number_setting(session, job, making.number.map(i64::from))?;
+        let JobMachine { machine, finder } = JobMachine::load(session, job, setting.as_slice())?;
+        Ok((Self::new(session, job, making, finder), machine))
+    }
+
+    /// Of plugins that are found already.
+    pub fn new(
+        session: &'a Session,
+        job: &'a JobSettings,
+        making: &'a MakingSettings,
+        finder: Finder,
+    ) -> Self {
+        Self { session, job, making, finder, ahead: None }
+    }
+
+    /// Makes the first pass over the CL file where texts of the machine ask for what it finds.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn look_ahead_where_needed(
+        &mut self,
+        machine: &Machine,
+        source: &mut ClSource,
+    ) -> Result<(), Failure> {
+        match machine.program.looks_ahead {
+            true => self.look_ahead(machine, source),
+            false => Ok(()),
+        }
     }
 
     /// Makes the first pass over the CL file.
@@ -221,7 +255,6 @@ impl<'a> ProgramMaker<'a> {
         findings: &mut Vec<Diagnostic>,
     ) -> Result<ProgramOutcome, Failure> {
         let Wanted { verify, predict, watch, observer, page } = wanted;
-        findings.extend(ready.warning());
         let mut rows = match &page {
             Some(_) => Some(self.rows(part, source, predict)?),
             None => None,
@@ -232,24 +265,10 @@ impl<'a> ProgramMaker<'a> {
             (None, None) => None,
         };
         let beside = Beside { watch, observer, ..Beside::default() };
-        let (report, found) = ready.write(self.ahead.as_ref(), source, text, beside)?;
-        let moved = ready.is_moved();
-        let (plan_rounds, compensation) = ready.found();
-        // What is wrong with the file is found again in each of its parts.
-        for finding in found {
-            if !findings.contains(&finding) {
-                findings.push(finding);
-            }
-        }
-        let Some(report) = report else {
-            return Err(std::mem::take(findings).into());
-        };
-        let (verification, prediction) = (None, None);
-        let mut outcome =
-            ProgramOutcome { report, moved, plan_rounds, compensation, verification, prediction };
+        let mut outcome = self.write(ready, source, text, beside, findings)?;
         if verify {
             let name = text.name();
-            let held = self.read_back(part, moved, source, (name, text.reread()?))?;
+            let held = self.read_back(part, outcome.moved, source, (name, text.reread()?))?;
             if held.is_wrong() {
                 findings.extend(held.findings);
                 return Err(std::mem::take(findings).into());
@@ -274,6 +293,35 @@ impl<'a> ProgramMaker<'a> {
             input.write((rows, heard), texts, most, file)?;
         }
         Ok(outcome)
+    }
+
+    /// Writes a program alone; what the user should know goes to `findings`.
+    ///
+    /// # Errors
+    /// All that is wrong with it, the findings among it, or a file that cannot be read or written.
+    pub fn write(
+        &self,
+        ready: Ready<'_>,
+        source: &mut ClSource,
+        text: &mut dyn TextSink,
+        beside: Beside<'_, '_, '_>,
+        findings: &mut Vec<Diagnostic>,
+    ) -> Result<ProgramOutcome, Failure> {
+        findings.extend(ready.warning());
+        let (report, found) = ready.write(self.ahead.as_ref(), source, text, beside)?;
+        let moved = ready.is_moved();
+        let (plan_rounds, compensation) = ready.found();
+        // What is wrong with the file is found again in each of its parts.
+        for finding in found {
+            if !findings.contains(&finding) {
+                findings.push(finding);
+            }
+        }
+        let Some(report) = report else {
+            return Err(std::mem::take(findings).into());
+        };
+        let (verification, prediction) = (None, None);
+        Ok(ProgramOutcome { report, moved, plan_rounds, compensation, verification, prediction })
     }
 
     /// What a page is told of a program.
@@ -301,7 +349,10 @@ impl<'a> ProgramMaker<'a> {
     }
 
     /// The rows of the page of a program.
-    fn rows<'p>(
+    ///
+    /// # Errors
+    /// The CL file cannot be read, or there is no place for them.
+    pub fn rows<'p>(
         &self,
         part: &'p Part,
         source: &ClSource,

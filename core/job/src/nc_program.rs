@@ -17,6 +17,9 @@ use crate::files::{FileFault, PathArg};
 use crate::session::Session;
 use crate::settings::ProgramSettings;
 
+/// What a program is called among the files of a run.
+const WHAT: &str = "the NC program";
+
 /// Longest file of offsets that is read, bytes.
 const MOST_OFFSETS: u64 = 1 << 20;
 
@@ -97,11 +100,10 @@ impl NcControl {
     /// The file cannot be read again, or the machine not be solved.
     pub fn program_with_rapids(
         &self,
-        name: &str,
-        file: &File,
+        file: &ProgramFile,
     ) -> Result<FedRapids<Interpreter<File>>, Failure> {
         let program = || -> Result<_, Failure> {
-            Ok(self.program(name, again(name, file)?).map_err(|fault| *fault)?)
+            Ok(self.program(&file.name, file.text()?).map_err(|fault| *fault)?)
         };
         let Some(kept) = fed_rapids(&self.machine, self.spoken.rapids_pass()) else {
             return Ok(FedRapids::none(program()?));
@@ -182,7 +184,7 @@ pub fn spoken(finder: &Finder, machine: &Machine) -> Result<Spoken, Failure> {
 
 /// The file of offsets.
 pub fn offsets(session: &Session, source: &PathArg, machine: &Machine) -> Result<Offsets, Failure> {
-    let (name, file) = open(session, source)?;
+    let (name, file) = open_as(session, WHAT, source)?;
     let mut text = String::new();
     let read = file.take(MOST_OFFSETS + 1).read_to_string(&mut text);
     read.map_err(|error| FileFault::Read { name: name.clone(), error })?;
@@ -201,12 +203,40 @@ pub fn not_both_standard(
     Ok(())
 }
 
-/// Opens a file that can be gone back in, with its name for messages: standard input and pipes are copied first.
-pub fn open(session: &Session, source: &PathArg) -> Result<(String, File), FileFault> {
-    open_as(session, "the NC program", source)
+/// An NC program that is read as often as it takes: standard input and pipes are copied first.
+#[derive(Debug)]
+pub struct ProgramFile {
+    /// What messages call it.
+    pub name: String,
+    file: File,
 }
 
-/// The same of another text, which messages call `what`.
+impl ProgramFile {
+    /// Opens a program.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub fn open(session: &Session, source: &PathArg) -> Result<Self, FileFault> {
+        let (name, file) = open_as(session, WHAT, source)?;
+        Ok(Self { name, file })
+    }
+
+    /// Its text from the beginning: whoever read it before is done.
+    ///
+    /// # Errors
+    /// It cannot be read again.
+    pub fn text(&self) -> Result<File, FileFault> {
+        let again = || -> io::Result<File> {
+            let mut again = self.file.try_clone()?;
+            again.seek(SeekFrom::Start(0))?;
+            Ok(again)
+        };
+        again().map_err(|error| FileFault::Read { name: self.name.clone(), error })
+    }
+}
+
+/// Opens a text that can be gone back in and that messages call `what`, with its name: standard input and pipes are
+/// copied first.
 pub fn open_as(
     session: &Session,
     what: &'static str,
@@ -232,16 +262,6 @@ pub fn open_as(
         return Ok((name, file));
     }
     Ok((name, copied(&mut file).map_err(fault)?))
-}
-
-/// The open file `name` once more, from its beginning: whoever read it before is done.
-pub fn again(name: &str, file: &File) -> Result<File, FileFault> {
-    let again = || -> io::Result<File> {
-        let mut again = file.try_clone()?;
-        again.seek(SeekFrom::Start(0))?;
-        Ok(again)
-    };
-    again().map_err(|error| FileFault::Read { name: name.to_owned(), error })
 }
 
 /// What `input` gives, in a file without a name.

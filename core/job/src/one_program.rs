@@ -6,13 +6,11 @@ use std::sync::Arc;
 use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
-use post_posting::plan::PlanWatch;
 use post_posting::report::PostingReport;
-use post_posting::{
-    JobFacts, Observer, PathShift, Post, PostingRequest, ProgramPreview, TextSink, Tightening,
-};
+use post_posting::{JobFacts, PostingRequest, ProgramPreview, TextSink, Tightening};
 
 use super::plugin_finder;
+use super::posting_pass::{self, Beside, OpenedPlugins, PostingPass, ProgramHead};
 use crate::failure::Failure;
 use crate::files::{ClSource, PathArg};
 use crate::session::Session;
@@ -39,17 +37,6 @@ pub struct OneProgram<'a> {
     pub plans: bool,
     /// Where that plan may use less than the limit of the contour error.
     pub tightening: Option<Arc<Tightening>>,
-}
-
-/// Who takes part while a program is written.
-#[derive(Default)]
-pub struct Beside<'s, 'w, 'o> {
-    /// Moves the points of its path.
-    pub shift: Option<&'s mut dyn PathShift>,
-    /// Sees its plan.
-    pub watch: Option<&'w mut dyn PlanWatch>,
-    /// Sees its blocks.
-    pub observer: Option<&'o mut dyn Observer>,
 }
 
 impl OneProgram<'_> {
@@ -87,12 +74,12 @@ impl OneProgram<'_> {
             None => ahead,
             Some(_) => part_ahead.as_ref(),
         };
-        let (mut dialect, dialect_use) =
-            plugin_finder::dialect_knowing(finder, machine, &program, Some(cl_file), ahead)?;
-        let (mut model, model_use) = plugin_finder::model(finder, machine)?;
-        let planes = super::ahead(arguments, source, machine, &dialect)?;
+        let head = ProgramHead { name: &program, cl_file: Some(cl_file), preview: ahead };
+        let OpenedPlugins { mut dialect, mut model, uses } =
+            OpenedPlugins::open(finder, machine, head)?;
+        let planes = posting_pass::file_preview(arguments, source, machine, &dialect)?;
         let input = source.open()?;
-        let job = PostingRequest {
+        let request = PostingRequest {
             ahead: planes,
             trust_model,
             plans,
@@ -103,23 +90,12 @@ impl OneProgram<'_> {
                 ahead: ahead.cloned(),
             },
             lines,
-            ..super::posting(arguments, &input.name)
+            ..posting_pass::posting_request(arguments, &input.name)
         };
-        let mut post =
-            Post::new(machine, job, &mut dialect, &mut model, file).map_err(|finding| *finding)?;
-        if let Some(shift) = beside.shift {
-            post.shift(shift);
-        }
-        if let Some(watch) = beside.watch {
-            post.watch_plan(watch);
-        }
-        if let Some(observer) = beside.observer {
-            post.watch(observer);
-        }
-        super::read(session, input, &mut post)?;
-        let (mut report, findings) = post.finish();
+        let pass = PostingPass { machine, request, dialect: &mut dialect, model: &mut model };
+        let (mut report, findings) = pass.write(session, input, file, beside)?;
         if let Some(report) = &mut report {
-            report.plugins = vec![dialect_use, model_use];
+            report.plugins = uses.to_vec();
         }
         Ok((report, findings))
     }

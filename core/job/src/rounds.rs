@@ -5,7 +5,8 @@ use post_machine::diagnostic::Diagnostic;
 use post_posting::{PathShift, ProgramPreview};
 use post_readback::interpret::Limits;
 
-use super::one_program::{Beside, OneProgram};
+use super::one_program::OneProgram;
+use super::posting_pass::Beside;
 use super::predict::{self, Against, Asked, Prediction, Sample};
 use crate::failure::Failure;
 use crate::files::{ClSource, Scratch};

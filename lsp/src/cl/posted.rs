@@ -1,20 +1,24 @@
 //! A CL file posted on the chosen machine: where the axes come to stand, and how far the program strays, line by line.
 
-use post_grammar::{ClReader, ReadError};
+use std::io::{self, Cursor, Read};
+
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 use post_posting::program::{DefaultSpindle, ReadingOptions};
-use post_posting::{MotionBlock, Observer, Post, PostingRequest, StreamItem};
+use post_posting::{MotionBlock, Observer, PostingRequest, StreamItem};
 
-use super::EVERY;
 use crate::background::{Token, Worked};
 use crate::document::Snapshot;
 use crate::machine::library::Library;
-use post_job::files::NullSink;
+use post_job::files::ClInput;
 use post_job::plugin_finder;
+use post_job::posting_pass::{OpenedPlugins, PostingPass, ProgramHead};
 
 /// Lines of which it is kept what posting said.
 const MOST_LINES: usize = 500_000;
+
+/// Bytes that are read between two looks whether the work is given up.
+const PIECE: usize = 32 * 1024;
 
 /// What posting said of each line.
 #[derive(Clone, Debug)]
@@ -62,13 +66,12 @@ pub fn post(
         Ok(finder) => finder,
         Err(faults) => return Some(Err(faults)),
     };
-    let opened = plugin_finder::dialect(&finder, &machine, "EDITOR", None)
-        .and_then(|(dialect, _)| Ok((dialect, plugin_finder::model(&finder, &machine)?.0)));
-    let (mut dialect, mut model) = match opened {
+    let head = ProgramHead { name: "EDITOR", cl_file: None, preview: None };
+    let mut opened = match OpenedPlugins::open(&finder, &machine, head) {
         Ok(opened) => opened,
         Err(faults) => return Some(Err(faults)),
     };
-    let job = PostingRequest {
+    let request = PostingRequest {
         reading: ReadingOptions {
             file: of.name.clone(),
             // Nothing is written: how fast the spindle turns is nobody's business.
@@ -78,41 +81,44 @@ pub fn post(
         tool_length,
         ..PostingRequest::default()
     };
-    // What a template asks for may not be known here, and nobody reads it.
-    let plain = machine.without_text();
-    let mut sink = NullSink;
+    let (dialect, model) = (&mut opened.dialect, &mut opened.model);
+    let pass = PostingPass { machine: &machine, request, dialect, model };
     let mut watch = Watch::default();
-    let ended = {
-        let mut post = match Post::new(&plain, job, &mut dialect, &mut model, &mut sink) {
-            Ok(post) => post,
-            Err(finding) => return Some(Err(vec![*finding])),
-        };
-        post.watch(&mut watch);
-        let mut reader = ClReader::new(of.text.as_bytes());
-        let mut records = 0_u64;
-        while !post.gave_up() {
-            records += 1;
-            if records.is_multiple_of(EVERY) && token.is_given_up() {
-                return None;
-            }
-            match reader.next_record() {
-                Ok(Some(record)) => post.record(&record),
-                Ok(None) => {
-                    post.ended(!reader.ends_within_a_line());
-                    break;
-                }
-                Err(ReadError::Syntax(fault)) => post.unreadable(&fault),
-                // A text in memory does not fail.
-                Err(ReadError::Io(_)) => break,
-            }
-        }
-        post.finish()
+    let (report, found) = match pass.run_dry(&library.session, input(of, token), Some(&mut watch)) {
+        _ if token.is_given_up() => return None,
+        Ok(ended) => ended,
+        Err(failure) => return Some(Err(failure.findings())),
     };
-    let (report, found) = ended;
     let mut lines = watch.lines;
     lines.sort_by_key(|posted| posted.line);
     let posted = Posted { machine: Box::new(machine), refused: report.is_none(), lines };
     Some(Ok((posted, found)))
+}
+
+/// The text as a CL file that cannot be read on once the work is given up.
+fn input(of: &Snapshot, token: &Token) -> ClInput {
+    let text = Cursor::new(of.text.clone().into_bytes());
+    ClInput {
+        name: of.name.clone(),
+        bytes: Box::new(Wanted { text, token: token.clone() }),
+        length: None,
+    }
+}
+
+/// A text that is read as long as it is wanted.
+struct Wanted {
+    text: Cursor<Vec<u8>>,
+    token: Token,
+}
+
+impl Read for Wanted {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        if self.token.is_given_up() {
+            return Err(io::Error::other("given up"));
+        }
+        let most = into.len().min(PIECE);
+        self.text.read(&mut into[..most])
+    }
 }
 
 /// Looks on while blocks are made.

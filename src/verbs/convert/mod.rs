@@ -3,15 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use post_machine::description::{Machine, Setting, Tcp};
-use post_machine::diagnostic::Diagnostic;
+use post_machine::description::{Setting, Tcp};
 use post_posting::program::DefaultSpindle;
-use post_posting::report::PostingReport;
-use post_readback::course::CourseFacts;
-use post_readback::course::cl::{ClCourse, ClSettings};
-use post_readback::course::program::{Chords, ProgramCourse};
 use post_readback::interpret::Limits;
-use post_readback::verify::{BlockReport, CutPath};
 
 use crate::arguments::Flags;
 use crate::arguments::flag_values::file;
@@ -19,19 +13,14 @@ use crate::arguments::flag_values::{
     TcpWord, feed, length, point, positive, setting, spindle, word,
 };
 use crate::terminal;
+use post_job::convert::{ConvertRequest, convert};
 use post_job::failure::Failure;
-use post_job::files::{AtomicFile, ClSource, PathArg, Role};
-use post_job::nc_program::{self, NcControl};
-use post_job::nc_to_cl::{self, Tools};
-use post_job::one_program::{Beside, OneProgram};
-use post_job::read_back::{self, Against, Held, Reading};
-use post_job::report::{self, BlockRows, ClWindow, Made};
+use post_job::files::PathArg;
 use post_job::session::Session;
 use post_job::settings::{
     JobSettings, MachineSettings, ProgramSettings, ReadingSettings, ReportSettings,
 };
-use post_job::text::{clock, number, table};
-use post_job::{self as job, plugin_finder};
+use post_job::text::table;
 
 /// Moves an NC program to another machine.
 ///
@@ -142,178 +131,20 @@ pub struct ConvertArguments {
     plugins: Vec<PathBuf>,
 }
 
-/// Of the tolerance so much is left for the CL file's chords: the rest is what posting may use.
-const CHORDS: f64 = 0.1;
-
-/// The path that the new program is held against has chords so much finer than the CL file's.
-const FINER: f64 = 0.1;
-
 /// Converts as the arguments say.
 pub fn run(session: &Session, arguments: &ConvertArguments) -> Result<(), Failure> {
-    let from = NcControl::new(session, &arguments.first())?;
-    let (name, input) = nc_program::open(session, &arguments.input)?;
-    let run = || from.program_with_rapids(&name, &input);
-    let job = arguments.second();
-    let asked = job::machine(session, &job, &[])?;
-    for machine in [&from.machine, &asked] {
-        if machine.turn != 0.0 {
-            let message = format!(
-                "on {} the part sits turned by {}° about its Z: the paths of the two programs have no frame in common",
-                machine.name,
-                number(machine.turn.to_degrees(), 3)
-            );
-            return Err(Diagnostic::error("convert", message)
-                .help("--from-set workpiece.turn=0 or --set workpiece.turn=0, and the part clamped along the machine's axes")
-                .into());
-        }
-    }
-    let [tolerance, axis_tolerance] = [asked.accuracy.tolerance, asked.accuracy.axis_tolerance];
-    let left = 1.0 - CHORDS;
-    let more = [
-        Setting::Tolerance(tolerance * left),
-        Setting::Number {
-            name: "accuracy.axis_tolerance".to_owned(),
-            value: axis_tolerance.to_degrees() * left,
-        },
-    ];
-    let machine = job::machine(session, &job, &more)?;
-    let finder = plugin_finder::finder(session, &job.over.plugins)?;
-    job::say_what_is_left(session, &job, &machine, &finder);
-
-    let mut targets = vec![(Role::PROGRAM, &arguments.output)];
-    targets.extend(arguments.cl.iter().map(|cl| (Role::CL, cl)));
-    targets.extend(arguments.report.0.report.iter().map(|page| (Role::REPORT, page)));
-    let mut files = AtomicFile::create(session, &targets)?;
-    let page = arguments.report.0.report.as_ref().and_then(|_| files.pop());
-    let (program, cl_file) = files.split_at_mut(1);
-    let program = &mut program[0];
-
-    let chords = Chords::within(tolerance * CHORDS, axis_tolerance * CHORDS);
-    let part = arguments.input.stem().unwrap_or_default();
-    let mut course = ProgramCourse::new(run()?, chords);
-    let (mut source, written) = ClSource::of_text(session, format!("{name} as CL file"), |copy| {
-        nc_to_cl::write(
-            &mut course,
-            &part,
-            chords.tip,
-            Tools { length: arguments.tool_length, edges: from.lexicon.tools_have_edges() },
-            &mut |text| {
-                copy(text)?;
-                match cl_file.first_mut() {
-                    Some(file) => file.write_bytes(text),
-                    None => Ok(()),
-                }
-            },
-        )
-    })?;
-    let mut notes = written.notes;
-    notes.extend(nc_to_cl::fed(course.program().left()));
-    notes.extend(course.program().program().report().notes.iter().cloned());
-    if !written.faults.is_empty() {
-        notes.extend(written.faults);
-        return Err(notes.into());
-    }
-
-    let ahead = match machine.program.looks_ahead {
-        true => Some(job::look_ahead(session, &job, &machine, &finder, &mut source, None)?),
-        false => None,
+    let request = ConvertRequest {
+        from: arguments.first(),
+        to: arguments.second(),
+        output: arguments.output.clone(),
+        cl: arguments.cl.clone(),
+        report: arguments.report.0.clone(),
     };
-    let one = OneProgram {
-        session,
-        arguments: &job,
-        machine: &machine,
-        finder: &finder,
-        target: &arguments.output,
-        lines: None,
-        trust_model: false,
-        plans: false,
-        tightening: None,
-    };
-    let mut rows = match page {
-        Some(page) => {
-            let input = source.open_beside()?;
-            let settings = ClSettings::of(&machine, &input.name);
-            let cl = ClWindow::new(&machine, settings, input.bytes)?;
-            Some((page, BlockRows::new(&machine, cl, false)?))
-        }
-        None => None,
-    };
-    let mut beside = Beside::default();
-    if let Some((_, rows)) = &mut rows {
-        beside.observer = Some(rows);
-    }
-    let (report, findings) = one.write(ahead.as_ref(), &mut source, program, beside)?;
-    notes.extend(findings);
-    let Some(report) = report else {
-        return Err(notes.into());
-    };
-
-    let finer = Chords { tip: chords.tip * FINER, axis: chords.axis * FINER, ..chords };
-    let mut read = ClCourse::new(ClSettings::of(&machine, &name), source.open()?.bytes);
-    let (facts, _) = CourseFacts::of(&mut read);
-    let again = ClCourse::new(ClSettings::of(&machine, &name), source.open()?.bytes);
-    let (cut_path, _) = CutPath::of(&mut { again }, machine.control_point.along);
-    let against = Against {
-        course: ProgramCourse::new(run()?, finer),
-        name: name.clone(),
-        tools: read.tools().to_vec(),
-        cut_path: Some(cut_path),
-    };
-    let reading = Reading {
-        session,
-        arguments: &job,
-        machine: &machine,
-        finder: &finder,
-        offsets: None,
-        limits: Limits::default(),
-        tolerances: [Some(tolerance), Some(axis_tolerance)],
-        planned: false,
-        solutions: false,
-        any_coolant: false,
-        any_work_offset: false,
-        own: false,
-        lines: None,
-    };
-    let told = program.name().to_owned();
-    let text = program.reread()?;
-    let held = read_back::hold(&reading, against, &told, text, &mut |_: &BlockReport| {})?;
-    if held.is_wrong() {
-        notes.extend(held.findings);
-        return Err(notes.into());
-    }
-    notes.extend(held.findings.iter().cloned());
-    if let Some((mut page, rows)) = rows {
-        // The same job gives the same page wherever its files lie.
-        let [name, target] = [&arguments.input, &arguments.output].map(report::name_of);
-        let summed = summary(&name, &from.machine, (&machine, &target), &report, &held, &facts);
-        let made = Made {
-            session,
-            machine: &machine,
-            cl: format!("{} as CL file", report::name_of(&arguments.input)),
-            program: &arguments.output,
-            report: &report,
-            verification: Some(&held.found),
-            prediction: None,
-            findings: &notes,
-            job: "convert",
-            facts: summed,
-        };
-        let (named, mut text) = (program.name().to_owned(), program.reread()?);
-        made.write(
-            (rows, None),
-            (&mut source, &named, &mut text),
-            arguments.report.0.most(),
-            &mut page,
-        )?;
-        files.push(page);
-    }
-    let taken = files.iter().any(AtomicFile::is_standard);
-    AtomicFile::finish(session, files)?;
-    session.findings(&notes);
+    let converted = convert(session, &request)?;
+    session.findings(&converted.findings);
     if !arguments.quiet {
-        let text = summary(&name, &from.machine, (&machine, &told), &report, &held, &facts);
-        let text = table(&text, 2);
-        if taken {
+        let text = table(&converted.summary(converted.names.clone()), 2);
+        if converted.printed {
             terminal::tell(&text);
         } else {
             terminal::print(session, &text);
@@ -361,39 +192,4 @@ impl ConvertArguments {
             },
         }
     }
-}
-
-/// What was done, as a table.
-fn summary(
-    name: &str,
-    from: &Machine,
-    (to, target): (&Machine, &str),
-    report: &PostingReport,
-    held: &Held,
-    facts: &CourseFacts,
-) -> Vec<[String; 2]> {
-    let found = &held.found;
-    let mut rows: Vec<[String; 2]> = Vec::new();
-    let mut row = |name: &str, value: String| rows.push([name.to_owned(), value]);
-    row("from", format!("{name}, {} ({})", from.name, from.control.dialect));
-    row("to", format!("{target}, {} ({})", to.name, to.control.dialect));
-    row(
-        "path",
-        format!(
-            "{} pieces at feed ({} arcs, {} splines), {} rapids, {} holes",
-            facts.cuts, facts.arcs, facts.splines, facts.rapids, facts.holes
-        ),
-    );
-    row("program", format!("{} blocks, {} points put in", report.blocks, report.points_added));
-    row(
-        "tip",
-        format!(
-            "within {} mm of the first program's path, tolerance {} mm",
-            number(found.tip.value, 6),
-            number(report.tolerance_mm / (1.0 - CHORDS), 6)
-        ),
-    );
-    row("tool axis", format!("within {}°", number(found.axis.value, 5)));
-    row("time", clock(report.time_s));
-    rows
 }

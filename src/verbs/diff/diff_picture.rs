@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use post_readback::diff::{Difference, OperationDifference};
 
-use super::along::{Along, Bin};
+use post_job::diff::{Along, Bin};
 use post_job::files::PlanView;
 use post_job::files::chart::{Chart, DASHED, GREY, LOOKS, Series};
 use post_job::files::svg::{self, label};

@@ -1,23 +1,16 @@
 //! `post diff`: what two NC programs make the machine do differently.
 
-mod along;
-mod diff_page;
 mod diff_picture;
 mod diff_text;
 
-use std::fs::File;
-
 use clap::Args;
-use post_machine::diagnostic::Diagnostic;
-use post_readback::diff::{DiffRules, UnreadBlocks, compare};
 
 use crate::arguments::flag_values::file;
 use crate::arguments::{Flags, ProgramArguments, flag_values};
 use crate::terminal;
-use along::Along;
+use post_job::diff::{self, Compared, DiffRequest, DiffTolerances};
 use post_job::failure::Failure;
-use post_job::files::{self, AtomicFile, FileFault, PathArg, Role};
-use post_job::nc_program::{self, NcControl};
+use post_job::files::{self, AtomicFile, PathArg, Role};
 use post_job::session::Session;
 use post_job::settings::{ProgramSettings, ReportSettings};
 
@@ -92,49 +85,15 @@ pub struct DiffArguments {
     svg: Option<PathArg>,
 }
 
-/// One of the programs, ready to be read as often as it takes.
-struct Side {
-    name: String,
-    file: File,
-}
-
-impl Side {
-    fn open(session: &Session, source: &PathArg) -> Result<Self, Failure> {
-        let (name, file) = nc_program::open(session, source)?;
-        Ok(Self { name, file })
-    }
-
-    /// Its text from the beginning.
-    fn text(&self) -> Result<File, FileFault> {
-        nc_program::again(&self.name, &self.file)
-    }
-}
-
 /// Does as the arguments say.
 pub fn run(session: &Session, arguments: &DiffArguments) -> Result<(), Failure> {
-    let controls = [
-        NcControl::new(session, &arguments.program.settings())?,
-        NcControl::new(session, &of_new(arguments))?,
-    ];
-    let sides = [Side::open(session, &arguments.old)?, Side::open(session, &arguments.new)?];
-    let [old, new] = &controls;
-    let rules = rules(arguments, [old, new]);
-    let mut along = Along::new(rules.tip);
-    let opened = |new: bool| {
-        let (control, side) = (&controls[usize::from(new)], &sides[usize::from(new)]);
-        control.program_with_rapids(&side.name, &side.file)
-    };
-    let (found, unread) = compare(&rules, opened, &mut |sample| along.take(sample))?;
-    let UnreadBlocks { old: mut refused, new: more } = unread;
-    refused.extend(more);
-    if !refused.is_empty() {
-        // What stands behind a block that is not run counts from elsewhere.
-        return Err(refused.into());
-    }
-    let names = sides.each_ref().map(|side| side.name.as_str());
-    let machines = [old, new].map(|control| control.machine.name.as_str());
-    let picture = diff_picture::draw(names, &found, &along);
-    let json = files::json(&found);
+    let request = arguments.request();
+    let compared = diff::compare(session, &request)?;
+    let Compared { sides, rules, found, along, findings } = &compared;
+    let names = sides.each_ref().map(|side| side.program.name.as_str());
+    let machines = sides.each_ref().map(|side| side.control.machine.name.as_str());
+    let picture = diff_picture::draw(names, found, along);
+    let json = files::json(found);
     let mut texts = Vec::new();
     if let Some(target) = &arguments.json {
         texts.push((Role::JSON, target, json.as_str()));
@@ -150,19 +109,13 @@ pub fn run(session: &Session, arguments: &DiffArguments) -> Result<(), Failure> 
         file.write_bytes(text.as_bytes())?;
     }
     if let (Some(_), Some(page)) = (&arguments.report.0.report, written.last_mut()) {
-        let shown = diff_page::Shown {
-            session,
-            controls: [old, new],
-            found: &found,
-            rules: &rules,
-            names: [&arguments.old, &arguments.new],
-        };
-        shown.write(&sides, arguments.report.0.most(), page)?;
+        let names = request.programs.each_ref();
+        compared.write_page(session, names, arguments.report.0.most(), page)?;
     }
     let taken = written.iter().any(AtomicFile::is_standard);
     AtomicFile::finish(session, written)?;
-    warn(session, &found.unknown);
-    let text = diff_text::text(names, machines, &rules, &found);
+    session.findings(findings);
+    let text = diff_text::text(names, machines, rules, found);
     if taken {
         terminal::tell(&text);
     } else {
@@ -174,51 +127,34 @@ pub fn run(session: &Session, arguments: &DiffArguments) -> Result<(), Failure> 
     }
 }
 
-/// The flags of the new program.
-fn of_new(arguments: &DiffArguments) -> ProgramSettings {
-    let mut program = arguments.program.settings();
-    if let Some(machine) = &arguments.machine_new {
-        program.machine.clone_from(machine);
-        // What was set is a key of the other machine, and its dialect the other's.
-        program.set.clear();
-        program.dialect = None;
-        program.mount = None;
+impl DiffArguments {
+    fn request(&self) -> DiffRequest {
+        DiffRequest {
+            programs: [self.old.clone(), self.new.clone()],
+            settings: [self.program.settings(), self.of_new()],
+            other_machine: self.machine_new.is_some(),
+            tolerances: DiffTolerances {
+                tip: self.tolerance,
+                axis: self.axis_tolerance.to_radians(),
+                feed: self.feed_tolerance / 100.0,
+            },
+        }
     }
-    let given = &arguments.offsets_new;
-    program.offsets = given.clone().or(program.offsets);
-    program.dialect = arguments.dialect_new.clone().or(program.dialect);
-    program.tool_length = arguments.tool_length_new.or(program.tool_length);
-    program.mount = arguments.mount_new.or(program.mount);
-    program
-}
 
-fn rules(arguments: &DiffArguments, [old, new]: [&NcControl; 2]) -> DiffRules {
-    let axes = |control: &NcControl| -> Vec<(String, bool)> {
-        let axes = control.machine.axes.iter();
-        axes.map(|axis| (axis.name.clone(), axis.joint.rotary)).collect()
-    };
-    let one_machine = arguments.machine_new.is_none() && axes(old) == axes(new);
-    let (axes, rotary) = axes(old).into_iter().unzip();
-    DiffRules {
-        tip: arguments.tolerance,
-        axis: arguments.axis_tolerance.to_radians(),
-        feed: arguments.feed_tolerance / 100.0,
-        apart: post_readback::diff::APART.max(4.0 * arguments.tolerance),
-        one_machine,
-        one_control: one_machine && old.machine.control.dialect == new.machine.control.dialect,
-        axes,
-        rotary,
+    /// The flags of the new program.
+    fn of_new(&self) -> ProgramSettings {
+        let mut program = self.program.settings();
+        if let Some(machine) = &self.machine_new {
+            program.machine.clone_from(machine);
+            // What was set is a key of the other machine, and its dialect the other's.
+            program.set.clear();
+            program.dialect = None;
+            program.mount = None;
+        }
+        program.offsets = self.offsets_new.clone().or(program.offsets);
+        program.dialect = self.dialect_new.clone().or(program.dialect);
+        program.tool_length = self.tool_length_new.or(program.tool_length);
+        program.mount = self.mount_new.or(program.mount);
+        program
     }
-}
-
-/// Words that are not understood may make a difference that is not seen.
-fn warn(session: &Session, unknown: &[Vec<String>; 2]) {
-    let mut words: Vec<&str> = unknown.iter().flatten().map(String::as_str).collect();
-    words.sort_unstable();
-    words.dedup();
-    if words.is_empty() {
-        return;
-    }
-    let message = format!("what {} does is not known, and not compared", words.join(", "));
-    session.findings(&[Diagnostic::warning("nc-unknown", message)]);
 }

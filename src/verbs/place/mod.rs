@@ -1,22 +1,18 @@
 //! `post place`: where a part can sit on a machine.
 
 mod place_text;
-mod search;
 mod travel_picture;
-mod trial;
 
 use clap::{Args, ValueEnum};
 
 use crate::arguments::JobArguments;
 use crate::arguments::flag_values::file;
-use crate::arguments::flag_values::{not_negative, positive};
+use crate::arguments::flag_values::{not_negative, positive, word};
 use crate::terminal;
-use post_job as job;
 use post_job::failure::Failure;
 use post_job::files::{self, PathArg, Role};
+use post_job::place::{Least, PlaceRequest, place};
 use post_job::session::Session;
-use search::Search;
-use trial::Trials;
 
 /// Finds where the part can sit: the mount that keeps every axis inside travel and then takes least time.
 ///
@@ -36,7 +32,7 @@ pub struct PlaceArguments {
 
     /// What is to be small, once every axis stays inside travel: the time of the program, or what its rotary axes
     /// turn in all.
-    #[arg(long, value_enum, default_value_t, value_name = "WHAT")]
+    #[arg(long, value_parser = word::<LeastWord, Least>(), default_value = "time", value_name = "WHAT")]
     least: Least,
 
     /// Every linear axis stays this far from the ends of its travel, mm.
@@ -58,12 +54,20 @@ pub struct PlaceArguments {
     svg: Option<PathArg>,
 }
 
-/// What is to be small.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Least {
-    #[default]
+/// `--least`.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum LeastWord {
     Time,
     Rotary,
+}
+
+impl From<LeastWord> for Least {
+    fn from(word: LeastWord) -> Self {
+        match word {
+            LeastWord::Time => Self::Time,
+            LeastWord::Rotary => Self::Rotary,
+        }
+    }
 }
 
 /// Degrees from turn to turn.
@@ -77,9 +81,13 @@ fn step(text: &str) -> Result<f64, String> {
 /// Places as the arguments say.
 pub fn run(session: &Session, arguments: &PlaceArguments) -> Result<(), Failure> {
     let job = &arguments.job.settings();
-    let mut trials = Trials::new(session, job, arguments)?;
-    job::say_what_is_left(session, job, &trials.machine()?, trials.finder());
-    let found = Search::new(arguments, &mut trials)?.run()?;
+    let request = PlaceRequest {
+        least: arguments.least,
+        margin: arguments.margin,
+        search_turn: arguments.search_turn,
+        runs: arguments.runs,
+    };
+    let found = place(session, job, &request)?;
     let mut taken = false;
     if let Some(target) = &arguments.svg {
         taken = files::write(session, &[(Role::PICTURE, target, &travel_picture::draw(&found))])?;

@@ -5,9 +5,8 @@ use std::fmt::Write as _;
 
 use post_posting::report::AxisRange;
 
-use super::search::{Found, mount_text};
-use super::trial::Trial;
-use super::{Least, PlaceArguments};
+use super::PlaceArguments;
+use post_job::place::{Found, Least, Trial, mount_text};
 use post_job::text::{clock, number, table as columns};
 
 /// Flags of this verb, which posting does not take, and those that the answer takes the place of: each with whether its

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use post_posting::report::AxisRange;
 
-use super::search::{Found, mount_text};
 use post_job::files::svg::{self, label};
+use post_job::place::{Found, mount_text};
 use post_job::text::number;
 
 const WIDTH: f64 = 760.0;

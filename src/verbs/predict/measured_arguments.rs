@@ -4,15 +4,11 @@ use clap::Args;
 
 use crate::arguments::flag_values::file;
 use crate::arguments::flag_values::positive;
-use post_job::failure::Failure;
 use post_job::files::PathArg;
-use post_job::nc_program;
+use post_job::predict::MeasuredRequest;
 use post_job::predict::measured::{
-    self, AxisFitted, ColumnNames, Log, LogForm, LogUnits, LogZeros, Overlay, column_names,
-    log_units, log_zeros,
+    ColumnNames, LogForm, LogUnits, LogZeros, column_names, log_units, log_zeros,
 };
-use post_job::session::Session;
-use post_machine::description::Machine;
 
 /// A recorded log, and how it is written.
 #[derive(Debug, Args)]
@@ -50,35 +46,17 @@ pub struct MeasuredArguments {
 }
 
 impl MeasuredArguments {
-    /// The log is standard input.
-    pub fn is_standard(&self) -> bool {
-        self.measured.as_ref().is_some_and(|file| file.path().is_none())
-    }
-
-    /// The log, to be laid over a prediction every `period` seconds.
-    pub fn overlay(
-        &self,
-        session: &Session,
-        machine: &Machine,
-        period: f64,
-    ) -> Result<Option<Overlay>, Failure> {
-        let Some(file) = &self.measured else {
-            return Ok(None);
-        };
-        let form = LogForm {
-            columns: self.columns.clone(),
-            units: self.log_units.unwrap_or_default(),
-            period: self.log_period,
-        };
-        let zeros = self.log_zeros.clone().unwrap_or_default();
-        let zeros = zeros.by_axis(machine).map_err(|fault| *fault)?;
-        let (name, input) = nc_program::open_as(session, "the log", file)?;
-        let log = Log::read(machine, &form, &name, input)?;
-        Ok(Some(Overlay::new(log, zeros, period)))
-    }
-
-    /// Servos adjusted to the log, if any are to be.
-    pub fn fitted(&self, machine: &Machine, log: &Log) -> Result<Vec<AxisFitted>, Failure> {
-        measured::fitted(machine, log, &self.fit)
+    /// The log that is laid over the prediction, if one is.
+    pub fn request(&self) -> Option<MeasuredRequest> {
+        Some(MeasuredRequest {
+            log: self.measured.clone()?,
+            form: LogForm {
+                columns: self.columns.clone(),
+                units: self.log_units.unwrap_or_default(),
+                period: self.log_period,
+            },
+            zeros: self.log_zeros.clone().unwrap_or_default(),
+            fit: self.fit.clone(),
+        })
     }
 }

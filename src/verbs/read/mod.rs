@@ -1,29 +1,17 @@
 //! `post read`: what an NC program makes its machine do.
 
-mod beyond_travel;
-mod motions_csv;
 mod read_text;
-mod survey;
-
-use std::fs::File;
 
 use clap::Args;
-use post_machine::diagnostic::Diagnostic;
-use post_readback::course::program::{Chords, ProgramCourse};
-use post_readback::interpret::Interpreter;
-use post_readback::{FedRapids, MOST_FAULTS};
 
 use crate::arguments::ProgramArguments;
 use crate::arguments::flag_values::file;
 use crate::terminal;
-use beyond_travel::BeyondTravel;
-use motions_csv::MotionsCsv;
 use post_job::failure::Failure;
-use post_job::files::{AtomicFile, PathArg, Role};
-use post_job::nc_program::{self, NcControl};
-use post_job::nc_to_cl::{self, Tools};
+use post_job::files::PathArg;
+use post_job::nc_program::NcControl;
+use post_job::read::{self, ReadRequest};
 use post_job::session::Session;
-use survey::Survey;
 
 /// Reads an NC program back: what it makes the machine do, block by block.
 ///
@@ -76,92 +64,19 @@ pub struct ReadArguments {
     cl: Option<PathArg>,
 }
 
-/// Of the machine's tolerance so much is used by chords of curves that no record of a CL file has.
-const CHORDS: f64 = 0.1;
-
-const MOTIONS: Role = Role { what: "table of motions", remedy: "name another file with --csv" };
-
 /// Does as the arguments say.
 pub fn run(session: &Session, arguments: &ReadArguments) -> Result<(), Failure> {
     let control = NcControl::new(session, &arguments.program.settings())?;
-    let (name, input) = nc_program::open(session, &arguments.input)?;
-    let run = control.run(&name, nc_program::again(&name, &input)?);
-    let mut run = run.map_err(|fault| *fault)?;
-    let mut targets: Vec<(Role, &PathArg)> = Vec::new();
-    targets.extend(arguments.csv.iter().map(|target| (MOTIONS, target)));
-    targets.extend(arguments.cl.iter().map(|target| (Role::CL, target)));
-    let mut files = AtomicFile::create(session, &targets)?;
-    let (tables, cl_files) = files.split_at_mut(usize::from(arguments.csv.is_some()));
-    let mut csv = tables.first_mut().map(|file| MotionsCsv::new(&control.machine, file));
-    let mut survey = Survey::new(&control.machine);
-    let mut beyond = BeyondTravel::default();
-    while let Some(done) = run.block() {
-        for what in done {
-            survey.take(what);
-            beyond.take(&control.machine, what);
-            if let Some(csv) = &mut csv {
-                csv.take(what)?;
-            }
-        }
-    }
-    let mut refused = run.faults().to_vec();
-    if refused.len() == MOST_FAULTS {
-        refused.push(nc_program::given_up());
-    }
-    if let Some(csv) = csv {
-        csv.finish()?;
-    }
-    if let (Some(file), true) = (cl_files.first_mut(), refused.is_empty()) {
-        let program = control.program_with_rapids(&name, &input)?;
-        write_cl(session, arguments, &control, program, file, &mut refused)?;
-    }
-    if !refused.is_empty() {
-        // A path with gaps is none.
-        files.truncate(usize::from(arguments.csv.is_some()));
-    }
-    refused.extend(beyond.findings(&name));
-    let taken = files.iter().any(AtomicFile::is_standard);
-    AtomicFile::finish(session, files)?;
-    let report = run.program().report();
-    session.findings(&report.notes);
-    let text = read_text::text(&control.machine, &survey, report, refused.len());
-    if taken {
+    let ReadArguments { input, csv, cl, .. } = arguments;
+    let request = ReadRequest { input: input.clone(), csv: csv.clone(), cl: cl.clone() };
+    let found = read::read(session, &control, &request)?;
+    session.findings(&found.report.notes);
+    let refused = found.refused;
+    let text = read_text::text(&control.machine, &found.survey, &found.report, refused.len());
+    if found.printed {
         terminal::tell(&text);
     } else {
         terminal::print(session, &text);
     }
     if refused.is_empty() { Ok(()) } else { Err(refused.into()) }
-}
-
-/// Runs the program once more, and writes its path.
-fn write_cl(
-    session: &Session,
-    arguments: &ReadArguments,
-    control: &NcControl,
-    program: FedRapids<Interpreter<File>>,
-    file: &mut AtomicFile,
-    refused: &mut Vec<Diagnostic>,
-) -> Result<(), Failure> {
-    let machine = &control.machine;
-    if machine.turn != 0.0 {
-        let message = format!(
-            "on {} the part sits turned by {:.3}° about its Z: posted again, this CL file would be turned once more",
-            machine.name,
-            machine.turn.to_degrees()
-        );
-        return Err(Diagnostic::error("turned-part", message)
-            .help("--set workpiece.turn=0 writes it in the frame of the machine's axes")
-            .into());
-    }
-    let accuracy = &machine.accuracy;
-    let [tip, axis] = [accuracy.tolerance, accuracy.axis_tolerance].map(|mm| mm * CHORDS);
-    let mut course = ProgramCourse::new(program, Chords::within(tip, axis));
-    let part = arguments.input.stem().unwrap_or_default();
-    let tools = Tools { length: control.offsets.length, edges: control.lexicon.tools_have_edges() };
-    let written =
-        nc_to_cl::write(&mut course, &part, tip, tools, &mut |text| file.write_bytes(text))?;
-    session.findings(&written.notes);
-    session.findings(nc_to_cl::fed(course.program().left()).as_slice());
-    refused.extend(written.faults);
-    Ok(())
 }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use post_machine::description::{Axis, Machine};
 use post_readback::interpret::ReadReport;
 
-use super::survey::Survey;
+use post_job::read::Survey;
 use post_job::text::{clock, number, table};
 
 /// So many words that are not known are listed.

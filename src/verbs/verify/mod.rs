@@ -1,24 +1,19 @@
 //! `post verify`: an NC program held against the CL file that it was made from.
 
-mod verify_page;
 mod verify_text;
 
 use clap::{Args, ValueEnum};
-use post_readback::BlockEffect;
 use post_readback::interpret::Limits;
-use post_readback::verify::BlockReport;
 
 use crate::arguments::flag_values::file;
 use crate::arguments::flag_values::positive;
 use crate::arguments::{Flags, JobFlags};
 use crate::terminal;
 use post_job::failure::Failure;
-use post_job::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
-use post_job::read_back::{self, Reading, VerifyWatch};
-use post_job::report::{Besides, ClWindow, MotionRows};
+use post_job::files::PathArg;
 use post_job::session::Session;
 use post_job::settings::ReportSettings;
-use post_job::{self as job, nc_program, plugin_finder};
+use post_job::verify::{Verified, VerifyRequest, verify};
 
 /// Holds an NC program against a CL file: does the machine do what was asked?
 ///
@@ -108,108 +103,26 @@ enum Ignored {
     WorkOffset,
 }
 
-const MAP: Role = Role { what: "map", remedy: "name another file with --map" };
-
-/// What is made of the lines of the program while it is held against the CL file.
-struct Watch<'m, 'f> {
-    map: Option<(JsonRows, &'f mut AtomicFile)>,
-    rows: Option<MotionRows<'m>>,
-}
-
-impl VerifyWatch for Watch<'_, '_> {
-    fn done(&mut self, done: &BlockEffect) {
-        if let Some(rows) = &mut self.rows {
-            rows.take(done);
-        }
-    }
-
-    fn line(&mut self, line: &BlockReport) {
-        if let Some((map, file)) = &mut self.map {
-            map.row(line, file);
-        }
-        if let Some(rows) = &mut self.rows {
-            rows.hear(line.nc_line, &verify_page::heard(line));
-        }
-    }
-
-    fn runs_on(&mut self) -> bool {
-        self.rows.as_mut().map(MotionRows::alone).is_some()
-    }
-}
-
 /// Verifies as the arguments say.
 pub fn run(session: &Session, arguments: &VerifyArguments) -> Result<(), Failure> {
-    let job = &arguments.job.settings(&arguments.machine, &arguments.against);
-    let machine = job::machine(session, job, &[])?;
-    let finder = plugin_finder::finder(session, &job.over.plugins)?;
-    job::say_what_is_left(session, job, &machine, &finder);
-    let named = &arguments.program;
-    nc_program::not_both_standard(named, Some(&job.input))?;
-    let (name, program) = nc_program::open(session, named)?;
-    let offsets = match &arguments.offsets {
-        Some(file) => Some(nc_program::offsets(session, file, &machine)?),
-        None => None,
-    };
-    let mut source = ClSource::new(session, &job.input, true)?;
-    let mut targets: Vec<(Role, &PathArg)> = Vec::new();
-    targets.extend(arguments.map.iter().map(|map| (MAP, map)));
-    targets.extend(arguments.summary.iter().map(|summary| (Role::SUMMARY, summary)));
-    targets.extend(arguments.report.0.report.iter().map(|page| (Role::REPORT, page)));
-    let mut texts = AtomicFile::create(session, &targets)?;
-    let page = arguments.report.0.report.as_ref().and_then(|_| texts.pop());
-    let again = nc_program::again(&name, &program)?;
-    let reading = Reading {
-        session,
-        arguments: job,
-        machine: &machine,
-        finder: &finder,
-        offsets,
-        limits: Limits { blocks: arguments.most_blocks, ..Limits::default() },
-        tolerances: [None, arguments.axis_tolerance.map(f64::to_radians)],
+    let request = VerifyRequest {
+        job: arguments.job.settings(&arguments.machine, &arguments.against),
+        program: arguments.program.clone(),
+        offsets: arguments.offsets.clone(),
+        most_blocks: arguments.most_blocks,
+        axis_tolerance: arguments.axis_tolerance.map(f64::to_radians),
         planned: arguments.planned,
-        solutions: arguments.map.is_some(),
+        posted: arguments.posted,
         any_coolant: arguments.ignore.contains(&Ignored::Coolant),
         any_work_offset: arguments.ignore.contains(&Ignored::WorkOffset),
-        own: arguments.posted,
-        lines: None,
+        map: arguments.map.clone(),
+        summary: arguments.summary.clone(),
+        report: arguments.report.0.clone(),
     };
-    let rows = match &page {
-        Some(_) => {
-            let cl = ClWindow::of(job, &machine, &source)?;
-            let besides = Besides { deviations: true, ..Besides::default() };
-            Some(MotionRows::new(&machine, Some(cl), besides)?)
-        }
-        None => None,
-    };
-    let map = arguments.map.as_ref().and(texts.first_mut());
-    let mut watch = Watch { map: map.map(|file| (JsonRows::default(), file)), rows };
-    let held = read_back::verify(&reading, &mut source, &name, program, &mut watch)?;
-    let Watch { map, rows } = watch;
-    if let Some((map, file)) = map {
-        map.end(file)?;
-    }
-    if arguments.summary.is_some()
-        && let Some(file) = texts.last_mut()
-    {
-        file.write_bytes(files::json(&held.found).as_bytes())?;
-    }
-    if let (Some(mut page), Some(rows)) = (page, rows) {
-        let shown = verify_page::Shown {
-            session,
-            machine: &machine,
-            held: &held,
-            names: [named, &job.input],
-            tolerances: reading.tolerances,
-        };
-        let text = nc_program::again(&name, &again)?;
-        shown.write(rows, (&mut source, &name, text), arguments.report.0.most(), &mut page)?;
-        texts.push(page);
-    }
-    let taken = texts.iter().any(AtomicFile::is_standard);
-    AtomicFile::finish(session, texts)?;
+    let Verified { name, machine, held, tolerances, printed } = verify(session, &request)?;
     if !arguments.quiet {
-        let text = verify_text::text(&held, &machine, &name, reading.tolerances);
-        if taken {
+        let text = verify_text::text(&held, &machine, &name, tolerances);
+        if printed {
             terminal::tell(&text);
         } else {
             terminal::print(session, &text);

@@ -7,10 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Severity};
+use post_posting::TextSink;
 use post_posting::report::PostingReport;
-use post_posting::{ProgramPreview, TextSink};
-use post_readback::interpret::Limits;
-use post_readback::verify::BlockReport;
 
 use super::Study;
 use super::columns::{self, Written};
@@ -21,13 +19,13 @@ use super::key;
 use super::outcome::{FAILED, Outcome, REFUSED, WRITTEN};
 use super::travel;
 use crate::failure::Failure;
-use crate::files::{ClSource, HeldText, PathArg};
-use crate::one_program::{Beside, OneProgram};
-use crate::predict::{self, Against, Asked, Sample};
-use crate::read_back::{self, Reading};
+use crate::files::{ClSource, HeldText};
+use crate::making::{Part, ProgramMaker};
+use crate::plugin_finder;
+use crate::posting_pass::Beside;
 use crate::session::Session;
-use crate::settings::JobSettings;
-use crate::{self as job, plugin_finder, unused_options};
+use crate::settings::{JobSettings, MakingSettings};
+use crate::unused_options;
 
 /// What came of a job, and whether the journal knew it.
 pub struct Did {
@@ -137,7 +135,9 @@ fn attempt(
         return Ok(Did { outcome, known: true });
     }
     let begun = std::time::Instant::now();
-    let one = OneJob { session, study, arguments: &arguments, machine: &machine, cl: &cl, stop };
+    let target = arguments.input.map(|path| path.with_extension("nc"));
+    let part = Part { lines: None, target, machine };
+    let one = OneJob { session, study, arguments: &arguments, part, cl: &cl, stop };
     let mut outcome = match one.make() {
         Ok(outcome) => outcome,
         Err(Failure::Refused(findings)) => Outcome::not_written(REFUSED, &findings),
@@ -156,7 +156,7 @@ struct OneJob<'a> {
     session: &'a Session,
     study: &'a Study,
     arguments: &'a JobSettings,
-    machine: &'a Machine,
+    part: Part,
     cl: &'a ClText,
     stop: &'a Arc<AtomicBool>,
 }
@@ -165,33 +165,28 @@ impl OneJob<'_> {
     /// Posts, and reads back and predicts where that is asked for.
     fn make(&self) -> Result<Outcome, Failure> {
         let options = &self.study.options;
-        let finder = &self.study.finder;
-        let mut source = self.source();
-        let mut findings = unused_options::found(self.machine, finder);
-        let ahead = self.ahead(&mut source)?;
-        let target = self.arguments.input.map(|path| path.with_extension("nc"));
-        let program = OneProgram {
-            session: self.session,
-            arguments: self.arguments,
-            machine: self.machine,
-            finder,
-            target: &target,
-            lines: None,
+        let part = &self.part;
+        let making = MakingSettings {
+            plan: options.plan,
             trust_model: options.trust_model,
-            plans: options.plan,
-            tightening: None,
+            ..MakingSettings::default()
         };
+        let finder = self.study.finder.clone();
+        let mut maker = ProgramMaker::new(self.session, self.arguments, &making, finder);
+        let mut source = self.source();
+        let mut findings = unused_options::found(&part.machine, &maker.finder);
+        maker.look_ahead_where_needed(&part.machine, &mut source)?;
         let mut text = ProgramText::new(options.verify || options.predict);
-        let (report, found) =
-            program.write(ahead.as_ref(), &mut source, &mut text, Beside::default())?;
-        findings.extend(found);
-        let Some(report) = report else {
-            return Ok(Outcome::not_written(REFUSED, &findings));
-        };
+        // Results are compared: a plan that is asked for is made, whatever it gains.
+        let ready = maker.prepare(part, &mut source, true)?;
+        let beside = Beside::default();
+        let made = maker.write(ready, &mut source, &mut text, beside, &mut findings)?;
         let mut outcome = Outcome::default();
-        self.tell(&report, &text, &mut outcome);
+        self.tell(&made.report, &text, &mut outcome);
+        let name = plugin_finder::cl_name(&part.target);
         if options.verify {
-            let held = self.read_back(&target, &mut source, &text)?;
+            let program = (name.clone(), self.reread(&text));
+            let held = maker.read_back(part, made.moved, &mut source, program)?;
             outcome.tell(&columns::verified(), &held.found);
             let wrong = held.is_wrong();
             findings.extend(held.findings);
@@ -202,7 +197,8 @@ impl OneJob<'_> {
             }
         }
         if options.predict {
-            let predicted = self.predict(&target, &mut source, &text)?;
+            let program = (name, self.reread(&text));
+            let predicted = maker.predict(part, None, (&mut source, None), program)?;
             outcome.tell(&columns::predicted(), &predicted.found);
             findings.extend(predicted.findings);
         }
@@ -218,61 +214,6 @@ impl OneJob<'_> {
         ClSource::of_held(self.session, &self.arguments.input, text)
     }
 
-    fn ahead(&self, source: &mut ClSource) -> Result<Option<ProgramPreview>, Failure> {
-        if !self.machine.program.looks_ahead {
-            return Ok(None);
-        }
-        let finder = &self.study.finder;
-        job::look_ahead(self.session, self.arguments, self.machine, finder, source, None).map(Some)
-    }
-
-    fn read_back(
-        &self,
-        target: &PathArg,
-        source: &mut ClSource,
-        text: &ProgramText,
-    ) -> Result<read_back::Held, Failure> {
-        let reading = Reading {
-            session: self.session,
-            arguments: self.arguments,
-            machine: self.machine,
-            finder: &self.study.finder,
-            offsets: None,
-            limits: Limits::default(),
-            tolerances: [None, None],
-            planned: self.study.options.plan,
-            solutions: false,
-            any_coolant: false,
-            // It was written in this run, or lines of the user's have another.
-            any_work_offset: true,
-            own: true,
-            lines: None,
-        };
-        let name = plugin_finder::cl_name(target);
-        read_back::verify(&reading, source, &name, self.reread(text), &mut |_: &BlockReport| {})
-    }
-
-    fn predict(
-        &self,
-        target: &PathArg,
-        source: &mut ClSource,
-        text: &ProgramText,
-    ) -> Result<predict::Predicted, Failure> {
-        let asked = Asked {
-            session: self.session,
-            arguments: self.arguments,
-            machine: self.machine,
-            finder: &self.study.finder,
-            offsets: None,
-            limits: Limits::default(),
-            period: None,
-            lines: None,
-        };
-        let name = plugin_finder::cl_name(target);
-        let against = Against::Cl(source);
-        predict::predict(&asked, against, &name, self.reread(text), &mut |_: &Sample| Ok(()))
-    }
-
     fn reread<'t>(&self, text: &'t ProgramText) -> Stoppable<'t> {
         Stoppable {
             text: Cursor::new(text.kept.as_deref().unwrap_or_default()),
@@ -286,7 +227,7 @@ impl OneJob<'_> {
             report,
             bytes: text.bytes,
             hash: text.hasher.finalize().to_hex().to_string(),
-            left: travel::tell(self.machine, report, outcome),
+            left: travel::tell(&self.part.machine, report, outcome),
         };
         outcome.tell(&columns::program(), &written);
         outcome.tell(&columns::text(), &written);

@@ -108,9 +108,7 @@ impl Request {
     ) -> Result<(ProgramMaker<'a>, Part, ClSource), Failure> {
         let (mut maker, machine) = ProgramMaker::open(session, &self.job, &self.making)?;
         let mut source = ClSource::new(session, &self.job.input, true)?;
-        if machine.program.looks_ahead {
-            maker.look_ahead(&machine, &mut source)?;
-        }
+        maker.look_ahead_where_needed(&machine, &mut source)?;
         let target = making::target(&self.job, self.output.as_ref(), &machine, &maker.finder)?;
         Ok((maker, Part { lines: None, target, machine }, source))
     }
@@ -118,8 +116,7 @@ impl Request {
     /// What a program that is made is asked with.
     fn maker<'a>(&'a self, session: &'a Session) -> Result<ProgramMaker<'a>, Failure> {
         let finder = plugin_finder::finder(session, &self.job.over.plugins)?;
-        let (job, making) = (&self.job, &self.making);
-        Ok(ProgramMaker { session, job, making, finder, ahead: None })
+        Ok(ProgramMaker::new(session, &self.job, &self.making, finder))
     }
 }
 

@@ -6,8 +6,8 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::place::{HalfSpace, descend, most_room, nearest, rounded, shuffled, spread};
 
 use super::trial::{Bound, Seat, Trial, Trials, bodies};
-use super::{Least, PlaceArguments};
-use post_job::failure::Failure;
+use super::{Least, PlaceRequest};
+use crate::failure::Failure;
 
 /// Mounts that are found one from the other before a route is given up: each is bound by what was found at those before.
 const ROUNDS: usize = 4;
@@ -31,11 +31,13 @@ const ROUNDING: f64 = 2e-3;
 pub struct Found {
     /// The CL file, as the user named it.
     pub file: String,
+    /// The machine, the part where the command line has it.
     pub machine: Machine,
     /// Where the part sits.
     pub best: Trial,
     /// Where the command line and the machine file have it, if it can be posted there.
     pub present: Option<Trial>,
+    /// Dry runs that were made.
     pub runs: u32,
     /// The number of dry runs ended the search.
     pub spent: bool,
@@ -69,13 +71,14 @@ impl Nothing {
 /// Searches a seat.
 pub struct Search<'s, 'a> {
     trials: &'s mut Trials<'a>,
-    arguments: &'a PlaceArguments,
+    request: &'a PlaceRequest,
     machine: Machine,
     present: Seat,
 }
 
 impl<'s, 'a> Search<'s, 'a> {
-    pub fn new(arguments: &'a PlaceArguments, trials: &'s mut Trials<'a>) -> Result<Self, Failure> {
+    /// About where the part sits now.
+    pub fn new(request: &'a PlaceRequest, trials: &'s mut Trials<'a>) -> Result<Self, Failure> {
         let machine = trials.machine()?;
         Ok(Self {
             present: Seat {
@@ -83,20 +86,21 @@ impl<'s, 'a> Search<'s, 'a> {
                 turn: libm::rint(machine.turn.to_degrees() * 1e9) / 1e9,
             },
             trials,
-            arguments,
+            request,
             machine,
         })
     }
 
     /// The room that is asked for, mm.
     fn margin(&self) -> f64 {
-        self.arguments.margin
+        self.request.margin
     }
 
     fn holds(&self, trial: &Trial) -> bool {
         trial.room >= self.margin() - ROUNDING
     }
 
+    /// Finds the seat.
     pub fn run(mut self) -> Result<Found, Failure> {
         let present = self.trials.post(self.present)?;
         let here = self.seat_at(self.present.turn, present.as_ref().ok())?;
@@ -104,14 +108,14 @@ impl<'s, 'a> Search<'s, 'a> {
             Ok(seated) => (Some(seated), None),
             Err(nothing) => (None, Some(nothing)),
         };
-        if let Some(step) = self.arguments.search_turn {
+        if let Some(step) = self.request.search_turn {
             best = self.turned(best, step)?;
         }
         let Some(Seated { mut trial, bounds, evenly }) = best else {
             return Err(self.refuse(nothing, present.err()));
         };
         // A straight shift of all axes takes no longer, and turns nothing.
-        if self.arguments.least == Least::Time && !evenly {
+        if self.request.least == Least::Time && !evenly {
             self.settle(&mut trial, &bounds)?;
         }
         let present = present.ok();
@@ -363,7 +367,7 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// What helps where no mount does: a turn, unless that was searched, and `other`.
     fn else_turned(&self, other: &str) -> String {
-        if self.arguments.search_turn.is_some() {
+        if self.request.search_turn.is_some() {
             return format!("no turn of the part that was tried fits either: {other}");
         }
         format!("--search-turn looks for a turn of the part about its Z that fits; else {other}")

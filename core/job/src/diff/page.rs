@@ -1,40 +1,33 @@
 //! `--report`: what was compared, as a page: the new program in the place of the program, the path of the old one in the
 //! place of the CL path.
 
-use post_readback::diff::{DiffRules, Difference};
 use post_report::meta::{Maximum, Names, TolerancesMeta, VerdictMeta};
 
-use super::Side;
-use post_job::failure::Failure;
-use post_job::files::{AtomicFile, PathArg};
-use post_job::nc_program::NcControl;
-use post_job::report::{self, Besides, MotionRows, OldPath, Parts};
-use post_job::session::Session;
-use post_job::text::{clock, number};
+use super::{Compared, Side};
+use crate::failure::Failure;
+use crate::files::{AtomicFile, PathArg};
+use crate::report::{self, Besides, MotionRows, OldPath, Parts};
+use crate::session::Session;
+use crate::text::{clock, number};
 
-/// What was compared.
-pub struct Shown<'a> {
+/// What a page is told of two programs.
+pub struct DiffPage<'a> {
+    /// The run.
     pub session: &'a Session,
-    /// Those of the old program and the new one.
-    pub controls: [&'a NcControl; 2],
-    pub found: &'a Difference,
-    pub rules: &'a DiffRules,
+    /// What was compared.
+    pub compared: &'a Compared,
     /// The old program and the new one.
     pub names: [&'a PathArg; 2],
 }
 
-impl Shown<'_> {
-    /// Writes its report to `page`.
+impl DiffPage<'_> {
+    /// Writes it to `page`, of so many bytes at most.
     ///
     /// # Errors
-    /// A program cannot be read again, or the report not be written.
-    pub fn write(
-        &self,
-        sides: &[Side; 2],
-        most: u64,
-        page: &mut AtomicFile,
-    ) -> Result<(), Failure> {
-        let machine = &self.controls[1].machine;
+    /// A program cannot be read again, or the page not be written.
+    pub fn write(&self, most: u64, page: &mut AtomicFile) -> Result<(), Failure> {
+        let Compared { sides, rules, .. } = self.compared;
+        let machine = &sides[1].control.machine;
         let [old_name, new_name] = self.names.map(report::name_of);
         let title = format!("{new_name} against {old_name}");
         let names = Names {
@@ -44,19 +37,16 @@ impl Shown<'_> {
             machine: machine.name.clone(),
         };
         let mut meta = report::about("diff", machine, title, names);
-        meta.tolerances = TolerancesMeta {
-            tip: self.rules.tip,
-            axis: self.rules.axis.to_degrees(),
-            rapid: self.rules.tip,
-        };
+        meta.tolerances =
+            TolerancesMeta { tip: rules.tip, axis: rules.axis.to_degrees(), rapid: rules.tip };
         meta.verdict = self.verdict();
         meta.maxima = self.maxima();
         meta.facts = self.facts();
         let mut parts = Parts::of(self.session, machine, &mut meta)?;
         let besides = Besides { other: true, ..Besides::default() };
         let run = |place: usize| -> Result<_, Failure> {
-            let side = &sides[place];
-            let run = self.controls[place].run(&side.name, side.text()?);
+            let Side { control, program } = &sides[place];
+            let run = control.run(&program.name, program.text()?);
             Ok(run.map_err(|fault| *fault)?)
         };
         let (old, mut new) = (run(0)?, run(1)?);
@@ -66,16 +56,16 @@ impl Shown<'_> {
             done.iter().for_each(|done| rows.take(done));
         }
         rows.finish(&mut parts, &mut meta)?;
-        for (part, side) in ["nc2", "nc"].into_iter().zip(sides) {
-            parts.text(part, &side.name, &mut side.text()?)?;
+        for (part, Side { program, .. }) in ["nc2", "nc"].into_iter().zip(sides) {
+            parts.text(part, &program.name, &mut program.text()?)?;
         }
         parts.write(meta, most, page)
     }
 
     fn verdict(&self) -> VerdictMeta {
-        let operations = &self.found.operations;
+        let operations = &self.compared.found.operations;
         let different = operations.iter().filter(|operation| !operation.same);
-        let (kind, word, sentence) = match self.found.same {
+        let (kind, word, sentence) = match self.compared.found.same {
             true => ("good", "The same", "Both programs make the machine do the same.".to_owned()),
             false => (
                 "warn",
@@ -88,12 +78,12 @@ impl Shown<'_> {
 
     fn maxima(&self) -> Vec<Maximum> {
         let mut maxima = Vec::new();
-        for (index, operation) in self.found.operations.iter().enumerate() {
+        for (index, operation) in self.compared.found.operations.iter().enumerate() {
             let name = operation.name.clone();
             let name = name.unwrap_or_else(|| format!("operation {}", index + 1));
             for (what, worst, unit, limit) in [
-                ("tip", &operation.tip, "mm", self.rules.tip),
-                ("tool axis", &operation.axis, "deg", self.rules.axis.to_degrees()),
+                ("tip", &operation.tip, "mm", self.compared.rules.tip),
+                ("tool axis", &operation.axis, "deg", self.compared.rules.axis.to_degrees()),
             ] {
                 if worst.value > 0.0 {
                     maxima.push(Maximum {
@@ -112,7 +102,7 @@ impl Shown<'_> {
     }
 
     fn facts(&self) -> Vec<[String; 2]> {
-        let sides = ["old", "new"].into_iter().zip(&self.found.sides);
+        let sides = ["old", "new"].into_iter().zip(&self.compared.found.sides);
         let mut facts: Vec<[String; 2]> = sides
             .map(|(name, side)| {
                 let value = format!(
@@ -124,7 +114,7 @@ impl Shown<'_> {
                 [name.to_owned(), value]
             })
             .collect();
-        let unknown: Vec<String> = self.found.unknown.iter().flatten().cloned().collect();
+        let unknown: Vec<String> = self.compared.found.unknown.iter().flatten().cloned().collect();
         if !unknown.is_empty() {
             facts.push(["not compared".to_owned(), unknown.join(", ")]);
         }

@@ -42,6 +42,7 @@ pub struct ToolUse {
 }
 
 impl<'a> Survey<'a> {
+    /// Of nothing yet.
     pub fn new(machine: &'a Machine) -> Self {
         Self {
             base: machine,

@@ -1,15 +1,19 @@
 //! The pictures of a prediction: what is kept for them while it runs, and the charts. The figures that they follow are
 //! those of Zhang, Chen 2025: axis errors (figs. 9 to 11), feed (fig. 8), contour error (fig. 12).
 
+mod measured;
+mod path;
+mod spectrum;
+mod trail;
+
 use post_machine::axis_words;
 use post_machine::description::Machine;
 
-use super::measured_pictures;
-use super::path_pictures;
-use super::spectrum::Spectrum;
-use super::trail::Trail;
-use post_job::files::chart::{DASHED, DOTTED, Draw, Envelope, LOOKS, Panel, Panels, Series};
-use post_job::predict::{Prediction, Sample};
+use super::{Prediction, Sample};
+use crate::files::chart::{DASHED, DOTTED, Draw, Envelope, LOOKS, Panel, Panels, Series};
+pub use measured::MeasuredRoom;
+use spectrum::Spectrum;
+use trail::Trail;
 
 /// The files that there can be.
 pub const NAMES: [&str; 7] = [
@@ -19,7 +23,7 @@ pub const NAMES: [&str; 7] = [
     "contour-vectors.svg",
     "path.svg",
     "spectrum.svg",
-    measured_pictures::NAME,
+    measured::NAME,
 ];
 
 /// Micrometres of a millimetre, thousandths of a degree of a degree.
@@ -69,6 +73,7 @@ impl DrawnAxis {
 }
 
 impl Rooms {
+    /// Of nothing yet; set-points come every `period` seconds.
     pub fn new(machine: &Machine, period: f64) -> Self {
         let axes =
             axis_words::order(machine).into_iter().map(|place| (place, &machine.axes[place]));
@@ -135,9 +140,9 @@ impl Rooms {
         }
         if found.contour.tip_mm.largest > 0.0 {
             files.push(("contour.svg", self.along(found, &note).svg()));
-            let vectors = path_pictures::vectors(found, &note, &cuts);
+            let vectors = path::vectors(found, &note, &cuts);
             files.push(("contour-vectors.svg", vectors));
-            files.push(("path.svg", path_pictures::path(found, &note, &cuts)));
+            files.push(("path.svg", path::path(found, &note, &cuts)));
         }
         if let Some(spectrum) = self.spectrum(&note) {
             files.push(("spectrum.svg", spectrum.svg()));

@@ -4,11 +4,11 @@
 use post_machine::axis_words;
 use post_machine::description::Machine;
 
-use super::pictures::{File, MICRO, file_name};
-use post_job::files::chart::{DASHED, Draw, Envelope, GREY, Look, Panel, Panels, Series};
-use post_job::predict::Prediction;
-use post_job::predict::measured::{MeasuredFound, MeasuredPoint};
-use post_job::text::number;
+use super::{File, MICRO, file_name};
+use crate::files::chart::{DASHED, Draw, Envelope, GREY, Look, Panel, Panels, Series};
+use crate::predict::Prediction;
+use crate::predict::measured::{MeasuredFound, MeasuredPoint};
+use crate::text::number;
 
 /// Its name in the folder.
 pub const NAME: &str = "measured.svg";

@@ -1,6 +1,6 @@
 //! The path of the tip in cuts with its contour error, in a room that does not grow with it.
 
-use post_job::predict::Sample;
+use crate::predict::Sample;
 
 /// Spots that are kept.
 const MOST_SPOTS: usize = 4000;
@@ -32,6 +32,7 @@ pub struct Trail {
 }
 
 impl Trail {
+    /// Of nothing yet.
     pub fn new() -> Self {
         Self { shares: Vec::new(), width: 1e-3, way: 0.0, cut: 0, last: None }
     }

@@ -8,9 +8,9 @@ use post_readback::{
     BlockEffect, Curve, Interpolation, Motion, MotionKind, ProgramEvent, SpindleState,
 };
 
-use post_job::axes::{self, AxisColumn};
-use post_job::columns::{Column, CsvTable};
-use post_job::files::{AtomicFile, FileFault};
+use crate::axes::{self, AxisColumn};
+use crate::columns::{Column, CsvTable};
+use crate::files::{AtomicFile, FileFault};
 
 /// A motion, and where its axes stand behind it.
 struct Row {
@@ -79,6 +79,7 @@ pub struct MotionsCsv<'a, 'f> {
 }
 
 impl<'a, 'f> MotionsCsv<'a, 'f> {
+    /// Of a machine, into `file`.
     pub fn new(machine: &'a Machine, file: &'f mut AtomicFile) -> Self {
         let axes = axes::by_words(machine);
         Self { base: machine, machine, table: CsvTable::new(columns(&axes), file), axes }

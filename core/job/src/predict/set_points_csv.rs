@@ -4,8 +4,8 @@ use post_machine::axis_words;
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 
-use post_job::columns::Column;
-use post_job::predict::Sample;
+use super::Sample;
+use crate::columns::Column;
 
 /// The columns of the table; the axes in the order of their words.
 pub fn columns(machine: &Machine) -> Vec<Column<Sample>> {

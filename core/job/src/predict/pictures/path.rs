@@ -2,12 +2,12 @@
 
 use std::fmt::Write as _;
 
-use super::pictures::file_name;
+use super::file_name;
 use super::trail::Spot;
-use post_job::files::svg::{self, label};
-use post_job::files::{PlanView, round_step};
-use post_job::predict::Prediction;
-use post_job::text::number;
+use crate::files::svg::{self, label};
+use crate::files::{PlanView, round_step};
+use crate::predict::Prediction;
+use crate::text::number;
 
 const WIDTH: f64 = 760.0;
 const LEFT: f64 = 72.0;

@@ -1,38 +1,42 @@
 //! `--report`: what is predicted, as a page.
 
-use std::fs::File;
-
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_report::meta::{Names, VerdictMeta};
 
-use post_job::failure::Failure;
-use post_job::files::{AtomicFile, ClSource, PathArg};
-use post_job::predict::Prediction;
-use post_job::report::{self, MotionRows, Parts, PredictedLines};
-use post_job::session::Session;
-use post_job::text::clock;
+use super::Prediction;
+use crate::failure::Failure;
+use crate::files::{AtomicFile, ClSource, PathArg};
+use crate::nc_program::ProgramFile;
+use crate::report::{self, MotionRows, Parts, PredictedLines};
+use crate::session::Session;
+use crate::text::clock;
 
-/// What is known of a program that was predicted.
-pub struct Shown<'a> {
+/// What a page is told of a program that was predicted.
+pub struct PredictPage<'a> {
+    /// The run.
     pub session: &'a Session,
+    /// The machine with its settings.
     pub machine: &'a Machine,
+    /// What was found.
     pub found: &'a Prediction,
+    /// What was taken for granted.
     pub findings: &'a [Diagnostic],
-    /// The program, and the CL file if there is one.
+    /// The program.
     pub program: &'a PathArg,
+    /// The CL file, if there is one.
     pub against: Option<&'a PathArg>,
 }
 
-impl Shown<'_> {
-    /// Writes its report to `page`.
+impl PredictPage<'_> {
+    /// Writes it to `page`, of so many bytes at most.
     ///
     /// # Errors
     /// A text cannot be read again, or the report not be written.
     pub fn write(
         &self,
         (mut rows, lines): (MotionRows<'_>, PredictedLines),
-        (source, name, program): (Option<&mut ClSource>, &str, File),
+        (source, program): (Option<&mut ClSource>, &ProgramFile),
         most: u64,
         page: &mut AtomicFile,
     ) -> Result<(), Failure> {
@@ -48,14 +52,14 @@ impl Shown<'_> {
         meta.verdict = self.verdict();
         meta.maxima = report::predicted_maxima(self.machine, self.found);
         meta.facts = report::predicted_facts(self.found);
-        meta.warnings = report::warnings(self.findings, name);
+        meta.warnings = report::warnings(self.findings, &program.name);
         meta.excludes.clone_from(&self.found.assumed);
         let mut parts = Parts::of(self.session, self.machine, &mut meta)?;
         if let Some((line, heard)) = lines.finish(&mut parts)? {
             rows.hear(line, &heard);
         }
         rows.finish(&mut parts, &mut meta)?;
-        parts.text("nc", name, &mut { program })?;
+        parts.text("nc", &program.name, &mut program.text()?)?;
         if let Some(source) = source {
             let mut cl = source.open()?;
             parts.text("cl", &cl.name, &mut cl.bytes)?;

@@ -1,17 +1,16 @@
 //! `--report`: what was found, as a page.
 
-use std::fs::File;
-
 use post_machine::description::Machine;
 use post_readback::verify::{BlockReport, WorstDeviation};
 use post_report::meta::{Maximum, Names, VerdictMeta};
 
-use post_job::failure::Failure;
-use post_job::files::{AtomicFile, ClSource, PathArg};
-use post_job::read_back::Held;
-use post_job::report::{self, Heard, MotionRows, Parts};
-use post_job::session::Session;
-use post_job::text::clock;
+use crate::failure::Failure;
+use crate::files::{AtomicFile, ClSource, PathArg};
+use crate::nc_program::ProgramFile;
+use crate::read_back::Held;
+use crate::report::{self, Heard, MotionRows, Parts};
+use crate::session::Session;
+use crate::text::clock;
 
 /// What was found of a line.
 pub fn heard(row: &BlockReport) -> Heard {
@@ -23,10 +22,13 @@ pub fn heard(row: &BlockReport) -> Heard {
     }
 }
 
-/// What is known of a program that was held against its CL file.
-pub struct Shown<'a> {
+/// What a page is told of a program that was held against its CL file.
+pub struct VerifyPage<'a> {
+    /// The run.
     pub session: &'a Session,
+    /// The machine with its settings.
     pub machine: &'a Machine,
+    /// What was found.
     pub held: &'a Held,
     /// The program and the CL file.
     pub names: [&'a PathArg; 2],
@@ -34,15 +36,15 @@ pub struct Shown<'a> {
     pub tolerances: [Option<f64>; 2],
 }
 
-impl Shown<'_> {
-    /// Writes its report to `page`.
+impl VerifyPage<'_> {
+    /// Writes it to `page`, of so many bytes at most.
     ///
     /// # Errors
     /// A text cannot be read again, or the report not be written.
     pub fn write(
         &self,
         rows: MotionRows<'_>,
-        (source, name, program): (&mut ClSource, &str, File),
+        (source, program): (&mut ClSource, &ProgramFile),
         most: u64,
         page: &mut AtomicFile,
     ) -> Result<(), Failure> {
@@ -84,7 +86,7 @@ impl Shown<'_> {
             fact("rapids made at feed", found.rapids_at_feed.to_string()),
             fact("time", clock(found.time_s)),
         ];
-        meta.warnings = report::warnings(&self.held.findings, name);
+        meta.warnings = report::warnings(&self.held.findings, &program.name);
         // The same job gives the same page wherever its files lie.
         for warning in &mut meta.warnings {
             for file in self.names {
@@ -94,7 +96,7 @@ impl Shown<'_> {
         meta.excludes = report::excludes();
         let mut parts = Parts::of(self.session, self.machine, &mut meta)?;
         rows.finish(&mut parts, &mut meta)?;
-        parts.text("nc", name, &mut { program })?;
+        parts.text("nc", &program.name, &mut program.text()?)?;
         let mut cl = source.open()?;
         parts.text("cl", &cl.name, &mut cl.bytes)?;
         parts.write(meta, most, page)

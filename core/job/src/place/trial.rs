@@ -9,11 +9,11 @@ use post_machine::place::{HalfSpace, MountConstraint, opened};
 use post_posting::MountBounds;
 use post_posting::report::PostingReport;
 
-use super::{Least, PlaceArguments};
-use post_job::DryRun;
-use post_job::failure::Failure;
-use post_job::session::Session;
-use post_job::settings::JobSettings;
+use super::{Least, PlaceRequest};
+use crate::DryRun;
+use crate::failure::Failure;
+use crate::session::Session;
+use crate::settings::JobSettings;
 
 /// Where a part sits.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,9 @@ pub struct Seat {
 /// A program that can be made with the part there.
 #[derive(Clone, Debug)]
 pub struct Trial {
+    /// Where it sits.
     pub seat: Seat,
+    /// What posting it there comes to.
     pub report: PostingReport,
     /// Warnings.
     pub findings: Vec<Diagnostic>,
@@ -42,11 +44,13 @@ pub struct Trial {
 pub struct Bound {
     /// Name of the axis.
     pub axis: String,
+    /// The end of its travel.
     pub end: MountConstraint,
 }
 
 /// What posting with linear travel opened says.
 pub struct Opened {
+    /// Ends of travel that bound the mount.
     pub bounds: Vec<Bound>,
     /// Errors that no mount helps.
     pub faults: Vec<Diagnostic>,
@@ -60,21 +64,23 @@ pub struct Opened {
 pub struct Trials<'a> {
     dry_run: DryRun<'a>,
     least: Least,
+    /// Dry runs that were made.
     pub runs: u32,
     most: u32,
 }
 
 impl<'a> Trials<'a> {
+    /// None yet.
     pub fn new(
         session: &'a Session,
         job: &'a JobSettings,
-        arguments: &'a PlaceArguments,
+        request: &PlaceRequest,
     ) -> Result<Self, Failure> {
         Ok(Self {
             dry_run: DryRun::new(session, "place", "post", job, false)?,
-            least: arguments.least,
+            least: request.least,
             runs: 0,
-            most: arguments.runs,
+            most: request.runs,
         })
     }
 

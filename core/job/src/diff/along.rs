@@ -44,6 +44,7 @@ pub struct Bin {
 }
 
 impl Along {
+    /// Of nothing yet; points nearer than `apart`, mm, are left out.
     pub fn new(apart: f64) -> Self {
         let path = || Path { pieces: Vec::new(), points: 0, apart, last: None };
         Self {

@@ -1,0 +1,232 @@
+//! One pass of a CL file over a machine. Programs that are written, first passes, dry runs and what an editor shows are
+//! passes of this kind: plugins are opened, and posting begins, here alone.
+
+use std::sync::Arc;
+
+use post_grammar::{ClReader, ReadError};
+use post_host::{Finder, OpenedDialect, OpenedModel};
+use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::{Capabilities, DialectSession, ModelSession};
+use post_posting::plan::PlanWatch;
+use post_posting::preview::{FilePreview, PreviewPass};
+use post_posting::program::ReadingOptions;
+use post_posting::report::{PluginUse, PostingReport};
+use post_posting::{Observer, PathShift, Post, PostingRequest, ProgramPreview, TextSink};
+
+use super::plugin_finder;
+use crate::failure::Failure;
+use crate::files::{ClInput, ClSource, FileFault, NullSink, PathArg};
+use crate::session::Session;
+use crate::settings::{JobSettings, Msys};
+
+/// What a dialect is told of the program that it is opened for.
+#[derive(Clone, Copy)]
+pub struct ProgramHead<'a> {
+    /// What the program is called.
+    pub name: &'a str,
+    /// The CL file that it is made from; none: the axes move one by one, for no part.
+    pub cl_file: Option<&'a PathArg>,
+    /// What a first pass over the CL file found.
+    pub preview: Option<&'a ProgramPreview>,
+}
+
+/// The plugins of a machine, opened for one program.
+pub struct OpenedPlugins {
+    /// Writes the program.
+    pub dialect: OpenedDialect,
+    /// Foresees deviations.
+    pub model: OpenedModel,
+    /// What the summary says of dialect and model.
+    pub uses: [PluginUse; 2],
+}
+
+impl OpenedPlugins {
+    /// Opens them.
+    ///
+    /// # Errors
+    /// Why the dialect, or else the model, cannot be opened.
+    pub fn open(
+        finder: &Finder,
+        machine: &Machine,
+        head: ProgramHead<'_>,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let ProgramHead { name, cl_file, preview } = head;
+        let (dialect, dialect_use) =
+            plugin_finder::dialect_knowing(finder, machine, name, cl_file, preview)?;
+        let (model, model_use) = plugin_finder::model(finder, machine)?;
+        Ok(Self { dialect, model, uses: [dialect_use, model_use] })
+    }
+}
+
+/// Who takes part while a program is written.
+#[derive(Default)]
+pub struct Beside<'s, 'w, 'o> {
+    /// Moves the points of its path.
+    pub shift: Option<&'s mut dyn PathShift>,
+    /// Sees its plan.
+    pub watch: Option<&'w mut dyn PlanWatch>,
+    /// Sees its blocks.
+    pub observer: Option<&'o mut dyn Observer>,
+}
+
+/// A pass that is ready to begin.
+pub struct PostingPass<'a> {
+    /// The machine with its settings.
+    pub machine: &'a Machine,
+    /// How the CL file is read and what is asked for.
+    pub request: PostingRequest,
+    /// Writes the program.
+    pub dialect: &'a mut dyn DialectSession,
+    /// Foresees deviations.
+    pub model: &'a mut dyn ModelSession,
+}
+
+impl PostingPass<'_> {
+    /// Posts `input` and writes the program to `sink`: its report, if all is good, and every finding.
+    ///
+    /// # Errors
+    /// What machine and dialect cannot do together, or a file that cannot be read.
+    pub fn write(
+        self,
+        session: &Session,
+        input: ClInput,
+        sink: &mut dyn TextSink,
+        beside: Beside<'_, '_, '_>,
+    ) -> Result<(Option<PostingReport>, Vec<Diagnostic>), Failure> {
+        let Self { machine, request, dialect, model } = self;
+        let post = Post::new(machine, request, dialect, model, sink);
+        let mut post = post.map_err(|finding| *finding)?;
+        if let Some(shift) = beside.shift {
+            post.shift(shift);
+        }
+        if let Some(watch) = beside.watch {
+            post.watch_plan(watch);
+        }
+        if let Some(observer) = beside.observer {
+            post.watch(observer);
+        }
+        read(session, input, &mut post)?;
+        Ok(post.finish())
+    }
+
+    /// Posts `input` and throws the text away, the texts of the machine file left out: what they ask for may not be known,
+    /// and nobody reads them.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub fn run_dry(
+        self,
+        session: &Session,
+        input: ClInput,
+        observer: Option<&mut dyn Observer>,
+    ) -> Result<(Option<PostingReport>, Vec<Diagnostic>), Failure> {
+        let Self { machine, request, dialect, model } = self;
+        let machine = &machine.without_text();
+        let beside = Beside { observer, ..Beside::default() };
+        let pass = PostingPass { machine, request, dialect, model };
+        pass.write(session, input, &mut NullSink, beside)
+    }
+
+    /// Says what posting would refuse before its first record.
+    ///
+    /// # Errors
+    /// What machine and dialect cannot do together.
+    pub fn check(self) -> Result<(), Failure> {
+        let Self { machine, request, dialect, model } = self;
+        match Post::new(machine, request, dialect, model, &mut NullSink) {
+            Ok(_) => Ok(()),
+            Err(finding) => Err((*finding).into()),
+        }
+    }
+}
+
+/// Refuses a machine that posting would refuse before its first record: plugins that cannot be opened, options that they
+/// do not take, and what machine and dialect cannot do together.
+pub fn try_opening(machine: &Machine, finder: &Finder, length: f64) -> Result<(), Failure> {
+    let head = ProgramHead { name: "CHECK", cl_file: None, preview: None };
+    let mut opened = match OpenedPlugins::open(finder, machine, head) {
+        Ok(opened) => opened,
+        Err(_) => {
+            // Here all that is wrong is of interest, with the one plugin and with the other.
+            let faults = [
+                plugin_finder::dialect(finder, machine, head.name, None).err(),
+                plugin_finder::model(finder, machine).err(),
+            ];
+            return Err(faults.into_iter().flatten().flatten().collect::<Vec<_>>().into());
+        }
+    };
+    let request = PostingRequest { tool_length: Some(length), ..PostingRequest::default() };
+    let (dialect, model) = (&mut opened.dialect, &mut opened.model);
+    PostingPass { machine, request, dialect, model }.check()
+}
+
+/// How the CL file that is called `file` in messages is posted.
+pub fn posting_request(arguments: &JobSettings, file: &str) -> PostingRequest {
+    PostingRequest {
+        reading: ReadingOptions {
+            file: file.to_owned(),
+            units: arguments.reading.units,
+            tool: arguments.reading.tool,
+            apply_msys: arguments.reading.msys == Msys::Apply,
+            unknown: arguments.reading.unknown,
+            spindle: arguments.reading.spindle.unwrap_or_default(),
+            feed: arguments.reading.feed,
+            tool_from_cutter: arguments.reading.tool_from_cutter,
+            allowed: arguments.reading.allow.clone(),
+            ..ReadingOptions::default()
+        },
+        tool_length: arguments.over.tool_length,
+        ..PostingRequest::default()
+    }
+}
+
+/// What a first pass over the CL file finds out where the program depends on it: `[control] planes`, and a dialect that
+/// writes them.
+pub fn file_preview(
+    arguments: &JobSettings,
+    source: &mut ClSource,
+    machine: &Machine,
+    dialect: &impl DialectSession,
+) -> Result<Option<Arc<FilePreview>>, Failure> {
+    if !machine.control.planes || !dialect.capabilities().has(Capabilities::PLANE) {
+        return Ok(None);
+    }
+    let input = source.open()?;
+    let reading = posting_request(arguments, &input.name).reading;
+    let mut pass = PreviewPass::new(machine, reading);
+    let mut reader = ClReader::new(input.bytes);
+    loop {
+        match reader.next_record() {
+            Ok(Some(record)) => pass.record(&record),
+            Ok(None) => return Ok(Some(Arc::new(pass.finish()))),
+            // The program is not made then, and says why.
+            Err(ReadError::Syntax(_)) => {}
+            Err(ReadError::Io(error)) => {
+                return Err(FileFault::Read { name: input.name, error }.into());
+            }
+        }
+    }
+}
+
+/// Reads a CL file to its end, or until there are so many faults that it is given up.
+fn read(session: &Session, input: ClInput, post: &mut Post<'_>) -> Result<(), FileFault> {
+    let mut progress = session.progress(input.length);
+    let mut reader = ClReader::new(input.bytes);
+    while !post.gave_up() {
+        match reader.next_record() {
+            Ok(Some(record)) => post.record(&record),
+            Ok(None) => {
+                post.ended(!reader.ends_within_a_line());
+                break;
+            }
+            Err(ReadError::Syntax(fault)) => post.unreadable(&fault),
+            Err(ReadError::Io(error)) => {
+                return Err(FileFault::Read { name: input.name, error });
+            }
+        }
+        progress.record(|| reader.bytes_read());
+    }
+    progress.finish();
+    Ok(())
+}

@@ -1,0 +1,153 @@
+//! An NC program held against the CL file that it was made from.
+
+mod page;
+
+use post_machine::description::Machine;
+use post_readback::BlockEffect;
+use post_readback::interpret::Limits;
+use post_readback::verify::BlockReport;
+
+use super::JobMachine;
+use super::nc_program::{self, ProgramFile};
+use super::read_back::{self, Held, Reading, VerifyWatch};
+use super::report::{Besides, ClWindow, MotionRows};
+use super::result_files::ResultFiles;
+use crate::failure::Failure;
+use crate::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
+use crate::session::Session;
+use crate::settings::{JobSettings, ReportSettings};
+use page::VerifyPage;
+
+const MAP: Role = Role { what: "map", remedy: "name another file with --map" };
+
+/// A program that is to be verified, and what is wanted of it.
+#[derive(Clone, Debug)]
+pub struct VerifyRequest {
+    /// The CL file and the machine.
+    pub job: JobSettings,
+    /// The program.
+    pub program: PathArg,
+    /// What stands in the control's tables; none: as the machine file, the command line and the CL file say.
+    pub offsets: Option<PathArg>,
+    /// So many blocks are run once more.
+    pub most_blocks: u64,
+    /// Largest deviation of the tool axis over the machine file's, radians.
+    pub axis_tolerance: Option<f64>,
+    /// The feed was planned: it may be below that of the CL file.
+    pub planned: bool,
+    /// The program was posted for this machine file.
+    pub posted: bool,
+    /// Which coolant flows is the program's own business.
+    pub any_coolant: bool,
+    /// Which work offset it cuts in, where the CL file names none, is the program's own business.
+    pub any_work_offset: bool,
+    /// Where the table of its lines goes.
+    pub map: Option<PathArg>,
+    /// Where what was found goes, as JSON.
+    pub summary: Option<PathArg>,
+    /// The page.
+    pub report: ReportSettings,
+}
+
+/// What came of it.
+pub struct Verified {
+    /// The program, as messages call it.
+    pub name: String,
+    /// The machine with its settings.
+    pub machine: Machine,
+    /// What was found, and what is wrong.
+    pub held: Held,
+    /// Largest deviations that are other than the machine file's: mm, radians.
+    pub tolerances: [Option<f64>; 2],
+    /// A text went to standard output.
+    pub printed: bool,
+}
+
+/// Holds a program against a CL file; what is wanted beside is written whether it is right or wrong.
+///
+/// # Errors
+/// A file that cannot be read or written, or a machine that cannot be used.
+pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Failure> {
+    let job = &request.job;
+    let JobMachine { machine, finder } = JobMachine::load(session, job, &[])?;
+    nc_program::not_both_standard(&request.program, Some(&job.input))?;
+    let program = ProgramFile::open(session, &request.program)?;
+    let offsets = match &request.offsets {
+        Some(file) => Some(nc_program::offsets(session, file, &machine)?),
+        None => None,
+    };
+    let mut source = ClSource::new(session, &job.input, true)?;
+    let map = request.map.as_ref().map(|map| (MAP, map));
+    let mut texts = ResultFiles::create(session, map, request.summary.as_ref(), &request.report)?;
+    let reading = Reading {
+        session,
+        arguments: job,
+        machine: &machine,
+        finder: &finder,
+        offsets,
+        limits: Limits { blocks: request.most_blocks, ..Limits::default() },
+        tolerances: [None, request.axis_tolerance],
+        planned: request.planned,
+        solutions: request.map.is_some(),
+        any_coolant: request.any_coolant,
+        any_work_offset: request.any_work_offset,
+        own: request.posted,
+        lines: None,
+    };
+    let rows = match &texts.page {
+        Some(_) => {
+            let cl = ClWindow::of(job, &machine, &source)?;
+            let besides = Besides { deviations: true, ..Besides::default() };
+            Some(MotionRows::new(&machine, Some(cl), besides)?)
+        }
+        None => None,
+    };
+    let map = texts.table.as_mut().map(|file| (JsonRows::default(), file));
+    let mut watch = Watch { map, rows };
+    let name = &program.name;
+    let held = read_back::verify(&reading, &mut source, name, program.text()?, &mut watch)?;
+    let Watch { map, rows } = watch;
+    if let Some((map, file)) = map {
+        map.end(file)?;
+    }
+    if let Some(file) = &mut texts.summary {
+        file.write_bytes(files::json(&held.found).as_bytes())?;
+    }
+    let tolerances = reading.tolerances;
+    if let (Some(page), Some(rows)) = (&mut texts.page, rows) {
+        let names = [&request.program, &job.input];
+        let told = VerifyPage { session, machine: &machine, held: &held, names, tolerances };
+        told.write(rows, (&mut source, &program), request.report.most(), page)?;
+    }
+    let texts = texts.all();
+    let printed = texts.iter().any(AtomicFile::is_standard);
+    AtomicFile::finish(session, texts)?;
+    Ok(Verified { name: program.name, machine, held, tolerances, printed })
+}
+
+/// What is made of the lines of the program while it is held against the CL file.
+struct Watch<'m, 'f> {
+    map: Option<(JsonRows, &'f mut AtomicFile)>,
+    rows: Option<MotionRows<'m>>,
+}
+
+impl VerifyWatch for Watch<'_, '_> {
+    fn done(&mut self, done: &BlockEffect) {
+        if let Some(rows) = &mut self.rows {
+            rows.take(done);
+        }
+    }
+
+    fn line(&mut self, line: &BlockReport) {
+        if let Some((map, file)) = &mut self.map {
+            map.row(line, file);
+        }
+        if let Some(rows) = &mut self.rows {
+            rows.hear(line.nc_line, &page::heard(line));
+        }
+    }
+
+    fn runs_on(&mut self) -> bool {
+        self.rows.as_mut().map(MotionRows::alone).is_some()
+    }
+}

@@ -1,7 +1,7 @@
 //! Decimal numbers, eight digits at a time: bit for bit what `str::parse` gives.
 
 /// Powers of ten that a double holds exactly.
-const POWERS: [f64; 23] = [
+pub(crate) const POWERS: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
     1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
@@ -90,7 +90,7 @@ fn short(text: &[u8], at: usize) -> Option<Decimal> {
     }
     let before = others.trailing_zeros() & 0x38;
     let digits = (before / 8) as usize;
-    let mut mantissa = value(low << 8 << (56 - before));
+    let mut mantissa = eight_digits(low << 8 << (56 - before));
     let mut decimals = 0;
     let mut length = digits;
     let point = window[begin + digits] == b'.';
@@ -103,7 +103,7 @@ fn short(text: &[u8], at: usize) -> Option<Decimal> {
         }
         let end = others.trailing_zeros() & 0x38;
         decimals = (end / 8) as usize;
-        mantissa = mantissa * SHIFTS[decimals] + value(fraction << 8 << (56 - end));
+        mantissa = mantissa * SHIFTS[decimals] + eight_digits(fraction << 8 << (56 - end));
         length += 1 + decimals;
     }
     if digits + decimals == 0 {
@@ -193,14 +193,15 @@ fn digits(text: &[u8], mut at: usize, mut mantissa: u64) -> (u64, usize) {
         let eight = u64::from_le_bytes(bytes.try_into().expect("eight bytes")) ^ ZEROS;
         let others = others(eight);
         if others == 0 {
-            mantissa = mantissa.wrapping_mul(100_000_000).wrapping_add(value(eight));
+            mantissa = mantissa.wrapping_mul(100_000_000).wrapping_add(eight_digits(eight));
             at += 8;
             continue;
         }
         let count = others.trailing_zeros() / 8;
         // As many zeros come in front.
         let eight = eight << 8 << (56 - 8 * count);
-        let mantissa = mantissa.wrapping_mul(SHIFTS[count as usize]).wrapping_add(value(eight));
+        let mantissa =
+            mantissa.wrapping_mul(SHIFTS[count as usize]).wrapping_add(eight_digits(eight));
         return (mantissa, at + count as usize);
     }
     while let Some(digit @ b'0'..=b'9') = text.get(at) {
@@ -212,7 +213,7 @@ fn digits(text: &[u8], mut at: usize, mut mantissa: u64) -> (u64, usize) {
 
 /// The number of eight digits, each 0 to 9, the first in the lowest byte: pairs, then fours, then all.
 #[inline(always)]
-fn value(digits: u64) -> u64 {
+pub(crate) fn eight_digits(digits: u64) -> u64 {
     let pairs = digits.wrapping_mul(10).wrapping_add(digits >> 8) & 0x00FF_00FF_00FF_00FF;
     let fours = pairs.wrapping_mul(100).wrapping_add(pairs >> 16) & 0x0000_FFFF_0000_FFFF;
     fours.wrapping_mul(10_000).wrapping_add(fours >> 32) & 0xFFFF_FFFF

@@ -1,6 +1,7 @@
 //! Cutter-location files: chunks of a file to logical lines, lines to typed records.
 
 pub(crate) mod foreign;
+mod layout;
 pub(crate) mod line;
 mod reader;
 mod record;

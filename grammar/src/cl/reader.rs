@@ -9,8 +9,9 @@
 //!   must not swallow the move after it.
 
 use super::foreign;
+use super::layout::Layout;
 use super::line::{is_free_text, parse_record};
-use super::record::Record;
+use super::record::{Record, Statement};
 use super::scan::{self, PlainGoto};
 use crate::fault::{ReadError, SyntaxFault};
 use crate::text::excerpt;
@@ -50,6 +51,8 @@ pub struct ClReader<R> {
     taken: u64,
     /// Number of the line that begins at `start`.
     line: u64,
+    /// How the records so far were laid out.
+    layout: Layout,
     /// The last record was parted by a `$`; the next one is likely to be, too.
     parted: bool,
     /// What was taken last, blanks aside, is no line end.
@@ -79,6 +82,7 @@ impl<R: Read> ClReader<R> {
             ended: false,
             taken: 0,
             line: 1,
+            layout: Layout::new(),
             parted: false,
             unended: false,
             begun: false,
@@ -100,8 +104,16 @@ impl<R: Read> ClReader<R> {
     ///
     /// After a [`ReadError::Syntax`] the next call goes on with the next line.
     pub fn next_record(&mut self) -> Result<Option<Record<'_>>, ReadError> {
+        if let Some(statement) = self.laid_out() {
+            return Ok(Some(self.take_laid_out(statement)));
+        }
         if !self.begun {
             self.begin()?;
+        }
+        if self.layout.learn(&self.buffer, self.start, self.end)
+            && let Some(statement) = self.laid_out()
+        {
+            return Ok(Some(self.take_laid_out(statement)));
         }
         if !self.parted
             && let Some((plain, next)) = self.plain()
@@ -156,6 +168,22 @@ impl<R: Read> ClReader<R> {
         let help =
             "let the CAM system write a CL file: APT, CLSF or NCL, one record a line (GOTO/1,2,3)";
         Err(fault.help(help).into())
+    }
+
+    /// The `GOTO` that begins here, if it is laid out as those before.
+    #[inline(always)]
+    fn laid_out(&mut self) -> Option<Statement> {
+        self.layout.goto(&self.buffer, self.start, self.end)
+    }
+
+    /// Consumes the `GOTO` that begins here, laid out as those before.
+    #[inline(always)]
+    fn take_laid_out(&mut self, statement: Statement) -> Record<'_> {
+        let (start, line) = (self.start, self.line);
+        let end = start + self.layout.join(&mut self.buffer[start..]);
+        self.start += self.layout.length();
+        self.line += self.layout.lines();
+        Record { line, raw: &self.buffer[start..end], statement }
     }
 
     /// The plain `GOTO` that begins here, and where the next line begins; `None` if there is none, or if more of the

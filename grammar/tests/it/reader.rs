@@ -1,7 +1,7 @@
 //! Logical lines: ends, continuations, comments, chunks, faults between good records.
 
 use post_grammar::{ClReader, ReadError, Record, Statement};
-use post_testkit::randomised;
+use post_testkit::{Rng, randomised};
 use std::io::{self, Cursor, Read};
 
 /// Hands out at most so many bytes at a time, in turn.
@@ -202,6 +202,98 @@ fn chunks_of_points_do_not_matter() {
         let trickle = Trickle { bytes: text.as_bytes(), sizes: sizes.into_iter().cycle() };
         assert_eq!(all(trickle), all(text.as_bytes()), "{text:?}");
     }
+}
+
+/// A way to write a `GOTO`: what stands around its numbers, and how many digits they have.
+struct Form {
+    /// In front of each number and after the last, with `GOTO` and line ends.
+    between: Vec<String>,
+    digits: Vec<[usize; 2]>,
+}
+
+impl Form {
+    fn random(rng: &mut Rng) -> Self {
+        let count = *rng.choose(&[3, 6, 6, 6, 9]);
+        let end = rng.text("(\n|\n|\r\n|\r)");
+        let comma = rng.text("( ?,[ \t]{0,2})");
+        let mut between = vec![rng.text("(GOTO/|GOTO/ | GOTO  / )")];
+        for _ in 1..count {
+            let parted = rng.pick(5) == 0;
+            between.push(if parted { format!("{comma}$ {end} ") } else { comma.clone() });
+        }
+        between.push(rng.text("[ \t]{0,2}") + &end);
+        let digits = (0..count).map(|_| [rng.pick(5), rng.pick(12)]).collect();
+        Self { between, digits }
+    }
+
+    fn write(&self, rng: &mut Rng, out: &mut String) {
+        for (before, &[whole, decimals]) in self.between.iter().zip(&self.digits) {
+            *out += before;
+            *out += &rng.text(["-?", "", ""][whole % 3]);
+            *out += &rng.text(&format!("[0-9]{{{whole}}}"));
+            if decimals > 0 || whole == 0 {
+                *out += &rng.text(&format!("\\.[0-9]{{{decimals}}}"));
+            }
+        }
+        *out += &self.between[self.digits.len()];
+    }
+}
+
+/// A reader that gets a byte at a time never has a whole record with something before it, so that none is read by its
+/// layout.
+#[test]
+fn records_of_one_layout_are_read_as_each_by_itself() {
+    let (rounds, mut rng) = randomised(512, 5);
+    for _ in rounds {
+        let forms = rng.some([1, 3], Form::random);
+        let mut text = String::new();
+        for _ in 0..rng.pick(30) {
+            let form = rng.choose(&forms);
+            for _ in 0..rng.pick(6) {
+                form.write(&mut rng, &mut text);
+            }
+            text += &rng.text("(||RAPID\n|\n|FEDRAT/MMPM,1\r\n|GOTO/1,2,3)");
+        }
+        let mut bytes = text.into_bytes();
+        for _ in 0..rng.pick(4) {
+            if !bytes.is_empty() {
+                let at = rng.pick(bytes.len());
+                bytes[at] = *rng.choose(b"$,. -+0E:/\r\n\x80x");
+            }
+        }
+        let alone = Trickle { bytes: &bytes, sizes: vec![1].into_iter().cycle() };
+        let expected = all(alone);
+        let shown = String::from_utf8_lossy(&bytes);
+        assert_eq!(all(bytes.as_slice()), expected, "{shown:?}");
+        let sizes = rng.some([1, 6], |rng| 1 + rng.pick(300));
+        let trickle = Trickle { bytes: &bytes, sizes: sizes.into_iter().cycle() };
+        assert_eq!(all(trickle), expected, "{shown:?}");
+    }
+}
+
+/// Long enough for many chunks of the input, each of which ends somewhere within a record.
+#[test]
+fn a_long_file_of_one_layout_is_read_like_its_records() {
+    let (_, mut rng) = randomised(1, 6);
+    let form = Form {
+        between: ["GOTO / ", ", ", ", $\n ", ", ", ", ", ", ", " \n"].map(String::from).to_vec(),
+        digits: vec![[4, 10], [2, 10], [1, 4], [1, 10], [1, 10], [1, 10]],
+    };
+    let mut text = String::new();
+    for _ in 0..12_000 {
+        form.write(&mut rng, &mut text);
+    }
+    let mut reader = ClReader::new(text.as_bytes());
+    let mut lines = text.lines();
+    for index in 0..12_000 {
+        let record = reader.next_record().unwrap().unwrap();
+        let pieces = [(); 2].map(|()| lines.next().unwrap());
+        let joined = pieces[0].strip_suffix('$').unwrap().trim_end().to_owned() + pieces[1];
+        assert_eq!((record.line, record.text()), (1 + 2 * index, joined.as_str().into()));
+        let expected = post_grammar::parse_record(&joined).unwrap();
+        assert_eq!(format!("{:?}", record.statement), format!("{expected:?}"), "{joined}");
+    }
+    assert!(reader.next_record().unwrap().is_none());
 }
 
 #[test]

@@ -92,6 +92,10 @@ impl NumberForm {
         let signed = usize::from(negative | self.plus);
         let sign = if negative { b'-' } else { b'+' };
         let places = usize::from(decimals);
+        if let Some(short) = ShortDecimal::new(count, places) {
+            self.append_short(out, front, (signed, sign), short);
+            return true;
+        }
         if count >= 100_000_000 || places > 7 {
             self.append_long(out, front, (signed, sign), count, places);
             return true;
@@ -128,6 +132,37 @@ impl NumberForm {
             bytes.set_len(start + length);
         }
         true
+    }
+
+    /// Numbers whose digits are in a table.
+    #[inline(always)]
+    fn append_short(
+        self,
+        out: &mut String,
+        front: Front,
+        (signed, sign): (usize, u8),
+        short: ShortDecimal,
+    ) {
+        let dropped = if self.trim { short.zeros() } else { 0 };
+        let bare = usize::from(dropped == short.places && !self.point);
+        let length = front.len + signed + short.digits + 1 + short.places - dropped - bare;
+        out.reserve(length + 16);
+        // SAFETY: what is appended is ASCII. There is room for `length` bytes and sixteen more after the old end;
+        // front, sign and digits before the point come first, then point and decimals, of which `length` leaves out
+        // no more than all. So each write begins no later than at its end, and has eight bytes at most.
+        unsafe {
+            let bytes = out.as_mut_vec();
+            let start = bytes.len();
+            let mut to = bytes.as_mut_ptr().add(start);
+            to.cast::<u64>().write_unaligned(front.bytes.to_le());
+            to = to.add(front.len);
+            to.write(sign);
+            to = to.add(signed);
+            to.cast::<u32>().write_unaligned(short.whole.to_le());
+            to = to.add(short.digits);
+            to.cast::<u64>().write_unaligned(short.fraction.to_le());
+            bytes.set_len(start + length);
+        }
     }
 
     /// Numbers of more than eight digits.
@@ -167,6 +202,62 @@ impl NumberForm {
         }
     }
 }
+
+/// The text of a number below 1,000 with three or four decimals, which nearly every word of a program is.
+#[derive(Clone, Copy, Debug)]
+struct ShortDecimal {
+    /// Digits before the point, the first in the lowest byte; what is above them is overwritten.
+    whole: u32,
+    /// How many these are, 1 to 3.
+    digits: usize,
+    /// The point, in the lowest byte, and the decimals.
+    fraction: u64,
+    /// How many decimals there are.
+    places: usize,
+}
+
+impl ShortDecimal {
+    /// None if the number is larger, or has other decimals.
+    #[inline(always)]
+    fn new(count: u64, places: usize) -> Option<Self> {
+        let (rest, last) = (count / 1000, THREE_DIGITS[(count % 1000) as usize] & 0x00ff_ffff);
+        let (whole, decimals) = match places {
+            3 => (rest, u64::from(last)),
+            4 => (rest / 10, u64::from(last) << 8 | (u64::from(b'0') + rest % 10)),
+            _ => return None,
+        };
+        let whole = *THREE_DIGITS.get(whole as usize)?;
+        let zeros = whole >> 24;
+        Some(Self {
+            whole: (whole & 0x00ff_ffff) >> (8 * zeros),
+            digits: 3 - zeros as usize,
+            fraction: decimals << 8 | u64::from(b'.'),
+            places,
+        })
+    }
+
+    /// Zeros at the end of the decimals.
+    #[inline(always)]
+    fn zeros(self) -> usize {
+        // The last digit in the highest byte; the point is no zero and ends them.
+        let digits = self.fraction << (56 - 8 * self.places) & 0x0f0f_0f0f_0f0f_0f0f;
+        (digits.leading_zeros() / 8) as usize
+    }
+}
+
+/// `000` to `999`, the first digit in the lowest byte; in the highest how many zeros a number has too many there.
+static THREE_DIGITS: [u32; 1000] = {
+    let mut table = [0; 1000];
+    let mut number = 0;
+    while number < 1000 {
+        let digits = [number / 100, number / 10 % 10, number % 10];
+        let zeros = if number < 10 { 2 } else { (number < 100) as u32 };
+        let text = 0x0030_3030 | digits[0] | digits[1] << 8 | digits[2] << 16;
+        table[number as usize] = text | zeros << 24;
+        number += 1;
+    }
+    table
+};
 
 /// The eight decimal digits of a number below 10^8, a byte each, the first in the lowest.
 #[inline]
@@ -383,6 +474,12 @@ mod tests {
             -1e8,
             1_234_567_890.5,
             1e-9,
+            0.01,
+            -7.7,
+            85.05,
+            999.999,
+            -999.9996,
+            1000.0,
         ] {
             for decimals in 0..=9 {
                 for look in 0..8 {

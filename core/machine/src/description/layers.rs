@@ -3,6 +3,7 @@
 //! Every layer is TOML. Later layers win, key by key. Spans are offsets into all layers laid end to end,
 //! so that a finding in the merged table still points into the file it came from.
 
+use std::cell::OnceCell;
 use std::ops::Range;
 
 use post_grammar::text::is_unprintable;
@@ -103,8 +104,8 @@ const DEPTH: usize = 8;
 #[derive(Debug)]
 pub(crate) struct MachineSources {
     sources: Vec<(usize, Source)>,
-    /// Text of each source that can be read.
-    readable: Vec<Readable>,
+    /// What can be read of each source that is no TOML as it is.
+    readable: Vec<OnceCell<Readable>>,
     /// Starts of the lines of each source: a finding is placed without a walk through the text.
     lines: Vec<Vec<usize>>,
     /// Number of sources that are files; the rest are settings.
@@ -174,7 +175,7 @@ impl MachineSources {
         // One more, so that a span at the very end of a text is not taken for the next one's start.
         let start = self.sources.last().map_or(0, |(start, last)| start + last.text.len() + 1);
         let ends = source.text.match_indices('\n').map(|(end, _)| end + 1);
-        self.readable.push(Readable::of(&source.text));
+        self.readable.push(OnceCell::new());
         self.lines.push(std::iter::once(0).chain(ends).collect());
         self.sources.push((start, source));
         Ok(())
@@ -183,6 +184,10 @@ impl MachineSources {
     /// What the last file extends; a file with syntax errors extends nothing here and is refused later.
     fn extends(&self) -> Option<Spanned<String>> {
         let (start, source) = self.sources.last()?;
+        // Most files extend none, and need not be read for that. A key may be written by escapes.
+        if !source.text.contains("extends") && !source.text.contains('\\') {
+            return None;
+        }
         let table = DeTable::parse(&source.text).ok()?.into_inner();
         let value = table.get("extends")?;
         let name = value.get_ref().as_str()?.to_owned();
@@ -200,13 +205,18 @@ impl MachineSources {
         let mut lost = false;
         let layers = (0..self.files).rev().chain(self.files..self.sources.len());
         for index in layers {
-            let (start, readable) = (self.sources[index].0, &self.readable[index]);
-            lost |= readable.lost;
-            errors.extend(readable.faults.iter().map(|(span, message)| {
-                let place = span.clone().and_then(|span| self.place(shifted(span, start)));
-                Diagnostic::error("machine-syntax", message).at(place)
-            }));
-            let (table, _) = DeTable::parse_recoverable(&readable.text);
+            let (start, source) = &self.sources[index];
+            let start = *start;
+            let (mut table, faults) = DeTable::parse_recoverable(&source.text);
+            if !faults.is_empty() {
+                let readable = self.readable[index].get_or_init(|| Readable::of(&source.text));
+                lost |= readable.lost;
+                errors.extend(readable.faults.iter().map(|(span, message)| {
+                    let place = span.clone().and_then(|span| self.place(shifted(span, start)));
+                    Diagnostic::error("machine-syntax", message).at(place)
+                }));
+                (table, _) = DeTable::parse_recoverable(&readable.text);
+            }
             let layer = moved_table(table.into_inner(), start);
             self.check_texts(&layer, &mut errors);
             let is_setting = index >= self.files;

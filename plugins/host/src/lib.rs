@@ -5,7 +5,6 @@
 //! Nothing that a plugin returns is believed before it was checked.
 
 mod call;
-pub mod conformance;
 mod described;
 mod dialect;
 pub mod examples;
@@ -36,7 +35,5 @@ pub use results::keep_results_apart;
 /// What tests look into; no part of the crate's face.
 #[doc(hidden)]
 pub mod internals {
-    pub use crate::conformance::dialect::{CUTS, LAST, events};
-    pub use crate::conformance::texts::ends_early;
     pub use crate::vocabulary::judge;
 }

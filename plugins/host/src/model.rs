@@ -98,8 +98,11 @@ impl OpenedModel {
         }
     }
 
-    /// What the model answers is not believed before this.
-    pub(crate) fn check(&self, curve: &Curve) -> Result<(), String> {
+    /// Whether a curve of its answer can be: what the model answers is not believed before this.
+    ///
+    /// # Errors
+    /// A sentence.
+    pub fn check(&self, curve: &Curve) -> Result<(), String> {
         let peaks = [curve.tip_peak, curve.axis_peak];
         if !peaks.iter().all(|peak| peak.is_finite() && *peak >= 0.0) {
             return Err(
@@ -119,8 +122,11 @@ impl OpenedModel {
         self.values(curve, [0.0, 0.5, 1.0]).map(|_| ())
     }
 
-    /// The model's answer as it comes.
-    pub(crate) fn answer(
+    /// The model's answer as it comes, which [`ModelSession::fit`] checks.
+    ///
+    /// # Errors
+    /// Its sentence, or why it could not be asked.
+    pub fn answer(
         &mut self,
         tolerance: &Tolerance,
         deviation: &mut dyn FnMut(&[f64], &mut [Deviation]),

@@ -187,7 +187,7 @@ fn a_dialect_in_c() {
     assert_eq!(ends, [10, 26]);
     assert_eq!(fault.message, "dialect `minimal`, event Unknown: it has no words for kind 4711");
     // It is good by the kit, which is asked through the contract.
-    let report = post_host::conformance::test(&plugin, &[]).unwrap();
+    let report = post_kit::conformance::test(&plugin, &[]).unwrap();
     assert!(report.is_good(), "{report}");
     setup.tcp = true;
     let refused = plugin.dialect(&setup).unwrap_err();
@@ -195,6 +195,27 @@ fn a_dialect_in_c() {
     setup.options = vec![("decimals".to_owned(), GivenValue::Integer(7))];
     let refused = plugin.dialect(&setup).unwrap_err();
     assert!(refused.to_string().contains("7 is not between 1 and 6"));
+}
+
+/// The kit runs on libraries as on what is linked in.
+#[test]
+fn the_examples_are_good_by_the_kit() {
+    let report = |name: &str| {
+        let plugin = Plugin::open(&example(name)).unwrap();
+        post_kit::conformance::test(&plugin, &[]).unwrap()
+    };
+    let tiny = report("tiny");
+    assert_eq!(tiny.kind, Kind::Dialect);
+    assert!(tiny.is_good(), "{tiny}");
+    // What not every control has.
+    assert!(tiny.table().contains("program: it refuses Preselect: dialect `tiny`"));
+
+    let gcode = report("gcode");
+    assert!(gcode.is_good(), "{gcode}");
+
+    let panics = report("panics");
+    let wrong: Vec<String> = panics.wrong().collect();
+    assert!(wrong.iter().any(|wrong| wrong.contains("the plugin panicked")), "{panics}");
 }
 
 #[cfg(unix)]

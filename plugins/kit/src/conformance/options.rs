@@ -5,7 +5,7 @@ use post_plugin::{Event, Feed, OptionKind, OptionSpec};
 use super::Case;
 use super::pen::Pen;
 use super::print::{ELSEWHERE, plain_moves};
-use crate::{GivenValue, PluginFault};
+use post_host::{GivenValue, PluginFault};
 
 /// Runs them.
 pub(super) fn options_of(pen: &Pen<'_>) -> Result<Case, PluginFault> {

@@ -5,7 +5,7 @@ use post_plugin::Event;
 use super::Case;
 use super::pen::Pen;
 use super::print::ELSEWHERE;
-use crate::PluginFault;
+use post_host::PluginFault;
 
 /// What a remark may hold, and what it is called in a message.
 const REMARKS: &[(&str, &str)] = &[

@@ -7,7 +7,7 @@ use post_plugin::{Event, Feed, Format, quantise};
 
 use super::Case;
 use super::pen::{Pen, Program, Text};
-use crate::{PluginFault, ProgramWord};
+use post_host::{PluginFault, ProgramWord};
 
 /// Where the tool stands, but for the word that is looked at.
 const PLACE: [f64; 5] = [11.0, -21.5, 31.25, -17.0, 41.0];

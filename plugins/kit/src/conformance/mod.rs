@@ -4,7 +4,7 @@
 //!
 //! ```no_run
 //! # fn check(plugin: post_plugin::Linked) -> Result<(), post_host::PluginFault> {
-//! let report = post_host::conformance::test(&post_host::Plugin::linked(plugin)?, &[])?;
+//! let report = post_kit::conformance::test(&post_host::Plugin::linked(plugin)?, &[])?;
 //! assert!(report.is_good(), "{report}");
 //! # Ok(())
 //! # }
@@ -25,7 +25,7 @@ pub(crate) mod texts;
 
 use std::fmt::{self, Write as _};
 
-use crate::{GivenValue, Kind, Plugin, PluginFault};
+use post_host::{GivenValue, Kind, Plugin, PluginFault};
 
 /// What the kit found.
 #[derive(Clone, Debug, PartialEq)]

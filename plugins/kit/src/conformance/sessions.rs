@@ -8,7 +8,7 @@ use post_plugin::{Batch, DialectSession, Event, Feed, WriteFault, quantise};
 
 use super::Case;
 use super::pen::{RETRACT, TURNING};
-use crate::{OpenedDialect, Plugin, PluginFault, ProgramSetup};
+use post_host::{OpenedDialect, Plugin, PluginFault, ProgramSetup};
 
 /// Events of a batch, as many as the command sends at once.
 const BATCH: usize = 128;

@@ -5,7 +5,7 @@ use post_plugin::{Capabilities, Compensation, Coolant, Event, Feed, Spindle, Spi
 use super::Case;
 use super::pen::{Pen, Program, RETRACT, TURNING};
 use super::print::ELSEWHERE;
-use crate::PluginFault;
+use post_host::PluginFault;
 
 /// A command in two forms between which the text must differ.
 struct Pair {

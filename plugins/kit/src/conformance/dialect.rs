@@ -14,7 +14,7 @@ use super::pen::{Pen, TURNING};
 use super::print::{edges, moves};
 use super::sessions::{after_a_refusal, two_at_once, two_threads};
 use super::texts::remarks;
-use crate::{GivenValue, Plugin, PluginFault, ProgramSetup, ProgramWord};
+use post_host::{GivenValue, Plugin, PluginFault, ProgramSetup, ProgramWord};
 
 /// A kind of event that no version of the contract has.
 const UNKNOWN: u32 = 60_000;

@@ -8,7 +8,7 @@ use super::arcs::arcs;
 use super::cycles::cycles;
 use super::pen::{Pen, Program, RETRACT, TURNING};
 use super::print::ELSEWHERE;
-use crate::PluginFault;
+use post_host::PluginFault;
 
 /// Where the tool stands before a trial, the tool upright but for a plane.
 pub(super) const HERE: &[f64] = &[10.0, 20.0, 30.0, 5.0, 6.0];

@@ -2,7 +2,7 @@
 
 use post_plugin::{Batch, Capabilities, DialectSession, Event, Format, Spindle, SpindleSense};
 
-use crate::{Plugin, PluginFault, ProgramSetup};
+use post_host::{Plugin, PluginFault, ProgramSetup};
 
 /// The spindle as every program of the kit has it.
 pub(super) const TURNING: Event<'static> =

@@ -4,7 +4,7 @@ use post_plugin::{Curve, Deviation, ModelSession, Tolerance, length};
 
 use super::shapes::{self, Kind, Shape, TOLERANCE};
 use super::{Case, Figures, Peaks};
-use crate::{GivenValue, OpenedModel, Plugin, PluginFault};
+use post_host::{GivenValue, OpenedModel, Plugin, PluginFault};
 
 /// Even pieces in which truth and curve are compared.
 const PIECES: u32 = 2000;

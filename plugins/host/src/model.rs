@@ -11,10 +11,10 @@ use post_plugin::raw::{self, PostModel, PostPair};
 use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
 
 use crate::call::Caller;
-use crate::described::Table;
+use crate::described::FunctionTable;
 use crate::float_mode::FloatMode;
 use crate::sink::message;
-use crate::{GivenValue, Kind, Plugin, PluginFault, Reason, check_options};
+use crate::{GivenValue, PluginKind, Plugin, PluginFault, Reason, check_options};
 
 /// An error model at work, for one thread.
 #[derive(Debug)]
@@ -40,8 +40,8 @@ impl Plugin {
         &self,
         options: &[(String, GivenValue)],
     ) -> Result<OpenedModel, PluginFault> {
-        let Table::Model(table) = self.table else {
-            return Err(self.other_kind(Kind::ErrorModel));
+        let FunctionTable::Model(table) = self.table else {
+            return Err(self.other_kind(PluginKind::ErrorModel));
         };
         let options = check_options(self.options(), options)
             .map_err(|fault| self.fault(Reason::Option(Box::new(fault))))?;

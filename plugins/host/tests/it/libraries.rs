@@ -7,7 +7,7 @@ use crate::common::{compile, deps, example, library, needed, setup, stock};
 
 use std::path::Path;
 
-use post_host::{Finder, GivenValue, Kind, Plugin, PluginFault, ProgramSetup, Reason};
+use post_host::{Finder, GivenValue, PluginKind, Plugin, PluginFault, ProgramSetup, Reason};
 use post_plugin::{
     Batch, Coolant, Deviation, DialectSession, Event, Feed, Meaning, ModelSession, Spindle,
     SpindleSense, Tolerance, VocabularyWord,
@@ -57,12 +57,12 @@ fn write(plugin: &Plugin, batch: &Batch) -> (String, Vec<usize>) {
 fn a_stock_dialect_writes_the_same_from_a_file_and_linked_in() {
     let all = post_stock::plugins().iter();
     let all = all.map(|linked| Plugin::linked(*linked).unwrap());
-    for linked in all.filter(|plugin| plugin.kind() == Kind::Dialect) {
+    for linked in all.filter(|plugin| plugin.kind() == PluginKind::Dialect) {
         assert_eq!((linked.path(), linked.hash()), (None, None));
         let opened = Plugin::open(&library(&deps(), linked.name())).unwrap();
         assert_eq!(opened.name(), linked.name());
         assert_eq!(opened.version(), linked.version());
-        assert_eq!(opened.kind(), Kind::Dialect);
+        assert_eq!(opened.kind(), PluginKind::Dialect);
         assert_eq!(opened.hash().unwrap().len(), 64);
         let keys = |plugin: &Plugin| -> Vec<&str> {
             plugin.options().iter().map(|spec| spec.key).collect()
@@ -105,7 +105,7 @@ fn the_stock_error_model_answers_the_same_from_a_file_and_linked_in() {
     let linked = Plugin::linked(stock("sampled")).unwrap();
     let opened = Plugin::open(&library(&deps(), "sampled")).unwrap();
     let answers = [linked, opened].map(|plugin| {
-        assert_eq!(plugin.kind(), Kind::ErrorModel);
+        assert_eq!(plugin.kind(), PluginKind::ErrorModel);
         assert!(plugin.dialect(&five_axes()).is_err());
         let options = [("accuracy".to_owned(), GivenValue::Number(0.001))];
         let mut session = plugin.error_model(&options).unwrap();
@@ -205,7 +205,7 @@ fn the_examples_are_good_by_the_kit() {
         post_kit::conformance::test(&plugin, &[]).unwrap()
     };
     let tiny = report("tiny");
-    assert_eq!(tiny.kind, Kind::Dialect);
+    assert_eq!(tiny.kind, PluginKind::Dialect);
     assert!(tiny.is_good(), "{tiny}");
     // What not every control has.
     assert!(tiny.table().contains("program: it refuses Preselect: dialect `tiny`"));

@@ -2,7 +2,7 @@
 
 use std::ops::{BitOr, BitOrAssign};
 
-use crate::Event;
+use crate::{Cycle, Event};
 
 /// What a dialect declares to write, as a set.
 ///
@@ -165,6 +165,23 @@ impl Capabilities {
     /// The set of these bits.
     pub const fn from_bits(bits: u64) -> Capabilities {
         Capabilities(bits)
+    }
+}
+
+impl Cycle {
+    /// What a dialect declares that has words for the cycle.
+    pub const fn capability(self) -> Capabilities {
+        match self {
+            Cycle::Drill => Capabilities::CYCLE_DRILL,
+            Cycle::Deep => Capabilities::CYCLE_DEEP,
+            Cycle::BreakChip => Capabilities::CYCLE_BREAK_CHIP,
+            Cycle::Tap => Capabilities::CYCLE_TAP,
+            Cycle::TapLeft => Capabilities::CYCLE_TAP_LEFT,
+            Cycle::Ream => Capabilities::CYCLE_REAM,
+            Cycle::Bore => Capabilities::CYCLE_BORE,
+            Cycle::BoreFine => Capabilities::CYCLE_BORE_FINE,
+            Cycle::BoreBack => Capabilities::CYCLE_BORE_BACK,
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use post_plugin::raw::{PostDialect, PostModel};
 /// The functions of a plugin. Every pointer in them was found not to be null, but for those that came later: what a
 /// library of an earlier version does not have is null.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Table {
+pub(crate) enum FunctionTable {
     Dialect(PostDialect),
     Model(PostModel),
 }
@@ -16,7 +16,7 @@ pub(crate) struct Described {
     pub(crate) name: String,
     pub(crate) version: String,
     pub(crate) about: String,
-    pub(crate) table: Table,
+    pub(crate) table: FunctionTable,
     pub(crate) options: &'static [OptionSpec],
 }
 

@@ -12,11 +12,11 @@ use post_plugin::{
 };
 
 use crate::call::Caller;
-use crate::described::Table;
+use crate::described::FunctionTable;
 use crate::shown::{is_odd, quoted, sentence};
 use crate::sink::{MOST_TEXT, message, with_sink};
 use crate::vocabulary;
-use crate::{GivenValue, Kind, Plugin, PluginFault, Reason, check_options};
+use crate::{GivenValue, PluginKind, Plugin, PluginFault, Reason, check_options};
 
 /// What a dialect is told about a program.
 #[derive(Clone, Debug, Default)]
@@ -132,21 +132,21 @@ impl ProgramSetup {
 /// A dialect that is writing a program.
 pub struct OpenedDialect {
     plugin: String,
-    way: Way,
+    access: DialectAccess,
     format: Format,
     capabilities: Capabilities,
 }
 
 /// How a dialect is reached.
-enum Way {
+enum DialectAccess {
     /// It is part of this program and writes straight into the host's text.
     Linked(Box<dyn LinkedDialect>),
     /// Through the C contract.
-    Library(Library),
+    Library(LibraryDialect),
 }
 
 /// A context behind the C contract.
-struct Library {
+struct LibraryDialect {
     caller: Caller,
     table: PostDialect,
     ctx: *mut c_void,
@@ -160,7 +160,7 @@ struct Library {
 
 // SAFETY: the contract lets a context wander between threads, one call at a time, and `&mut self` sees
 // to that; events and texts hold pointers only during a call.
-unsafe impl Send for Library {}
+unsafe impl Send for LibraryDialect {}
 
 impl Plugin {
     /// Opens this dialect for one program.
@@ -168,8 +168,8 @@ impl Plugin {
     /// # Errors
     /// If it is no dialect, an option does not fit, or it refuses.
     pub fn dialect(&self, setup: &ProgramSetup) -> Result<OpenedDialect, PluginFault> {
-        let Table::Dialect(table) = self.table else {
-            return Err(self.other_kind(Kind::Dialect));
+        let FunctionTable::Dialect(table) = self.table else {
+            return Err(self.other_kind(PluginKind::Dialect));
         };
         let words = setup.words.len();
         if words > raw::MAX_WORDS {
@@ -183,22 +183,22 @@ impl Plugin {
         let nonsense = |message| self.fault(Reason::Nonsense { message });
         let linked =
             self.linked.and_then(|linked| setup.with(&options, |setup| linked.open(setup)));
-        let (way, format, capabilities) = match linked {
+        let (access, format, capabilities) = match linked {
             Some(opened) => {
                 let mut dialect = opened.map_err(|message| refused(reason_of(message)))?;
                 let (format, capabilities) = dialect.format().map_err(nonsense)?;
-                (Way::Linked(dialect), format, capabilities)
+                (DialectAccess::Linked(dialect), format, capabilities)
             }
             None => {
                 let library = setup
-                    .with(&options, |setup| Library::open(self.caller(), table, setup))
+                    .with(&options, |setup| LibraryDialect::open(self.caller(), table, setup))
                     .map_err(refused)?;
                 let (format, capabilities) = library.ask_format(words).map_err(nonsense)?;
-                (Way::Library(library), format, capabilities)
+                (DialectAccess::Library(library), format, capabilities)
             }
         };
         check_format(&format, words).map_err(nonsense)?;
-        Ok(OpenedDialect { plugin: self.name.clone(), way, format, capabilities })
+        Ok(OpenedDialect { plugin: self.name.clone(), access, format, capabilities })
     }
 }
 
@@ -230,7 +230,7 @@ fn check_format(format: &Format, words: usize) -> Result<(), String> {
     Ok(())
 }
 
-impl Library {
+impl LibraryDialect {
     /// # Errors
     /// Why it refuses.
     fn open(caller: Caller, table: PostDialect, setup: &Setup<'_>) -> Result<Self, String> {
@@ -247,7 +247,7 @@ impl Library {
             return Err(refusal);
         }
         // From here on, dropping it closes the context.
-        Ok(Library {
+        Ok(LibraryDialect {
             caller,
             table,
             ctx,
@@ -403,16 +403,16 @@ impl OpenedDialect {
     /// # Errors
     /// A sentence: it failed to tell them, or told what cannot be.
     pub fn vocabulary(&mut self) -> Result<Vec<VocabularyWord>, String> {
-        let told = match &mut self.way {
-            Way::Linked(dialect) => dialect.vocabulary(),
-            Way::Library(library) => library.vocabulary(),
+        let told = match &mut self.access {
+            DialectAccess::Linked(dialect) => dialect.vocabulary(),
+            DialectAccess::Library(library) => library.vocabulary(),
         };
         let judged = told.and_then(vocabulary::judge);
         judged.map_err(|message| format!("dialect `{}`: {}", self.plugin, reason_of(message)))
     }
 }
 
-impl Drop for Library {
+impl Drop for LibraryDialect {
     fn drop(&mut self) {
         if let Some(close) = self.table.close {
             // SAFETY: the context is open, and this is its last use.
@@ -444,9 +444,9 @@ impl DialectSession for OpenedDialect {
             inverse_time: self.format.inverse_time.is_some(),
         };
         let (base, first) = (out.len(), ends.len());
-        let written = match &mut self.way {
-            Way::Linked(dialect) => dialect.write(batch, &promise, out, ends),
-            Way::Library(library) => library.write(batch, &promise, out, ends),
+        let written = match &mut self.access {
+            DialectAccess::Linked(dialect) => dialect.write(batch, &promise, out, ends),
+            DialectAccess::Library(library) => library.write(batch, &promise, out, ends),
         };
         let believed = check_batch(batch, out, base, ends, first);
         believed.and(written).map_err(|fault| {

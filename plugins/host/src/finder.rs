@@ -20,7 +20,7 @@ pub struct Finder {
 
 /// A plugin that could be found.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Listed {
+pub struct ListedPlugin {
     /// Its name.
     pub name: String,
     /// Its file; none if it is linked in.
@@ -81,11 +81,11 @@ impl Finder {
     ///
     /// # Errors
     /// Which folder cannot be read, and why.
-    pub fn list(&self) -> Result<Vec<Listed>, (PathBuf, io::Error)> {
-        let mut listed: Vec<Listed> = Vec::new();
+    pub fn list(&self) -> Result<Vec<ListedPlugin>, (PathBuf, io::Error)> {
+        let mut listed: Vec<ListedPlugin> = Vec::new();
         let mut add = |name: String, path| {
             let hidden = listed.iter().any(|other| other.name == name);
-            listed.push(Listed { name, path, hidden });
+            listed.push(ListedPlugin { name, path, hidden });
         };
         for folder in &self.folders {
             let names = names(folder).map_err(|error| (folder.clone(), error))?;

@@ -9,7 +9,7 @@ use post_plugin::raw::{self, PostDialect, PostModel, PostOption, PostPlugin, Pos
 use post_plugin::{OptionKind, OptionSpec, Value};
 
 use crate::call::Caller;
-use crate::described::{Described, Table, is_name};
+use crate::described::{Described, FunctionTable, is_name};
 use crate::options::check;
 use crate::shown::{is_odd, quoted, sentence};
 use crate::{GivenValue, Reason};
@@ -68,7 +68,7 @@ pub(crate) unsafe fn judge(
             present("write", table.write)?;
             present("last_error", table.last_error)?;
             present("close", table.close)?;
-            Table::Dialect(table)
+            FunctionTable::Dialect(table)
         }
         raw::KIND_MODEL => {
             check_size("PostModel", table_size, size_of::<PostModel>())?;
@@ -79,7 +79,7 @@ pub(crate) unsafe fn judge(
             present("value", table.value)?;
             present("last_error", table.last_error)?;
             present("close", table.close)?;
-            Table::Model(table)
+            FunctionTable::Model(table)
         }
         _ => {
             return Err(Reason::Nonsense {

@@ -5,7 +5,6 @@
 //! Nothing that a plugin returns is believed before it was checked.
 
 mod call;
-pub mod conformance;
 mod described;
 mod dialect;
 pub mod examples;
@@ -26,17 +25,15 @@ mod working_folder;
 
 pub use dialect::{OpenedDialect, ProgramAhead, ProgramSetup, ProgramTool, ProgramWord};
 pub use fault::{OptionFault, PluginFault, Reason};
-pub use finder::{Finder, Listed};
+pub use finder::{Finder, ListedPlugin};
 pub use leave::{ExitWatch, leave, leave_at_once, watch_for_exit};
 pub use model::OpenedModel;
 pub use options::{GivenValue, check_options, default_of, takes};
-pub use plugin::{Kind, Plugin};
+pub use plugin::{Plugin, PluginKind};
 pub use results::keep_results_apart;
 
 /// What tests look into; no part of the crate's face.
 #[doc(hidden)]
 pub mod internals {
-    pub use crate::conformance::dialect::{CUTS, LAST, events};
-    pub use crate::conformance::texts::ends_early;
     pub use crate::vocabulary::judge;
 }

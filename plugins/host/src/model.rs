@@ -11,10 +11,10 @@ use post_plugin::raw::{self, PostModel, PostPair};
 use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
 
 use crate::call::Caller;
-use crate::described::Table;
+use crate::described::FunctionTable;
 use crate::float_mode::FloatMode;
 use crate::sink::message;
-use crate::{GivenValue, Kind, Plugin, PluginFault, Reason, check_options};
+use crate::{GivenValue, PluginKind, Plugin, PluginFault, Reason, check_options};
 
 /// An error model at work, for one thread.
 #[derive(Debug)]
@@ -40,8 +40,8 @@ impl Plugin {
         &self,
         options: &[(String, GivenValue)],
     ) -> Result<OpenedModel, PluginFault> {
-        let Table::Model(table) = self.table else {
-            return Err(self.other_kind(Kind::ErrorModel));
+        let FunctionTable::Model(table) = self.table else {
+            return Err(self.other_kind(PluginKind::ErrorModel));
         };
         let options = check_options(self.options(), options)
             .map_err(|fault| self.fault(Reason::Option(Box::new(fault))))?;
@@ -98,8 +98,11 @@ impl OpenedModel {
         }
     }
 
-    /// What the model answers is not believed before this.
-    pub(crate) fn check(&self, curve: &Curve) -> Result<(), String> {
+    /// Whether a curve of its answer can be: what the model answers is not believed before this.
+    ///
+    /// # Errors
+    /// A sentence.
+    pub fn check(&self, curve: &Curve) -> Result<(), String> {
         let peaks = [curve.tip_peak, curve.axis_peak];
         if !peaks.iter().all(|peak| peak.is_finite() && *peak >= 0.0) {
             return Err(
@@ -119,8 +122,11 @@ impl OpenedModel {
         self.values(curve, [0.0, 0.5, 1.0]).map(|_| ())
     }
 
-    /// The model's answer as it comes.
-    pub(crate) fn answer(
+    /// The model's answer as it comes, which [`ModelSession::fit`] checks.
+    ///
+    /// # Errors
+    /// Its sentence, or why it could not be asked.
+    pub fn answer(
         &mut self,
         tolerance: &Tolerance,
         deviation: &mut dyn FnMut(&[f64], &mut [Deviation]),

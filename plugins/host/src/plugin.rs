@@ -10,7 +10,7 @@ use post_plugin::raw::PostPlugin;
 use post_plugin::{Linked, OptionSpec};
 
 use crate::call::{Caller, LoadedLibrary};
-use crate::described::{Described, Table, is_name};
+use crate::described::{Described, FunctionTable, is_name};
 use crate::judge::judge;
 use crate::leave::library_opened;
 use crate::library_file::LibraryFile;
@@ -22,7 +22,7 @@ pub struct Plugin {
     pub(crate) name: String,
     version: String,
     about: String,
-    pub(crate) table: Table,
+    pub(crate) table: FunctionTable,
     /// Where it is part of this program.
     pub(crate) linked: Option<Linked>,
     library: Option<&'static LoadedLibrary>,
@@ -32,7 +32,7 @@ pub struct Plugin {
 
 /// What a plugin does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum PluginKind {
     /// Writes one control's language.
     Dialect,
     /// Judges the deviation along a move.
@@ -99,10 +99,10 @@ impl Plugin {
     }
 
     /// What it does.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> PluginKind {
         match self.table {
-            Table::Dialect(_) => Kind::Dialect,
-            Table::Model(_) => Kind::ErrorModel,
+            FunctionTable::Dialect(_) => PluginKind::Dialect,
+            FunctionTable::Model(_) => PluginKind::ErrorModel,
         }
     }
 
@@ -129,7 +129,7 @@ impl Plugin {
         PluginFault { plugin: self.name.clone(), path: self.path().map(Path::to_owned), reason }
     }
 
-    pub(crate) fn other_kind(&self, wanted: Kind) -> PluginFault {
+    pub(crate) fn other_kind(&self, wanted: PluginKind) -> PluginFault {
         self.fault(Reason::OtherKind { wanted: wanted.name(), found: self.kind().name() })
     }
 }
@@ -190,12 +190,12 @@ fn open_library(name: &str, path: &Path) -> Result<Plugin, Reason> {
     Ok(Plugin { library: Some(loaded), hash: Some(file.hash), ..described.into() })
 }
 
-impl Kind {
+impl PluginKind {
     /// With its article, for messages.
     pub fn name(self) -> &'static str {
         match self {
-            Kind::Dialect => "a dialect",
-            Kind::ErrorModel => "an error model",
+            PluginKind::Dialect => "a dialect",
+            PluginKind::ErrorModel => "an error model",
         }
     }
 }

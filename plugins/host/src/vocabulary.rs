@@ -15,18 +15,18 @@ use crate::shown::{is_odd, quoted};
 const MOST_WORDS: usize = 1000;
 
 /// What a plugin has told so far, or what is wrong with it.
-type Told = Result<Vec<VocabularyWord>, String>;
+type TakenVocabulary = Result<Vec<VocabularyWord>, String>;
 
 /// What `ask` returns, and the words that it hands to the function that it is given.
-pub(crate) fn taken<R>(ask: impl FnOnce(*mut c_void, PostEmitWord) -> R) -> (R, Told) {
-    let mut told: Told = Ok(Vec::new());
+pub(crate) fn taken<R>(ask: impl FnOnce(*mut c_void, PostEmitWord) -> R) -> (R, TakenVocabulary) {
+    let mut told: TakenVocabulary = Ok(Vec::new());
     let answer = ask((&raw mut told).cast(), take);
     (answer, told)
 }
 
 unsafe extern "C" fn take(host: *mut c_void, meaning: u32, word: *const u8, len: usize) {
     // SAFETY: `host` is what `taken` waits for, and nothing else uses it meanwhile.
-    let told = unsafe { &mut *host.cast::<Told>() };
+    let told = unsafe { &mut *host.cast::<TakenVocabulary>() };
     let Ok(words) = told else { return };
     // SAFETY: the plugin vouches for the word.
     let word = match unsafe { text(PostText { ptr: word, len }, MOST_NAME) } {
@@ -52,7 +52,7 @@ unsafe extern "C" fn take(host: *mut c_void, meaning: u32, word: *const u8, len:
 }
 
 /// Words that a reader can look for: not empty, of one line, each told once.
-pub fn judge(words: Vec<VocabularyWord>) -> Told {
+pub fn judge(words: Vec<VocabularyWord>) -> TakenVocabulary {
     if words.len() > MOST_WORDS {
         return Err(format!("its vocabulary has more than {MOST_WORDS} words"));
     }

@@ -39,19 +39,6 @@ struct ModalCycle {
     level: Modal<&'static str>,
 }
 
-/// Capability that declares each kind.
-const KINDS: [(Cycle, Capabilities); 9] = [
-    (Cycle::Drill, Capabilities::CYCLE_DRILL),
-    (Cycle::Deep, Capabilities::CYCLE_DEEP),
-    (Cycle::BreakChip, Capabilities::CYCLE_BREAK_CHIP),
-    (Cycle::Tap, Capabilities::CYCLE_TAP),
-    (Cycle::TapLeft, Capabilities::CYCLE_TAP_LEFT),
-    (Cycle::Ream, Capabilities::CYCLE_REAM),
-    (Cycle::Bore, Capabilities::CYCLE_BORE),
-    (Cycle::BoreFine, Capabilities::CYCLE_BORE_FINE),
-    (Cycle::BoreBack, Capabilities::CYCLE_BORE_BACK),
-];
-
 /// Whether the cycle draws the tool off the wall.
 const fn shifts(kind: Cycle) -> bool {
     matches!(kind, Cycle::BoreFine | Cycle::BoreBack)
@@ -89,10 +76,7 @@ impl CycleWords {
     }
 
     pub(crate) fn capabilities(&self) -> Capabilities {
-        self.codes().fold(Capabilities::NONE, |all, code| {
-            let kind = KINDS.iter().find(|(kind, _)| *kind == code.kind);
-            kind.map_or(all, |(_, capability)| all | *capability)
-        })
+        self.codes().fold(Capabilities::NONE, |all, code| all | code.kind.capability())
     }
 
     /// A line of the user's own stands between its points: all is written again.

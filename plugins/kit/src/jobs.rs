@@ -287,39 +287,13 @@ pub fn spline() -> Vec<Event<'static>> {
 pub(crate) fn declared_by(event: &Event<'_>) -> Capabilities {
     use Capabilities as C;
     match *event {
-        Event::Operation { .. } | Event::OperationEnd => C::OPERATION,
-        Event::Message { .. } => C::MESSAGE,
-        Event::Units(_) => C::UNITS,
-        Event::WorkOffset { .. } => C::WORK_OFFSET,
-        Event::Offsets { .. } => C::OFFSETS,
-        Event::SurfaceSpeed { .. } => C::SURFACE_SPEED,
-        Event::Tcp { .. } => C::TCP_SWITCH,
-        Event::Plane { .. } | Event::PlaneOff => C::PLANE,
-        Event::Smoothing { .. } | Event::SmoothingOff => C::SMOOTHING,
-        Event::Clamp { .. } => C::CLAMP,
         Event::Arc { radius, normal, .. } => {
             let along = normal.iter().position(|part| part.abs() > 0.999);
             let plane = [C::ARC_YZ, C::ARC_ZX, C::ARC_XY];
             let plane = along.map_or(C::ARC_ANY, |along| plane[along]);
             radius.map_or(plane, |_| plane | C::ARC_RADIUS)
         }
-        Event::Spline { .. } => C::SPLINE,
-        Event::Cycle { cycle, .. } => match cycle {
-            Cycle::Drill => C::CYCLE_DRILL,
-            Cycle::Deep => C::CYCLE_DEEP,
-            Cycle::BreakChip => C::CYCLE_BREAK_CHIP,
-            Cycle::Tap => C::CYCLE_TAP,
-            Cycle::TapLeft => C::CYCLE_TAP_LEFT,
-            Cycle::Ream => C::CYCLE_REAM,
-            Cycle::Bore => C::CYCLE_BORE,
-            Cycle::BoreFine => C::CYCLE_BORE_FINE,
-            Cycle::BoreBack => C::CYCLE_BORE_BACK,
-        },
-        Event::Surface { .. } => C::SURFACE,
-        Event::Compensate3d { .. } => C::COMPENSATE_3D,
-        Event::Subprogram { .. } => C::SUBPROGRAM,
-        Event::Probe { .. } => C::PROBE,
-        Event::Instead { .. } => C::INSTEAD,
-        _ => C::NONE,
+        Event::Cycle { cycle, .. } => cycle.capability(),
+        _ => event.sent_under(),
     }
 }

@@ -1,4 +1,5 @@
-//! A bench for the tests of a dialect: a machine with five axes, jobs to write, and the order in which events come.
+//! What authors test a plugin with: the cases whose answer is known (`conformance`), and for what the text of a dialect
+//! says, a bench with a machine of five axes and jobs to write, and the order in which events come.
 //!
 //! ```ignore
 //! let bench = Bench::of(crate::plugin());
@@ -9,6 +10,8 @@
 //! It writes the way the host does with a dialect that is linked in. What it leaves to `post plugin test` is whether
 //! the text is the same in every cut of the batches, and through the C contract.
 
+#[cfg(feature = "conformance")]
+pub mod conformance;
 pub mod jobs;
 mod order;
 
@@ -18,6 +21,14 @@ use post_plugin::{
     AxisWord, Batch, Capabilities, Compensation, Coolant, Event, Feed, Linked, LinkedDialect,
     Promise, Setup, Spindle, SpindleSense, Units, Value,
 };
+
+/// What tests look into; no part of the crate's face.
+#[cfg(feature = "conformance")]
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::conformance::dialect::{CUTS, LAST, events};
+    pub use crate::conformance::texts::ends_early;
+}
 
 /// A dialect on the bench, with the axis words X Y Z A C.
 #[derive(Clone, Debug)]

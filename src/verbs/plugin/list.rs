@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use post_host::{Listed, Plugin, PluginFault};
+use post_host::{ListedPlugin, Plugin, PluginFault};
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::raw::ABI;
 
@@ -65,7 +65,7 @@ pub fn run(session: &Session, arguments: &ListArguments) -> Result<(), Failure> 
     Ok(())
 }
 
-fn from(row: &Listed) -> String {
+fn from(row: &ListedPlugin) -> String {
     origin(row.path.as_deref())
 }
 

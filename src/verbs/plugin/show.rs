@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use post_host::{Kind, OpenedDialect, Plugin, ProgramSetup, ProgramWord, default_of, takes};
+use post_host::{PluginKind, OpenedDialect, Plugin, ProgramSetup, ProgramWord, default_of, takes};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{CAPABILITIES, CODES, DialectSession, Format};
 
@@ -37,7 +37,7 @@ pub fn run(session: &Session, arguments: &ShowArguments) -> Result<(), Failure> 
         text.push_str(&format!("{}\n", plugin.about()));
     }
     text.push_str(&options(&plugin));
-    if plugin.kind() == Kind::Dialect {
+    if plugin.kind() == PluginKind::Dialect {
         text.push_str(&match plugin.dialect(&five_axes()) {
             Ok(mut opened) => {
                 let mut told = writes(&opened);
@@ -57,8 +57,8 @@ pub fn run(session: &Session, arguments: &ShowArguments) -> Result<(), Failure> 
 
 fn options(plugin: &Plugin) -> String {
     let section = match plugin.kind() {
-        Kind::Dialect => "control",
-        Kind::ErrorModel => "accuracy",
+        PluginKind::Dialect => "control",
+        PluginKind::ErrorModel => "accuracy",
     };
     if plugin.options().is_empty() {
         return "\nIt has no options.\n".to_owned();

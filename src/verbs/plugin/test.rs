@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use post_host::{GivenValue, conformance};
+use post_host::GivenValue;
+use post_kit::conformance;
 use post_machine::diagnostic::Diagnostic;
 
 use super::title;

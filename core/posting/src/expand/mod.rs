@@ -323,7 +323,7 @@ impl ExpandStage {
     ) {
         let CycleStep { cycle, point } = *step;
         let native = cycle.native();
-        let known = native.filter(|native| self.cycles.has(capability(native.kind)));
+        let known = native.filter(|native| self.cycles.has(native.kind.capability()));
         if let (Some(kind), None) =
             (native.filter(|native| native.alone).map(|native| native.kind), known)
         {
@@ -371,21 +371,6 @@ impl ExpandStage {
         if known.is_some() {
             self.command(line, Command::Hole(HoleMark::Done), out, findings);
         }
-    }
-}
-
-/// What a dialect declares that has words for a cycle.
-fn capability(kind: Cycle) -> Capabilities {
-    match kind {
-        Cycle::Drill => Capabilities::CYCLE_DRILL,
-        Cycle::Deep => Capabilities::CYCLE_DEEP,
-        Cycle::BreakChip => Capabilities::CYCLE_BREAK_CHIP,
-        Cycle::Tap => Capabilities::CYCLE_TAP,
-        Cycle::TapLeft => Capabilities::CYCLE_TAP_LEFT,
-        Cycle::Ream => Capabilities::CYCLE_REAM,
-        Cycle::Bore => Capabilities::CYCLE_BORE,
-        Cycle::BoreFine => Capabilities::CYCLE_BORE_FINE,
-        Cycle::BoreBack => Capabilities::CYCLE_BORE_BACK,
     }
 }
 

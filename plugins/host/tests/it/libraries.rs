@@ -7,7 +7,7 @@ use crate::common::{compile, deps, example, library, needed, setup, stock};
 
 use std::path::Path;
 
-use post_host::{Finder, GivenValue, Kind, Plugin, PluginFault, ProgramSetup, Reason};
+use post_host::{Finder, GivenValue, PluginKind, Plugin, PluginFault, ProgramSetup, Reason};
 use post_plugin::{
     Batch, Coolant, Deviation, DialectSession, Event, Feed, Meaning, ModelSession, Spindle,
     SpindleSense, Tolerance, VocabularyWord,
@@ -57,12 +57,12 @@ fn write(plugin: &Plugin, batch: &Batch) -> (String, Vec<usize>) {
 fn a_stock_dialect_writes_the_same_from_a_file_and_linked_in() {
     let all = post_stock::plugins().iter();
     let all = all.map(|linked| Plugin::linked(*linked).unwrap());
-    for linked in all.filter(|plugin| plugin.kind() == Kind::Dialect) {
+    for linked in all.filter(|plugin| plugin.kind() == PluginKind::Dialect) {
         assert_eq!((linked.path(), linked.hash()), (None, None));
         let opened = Plugin::open(&library(&deps(), linked.name())).unwrap();
         assert_eq!(opened.name(), linked.name());
         assert_eq!(opened.version(), linked.version());
-        assert_eq!(opened.kind(), Kind::Dialect);
+        assert_eq!(opened.kind(), PluginKind::Dialect);
         assert_eq!(opened.hash().unwrap().len(), 64);
         let keys = |plugin: &Plugin| -> Vec<&str> {
             plugin.options().iter().map(|spec| spec.key).collect()
@@ -105,7 +105,7 @@ fn the_stock_error_model_answers_the_same_from_a_file_and_linked_in() {
     let linked = Plugin::linked(stock("sampled")).unwrap();
     let opened = Plugin::open(&library(&deps(), "sampled")).unwrap();
     let answers = [linked, opened].map(|plugin| {
-        assert_eq!(plugin.kind(), Kind::ErrorModel);
+        assert_eq!(plugin.kind(), PluginKind::ErrorModel);
         assert!(plugin.dialect(&five_axes()).is_err());
         let options = [("accuracy".to_owned(), GivenValue::Number(0.001))];
         let mut session = plugin.error_model(&options).unwrap();
@@ -187,7 +187,7 @@ fn a_dialect_in_c() {
     assert_eq!(ends, [10, 26]);
     assert_eq!(fault.message, "dialect `minimal`, event Unknown: it has no words for kind 4711");
     // It is good by the kit, which is asked through the contract.
-    let report = post_host::conformance::test(&plugin, &[]).unwrap();
+    let report = post_kit::conformance::test(&plugin, &[]).unwrap();
     assert!(report.is_good(), "{report}");
     setup.tcp = true;
     let refused = plugin.dialect(&setup).unwrap_err();
@@ -195,6 +195,27 @@ fn a_dialect_in_c() {
     setup.options = vec![("decimals".to_owned(), GivenValue::Integer(7))];
     let refused = plugin.dialect(&setup).unwrap_err();
     assert!(refused.to_string().contains("7 is not between 1 and 6"));
+}
+
+/// The kit runs on libraries as on what is linked in.
+#[test]
+fn the_examples_are_good_by_the_kit() {
+    let report = |name: &str| {
+        let plugin = Plugin::open(&example(name)).unwrap();
+        post_kit::conformance::test(&plugin, &[]).unwrap()
+    };
+    let tiny = report("tiny");
+    assert_eq!(tiny.kind, PluginKind::Dialect);
+    assert!(tiny.is_good(), "{tiny}");
+    // What not every control has.
+    assert!(tiny.table().contains("program: it refuses Preselect: dialect `tiny`"));
+
+    let gcode = report("gcode");
+    assert!(gcode.is_good(), "{gcode}");
+
+    let panics = report("panics");
+    let wrong: Vec<String> = panics.wrong().collect();
+    assert!(wrong.iter().any(|wrong| wrong.contains("the plugin panicked")), "{panics}");
 }
 
 #[cfg(unix)]

@@ -3,12 +3,9 @@
 // Clippy lets test functions unwrap, but not the helpers beside them.
 #![allow(clippy::unwrap_used)]
 
-mod boastful;
 mod common;
-mod conformance;
 mod guide;
 mod libraries;
 mod papers;
-mod sloppy;
 mod strangers;
 mod units;

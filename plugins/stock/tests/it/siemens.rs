@@ -1,5 +1,7 @@
-use post_host::{Plugin, conformance};
-use post_kit::{Bench, P1, P2, P3, P4, TOOL, TOP, at, cut, jobs, rapid, turn, turning};
+use post_host::Plugin;
+use post_kit::{
+    Bench, P1, P2, P3, P4, TOOL, TOP, at, conformance, cut, jobs, rapid, turn, turning,
+};
 use post_plugin::{
     AxisWord, Batch, Cycle, Event, Feed, PlaneAngles, Promise, Setup, Spindle, SpindleSense,
     ToolPose, Units, Value,

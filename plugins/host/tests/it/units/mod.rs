@@ -1,8 +1,6 @@
 //! Single files of the crate, each by itself.
 
-mod dialect;
 mod options;
-mod texts;
 mod vocabulary;
 
 // Nobody outside sees it: it is compiled here once more, with the tests that stand in it.

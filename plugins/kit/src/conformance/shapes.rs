@@ -13,7 +13,7 @@ pub(super) const TOLERANCE: Tolerance = Tolerance { tip: 0.005, axis: 0.05 };
 
 /// What a model must make of a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum DeviationKind {
     /// One bow, symmetrical: its peak must be met.
     Bow,
     /// Smooth: a model may miss it.
@@ -23,9 +23,9 @@ pub(super) enum Kind {
 }
 
 /// A case: the deviation along a move, and what it must stay within.
-pub(super) struct Shape {
+pub(super) struct KnownDeviation {
     pub name: &'static str,
-    pub kind: Kind,
+    pub kind: DeviationKind,
     pub tolerance: Tolerance,
     pub at: Box<dyn Fn(f64) -> Deviation>,
 }
@@ -61,8 +61,8 @@ fn sine(t: f64) -> f64 {
 }
 
 /// The shapes that every model is run on.
-pub(super) fn all() -> Vec<Shape> {
-    let shape = |name, kind, at: Box<dyn Fn(f64) -> Deviation>| Shape {
+pub(super) fn all() -> Vec<KnownDeviation> {
+    let shape = |name, kind, at: Box<dyn Fn(f64) -> Deviation>| KnownDeviation {
         name,
         kind,
         tolerance: TOLERANCE,
@@ -70,20 +70,20 @@ pub(super) fn all() -> Vec<Shape> {
     };
     let bow = |name, tip: f64, axis: f64| {
         let at = move |t: f64| straight(tip * parabola(t), axis * parabola(t));
-        shape(name, Kind::Bow, Box::new(at))
+        shape(name, DeviationKind::Bow, Box::new(at))
     };
     let smooth = |name, at: fn(f64) -> f64| {
         let at = move |t: f64| straight(TIP * at(t), AXIS * at(t));
-        shape(name, Kind::Smooth, Box::new(at))
+        shape(name, DeviationKind::Smooth, Box::new(at))
     };
-    let within = |shape: Shape, factor: f64| Shape {
+    let within = |shape: KnownDeviation, factor: f64| KnownDeviation {
         tolerance: Tolerance { tip: TIP * factor, axis: AXIS * factor },
         ..shape
     };
     vec![
         bow("none", 0.0, 0.0),
         bow("parabola", TIP, AXIS),
-        Shape { kind: Kind::Bow, ..smooth("half a sine", sine) },
+        KnownDeviation { kind: DeviationKind::Bow, ..smooth("half a sine", sine) },
         bow("tip alone", TIP, 0.0),
         bow("axis alone", 0.0, AXIS),
         within(bow("just over", TIP, AXIS), 1.0 / 1.1),
@@ -93,7 +93,7 @@ pub(super) fn all() -> Vec<Shape> {
         bow("huge", 1e3, 90.0),
         shape(
             "rounded ends",
-            Kind::Smooth,
+            DeviationKind::Smooth,
             Box::new(|t| {
                 let ends = straight(-5e-4, 3e-4).lerp(straight(3e-4, 5e-4), t);
                 straight(TIP * parabola(t), AXIS * parabola(t)) + ends
@@ -103,12 +103,15 @@ pub(super) fn all() -> Vec<Shape> {
         smooth("two humps", |t| sine(2.0 * t)),
         shape(
             "bow and wave",
-            Kind::Smooth,
+            DeviationKind::Smooth,
             Box::new(|t| Deviation {
                 tip: [TIP * parabola(t), 0.0, 0.5 * TIP * sine(2.0 * t)],
                 axis: [0.0, 0.5 * AXIS * sine(2.0 * t), AXIS * parabola(t)],
             }),
         ),
-        Shape { kind: Kind::Rough, ..smooth("jump", |t| if t < 0.3 { 0.0 } else { 1.0 }) },
+        KnownDeviation {
+            kind: DeviationKind::Rough,
+            ..smooth("jump", |t| if t < 0.3 { 0.0 } else { 1.0 })
+        },
     ]
 }

@@ -2,44 +2,44 @@
 
 use post_plugin::{Capabilities, Cycle, Event, Feed, Spindle, SpindleSense};
 
-use super::declared::{Events, Trial};
+use super::declared::{CapabilityTrial, Events};
 
 /// Those of every kind, with what must make a difference.
-pub(super) fn cycles() -> Vec<Trial> {
-    const KINDS: [(Capabilities, &str, Cycle); 9] = [
-        (Capabilities::CYCLE_DRILL, "a drilling cycle", Cycle::Drill),
-        (Capabilities::CYCLE_DEEP, "a deep drilling cycle", Cycle::Deep),
-        (Capabilities::CYCLE_BREAK_CHIP, "a chip breaking cycle", Cycle::BreakChip),
-        (Capabilities::CYCLE_TAP, "a tapping cycle", Cycle::Tap),
-        (Capabilities::CYCLE_TAP_LEFT, "a left-hand tapping cycle", Cycle::TapLeft),
-        (Capabilities::CYCLE_REAM, "a reaming cycle", Cycle::Ream),
-        (Capabilities::CYCLE_BORE, "a boring cycle", Cycle::Bore),
-        (Capabilities::CYCLE_BORE_FINE, "a fine boring cycle", Cycle::BoreFine),
-        (Capabilities::CYCLE_BORE_BACK, "a back boring cycle", Cycle::BoreBack),
+pub(super) fn cycles() -> Vec<CapabilityTrial> {
+    const KINDS: [(&str, Cycle); 9] = [
+        ("a drilling cycle", Cycle::Drill),
+        ("a deep drilling cycle", Cycle::Deep),
+        ("a chip breaking cycle", Cycle::BreakChip),
+        ("a tapping cycle", Cycle::Tap),
+        ("a left-hand tapping cycle", Cycle::TapLeft),
+        ("a reaming cycle", Cycle::Ream),
+        ("a boring cycle", Cycle::Bore),
+        ("a fine boring cycle", Cycle::BoreFine),
+        ("a back boring cycle", Cycle::BoreBack),
     ];
     KINDS
         .into_iter()
-        .map(|(needs, what, cycle)| {
-            let plain = Hole::of(cycle);
-            let holes = |hole: Hole| hole.events(FIRST, SECOND);
-            let mut trial = Trial::new(needs, what, holes(plain))
-                .but("another depth", holes(Hole { depth: 12.5, ..plain }))
-                .but("another clearance", holes(Hole { clearance: 3.0, ..plain }))
+        .map(|(what, cycle)| {
+            let plain = TriedCycle::of(cycle);
+            let holes = |hole: TriedCycle| hole.events(FIRST, SECOND);
+            let mut trial = CapabilityTrial::new(cycle.capability(), what, holes(plain))
+                .but("another depth", holes(TriedCycle { depth: 12.5, ..plain }))
+                .but("another clearance", holes(TriedCycle { clearance: 3.0, ..plain }))
                 .but("another point", plain.events(FIRST, THIRD))
                 .but("a point less", plain.events(FIRST, FIRST));
             trial.under_tcp = Capabilities::CYCLE_TCP;
             if plain.pitch.is_none() {
-                trial = trial.but("another feed", holes(Hole { feed: 310.0, ..plain }));
+                trial = trial.but("another feed", holes(TriedCycle { feed: 310.0, ..plain }));
             } else {
                 // As many turns a minute.
-                let coarse = Hole { feed: 6000.0, pitch: Some(2.0), ..plain };
+                let coarse = TriedCycle { feed: 6000.0, pitch: Some(2.0), ..plain };
                 trial = trial.but("another pitch", holes(coarse));
             }
             if plain.step.is_some() {
-                trial = trial.but("another step", holes(Hole { step: Some(4.0), ..plain }));
+                trial = trial.but("another step", holes(TriedCycle { step: Some(4.0), ..plain }));
             }
             if cycle == Cycle::Drill {
-                let dwell = Hole { dwell: Some(2.0), ..plain };
+                let dwell = TriedCycle { dwell: Some(2.0), ..plain };
                 trial = trial.but("a dwell", holes(dwell));
             }
             trial
@@ -55,7 +55,7 @@ const ABOVE: &[f64] = &[10.0, 20.0, 80.0, 5.0, 6.0];
 
 /// Lengths in mm.
 #[derive(Clone, Copy)]
-struct Hole {
+struct TriedCycle {
     cycle: Cycle,
     feed: f64,
     depth: f64,
@@ -65,10 +65,10 @@ struct Hole {
     pitch: Option<f64>,
 }
 
-impl Hole {
+impl TriedCycle {
     fn of(cycle: Cycle) -> Self {
         let tap = matches!(cycle, Cycle::Tap | Cycle::TapLeft);
-        Hole {
+        TriedCycle {
             cycle,
             // 3000 turns a minute.
             feed: if tap { 4500.0 } else { 300.0 },
@@ -82,7 +82,7 @@ impl Hole {
 
     /// Two points, one if they are the same.
     fn events(self, first: &'static [f64], second: &'static [f64]) -> Events {
-        let Hole { cycle, feed, depth, clearance, step, dwell, pitch } = self;
+        let TriedCycle { cycle, feed, depth, clearance, step, dwell, pitch } = self;
         let point = |words| Event::CyclePoint { tool: None, words };
         let mut events = vec![Event::rapid(ABOVE)];
         if cycle == Cycle::TapLeft {

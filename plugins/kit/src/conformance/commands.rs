@@ -1,14 +1,16 @@
 //! What a dialect makes of everything but moves: each command must be in the text, and what it says too.
 
-use post_plugin::{Capabilities, Compensation, Coolant, Event, Feed, Spindle, SpindleSense};
+use post_host::PluginFault;
+use post_plugin::{
+    Capabilities, Compensation, Coolant, DialectSession as _, Event, Spindle, SpindleSense,
+};
 
 use super::Case;
-use super::pen::{Pen, Program, RETRACT, TURNING};
-use super::print::ELSEWHERE;
-use crate::PluginFault;
+use super::pen::{BEGIN, ELSEWHERE, END, Pen};
+use crate::{at, turning};
 
 /// A command in two forms between which the text must differ.
-struct Pair {
+struct CommandPair {
     /// What differs.
     what: &'static str,
     one: Event<'static>,
@@ -20,25 +22,24 @@ struct Pair {
     needed: bool,
 }
 
-const fn pair(what: &'static str, one: Event<'static>, other: Event<'static>) -> Pair {
-    Pair { what, one, other: Some(other), away: false, needed: true }
+const fn pair(what: &'static str, one: Event<'static>, other: Event<'static>) -> CommandPair {
+    CommandPair { what, one, other: Some(other), away: false, needed: true }
 }
 
-const fn given(what: &'static str, one: Event<'static>) -> Pair {
-    Pair { what, one, other: None, away: false, needed: true }
+const fn given(what: &'static str, one: Event<'static>) -> CommandPair {
+    CommandPair { what, one, other: None, away: false, needed: true }
 }
 
-const fn away(pair: Pair) -> Pair {
-    Pair { away: true, ..pair }
+const fn away(pair: CommandPair) -> CommandPair {
+    CommandPair { away: true, ..pair }
 }
 
-const fn lacking(pair: Pair) -> Pair {
-    Pair { needed: false, ..pair }
+const fn lacking(pair: CommandPair) -> CommandPair {
+    CommandPair { needed: false, ..pair }
 }
 
-const fn turning(rpm: f64, sense: SpindleSense) -> Event<'static> {
-    Event::Spindle(Spindle::On { rpm, sense })
-}
+const BACKWARD: Event<'static> =
+    Event::Spindle(Spindle::On { rpm: 3000.0, sense: SpindleSense::CounterClockwise });
 
 const fn left(register: u32) -> Event<'static> {
     Event::Compensate(Compensation::Left { register })
@@ -47,7 +48,7 @@ const fn left(register: u32) -> Event<'static> {
 /// Letter for letter.
 const LINE: &str = "M77 P1 b";
 
-const COMMANDS: &[Pair] = &[
+const COMMANDS: &[CommandPair] = &[
     given("a remark", Event::Comment { text: "ALPHA" }),
     pair(
         "the text of a remark",
@@ -63,16 +64,8 @@ const COMMANDS: &[Pair] = &[
         Event::Preselect { number: 3 },
         Event::Preselect { number: 4 },
     ))),
-    pair(
-        "the speed of the spindle, 3001 for 3000,",
-        turning(3000.0, SpindleSense::Clockwise),
-        turning(3001.0, SpindleSense::Clockwise),
-    ),
-    pair(
-        "the sense of the spindle",
-        turning(3000.0, SpindleSense::Clockwise),
-        turning(3000.0, SpindleSense::CounterClockwise),
-    ),
+    pair("the speed of the spindle, 3001 for 3000,", turning(3000.0), turning(3001.0)),
+    pair("the sense of the spindle", turning(3000.0), BACKWARD),
     given("the stop of the spindle", Event::Spindle(Spindle::Off)),
     lacking(given("an oriented stop", Event::Spindle(Spindle::Orient))),
     given("coolant", Event::Coolant(Coolant::Flood)),
@@ -108,7 +101,7 @@ const COMMANDS: &[Pair] = &[
 ];
 
 /// Where the control has compensation.
-const COMPENSATION: &[Pair] = &[
+const COMPENSATION: &[CommandPair] = &[
     lacking(given("cutter compensation", left(5))),
     lacking(pair(
         "the side of cutter compensation",
@@ -119,7 +112,7 @@ const COMPENSATION: &[Pair] = &[
 ];
 
 /// Of those that are not in the control's own table.
-const REGISTERS: &[Pair] = &[
+const REGISTERS: &[CommandPair] = &[
     away(pair(
         "the register of a tool's length, 6 for 5,",
         Event::tool_change(2, 5, ""),
@@ -130,22 +123,21 @@ const REGISTERS: &[Pair] = &[
 
 /// Runs all commands.
 pub(super) fn commands(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
-    let writes = pen.capabilities()?;
+    let writes = pen.open()?.capabilities();
     let compensates = !pen.setup.tcp || writes.has(Capabilities::COMPENSATE_TCP);
     let registers = !writes.has(Capabilities::TOOL_TABLE);
     let pairs = COMMANDS.iter().chain(COMPENSATION).chain(if registers { REGISTERS } else { &[] });
     for pair in pairs {
         let compensation = matches!(pair.one, Event::Compensate(_));
-        if pen.left_out.contains(&pair.one.name()) || compensation && !compensates {
+        if pen.leaves_out(&pair.one) || compensation && !compensates {
             continue;
         }
-        let one = pen.write(&|program| around(program, pair, Some(pair.one)))?;
-        let other = pen.write(&|program| around(program, pair, pair.other))?;
-        match (one, other) {
-            (Ok((one, _)), Ok((other, _))) if one == other => {
+        let write = |command: &Option<Event<'_>>| pen.write_around(command.as_slice(), pair.away);
+        match (write(&Some(pair.one))?, write(&pair.other)?) {
+            (Ok(one), Ok(other)) if one == other => {
                 case.wrong(format!("{} makes no difference to the text", pair.what));
             }
-            (Ok((text, _)), Ok(_)) => {
+            (Ok(text), Ok(_)) => {
                 let letter_for_letter =
                     matches!(pair.one, Event::Literal { .. } | Event::Word { .. });
                 if letter_for_letter && !text.contains(LINE) {
@@ -166,40 +158,13 @@ pub(super) fn commands(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault
 
 /// Controls differ in how finely they wait.
 fn short_dwell(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
-    let text = |seconds| {
-        pen.write(&|program| {
-            program.begin();
-            program.push(Event::position(&ELSEWHERE, None));
-            program.push(Event::Dwell { seconds });
-            program.end();
-        })
-    };
+    let dwell = |seconds| Event::Dwell { seconds };
+    let text = |seconds| pen.write(&[BEGIN, &[at(&ELSEWHERE), dwell(seconds)], END]);
     if let (Ok(one), Ok(other)) = (text(0.5)?, text(0.6)?)
-        && one == other
-        && !pen.left_out.contains(&"Dwell")
+        && one.text == other.text
+        && !pen.leaves_out(&dwell(0.5))
     {
         case.note("dwells of 0.5 s and 0.6 s are written alike".to_owned());
     }
     Ok(())
-}
-
-fn around(program: &mut Program<'_>, pair: &Pair, command: Option<Event<'static>>) {
-    const THERE: [f64; 5] = [2.0, 4.0, 80.0, 5.0, 6.0];
-    let feed = Feed::PerMinute(500.0);
-    program.begin();
-    program.push(Event::position(&ELSEWHERE, None));
-    program.push(Event::linear(&THERE, feed));
-    if pair.away {
-        program.push(RETRACT);
-    }
-    if let Some(command) = command {
-        program.push(command);
-    }
-    if pair.away {
-        program.push(TURNING);
-        program.push(Event::position(&ELSEWHERE, None));
-    }
-    program.push(Event::linear(&ELSEWHERE, feed));
-    program.push(Event::linear(&THERE, feed));
-    program.end();
 }

@@ -4,7 +4,7 @@
 //!
 //! ```no_run
 //! # fn check(plugin: post_plugin::Linked) -> Result<(), post_host::PluginFault> {
-//! let report = post_host::conformance::test(&post_host::Plugin::linked(plugin)?, &[])?;
+//! let report = post_kit::conformance::test(&post_host::Plugin::linked(plugin)?, &[])?;
 //! assert!(report.is_good(), "{report}");
 //! # Ok(())
 //! # }
@@ -25,13 +25,13 @@ pub(crate) mod texts;
 
 use std::fmt::{self, Write as _};
 
-use crate::{GivenValue, Kind, Plugin, PluginFault};
+use post_host::{GivenValue, PluginKind, Plugin, PluginFault};
 
 /// What the kit found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     /// What the plugin is.
-    pub kind: Kind,
+    pub kind: PluginKind,
     /// The cases, in the order in which they were run.
     pub cases: Vec<Case>,
 }
@@ -109,8 +109,8 @@ pub fn test_long(
     events: usize,
 ) -> Result<Report, PluginFault> {
     let cases = match plugin.kind() {
-        Kind::ErrorModel => model::test(plugin, options)?,
-        Kind::Dialect => dialect::test(plugin, options, events)?,
+        PluginKind::ErrorModel => model::test(plugin, options)?,
+        PluginKind::Dialect => dialect::test(plugin, options, events)?,
     };
     Ok(Report { kind: plugin.kind(), cases })
 }
@@ -167,7 +167,7 @@ impl Report {
     }
 
     fn write_table(&self, text: &mut String) -> fmt::Result {
-        let numbers = self.kind == Kind::ErrorModel;
+        let numbers = self.kind == PluginKind::ErrorModel;
         if numbers {
             writeln!(
                 text,

@@ -3,16 +3,15 @@
 //! A short program is written twice, with one number changed; where the text of the move stays the same, the dialect
 //! does not print it.
 
-use post_plugin::{Event, Feed, Format, quantise};
+use post_plugin::{DialectSession as _, Event, Feed, Format, quantise};
 
 use super::Case;
-use super::pen::{Pen, Program, Text};
-use crate::{PluginFault, ProgramWord};
+use super::pen::{BEGIN, ELSEWHERE, END, Pen, rounded};
+use crate::{at, cut};
+use post_host::{PluginFault, ProgramWord};
 
 /// Where the tool stands, but for the word that is looked at.
 const PLACE: [f64; 5] = [11.0, -21.5, 31.25, -17.0, 41.0];
-/// Where it comes from, and goes to.
-pub(super) const ELSEWHERE: [f64; 5] = [1.0, 2.0, 90.0, 3.0, 4.0];
 
 /// mm or inch.
 const LINEAR: [f64; 5] = [0.0, 12.345_678, -12.345_678, 123.456_789, 2_345.678_9];
@@ -23,7 +22,7 @@ const FEEDS: [f64; 4] = [0.0, 1.25, 123.456_78, 5000.0];
 
 /// A kind of move that every program has.
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum MoveKind {
     Retract,
     Park,
     Turn,
@@ -34,10 +33,10 @@ enum Kind {
     CutInInverseTime,
 }
 
-use Kind::{Cut, CutInInverseTime, Park, Position, PositionAtFeed, Rapid, Retract, Turn};
+use MoveKind::{Cut, CutInInverseTime, Park, Position, PositionAtFeed, Rapid, Retract, Turn};
 
-impl Kind {
-    fn all(format: &Format) -> Vec<Kind> {
+impl MoveKind {
+    fn all(format: &Format) -> Vec<MoveKind> {
         let mut kinds = vec![Retract, Park, Turn, Position, PositionAtFeed, Rapid, Cut];
         kinds.extend(format.inverse_time.map(|_| CutInInverseTime));
         kinds
@@ -95,13 +94,13 @@ impl Kind {
 
 /// A move with its numbers.
 #[derive(Clone, Copy)]
-struct Move {
-    kind: Kind,
+struct TriedMove {
+    kind: MoveKind,
     words: [f64; 5],
     feed: f64,
 }
 
-impl Move {
+impl TriedMove {
     fn event(&self) -> Event<'_> {
         self.kind.event(&self.words, self.feed)
     }
@@ -109,9 +108,9 @@ impl Move {
 
 /// Runs all kinds of moves, with every word and feed.
 pub(super) fn moves(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
-    let format = pen.format()?;
-    for kind in Kind::all(&format) {
-        if let Err(fault) = kind_alone(pen, &format, kind)? {
+    let format = pen.open()?.format().clone();
+    for kind in MoveKind::all(&format) {
+        if let Err(fault) = alone(pen, &format, kind)? {
             case.wrong(format!("{} is refused: {fault}", kind.name()));
             continue;
         }
@@ -130,21 +129,20 @@ pub(super) fn moves(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
     Ok(())
 }
 
-/// The text of a move of this kind.
-fn kind_alone(pen: &Pen<'_>, format: &Format, kind: Kind) -> Result<Text, PluginFault> {
-    let alone = Move { kind, words: rounded(PLACE, format), feed: 500.0 };
-    pen.write(&|program| {
-        program.begin();
-        if !kind.comes_first() {
-            program.push(Event::position(&ELSEWHERE, None));
-        }
-        program.look_at(alone.event());
-    })
+/// Whether a move of this kind is written.
+fn alone(
+    pen: &Pen<'_>,
+    format: &Format,
+    kind: MoveKind,
+) -> Result<Result<(), String>, PluginFault> {
+    let alone = TriedMove { kind, words: rounded(PLACE, format), feed: 500.0 };
+    let before: &[Event<'_>] = if kind.comes_first() { &[] } else { &[at(&ELSEWHERE)] };
+    Ok(pen.write(&[BEGIN, before, &[alone.event()]])?.map(drop))
 }
 
 /// Cuts and rapids alone, for a second look under another option.
 pub(super) fn plain_moves(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
-    let format = pen.format()?;
+    let format = pen.open()?.format().clone();
     for kind in [Rapid, Cut] {
         for word in 0..format.words.len() {
             if let Some(fault) = word_fault(pen, &format, kind, word)? {
@@ -163,17 +161,15 @@ pub(super) fn plain_moves(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFa
 pub(super) fn edges(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
     const EDGES: [f64; 12] =
         [0.0, 0.1, 0.3, 0.5, 1.0, 9.5, 10.0, 99.5, 100.0, 1000.0, 8191.75, 99_999.5];
-    let format = pen.format()?;
+    let format = pen.open()?.format().clone();
     let text = |word: usize, value: f64| {
         let mut words = rounded(PLACE, &format);
         if let Some(own) = words.get_mut(word) {
             *own = value;
         }
-        pen.write(&|program| {
-            program.begin();
-            program.push(Event::position(&ELSEWHERE, None));
-            program.look_at(Event::linear(&words, Feed::PerMinute(500.0)));
-        })
+        let cut = [cut(&words, 500.0)];
+        let written = pen.write(&[BEGIN, &[at(&ELSEWHERE)], &cut])?;
+        Ok(written.map(|written| written.part(2).to_owned()))
     };
     for (word, decimals) in format.words.iter().enumerate() {
         let (name, unit) = (&pen.setup.words[word].name, unit(*decimals));
@@ -182,7 +178,7 @@ pub(super) fn edges(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
             let mut texts = Vec::with_capacity(values.len());
             for value in values {
                 match text(word, value)? {
-                    Ok((_, text)) => texts.push(text),
+                    Ok(text) => texts.push(text),
                     Err(fault) => case.wrong(format!("{name} {value} is refused: {fault}")),
                 }
             }
@@ -205,7 +201,7 @@ pub(super) fn edges(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
 fn word_fault(
     pen: &Pen<'_>,
     format: &Format,
-    kind: Kind,
+    kind: MoveKind,
     word: usize,
 ) -> Result<Option<String>, PluginFault> {
     let (name, rotary) = (&pen.setup.words[word].name, pen.setup.words[word].rotary);
@@ -213,7 +209,7 @@ fn word_fault(
     let unit = unit(decimals);
     for value in if rotary { ROTARY } else { LINEAR } {
         let value = quantise(value, decimals);
-        let mut base = Move { kind, words: rounded(PLACE, format), feed: 500.0 };
+        let mut base = TriedMove { kind, words: rounded(PLACE, format), feed: 500.0 };
         base.words[word] = value;
         let mut changes = vec![(value + unit, LAST_DECIMAL), (value - unit, LAST_DECIMAL)];
         if value != 0.0 {
@@ -241,18 +237,22 @@ fn word_fault(
 const LAST_DECIMAL: &str = "the last declared decimal";
 
 /// What is wrong with the feed of a kind of move.
-fn feed_fault(pen: &Pen<'_>, format: &Format, kind: Kind) -> Result<Option<String>, PluginFault> {
+fn feed_fault(
+    pen: &Pen<'_>,
+    format: &Format,
+    kind: MoveKind,
+) -> Result<Option<String>, PluginFault> {
     let Some(decimals) = kind.feed_decimals(format) else {
         return Ok(None);
     };
     let unit = unit(decimals);
     for value in FEEDS {
         let value = quantise(value, decimals).max(unit);
-        let base = Move { kind, words: rounded(PLACE, format), feed: value };
+        let base = TriedMove { kind, words: rounded(PLACE, format), feed: value };
         for before in befores(format, &base) {
             for changed in [value + unit, value - unit] {
                 let feed = quantise(changed, decimals);
-                let other = Move { feed, ..base };
+                let other = TriedMove { feed, ..base };
                 // A move to where the tool stands already needs no feed.
                 let still = before.is_some_and(|before| before.words == base.words);
                 if feed <= 0.0 || still {
@@ -271,15 +271,15 @@ fn feed_fault(pen: &Pen<'_>, format: &Format, kind: Kind) -> Result<Option<Strin
 
 /// What may come before a move: none before a first position; else each kind, from elsewhere, and from where the move
 /// itself ends, so that a word of it is written alone.
-fn befores(format: &Format, base: &Move) -> Vec<Option<Move>> {
+fn befores(format: &Format, base: &TriedMove) -> Vec<Option<TriedMove>> {
     if base.kind.comes_first() {
         return vec![None];
     }
-    let kinds = Kind::all(format);
+    let kinds = MoveKind::all(format);
     let kinds = kinds.into_iter().filter(|kind| !kind.comes_first());
     kinds
         .flat_map(|kind| {
-            let from = |words| Some(Move { kind, words, ..*base });
+            let from = |words| Some(TriedMove { kind, words, ..*base });
             [from(base.words), from(rounded(ELSEWHERE, format))]
         })
         .collect()
@@ -288,24 +288,18 @@ fn befores(format: &Format, base: &Move) -> Vec<Option<Move>> {
 /// Both moves have the same text, or are not written: what to say of it.
 fn same_text(
     pen: &Pen<'_>,
-    before: Option<Move>,
-    one: &Move,
-    other: &Move,
+    before: Option<TriedMove>,
+    one: &TriedMove,
+    other: &TriedMove,
 ) -> Result<Option<String>, PluginFault> {
-    let write = |looked_at: &Move| {
-        pen.write(&|program: &mut Program<'_>| {
-            program.begin();
-            if let Some(before) = &before {
-                program.push(Event::position(&[9.0; 5], None));
-                program.push(before.event());
-            }
-            program.look_at(looked_at.event());
-            program.end();
-        })
+    let came: Vec<Event<'_>> = match &before {
+        Some(before) => vec![at(&[9.0; 5]), before.event()],
+        None => Vec::new(),
     };
+    let write = |looked_at: &TriedMove| pen.write(&[BEGIN, &came, &[looked_at.event()], END]);
     Ok(match (write(one)?, write(other)?) {
-        (Ok((_, one)), Ok((_, other))) if one == other => {
-            Some(format!("its text is the same: `{}`", one.trim_end()))
+        (Ok(one), Ok(other)) if one.part(2) == other.part(2) => {
+            Some(format!("its text is the same: `{}`", one.part(2).trim_end()))
         }
         (Ok(_), Ok(_)) => None,
         (Err(fault), _) | (_, Err(fault)) => Some(format!("it is refused: {fault}")),
@@ -316,11 +310,4 @@ fn same_text(
 fn unit(decimals: u8) -> f64 {
     let unit = (0..decimals).fold(1.0, |unit, _| unit / 10.0);
     quantise(unit, decimals)
-}
-
-fn rounded(mut words: [f64; 5], format: &Format) -> [f64; 5] {
-    for (word, decimals) in words.iter_mut().zip(&format.words) {
-        *word = quantise(*word, *decimals);
-    }
-    words
 }

@@ -1,4 +1,4 @@
-use post_host::internals::ends_early;
+use post_kit::internals::ends_early;
 
 #[test]
 fn a_remark_that_ends_early_is_seen_in_brackets_alone() {

@@ -3,9 +3,9 @@
 use post_plugin::Event;
 
 use super::Case;
-use super::pen::Pen;
-use super::print::ELSEWHERE;
-use crate::PluginFault;
+use super::pen::{BEGIN, ELSEWHERE, END, Pen};
+use crate::at;
+use post_host::PluginFault;
 
 /// What a remark may hold, and what it is called in a message.
 const REMARKS: &[(&str, &str)] = &[
@@ -18,6 +18,9 @@ const REMARKS: &[(&str, &str)] = &[
 
 /// Runs them.
 pub(super) fn remarks(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
+    if pen.leaves_out(&Event::Comment { text: "" }) {
+        return Ok(());
+    }
     let long = "tool path 12 with 0.2 mm of stock ".repeat(300);
     let unbroken = "x".repeat(2000);
     let long = [
@@ -25,16 +28,11 @@ pub(super) fn remarks(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault>
         ("a word of 2000 letters", unbroken.as_str()),
     ];
     for (what, text) in REMARKS.iter().chain(&long) {
-        let written = pen.write(&|program| {
-            program.begin();
-            program.push(Event::position(&ELSEWHERE, None));
-            program.look_at(Event::Comment { text });
-            program.end();
-        })?;
-        match written {
+        let remark = [Event::Comment { text }];
+        match pen.write(&[BEGIN, &[at(&ELSEWHERE)], &remark, END])? {
             Err(fault) => case.wrong(format!("{what} is refused: {fault}")),
-            Ok((_, own)) => {
-                if let Some(line) = own.lines().find(|line| ends_early(line)) {
+            Ok(written) => {
+                if let Some(line) = written.part(2).lines().find(|line| ends_early(line)) {
                     case.wrong(format!(
                         "{what} ends before its line does, so that the control reads the rest: `{line}`"
                     ));

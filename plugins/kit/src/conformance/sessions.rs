@@ -4,26 +4,23 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
-use post_plugin::{Batch, DialectSession, Event, Feed, WriteFault, quantise};
+use post_plugin::{Batch, DialectSession as _, Event, Feed, Format, WriteFault};
 
 use super::Case;
-use super::pen::{RETRACT, TURNING};
-use crate::{OpenedDialect, Plugin, PluginFault, ProgramSetup};
+use super::dialect::UNKNOWN;
+use super::pen::{BEGIN, ELSEWHERE, Pen, rounded};
+use crate::at;
+use post_host::{OpenedDialect, PluginFault};
 
 /// Events of a batch, as many as the command sends at once.
 const BATCH: usize = 128;
 
 /// What is written before a refusal is good, and is what it would be without.
-pub(super) fn after_a_refusal(
-    plugin: &Plugin,
-    setup: &ProgramSetup,
-    unknown: u32,
-) -> Result<Case, PluginFault> {
-    let mut case = Case::named("after a refusal");
-    let write = |last: Option<Event<'_>>| {
-        let mut session = plugin.dialect(setup)?;
+pub(super) fn after_a_refusal(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
+    let write = |last: Option<Event<'static>>| {
+        let mut session = pen.open()?;
         let mut batch = Batch::default();
-        for event in beginning().into_iter().chain(last) {
+        for event in beginning().chain(last) {
             batch.push(1, event);
         }
         let (mut out, mut ends) = (String::new(), Vec::new());
@@ -33,9 +30,9 @@ pub(super) fn after_a_refusal(
     let (fault, good, ends) = write(None)?;
     if fault.is_some() {
         // Other cases say so.
-        return Ok(case);
+        return Ok(());
     }
-    let (_, out, kept) = write(Some(Event::Unknown { kind: unknown }))?;
+    let (_, out, kept) = write(Some(UNKNOWN))?;
     if (out.as_str(), kept) != (good.as_str(), ends) {
         case.wrong(format!(
             "before an event that it refuses it leaves {kept} events of {} bytes, without that event {ends} of {}",
@@ -43,20 +40,19 @@ pub(super) fn after_a_refusal(
             good.len()
         ));
     }
-    Ok(case)
+    Ok(())
 }
 
 /// Two programs written in turn are the programs that they are by themselves.
-pub(super) fn two_at_once(plugin: &Plugin, setup: &ProgramSetup) -> Result<Case, PluginFault> {
-    let mut case = Case::named("two at once");
+pub(super) fn two_at_once(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
     let alone = [0.0, 7.0].map(|start| {
-        let mut writer = Writer::open(plugin, setup, start)?;
+        let mut writer = CuttingSession::open(pen, start)?;
         for _ in 0..20 {
             writer.write(10);
         }
         Ok(writer.out)
     });
-    let mut both = [Writer::open(plugin, setup, 0.0)?, Writer::open(plugin, setup, 7.0)?];
+    let mut both = [CuttingSession::open(pen, 0.0)?, CuttingSession::open(pen, 7.0)?];
     for _ in 0..20 {
         for writer in &mut both {
             writer.write(10);
@@ -71,18 +67,17 @@ pub(super) fn two_at_once(plugin: &Plugin, setup: &ProgramSetup) -> Result<Case,
             break;
         }
     }
-    Ok(case)
+    Ok(())
 }
 
 /// So many events from two threads in turn, beside the same from one, and how long an event takes.
 pub(super) fn two_threads(
-    plugin: &Plugin,
-    setup: &ProgramSetup,
+    pen: &Pen<'_>,
+    case: &mut Case,
     events: usize,
-) -> Result<Case, PluginFault> {
-    let mut case = Case::named("two threads");
-    let mut one = Writer::open(plugin, setup, 0.0)?;
-    let mut wandering = Writer::open(plugin, setup, 0.0)?;
+) -> Result<(), PluginFault> {
+    let mut one = CuttingSession::open(pen, 0.0)?;
+    let mut wandering = CuttingSession::open(pen, 0.0)?;
     let (mut bytes, mut written) = (0, 0);
     let mut time = Duration::ZERO;
     while written < events {
@@ -106,14 +101,14 @@ pub(super) fn two_threads(
         }
         if let Some(fault) = one.fault.as_ref().or(wandering.fault.as_ref()) {
             case.wrong(format!("after {written} events: {}", fault.message));
-            return Ok(case);
+            return Ok(());
         }
         if one.out != wandering.out {
             case.wrong(format!(
                 "within {} events from two threads in turn the program is another one than from a single thread",
                 written + 64 * BATCH
             ));
-            return Ok(case);
+            return Ok(());
         }
         written += 64 * BATCH;
         bytes += one.out.len();
@@ -125,23 +120,17 @@ pub(super) fn two_threads(
         time.as_nanos() / written as u128,
         bytes / written
     ));
-    Ok(case)
+    Ok(())
 }
 
-fn beginning() -> Vec<Event<'static>> {
-    vec![
-        Event::Start,
-        RETRACT,
-        Event::tool_change(1, 1, "ball 6"),
-        TURNING,
-        Event::position(&[1.0, 2.0, 90.0, 3.0, 4.0], None),
-    ]
+fn beginning() -> impl Iterator<Item = Event<'static>> {
+    BEGIN.iter().copied().chain([at(&ELSEWHERE)])
 }
 
 /// A session that cuts on and on.
-struct Writer {
+struct CuttingSession {
     session: OpenedDialect,
-    decimals: Vec<u8>,
+    format: Format,
     begun: bool,
     start: f64,
     step: f64,
@@ -150,13 +139,13 @@ struct Writer {
     fault: Option<WriteFault>,
 }
 
-impl Writer {
-    fn open(plugin: &Plugin, setup: &ProgramSetup, start: f64) -> Result<Self, PluginFault> {
-        let session = plugin.dialect(setup)?;
-        let decimals = session.format().words.clone();
-        Ok(Writer {
+impl CuttingSession {
+    fn open(pen: &Pen<'_>, start: f64) -> Result<Self, PluginFault> {
+        let session = pen.open()?;
+        let format = session.format().clone();
+        Ok(CuttingSession {
             session,
-            decimals,
+            format,
             begun: false,
             start,
             step: 0.0,
@@ -181,10 +170,8 @@ impl Writer {
         for _ in 0..count {
             self.step += 1.0;
             let along = self.start + self.step / 16.0 % 500.0;
-            let mut words = [along, -along / 3.0, 50.0, along / 7.0, 0.25 * along - 90.0];
-            for (word, decimals) in words.iter_mut().zip(&self.decimals) {
-                *word = quantise(*word, *decimals);
-            }
+            let words = [along, -along / 3.0, 50.0, along / 7.0, 0.25 * along - 90.0];
+            let words = rounded(words, &self.format);
             let feed = if self.step % 37.0 < 20.0 { 900.0 } else { 400.0 };
             batch.push(1, Event::linear(&words, Feed::PerMinute(feed)));
         }

@@ -1,15 +1,15 @@
 //! Every option that a dialect declares, at every value that is worth a look: it writes with it, or says why not.
 
-use post_plugin::{Event, Feed, OptionKind, OptionSpec};
+use post_plugin::{Event, OptionKind, OptionSpec};
 
 use super::Case;
-use super::pen::Pen;
-use super::print::{ELSEWHERE, plain_moves};
-use crate::{GivenValue, PluginFault};
+use super::pen::{BEGIN, ELSEWHERE, END, Pen};
+use super::print::plain_moves;
+use crate::{at, cut, rapid, turn};
+use post_host::{GivenValue, PluginFault};
 
 /// Runs them.
-pub(super) fn options_of(pen: &Pen<'_>) -> Result<Case, PluginFault> {
-    let mut case = Case::named("options");
+pub(super) fn options_of(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
     let mut tried = 0;
     for spec in pen.plugin.options() {
         if spec.help.is_empty() {
@@ -33,34 +33,29 @@ pub(super) fn options_of(pen: &Pen<'_>) -> Result<Case, PluginFault> {
                 }
             }
             let mut own = Case::named("");
-            match program(&pen)? {
+            match pen.write(&[BEGIN, LITTLE, END])? {
                 Err(fault) if of_text && !fault.contains("panicked") => {}
                 Err(fault) => own.wrong(fault),
-                Ok(()) => plain_moves(&pen, &mut own)?,
+                Ok(_) => plain_moves(&pen, &mut own)?,
             }
             let wrong = own.wrong.into_iter();
             case.wrong.extend(wrong.map(|sentence| format!("with {shown}: {sentence}")));
         }
     }
     case.facts.push(format!("{tried} values of {} options", pen.plugin.options().len()));
-    Ok(case)
+    Ok(())
 }
 
-/// A program with a little of everything that moves.
-fn program(pen: &Pen<'_>) -> Result<Result<(), String>, PluginFault> {
-    let written = pen.write(&|program| {
-        program.begin();
-        program.push(Event::Comment { text: "ALPHA" });
-        program.push(Event::Turn { words: &ELSEWHERE });
-        program.push(Event::position(&ELSEWHERE, None));
-        program.push(Event::linear(&[2.0, 4.0, 80.0, 5.0, 6.0], Feed::PerMinute(500.0)));
-        program.push(Event::Dwell { seconds: 1.5 });
-        program.push(Event::Stop);
-        program.push(Event::rapid(&ELSEWHERE));
-        program.end();
-    })?;
-    Ok(written.map(|_| ()))
-}
+/// A little of everything that moves.
+const LITTLE: &[Event<'static>] = &[
+    Event::Comment { text: "ALPHA" },
+    turn(&ELSEWHERE),
+    at(&ELSEWHERE),
+    cut(&[2.0, 4.0, 80.0, 5.0, 6.0], 500.0),
+    Event::Dwell { seconds: 1.5 },
+    Event::Stop,
+    rapid(&ELSEWHERE),
+];
 
 /// Both ends of a range, each of a choice, a text that could be a block.
 fn values(spec: &OptionSpec) -> Vec<GivenValue> {

@@ -2,9 +2,9 @@
 
 use post_plugin::{Curve, Deviation, ModelSession, Tolerance, length};
 
-use super::shapes::{self, Kind, Shape, TOLERANCE};
+use super::shapes::{self, DeviationKind, KnownDeviation, TOLERANCE};
 use super::{Case, Figures, Peaks};
-use crate::{GivenValue, OpenedModel, Plugin, PluginFault};
+use post_host::{GivenValue, OpenedModel, Plugin, PluginFault};
 
 /// Even pieces in which truth and curve are compared.
 const PIECES: u32 = 2000;
@@ -60,13 +60,13 @@ fn fit(
 }
 
 /// One shape: the contract, and how near the answer is.
-fn known(model: &mut OpenedModel, shape: &Shape) -> Case {
+fn known(model: &mut OpenedModel, shape: &KnownDeviation) -> Case {
     let mut case = Case::named(shape.name);
     let (curve, asked) = fit(model, &shape.tolerance, &shape.at);
     if let Some(t) = asked.iter().find(|t| !(0.0..=1.0).contains(*t)) {
         case.wrong(format!("it asks for the deviation at t = {t}, outside the move"));
     }
-    if asked.len() > MANY && shape.kind == Kind::Bow {
+    if asked.len() > MANY && shape.kind == DeviationKind::Bow {
         case.note(format!(
             "it asks for {} places of a plain bow; each costs a forward solution",
             asked.len()
@@ -111,40 +111,40 @@ fn known(model: &mut OpenedModel, shape: &Shape) -> Case {
 }
 
 /// How a part of the deviation is spoken of.
-struct Part {
+struct DeviationPart {
     name: &'static str,
     unit: &'static str,
     /// Units in a mm, or in a degree.
     scale: f64,
 }
 
-const TIP: Part = Part { name: "tip", unit: "µm", scale: 1e3 };
+const TIP: DeviationPart = DeviationPart { name: "tip", unit: "µm", scale: 1e3 };
 
-const AXIS: Part = Part { name: "tool axis", unit: "°", scale: 1.0 };
+const AXIS: DeviationPart = DeviationPart { name: "tool axis", unit: "°", scale: 1.0 };
 
 /// Judges one part's peak against the truth and against the model's `own` largest value and the one `there`,
 /// where it says that the peak stands.
 fn judge(
     case: &mut Case,
-    kind: Kind,
-    part: &Part,
+    kind: DeviationKind,
+    part: &DeviationPart,
     peaks: &Peaks,
     (own, own_at): (f64, f64),
     there: f64,
     tolerance: f64,
 ) {
-    let Part { name, unit, scale } = part;
+    let DeviationPart { name, unit, scale } = part;
     let number = |value: f64| format!("{} {unit}", short(value * scale));
     let Peaks { actual, actual_at, said, said_at, left } = *peaks;
     let slack = actual.max(tolerance);
-    if kind != Kind::Rough && own > said + SHORT * slack {
+    if kind != DeviationKind::Rough && own > said + SHORT * slack {
         case.wrong(format!(
             "its peak of the {name} is {}, and its own curve reaches {} at t = {own_at}",
             number(said),
             number(own)
         ));
     }
-    if kind != Kind::Rough && there < own - NEAR * slack {
+    if kind != DeviationKind::Rough && there < own - NEAR * slack {
         case.wrong(format!(
             "its peak of the {name} is to stand at t = {said_at}, where its curve has {}, not at {own_at}, \
              where it has {}",
@@ -160,15 +160,15 @@ fn judge(
         number(actual)
     );
     match kind {
-        Kind::Bow if content => case.wrong(format!(
+        DeviationKind::Bow if content => case.wrong(format!(
             "{truth}: it is content with a plain bow over the tolerance of {}",
             number(tolerance)
         )),
-        Kind::Bow if !near => case.wrong(format!(
+        DeviationKind::Bow if !near => case.wrong(format!(
             "{truth}: on a plain bow it may be off by {}",
             number(NEAR * slack)
         )),
-        Kind::Bow if left > 0.25 * actual && left > NEAR * slack => case.wrong(format!(
+        DeviationKind::Bow if left > 0.25 * actual && left > NEAR * slack => case.wrong(format!(
             "its curve leaves {} of a plain bow of {} in the {name}; compensating must take most of it",
             number(left),
             number(actual)
@@ -291,7 +291,7 @@ fn transformed(
 ) -> Result<Case, PluginFault> {
     let mut case = Case::named(name);
     for shape in shapes::all() {
-        if shape.kind == Kind::Rough || shape.tolerance != TOLERANCE {
+        if shape.kind == DeviationKind::Rough || shape.tolerance != TOLERANCE {
             continue;
         }
         let mut model = open()?;

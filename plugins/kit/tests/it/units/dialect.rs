@@ -1,4 +1,4 @@
-use post_host::internals::{CUTS, LAST, events};
+use post_kit::internals::{CUTS, LAST, events};
 use post_plugin::Event;
 
 /// Compensation apart, which is tried where the control has it.

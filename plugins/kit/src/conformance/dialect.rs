@@ -2,22 +2,23 @@
 //! whole lines of finite numbers, the same however the program is cut into batches, and that nothing of it is left
 //! out, is the kit's.
 
+use post_host::{GivenValue, Plugin, PluginFault, ProgramSetup, ProgramWord};
 use post_plugin::{
-    Batch, Coolant, DialectSession, Event, Feed, Format, Lengths, Meaning, Spindle, Units, quantise,
+    Coolant, DialectSession as _, Event, Format, Lengths, Meaning, Spindle, Units, WriteFault,
 };
 
 use super::Case;
 use super::commands::commands;
 use super::declared::declared;
 use super::options::options_of;
-use super::pen::{Pen, TURNING};
+use super::pen::{BEGIN, Pen, rounded};
 use super::print::{edges, moves};
 use super::sessions::{after_a_refusal, two_at_once, two_threads};
 use super::texts::remarks;
-use crate::{GivenValue, Plugin, PluginFault, ProgramSetup, ProgramWord};
+use crate::{at, cut, rapid, turn, turning};
 
 /// A kind of event that no version of the contract has.
-const UNKNOWN: u32 = 60_000;
+pub(super) const UNKNOWN: Event<'static> = Event::Unknown { kind: 60_000 };
 
 /// The last kind that every dialect is sent; those behind it must be declared.
 pub const LAST: u32 = Event::Word { text: "" }.kind();
@@ -25,15 +26,73 @@ pub const LAST: u32 = Event::Word { text: "" }.kind();
 /// Cuts in the program.
 pub const CUTS: usize = 40;
 
-/// A program's text; or which event was refused, and why.
-type Written = Result<String, (usize, String)>;
+/// Runs a case, and notes what it finds.
+type Run = fn(&Pen<'_>, &mut Case) -> Result<(), PluginFault>;
 
+/// The cases in the order in which they are run, behind those of the whole program.
+const CASES: &[(&str, Run)] = &[
+    ("words and feeds", moves),
+    ("rounding edges", edges),
+    ("commands", commands),
+    ("remarks", remarks),
+    ("declared", declared),
+    ("axis names", axis_names),
+    ("unknown event", unknown_event),
+    ("every event", every_event),
+    ("vocabulary", vocabulary),
+    ("options", options_of),
+    ("after a refusal", after_a_refusal),
+    ("two at once", two_at_once),
+];
+
+/// Runs all cases; the longest program has so many events.
 pub(super) fn test(
     plugin: &Plugin,
     options: &[(String, GivenValue)],
     most: usize,
 ) -> Result<Vec<Case>, PluginFault> {
-    let mut setup = ProgramSetup {
+    let setup = five_axes(options);
+    let format = plugin.dialect(&setup)?.format().clone();
+    let mut left_out = Vec::new();
+    let mut case = Case::named("program");
+    let text = program(plugin, &setup, &format, &mut left_out, &mut case)?;
+    let mut cases = vec![case];
+    let Some(text) = text else {
+        return Ok(cases);
+    };
+
+    let pen = Pen { plugin, setup: &setup, left_out: &left_out };
+    let positions = positions(&format);
+    let events = events(&positions, &left_out);
+    for (name, batch) in [("again", usize::MAX), ("one by one", 1), ("by sevens", 7)] {
+        cases.push(same(name, &text, pen.write_batches(&events, batch)?));
+    }
+    for (name, run) in CASES {
+        let mut case = Case::named(name);
+        run(&pen, &mut case)?;
+        cases.push(case);
+    }
+    let mut case = Case::named("two threads");
+    two_threads(&pen, &mut case, most)?;
+    cases.push(case);
+
+    for (name, what, tcp, units) in
+        [("with TCP", "tcp", true, Units::Millimetre), ("in inches", "units", false, Units::Inch)]
+    {
+        let mut case = Case::named(name);
+        let setup = ProgramSetup { tcp, units, ..setup.clone() };
+        let other = Pen { setup: &setup, ..pen };
+        otherwise(&other, &pen, what, &mut case)?;
+        let told = |sentence: &String| cases.iter().any(|case| case.wrong.contains(sentence));
+        case.wrong.retain(|sentence| !told(sentence));
+        cases.push(case);
+    }
+    Ok(cases)
+}
+
+/// A machine that turns the part, in millimetres, the axes positioned without tool centre point control.
+fn five_axes(options: &[(String, GivenValue)]) -> ProgramSetup {
+    ProgramSetup {
         program: "kit".to_owned(),
         machine: "five axes".to_owned(),
         words: ["X", "Y", "Z", "A", "C"]
@@ -49,137 +108,81 @@ pub(super) fn test(
             .to_vec(),
         options: options.to_owned(),
         ..ProgramSetup::default()
-    };
-    let format = plugin.dialect(&setup)?.format().clone();
-    let mut cases = Vec::new();
-
-    let mut case = Case::named("program");
-    let mut left_out = Vec::new();
-    let text = program(plugin, &setup, &format, &mut left_out, &mut case)?;
-    cases.push(case);
-    let Some(text) = text else {
-        return Ok(cases);
-    };
-
-    let positions = positions(&format);
-    let run = |batch: usize| write(plugin, &setup, &events(&positions, &left_out), batch);
-    cases.push(same("again", &text, run(usize::MAX)?));
-    cases.push(same("one by one", &text, run(1)?));
-    cases.push(same("by sevens", &text, run(7)?));
-
-    let pen = Pen { plugin, setup: &setup, left_out: &left_out };
-    let mut case = Case::named("words and feeds");
-    moves(&pen, &mut case)?;
-    cases.push(case);
-    let mut case = Case::named("rounding edges");
-    edges(&pen, &mut case)?;
-    cases.push(case);
-    let mut case = Case::named("commands");
-    commands(&pen, &mut case)?;
-    cases.push(case);
-    let mut case = Case::named("remarks");
-    if !left_out.contains(&"Comment") {
-        remarks(&pen, &mut case)?;
     }
-    cases.push(case);
-    let mut case = Case::named("declared");
-    declared(&pen, &mut case)?;
-    cases.push(case);
-    cases.push(axis_names(&pen)?);
-    let plain = begin(&pen)?;
+}
 
-    let mut case = Case::named("unknown event");
-    let events = [Event::Start, Event::Unknown { kind: UNKNOWN }];
-    if let Ok(text) = write(plugin, &setup, &events, usize::MAX)? {
-        let lines = text.lines().count();
+/// Under another setting than the `plain` program's, if it opens there: the program says so to the control, and what is
+/// written holds there too.
+fn otherwise(
+    pen: &Pen<'_>,
+    plain: &Pen<'_>,
+    what: &str,
+    case: &mut Case,
+) -> Result<(), PluginFault> {
+    let format = match pen.open() {
+        Ok(opened) => opened.format().clone(),
+        Err(fault) => {
+            case.note(format!("it refuses to open: {fault}"));
+            return Ok(());
+        }
+    };
+    let mut left_out = pen.left_out.to_vec();
+    if program(pen.plugin, pen.setup, &format, &mut left_out, case)?.is_none() {
+        return Ok(());
+    }
+    let pen = Pen { left_out: &left_out, ..*pen };
+    if begin(&pen)? == begin(plain)? {
         case.wrong(format!(
-            "an event of kind {UNKNOWN} is taken for granted ({lines} lines): it must be refused"
+            "the program begins as it does without: it must say so to the control, or refuse to open ({what})"
         ));
     }
-    cases.push(case);
-
-    cases.push(every_event(plugin, &setup)?);
-    cases.push(vocabulary(plugin, &setup)?);
-    cases.push(options_of(&pen)?);
-    cases.push(after_a_refusal(plugin, &setup, UNKNOWN)?);
-    cases.push(two_at_once(plugin, &setup)?);
-    cases.push(two_threads(plugin, &setup, most)?);
-
-    for (name, tcp, units) in
-        [("with TCP", true, Units::Millimetre), ("in inches", false, Units::Inch)]
-    {
-        setup.tcp = tcp;
-        setup.units = units;
-        let mut case = Case::named(name);
-        match plugin.dialect(&setup) {
-            Ok(opened) => {
-                let format = opened.format().clone();
-                drop(opened);
-                let mut left_out = left_out.clone();
-                if program(plugin, &setup, &format, &mut left_out, &mut case)?.is_some() {
-                    let pen = Pen { plugin, setup: &setup, left_out: &left_out };
-                    if begin(&pen)? == plain {
-                        case.wrong(format!(
-                            "the program begins as it does without: it must say so to the control, or refuse to open ({})",
-                            if tcp { "tcp" } else { "units" }
-                        ));
-                    }
-                    moves(&pen, &mut case)?;
-                    commands(&pen, &mut case)?;
-                    declared(&pen, &mut case)?;
-                    let told =
-                        |sentence: &String| cases.iter().any(|case| case.wrong.contains(sentence));
-                    case.wrong.retain(|sentence| !told(sentence));
-                }
-            }
-            Err(fault) => case.note(format!("it refuses to open: {}", fault)),
-        }
-        cases.push(case);
-    }
-    Ok(cases)
+    moves(&pen, case)?;
+    commands(&pen, case)?;
+    declared(&pen, case)
 }
 
 /// From the start to the first position: where units and tool centre point control are switched.
 fn begin(pen: &Pen<'_>) -> Result<Option<String>, PluginFault> {
-    let words = [0.0; 5];
-    let text = pen.write(&|program| {
-        program.begin();
-        program.push(Event::position(&words, None));
-    })?;
+    let written = pen.write(&[BEGIN, &[at(&[0.0; 5])]])?;
     // Decimals apart, which an inch program may have more of.
-    Ok(text.ok().map(|(text, _)| text.replace(['0', '.'], "")))
+    Ok(written.ok().map(|written| written.text.replace(['0', '.'], "")))
 }
 
 /// A name with a number, as `X1`: refused, or told from the value behind it.
-fn axis_names(pen: &Pen<'_>) -> Result<Case, PluginFault> {
-    let mut case = Case::named("axis names");
+fn axis_names(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
     let mut setup = pen.setup.clone();
     setup.words[0].name = "X1".to_owned();
     let pen = Pen { setup: &setup, ..*pen };
-    if pen.plugin.dialect(&setup).is_err() {
-        return Ok(case);
+    if pen.open().is_err() {
+        return Ok(());
     }
-    let words = [450.0, -12.0, 7.0, 30.0, 40.0];
-    let text = pen.write(&|program| {
-        program.begin();
-        program.push(Event::position(&words, None));
-    })?;
-    if let Ok((text, _)) = text
-        && let Some(at) = text.find("X1")
-        && let Some(word) = text[at..].split_whitespace().next()
+    if let Ok(written) = pen.write(&[BEGIN, &[at(&[450.0, -12.0, 7.0, 30.0, 40.0])]])?
+        && let Some(at) = written.text.find("X1")
+        && let Some(word) = written.text[at..].split_whitespace().next()
         && word[2..].starts_with(|next: char| next.is_ascii_digit() || "+-.".contains(next))
     {
         case.wrong(format!(
             "an axis called X1 is written `{word}`, which is a value of X: it must refuse the axis"
         ));
     }
-    Ok(case)
+    Ok(())
+}
+
+/// An event of a kind that nobody knows is refused.
+fn unknown_event(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
+    if let Ok(text) = pen.write_batches(&[Event::Start, UNKNOWN], usize::MAX)? {
+        let lines = text.lines().count();
+        let kind = UNKNOWN.kind();
+        case.wrong(format!(
+            "an event of kind {kind} is taken for granted ({lines} lines): it must be refused"
+        ));
+    }
+    Ok(())
 }
 
 /// The words that it tells hold together, and with what it declares of its registers; none are told by many.
-fn vocabulary(plugin: &Plugin, setup: &ProgramSetup) -> Result<Case, PluginFault> {
-    let mut case = Case::named("vocabulary");
-    let mut opened = plugin.dialect(setup)?;
+fn vocabulary(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
+    let mut opened = pen.open()?;
     let (language, lengths) = (opened.format().language, opened.capabilities().lengths());
     match opened.vocabulary() {
         Ok(words) if words.is_empty() => {
@@ -201,24 +204,25 @@ fn vocabulary(plugin: &Plugin, setup: &ProgramSetup) -> Result<Case, PluginFault
         }
         Err(fault) => case.wrong(fault),
     }
-    Ok(case)
+    Ok(())
 }
 
 /// Each kind of event by itself, behind the start: written or refused in words, never passed over.
-fn every_event(plugin: &Plugin, setup: &ProgramSetup) -> Result<Case, PluginFault> {
-    let mut case = Case::named("every event");
-    let declares = plugin.dialect(setup)?.capabilities();
-    let start = match write(plugin, setup, &[Event::Start], usize::MAX)? {
+fn every_event(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
+    let declares = pen.open()?.capabilities();
+    let start = match pen.write_batches(&[Event::Start], usize::MAX)? {
         Ok(text) => text.len(),
-        Err((_, fault)) => {
-            case.wrong(fault);
-            return Ok(case);
+        Err(fault) => {
+            case.wrong(fault.message);
+            return Ok(());
         }
     };
     for event in Event::samples() {
         let name = event.name();
-        match write(plugin, setup, &[Event::Start, event], usize::MAX)? {
-            Err((_, fault)) if fault.contains("the plugin panicked") => case.wrong(fault),
+        match pen.write_batches(&[Event::Start, event], usize::MAX)? {
+            Err(fault) if fault.message.contains("the plugin panicked") => {
+                case.wrong(fault.message)
+            }
             Err(_) => {}
             Ok(text)
                 if declares.bits() & event.sent_under().bits() == 0
@@ -232,7 +236,7 @@ fn every_event(plugin: &Plugin, setup: &ProgramSetup) -> Result<Case, PluginFaul
             Ok(_) => {}
         }
     }
-    Ok(case)
+    Ok(())
 }
 
 /// The program's text, if its moves are written. Other events that are refused are left out: it is wrong where
@@ -247,7 +251,8 @@ fn program(
     let positions = positions(format);
     loop {
         let events = events(&positions, left_out);
-        let (index, fault) = match write(plugin, setup, &events, usize::MAX)? {
+        let pen = Pen { plugin, setup, left_out };
+        let WriteFault { index, message: fault } = match pen.write_batches(&events, usize::MAX)? {
             Ok(text) => return Ok(Some(text)),
             Err(fault) => fault,
         };
@@ -276,17 +281,14 @@ fn positions(format: &Format) -> Vec<[f64; 5]> {
     (0..CUTS)
         .map(|cut| {
             let step = cut as f64;
-            let mut words = [
+            let words = [
                 step * 1.37 - 20.0,
                 -step * 0.731,
                 50.0 - step / 7.0,
                 step * 0.9 - 10.0,
                 370.0 - step * 2.2,
             ];
-            for (word, decimals) in words.iter_mut().zip(&format.words) {
-                *word = quantise(*word, *decimals);
-            }
-            words
+            rounded(words, format)
         })
         .collect()
 }
@@ -297,23 +299,23 @@ pub fn events<'a>(positions: &'a [[f64; 5]], left_out: &[&str]) -> Vec<Event<'a>
     let last = positions.len().saturating_sub(1);
     let cut = |index: usize| {
         let feed = if index.is_multiple_of(5) { 900.0 } else { 400.0 };
-        Event::linear(words(index), Feed::PerMinute(feed))
+        self::cut(words(index), feed)
     };
     let mut events = vec![
         Event::Start,
         Event::Retract { axes: 0b100, words: words(0) },
         Event::Comment { text: "naïve (µ); % ~" },
         Event::tool_change(1, 1, "ball 6"),
-        TURNING,
+        turning(3000.0),
         Event::Coolant(Coolant::Flood),
-        Event::Turn { words: words(0) },
-        Event::position(words(0), None),
+        turn(words(0)),
+        at(words(0)),
         Event::Preselect { number: 2 },
     ];
     events.extend((1..last).map(cut));
     events.extend([
         Event::Dwell { seconds: 0.5 },
-        Event::rapid(words(last)),
+        rapid(words(last)),
         Event::Stop,
         Event::OptionalStop,
         Event::Word { text: "M77" },
@@ -328,34 +330,11 @@ pub fn events<'a>(positions: &'a [[f64; 5]], left_out: &[&str]) -> Vec<Event<'a>
     events
 }
 
-/// Writes `events`, given in batches of so many.
-fn write(
-    plugin: &Plugin,
-    setup: &ProgramSetup,
-    events: &[Event<'_>],
-    batch: usize,
-) -> Result<Written, PluginFault> {
-    let mut session = plugin.dialect(setup)?;
-    let (mut out, mut ends) = (String::new(), Vec::new());
-    let mut done = 0;
-    for chunk in events.chunks(batch.min(events.len()).max(1)) {
-        let mut batch = Batch::default();
-        for (event, line) in chunk.iter().zip(1..) {
-            batch.push(line, *event);
-        }
-        if let Err(fault) = session.write_batch(&batch, &mut out, &mut ends) {
-            return Ok(Err((done + fault.index, fault.message)));
-        }
-        done += chunk.len();
-    }
-    Ok(Ok(out))
-}
-
 /// A second run must write the same.
-fn same(name: &'static str, text: &str, other: Written) -> Case {
+fn same(name: &'static str, text: &str, other: Result<String, WriteFault>) -> Case {
     let mut case = Case::named(name);
     match other {
-        Err((_, fault)) => case.wrong(fault),
+        Err(fault) => case.wrong(fault.message),
         Ok(other) if other != text => {
             let differing = text.lines().zip(other.lines()).zip(1..);
             let first = differing.into_iter().find(|((a, b), _)| a != b);

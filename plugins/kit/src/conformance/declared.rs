@@ -1,31 +1,31 @@
 //! What a dialect declares beyond straight moves it writes, with every number that it is given; what it does not
 //! declare it refuses.
 
-use post_plugin::{Capabilities, Event, Feed, List, PlaneAngles, SpindleSense, ToolPose, Units};
+use post_plugin::{
+    Capabilities, DialectSession as _, Event, Feed, List, PlaneAngles, SpindleSense, ToolPose,
+    Units,
+};
 
 use super::Case;
 use super::arcs::arcs;
 use super::cycles::cycles;
-use super::pen::{Pen, Program, RETRACT, TURNING};
-use super::print::ELSEWHERE;
-use crate::PluginFault;
+use super::pen::{BEGIN, ELSEWHERE, END, HERE, Pen, SLOW};
+use crate::{TOP, at, turn, turning};
+use post_host::PluginFault;
 
-/// Where the tool stands before a trial, the tool upright but for a plane.
-pub(super) const HERE: &[f64] = &[10.0, 20.0, 30.0, 5.0, 6.0];
 /// Where most trials end.
 const XY: &[f64] = &[30.0, 20.0, 30.0, 5.0, 6.0];
 /// The end of a helix, and another one.
 pub(super) const DOWN: &[f64] = &[30.0, 20.0, 25.0, 5.0, 6.0];
 pub(super) const DEEPER: &[f64] = &[30.0, 20.0, 24.0, 5.0, 6.0];
 
-pub(super) const SLOW: Feed = Feed::PerMinute(400.0);
 pub(super) const FAST: Feed = Feed::PerMinute(450.0);
 
 /// Events between two moves.
 pub(super) type Events = Vec<Event<'static>>;
 
 /// What is tried: events, and others from which their text must differ.
-pub(super) struct Trial {
+pub(super) struct CapabilityTrial {
     needs: Capabilities,
     /// What it needs besides where the control keeps the tip.
     pub(super) under_tcp: Capabilities,
@@ -38,9 +38,9 @@ pub(super) struct Trial {
     away: bool,
 }
 
-impl Trial {
+impl CapabilityTrial {
     pub(super) fn new(needs: Capabilities, what: &'static str, events: impl Into<Events>) -> Self {
-        Trial {
+        CapabilityTrial {
             needs,
             under_tcp: Capabilities::NONE,
             what,
@@ -69,8 +69,8 @@ impl Trial {
 
 /// Tries all that is declared.
 pub(super) fn declared(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
-    let declares = pen.capabilities()?;
-    let angles = pen.format()?.plane_angles;
+    let opened = pen.open()?;
+    let (declares, angles) = (opened.capabilities(), opened.format().plane_angles);
     let mut trials = motion();
     trials.extend(arcs());
     trials.extend(settings());
@@ -79,7 +79,7 @@ pub(super) fn declared(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault
     if pen.setup.tcp {
         let switch = [Event::Tcp { on: false }, Event::Tcp { on: true }];
         let what = "a switch of tool centre point control";
-        trials.push(Trial::new(Capabilities::TCP_SWITCH, what, switch));
+        trials.push(CapabilityTrial::new(Capabilities::TCP_SWITCH, what, switch));
     }
     for trial in &trials {
         let needs = match pen.setup.tcp {
@@ -96,18 +96,18 @@ pub(super) fn declared(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault
     Ok(())
 }
 
-fn run(pen: &Pen<'_>, trial: &Trial, case: &mut Case) -> Result<(), PluginFault> {
-    let text = |events: &[Event<'static>]| pen.write(&|program| around(program, trial, events));
+fn run(pen: &Pen<'_>, trial: &CapabilityTrial, case: &mut Case) -> Result<(), PluginFault> {
+    let text = |events: &[Event<'_>]| pen.write_around(events, trial.away);
     let what = trial.what;
     let own = match text(&trial.events)? {
-        Ok((own, _)) => own,
+        Ok(own) => own,
         Err(fault) => {
             case.wrong(format!("it declares {what}, and refuses it: {fault}"));
             return Ok(());
         }
     };
     if !trial.silent
-        && let Ok((without, _)) = text(&[])?
+        && let Ok(without) = text(&[])?
         && without == own
     {
         case.wrong(format!("it declares {what}, and writes nothing"));
@@ -115,7 +115,7 @@ fn run(pen: &Pen<'_>, trial: &Trial, case: &mut Case) -> Result<(), PluginFault>
     }
     for (change, other) in &trial.others {
         match text(other)? {
-            Ok((other, _)) if other == own => {
+            Ok(other) if other == own => {
                 case.wrong(format!("{what}: {change} makes no difference to the text"));
             }
             Ok(_) => {}
@@ -125,27 +125,7 @@ fn run(pen: &Pen<'_>, trial: &Trial, case: &mut Case) -> Result<(), PluginFault>
     Ok(())
 }
 
-fn around(program: &mut Program<'_>, trial: &Trial, events: &[Event<'static>]) {
-    program.begin();
-    program.push(Event::position(&ELSEWHERE, None));
-    program.push(Event::linear(HERE, SLOW));
-    if trial.away {
-        program.push(RETRACT);
-    }
-    for event in events {
-        program.push(*event);
-    }
-    if trial.away {
-        program.push(TURNING);
-        program.push(Event::Turn { words: &ELSEWHERE });
-        program.push(Event::position(&ELSEWHERE, None));
-    }
-    program.push(Event::rapid(&ELSEWHERE));
-    program.push(Event::linear(HERE, SLOW));
-    program.end();
-}
-
-fn motion() -> Vec<Trial> {
+fn motion() -> Vec<CapabilityTrial> {
     let mut trials = Vec::new();
     const POINTS: &[f64] = &[
         10.0, 20.0, 30.0, 5.0, 6.0, 20.0, 25.0, 30.0, 5.0, 6.0, 25.0, 15.0, 30.0, 5.0, 6.0, 30.0,
@@ -164,21 +144,21 @@ fn motion() -> Vec<Trial> {
     };
     const EVEN: &[f64] = &[1.0; 4];
     trials.push(
-        Trial::new(Capabilities::SPLINE, "a spline", [spline(SLOW, POINTS, EVEN)])
+        CapabilityTrial::new(Capabilities::SPLINE, "a spline", [spline(SLOW, POINTS, EVEN)])
             .but("another point", [spline(SLOW, OTHERS, EVEN)])
             .but("another weight", [spline(SLOW, POINTS, &[1.0, 2.0, 1.0, 1.0])])
             .but("another feed", [spline(FAST, POINTS, EVEN)]),
     );
     let probe = |words, feed| Event::Probe { tool: None, feed, words };
     trials.push(
-        Trial::new(Capabilities::PROBE, "a probing move", [probe(DOWN, SLOW)])
+        CapabilityTrial::new(Capabilities::PROBE, "a probing move", [probe(DOWN, SLOW)])
             .but("another end", [probe(DEEPER, SLOW)])
             .but("another feed", [probe(DOWN, FAST)])
             .but("a cut in its place", [Event::linear(DOWN, SLOW)]),
     );
     let surface = |normal, words| Event::Surface { tool: Some(UPRIGHT), feed: SLOW, normal, words };
     trials.push(
-        Trial::new(
+        CapabilityTrial::new(
             Capabilities::SURFACE,
             "a cut with a surface normal",
             [surface([0.0, 0.0, 1.0], XY)],
@@ -191,7 +171,7 @@ fn motion() -> Vec<Trial> {
 
 const UPRIGHT: ToolPose = ToolPose { tip: [30.0, 20.0, 30.0], axis: [0.0, 0.0, 1.0] };
 
-fn settings() -> Vec<Trial> {
+fn settings() -> Vec<CapabilityTrial> {
     let operation = |name| Event::Operation { name };
     let message = |text| Event::Message { text };
     let smoothing = |tolerance| Event::Smoothing { tolerance, axis_tolerance: Some(0.1) };
@@ -203,28 +183,28 @@ fn settings() -> Vec<Trial> {
     let call = |number, times, name| Event::Subprogram { number, times, name };
     let (right, left) = (SpindleSense::Clockwise, SpindleSense::CounterClockwise);
     vec![
-        Trial::new(
+        CapabilityTrial::new(
             Capabilities::OPERATION,
             "an operation",
             [operation("ROUGH"), Event::OperationEnd],
         )
         .silent(),
-        Trial::new(Capabilities::MESSAGE, "a message", [message("ALPHA")])
+        CapabilityTrial::new(Capabilities::MESSAGE, "a message", [message("ALPHA")])
             .but("another text", [message("OMEGA")]),
-        Trial::new(Capabilities::UNITS, "a change of units", [Event::Units(Units::Inch)])
+        CapabilityTrial::new(Capabilities::UNITS, "a change of units", [Event::Units(Units::Inch)])
             .but("the other units", [Event::Units(Units::Millimetre)])
             .away(),
-        Trial::new(Capabilities::WORK_OFFSET, "a work offset", [offset(2)])
+        CapabilityTrial::new(Capabilities::WORK_OFFSET, "a work offset", [offset(2)])
             .but("another number", [offset(3)])
             .away(),
-        Trial::new(
+        CapabilityTrial::new(
             Capabilities::OFFSETS,
             "other registers of the tool",
             [registers(Some(7), None)],
         )
         .but("another register of the length", [registers(Some(8), None)])
         .away(),
-        Trial::new(
+        CapabilityTrial::new(
             Capabilities::SURFACE_SPEED,
             "a constant cutting speed",
             [speed(200.0, Some(3000.0), right)],
@@ -232,31 +212,31 @@ fn settings() -> Vec<Trial> {
         .but("another speed", [speed(201.0, Some(3000.0), right)])
         .but("another largest speed", [speed(200.0, Some(3100.0), right)])
         .but("the other sense", [speed(200.0, Some(3000.0), left)]),
-        Trial::new(Capabilities::CLAMP, "a clamp", [clamp(3, true)])
+        CapabilityTrial::new(Capabilities::CLAMP, "a clamp", [clamp(3, true)])
             .but("another axis", [clamp(4, true)])
             .but("its release", [clamp(3, false)])
             .away(),
         // Which tolerances a control tells apart is its own affair: many have a few levels, some one.
-        Trial::new(Capabilities::SMOOTHING, "smoothing", [smoothing(0.002)])
+        CapabilityTrial::new(Capabilities::SMOOTHING, "smoothing", [smoothing(0.002)])
             .but("its end", [smoothing(0.002), Event::SmoothingOff])
             .away(),
-        Trial::new(
+        CapabilityTrial::new(
             Capabilities::COMPENSATE_3D,
             "compensation in space",
             [space(true, 5), space(false, 0)],
         )
         .but("a cut without it", [Event::linear(XY, SLOW)]),
-        Trial::new(Capabilities::SUBPROGRAM, "a subprogram", [call(Some(1234), 1, "")])
+        CapabilityTrial::new(Capabilities::SUBPROGRAM, "a subprogram", [call(Some(1234), 1, "")])
             .but("another number", [call(Some(1235), 1, "")])
             .but("how often", [call(Some(1234), 2, "")]),
     ]
 }
 
-fn plane(angles: PlaneAngles) -> Trial {
+fn plane(angles: PlaneAngles) -> CapabilityTrial {
     let plane = |x, angle| {
         let tilted = [angle, 20.5, 30.5];
         vec![
-            Event::Turn { words: HERE },
+            turn(HERE),
             Event::Plane {
                 origin: [x, 0.0, 0.0],
                 x: [1.0, 0.0, 0.0],
@@ -264,13 +244,14 @@ fn plane(angles: PlaneAngles) -> Trial {
                 angles: if angles == PlaneAngles::Rotary { [0.0; 3] } else { tilted },
                 words: HERE,
             },
-            Event::position(HERE, None),
+            at(HERE),
             Event::linear(DOWN, SLOW),
-            RETRACT,
+            TOP,
             Event::PlaneOff,
         ]
     };
-    let trial = Trial::new(Capabilities::PLANE, "a tilted plane", plane(0.0, 10.5)).away();
+    let trial =
+        CapabilityTrial::new(Capabilities::PLANE, "a tilted plane", plane(0.0, 10.5)).away();
     if angles == PlaneAngles::Rotary {
         return trial;
     }
@@ -285,27 +266,20 @@ fn plane(angles: PlaneAngles) -> Trial {
 /// the new one all the same.
 fn instead(pen: &Pen<'_>, case: &mut Case, declares: Capabilities) -> Result<(), PluginFault> {
     const LINES: &str = "M199 P1\nM198";
-    let text = |register, lines: Option<&'static str>| {
-        pen.write(&|program| {
-            program.begin();
-            program.push(Event::position(&ELSEWHERE, None));
-            program.push(RETRACT);
-            if let Some(text) = lines {
-                program.push(Event::Instead { text });
-            }
-            program.look_at(Event::tool_change(2, register, ""));
-            program.push(TURNING);
-            program.push(Event::Turn { words: &ELSEWHERE });
-            program.push(Event::position(&ELSEWHERE, None));
-            program.end();
-        })
+    const BACK: &[Event<'static>] = &[turning(3000.0), turn(&ELSEWHERE), at(&ELSEWHERE)];
+    let text = |register, lines: Option<Event<'static>>| {
+        let change = [Event::tool_change(2, register, "")];
+        let came = [at(&ELSEWHERE), TOP];
+        pen.write(&[BEGIN, &came, lines.as_slice(), &change, BACK, END])
     };
-    let (whole, own) = match (text(5, Some(LINES))?, text(5, None)?) {
-        (Ok(with), Ok((_, plain))) => {
+    const CHANGE: usize = 3;
+    let lines = Some(Event::Instead { text: LINES });
+    let with = match (text(5, lines)?, text(5, None)?) {
+        (Ok(with), Ok(plain)) => {
             // What it would have written stands in no line of its own.
-            let left = plain.lines().filter(|line| !line.starts_with(['(', ';', '*']));
-            let left: Vec<&str> = left.filter(|line| with.1.contains(line)).collect();
-            if let [first, ..] = left.as_slice() {
+            let left = plain.part(CHANGE).lines();
+            let mut left = left.filter(|line| !line.starts_with(['(', ';', '*']));
+            if let Some(first) = left.find(|line| with.part(CHANGE).contains(line)) {
                 case.wrong(format!(
                     "lines in the place of a tool change: `{first}` of the change is written all the same"
                 ));
@@ -319,14 +293,15 @@ fn instead(pen: &Pen<'_>, case: &mut Case, declares: Capabilities) -> Result<(),
             return Ok(());
         }
     };
-    for line in LINES.lines().filter(|line| !whole.contains(line)) {
+    for line in LINES.lines().filter(|line| !with.text.contains(line)) {
         case.wrong(format!(
-            "lines in the place of a tool change: `{line}` is not written letter for letter ({own:?})"
+            "lines in the place of a tool change: `{line}` is not written letter for letter ({:?})",
+            with.part(CHANGE)
         ));
     }
     if !declares.has(Capabilities::TOOL_TABLE)
-        && let Ok((other, _)) = text(6, Some(LINES))?
-        && other == whole
+        && let Ok(other) = text(6, lines)?
+        && other.text == with.text
     {
         case.wrong(
             "lines in the place of a tool change: the new tool's register is not in force behind them"

@@ -1,0 +1,4 @@
+//! Single files of the crate, each by itself.
+
+mod dialect;
+mod texts;

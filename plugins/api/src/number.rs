@@ -93,7 +93,7 @@ impl NumberForm {
         let sign = if negative { b'-' } else { b'+' };
         let places = usize::from(decimals);
         if count >= 100_000_000 || places > 7 {
-            self.append_long(out, front, (signed, sign), count, places);
+            self.append_long(out, front, signed, sign, count, places);
             return true;
         }
         let packed = eight_digits(count);
@@ -136,7 +136,8 @@ impl NumberForm {
         self,
         out: &mut String,
         front: Front,
-        (signed, sign): (usize, u8),
+        signed: usize,
+        sign: u8,
         mut count: u64,
         mut decimals: usize,
     ) {

@@ -8,6 +8,7 @@
 //! off, and it stays wide until the program is back on the course.
 
 use super::place::{PlaceBound, PlaceDistance, ShareSpan, ToolPlace, free, nearest};
+use super::report::BlockPlace;
 use super::track::ElementKind;
 use super::{COMPUTED, Verifier, state};
 use crate::Motion;
@@ -218,7 +219,7 @@ impl<C: Course> Verifier<'_, C> {
         self.fault_at(
             "deviation",
             message,
-            Some((stray.line, stray.number)),
+            Some(BlockPlace { line: stray.line, number: stray.number }),
             Some(stray.asked[0]),
             Some(point),
         );

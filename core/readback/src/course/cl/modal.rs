@@ -30,6 +30,24 @@ pub(super) type RecordResult = Result<(), Box<Diagnostic>>;
 /// Items that a record means, in order.
 pub(super) type CourseItems = VecDeque<CourseItem>;
 
+/// A cycle that acts at each point, and its feed; none follows from what the file says.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ActiveCycle {
+    pub(super) hole: ClHole,
+    pub(super) feed: Option<FeedWord>,
+}
+
+/// How the tool goes: at rapid, at feed or as a thread, and its feed, mm/min, as far as that is known.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MotionFeed {
+    pub(super) kind: MotionKind,
+    pub(super) feed: Option<f64>,
+}
+
+impl MotionFeed {
+    pub(super) const RAPID: Self = Self { kind: MotionKind::Rapid, feed: None };
+}
+
 /// What is modal in a CL file.
 #[derive(Debug)]
 pub(super) struct ClModal {
@@ -59,8 +77,8 @@ pub(super) struct ClModal {
     rapid_feed: bool,
     pub(super) feed: Option<FeedWord>,
     pub(super) pending: Option<OpenCurve>,
-    pub(super) cycle: Option<(ClHole, Option<FeedWord>)>,
-    pub(super) last_cycle: Option<(ClHole, Option<FeedWord>)>,
+    pub(super) cycle: Option<ActiveCycle>,
+    pub(super) last_cycle: Option<ActiveCycle>,
     pub(super) tools: ClTools,
     coolant: Coolants,
     side: Option<CutterSide>,
@@ -226,7 +244,7 @@ impl ClModal {
             | Statement::Nurbs
             | Statement::Knot(_)
             | Statement::Control { .. } => self.curve_word(record, out),
-            Statement::WorkOffset { number, set } => self.work_offset(record, (*number, *set), out),
+            Statement::WorkOffset { number, set } => self.work_offset(record, *number, *set, out),
             Statement::Subprogram(number) => {
                 if !self.does_nothing("CALSUB", &[Argument::Number((*number).into())]) {
                     self.lost();
@@ -372,32 +390,32 @@ impl ClModal {
             }
             _ => {}
         }
-        if let Some((hole, feed)) = self.cycle {
+        if let Some(cycle) = self.cycle {
             self.rapid = false;
-            return self.drill(record, hole, feed, to, out);
+            return self.drill(record, cycle, to, out);
         }
-        let (kind, feed) = self.pace(&Curve::Straight, to);
-        self.go(record.line, (kind, feed), Curve::Straight, to, false, out);
+        let pace = self.pace(&Curve::Straight, to);
+        self.go(record.line, pace, Curve::Straight, to, false, out);
         Ok(())
     }
 
     /// How fast the tool goes next, and its feed.
-    pub(super) fn pace(&mut self, curve: &Curve, to: Pose) -> (MotionKind, Option<f64>) {
+    pub(super) fn pace(&mut self, curve: &Curve, to: Pose) -> MotionFeed {
         if std::mem::take(&mut self.rapid) || self.rapid_feed {
-            return (MotionKind::Rapid, None);
+            return MotionFeed::RAPID;
         }
         if self.feed.is_none() && self.settings.feed.is_none() && self.stands.is_none() {
-            return (MotionKind::Rapid, None);
+            return MotionFeed::RAPID;
         }
         let feed = match self.feed {
             Some(word) => self.per_minute(word, || self.way(curve, to)),
             None => self.settings.feed,
         };
-        (MotionKind::Feed, feed)
+        MotionFeed { kind: MotionKind::Feed, feed }
     }
 
     /// [`ClModal::pace`] of a curve that ended before the record that a `RAPID` in front of it is meant for.
-    pub(super) fn pace_behind(&mut self, curve: &Curve, to: Pose) -> (MotionKind, Option<f64>) {
+    pub(super) fn pace_behind(&mut self, curve: &Curve, to: Pose) -> MotionFeed {
         let rapid = std::mem::take(&mut self.rapid);
         let pace = self.pace(curve, to);
         self.rapid = rapid;
@@ -433,12 +451,13 @@ impl ClModal {
     pub(super) fn go(
         &mut self,
         line: u64,
-        (kind, feed): (MotionKind, Option<f64>),
+        pace: MotionFeed,
         curve: Curve,
         to: Pose,
         hole: bool,
         out: &mut CourseItems,
     ) {
+        let MotionFeed { kind, feed } = pace;
         self.measured = true;
         self.strange.moved = true;
         let known = !(self.only_said && curve == Curve::Straight);
@@ -578,7 +597,8 @@ impl ClModal {
     fn work_offset(
         &mut self,
         record: &Record<'_>,
-        (number, set): (u32, bool),
+        number: u32,
+        set: bool,
         out: &mut CourseItems,
     ) -> RecordResult {
         let value = Argument::Number(number.into());

@@ -74,21 +74,7 @@ impl ControlState {
                 ));
             }
             Meaning::Spline => self.spline_word(code)?,
-            Meaning::CycleOther
-            | Meaning::Scale
-            | Meaning::Mirror
-            | Meaning::Polar
-            | Meaning::FaceTransformation
-            | Meaning::CylinderTransformation
-            | Meaning::Diameter
-            | Meaning::LengthNegative
-            | Meaning::LengthAdded
-            | Meaning::LengthAlongTool
-            | Meaning::OrientationAngles
-            | Meaning::BuilderCoordinates
-            | Meaning::ArcThrough
-            | Meaning::ArcTangent
-            | Meaning::Retract => return Err(self.not_followed(code)),
+            _ if is_not_followed(meaning) => return Err(self.not_followed(code)),
             // Letters, remarks and what does nothing.
             _ => {}
         }
@@ -142,6 +128,28 @@ impl ControlState {
             self.modal.feed = None;
         }
     }
+}
+
+/// Whether a word leads the machine in a way that is not run.
+fn is_not_followed(meaning: Meaning) -> bool {
+    matches!(
+        meaning,
+        Meaning::CycleOther
+            | Meaning::Scale
+            | Meaning::Mirror
+            | Meaning::Polar
+            | Meaning::FaceTransformation
+            | Meaning::CylinderTransformation
+            | Meaning::Diameter
+            | Meaning::LengthNegative
+            | Meaning::LengthAdded
+            | Meaning::LengthAlongTool
+            | Meaning::OrientationAngles
+            | Meaning::BuilderCoordinates
+            | Meaning::ArcThrough
+            | Meaning::ArcTangent
+            | Meaning::Retract
+    )
 }
 
 impl BlockRequest {

@@ -48,6 +48,15 @@ enum SweepOutcome {
     Nowhere,
 }
 
+/// What of a free side of a cell can be reached: all of it where the side `across` it is entered; else, from the one that
+/// it faces, what lies no further back than where that one is entered.
+fn reached(side: ShareSpan, across: ShareSpan, facing: ShareSpan) -> ShareSpan {
+    match across.is_empty() {
+        false => side,
+        true => side.meet(&ShareSpan { from: facing.from, to: 1.0 }),
+    }
+}
+
 impl<C: Course> Verifier<'_, C> {
     /// A motion at feed.
     pub(super) fn feed(&mut self, motion: &Motion, places: &[ToolPlace]) {
@@ -322,15 +331,9 @@ impl<C: Course> Verifier<'_, C> {
                 }
             }
             let right = free(to, &element.from, &element.to, &bound);
-            let right = match below.is_empty() {
-                false => right,
-                true => right.meet(&ShareSpan { from: left.from, to: 1.0 }),
-            };
+            let right = reached(right, below, left);
             let top = free(&element.to, from, to, &bound);
-            let top = match left.is_empty() {
-                false => top,
-                true => top.meet(&ShareSpan { from: below.from, to: 1.0 }),
-            };
+            let top = reached(top, left, below);
             if !right.is_empty() {
                 let near = nearest(to, &element.from, &element.to, &right);
                 // A place where two meet is the end of the first, whatever the words round off.

@@ -11,6 +11,8 @@ use std::collections::BTreeMap;
 use post_grammar::nc::{NcSyntax, Notation};
 use post_plugin::{Capabilities, Language, Lengths, Meaning, VocabularyWord};
 
+use crate::g_code::GCode;
+
 /// What a word does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum WordMeaning {
@@ -25,22 +27,24 @@ pub(crate) enum WordMeaning {
 /// A code, and what it means with certain words beside it.
 #[derive(Clone, Debug)]
 struct CodeChoice {
-    /// Ten times the number behind G.
-    code: u16,
+    code: GCode,
     /// Letters that stand beside it, and their values where they are said.
     beside: Vec<(u8, Option<f64>)>,
     meaning: Meaning,
 }
 
-/// Ten times the largest number behind G, and one.
-const CODES: usize = 10_000;
+/// Codes that a table holds: `G0` to `G999.9`.
+const G_CODES: usize = 10_000;
+
+/// `M0` to `M999`.
+const M_CODES: usize = 1000;
 
 /// The words of a control, ready to be looked up.
 #[derive(Clone, Debug)]
 pub struct Lexicon {
     syntax: NcSyntax,
     language: Language,
-    /// By ten times the number behind G.
+    /// By [`GCode::index`].
     g: Vec<u8>,
     /// By the number behind M.
     m: Vec<u8>,
@@ -66,8 +70,8 @@ impl Lexicon {
         let mut lexicon = Self {
             language,
             writes,
-            g: vec![0; CODES],
-            m: vec![0; CODES / 10],
+            g: vec![0; G_CODES],
+            m: vec![0; M_CODES],
             senses: vec![WordMeaning::Unknown],
             syntax: syntax(words, language),
             all_axes: words.iter().any(|word| word.meaning == Meaning::FeedPerMinuteAllAxes),
@@ -127,15 +131,15 @@ impl Lexicon {
         self.path_modes
     }
 
-    /// The sense of G and ten times a number; words beside it may change it: [`Lexicon::g_beside`].
+    /// The sense of a G code; words beside it may change it: [`Lexicon::g_beside`].
     #[inline]
-    pub(crate) fn g(&self, code: u16) -> WordMeaning {
-        let sense = self.g.get(usize::from(code)).copied().unwrap_or(0);
+    pub(crate) fn g(&self, code: GCode) -> WordMeaning {
+        let sense = self.g.get(code.index()).copied().unwrap_or(0);
         self.senses[usize::from(sense)]
     }
 
-    /// The sense of G and ten times a number where `beside` tells which letters stand in the block and their values.
-    pub(crate) fn g_beside(&self, code: u16, beside: impl Fn(u8) -> Option<f64>) -> WordMeaning {
+    /// The sense of a G code where `beside` tells which letters stand in the block and their values.
+    pub(crate) fn g_beside(&self, code: GCode, beside: impl Fn(u8) -> Option<f64>) -> WordMeaning {
         let holds = |choice: &&CodeChoice| {
             let mut letters = choice.beside.iter();
             choice.code == code
@@ -151,7 +155,7 @@ impl Lexicon {
     }
 
     /// The letter behind which the tolerance of a smoothing word stands: P of `G64 P`.
-    pub(crate) fn tolerance_letter(&self, code: u16) -> Option<u8> {
+    pub(crate) fn tolerance_letter(&self, code: GCode) -> Option<u8> {
         let mut choices = self.choices.iter().filter(|choice| choice.code == code);
         choices.find_map(|choice| {
             let open = choice.beside.iter().find(|(_, value)| value.is_none());
@@ -159,8 +163,8 @@ impl Lexicon {
         })
     }
 
-    /// What a letter beside G and ten times a number means, if the dialect says so: P of `G4 P`, of `G2 P`.
-    pub(crate) fn letter_beside(&self, code: u16, letter: u8) -> Option<Meaning> {
+    /// What a letter beside a G code means, if the dialect says so: P of `G4 P`, of `G2 P`.
+    pub(crate) fn letter_beside(&self, code: GCode, letter: u8) -> Option<Meaning> {
         let wanted =
             |choice: &&CodeChoice| choice.code == code && choice.beside == [(letter, None)];
         self.choices.iter().find(wanted).map(|choice| choice.meaning)
@@ -216,7 +220,7 @@ impl Lexicon {
     fn add_sense(&mut self, word: &str, sense: WordMeaning) {
         let mut parts = word.split_whitespace();
         let first = parts.next().unwrap_or_default();
-        let Some((letter, code)) = code(first) else {
+        let Some(code) = Code::of(first) else {
             // `MCALL CYCLE81` is known by the name of its cycle.
             let name = word.strip_prefix("MCALL ").unwrap_or(word);
             self.names.insert(name.trim_end_matches('=').to_owned(), sense);
@@ -224,15 +228,19 @@ impl Lexicon {
         };
         let beside: Vec<(u8, Option<f64>)> = parts.filter_map(beside).collect();
         let place = self.place(sense);
-        let table = if letter == b'G' { &mut self.g } else { &mut self.m };
-        let at = if letter == b'G' { code } else { code / 10 };
+        let entry = match code {
+            Code::G(code) => self.g.get_mut(code.index()),
+            Code::M(number) => self.m.get_mut(usize::from(number)),
+        };
         // What other words stand beside takes the plain word's place only where that has no sense.
-        if let Some(entry) = table.get_mut(usize::from(at))
-            && (*entry == 0 || beside.is_empty() || letter == b'M')
+        if let Some(entry) = entry
+            && (*entry == 0 || beside.is_empty() || matches!(code, Code::M(_)))
         {
             *entry = place;
         }
-        if let (b'G', WordMeaning::Means(meaning), false) = (letter, sense, beside.is_empty()) {
+        if let (Code::G(code), WordMeaning::Means(meaning), false) =
+            (code, sense, beside.is_empty())
+        {
             self.choices.push(CodeChoice { code, beside, meaning });
         }
     }
@@ -249,17 +257,23 @@ impl Lexicon {
     }
 }
 
-/// `G43.4` as G and 434, `M6` as M and 60; none for any other word.
-fn code(word: &str) -> Option<(u8, u16)> {
-    let (letter, number) = (word.as_bytes().first()?, word.get(1..)?);
-    if !matches!(letter, b'G' | b'M') || number.is_empty() {
-        return None;
+/// A code that a vocabulary names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Code {
+    G(GCode),
+    M(u16),
+}
+
+impl Code {
+    /// `G43.4`, `M6`; none of any other word.
+    fn of(word: &str) -> Option<Self> {
+        let (letter, number) = (word.as_bytes().first()?, word.get(1..)?);
+        if !matches!(letter, b'G' | b'M') || !number.starts_with(|c: char| c.is_ascii_digit()) {
+            return None;
+        }
+        let code = GCode::nearest(number.parse().ok()?)?;
+        Some(if *letter == b'G' { Self::G(code) } else { Self::M(code.parts().0) })
     }
-    let value: f64 = number.parse().ok()?;
-    let tenfold = libm::rint(value * 10.0);
-    let whole =
-        (0.0..65_535.0).contains(&tenfold) && number.starts_with(|c: char| c.is_ascii_digit());
-    whole.then_some((*letter, tenfold as u16))
 }
 
 /// `Q1` as Q and 1, `P` as P alone; none for what is no word.

@@ -20,6 +20,7 @@ mod corners;
 pub mod course;
 pub mod diff;
 mod fed_rapids;
+mod g_code;
 pub mod interpret;
 pub mod lexicon;
 mod motion;

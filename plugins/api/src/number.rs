@@ -97,7 +97,7 @@ impl NumberForm {
             return true;
         }
         if count >= 100_000_000 || places > 7 {
-            self.append_long(out, front, (signed, sign), count, places);
+            self.append_long(out, front, signed, sign, count, places);
             return true;
         }
         let packed = eight_digits(count);
@@ -171,7 +171,8 @@ impl NumberForm {
         self,
         out: &mut String,
         front: Front,
-        (signed, sign): (usize, u8),
+        signed: usize,
+        sign: u8,
         mut count: u64,
         mut decimals: usize,
     ) {

@@ -18,6 +18,23 @@ pub(crate) struct CycleParameters {
     feeds: f64,
 }
 
+/// A parameter of a definition.
+#[derive(Clone, Copy)]
+pub(crate) struct CycleParameter {
+    /// The number after Q.
+    number: u32,
+    /// Program units, degrees or seconds, as the control counts it there.
+    value: f64,
+    /// The remark beside it.
+    label: &'static str,
+}
+
+impl CycleParameter {
+    pub(crate) const fn new(number: u32, value: f64, label: &'static str) -> Self {
+        Self { number, value, label }
+    }
+}
+
 /// Out at rapid: the largest feed that the parameter takes.
 const RAPID: f64 = 99_999.0;
 
@@ -53,90 +70,179 @@ impl CycleParameters {
     ) -> Result<String, String> {
         // Of the depth 0 the control would leave the hole out, and of one above the surface cut upwards.
         let (drilling, raised) = drilling.below_its_point();
-        let top = top + raised;
-        let Drilling { dwell, clearance, .. } = drilling;
-        let down = || {
-            let feed = drilling.feed_per_minute(rpm).ok_or(NO_SPEED)?;
-            Ok::<f64, &str>(feed * self.feeds)
-        };
-        let cycle = drilling.cycle;
-        let depth = if matches!(cycle, Cycle::Tap | Cycle::TapLeft) {
-            (201, -drilling.depth, "DEPTH OF THREAD")
-        } else {
-            (201, -drilling.depth, "DEPTH")
-        };
-        let clear = (200, clearance, "SET-UP CLEARANCE");
-        let plunge = |feed| (206, feed, "FEED RATE FOR PLNGNG");
-        let surface = (203, top, "SURFACE COORDINATE");
-        // The control goes to the higher of the two.
-        let away = (204, drilling.retract.max(clearance), "2ND SET-UP CLEARANCE");
-        let wait = (211, dwell, "DWELL TIME AT DEPTH");
-        let step = (202, drilling.step, "PLUNGING DEPTH");
-        let above = (210, 0.0, "DWELL TIME AT TOP");
-        let reference = self.newer.then_some((395, 0.0, "DEPTH REFERENCE"));
-        let out = |feed| (208, feed, "RETRACTION FEED RATE");
-        let (header, parameters) = match cycle {
-            Cycle::Drill | Cycle::Deep => {
-                let feed = plunge(down()?);
-                let mut parameters = vec![clear, depth, feed, step, above, surface, away, wait];
-                parameters.extend(reference);
-                ((200, "DRILLING", "BOHREN"), parameters)
-            }
-            Cycle::BreakChip => {
-                let breaks = (drilling.depth / drilling.step).ceil();
-                let feed = plunge(down()?);
-                let mut parameters = vec![clear, depth, feed, step, above, surface, away];
-                parameters.extend([
-                    (212, 0.0, "DECREMENT"),
-                    (213, breaks, "NR OF BREAKS"),
-                    (205, 0.0, "MIN. PLUNGING DEPTH"),
-                    wait,
-                    out(RAPID),
-                    (256, self.chip, "DIST FOR CHIP BRKNG"),
-                ]);
-                parameters.extend(reference);
-                ((203, "UNIVERSAL DRILLING", "UNIVERSAL-BOHREN"), parameters)
-            }
-            Cycle::Ream => {
-                let feed = down()?;
-                let parameters = vec![clear, depth, plunge(feed), wait, out(feed), surface, away];
-                ((201, "REAMING", "REIBEN"), parameters)
-            }
-            Cycle::Bore | Cycle::BoreFine => {
-                let lift = if cycle == Cycle::Bore { 0 } else { self.lift };
-                let feed = plunge(down()?);
-                let mut parameters = vec![clear, depth, feed, wait, out(RAPID), surface, away];
-                parameters.push((214, lift as f64, "DISENGAGING DIRECTN"));
-                parameters.push((336, self.angle, "ANGLE OF SPINDLE"));
-                ((202, "BORING", "AUSDREHEN"), parameters)
-            }
-            Cycle::Tap | Cycle::TapLeft if self.floating => {
-                let speed = rpm.ok_or(NO_SPEED)?;
-                let feed = plunge(drilling.thread(rpm).ok_or(NO_SPEED)? * speed * self.feeds);
-                let parameters = vec![clear, depth, feed, wait, surface, away];
-                ((206, "TAPPING", "GEWINDEBOHREN"), parameters)
-            }
-            Cycle::Tap | Cycle::TapLeft => {
-                let pitch = drilling.thread(rpm).ok_or(NO_SPEED)?;
-                let pitch = if cycle == Cycle::Tap { pitch } else { -pitch };
-                let pitch = (239, pitch, "THREAD PITCH");
-                ((207, "RIGID TAPPING", "GEW.-BOHREN GS"), vec![clear, depth, pitch, surface, away])
-            }
+        let hole = HoleParameters::new(&drilling, top + raised);
+        let definition = match drilling.cycle {
+            Cycle::Drill | Cycle::Deep => self.drill(&drilling, hole, rpm)?,
+            Cycle::BreakChip => self.break_chips(&drilling, hole, rpm)?,
+            Cycle::Ream => self.ream(&drilling, hole, rpm)?,
+            Cycle::Bore | Cycle::BoreFine => self.bore(&drilling, hole, rpm)?,
+            Cycle::Tap | Cycle::TapLeft => self.tap(&drilling, hole, rpm)?,
             Cycle::BoreBack => {
                 return Err("back boring needs more than the CL file tells".to_owned());
             }
         };
-        let (number, english, german) = header;
+        let CycleName { number, english, german } = definition.name;
         let name = if self.german { german } else { english };
-        Ok(block(&format!("CYCL DEF {number} {name}"), &parameters))
+        Ok(block(&format!("CYCL DEF {number} {name}"), &definition.parameters))
+    }
+
+    fn drill(
+        &self,
+        drilling: &Drilling,
+        hole: HoleParameters,
+        rpm: Option<f64>,
+    ) -> Result<HoleDefinition, String> {
+        let HoleParameters { clear, depth, surface, away, wait } = hole;
+        let feed = plunge(self.feed(drilling, rpm)?);
+        let step = CycleParameter::new(202, drilling.step, "PLUNGING DEPTH");
+        let mut parameters = vec![clear, depth, feed, step, WAIT_ABOVE, surface, away, wait];
+        parameters.extend(self.reference());
+        let name = CycleName { number: 200, english: "DRILLING", german: "BOHREN" };
+        Ok(HoleDefinition { name, parameters })
+    }
+
+    fn break_chips(
+        &self,
+        drilling: &Drilling,
+        hole: HoleParameters,
+        rpm: Option<f64>,
+    ) -> Result<HoleDefinition, String> {
+        let HoleParameters { clear, depth, surface, away, wait } = hole;
+        let feed = plunge(self.feed(drilling, rpm)?);
+        let step = CycleParameter::new(202, drilling.step, "PLUNGING DEPTH");
+        let breaks = (drilling.depth / drilling.step).ceil();
+        let mut parameters = vec![clear, depth, feed, step, WAIT_ABOVE, surface, away];
+        parameters.extend([
+            CycleParameter::new(212, 0.0, "DECREMENT"),
+            CycleParameter::new(213, breaks, "NR OF BREAKS"),
+            CycleParameter::new(205, 0.0, "MIN. PLUNGING DEPTH"),
+            wait,
+            out(RAPID),
+            CycleParameter::new(256, self.chip, "DIST FOR CHIP BRKNG"),
+        ]);
+        parameters.extend(self.reference());
+        let (english, german) = ("UNIVERSAL DRILLING", "UNIVERSAL-BOHREN");
+        Ok(HoleDefinition { name: CycleName { number: 203, english, german }, parameters })
+    }
+
+    fn ream(
+        &self,
+        drilling: &Drilling,
+        hole: HoleParameters,
+        rpm: Option<f64>,
+    ) -> Result<HoleDefinition, String> {
+        let HoleParameters { clear, depth, surface, away, wait } = hole;
+        let feed = self.feed(drilling, rpm)?;
+        let parameters = vec![clear, depth, plunge(feed), wait, out(feed), surface, away];
+        let name = CycleName { number: 201, english: "REAMING", german: "REIBEN" };
+        Ok(HoleDefinition { name, parameters })
+    }
+
+    fn bore(
+        &self,
+        drilling: &Drilling,
+        hole: HoleParameters,
+        rpm: Option<f64>,
+    ) -> Result<HoleDefinition, String> {
+        let HoleParameters { clear, depth, surface, away, wait } = hole;
+        let lift = if drilling.cycle == Cycle::Bore { 0 } else { self.lift };
+        let feed = plunge(self.feed(drilling, rpm)?);
+        let mut parameters = vec![clear, depth, feed, wait, out(RAPID), surface, away];
+        parameters.push(CycleParameter::new(214, lift as f64, "DISENGAGING DIRECTN"));
+        parameters.push(CycleParameter::new(336, self.angle, "ANGLE OF SPINDLE"));
+        let name = CycleName { number: 202, english: "BORING", german: "AUSDREHEN" };
+        Ok(HoleDefinition { name, parameters })
+    }
+
+    fn tap(
+        &self,
+        drilling: &Drilling,
+        hole: HoleParameters,
+        rpm: Option<f64>,
+    ) -> Result<HoleDefinition, String> {
+        let HoleParameters { clear, depth, surface, away, wait } = hole;
+        if self.floating {
+            let speed = rpm.ok_or(NO_SPEED)?;
+            let feed = plunge(drilling.thread(rpm).ok_or(NO_SPEED)? * speed * self.feeds);
+            let parameters = vec![clear, depth, feed, wait, surface, away];
+            let name = CycleName { number: 206, english: "TAPPING", german: "GEWINDEBOHREN" };
+            return Ok(HoleDefinition { name, parameters });
+        }
+        let pitch = drilling.thread(rpm).ok_or(NO_SPEED)?;
+        let pitch = if drilling.cycle == Cycle::Tap { pitch } else { -pitch };
+        let pitch = CycleParameter::new(239, pitch, "THREAD PITCH");
+        let parameters = vec![clear, depth, pitch, surface, away];
+        let (english, german) = ("RIGID TAPPING", "GEW.-BOHREN GS");
+        Ok(HoleDefinition { name: CycleName { number: 207, english, german }, parameters })
+    }
+
+    /// The feed of a hole as the parameters count it.
+    fn feed(&self, drilling: &Drilling, rpm: Option<f64>) -> Result<f64, String> {
+        Ok(drilling.feed_per_minute(rpm).ok_or(NO_SPEED)? * self.feeds)
+    }
+
+    /// What the depth is that of: newer controls ask for it.
+    fn reference(&self) -> Option<CycleParameter> {
+        self.newer.then_some(CycleParameter::new(395, 0.0, "DEPTH REFERENCE"))
     }
 }
 
+/// The parameters that all definitions of a hole have.
+struct HoleParameters {
+    clear: CycleParameter,
+    depth: CycleParameter,
+    surface: CycleParameter,
+    away: CycleParameter,
+    wait: CycleParameter,
+}
+
+impl HoleParameters {
+    fn new(drilling: &Drilling, top: f64) -> Self {
+        let thread = matches!(drilling.cycle, Cycle::Tap | Cycle::TapLeft);
+        let depth = if thread { "DEPTH OF THREAD" } else { "DEPTH" };
+        // The control goes to the higher of the two.
+        let away = drilling.retract.max(drilling.clearance);
+        Self {
+            clear: CycleParameter::new(200, drilling.clearance, "SET-UP CLEARANCE"),
+            depth: CycleParameter::new(201, -drilling.depth, depth),
+            surface: CycleParameter::new(203, top, "SURFACE COORDINATE"),
+            away: CycleParameter::new(204, away, "2ND SET-UP CLEARANCE"),
+            wait: CycleParameter::new(211, drilling.dwell, "DWELL TIME AT DEPTH"),
+        }
+    }
+}
+
+/// A cycle with all that its definition says.
+struct HoleDefinition {
+    name: CycleName,
+    parameters: Vec<CycleParameter>,
+}
+
+/// A cycle's number, and its name in the languages of the control.
+struct CycleName {
+    number: u32,
+    english: &'static str,
+    german: &'static str,
+}
+
+/// No wait above the hole.
+const WAIT_ABOVE: CycleParameter = CycleParameter::new(210, 0.0, "DWELL TIME AT TOP");
+
+/// The feed into the hole.
+const fn plunge(feed: f64) -> CycleParameter {
+    CycleParameter::new(206, feed, "FEED RATE FOR PLNGNG")
+}
+
+/// The feed out of it.
+const fn out(feed: f64) -> CycleParameter {
+    CycleParameter::new(208, feed, "RETRACTION FEED RATE")
+}
+
 /// A definition whose parameters go on after tildes, without numbers of their own.
-pub(crate) fn block(header: &str, parameters: &[(u32, f64, &str)]) -> String {
+pub(crate) fn block(header: &str, parameters: &[CycleParameter]) -> String {
     let style = NumberStyle { plus: true, trim: true, point: false };
     let mut text = header.to_owned();
-    for (number, value, label) in parameters {
+    for CycleParameter { number, value, label } in parameters {
         text.push_str(&format!(" ~\n    Q{number}="));
         style.write(&mut text, *value, 5);
         text.push_str(&format!(" ;{label}"));

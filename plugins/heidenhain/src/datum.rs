@@ -2,7 +2,7 @@
 
 use post_plugin::{NumberStyle, Setup, Units};
 
-use crate::cycles::block;
+use crate::cycles::{CycleParameter, block};
 use crate::{Heidenhain, SIGNED};
 
 /// What the options say of datums and planes.
@@ -40,7 +40,10 @@ impl Heidenhain {
     /// A row of the preset table; the second block goes on with the first and has no number.
     pub(crate) fn preset_row(&mut self, row: i64, out: &mut String) {
         let name = if self.german { "BEZUGSPUNKT SETZEN" } else { "DATUM SETTING" };
-        let words = block(&format!("CYCL DEF 247 {name}"), &[(339, row as f64, "DATUM NUMBER")]);
+        let words = block(
+            &format!("CYCL DEF 247 {name}"),
+            &[CycleParameter::new(339, row as f64, "DATUM NUMBER")],
+        );
         self.block.line(&words, out);
     }
 

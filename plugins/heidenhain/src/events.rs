@@ -47,12 +47,7 @@ impl Heidenhain {
                 self.forget();
             }
             Event::Word { text } => self.own(text, out),
-            Event::ToolChange { number, name, .. } => {
-                if !name.is_empty() {
-                    self.comment(&format!("T{number} {name}"), out);
-                }
-                self.tool = Some(ToolCall::Tool(tool_call(number, name, self.tool_names)?));
-            }
+            Event::ToolChange { number, name, .. } => self.change_tool(number, name, out)?,
             Event::Preselect { number } => self.preselect(number, out)?,
             Event::Spindle(spindle) => self.turn(spindle, out)?,
             Event::Coolant(coolant) => self.cool(coolant, out)?,
@@ -114,6 +109,15 @@ impl Heidenhain {
             Event::End => self.end(out),
             other => return Err(other.refusal()),
         }
+        Ok(())
+    }
+
+    /// The call waits for the spindle event, whose speed it names.
+    fn change_tool(&mut self, number: u32, name: &str, out: &mut String) -> Result<(), String> {
+        if !name.is_empty() {
+            self.comment(&format!("T{number} {name}"), out);
+        }
+        self.tool = Some(ToolCall::Tool(tool_call(number, name, self.tool_names)?));
         Ok(())
     }
 

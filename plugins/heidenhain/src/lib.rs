@@ -114,6 +114,27 @@ enum PendingEvent {
     Word(String),
 }
 
+/// The block that says which way rotary axes turn.
+fn rotary_way(setup: &Setup<'_>) -> String {
+    // Words below a turn mean the shorter way.
+    let wrapped = setup.words.iter().any(|word| word.wrapped);
+    (if wrapped { "M126" } else { setup.text("rotary_way") }).to_owned()
+}
+
+/// The blocks that switch TCPM on and off.
+fn tcp_blocks(setup: &Setup<'_>) -> [String; 2] {
+    let function = setup.text("tcp_form") == "TCPM";
+    let on = match setup.text("tcp_on") {
+        "M128" if function => "FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS",
+        on => on,
+    };
+    let off = match setup.text("tcp_off") {
+        "M129" if function => "FUNCTION RESET TCPM",
+        off => off,
+    };
+    [on, off].map(str::to_owned)
+}
+
 impl Dialect for Heidenhain {
     fn options() -> &'static [OptionSpec] {
         OPTIONS
@@ -125,6 +146,7 @@ impl Dialect for Heidenhain {
         let decimals = setup.integer(if inch { "decimals_inch" } else { "decimals" });
         let rotary = setup.integer("rotary_decimals");
         let own = |key| setup.text(key).to_owned();
+        let [tcp_on, tcp_off] = tcp_blocks(setup);
         Ok(Heidenhain {
             block: Block::numbered("", 0, 1, u32::MAX - 1),
             axes: Axes::new(setup, decimals as u8, rotary as u8, SIGNED),
@@ -135,27 +157,12 @@ impl Dialect for Heidenhain {
             // An inch program counts F in tenths of an inch a minute: one digit less after the point.
             feed_decimals: setup.integer("feed_decimals") as u8 + u8::from(inch),
             preset: setup.integer("preset"),
-            rotary_way: if setup.words.iter().any(|word| word.wrapped) {
-                // Words below a turn mean the shorter way.
-                "M126".to_owned()
-            } else {
-                own("rotary_way")
-            },
+            rotary_way: rotary_way(setup),
             rotary: setup.words.iter().any(|word| word.rotary),
             reset: setup.flag("reset"),
             retract: own("retract"),
-            tcp_on: match own("tcp_on") {
-                on if on == "M128" && setup.text("tcp_form") == "TCPM" => {
-                    "FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS".to_owned()
-                }
-                on => on,
-            },
-            tcp_off: match own("tcp_off") {
-                off if off == "M129" && setup.text("tcp_form") == "TCPM" => {
-                    "FUNCTION RESET TCPM".to_owned()
-                }
-                off => off,
-            },
+            tcp_on,
+            tcp_off,
             stock: stock(setup),
             cycles: CycleParameters::new(setup),
             datum: Datum::new(setup),

@@ -39,6 +39,17 @@ struct ModalCycle {
     level: Modal<&'static str>,
 }
 
+impl ModalCycle {
+    /// The word that begins it: rigid taps may have codes of their own, to the right and to the left.
+    fn word(&self, rigid: Option<Rigid>) -> &'static str {
+        match (rigid, self.kind) {
+            (Some(Rigid::Codes([_, left])), Cycle::TapLeft) => left,
+            (Some(Rigid::Codes([right, _])), _) => right,
+            _ => self.code,
+        }
+    }
+}
+
 /// Whether the cycle draws the tool off the wall.
 const fn shifts(kind: Cycle) -> bool {
     matches!(kind, Cycle::BoreFine | Cycle::BoreBack)
@@ -197,14 +208,7 @@ impl Engine {
             self.motion.block.word(level);
         }
         if first {
-            let code = match rigid {
-                Some(Rigid::Codes([right, left])) => match running.kind {
-                    Cycle::TapLeft => left,
-                    _ => right,
-                },
-                _ => running.code,
-            };
-            self.motion.block.word(code);
+            self.motion.block.word(running.word(rigid));
         } else if !self.motion.axes.moved_group(words, Group::Plane) {
             // Without a word of an axis no hole is drilled.
             self.motion.axes.forget_some(1 << x);

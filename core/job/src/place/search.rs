@@ -3,7 +3,9 @@
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Side};
 use post_machine::diagnostic::Diagnostic;
-use post_machine::place::{HalfSpace, descend, most_room, nearest, rounded, shuffled, spread};
+use post_machine::place::{
+    HalfSpace, MountCost, descend, most_room, nearest, rounded, shuffled, spread,
+};
 
 use super::trial::{Bound, Seat, Trial, Trials, bodies};
 use super::{Least, PlaceRequest};
@@ -261,13 +263,13 @@ impl<'s, 'a> Search<'s, 'a> {
     /// all over the room. Each way alone may end where only another one leads on.
     fn settle(&mut self, trial: &mut Trial, bounds: &[Bound]) -> Result<(), Failure> {
         let bodies = bodies(bounds);
-        let start = (trial.seat.mount, trial.cost);
-        let places = spread(&bodies, &start.0, self.margin() + ROUNDING, PLACES);
-        let mut other: Option<(Vector3<f64>, f64)> = None;
+        let start = MountCost { mount: trial.seat.mount, cost: trial.cost };
+        let places = spread(&bodies, &start.mount, self.margin() + ROUNDING, PLACES);
+        let mut other: Option<MountCost> = None;
         for mount in places {
             let cost = self.cost_at(trial, mount, &bodies)?;
-            if let Some(cost) = cost.filter(|cost| other.is_none_or(|(_, least)| *cost < least)) {
-                other = Some((mount, cost));
+            if let Some(cost) = cost.filter(|cost| other.is_none_or(|other| *cost < other.cost)) {
+                other = Some(MountCost { mount, cost });
             }
         }
         for start in [Some(start), other].into_iter().flatten() {

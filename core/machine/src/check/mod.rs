@@ -31,7 +31,7 @@ pub use volume::Volume;
 
 pub use probe::{InverseWork, Probe};
 
-use crate::description::Machine;
+use crate::description::{Axis, Machine};
 use crate::diagnostic::Diagnostic;
 use crate::kinematics::NoClosedForm;
 
@@ -152,25 +152,37 @@ fn warnings(
             ));
         }
     }
-    for axis in &machine.axes {
-        if axis.joint.rotary && axis.indexed.is_none() && axis.max_feed.is_infinite() {
-            warnings.push(format!(
-                "{} has no max_feed: no block will be slowed down for it, and the way that is taken does not weigh it",
-                axis.name
-            ));
-        }
-        if axis.joint.rotary
-            && let Some([least, most]) = axis.travel
-            && (least > 0.0 || most < 0.0)
-        {
-            warnings.push(format!(
-                "{} cannot stand at the drawing's zero: its travel is {} to {}; the work offset is taken there",
-                axis.name,
-                number(axis.reading(least), 3),
-                number(axis.reading(most), 3)
-            ));
-        }
+    warnings.extend(machine.axes.iter().flat_map(axis_warnings));
+    warnings.extend(inverse_warnings(probe, round_trip));
+    warnings
+}
+
+/// What an axis by itself makes a builder look at.
+fn axis_warnings(axis: &Axis) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if axis.joint.rotary && axis.indexed.is_none() && axis.max_feed.is_infinite() {
+        warnings.push(format!(
+            "{} has no max_feed: no block will be slowed down for it, and the way that is taken does not weigh it",
+            axis.name
+        ));
     }
+    if axis.joint.rotary
+        && let Some([least, most]) = axis.travel
+        && (least > 0.0 || most < 0.0)
+    {
+        warnings.push(format!(
+            "{} cannot stand at the drawing's zero: its travel is {} to {}; the work offset is taken there",
+            axis.name,
+            number(axis.reading(least), 3),
+            number(axis.reading(most), 3)
+        ));
+    }
+    warnings
+}
+
+/// What the inverse does not find.
+fn inverse_warnings(probe: &Probe<'_>, round_trip: &RoundTrip) -> Vec<String> {
+    let mut warnings = Vec::new();
     if let Some([ways @ 0..3, _]) = probe.ways_by_search() {
         warnings.push(format!(
             "while the tool keeps its direction the tip can go {}: most programs ask for more, and are refused where they do",

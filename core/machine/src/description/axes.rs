@@ -1,6 +1,7 @@
 //! The axes of a machine file, checked one by one and against the chain.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use nalgebra::Vector3;
 use post_grammar::{LinkKind, parse_chain};
@@ -59,31 +60,10 @@ impl Builder<'_> {
                 LinkKind::Workpiece | LinkKind::Tool | LinkKind::Spindle { .. } => {}
                 LinkKind::Bed => carries_part = false,
                 LinkKind::Axis { name, primed } => {
-                    if primed != carries_part {
+                    sound &= self.is_on_its_side(&name, primed, carries_part, span.clone());
+                    let first = named.insert(name.clone());
+                    if !self.has_a_name_of_its_own(&name, first, span.clone()) {
                         sound = false;
-                        let message = if carries_part {
-                            format!(
-                                "{name} stands between the workpiece and the bed, so it carries the part: write {name}'"
-                            )
-                        } else {
-                            format!("{name}' is primed, but it stands between the bed and the tool")
-                        };
-                        let help = "a prime marks an axis that carries the workpiece (ISO 841); b is the bed";
-                        self.fault("machine-chain", span.clone(), message, help);
-                    }
-                    if !named.insert(name.clone()) {
-                        sound = false;
-                        let message = format!("{name} stands twice in the chain");
-                        self.fault("machine-chain", span, message, "");
-                        continue;
-                    }
-                    if let Some(meaning) = meaning_elsewhere(&name) {
-                        sound = false;
-                        let message = format!(
-                            "an axis cannot be called {name}: in the program of every control {meaning}"
-                        );
-                        let help = "rename it, here and in [axis]: X Y Z, U V W and P Q R slide, A B C turn (ISO 841)";
-                        self.fault("machine-axis", span, message, help);
                         continue;
                     }
                     match file.axis.get_ref().get(&name) {
@@ -119,6 +99,47 @@ impl Builder<'_> {
         sound.then_some(axes)
     }
 
+    /// An axis of the chain is primed if it carries the part, and not else.
+    fn is_on_its_side(
+        &mut self,
+        name: &str,
+        primed: bool,
+        carries_part: bool,
+        span: Range<usize>,
+    ) -> bool {
+        if primed != carries_part {
+            let message = if carries_part {
+                format!(
+                    "{name} stands between the workpiece and the bed, so it carries the part: write {name}'"
+                )
+            } else {
+                format!("{name}' is primed, but it stands between the bed and the tool")
+            };
+            let help = "a prime marks an axis that carries the workpiece (ISO 841); b is the bed";
+            self.fault("machine-chain", span, message, help);
+        }
+        primed == carries_part
+    }
+
+    /// The name of an axis stands in the chain once (`first`), and is no word of every control.
+    fn has_a_name_of_its_own(&mut self, name: &str, first: bool, span: Range<usize>) -> bool {
+        if !first {
+            let message = format!("{name} stands twice in the chain");
+            self.fault("machine-chain", span, message, "");
+            return false;
+        }
+        if let Some(meaning) = meaning_elsewhere(name) {
+            let message = format!(
+                "an axis cannot be called {name}: in the program of every control {meaning}"
+            );
+            let help =
+                "rename it, here and in [axis]: X Y Z, U V W and P Q R slide, A B C turn (ISO 841)";
+            self.fault("machine-axis", span, message, help);
+            return false;
+        }
+        true
+    }
+
     fn axis(
         &mut self,
         name: &str,
@@ -126,38 +147,9 @@ impl Builder<'_> {
         carries_part: bool,
     ) -> Option<Axis> {
         let axis: &AxisFile = spanned.get_ref();
-        let (rotary, direction) = match (&axis.linear, &axis.rotary) {
-            (Some(direction), None) => (false, direction),
-            (None, Some(direction)) => (true, direction),
-            _ => {
-                let message = format!("{name} must be linear or rotary, one of the two");
-                let help = "linear = [1, 0, 0] slides along X, rotary = [0, 0, 1] turns about Z";
-                self.fault("machine-axis", spanned.span(), message, help);
-                return None;
-            }
-        };
+        let joint = self.joint(name, spanned)?;
+        let rotary = joint.rotary;
         let unit = if rotary { 1f64.to_radians() } else { 1.0 };
-        let mut direction = self.direction(&format!("the direction of {name}"), direction)?;
-        if axis.reversed {
-            direction = -direction;
-        }
-        let point = match (&axis.point, rotary) {
-            (Some(point), true) => self.vector(point),
-            (None, true) => {
-                let message =
-                    format!("{name} turns, but the file does not say where its axis line runs");
-                let help = "point = [x, y, z], any point on the line, in the machine frame with all axes at zero";
-                self.fault("machine-axis", spanned.span(), message, help);
-                return None;
-            }
-            (Some(point), false) => {
-                let message = format!("{name} slides: a point means nothing to it");
-                let help = "take the point out";
-                self.fault("machine-axis", point[0].span(), message, help);
-                return None;
-            }
-            (None, false) => Vector3::zeros(),
-        };
         if axis.cyclic && !rotary {
             let message = format!("{name} slides: it cannot be cyclic");
             let help = "give its travel";
@@ -190,7 +182,7 @@ impl Builder<'_> {
             name: name.to_owned(),
             place: self.sources.place(spanned.span()),
             carries_part,
-            joint: Joint { rotary, direction, point },
+            joint,
             zero: zero * unit,
             travel,
             range,
@@ -204,6 +196,43 @@ impl Builder<'_> {
             max_jump,
             servo: None,
         })
+    }
+
+    /// Whether an axis slides or turns, in which direction, and about which line.
+    fn joint(&mut self, name: &str, spanned: &Spanned<AxisFile>) -> Option<Joint> {
+        let axis: &AxisFile = spanned.get_ref();
+        let (rotary, direction) = match (&axis.linear, &axis.rotary) {
+            (Some(direction), None) => (false, direction),
+            (None, Some(direction)) => (true, direction),
+            _ => {
+                let message = format!("{name} must be linear or rotary, one of the two");
+                let help = "linear = [1, 0, 0] slides along X, rotary = [0, 0, 1] turns about Z";
+                self.fault("machine-axis", spanned.span(), message, help);
+                return None;
+            }
+        };
+        let mut direction = self.direction(&format!("the direction of {name}"), direction)?;
+        if axis.reversed {
+            direction = -direction;
+        }
+        let point = match (&axis.point, rotary) {
+            (Some(point), true) => self.vector(point),
+            (None, true) => {
+                let message =
+                    format!("{name} turns, but the file does not say where its axis line runs");
+                let help = "point = [x, y, z], any point on the line, in the machine frame with all axes at zero";
+                self.fault("machine-axis", spanned.span(), message, help);
+                return None;
+            }
+            (Some(point), false) => {
+                let message = format!("{name} slides: a point means nothing to it");
+                let help = "take the point out";
+                self.fault("machine-axis", point[0].span(), message, help);
+                return None;
+            }
+            (None, false) => Vector3::zeros(),
+        };
+        Some(Joint { rotary, direction, point })
     }
 
     /// Least and largest value, mm or radians, counted from the drawing's zero; none if it turns without end.

@@ -165,7 +165,7 @@ impl Builder<'_> {
         let mut then = Vec::new();
         for name in names {
             let value = &leave.then[name];
-            then.extend(self.position((name, value), true, machine));
+            then.extend(self.position(name, value, true, machine));
         }
         let moves = |(place, _): &(usize, f64)| !machine.axes[*place].joint.rotary;
         let slides = machine.axes.iter().any(|axis| !axis.joint.rotary);
@@ -188,13 +188,14 @@ impl Builder<'_> {
 
     fn positions(&mut self, said: &Said, machine: &Machine) -> Vec<(usize, f64)> {
         let said = said.iter();
-        said.filter_map(|said| self.position(said, false, machine)).collect()
+        said.filter_map(|(name, value)| self.position(name, value, false, machine)).collect()
     }
 
     /// A position of an axis; `ends`: it may be that of an end of travel, by its name.
     fn position(
         &mut self,
-        (name, value): (&Spanned<String>, &KeyedNumber),
+        name: &Spanned<String>,
+        value: &KeyedNumber,
         ends: bool,
         machine: &Machine,
     ) -> Option<(usize, f64)> {

@@ -233,14 +233,14 @@ impl Builder<'_> {
         source: &str,
     ) -> Option<ProgramText> {
         let mut begin = 0;
-        let spans: Vec<(Range<usize>, Range<usize>)> = lines
+        let spans: Vec<LineSpans> = lines
             .get_ref()
             .0
             .iter()
             .map(|(line, span)| {
-                let part = begin..begin + line.len();
-                begin = part.end + 1;
-                (part, span.clone().unwrap_or(lines.span()))
+                let template = begin..begin + line.len();
+                begin = template.end + 1;
+                LineSpans { template, file: span.clone().unwrap_or(lines.span()) }
             })
             .collect();
         let read = TextTemplate::parse(source);
@@ -251,7 +251,7 @@ impl Builder<'_> {
                 template,
                 places: spans
                     .into_iter()
-                    .map(|(part, span)| (part, self.sources.place(span)))
+                    .map(|spans| (spans.template, self.sources.place(spans.file)))
                     .collect(),
             }),
             Err(TemplateFault { message, span }) => {
@@ -265,13 +265,17 @@ impl Builder<'_> {
     }
 }
 
+/// Where a line of a template stands, bytes: in the text of the template, and in the file, with its quotes.
+struct LineSpans {
+    template: Range<usize>,
+    file: Range<usize>,
+}
+
 /// The bytes of the file that are those of a template, where its line is written as it is read, without escapes.
-fn file_span(
-    lines: &[(Range<usize>, Range<usize>)],
-    fault: &Range<usize>,
-    whole: Range<usize>,
-) -> Range<usize> {
-    let Some((line, raw)) = lines.iter().find(|(line, _)| fault.start <= line.end) else {
+fn file_span(lines: &[LineSpans], fault: &Range<usize>, whole: Range<usize>) -> Range<usize> {
+    let Some(LineSpans { template: line, file: raw }) =
+        lines.iter().find(|spans| fault.start <= spans.template.end)
+    else {
         return whole;
     };
     // A quote at both ends.

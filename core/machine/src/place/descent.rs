@@ -71,14 +71,23 @@ pub fn spread(
     found
 }
 
-/// Goes from `start`, which costs `cost`, by steps along the axes to where none of them costs less; `cost_at` gives none
-/// where the part cannot sit. Gives the point and its cost. The result is a local optimum within the steps, no more.
+/// A place of the part, mm, machine frame, and what it costs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MountCost {
+    /// The place.
+    pub mount: Vector3<f64>,
+    /// Its cost.
+    pub cost: f64,
+}
+
+/// Goes from `start` by steps along the axes to where none of them costs less; `cost_at` gives none where the part cannot
+/// sit. The result is a local optimum within the steps, no more.
 pub fn descend(
-    (start, cost): (Vector3<f64>, f64),
+    start: MountCost,
     steps: &[f64],
     mut cost_at: impl FnMut(Vector3<f64>) -> Option<f64>,
-) -> (Vector3<f64>, f64) {
-    let (mut best, mut least) = (start, cost);
+) -> MountCost {
+    let MountCost { mount: mut best, cost: mut least } = start;
     for step in steps {
         // The way that helped last is tried again first.
         let mut ways: Vec<(usize, f64)> =
@@ -98,5 +107,5 @@ pub fn descend(
             }
         }
     }
-    (best, least)
+    MountCost { mount: best, cost: least }
 }

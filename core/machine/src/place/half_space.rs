@@ -28,8 +28,14 @@ const PARALLEL: f64 = 1e-7;
 /// The farthest that a mount is searched, mm, and the largest room that is told apart.
 const FARTHEST: f64 = 1e6;
 
-/// A plane that the point must lie on: unit normal, across those of the planes before it, and distance from the origin.
-type Plane = (Vector3<f64>, f64);
+/// A plane that the point must lie on.
+#[derive(Clone, Copy, Debug)]
+struct ActivePlane {
+    /// Unit normal, square to those of the planes before it.
+    normal: Vector3<f64>,
+    /// From the origin, mm.
+    distance: f64,
+}
 
 /// The point with at least `room` to every end that is nearest to `wished`; none if there is no such point.
 ///
@@ -44,11 +50,11 @@ fn on_planes(
     bodies: &[HalfSpace],
     wished: &Vector3<f64>,
     room: f64,
-    planes: &mut Vec<Plane>,
+    planes: &mut Vec<ActivePlane>,
 ) -> Option<Vector3<f64>> {
-    let foot = |planes: &[Plane]| {
+    let foot = |planes: &[ActivePlane]| {
         let steps = planes.iter();
-        let steps = steps.map(|(normal, distance)| normal * (distance - normal.dot(wished)));
+        let steps = steps.map(|plane| plane.normal * (plane.distance - plane.normal.dot(wished)));
         wished + steps.sum::<Vector3<f64>>()
     };
     let mut point = foot(planes);
@@ -59,16 +65,16 @@ fn on_planes(
         // The nearest point lies on the plane that was passed: of all before it the nearest was known, and from there to
         // any point that keeps this one as well the plane is crossed.
         let (mut normal, mut distance) = (body.normal, body.most - room);
-        for (other, at) in planes.iter() {
-            let share = body.normal.dot(other);
-            normal -= other * share;
-            distance -= at * share;
+        for plane in planes.iter() {
+            let share = body.normal.dot(&plane.normal);
+            normal -= plane.normal * share;
+            distance -= plane.distance * share;
         }
         let length = normal.norm();
         if length < PARALLEL * body.normal.norm().max(PARALLEL) {
             return None;
         }
-        planes.push((normal / length, distance / length));
+        planes.push(ActivePlane { normal: normal / length, distance: distance / length });
         let next = on_planes(&bodies[..index], wished, room, planes);
         planes.pop();
         point = next?;

@@ -11,6 +11,6 @@ mod descent;
 mod half_space;
 mod room;
 
-pub use descent::{descend, rounded, spread};
+pub use descent::{MountCost, descend, rounded, spread};
 pub use half_space::{HalfSpace, Tight, most_room, nearest, shuffled};
 pub use room::{MountConstraint, MountRoom, TravelEnd, opened};

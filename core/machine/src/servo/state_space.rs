@@ -177,113 +177,197 @@ impl StateIndices {
     }
 }
 
+/// Makes the equations of [`Loops`], a row for the derivative of each state.
+///
 /// Everything on the motor's shaft is seen at the axis: a torque T is the force T/ρ there, an inertia J the mass J/ρ².
+struct LoopEquations<'a> {
+    loops: &'a Loops,
+    mechanics: Mechanics,
+    places: StateIndices,
+    /// One unit of the axis in m or radians.
+    length: f64,
+    rows: Vec<(usize, Signal)>,
+}
+
+/// How forces enter the states of a servo.
+struct ForceColumns {
+    /// Friction on the table.
+    push: DVector<f64>,
+    /// The transmission, between motor and table.
+    transmission: DVector<f64>,
+}
+
 /// `length` is one unit of the axis in m or radians.
 fn of_loops(loops: &Loops, length: f64) -> StateSpace {
     let mechanics = loops.drive.mechanics();
     let places = StateIndices::of(loops, &mechanics);
-    let order = places.order;
-    let travel = mechanics.travel;
-    let state = |place: usize| Signal::state(order, place);
-    let command = |times: usize| Signal::command(order, times).times(length);
-    let motor_mass = loops.motor_inertia / (travel * travel);
-    let motor_damping = (loops.motor_damping + mechanics.shaft_damping) / (travel * travel);
-    let velocity_gain = loops.velocity_gain / (travel * travel);
-    let [motor, motor_velocity] = [state(places.motor), state(places.motor + 1)];
-    let [table, table_velocity] = [state(places.table), state(places.table + 1)];
-    let measured = match loops.feedback {
-        Feedback::Scale => &table,
-        Feedback::Motor => &motor,
-    };
+    let mut equations = LoopEquations { loops, mechanics, places, length, rows: Vec::new() };
+    let wanted = equations.velocity_loop();
+    let force = equations.current_loop(wanted);
+    let forces = equations.motion(&force);
+    equations.state_space(forces)
+}
 
-    let mut rows: Vec<(usize, Signal)> = Vec::new();
-    let velocity_error = command(0)
-        .plus(-1.0, measured)
-        .times(loops.kv)
-        .plus(loops.velocity_feed_forward, &command(1))
-        .plus(-1.0, &motor_velocity);
-    let mut wanted = velocity_error
-        .times(velocity_gain)
-        .plus(loops.acceleration_feed_forward * (motor_mass + mechanics.mass), &command(2));
-    if let (Some(place), Some(time)) = (places.velocity_integral, loops.velocity_time) {
-        wanted = wanted.plus(velocity_gain / time, &state(place));
-        rows.push((place, velocity_error));
+impl LoopEquations<'_> {
+    fn state(&self, place: usize) -> Signal {
+        Signal::state(self.places.order, place)
     }
-    let force = match (&loops.current, places.current) {
-        (Some(current), Some(place)) => {
-            let newtons_per_ampere = current.torque_constant / travel;
-            let error = wanted.times(1.0 / newtons_per_ampere).plus(-1.0, &state(place));
-            let mut voltage = error
-                .times(current.gain)
-                .plus(-current.resistance, &state(place))
-                .plus(-current.back_emf / travel, &motor_velocity);
-            if let (Some(integral), Some(time)) = (places.current_integral, current.time) {
-                voltage = voltage.plus(current.gain / time, &state(integral));
-                rows.push((integral, error));
+
+    /// The derivative of the commanded position so many times, m or radians.
+    fn command(&self, times: usize) -> Signal {
+        Signal::command(self.places.order, times).times(self.length)
+    }
+
+    /// Position and velocity of the motor.
+    fn motor(&self) -> [Signal; 2] {
+        [self.state(self.places.motor), self.state(self.places.motor + 1)]
+    }
+
+    /// Position and velocity of the table.
+    fn table(&self) -> [Signal; 2] {
+        [self.state(self.places.table), self.state(self.places.table + 1)]
+    }
+
+    /// The position that the loop is closed over.
+    fn measured(&self) -> Signal {
+        match self.loops.feedback {
+            Feedback::Scale => self.state(self.places.table),
+            Feedback::Motor => self.state(self.places.motor),
+        }
+    }
+
+    fn motor_mass(&self) -> f64 {
+        let travel = self.mechanics.travel;
+        self.loops.motor_inertia / (travel * travel)
+    }
+
+    /// The loops of position and velocity: the force that they ask for.
+    fn velocity_loop(&mut self) -> Signal {
+        let loops = self.loops;
+        let travel = self.mechanics.travel;
+        let velocity_gain = loops.velocity_gain / (travel * travel);
+        let [_, motor_velocity] = self.motor();
+        let velocity_error = self
+            .command(0)
+            .plus(-1.0, &self.measured())
+            .times(loops.kv)
+            .plus(loops.velocity_feed_forward, &self.command(1))
+            .plus(-1.0, &motor_velocity);
+        let mass = self.motor_mass() + self.mechanics.mass;
+        let mut wanted = velocity_error
+            .times(velocity_gain)
+            .plus(loops.acceleration_feed_forward * mass, &self.command(2));
+        if let (Some(place), Some(time)) = (self.places.velocity_integral, loops.velocity_time) {
+            wanted = wanted.plus(velocity_gain / time, &self.state(place));
+            self.rows.push((place, velocity_error));
+        }
+        wanted
+    }
+
+    /// The current loop, if there is one: the force that the motor makes where `wanted` is asked for.
+    fn current_loop(&mut self, wanted: Signal) -> Signal {
+        let (Some(current), Some(place)) = (&self.loops.current, self.places.current) else {
+            return wanted;
+        };
+        let travel = self.mechanics.travel;
+        let [_, motor_velocity] = self.motor();
+        let newtons_per_ampere = current.torque_constant / travel;
+        let error = wanted.times(1.0 / newtons_per_ampere).plus(-1.0, &self.state(place));
+        let mut voltage = error
+            .times(current.gain)
+            .plus(-current.resistance, &self.state(place))
+            .plus(-current.back_emf / travel, &motor_velocity);
+        if let (Some(integral), Some(time)) = (self.places.current_integral, current.time) {
+            voltage = voltage.plus(current.gain / time, &self.state(integral));
+            self.rows.push((integral, error));
+        }
+        self.rows.push((place, voltage.times(1e3 / current.inductance)));
+        self.state(place).times(newtons_per_ampere)
+    }
+
+    /// How motor and table go under the motor's force.
+    fn motion(&mut self, force: &Signal) -> ForceColumns {
+        let Mechanics { travel, mass, damping, .. } = self.mechanics;
+        let (motor, order) = (self.places.motor, self.places.order);
+        let motor_mass = self.motor_mass();
+        let motor_damping =
+            (self.loops.motor_damping + self.mechanics.shaft_damping) / (travel * travel);
+        let [_, motor_velocity] = self.motor();
+        let [_, table_velocity] = self.table();
+        let shaft = force.clone().plus(-motor_damping, &motor_velocity);
+        self.rows.push((motor, motor_velocity.clone()));
+        let mut forces =
+            ForceColumns { push: DVector::zeros(order), transmission: DVector::zeros(order) };
+        if let Some(stiffness) = self.mechanics.stiffness {
+            let table = self.places.table;
+            let spring = self
+                .stretch()
+                .times(stiffness)
+                .plus(self.mechanics.stiffness_damping, &motor_velocity)
+                .plus(-self.mechanics.stiffness_damping, &table_velocity);
+            self.rows.push((motor + 1, shaft.plus(-1.0, &spring).times(1.0 / motor_mass)));
+            self.rows.push((table, table_velocity.clone()));
+            let driven = spring.plus(-damping, &table_velocity);
+            self.rows.push((table + 1, driven.times(1.0 / mass)));
+            forces.push[table + 1] = -1.0 / mass;
+            forces.transmission[motor + 1] = -1.0 / motor_mass;
+            forces.transmission[table + 1] = 1.0 / mass;
+        } else {
+            let mass = motor_mass + mass;
+            let driven = shaft.plus(-damping, &motor_velocity);
+            self.rows.push((motor + 1, driven.times(1.0 / mass)));
+            forces.push[motor + 1] = -1.0 / mass;
+        }
+        forces
+    }
+
+    /// How far the transmission is stretched: motor minus table.
+    fn stretch(&self) -> Signal {
+        let ([motor, _], [table, _]) = (self.motor(), self.table());
+        motor.plus(-1.0, &table)
+    }
+
+    /// The rows, as matrices.
+    fn state_space(mut self, forces: ForceColumns) -> StateSpace {
+        let order = self.places.order;
+        let mut a = DMatrix::zeros(order, order);
+        let mut inputs = [0, 1, 2].map(|_| DVector::zeros(order));
+        for (place, signal) in std::mem::take(&mut self.rows) {
+            a.row_mut(place).copy_from(&signal.states);
+            for (input, factor) in inputs.iter_mut().zip(signal.command) {
+                input[place] = factor;
             }
-            rows.push((place, voltage.times(1e3 / current.inductance)));
-            state(place).times(newtons_per_ampere)
         }
-        _ => wanted,
-    };
-
-    let shaft = force.plus(-motor_damping, &motor_velocity);
-    rows.push((places.motor, motor_velocity.clone()));
-    let stretch = motor.clone().plus(-1.0, &table);
-    let mut push = DVector::zeros(order);
-    let mut inner = DVector::zeros(order);
-    if let Some(stiffness) = mechanics.stiffness {
-        let spring = stretch
-            .times(stiffness)
-            .plus(mechanics.stiffness_damping, &motor_velocity)
-            .plus(-mechanics.stiffness_damping, &table_velocity);
-        let mass = mechanics.mass;
-        rows.push((places.motor + 1, shaft.plus(-1.0, &spring).times(1.0 / motor_mass)));
-        rows.push((places.table, table_velocity.clone()));
-        let driven = spring.plus(-mechanics.damping, &table_velocity);
-        rows.push((places.table + 1, driven.times(1.0 / mass)));
-        push[places.table + 1] = -1.0 / mass;
-        inner[places.motor + 1] = -1.0 / motor_mass;
-        inner[places.table + 1] = 1.0 / mass;
-    } else {
-        let mass = motor_mass + mechanics.mass;
-        let driven = shaft.plus(-mechanics.damping, &motor_velocity);
-        rows.push((places.motor + 1, driven.times(1.0 / mass)));
-        push[places.motor + 1] = -1.0 / mass;
-    }
-
-    let mut a = DMatrix::zeros(order, order);
-    let mut inputs = [0, 1, 2].map(|_| DVector::zeros(order));
-    for (place, signal) in rows {
-        a.row_mut(place).copy_from(&signal.states);
-        for (input, factor) in inputs.iter_mut().zip(signal.command) {
-            input[place] = factor;
+        let ForceColumns { push, transmission } = forces;
+        let [_, motor_velocity] = self.motor();
+        let [table, table_velocity] = self.table();
+        let damping = self.mechanics.stiffness_damping;
+        let released = self.mechanics.stiffness.map(|stiffness| {
+            let stretch = self.stretch().states;
+            let handed = stretch.clone() * stiffness
+                + (&motor_velocity.states - &table_velocity.states) * damping;
+            Released {
+                a: &a - &transmission * handed,
+                force: transmission,
+                stretch,
+                stiffness,
+                damping,
+            }
+        });
+        let [value, rate, jump] = inputs;
+        let axis_units = 1.0 / self.length;
+        StateSpace {
+            a,
+            value,
+            rate,
+            jump,
+            push,
+            position: &table.states * axis_units,
+            measured: &self.measured().states * axis_units,
+            velocity: table_velocity.states,
+            through: 0.0,
+            released,
         }
-    }
-    let released = mechanics.stiffness.map(|stiffness| {
-        let handed = stretch.states.clone() * stiffness
-            + (&motor_velocity.states - &table_velocity.states) * mechanics.stiffness_damping;
-        Released {
-            a: &a - &inner * handed,
-            force: inner,
-            stretch: stretch.states,
-            stiffness,
-            damping: mechanics.stiffness_damping,
-        }
-    });
-    let [value, rate, jump] = inputs;
-    let axis_units = 1.0 / length;
-    StateSpace {
-        a,
-        value,
-        rate,
-        jump,
-        push,
-        position: &table.states * axis_units,
-        measured: &measured.states * axis_units,
-        velocity: table_velocity.states,
-        through: 0.0,
-        released,
     }
 }
 

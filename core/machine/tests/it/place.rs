@@ -4,7 +4,9 @@
 use nalgebra::{Matrix3, Vector3};
 use post_machine::description::{Machine, Source, load};
 use post_machine::kinematics::Joints;
-use post_machine::place::{HalfSpace, MountRoom, descend, most_room, nearest, rounded, shuffled};
+use post_machine::place::{
+    HalfSpace, MountCost, MountRoom, descend, most_room, nearest, rounded, shuffled,
+};
 use post_testkit::{Rng, at_least, randomised};
 use post_testmachines::Reference;
 
@@ -124,9 +126,9 @@ fn few_decimals_and_a_way_down() {
     // A bowl: the steps lead to its bottom as near as the last of them.
     let bottom = Vector3::new(33.0, -41.0, 5.0);
     let cost = |point: Vector3<f64>| (point.x < 50.0).then(|| 1.0 + (point - bottom).norm());
-    let start = (Vector3::zeros(), 1.0 + bottom.norm());
-    let (found, least) = descend(start, &[100.0, 30.0, 10.0, 1.0], cost);
-    assert_eq!((found, least), (bottom, 1.0));
+    let start = MountCost { mount: Vector3::zeros(), cost: 1.0 + bottom.norm() };
+    let least = descend(start, &[100.0, 30.0, 10.0, 1.0], cost);
+    assert_eq!(least, MountCost { mount: bottom, cost: 1.0 });
 }
 
 fn machine(name: &str, mount: Vector3<f64>) -> Machine {

@@ -3,7 +3,7 @@
 use post_machine::kinematics::{Joints, MAX_AXES};
 
 use super::spread::ContourPeak;
-use crate::{ProgramPlace, VelocityJump};
+use crate::VelocityJump;
 
 /// The largest values of one axis; mm, s, radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,7 +44,8 @@ impl AxesPeaks {
     pub fn take(
         &mut self,
         axes: usize,
-        at: (f64, &ProgramPlace),
+        time: f64,
+        line: u64,
         period: f64,
         joints: [&Joints; 2],
         jumps: &[VelocityJump],
@@ -55,11 +56,11 @@ impl AxesPeaks {
         let [mut bent, next] = self.bends;
         self.bends = [next, Joints::default()];
         for jump in jumps {
-            let behind = ((at.0 - jump.time) * rate).clamp(0.0, 1.0);
+            let behind = ((time - jump.time) * rate).clamp(0.0, 1.0);
             for (axis, change) in jump.change.iter().enumerate() {
                 jumped[axis] += change * behind;
                 self.rest[axis] += change * (1.0 - behind);
-                raise(&mut self.peaks[axis].jump, *change, at);
+                raise(&mut self.peaks[axis].jump, *change, time, line);
             }
             let before = 1.0 - behind;
             for (axis, bend) in jump.bend.iter().enumerate() {
@@ -73,15 +74,15 @@ impl AxesPeaks {
             let acceleration = (velocity - self.velocity[axis] - jumped[axis]) * rate;
             let jerk = (acceleration - self.acceleration[axis] - bent[axis]) * rate;
             let peaks = &mut self.peaks[axis];
-            raise(&mut peaks.following, commanded[axis] - actual[axis], at);
+            raise(&mut peaks.following, commanded[axis] - actual[axis], time, line);
             if self.count > 0 {
-                raise(&mut peaks.velocity, velocity, at);
+                raise(&mut peaks.velocity, velocity, time, line);
             }
             if self.count > 1 {
-                raise(&mut peaks.acceleration, acceleration, at);
+                raise(&mut peaks.acceleration, acceleration, time, line);
             }
             if self.count > 2 {
-                raise(&mut peaks.jerk, jerk, at);
+                raise(&mut peaks.jerk, jerk, time, line);
             }
             self.velocity[axis] = velocity;
             self.acceleration[axis] = acceleration;
@@ -92,9 +93,9 @@ impl AxesPeaks {
 }
 
 #[inline]
-fn raise(peak: &mut ContourPeak, value: f64, (time, at): (f64, &ProgramPlace)) {
+fn raise(peak: &mut ContourPeak, value: f64, time: f64, line: u64) {
     let value = value.abs();
     if value > peak.value {
-        *peak = ContourPeak { value, time, line: at.line, ..ContourPeak::default() };
+        *peak = ContourPeak { value, time, line, ..ContourPeak::default() };
     }
 }

@@ -39,7 +39,7 @@ use axes::AxesPeaks;
 pub use axes::AxisPeaks;
 use course::FollowedPath;
 pub use leg::{ContourLeg, ReferencePath};
-use path::{CommandedPath, Knot, PassedSetPoint};
+use path::{CommandedPath, CommandedTip, Knot, PassedSetPoint};
 pub use report::{AskedPoint, ContourPoint, ContourReport};
 use spline::FivePoints;
 pub use spread::{ContourPeak, ValueSpread};
@@ -60,6 +60,15 @@ struct PendingSetPoint {
     actual: Pose,
 }
 
+/// A set-point of the commanded path: its number, what of the program it belongs to, tip in mm and tool axis, part frame.
+#[derive(Clone, Copy, Debug, Default)]
+struct PathSetPoint {
+    number: u64,
+    at: ProgramPlace,
+    tip: Vector3<f64>,
+    axis: Vector3<f64>,
+}
+
 /// Finds contour errors of one batch of set-points after the other.
 #[derive(Default)]
 pub struct Contour<'r> {
@@ -72,7 +81,7 @@ pub struct Contour<'r> {
     solver: Option<Arc<Solver>>,
     path: CommandedPath,
     /// The last three set-points, of which the first becomes the next knot, and how many of them are real.
-    window: [(u64, ProgramPlace, Vector3<f64>, Vector3<f64>); 3],
+    window: [PathSetPoint; 3],
     /// The differences of tips and tool axes by which the path passes it.
     tips: FivePoints,
     tool_axes: FivePoints,
@@ -142,7 +151,7 @@ impl<'r> Contour<'r> {
             let jumped = jumps.partition_point(|jump| jump.time <= time);
             let (now, later) = jumps.split_at(jumped);
             jumps = later;
-            self.axes.take(axes, (time, &at), points.period, [joints, actual], now);
+            self.axes.take(axes, time, at.line, points.period, [joints, actual], now);
             self.report.seconds = time;
             let commanded = points.poses[place];
             let number = points.first + place as u64;
@@ -153,7 +162,7 @@ impl<'r> Contour<'r> {
                 commanded,
                 actual: chain.forward(actual),
             });
-            self.knot((number, at, commanded.tip, commanded.axis));
+            self.knot(PathSetPoint { number, at, tip: commanded.tip, axis: commanded.axis });
             self.settled(self.lead, listen);
         }
     }
@@ -179,19 +188,19 @@ impl<'r> Contour<'r> {
     }
 
     /// Takes the next set-point of the path: the one two before it becomes a knot.
-    fn knot(&mut self, point: (u64, ProgramPlace, Vector3<f64>, Vector3<f64>)) {
+    fn knot(&mut self, point: PathSetPoint) {
         if self.filled == 0 {
             self.window = [point; 3];
             (self.tips, self.tool_axes) =
-                (FivePoints::all_at(&point.2), FivePoints::all_at(&point.3));
+                (FivePoints::all_at(&point.tip), FivePoints::all_at(&point.axis));
         }
         self.window = [self.window[1], self.window[2], point];
-        let ways = [self.tips.take(&point.2), self.tool_axes.take(&point.3)];
+        let ways = [self.tips.take(&point.tip), self.tool_axes.take(&point.axis)];
         self.filled = (self.filled + 1).min(3);
         if self.filled < 3 {
             return;
         }
-        let (number, at, tip, axis) = self.window[0];
+        let PathSetPoint { number, at, tip, axis } = self.window[0];
         self.path.push(Knot {
             number,
             at,
@@ -221,7 +230,7 @@ impl<'r> Contour<'r> {
 
     fn tell(&mut self, point: &PendingSetPoint, listen: &mut dyn FnMut(&ContourPoint)) {
         let actual = point.actual;
-        let commanded = (point.number, &point.commanded.tip);
+        let commanded = CommandedTip { number: point.number, tip: point.commanded.tip };
         let nearest = self.path.nearest(&actual, commanded);
         let at = nearest.at;
         let axis = angle(&actual.axis, &nearest.axis);

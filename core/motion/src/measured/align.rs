@@ -10,7 +10,7 @@ use post_machine::kinematics::{Joints, MAX_AXES};
 
 use super::AxisTrack;
 use super::settle::{self, AxisLevel, LogRows, Residual, SettledShift};
-use super::shifts::shifts;
+use super::shifts::{WeightedAxis, shifts};
 
 /// Rows by which shifts are compared with one another.
 const ROWS_COMPARED: usize = 4096;
@@ -94,9 +94,11 @@ pub fn align(
         return Err(AlignmentFault::Short(FEWEST));
     }
     let weighted = axes.iter();
-    let weighted: Vec<(usize, f64)> =
-        weighted.filter_map(|axis| Some((*axis, weight(predicted, log, *axis)?))).collect();
-    let moving: Vec<usize> = weighted.iter().map(|(axis, _)| *axis).collect();
+    let weighted = weighted.filter_map(|axis| {
+        Some(WeightedAxis { axis: *axis, weight: weight(predicted, log, *axis)? })
+    });
+    let weighted: Vec<WeightedAxis> = weighted.collect();
+    let moving: Vec<usize> = weighted.iter().map(|weighted| weighted.axis).collect();
     let began = log.begins - predicted.begins;
     let tried = shifts(predicted, log, &weighted);
     let both = AlignedTracks { predicted, axes: &moving, step: predicted.period.max(log.period) };

@@ -22,9 +22,16 @@ const LEAST_MOVED: f64 = 0.1;
 /// Means that lie over one another at least.
 const FEWEST: usize = 8;
 
+/// An axis by its place in the chain, and what its values are multiplied by, squared.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WeightedAxis {
+    pub axis: usize,
+    pub weight: f64,
+}
+
 /// Shifts, s, the beginnings of both apart, at which `log` is most like `predicted`: the best one first. Each of `axes`
 /// has its weight.
-pub(super) fn shifts(predicted: &AxisTrack, log: &AxisTrack, axes: &[(usize, f64)]) -> Vec<f64> {
+pub(super) fn shifts(predicted: &AxisTrack, log: &AxisTrack, axes: &[WeightedAxis]) -> Vec<f64> {
     let mut step = predicted.period.max(log.period);
     let mut both = [predicted, log].map(|track| MeanTrack::of(track, step, axes));
     while both[0].count() + both[1].count() > MOST_MEANS
@@ -51,7 +58,7 @@ struct MeanTrack {
 }
 
 impl MeanTrack {
-    fn of(track: &AxisTrack, step: f64, axes: &[(usize, f64)]) -> Self {
+    fn of(track: &AxisTrack, step: f64, axes: &[WeightedAxis]) -> Self {
         let count = libm::floor(track.seconds() / step + 1e-6) as usize + 1;
         let same = track.period == step;
         let mut values = vec![Vec::with_capacity(count); axes.len()];
@@ -62,7 +69,7 @@ impl MeanTrack {
                     .at(track.begins + place as f64 * step)
                     .unwrap_or_else(|| track.joints[track.joints.len() - 1]),
             };
-            for (values, (axis, weight)) in values.iter_mut().zip(axes) {
+            for (values, WeightedAxis { axis, weight }) in values.iter_mut().zip(axes) {
                 values.push(joints[*axis] * weight.sqrt());
             }
         }

@@ -392,7 +392,7 @@ impl ClWriter {
                 if stays && self.arc_fits(piece, *centre, *normal) =>
             {
                 self.feed(piece.kind, feed, out);
-                self.arc(piece, (*centre, *normal, *sweep), out);
+                self.arc(piece, *centre, *normal, *sweep, out);
             }
             Curve::Spline(way) if stays && is_nurbs(way) && self.at(&piece.from) => {
                 self.feed(piece.kind, feed, out);
@@ -419,7 +419,9 @@ impl ClWriter {
     fn arc(
         &mut self,
         piece: &CoursePiece,
-        (centre, normal, sweep): (Vector3<f64>, Vector3<f64>, f64),
+        centre: Vector3<f64>,
+        normal: Vector3<f64>,
+        sweep: f64,
         out: &mut String,
     ) {
         // A reader takes ends that nearly meet for a whole turn, and less than a turn else.

@@ -10,6 +10,7 @@ use super::block_words::BlockWords;
 use super::go::MotionTarget;
 use super::state::ControlState;
 use crate::Curve;
+use crate::g_code::GCode;
 
 /// Start and end lie on one circle if their radii differ by no more than this, mm, and by this share of the radius: the
 /// decimals of an inch program, and the rounding of a centre far away.
@@ -82,7 +83,7 @@ impl ControlState {
         clockwise: bool,
         words: &mut BlockWords,
     ) -> Result<f64, Box<Diagnostic>> {
-        let code = if clockwise { 20 } else { 30 };
+        let code = GCode::whole(if clockwise { 2 } else { 3 });
         let counted = self.lexicon.letter_beside(code, b'P') == Some(Meaning::Turns);
         let turns = match words.turns {
             Some(turns) => turns,

@@ -11,6 +11,7 @@ use super::block_words::{BlockWords, bit};
 use super::go::MotionTarget;
 use super::state::{ControlState, FeedMeaning, MotionMode};
 use super::{cycles, frames, names, planes};
+use crate::g_code::GCode;
 use crate::lexicon::WordMeaning;
 use crate::{Curve, MotionKind, ProgramEvent};
 
@@ -23,28 +24,30 @@ pub(super) struct BlockRequest {
     pub reference: Option<u8>,
     /// A wait.
     pub dwell: bool,
-    /// A cycle: ten times its number, and what it does.
-    pub cycle: Option<(u16, Meaning)>,
+    /// A cycle: its G code, if it begins by one, and what it does.
+    pub cycle: Option<(Option<GCode>, Meaning)>,
     /// Whether the cycle ends.
     pub cycle_off: bool,
-    /// A tilted plane begins: ten times the number of its word.
-    pub plane: Option<u16>,
-    /// The axes turn to the plane: ten times the number of the word.
-    pub plane_turn: Option<u16>,
+    /// A tilted plane begins by this code.
+    pub plane: Option<GCode>,
+    /// The axes turn to the plane by this code.
+    pub plane_turn: Option<GCode>,
     /// Whether the tilted plane ends.
     pub plane_off: bool,
-    /// A shift or a turn of the coordinates: ten times the number of its word, and its meaning.
-    pub frame: Option<(u16, Meaning)>,
-    /// A work offset: ten times its number.
-    pub work: Option<u16>,
-    /// Length compensation on: ten times the number of its word, or 0 of a word without one.
-    pub length_on: Option<u16>,
+    /// A shift or a turn of the coordinates: its code and its meaning.
+    pub frame: Option<(GCode, Meaning)>,
+    /// A work offset.
+    pub work: Option<GCode>,
+    /// Whether length compensation goes on.
+    pub length_on: bool,
     /// Length compensation by the length that the block names.
     pub length_stated: bool,
     /// Whether length compensation goes off.
     pub length_off: bool,
-    /// Tool centre point control on: ten times the number of its word, 0 of a word without G.
-    pub tcp_on: Option<u16>,
+    /// Whether tool centre point control goes on.
+    pub tcp_on: bool,
+    /// The G code that switches it on; none of a name.
+    pub tcp_code: Option<GCode>,
     /// Whether tool axes are written as vectors.
     pub vectors: bool,
     /// Whether tool centre point control goes off.
@@ -61,8 +64,8 @@ pub(super) struct BlockRequest {
     pub coolant_off: bool,
     /// The program stops.
     pub stop: Option<Meaning>,
-    /// A thread or tap without a cycle: ten times the number of its word, and its meaning.
-    pub thread: Option<(u16, Meaning)>,
+    /// A thread or tap without a cycle: its code and its meaning.
+    pub thread: Option<(GCode, Meaning)>,
     /// A probing move.
     pub probe: bool,
     /// Whether this block goes at rapid.
@@ -170,7 +173,7 @@ impl ControlState {
     #[inline]
     fn g_code(
         &mut self,
-        code: u16,
+        code: GCode,
         words: &mut BlockWords,
         asked: &mut BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
@@ -201,32 +204,27 @@ impl ControlState {
     /// A G code that is no motion.
     fn other_g(
         &mut self,
-        code: u16,
+        code: GCode,
         sense: WordMeaning,
         words: &mut BlockWords,
         asked: &mut BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
-        let name = f64::from(code) / 10.0;
         match sense {
-            WordMeaning::Means(meaning) => self.meant(code, meaning, words, asked),
-            WordMeaning::Refused => Err(self.not_followed(code)),
+            WordMeaning::Means(meaning) => self.meant(Some(code), meaning, words, asked),
+            WordMeaning::Refused => Err(self.not_followed(Some(code))),
             WordMeaning::Unknown => {
                 let help = "a G code may change where the machine goes, so none is passed over";
-                let message = format!("G{name} is no word that is known of this control");
+                let message = format!("{code} is no word that is known of this control");
                 let finding = Diagnostic::error("nc-word", message).help(help);
                 Err(self.placed(finding).boxed())
             }
         }
     }
 
-    /// A word whose meaning is known and that is not run; `code` is ten times the number after G, 0 of other words.
+    /// A word whose meaning is known and that is not run; `code` is its G code, if it has one.
     #[cold]
-    pub(super) fn not_followed(&self, code: u16) -> Box<Diagnostic> {
-        let word = if code == 0 {
-            "a word of this block".to_owned()
-        } else {
-            format!("G{}", f64::from(code) / 10.0)
-        };
+    pub(super) fn not_followed(&self, code: Option<GCode>) -> Box<Diagnostic> {
+        let word = code.map_or_else(|| "a word of this block".to_owned(), |code| code.to_string());
         let message = format!("{word} is not run: what the machine does then is not followed");
         self.refuse("nc-word", message)
     }
@@ -254,10 +252,12 @@ impl ControlState {
                 asked.change_or_stop = true;
                 Ok(())
             }
+            WordMeaning::Means(Meaning::CoolantOn) => {
+                asked.coolant = Some(code);
+                Ok(())
+            }
             WordMeaning::Means(meaning) => {
-                // `meant` takes ten times the number, as of G.
-                let code = if meaning == Meaning::CoolantOn { code * 10 } else { 0 };
-                self.meant(code, meaning, &mut BlockWords::default(), asked)
+                self.meant(None, meaning, &mut BlockWords::default(), asked)
             }
             WordMeaning::Refused => Err(self.refuse(
                 "nc-word",
@@ -394,7 +394,7 @@ impl ControlState {
             return Ok(());
         }
         if self.cycles.in_force() && moving {
-            return cycles::hole(self, 0, None, words);
+            return cycles::hole(self, None, None, words);
         }
         self.plain_motion(words, asked.rapid)
     }

@@ -6,6 +6,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 
 use super::state::ControlState;
+use crate::g_code::GCode;
 
 /// Most G or M words in one block.
 const CODES: usize = 24;
@@ -27,10 +28,10 @@ pub(super) struct BlockWords {
     pub approaches: [Option<Approach>; 26],
     /// Bits of letters that a word of the block has made use of.
     pub used: u32,
-    /// Ten times the numbers after G, in order.
-    pub g: CodeNumbers,
+    /// The G codes, in order.
+    pub g: CodeList<GCode>,
     /// The numbers after M.
-    pub m: CodeNumbers,
+    pub m: CodeList<u16>,
     /// Bits of letters whose number has a decimal point.
     pub pointed: u32,
     /// Bits of letters whose number has none and is not zero.
@@ -49,22 +50,22 @@ pub(super) struct BlockWords {
     pub named_values: Joints,
 }
 
-/// Numbers after a letter.
+/// Codes of a letter.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct CodeNumbers {
-    list: [u16; CODES],
+pub(super) struct CodeList<C> {
+    list: [C; CODES],
     count: usize,
 }
 
-impl CodeNumbers {
-    /// The numbers.
+impl<C: Copy + PartialEq> CodeList<C> {
+    /// The codes.
     #[inline]
-    pub fn list(&self) -> &[u16] {
+    pub fn list(&self) -> &[C] {
         &self.list[..self.count.min(CODES)]
     }
 
     /// Whether `code` is among them.
-    pub fn has(&self, code: u16) -> bool {
+    pub fn has(&self, code: C) -> bool {
         self.list().contains(&code)
     }
 }
@@ -79,8 +80,8 @@ impl Default for BlockWords {
             approached: 0,
             approaches: [None; 26],
             used: 0,
-            g: CodeNumbers::default(),
-            m: CodeNumbers::default(),
+            g: CodeList::default(),
+            m: CodeList::default(),
             pointed: 0,
             pointless: 0,
             more: false,
@@ -183,8 +184,14 @@ impl ControlState {
                 other => self.valued(word.letter, other, words)?,
             };
             match word.letter {
-                b'G' => self.code(b'G', value * 10.0, &mut words.g)?,
-                b'M' => self.code(b'M', value, &mut words.m)?,
+                b'G' => {
+                    let code = GCode::of(value).ok_or_else(|| self.no_code(b'G', value * 10.0))?;
+                    self.add_code(b'G', code, &mut words.g)?;
+                }
+                b'M' => {
+                    let code = m_number(value).ok_or_else(|| self.no_code(b'M', value))?;
+                    self.add_code(b'M', code, &mut words.m)?;
+                }
                 letter @ b'A'..=b'Z' => {
                     let bit = bit(letter);
                     if words.present & bit != 0 {
@@ -236,24 +243,36 @@ impl ControlState {
         value.map_err(|finding| self.placed(*finding).boxed())
     }
 
+    #[cold]
+    fn no_code(&self, letter: u8, value: f64) -> Box<Diagnostic> {
+        self.refuse("nc-word", format!("there is no {}{value}", char::from(letter)))
+    }
+
     #[inline]
-    fn code(&self, letter: u8, value: f64, codes: &mut CodeNumbers) -> Result<(), Box<Diagnostic>> {
-        let whole = libm::rint(value);
-        if !(0.0..65_535.0).contains(&whole) || libm::fabs(value - whole) > 1e-6 {
-            return Err(
-                self.refuse("nc-word", format!("there is no {}{value}", char::from(letter)))
-            );
-        }
+    fn add_code<C>(
+        &self,
+        letter: u8,
+        code: C,
+        codes: &mut CodeList<C>,
+    ) -> Result<(), Box<Diagnostic>> {
         if codes.count == CODES {
             return Err(self.refuse(
                 "nc-word",
                 format!("more than {CODES} {} in one block", char::from(letter)),
             ));
         }
-        codes.list[codes.count] = whole as u16;
+        codes.list[codes.count] = code;
         codes.count += 1;
         Ok(())
     }
+}
+
+/// The number of an M code.
+#[inline]
+fn m_number(value: f64) -> Option<u16> {
+    let whole = libm::rint(value);
+    let exact = (0.0..65_535.0).contains(&whole) && libm::fabs(value - whole) <= 1e-6;
+    exact.then_some(whole as u16)
 }
 
 /// A whole number from 0 on, of a register or a tool.

@@ -7,6 +7,7 @@ use super::block::BlockRequest;
 use super::block_words::{BlockWords, bit};
 use super::state::ControlState;
 use crate::ProgramEvent;
+use crate::g_code::GCode;
 use crate::lexicon::WordMeaning;
 
 impl ControlState {
@@ -66,22 +67,21 @@ impl ControlState {
             self.state_changed();
         }
         if asked.tcp_off && self.state.tcp {
-            self.set_tcp(false, 0, false);
+            self.set_tcp(false, None, false);
         }
         if asked.length_off {
             words.used |= bit(b'H');
             self.tools.length_on = false;
             self.state.length_register = None;
             if self.state.tcp && self.modal.tcp_by_length {
-                self.set_tcp(false, 0, false);
+                self.set_tcp(false, None, false);
             }
             self.length_changed()?;
         }
         if asked.length_stated {
             return self.stated_length(words);
         }
-        let on = asked.length_on.or(asked.tcp_on.filter(|code| *code != 0));
-        if on.is_some() {
+        if asked.length_on || asked.tcp_on && asked.tcp_code.is_some() {
             self.length_by(words)?;
         } else if self.tools.length_on
             && !self.tools.by_tool
@@ -92,8 +92,8 @@ impl ControlState {
             self.state.length_register = Some(register);
             self.length_changed()?;
         }
-        if let Some(code) = asked.tcp_on {
-            self.set_tcp(true, code, asked.vectors);
+        if asked.tcp_on {
+            self.set_tcp(true, asked.tcp_code, asked.vectors);
         }
         Ok(())
     }
@@ -132,11 +132,11 @@ impl ControlState {
         self.length_changed()
     }
 
-    /// Tool centre point control on or off; `code` is ten times the number of its G word, 0 of any other.
-    pub(super) fn set_tcp(&mut self, on: bool, code: u16, vectors: bool) {
-        self.modal.tcp_by_length = on && code != 0;
+    /// Tool centre point control on or off; `code` is the G code that switches it on.
+    pub(super) fn set_tcp(&mut self, on: bool, code: Option<GCode>, vectors: bool) {
+        self.modal.tcp_by_length = on && code.is_some();
         // Some vocabularies have one meaning for both types: the second names vectors, G43.5.
-        self.modal.vectors = on && (vectors || code % 10 == 5);
+        self.modal.vectors = on && (vectors || code.is_some_and(|code| code.parts().1 == 5));
         if self.state.tcp != on {
             self.state.tcp = on;
             self.state_changed();
@@ -146,14 +146,14 @@ impl ControlState {
     /// A work offset by its G word: `G54`, `G54.1 P3`, `G15 H1`.
     pub(super) fn work_offset(
         &mut self,
-        code: u16,
+        code: GCode,
         words: &mut BlockWords,
     ) -> Result<(), Box<Diagnostic>> {
-        let number = f64::from(code) / 10.0;
-        let mut name = format!("G{number}");
+        let mut name = code.to_string();
         for letter in [b'P', b'H'] {
             let of_it = letter == b'P'
-                || self.lexicon.g(code) == WordMeaning::Means(Meaning::WorkOffset) && code < 500;
+                || self.lexicon.g(code) == WordMeaning::Means(Meaning::WorkOffset)
+                    && code.parts().0 < 50;
             if of_it && let Some(which) = words.take_number(letter, self)? {
                 name = format!("{name} {}{which}", char::from(letter));
             }

@@ -23,32 +23,34 @@ use post_plugin::Language;
 
 use super::state::ControlState;
 use crate::Corners;
+use crate::g_code::GCode;
 
 impl ControlState {
-    /// A word that ends smoothing or asks for the exact path; `code` is ten times the number after G, 0 of other words.
-    pub(super) fn keeps_corners(&mut self, code: u16) {
+    /// A word that ends smoothing or asks for the exact path; `code` is its G code, if it has one.
+    pub(super) fn keeps_corners(&mut self, code: Option<GCode>) {
         let keeps_path = self.lexicon.has_path_modes();
-        self.corners(match (self.lexicon.language(), code) {
-            (Language::Rs274, 610) if keeps_path => Corners::Said(CornerMode::Path),
-            (Language::Rs274, 611) | (Language::Macro, 610) | (Language::Names, 600) => {
-                Corners::Said(CornerMode::Stop)
-            }
+        self.corners(match (self.lexicon.language(), code.map(GCode::parts)) {
+            (Language::Rs274, Some((61, 0))) if keeps_path => Corners::Said(CornerMode::Path),
+            (Language::Rs274, Some((61, 1)))
+            | (Language::Macro, Some((61, 0)))
+            | (Language::Names, Some((60, 0))) => Corners::Said(CornerMode::Stop),
             // The end of what was switched on.
             _ => Corners::Unsaid,
         });
     }
 
     /// A word that lets the control leave the path by `tolerance` mm, if it says how much; `code` as above.
-    pub(super) fn leaves_corners(&mut self, code: u16, tolerance: Option<f64>) {
+    pub(super) fn leaves_corners(&mut self, code: Option<GCode>, tolerance: Option<f64>) {
         let names = self.lexicon.language() == Language::Names;
+        let g64 = code == Some(GCode::whole(64));
         let tolerance = match tolerance {
-            None if names && code != 640 => self.modal.contour_tolerance,
+            None if names && !g64 => self.modal.contour_tolerance,
             said => said,
         };
-        self.corners(match (tolerance, code) {
+        self.corners(match (tolerance, g64) {
             (Some(0.0), _) => Corners::Unsaid,
-            (Some(_), _) | (None, 640) => Corners::Said(CornerMode::Blend { tolerance }),
-            (None, _) => Corners::Own,
+            (Some(_), _) | (None, true) => Corners::Said(CornerMode::Blend { tolerance }),
+            (None, false) => Corners::Own,
         });
     }
 
@@ -62,7 +64,7 @@ impl ControlState {
             _ => false,
         };
         if smooths {
-            self.leaves_corners(0, None);
+            self.leaves_corners(None, None);
         }
     }
 

@@ -9,11 +9,12 @@ use super::block_words::{BlockWords, bit};
 use super::frame::CoordinateFrame;
 use super::planes;
 use super::state::ControlState;
+use crate::g_code::GCode;
 
-/// `G52`, `G92`, `G92.1`, `G10`, `G68`, `G69` (two-dimensional turns): `code` is ten times the number.
+/// `G52`, `G92`, `G92.1`, `G10`, `G68`, `G69` (two-dimensional turns).
 pub(super) fn code(
     control: &mut ControlState,
-    code: u16,
+    code: GCode,
     meaning: Meaning,
     words: &mut BlockWords,
 ) -> Result<(), Box<Diagnostic>> {
@@ -30,13 +31,10 @@ pub(super) fn code(
         Meaning::TableData => table(control, words),
         Meaning::Rotation => turned(control, words),
         Meaning::RotationOff => planes::end(control),
-        _ => {
-            let name = f64::from(code) / 10.0;
-            Err(control.refuse(
-                "nc-frame",
-                format!("G{name} is not run: what the words count from then is not followed"),
-            ))
-        }
+        _ => Err(control.refuse(
+            "nc-frame",
+            format!("{code} is not run: what the words count from then is not followed"),
+        )),
     }
 }
 

@@ -11,6 +11,7 @@ use post_plugin::{Language, Meaning};
 use super::block_words::{BlockWords, bit};
 use super::go::{MotionTarget, shorter};
 use super::state::{ControlState, MotionMode};
+use crate::g_code::GCode;
 use crate::{Curve, CycleCall, CycleKind, MotionKind, ProgramEvent, SpindleState};
 
 impl ControlState {
@@ -195,18 +196,17 @@ impl ControlState {
     /// A straight move tied to the spindle: `G33 Z K`; `G33.1` comes back with the spindle reversed.
     pub(super) fn thread(
         &mut self,
-        code: u16,
+        code: GCode,
         meaning: Meaning,
         words: &mut BlockWords,
     ) -> Result<(), Box<Diagnostic>> {
-        let name = f64::from(code) / 10.0;
         if meaning == Meaning::ThreadBack || self.lexicon.language() == Language::Names {
             let message =
-                format!("G{name} is not run: how its pitch is stated hangs on the control");
+                format!("{code} is not run: how its pitch is stated hangs on the control");
             return Err(self.refuse("nc-thread", message));
         }
         let Some(pitch) = words.take(b'K').filter(|pitch| *pitch > 0.0) else {
-            let message = format!("G{name} does not say its pitch K");
+            let message = format!("{code} does not say its pitch K");
             return Err(self.refuse("nc-thread", message));
         };
         let pitch = pitch * self.modal.unit;

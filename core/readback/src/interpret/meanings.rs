@@ -6,12 +6,13 @@ use post_plugin::Meaning;
 use super::block::{BlockRequest, SpindleRequest};
 use super::block_words::{BlockWords, bit};
 use super::state::{ArcPlane, ControlState, FeedMeaning, MotionMode, OrientationMode};
+use crate::g_code::GCode;
 
 impl ControlState {
-    /// A code or name whose meaning the lexicon knows; `code` is ten times the number after G, or 0.
+    /// A code or name whose meaning the lexicon knows; `code` is its G code, if it has one.
     pub(super) fn meant(
         &mut self,
-        code: u16,
+        code: Option<GCode>,
         meaning: Meaning,
         words: &mut BlockWords,
         asked: &mut BlockRequest,
@@ -24,7 +25,7 @@ impl ControlState {
             Meaning::CompensationLeft => self.compensate(-1, words)?,
             Meaning::CompensationRight => self.compensate(1, words)?,
             Meaning::Smoothing => {
-                let letter = self.lexicon.tolerance_letter(code);
+                let letter = code.and_then(|code| self.lexicon.tolerance_letter(code));
                 let tolerance = letter.and_then(|letter| words.take(letter));
                 words.used |= bit(b'P') | bit(b'Q') | bit(b'R');
                 let tolerance = tolerance.map(|tolerance| tolerance * self.modal.unit);
@@ -55,7 +56,10 @@ impl ControlState {
                 self.stand_behind_taps();
                 asked.cycle_off = true;
             }
-            Meaning::WorkOffsetOff => self.use_work_offset(&format!("G{}", code / 10))?,
+            Meaning::WorkOffsetOff => {
+                let (number, _) = code.unwrap_or_default().parts();
+                self.use_work_offset(&format!("G{number}"))?;
+            }
             Meaning::SpeedLimit => {
                 self.modal.most_speed = words.take(b'S');
                 words.present &= !bit(b'S');
@@ -70,21 +74,7 @@ impl ControlState {
                 ));
             }
             Meaning::Spline => self.spline_word(code)?,
-            Meaning::CycleOther
-            | Meaning::Scale
-            | Meaning::Mirror
-            | Meaning::Polar
-            | Meaning::FaceTransformation
-            | Meaning::CylinderTransformation
-            | Meaning::Diameter
-            | Meaning::LengthNegative
-            | Meaning::LengthAdded
-            | Meaning::LengthAlongTool
-            | Meaning::OrientationAngles
-            | Meaning::BuilderCoordinates
-            | Meaning::ArcThrough
-            | Meaning::ArcTangent
-            | Meaning::Retract => return Err(self.not_followed(code)),
+            _ if is_not_followed(meaning) => return Err(self.not_followed(code)),
             // Letters, remarks and what does nothing.
             _ => {}
         }
@@ -140,25 +130,47 @@ impl ControlState {
     }
 }
 
+/// Whether a word leads the machine in a way that is not run.
+fn is_not_followed(meaning: Meaning) -> bool {
+    matches!(
+        meaning,
+        Meaning::CycleOther
+            | Meaning::Scale
+            | Meaning::Mirror
+            | Meaning::Polar
+            | Meaning::FaceTransformation
+            | Meaning::CylinderTransformation
+            | Meaning::Diameter
+            | Meaning::LengthNegative
+            | Meaning::LengthAdded
+            | Meaning::LengthAlongTool
+            | Meaning::OrientationAngles
+            | Meaning::BuilderCoordinates
+            | Meaning::ArcThrough
+            | Meaning::ArcTangent
+            | Meaning::Retract
+    )
+}
+
 impl BlockRequest {
     /// Whether a word asks for something in its block and nothing else, which is then noted.
-    fn takes(&mut self, code: u16, meaning: Meaning) -> bool {
+    fn takes(&mut self, code: Option<GCode>, meaning: Meaning) -> bool {
         match meaning {
             Meaning::MachineCoordinates => self.machine = true,
             Meaning::RapidBlock => self.rapid = true,
-            Meaning::LengthOn => self.length_on = Some(code),
+            Meaning::LengthOn => self.length_on = true,
             Meaning::LengthStated => self.length_stated = true,
             Meaning::LengthOff => self.length_off = true,
-            Meaning::TcpOn => self.tcp_on = Some(code),
+            Meaning::TcpOn => (self.tcp_on, self.tcp_code) = (true, code),
             Meaning::TcpVectorOn => {
-                self.tcp_on = Some(code);
+                (self.tcp_on, self.tcp_code) = (true, code);
                 self.vectors = true;
             }
             Meaning::TcpOff => self.tcp_off = true,
-            Meaning::TiltedPlane => self.plane = Some(code),
-            Meaning::TiltedPlaneTurn => self.plane_turn = Some(code),
+            Meaning::TiltedPlane => self.plane = Some(code.unwrap_or_default()),
+            Meaning::TiltedPlaneTurn => self.plane_turn = Some(code.unwrap_or_default()),
             Meaning::TiltedPlaneOff => self.plane_off = true,
-            Meaning::WorkOffset => self.work = Some(code),
+            Meaning::WorkOffset => self.work = Some(code.unwrap_or_default()),
             Meaning::ToolChange => self.change = true,
             Meaning::SpindleClockwise => self.spindle = Some(SpindleRequest::Clockwise),
             Meaning::SpindleCounterClockwise => {
@@ -166,7 +178,7 @@ impl BlockRequest {
             }
             Meaning::SpindleOff => self.spindle = Some(SpindleRequest::Off),
             Meaning::SpindleOrient => self.spindle = Some(SpindleRequest::Oriented),
-            Meaning::CoolantOn => self.coolant = Some(code / 10),
+            Meaning::CoolantOn => self.coolant = Some(code.map_or(0, |code| code.parts().0)),
             Meaning::CoolantOff => self.coolant_off = true,
             Meaning::Dwell
             | Meaning::DwellSeconds
@@ -175,7 +187,11 @@ impl BlockRequest {
             Meaning::Stop | Meaning::OptionalStop | Meaning::End => self.stop = Some(meaning),
             Meaning::Probe => self.probe = true,
             // Bored in, and drawn out by hand.
-            Meaning::CycleOther if matches!(code, 870 | 880) => self.cycle = Some((code, meaning)),
+            Meaning::CycleOther
+                if code == Some(GCode::whole(87)) || code == Some(GCode::whole(88)) =>
+            {
+                self.cycle = Some((code, meaning))
+            }
             Meaning::ReferenceReturn => self.reference = Some(1),
             Meaning::OtherReferenceReturn => self.reference = Some(2),
             Meaning::LocalOffset
@@ -188,7 +204,7 @@ impl BlockRequest {
             | Meaning::TableDataOff
             | Meaning::Rotation
             | Meaning::RotationAdded
-            | Meaning::RotationOff => self.frame = Some((code, meaning)),
+            | Meaning::RotationOff => self.frame = Some((code.unwrap_or_default(), meaning)),
             Meaning::WorkOffsetBlock => self.machine = true,
             Meaning::SpindleClockwiseCoolant => {
                 self.spindle = Some(SpindleRequest::Clockwise);
@@ -199,7 +215,7 @@ impl BlockRequest {
                 self.coolant = Some(8);
             }
             Meaning::Thread | Meaning::ThreadAndBack | Meaning::ThreadBack => {
-                self.thread = Some((code, meaning));
+                self.thread = Some((code.unwrap_or_default(), meaning));
             }
             // What was called has led back before: here it ends the program.
             Meaning::SubprogramEnd => self.stop = Some(Meaning::End),

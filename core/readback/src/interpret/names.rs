@@ -96,7 +96,7 @@ impl ControlState {
             WordMeaning::Means(Meaning::Nothing | Meaning::Smoothing) => {}
             WordMeaning::Means(Meaning::SmoothingOff) => {
                 self.smooth(None);
-                self.keeps_corners(0);
+                self.keeps_corners(None);
             }
             WordMeaning::Means(Meaning::SpindleOrient) => {
                 asked.spindle = Some(SpindleRequest::Oriented)
@@ -169,7 +169,7 @@ impl ControlState {
             return Ok(());
         }
         match self.lexicon.name(name) {
-            WordMeaning::Means(meaning) => self.meant(0, meaning, words, asked),
+            WordMeaning::Means(meaning) => self.meant(None, meaning, words, asked),
             // A name alone may be that of a subprogram.
             WordMeaning::Unknown if self.lexicon.language() == Language::Names => {
                 Err(self.placed(*super::astray::elsewhere(name)).boxed())
@@ -220,7 +220,7 @@ impl ControlState {
                 };
                 let tolerance = tolerance.map(|tolerance| tolerance * self.modal.unit);
                 self.smooth(tolerance);
-                self.leaves_corners(0, tolerance);
+                self.leaves_corners(None, tolerance);
             }
             (
                 _,
@@ -240,7 +240,7 @@ impl ControlState {
                 return cycles::call(self, name, meaning, arguments, modal);
             }
             (_, WordMeaning::Means(Meaning::Nothing)) => {}
-            (_, WordMeaning::Means(meaning)) => return self.meant(0, meaning, words, asked),
+            (_, WordMeaning::Means(meaning)) => return self.meant(None, meaning, words, asked),
             _ => {
                 let message = format!(
                     "{name}(…) is no cycle or subprogram that is known here, and might move the machine"

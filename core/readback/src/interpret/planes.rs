@@ -15,6 +15,7 @@ use super::frame::CoordinateFrame;
 use super::go::nearest_turn;
 use super::state::ControlState;
 use crate::MotionKind;
+use crate::g_code::GCode;
 
 /// The tool stands upright on a plane if its axis misses the normal by no more, radians: words have few decimals.
 const UPRIGHT: f64 = 1e-4;
@@ -49,22 +50,22 @@ pub(super) enum PlaneTurn {
     Move,
 }
 
-/// A G code of a tilted plane (`G68.2 X Y Z I J K`, `G254`); `code` is ten times its number.
+/// A G code of a tilted plane (`G68.2 X Y Z I J K`, `G254`).
 pub(super) fn begin(
     control: &mut ControlState,
-    code: u16,
+    code: GCode,
     words: &mut BlockWords,
 ) -> Result<(), Box<Diagnostic>> {
     if control.frames.plane.is_some() {
         return Err(control
             .refuse("nc-plane", "a tilted plane begins inside of another, which must end before"));
     }
-    match code {
-        2540 => {
+    match code.parts() {
+        (254, 0) => {
             let frame = as_it_stands(control)?;
             lay(control, frame)
         }
-        682 => {
+        (68, 2) => {
             if words.take(b'P').is_some_and(|form| form != 0.0) {
                 return Err(control
                     .refuse("nc-plane", "G68.2 with P: only Euler angles (P0, or no P) are run"));
@@ -81,25 +82,21 @@ pub(super) fn begin(
             let angles = [b'I', b'J', b'K'].map(|letter| number(letter).to_radians());
             lay(control, CoordinateFrame::new(rotation([2, 0, 2], angles), origin))
         }
-        _ => {
-            let name = f64::from(code) / 10.0;
-            Err(control
-                .refuse("nc-plane", format!("G{name} is a form of a tilted plane that is not run")))
-        }
+        _ => Err(control
+            .refuse("nc-plane", format!("{code} is a form of a tilted plane that is not run"))),
     }
 }
 
 /// The axes turn to the plane in force: `G53.1`.
 pub(super) fn turn(
     control: &mut ControlState,
-    code: u16,
+    code: GCode,
     words: &mut BlockWords,
 ) -> Result<(), Box<Diagnostic>> {
     if control.frames.plane.is_none() {
-        let name = f64::from(code) / 10.0;
         return Err(control.refuse(
             "nc-plane",
-            format!("G{name} turns the axes to a tilted plane, and none is in force"),
+            format!("{code} turns the axes to a tilted plane, and none is in force"),
         ));
     }
     let pick = match words.take(b'P') {

@@ -6,6 +6,7 @@ use post_plugin::{Language, Meaning};
 use super::block::{BlockRequest, SpindleRequest};
 use super::block_words::{BlockWords, bit, which};
 use super::state::ControlState;
+use crate::g_code::GCode;
 use crate::{ProgramEvent, SpindleState};
 
 impl ControlState {
@@ -139,7 +140,7 @@ impl ControlState {
         &mut self,
         words: &mut BlockWords,
     ) -> Result<ProgramEvent, Box<Diagnostic>> {
-        const G4: u16 = 40;
+        const G4: GCode = GCode::whole(4);
         for letter in [b'P', b'X', b'U', b'F', b'S'] {
             let meaning = self.lexicon.letter_beside(G4, letter);
             let usual = matches!(letter, b'X' | b'U' | b'F').then_some(Meaning::DwellSeconds);

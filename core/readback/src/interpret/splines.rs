@@ -9,16 +9,17 @@ use post_plugin::Language;
 use super::block_words::{BlockWords, bit};
 use super::go::MotionTarget;
 use super::state::{ControlState, FeedMeaning, MotionMode};
+use crate::g_code::GCode;
 use crate::{BSpline, Curve, MotionKind, Stance};
 
-/// Control points with knots K and weights R; P is the order: ten times the number of the word.
-const KNOTS: u16 = 62;
+/// Control points with knots K and weights R; P is the order.
+const KNOTS: GCode = GCode::with_tenth(6, 2);
 
 /// Control points in the plane with weights P; L is the order.
-const EVEN: u16 = 52;
+const EVEN: GCode = GCode::with_tenth(5, 2);
 
 /// Ends one with even knots.
-const EVEN_ENDS: u16 = 53;
+const EVEN_ENDS: GCode = GCode::with_tenth(5, 3);
 
 /// Order where the program states none.
 const ORDER_OF_KNOTS: u32 = 4;
@@ -61,11 +62,11 @@ impl OpenSpline {
 }
 
 impl ControlState {
-    /// A word of splines, ten times its number: the block begins one, or goes on with it.
-    pub(super) fn spline_word(&mut self, code: u16) -> Result<(), Box<Diagnostic>> {
+    /// A word of splines: the block begins one, or goes on with it.
+    pub(super) fn spline_word(&mut self, code: Option<GCode>) -> Result<(), Box<Diagnostic>> {
         let even = match (code, self.lexicon.language()) {
-            (KNOTS, Language::Macro) => false,
-            (EVEN, Language::Rs274) => true,
+            (Some(KNOTS), Language::Macro) => false,
+            (Some(EVEN), Language::Rs274) => true,
             _ => return Err(self.not_followed(code)),
         };
         if self.modal.incremental {

@@ -24,13 +24,18 @@ const LOOKS: u32 = 64;
 /// Most places of a curve at which its axis values are looked at.
 const MOST_LOOKS: u32 = 4096;
 
-/// A fault: its code, what it is, and the amount by which a limit is passed.
-pub(super) type AxisFault = (&'static str, String, f64);
+/// An axis passes a limit.
+pub(crate) struct AxisFault {
+    pub code: &'static str,
+    pub message: String,
+    /// By how much, mm or degrees, or these a minute.
+    pub by: f64,
+}
 
 /// Where a motion takes an axis beyond its travel: which, and by how much, mm or degrees.
 pub fn over_travel(machine: &Machine, motion: &Motion) -> Option<(String, f64)> {
-    let (_, message, by) = AxisLimitCheck::new(machine).over_travel(machine, motion)?;
-    Some((message, by))
+    let fault = AxisLimitCheck::new(machine).over_travel(machine, motion)?;
+    Some((fault.message, fault.by))
 }
 
 /// What is known of the axes of a machine.
@@ -81,7 +86,8 @@ impl AxisLimitCheck {
             for value in [least[joint], most[joint]] {
                 if let Some(limit) = passed(axis.travel, value, slack) {
                     let by = libm::fabs(value - limit) / axis.unit();
-                    return Some(("over-travel", told(axis, value, limit), by));
+                    let message = beyond_travel(axis, value, limit);
+                    return Some(AxisFault { code: "over-travel", message, by });
                 }
             }
         }
@@ -109,7 +115,7 @@ impl AxisLimitCheck {
             axis.name,
             most * factor
         );
-        Some(("max-feed", message, most * (factor - 1.0)))
+        Some(AxisFault { code: "max-feed", message, by: most * (factor - 1.0) })
     }
 
     /// The least time in which no axis passes its largest feed, minutes, and the axis that asks for it. Where the
@@ -195,7 +201,7 @@ pub(super) fn solution(machine: &Machine, motion: &Motion) -> Option<usize> {
         .map(|branch| branch + 1)
 }
 
-fn told(axis: &Axis, value: f64, limit: f64) -> String {
+fn beyond_travel(axis: &Axis, value: f64, limit: f64) -> String {
     let unit = match axis.joint.rotary {
         true => "°",
         false => " mm",

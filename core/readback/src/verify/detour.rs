@@ -25,10 +25,26 @@ const SAME_LINE: f64 = 1e-3;
 /// nothing is said of the other axes while one turns.
 #[derive(Debug, Default)]
 pub(super) struct Detour {
-    asked: Vec<(Joints, Pose)>,
+    asked: Vec<AskedPlace>,
     /// Places of the course that were passed on the way to others.
     passed: Vec<Pose>,
     open: Vec<RapidEnd>,
+}
+
+/// A place of the course.
+#[derive(Clone, Copy, Debug)]
+struct AskedPlace {
+    joints: Joints,
+    pose: Pose,
+}
+
+/// How far a rapid may end from what is asked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RapidAllowance {
+    /// Of linear axes, mm, and of rotary ones, radians.
+    pub axes: [f64; 2],
+    /// By how much the tool may lean otherwise, radians.
+    pub lean: f64,
 }
 
 /// Where a rapid ends that nothing asks for.
@@ -95,14 +111,14 @@ impl Detour {
         }
     }
 
-    /// A cut begins with `motion`, or the program ends: was there a rapid that went farther than `slack` (mm, radians)
-    /// from all that is asked for, the tool leaning otherwise by `lean` at most? The first.
+    /// A cut begins with `motion`, or the program ends: was there a rapid that went farther than `allowed` from all
+    /// that is asked for? The first.
     pub fn end(
         &mut self,
         machine: &Machine,
         motion: Option<&Motion>,
         own: bool,
-        (slack, lean): ([f64; 2], f64),
+        allowed: RapidAllowance,
     ) -> Option<StrayRapid> {
         if let Some(motion) = motion {
             self.ask(&motion.from.joints, &motion.from.pose);
@@ -113,10 +129,11 @@ impl Detour {
         if asked.is_empty() {
             return None;
         }
-        let lean = lean + SAME_LINE;
+        let RapidAllowance { axes: slack, lean } =
+            RapidAllowance { lean: allowed.lean + SAME_LINE, ..allowed };
         let passed = &passed;
         let on_a_line = |end: &RapidEnd| {
-            let mut places = asked.iter().map(|(_, pose)| pose).chain(passed);
+            let mut places = asked.iter().map(|asked| &asked.pose).chain(passed);
             !end.machine && places.any(|pose| end.on_the_line(pose, slack[0], lean))
         };
         let goes = |(place, end): &(usize, &RapidEnd)| {
@@ -128,13 +145,18 @@ impl Detour {
         };
         let mut open = open.iter().enumerate().filter(|end| !goes(end));
         open.find_map(|(_, end)| {
-            let poses = asked.iter().map(|(_, pose)| pose).chain(passed);
+            let poses = asked.iter().map(|asked| &asked.pose).chain(passed);
             match end.turns(machine, slack) {
                 Some(turns) if own => end.turns_astray(machine, turns, poses, slack[0]),
                 _ if own && end.led => None,
                 _ => {
                     let retracted = retract::lacks(machine, &end.from, slack[0]).is_none();
-                    end.astray(machine, (&asked, !own || retracted), slack, lean)
+                    end.astray(
+                        machine,
+                        &asked,
+                        !own || retracted,
+                        RapidAllowance { axes: slack, lean },
+                    )
                 }
             }
         })
@@ -144,7 +166,7 @@ impl Detour {
         if self.asked.len() == MOST {
             self.asked.remove(0);
         }
-        self.asked.push((*joints, *pose));
+        self.asked.push(AskedPlace { joints: *joints, pose: *pose });
     }
 }
 
@@ -192,11 +214,13 @@ impl RapidEnd {
     fn astray(
         &self,
         machine: &Machine,
-        (asked, between): (&[(Joints, Pose)], bool),
-        slack: [f64; 2],
-        lean: f64,
+        asked: &[AskedPlace],
+        between: bool,
+        allowed: RapidAllowance,
     ) -> Option<StrayRapid> {
-        if !self.machine && asked.iter().any(|(_, pose)| self.on_the_line(pose, slack[0], lean)) {
+        let RapidAllowance { axes: slack, lean } = allowed;
+        let mut places = asked.iter().map(|asked| &asked.pose);
+        if !self.machine && places.any(|pose| self.on_the_line(pose, slack[0], lean)) {
             return None;
         }
         // While the part turns or the head swings, the linear axes go round with it: but the depth goes no deeper than
@@ -222,7 +246,7 @@ impl RapidEnd {
                 }
                 by = by.min(libm::fabs(apart));
             };
-            asked.iter().for_each(|(joints, _)| allow(joints[place]));
+            asked.iter().for_each(|asked| allow(asked.joints[place]));
             let [least, most] = span(asked, place);
             if between || self.machine || goes_round {
                 allow(value.clamp(least, most.max(least)));
@@ -243,7 +267,7 @@ impl RapidEnd {
                         away * retract
                     }
                     _ => {
-                        let asked = asked.iter().map(|(joints, _)| away * joints[place]);
+                        let asked = asked.iter().map(|asked| away * asked.joints[place]);
                         asked.fold(f64::INFINITY, f64::min)
                     }
                 };
@@ -288,8 +312,8 @@ impl RapidEnd {
 }
 
 /// The least and the largest value of an axis at all places that are asked for.
-fn span(asked: &[(Joints, Pose)], place: usize) -> [f64; 2] {
-    let values = asked.iter().map(|(joints, _)| joints[place]);
+fn span(asked: &[AskedPlace], place: usize) -> [f64; 2] {
+    let values = asked.iter().map(|asked| asked.joints[place]);
     let ends = [f64::INFINITY, f64::NEG_INFINITY];
     values.fold(ends, |[least, most], value| [least.min(value), most.max(value)])
 }

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::Verifier;
 use super::place::{PlaceDistance, ToolPlace};
+use super::report::BlockPlace;
 use super::state;
 use super::track::{CourseHole, Element, ElementKind};
 use crate::course::Course;
@@ -471,7 +472,7 @@ impl<C: Course> Verifier<'_, C> {
             run.dwelt = true;
         }
         if let Some(message) = wrong {
-            let place = Some((self.block.nc_line, self.block.block));
+            let place = Some(BlockPlace { line: self.block.nc_line, number: self.block.block });
             self.fault_at("event", message, place, Some(line), None);
         }
         true

@@ -1,6 +1,7 @@
 //! What still runs where a tool is changed, or where the program ends.
 
 use super::Verifier;
+use super::report::BlockPlace;
 use super::state::{coolant_name, spindle_name};
 use super::track::Element;
 use crate::course::Course;
@@ -44,6 +45,14 @@ impl RunningChange {
         });
         turns.into_iter().chain(flows)
     }
+}
+
+/// What the course has off at a tool change, and the line of the CL file that says so.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct SwitchedOff {
+    spindle: bool,
+    coolants: bool,
+    line: u64,
 }
 
 /// A spindle that turns its tool.
@@ -99,22 +108,23 @@ impl<C: Course> Verifier<'_, C> {
             return;
         }
         let (spindle, coolants) = asked.at_change;
-        let off = [!turns(spindle), coolants == Coolants::default()];
-        self.tell_change(Some((off, element.line)));
+        self.tell_change(Some(SwitchedOff {
+            spindle: !turns(spindle),
+            coolants: coolants == Coolants::default(),
+            line: element.line,
+        }));
     }
 
     /// Tells what ran as a tool was changed: where the course has it off, as a fault.
-    pub(super) fn tell_change(&mut self, off: Option<([bool; 2], u64)>) {
+    pub(super) fn tell_change(&mut self, off: Option<SwitchedOff>) {
         let Some(change) = self.running.change.take() else {
             return;
         };
-        let ([spindle, coolants], cl_line) = match off {
-            Some((off, line)) => (off, Some(line)),
-            None => ([false; 2], None),
-        };
+        let cl_line = off.map(|off| off.line);
+        let SwitchedOff { spindle, coolants, .. } = off.unwrap_or_default();
         for (code, message) in change.faults(spindle, coolants) {
             let message = format!("{message}, and the CL file has it off");
-            self.fault_at(code, message, Some((change.line, None)), cl_line, None);
+            self.fault_at(code, message, Some(BlockPlace::of_line(change.line)), cl_line, None);
         }
         for (code, message) in change.faults(!spindle, !coolants) {
             self.left_on(change.line, code, message);
@@ -128,12 +138,24 @@ impl<C: Course> Verifier<'_, C> {
             let name = spindle_name(running.spindle);
             let message =
                 format!("the spindle {name} when the program is over, and nothing stops it");
-            self.fault_at("spindle", message, Some((running.lines[0], None)), None, None);
+            self.fault_at(
+                "spindle",
+                message,
+                Some(BlockPlace::of_line(running.lines[0])),
+                None,
+                None,
+            );
         }
         if running.coolants != Coolants::default() {
             let name = coolant_name(running.coolants);
             let message = format!("{name} flows when the program is over, and nothing stops it");
-            self.fault_at("coolant", message, Some((running.lines[1], None)), None, None);
+            self.fault_at(
+                "coolant",
+                message,
+                Some(BlockPlace::of_line(running.lines[1])),
+                None,
+                None,
+            );
         }
     }
 

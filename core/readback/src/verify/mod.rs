@@ -41,6 +41,7 @@ use crate::course::Course;
 use crate::{
     BlockEffect, CycleKind, MOST_FAULTS, Motion, MotionKind, Offsets, ProgramEvent, SpindleState,
 };
+use axes::AxisFault;
 pub(crate) use axes::AxisLimitCheck;
 pub use axes::over_travel;
 pub use cut_path::CutPath;
@@ -48,6 +49,7 @@ use detour::Detour;
 use hole::{DrilledHole, HoleRun};
 use left_on::RunningFunctions;
 use place::{PlaceBound, PlaceDistance, ShareSpan, ToolPlace};
+use report::BlockPlace;
 pub use report::{BlockReport, Fault, LeftOn, Verification, WorstDeviation};
 use sweep::StrayStretch;
 use track::{CourseTrack, ElementKind};
@@ -364,7 +366,8 @@ impl<'m, C: Course> Verifier<'m, C> {
         }
     }
 
-    fn axis_fault(&mut self, motion: &Motion, (code, message, by): (&'static str, String, f64)) {
+    fn axis_fault(&mut self, motion: &Motion, fault: AxisFault) {
+        let AxisFault { code, message, by } = fault;
         let key = message.split(" would ").next().unwrap_or_default().to_owned();
         self.limit_fault(code, key, message, motion, 0, by);
     }
@@ -390,7 +393,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             }
             return;
         }
-        let place = Some((motion.line, motion.number));
+        let place = Some(BlockPlace::of(motion));
         self.fault_at(code, message, place, cl_line, Some(by));
         if let Some(fault) = self.found.faults.last_mut() {
             fault.key = key;
@@ -406,7 +409,7 @@ impl<'m, C: Course> Verifier<'m, C> {
         cl_line: Option<u64>,
         by: Option<f64>,
     ) {
-        let place = motion.map(|motion| (motion.line, motion.number));
+        let place = motion.map(BlockPlace::of);
         self.fault_at(code, message, place, cl_line, by);
     }
 
@@ -414,7 +417,7 @@ impl<'m, C: Course> Verifier<'m, C> {
         &mut self,
         code: &'static str,
         message: String,
-        place: Option<(u64, Option<u64>)>,
+        place: Option<BlockPlace>,
         cl_line: Option<u64>,
         by: Option<f64>,
     ) {
@@ -431,8 +434,8 @@ impl<'m, C: Course> Verifier<'m, C> {
             code,
             key: message.clone(),
             message,
-            nc_line: place.map(|(line, _)| line),
-            block: place.and_then(|(_, number)| number),
+            nc_line: place.map(|place| place.line),
+            block: place.and_then(|place| place.number),
             cl_line,
             count: 1,
             by,
@@ -469,8 +472,8 @@ impl<'m, C: Course> Verifier<'m, C> {
             };
             if let ElementKind::Event(event, false) = &element.what {
                 let message = format!("{} is left out", state::event_name(event));
-                let place =
-                    (self.block.nc_line > 0).then_some((self.block.nc_line, self.block.block));
+                let place = BlockPlace { line: self.block.nc_line, number: self.block.block };
+                let place = Some(place).filter(|place| place.line > 0);
                 self.fault_at("event", message, place, Some(element.line), None);
             }
             if element.is_cut() && element.near.point.is_finite() && self.stray.is_none() {

@@ -2,6 +2,7 @@
 
 use super::detour::Detour;
 use super::place::{PlaceDistance, ShareSpan, ToolPlace, free};
+use super::report::BlockPlace;
 use super::sweep::StrayStretch;
 use super::track::{ElementKind, MOST};
 use super::{Verifier, state};
@@ -268,7 +269,7 @@ impl<C: Course> Verifier<'_, C> {
         // Up to the next cut of which nothing was reached.
         let reached = self.reach.iter().rposition(|span| !span.is_empty());
         let mut index = 0;
-        let place = Some((line, None));
+        let place = Some(BlockPlace::of_line(line));
         while let Some(element) = self.track.get(index) {
             let ahead = reached.is_none_or(|reached| index > reached) && Some(index) >= self.next;
             if ahead && (element.is_cut() || matches!(element.what, ElementKind::Hole(_))) {

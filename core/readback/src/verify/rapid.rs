@@ -3,8 +3,9 @@
 use post_machine::kinematics::Pose;
 use post_motion::path::nearest_share;
 
-use super::detour::StrayKind;
+use super::detour::{RapidAllowance, StrayKind};
 use super::place::{PlaceBound, ShareSpan, ToolPlace, free, nearest};
+use super::report::BlockPlace;
 use super::track::ElementKind;
 use super::{RAPID_TURN, Verifier};
 use crate::Motion;
@@ -235,10 +236,10 @@ impl<C: Course> Verifier<'_, C> {
 
     /// Rapids between the cuts must not lead where neither the course nor the machine file sends them.
     pub(super) fn look_for_detours(&mut self, motion: Option<&Motion>) {
-        let slack = [self.rapid_bound.point, RAPID_TURN];
-        let lean = self.rules.axis_tolerance;
+        let axes = [self.rapid_bound.point, RAPID_TURN];
+        let allowed = RapidAllowance { axes, lean: self.rules.axis_tolerance };
         let own = self.rules.own;
-        let Some(astray) = self.detour.end(self.machine, motion, own, (slack, lean)) else {
+        let Some(astray) = self.detour.end(self.machine, motion, own, allowed) else {
             return;
         };
         let axis = &self.machine.axes[astray.axis];
@@ -258,7 +259,7 @@ impl<C: Course> Verifier<'_, C> {
                 "{name} turns by {by:.3}{unit} off the ways of the CL file, and the tool is not retracted"
             ),
         };
-        let place = Some((astray.line, astray.number));
+        let place = Some(BlockPlace { line: astray.line, number: astray.number });
         self.fault_at("rapid", message, place, None, Some(by));
     }
 }

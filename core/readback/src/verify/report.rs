@@ -3,6 +3,27 @@
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use serde::Serialize;
 
+use crate::Motion;
+
+/// A block of the program: its line, and its number if it has one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct BlockPlace {
+    pub line: u64,
+    pub number: Option<u64>,
+}
+
+impl BlockPlace {
+    /// A block that is known by its line alone.
+    pub const fn of_line(line: u64) -> Self {
+        Self { line, number: None }
+    }
+
+    /// The block of a motion.
+    pub const fn of(motion: &Motion) -> Self {
+        Self { line: motion.line, number: motion.number }
+    }
+}
+
 /// Result of holding a program against a course.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Verification {

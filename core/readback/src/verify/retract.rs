@@ -6,6 +6,7 @@ use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 
 use super::Verifier;
+use super::report::BlockPlace;
 use crate::course::Course;
 
 /// Distance by which the depth axes stand nearer to the part than the machine file retracts them: the axis that lacks
@@ -63,7 +64,7 @@ impl<C: Course> Verifier<'_, C> {
         let message = format!(
             "{name} stands {by:.3}{unit} from where the machine file has it for a tool change"
         );
-        self.fault_at("rapid", message, Some((line, None)), None, Some(by));
+        self.fault_at("rapid", message, Some(BlockPlace::of_line(line)), None, Some(by));
     }
 
     /// The tool must be retracted here, if the program was posted for this machine file.
@@ -76,6 +77,6 @@ impl<C: Course> Verifier<'_, C> {
         };
         let name = &self.machine.axes[place].name;
         let message = format!("{name} stands {by:.3} mm short of its retract {here}");
-        self.fault_at("rapid", message, Some((line, None)), None, Some(by));
+        self.fault_at("rapid", message, Some(BlockPlace::of_line(line)), None, Some(by));
     }
 }

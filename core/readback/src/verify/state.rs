@@ -6,6 +6,7 @@ use post_machine::axis_words::is_depth;
 use post_plugin::Lengths;
 
 use super::place::{ToolPlace, free};
+use super::report::BlockPlace;
 use post_motion::CornerMode;
 
 use super::Verifier;
@@ -213,7 +214,7 @@ impl<C: Course> Verifier<'_, C> {
                 spindle_name(spindle),
                 spindle_name(asked.spindle)
             );
-            let place = Some((line, None));
+            let place = Some(BlockPlace::of_line(line));
             self.fault_at("spindle", message, place, Some(element.line), None);
         }
     }

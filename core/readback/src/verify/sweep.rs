@@ -8,6 +8,7 @@
 //! off, and it stays wide until the program is back on the course.
 
 use super::place::{PlaceBound, PlaceDistance, ShareSpan, ToolPlace, free, nearest};
+use super::report::BlockPlace;
 use super::track::ElementKind;
 use super::{COMPUTED, Verifier, state};
 use crate::Motion;
@@ -45,6 +46,15 @@ enum SweepOutcome {
     Stopped(usize),
     /// The motion has no place.
     Nowhere,
+}
+
+/// What of a free side of a cell can be reached: all of it where the side `across` it is entered; else, from the one that
+/// it faces, what lies no further back than where that one is entered.
+fn reached(side: ShareSpan, across: ShareSpan, facing: ShareSpan) -> ShareSpan {
+    match across.is_empty() {
+        false => side,
+        true => side.meet(&ShareSpan { from: facing.from, to: 1.0 }),
+    }
 }
 
 impl<C: Course> Verifier<'_, C> {
@@ -218,7 +228,7 @@ impl<C: Course> Verifier<'_, C> {
         self.fault_at(
             "deviation",
             message,
-            Some((stray.line, stray.number)),
+            Some(BlockPlace { line: stray.line, number: stray.number }),
             Some(stray.asked[0]),
             Some(point),
         );
@@ -321,15 +331,9 @@ impl<C: Course> Verifier<'_, C> {
                 }
             }
             let right = free(to, &element.from, &element.to, &bound);
-            let right = match below.is_empty() {
-                false => right,
-                true => right.meet(&ShareSpan { from: left.from, to: 1.0 }),
-            };
+            let right = reached(right, below, left);
             let top = free(&element.to, from, to, &bound);
-            let top = match left.is_empty() {
-                false => top,
-                true => top.meet(&ShareSpan { from: below.from, to: 1.0 }),
-            };
+            let top = reached(top, left, below);
             if !right.is_empty() {
                 let near = nearest(to, &element.from, &element.to, &right);
                 // A place where two meet is the end of the first, whatever the words round off.

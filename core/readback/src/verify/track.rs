@@ -186,7 +186,7 @@ impl<C: Course> CourseTrack<C> {
                     return;
                 }
                 let to = ToolPlace::new(&reach.to, self.along);
-                self.push(reach.line, ElementKind::Reach(reach.kind), (to, to), None);
+                self.push(reach.line, ElementKind::Reach(reach.kind), [to, to], None);
             }
             CourseItem::Away { line } => {
                 self.line = line;
@@ -215,7 +215,7 @@ impl<C: Course> CourseTrack<C> {
                 return;
             }
             MotionKind::Rapid => {
-                self.push(piece.line, ElementKind::Way, (from, to), None);
+                self.push(piece.line, ElementKind::Way, [from, to], None);
                 return;
             }
             MotionKind::Feed => ElementKind::Cut,
@@ -227,7 +227,7 @@ impl<C: Course> CourseTrack<C> {
         let mut last = from;
         let count = places.len();
         for (index, place) in places.iter().enumerate() {
-            self.push(piece.line, what.clone(), (last, *place), piece.feed);
+            self.push(piece.line, what.clone(), [last, *place], piece.feed);
             if let Some(element) = self.elements.back_mut() {
                 element.ends = index + 1 == count;
             }
@@ -290,19 +290,13 @@ impl<C: Course> CourseTrack<C> {
         }
     }
 
-    fn push(
-        &mut self,
-        line: u64,
-        what: ElementKind,
-        ends: (ToolPlace, ToolPlace),
-        feed: Option<f64>,
-    ) {
+    fn push(&mut self, line: u64, what: ElementKind, ends: [ToolPlace; 2], feed: Option<f64>) {
         self.approach.clear();
         self.elements.push_back(Element {
             line,
             what,
-            from: ends.0,
-            to: ends.1,
+            from: ends[0],
+            to: ends[1],
             asked: Arc::clone(&self.asked),
             feed,
             ends: true,
@@ -350,7 +344,7 @@ impl<C: Course> CourseTrack<C> {
             ProgramEvent::Dwell { .. } | ProgramEvent::Stop | ProgramEvent::OptionalStop => {
                 self.end_hole();
                 let at = self.elements.back().map_or_else(ToolPlace::default, |last| last.to);
-                self.push(line, ElementKind::Event(event, false), (at, at), None);
+                self.push(line, ElementKind::Event(event, false), [at, at], None);
             }
             _ => {}
         }

@@ -39,24 +39,14 @@ impl Engine {
         single_decimals(setup, &mut axes)?;
         let (block, tool_blocks) = numbering(table, setup);
         let work_offset = work_offset(table, setup)?;
-        let feeds = FeedDecimals {
-            per_minute: integer(setup, "feed_decimals", 1) as u8 + u8::from(inch),
-            inverse_time: integer(setup, "inverse_time_decimals", 3) as u8,
-            per_revolution: table.per_revolution,
-        };
+        let feeds = feed_decimals(table, setup);
         let [tcp_on, tcp_off] = tcp_lines(table, setup)?;
         let mut codes = table.codes;
         if !flag(setup, "inverse_time", true) {
             codes.feed[1] = "";
         }
         let register = integer(setup, "length_register", 0) as u32;
-        let mut coolant = table.coolant.iter();
-        let coolant_codes =
-            COOLANTS.map(|(_, option, _)| text(setup, option, coolant.next().unwrap_or(&"")));
-        let coolant_ends = COOLANTS.map(|(_, _, option)| match text(setup, option, "") {
-            end if end.is_empty() => coolant_codes[0].clone(),
-            end => end,
-        });
+        let [coolant_codes, coolant_ends] = coolant_words(table, setup);
         Ok(Engine {
             table,
             motion: MotionWriter::new(setup, codes, block, axes, style, feeds),
@@ -104,6 +94,27 @@ impl Engine {
             standstill: Standstill::default(),
         })
     }
+}
+
+/// Decimals of feeds; an inch has one more.
+fn feed_decimals(table: &Table, setup: &Setup<'_>) -> FeedDecimals {
+    let inch = setup.units == Units::Inch;
+    FeedDecimals {
+        per_minute: integer(setup, "feed_decimals", 1) as u8 + u8::from(inch),
+        inverse_time: integer(setup, "inverse_time_decimals", 3) as u8,
+        per_revolution: table.per_revolution,
+    }
+}
+
+/// The words that switch each of [`COOLANTS`] on, and those that end it.
+fn coolant_words(table: &Table, setup: &Setup<'_>) -> [[String; COOLANTS.len()]; 2] {
+    let mut usual = table.coolant.iter();
+    let codes = COOLANTS.map(|(_, option, _)| text(setup, option, usual.next().unwrap_or(&"")));
+    let ends = COOLANTS.map(|(_, _, option)| match text(setup, option, "") {
+        end if end.is_empty() => codes[0].clone(),
+        end => end,
+    });
+    [codes, ends]
 }
 
 /// The block under construction, and the N and step of blocks that change a tool, where only these have numbers.

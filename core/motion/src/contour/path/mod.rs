@@ -17,7 +17,7 @@ use nalgebra::Vector3;
 
 use super::spline::{SplineSegment, Tangents};
 use crate::ProgramPlace;
-pub(super) use nearest::REACH;
+pub(super) use nearest::{CommandedTip, REACH};
 
 /// Knots behind the nearest point that are kept.
 const BEHIND: usize = 2048;

@@ -38,6 +38,13 @@ impl SearchReach {
 /// Pieces that the tool stands on alike are no farther apart than this, mm: the rounding of the spline.
 const SAME: f64 = 5e-10;
 
+/// A set-point's number, and where it has the tip, mm, part frame.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct CommandedTip {
+    pub number: u64,
+    pub tip: Vector3<f64>,
+}
+
 /// The nearest place of the path, and how far it is.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Nearest {
@@ -54,7 +61,7 @@ pub(in super::super) struct Nearest {
 
 impl CommandedPath {
     /// The point nearest to where the tool is, while `commanded` is the set-point of the same time.
-    pub fn nearest(&mut self, actual: &Pose, commanded: (u64, &Vector3<f64>)) -> Nearest {
+    pub fn nearest(&mut self, actual: &Pose, commanded: CommandedTip) -> Nearest {
         let start = self.further(self.foot);
         let first = (self.point(start) - actual.tip).norm();
         let found = self.descend(&actual.tip, start);
@@ -65,15 +72,16 @@ impl CommandedPath {
             false => Some(foot.distance - TIE).filter(|_| self.turns(foot)),
         };
         if let Some(bound) = bound.filter(|bound| *bound > 0.0)
-            && let Some(other) = self.onward(&actual.tip, bound, self.place_of(commanded.0).knot)
+            && let Some(other) =
+                self.onward(&actual.tip, bound, self.place_of(commanded.number).knot)
         {
             foot = other;
         }
         let missed = self.missed(&actual.tip, found, foot);
-        let following = (commanded.1 - actual.tip).norm();
+        let following = (commanded.tip - actual.tip).norm();
         if foot.distance > following {
             // No contour error is larger than the following error.
-            let here = self.place_of(commanded.0);
+            let here = self.place_of(commanded.number);
             let other = self.descend(&actual.tip, here);
             if other.distance < foot.distance {
                 foot = self.least(&actual.tip, other, SearchReach::all(REACH * following));

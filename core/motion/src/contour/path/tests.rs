@@ -89,7 +89,8 @@ fn nothing_is_nearer_close_by() {
             off *= (size / off.norm()).min(1.0);
             let late = (number as f64 - lag).max(0.0) as usize;
             let actual = Pose { tip: points[late] + off, axis: Vector3::z(), ..Pose::default() };
-            let found = path.nearest(&actual, (number as u64, &points[number]));
+            let found =
+                path.nearest(&actual, CommandedTip { number: number as u64, tip: points[number] });
             asked += 1;
             assert!((path.point(path.foot) - actual.tip).norm() <= found.distance + TIE);
             // Where it stands along the path: the finest place next to it.
@@ -156,7 +157,7 @@ fn a_tool_that_goes_on_beyond_a_turn_is_on_a_way_ahead() {
             let last = tool.tip;
             tool.tip += (point - tool.tip) / late;
             went += (tool.tip - last).norm();
-            let found = path.nearest(&tool, (number as u64, point));
+            let found = path.nearest(&tool, CommandedTip { number: number as u64, tip: *point });
             assert!(found.distance < 1e-9, "{late}, {number}: {}", found.distance);
         }
         assert!(went > 1.0, "{went}");
@@ -172,7 +173,7 @@ fn a_tool_that_is_where_it_is_commanded_has_no_error() {
         let mut path = path(&points);
         for (number, point) in points.iter().enumerate() {
             let tool = Pose { tip: *point, axis: Vector3::z(), ..Pose::default() };
-            let found = path.nearest(&tool, (number as u64, point));
+            let found = path.nearest(&tool, CommandedTip { number: number as u64, tip: *point });
             assert!(found.distance < 1e-12, "{number}: {}", found.distance);
         }
     }

@@ -6,7 +6,7 @@ use post_machine::kinematics::Pose;
 
 use super::feed::FeedWord;
 use super::hole::ClHole;
-use super::modal::{ClModal, CourseItems, RecordResult};
+use super::modal::{ActiveCycle, ClModal, CourseItems, MotionFeed, RecordResult};
 use crate::course::Curve;
 use crate::{CycleKind, MotionKind, ProgramEvent, SpindleState};
 
@@ -29,7 +29,7 @@ impl ClModal {
                         None => self.feed.or(self.settings.feed.map(FeedWord::PerMinute)),
                     },
                 };
-                self.cycle = Some((hole, feed));
+                self.cycle = Some(ActiveCycle { hole, feed });
                 self.last_cycle = self.cycle;
                 self.measured = true;
             }
@@ -96,13 +96,12 @@ impl ClModal {
     pub(super) fn drill(
         &mut self,
         record: &Record<'_>,
-        hole: ClHole,
-        feed: Option<FeedWord>,
+        cycle: ActiveCycle,
         at: Pose,
         out: &mut CourseItems,
     ) -> RecordResult {
-        let (hole, at) = self.above(record, hole, at)?;
-        let feed = match (feed, hole.taps(), hole.pitch, self.tools.rpm()) {
+        let (hole, at) = self.above(record, cycle.hole, at)?;
+        let feed = match (cycle.feed, hole.taps(), hole.pitch, self.tools.rpm()) {
             (_, true, Some(pitch), Some(rpm)) => Some(libm::fabs(pitch) * rpm),
             (Some(FeedWord::InverseTime(_)), ..) => {
                 let message = "a cycle with a feed by time: of which of its ways?";
@@ -123,7 +122,7 @@ impl ClModal {
         }
         let line = record.line;
         let height = |height: f64| Pose { tip: at.tip + at.axis * height, ..at };
-        let rapid = (MotionKind::Rapid, None);
+        let rapid = MotionFeed::RAPID;
         // To the level above the hole: up before aside, aside before down.
         if let Some(from) = self.stands {
             let offset = from.tip - at.tip;
@@ -149,7 +148,7 @@ impl ClModal {
             true => MotionKind::Thread,
             false => MotionKind::Feed,
         };
-        let pace = (kind, feed);
+        let pace = MotionFeed { kind, feed };
         self.go(line, pace, Curve::Straight, height(-hole.depth), true, out);
         let turns = hole.dwell_turns * 60.0 / self.tools.rpm().unwrap_or(f64::INFINITY);
         let time = hole.dwell + turns;

@@ -4,7 +4,8 @@ use std::collections::VecDeque;
 
 use nalgebra::Vector3;
 use post_grammar::{
-    Argument, CoolantWord, CutterSide, Delay, Delta, Record, Rotate, Statement, Units,
+    Argument, CoolantWord, Cutcom, CutterSide, Delay, Delta, FeedRate, FeedUnit, Record, Rotate,
+    Statement, Units,
 };
 use post_machine::description::Print;
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
@@ -29,6 +30,24 @@ pub(super) type RecordResult = Result<(), Box<Diagnostic>>;
 
 /// Items that a record means, in order.
 pub(super) type CourseItems = VecDeque<CourseItem>;
+
+/// A cycle that acts at each point, and its feed; none follows from what the file says.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ActiveCycle {
+    pub(super) hole: ClHole,
+    pub(super) feed: Option<FeedWord>,
+}
+
+/// How the tool goes: at rapid, at feed or as a thread, and its feed, mm/min, as far as that is known.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MotionFeed {
+    pub(super) kind: MotionKind,
+    pub(super) feed: Option<f64>,
+}
+
+impl MotionFeed {
+    pub(super) const RAPID: Self = Self { kind: MotionKind::Rapid, feed: None };
+}
 
 /// What is modal in a CL file.
 #[derive(Debug)]
@@ -59,8 +78,8 @@ pub(super) struct ClModal {
     rapid_feed: bool,
     pub(super) feed: Option<FeedWord>,
     pub(super) pending: Option<OpenCurve>,
-    pub(super) cycle: Option<(ClHole, Option<FeedWord>)>,
-    pub(super) last_cycle: Option<(ClHole, Option<FeedWord>)>,
+    pub(super) cycle: Option<ActiveCycle>,
+    pub(super) last_cycle: Option<ActiveCycle>,
     pub(super) tools: ClTools,
     coolant: Coolants,
     side: Option<CutterSide>,
@@ -149,37 +168,13 @@ impl ClModal {
                 self.goto(record, *point, Some(*axis), out)
             }
             Statement::Godlta(delta) => self.godlta(record, *delta, out),
-            Statement::From { point, axis } => {
-                self.set_axis(record, *axis)?;
-                self.stands = Some(self.pose(record, *point)?);
-                self.only_said = true;
-                Ok(())
-            }
+            Statement::From { point, axis } => self.from(record, *point, *axis),
             Statement::Gohome(home) => self.gohome(record, *home, out),
             Statement::Rapid => {
                 self.rapid = true;
                 Ok(())
             }
-            Statement::Feed(feed) => {
-                self.rapid_feed = feed.unit == Some(post_grammar::FeedUnit::Rapid);
-                if !self.rapid_feed {
-                    self.feed = self.feed_word(record, *feed)?.or(self.feed);
-                }
-                Ok(())
-            }
-            Statement::Spindle(spindle) => self.spindle(record, *spindle, out),
-            // Autodesk names the kind in the record behind it.
-            Statement::Coolant(CoolantWord::On) if self.strange.autodesk => Ok(()),
-            Statement::Coolant(word) => self.coolant(record, *word, out),
-            Statement::LoadTool(tool) => self.load_read(record, tool, out),
-            Statement::SelectTool(number) => {
-                if self.tools.loaded() != Some(*number) {
-                    self.tell(record, ProgramEvent::Preselect(*number), out);
-                }
-                Ok(())
-            }
-            Statement::ToolData { numbers, .. } => self.cutter(numbers, 2),
-            Statement::Cutter(numbers) => self.cutter(numbers, 6),
+            Statement::Feed(feed) => self.set_feed(record, *feed),
             Statement::Units(units) => self.set_units(record, *units),
             Statement::Multax(on) => {
                 if !on {
@@ -187,15 +182,8 @@ impl ClModal {
                 }
                 Ok(())
             }
-            Statement::Msys { origin, x, y } => {
-                let origin = self.file_point(record, *origin)?;
-                if !self.settings.apply_msys {
-                    return Ok(());
-                }
-                let directions = [Vector3::from(*x), Vector3::from(*y)];
-                let set = self.frames.set_msys(origin, directions);
-                set.map_err(|why| self.fault(record, format!("this MSYS is no frame: {why}")))
-            }
+            Statement::Msys { origin, x, y } => self.msys(record, *origin, [*x, *y]),
+            Statement::Mcs { axes, origin } => self.mcs(record, axes, origin),
             Statement::SetOut(ahead) => {
                 self.set_out = Some(self.unit(record, *ahead, "INDIRV")?);
                 Ok(())
@@ -210,122 +198,198 @@ impl ClModal {
                 self.strange.mills = true;
                 Ok(())
             }
-            Statement::Mcs { axes, origin } => {
-                let turned = axes
-                    .iter()
-                    .flatten()
-                    .zip([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0])
-                    .any(|(value, own)| *value != own);
-                match turned || origin.iter().any(|value| *value != 0.0) {
-                    true => Err(self.fault(record, "MCS is a frame of its own".to_owned())),
-                    false => Ok(()),
-                }
-            }
             Statement::Circle(_)
             | Statement::ArcMove(_)
             | Statement::Nurbs
             | Statement::Knot(_)
             | Statement::Control { .. } => self.curve_word(record, out),
-            Statement::WorkOffset { number, set } => self.work_offset(record, (*number, *set), out),
-            Statement::Subprogram(number) => {
-                if !self.does_nothing("CALSUB", &[Argument::Number((*number).into())]) {
-                    self.lost();
-                    self.tell(record, ProgramEvent::Subprogram(*number), out);
-                }
-                Ok(())
-            }
             Statement::Cycle(cycle) => self.cycle_word(record, cycle),
-            Statement::Cutcom(cutcom) => {
-                self.load_due(record, out)?;
-                // ON repeats the side before, through an OFF.
-                if let Some(side @ (CutterSide::Left | CutterSide::Right)) = cutcom.side {
-                    self.side = Some(side);
-                }
-                let side = match (cutcom.side, self.side) {
-                    (Some(CutterSide::Off), _) => 0,
-                    (_, Some(CutterSide::Left)) => -1,
-                    (_, Some(CutterSide::Right)) => 1,
-                    // CAMWorks says ON first, and its first side in the next record.
-                    _ => return Ok(()),
-                };
-                self.register = cutcom.register.or(self.register);
-                let register =
-                    (side != 0).then(|| self.register.or(self.tools.loaded()).unwrap_or(1));
-                self.compensated = side != 0;
-                self.tell(record, ProgramEvent::Compensation { side, register }, out);
-                Ok(())
-            }
-            // Points stay where they are written: the tool's centre, or the contour.
-            Statement::CutcomOnCentre(_) => Ok(()),
             Statement::Rotate(rotate) => self.rotate(record, rotate),
-            Statement::ToolAxis(axis) => {
-                let axis = self.unit(record, *axis, "the tool axis")?;
-                self.told_axis = Some(axis);
-                if self.frames.turned().is_none() {
-                    self.axis = axis;
-                }
-                Ok(())
-            }
-            Statement::Delay(delay) => {
-                let (time, revolutions) = match (*delay, self.tools.rpm()) {
-                    (Delay::Seconds(seconds), _) => (seconds, false),
-                    (Delay::Revolutions(turns), Some(rpm)) => (turns * 60.0 / rpm, false),
-                    (Delay::Revolutions(turns), None) => (turns, true),
-                };
-                self.tell(record, ProgramEvent::Dwell { time, revolutions }, out);
-                Ok(())
-            }
-            Statement::Stop => {
-                self.tell(record, ProgramEvent::Stop, out);
-                Ok(())
-            }
-            Statement::OptionalStop => {
-                self.tell(record, ProgramEvent::OptionalStop, out);
-                Ok(())
-            }
-            Statement::Head(name) => {
-                self.lost();
-                self.tell(record, ProgramEvent::Head(name.clone()), out);
-                let mut offsets = self.settings.head_offsets.iter();
-                if let Some((_, number)) = offsets.find(|(head, _)| head == name) {
-                    let number = *number;
-                    self.offset = Some(number);
-                    self.tell(record, ProgramEvent::WorkOffset(number.to_string()), out);
-                }
-                Ok(())
-            }
-            Statement::ToolPath { name, tool } => {
-                self.end_spline(record, out)?;
-                self.axis = Vector3::z();
-                self.tools.name(tool.as_deref());
-                self.tell(record, ProgramEvent::Operation(name.clone()), out);
-                Ok(())
-            }
+            Statement::ToolAxis(axis) => self.tool_axis(record, *axis),
             Statement::EndOfPath => self.end_spline(record, out),
-            Statement::Print(text) if self.settings.print == Print::Message => {
-                self.tell(record, ProgramEvent::Message(text.clone()), out);
-                Ok(())
-            }
-            Statement::PartName(text) | Statement::Print(text) => {
-                self.tell(record, ProgramEvent::Remark(text.clone()), out);
-                Ok(())
-            }
-            Statement::ToolName(name) => {
-                self.tools.name(Some(name));
-                Ok(())
-            }
-            Statement::Remark(text) => {
-                self.strange.catia |=
-                    text.trim() == "*CATIA0" || text.trim().starts_with("CATIA APT VERSION");
-                Ok(())
-            }
-            // Lines of the user's own: they move nothing that is known here.
-            Statement::Insert(_) | Statement::Csys(_) => Ok(()),
             Statement::Fini => {
                 self.finished = true;
                 self.end_spline(record, out)
             }
             Statement::Other { word, arguments, .. } => self.other(record, word, arguments),
+            // Points stay where they are written: the tool's centre, or the contour.
+            Statement::CutcomOnCentre(_) => Ok(()),
+            // Lines of the user's own: they move nothing that is known here.
+            Statement::Insert(_) | Statement::Csys(_) => Ok(()),
+            Statement::Spindle(_)
+            | Statement::Coolant(_)
+            | Statement::LoadTool(_)
+            | Statement::SelectTool(_)
+            | Statement::ToolData { .. }
+            | Statement::Cutter(_)
+            | Statement::WorkOffset { .. }
+            | Statement::Subprogram(_)
+            | Statement::Cutcom(_)
+            | Statement::Delay(_)
+            | Statement::Stop
+            | Statement::OptionalStop
+            | Statement::Head(_)
+            | Statement::ToolPath { .. }
+            | Statement::Print(_)
+            | Statement::PartName(_)
+            | Statement::ToolName(_)
+            | Statement::Remark(_) => self.function(record, out),
+        }
+    }
+
+    /// What a record means for the functions of the machine and for the operator: tools, spindle, coolant, offsets, waits,
+    /// remarks.
+    fn function(&mut self, record: &Record<'_>, out: &mut CourseItems) -> RecordResult {
+        match &record.statement {
+            Statement::Spindle(spindle) => return self.spindle(record, *spindle, out),
+            // Autodesk names the kind in the record behind it.
+            Statement::Coolant(CoolantWord::On) if self.strange.autodesk => {}
+            Statement::Coolant(word) => return self.coolant(record, *word, out),
+            Statement::LoadTool(tool) => return self.load_read(record, tool, out),
+            Statement::SelectTool(number) => {
+                if self.tools.loaded() != Some(*number) {
+                    self.tell(record, ProgramEvent::Preselect(*number), out);
+                }
+            }
+            Statement::ToolData { numbers, .. } => return self.cutter(numbers, 2),
+            Statement::Cutter(numbers) => return self.cutter(numbers, 6),
+            Statement::WorkOffset { number, set } => {
+                return self.work_offset(record, *number, *set, out);
+            }
+            Statement::Subprogram(number) => {
+                if !self.does_nothing("CALSUB", &[Argument::Number((*number).into())]) {
+                    self.lost();
+                    self.tell(record, ProgramEvent::Subprogram(*number), out);
+                }
+            }
+            Statement::Cutcom(cutcom) => return self.cutcom(record, *cutcom, out),
+            Statement::Delay(delay) => self.delay(record, *delay, out),
+            Statement::Stop => self.tell(record, ProgramEvent::Stop, out),
+            Statement::OptionalStop => self.tell(record, ProgramEvent::OptionalStop, out),
+            Statement::Head(name) => self.head(record, name, out),
+            Statement::ToolPath { name, tool } => {
+                self.end_spline(record, out)?;
+                self.axis = Vector3::z();
+                self.tools.name(tool.as_deref());
+                self.tell(record, ProgramEvent::Operation(name.clone()), out);
+            }
+            Statement::Print(text) if self.settings.print == Print::Message => {
+                self.tell(record, ProgramEvent::Message(text.clone()), out);
+            }
+            Statement::PartName(text) | Statement::Print(text) => {
+                self.tell(record, ProgramEvent::Remark(text.clone()), out);
+            }
+            Statement::ToolName(name) => self.tools.name(Some(name)),
+            Statement::Remark(text) => {
+                self.strange.catia |=
+                    text.trim() == "*CATIA0" || text.trim().starts_with("CATIA APT VERSION");
+            }
+            // `record` does all others itself.
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// `FROM`: the tool stands there.
+    fn from(
+        &mut self,
+        record: &Record<'_>,
+        point: [f64; 3],
+        axis: Option<[f64; 3]>,
+    ) -> RecordResult {
+        self.set_axis(record, axis)?;
+        self.stands = Some(self.pose(record, point)?);
+        self.only_said = true;
+        Ok(())
+    }
+
+    fn set_feed(&mut self, record: &Record<'_>, feed: FeedRate) -> RecordResult {
+        self.rapid_feed = feed.unit == Some(FeedUnit::Rapid);
+        if !self.rapid_feed {
+            self.feed = self.feed_word(record, feed)?.or(self.feed);
+        }
+        Ok(())
+    }
+
+    fn msys(
+        &mut self,
+        record: &Record<'_>,
+        origin: [f64; 3],
+        directions: [[f64; 3]; 2],
+    ) -> RecordResult {
+        let origin = self.file_point(record, origin)?;
+        if !self.settings.apply_msys {
+            return Ok(());
+        }
+        let set = self.frames.set_msys(origin, directions.map(Vector3::from));
+        set.map_err(|why| self.fault(record, format!("this MSYS is no frame: {why}")))
+    }
+
+    /// `MCS` says a frame, and only the file's own is known here.
+    fn mcs(&self, record: &Record<'_>, axes: &[[f64; 3]; 3], origin: &[f64; 3]) -> RecordResult {
+        let turned = axes
+            .iter()
+            .flatten()
+            .zip([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0])
+            .any(|(value, own)| *value != own);
+        match turned || origin.iter().any(|value| *value != 0.0) {
+            true => Err(self.fault(record, "MCS is a frame of its own".to_owned())),
+            false => Ok(()),
+        }
+    }
+
+    fn cutcom(
+        &mut self,
+        record: &Record<'_>,
+        cutcom: Cutcom,
+        out: &mut CourseItems,
+    ) -> RecordResult {
+        self.load_due(record, out)?;
+        // ON repeats the side before, through an OFF.
+        if let Some(side @ (CutterSide::Left | CutterSide::Right)) = cutcom.side {
+            self.side = Some(side);
+        }
+        let side = match (cutcom.side, self.side) {
+            (Some(CutterSide::Off), _) => 0,
+            (_, Some(CutterSide::Left)) => -1,
+            (_, Some(CutterSide::Right)) => 1,
+            // CAMWorks says ON first, and its first side in the next record.
+            _ => return Ok(()),
+        };
+        self.register = cutcom.register.or(self.register);
+        let register = (side != 0).then(|| self.register.or(self.tools.loaded()).unwrap_or(1));
+        self.compensated = side != 0;
+        self.tell(record, ProgramEvent::Compensation { side, register }, out);
+        Ok(())
+    }
+
+    fn tool_axis(&mut self, record: &Record<'_>, axis: [f64; 3]) -> RecordResult {
+        let axis = self.unit(record, axis, "the tool axis")?;
+        self.told_axis = Some(axis);
+        if self.frames.turned().is_none() {
+            self.axis = axis;
+        }
+        Ok(())
+    }
+
+    fn delay(&self, record: &Record<'_>, delay: Delay, out: &mut CourseItems) {
+        let (time, revolutions) = match (delay, self.tools.rpm()) {
+            (Delay::Seconds(seconds), _) => (seconds, false),
+            (Delay::Revolutions(turns), Some(rpm)) => (turns * 60.0 / rpm, false),
+            (Delay::Revolutions(turns), None) => (turns, true),
+        };
+        self.tell(record, ProgramEvent::Dwell { time, revolutions }, out);
+    }
+
+    /// A head is swapped in, and the work offset that belongs to it.
+    fn head(&mut self, record: &Record<'_>, name: &str, out: &mut CourseItems) {
+        self.lost();
+        self.tell(record, ProgramEvent::Head(name.to_owned()), out);
+        let mut offsets = self.settings.head_offsets.iter();
+        if let Some((_, number)) = offsets.find(|(head, _)| head == name) {
+            let number = *number;
+            self.offset = Some(number);
+            self.tell(record, ProgramEvent::WorkOffset(number.to_string()), out);
         }
     }
 
@@ -372,32 +436,32 @@ impl ClModal {
             }
             _ => {}
         }
-        if let Some((hole, feed)) = self.cycle {
+        if let Some(cycle) = self.cycle {
             self.rapid = false;
-            return self.drill(record, hole, feed, to, out);
+            return self.drill(record, cycle, to, out);
         }
-        let (kind, feed) = self.pace(&Curve::Straight, to);
-        self.go(record.line, (kind, feed), Curve::Straight, to, false, out);
+        let pace = self.pace(&Curve::Straight, to);
+        self.go(record.line, pace, Curve::Straight, to, false, out);
         Ok(())
     }
 
     /// How fast the tool goes next, and its feed.
-    pub(super) fn pace(&mut self, curve: &Curve, to: Pose) -> (MotionKind, Option<f64>) {
+    pub(super) fn pace(&mut self, curve: &Curve, to: Pose) -> MotionFeed {
         if std::mem::take(&mut self.rapid) || self.rapid_feed {
-            return (MotionKind::Rapid, None);
+            return MotionFeed::RAPID;
         }
         if self.feed.is_none() && self.settings.feed.is_none() && self.stands.is_none() {
-            return (MotionKind::Rapid, None);
+            return MotionFeed::RAPID;
         }
         let feed = match self.feed {
             Some(word) => self.per_minute(word, || self.way(curve, to)),
             None => self.settings.feed,
         };
-        (MotionKind::Feed, feed)
+        MotionFeed { kind: MotionKind::Feed, feed }
     }
 
     /// [`ClModal::pace`] of a curve that ended before the record that a `RAPID` in front of it is meant for.
-    pub(super) fn pace_behind(&mut self, curve: &Curve, to: Pose) -> (MotionKind, Option<f64>) {
+    pub(super) fn pace_behind(&mut self, curve: &Curve, to: Pose) -> MotionFeed {
         let rapid = std::mem::take(&mut self.rapid);
         let pace = self.pace(curve, to);
         self.rapid = rapid;
@@ -433,12 +497,13 @@ impl ClModal {
     pub(super) fn go(
         &mut self,
         line: u64,
-        (kind, feed): (MotionKind, Option<f64>),
+        pace: MotionFeed,
         curve: Curve,
         to: Pose,
         hole: bool,
         out: &mut CourseItems,
     ) {
+        let MotionFeed { kind, feed } = pace;
         self.measured = true;
         self.strange.moved = true;
         let known = !(self.only_said && curve == Curve::Straight);
@@ -578,7 +643,8 @@ impl ClModal {
     fn work_offset(
         &mut self,
         record: &Record<'_>,
-        (number, set): (u32, bool),
+        number: u32,
+        set: bool,
         out: &mut CourseItems,
     ) -> RecordResult {
         let value = Argument::Number(number.into());

@@ -65,7 +65,7 @@ pub(super) fn define(
             let tolerance = words.take(b'T').map(|tolerance| tolerance * control.modal.unit);
             let tolerance = tolerance.filter(|tolerance| *tolerance > 0.0);
             control.smooth(tolerance);
-            control.leaves_corners(0, tolerance);
+            control.leaves_corners(None, tolerance);
             Ok(())
         }
         (32, _) => {

@@ -67,7 +67,7 @@ pub(super) fn run(
         "TRANS DATUM" => cycle::datum(control, &said, words),
         "FUNCTION TCPM" => plane::keep_tip(control, &said),
         "FUNCTION RESET TCPM" => {
-            control.set_tcp(false, 0, false);
+            control.set_tcp(false, None, false);
             Ok(())
         }
         "FUNCTION MODE" => Ok(()),
@@ -224,7 +224,7 @@ fn functions(
             }
             126 => control.modal.shortest = Some(true),
             127 => control.modal.shortest = Some(false),
-            128 => control.set_tcp(true, 0, false),
+            128 => control.set_tcp(true, None, false),
             129 => functions.tcp_off = true,
             140 => functions.retract = true,
             // Feeds at corners and of rotary axes; oversize of vectors; lead-ins by the handwheel.
@@ -238,8 +238,8 @@ fn functions(
     if let Some(code) = asked.coolant {
         control.coolant(code);
     }
-    if let Some(tcp) = asked.tcp_on {
-        control.set_tcp(true, tcp, false);
+    if asked.tcp_on {
+        control.set_tcp(true, asked.tcp_code, false);
     }
     if functions.machine {
         asked.machine = true;
@@ -257,7 +257,7 @@ fn afterwards(
         super::cycles::defined(control)?;
     }
     if functions.tcp_off || asked.tcp_off {
-        control.set_tcp(false, 0, false);
+        control.set_tcp(false, None, false);
     }
     if asked.spindle == Some(SpindleRequest::Off) {
         control.turn_spindle(SpindleRequest::Off);

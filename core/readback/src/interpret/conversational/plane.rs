@@ -202,7 +202,7 @@ pub(super) fn keep_tip(control: &mut ControlState, said: &BlockNames<'_>) -> Ans
         &["F TCP", "F CONT", "AXIS POS", "PATHCTRL AXIS", "PATHCTRL VECTOR", "REFPNT TIP-TIP"],
         &[],
     )?;
-    control.set_tcp(true, 0, false);
+    control.set_tcp(true, None, false);
     control.modal.orientation = match said.has("PATHCTRL VECTOR") {
         true => OrientationMode::Circle,
         false => OrientationMode::Usual,

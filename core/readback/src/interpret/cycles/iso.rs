@@ -6,6 +6,7 @@ use post_plugin::{Language, Meaning};
 
 use super::hole::{CycleHole, HoleDwell, Pecking, Withdrawal};
 use super::{drill, feed_a_minute};
+use crate::g_code::GCode;
 use crate::interpret::block::SpindleRequest;
 use crate::interpret::block_words::{BlockWords, bit};
 use crate::interpret::go::MotionTarget;
@@ -22,8 +23,8 @@ const MOST: i64 = 100_000;
 /// A cycle in force; lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct IsoCycle {
-    /// Ten times its G.
-    code: u16,
+    /// Its G code.
+    code: GCode,
     meaning: Meaning,
     /// The level where it began.
     start: f64,
@@ -40,7 +41,7 @@ pub(super) struct IsoCycle {
 /// A block that begins a cycle or says a further hole of it.
 pub(super) fn hole(
     control: &mut ControlState,
-    code: u16,
+    code: Option<GCode>,
     meaning: Option<Meaning>,
     words: &mut BlockWords,
 ) -> Result<(), Box<Diagnostic>> {
@@ -97,13 +98,14 @@ pub(super) fn hole(
 /// The cycle in force, with the levels, pecks and wait that the words of a block say.
 fn levels_said(
     control: &mut ControlState,
-    code: u16,
+    code: Option<GCode>,
     meaning: Option<Meaning>,
     words: &mut BlockWords,
 ) -> Result<IsoCycle, Box<Diagnostic>> {
     let unit = control.modal.unit;
     let axis = control.modal.plane.coordinates()[2];
     let letter = [b'X', b'Y', b'Z'][axis];
+    let code = code.unwrap_or_default();
     let before = control.cycles.iso;
     let mut running = match (meaning, before) {
         (Some(meaning), Some(before)) => IsoCycle { code, meaning, ..before },
@@ -157,7 +159,7 @@ fn make(
         Meaning::CycleTapLeft => SpindleRequest::CounterClockwise,
         _ => return drill(control, hole),
     };
-    if !control.modal.rigid_taps && !matches!(running.code, 842 | 843) {
+    if !control.modal.rigid_taps && !matches!(running.code.parts(), (84, 2 | 3)) {
         return drill(control, hole);
     }
     // The cycle turns the spindle itself, whatever was said before.
@@ -191,8 +193,8 @@ fn goes_its_way(control: &ControlState, running: &IsoCycle) -> Result<(), Box<Di
     let back = running.meaning == Meaning::CycleBoreBack;
     if up != back {
         let message = format!(
-            "G{} goes from the level {:.4} to {:.4}: {}",
-            f64::from(running.code) / 10.0,
+            "{} goes from the level {:.4} to {:.4}: {}",
+            running.code,
             running.clearance,
             running.bottom,
             match back {
@@ -221,9 +223,13 @@ fn levels(control: &mut ControlState, running: &IsoCycle) -> Result<CycleHole, B
         away,
         feed,
         // G81 has no wait: a P beside it says nothing.
-        wait: HoleDwell::seconds(if running.code == 810 { 0.0 } else { running.dwell }),
+        wait: HoleDwell::seconds(if running.code == GCode::whole(81) {
+            0.0
+        } else {
+            running.dwell
+        }),
         // LinuxCNC feeds all the way out, but for G85.
-        out_all: control.lexicon.language() == Language::Rs274 && running.code != 850,
+        out_all: control.lexicon.language() == Language::Rs274 && running.code != GCode::whole(85),
         ..CycleHole::default()
     };
     let pecks = |out_after: u32| Pecking {
@@ -237,10 +243,10 @@ fn levels(control: &mut ControlState, running: &IsoCycle) -> Result<CycleHole, B
     let lifted =
         matches!(running.meaning, M::CycleBoreFine | M::CycleBoreBack) && running.step > 0.0;
     if lifted {
-        let name = f64::from(running.code) / 10.0;
+        let code = running.code;
         control.note(Diagnostic::warning(
             "nc-cycle",
-            format!("G{name} goes off the wall by Q in a direction that is a parameter of the control: this way aside is left out"),
+            format!("{code} goes off the wall by Q in a direction that is a parameter of the control: this way aside is left out"),
         ));
     }
     let thread = |kind: CycleKind, hole: CycleHole| {
@@ -271,10 +277,8 @@ fn levels(control: &mut ControlState, running: &IsoCycle) -> Result<CycleHole, B
             ..hole
         },
         _ => {
-            let name = f64::from(running.code) / 10.0;
-            return Err(
-                control.refuse("nc-cycle", format!("G{name} is no cycle that is made here"))
-            );
+            let code = running.code;
+            return Err(control.refuse("nc-cycle", format!("{code} is no cycle that is made here")));
         }
     })
 }

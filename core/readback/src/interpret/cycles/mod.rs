@@ -19,6 +19,7 @@ use post_plugin::Meaning;
 
 use super::block_words::BlockWords;
 use super::state::{ControlState, FeedMeaning};
+use crate::g_code::GCode;
 use crate::{MotionKind, ProgramEvent};
 use hole::{CycleHole, HoleStroke};
 
@@ -52,12 +53,11 @@ impl CycleState {
     }
 }
 
-/// A block that begins a cycle by its G code (`code` is ten times the number, `meaning` its sense), or says a further
-/// hole of the one in force (`code` is 0): `words` are those of the block. Marks the words that it uses in
+/// A block that begins a cycle (`meaning`, by its G code or by a name), or says a further hole of the one in force (no meaning): `words` are those of the block. Marks the words that it uses in
 /// `words.used`.
 pub(super) fn hole(
     control: &mut ControlState,
-    code: u16,
+    code: Option<GCode>,
     meaning: Option<Meaning>,
     words: &mut BlockWords,
 ) -> Result<(), Box<Diagnostic>> {

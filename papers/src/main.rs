@@ -6,7 +6,8 @@ mod plan;
 mod study;
 
 use clap::{Parser, Subcommand};
-use post_command::shared::{CommandFault, run_to_end};
+use post_cli::failure::CommandFault;
+use post_cli::run_to_end;
 
 use plan::PlanArguments;
 use study::StudyArguments;

@@ -5,13 +5,15 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use post_machine::description::Setting;
 
-use post_command::shared::flag_values::{
+use post_cli::arguments::flag_values::{
     feed, file, length, not_negative, period, point, positive, setting, word,
 };
-use post_command::shared::plan::pictures;
-use post_command::shared::{
-    AtomicFile, Failure, OwnFolder, PathArg, Role, Session, json, machine_files, print, tell,
-};
+use post_cli::terminal::{print, tell};
+use post_job::failure::Failure;
+use post_job::files::{AtomicFile, OwnFolder, PathArg, Role, json};
+use post_job::machine_files;
+use post_job::plan::pictures;
+use post_job::session::Session;
 
 use crate::curve::{self, Asked, Curve, Over, Solver};
 

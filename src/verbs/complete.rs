@@ -3,7 +3,7 @@
 use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 
-use crate::terminal;
+use post_cli::terminal;
 use post_job::failure::Failure;
 use post_job::session::Session;
 

@@ -4,8 +4,9 @@ use clap::Args;
 use clap::error::ErrorKind;
 use post_machine::diagnostic::nearest;
 
-use crate::failure::CommandFault;
-use crate::terminal::{Code, CodeGroup, codes, print};
+use crate::codes::{Code, CodeGroup, codes};
+use post_cli::failure::CommandFault;
+use post_cli::terminal::print;
 use post_job::session::Session;
 
 /// Explains the codes of messages: what is found, and what helps; without a code all of them

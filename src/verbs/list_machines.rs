@@ -6,7 +6,7 @@ use clap::Args;
 use post_machine::check::MachineClass;
 use post_machine::description::Machine;
 
-use crate::terminal;
+use post_cli::terminal;
 use post_job as job;
 use post_job::failure::Failure;
 use post_job::machine_files::{self, Listed};

@@ -8,8 +8,8 @@ use post_machine::diagnostic::{Diagnostic, unreadable};
 use post_posting::MOST_FAULTS;
 use post_posting::program::limits::MOST_WORDS;
 
-use crate::arguments::flag_values::file;
-use crate::terminal::print;
+use post_cli::arguments::flag_values::file;
+use post_cli::terminal::print;
 use post_job::failure::Failure;
 use post_job::files::{ClInput, FileFault, PathArg};
 use post_job::session::Session;

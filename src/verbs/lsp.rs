@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::arguments::flag_values::length;
+use post_cli::arguments::flag_values::length;
 use post_job::failure::Failure;
 use post_job::session::Session;
 use post_lsp::Options;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::{Args, Command};
 use clap_mangen::Man;
 
-use crate::terminal;
+use post_cli::terminal;
 use post_job::failure::Failure;
 use post_job::files;
 use post_job::files::{FileFault, PathArg, Role};

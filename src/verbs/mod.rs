@@ -27,7 +27,6 @@ use clap::error::ErrorKind;
 use clap::{ArgMatches, Args, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use post_machine::diagnostic::nearest;
 
-use crate::failure::CommandFault;
 use batch::BatchArguments;
 use check::CheckArguments;
 use complete::CompletionsArguments;
@@ -42,6 +41,7 @@ use new::NewArguments;
 use place::PlaceArguments;
 use plugin::PluginArguments;
 use post::PostArguments;
+use post_cli::failure::CommandFault;
 use post_job::session::Session;
 use predict::PredictArguments;
 use print_schema::SchemaArguments;

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use crate::terminal;
+use post_cli::terminal;
 use post_job::failure::Failure;
 use post_job::machine_schema;
 use post_job::session::Session;

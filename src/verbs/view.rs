@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use clap::Args;
 use post_machine::diagnostic::Diagnostic;
 
-use crate::terminal;
+use post_cli::terminal;
 use post_job::failure::Failure;
 use post_job::files::FileFault;
 

@@ -263,23 +263,7 @@ pub fn hold<C: Course, R: Read + Seek>(
         }
     }
     drop(run);
-    if let Some((line, message)) = &found.nearest_rapid {
-        let more = match found.near_rapids {
-            1 => String::new(),
-            count => format!("; so in {count} places"),
-        };
-        let place = SourcePlace::new(name, *line, "", 0..0);
-        findings.push(Diagnostic::warning("rapid", format!("{message}{more}")).at(Some(place)));
-    }
-    for left in &found.left_on {
-        let more = match left.count {
-            1 => String::new(),
-            count => format!("; so in {count} places"),
-        };
-        let place = SourcePlace::new(name, left.line, "", 0..0);
-        let message = format!("{}{more}", left.message);
-        findings.push(Diagnostic::warning(left.code, message).at(Some(place)));
-    }
+    findings.extend(noticed(name, &found));
     let texts = lines_of(&mut input, &found.faults).map_err(unreadable)?;
     for fault in &found.faults {
         let text = fault.nc_line.and_then(|line| texts.iter().find(|(known, _)| *known == line));
@@ -287,6 +271,22 @@ pub fn hold<C: Course, R: Read + Seek>(
         findings.push(fault.diagnostic(name, text, &cl_name));
     }
     Ok(Held { found, findings, blocks })
+}
+
+/// What of the program `name` is worth a look, without being wrong.
+fn noticed(name: &str, found: &Verification) -> Vec<Diagnostic> {
+    let counted = |message: &str, count: u64| match count {
+        1 => message.to_owned(),
+        count => format!("{message}; so in {count} places"),
+    };
+    let at = |line| Some(SourcePlace::new(name, line, "", 0..0));
+    let near = found.nearest_rapid.iter().map(|(line, message)| {
+        Diagnostic::warning("rapid", counted(message, found.near_rapids)).at(at(*line))
+    });
+    let left = found.left_on.iter().map(|left| {
+        Diagnostic::warning(left.code, counted(&left.message, left.count)).at(at(left.line))
+    });
+    near.chain(left).collect()
 }
 
 /// What a program is held to.

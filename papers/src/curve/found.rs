@@ -1,6 +1,6 @@
 //! What planning a curve has found, for programs to read; its text for people is in `text`.
 
-use post_command::shared::plan::tally::LimitFound;
+use post_job::plan::tally::LimitFound;
 use serde::Serialize;
 
 use super::rows::Row;

@@ -22,12 +22,16 @@ use post_machine::diagnostic::Diagnostic;
 use file::{CurveFile, GivenPath, Pointing, Splines};
 use found::SplineFound;
 use path::CurvePath;
-use post_command::shared::plan::gauges::Gauges;
-use post_command::shared::plan::keep::Keep;
-use post_command::shared::plan::pictures::PlanRooms;
-use post_command::shared::plan::tally::Tally;
-use post_command::shared::plan::{drawn, rooms};
-use post_command::shared::{Failure, FileFault, PathArg, Session, number, open_as};
+use post_job::failure::Failure;
+use post_job::files::{FileFault, PathArg};
+use post_job::nc_program::open_as;
+use post_job::plan::gauges::Gauges;
+use post_job::plan::keep::Keep;
+use post_job::plan::pictures::PlanRooms;
+use post_job::plan::tally::Tally;
+use post_job::plan::{drawn, rooms};
+use post_job::session::Session;
+use post_job::text::number;
 use rows::Row;
 use simulate::Timeline;
 use walk::walk;
@@ -123,6 +127,40 @@ impl Curve {
         machine
     }
 
+    /// Its path, gone along by a machine with a length of the tool in mm.
+    fn path<'m>(&self, machine: &'m Machine, tool_length: f64) -> Result<CurvePath<'m>, Failure> {
+        Ok(match &self.file.path {
+            GivenPath::Splines(splines) => CurvePath::new(machine, tool_length, splines)?,
+            GivenPath::Points(points, axes) => {
+                let points = (points.as_slice(), axes.as_deref());
+                CurvePath::through(machine, tool_length, points, &self.name)?
+            }
+        })
+    }
+
+    /// What a plan keeps.
+    fn keep(&self, path: &CurvePath<'_>, solver: Solver, over: &Over) -> Result<Keep, Failure> {
+        let machine = path.machine;
+        let mut keep = Keep::new(machine, &path.axes);
+        if keep.servos.is_none() && machine.plan.contour_error.is_some() {
+            let message = format!(
+                "{}: a contour error is to be kept, and not every axis that leads the tip has a servo",
+                machine.name
+            );
+            let help = "servo in the limits of the curve file, or [servo.X] of the machine file, says what a servo does; --contour-error off plans without";
+            return Err(Diagnostic::error("plan", message).help(help).into());
+        }
+        keep.feed = over.feed.or(self.file.limits.tip[0]).unwrap_or(f64::INFINITY);
+        keep.block_rate = 1.0 / machine.motion.block_time;
+        if solver == Solver::Jerk && !keep.has_jerk() {
+            let message = format!("{}: --solver jerk, and no jerk is limited", self.name);
+            let help =
+                "j in the limits of the curve file, or max_jerk of the machine's axes, limits it";
+            return Err(Diagnostic::error("plan", message).help(help).into());
+        }
+        Ok(keep)
+    }
+
     /// Plans the feed along it. With a length of the tool in mm, and simulated if it is asked for.
     ///
     /// # Errors
@@ -135,30 +173,8 @@ impl Curve {
         simulated: bool,
     ) -> Result<Planned, Failure> {
         let machine = &self.limited(&over);
-        let mut path = match &self.file.path {
-            GivenPath::Splines(splines) => CurvePath::new(machine, tool_length, splines)?,
-            GivenPath::Points(points, axes) => {
-                let points = (points.as_slice(), axes.as_deref());
-                CurvePath::through(machine, tool_length, points, &self.name)?
-            }
-        };
-        let mut keep = Keep::new(machine, &path.axes);
-        if keep.servos.is_none() && machine.plan.contour_error.is_some() {
-            let message = format!(
-                "{}: a contour error is to be kept, and not every axis that leads the tip has a servo",
-                machine.name
-            );
-            let help = "servo in the limits of the curve file, or [servo.X] of the machine file, says what a servo does; --contour-error off plans without";
-            return Err(Diagnostic::error("plan", message).help(help).into());
-        }
-        keep.feed = over.feed.or(self.file.limits.tip[0]).unwrap_or(f64::INFINITY);
-        keep.block_rate = 1.0 / machine.motion.block_time;
-        if asked.solver == Solver::Jerk && !keep.has_jerk() {
-            let message = format!("{}: --solver jerk, and no jerk is limited", self.name);
-            let help =
-                "j in the limits of the curve file, or max_jerk of the machine's axes, limits it";
-            return Err(Diagnostic::error("plan", message).help(help).into());
-        }
+        let mut path = self.path(machine, tool_length)?;
+        let keep = self.keep(&path, asked.solver, &over)?;
         let mut plans = solve::plan(&mut path, keep.feed, asked, &self.name)?;
         let jerk = asked.solver == Solver::Jerk;
         let gauges = Gauges::new(machine, &path.axes, true, &keep, jerk);
@@ -169,9 +185,7 @@ impl Curve {
         })
         .map_err(refused)?;
         let slower = first.slower();
-        for stretch in &mut plans.stretches {
-            stretch.spline.slow(slower);
-        }
+        plans.stretches.iter_mut().for_each(|stretch| stretch.spline.slow(slower));
         let names = path.axes.iter().map(|place| machine.axes[*place].name.clone());
         let names: Vec<String> = names.collect();
         let mut rooms = rooms(machine, &path.axes, &keep);

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use post_command::shared::plan::gauges::Station;
 use post_feed::Samples;
+use post_job::plan::gauges::Station;
 use post_machine::axis_words;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Short};

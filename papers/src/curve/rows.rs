@@ -6,7 +6,7 @@ use post_machine::description::Machine;
 use post_plugin::fixed;
 use serde::Serialize;
 
-use post_command::shared::plan::gauges::PlanPoint;
+use post_job::plan::gauges::PlanPoint;
 
 /// A row, mm, degrees and s; errors in µm.
 #[derive(Clone, Debug, Serialize)]

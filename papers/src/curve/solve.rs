@@ -99,6 +99,105 @@ struct Sums {
     difference: f64,
 }
 
+impl Sums {
+    /// Of no stretch yet.
+    fn of(solver: Solver) -> Self {
+        Self {
+            solver,
+            objective: 0.0,
+            bound: None,
+            seconds: 0.0,
+            iterations: None,
+            difference: 0.0,
+        }
+    }
+
+    /// Adds a stretch.
+    fn add(&mut self, answer: &Answer, stretch: &Stretch<'_>) {
+        let Stretch { problem, weights, fast, .. } = stretch;
+        let objective: f64 = answer.q.iter().zip(weights).map(|(q, weight)| q * weight).sum();
+        self.objective += objective;
+        self.seconds += answer.seconds;
+        // A stretch without a bound leaves the whole without.
+        self.bound = answer.bound.map(|bound| self.bound.unwrap_or(0.0) + bound);
+        self.iterations = answer.iterations.map(|more| self.iterations.unwrap_or(0) + more);
+        for ((q, fast), upper) in answer.q.iter().zip(fast).zip(&problem.upper) {
+            let size = fast.max(1e-6 * upper);
+            if size > 0.0 {
+                let difference = (q.sqrt() - fast.sqrt()).abs() / size.sqrt();
+                self.difference = self.difference.max(difference);
+            }
+        }
+    }
+
+    /// What the solver came to.
+    fn found(self) -> SolverFound {
+        let gap = |bound: f64| ((bound - self.objective) / bound).max(0.0);
+        SolverFound {
+            solver: self.solver,
+            sum_of_squared_feeds: self.objective,
+            seconds: self.seconds,
+            proven_gap: self.bound.map(gap),
+            iterations: self.iterations,
+            largest_difference: self.difference,
+        }
+    }
+}
+
+/// A stretch as a problem, and the plan of reachability analysis.
+struct Stretch<'a> {
+    parameters: &'a [f64],
+    told: Told<'a>,
+    problem: Problem,
+    /// Of the squared speeds in `Σ f²`.
+    weights: Vec<f64>,
+    fast: Vec<f64>,
+}
+
+impl<'a> Stretch<'a> {
+    fn new(
+        parameters: &'a [f64],
+        told: Told<'a>,
+        ends: EndSpeeds,
+    ) -> Result<Self, Box<Diagnostic>> {
+        let mut problem = Problem::default();
+        let made = problem.refill(told.samples, told.limits, ends);
+        made.map_err(|fault| told.infeasible(&fault))?;
+        let weights = told.samples.squared_feed_weights();
+        let fast = reach::solve(&problem).map_err(|fault| told.infeasible(&fault))?;
+        Ok(Self { parameters, told, problem, weights, fast })
+    }
+
+    /// Its plan by one solver.
+    fn answer(&self, solver: Solver) -> Result<Answer, Box<Diagnostic>> {
+        let Self { parameters, told, problem, weights, fast } = self;
+        Ok(match solver {
+            Solver::Reach => Answer::of(problem, fast.clone()),
+            Solver::Interior => {
+                let best = linear_program::solve(problem, weights);
+                let best = best.map_err(|fault| told.infeasible(&fault))?;
+                Answer {
+                    bound: Some(best.bound),
+                    iterations: Some(best.iterations),
+                    ..Answer::of(problem, best.q)
+                }
+            }
+            Solver::Jerk => {
+                let settings = jerk::JerkSettings::default();
+                let plan = jerk::solve(told.samples, told.limits, problem, settings);
+                let plan = plan.map_err(|fault| told.infeasible(&fault))?;
+                Answer {
+                    q: plan.law.q(),
+                    seconds: plan.seconds,
+                    spline: Some(FeedSpline::of_law(parameters, &plan.law)),
+                    bound: None,
+                    iterations: Some(plan.iterations),
+                }
+            }
+        })
+    }
+}
+
 /// Plans every stretch of `path`, which stops between them, with the largest feed of the tip in mm/s.
 ///
 /// # Errors
@@ -121,17 +220,7 @@ pub fn plan(
         Solver::Jerk => &[Solver::Jerk, Solver::Reach],
         Solver::Interior => &[Solver::Interior, Solver::Reach],
     };
-    let mut sums: Vec<Sums> = Vec::new();
-    for solver in solvers {
-        sums.push(Sums {
-            solver: *solver,
-            objective: 0.0,
-            bound: None,
-            seconds: 0.0,
-            iterations: None,
-            difference: 0.0,
-        });
-    }
+    let mut sums: Vec<Sums> = solvers.iter().copied().map(Sums::of).collect();
     let mut way = 0.0;
     for index in 0..=last {
         let parameters = parameters(path, index, steps);
@@ -139,86 +228,37 @@ pub fn plan(
         guided.map_err(|(at, why)| path.refused(file, at, &why).boxed())?;
         let samples = path.samples(index, &parameters, feed);
         let samples = samples.map_err(|(at, why)| path.refused(file, at, &why).boxed())?;
-        let speed = |feed: f64, sample: usize| {
-            let speed = feed / samples.stretch(sample);
-            if feed > 0.0 { speed * speed } else { 0.0 }
-        };
-        let ends = EndSpeeds {
-            start: if index == 0 { speed(asked.start_feed, 0) } else { 0.0 },
-            end: match index == last {
-                true => speed(asked.end_feed, samples.len() - 1),
-                false => 0.0,
-            },
-        };
         let told = Told { path, index, samples: &samples, limits: &limits, way, file };
-        let mut problem = Problem::default();
-        let made = problem.refill(&samples, &limits, ends);
-        made.map_err(|fault| told.infeasible(&fault))?;
-        plans.monotone &= problem.rows.iter().all(|row| row.here * row.next <= 0.0);
-        let weights = samples.squared_feed_weights();
-        let fast = reach::solve(&problem).map_err(|fault| told.infeasible(&fault))?;
+        let ends = end_speeds(asked, &samples, [index == 0, index == last]);
+        let stretch = Stretch::new(&parameters, told, ends)?;
+        plans.monotone &= stretch.problem.rows.iter().all(|row| row.here * row.next <= 0.0);
         let mut spline = None;
         for sum in &mut sums {
-            let answer = match sum.solver {
-                Solver::Reach => Answer::of(&problem, fast.clone()),
-                Solver::Interior => {
-                    let best = linear_program::solve(&problem, &weights);
-                    let best = best.map_err(|fault| told.infeasible(&fault))?;
-                    Answer {
-                        bound: Some(best.bound),
-                        iterations: Some(best.iterations),
-                        ..Answer::of(&problem, best.q)
-                    }
-                }
-                Solver::Jerk => {
-                    let settings = jerk::JerkSettings::default();
-                    let plan = jerk::solve(&samples, &limits, &problem, settings);
-                    let plan = plan.map_err(|fault| told.infeasible(&fault))?;
-                    Answer {
-                        q: plan.law.q(),
-                        seconds: plan.seconds,
-                        spline: Some(FeedSpline::of_law(&parameters, &plan.law)),
-                        bound: None,
-                        iterations: Some(plan.iterations),
-                    }
-                }
-            };
-            let objective: f64 = answer.q.iter().zip(&weights).map(|(q, weight)| q * weight).sum();
-            sum.objective += objective;
-            sum.seconds += answer.seconds;
-            // A stretch without a bound leaves the whole without.
-            sum.bound = answer.bound.map(|bound| sum.bound.unwrap_or(0.0) + bound);
-            sum.iterations = answer.iterations.map(|more| sum.iterations.unwrap_or(0) + more);
-            for ((q, fast), upper) in answer.q.iter().zip(&fast).zip(&problem.upper) {
-                let size = fast.max(1e-6 * upper);
-                if size > 0.0 {
-                    let difference = (q.sqrt() - fast.sqrt()).abs() / size.sqrt();
-                    sum.difference = sum.difference.max(difference);
-                }
-            }
+            let answer = stretch.answer(sum.solver)?;
+            sum.add(&answer, &stretch);
             if sum.solver == asked.solver {
-                spline = Some(match answer.spline {
-                    Some(spline) => spline,
-                    None => FeedSpline::rounded(&parameters, &answer.q),
-                });
+                let rounded = || FeedSpline::rounded(&parameters, &answer.q);
+                spline = Some(answer.spline.unwrap_or_else(rounded));
             }
         }
         way += length(&samples, samples.len() - 1);
         plans.samples += samples.len();
         plans.stretches.push(StretchPlan { parameters, spline: spline.unwrap_or_default() });
     }
-    plans.solvers = sums
-        .into_iter()
-        .map(|sum| SolverFound {
-            solver: sum.solver,
-            sum_of_squared_feeds: sum.objective,
-            seconds: sum.seconds,
-            proven_gap: sum.bound.map(|bound| ((bound - sum.objective) / bound).max(0.0)),
-            iterations: sum.iterations,
-            largest_difference: sum.difference,
-        })
-        .collect();
+    plans.solvers = sums.into_iter().map(Sums::found).collect();
     Ok(plans)
+}
+
+/// Squared speeds of the parameter at both ends of a stretch: at rest but for the ends of the path, where feeds are given.
+fn end_speeds(asked: Asked, samples: &Samples, [first, last]: [bool; 2]) -> EndSpeeds {
+    let speed = |feed: f64, sample: usize| {
+        let speed = feed / samples.stretch(sample);
+        if feed > 0.0 { speed * speed } else { 0.0 }
+    };
+    EndSpeeds {
+        start: if first { speed(asked.start_feed, 0) } else { 0.0 },
+        end: if last { speed(asked.end_feed, samples.len() - 1) } else { 0.0 },
+    }
 }
 
 /// The knots of a stretch, and so many even steps between each and the next: third derivatives jump at knots.

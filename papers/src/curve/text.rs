@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::found::Found;
 use super::simulate::Simulated;
 use super::solve::{Solver, SolverFound};
-use post_command::shared::{number, table};
+use post_job::text::{number, table};
 
 /// How well the solvers agree where they must, as a share of every feed.
 const SAME: f64 = 1e-6;

@@ -1,6 +1,6 @@
 //! A plan gone along from its beginning to its end, finely.
 
-use post_command::shared::plan::gauges::{Gauges, PlanPoint};
+use post_job::plan::gauges::{Gauges, PlanPoint};
 
 use super::path::{CurvePath, NoStation};
 use super::solve::StretchPlan;

@@ -19,10 +19,12 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::ModelSession;
 use post_posting::report::PostingReport;
 
-use post_command::shared::{
-    AtomicFile, DryRun, Failure, JobArguments, OwnFolder, PathArg, Role, Session, plugin_finder,
-    print, say_what_is_left,
-};
+use post_cli::arguments::JobArguments;
+use post_cli::terminal::print;
+use post_job::failure::Failure;
+use post_job::files::{AtomicFile, OwnFolder, PathArg, Role};
+use post_job::session::Session;
+use post_job::{DryRun, plugin_finder, say_what_is_left};
 use sweep::{Sweep, Swept};
 
 const STUDY: Role = Role { what: "study", remedy: "name another folder with -o" };

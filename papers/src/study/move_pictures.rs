@@ -6,7 +6,7 @@ use post_plugin::{ModelSession, length};
 
 use super::notation::{FINE, HUGE, MICRO, digits, focus, sampled, tolerance};
 use super::{Models, Study};
-use post_command::shared::chart::{Chart, DASHED, GREY, LOOKS, Marker, Series};
+use post_job::files::chart::{Chart, DASHED, GREY, LOOKS, Marker, Series};
 
 /// More points than this would run into one another.
 const MOST_POINTS: usize = 60;

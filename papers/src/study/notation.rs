@@ -1,7 +1,7 @@
 //! What pictures and tables of a study tell alike: units, digits, which move is looked at.
 
 use super::Study;
-use post_command::shared::chart::{LIMIT, Series};
+use post_job::files::chart::{LIMIT, Series};
 
 /// Micrometres in a mm.
 pub const MICRO: f64 = 1e3;

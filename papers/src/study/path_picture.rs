@@ -5,7 +5,7 @@ use post_plugin::ModelSession;
 
 use super::notation::{FINE, focus};
 use super::{Models, Study};
-use post_command::shared::chart::{Chart, GREY, LOOKS, Marker, Series};
+use post_job::files::chart::{Chart, GREY, LOOKS, Marker, Series};
 
 /// Moves to each side of the one that is looked at.
 const SIDE: usize = 1;

@@ -5,7 +5,7 @@ use crate::deviations::{Survey, histogram};
 
 use super::notation::{HUGE, MICRO, count_of_moves, focus, sampled, tolerance};
 use super::{File, Models, Study, move_pictures, path_picture};
-use post_command::shared::chart::{Chart, DASHED, Draw, GREY, LOOKS, Series};
+use post_job::files::chart::{Chart, DASHED, Draw, GREY, LOOKS, Series};
 
 /// More moves than this are drawn as the largest of every few.
 const MOST_MOVES: usize = 300;

@@ -4,9 +4,9 @@ use crate::deviations::{Distribution, Keeper, Kept};
 use post_machine::description::Setting;
 use post_machine::diagnostic::Diagnostic;
 
-use post_command::shared::DryRun;
-use post_command::shared::Failure;
-use post_command::shared::flag_values::finite;
+use post_cli::arguments::flag_values::finite;
+use post_job::DryRun;
+use post_job::failure::Failure;
 
 /// More values than this are a slip.
 const MOST: f64 = 200.0;

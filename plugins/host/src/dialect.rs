@@ -16,7 +16,7 @@ use crate::described::FunctionTable;
 use crate::shown::{is_odd, quoted, sentence};
 use crate::sink::{MOST_TEXT, message, with_sink};
 use crate::vocabulary;
-use crate::{GivenValue, PluginKind, Plugin, PluginFault, Reason, check_options};
+use crate::{GivenValue, Plugin, PluginFault, PluginKind, Reason, check_options};
 
 /// What a dialect is told about a program.
 #[derive(Clone, Debug, Default)]

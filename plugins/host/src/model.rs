@@ -14,7 +14,7 @@ use crate::call::Caller;
 use crate::described::FunctionTable;
 use crate::float_mode::FloatMode;
 use crate::sink::message;
-use crate::{GivenValue, PluginKind, Plugin, PluginFault, Reason, check_options};
+use crate::{GivenValue, Plugin, PluginFault, PluginKind, Reason, check_options};
 
 /// An error model at work, for one thread.
 #[derive(Debug)]

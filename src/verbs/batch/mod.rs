@@ -10,10 +10,10 @@ use std::path::PathBuf;
 use clap::Args;
 use post_machine::diagnostic::Diagnostic;
 
-use crate::arguments::Flags;
-use crate::arguments::flag_values::file;
-use crate::terminal::{self, JobsProgress};
 use map_picture::Map;
+use post_cli::arguments::Flags;
+use post_cli::arguments::flag_values::file;
+use post_cli::terminal::{self, JobsProgress};
 use post_job::batch::{self, Grid, JobLine, Journal, Shard, Study, Table, Written};
 use post_job::failure::Failure;
 use post_job::files::{self, AtomicFile, FileFault, PathArg, Role};

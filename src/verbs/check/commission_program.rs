@@ -17,7 +17,7 @@ use post_machine::kinematics::Joints;
 use post_plugin::{Batch, DialectSession, Event, Feed, Format};
 
 use super::CheckArguments;
-use crate::terminal::print;
+use post_cli::terminal::print;
 use post_job::failure::Failure;
 use post_job::files::{self, PathArg, Role};
 use post_job::plugin_finder;

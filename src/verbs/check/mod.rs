@@ -11,9 +11,9 @@ use post_machine::check::{Differing, compare};
 use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
 
-use crate::arguments::flag_values;
-use crate::arguments::flag_values::file;
-use crate::terminal::print;
+use post_cli::arguments::flag_values;
+use post_cli::arguments::flag_values::file;
+use post_cli::terminal::print;
 use post_job::failure::Failure;
 use post_job::files::{self, PathArg, Role};
 use post_job::session::Session;

@@ -7,12 +7,11 @@ use post_machine::description::{Setting, Tcp};
 use post_posting::program::DefaultSpindle;
 use post_readback::interpret::Limits;
 
-use crate::arguments::Flags;
-use crate::arguments::flag_values::file;
-use crate::arguments::flag_values::{
-    TcpWord, feed, length, point, positive, setting, spindle, word,
-};
-use crate::terminal;
+use crate::flag_words::TcpWord;
+use post_cli::arguments::Flags;
+use post_cli::arguments::flag_values::file;
+use post_cli::arguments::flag_values::{feed, length, point, positive, setting, spindle, word};
+use post_cli::terminal;
 use post_job::convert::{ConvertRequest, convert};
 use post_job::failure::Failure;
 use post_job::files::PathArg;

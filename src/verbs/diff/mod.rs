@@ -5,9 +5,9 @@ mod diff_text;
 
 use clap::Args;
 
-use crate::arguments::flag_values::file;
-use crate::arguments::{Flags, ProgramArguments, flag_values};
-use crate::terminal;
+use post_cli::arguments::flag_values::file;
+use post_cli::arguments::{Flags, ProgramArguments, flag_values};
+use post_cli::terminal;
 use post_job::diff::{self, Compared, DiffRequest, DiffTolerances};
 use post_job::failure::Failure;
 use post_job::files::{self, AtomicFile, PathArg, Role};

@@ -10,8 +10,9 @@ use clap::{Args, ValueEnum};
 use post_machine::description::{self, OutputUnits, Tcp};
 use post_machine::diagnostic::Diagnostic;
 
-use crate::arguments::flag_values::{self, TcpWord, UnitsWord, finite, word};
-use crate::terminal;
+use crate::flag_words::{TcpWord, UnitsWord};
+use post_cli::arguments::flag_values::{self, finite, word};
+use post_cli::terminal;
 use post_job::failure::Failure;
 use post_job::files::{self, Role};
 use post_job::session::Session;

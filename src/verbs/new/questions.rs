@@ -8,8 +8,9 @@ use post_machine::diagnostic::Diagnostic;
 
 use super::template::Class;
 use super::{Choices, Given, NewArguments, dialect, range};
-use crate::arguments::flag_values::{TcpWord, finite};
-use crate::terminal::tell;
+use crate::flag_words::TcpWord;
+use post_cli::arguments::flag_values::finite;
+use post_cli::terminal::tell;
 use post_job::failure::Failure;
 
 /// How often a wrong answer is asked again.

@@ -172,10 +172,7 @@ impl Class {
 
 /// The whole file.
 pub fn write(choices: &Choices) -> String {
-    let class = choices.class;
     let mut text = String::new();
-    let title = choices.title.replace('\\', "\\\\").replace('"', "\\\"");
-    let title: String = title.chars().filter(|letter| !letter.is_control()).collect();
     // Writing to a String cannot fail.
     let mut line = |said: &str, remark: &str| {
         let _ = match remark {
@@ -183,6 +180,27 @@ pub fn write(choices: &Choices) -> String {
             remark => writeln!(text, "{said:<40}# {remark}"),
         };
     };
+    head(&mut line, choices);
+    parameters(&mut line, choices);
+    linear_axes(&mut line, choices);
+    rotary_axes(&mut line, choices);
+    control(&mut line, choices);
+    line("", "");
+    line("# [spindle]", "");
+    line(
+        "# max_speed = 12000",
+        "rpm: what the spindle can do; a CL file that asks for more is refused",
+    );
+    line("", "");
+    line("[accuracy]", "");
+    line(&format!("tolerance = {}", choices.tolerance), "mm, the tip in cuts");
+    text
+}
+
+/// What the file is, the machine's name and its chain.
+fn head(line: &mut impl FnMut(&str, &str), choices: &Choices) {
+    let title = choices.title.replace('\\', "\\\\").replace('"', "\\\"");
+    let title: String = title.chars().filter(|letter| !letter.is_control()).collect();
     line(
         "# Written by `post new`: every number is an example until it was measured on the machine.",
         "",
@@ -203,22 +221,26 @@ pub fn write(choices: &Choices) -> String {
     line("", "");
     line(&format!("name  = \"{title}\""), "");
     line(
-        &format!("chain = \"{}\"", class.chain()),
+        &format!("chain = \"{}\"", choices.class.chain()),
         "from the workpiece w over the bed b to the tool t; ' carries the part",
     );
     line("", "");
+}
+
+/// Distances of the machine, where the part sits, and the tool.
+fn parameters(line: &mut impl FnMut(&str, &str), choices: &Choices) {
     line("[parameters]", "");
     line(
         &format!("gauge = {}", choices.gauge),
         "gauge line over the table's face, all axes at zero",
     );
-    if class.has_pivot() {
+    if choices.class.has_pivot() {
         line(
             &format!("pivot = {}", choices.pivot),
             "swivel axis to gauge line: swing to 90° and compare with 0°",
         );
     }
-    if class.has_tilt() {
+    if choices.class.has_tilt() {
         line(
             &format!("tilt  = {}", choices.tilt),
             "tilting axis over the table's face; below it is negative",
@@ -231,6 +253,9 @@ pub fn write(choices: &Choices) -> String {
     line("[tool]", "");
     line("gauge = [0, 0, \"gauge\"]", "");
     line("axis  = [0, 0, 1]", "from the tip to the holder");
+}
+
+fn linear_axes(line: &mut impl FnMut(&str, &str), choices: &Choices) {
     for (name, direction, lean) in [
         ("X", "[1, 0, 0]", "20 µm/m towards Y: [1, 20e-6, 0]"),
         ("Y", "[0, 1, 0]", "20 µm/m towards X: [20e-6, 1, 0]"),
@@ -239,11 +264,14 @@ pub fn write(choices: &Choices) -> String {
         line("", "");
         line(&format!("[axis.{name}]"), "");
         line(&format!("linear   = {direction}"), &format!("as measured; a lean of {lean}"));
-        travel(&mut line, choices, name);
-        reversed(&mut line, choices, name);
+        travel(line, choices, name);
+        reversed(line, choices, name);
         line(&format!("max_feed = {}", feed(choices, name, 20_000.0)), "mm/min");
     }
-    for rotary in class.rotary() {
+}
+
+fn rotary_axes(line: &mut impl FnMut(&str, &str), choices: &Choices) {
+    for rotary in choices.class.rotary() {
         let name = rotary.name;
         line("", "");
         line(&format!("[axis.{name}]"), "");
@@ -253,14 +281,18 @@ pub fn write(choices: &Choices) -> String {
             None => rotary.point.to_owned(),
         };
         line(&format!("point    = {point}"), rotary.measure);
-        travel(&mut line, choices, name);
-        reversed(&mut line, choices, name);
+        travel(line, choices, name);
+        reversed(line, choices, name);
         line(&format!("max_feed = {}", feed(choices, name, 3600.0)), "deg/min");
     }
+}
+
+/// The control: its dialect, and what that must be told.
+fn control(line: &mut impl FnMut(&str, &str), choices: &Choices) {
     line("", "");
     line("[control]", "");
     line(&format!("dialect = \"{}\"", choices.dialect), "");
-    if class.turns() {
+    if choices.class.turns() {
         line(
             &format!("tcp     = \"{}\"", choices.tcp.name()),
             "\"post\": axis positions; \"control\": the tip (G43.4, M128, …)",
@@ -282,16 +314,6 @@ pub fn write(choices: &Choices) -> String {
             line(said, remark);
         }
     }
-    line("", "");
-    line("# [spindle]", "");
-    line(
-        "# max_speed = 12000",
-        "rpm: what the spindle can do; a CL file that asks for more is refused",
-    );
-    line("", "");
-    line("[accuracy]", "");
-    line(&format!("tolerance = {}", choices.tolerance), "mm, the tip in cuts");
-    text
 }
 
 /// What a dialect must be told of its control, and why: without it no program is written.

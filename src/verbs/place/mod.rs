@@ -5,10 +5,10 @@ mod travel_picture;
 
 use clap::{Args, ValueEnum};
 
-use crate::arguments::JobArguments;
-use crate::arguments::flag_values::file;
-use crate::arguments::flag_values::{not_negative, positive, word};
-use crate::terminal;
+use post_cli::arguments::JobArguments;
+use post_cli::arguments::flag_values::file;
+use post_cli::arguments::flag_values::{not_negative, positive, word};
+use post_cli::terminal;
 use post_job::failure::Failure;
 use post_job::files::{self, PathArg, Role};
 use post_job::place::{Least, PlaceRequest, place};

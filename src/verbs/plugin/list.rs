@@ -7,7 +7,7 @@ use post_host::{ListedPlugin, Plugin, PluginFault};
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::raw::ABI;
 
-use crate::terminal::print;
+use post_cli::terminal::print;
 use post_job::failure::Failure;
 use post_job::origin;
 use post_job::plugin_finder::{diagnostic, finder};

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use post_host::{PluginKind, OpenedDialect, Plugin, ProgramSetup, ProgramWord, default_of, takes};
+use post_host::{OpenedDialect, Plugin, PluginKind, ProgramSetup, ProgramWord, default_of, takes};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{CAPABILITIES, CODES, DialectSession, Format};
 
 use super::title;
-use crate::terminal::print;
+use post_cli::terminal::print;
 use post_job::failure::Failure;
 use post_job::plugin_finder::by_name_or_file;
 use post_job::session::Session;

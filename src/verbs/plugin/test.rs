@@ -8,7 +8,7 @@ use post_kit::conformance;
 use post_machine::diagnostic::Diagnostic;
 
 use super::title;
-use crate::terminal::print;
+use post_cli::terminal::print;
 use post_job::failure::Failure;
 use post_job::plugin_finder::{by_name_or_file, diagnostic};
 use post_job::session::Session;

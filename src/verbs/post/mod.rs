@@ -8,10 +8,10 @@ use clap::Args;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Severity};
 
-use crate::arguments::flag_values::file;
-use crate::arguments::{Flags, JobArguments};
-use crate::terminal;
 use parts::Split;
+use post_cli::arguments::flag_values::file;
+use post_cli::arguments::{Flags, JobArguments};
+use post_cli::terminal;
 use post_job::failure::Failure;
 use post_job::files::{self, AtomicFile, ClSource, PathArg, Role};
 use post_job::making::{self, Part, ProgramMaker, ProgramOutcome, Wanted};

@@ -5,7 +5,7 @@ use post_machine::description::Machine;
 use post_posting::plan::{PlanWatch, PlannedPoint};
 
 use super::parts::{self, Split};
-use crate::arguments::flag_values::file;
+use post_cli::arguments::flag_values::file;
 use post_job::failure::Failure;
 use post_job::files::{AtomicFile, FileFault, JsonRows, OwnFolder, PathArg, Role};
 use post_job::plan::map::{LimitMap, MapRow};

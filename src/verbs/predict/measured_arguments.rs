@@ -2,8 +2,8 @@
 
 use clap::Args;
 
-use crate::arguments::flag_values::file;
-use crate::arguments::flag_values::positive;
+use post_cli::arguments::flag_values::file;
+use post_cli::arguments::flag_values::positive;
 use post_job::files::PathArg;
 use post_job::predict::MeasuredRequest;
 use post_job::predict::measured::{

@@ -5,11 +5,11 @@ mod measured_arguments;
 use clap::Args;
 use post_readback::interpret::Limits;
 
-use crate::arguments::flag_values;
-use crate::arguments::flag_values::file;
-use crate::arguments::{Flags, JobFlags};
-use crate::terminal;
 use measured_arguments::MeasuredArguments;
+use post_cli::arguments::flag_values;
+use post_cli::arguments::flag_values::file;
+use post_cli::arguments::{Flags, JobFlags};
+use post_cli::terminal;
 use post_job::failure::Failure;
 use post_job::files::PathArg;
 use post_job::predict::{self, PredictRequest};

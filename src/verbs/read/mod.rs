@@ -4,9 +4,9 @@ mod read_text;
 
 use clap::Args;
 
-use crate::arguments::ProgramArguments;
-use crate::arguments::flag_values::file;
-use crate::terminal;
+use post_cli::arguments::ProgramArguments;
+use post_cli::arguments::flag_values::file;
+use post_cli::terminal;
 use post_job::failure::Failure;
 use post_job::files::PathArg;
 use post_job::nc_program::NcControl;

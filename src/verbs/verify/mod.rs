@@ -5,10 +5,10 @@ mod verify_text;
 use clap::{Args, ValueEnum};
 use post_readback::interpret::Limits;
 
-use crate::arguments::flag_values::file;
-use crate::arguments::flag_values::positive;
-use crate::arguments::{Flags, JobFlags};
-use crate::terminal;
+use post_cli::arguments::flag_values::file;
+use post_cli::arguments::flag_values::positive;
+use post_cli::arguments::{Flags, JobFlags};
+use post_cli::terminal;
 use post_job::failure::Failure;
 use post_job::files::PathArg;
 use post_job::session::Session;

@@ -76,14 +76,14 @@ fn every_code_is_explained_and_every_explained_code_is_said() {
     for (code, path) in &said {
         assert!(
             explained.contains(code.as_str()),
-            "{} says `{code}`, which src/terminal/codes.md does not explain",
+            "{} says `{code}`, which src/codes.md does not explain",
             path.display()
         );
     }
     for code in explained {
         assert!(
             texts.contains(&format!("\"{code}\"")),
-            "src/terminal/codes.md explains `{code}`, which nobody says"
+            "src/codes.md explains `{code}`, which nobody says"
         );
     }
 }

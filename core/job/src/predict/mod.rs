@@ -10,6 +10,7 @@ mod prediction;
 mod program;
 mod run;
 mod sample;
+mod set_point_stream;
 mod set_points_csv;
 mod stages;
 mod text;

@@ -1,5 +1,4 @@
-//! The stages of a prediction, one behind the other, in batches: a program becomes tasks, tasks become set-points, servos
-//! follow them, and the tool is held against its path. Memory does not grow with the program.
+//! What a program is predicted with, and who looks on.
 
 use std::io::{BufReader, Read, Seek};
 use std::ops::Range;
@@ -7,18 +6,16 @@ use std::sync::Arc;
 
 use post_host::Finder;
 use post_machine::description::Machine;
-use post_machine::diagnostic::{Diagnostic, SourcePlace};
-use post_machine::kinematics::{Solver, Unreachable};
-use post_motion::trajectory::{FillOutcome, Planner};
-use post_motion::{SetPoints, Task};
-use post_readback::interpret::{Interpreter, Limits};
-use post_readback::tasks::{ProgramTask, ProgramTasks};
-use post_readback::{BlockEffect, Offsets, ProgramEvent, ProgramRun};
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::Solver;
+use post_readback::interpret::Limits;
+use post_readback::{BlockEffect, Offsets};
 
+use super::cl_path;
 use super::prediction::Prediction;
 use super::sample::Sample;
+use super::set_point_stream::SetPointStream;
 use super::stages::Stages;
-use super::{cl_path, found};
 use crate::failure::Failure;
 use crate::files::Watched;
 use crate::files::{ClSource, FileFault};
@@ -26,13 +23,6 @@ use crate::nc_program::{self, NcControl};
 use crate::read_back;
 use crate::session::Session;
 use crate::settings::JobSettings;
-use crate::text::number;
-
-/// Set-points of a batch.
-const BATCH: usize = 256;
-
-/// A tool that strays by more from a CL file, mm, hardly cuts its part.
-const OTHER_PART: f64 = 1.0;
 
 /// What a program is predicted with.
 pub struct Asked<'a> {
@@ -108,7 +98,6 @@ pub fn predict<R: Read + Seek>(
     input: R,
     watch: &mut dyn PredictWatch,
 ) -> Result<Predicted, Failure> {
-    let period = asked.period();
     let spoken = nc_program::spoken(asked.finder, asked.machine)?;
     let mut tools = Vec::new();
     // The file was read once before: what is wrong with it is known.
@@ -126,161 +115,18 @@ pub fn predict<R: Read + Seek>(
     };
     // The control's own period stays: it says how corners are passed, and not how closely we look.
     let control = NcControl::of(asked.machine, spoken, offsets, asked.limits);
-    let machine = &control.counted;
     let unreadable = |error| FileFault::Read { name: name.to_owned(), error };
     let (input, length) = Watched::new(input).map_err(unreadable)?;
     let position = input.position();
-    let input = BufReader::new(input);
-    let mut reading = Reading {
-        run: control.run(name, input).map_err(|fault| *fault)?,
-        tasks: ProgramTasks::new(machine),
-        planned: Vec::new(),
-        ended: false,
-    };
-    let mut stages = Stages::new(machine, period, path)?;
-    let mut planner = Planner::new(machine);
-    let mut points: Option<SetPoints> = None;
-    let mut times = Vec::new();
-    let mut chains: Vec<(f64, Arc<Solver>)> = Vec::new();
+    let run = control.run(name, BufReader::new(input)).map_err(|fault| *fault)?;
+    let (machine, period) = (&control.counted, asked.period());
+    let stages = Stages::new(machine, period, path)?;
+    let mut stream = SetPointStream::new((name, run), machine, period, stages);
     let mut progress = asked.session.progress(Some(length));
-    loop {
+    progress.record(|| position.get());
+    while stream.step(watch)? {
         progress.record(|| position.get());
-        let filled = match &mut points {
-            None => FillOutcome::Wants,
-            Some(points) => {
-                let filled = planner.fill(points, BATCH, &mut times);
-                let line = points.at.last().map_or(0, |at| at.line);
-                filled.map_err(|fault| unreachable(fault, name, line))?
-            }
-        };
-        stages.done(machine, &mut times);
-        if let Some(points) = &mut points
-            && filled != FillOutcome::Wants
-        {
-            let known = chains.last();
-            if !points.is_empty()
-                && known.is_none_or(|(_, known)| !Arc::ptr_eq(known, &points.solver))
-            {
-                chains.push((points.time(0), Arc::clone(&points.solver)));
-            }
-            stages.batch(points, &mut |sample| watch.sample(sample))?;
-            points.clear();
-        }
-        match filled {
-            FillOutcome::Full => {}
-            FillOutcome::Ended => break,
-            FillOutcome::Wants => {
-                reading.more(watch, name);
-                for planned in reading.planned.drain(..) {
-                    if let (None, Task::Move(first)) = (&points, &planned.task) {
-                        points = Some(SetPoints::new(Arc::clone(&first.solver), period));
-                        stages.servos.settle(&first.from.joints);
-                    }
-                    stages.ahead(&planned);
-                    let line = match &planned.task {
-                        Task::Move(task) => task.line,
-                        Task::Wait { line, .. } => *line,
-                    };
-                    planner.push(planned.task).map_err(|fault| unreachable(fault, name, line))?;
-                }
-                if reading.ended {
-                    if points.is_none() {
-                        break;
-                    }
-                    planner.end();
-                }
-            }
-        }
     }
     progress.finish();
-    if !reading.run.faults().is_empty() {
-        // What stands behind a block that is not run counts from elsewhere.
-        return Err(reading.run.into_faults().into());
-    }
-    let mut findings = reading.tasks.notes();
-    if points.is_none() {
-        let message =
-            "nothing moves in this program: no time, no feed and no error can be predicted";
-        let help =
-            "is it the program of this machine's control? `post read` says what is read of it";
-        let place = SourcePlace::new(name, 1, "", 0..0);
-        let finding = Diagnostic::warning("no-motion", message).help(help);
-        findings.push(finding.at(Some(place)));
-    }
-    let report = reading.run.program().report();
-    findings.extend(report.notes.iter().cloned());
-    findings.extend(nc_program::unknown_words(name, report));
-    found::warn(machine, &mut findings);
-    let found = stages.finish(machine, name, report.blocks, &mut |sample| watch.sample(sample))?;
-    if let Some(file) = &found.against
-        && found.contour.tip_mm.largest > OTHER_PART
-    {
-        let message = format!(
-            "the tool strays by {:.3} mm from the path of {file}",
-            found.contour.tip_mm.largest
-        );
-        let help = "is it the CL file that the program was made from, with the same tool length, mount and units? `post verify` says where they part";
-        let place = SourcePlace::new(name, found.contour.tip_mm.nc_line, "", 0..0);
-        let finding = Diagnostic::warning("contour-far", message).help(help);
-        findings.push(finding.at(Some(place)));
-    }
-    Ok(Predicted { found, findings, chains })
-}
-
-/// A program on the way to tasks.
-struct Reading<R> {
-    run: ProgramRun<Interpreter<R>>,
-    tasks: ProgramTasks,
-    planned: Vec<ProgramTask>,
-    ended: bool,
-}
-
-impl<R: Read + Seek> Reading<R> {
-    /// Runs blocks until there is a task, or the program ends.
-    fn more(&mut self, watch: &mut dyn PredictWatch, name: &str) {
-        while self.planned.is_empty() && !self.ended {
-            let Some(done) = self.run.block() else {
-                self.tasks.end(&mut self.planned);
-                self.ended = true;
-                return;
-            };
-            done.iter().for_each(|done| watch.done(done));
-            let head = head(done, name);
-            self.tasks.take(done, &mut self.planned);
-            if let Some(head) = head {
-                self.run.refuse(head);
-            }
-        }
-    }
-}
-
-/// A head was swapped in: from here on the axes are others.
-fn head(done: &[BlockEffect], name: &str) -> Option<Diagnostic> {
-    done.iter().find_map(|done| match done {
-        BlockEffect::Event { line, event: ProgramEvent::Head(head) } => {
-            let message = format!("head {head} is swapped in: other axes move from here on");
-            let help = "predict the programs of its heads one by one (post --split tools)";
-            let place = SourcePlace::new(name, *line, "", 0..0);
-            Some(Diagnostic::error("head", message).help(help).at(Some(place)))
-        }
-        _ => None,
-    })
-}
-
-/// The axes cannot follow a move.
-fn unreachable(fault: Unreachable, name: &str, line: u64) -> Diagnostic {
-    let message = match fault {
-        Unreachable::Axis { miss } => format!(
-            "on this way no rotary angles give the tool axis, by {}°",
-            number(miss.to_degrees(), 4)
-        ),
-        Unreachable::Linear => "on this way the linear axes lie in a plane".to_owned(),
-        Unreachable::Numeric { miss } => format!(
-            "on this way no axis values were found that give tip and tool axis, by {} mm",
-            number(miss, 4)
-        ),
-    };
-    let place = SourcePlace::new(name, line, "", 0..0);
-    let help = "tool lengths and work offsets may be others: --tool-length, --offsets, --mount";
-    Diagnostic::error("motion-unreachable", message).help(help).at(Some(place))
+    stream.finish(watch)
 }

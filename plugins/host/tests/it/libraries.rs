@@ -7,7 +7,7 @@ use crate::common::{compile, deps, example, library, needed, setup, stock};
 
 use std::path::Path;
 
-use post_host::{Finder, GivenValue, PluginKind, Plugin, PluginFault, ProgramSetup, Reason};
+use post_host::{Finder, GivenValue, Plugin, PluginFault, PluginKind, ProgramSetup, Reason};
 use post_plugin::{
     Batch, Coolant, Deviation, DialectSession, Event, Feed, Meaning, ModelSession, Spindle,
     SpindleSense, Tolerance, VocabularyWord,

@@ -25,7 +25,7 @@ pub(crate) mod texts;
 
 use std::fmt::{self, Write as _};
 
-use post_host::{GivenValue, PluginKind, Plugin, PluginFault};
+use post_host::{GivenValue, Plugin, PluginFault, PluginKind};
 
 /// What the kit found.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use clap::{ArgGroup, Args};
 use post_machine::diagnostic::Diagnostic;
 
-use crate::terminal::print;
+use post_cli::terminal::print;
 use post_job::failure::Failure;
 use post_job::plugin_finder::built_in;
 use post_job::session::Session;

@@ -4,25 +4,11 @@ use std::convert::Infallible;
 
 use clap::ValueEnum;
 use clap::builder::{EnumValueParser, PathBufValueParser, TypedValueParser};
-use post_machine::description::{OutputUnits, Setting, Tcp};
+use post_machine::description::Setting;
 use post_posting::program::DefaultSpindle;
 
 use post_job::files::PathArg;
 use post_job::settings::values::{self, Value};
-
-/// `--units` of a machine.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum UnitsWord {
-    Mm,
-    Inch,
-}
-
-/// `--tcp`.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum TcpWord {
-    Control,
-    Post,
-}
 
 /// Reads one of the words `W`, and takes it for what it means.
 pub fn word<W, T>() -> impl TypedValueParser<Value = T>
@@ -31,24 +17,6 @@ where
     T: From<W> + Clone + Send + Sync + 'static,
 {
     EnumValueParser::<W>::new().map(T::from)
-}
-
-impl From<UnitsWord> for OutputUnits {
-    fn from(word: UnitsWord) -> Self {
-        match word {
-            UnitsWord::Mm => Self::Mm,
-            UnitsWord::Inch => Self::Inch,
-        }
-    }
-}
-
-impl From<TcpWord> for Tcp {
-    fn from(word: TcpWord) -> Self {
-        match word {
-            TcpWord::Control => Self::Control,
-            TcpWord::Post => Self::Post,
-        }
-    }
 }
 
 /// Reads a file, `-` for the standard streams.

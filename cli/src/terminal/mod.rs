@@ -1,6 +1,5 @@
 //! What the user sees: results on standard output; questions, progress and messages on standard error.
 
-mod codes;
 mod findings;
 mod progress;
 
@@ -10,7 +9,6 @@ use std::io::{self, IsTerminal as _, Write as _};
 use post_grammar::text::escaped;
 use post_machine::diagnostic::Diagnostic;
 
-pub use codes::{Code, CodeGroup, codes};
 pub use progress::JobsProgress;
 
 use crate::failure::CommandFault;

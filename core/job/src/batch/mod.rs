@@ -30,7 +30,7 @@ pub use grid::{Grid, MOST_JOBS, values};
 pub use inputs::Inputs;
 pub use job_line::{JobLine, Written};
 pub use journal::Journal;
-pub use one_job::known;
+pub use one_job::{known, told};
 pub use outcome::{FAILED, Outcome, REFUSED, WRITTEN};
 pub use study::{Shard, Study};
 pub use table::{Column, Table, Values};

@@ -3,6 +3,7 @@
 pub mod axes;
 pub mod batch;
 pub mod columns;
+pub mod commission_program;
 pub mod compensate;
 pub mod convert;
 pub mod diff;

@@ -4,7 +4,7 @@ mod codes;
 mod flag_words;
 mod verbs;
 
-use clap::Parser;
+use clap::Parser as _;
 
 use post_cli::failure::CommandFault;
 use verbs::CommandLine;
@@ -17,4 +17,15 @@ pub fn run() -> ! {
             .map_err(|fault| CommandFault::Usage(verbs::misspelt().unwrap_or(fault)))
             .and_then(|line| line.run(session)),
     })
+}
+
+/// What tests reach; no part of the face.
+#[doc(hidden)]
+pub mod internals {
+    use clap::CommandFactory as _;
+
+    /// The whole command line.
+    pub fn command_line() -> clap::Command {
+        super::CommandLine::command()
+    }
 }

@@ -10,6 +10,12 @@ use post_job::session::Session;
 use post_job::{files, plugin_finder};
 use terminal::Terminal;
 
+/// What tests reach; no part of the face.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::terminal::plain;
+}
+
 /// Does `job`, tells why it failed, and ends the process.
 pub fn run_to_end(job: impl FnOnce(&Session) -> Result<(), CommandFault>) -> ! {
     files::delete_on_signals();

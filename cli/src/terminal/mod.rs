@@ -9,6 +9,7 @@ use std::io::{self, IsTerminal as _, Write as _};
 use post_grammar::text::escaped;
 use post_machine::diagnostic::Diagnostic;
 
+pub use findings::plain;
 pub use progress::JobsProgress;
 
 use crate::failure::CommandFault;

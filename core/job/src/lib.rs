@@ -3,6 +3,7 @@
 pub mod axes;
 pub mod batch;
 pub mod columns;
+pub mod commission_program;
 pub mod compensate;
 pub mod convert;
 pub mod diff;
@@ -53,6 +54,14 @@ use crate::settings::JobSettings;
 pub use dry_run::DryRun;
 pub use look_ahead::look_ahead;
 pub use posting_pass::try_opening;
+
+/// What tests of single files reach; no part of the face.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::batch::told;
+    pub use crate::plan::gauges::chord_error;
+    pub use crate::report::solids::share;
+}
 
 /// The machine with all settings of the command line, and `more` after them.
 pub fn machine(

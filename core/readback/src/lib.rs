@@ -43,6 +43,12 @@ use std::sync::Arc;
 use post_machine::kinematics::Solver;
 use post_machine::tilted_plane::TiltedPlane;
 
+/// What tests of single files reach; no part of the face.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::interpret::planes::turns_of;
+}
+
 /// What a block of a program did, in the order in which it did it.
 #[derive(Clone, Debug)]
 #[allow(

@@ -7,6 +7,7 @@ mod pictures;
 mod study_csv;
 mod study_text;
 mod sweep;
+mod sweep_values;
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -25,7 +26,8 @@ use post_job::failure::Failure;
 use post_job::files::{AtomicFile, OwnFolder, PathArg, Role};
 use post_job::session::Session;
 use post_job::{DryRun, plugin_finder, say_what_is_left};
-use sweep::{Sweep, Swept};
+use sweep::Swept;
+use sweep_values::Sweep;
 
 const STUDY: Role = Role { what: "study", remedy: "name another folder with -o" };
 
@@ -57,7 +59,7 @@ pub struct StudyArguments {
     output: Option<PathBuf>,
 
     /// Goes over the file with a parameter of the machine, or any key, at each of these values, both ends included.
-    #[arg(long, value_name = "NAME=FROM:TO:STEP", value_parser = sweep::parse)]
+    #[arg(long, value_name = "NAME=FROM:TO:STEP", value_parser = sweep_values::parse)]
     sweep: Option<Sweep>,
 
     /// The move to look at closely, by its number in moves.csv. [default: the one that strays farthest]

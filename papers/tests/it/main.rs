@@ -8,3 +8,4 @@ mod common;
 mod guides;
 mod plan;
 mod study;
+mod units;

@@ -1,7 +1,6 @@
 //! `post batch`: many CL files on many machines with many settings.
 
 mod batch_text;
-mod map_picture;
 
 use std::ffi::OsStr;
 use std::num::NonZeroUsize;
@@ -10,11 +9,10 @@ use std::path::PathBuf;
 use clap::Args;
 use post_machine::diagnostic::Diagnostic;
 
-use map_picture::Map;
 use post_cli::arguments::Flags;
 use post_cli::arguments::flag_values::file;
 use post_cli::terminal::{self, JobsProgress};
-use post_job::batch::{self, Grid, JobLine, Journal, Shard, Study, Table, Written};
+use post_job::batch::{self, Grid, JobLine, Journal, Map, Shard, Study, Table, Written};
 use post_job::failure::Failure;
 use post_job::files::{self, AtomicFile, FileFault, PathArg, Role};
 use post_job::session::Session;

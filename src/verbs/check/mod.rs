@@ -1,7 +1,6 @@
 //! `post check`: what a machine file means, to be compared with the machine.
 
 mod check_text;
-mod commission_program;
 mod reach_picture;
 
 use std::path::PathBuf;
@@ -14,10 +13,13 @@ use post_machine::diagnostic::Diagnostic;
 use post_cli::arguments::flag_values;
 use post_cli::arguments::flag_values::file;
 use post_cli::terminal::print;
+use post_job::commission_program::{self, Commissioned};
 use post_job::failure::Failure;
 use post_job::files::{self, PathArg, Role};
 use post_job::session::Session;
-use post_job::{self as job, machine_files, other_dialect, plugin_finder, report, unused_options};
+use post_job::{
+    self as job, JobMachine, machine_files, other_dialect, plugin_finder, report, unused_options,
+};
 
 /// Prints what was derived from a machine file: chain, class, signs, reach, travel, solutions.
 ///
@@ -94,14 +96,38 @@ pub fn run(session: &Session, arguments: &CheckArguments) -> Result<(), Failure>
     let machine = machine(session, arguments)?;
     let finder = plugin_finder::finder(session, &arguments.plugins)?;
     unused_options::warn(session, &machine, &finder);
+    let opened = JobMachine { machine, finder };
     if arguments.commission {
-        return commission_program::write(session, arguments, &machine, &finder);
+        return commission(session, arguments, &opened);
     }
-    job::try_opening(&machine, &finder, arguments.tool_length)?;
+    let JobMachine { machine, finder } = &opened;
+    job::try_opening(machine, finder, arguments.tool_length)?;
     match &arguments.nominal {
-        Some(nominal) => with_nominal(session, arguments, &machine, nominal),
-        None => alone(session, arguments, &machine),
+        Some(nominal) => with_nominal(session, arguments, machine, nominal),
+        None => alone(session, arguments, machine),
     }
+}
+
+/// Writes a program that moves one axis after the other.
+fn commission(
+    session: &Session,
+    arguments: &CheckArguments,
+    opened: &JobMachine,
+) -> Result<(), Failure> {
+    let output = arguments.output.as_ref();
+    let length = arguments.tool_length;
+    let Commissioned { target, moves, printed } =
+        commission_program::write(session, opened, length, output)?;
+    if let Some(path) = target.path().filter(|_| !printed) {
+        print(
+            session,
+            &format!(
+                "{}: {moves} moves, one axis each. Run it without a part, with a hand on the feed override.\n",
+                path.display()
+            ),
+        );
+    }
+    Ok(())
 }
 
 /// What one machine file means.

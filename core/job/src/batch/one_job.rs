@@ -54,7 +54,7 @@ pub fn run(
 }
 
 /// A row of whatever came of a job.
-fn told(did: std::thread::Result<Result<Did, Failure>>) -> Did {
+pub fn told(did: std::thread::Result<Result<Did, Failure>>) -> Did {
     let new = |outcome| Did { outcome, known: false };
     match did {
         Ok(Ok(did)) => did,
@@ -276,20 +276,5 @@ impl Read for Stoppable<'_> {
 impl Seek for Stoppable<'_> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.text.seek(to)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_panic_is_a_row_that_is_tried_again() {
-        let did = told(catch_unwind(|| panic!("line {}", 7)));
-        assert_eq!(did.outcome.state(), FAILED);
-        assert_eq!(did.outcome.key, None);
-        let row = crate::files::json_line(&did.outcome);
-        assert!(row.contains("post itself failed: line 7"), "{row}");
-        assert!(row.contains("\"codes\":\"panic\""), "{row}");
     }
 }

@@ -298,7 +298,7 @@ impl<'a> Gauges<'a> {
 
 /// How far the chord of one period strays from an arc of this curvature, mm: the inverse of
 /// [`post_feed::limits::ChordError::feed`].
-fn chord_error(feed: f64, curvature: f64, period: f64) -> f64 {
+pub fn chord_error(feed: f64, curvature: f64, period: f64) -> f64 {
     let half = 0.5 * feed * period;
     let radius = 1.0 / curvature;
     if half >= radius {
@@ -306,21 +306,4 @@ fn chord_error(feed: f64, curvature: f64, period: f64) -> f64 {
     }
     // The form that loses no digits where the radius is large.
     half * half * curvature / (1.0 + (1.0 - half * half * curvature * curvature).sqrt())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use post_feed::limits::{ChordError, Collocation};
-
-    #[test]
-    fn the_chord_error_of_the_fastest_feed_is_the_tolerance() {
-        for (radius, tolerance) in [(8.0, 0.0005), (1000.0, 0.0005), (0.01, 0.0005)] {
-            let limit = ChordError { tolerance, period: 0.004, collocation: Collocation::Start };
-            let feed = limit.feed(1.0 / radius);
-            let found = chord_error(feed, 1.0 / radius, 0.004);
-            assert!((found / tolerance - 1.0).abs() < 1e-9, "{found}");
-        }
-        assert_eq!(chord_error(50.0, 0.0, 0.004), 0.0);
-    }
 }

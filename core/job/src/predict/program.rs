@@ -198,11 +198,11 @@ impl PredictRequest {
 
     /// The folder of the pictures, in which nothing of others lies.
     fn folder<'a>(&'a self, session: &'a Session) -> Result<Option<OwnFolder<'a>>, Failure> {
-        let folder = self.pictures.as_ref().map(|folder| {
-            let folder = OwnFolder::open(session, folder, PICTURES, MARK, &pictures::NAMES);
-            folder.map_err(|fault| *fault)
-        });
-        Ok(folder.transpose()?)
+        let Some(folder) = &self.pictures else {
+            return Ok(None);
+        };
+        let folder = OwnFolder::open(session, folder, PICTURES, MARK, &pictures::NAMES);
+        Ok(Some(folder.map_err(|fault| *fault)?))
     }
 
     /// Lays the log over a prediction, and adjusts servos to it.

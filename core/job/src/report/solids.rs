@@ -107,7 +107,7 @@ fn shapes(set: &[description::Solid]) -> (Vec<Shape<'_>>, Vec<Diagnostic>) {
 }
 
 /// The largest part that each may have so that all together have no more than `all`: who needs less leaves it to the others.
-fn share(needs: impl Iterator<Item = usize>, all: usize) -> usize {
+pub fn share(needs: impl Iterator<Item = usize>, all: usize) -> usize {
     let mut needs: Vec<usize> = needs.collect();
     needs.sort_unstable();
     let (mut left, mut others) = (all, needs.len());
@@ -146,22 +146,4 @@ fn load(given: &description::Solid, most: usize) -> Result<DrawnSolid, Box<Diagn
     let file = File::open(path).map_err(|error| fault(&error, "check its rights"))?;
     let read = DrawnSolid::read(&mut BufReader::new(file), most);
     read.map_err(|why| fault(&why, "let the CAD system write it again, as STL in mm"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::share;
-
-    #[test]
-    fn who_needs_less_leaves_it_to_the_others() {
-        for (needs, all, each) in [
-            (vec![], 10, 10),
-            (vec![3, 4], 10, 10),
-            (vec![20, 2], 10, 8),
-            (vec![20, 20, 2], 10, 4),
-            (vec![9, 9, 9], 10, 3),
-        ] {
-            assert_eq!(share(needs.clone().into_iter(), all), each, "{needs:?}");
-        }
-    }
 }

@@ -9,6 +9,7 @@ use post_plugin::{Language, Meaning};
 
 use super::block_words::{BlockWords, bit};
 use super::go::MotionTarget;
+use super::spindle_request::SpindleRequest;
 use super::state::{ControlState, FeedMeaning, MotionMode};
 use super::{cycles, frames, names, planes};
 use crate::g_code::GCode;
@@ -70,15 +71,6 @@ pub(super) struct BlockRequest {
     pub probe: bool,
     /// Whether this block goes at rapid.
     pub rapid: bool,
-}
-
-/// What the spindle does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum SpindleRequest {
-    Clockwise,
-    CounterClockwise,
-    Off,
-    Oriented,
 }
 
 /// Words of axes that no machine here has need to be said: they would move something.

@@ -3,8 +3,9 @@
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
-use super::block::{BlockRequest, SpindleRequest};
+use super::block::BlockRequest;
 use super::block_words::{BlockWords, bit};
+use super::spindle_request::SpindleRequest;
 use super::state::{ArcPlane, ControlState, FeedMeaning, MotionMode, OrientationMode};
 use crate::g_code::GCode;
 

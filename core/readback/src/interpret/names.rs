@@ -4,8 +4,9 @@ use post_grammar::nc::{NcBlock, NcItem, NcValue};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Language, Meaning};
 
-use super::block::{BlockRequest, SpindleRequest};
+use super::block::BlockRequest;
 use super::block_words::{BlockWords, which};
+use super::spindle_request::SpindleRequest;
 use super::state::ControlState;
 use super::{cycles, frames, planes};
 use crate::ProgramEvent;

@@ -3,8 +3,9 @@
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Language, Meaning};
 
-use super::block::{BlockRequest, SpindleRequest};
+use super::block::BlockRequest;
 use super::block_words::{BlockWords, bit, which};
+use super::spindle_request::SpindleRequest;
 use super::state::ControlState;
 use crate::g_code::GCode;
 use crate::{ProgramEvent, SpindleState};

@@ -22,6 +22,7 @@ mod hole;
 mod left_on;
 mod near;
 mod next_cut;
+mod octree;
 mod place;
 mod rapid;
 mod report;

@@ -5,10 +5,11 @@ use post_grammar::nc::{NcItem, NcNumber};
 
 use super::{Answer, BlockNames, afterwards, functions, plane, worth};
 use crate::ProgramEvent;
-use crate::interpret::block::{BlockRequest, SpindleRequest};
+use crate::interpret::block::BlockRequest;
 use crate::interpret::block_words::{BlockWords, bit};
 use crate::interpret::cycles::{self, DefinedCycle};
 use crate::interpret::frame::CoordinateFrame;
+use crate::interpret::spindle_request::SpindleRequest;
 use crate::interpret::state::ControlState;
 use crate::interpret::variables::VariableValue;
 

@@ -17,8 +17,9 @@ use post_grammar::nc::{NcBlock, NcItem, NcNumber, NcValue};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
-use super::block::{BlockRequest, SpindleRequest};
+use super::block::BlockRequest;
 use super::block_words::BlockWords;
+use super::spindle_request::SpindleRequest;
 use super::state::{ControlState, MotionMode};
 use crate::{MotionKind, ProgramEvent};
 

@@ -2,7 +2,7 @@
 
 use post_machine::diagnostic::Diagnostic;
 
-use crate::interpret::block::SpindleRequest;
+use super::super::spindle_request::SpindleRequest;
 use crate::{CycleCall, CycleKind};
 
 /// Strokes that one hole may have: a peck that is tiny against the depth is refused.

@@ -4,10 +4,10 @@ use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Language, Meaning};
 
+use super::super::spindle_request::SpindleRequest;
 use super::hole::{CycleHole, HoleDwell, Pecking, Withdrawal};
 use super::{drill, feed_a_minute};
 use crate::g_code::GCode;
-use crate::interpret::block::SpindleRequest;
 use crate::interpret::block_words::{BlockWords, bit};
 use crate::interpret::go::MotionTarget;
 use crate::interpret::state::ControlState;

@@ -2,9 +2,9 @@
 
 use post_machine::diagnostic::Diagnostic;
 
+use super::super::spindle_request::SpindleRequest;
 use super::hole::{CycleHole, HoleDwell, Pecking, SAME, Withdrawal};
 use crate::CycleKind;
-use crate::interpret::block::SpindleRequest;
 
 /// What the control knows besides the arguments; lengths in mm, feeds in mm/min.
 pub(crate) struct CycleContext {

@@ -6,9 +6,9 @@ use post_grammar::nc::{NcExpression, NcFlow, NcItem, NcMark};
 use post_machine::diagnostic::Diagnostic;
 
 use super::super::astray::{FlowResult, fault};
+use super::super::expression::whole;
+use super::super::variables::{VariableValue, Variables};
 use super::{OpenConstruct, ProgramFlow};
-use crate::interpret::expression::whole;
-use crate::interpret::variables::{VariableValue, Variables};
 
 impl<R: Read + Seek> ProgramFlow<R> {
     pub(super) fn looped(&mut self, flow: NcFlow, variables: &mut Variables) -> FlowResult<bool> {

@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use post_job::batch::{Table, Values, WRITTEN};
-use post_job::files::svg::{self, label, line, upright};
-use post_job::text::number;
+use super::outcome::WRITTEN;
+use super::table::{Table, Values};
+use crate::files::svg::{self, label, line, upright};
+use crate::text::number;
 
 /// Room for the numbers beside and below a map, px.
 const LEFT: f64 = 86.0;
@@ -24,8 +25,11 @@ const GREYS: [f64; 2] = [246.0, 130.0];
 
 /// What is drawn over what: names of columns.
 pub struct Map {
+    /// What goes across.
     pub x: String,
+    /// What goes up.
     pub y: String,
+    /// What the shade tells.
     pub value: String,
     /// Large values are the good ones.
     pub most: bool,

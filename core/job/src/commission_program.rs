@@ -8,7 +8,6 @@
 
 use std::path::PathBuf;
 
-use post_host::Finder;
 use post_machine::axis_words;
 use post_machine::check::{Commission, CommissionMove, Probe, Sign, number};
 use post_machine::description::{Axis, Machine, OutputUnits, Tcp};
@@ -16,36 +15,46 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_plugin::{Batch, DialectSession, Event, Feed, Format};
 
-use super::CheckArguments;
-use post_cli::terminal::print;
-use post_job::failure::Failure;
-use post_job::files::{self, PathArg, Role};
-use post_job::plugin_finder;
-use post_job::session::Session;
+use super::{JobMachine, plugin_finder};
+use crate::failure::Failure;
+use crate::files::{self, PathArg, Role};
+use crate::session::Session;
 
 /// A remark longer than this is no longer read whole on a control's screen.
 const REMARK: usize = 58;
 
-/// Writes the program.
+/// What was written.
+pub struct Commissioned {
+    /// Where the program stands.
+    pub target: PathArg,
+    /// Moves in it, one axis each.
+    pub moves: usize,
+    /// A text went to standard output.
+    pub printed: bool,
+}
+
+/// Writes the program of a machine with a tool of `length` mm to `output`, else to `commission` with the dialect's ending.
+///
+/// # Errors
+/// The chain cannot be solved, the dialect not be used, or the file not be written.
 pub fn write(
     session: &Session,
-    arguments: &CheckArguments,
-    machine: &Machine,
-    finder: &Finder,
-) -> Result<(), Failure> {
+    JobMachine { machine, finder }: &JobMachine,
+    length: f64,
+    output: Option<&PathArg>,
+) -> Result<Commissioned, Failure> {
     let mut plain = machine.clone();
     plain.control.tcp = Tcp::Post;
-    let probe =
-        Probe::new(&plain, arguments.tool_length).map_err(|lack| machine.unsolvable(&lack))?;
+    let probe = Probe::new(&plain, length).map_err(|lack| machine.unsolvable(&lack))?;
     let order = axis_words::order(&plain);
     let plan = Commission::of(&probe, &order);
     let beside = PathArg::from(PathBuf::from("commission"));
-    let name = arguments.output.as_ref().and_then(PathArg::stem);
+    let name = output.and_then(PathArg::stem);
     let name = name.unwrap_or_else(|| "COMMISSION".to_owned());
     let (mut dialect, _) = plugin_finder::dialect(finder, &plain, &name, None)?;
     let extension = dialect.format().extension.clone();
     let beside = || beside.map(|path| path.with_extension(&extension));
-    let target = arguments.output.clone().unwrap_or_else(beside);
+    let target = output.cloned().unwrap_or_else(beside);
     let mut writer = Writer {
         machine: &plain,
         order: &order,
@@ -58,18 +67,8 @@ pub fn write(
     dialect
         .write_batch(&writer.batch, &mut text, &mut ends)
         .map_err(|fault| Diagnostic::error("dialect", fault.message))?;
-    let taken = files::write(session, &[(Role::PROGRAM, &target, &text)])?;
-    if let Some(path) = target.path().filter(|_| !taken) {
-        print(
-            session,
-            &format!(
-                "{}: {} moves, one axis each. Run it without a part, with a hand on the feed override.\n",
-                path.display(),
-                plan.trials.len()
-            ),
-        );
-    }
-    Ok(())
+    let printed = files::write(session, &[(Role::PROGRAM, &target, &text)])?;
+    Ok(Commissioned { target, moves: plan.trials.len(), printed })
 }
 
 /// A blank that a line is not broken at.

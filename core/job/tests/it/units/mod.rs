@@ -1,0 +1,33 @@
+//! Single files of the crate, each by itself. Those that nobody outside sees are compiled here once more, with the tests
+//! that stand in them.
+#![allow(dead_code, reason = "tests do not use all of a file")]
+
+mod gauges;
+mod grid;
+mod one_job;
+mod solids;
+
+#[path = "../../../src/report/branch.rs"]
+mod branch;
+#[path = "../../../src/predict/measured/clock.rs"]
+mod clock;
+#[path = "../../../src/files/chart/envelope.rs"]
+mod envelope;
+#[path = "../../../src/plan_rounds/excess.rs"]
+mod excess;
+#[path = "../../../src/files/file_id.rs"]
+mod file_id;
+#[path = "../../../src/files/naming.rs"]
+mod naming;
+#[path = "../../../src/files/outcome.rs"]
+mod outcome;
+#[path = "../../../src/files/parquet.rs"]
+mod parquet;
+#[path = "../../../src/files/scale.rs"]
+mod scale;
+#[path = "../../../src/predict/pictures/spectrum.rs"]
+mod spectrum;
+#[path = "../../../src/files/svg.rs"]
+mod svg;
+#[path = "../../../src/files/temporary.rs"]
+mod temporary;

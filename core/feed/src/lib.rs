@@ -15,7 +15,7 @@
 //! Where a path is known by points alone, [`fit`] lays smooth curves along them.
 //!
 //! ```
-//! use post_feed::limits::{AxisAcceleration, AxisVelocity, Collocation, Feed};
+//! use post_feed::limits::{AxisAcceleration, AxisVelocity, Collocation, TipFeed};
 //! use post_feed::{EndSpeeds, Problem, Samples, profile, reach};
 //!
 //! // 100 mm along X at a millimetre a sample: 50 mm/s at most, 200 mm/s².
@@ -25,7 +25,7 @@
 //!     samples.push(f64::from(index), [x, [0.0; 3], [0.0; 3]], &[x]);
 //! }
 //! let collocation = Collocation::Throughout;
-//! let feed = Feed { most: 50.0, collocation };
+//! let feed = TipFeed { most: 50.0, collocation };
 //! let velocity = AxisVelocity { limits: vec![60.0], collocation };
 //! let acceleration = AxisAcceleration { limits: vec![200.0], collocation };
 //! let problem = Problem::new(&samples, &[&feed, &velocity, &acceleration], EndSpeeds::default())?;

@@ -56,12 +56,12 @@ impl Settled<'_> {
 ///
 /// ```
 /// use post_feed::problem::{Problem, LimitRow};
-/// use post_feed::reach::Stream;
+/// use post_feed::reach::ReachStream;
 ///
 /// // |q[i + 1] - q[i]| <= 2 * 50 mm/s² * 0.5 mm, q <= (20 mm/s)².
 /// let row = LimitRow { here: -1.0 / 50.0, next: 1.0 / 50.0 };
 /// let batch = Problem::from_rows(vec![0.5; 100], vec![400.0; 101], 1, vec![row; 100]);
-/// let mut stream = Stream::new(1, 32);
+/// let mut stream = ReachStream::new(1, 32);
 /// let mut plan = Vec::new();
 /// stream.push(&batch, &mut |sample| plan.push(sample.q))?;
 /// stream.finish(0.0, &mut |sample| plan.push(sample.q))?;

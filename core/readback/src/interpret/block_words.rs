@@ -185,7 +185,7 @@ impl ControlState {
             };
             match word.letter {
                 b'G' => {
-                    let code = GCode::of(value).ok_or_else(|| self.no_code(b'G', value * 10.0))?;
+                    let code = GCode::of(value).ok_or_else(|| self.no_code(b'G', value))?;
                     self.add_code(b'G', code, &mut words.g)?;
                 }
                 b'M' => {

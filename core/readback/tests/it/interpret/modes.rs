@@ -66,6 +66,7 @@ fn what_may_move_the_machine_is_refused_by_its_line() {
         ("G0 X0 Y0 Z0\nG51 X5.\n", "G51"),
         ("G0 X0 Y0 Z0\nG31 Z-5. F100.\n", "G31"),
         ("G0 X0 Y0 Z0\nX5. X6.\n", "X stands twice"),
+        ("G0 X0 Y0 Z0\nG43.44\n", "there is no G43.44"),
         ("( nothing )\nX5.\n", "how they move"),
     ] {
         let done = letters(&machine, text);

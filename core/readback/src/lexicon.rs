@@ -220,7 +220,7 @@ impl Lexicon {
     fn add_sense(&mut self, word: &str, sense: WordMeaning) {
         let mut parts = word.split_whitespace();
         let first = parts.next().unwrap_or_default();
-        let Some(code) = Code::of(first) else {
+        let Some(code) = VocabularyCode::of(first) else {
             // `MCALL CYCLE81` is known by the name of its cycle.
             let name = word.strip_prefix("MCALL ").unwrap_or(word);
             self.names.insert(name.trim_end_matches('=').to_owned(), sense);
@@ -229,16 +229,16 @@ impl Lexicon {
         let beside: Vec<(u8, Option<f64>)> = parts.filter_map(beside).collect();
         let place = self.place(sense);
         let entry = match code {
-            Code::G(code) => self.g.get_mut(code.index()),
-            Code::M(number) => self.m.get_mut(usize::from(number)),
+            VocabularyCode::G(code) => self.g.get_mut(code.index()),
+            VocabularyCode::M(number) => self.m.get_mut(usize::from(number)),
         };
         // What other words stand beside takes the plain word's place only where that has no sense.
         if let Some(entry) = entry
-            && (*entry == 0 || beside.is_empty() || matches!(code, Code::M(_)))
+            && (*entry == 0 || beside.is_empty() || matches!(code, VocabularyCode::M(_)))
         {
             *entry = place;
         }
-        if let (Code::G(code), WordMeaning::Means(meaning), false) =
+        if let (VocabularyCode::G(code), WordMeaning::Means(meaning), false) =
             (code, sense, beside.is_empty())
         {
             self.choices.push(CodeChoice { code, beside, meaning });
@@ -259,12 +259,12 @@ impl Lexicon {
 
 /// A code that a vocabulary names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Code {
+enum VocabularyCode {
     G(GCode),
     M(u16),
 }
 
-impl Code {
+impl VocabularyCode {
     /// `G43.4`, `M6`; none of any other word.
     fn of(word: &str) -> Option<Self> {
         let (letter, number) = (word.as_bytes().first()?, word.get(1..)?);

@@ -30,7 +30,7 @@ const FARTHEST: f64 = 1e6;
 
 /// A plane that the point must lie on.
 #[derive(Clone, Copy, Debug)]
-struct ActivePlane {
+struct BindingPlane {
     /// Unit normal, square to those of the planes before it.
     normal: Vector3<f64>,
     /// From the origin, mm.
@@ -50,9 +50,9 @@ fn on_planes(
     bodies: &[HalfSpace],
     wished: &Vector3<f64>,
     room: f64,
-    planes: &mut Vec<ActivePlane>,
+    planes: &mut Vec<BindingPlane>,
 ) -> Option<Vector3<f64>> {
-    let foot = |planes: &[ActivePlane]| {
+    let foot = |planes: &[BindingPlane]| {
         let steps = planes.iter();
         let steps = steps.map(|plane| plane.normal * (plane.distance - plane.normal.dot(wished)));
         wished + steps.sum::<Vector3<f64>>()
@@ -74,7 +74,7 @@ fn on_planes(
         if length < PARALLEL * body.normal.norm().max(PARALLEL) {
             return None;
         }
-        planes.push(ActivePlane { normal: normal / length, distance: distance / length });
+        planes.push(BindingPlane { normal: normal / length, distance: distance / length });
         let next = on_planes(&bodies[..index], wished, room, planes);
         planes.pop();
         point = next?;

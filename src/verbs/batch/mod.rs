@@ -73,7 +73,7 @@ pub struct BatchArguments {
     #[arg(long, value_name = "MM", value_parser = listed, help_heading = "Grid")]
     tolerance: Option<Listed>,
 
-    /// Who keeps the tip on its path: control, post.
+    /// Who keeps the tip on its path: control (RTCP, TCP, TCPM), post.
     #[arg(long, value_name = "WHO", value_parser = listed, help_heading = "Grid")]
     tcp: Option<Listed>,
 

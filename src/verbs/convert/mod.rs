@@ -101,7 +101,7 @@ pub struct ConvertArguments {
     #[arg(long, value_name = "NAME", help_heading = "Second machine")]
     dialect: Option<String>,
 
-    /// Who keeps the tip on its path on the second machine.
+    /// Who keeps the tip on its path on the second machine, the control by RTCP (TCP, TCPM) or the post.
     #[arg(long, value_parser = word::<TcpWord, Tcp>(), value_name = "WHO", help_heading = "Second machine")]
     tcp: Option<Tcp>,
 

@@ -45,7 +45,7 @@ pub struct NewArguments {
     #[arg(long, value_name = "NAME", value_parser = dialect)]
     dialect: Option<String>,
 
-    /// Who keeps the tip on its path while rotary axes turn. [default: post]
+    /// Who keeps the tip on its path while rotary axes turn, the control by RTCP (TCP, TCPM) or the post. [default: post]
     #[arg(long, value_parser = word::<TcpWord, Tcp>(), value_name = "WHO")]
     tcp: Option<Tcp>,
 

@@ -45,7 +45,7 @@ pub fn ask(arguments: &NewArguments, choices: &mut Choices) -> Result<(), Failur
     }
     if choices.class.turns() && arguments.tcp.is_none() {
         let said = question(
-            "who keeps the tip on its path: post or control",
+            "who keeps the tip on its path: post or control (RTCP, TCP, TCPM)",
             choices.tcp.name(),
             |answer| {
                 TcpWord::from_str(answer, true)

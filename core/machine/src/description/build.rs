@@ -383,7 +383,7 @@ impl Builder<'_> {
         if control.tcp.is_none() && axes.iter().any(|axis| axis.joint.rotary) {
             let message =
                 "[control] does not say who keeps the tip on its path while rotary axes turn";
-            let help = "tcp = \"control\" writes the tip and lets the control transform (G43.4, TRAORI, M128); tcp = \"post\" writes axis positions";
+            let help = "tcp = \"control\" writes the tip and lets the control transform (RTCP, TCP, TCPM: G43.4, TRAORI, M128); tcp = \"post\" writes axis positions";
             self.fault("machine-tcp", file.control.span(), message.to_owned(), help);
         }
         let options = all.remove(control.dialect.get_ref()).unwrap_or_default();

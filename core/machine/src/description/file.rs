@@ -327,7 +327,7 @@ words! {
 words! {
     /// Who keeps the tip on its path.
     Tcp = Post {
-        /// The control: linear words are the tip, rotary words the axes.
+        /// The control (RTCP, TCP, TCPM, TRAORI): linear words are the tip, rotary words the axes.
         Control "control",
         /// The post: all words are axis positions.
         Post "post",

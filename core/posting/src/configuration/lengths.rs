@@ -111,8 +111,8 @@ impl LengthAxisCheck {
                  \"none\" if its length of the tool is 0 and the work offset is measured with the tool in the spindle",
                 name(place)
             ),
-            _ => "tcp = \"control\"; a drawing of the machine with its tool along the axis that is compensated; or [tool] \
-                  length_axis = \"none\" if the control's length of the tool is 0 and the work offset is measured with the \
+            _ => "tcp = \"control\" (RTCP, TCPM); a drawing of the machine with its tool along the axis that is compensated; \
+                  or [tool] length_axis = \"none\" if the control's length of the tool is 0 and the work offset is measured with the \
                   tool in the spindle"
                 .to_owned(),
         };
@@ -241,7 +241,7 @@ fn missed(machine: &Machine, miss: f64) -> Option<Diagnostic> {
             machine.name
         );
         Diagnostic::warning("length-axis", message)
-            .help("measure the work offset with this tool, or let the control keep the tip: tcp = \"control\"")
+            .help("measure the work offset with this tool, or let the control keep the tip (RTCP, TCP, TCPM): tcp = \"control\"")
     })
 }
 

@@ -70,47 +70,33 @@ impl CycleParameters {
     ) -> Result<String, String> {
         // Of the depth 0 the control would leave the hole out, and of one above the surface cut upwards.
         let (drilling, raised) = drilling.below_its_point();
-        let hole = HoleParameters::new(&drilling, top + raised);
-        let definition = match drilling.cycle {
-            Cycle::Drill | Cycle::Deep => self.drill(&drilling, hole, rpm)?,
-            Cycle::BreakChip => self.break_chips(&drilling, hole, rpm)?,
-            Cycle::Ream => self.ream(&drilling, hole, rpm)?,
-            Cycle::Bore | Cycle::BoreFine => self.bore(&drilling, hole, rpm)?,
-            Cycle::Tap | Cycle::TapLeft => self.tap(&drilling, hole, rpm)?,
+        let hole = HoleParameters::new(drilling, top + raised, rpm);
+        let HoleDefinition { number, english, german, parameters } = match drilling.cycle {
+            Cycle::Drill | Cycle::Deep => self.drill(&hole)?,
+            Cycle::BreakChip => self.break_chips(&hole)?,
+            Cycle::Ream => self.ream(&hole)?,
+            Cycle::Bore | Cycle::BoreFine => self.bore(&hole)?,
+            Cycle::Tap | Cycle::TapLeft => self.tap(&hole)?,
             Cycle::BoreBack => {
                 return Err("back boring needs more than the CL file tells".to_owned());
             }
         };
-        let CycleName { number, english, german } = definition.name;
         let name = if self.german { german } else { english };
-        Ok(block(&format!("CYCL DEF {number} {name}"), &definition.parameters))
+        Ok(block(&format!("CYCL DEF {number} {name}"), &parameters))
     }
 
-    fn drill(
-        &self,
-        drilling: &Drilling,
-        hole: HoleParameters,
-        rpm: Option<f64>,
-    ) -> Result<HoleDefinition, String> {
-        let HoleParameters { clear, depth, surface, away, wait } = hole;
-        let feed = plunge(self.feed(drilling, rpm)?);
-        let step = CycleParameter::new(202, drilling.step, "PLUNGING DEPTH");
+    fn drill(&self, hole: &HoleParameters) -> Result<HoleDefinition, String> {
+        let &HoleParameters { clear, depth, step, surface, away, wait, .. } = hole;
+        let feed = plunge(self.feed(hole)?);
         let mut parameters = vec![clear, depth, feed, step, WAIT_ABOVE, surface, away, wait];
         parameters.extend(self.reference());
-        let name = CycleName { number: 200, english: "DRILLING", german: "BOHREN" };
-        Ok(HoleDefinition { name, parameters })
+        Ok(HoleDefinition { number: 200, english: "DRILLING", german: "BOHREN", parameters })
     }
 
-    fn break_chips(
-        &self,
-        drilling: &Drilling,
-        hole: HoleParameters,
-        rpm: Option<f64>,
-    ) -> Result<HoleDefinition, String> {
-        let HoleParameters { clear, depth, surface, away, wait } = hole;
-        let feed = plunge(self.feed(drilling, rpm)?);
-        let step = CycleParameter::new(202, drilling.step, "PLUNGING DEPTH");
-        let breaks = (drilling.depth / drilling.step).ceil();
+    fn break_chips(&self, hole: &HoleParameters) -> Result<HoleDefinition, String> {
+        let &HoleParameters { clear, depth, step, surface, away, wait, .. } = hole;
+        let feed = plunge(self.feed(hole)?);
+        let breaks = (hole.drilling.depth / hole.drilling.step).ceil();
         let mut parameters = vec![clear, depth, feed, step, WAIT_ABOVE, surface, away];
         parameters.extend([
             CycleParameter::new(212, 0.0, "DECREMENT"),
@@ -122,63 +108,46 @@ impl CycleParameters {
         ]);
         parameters.extend(self.reference());
         let (english, german) = ("UNIVERSAL DRILLING", "UNIVERSAL-BOHREN");
-        Ok(HoleDefinition { name: CycleName { number: 203, english, german }, parameters })
+        Ok(HoleDefinition { number: 203, english, german, parameters })
     }
 
-    fn ream(
-        &self,
-        drilling: &Drilling,
-        hole: HoleParameters,
-        rpm: Option<f64>,
-    ) -> Result<HoleDefinition, String> {
-        let HoleParameters { clear, depth, surface, away, wait } = hole;
-        let feed = self.feed(drilling, rpm)?;
+    fn ream(&self, hole: &HoleParameters) -> Result<HoleDefinition, String> {
+        let &HoleParameters { clear, depth, surface, away, wait, .. } = hole;
+        let feed = self.feed(hole)?;
         let parameters = vec![clear, depth, plunge(feed), wait, out(feed), surface, away];
-        let name = CycleName { number: 201, english: "REAMING", german: "REIBEN" };
-        Ok(HoleDefinition { name, parameters })
+        Ok(HoleDefinition { number: 201, english: "REAMING", german: "REIBEN", parameters })
     }
 
-    fn bore(
-        &self,
-        drilling: &Drilling,
-        hole: HoleParameters,
-        rpm: Option<f64>,
-    ) -> Result<HoleDefinition, String> {
-        let HoleParameters { clear, depth, surface, away, wait } = hole;
-        let lift = if drilling.cycle == Cycle::Bore { 0 } else { self.lift };
-        let feed = plunge(self.feed(drilling, rpm)?);
-        let mut parameters = vec![clear, depth, feed, wait, out(RAPID), surface, away];
-        parameters.push(CycleParameter::new(214, lift as f64, "DISENGAGING DIRECTN"));
-        parameters.push(CycleParameter::new(336, self.angle, "ANGLE OF SPINDLE"));
-        let name = CycleName { number: 202, english: "BORING", german: "AUSDREHEN" };
-        Ok(HoleDefinition { name, parameters })
+    fn bore(&self, hole: &HoleParameters) -> Result<HoleDefinition, String> {
+        let &HoleParameters { clear, depth, surface, away, wait, .. } = hole;
+        let lift = if hole.drilling.cycle == Cycle::Bore { 0 } else { self.lift };
+        let lift = CycleParameter::new(214, lift as f64, "DISENGAGING DIRECTN");
+        let angle = CycleParameter::new(336, self.angle, "ANGLE OF SPINDLE");
+        let feed = plunge(self.feed(hole)?);
+        let parameters = vec![clear, depth, feed, wait, out(RAPID), surface, away, lift, angle];
+        Ok(HoleDefinition { number: 202, english: "BORING", german: "AUSDREHEN", parameters })
     }
 
-    fn tap(
-        &self,
-        drilling: &Drilling,
-        hole: HoleParameters,
-        rpm: Option<f64>,
-    ) -> Result<HoleDefinition, String> {
-        let HoleParameters { clear, depth, surface, away, wait } = hole;
+    fn tap(&self, hole: &HoleParameters) -> Result<HoleDefinition, String> {
+        let &HoleParameters { drilling, rpm, clear, depth, surface, away, wait, .. } = hole;
         if self.floating {
             let speed = rpm.ok_or(NO_SPEED)?;
             let feed = plunge(drilling.thread(rpm).ok_or(NO_SPEED)? * speed * self.feeds);
             let parameters = vec![clear, depth, feed, wait, surface, away];
-            let name = CycleName { number: 206, english: "TAPPING", german: "GEWINDEBOHREN" };
-            return Ok(HoleDefinition { name, parameters });
+            let (english, german) = ("TAPPING", "GEWINDEBOHREN");
+            return Ok(HoleDefinition { number: 206, english, german, parameters });
         }
         let pitch = drilling.thread(rpm).ok_or(NO_SPEED)?;
         let pitch = if drilling.cycle == Cycle::Tap { pitch } else { -pitch };
         let pitch = CycleParameter::new(239, pitch, "THREAD PITCH");
         let parameters = vec![clear, depth, pitch, surface, away];
         let (english, german) = ("RIGID TAPPING", "GEW.-BOHREN GS");
-        Ok(HoleDefinition { name: CycleName { number: 207, english, german }, parameters })
+        Ok(HoleDefinition { number: 207, english, german, parameters })
     }
 
     /// The feed of a hole as the parameters count it.
-    fn feed(&self, drilling: &Drilling, rpm: Option<f64>) -> Result<f64, String> {
-        Ok(drilling.feed_per_minute(rpm).ok_or(NO_SPEED)? * self.feeds)
+    fn feed(&self, hole: &HoleParameters) -> Result<f64, String> {
+        Ok(hole.drilling.feed_per_minute(hole.rpm).ok_or(NO_SPEED)? * self.feeds)
     }
 
     /// What the depth is that of: newer controls ask for it.
@@ -187,24 +156,30 @@ impl CycleParameters {
     }
 }
 
-/// The parameters that all definitions of a hole have.
+/// A hole, and the parameters that definitions have in common.
 struct HoleParameters {
+    drilling: Drilling,
+    rpm: Option<f64>,
     clear: CycleParameter,
     depth: CycleParameter,
+    step: CycleParameter,
     surface: CycleParameter,
     away: CycleParameter,
     wait: CycleParameter,
 }
 
 impl HoleParameters {
-    fn new(drilling: &Drilling, top: f64) -> Self {
+    fn new(drilling: Drilling, top: f64, rpm: Option<f64>) -> Self {
         let thread = matches!(drilling.cycle, Cycle::Tap | Cycle::TapLeft);
         let depth = if thread { "DEPTH OF THREAD" } else { "DEPTH" };
         // The control goes to the higher of the two.
         let away = drilling.retract.max(drilling.clearance);
         Self {
+            drilling,
+            rpm,
             clear: CycleParameter::new(200, drilling.clearance, "SET-UP CLEARANCE"),
             depth: CycleParameter::new(201, -drilling.depth, depth),
+            step: CycleParameter::new(202, drilling.step, "PLUNGING DEPTH"),
             surface: CycleParameter::new(203, top, "SURFACE COORDINATE"),
             away: CycleParameter::new(204, away, "2ND SET-UP CLEARANCE"),
             wait: CycleParameter::new(211, drilling.dwell, "DWELL TIME AT DEPTH"),
@@ -212,17 +187,12 @@ impl HoleParameters {
     }
 }
 
-/// A cycle with all that its definition says.
+/// A definition: number and name of the cycle, in the languages of the control, and its parameters.
 struct HoleDefinition {
-    name: CycleName,
-    parameters: Vec<CycleParameter>,
-}
-
-/// A cycle's number, and its name in the languages of the control.
-struct CycleName {
     number: u32,
     english: &'static str,
     german: &'static str,
+    parameters: Vec<CycleParameter>,
 }
 
 /// No wait above the hole.

@@ -246,21 +246,19 @@ impl ClModal {
             Statement::Coolant(CoolantWord::On) if self.strange.autodesk => {}
             Statement::Coolant(word) => return self.coolant(record, *word, out),
             Statement::LoadTool(tool) => return self.load_read(record, tool, out),
-            Statement::SelectTool(number) => {
-                if self.tools.loaded() != Some(*number) {
-                    self.tell(record, ProgramEvent::Preselect(*number), out);
-                }
+            Statement::SelectTool(number) if self.tools.loaded() != Some(*number) => {
+                self.tell(record, ProgramEvent::Preselect(*number), out);
             }
             Statement::ToolData { numbers, .. } => return self.cutter(numbers, 2),
             Statement::Cutter(numbers) => return self.cutter(numbers, 6),
             Statement::WorkOffset { number, set } => {
                 return self.work_offset(record, *number, *set, out);
             }
-            Statement::Subprogram(number) => {
-                if !self.does_nothing("CALSUB", &[Argument::Number((*number).into())]) {
-                    self.lost();
-                    self.tell(record, ProgramEvent::Subprogram(*number), out);
-                }
+            Statement::Subprogram(number)
+                if !self.does_nothing("CALSUB", &[Argument::Number((*number).into())]) =>
+            {
+                self.lost();
+                self.tell(record, ProgramEvent::Subprogram(*number), out);
             }
             Statement::Cutcom(cutcom) => return self.cutcom(record, *cutcom, out),
             Statement::Delay(delay) => self.delay(record, *delay, out),
@@ -284,7 +282,7 @@ impl ClModal {
                 self.strange.catia |=
                     text.trim() == "*CATIA0" || text.trim().starts_with("CATIA APT VERSION");
             }
-            // `record` does all others itself.
+            // A tool that is loaded already, a subprogram that does nothing; all others `record` does itself.
             _ => {}
         }
         Ok(())

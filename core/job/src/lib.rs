@@ -1,8 +1,8 @@
 //! A job as the flags mean it: a CL file, a machine with its settings, and the plugins that the machine asks for.
 
-pub mod axes;
+mod axes;
 pub mod batch;
-pub mod columns;
+mod columns;
 pub mod commission_program;
 pub mod compensate;
 pub mod convert;
@@ -16,8 +16,8 @@ pub mod machine_files;
 pub mod machine_schema;
 pub mod making;
 pub mod nc_program;
-pub mod nc_to_cl;
-pub mod one_program;
+mod nc_to_cl;
+mod one_program;
 pub mod other_dialect;
 pub mod place;
 pub mod plan;
@@ -25,7 +25,7 @@ pub mod plan_rounds;
 mod plan_worth;
 pub mod plugin_finder;
 mod plugin_folders;
-pub mod posted;
+mod posted;
 pub mod posting_pass;
 pub mod predict;
 pub mod read;
@@ -52,7 +52,7 @@ use crate::files::PathArg;
 use crate::session::Session;
 use crate::settings::JobSettings;
 pub use dry_run::DryRun;
-pub use look_ahead::look_ahead;
+use look_ahead::look_ahead;
 pub use posting_pass::try_opening;
 
 /// What tests of single files reach; no part of the face.

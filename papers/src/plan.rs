@@ -8,7 +8,7 @@ use post_machine::description::Setting;
 use post_cli::arguments::flag_values::{
     feed, file, length, not_negative, period, point, positive, setting, word,
 };
-use post_cli::terminal::{print, tell};
+use post_cli::terminal::print_beside;
 use post_job::failure::Failure;
 use post_job::files::{AtomicFile, OwnFolder, PathArg, Role, json};
 use post_job::machine_files;
@@ -223,11 +223,7 @@ pub fn run(session: &Session, arguments: &PlanArguments) -> Result<(), Failure> 
     session.findings(&findings);
     if !arguments.quiet {
         let text = curve::text(found);
-        if taken {
-            tell(&text);
-        } else {
-            print(session, &text);
-        }
+        print_beside(session, &text, taken);
     }
     Ok(())
 }

@@ -60,6 +60,14 @@ pub fn print(session: &Session, text: &str) {
     }
 }
 
+/// Prints a result beside texts that were written: to standard error if one of them has `taken` standard output, alone there.
+pub fn print_beside(session: &Session, text: &str, taken: bool) {
+    match taken {
+        true => tell(text),
+        false => print(session, text),
+    }
+}
+
 /// All results were printed.
 pub fn all_printed(session: &Session) -> Result<(), Failure> {
     if let Some(read) = standard::is_read(session) {

@@ -202,11 +202,7 @@ pub fn run(session: &Session, arguments: &BatchArguments) -> Result<(), Failure>
     AtomicFile::finish(session, texts)?;
     if !arguments.quiet {
         let text = batch_text::text(&table, done.known, &arguments.output);
-        if taken {
-            terminal::tell(&text);
-        } else {
-            terminal::print(session, &text);
-        }
+        terminal::print_beside(session, &text, taken);
     }
     Ok(())
 }

@@ -143,11 +143,7 @@ pub fn run(session: &Session, arguments: &ConvertArguments) -> Result<(), Failur
     session.findings(&converted.findings);
     if !arguments.quiet {
         let text = table(&converted.summary(converted.names.clone()), 2);
-        if converted.printed {
-            terminal::tell(&text);
-        } else {
-            terminal::print(session, &text);
-        }
+        terminal::print_beside(session, &text, converted.printed);
     }
     Ok(())
 }

@@ -116,11 +116,7 @@ pub fn run(session: &Session, arguments: &DiffArguments) -> Result<(), Failure> 
     AtomicFile::finish(session, written)?;
     session.findings(findings);
     let text = diff_text::text(names, machines, rules, found);
-    if taken {
-        terminal::tell(&text);
-    } else {
-        terminal::print(session, &text);
-    }
+    terminal::print_beside(session, &text, taken);
     match found.same {
         true => Ok(()),
         false => Err(Failure::Different),

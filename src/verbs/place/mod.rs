@@ -95,10 +95,6 @@ pub fn run(session: &Session, arguments: &PlaceArguments) -> Result<(), Failure>
     session.findings(&found.best.findings);
     let text = place_text::text(arguments, &found);
     // Standard output is for the picture, alone there.
-    if taken {
-        terminal::tell(&text);
-    } else {
-        terminal::print(session, &text);
-    }
+    terminal::print_beside(session, &text, taken);
     Ok(())
 }

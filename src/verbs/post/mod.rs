@@ -241,11 +241,7 @@ fn print(maker: &ProgramMaker<'_>, parts: &[Part], outcomes: &[ProgramOutcome], 
             text.push('\n');
             text.push_str(&predict::text(found));
         }
-        if taken {
-            terminal::tell(&text);
-        } else {
-            terminal::print(maker.session, &text);
-        }
+        terminal::print_beside(maker.session, &text, taken);
     }
 }
 

@@ -111,11 +111,7 @@ pub fn run(session: &Session, arguments: &PredictArguments) -> Result<(), Failur
     session.findings(&predicted.findings);
     if !arguments.quiet {
         let text = predict::text(&predicted.found);
-        if predicted.printed {
-            terminal::tell(&text);
-        } else {
-            terminal::print(session, &text);
-        }
+        terminal::print_beside(session, &text, predicted.printed);
     }
     Ok(())
 }

@@ -73,10 +73,6 @@ pub fn run(session: &Session, arguments: &ReadArguments) -> Result<(), Failure> 
     session.findings(&found.report.notes);
     let refused = found.refused;
     let text = read_text::text(&control.machine, &found.survey, &found.report, refused.len());
-    if found.printed {
-        terminal::tell(&text);
-    } else {
-        terminal::print(session, &text);
-    }
+    terminal::print_beside(session, &text, found.printed);
     if refused.is_empty() { Ok(()) } else { Err(refused.into()) }
 }

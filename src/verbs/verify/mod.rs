@@ -122,11 +122,7 @@ pub fn run(session: &Session, arguments: &VerifyArguments) -> Result<(), Failure
     let Verified { name, machine, held, tolerances, printed } = verify(session, &request)?;
     if !arguments.quiet {
         let text = verify_text::text(&held, &machine, &name, tolerances);
-        if printed {
-            terminal::tell(&text);
-        } else {
-            terminal::print(session, &text);
-        }
+        terminal::print_beside(session, &text, printed);
     }
     if held.is_wrong() {
         return Err(held.findings.into());

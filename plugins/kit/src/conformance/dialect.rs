@@ -26,11 +26,11 @@ pub const LAST: u32 = Event::Word { text: "" }.kind();
 /// Cuts in the program.
 pub const CUTS: usize = 40;
 
-/// Runs a case, and notes what it finds.
-type Run = fn(&Pen<'_>, &mut Case) -> Result<(), PluginFault>;
+/// What runs a case and notes what it finds.
+type CaseRun = fn(&Pen<'_>, &mut Case) -> Result<(), PluginFault>;
 
 /// The cases in the order in which they are run, behind those of the whole program.
-const CASES: &[(&str, Run)] = &[
+const CASES: &[(&str, CaseRun)] = &[
     ("words and feeds", moves),
     ("rounding edges", edges),
     ("commands", commands),

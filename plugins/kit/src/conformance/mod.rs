@@ -204,16 +204,9 @@ impl Report {
 }
 
 impl Peaks {
-    /// In units of 1/`scale`, with `decimals`; very large and very small ones as a power of ten.
+    /// In units of 1/`scale`.
     fn write(&self, text: &mut String, scale: f64, width: usize, decimals: usize) -> fmt::Result {
-        let number = |value: f64| {
-            let value = value * scale;
-            if value == 0.0 || (1e-3..1e5).contains(&value) {
-                format!("{value:.decimals$}")
-            } else {
-                format!("{value:.1e}")
-            }
-        };
+        let number = |value: f64| readable(value * scale, decimals, 1);
         let left = if self.actual > 0.0 {
             format!("{:.1} %", 100.0 * self.left / self.actual)
         } else {
@@ -226,6 +219,14 @@ impl Peaks {
             number(self.said),
             self.said_at,
         )
+    }
+}
+
+/// A number with so many decimals; a very large or very small one as a power of ten, with `digits` behind its point.
+fn readable(value: f64, decimals: usize, digits: usize) -> String {
+    match value == 0.0 || (1e-3..1e5).contains(&value) {
+        true => format!("{value:.decimals$}"),
+        false => format!("{value:.digits$e}"),
     }
 }
 

@@ -3,7 +3,7 @@
 use post_plugin::{Curve, Deviation, ModelSession, Tolerance, length};
 
 use super::shapes::{self, DeviationKind, KnownDeviation, TOLERANCE};
-use super::{Case, Figures, Peaks};
+use super::{Case, Figures, Peaks, readable};
 use post_host::{GivenValue, OpenedModel, Plugin, PluginFault};
 
 /// Even pieces in which truth and curve are compared.
@@ -196,11 +196,7 @@ fn largest(values: &[(f64, Deviation)], part: impl Fn(&Deviation) -> &[f64; 3]) 
 
 /// Four digits that a reader can take in.
 fn short(value: f64) -> String {
-    if value == 0.0 || (1e-3..1e5).contains(&value) {
-        format!("{value:.4}")
-    } else {
-        format!("{value:.2e}")
-    }
+    readable(value, 4, 2)
 }
 
 /// Deviations that are no numbers: refused, or at least answered by numbers.

@@ -11,6 +11,7 @@ use post_job as job;
 use post_job::failure::Failure;
 use post_job::machine_files::{self, Listed};
 use post_job::session::Session;
+use post_job::text_table::TextTable;
 
 /// Lists the machines that a bare name finds: class, axes, dialect and file.
 ///
@@ -35,9 +36,11 @@ pub fn run(session: &Session, arguments: &MachinesArguments) -> Result<(), Failu
         terminal::print(session, &text.replace("\r\n", "\n"));
         return Ok(());
     }
-    let mut rows = vec![["name", "axes", "dialect", "from", "class"].map(str::to_owned)];
-    rows.extend(machine_files::list(session, &arguments.machines)?.into_iter().map(row));
-    terminal::print(session, &post_job::text::table(&rows, rows[0].len()));
+    let mut table = TextTable::headed(5, ["name", "axes", "dialect", "from", "class"]);
+    for listed in machine_files::list(session, &arguments.machines)? {
+        table.row(row(listed));
+    }
+    terminal::print(session, &table.text());
     Ok(())
 }
 

@@ -26,6 +26,7 @@ use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg, Role};
 use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings, ProgramSettings, ReportSettings};
+use crate::text_table::NamedValues;
 
 /// Of the tolerance so much is left for the CL file's chords: the rest is what posting may use.
 const CHORDS: f64 = 0.1;
@@ -253,7 +254,7 @@ impl<'a> Conversion<'a> {
             findings: &made.findings,
             job: "convert",
             // The same job gives the same page wherever its files lie.
-            facts: made.summary([input, output].map(report::name_of)),
+            facts: made.summary([input, output].map(report::name_of)).into_rows(),
         }
     }
 }
@@ -275,31 +276,33 @@ fn refuse_turned(machine: &Machine) -> Result<(), Failure> {
 
 impl Converted {
     /// What was done, as a table, the two programs called so.
-    pub fn summary(&self, [name, target]: [String; 2]) -> Vec<[String; 2]> {
+    pub fn summary(&self, [name, target]: [String; 2]) -> NamedValues {
         let Self { machines: [from, to], report, held, facts, .. } = self;
         let found = &held.found;
-        let mut rows: Vec<[String; 2]> = Vec::new();
-        let mut row = |name: &str, value: String| rows.push([name.to_owned(), value]);
-        row("from", format!("{name}, {} ({})", from.name, from.control.dialect));
-        row("to", format!("{target}, {} ({})", to.name, to.control.dialect));
-        row(
+        let mut rows = NamedValues::default();
+        rows.row("from", format_args!("{name}, {} ({})", from.name, from.control.dialect));
+        rows.row("to", format_args!("{target}, {} ({})", to.name, to.control.dialect));
+        rows.row(
             "path",
-            format!(
+            format_args!(
                 "{} pieces at feed ({} arcs, {} splines), {} rapids, {} holes",
                 facts.cuts, facts.arcs, facts.splines, facts.rapids, facts.holes
             ),
         );
-        row("program", format!("{} blocks, {} points put in", report.blocks, report.points_added));
-        row(
+        rows.row(
+            "program",
+            format_args!("{} blocks, {} points put in", report.blocks, report.points_added),
+        );
+        rows.row(
             "tip",
-            format!(
+            format_args!(
                 "within {} mm of the first program's path, tolerance {} mm",
                 number(found.tip.value, 6),
                 number(report.tolerance_mm / (1.0 - CHORDS), 6)
             ),
         );
-        row("tool axis", format!("within {}°", number(found.axis.value, 5)));
-        row("time", clock(report.time_s));
+        rows.row("tool axis", format_args!("within {}°", number(found.axis.value, 5)));
+        rows.row("time", clock(report.time_s));
         rows
     }
 }

@@ -37,6 +37,7 @@ pub mod session;
 pub mod settings;
 pub mod summary;
 pub mod text;
+pub mod text_table;
 pub mod unused_options;
 pub mod verify;
 

@@ -3,13 +3,16 @@
 use std::fmt::Write as _;
 
 use post_posting::plan::PlanReport;
-use post_posting::report::{LengthSource, PluginUse, PostingReport, ReportedDeviation};
+use post_posting::report::{
+    AxisRange, FastRapids, LengthSource, PluginUse, PostingReport, ReportedDeviation, ReportedTool,
+};
 use post_readback::verify::Verification;
 use serde::Serialize;
 
 use crate::files::PathArg;
 use crate::predict::Prediction;
 use crate::text::{at_most, clock, number};
+use crate::text_table::NamedValues;
 use crate::{compensate, plan_rounds};
 
 /// What the summary tells as JSON.
@@ -44,21 +47,20 @@ pub fn text(
         Some(path) => path.display().to_string(),
         None => "standard output".to_owned(),
     };
-    let mut text = String::new();
-    let program = ["program".to_owned(), format!("{target}, from {input}")];
-    for [name, value] in std::iter::once(program).chain(rows(report, read_back, origin)) {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{name:<16} {value}");
-    }
-    text
+    let mut told = NamedValues::default();
+    told.row("program", format_args!("{target}, from {input}"));
+    rows(&mut told, report, read_back, origin);
+    told.lines(16)
 }
 
 /// The same for the report: without folders, which are others elsewhere.
 pub fn facts(report: &PostingReport, read_back: Option<&Verification>) -> Vec<[String; 2]> {
-    rows(report, read_back, |plugin| match &plugin.hash {
+    let mut told = NamedValues::default();
+    rows(&mut told, report, read_back, |plugin| match &plugin.hash {
         Some(hash) => hash.clone(),
         None => "built in".to_owned(),
-    })
+    });
+    told.into_rows()
 }
 
 /// Where a plugin comes from.
@@ -70,169 +72,158 @@ fn origin(plugin: &PluginUse) -> String {
     }
 }
 
-/// What the summary tells of a program: names and values.
+/// What the summary tells of a program.
 fn rows(
+    rows: &mut NamedValues,
     report: &PostingReport,
     read_back: Option<&Verification>,
     origin: impl Fn(&PluginUse) -> String,
-) -> Vec<[String; 2]> {
-    let mut rows = Vec::new();
-    let mut row = |name: &str, value: String| rows.push([name.to_owned(), value]);
-    row("machine", format!("{}, the {} keeps the tip", report.machine, report.tcp));
+) {
+    rows.row("machine", format_args!("{}, the {} keeps the tip", report.machine, report.tcp));
     for (plugin, kind) in report.plugins.iter().zip(["dialect", "error model"]) {
-        row(kind, format!("{} {} ({})", plugin.name, plugin.version, origin(plugin)));
+        let PluginUse { name, version, .. } = plugin;
+        rows.row(kind, format_args!("{name} {version} ({})", origin(plugin)));
     }
-    row("records read", report.records.to_string());
-    row("moves", report.moves.to_string());
-    row(
-        "blocks",
-        format!(
-            "{}{} in {}, {} put in{}{}",
-            report.blocks,
-            match report.curves {
-                0 => String::new(),
-                count => format!(" ({})", counted(count, "arc or spline", "arcs and splines")),
-            },
-            counted(report.nc_lines, "line", "lines"),
-            counted(report.points_added, "point", "points"),
-            match report.points_dropped {
-                0 => String::new(),
-                count => format!(", {} left out", counted(count, "CL point", "CL points")),
-            },
-            match report.model_overruled {
-                0 => String::new(),
-                1 => " (the certificate overruled the model once)".to_owned(),
-                count => format!(" (the certificate overruled the model {count} times)"),
-            }
-        ),
-    );
+    rows.row("records read", report.records);
+    rows.row("moves", report.moves);
+    rows.row("blocks", blocks(report));
     let point = report.control_point;
     if point != Default::default() {
-        row(
+        rows.row(
             "control point",
-            format!(
+            format_args!(
                 "{} mm above the point of the CL file, cutting edge at a radius of {} mm",
                 point.along, point.radius
             ),
         );
     }
-    row(
-        "tip deviation",
-        format!(
-            "{}, tolerance {} mm",
-            certified(report.tip_deviation_mm, "mm", 6),
-            report.tolerance_mm
-        ),
-    );
-    row(
-        "axis deviation",
-        format!(
-            "{}, tolerance {:.4}°",
-            certified(report.axis_deviation_deg, "°", 5),
-            report.axis_tolerance_deg
-        ),
-    );
-    if let Some(found) = read_back {
-        row(
-            "read back",
-            format!(
-                "{} and {} as the CL file asks; tip at most {} mm off, axis {}°",
-                counted(found.cuts, "cut", "cuts"),
-                counted(found.holes, "hole", "holes"),
-                number(found.tip.value, 6),
-                number(found.axis.value, 5)
-            ),
-        );
-    }
-    for axis in &report.axes {
-        if axis.min > axis.max {
-            continue;
-        }
-        let travel = match axis.travel {
-            Some([min, max]) => format!("of {} to {}", number(min, 3), number(max, 3)),
-            None => "endless".to_owned(),
-        };
-        row(
-            &format!("axis {}", axis.name),
-            format!(
-                "{} to {} {travel}, {} in all",
-                number(axis.min, 3),
-                number(axis.max, 3),
-                number(axis.way, 1)
-            ),
-        );
+    let tip = certified(report.tip_deviation_mm, "mm", 6);
+    rows.row("tip deviation", format_args!("{tip}, tolerance {} mm", report.tolerance_mm));
+    let axis = certified(report.axis_deviation_deg, "°", 5);
+    let tolerance = report.axis_tolerance_deg;
+    rows.row("axis deviation", format_args!("{axis}, tolerance {tolerance:.4}°"));
+    rows.row_if("read back", read_back.map(as_asked));
+    for used in report.axes.iter().filter(|axis| axis.min <= axis.max) {
+        rows.row(format_args!("axis {}", used.name), used_of(used));
     }
     for tool in &report.tools {
-        let name = match tool.number {
-            Some(number) => format!("tool {number}"),
-            None => "tool".to_owned(),
-        };
-        let source = match tool.source {
-            LengthSource::Option => "by --tool-length",
-            LengthSource::MachineFile => "by the machine file",
-            LengthSource::ClFile => "by the CL file",
-            LengthSource::Unknown => "nobody gave it",
-        };
-        row(&name, format!("{} mm long, {source}", tool.length_mm));
-    }
-    let mut choices = Vec::new();
-    for (count, one, several) in [
-        (
-            report.branch_changes,
-            "change of solution off the part",
-            "changes of solution off the part",
-        ),
-        (report.rewinds, "rewind", "rewinds"),
-        (report.points_eased, "point eased close to a pole", "points eased close to a pole"),
-    ] {
-        if count > 0 {
-            choices.push(counted(count, one, several));
+        match tool.number {
+            Some(number) => rows.row(format_args!("tool {number}"), length(tool)),
+            None => rows.row("tool", length(tool)),
         }
     }
-    if !choices.is_empty() {
-        row("solutions", choices.join(", "));
-    }
-    row(
-        "time",
-        format!(
-            "{} of it {} cutting, without tool changes{}",
-            clock(report.time_s),
-            clock(report.cutting_time_s),
-            match report.blocks_limited {
-                0 => String::new(),
-                count if report.plan.is_some() =>
-                    format!("; {} slower than the CL file asks", counted(count, "block", "blocks")),
-                count => slowed(count, report.blocks_capped),
-            }
-        ),
-    );
+    rows.row_if("solutions", solutions(report));
+    rows.row("time", time(report));
     if let Some(plan) = &report.plan {
-        row("planned feed", planned(plan));
-        row("held by", held_by(plan));
+        rows.row("planned feed", planned(plan));
+        rows.row("held by", held_by(plan));
     }
     let fast = &report.fast_rapids;
-    if fast.count > 0 {
-        row(
-            "fast rapids",
-            format!(
-                "{}, {} up to {:.2} times its max_feed (CL line {}) if the control limits the axes of the program alone; [control] rapid = \"linear\" writes them as feed moves",
-                fast.count, fast.axis, fast.factor, fast.line
-            ),
-        );
-    }
-    if !report.ignored_words.is_empty() {
-        let words: Vec<String> =
-            report.ignored_words.iter().map(|(word, count)| format!("{word} {count}")).collect();
-        row("words ignored", words.join(", "));
-    }
-    row(
-        "warnings",
-        match report.warnings.len() {
-            0 => "none".to_owned(),
-            count => format!("{count}, see above"),
+    rows.row_if("fast rapids", (fast.count > 0).then(|| beyond_max_feed(fast)));
+    let ignored = report.ignored_words.iter().map(|(word, count)| format!("{word} {count}"));
+    let ignored: Vec<String> = ignored.collect();
+    rows.row_if("words ignored", (!ignored.is_empty()).then(|| ignored.join(", ")));
+    rows.row("warnings", warnings(report.warnings.len()));
+}
+
+/// Blocks of the program, and what was done to come to them.
+fn blocks(report: &PostingReport) -> String {
+    format!(
+        "{}{} in {}, {} put in{}{}",
+        report.blocks,
+        match report.curves {
+            0 => String::new(),
+            count => format!(" ({})", counted(count, "arc or spline", "arcs and splines")),
         },
-    );
-    rows
+        counted(report.nc_lines, "line", "lines"),
+        counted(report.points_added, "point", "points"),
+        match report.points_dropped {
+            0 => String::new(),
+            count => format!(", {} left out", counted(count, "CL point", "CL points")),
+        },
+        match report.model_overruled {
+            0 => String::new(),
+            1 => " (the certificate overruled the model once)".to_owned(),
+            count => format!(" (the certificate overruled the model {count} times)"),
+        }
+    )
+}
+
+/// What reading the program back has found.
+fn as_asked(found: &Verification) -> String {
+    format!(
+        "{} and {} as the CL file asks; tip at most {} mm off, axis {}°",
+        counted(found.cuts, "cut", "cuts"),
+        counted(found.holes, "hole", "holes"),
+        number(found.tip.value, 6),
+        number(found.axis.value, 5)
+    )
+}
+
+/// What of an axis' travel is used.
+fn used_of(axis: &AxisRange) -> String {
+    let travel = match axis.travel {
+        Some([min, max]) => format!("of {} to {}", number(min, 3), number(max, 3)),
+        None => "endless".to_owned(),
+    };
+    let [min, max] = [axis.min, axis.max].map(|end| number(end, 3));
+    format!("{min} to {max} {travel}, {} in all", number(axis.way, 1))
+}
+
+/// How long a tool is, and who says so.
+fn length(tool: &ReportedTool) -> String {
+    let source = match tool.source {
+        LengthSource::Option => "by --tool-length",
+        LengthSource::MachineFile => "by the machine file",
+        LengthSource::ClFile => "by the CL file",
+        LengthSource::Unknown => "nobody gave it",
+    };
+    format!("{} mm long, {source}", tool.length_mm)
+}
+
+/// Changes of solution and what stands for them; none where there are none.
+fn solutions(report: &PostingReport) -> Option<String> {
+    let (change, changes) = ("change of solution off the part", "changes of solution off the part");
+    let (eased, all_eased) = ("point eased close to a pole", "points eased close to a pole");
+    let choices = [
+        (report.branch_changes, change, changes),
+        (report.rewinds, "rewind", "rewinds"),
+        (report.points_eased, eased, all_eased),
+    ];
+    let choices = choices.into_iter().filter(|(count, ..)| *count > 0);
+    let choices = choices.map(|(count, one, several)| counted(count, one, several));
+    let choices: Vec<String> = choices.collect();
+    (!choices.is_empty()).then(|| choices.join(", "))
+}
+
+/// How long the program takes, and blocks that are slower than asked for.
+fn time(report: &PostingReport) -> String {
+    format!(
+        "{} of it {} cutting, without tool changes{}",
+        clock(report.time_s),
+        clock(report.cutting_time_s),
+        match report.blocks_limited {
+            0 => String::new(),
+            count if report.plan.is_some() =>
+                format!("; {} slower than the CL file asks", counted(count, "block", "blocks")),
+            count => slowed(count, report.blocks_capped),
+        }
+    )
+}
+
+fn beyond_max_feed(fast: &FastRapids) -> String {
+    format!(
+        "{}, {} up to {:.2} times its max_feed (CL line {}) if the control limits the axes of the program alone; [control] rapid = \"linear\" writes them as feed moves",
+        fast.count, fast.axis, fast.factor, fast.line
+    )
+}
+
+/// How many warnings there were.
+pub fn warnings(count: usize) -> String {
+    match count {
+        0 => "none".to_owned(),
+        count => format!("{count}, see above"),
+    }
 }
 
 /// So many of a thing.

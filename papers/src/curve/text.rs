@@ -5,27 +5,27 @@ use std::fmt::Write as _;
 use super::found::Found;
 use super::simulate::Simulated;
 use super::solve::{Solver, SolverFound};
-use post_job::text::{number, table};
+use post_job::text::number;
+use post_job::text_table::{NamedValues, TextTable, or_dash};
 
 /// How well the solvers agree where they must, as a share of every feed.
 const SAME: f64 = 1e-6;
 
+/// Width of names.
+const NAME: usize = 14;
+
 /// The tables of a plan.
 pub fn text(found: &Found) -> String {
-    let mut text = String::new();
-    let mut row = |name: &str, value: String| {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{name:<14} {value}");
-    };
-    row("curve", format!("{} ({})", found.name, found.curve));
-    row("machine", format!("{}: {}", found.machine, found.axes.join(", ")));
-    row("samples", found.samples.to_string());
-    row("length", format!("{} mm", number(found.length_mm, 3)));
+    let mut rows = NamedValues::default();
+    rows.row("curve", format_args!("{} ({})", found.name, found.curve));
+    rows.row("machine", format_args!("{}: {}", found.machine, found.axes.join(", ")));
+    rows.row("samples", found.samples);
+    rows.row("length", format_args!("{} mm", number(found.length_mm, 3)));
     let mean = 60.0 * found.length_mm / found.seconds;
     let time = format!("{} s, {} mm/min on average", number(found.seconds, 3), number(mean, 0));
-    row("cycle time", time);
+    rows.row("cycle time", time);
     let of_samples = found.solvers.first().map_or(0.0, |solver| solver.seconds);
-    row(
+    rows.row(
         "feed spline",
         format!(
             "degree 2, slower by {} % to keep the limits between samples; the plan at the samples takes {} s",
@@ -38,7 +38,7 @@ pub fn text(found: &Found) -> String {
         stops => {
             let places: Vec<String> = stops.iter().take(5).map(|at| number(*at, 4)).collect();
             let more = if stops.len() > 5 { " …" } else { "" };
-            row(
+            rows.row(
                 "stops",
                 format!(
                     "{}, where direction or curvature jumps: at parameter {}{more}",
@@ -48,6 +48,7 @@ pub fn text(found: &Found) -> String {
             );
         }
     }
+    let mut text = rows.lines(NAME);
     limits(&mut text, found);
     solvers(&mut text, found);
     if let Some(simulated) = &found.simulated {
@@ -57,8 +58,8 @@ pub fn text(found: &Found) -> String {
 }
 
 fn limits(text: &mut String, found: &Found) {
-    let head = ["limit", "most", "largest", "share", "at mm", "active: way", "time"];
-    let mut rows = vec![head.map(str::to_owned)];
+    let heads = ["limit", "most", "largest", "share", "at mm", "active: way", "time"];
+    let mut table = TextTable::headed(1, heads);
     let mut unreached = [1.0, 1.0];
     let mut unkept = false;
     for limit in &found.limits {
@@ -70,36 +71,22 @@ fn limits(text: &mut String, found: &Found) {
         let decimals = decimals(limit.most.unwrap_or(limit.largest));
         let free = limit.most.is_some() && !limit.kept;
         unkept |= free;
-        let percent = |share: f64| match limit.kept {
-            true => format!("{:.1} %", 100.0 * share),
-            false => "-".to_owned(),
-        };
-        rows.push([
+        let percent = |share: f64| or_dash(limit.kept.then(|| format!("{:.1} %", 100.0 * share)));
+        table.row([
             format!("{}, {}{}", limit.limit, limit.unit, if free { " *" } else { "" }),
-            limit.most.map_or_else(|| "-".to_owned(), |most| number(most, decimals)),
+            or_dash(limit.most.map(|most| number(most, decimals))),
             number(limit.largest, decimals),
-            limit
-                .largest_share
-                .map_or_else(|| "-".to_owned(), |share| format!("{:.2} %", 100.0 * share)),
+            or_dash(limit.largest_share.map(|share| format!("{:.2} %", 100.0 * share))),
             number(limit.at_mm, 3),
             percent(limit.share_of_way),
             percent(limit.share_of_time),
         ]);
     }
-    let none = unreached.map(|share| format!("{:.1} %", 100.0 * share.max(0.0)));
-    let [way, time] = none;
-    let blank = String::new;
-    rows.push([
-        "none of them within 1 %".to_owned(),
-        blank(),
-        blank(),
-        blank(),
-        blank(),
-        way,
-        time,
-    ]);
-    text.push('\n');
-    text.push_str(&table(&rows, 1));
+    let mut none = vec![String::new(); 5];
+    none[0].push_str("none of them within 1 %");
+    none.extend(unreached.map(|share| format!("{:.1} %", 100.0 * share.max(0.0))));
+    table.row(none);
+    table.below(text);
     if unkept {
         text.push_str("* not kept by this solver; --solver jerk keeps limits of jerk\n");
     }
@@ -116,24 +103,23 @@ fn decimals(size: f64) -> u8 {
 }
 
 fn solvers(text: &mut String, found: &Found) {
-    let head = ["solver", "Σ f², mm²/s²", "seconds", "proven gap", "iterations", "feeds differ by"];
-    let mut rows = vec![head.map(str::to_owned)];
+    let heads =
+        ["solver", "Σ f², mm²/s²", "seconds", "proven gap", "iterations", "feeds differ by"];
+    let mut table = TextTable::headed(1, heads);
     for solver in &found.solvers {
-        let dash = || "-".to_owned();
-        rows.push([
+        table.row([
             name(solver.solver).to_owned(),
             number(solver.sum_of_squared_feeds, 3),
             number(solver.seconds, 5),
-            solver.proven_gap.map_or_else(dash, |gap| format!("{gap:.1e}")),
-            solver.iterations.map_or_else(dash, |count| count.to_string()),
-            match solver.solver {
-                Solver::Reach => dash(),
-                _ => format!("{:.1e}", solver.largest_difference),
-            },
+            or_dash(solver.proven_gap.map(|gap| format!("{gap:.1e}"))),
+            or_dash(solver.iterations),
+            or_dash(
+                (solver.solver != Solver::Reach)
+                    .then(|| format!("{:.1e}", solver.largest_difference)),
+            ),
         ]);
     }
-    text.push('\n');
-    text.push_str(&table(&rows, 1));
+    table.below(text);
     let (Some(first), Some(fast)) = (found.solvers.first(), found.solvers.last()) else {
         return;
     };
@@ -185,11 +171,8 @@ fn name(solver: Solver) -> &'static str {
 
 fn simulation(text: &mut String, found: &Simulated) {
     let micro = |value: f64| number(1e3 * value, 2);
-    text.push('\n');
-    let mut row = |name: &str, value: String| {
-        let _ = writeln!(text, "{name:<14} {value}");
-    };
-    row(
+    let mut rows = NamedValues::default();
+    rows.row(
         "simulated",
         format!(
             "{} set-points, one every {} ms, through the servos",
@@ -197,7 +180,7 @@ fn simulation(text: &mut String, found: &Simulated) {
             number(1e3 * found.period_s, 3)
         ),
     );
-    row(
+    rows.row(
         "contour error",
         format!(
             "at most {} µm, {} mm along the path, where the formula says {} µm; by the formula at most {} µm",
@@ -207,8 +190,11 @@ fn simulation(text: &mut String, found: &Simulated) {
             micro(found.formula_largest)
         ),
     );
-    row("", format!("RMS {} µm, by the formula {} µm", micro(found.rms), micro(found.formula_rms)));
-    row(
+    rows.row(
+        "",
+        format_args!("RMS {} µm, by the formula {} µm", micro(found.rms), micro(found.formula_rms)),
+    );
+    rows.row(
         "",
         format!(
             "above the formula at {} % of the set-points, by {} µm at most ({} mm along the path)",
@@ -218,7 +204,7 @@ fn simulation(text: &mut String, found: &Simulated) {
         ),
     );
     if let (Some(limit), Some(share)) = (found.limit, found.share_above_limit) {
-        row(
+        rows.row(
             "",
             match found.largest > limit {
                 true => format!(
@@ -231,4 +217,6 @@ fn simulation(text: &mut String, found: &Simulated) {
             },
         );
     }
+    text.push('\n');
+    text.push_str(&rows.lines(NAME));
 }

@@ -2,47 +2,44 @@
 
 use std::fmt::Write as _;
 
+use post_job::summary::warnings;
+use post_job::text_table::NamedValues;
 use post_machine::check::{
     AxisLine, AxisReadout, Check, Comparison, DifferenceShare, DirectionSolutions, MachineClass,
     Pole, ReachableCone, Sign, Volume, number,
 };
 
-/// Width of the first column.
-const NAME: usize = 18;
+/// Width of the names.
+const NAME: usize = 17;
 
 /// The whole check.
 pub fn check(check: &Check) -> String {
-    let mut text = String::new();
-    row(&mut text, "machine", &check.machine);
-    class(&mut text, &check.class);
-    row(&mut text, "solved", &check.solved);
-    if let Some(leaves) = &check.leaves {
-        row(&mut text, "leaves the part", leaves);
-    }
-    text.push('\n');
-    axes(&mut text, &check.class.axes);
+    let mut rows = NamedValues::default();
+    rows.row("machine", &check.machine);
+    class(&mut rows, &check.class);
+    rows.row("solved", &check.solved);
+    rows.row_if("leaves the part", check.leaves.as_ref());
+    let mut text = format!("{}\n{}\n", rows.lines(NAME), axes(&check.class.axes).lines(NAME));
     signs(&mut text, &check.signs);
+    let mut rows = NamedValues::default();
     for axis in &check.class.axes {
-        if let Some(told) = &axis.set_between_cuts {
-            row(&mut text, "set between cuts", told);
-        }
+        rows.row_if("set between cuts", axis.set_between_cuts.as_ref());
     }
     if let Some(typical) = &check.typical {
-        solutions(&mut text, typical);
+        solutions(&mut rows, typical);
     }
-    reach(&mut text, &check.reach);
-    row(&mut text, "singular", &check.poles.told);
+    reach(&mut rows, &check.reach);
+    rows.row("singular", &check.poles.told);
     for at in &check.poles.at {
-        row(&mut text, "", &pole(at));
+        rows.row("", pole(at));
     }
     if let Some(space) = &check.volume {
-        volume(&mut text, space, check.tool_length_mm);
+        volume(&mut rows, space, check.tool_length_mm);
     }
     let trip = &check.round_trip;
-    row(
-        &mut text,
+    rows.row(
         "round trip",
-        &format!(
+        format_args!(
             "{} random poses{}, {} solutions: tip off by at most {:.1e} mm, tool axis by {:.1e} rad",
             trip.poses,
             match trip.not_found {
@@ -54,40 +51,31 @@ pub fn check(check: &Check) -> String {
             trip.axis_rad
         ),
     );
-    row(
-        &mut text,
-        "warnings",
-        &match check.warnings.len() {
-            0 => "none".to_owned(),
-            count => format!("{count}, see above"),
-        },
-    );
+    rows.row("warnings", warnings(check.warnings.len()));
+    text.push_str(&rows.lines(NAME));
     text
 }
 
-/// Writes to a String, which cannot fail.
-fn row(text: &mut String, name: &str, value: &str) {
-    let _ = writeln!(text, "{name:<NAME$}{value}");
-}
-
-fn class(text: &mut String, class: &MachineClass) {
+fn class(rows: &mut NamedValues, class: &MachineClass) {
     let list = |names: &[String]| match names {
         [] => "none".to_owned(),
         names => names.join(", "),
     };
-    row(text, "chain", &class.chain);
-    row(text, "class", &class.name);
-    row(text, "turn the tool", &list(&class.turn_the_tool));
-    row(text, "carry the part", &list(&class.carry_the_part));
-    row(text, "carry the tool", &list(&class.carry_the_tool));
+    rows.row("chain", &class.chain);
+    rows.row("class", &class.name);
+    rows.row("turn the tool", list(&class.turn_the_tool));
+    rows.row("carry the part", list(&class.carry_the_part));
+    rows.row("carry the tool", list(&class.carry_the_tool));
     for angle in &class.angles {
-        row(text, "angle", &format!("{} to {}: {}°", angle.from, angle.to, number(angle.value, 5)));
+        rows.row(
+            "angle",
+            format_args!("{} to {}: {}°", angle.from, angle.to, number(angle.value, 5)),
+        );
     }
     for distance in &class.distances {
-        row(
-            text,
+        rows.row(
             "distance",
-            &format!(
+            format_args!(
                 "line of {} to {}: {} mm",
                 distance.from,
                 match distance.to.as_str() {
@@ -100,8 +88,9 @@ fn class(text: &mut String, class: &MachineClass) {
     }
 }
 
-fn axes(text: &mut String, axes: &[AxisLine]) {
-    row(text, "axis", "kind    direction                         travel");
+fn axes(axes: &[AxisLine]) -> NamedValues {
+    let mut rows = NamedValues::default();
+    rows.row("axis", "kind    direction                         travel");
     for axis in axes {
         let [x, y, z] = axis
             .direction
@@ -122,9 +111,9 @@ fn axes(text: &mut String, axes: &[AxisLine]) {
             let _ = write!(line, ", at most {}{}/min", number(feed, 1), unit);
         }
         let prime = if axis.carries_part { "'" } else { "" };
-        row(text, &format!("{}{prime}", axis.name), &line);
+        rows.row(format_args!("{}{prime}", axis.name), line);
     }
-    text.push('\n');
+    rows
 }
 
 fn signs(text: &mut String, signs: &[Sign]) {
@@ -148,15 +137,14 @@ fn signs(text: &mut String, signs: &[Sign]) {
     text.push('\n');
 }
 
-fn solutions(text: &mut String, found: &DirectionSolutions) {
+fn solutions(rows: &mut NamedValues, found: &DirectionSolutions) {
     let plural = |count: usize, word: &str| match count {
         1 => format!("1 {word}"),
         count => format!("{count} {word}s"),
     };
-    row(
-        text,
+    rows.row(
         "solutions",
-        &format!(
+        format_args!(
             "for the tool tilted {}° towards azimuth {}°: {}{}, {} inside travel",
             number(found.tilt_deg, 2),
             number(found.azimuth_deg, 2),
@@ -169,10 +157,9 @@ fn solutions(text: &mut String, found: &DirectionSolutions) {
         ),
     );
     for way in &found.ways {
-        row(
-            text,
+        rows.row(
             "",
-            &format!(
+            format_args!(
                 "{}: {}",
                 readings(&way.readings),
                 match way.turns {
@@ -186,13 +173,13 @@ fn solutions(text: &mut String, found: &DirectionSolutions) {
     }
 }
 
-fn reach(text: &mut String, reach: &ReachableCone) {
+fn reach(rows: &mut NamedValues, reach: &ReachableCone) {
     let tilt = |tilt: Option<f64>| {
         tilt.map_or("not even +Z".to_owned(), |tilt| format!("{}°", number(tilt, 2)))
     };
     if reach.tied_to_the_tip {
         let told = "the direction of the tool depends on the point: with the tip kept it cannot turn every way";
-        row(text, "reach", told);
+        rows.row("reach", told);
         return;
     }
     if reach.freedom < 2 {
@@ -210,7 +197,7 @@ fn reach(text: &mut String, reach: &ReachableCone) {
                 tilt(reach.tilt_in_some_azimuth_deg)
             ),
         };
-        row(text, "reach", &told);
+        rows.row("reach", &told);
         return;
     }
     let mut told = format!(
@@ -225,13 +212,13 @@ fn reach(text: &mut String, reach: &ReachableCone) {
     ) {
         let _ = write!(told, " (azimuth {}°)", number(azimuth, 0));
     }
-    row(text, "reach", &told);
+    rows.row("reach", &told);
     if let Some(grid) = reach.searched_every_deg {
         let told = format!(
             "searched with the tip on the part origin, every {}°: at least so much",
             number(grid, 1)
         );
-        row(text, "", &told);
+        rows.row("", &told);
         return;
     }
     if !reach.at_positions_alone.is_empty() {
@@ -239,7 +226,7 @@ fn reach(text: &mut String, reach: &ReachableCone) {
             "of these only what the positions of {} give",
             reach.at_positions_alone.join(" and ")
         );
-        row(text, "", &told);
+        rows.row("", &told);
     }
     if reach.share_of_sphere > 0.0 {
         let each: Vec<String> = reach
@@ -249,7 +236,7 @@ fn reach(text: &mut String, reach: &ReachableCone) {
             .filter(|(_, share)| **share > 0.0)
             .map(|(count, share)| format!("{count} in {} %", number(100.0 * share, 1)))
             .collect();
-        row(text, "solutions inside", &format!("of all directions: {}", each.join(", ")));
+        rows.row("solutions inside", format_args!("of all directions: {}", each.join(", ")));
     }
 }
 
@@ -271,7 +258,7 @@ fn pole(pole: &Pole) -> String {
     format!("({x}, {y}, {z}){others}: {state}")
 }
 
-fn volume(text: &mut String, volume: &Volume, length: f64) {
+fn volume(rows: &mut NamedValues, volume: &Volume, length: f64) {
     let (Some(least), Some(most)) = (volume.least, volume.most) else {
         return;
     };
@@ -280,15 +267,17 @@ fn volume(text: &mut String, volume: &Volume, length: f64) {
         [] => String::new(),
         rotary => format!(", {}", readings(rotary)),
     };
-    row(
-        text,
+    rows.row(
         "travel of the tip",
-        &format!("part frame, tool along ({x}, {y}, {z}){rotary}, {} mm long:", number(length, 3)),
+        format_args!(
+            "part frame, tool along ({x}, {y}, {z}){rotary}, {} mm long:",
+            number(length, 3)
+        ),
     );
     let spans = ["X", "Y", "Z"].iter().enumerate().map(|(index, name)| {
         format!("{name} {} to {}", number(least[index], 3), number(most[index], 3))
     });
-    row(text, "", &format!("{} mm", spans.collect::<Vec<_>>().join(", ")));
+    rows.row("", format_args!("{} mm", spans.collect::<Vec<_>>().join(", ")));
 }
 
 fn readings(readings: &[AxisReadout]) -> String {
@@ -299,11 +288,10 @@ fn readings(readings: &[AxisReadout]) -> String {
 
 /// The comparison of two files.
 pub fn comparison(compared: &Comparison) -> String {
-    let mut text = String::new();
-    row(
-        &mut text,
+    let mut rows = NamedValues::default();
+    rows.row(
         "compared",
-        &format!(
+        format_args!(
             "{} with {} at equal words, tool {} mm long",
             compared.machine,
             compared.nominal,
@@ -311,23 +299,22 @@ pub fn comparison(compared: &Comparison) -> String {
         ),
     );
     let [x, y, z] = compared.tip.map(|value| number(value, 5));
-    row(
-        &mut text,
+    rows.row(
         "tip deviation",
-        &format!("at most {:.5} mm: ({x}, {y}, {z}) in the part frame", compared.tip_mm),
+        format_args!("at most {:.5} mm: ({x}, {y}, {z}) in the part frame", compared.tip_mm),
     );
-    row(&mut text, "", &format!("at {}", readings(&compared.tip_at)));
-    shares(&mut text, &compared.tip_shares, "mm");
-    row(&mut text, "axis deviation", &format!("at most {:.6}°", compared.axis_deg));
+    rows.row("", format_args!("at {}", readings(&compared.tip_at)));
+    shares(&mut rows, &compared.tip_shares, "mm");
+    rows.row("axis deviation", format_args!("at most {:.6}°", compared.axis_deg));
     if compared.axis_deg > 0.0 {
-        row(&mut text, "", &format!("at {}", readings(&compared.axis_at)));
-        shares(&mut text, &compared.axis_shares, "°");
+        rows.row("", format_args!("at {}", readings(&compared.axis_at)));
+        shares(&mut rows, &compared.axis_shares, "°");
     }
-    text
+    rows.lines(NAME)
 }
 
-fn shares(text: &mut String, shares: &[DifferenceShare], unit: &str) {
-    row(text, "", "each difference by itself there; as vectors they add up:");
+fn shares(rows: &mut NamedValues, shares: &[DifferenceShare], unit: &str) {
+    rows.row("", "each difference by itself there; as vectors they add up:");
     let mut said = false;
     for share in shares {
         let (size, decimals) = match unit {
@@ -346,13 +333,15 @@ fn shares(text: &mut String, shares: &[DifferenceShare], unit: &str) {
         } else {
             format!("{} mm", number(share.differs_by, 5))
         };
-        row(
-            text,
+        rows.row(
             "",
-            &format!("  {:<24}{size}  ({x}, {y}, {z}), the files differ by {differs}", share.of),
+            format_args!(
+                "  {:<24}{size}  ({x}, {y}, {z}), the files differ by {differs}",
+                share.of
+            ),
         );
     }
     if !said {
-        row(text, "", "  nothing contributes");
+        rows.row("", "  nothing contributes");
     }
 }

@@ -19,7 +19,6 @@ use post_job::session::Session;
 use post_job::settings::{
     JobSettings, MachineSettings, ProgramSettings, ReadingSettings, ReportSettings,
 };
-use post_job::text::table;
 
 /// Moves an NC program to another machine.
 ///
@@ -142,7 +141,7 @@ pub fn run(session: &Session, arguments: &ConvertArguments) -> Result<(), Failur
     let converted = convert(session, &request)?;
     session.findings(&converted.findings);
     if !arguments.quiet {
-        let text = table(&converted.summary(converted.names.clone()), 2);
+        let text = converted.summary(converted.names.clone()).table();
         terminal::print_beside(session, &text, converted.printed);
     }
     Ok(())

@@ -6,10 +6,24 @@ use post_readback::diff::{
     DiffRules, Difference, LoneWay, OperationDifference, ProgramSums, WorstDifference,
 };
 
-use post_job::text::{clock, number, table};
+use post_job::text::{clock, number};
+use post_job::text_table::{NamedValues, TextTable, or_dash};
 
 /// Stretches, states and events of an operation that are told one by one.
 const MOST_TOLD: usize = 8;
+
+/// Heads of what is told of each operation.
+const HEADS: [&str; 9] = [
+    "operation",
+    "",
+    "old lines",
+    "new lines",
+    "tip, mm",
+    "axis, °",
+    "feed, %",
+    "old time",
+    "new time",
+];
 
 /// The text.
 pub fn text(
@@ -38,21 +52,11 @@ pub fn text(
         number(100.0 * rules.feed, 2),
     );
     if !found.operations.is_empty() {
-        let head = [
-            "operation",
-            "",
-            "old lines",
-            "new lines",
-            "tip, mm",
-            "axis, °",
-            "feed, %",
-            "old time",
-            "new time",
-        ];
-        let mut rows = vec![head.map(str::to_owned)];
-        let all = found.operations.iter().enumerate();
-        rows.extend(all.map(|(index, operation)| row(index, operation)));
-        text.push_str(&table(&rows, 4));
+        let mut table = TextTable::headed(4, HEADS);
+        for (index, operation) in found.operations.iter().enumerate() {
+            table.row(row(index, operation));
+        }
+        text.push_str(&table.text());
     }
     for (index, operation) in found.operations.iter().enumerate() {
         if !operation.same {
@@ -89,15 +93,11 @@ fn title(index: usize, operation: &OperationDifference) -> String {
 fn row(index: usize, operation: &OperationDifference) -> [String; 9] {
     let [old, new] = operation.sides;
     let lines = |side: Option<ProgramSums>| {
-        side.map_or_else(|| "-".to_owned(), |side| format!("{}-{}", side.lines[0], side.lines[1]))
+        or_dash(side.map(|side| format!("{}-{}", side.lines[0], side.lines[1])))
     };
-    let time =
-        |side: Option<ProgramSums>| side.map_or_else(|| "-".to_owned(), |side| clock(side.seconds));
+    let time = |side: Option<ProgramSums>| or_dash(side.map(|side| clock(side.seconds)));
     let both = old.is_some() && new.is_some();
-    let value = |value: f64, decimals: u8| match both {
-        true => number(value, decimals),
-        false => "-".to_owned(),
-    };
+    let value = |value: f64, decimals: u8| or_dash(both.then(|| number(value, decimals)));
     let result = match (operation.same, old.is_some(), new.is_some()) {
         (true, ..) => "same",
         (_, true, false) => "left out",
@@ -125,44 +125,13 @@ fn place(worst: &WorstDifference) -> String {
 }
 
 fn details(text: &mut String, operation: &OperationDifference, rules: &DiffRules) {
-    let mut told = |what: &str, value: String| {
-        let _ = writeln!(text, "  {what:<10} {value}");
-    };
-    let on = |mm: f64| format!("on {} mm of the way", number(mm, 1));
-    let degrees = rules.axis.to_degrees();
-    if operation.tip.value > rules.tip {
-        let worst = &operation.tip;
-        let far = number(worst.value, 4);
-        told("position", format!("up to {far} mm apart, {}; {}", place(worst), on(worst.on_mm)));
-    }
-    if operation.axis.value > degrees {
-        let worst = &operation.axis;
-        let far = number(worst.value, 4);
-        told("tool axis", format!("up to {far}° apart, {}; {}", place(worst), on(worst.on_mm)));
-    }
-    for (name, worst) in &operation.rotary {
-        if worst.value > degrees {
-            let far = number(worst.value, 3);
-            told(
-                &format!("axis {name}"),
-                format!("up to {far}° apart, {}; {}", place(worst), on(worst.on_mm)),
-            );
-        }
-    }
-    let feed = &operation.feed;
-    if feed.worst.value > rules.feed {
-        let [old, new] = feed.feeds.map(|feed| number(feed, 1));
-        told(
-            "feed",
-            format!("{old} and {new} mm/min, {}; {}", place(&feed.worst), on(feed.worst.on_mm)),
-        );
-    }
+    let mut told = NamedValues::default();
+    strays(&mut told, operation, rules);
     for state in operation.states.iter().take(MOST_TOLD) {
         let ([old, new], [line, other]) = (&state.values, state.lines);
-        told(
-            state.what,
-            format!("{old}, now {new}, from lines {line} and {other} on; {}", on(state.on_mm)),
-        );
+        let way = on(state.on_mm);
+        let value = format_args!("{old}, now {new}, from lines {line} and {other} on; {way}");
+        told.row(format_args!("  {}", state.what), value);
     }
     for event in operation.events.iter().take(MOST_TOLD) {
         let [line, other] = event.lines;
@@ -172,32 +141,56 @@ fn details(text: &mut String, operation: &OperationDifference, rules: &DiffRules
             [None, Some(new)] => format!("{new} is added, line {other}"),
             [None, None] => continue,
         };
-        told("event", value);
+        told.row("  event", value);
     }
-    for [old, new] in operation.other_ways.iter().take(MOST_TOLD) {
-        told("other way", format!("{}; now {}", way(old), way(new)));
-    }
-    more(&mut told, "other way", operation.other_ways.len());
-    for (what, stretches) in [("left out", &operation.left_out), ("added", &operation.added)] {
-        for stretch in stretches.iter().take(MOST_TOLD) {
-            told(what, way(stretch));
-        }
-        more(&mut told, what, stretches.len());
-    }
+    let ways = operation.other_ways.iter();
+    let ways = ways.map(|[old, new]| format!("{}; now {}", way(old), way(new)));
+    at_most_told(&mut told, "  other way", ways);
+    at_most_told(&mut told, "  left out", operation.left_out.iter().map(way));
+    at_most_told(&mut told, "  added", operation.added.iter().map(way));
     if let [Some(old), Some(new)] = operation.sides {
         let later = new.seconds - old.seconds;
         if libm::fabs(later) > 0.05 {
             let word = if later > 0.0 { "longer" } else { "shorter" };
-            told("time", format!("{} {word}", clock(libm::fabs(later))));
+            told.row("  time", format_args!("{} {word}", clock(libm::fabs(later))));
         }
+    }
+    text.push_str(&told.lines(12));
+}
+
+/// How far the paths of an operation lie apart, and its feeds.
+fn strays(told: &mut NamedValues, operation: &OperationDifference, rules: &DiffRules) {
+    let degrees = rules.axis.to_degrees();
+    let mut apart = |name: &str, worst: &WorstDifference, most: f64, unit: &str, decimals: u8| {
+        if worst.value > most {
+            let (far, on) = (number(worst.value, decimals), on(worst.on_mm));
+            told.row(name, format_args!("up to {far}{unit} apart, {}; {on}", place(worst)));
+        }
+    };
+    apart("  position", &operation.tip, rules.tip, " mm", 4);
+    apart("  tool axis", &operation.axis, degrees, "°", 4);
+    for (name, worst) in &operation.rotary {
+        apart(&format!("  axis {name}"), worst, degrees, "°", 3);
+    }
+    let feed = &operation.feed;
+    if feed.worst.value > rules.feed {
+        let [old, new] = feed.feeds.map(|feed| number(feed, 1));
+        let (place, on) = (place(&feed.worst), on(feed.worst.on_mm));
+        told.row("  feed", format_args!("{old} and {new} mm/min, {place}; {on}"));
     }
 }
 
-/// How many were not told one by one.
-fn more(told: &mut impl FnMut(&str, String), what: &str, count: usize) {
+fn on(mm: f64) -> String {
+    format!("on {} mm of the way", number(mm, 1))
+}
+
+/// The first of these ways, and how many were not told one by one.
+fn at_most_told(told: &mut NamedValues, name: &str, ways: impl ExactSizeIterator<Item = String>) {
+    let count = ways.len();
+    ways.take(MOST_TOLD).for_each(|way| told.row(name, way));
     if count > MOST_TOLD {
         let count = count - MOST_TOLD;
-        told(what, format!("and {count} further ways (--json has them)"));
+        told.row(name, format_args!("and {count} further ways (--json has them)"));
     }
 }
 

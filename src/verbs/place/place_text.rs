@@ -7,7 +7,8 @@ use post_posting::report::AxisRange;
 
 use super::PlaceArguments;
 use post_job::place::{Found, Least, Trial, mount_text};
-use post_job::text::{clock, number, table as columns};
+use post_job::text::{clock, number};
+use post_job::text_table::{NamedValues, TextTable};
 
 /// Flags of this verb, which posting does not take, and those that the answer takes the place of: each with whether its
 /// value may stand in a word of its own.
@@ -23,29 +24,29 @@ const OWN: [(&str, bool); 7] = [
 
 /// The text.
 pub fn text(arguments: &PlaceArguments, found: &Found) -> String {
-    let mut text = String::new();
-    let mut row = |name: &str, value: String| {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{name:<10} {value}");
-    };
+    let mut rows = NamedValues::default();
     let best = &found.best;
-    row("file", format!("{}, {} moves", found.file, best.report.moves));
-    row("machine", format!("{}, the {} keeps the tip", best.report.machine, best.report.tcp));
-    row("seat", seat_text(arguments, found, best));
-    row("why", why(arguments, found));
+    rows.row("file", format_args!("{}, {} moves", found.file, best.report.moves));
+    rows.row(
+        "machine",
+        format_args!("{}, the {} keeps the tip", best.report.machine, best.report.tcp),
+    );
+    rows.row("seat", seat_text(arguments, found, best));
+    rows.row("why", why(arguments, found));
     let before =
         found.present.as_ref().filter(|present| present.seat != best.seat).map(|present| {
             format!("; {} with {}", cost(arguments, present), seat_text(arguments, found, present))
         });
-    row(
+    rows.row(
         match arguments.least {
             Least::Time => "time",
             Least::Rotary => "turns",
         },
-        format!("{}{}", cost(arguments, best), before.unwrap_or_default()),
+        format_args!("{}{}", cost(arguments, best), before.unwrap_or_default()),
     );
-    text.push('\n');
-    text.push_str(&table(&best.report.axes));
+    let mut text = rows.lines(10);
+    table(&best.report.axes).below(&mut text);
+    // Writing to a String cannot fail.
     let _ =
         writeln!(text, "\n{}", command(&seat_text(arguments, found, best), std::env::args_os()));
     text
@@ -91,8 +92,8 @@ fn why(arguments: &PlaceArguments, found: &Found) -> String {
 }
 
 /// What of each axis is used and left.
-fn table(axes: &[AxisRange]) -> String {
-    let mut rows = vec![["axis", "travel", "used", "left below", "left above"].map(str::to_owned)];
+fn table(axes: &[AxisRange]) -> TextTable {
+    let mut table = TextTable::headed(1, ["axis", "travel", "used", "left below", "left above"]);
     for axis in axes.iter().filter(|axis| axis.min <= axis.max) {
         let short = |value: f64| number(value, 3);
         let span = |[from, to]: [f64; 2]| format!("{} to {}", short(from), short(to));
@@ -100,7 +101,7 @@ fn table(axes: &[AxisRange]) -> String {
             Some([least, most]) => [short(axis.min - least), short(most - axis.max)],
             None => [String::new(), String::new()],
         };
-        rows.push([
+        table.row([
             axis.name.clone(),
             axis.travel.map_or("endless".to_owned(), span),
             span([axis.min, axis.max]),
@@ -108,7 +109,7 @@ fn table(axes: &[AxisRange]) -> String {
             above,
         ]);
     }
-    columns(&rows, 1)
+    table
 }
 
 /// The command that posts the file there: that of this run without what is this verb's own.

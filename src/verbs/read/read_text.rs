@@ -1,55 +1,57 @@
 //! The table of what was read.
 
-use std::fmt::Write as _;
-
 use post_machine::description::{Axis, Machine};
 use post_readback::interpret::ReadReport;
 
 use post_job::read::Survey;
-use post_job::text::{clock, number, table};
+use post_job::text::{clock, number};
+use post_job::text_table::{NamedValues, TextTable};
 
 /// So many words that are not known are listed.
 const LISTED: usize = 40;
 
 /// What was read, as lines.
 pub fn text(machine: &Machine, survey: &Survey<'_>, report: &ReadReport, refused: usize) -> String {
-    let mut rows: Vec<[String; 2]> = Vec::new();
-    let mut row = |name: &str, value: String| rows.push([name.to_owned(), value]);
-    row("machine", format!("{} ({})", machine.name, machine.control.dialect));
+    let mut rows = NamedValues::default();
+    rows.row("machine", format_args!("{} ({})", machine.name, machine.control.dialect));
     if report.header > 0 {
-        row(
+        let lines = report.header;
+        rows.row(
             "in front of the program",
-            format!("{} lines of a listing, passed over", report.header),
+            format_args!("{lines} lines of a listing, passed over"),
         );
     }
-    row("blocks run", report.blocks.to_string());
+    rows.row("blocks run", report.blocks);
     if refused > 0 {
-        row("blocks refused", refused.to_string());
+        rows.row("blocks refused", refused);
     }
     let [rapids, feeds, threads] = survey.motions;
-    let mut motions = format!("{rapids} rapid, {feeds} at feed");
-    if threads > 0 {
-        let _ = write!(motions, ", {threads} of threads");
-    }
-    row("motions", motions);
+    let threads = match threads {
+        0 => String::new(),
+        _ => format!(", {threads} of threads"),
+    };
+    rows.row("motions", format_args!("{rapids} rapid, {feeds} at feed{threads}"));
     if survey.in_machine > 0 {
-        row("in machine coordinates", survey.in_machine.to_string());
+        rows.row("in machine coordinates", survey.in_machine);
     }
     if survey.kept > 0 {
-        row("the control keeps the tip", format!("in {} motions", survey.kept));
+        rows.row("the control keeps the tip", format_args!("in {} motions", survey.kept));
     }
     let [rapid, feed] = survey.minutes;
-    row("time at the stated feeds", clock(feed * 60.0));
+    rows.row("time at the stated feeds", clock(feed * 60.0));
     if rapid > 0.0 {
-        row("time of rapids", format!("{}, each axis at its max_feed", clock(rapid * 60.0)));
+        rows.row(
+            "time of rapids",
+            format_args!("{}, each axis at its max_feed", clock(rapid * 60.0)),
+        );
     }
     if survey.waits > 0.0 {
-        row("waits", clock(survey.waits));
+        rows.row("waits", clock(survey.waits));
     }
     if survey.feed > 0.0 {
-        row("largest feed of the tip", format!("{} mm/min", number(survey.feed, 0)));
+        rows.row("largest feed of the tip", format_args!("{} mm/min", number(survey.feed, 0)));
     }
-    let mut text = table(&rows, 2);
+    let mut text = rows.table();
     axes(machine, survey, &mut text);
     tools(survey, &mut text);
     words(report, &mut text);
@@ -60,13 +62,12 @@ fn axes(machine: &Machine, survey: &Survey<'_>, text: &mut String) {
     if survey.axes.is_empty() {
         return;
     }
-    let mut rows =
-        vec![["".to_owned(), "least".to_owned(), "most".to_owned(), "travel".to_owned()]];
+    let mut table = TextTable::headed(1, ["", "least", "most", "travel"]);
     for (name, [least, most]) in &survey.axes {
         let axis = machine.with_axis(name).map(|(_, axis)| axis);
         let unit = axis.map_or("mm", Axis::unit_name);
         let travel = axis.and_then(|axis| Some(axis.travel?.map(|end| axis.reading(end))));
-        rows.push([
+        table.row([
             format!("{name} {unit}"),
             number(*least, 3),
             number(*most, 3),
@@ -77,7 +78,7 @@ fn axes(machine: &Machine, survey: &Survey<'_>, text: &mut String) {
     }
     if let Some([least, most]) = survey.tip {
         for (row, name) in ["tip X mm", "tip Y mm", "tip Z mm"].into_iter().enumerate() {
-            rows.push([
+            table.row([
                 name.to_owned(),
                 number(least[row], 3),
                 number(most[row], 3),
@@ -85,44 +86,36 @@ fn axes(machine: &Machine, survey: &Survey<'_>, text: &mut String) {
             ]);
         }
     }
-    text.push('\n');
-    text.push_str(&table(&rows, 1));
+    table.below(text);
 }
 
 fn tools(survey: &Survey<'_>, text: &mut String) {
     if survey.tools.is_empty() {
         return;
     }
-    let head = ["tool", "length mm", "cuts", "time"];
-    let mut rows = vec![head.map(str::to_owned)];
+    let mut table = TextTable::headed(1, ["tool", "length mm", "cuts", "time"]);
     for tool in &survey.tools {
-        rows.push([
+        table.row([
             tool.name.clone().unwrap_or_else(|| "none changed".to_owned()),
             number(tool.length, 3),
             tool.cuts.to_string(),
             clock(tool.minutes * 60.0),
         ]);
     }
-    text.push('\n');
-    text.push_str(&table(&rows, 1));
+    table.below(text);
 }
 
 fn words(report: &ReadReport, text: &mut String) {
     if report.unknown.is_empty() {
         return;
     }
-    let head = ["words not known, that move nothing", "times", "first in line"];
-    let mut rows = vec![head.map(str::to_owned)];
+    let heads = ["words not known, that move nothing", "times", "first in line"];
+    let mut table = TextTable::headed(1, heads);
     for (word, times, line) in report.unknown.iter().take(LISTED) {
-        rows.push([word.clone(), times.to_string(), line.to_string()]);
+        table.row([word.clone(), times.to_string(), line.to_string()]);
     }
     if report.unknown.len() > LISTED {
-        rows.push([
-            format!("and {} more", report.unknown.len() - LISTED),
-            String::new(),
-            String::new(),
-        ]);
+        table.row([format!("and {} more", report.unknown.len() - LISTED)]);
     }
-    text.push('\n');
-    text.push_str(&table(&rows, 1));
+    table.below(text);
 }

@@ -1,39 +1,41 @@
 //! What verifying has found, for people.
 
-use std::fmt::Write as _;
-
 use post_machine::description::Machine;
 use post_readback::verify::WorstDeviation;
 
 use post_job::read_back::Held;
 use post_job::text::{clock, number};
+use post_job::text_table::NamedValues;
 
 /// The table of a verification of the program called `name`.
 pub fn text(held: &Held, machine: &Machine, name: &str, tolerances: [Option<f64>; 2]) -> String {
     let found = &held.found;
-    let mut text = String::new();
-    let mut row = |name: &str, value: String| {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{name:<16} {value}");
-    };
-    row("program", format!("{name}, {} blocks", held.blocks));
-    row("machine", machine.name.clone());
-    row(
+    let mut rows = NamedValues::default();
+    rows.row("program", format_args!("{name}, {} blocks", held.blocks));
+    rows.row("machine", &machine.name);
+    rows.row(
         "motions",
-        format!(
+        format_args!(
             "{}: {} cuts, {} rapids, {} holes",
             found.motions, found.cuts, found.rapids, found.holes
         ),
     );
     let tolerance = tolerances[0].unwrap_or(machine.accuracy.tolerance);
     let axis_tolerance = tolerances[1].unwrap_or(machine.accuracy.axis_tolerance);
-    row("tip deviation", format!("{}, tolerance {tolerance} mm", worst(&found.tip, "mm", 6)));
-    row(
+    rows.row(
+        "tip deviation",
+        format_args!("{}, tolerance {tolerance} mm", worst(&found.tip, "mm", 6)),
+    );
+    rows.row(
         "axis deviation",
-        format!("{}, tolerance {:.4}°", worst(&found.axis, "°", 5), axis_tolerance.to_degrees()),
+        format_args!(
+            "{}, tolerance {:.4}°",
+            worst(&found.axis, "°", 5),
+            axis_tolerance.to_degrees()
+        ),
     );
     if found.rapid.nc_line > 0 {
-        row("rapid points", format!("passed within {}", worst(&found.rapid, "mm", 3)));
+        rows.row("rapid points", format_args!("passed within {}", worst(&found.rapid, "mm", 3)));
     }
     let mut more = Vec::new();
     for (count, what) in [
@@ -49,10 +51,10 @@ pub fn text(held: &Held, machine: &Machine, name: &str, tolerances: [Option<f64>
         }
     }
     if !more.is_empty() {
-        row("besides", more.join(", "));
+        rows.row("besides", more.join(", "));
     }
-    row("time", clock(found.time_s));
-    row(
+    rows.row("time", clock(found.time_s));
+    rows.row(
         "faults",
         match (found.faults.len(), found.gave_up) {
             (0, _) => "none".to_owned(),
@@ -60,7 +62,7 @@ pub fn text(held: &Held, machine: &Machine, name: &str, tolerances: [Option<f64>
             (count, true) => format!("{count} and more: given up"),
         },
     );
-    text
+    rows.lines(16)
 }
 
 fn worst(worst: &WorstDeviation, unit: &str, decimals: u8) -> String {

@@ -1,21 +1,16 @@
 //! What compensation has done, for people.
 
-use std::fmt::Write as _;
-
 use super::{Found, Stray};
 use crate::text::number;
+use crate::text_table::NamedValues;
 
 /// As a table.
 pub fn text(found: &Found) -> String {
-    let mut text = String::new();
-    let mut row = |name: &str, value: String| {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{name:<16} {value}");
-    };
-    row("servo", said(found));
-    row("  before", stray(&found.before));
-    row("  after", stray(&found.after));
-    text
+    let mut rows = NamedValues::default();
+    rows.row("servo", said(found));
+    rows.row("  before", stray(&found.before));
+    rows.row("  after", stray(&found.after));
+    rows.lines(16)
 }
 
 fn said(found: &Found) -> String {

@@ -4,24 +4,19 @@ use std::fmt::Write as _;
 
 use super::{Found, Round};
 use crate::text::number;
+use crate::text_table::NamedValues;
 
 /// As a table.
 pub fn text(found: &Found) -> String {
-    let mut text = String::new();
-    let mut row = |name: &str, value: String| {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{name:<16} {value}");
-    };
+    let mut rows = NamedValues::default();
     let said = if found.kept { "kept" } else { "exceeded" };
-    row(
-        "contour limit",
-        format!(
-            "{} mm, {said} by the program that is written, as it is predicted",
-            number(found.limit_mm, 5)
-        ),
-    );
     let limit = found.limit_mm;
-    row("  unplanned", line(&found.unplanned, limit, None));
+    let shown = number(limit, 5);
+    rows.row(
+        "contour limit",
+        format_args!("{shown} mm, {said} by the program that is written, as it is predicted"),
+    );
+    rows.row("  unplanned", line(&found.unplanned, limit, None));
     let first = found.rounds.first();
     for (index, round) in found.rounds.iter().enumerate() {
         let before = first.filter(|_| index > 0);
@@ -29,9 +24,9 @@ pub fn text(found: &Found) -> String {
         if index == found.chosen {
             told.push_str("; written");
         }
-        row(&format!("  round {}", index + 1), told);
+        rows.row(format_args!("  round {}", index + 1), told);
     }
-    text
+    rows.lines(16)
 }
 
 fn line(round: &Round, limit: f64, first: Option<&Round>) -> String {

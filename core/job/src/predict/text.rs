@@ -4,15 +4,18 @@ use std::fmt::Write as _;
 
 use super::measured;
 use super::prediction::{AxisFound, Extreme, LimitTime, Prediction, Spread};
-use crate::text::{clock, number, table};
+use crate::text::{clock, number};
+use crate::text_table::{NamedValues, TextTable, or_dash};
 
 /// So many limits and operations are listed; the JSON has all of them.
 const MOST_ROWS: usize = 12;
 
 /// The tables of a prediction.
 pub fn text(found: &Prediction) -> String {
-    let mut text = String::new();
-    head(&mut text, found);
+    let mut rows = NamedValues::default();
+    head(&mut rows, found);
+    contour(&mut rows, found);
+    let mut text = rows.lines(16);
     axes(&mut text, &found.axes);
     jumps(&mut text, found.corners_with_jump);
     limits(&mut text, found);
@@ -32,15 +35,12 @@ pub fn text(found: &Prediction) -> String {
     text
 }
 
-fn head(text: &mut String, found: &Prediction) {
-    let mut row = |name: &str, value: String| {
-        let _ = writeln!(text, "{name:<16} {value}");
-    };
-    row("program", format!("{}, {} blocks", found.program, found.blocks));
-    row("machine", format!("{} ({})", found.machine, found.dialect));
-    row(
+fn head(rows: &mut NamedValues, found: &Prediction) {
+    rows.row("program", format_args!("{}, {} blocks", found.program, found.blocks));
+    rows.row("machine", format_args!("{} ({})", found.machine, found.dialect));
+    rows.row(
         "set-points",
-        format!("{}, one every {} ms", found.set_points, short(1e3 * found.period_s)),
+        format_args!("{}, one every {} ms", found.set_points, short(1e3 * found.period_s)),
     );
     let time = &found.time;
     let mut parts = vec![format!("{} cutting", clock(time.cutting_s))];
@@ -49,12 +49,12 @@ fn head(text: &mut String, found: &Prediction) {
             parts.push(format!("{} {what}", clock(seconds)));
         }
     }
-    row("cycle time", format!("{}: {}", clock(time.cycle_s), parts.join(", ")));
+    rows.row("cycle time", format_args!("{}: {}", clock(time.cycle_s), parts.join(", ")));
     let feed = &found.feed;
     if feed.way_mm > 0.0 {
-        row(
+        rows.row(
             "feed",
-            format!(
+            format_args!(
                 "{} mm/min on average over {} mm of cuts, programmed {}; at most {}, in line {}",
                 number(feed.true_mean, 0),
                 number(feed.way_mm, 1),
@@ -63,9 +63,9 @@ fn head(text: &mut String, found: &Prediction) {
                 feed.largest_nc_line,
             ),
         );
-        row(
+        rows.row(
             "",
-            format!(
+            format_args!(
                 "{:.1} % of what is programmed: {} instead of {}; below 95 % of it for {}",
                 100.0 * feed.true_mean / feed.programmed_mean,
                 clock(time.cutting_s),
@@ -74,6 +74,10 @@ fn head(text: &mut String, found: &Prediction) {
             ),
         );
     }
+}
+
+/// How far the tool is off its path.
+fn contour(rows: &mut NamedValues, found: &Prediction) {
     let against = match &found.against {
         Some(file) => format!(", against {file}"),
         None => {
@@ -85,22 +89,23 @@ fn head(text: &mut String, found: &Prediction) {
     let tip = Shown { unit: "µm", scale: 1e3, decimals: 2 };
     let axis = Shown { unit: "°", scale: 1.0, decimals: 5 };
     let most = tip.largest(&contour.tip_mm);
-    row("contour error", format!("{most}{against}"));
-    tip.spread(&mut row, &contour.tip_mm);
+    rows.row("contour error", format_args!("{most}{against}"));
+    tip.spread(rows, &contour.tip_mm);
     for part in &contour.parts {
-        row(&format!("  {}", part.part), tip.largest(&part.tip_mm));
+        rows.row(format_args!("  {}", part.part), tip.largest(&part.tip_mm));
     }
     let out = &contour.left_out_mm;
     if out.value > contour.tip_mm.largest {
-        let text = format!(
-            "a corner of the path is passed {} µm beside it, in line {} of the program",
-            tip.number(out.value),
-            out.nc_line
+        let (beside, line) = (tip.number(out.value), out.nc_line);
+        rows.row(
+            "",
+            format_args!(
+                "a corner of the path is passed {beside} µm beside it, in line {line} of the program"
+            ),
         );
-        row("", text);
     }
-    row("tool axis", axis.largest(&contour.axis_deg));
-    axis.spread(&mut row, &contour.axis_deg);
+    rows.row("tool axis", axis.largest(&contour.axis_deg));
+    axis.spread(rows, &contour.axis_deg);
 }
 
 /// How errors are shown.
@@ -129,13 +134,14 @@ impl Shown {
     }
 
     /// `RMS 3.10; half within 1.00, 95 % within 3.00, 99 % within 4.00`.
-    fn spread(&self, row: &mut impl FnMut(&str, String), spread: &Spread) {
+    fn spread(&self, rows: &mut NamedValues, spread: &Spread) {
         if self.is_seen(spread) {
             let [rms, p50, p95, p99] =
                 [spread.rms, spread.p50, spread.p95, spread.p99].map(|value| self.number(value));
-            let text =
-                format!("RMS {rms}; half within {p50}, 95 % within {p95}, 99 % within {p99}");
-            row("", text);
+            rows.row(
+                "",
+                format_args!("RMS {rms}; half within {p50}, 95 % within {p95}, 99 % within {p99}"),
+            );
         }
     }
 
@@ -146,59 +152,27 @@ impl Shown {
 }
 
 fn axes(text: &mut String, axes: &[AxisFound]) {
-    let head = [
-        "axis",
-        "following",
-        "line",
-        "velocity /min",
-        "of",
-        "line",
-        "accel /s²",
-        "of",
-        "line",
-        "jerk /s³",
-        "of",
-        "line",
-        "jump /min",
-        "of",
-        "line",
-    ];
-    let mut rows = vec![head.map(str::to_owned)];
-    for axis in axes {
-        let following = match axis.servo {
-            true => number(axis.following.value, 5),
-            false => "-".to_owned(),
-        };
-        let line = |extreme: &Extreme| match extreme.nc_line {
-            0 => "-".to_owned(),
-            line => line.to_string(),
-        };
-        let limit = |extreme: &Extreme| {
-            extreme.limit.map_or_else(|| "-".to_owned(), |limit| number(limit, 0))
-        };
-        rows.push([
-            format!("{} {}", axis.name, axis.unit),
-            following,
-            match axis.servo {
-                true => line(&axis.following),
-                false => "-".to_owned(),
-            },
-            number(axis.velocity.value, 0),
-            limit(&axis.velocity),
-            line(&axis.velocity),
-            number(axis.acceleration.value, 0),
-            limit(&axis.acceleration),
-            line(&axis.acceleration),
-            number(axis.jerk.value, 0),
-            limit(&axis.jerk),
-            line(&axis.jerk),
-            number(axis.jump.value, 0),
-            limit(&axis.jump),
-            line(&axis.jump),
-        ]);
+    let mut heads = vec!["axis", "following", "line"];
+    for head in ["velocity /min", "accel /s²", "jerk /s³", "jump /min"] {
+        heads.extend([head, "of", "line"]);
     }
-    text.push('\n');
-    text.push_str(&table(&rows, 1));
+    let mut table = TextTable::new(1);
+    table.row(heads.into_iter().map(str::to_owned).collect::<Vec<_>>());
+    for axis in axes {
+        let line = |extreme: &Extreme| or_dash((extreme.nc_line > 0).then_some(extreme.nc_line));
+        let following = axis.servo.then_some(&axis.following);
+        let mut row = vec![
+            format!("{} {}", axis.name, axis.unit),
+            or_dash(following.map(|following| number(following.value, 5))),
+            or_dash(following.map(line)),
+        ];
+        for extreme in [&axis.velocity, &axis.acceleration, &axis.jerk, &axis.jump] {
+            let limit = or_dash(extreme.limit.map(|limit| number(limit, 0)));
+            row.extend([number(extreme.value, 0), limit, line(extreme)]);
+        }
+        table.row(row);
+    }
+    table.below(text);
 }
 
 fn jumps(text: &mut String, corners: u64) {
@@ -219,22 +193,18 @@ fn limits(text: &mut String, found: &Prediction) {
     if limits.is_empty() {
         return;
     }
-    let head = ["limited by", "moves", "time", "share", "beyond the feed"];
-    let mut rows = vec![head.map(str::to_owned)];
+    let heads = ["limited by", "moves", "time", "share", "beyond the feed"];
+    let mut table = TextTable::headed(1, heads);
     for row in limits.iter().take(MOST_ROWS) {
-        rows.push([
+        table.row([
             name(row),
             row.moves.to_string(),
             clock(row.seconds),
             format!("{:.1} %", 100.0 * row.share),
-            match row.beyond_feed_s > 0.0 {
-                true => clock(row.beyond_feed_s),
-                false => "-".to_owned(),
-            },
+            or_dash((row.beyond_feed_s > 0.0).then(|| clock(row.beyond_feed_s))),
         ]);
     }
-    text.push('\n');
-    text.push_str(&table(&rows, 1));
+    table.below(text);
     more(text, limits.len());
 }
 
@@ -266,18 +236,16 @@ fn operations(text: &mut String, found: &Prediction) {
     if operations.len() < 2 {
         return;
     }
-    let head = ["tool", "operation", "time", "cutting"];
-    let mut rows = vec![head.map(str::to_owned)];
+    let mut table = TextTable::headed(2, ["tool", "operation", "time", "cutting"]);
     for row in operations.iter().take(MOST_ROWS) {
-        rows.push([
-            row.tool.map_or_else(|| "-".to_owned(), |tool| format!("T{tool}")),
-            row.operation.clone().unwrap_or_else(|| "-".to_owned()),
+        table.row([
+            or_dash(row.tool.map(|tool| format!("T{tool}"))),
+            or_dash(row.operation.as_ref()),
             clock(row.seconds),
             clock(row.cutting_s),
         ]);
     }
-    text.push('\n');
-    text.push_str(&table(&rows, 2));
+    table.below(text);
     more(text, operations.len());
 }
 

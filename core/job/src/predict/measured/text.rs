@@ -6,12 +6,12 @@ use super::fitting::{AxisFitted, rounded, short};
 use super::report::{AxisLaid, Left, MeasuredFound};
 use post_machine::diagnostic::Short;
 
-use crate::text::{clock, number, table};
+use crate::text::{clock, number};
+use crate::text_table::{NamedValues, TextTable, or_dash};
 
 /// The tables of a log.
 pub fn text(found: &MeasuredFound) -> String {
-    let mut text = String::new();
-    head(&mut text, found);
+    let mut text = head(found).lines(16);
     positions(&mut text, &found.axes);
     let unit = |axis: &AxisLaid| Shown::of_axis(axis.unit);
     let following = found.axes.iter().filter_map(|axis| {
@@ -29,40 +29,35 @@ pub fn text(found: &MeasuredFound) -> String {
 }
 
 /// What was read, and how it lies over the prediction.
-fn head(text: &mut String, found: &MeasuredFound) {
-    let mut row = |name: &str, value: String| {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{name:<16} {value}");
-    };
+fn head(found: &MeasuredFound) -> NamedValues {
+    let mut rows = NamedValues::default();
     let ms = |seconds: f64| number(1e3 * seconds, 3);
-    let rows = format!(
-        "{}, {} rows, one every {} ms, {}",
-        found.log,
-        found.rows,
-        ms(found.period_s),
-        clock(found.seconds)
+    let (period, seconds) = (ms(found.period_s), clock(found.seconds));
+    rows.row(
+        "measured",
+        format!("{}, {} rows, one every {period} ms, {seconds}", found.log, found.rows),
     );
-    row("measured", rows);
     let columns = found.columns.iter();
     let columns = columns.map(|one| format!("{} = {} ({})", one.column, one.holds, one.unit));
-    row("  columns", columns.collect::<Vec<String>>().join(", "));
+    rows.row("  columns", columns.collect::<Vec<String>>().join(", "));
     if !found.unread.is_empty() {
-        row("  not read", found.unread.join(", "));
+        rows.row("  not read", found.unread.join(", "));
     }
     if found.missing_rows > 0 {
-        let missing = found.missing_rows;
-        row("  missing", format!("{missing} rows, interpolated"));
+        rows.row("  missing", format!("{} rows, interpolated", found.missing_rows));
     }
     if found.rounded_times {
-        row("  times", "rounded; rows are taken to lie at even distances".to_owned());
+        rows.row("  times", "rounded; rows are taken to lie at even distances");
     } else if found.jitter_s > SEEN_JITTER * found.period_s {
         let jitter = ms(found.jitter_s);
-        row("  times", format!("beside even distances by {jitter} ms (RMS)"));
+        rows.row("  times", format!("beside even distances by {jitter} ms (RMS)"));
     }
     if found.turns > 0 {
         let turns = found.turns;
-        let turns = format!("{turns} jumps of a rotary axis are its count starting again");
-        row("  full turns", turns);
+        rows.row(
+            "  full turns",
+            format!("{turns} jumps of a rotary axis are its count starting again"),
+        );
     }
     let [from, to] = found.overlap_s;
     let laid = format!(
@@ -72,7 +67,7 @@ fn head(text: &mut String, found: &MeasuredFound) {
         clock(to - from),
         clock(found.predicted_s)
     );
-    row("laid over", laid);
+    rows.row("laid over", laid);
     if let Some([logged, predicted]) = found.motion_s {
         let text = format!(
             "{} s from the first motion to the last, predicted {} s ({} %)",
@@ -80,7 +75,7 @@ fn head(text: &mut String, found: &MeasuredFound) {
             number(predicted, 3),
             signed(100.0 * (predicted / logged - 1.0))
         );
-        row("  moves for", text);
+        rows.row("  moves for", text);
     }
     let alike = match found.far_off > 0.0 {
         true => format!(
@@ -90,17 +85,18 @@ fn head(text: &mut String, found: &MeasuredFound) {
         ),
         false => number(found.correlation, 6),
     };
-    row("  alike by", format!("{alike} (1: nothing is left)"));
+    rows.row("  alike by", format!("{alike} (1: nothing is left)"));
     let zeros = found.axes.iter().filter(|axis| axis.zero.abs() >= 5e-5);
     let zeros = zeros.map(|axis| format!("{} {} {}", axis.name, number(axis.zero, 4), axis.unit));
     let zeros: Vec<String> = zeros.collect();
-    row(
+    rows.row(
         "  taken off",
         match zeros.is_empty() {
             true => "nothing: the log counts from the zeros of the prediction".to_owned(),
             false => format!("{}, by which the log counts more (--log-zeros)", zeros.join(", ")),
         },
     );
+    rows
 }
 
 /// What is left of a servo is no noise if so many rows say no more than one.
@@ -117,19 +113,18 @@ fn signed(value: f64) -> String {
 
 /// Where axes are at the same time.
 fn positions(text: &mut String, axes: &[AxisLaid]) {
-    let head = ["position, predicted minus measured", "", "most", "at s", "RMS", "mean"];
-    let mut lines = vec![head.map(str::to_owned)];
+    let heads = ["position, predicted minus measured", "", "most", "at s", "RMS", "mean"];
+    let mut table = TextTable::headed(2, heads);
     for axis in axes {
         for (what, left) in [("commanded", axis.commanded), ("actual", axis.actual)] {
             let Some(left) = left else { continue };
             let shown = Shown::of_position(axis.unit);
             let [most, at, rms, mean] = shown.cells(&left);
             let name = format!("{} {what}", axis.name);
-            lines.push([name, shown.unit.to_owned(), most, at, rms, mean]);
+            table.row([name, shown.unit.to_owned(), most, at, rms, mean]);
         }
     }
-    text.push('\n');
-    text.push_str(&table(&lines, 2));
+    table.below(text);
 }
 
 /// What was measured, what is predicted for it, and what is left.
@@ -137,7 +132,7 @@ fn errors(text: &mut String, what: &str, rows: Vec<(String, Shown, [Left; 3])>) 
     if rows.is_empty() {
         return;
     }
-    let head = [
+    let heads = [
         what,
         "",
         "measured",
@@ -150,18 +145,16 @@ fn errors(text: &mut String, what: &str, rows: Vec<(String, Shown, [Left; 3])>) 
         "at s",
         "RMS",
     ];
-    let mut lines = vec![head.map(str::to_owned)];
+    let mut table = TextTable::headed(2, heads);
     for (name, shown, lefts) in rows {
         let mut line = vec![name, shown.unit.to_owned()];
         for left in &lefts {
             let [most, at, rms, _] = shown.cells(left);
             line.extend([most, at, rms]);
         }
-        let mut line = line.into_iter();
-        lines.push(std::array::from_fn(|_| line.next().unwrap_or_default()));
+        table.row(line);
     }
-    text.push('\n');
-    text.push_str(&table(&lines, 2));
+    table.below(text);
 }
 
 /// How errors are shown.
@@ -222,19 +215,18 @@ pub fn fitted_text(fitted: &[AxisFitted]) -> String {
             "determined",
             "exchangeable for (correlation)",
         ];
-        let mut rows = vec![head.map(str::to_owned)];
+        let mut table = TextTable::headed(1, head);
         for one in &axis.numbers {
-            rows.push([
+            table.row([
                 one.name.to_owned(),
                 Short(one.before).to_string(),
                 rounded(one.value, one.deviation.unwrap_or(f64::INFINITY)),
                 one.deviation.map_or_else(|| "infinite".to_owned(), short),
                 if one.determined { "yes" } else { "no" }.to_owned(),
-                one.correlated
-                    .map_or_else(|| "-".to_owned(), |(name, by)| format!("{name} ({by:.2})")),
+                or_dash(one.correlated.map(|(name, by)| format!("{name} ({by:.2})"))),
             ]);
         }
-        text.push_str(&table(&rows, 1));
+        text.push_str(&table.text());
         for direction in &axis.undetermined {
             let names: Vec<&str> = direction.iter().map(|(name, _)| *name).collect();
             let _ = match names[..] {

@@ -40,7 +40,7 @@ pub fn write(meta: &Meta, parts: &mut [&mut dyn Read], out: &mut dyn Write) -> i
 }
 
 /// A text that stands between tags or in quotes.
-fn escaped(text: &str) -> String {
+pub fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {

@@ -6,6 +6,7 @@ use post_machine::description::{LengthAxis, Machine, OptionValue, OutputUnits};
 use post_posting::ProgramPreview;
 use post_posting::program::ToolChange;
 use post_posting::report::{LengthSource, PostingReport};
+use post_report::document::escaped;
 
 use post_job::files::PathArg;
 use post_job::text::{clock, number};
@@ -225,21 +226,19 @@ fn as_markdown(title: &str, sections: &[Section]) -> String {
 }
 
 fn as_html(title: &str, sections: &[Section]) -> String {
-    let plain = |text: &str| {
-        text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-    };
     let row = |cells: &mut dyn Iterator<Item = &str>, kind: &str| {
-        let cells: String = cells.map(|cell| format!("<{kind}>{}</{kind}>", plain(cell))).collect();
+        let cells: String =
+            cells.map(|cell| format!("<{kind}>{}</{kind}>", escaped(cell))).collect();
         format!("<tr>{cells}</tr>\n")
     };
-    let title = plain(title);
+    let title = escaped(title);
     let mut text = format!(
         "<!doctype html>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n<style>body {{ font-family: sans-serif }} table {{ border-collapse: collapse }} \
          td, th {{ border: 1px solid #999; padding: .2em .6em; text-align: left }}</style>\n<h1>{title}</h1>\n"
     );
     for section in sections.iter().filter(|section| !section.rows.is_empty()) {
         // Writing to a String cannot fail.
-        let _ = write!(text, "<h2>{}</h2>\n<table>\n", plain(&section.title));
+        let _ = write!(text, "<h2>{}</h2>\n<table>\n", escaped(&section.title));
         if section.head.iter().any(|cell| !cell.is_empty()) {
             text += &row(&mut section.head.iter().copied(), "th");
         }

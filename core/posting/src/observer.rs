@@ -4,7 +4,9 @@ use std::cell::RefCell;
 
 use crate::accuracy::NodeMove;
 use crate::blocks::{Audience, MotionBlock};
-use crate::stream::StreamItem;
+use crate::curve::CurveBlock;
+use crate::program::Command;
+use crate::stream::{Hole, StreamItem};
 
 /// Where the text of the program goes.
 pub trait TextSink {
@@ -23,9 +25,38 @@ pub trait Observer {
         let _ = (line, cut);
     }
 
-    /// Blocks and the commands between them, in order, as they went to the dialect: a hole once it is done.
+    /// A block as it went to the dialect.
+    fn block(&mut self, block: &MotionBlock) {
+        let _ = block;
+    }
+
+    /// A block along a curve: a block as any other.
+    fn curve(&mut self, curve: &CurveBlock) {
+        self.block(&curve.block);
+    }
+
+    /// A hole, as a cycle of the control or by its moves: these one by one.
+    fn hole(&mut self, hole: &Hole<MotionBlock>) {
+        self.blocks(&hole.above);
+        self.blocks(&hole.into);
+    }
+
+    /// A command between blocks, from this line of the CL file.
+    fn command(&mut self, line: u64, command: &Command) {
+        let _ = (line, command);
+    }
+
+    /// Blocks and the commands between them, in order: each goes to the method for it.
     fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
-        let _ = blocks;
+        for next in blocks {
+            match next {
+                StreamItem::Point(block) => self.block(block),
+                StreamItem::Curve { curve, .. } => self.curve(curve),
+                StreamItem::Hole(hole) => self.hole(hole),
+                StreamItem::Command { line, command } => self.command(*line, command),
+                StreamItem::Note { .. } => {}
+            }
+        }
     }
 }
 

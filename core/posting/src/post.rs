@@ -10,7 +10,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Capabilities, DialectSession, ModelSession};
 
 use crate::blocks::{BlockContext, BlockStage, MotionBlock};
-use crate::configuration::{ConfigurationStage, ConfiguredItem};
+use crate::configuration::{ChosenPoint, ConfigurationStage};
 use crate::emit::EmitStage;
 use crate::expand::{ExpandStage, PathMove};
 use crate::findings::Findings;
@@ -67,7 +67,7 @@ struct PostStages<'a> {
     shift: Option<ShiftStage<'a>>,
     lines: Vec<StreamItem<PathMove>>,
     configuration: ConfigurationStage<'a>,
-    configured: Vec<StreamItem<ConfiguredItem>>,
+    configured: Vec<StreamItem<ChosenPoint>>,
     blocks: BlockStage<'a>,
     made: Vec<StreamItem<MotionBlock>>,
     plan: Option<PlanStage<'a>>,
@@ -122,7 +122,7 @@ impl PostStages<'_> {
         let mut made = BatchSink::new(made, &mut to_plan);
         let mut to = BlockContext { out: &mut made, findings, audience: observers.audience() };
         let mut to_blocks =
-            |configured: &mut Vec<StreamItem<ConfiguredItem>>| blocks.take(configured, &mut to);
+            |configured: &mut Vec<StreamItem<ChosenPoint>>| blocks.take(configured, &mut to);
         let mut configured = BatchSink::new(configured, &mut to_blocks);
         let mut to_configuration = |lines: &mut Vec<StreamItem<PathMove>>| {
             if let Some(shift) = shift {
@@ -310,7 +310,6 @@ impl<'a> Post<'a> {
             let end = StageInput::Finish(self.last_line);
             self.stages.run(end, &self.findings);
         }
-        self.stages.emit.show_rest(&self.stages.observers);
         let configuration = &self.stages.configuration;
         if !self.findings.failed() && configuration.moves() == 0 {
             let file = self.findings.file();

@@ -1,23 +1,46 @@
-//! What runs from stage to stage: points of the path, the commands between them, and what solves the points, in one
-//! stream, in order.
+//! What runs from stage to stage: points of the path, curves and holes with their moves, and the commands between them,
+//! in one stream, in order.
 //!
 //! Every stage takes a batch and hands on a batch. What a stage cannot decide yet it keeps, commands among it, so
-//! that nothing overtakes anything.
+//! that nothing overtakes anything. A curve or a hole is one element with all its moves in it: no stage sees half of one.
+//! Neither grows with the file: a curve that would be more chords than `curve` allows goes by its moves, point by point,
+//! and a hole has no more of them than `program::limits` allows pecks.
 
-use std::rc::Rc;
+use std::fmt::Debug;
 
-use crate::accuracy::Placer;
-use crate::program::Command;
+use nalgebra::Vector3;
+
+use crate::program::{Command, HoleCycle};
 
 /// Points and commands are handed on in batches of about this length: long enough that work on neighbouring points
 /// overlaps and that a call costs nothing, short enough to stay in the fastest cache.
 pub(crate) const BATCH: usize = 128;
 
+/// A point of the path, or what a stage made of it; and what goes along with it between the same two stages.
+pub trait StreamPoint: Clone + Debug {
+    /// A curve.
+    type Curve: Clone + Debug;
+    /// What a stage says to the next of all elements from there on.
+    type Note: Clone + Debug;
+
+    /// Line of the CL file.
+    fn line(&self) -> u64;
+}
+
 /// One element of the stream.
 #[derive(Clone, Debug)]
-pub enum StreamItem<P> {
+pub enum StreamItem<P: StreamPoint> {
     /// A point of the path, or what a stage made of it.
     Point(P),
+    /// A curve that may stay one, with its moves or as it is printed.
+    Curve {
+        /// Line of the CL file.
+        line: u64,
+        /// The curve.
+        curve: Box<P::Curve>,
+    },
+    /// A hole that the control may have a cycle for, with its moves.
+    Hole(Box<Hole<P>>),
     /// A command between points.
     Command {
         /// Line of the CL file.
@@ -25,25 +48,64 @@ pub enum StreamItem<P> {
         /// What it says.
         command: Command,
     },
-    /// What solves the points from here on.
-    Placer(Rc<Placer>),
+    /// What holds from here on, from one stage to the next.
+    Note {
+        /// Line of the CL file.
+        line: u64,
+        /// What it says.
+        note: P::Note,
+    },
 }
 
-impl<P> StreamItem<P> {
-    /// Line of the CL file, that of a point by `of`; none of what solves points.
-    pub(crate) fn line(&self, of: impl FnOnce(&P) -> u64) -> Option<u64> {
+/// The moves of a cycle at one point, which the control may have a cycle for.
+#[derive(Clone, Debug)]
+pub struct Hole<P: StreamPoint> {
+    /// Line of the CL file.
+    pub line: u64,
+    /// The cycle in force.
+    pub cycle: HoleCycle,
+    /// The point that its heights count from, mm, part frame.
+    pub point: Vector3<f64>,
+    /// The tool axis, unit vector, part frame.
+    pub axis: Vector3<f64>,
+    /// Moves to the retract level above it.
+    pub above: Vec<StreamItem<P>>,
+    /// Moves into it and back to that level.
+    pub into: Vec<StreamItem<P>>,
+}
+
+impl<P: StreamPoint> StreamItem<P> {
+    /// Line of the CL file.
+    pub(crate) fn line(&self) -> u64 {
         match self {
-            Self::Point(point) => Some(of(point)),
-            Self::Command { line, .. } => Some(*line),
-            Self::Placer(_) => None,
+            Self::Point(point) => point.line(),
+            Self::Curve { line, .. } | Self::Command { line, .. } | Self::Note { line, .. } => {
+                *line
+            }
+            Self::Hole(hole) => hole.line,
         }
     }
+}
 
-    /// Whether this is a mark that says where the moves of a hole stand.
-    #[inline]
-    pub(crate) fn marks_hole(&self) -> bool {
-        matches!(self, Self::Command { command: Command::Hole(_), .. })
+impl<P: StreamPoint> Hole<P> {
+    /// The hole with other moves, made of its own: first of those above it, then of those into it.
+    pub(crate) fn remade<Q: StreamPoint>(
+        &self,
+        mut remake: impl FnMut(&[StreamItem<P>]) -> Vec<StreamItem<Q>>,
+    ) -> Hole<Q> {
+        let Self { line, cycle, point, axis, .. } = *self;
+        Hole { line, cycle, point, axis, above: remake(&self.above), into: remake(&self.into) }
     }
+}
+
+/// All that `fill` hands on: what an element is made of.
+pub(crate) fn gathered<T>(fill: impl FnOnce(&mut BatchSink<'_, T>)) -> Vec<T> {
+    let (mut all, mut batch) = (Vec::new(), Vec::new());
+    let mut next = |batch: &mut Vec<T>| all.append(batch);
+    let mut sink = BatchSink::new(&mut batch, &mut next);
+    fill(&mut sink);
+    sink.flush();
+    all
 }
 
 /// Where a stage puts what it hands on; a batch that is full goes to the next stage at once, so that one arc of a
@@ -93,9 +155,14 @@ impl<'o, T> BatchSink<'o, T> {
     }
 }
 
-impl<P> BatchSink<'_, StreamItem<P>> {
+impl<P: StreamPoint> BatchSink<'_, StreamItem<P>> {
     /// Hands on a command.
     pub(crate) fn command(&mut self, line: u64, command: Command) {
         self.push(StreamItem::Command { line, command });
+    }
+
+    /// Hands on a note.
+    pub(crate) fn note(&mut self, line: u64, note: P::Note) {
+        self.push(StreamItem::Note { line, note });
     }
 }

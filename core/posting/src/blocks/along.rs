@@ -14,8 +14,8 @@ use super::{
 };
 use crate::accuracy::{DeviationBound, PathNode, PlacedBatch, Placer, PrintedArc, WordFrame};
 use crate::configuration::{ChosenPoint, pose};
-use crate::curve::{CurveMove, CurveShape, CurveWords, PrintedCurve};
-use crate::program::{Command, MoveFeed, PathArc, StraightMove};
+use crate::curve::{CurveBlock, CurveMove, CurveMoves, CurveShape, CurveWords, PrintedCurve};
+use crate::program::{MoveFeed, PathArc, StraightMove};
 use crate::stream::StreamItem;
 
 /// Controls take an arc whose ends differ by more in their distance from the centre for a slip: mm.
@@ -36,14 +36,6 @@ const ALMOST_WHOLE: f64 = TAU - 0.01;
 
 /// Shares of an arc that are as near to its ends are no places to cut it at.
 const AT_ITS_END: f64 = 1e-6;
-
-/// A curve that is on its way, and the moves that it would be otherwise.
-#[derive(Debug)]
-pub(super) struct PendingCurve {
-    pub(super) line: u64,
-    pub(super) curve: Box<CurveMove>,
-    pub(super) moves: Vec<ChosenPoint>,
-}
 
 /// A block along an arc.
 pub(super) struct ArcBlock {
@@ -66,52 +58,48 @@ impl ArcBlock {
     }
 }
 
-impl PendingCurve {
-    pub(super) fn new(line: u64, curve: &CurveMove) -> Self {
-        Self { line, curve: Box::new(curve.clone()), moves: Vec::new() }
-    }
-
-    /// Line of the CL file that it is from.
-    pub(super) fn line(&self) -> u64 {
-        self.line
-    }
-
-    /// One more of its moves.
-    pub(super) fn push(&mut self, next: &ChosenPoint) {
-        self.moves.push(next.clone());
-    }
-}
-
 impl BlockStage<'_> {
-    /// The curve that is on its way has come to its end, or is broken off: it is kept or made by its moves. Nothing is
-    /// solved ahead in `placed`.
+    /// Goes along a curve: it is kept, or made by its moves.
     pub(super) fn go_along(
         &mut self,
-        whole: bool,
+        line: u64,
+        curve: &CurveMoves<ChosenPoint>,
         placed: &mut PlacedBatch,
         to: &mut BlockContext<'_, '_>,
     ) {
-        let Some(following) = self.following.take() else {
-            return;
-        };
-        if whole && self.keep(&following, to) {
+        let moves = curve.moves.iter().map(|next| match next {
+            StreamItem::Point(chosen) => Some(chosen),
+            _ => None,
+        });
+        let moves: Option<Vec<&ChosenPoint>> = moves.collect();
+        if let Some(moves) = &moves
+            && self.keep(line, &curve.curve, moves, to)
+        {
             return;
         }
-        for next in &following.moves {
-            self.point(next, 0, placed, to);
+        self.elements(&curve.moves, placed, to);
+        if moves.is_none() {
+            // Something has come between.
+            self.end_run(to);
         }
     }
 
     /// Makes blocks along the curve, if that can be.
-    fn keep(&mut self, following: &PendingCurve, to: &mut BlockContext<'_, '_>) -> bool {
+    fn keep(
+        &mut self,
+        line: u64,
+        curve: &CurveMove,
+        moves: &[&ChosenPoint],
+        to: &mut BlockContext<'_, '_>,
+    ) -> bool {
         let (Some(placer), Some(last)) = (self.placer.clone(), self.last.as_deref()) else {
             return false;
         };
-        let still = |next: &ChosenPoint| {
+        let still = |next: &&ChosenPoint| {
             let standing = self.planes.standing(next);
             next.arrives && next.rewind.is_none() && placer.stand(standing, &last.trace.joints)
         };
-        if !following.moves.iter().all(still)
+        if !moves.iter().all(still)
             || self.compensation_due
             || !self.machine.solution.exclusive.is_empty()
         {
@@ -120,7 +108,6 @@ impl BlockStage<'_> {
         let Some(frame) = WordFrame::new(&placer, last) else {
             return false;
         };
-        let curve = &following.curve;
         let lift = curve.end.axis * self.machine.control_point.along;
         match &curve.course {
             CurveShape::Arc(arc) => {
@@ -129,14 +116,26 @@ impl BlockStage<'_> {
                 let Some(blocks) = self.arc_blocks(&placer, &frame, (&wanted, &whole)) else {
                     return false;
                 };
-                self.push_arc(&placer, following.line, &whole, blocks, to);
+                self.push_arc(&placer, line, &whole, blocks, to);
+                true
             }
             CurveShape::Spline(spline) => {
                 let lifted = spline.clone().placed(|point| point + lift);
-                return self.keep_spline(&placer, &frame, following, &lifted, to);
+                let end = StraightMove { tip: lifted.poles[lifted.poles.len() - 1].0, ..curve.end };
+                let Some(block) = self.spline_block(&placer, &frame, &lifted, &end) else {
+                    return false;
+                };
+                // Its chords are shorter by less than a thousandth of what they stray.
+                let mut at = lifted.poles[0].0;
+                let chords = moves.iter().map(|next| {
+                    let from = std::mem::replace(&mut at, next.motion.tip);
+                    (at - from).norm()
+                });
+                let way = chords.sum();
+                self.push_spline(&frame, (line, &end), block, way, to);
+                true
             }
         }
-        true
     }
 
     /// The blocks along an arc, as few as may be: whole, by halves, by quadrants.
@@ -425,10 +424,19 @@ impl BlockStage<'_> {
             ..self.block(leg, &piece.node, piece.bound)
         };
         self.largest.keep(leg, piece.bound);
-        let command = Command::Curve(Box::new(piece.curve));
-        to.out.command(leg.line, command);
-        to.out.push(StreamItem::Point(block));
+        self.push_curve(block, piece.curve, to);
         piece.node
+    }
+
+    /// Hands on a block along a curve.
+    pub(super) fn push_curve(
+        &self,
+        block: MotionBlock,
+        printed: PrintedCurve,
+        to: &mut BlockContext<'_, '_>,
+    ) {
+        let (line, curve) = (block.line, Box::new(CurveBlock { block, printed }));
+        to.out.push(StreamItem::Curve { line, curve });
     }
 
     /// The least time in which no axis passes its largest feed, also on a control that divides F by the way in the plane.

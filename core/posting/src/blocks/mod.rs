@@ -24,15 +24,15 @@ use post_plugin::{Capabilities, Format, ModelSession};
 use crate::accuracy::{
     DeviationBound, Lineariser, NodeMove, NodeRun, PathNode, PlacedBatch, Placer,
 };
-use crate::configuration::{ChosenPoint, ConfiguredItem, pose};
+use crate::configuration::{ChoiceNote, ChosenPoint, pose};
 use crate::curve::CurvePolicy;
+use crate::expand::FixedAxis;
 use crate::findings::Findings;
 use crate::program::{Command, MoveFeed, StraightMove};
 use crate::refusal;
-use crate::stream::{BatchSink, StreamItem};
-use along::PendingCurve;
+use crate::stream::{BatchSink, Hole, StreamItem, gathered};
 pub(crate) use audience::Audience;
-pub use block::{BlockDuration, BlockKind, BlockReason, MotionBlock, PlannedTime};
+pub use block::{BlockDuration, BlockKind, BlockNote, BlockReason, MotionBlock, PlannedTime};
 pub(crate) use compensating_motion::CompensatingMotion;
 pub use compensating_motion::FollowTime;
 pub use nominal::NominalTime;
@@ -127,8 +127,6 @@ pub(crate) struct BlockStage<'a> {
     keeps: CurvePolicy,
     /// Feeds are planned after this stage: curves tell their way.
     plans: bool,
-    /// A curve whose end has not come yet.
-    following: Option<PendingCurve>,
     /// What each leg of the run in hand is due.
     nominal: Vec<NominalTime>,
     /// Where the tool stands; none before the first position.
@@ -175,7 +173,6 @@ impl<'a> BlockStage<'a> {
             gathered: PendingRun::default(),
             keeps: CurvePolicy::new(machine, writes),
             plans: false,
-            following: None,
             nominal: Vec::new(),
             last: None,
             spare: None,
@@ -197,13 +194,13 @@ impl<'a> BlockStage<'a> {
     }
 
     /// Blocks from here on are made with another placer, which goes on to whom it serves after this stage.
-    fn use_placer(&mut self, placer: Rc<Placer>, to: &mut BlockContext<'_, '_>) {
+    fn use_placer(&mut self, line: u64, placer: Rc<Placer>, to: &mut BlockContext<'_, '_>) {
         self.placer = Some(match self.plans {
             false => placer,
             true => {
                 // Blocks may be cut after this stage, at rounded points.
                 let roomy = placer.leaving_room(self.machine.accuracy.tolerance);
-                to.out.push(StreamItem::Placer(placer));
+                to.out.note(line, BlockNote::Placer(placer));
                 Rc::new(roomy)
             }
         });
@@ -226,38 +223,43 @@ impl<'a> BlockStage<'a> {
 
     /// Line of the first point that waits for those after it.
     pub(crate) fn first_line(&self) -> Option<u64> {
-        let following = self.following.as_ref().map(PendingCurve::line);
-        self.gathered.first_line().or(following)
+        self.gathered.first_line()
     }
 
     /// Takes a batch.
     pub(crate) fn take(
         &mut self,
-        batch: &[StreamItem<ConfiguredItem>],
+        batch: &[StreamItem<ChosenPoint>],
         to: &mut BlockContext<'_, '_>,
     ) {
         let mut placed = self.placed.take().unwrap_or_default();
+        self.elements(batch, &mut placed, to);
+        self.placed = Some(placed);
+    }
+
+    /// Takes elements in order; none of them is solved ahead in `placed`.
+    fn elements(
+        &mut self,
+        elements: &[StreamItem<ChosenPoint>],
+        placed: &mut PlacedBatch,
+        to: &mut BlockContext<'_, '_>,
+    ) {
         let mut from = 0;
-        while from < batch.len() {
-            let count = self.settle_ahead(&batch[from..], &mut placed);
-            for (lane, next) in batch[from..from + count].iter().enumerate() {
-                self.next(next, lane, &mut placed, to);
+        while from < elements.len() {
+            let count = self.settle_ahead(&elements[from..], placed);
+            for (lane, next) in elements[from..from + count].iter().enumerate() {
+                self.next(next, lane, placed, to);
             }
             from += count;
         }
-        self.placed = Some(placed);
     }
 
     /// Solves the points at the front of a batch together, as far as one placer solves them; gives how many elements
     /// they are. Where there are few, or the next is something else, nothing is solved ahead.
-    fn settle_ahead(
-        &self,
-        batch: &[StreamItem<ConfiguredItem>],
-        placed: &mut PlacedBatch,
-    ) -> usize {
+    fn settle_ahead(&self, batch: &[StreamItem<ChosenPoint>], placed: &mut PlacedBatch) -> usize {
         let points = || {
             batch.iter().map_while(|next| match next {
-                StreamItem::Point(ConfiguredItem::Point(chosen)) if chosen.arrives => {
+                StreamItem::Point(chosen) if chosen.arrives => {
                     Some((pose(&chosen.motion), self.planes.standing(chosen)))
                 }
                 _ => None,
@@ -265,9 +267,7 @@ impl<'a> BlockStage<'a> {
         };
         let count = points().take(PlacedBatch::MOST).count();
         match &self.placer {
-            Some(placer) if count >= LEAST_TOGETHER && self.following.is_none() => {
-                placed.settle(placer, points())
-            }
+            Some(placer) if count >= LEAST_TOGETHER => placed.settle(placer, points()),
             _ => placed.forget(),
         }
         count.max(1)
@@ -277,46 +277,57 @@ impl<'a> BlockStage<'a> {
     #[inline]
     fn next(
         &mut self,
-        next: &StreamItem<ConfiguredItem>,
+        next: &StreamItem<ChosenPoint>,
         lane: usize,
         placed: &mut PlacedBatch,
         to: &mut BlockContext<'_, '_>,
     ) {
-        if let Some(following) = &mut self.following {
-            match next {
-                StreamItem::Point(ConfiguredItem::Point(chosen)) => return following.push(chosen),
-                StreamItem::Command { command: Command::AlongEnd, .. } => {
-                    return self.go_along(true, placed, to);
-                }
-                // Something has come between: by its moves.
-                _ => self.go_along(false, placed, to),
-            }
-        }
         match next {
-            StreamItem::Point(ConfiguredItem::Point(chosen)) => {
-                self.point(chosen, lane, placed, to)
-            }
-            StreamItem::Placer(placer) => {
+            StreamItem::Point(chosen) => self.point(chosen, lane, placed, to),
+            StreamItem::Curve { line, curve } => {
                 self.end_run(to);
-                self.take_placer(placer, to);
+                self.go_along(*line, curve, placed, to);
             }
-            StreamItem::Point(ConfiguredItem::Broken) => {
-                self.end_run(to);
-                // The next point is a first position again.
-                self.last = None;
-                self.on_part = false;
-            }
+            StreamItem::Hole(hole) => self.hole(hole, placed, to),
             StreamItem::Command { line, command } => self.command(*line, command, to),
+            StreamItem::Note { line, note } => {
+                self.end_run(to);
+                match note {
+                    ChoiceNote::Placer(placer) => self.take_placer(*line, placer, to),
+                    ChoiceNote::FixedAxis(FixedAxis(origin)) => self.fix_axis(*line, *origin, to),
+                    // The next point is a first position again.
+                    ChoiceNote::Broken => {
+                        self.last = None;
+                        self.on_part = false;
+                    }
+                }
+            }
         }
     }
 
     /// The file ends: what waits is carried out.
     pub(crate) fn finish(&mut self, line: u64, to: &mut BlockContext<'_, '_>) {
-        let mut placed = self.placed.take().unwrap_or_default();
-        placed.forget();
-        self.go_along(false, &mut placed, to);
         self.end_run(to);
         self.depart(line, to);
+    }
+
+    /// The moves of a hole as blocks; no run goes on into it or out of it.
+    fn hole(
+        &mut self,
+        hole: &Hole<ChosenPoint>,
+        placed: &mut PlacedBatch,
+        to: &mut BlockContext<'_, '_>,
+    ) {
+        self.end_run(to);
+        let (findings, audience) = (to.findings, to.audience);
+        let made = hole.remade(|part| {
+            gathered(|out| {
+                let mut to = BlockContext { out, findings, audience };
+                self.elements(part, placed, &mut to);
+                self.end_run(&mut to);
+            })
+        });
+        to.out.push(StreamItem::Hole(Box::new(made)));
     }
 
     fn command(&mut self, line: u64, command: &Command, to: &mut BlockContext<'_, '_>) {
@@ -330,8 +341,6 @@ impl<'a> BlockStage<'a> {
                 self.last = None;
                 self.on_part = false;
             }
-            // Its place is reported where it begins.
-            Command::Still(origin) => return self.still(line, *origin, to),
             Command::Head(name) => {
                 self.depart(line, to);
                 if let Some(head) = self.base.head(name) {
@@ -345,11 +354,6 @@ impl<'a> BlockStage<'a> {
                 self.compensate(line, *compensation, to.findings);
                 self.compensation_due = true;
             }
-            Command::Along(curve) => {
-                self.following = Some(PendingCurve::new(line, curve));
-                return;
-            }
-            Command::AlongEnd => return,
             _ => {}
         }
         to.out.command(line, command.clone());

@@ -11,10 +11,9 @@ use post_machine::kinematics::orientation::angle;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::Format;
 
-use super::{BlockContext, BlockStage, TURN};
+use super::{BlockContext, BlockNote, BlockStage, TURN};
 use crate::accuracy::{PathNode, PlacedBatch, Placer};
 use crate::configuration::{ChosenPoint, pose};
-use crate::program::Command;
 
 /// A place so near to the middle between two printed values may stand at either, in last decimals.
 const BETWEEN: f64 = 0.1;
@@ -63,16 +62,21 @@ impl ActivePlane {
 
 impl BlockStage<'_> {
     /// Another placer comes; the tool leaves a plane with the one that it is in it with.
-    pub(super) fn take_placer(&mut self, placer: &Rc<Placer>, to: &mut BlockContext<'_, '_>) {
+    pub(super) fn take_placer(
+        &mut self,
+        line: u64,
+        placer: &Rc<Placer>,
+        to: &mut BlockContext<'_, '_>,
+    ) {
         self.planes.outside = Some(Rc::clone(placer));
         if self.planes.axes.is_none() {
-            self.use_placer(Rc::clone(placer), to);
+            self.use_placer(line, Rc::clone(placer), to);
         }
         self.planes.stands = None;
     }
 
-    /// The tool axis stays from here on, or does not any more.
-    pub(super) fn still(
+    /// The tool axis stays from here on, or does not any more. It is reported where its plane begins.
+    pub(super) fn fix_axis(
         &mut self,
         line: u64,
         wanted: Option<Vector3<f64>>,
@@ -87,10 +91,10 @@ impl BlockStage<'_> {
     fn leave_plane(&mut self, line: u64, to: &mut BlockContext<'_, '_>) {
         self.planes.stands = None;
         if let Some(outside) = self.planes.outside.clone() {
-            self.use_placer(outside, to);
+            self.use_placer(line, outside, to);
         }
         if self.planes.axes.take().is_some() {
-            to.out.command(line, Command::Plane(None));
+            to.out.note(line, BlockNote::Plane(None));
         }
     }
 
@@ -159,9 +163,9 @@ impl BlockStage<'_> {
         let Some(inside) = outside.in_plane(plane) else {
             return;
         };
-        self.use_placer(Rc::new(inside), to);
+        self.use_placer(line, Rc::new(inside), to);
         self.planes.axes = Some(plane.axes);
-        to.out.command(line, Command::Plane(Some(Box::new(plane))));
+        to.out.note(line, BlockNote::Plane(Some(Box::new(plane))));
     }
 
     /// A coordinate that is constant in the plane is turned into it with the noise of the CL file's digits: where the place of

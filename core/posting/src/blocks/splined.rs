@@ -1,6 +1,5 @@
 //! Splines of the CL file that stay splines: one block, its control points and knots printed and certified.
 
-use super::along::PendingCurve;
 use super::{
     AxisTravels, BlockContext, BlockKind, BlockReason, BlockStage, FollowTime, MotionBlock,
     NominalTime, PathLeg,
@@ -8,9 +7,8 @@ use super::{
 use crate::accuracy::{DeviationBound, PathNode, Placer, WordFrame};
 use crate::configuration::pose;
 use crate::curve::{CurveWords, PrintedCurve};
+use crate::program::StraightMove;
 use crate::program::spline::{cubics, over};
-use crate::program::{Command, StraightMove};
-use crate::stream::StreamItem;
 use nalgebra::Vector3;
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::travel::{AT_END, passed};
@@ -20,7 +18,7 @@ use post_motion::path::BSpline;
 const LAST_KNOT: f64 = 1000.0;
 
 /// A spline as it is printed.
-struct SplineBlock {
+pub(super) struct SplineBlock {
     node: Box<PathNode>,
     curve: PrintedCurve,
     bound: DeviationBound,
@@ -46,33 +44,16 @@ fn places(printed: &BSpline, frame: &WordFrame) -> Vec<Vector3<f64>> {
 }
 
 impl BlockStage<'_> {
-    /// Makes a block along a spline of the control point, if that can be.
-    pub(super) fn keep_spline(
+    /// Hands on the block along a spline of so many mm, with its line and the move to its end.
+    pub(super) fn push_spline(
         &mut self,
-        placer: &Placer,
         frame: &WordFrame,
-        following: &PendingCurve,
-        spline: &BSpline,
+        (line, motion): (u64, &StraightMove),
+        spline: SplineBlock,
+        way: f64,
         to: &mut BlockContext<'_, '_>,
-    ) -> bool {
-        let end = &following.curve.end;
-        let motion = StraightMove { tip: spline.poles[spline.poles.len() - 1].0, ..*end };
-        let Some(block) = self.spline_block(placer, frame, spline, &motion) else {
-            return false;
-        };
-        // Its chords are shorter by less than a thousandth of what they stray.
-        let ways = following.moves.iter().scan(spline.poles[0].0, |at, next| {
-            let way = (next.motion.tip - *at).norm();
-            *at = next.motion.tip;
-            Some(way)
-        });
-        let way: f64 = ways.sum();
-        let leg = PathLeg {
-            line: following.line,
-            motion: &motion,
-            loose: false,
-            reason: BlockReason::Point,
-        };
+    ) {
+        let leg = PathLeg { line, motion, loose: false, reason: BlockReason::Point };
         // Whatever its direction, no axis goes faster than the tool.
         let mut follow = FollowTime::default();
         for (joint, slide) in frame.slides() {
@@ -81,23 +62,21 @@ impl BlockStage<'_> {
                 follow = FollowTime { minutes, joint: *joint };
             }
         }
-        let made = MotionBlock {
+        let block = MotionBlock {
             kind: BlockKind::Spline,
             way,
             nominal: NominalTime::of(motion.pace, way, AxisTravels::default),
             follow,
-            ..self.block(&leg, &block.node, block.bound)
+            ..self.block(&leg, &spline.node, spline.bound)
         };
-        self.largest.keep(&leg, block.bound);
-        let command = Command::Curve(Box::new(block.curve));
-        to.out.command(leg.line, command);
-        to.out.push(StreamItem::Point(made));
-        self.spare = self.last.replace(block.node);
+        self.largest.keep(&leg, spline.bound);
+        self.push_curve(block, spline.curve, to);
+        self.spare = self.last.replace(spline.node);
         self.on_part = true;
-        true
     }
 
-    fn spline_block(
+    /// The block along a spline of the control point, if that can be.
+    pub(super) fn spline_block(
         &self,
         placer: &Placer,
         frame: &WordFrame,

@@ -1,7 +1,8 @@
 //! Which of several solutions is taken at each point, decided over whole passes.
 //!
 //! Points wait here until the choice is made, and the commands between them wait with them, in their places.
-//! A command that takes the tool off the part has everything before it decided.
+//! A command that takes the tool off the part has everything before it decided. The points of a curve or a hole are
+//! decided among all others, and put together again after that.
 
 mod backtrace;
 mod cost;
@@ -10,6 +11,7 @@ mod ease;
 mod full_turns;
 mod lengths;
 mod metric;
+mod pending_element;
 mod recovery;
 mod route;
 mod settle;
@@ -28,25 +30,39 @@ use post_machine::kinematics::Pose;
 use post_machine::kinematics::travel::{AT_END, passed};
 use post_plugin::{Capabilities, Format, Spindle};
 
-use crate::expand::PathMove;
+use crate::accuracy::Placer;
+use crate::curve::CurveMoves;
+use crate::expand::{FixedAxis, PathMove};
 use crate::findings::Findings;
 use crate::program::limits::MOST_TOOLS;
 use crate::program::{Command, StraightMove, ToolChange};
 use crate::report::{LengthSource, ReportedTool};
-use crate::stream::{BatchSink, StreamItem};
+use crate::stream::{BatchSink, StreamItem, StreamPoint};
 use lengths::LengthAxisCheck;
+use pending_element::PendingElement;
 pub(crate) use route::ChosenPoint;
 use route::{DroppedPoint, Route};
 pub(crate) use trellis::pose;
 pub use whole_pass::whole_pass;
 
-/// What this stage hands on beside commands.
+/// What this stage says to the next of the elements from there on.
 #[derive(Clone, Debug)]
-pub(crate) enum ConfiguredItem {
-    /// A point with the axis values that were chosen for it.
-    Point(ChosenPoint),
+pub(crate) enum ChoiceNote {
+    /// What solves the points.
+    Placer(Rc<Placer>),
+    /// The tool axis stays, or does not any more.
+    FixedAxis(FixedAxis),
     /// The path ended in a fault; the next point begins one anew.
     Broken,
+}
+
+impl StreamPoint for ChosenPoint {
+    type Curve = CurveMoves<Self>;
+    type Note = ChoiceNote;
+
+    fn line(&self) -> u64 {
+        self.line
+    }
 }
 
 /// What is not decided yet.
@@ -54,15 +70,50 @@ pub(crate) enum ConfiguredItem {
 enum WaitingItem {
     /// A number of points.
     Points(u64),
-    /// A command, with its line.
-    Command(u64, Command),
+    /// What stands between them.
+    Between(BetweenPoints),
 }
 
-/// More commands than this do not wait for a point to be decided.
+/// What stands between points, and waits among them.
+#[derive(Debug)]
+enum BetweenPoints {
+    /// A command, with its line.
+    Command(u64, Command),
+    /// A note, with its line.
+    FixedAxis(u64, FixedAxis),
+    /// The points of a curve or a hole come from here on.
+    Begins(PendingElement),
+    /// The points of the hole are those into it from here on.
+    Enters,
+    /// They were the last.
+    Ends,
+}
+
+impl BetweenPoints {
+    /// The tool leaves the part: what comes after begins anew.
+    fn leaves(&self) -> bool {
+        match self {
+            Self::Command(_, command) => command.leaves(),
+            Self::FixedAxis(..) => true,
+            Self::Begins(_) | Self::Enters | Self::Ends => false,
+        }
+    }
+
+    /// Line of the CL file; none of what is part of an element.
+    fn line(&self) -> Option<u64> {
+        match self {
+            Self::Command(line, _) | Self::FixedAxis(line, _) => Some(*line),
+            Self::Begins(element) => Some(element.line()),
+            Self::Enters | Self::Ends => None,
+        }
+    }
+}
+
+/// More than this does not wait between points for one to be decided.
 const MOST_WAITING: usize = 4096;
 
 /// What leaves this stage.
-type ConfiguredSink<'o> = BatchSink<'o, StreamItem<ConfiguredItem>>;
+type ConfiguredSink<'o> = BatchSink<'o, StreamItem<ChosenPoint>>;
 
 /// The stage that chooses axis values.
 #[derive(Debug)]
@@ -74,8 +125,10 @@ pub(crate) struct ConfigurationStage<'a> {
     /// The placer that the next stage knows of.
     setting: Option<usize>,
     waiting: VecDeque<WaitingItem>,
-    /// Commands among them.
-    commands: usize,
+    /// What stands between points among them.
+    between: usize,
+    /// The curve or hole whose points are handed on now.
+    pending: Option<PendingElement>,
     chosen: Vec<ChosenPoint>,
     /// Along which axis the control puts lengths.
     lengths: LengthAxisCheck,
@@ -115,7 +168,8 @@ impl<'a> ConfigurationStage<'a> {
             route: Route::new(machine, format, told_length.unwrap_or(0.0))?,
             setting: None,
             waiting: VecDeque::new(),
-            commands: 0,
+            between: 0,
+            pending: None,
             chosen: Vec::new(),
             told_length,
             length: told_length,
@@ -141,17 +195,18 @@ impl<'a> ConfigurationStage<'a> {
         &self.tools
     }
 
-    /// Line of the first point or command that is not decided.
+    /// Line of the first element that is not decided.
     pub(crate) fn first_line(&self) -> Option<u64> {
+        let pending = self.pending.as_ref().map(PendingElement::line);
         let mut waiting = self.waiting.iter();
-        let command = waiting.find_map(|waiting| match waiting {
-            WaitingItem::Command(line, _) => Some(*line),
+        let between = waiting.find_map(|waiting| match waiting {
+            WaitingItem::Between(between) => between.line(),
             WaitingItem::Points(_) => None,
         });
-        [command, self.route.first_line()].into_iter().flatten().min()
+        [pending, between, self.route.first_line()].into_iter().flatten().min()
     }
 
-    /// Takes a batch.
+    /// Takes a batch, which is empty then.
     pub(crate) fn take(
         &mut self,
         batch: &mut Vec<StreamItem<PathMove>>,
@@ -161,9 +216,27 @@ impl<'a> ConfigurationStage<'a> {
         for next in batch.drain(..) {
             match next {
                 StreamItem::Point(at) => self.point(&at, out, findings),
-                StreamItem::Command { line, command } => self.arrange(line, command, out, findings),
-                // It is this stage that makes them.
-                StreamItem::Placer(_) => {}
+                StreamItem::Curve { line, curve } => {
+                    let CurveMoves { curve, mut moves } = *curve;
+                    let begins = PendingElement::curve(line, curve);
+                    self.arrange(BetweenPoints::Begins(begins), out, findings);
+                    self.take(&mut moves, out, findings);
+                    self.arrange(BetweenPoints::Ends, out, findings);
+                }
+                StreamItem::Hole(mut hole) => {
+                    let begins = PendingElement::hole(&hole);
+                    self.arrange(BetweenPoints::Begins(begins), out, findings);
+                    self.take(&mut hole.above, out, findings);
+                    self.arrange(BetweenPoints::Enters, out, findings);
+                    self.take(&mut hole.into, out, findings);
+                    self.arrange(BetweenPoints::Ends, out, findings);
+                }
+                StreamItem::Command { line, command } => {
+                    self.arrange(BetweenPoints::Command(line, command), out, findings);
+                }
+                StreamItem::Note { line, note } => {
+                    self.arrange(BetweenPoints::FixedAxis(line, note), out, findings);
+                }
             }
         }
     }
@@ -196,7 +269,8 @@ impl<'a> ConfigurationStage<'a> {
             Err(DroppedPoint::Path(fault)) => {
                 findings.at(line, *fault);
                 self.drain(out, findings);
-                out.push(StreamItem::Point(ConfiguredItem::Broken));
+                let note = ChoiceNote::Broken;
+                self.put(StreamItem::Note { line, note }, out);
             }
         }
         if self.route.has_chosen() {
@@ -215,22 +289,54 @@ impl<'a> ConfigurationStage<'a> {
         tip + axis * self.machine.control_point.along
     }
 
-    /// A command is carried out between the points that it stands between.
-    fn arrange(
-        &mut self,
-        line: u64,
-        command: Command,
-        out: &mut ConfiguredSink<'_>,
-        findings: &Findings,
-    ) {
-        if command.leaves() || self.commands >= MOST_WAITING {
+    /// What stands between points is carried out between them.
+    fn arrange(&mut self, next: BetweenPoints, out: &mut ConfiguredSink<'_>, findings: &Findings) {
+        if next.leaves() || self.between >= MOST_WAITING {
             self.settle(out, findings);
         }
         if self.waiting.is_empty() {
-            self.command(line, command, out, findings);
+            self.carry_out(next, out, findings);
         } else {
-            self.commands += 1;
-            self.waiting.push_back(WaitingItem::Command(line, command));
+            self.between += 1;
+            self.waiting.push_back(WaitingItem::Between(next));
+        }
+    }
+
+    /// Its turn has come.
+    fn carry_out(
+        &mut self,
+        next: BetweenPoints,
+        out: &mut ConfiguredSink<'_>,
+        findings: &Findings,
+    ) {
+        match next {
+            BetweenPoints::Command(line, command) => self.command(line, command, out, findings),
+            BetweenPoints::FixedAxis(line, axis) => {
+                // The tool is retracted before and after: nothing is turned early on its behalf.
+                self.route.leave();
+                let note = ChoiceNote::FixedAxis(axis);
+                self.put(StreamItem::Note { line, note }, out);
+            }
+            BetweenPoints::Begins(element) => self.pending = Some(element),
+            BetweenPoints::Enters => {
+                if let Some(element) = &mut self.pending {
+                    element.enter();
+                }
+            }
+            BetweenPoints::Ends => {
+                if let Some(element) = self.pending.take() {
+                    out.push(element.whole());
+                }
+            }
+        }
+    }
+
+    /// Hands on, or puts into the curve or hole that it is part of.
+    #[inline]
+    fn put(&mut self, next: StreamItem<ChosenPoint>, out: &mut ConfiguredSink<'_>) {
+        match &mut self.pending {
+            None => out.push(next),
+            Some(element) => element.push(next),
         }
     }
 
@@ -259,10 +365,10 @@ impl<'a> ConfigurationStage<'a> {
     fn hand_on(&mut self, next: ChosenPoint, out: &mut ConfiguredSink<'_>) {
         if self.setting != Some(next.setting) {
             self.setting = Some(next.setting);
-            let placer = Rc::clone(self.route.placer(next.setting));
-            out.push(StreamItem::Placer(placer));
+            let note = ChoiceNote::Placer(Rc::clone(self.route.placer(next.setting)));
+            self.put(StreamItem::Note { line: next.line, note }, out);
         }
-        out.push(StreamItem::Point(ConfiguredItem::Point(next)));
+        self.put(StreamItem::Point(next), out);
     }
 
     /// One more point is decided: the commands after it follow.
@@ -278,10 +384,10 @@ impl<'a> ConfigurationStage<'a> {
             }
             _ => {}
         }
-        while let Some(WaitingItem::Command(..)) = self.waiting.front() {
-            if let Some(WaitingItem::Command(line, command)) = self.waiting.pop_front() {
-                self.commands -= 1;
-                self.command(line, command, out, findings);
+        while let Some(WaitingItem::Between(_)) = self.waiting.front() {
+            if let Some(WaitingItem::Between(next)) = self.waiting.pop_front() {
+                self.between -= 1;
+                self.carry_out(next, out, findings);
             }
         }
     }
@@ -334,8 +440,6 @@ impl<'a> ConfigurationStage<'a> {
                     Err(finding) => findings.at(line, *finding),
                 }
             }
-            // The tool is retracted before and after: nothing is turned early on its behalf.
-            Command::Still(_) => self.route.leave(),
             Command::Spindle(Spindle::On { rpm, .. }) => {
                 self.speed = Some(*rpm);
                 self.check_speed(line, findings);
@@ -343,7 +447,7 @@ impl<'a> ConfigurationStage<'a> {
             Command::Spindle(_) => self.speed = None,
             _ => {}
         }
-        out.command(line, command);
+        self.put(StreamItem::Command { line, command }, out);
     }
 
     /// The tool is retracted and axes are sent to positions of the machine: what comes after begins there.

@@ -14,14 +14,14 @@ use post_machine::kinematics::Joints;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Capabilities, Compensation, Coolant, DialectSession, Event, List, ToolPose};
 
-use crate::blocks::{BlockKind, BlockReason, MotionBlock};
+use crate::blocks::{BlockKind, BlockNote, BlockReason, MotionBlock};
 use crate::curve::{CurveWords, PrintedCurve};
 use crate::findings::Findings;
 use crate::job_facts::JobFacts;
 use crate::observer::{Observers, TextSink};
 use crate::program::Command;
 use crate::stream::StreamItem;
-use cycles::{CycleInForce, HoleMoves};
+use cycles::CycleInForce;
 pub(crate) use extremes::Extremes;
 use texts::ProgramTexts;
 use writer::EventWriter;
@@ -32,8 +32,6 @@ pub(crate) struct EmitStage<'a> {
     /// The machine with the head that it starts with.
     base: &'a Machine,
     writer: EventWriter<'a>,
-    /// What observers have not seen: a hole that is not done, and what came after it.
-    unseen: Vec<StreamItem<MotionBlock>>,
     texts: ProgramTexts<'a>,
     extremes: Extremes,
     /// Where the axes stand after the last block.
@@ -59,14 +57,10 @@ pub(crate) struct EmitStage<'a> {
     coolant: Option<Coolant>,
     /// Coolant was switched off in between.
     coolant_due: bool,
-    /// What is printed of the next block, if it goes along a curve.
-    curve: Option<Box<PrintedCurve>>,
     /// The tilted plane of the words.
     plane: Option<Box<TiltedPlane>>,
     /// Whether the control got it.
     plane_on: bool,
-    /// The hole whose moves are coming.
-    hole: Option<Box<HoleMoves>>,
     /// The cycle in force.
     cycle: Option<CycleInForce>,
     /// Place of the word that cycles drill along, and the same where it is that of the axis along the tool.
@@ -113,7 +107,6 @@ impl<'a> EmitStage<'a> {
             machine,
             base: machine,
             writer,
-            unseen: Vec::new(),
             texts: ProgramTexts::new(machine, job),
             extremes: Extremes::new(),
             last: Joints::default(),
@@ -125,10 +118,8 @@ impl<'a> EmitStage<'a> {
             commanded: None,
             coolant: None,
             coolant_due: false,
-            curve: None,
             plane: None,
             plane_on: false,
-            hole: None,
             cycle: None,
             z_word: cycles::z_word(machine),
             depth_word: cycles::depth_word(machine),
@@ -167,58 +158,44 @@ impl<'a> EmitStage<'a> {
     /// Takes a batch, and shows observers what is written of it.
     pub(crate) fn take(
         &mut self,
-        batch: &mut Vec<StreamItem<MotionBlock>>,
+        batch: &mut [StreamItem<MotionBlock>],
         findings: &Findings,
         observers: &Observers<'_>,
     ) {
-        for next in batch.iter() {
+        self.elements(batch, findings);
+        self.flush(findings);
+        if observers.any() {
+            number(batch, &mut self.writer.take_lines());
+            observers.blocks(batch);
+        }
+    }
+
+    fn elements(&mut self, elements: &[StreamItem<MotionBlock>], findings: &Findings) {
+        for next in elements {
             match next {
-                _ if self.hole.is_some() || next.marks_hole() => self.drill(next, findings),
                 StreamItem::Point(block) => {
                     self.end_cycle(block.line);
-                    self.placed_block(block, findings);
+                    self.placed_block(block, None, findings);
                 }
+                StreamItem::Curve { line, curve } => {
+                    self.end_cycle(*line);
+                    self.placed_block(&curve.block, Some(&curve.printed), findings);
+                }
+                StreamItem::Hole(hole) => self.hole(hole, findings),
                 StreamItem::Command { line, command } => {
                     self.end_cycle(*line);
                     self.command(*line, command, findings);
                 }
-                StreamItem::Placer(_) => {}
+                StreamItem::Note { line, note: BlockNote::Plane(plane) } => {
+                    self.end_cycle(*line);
+                    self.set_plane(*line, plane.clone());
+                }
+                StreamItem::Note { note: BlockNote::Placer(_), .. } => {}
             }
             if self.writer.is_full() {
                 self.flush(findings);
             }
         }
-        self.flush(findings);
-        if observers.any() {
-            self.show(batch, observers);
-        }
-    }
-
-    /// Shows a batch, up to the first block that is not written yet; it may be empty then.
-    fn show(&mut self, batch: &mut Vec<StreamItem<MotionBlock>>, observers: &Observers<'_>) {
-        match self.unseen.is_empty() {
-            true => std::mem::swap(&mut self.unseen, batch),
-            false => self.unseen.append(batch),
-        }
-        let mut lines = self.writer.take_lines();
-        let open = self.unseen.iter_mut().position(|next| match next {
-            StreamItem::Point(block) => match lines.next() {
-                Some(line) => {
-                    block.nc_line = line;
-                    false
-                }
-                None => true,
-            },
-            _ => false,
-        });
-        let seen = open.unwrap_or(self.unseen.len());
-        observers.blocks(&self.unseen[..seen]);
-        self.unseen.drain(..seen);
-    }
-
-    /// Nothing more is written: shows what is left.
-    pub(crate) fn show_rest(&self, observers: &Observers<'_>) {
-        observers.blocks(&self.unseen);
     }
 
     /// The last events; `line` is the last of the CL file.
@@ -240,14 +217,19 @@ impl<'a> EmitStage<'a> {
 
     /// Writes a block, and notes where it stands.
     #[inline]
-    fn placed_block(&mut self, block: &MotionBlock, findings: &Findings) {
+    fn placed_block(
+        &mut self,
+        block: &MotionBlock,
+        printed: Option<&PrintedCurve>,
+        findings: &Findings,
+    ) {
         let before = self.writer.next();
-        self.block(block, findings);
+        self.block(block, printed, findings);
         self.writer.place(before);
     }
 
     #[inline]
-    fn block(&mut self, block: &MotionBlock, findings: &Findings) {
+    fn block(&mut self, block: &MotionBlock, printed: Option<&PrintedCurve>, findings: &Findings) {
         let line = block.line;
         if self.waits.is_some_and(|first| cuts(block) || first.goes_in(block)) {
             self.wake(line, findings);
@@ -259,7 +241,7 @@ impl<'a> EmitStage<'a> {
                 self.extremes.go(&self.last, &block.joints);
                 self.position(block, findings);
             }
-            BlockKind::Arc | BlockKind::Spline => self.curve(block),
+            BlockKind::Arc | BlockKind::Spline => self.curve(block, printed),
             BlockKind::Rapid | BlockKind::Linear => {
                 // A block without a changed word moves nothing and is not written.
                 if block.still {
@@ -308,8 +290,8 @@ impl<'a> EmitStage<'a> {
     }
 
     /// A block along a curve.
-    fn curve(&mut self, block: &MotionBlock) {
-        let (Some(curve), Some(feed)) = (self.curve.take(), block.time.feed) else {
+    fn curve(&mut self, block: &MotionBlock, printed: Option<&PrintedCurve>) {
+        let (Some(curve), Some(feed)) = (printed, block.time.feed) else {
             return;
         };
         self.extremes.curves += 1;
@@ -348,18 +330,8 @@ impl<'a> EmitStage<'a> {
 
     fn command(&mut self, line: u64, command: &Command, findings: &Findings) {
         let event = match command {
-            // These act on the choice of axis values alone, or on the blocks.
-            Command::From { .. }
-            | Command::Index { .. }
-            | Command::Along(_)
-            | Command::AlongEnd
-            | Command::Hole(_)
-            | Command::Still(_) => return,
-            Command::Plane(plane) => return self.set_plane(line, plane.clone()),
-            Command::Curve(curve) => {
-                self.curve = Some(curve.clone());
-                return;
-            }
+            // These act on the choice of axis values alone.
+            Command::From { .. } | Command::Index { .. } => return,
             Command::Tool(tool) => return self.change(line, tool, findings),
             Command::Head(name) => return self.swap_head(line, name, findings),
             Command::Operation(name) => return self.operation(line, name),
@@ -460,6 +432,21 @@ impl<'a> EmitStage<'a> {
             None => return,
         }
         self.clamped = self.clamped & !bit | if on { bit } else { 0 };
+    }
+}
+
+/// Fills in on which line each block ends.
+fn number(elements: &mut [StreamItem<MotionBlock>], lines: &mut dyn Iterator<Item = u64>) {
+    for next in elements {
+        match next {
+            StreamItem::Point(block) => block.nc_line = lines.next().unwrap_or(0),
+            StreamItem::Curve { curve, .. } => curve.block.nc_line = lines.next().unwrap_or(0),
+            StreamItem::Hole(hole) => {
+                number(&mut hole.above, lines);
+                number(&mut hole.into, lines);
+            }
+            StreamItem::Command { .. } | StreamItem::Note { .. } => {}
+        }
     }
 }
 

@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 use super::{ExpandedSink, PathMove};
 use crate::findings::Findings;
 use crate::program::{Command, MoveFeed, StraightMove};
-use crate::stream::StreamItem;
+use crate::stream::{Hole, StreamItem, gathered};
 use post_machine::description::{EdgeSource, Machine, Rewind};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::orientation::angle;
@@ -52,10 +52,20 @@ pub(super) struct Tangential {
     cut: Option<(u64, StraightMove, Vector3<f64>)>,
     /// Whether there was such a cut since the tool came.
     has_cut: bool,
-    /// What came after it: moves without a direction (rapids, straight in and out), and commands.
+    /// What came after it: moves without a direction (rapids, straight in and out), holes, and commands.
     behind: VecDeque<StreamItem<PathMove>>,
     /// Corners that the tool was drawn back at.
     pub(super) rewinds: u64,
+}
+
+/// What is known of the moves that waited, while they are handed on.
+struct Held {
+    /// Direction of the cut that comes after them.
+    go: Option<Vector3<f64>>,
+    /// The edge was turned to it.
+    turned: bool,
+    /// The last of them before that.
+    last: Option<(u64, StraightMove)>,
 }
 
 impl Tangential {
@@ -76,12 +86,36 @@ impl Tangential {
 
     /// Line of the first step that waits.
     pub(super) fn first_line(&self) -> Option<u64> {
-        let behind = || self.behind.front()?.line(|at| at.line);
+        let behind = || self.behind.front().map(StreamItem::line);
         self.cut.map(|(line, ..)| line).or_else(behind)
     }
 
-    /// Takes a move; what is settled goes on.
-    pub(super) fn go(
+    /// Takes an element; what is settled goes on.
+    pub(super) fn take(
+        &mut self,
+        next: StreamItem<PathMove>,
+        out: &mut ExpandedSink<'_>,
+        findings: &Findings,
+    ) {
+        match next {
+            StreamItem::Point(PathMove { line, motion }) => self.go(line, motion, out, findings),
+            StreamItem::Hole(hole) => self.hole(*hole, out, findings),
+            StreamItem::Command { line, command } => self.command(line, command, out, findings),
+            StreamItem::Note { line, note } => {
+                self.leave(None, out, findings);
+                out.note(line, note);
+            }
+            // An edge turns with the path: it goes by its moves.
+            StreamItem::Curve { curve, .. } => {
+                for next in curve.moves {
+                    self.take(next, out, findings);
+                }
+            }
+        }
+    }
+
+    /// Takes a move.
+    fn go(
         &mut self,
         line: u64,
         motion: StraightMove,
@@ -116,7 +150,7 @@ impl Tangential {
     }
 
     /// Takes a command.
-    pub(super) fn command(
+    fn command(
         &mut self,
         line: u64,
         command: Command,
@@ -127,13 +161,40 @@ impl Tangential {
             self.hold(StreamItem::Command { line, command }, out, findings);
             return;
         }
-        self.settle(None, out, findings);
-        self.has_cut = false;
-        self.at = match command {
+        let at = match command {
             Command::From { tip, axis } => Some([tip, axis]),
             _ => None,
         };
+        self.leave(at, out, findings);
         out.command(line, command);
+    }
+
+    /// The tool leaves the part; it stands `at` this tip with this axis after that, if that is known.
+    fn leave(
+        &mut self,
+        at: Option<[Vector3<f64>; 2]>,
+        out: &mut ExpandedSink<'_>,
+        findings: &Findings,
+    ) {
+        self.settle(None, out, findings);
+        self.has_cut = false;
+        self.at = at;
+    }
+
+    /// Takes a hole. Its ways lead straight in and out, or are rapids: they have no direction.
+    fn hole(&mut self, hole: Hole<PathMove>, out: &mut ExpandedSink<'_>, findings: &Findings) {
+        if self.source == EdgeSource::Cl {
+            let hole = hole.remade(|part| {
+                gathered(|out| part.iter().for_each(|next| self.take(next.clone(), out, findings)))
+            });
+            return out.push(StreamItem::Hole(Box::new(hole)));
+        }
+        let last = hole.above.iter().chain(&hole.into).rev().find_map(|next| match next {
+            StreamItem::Point(at) => Some([at.motion.tip, at.motion.axis]),
+            _ => None,
+        });
+        self.at = last.or(self.at);
+        self.hold(StreamItem::Hole(Box::new(hole)), out, findings);
     }
 
     /// What waits has nothing after it.
@@ -160,11 +221,13 @@ impl Tangential {
         out: &mut ExpandedSink<'_>,
         findings: &Findings,
     ) {
-        let moves = self.behind.iter().any(|next| matches!(next, StreamItem::Point(_)));
+        let moves = |next: &StreamItem<PathMove>| {
+            matches!(next, StreamItem::Point(_) | StreamItem::Hole(_))
+        };
+        let moves = self.behind.iter().any(moves);
         // Where no cut came before, the edge stands as the first cut wants it from the beginning.
         self.has_cut |= self.cut.is_some();
-        let mut turned = !self.has_cut;
-        let mut last = None;
+        let mut held = Held { go, turned: !self.has_cut, last: None };
         if let Some((line, motion, come)) = self.cut.take() {
             match go.filter(|_| !moves) {
                 Some(go) if turn(come, go, motion.axis) > self.corner => {
@@ -176,24 +239,9 @@ impl Tangential {
             }
         }
         for next in std::mem::take(&mut self.behind) {
-            let StreamItem::Point(PathMove { line, motion }) = next else {
-                out.push(next);
-                continue;
-            };
-            if turned {
-                self.pass(line, motion, go, out);
-                continue;
-            }
-            self.pass(line, motion, None, out);
-            last = Some((line, motion));
-            if let Some(go) = go
-                && motion.pace == MoveFeed::Rapid
-            {
-                // Off the part: turned here, before the way in.
-                self.pass(line, motion, Some(go), out);
-                turned = true;
-            }
+            self.pass_held(next, &mut held, out);
         }
+        let Held { turned, last, .. } = held;
         let (false, Some(go), Some((line, motion))) = (turned, go, last) else {
             return;
         };
@@ -204,6 +252,38 @@ impl Tangential {
         } else if angle < STANDS {
             // The edge stands as the cut wants it, and the heading is that of the cut from its start.
             self.pass(line, motion, Some(go), out);
+        }
+    }
+
+    /// Hands on what waited.
+    fn pass_held(
+        &mut self,
+        next: StreamItem<PathMove>,
+        held: &mut Held,
+        out: &mut ExpandedSink<'_>,
+    ) {
+        match next {
+            StreamItem::Point(PathMove { line, motion }) if held.turned => {
+                self.pass(line, motion, held.go, out);
+            }
+            StreamItem::Point(PathMove { line, motion }) => {
+                self.pass(line, motion, None, out);
+                held.last = Some((line, motion));
+                if held.go.is_some() && motion.pace == MoveFeed::Rapid {
+                    // Off the part: turned here, before the way in.
+                    self.pass(line, motion, held.go, out);
+                    held.turned = true;
+                }
+            }
+            StreamItem::Hole(hole) => {
+                let hole = hole.remade(|part| {
+                    gathered(|out| {
+                        part.iter().for_each(|next| self.pass_held(next.clone(), held, out));
+                    })
+                });
+                out.push(StreamItem::Hole(Box::new(hole)));
+            }
+            next => out.push(next),
         }
     }
 

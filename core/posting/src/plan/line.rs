@@ -384,8 +384,20 @@ impl BlockFeeds<'_> {
         if !ends {
             return;
         }
-        if let Some((block, start)) = queue.first_open(&mut *out) {
-            self.block(&block, &start, &mut queue.profile, account, out);
+        match queue.first_open(&mut *out) {
+            Some((StreamItem::Point(block), start)) => {
+                let mut point = |block| out(StreamItem::Point(block));
+                self.block(&block, &start, &mut queue.profile, account, &mut point);
+            }
+            Some((StreamItem::Curve { line, mut curve }, start)) => {
+                let block = curve.block;
+                // A curve is not cut: it stays one block.
+                let mut whole = |block| curve.block = block;
+                self.block(&block, &start, &mut queue.profile, account, &mut whole);
+                out(StreamItem::Curve { line, curve });
+            }
+            Some((other, _)) => out(other),
+            None => {}
         }
         queue.profile.begin();
         self.slowest = None;
@@ -438,14 +450,14 @@ impl BlockFeeds<'_> {
         start: &BlockStart,
         profile: &mut BlockProfile,
         account: &mut PlanTally,
-        out: &mut dyn FnMut(StreamItem<MotionBlock>),
+        out: &mut dyn FnMut(MotionBlock),
     ) {
         let asked = block.asked() * 60.0;
         let planned = profile.seconds();
         let (from, to) = (&start.joints, &block.joints);
         if self.rest.is_passed(planned, asked, from, to) {
             account.too_slow();
-            out(StreamItem::Point(*block));
+            out(*block);
             return;
         }
         // Where the tip makes most of the way, its feed is what the block keeps.
@@ -477,7 +489,7 @@ impl BlockFeeds<'_> {
         let count = self.cutter.cut(block, start, &self.pieces, length, |piece, seconds| {
             printed += seconds;
             let planned = PlannedTime { minutes: seconds / 60.0, limit };
-            out(StreamItem::Point(MotionBlock { planned, ..piece }));
+            out(MotionBlock { planned, ..piece });
         });
         // What is written is never faster than the CL file asks for.
         account.block(count, asked, planned, printed.max(asked));

@@ -27,17 +27,16 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use nalgebra::Vector3;
 use post_feed::fit::{self, Fit};
 use post_machine::description::{CornerRule, FeedMode, InverseTime, Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Format;
 
 use crate::accuracy::Placer;
-use crate::blocks::{BlockKind, MotionBlock};
+use crate::blocks::{BlockKind, BlockNote, MotionBlock};
 use crate::findings::Findings;
-use crate::program::{Command, HoleMark};
-use crate::stream::{BatchSink, StreamItem};
+use crate::program::Command;
+use crate::stream::{BatchSink, Hole, StreamItem};
 use crate::tightening::Tightening;
 use account::PlanTally;
 pub use account::{LimitShare, PlanReport, axis_name};
@@ -82,10 +81,6 @@ pub(crate) struct PlanStage<'a> {
     point: fit::Point,
     /// A path has begun.
     moves: bool,
-    /// The moves are those of a hole, which may become a cycle.
-    in_hole: bool,
-    /// What the next block passes on its way.
-    way: Vec<Vector3<f64>>,
     refused: bool,
     /// Whether what the machine cannot keep was reported.
     warned: bool,
@@ -117,8 +112,6 @@ impl<'a> PlanStage<'a> {
             stands: None,
             point: [0.0; fit::MOST],
             moves: false,
-            in_hole: false,
-            way: Vec::new(),
             refused: false,
             warned: false,
             least_block: least_block(machine, format),
@@ -152,12 +145,17 @@ impl<'a> PlanStage<'a> {
         self.take_placer(out, findings);
         for next in batch.drain(..) {
             match next {
-                StreamItem::Command { line, command } => {
-                    self.command(&command, out, findings);
-                    self.queue.push(StreamItem::Command { line, command });
+                StreamItem::Point(_) | StreamItem::Curve { .. } => self.block(next, out, findings),
+                StreamItem::Hole(hole) => self.hole(hole, out, findings),
+                StreamItem::Command { ref command, .. } => {
+                    self.command(command, out, findings);
+                    self.queue.push(next);
                 }
-                StreamItem::Point(block) => self.block(block, out, findings),
-                StreamItem::Placer(placer) => {
+                StreamItem::Note { note: BlockNote::Plane(_), .. } => {
+                    self.stop(out, findings);
+                    self.queue.push(next);
+                }
+                StreamItem::Note { note: BlockNote::Placer(placer), .. } => {
                     self.placer = Some(placer);
                     self.take_placer(out, findings);
                 }
@@ -230,11 +228,6 @@ impl<'a> PlanStage<'a> {
         findings: &Findings,
     ) {
         match command {
-            Command::Curve(curve) => self.way.clone_from(&curve.way),
-            Command::Hole(mark) => {
-                self.stop(out, findings);
-                self.in_hole = !matches!(mark, HoleMark::Done);
-            }
             Command::Head(name) => {
                 self.stop(out, findings);
                 if let Some(head) = self.base.head(name) {
@@ -254,46 +247,58 @@ impl<'a> PlanStage<'a> {
 
     fn block(
         &mut self,
-        block: MotionBlock,
+        next: StreamItem<MotionBlock>,
         out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
         findings: &Findings,
     ) {
-        if block.still {
-            self.queue.push(StreamItem::Point(block));
-            return;
-        }
-        let way = std::mem::take(&mut self.way);
-        let end = BlockStart {
-            joints: block.joints,
-            words: block.words,
-            tip: block.tip,
-            axis: block.axis,
+        let Some(block) = next.block().filter(|block| !block.still) else {
+            return self.queue.push(next);
         };
+        let end = BlockStart::after(block);
         let start = self.stands.replace(end);
         let cuts = matches!(block.kind, BlockKind::Linear | BlockKind::Arc | BlockKind::Spline);
-        let planned = start.filter(|_| cuts && !self.in_hole && self.run.is_some());
-        match planned {
-            Some(start) => self.plan(block, &start, &end, &way, out, findings),
+        match start.filter(|_| cuts && self.run.is_some()) {
+            Some(start) => self.plan(next, &start, &end, out, findings),
             None => {
                 self.stop(out, findings);
-                self.queue.push(StreamItem::Point(block));
+                self.queue.push(next);
             }
         }
-        // Its memory serves the next curve.
-        self.way = way;
-        self.way.clear();
         if self.machine.motion.corner == CornerRule::Stop {
             self.stop(out, findings);
         }
     }
 
+    /// A hole may become a cycle: no feed is planned in it.
+    fn hole(
+        &mut self,
+        mut hole: Box<Hole<MotionBlock>>,
+        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
+        findings: &Findings,
+    ) {
+        self.stop(out, findings);
+        let mut keeps = |next: &StreamItem<MotionBlock>| {
+            if let StreamItem::Note { note: BlockNote::Placer(placer), .. } = next {
+                self.placer = Some(Rc::clone(placer));
+                self.take_placer(out, findings);
+                return false;
+            }
+            if let Some(block) = next.block().filter(|block| !block.still) {
+                self.stands = Some(BlockStart::after(block));
+            }
+            true
+        };
+        hole.above.retain(&mut keeps);
+        hole.into.retain(&mut keeps);
+        self.queue.push(StreamItem::Hole(hole));
+    }
+
     /// The feed of a block is planned.
     fn plan(
         &mut self,
-        block: MotionBlock,
+        next: StreamItem<MotionBlock>,
         start: &BlockStart,
         end: &BlockStart,
-        way: &[Vector3<f64>],
         out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
         findings: &Findings,
     ) {
@@ -311,7 +316,7 @@ impl<'a> PlanStage<'a> {
         let tolerance = STANDS * self.machine.plan.smoothing;
         if distance(&self.point, &last) < tolerance {
             // Too short for the curve: it keeps the feed of the CL file, whatever comes before and after it.
-            self.queue.push(StreamItem::Point(block));
+            self.queue.push(next);
             self.account.give_up(1);
             return;
         }
@@ -321,22 +326,27 @@ impl<'a> PlanStage<'a> {
             run.line.begin(&start.joints);
             self.moves = true;
         }
-        let mut due = BlockDemand::of(&block, along != 0.0);
+        let Some(block) = next.block() else {
+            return;
+        };
+        let mut due = BlockDemand::of(block, along != 0.0);
         if let (Some(tightening), true) = (&self.tightening, along != 0.0) {
             // The curve goes beside the tip, whose places are known.
             due.share = tightening.least(block.line, &start.tip, &end.tip);
         }
-        self.queue.open(block, *start);
         let mut places = Vec::new();
-        for place in way {
-            let mut point = last;
-            point[..3].copy_from_slice(place.as_slice());
-            let before = places.last().unwrap_or(&self.point);
-            if distance(before, &point) > tolerance && distance(&last, &point) > tolerance {
-                places.push(point);
+        if let StreamItem::Curve { curve, .. } = &next {
+            for place in &curve.printed.way {
+                let mut point = last;
+                point[..3].copy_from_slice(place.as_slice());
+                let before = places.last().unwrap_or(&self.point);
+                if distance(before, &point) > tolerance && distance(&last, &point) > tolerance {
+                    places.push(point);
+                }
             }
         }
         places.push(last);
+        self.queue.open(next, *start);
         run.line.due(due, places.len());
         let mut failed = false;
         let (queue, account, line) = (&mut self.queue, &mut self.account, &mut run.line);
@@ -423,7 +433,6 @@ fn stands_still(command: &Command) -> bool {
                 | Command::Dwell(_)
                 | Command::Stop
                 | Command::OptionalStop
-                | Command::Plane(_)
         )
 }
 

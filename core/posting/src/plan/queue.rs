@@ -23,6 +23,14 @@ pub(super) struct BlockStart {
     pub axis: Vector3<f64>,
 }
 
+impl BlockStart {
+    /// Where a block ends.
+    pub(super) fn after(block: &MotionBlock) -> Self {
+        let MotionBlock { joints, words, tip, axis, .. } = *block;
+        Self { joints, words, tip, axis }
+    }
+}
+
 /// One that waits.
 #[derive(Debug)]
 struct QueueItem {
@@ -67,9 +75,9 @@ impl BlockQueue {
         self.waiting.push_back(QueueItem { flow, open: None });
     }
 
-    /// A block whose feed is planned.
-    pub(super) fn open(&mut self, block: MotionBlock, start: BlockStart) {
-        self.waiting.push_back(QueueItem { flow: StreamItem::Point(block), open: Some(start) });
+    /// A block whose feed is planned, along a curve or not.
+    pub(super) fn open(&mut self, block: StreamItem<MotionBlock>, start: BlockStart) {
+        self.waiting.push_back(QueueItem { flow: block, open: Some(start) });
     }
 
     /// The solver was handed a sample.
@@ -127,11 +135,11 @@ impl BlockQueue {
     pub(super) fn first_open(
         &mut self,
         ready: &mut dyn FnMut(StreamItem<MotionBlock>),
-    ) -> Option<(MotionBlock, BlockStart)> {
+    ) -> Option<(StreamItem<MotionBlock>, BlockStart)> {
         while let Some(next) = self.waiting.pop_front() {
-            match (next.flow, next.open) {
-                (StreamItem::Point(block), Some(start)) => return Some((block, start)),
-                (flow, _) => ready(flow),
+            match next.open {
+                Some(start) => return Some((next.flow, start)),
+                None => ready(next.flow),
             }
         }
         None
@@ -157,14 +165,11 @@ impl BlockQueue {
 
     /// Line of the CL file of the first block that waits for its feed.
     pub(super) fn open_line(&self) -> Option<u64> {
-        self.waiting.iter().find_map(|next| match &next.flow {
-            StreamItem::Point(block) if next.open.is_some() => Some(block.line),
-            _ => None,
-        })
+        self.waiting.iter().find(|next| next.open.is_some()).map(|next| next.flow.line())
     }
 
     /// Line of the CL file of the first that waits.
     pub(super) fn first_line(&self) -> Option<u64> {
-        self.waiting.front()?.flow.line(|block| block.line)
+        self.waiting.front().map(|next| next.flow.line())
     }
 }

@@ -130,8 +130,13 @@ impl<'a> TimingStage<'a> {
         for next in batch {
             match next {
                 StreamItem::Point(block) => self.block(block, findings),
+                StreamItem::Curve { curve, .. } => self.block(&mut curve.block, findings),
+                StreamItem::Hole(hole) => {
+                    self.take(&mut hole.above, findings);
+                    self.take(&mut hole.into, findings);
+                }
                 StreamItem::Command { command, .. } => self.command(command),
-                StreamItem::Placer(_) => {}
+                StreamItem::Note { .. } => {}
             }
         }
     }

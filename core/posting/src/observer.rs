@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use crate::accuracy::NodeMove;
-use crate::blocks::{Audience, MotionBlock};
+use crate::blocks::MotionBlock;
 use crate::curve::CurveBlock;
 use crate::program::Command;
 use crate::stream::{Hole, StreamItem};
@@ -67,8 +67,8 @@ pub(crate) struct Observers<'a> {
 }
 
 impl<'a> Observers<'a> {
-    pub(crate) fn add(&mut self, observer: &'a mut dyn Observer) {
-        self.all.get_mut().push(observer);
+    pub(crate) fn add(&self, observer: &'a mut dyn Observer) {
+        self.all.borrow_mut().push(observer);
     }
 
     pub(crate) fn blocks(&self, blocks: &[StreamItem<MotionBlock>]) {
@@ -77,19 +77,7 @@ impl<'a> Observers<'a> {
         }
     }
 
-    /// Somebody looks on.
-    pub(crate) fn any(&self) -> bool {
-        !self.all.borrow().is_empty()
-    }
-
-    /// Observers that are shown cuts; none if there are no observers.
-    pub(crate) fn audience(&self) -> Option<&dyn Audience> {
-        self.any().then_some(self)
-    }
-}
-
-impl Audience for Observers<'_> {
-    fn cut(&self, line: u64, cut: &NodeMove<'_>) {
+    pub(crate) fn cut(&self, line: u64, cut: &NodeMove<'_>) {
         for observer in self.all.borrow_mut().iter_mut() {
             observer.cut(line, cut);
         }

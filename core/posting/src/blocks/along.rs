@@ -9,7 +9,7 @@ use post_machine::kinematics::Joints;
 use post_machine::kinematics::travel::{AT_END, passed};
 
 use super::{
-    AxisTravels, BlockContext, BlockKind, BlockReason, BlockStage, FollowTime, MotionBlock,
+    AxisTravels, BlockKind, BlockReason, BlockSink, BlockStage, FollowTime, MotionBlock,
     NominalTime, PathLeg,
 };
 use crate::accuracy::{DeviationBound, PathNode, PlacedBatch, Placer, PrintedArc, WordFrame};
@@ -65,7 +65,7 @@ impl BlockStage<'_> {
         line: u64,
         curve: &CurveMoves<ChosenPoint>,
         placed: &mut PlacedBatch,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         let moves = curve.moves.iter().map(|next| match next {
             StreamItem::Point(chosen) => Some(chosen),
@@ -73,14 +73,14 @@ impl BlockStage<'_> {
         });
         let moves: Option<Vec<&ChosenPoint>> = moves.collect();
         if let Some(moves) = &moves
-            && self.keep(line, &curve.curve, moves, to)
+            && self.keep(line, &curve.curve, moves, out)
         {
             return;
         }
-        self.elements(&curve.moves, placed, to);
+        self.elements(&curve.moves, placed, out);
         if moves.is_none() {
             // Something has come between.
-            self.end_run(to);
+            self.end_run(out);
         }
     }
 
@@ -90,7 +90,7 @@ impl BlockStage<'_> {
         line: u64,
         curve: &CurveMove,
         moves: &[&ChosenPoint],
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) -> bool {
         let (Some(placer), Some(last)) = (self.placer.clone(), self.last.as_deref()) else {
             return false;
@@ -116,7 +116,7 @@ impl BlockStage<'_> {
                 let Some(blocks) = self.arc_blocks(&placer, &frame, (&wanted, &whole)) else {
                     return false;
                 };
-                self.push_arc(&placer, line, &whole, blocks, to);
+                self.push_arc(&placer, line, &whole, blocks, out);
                 true
             }
             CurveShape::Spline(spline) => {
@@ -132,7 +132,7 @@ impl BlockStage<'_> {
                     (at - from).norm()
                 });
                 let way = chords.sum();
-                self.push_spline(&frame, (line, &end), block, way, to);
+                self.push_spline(&frame, (line, &end), block, way, out);
                 true
             }
         }
@@ -381,12 +381,12 @@ impl BlockStage<'_> {
         line: u64,
         motion: &StraightMove,
         pieces: Vec<ArcBlock>,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         let count = pieces.len();
         for (place, piece) in pieces.into_iter().enumerate() {
             if self.compensating {
-                self.check_compensation(placer, line, &piece.node, to.findings);
+                self.check_compensation(placer, line, &piece.node);
             }
             let leg = PathLeg {
                 line,
@@ -397,7 +397,7 @@ impl BlockStage<'_> {
                     false => BlockReason::Stage,
                 },
             };
-            let node = self.push_piece(&leg, piece, to);
+            let node = self.push_piece(&leg, piece, out);
             self.spare = self.last.replace(node);
         }
         self.on_part = true;
@@ -408,7 +408,7 @@ impl BlockStage<'_> {
         &mut self,
         leg: &PathLeg<'_>,
         piece: ArcBlock,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) -> Box<PathNode> {
         let way = libm::hypot(piece.printed.length(), piece.printed.rise());
         let nominal = NominalTime::of(leg.motion.pace, way, AxisTravels::default);
@@ -424,7 +424,7 @@ impl BlockStage<'_> {
             ..self.block(leg, &piece.node, piece.bound)
         };
         self.largest.keep(leg, piece.bound);
-        self.push_curve(block, piece.curve, to);
+        self.push_curve(block, piece.curve, out);
         piece.node
     }
 
@@ -433,10 +433,10 @@ impl BlockStage<'_> {
         &self,
         block: MotionBlock,
         printed: PrintedCurve,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         let (line, curve) = (block.line, Box::new(CurveBlock { block, printed }));
-        to.out.push(StreamItem::Curve { line, curve });
+        out.push(StreamItem::Curve { line, curve });
     }
 
     /// The least time in which no axis passes its largest feed, also on a control that divides F by the way in the plane.

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use post_machine::description::ArcSplit;
 
 use super::along::ArcBlock;
-use super::{BlockContext, BlockStage, NominalTime, PathLeg};
+use super::{BlockSink, BlockStage, NominalTime, PathLeg};
 use crate::accuracy::{DeviationBound, PathNode, Placer, PrintedArc, WordFrame, arc_fit};
 
 /// Largest bulge (tangent of a quarter of the angle) of an arc: 340°, half a turn and a quarter.
@@ -48,7 +48,7 @@ impl BlockStage<'_> {
         placer: &Placer,
         legs: &[PathLeg<'_>],
         nodes: &[PathNode],
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         let mut at = 0;
         while at < legs.len() {
@@ -59,7 +59,7 @@ impl BlockStage<'_> {
             let (legs, nodes) = (&legs[at..], &nodes[at..]);
             match self.laid(placer, &legs[..count], &nodes[..=count]) {
                 Some(laid) => {
-                    self.fit_laid(&laid, to);
+                    self.fit_laid(&laid, out);
                     at += count;
                 }
                 None => {
@@ -70,7 +70,7 @@ impl BlockStage<'_> {
                         0 => nodes.windows(2).take_while(turns).count(),
                         count => count,
                     };
-                    self.go_straight(placer, &legs[..count], &nodes[..=count], to);
+                    self.go_straight(placer, &legs[..count], &nodes[..=count], out);
                     at += count;
                 }
             }
@@ -99,7 +99,7 @@ impl BlockStage<'_> {
         })
     }
 
-    fn fit_laid(&mut self, laid: &WordFrameRun<'_>, to: &mut BlockContext<'_, '_>) {
+    fn fit_laid(&mut self, laid: &WordFrameRun<'_>, out: &mut BlockSink<'_>) {
         let mut at = 0;
         while at < laid.legs.len() {
             let line = farthest(at, laid.legs.len(), |end| self.line(laid, at, end));
@@ -109,7 +109,7 @@ impl BlockStage<'_> {
             });
             let Some((end, piece)) = arc.or(line) else {
                 let ends = [&laid.nodes[at], &laid.nodes[at + 1]];
-                self.cut(laid.placer, &laid.legs[at], ends[0], ends[1], to);
+                self.cut(laid.placer, &laid.legs[at], ends[0], ends[1], out);
                 at += 1;
                 continue;
             };
@@ -117,7 +117,7 @@ impl BlockStage<'_> {
             let leg = &laid.legs[end - 1];
             match piece {
                 FittedPiece::Arc(arc) => {
-                    self.push_piece(leg, *arc, to);
+                    self.push_piece(leg, *arc, out);
                 }
                 FittedPiece::Line(bound) => {
                     let ends = [&laid.nodes[at], &laid.nodes[end]];
@@ -126,7 +126,7 @@ impl BlockStage<'_> {
                     });
                     let due: Vec<NominalTime> = due.collect();
                     let nominal = NominalTime::between(&due, (0, 0.0), (due.len() - 1, 1.0));
-                    self.push(laid.placer, leg, ends, nominal, bound, to);
+                    self.push(laid.placer, leg, ends, nominal, bound, out);
                 }
             }
             at = end;

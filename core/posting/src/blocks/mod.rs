@@ -2,7 +2,6 @@
 
 mod along;
 mod approach;
-mod audience;
 mod block;
 mod compensating_motion;
 mod cutter;
@@ -28,10 +27,10 @@ use crate::configuration::{ChoiceNote, ChosenPoint, pose};
 use crate::curve::CurvePolicy;
 use crate::expand::FixedAxis;
 use crate::findings::Findings;
+use crate::observer::Observers;
 use crate::program::{Command, MoveFeed, StraightMove};
 use crate::refusal;
 use crate::stream::{BatchSink, Hole, StreamItem, gathered};
-pub(crate) use audience::Audience;
 pub use block::{BlockDuration, BlockKind, BlockNote, BlockReason, MotionBlock, PlannedTime};
 pub(crate) use compensating_motion::CompensatingMotion;
 pub use compensating_motion::FollowTime;
@@ -83,15 +82,8 @@ impl LargestDeviations {
     }
 }
 
-/// What the stage is handed, beside its batch.
-pub(crate) struct BlockContext<'s, 'o> {
-    /// Where blocks go.
-    pub out: &'s mut BatchSink<'o, StreamItem<MotionBlock>>,
-    /// Where faults go.
-    pub findings: &'s Findings,
-    /// Observers of cuts, if there are any.
-    pub audience: Option<&'s dyn Audience>,
-}
+/// Where blocks go.
+pub(crate) type BlockSink<'o> = BatchSink<'o, StreamItem<MotionBlock>>;
 
 /// Counts of this stage.
 #[derive(Clone, Copy, Debug, Default)]
@@ -150,6 +142,9 @@ pub(crate) struct BlockStage<'a> {
     /// The largest deviations so far.
     largest: LargestDeviations,
     counts: BlockCounts,
+    /// Observers of cuts; none if nobody looks on.
+    observers: Option<Rc<Observers<'a>>>,
+    findings: Findings,
 }
 
 impl<'a> BlockStage<'a> {
@@ -159,6 +154,7 @@ impl<'a> BlockStage<'a> {
         format: &Format,
         model: &'a mut dyn ModelSession,
         trust_model: bool,
+        findings: &Findings,
     ) -> Self {
         let tcp = machine.control.tcp == Tcp::Control;
         Self {
@@ -185,7 +181,14 @@ impl<'a> BlockStage<'a> {
             told_compensation: false,
             largest: LargestDeviations::default(),
             counts: BlockCounts::default(),
+            observers: None,
+            findings: findings.clone(),
         }
+    }
+
+    /// Shows cuts from here on.
+    pub(crate) fn watch(&mut self, observers: Rc<Observers<'a>>) {
+        self.observers = Some(observers);
     }
 
     /// Feeds are planned after this stage.
@@ -194,13 +197,13 @@ impl<'a> BlockStage<'a> {
     }
 
     /// Blocks from here on are made with another placer, which goes on to whom it serves after this stage.
-    fn use_placer(&mut self, line: u64, placer: Rc<Placer>, to: &mut BlockContext<'_, '_>) {
+    fn use_placer(&mut self, line: u64, placer: Rc<Placer>, out: &mut BlockSink<'_>) {
         self.placer = Some(match self.plans {
             false => placer,
             true => {
                 // Blocks may be cut after this stage, at rounded points.
                 let roomy = placer.leaving_room(self.machine.accuracy.tolerance);
-                to.out.note(line, BlockNote::Placer(placer));
+                out.note(line, BlockNote::Placer(placer));
                 Rc::new(roomy)
             }
         });
@@ -227,13 +230,9 @@ impl<'a> BlockStage<'a> {
     }
 
     /// Takes a batch.
-    pub(crate) fn take(
-        &mut self,
-        batch: &[StreamItem<ChosenPoint>],
-        to: &mut BlockContext<'_, '_>,
-    ) {
+    pub(crate) fn take(&mut self, batch: &[StreamItem<ChosenPoint>], out: &mut BlockSink<'_>) {
         let mut placed = self.placed.take().unwrap_or_default();
-        self.elements(batch, &mut placed, to);
+        self.elements(batch, &mut placed, out);
         self.placed = Some(placed);
     }
 
@@ -242,13 +241,13 @@ impl<'a> BlockStage<'a> {
         &mut self,
         elements: &[StreamItem<ChosenPoint>],
         placed: &mut PlacedBatch,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         let mut from = 0;
         while from < elements.len() {
             let count = self.settle_ahead(&elements[from..], placed);
             for (lane, next) in elements[from..from + count].iter().enumerate() {
-                self.next(next, lane, placed, to);
+                self.next(next, lane, placed, out);
             }
             from += count;
         }
@@ -280,21 +279,21 @@ impl<'a> BlockStage<'a> {
         next: &StreamItem<ChosenPoint>,
         lane: usize,
         placed: &mut PlacedBatch,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         match next {
-            StreamItem::Point(chosen) => self.point(chosen, lane, placed, to),
+            StreamItem::Point(chosen) => self.point(chosen, lane, placed, out),
             StreamItem::Curve { line, curve } => {
-                self.end_run(to);
-                self.go_along(*line, curve, placed, to);
+                self.end_run(out);
+                self.go_along(*line, curve, placed, out);
             }
-            StreamItem::Hole(hole) => self.hole(hole, placed, to),
-            StreamItem::Command { line, command } => self.command(*line, command, to),
+            StreamItem::Hole(hole) => self.hole(hole, placed, out),
+            StreamItem::Command { line, command } => self.command(*line, command, out),
             StreamItem::Note { line, note } => {
-                self.end_run(to);
+                self.end_run(out);
                 match note {
-                    ChoiceNote::Placer(placer) => self.take_placer(*line, placer, to),
-                    ChoiceNote::FixedAxis(FixedAxis(origin)) => self.fix_axis(*line, *origin, to),
+                    ChoiceNote::Placer(placer) => self.take_placer(*line, placer, out),
+                    ChoiceNote::FixedAxis(FixedAxis(origin)) => self.fix_axis(*line, *origin, out),
                     // The next point is a first position again.
                     ChoiceNote::Broken => {
                         self.last = None;
@@ -306,9 +305,9 @@ impl<'a> BlockStage<'a> {
     }
 
     /// The file ends: what waits is carried out.
-    pub(crate) fn finish(&mut self, line: u64, to: &mut BlockContext<'_, '_>) {
-        self.end_run(to);
-        self.depart(line, to);
+    pub(crate) fn finish(&mut self, line: u64, out: &mut BlockSink<'_>) {
+        self.end_run(out);
+        self.depart(line, out);
     }
 
     /// The moves of a hole as blocks; no run goes on into it or out of it.
@@ -316,25 +315,23 @@ impl<'a> BlockStage<'a> {
         &mut self,
         hole: &Hole<ChosenPoint>,
         placed: &mut PlacedBatch,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
-        self.end_run(to);
-        let (findings, audience) = (to.findings, to.audience);
+        self.end_run(out);
         let made = hole.remade(|part| {
             gathered(|out| {
-                let mut to = BlockContext { out, findings, audience };
-                self.elements(part, placed, &mut to);
-                self.end_run(&mut to);
+                self.elements(part, placed, out);
+                self.end_run(out);
             })
         });
-        to.out.push(StreamItem::Hole(Box::new(made)));
+        out.push(StreamItem::Hole(Box::new(made)));
     }
 
-    fn command(&mut self, line: u64, command: &Command, to: &mut BlockContext<'_, '_>) {
-        self.end_run(to);
+    fn command(&mut self, line: u64, command: &Command, out: &mut BlockSink<'_>) {
+        self.end_run(out);
         match command {
             Command::Tool(_) | Command::Home | Command::WorkOffset(_) | Command::Smoothing(_) => {
-                self.depart(line, to)
+                self.depart(line, out)
             }
             // Where the tool stands after it is not known.
             Command::Subprogram(_) => {
@@ -342,7 +339,7 @@ impl<'a> BlockStage<'a> {
                 self.on_part = false;
             }
             Command::Head(name) => {
-                self.depart(line, to);
+                self.depart(line, out);
                 if let Some(head) = self.base.head(name) {
                     self.machine = &head.machine;
                     self.kinds = AxisKinds::new(self.machine);
@@ -351,12 +348,12 @@ impl<'a> BlockStage<'a> {
                 }
             }
             Command::Compensate(compensation) => {
-                self.compensate(line, *compensation, to.findings);
+                self.compensate(line, *compensation);
                 self.compensation_due = true;
             }
             _ => {}
         }
-        to.out.command(line, command.clone());
+        out.command(line, command.clone());
     }
 
     #[inline]
@@ -365,9 +362,9 @@ impl<'a> BlockStage<'a> {
         chosen: &ChosenPoint,
         lane: usize,
         placed: &mut PlacedBatch,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
-        self.enter_plane(chosen, placed, to);
+        self.enter_plane(chosen, placed, out);
         let Some(placer) = self.placer.clone() else {
             return;
         };
@@ -388,16 +385,16 @@ impl<'a> BlockStage<'a> {
                 placer.settle(&mut node, pose(leg.motion), 1.0, standing)
             };
             match settled {
-                Ok(()) => self.travel(&placer, &leg, node, to),
+                Ok(()) => self.travel(&placer, &leg, node, out),
                 Err(refused) => {
                     self.spare = Some(node);
-                    to.findings.at(leg.line, refusal::refused(self.machine, &refused));
+                    self.findings.at(leg.line, refusal::refused(self.machine, &refused));
                 }
             }
         }
         if let Some(joints) = &chosen.rewind {
-            self.end_run(to);
-            self.rewind(&placer, &leg, joints, to);
+            self.end_run(out);
+            self.rewind(&placer, &leg, joints, out);
         }
     }
 
@@ -407,27 +404,27 @@ impl<'a> BlockStage<'a> {
         placer: &Placer,
         leg: &PathLeg<'_>,
         mut node: Box<PathNode>,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         if self.compensating {
-            self.check_compensation(placer, leg.line, &node, to.findings);
+            self.check_compensation(placer, leg.line, &node);
         }
         if let Some(last) = &self.last {
             self.steady(placer, last, &mut node);
         }
         let gathers = self.gathers(leg, &node);
         if !gathers {
-            self.end_run(to);
+            self.end_run(out);
         }
         match self.last.take() {
-            None => self.first(placer, leg, &node, BlockKind::Position, to),
+            None => self.first(placer, leg, &node, BlockKind::Position, out),
             Some(last) if self.machine.indexes && self.indexes(&last, &node) => {
                 // An index axis turns with the tool retracted, not somewhere over the part.
-                let last = self.leave_part(placer, leg.line, last, to);
-                self.first(placer, leg, &node, BlockKind::Reference, to);
+                let last = self.leave_part(placer, leg.line, last, out);
+                self.first(placer, leg, &node, BlockKind::Reference, out);
                 self.spare = Some(last);
             }
-            Some(last) => self.spare = Some(self.go(placer, leg, last, &mut node, gathers, to)),
+            Some(last) => self.spare = Some(self.go(placer, leg, last, &mut node, gathers, out)),
         }
         self.on_part = leg.motion.pace != MoveFeed::Rapid;
         self.last = Some(node);
@@ -442,7 +439,7 @@ impl<'a> BlockStage<'a> {
         mut last: Box<PathNode>,
         node: &mut PathNode,
         gathers: bool,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) -> Box<PathNode> {
         if leg.loose && self.on_part {
             // The tool leaves the part as it stands, and turns when it is away: where its axis stays, nothing turns
@@ -457,16 +454,16 @@ impl<'a> BlockStage<'a> {
                 && self.turn_between(&last, &stay) + TURN < self.turn_between(&last, node)
             {
                 let leaving = PathLeg { reason: BlockReason::Leave, ..*leg };
-                self.cut(placer, &leaving, &last, &stay, to);
+                self.cut(placer, &leaving, &last, &stay, out);
                 *last = stay;
             }
         }
         if !self.excluded(&last, node).is_empty() {
-            self.by_stages(placer, leg, &last, node, to);
+            self.by_stages(placer, leg, &last, node, out);
         } else if gathers {
-            self.gather(leg, &last, node, to);
+            self.gather(leg, &last, node, out);
         } else {
-            self.cut(placer, leg, &last, node, to);
+            self.cut(placer, leg, &last, node, out);
         }
         last
     }
@@ -505,14 +502,14 @@ impl<'a> BlockStage<'a> {
         leg: &PathLeg<'_>,
         last: &PathNode,
         node: &PathNode,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         let chord = leg.motion.chord;
         let whole = NodeMove::planned(self.machine, placer, chord, leg.loose, [last, node]);
-        if let Some(audience) = to.audience
+        if let Some(observers) = &self.observers
             && !leg.loose
         {
-            audience.cut(leg.line, &whole);
+            observers.cut(leg.line, &whole);
         }
         match whole.whole() {
             Some(bound) => {
@@ -523,9 +520,9 @@ impl<'a> BlockStage<'a> {
                     bound
                 };
                 let nominal = self.nominal(leg, last, node);
-                self.push(placer, leg, [last, node], nominal, bound, to);
+                self.push(placer, leg, [last, node], nominal, bound, out);
             }
-            None => self.split(placer, &[*leg], &[*last, *node], to),
+            None => self.split(placer, &[*leg], &[*last, *node], out),
         }
     }
 
@@ -535,7 +532,7 @@ impl<'a> BlockStage<'a> {
         placer: &Placer,
         legs: &[PathLeg<'_>],
         nodes: &[PathNode],
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         let Some(first) = legs.first() else {
             return;
@@ -573,7 +570,7 @@ impl<'a> BlockStage<'a> {
                         ..legs[piece.leg]
                     };
                     let ends = [&from, &piece.to];
-                    self.push(placer, &leg, ends, nominal, piece.bound, to);
+                    self.push(placer, &leg, ends, nominal, piece.bound, out);
                     (from, at) = (piece.to, end);
                 }
                 self.nominal = due;
@@ -582,7 +579,7 @@ impl<'a> BlockStage<'a> {
             Err((leg, stuck)) => {
                 let leg = &legs[leg];
                 let finding = refusal::stuck(self.machine, &stuck, leg.motion);
-                to.findings.at(leg.line, finding);
+                self.findings.at(leg.line, finding);
             }
         }
         self.linearise = linearise;
@@ -597,7 +594,7 @@ impl<'a> BlockStage<'a> {
         [from, node]: [&PathNode; 2],
         nominal: NominalTime,
         bound: DeviationBound,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         self.largest.keep(leg, bound);
         self.compensation_due = false;
@@ -610,9 +607,9 @@ impl<'a> BlockStage<'a> {
         if self.kinds.turning(&from.trace.joints, &node.trace.joints) {
             let (machine, asked) = (self.machine, block.asked());
             let way = (placer, leg, [from, node]);
-            block.follow = self.between.block(machine, way, asked, to.findings);
+            block.follow = self.between.block(machine, way, asked, &self.findings);
         }
-        to.out.push(StreamItem::Point(block));
+        out.push(StreamItem::Point(block));
     }
 
     #[inline]

@@ -11,7 +11,7 @@ use post_machine::kinematics::orientation::angle;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::Format;
 
-use super::{BlockContext, BlockNote, BlockStage, TURN};
+use super::{BlockNote, BlockSink, BlockStage, TURN};
 use crate::accuracy::{PathNode, PlacedBatch, Placer};
 use crate::configuration::{ChosenPoint, pose};
 
@@ -62,15 +62,10 @@ impl ActivePlane {
 
 impl BlockStage<'_> {
     /// Another placer comes; the tool leaves a plane with the one that it is in it with.
-    pub(super) fn take_placer(
-        &mut self,
-        line: u64,
-        placer: &Rc<Placer>,
-        to: &mut BlockContext<'_, '_>,
-    ) {
+    pub(super) fn take_placer(&mut self, line: u64, placer: &Rc<Placer>, out: &mut BlockSink<'_>) {
         self.planes.outside = Some(Rc::clone(placer));
         if self.planes.axes.is_none() {
-            self.use_placer(line, Rc::clone(placer), to);
+            self.use_placer(line, Rc::clone(placer), out);
         }
         self.planes.stands = None;
     }
@@ -80,21 +75,21 @@ impl BlockStage<'_> {
         &mut self,
         line: u64,
         wanted: Option<Vector3<f64>>,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
-        self.depart(line, to);
-        self.leave_plane(line, to);
+        self.depart(line, out);
+        self.leave_plane(line, out);
         self.planes.wanted = wanted;
     }
 
     /// No plane is in force any more; the tool has left the part.
-    fn leave_plane(&mut self, line: u64, to: &mut BlockContext<'_, '_>) {
+    fn leave_plane(&mut self, line: u64, out: &mut BlockSink<'_>) {
         self.planes.stands = None;
         if let Some(outside) = self.planes.outside.clone() {
-            self.use_placer(line, outside, to);
+            self.use_placer(line, outside, out);
         }
         if self.planes.axes.take().is_some() {
-            to.out.note(line, BlockNote::Plane(None));
+            out.note(line, BlockNote::Plane(None));
         }
     }
 
@@ -105,7 +100,7 @@ impl BlockStage<'_> {
         &mut self,
         chosen: &ChosenPoint,
         placed: &mut PlacedBatch,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         if let Some(origin) = self.planes.wanted {
             let planes = &self.planes;
@@ -113,10 +108,10 @@ impl BlockStage<'_> {
                 && (planes.stands.as_ref()).is_some_and(|stands| planes.stays(stands, chosen));
             if !stays {
                 placed.forget();
-                self.change_plane(chosen, origin, to);
+                self.change_plane(chosen, origin, out);
             }
             if chosen.rewind.is_some() {
-                to.findings.at(chosen.line, turns_in_plane());
+                self.findings.at(chosen.line, turns_in_plane());
             }
         }
     }
@@ -125,12 +120,12 @@ impl BlockStage<'_> {
         &mut self,
         chosen: &ChosenPoint,
         origin: Vector3<f64>,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         let line = chosen.line;
-        self.end_run(to);
-        self.depart(line, to);
-        self.leave_plane(line, to);
+        self.end_run(out);
+        self.depart(line, out);
+        self.leave_plane(line, out);
         let Some(outside) = self.planes.outside.clone() else {
             return;
         };
@@ -163,9 +158,9 @@ impl BlockStage<'_> {
         let Some(inside) = outside.in_plane(plane) else {
             return;
         };
-        self.use_placer(line, Rc::new(inside), to);
+        self.use_placer(line, Rc::new(inside), out);
         self.planes.axes = Some(plane.axes);
-        to.out.note(line, BlockNote::Plane(Some(Box::new(plane))));
+        out.note(line, BlockNote::Plane(Some(Box::new(plane))));
     }
 
     /// A coordinate that is constant in the plane is turned into it with the noise of the CL file's digits: where the place of

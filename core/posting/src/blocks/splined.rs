@@ -1,7 +1,7 @@
 //! Splines of the CL file that stay splines: one block, its control points and knots printed and certified.
 
 use super::{
-    AxisTravels, BlockContext, BlockKind, BlockReason, BlockStage, FollowTime, MotionBlock,
+    AxisTravels, BlockKind, BlockReason, BlockSink, BlockStage, FollowTime, MotionBlock,
     NominalTime, PathLeg,
 };
 use crate::accuracy::{DeviationBound, PathNode, Placer, WordFrame};
@@ -51,7 +51,7 @@ impl BlockStage<'_> {
         (line, motion): (u64, &StraightMove),
         spline: SplineBlock,
         way: f64,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         let leg = PathLeg { line, motion, loose: false, reason: BlockReason::Point };
         // Whatever its direction, no axis goes faster than the tool.
@@ -70,7 +70,7 @@ impl BlockStage<'_> {
             ..self.block(&leg, &spline.node, spline.bound)
         };
         self.largest.keep(&leg, spline.bound);
-        self.push_curve(block, spline.curve, to);
+        self.push_curve(block, spline.curve, out);
         self.spare = self.last.replace(spline.node);
         self.on_part = true;
     }

@@ -70,43 +70,12 @@ impl StreamPoint for ChosenPoint {
 enum WaitingItem {
     /// A number of points.
     Points(u64),
-    /// What stands between them.
-    Between(BetweenPoints),
-}
-
-/// What stands between points, and waits among them.
-#[derive(Debug)]
-enum BetweenPoints {
-    /// A command, with its line.
-    Command(u64, Command),
-    /// A note, with its line.
-    FixedAxis(u64, FixedAxis),
-    /// The points of a curve or a hole come from here on.
-    Begins(PendingElement),
+    /// What stands between them: a command, a note, or a curve or a hole whose points come from here on.
+    Between(StreamItem<ChosenPoint>),
     /// The points of the hole are those into it from here on.
     Enters,
-    /// They were the last.
+    /// The curve or the hole is whole.
     Ends,
-}
-
-impl BetweenPoints {
-    /// The tool leaves the part: what comes after begins anew.
-    fn leaves(&self) -> bool {
-        match self {
-            Self::Command(_, command) => command.leaves(),
-            Self::FixedAxis(..) => true,
-            Self::Begins(_) | Self::Enters | Self::Ends => false,
-        }
-    }
-
-    /// Line of the CL file; none of what is part of an element.
-    fn line(&self) -> Option<u64> {
-        match self {
-            Self::Command(line, _) | Self::FixedAxis(line, _) => Some(*line),
-            Self::Begins(element) => Some(element.line()),
-            Self::Enters | Self::Ends => None,
-        }
-    }
 }
 
 /// More than this does not wait between points for one to be decided.
@@ -148,6 +117,7 @@ pub(crate) struct ConfigurationStage<'a> {
     tool: Option<ToolChange>,
     /// Points taken.
     moves: u64,
+    findings: Findings,
 }
 
 impl<'a> ConfigurationStage<'a> {
@@ -160,6 +130,7 @@ impl<'a> ConfigurationStage<'a> {
         format: &Format,
         told_length: Option<f64>,
         writes: Capabilities,
+        findings: &Findings,
     ) -> Result<Self, Box<Diagnostic>> {
         Ok(Self {
             lengths: LengthAxisCheck::new(writes),
@@ -182,6 +153,7 @@ impl<'a> ConfigurationStage<'a> {
             speed: None,
             tool: None,
             moves: 0,
+            findings: findings.clone(),
         })
     }
 
@@ -197,11 +169,10 @@ impl<'a> ConfigurationStage<'a> {
 
     /// Line of the first element that is not decided.
     pub(crate) fn first_line(&self) -> Option<u64> {
-        let pending = self.pending.as_ref().map(PendingElement::line);
-        let mut waiting = self.waiting.iter();
-        let between = waiting.find_map(|waiting| match waiting {
-            WaitingItem::Between(between) => between.line(),
-            WaitingItem::Points(_) => None,
+        let pending = self.pending.as_ref().map(|pending| pending.element.line());
+        let between = self.waiting.iter().find_map(|waiting| match waiting {
+            WaitingItem::Between(next) => Some(next.line()),
+            _ => None,
         });
         [pending, between, self.route.first_line()].into_iter().flatten().min()
     }
@@ -211,47 +182,48 @@ impl<'a> ConfigurationStage<'a> {
         &mut self,
         batch: &mut Vec<StreamItem<PathMove>>,
         out: &mut ConfiguredSink<'_>,
-        findings: &Findings,
     ) {
         for next in batch.drain(..) {
             match next {
-                StreamItem::Point(at) => self.point(&at, out, findings),
-                StreamItem::Curve { line, curve } => {
-                    let CurveMoves { curve, mut moves } = *curve;
-                    let begins = PendingElement::curve(line, curve);
-                    self.arrange(BetweenPoints::Begins(begins), out, findings);
-                    self.take(&mut moves, out, findings);
-                    self.arrange(BetweenPoints::Ends, out, findings);
+                StreamItem::Point(at) => self.point(&at, out),
+                StreamItem::Curve { line, mut curve } => {
+                    let empty = CurveMoves { curve: curve.curve, moves: Vec::new() };
+                    let begins = StreamItem::Curve { line, curve: Box::new(empty) };
+                    self.arrange(WaitingItem::Between(begins), out);
+                    self.take(&mut curve.moves, out);
+                    self.arrange(WaitingItem::Ends, out);
                 }
                 StreamItem::Hole(mut hole) => {
-                    let begins = PendingElement::hole(&hole);
-                    self.arrange(BetweenPoints::Begins(begins), out, findings);
-                    self.take(&mut hole.above, out, findings);
-                    self.arrange(BetweenPoints::Enters, out, findings);
-                    self.take(&mut hole.into, out, findings);
-                    self.arrange(BetweenPoints::Ends, out, findings);
+                    let begins = StreamItem::Hole(Box::new(hole.remade(|_| Vec::new())));
+                    self.arrange(WaitingItem::Between(begins), out);
+                    self.take(&mut hole.above, out);
+                    self.arrange(WaitingItem::Enters, out);
+                    self.take(&mut hole.into, out);
+                    self.arrange(WaitingItem::Ends, out);
                 }
                 StreamItem::Command { line, command } => {
-                    self.arrange(BetweenPoints::Command(line, command), out, findings);
+                    let command = StreamItem::Command { line, command };
+                    self.arrange(WaitingItem::Between(command), out);
                 }
                 StreamItem::Note { line, note } => {
-                    self.arrange(BetweenPoints::FixedAxis(line, note), out, findings);
+                    let note = StreamItem::Note { line, note: ChoiceNote::FixedAxis(note) };
+                    self.arrange(WaitingItem::Between(note), out);
                 }
             }
         }
     }
 
     /// The file ends: everything is decided.
-    pub(crate) fn finish(&mut self, out: &mut ConfiguredSink<'_>, findings: &Findings) {
-        self.settle(out, findings);
+    pub(crate) fn finish(&mut self, out: &mut ConfiguredSink<'_>) {
+        self.settle(out);
     }
 
     #[inline]
-    fn point(&mut self, at: &PathMove, out: &mut ConfiguredSink<'_>, findings: &Findings) {
+    fn point(&mut self, at: &PathMove, out: &mut ConfiguredSink<'_>) {
         self.moves += 1;
         let line = at.line;
         if !self.in_use {
-            self.take_into_use(line, findings);
+            self.take_into_use(line);
         }
         let motion = self.guided(at.motion);
         if self.waiting.is_empty()
@@ -265,16 +237,16 @@ impl<'a> ConfigurationStage<'a> {
                 Some(WaitingItem::Points(count)) => *count += 1,
                 _ => self.waiting.push_back(WaitingItem::Points(1)),
             },
-            Err(DroppedPoint::Point(fault)) => findings.at(line, *fault),
+            Err(DroppedPoint::Point(fault)) => self.findings.at(line, *fault),
             Err(DroppedPoint::Path(fault)) => {
-                findings.at(line, *fault);
-                self.drain(out, findings);
+                self.findings.at(line, *fault);
+                self.drain(out);
                 let note = ChoiceNote::Broken;
                 self.put(StreamItem::Note { line, note }, out);
             }
         }
         if self.route.has_chosen() {
-            self.drain(out, findings);
+            self.drain(out);
         }
     }
 
@@ -290,44 +262,40 @@ impl<'a> ConfigurationStage<'a> {
     }
 
     /// What stands between points is carried out between them.
-    fn arrange(&mut self, next: BetweenPoints, out: &mut ConfiguredSink<'_>, findings: &Findings) {
-        if next.leaves() || self.between >= MOST_WAITING {
-            self.settle(out, findings);
+    fn arrange(&mut self, next: WaitingItem, out: &mut ConfiguredSink<'_>) {
+        let leaves = match &next {
+            WaitingItem::Between(StreamItem::Command { command, .. }) => command.leaves(),
+            WaitingItem::Between(StreamItem::Note { .. }) => true,
+            _ => false,
+        };
+        if leaves || self.between >= MOST_WAITING {
+            self.settle(out);
         }
         if self.waiting.is_empty() {
-            self.carry_out(next, out, findings);
+            self.carry_out(next, out);
         } else {
             self.between += 1;
-            self.waiting.push_back(WaitingItem::Between(next));
+            self.waiting.push_back(next);
         }
     }
 
-    /// Its turn has come.
-    fn carry_out(
-        &mut self,
-        next: BetweenPoints,
-        out: &mut ConfiguredSink<'_>,
-        findings: &Findings,
-    ) {
+    /// The turn of what stands between points has come.
+    fn carry_out(&mut self, next: WaitingItem, out: &mut ConfiguredSink<'_>) {
         match next {
-            BetweenPoints::Command(line, command) => self.command(line, command, out, findings),
-            BetweenPoints::FixedAxis(line, axis) => {
+            WaitingItem::Between(StreamItem::Command { line, command }) => {
+                self.command(line, command, out);
+            }
+            WaitingItem::Between(note @ StreamItem::Note { .. }) => {
                 // The tool is retracted before and after: nothing is turned early on its behalf.
                 self.route.leave();
-                let note = ChoiceNote::FixedAxis(axis);
-                self.put(StreamItem::Note { line, note }, out);
+                self.put(note, out);
             }
-            BetweenPoints::Begins(element) => self.pending = Some(element),
-            BetweenPoints::Enters => {
-                if let Some(element) = &mut self.pending {
-                    element.enter();
-                }
+            WaitingItem::Between(element) => self.pending = Some(PendingElement::new(element)),
+            WaitingItem::Enters => self.pending.iter_mut().for_each(PendingElement::enter),
+            WaitingItem::Ends => {
+                self.pending.take().into_iter().for_each(|it| out.push(it.element))
             }
-            BetweenPoints::Ends => {
-                if let Some(element) = self.pending.take() {
-                    out.push(element.whole());
-                }
-            }
+            WaitingItem::Points(_) => {}
         }
     }
 
@@ -336,25 +304,25 @@ impl<'a> ConfigurationStage<'a> {
     fn put(&mut self, next: StreamItem<ChosenPoint>, out: &mut ConfiguredSink<'_>) {
         match &mut self.pending {
             None => out.push(next),
-            Some(element) => element.push(next),
+            Some(pending) => pending.push(next),
         }
     }
 
     /// Has everything decided, and hands it on.
-    fn settle(&mut self, out: &mut ConfiguredSink<'_>, findings: &Findings) {
+    fn settle(&mut self, out: &mut ConfiguredSink<'_>) {
         self.route.settle_all();
-        self.drain(out, findings);
+        self.drain(out);
     }
 
     /// Hands on what was decided, and the commands that stand between.
-    fn drain(&mut self, out: &mut ConfiguredSink<'_>, findings: &Findings) {
+    fn drain(&mut self, out: &mut ConfiguredSink<'_>) {
         let mut chosen = std::mem::take(&mut self.chosen);
         self.route.take_chosen(&mut chosen);
         for next in chosen.drain(..) {
             let arrives = next.arrives;
             self.hand_on(next, out);
             if arrives {
-                self.arrived(out, findings);
+                self.arrived(out);
             }
         }
         self.chosen = chosen;
@@ -373,7 +341,7 @@ impl<'a> ConfigurationStage<'a> {
 
     /// One more point is decided: the commands after it follow.
     #[inline]
-    fn arrived(&mut self, out: &mut ConfiguredSink<'_>, findings: &Findings) {
+    fn arrived(&mut self, out: &mut ConfiguredSink<'_>) {
         match self.waiting.front_mut() {
             Some(WaitingItem::Points(count)) if *count > 1 => {
                 *count -= 1;
@@ -384,22 +352,15 @@ impl<'a> ConfigurationStage<'a> {
             }
             _ => {}
         }
-        while let Some(WaitingItem::Between(_)) = self.waiting.front() {
-            if let Some(WaitingItem::Between(next)) = self.waiting.pop_front() {
-                self.between -= 1;
-                self.carry_out(next, out, findings);
-            }
+        let between = |next: &mut WaitingItem| !matches!(next, WaitingItem::Points(_));
+        while let Some(next) = self.waiting.pop_front_if(between) {
+            self.between -= 1;
+            self.carry_out(next, out);
         }
     }
 
     /// Carries out what a command means for the choice, and hands it on.
-    fn command(
-        &mut self,
-        line: u64,
-        mut command: Command,
-        out: &mut ConfiguredSink<'_>,
-        findings: &Findings,
-    ) {
+    fn command(&mut self, line: u64, mut command: Command, out: &mut ConfiguredSink<'_>) {
         match &mut command {
             Command::From { tip, axis } => self.stand(*tip, *axis),
             Command::Tool(tool) => {
@@ -407,12 +368,12 @@ impl<'a> ConfigurationStage<'a> {
                 self.measure(tool);
                 self.tool = Some(tool.clone());
                 tool.length = self.length;
-                self.equip(line, findings);
+                self.equip(line);
             }
-            Command::Index { axis, angle } => self.index(line, *axis, *angle, findings),
+            Command::Index { axis, angle } => self.index(line, *axis, *angle),
             Command::Head(name) => {
                 let Some(head) = self.base.head(name) else {
-                    findings.at(line, no_head(self.base, name));
+                    self.findings.at(line, no_head(self.base, name));
                     return;
                 };
                 self.lengths.swap_head(name);
@@ -424,8 +385,8 @@ impl<'a> ConfigurationStage<'a> {
                     self.tool = Some(tool);
                 }
                 self.in_use = false;
-                self.equip(line, findings);
-                self.check_speed(line, findings);
+                self.equip(line);
+                self.check_speed(line);
             }
             Command::Home => self.park(&self.machine.frame.park),
             Command::WorkOffset(number) => {
@@ -437,12 +398,12 @@ impl<'a> ConfigurationStage<'a> {
                 self.speed = None;
                 match self.machine.spindle.limit(*most) {
                     Ok(limit) => *most = Some(limit),
-                    Err(finding) => findings.at(line, *finding),
+                    Err(finding) => self.findings.at(line, *finding),
                 }
             }
             Command::Spindle(Spindle::On { rpm, .. }) => {
                 self.speed = Some(*rpm);
-                self.check_speed(line, findings);
+                self.check_speed(line);
             }
             Command::Spindle(_) => self.speed = None,
             _ => {}
@@ -463,10 +424,10 @@ impl<'a> ConfigurationStage<'a> {
     }
 
     /// A speed that the spindle of the head in use cannot turn at.
-    fn check_speed(&self, line: u64, findings: &Findings) {
+    fn check_speed(&self, line: u64) {
         let refused = self.speed.and_then(|rpm| self.machine.spindle.refuse(rpm));
         if let Some(finding) = refused {
-            findings.at(line, finding);
+            self.findings.at(line, finding);
         }
     }
 
@@ -501,7 +462,7 @@ impl<'a> ConfigurationStage<'a> {
     /// The first move with a tool: which length is assumed is kept for the summary; where the axis positions depend on a
     /// length that is not given, there is no program.
     #[cold]
-    fn take_into_use(&mut self, line: u64, findings: &Findings) {
+    fn take_into_use(&mut self, line: u64) {
         self.in_use = true;
         let used = ReportedTool {
             number: self.tool.as_ref().map(|tool| tool.number),
@@ -511,7 +472,7 @@ impl<'a> ConfigurationStage<'a> {
         if let Some(finding) =
             self.lengths.check(self.base, self.machine, (used.number, self.length))
         {
-            findings.at(line, finding);
+            self.findings.at(line, finding);
         }
         if self.tools.contains(&used) {
             return;
@@ -519,26 +480,26 @@ impl<'a> ConfigurationStage<'a> {
         if self.tools.len() >= MOST_TOOLS {
             let fault =
                 Diagnostic::error("tool", format!("more than {MOST_TOOLS} different tools"));
-            findings.at(line, fault.help("is this the CL file of one program?"));
+            self.findings.at(line, fault.help("is this the CL file of one program?"));
             return;
         }
         if self.source == LengthSource::Unknown {
-            findings.at(line, unknown_length(used.number, self.length_matters()));
+            self.findings.at(line, unknown_length(used.number, self.length_matters()));
         }
         self.tools.push(used);
     }
 
     /// Takes machine and tool length into the route.
-    fn equip(&mut self, line: u64, findings: &Findings) {
+    fn equip(&mut self, line: u64) {
         self.setting = None;
         if let Err(fault) = self.route.equip(self.machine, self.length.unwrap_or(0.0)) {
-            findings.at(line, *fault);
+            self.findings.at(line, *fault);
         }
     }
 
     /// An index move of the program: it sets the redundant axis of that name, if there is one. (The others
     /// follow from the tool axis.)
-    fn index(&mut self, line: u64, axis: char, angle: f64, findings: &Findings) {
+    fn index(&mut self, line: u64, axis: char, angle: f64) {
         let named = |name: &str| name.len() == 1 && name.starts_with(axis);
         let Some(joint) = self.machine.axes.iter().position(|axis| named(&axis.name)) else {
             return;
@@ -568,10 +529,10 @@ impl<'a> ConfigurationStage<'a> {
                     ),
                     _ => "it is outside the travel of the axis".to_owned(),
                 };
-                findings.at(line, fault.help(help));
+                self.findings.at(line, fault.help(help));
             }
             Ok(_) => {}
-            Err(fault) => findings.at(line, *fault),
+            Err(fault) => self.findings.at(line, *fault),
         }
     }
 

@@ -12,7 +12,6 @@ use post_plugin::{Capabilities, Cycle, Event, Feed, ToolPose};
 
 use super::EmitStage;
 use crate::blocks::{BlockKind, MotionBlock};
-use crate::findings::Findings;
 use crate::program::MoveFeed;
 use crate::stream::{Hole, StreamItem};
 
@@ -65,10 +64,10 @@ impl EmitStage<'_> {
     }
 
     /// A hole, as a cycle or by its moves.
-    pub(super) fn hole(&mut self, hole: &Hole<MotionBlock>, findings: &Findings) {
-        let native = self.native(hole, findings);
+    pub(super) fn hole(&mut self, hole: &Hole<MotionBlock>) {
+        let native = self.native(hole);
         if native.is_none() && hole.cycle.alone {
-            findings.at(hole.line, not_here());
+            self.findings.at(hole.line, not_here());
             for _ in points(&hole.above).chain(points(&hole.into)) {
                 self.writer.place(self.writer.next());
             }
@@ -82,13 +81,13 @@ impl EmitStage<'_> {
             self.pass(points(&hole.above), 0.0);
         } else {
             self.end_cycle(hole.line);
-            self.elements(&hole.above, findings);
+            self.elements(&hole.above);
         }
         if self.waits.is_some() && native.is_some() {
-            self.wake(hole.line, findings);
+            self.wake(hole.line);
         }
         match native {
-            None => self.elements(&hole.into, findings),
+            None => self.elements(&hole.into),
             Some(native) => {
                 self.point(hole, &native, goes_on);
                 let made = match goes_on {
@@ -159,7 +158,7 @@ impl EmitStage<'_> {
     }
 
     /// The hole as a cycle; none if it is not the same.
-    fn native(&self, hole: &Hole<MotionBlock>, findings: &Findings) -> Option<NativeCycle> {
+    fn native(&self, hole: &Hole<MotionBlock>) -> Option<NativeCycle> {
         let machine = self.machine;
         let drilling = &hole.cycle;
         // Where the control keeps the tip, and where the plane is tilted, it must have said so.
@@ -184,7 +183,7 @@ impl EmitStage<'_> {
         if !moves {
             return None;
         }
-        let feed = self.cycle_feed(hole, findings)?;
+        let feed = self.cycle_feed(hole)?;
         let unit = unit_length(machine.control.units);
         let printed = |value: f64| self.words.printed(place, value);
         let lengths = [drilling.depth, drilling.clearance, drilling.retract].map(|way| way / unit);
@@ -281,7 +280,7 @@ impl EmitStage<'_> {
     }
 
     /// The feed of the cycle, per minute, as it is printed: that of its slowest block.
-    fn cycle_feed(&self, hole: &Hole<MotionBlock>, findings: &Findings) -> Option<Feed> {
+    fn cycle_feed(&self, hole: &Hole<MotionBlock>) -> Option<Feed> {
         let unit = unit_length(self.machine.control.units);
         let mut slowest = f64::INFINITY;
         let mut asked = f64::INFINITY;
@@ -305,12 +304,12 @@ impl EmitStage<'_> {
         }
         if let Some(pitch) = hole.cycle.pitch {
             if slowest * (1.0 + SAME_FEED) + 1.0 / scale < asked {
-                findings.at(hole.line, thread_too_fast(asked, slowest));
+                self.findings.at(hole.line, thread_too_fast(asked, slowest));
             }
             // What F is short of, the thread is short of over its depth.
             let short = (1.0 - feed / asked) * (hole.cycle.depth + hole.cycle.clearance);
             if short > self.machine.accuracy.tolerance {
-                findings.at(hole.line, thread_rounded(pitch, asked, feed, short));
+                self.findings.at(hole.line, thread_rounded(pitch, asked, feed, short));
             }
         }
         Some(Feed::PerMinute(feed))

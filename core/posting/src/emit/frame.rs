@@ -8,7 +8,6 @@ use post_plugin::{Capabilities, Coolant, Event, Spindle};
 
 use super::{EmitStage, FirstPosition, across, cycles, stands};
 use crate::blocks::{BlockReason, MotionBlock};
-use crate::findings::Findings;
 use crate::program::{MoveFeed, ToolChange};
 
 /// Full turns that an axis may stand away from its park position without a warning, degrees.
@@ -70,10 +69,10 @@ impl EmitStage<'_> {
 
     /// Cutter compensation ends while the tool still cuts: on the way out the control would go aside, into what stands
     /// there, or stop with an alarm.
-    fn tell_compensation(&mut self, findings: &Findings) {
+    fn tell_compensation(&mut self) {
         // After another fault nothing is written, and ways are missing: it may end there.
-        if let Some(line) = self.left_compensating.take().filter(|_| !findings.failed()) {
-            findings.at(
+        if let Some(line) = self.left_compensating.take().filter(|_| !self.findings.failed()) {
+            self.findings.at(
                 line,
                 Diagnostic::error(
                     "compensation",
@@ -105,7 +104,7 @@ impl EmitStage<'_> {
     }
 
     /// Axes to positions of the machine, the tool retracted: the rotary ones, those across the tool, and the depth last.
-    fn park(&mut self, line: u64, positions: &[(usize, f64)], findings: &Findings) {
+    fn park(&mut self, line: u64, positions: &[(usize, f64)]) {
         for part in [AxisRole::Rotary, AxisRole::Plane, AxisRole::Depth] {
             let group: Vec<(usize, f64)> = positions
                 .iter()
@@ -118,7 +117,7 @@ impl EmitStage<'_> {
             // From there the tool is retracted again before anything turns or goes across.
             self.clear &= part != AxisRole::Depth;
             for &(joint, value) in &group {
-                self.tell_unwinding(line, joint, value, findings);
+                self.tell_unwinding(line, joint, value);
                 self.set_clamp(line, joint, false, true);
             }
             self.go(line, &group, parks);
@@ -129,7 +128,7 @@ impl EmitStage<'_> {
     }
 
     /// An axis that turns back by whole turns takes its time: the program says why.
-    fn tell_unwinding(&self, line: u64, joint: usize, value: f64, findings: &Findings) {
+    fn tell_unwinding(&self, line: u64, joint: usize, value: f64) {
         let axis = &self.machine.axes[joint];
         if !axis.joint.rotary || axis.range.is_some() {
             return;
@@ -143,7 +142,7 @@ impl EmitStage<'_> {
             true => format!(", {:.1} min at its max_feed", way / axis.max_feed.to_degrees()),
             false => String::new(),
         };
-        findings.at(
+        self.findings.at(
             line,
             Diagnostic::warning(
                 "unwinding",
@@ -158,14 +157,14 @@ impl EmitStage<'_> {
     }
 
     /// Warns of an axis that stands whole turns away from zero at the end where nothing turns it back.
-    fn tell_wound(&self, line: u64, findings: &Findings) {
+    fn tell_wound(&self, line: u64) {
         for (joint, axis) in self.machine.axes.iter().enumerate() {
             let parked = self.machine.frame.park.iter().any(|(place, _)| *place == joint);
             let stands = axis.reading(self.last[joint]);
             if !axis.joint.rotary || axis.range.is_some() || parked || libm::fabs(stands) <= TURN {
                 continue;
             }
-            findings.at(
+            self.findings.at(
                 line,
                 Diagnostic::warning(
                     "unwinding",
@@ -187,7 +186,7 @@ impl EmitStage<'_> {
         }
     }
 
-    pub(super) fn change(&mut self, line: u64, tool: &ToolChange, findings: &Findings) {
+    pub(super) fn change(&mut self, line: u64, tool: &ToolChange) {
         if self.offsets(line, tool) {
             return;
         }
@@ -198,11 +197,11 @@ impl EmitStage<'_> {
             self.say(line, TextPlace::BetweenTools);
         }
         let machine = self.machine;
-        self.park(line, &machine.frame.change, findings);
+        self.park(line, &machine.frame.change);
         self.texts.tool(tool);
         self.writer.tool_known();
         if tool.register != tool.number && self.writer.knows(Capabilities::TOOL_TABLE) {
-            findings.at(
+            self.findings.at(
                 line,
                 Diagnostic::warning(
                     "register",
@@ -236,7 +235,7 @@ impl EmitStage<'_> {
     }
 
     /// Another head: the machine is that of the head from here on.
-    pub(super) fn swap_head(&mut self, line: u64, name: &str, findings: &Findings) {
+    pub(super) fn swap_head(&mut self, line: u64, name: &str) {
         let Some(place) = self.base.heads.iter().position(|head| head.name == name) else {
             return;
         };
@@ -262,28 +261,28 @@ impl EmitStage<'_> {
         self.clear = false;
         let other = self.head.replace(place) != Some(place);
         match head.offset {
-            Some(number) => self.offset_of_head(line, number, findings),
-            None if other && self.worked => self.tell_shared_offset(line, name, findings),
+            Some(number) => self.offset_of_head(line, number),
+            None if other && self.worked => self.tell_shared_offset(line, name),
             None => {}
         }
     }
 
     /// Home: retracted, and parked.
-    pub(super) fn go_home(&mut self, line: u64, findings: &Findings) {
+    pub(super) fn go_home(&mut self, line: u64) {
         self.leave(line);
         let machine = self.machine;
-        self.park(line, &machine.frame.park, findings);
+        self.park(line, &machine.frame.park);
     }
 
-    pub(super) fn end(&mut self, line: u64, findings: &Findings) {
+    pub(super) fn end(&mut self, line: u64) {
         // The tool leaves the part first: a spindle that stops in it tears.
         self.leave(line);
         self.rest(line);
-        self.go_home(line, findings);
-        self.tell_compensation(findings);
-        self.tell_wound(line, findings);
+        self.go_home(line);
+        self.tell_compensation();
+        self.tell_wound(line);
         if let Some(warning) = self.texts.without_operations() {
-            findings.add(warning);
+            self.findings.add(warning);
         }
         self.say(line, TextPlace::Footer);
         self.writer.push(line, Event::End);
@@ -291,7 +290,7 @@ impl EmitStage<'_> {
 
     /// The first position after the start, a tool change or a retract: the rotary axes turn with the tool clear of the
     /// part, are clamped, and then it comes near.
-    pub(super) fn position(&mut self, block: &MotionBlock, findings: &Findings) {
+    pub(super) fn position(&mut self, block: &MotionBlock) {
         let line = block.line;
         self.worked = true;
         match block.reason {
@@ -300,12 +299,12 @@ impl EmitStage<'_> {
         }
         let turns = self.machine.axes.iter().any(|axis| axis.joint.rotary);
         self.retract(line);
-        self.tell_compensation(findings);
+        self.tell_compensation();
         if self.changed && self.commanded.is_some() && block.pace == MoveFeed::Rapid {
             // The tool's own speed may stand after its first position.
             self.waits = Some(FirstPosition::of(block));
         } else {
-            self.wake(line, findings);
+            self.wake(line);
         }
         let words = &block.words[..self.writer.words()];
         // Whether they are clamped is not known.
@@ -371,14 +370,14 @@ impl EmitStage<'_> {
     }
 
     /// Spindle and coolant on as the CL file takes them to be.
-    pub(super) fn wake(&mut self, line: u64, findings: &Findings) {
+    pub(super) fn wake(&mut self, line: u64) {
         self.waits = None;
         if let (false, Some(spindle)) = (self.turning, self.commanded) {
             // The tool change stopped it, and the CL file takes it to be turning.
             self.turning = true;
             self.writer.push(line, spindle);
             if std::mem::take(&mut self.changed) {
-                findings.at(
+                self.findings.at(
                     line,
                     Diagnostic::warning(
                         "spindle",

@@ -7,6 +7,8 @@ mod frame;
 mod texts;
 mod writer;
 
+use std::rc::Rc;
+
 use nalgebra::Vector3;
 use post_machine::axis_words::{self, Words};
 use post_machine::description::{Machine, Smoothing, TextPlace};
@@ -91,6 +93,9 @@ pub(crate) struct EmitStage<'a> {
     compensating: bool,
     /// Where the tool left the part with it on: not reported yet.
     left_compensating: Option<u64>,
+    /// Observers of the program; none if nobody looks on.
+    observers: Option<Rc<Observers<'a>>>,
+    findings: Findings,
 }
 
 impl<'a> EmitStage<'a> {
@@ -99,6 +104,7 @@ impl<'a> EmitStage<'a> {
         job: &JobFacts,
         dialect: &'a mut dyn DialectSession,
         output: &'a mut dyn TextSink,
+        findings: &Findings,
     ) -> Self {
         let words = Words::new(machine, dialect.format());
         let mut writer = EventWriter::new(dialect, output);
@@ -138,6 +144,8 @@ impl<'a> EmitStage<'a> {
             compensation: None,
             compensating: false,
             left_compensating: None,
+            observers: None,
+            findings: findings.clone(),
         };
         emit.say(0, TextPlace::Header);
         // Nothing is known of where the tool stands, nor of what is in force.
@@ -156,35 +164,30 @@ impl<'a> EmitStage<'a> {
     }
 
     /// Takes a batch, and shows observers what is written of it.
-    pub(crate) fn take(
-        &mut self,
-        batch: &mut [StreamItem<MotionBlock>],
-        findings: &Findings,
-        observers: &Observers<'_>,
-    ) {
-        self.elements(batch, findings);
-        self.flush(findings);
-        if observers.any() {
+    pub(crate) fn take(&mut self, batch: &mut [StreamItem<MotionBlock>]) {
+        self.elements(batch);
+        self.flush();
+        if let Some(observers) = &self.observers {
             number(batch, &mut self.writer.take_lines());
             observers.blocks(batch);
         }
     }
 
-    fn elements(&mut self, elements: &[StreamItem<MotionBlock>], findings: &Findings) {
+    fn elements(&mut self, elements: &[StreamItem<MotionBlock>]) {
         for next in elements {
             match next {
                 StreamItem::Point(block) => {
                     self.end_cycle(block.line);
-                    self.placed_block(block, None, findings);
+                    self.placed_block(block, None);
                 }
                 StreamItem::Curve { line, curve } => {
                     self.end_cycle(*line);
-                    self.placed_block(&curve.block, Some(&curve.printed), findings);
+                    self.placed_block(&curve.block, Some(&curve.printed));
                 }
-                StreamItem::Hole(hole) => self.hole(hole, findings),
+                StreamItem::Hole(hole) => self.hole(hole),
                 StreamItem::Command { line, command } => {
                     self.end_cycle(*line);
-                    self.command(*line, command, findings);
+                    self.command(*line, command);
                 }
                 StreamItem::Note { line, note: BlockNote::Plane(plane) } => {
                     self.end_cycle(*line);
@@ -193,53 +196,49 @@ impl<'a> EmitStage<'a> {
                 StreamItem::Note { note: BlockNote::Placer(_), .. } => {}
             }
             if self.writer.is_full() {
-                self.flush(findings);
+                self.flush();
             }
         }
     }
 
     /// The last events; `line` is the last of the CL file.
-    pub(crate) fn finish(&mut self, line: u64, findings: &Findings) {
+    pub(crate) fn finish(&mut self, line: u64) {
         self.end_cycle(line);
-        self.end(line, findings);
-        self.flush(findings);
+        self.end(line);
+        self.flush();
     }
 
-    fn flush(&mut self, findings: &Findings) {
-        self.texts.tell(findings);
-        self.writer.flush(&mut self.extremes, findings);
+    fn flush(&mut self) {
+        self.texts.tell(&self.findings);
+        self.writer.flush(&mut self.extremes, &self.findings);
     }
 
-    /// Notes from here on which line each block ends on.
-    pub(crate) fn watch(&mut self) {
+    /// Shows what is written from here on, each block with the line that it ends on.
+    pub(crate) fn watch(&mut self, observers: Rc<Observers<'a>>) {
         self.writer.watch();
+        self.observers = Some(observers);
     }
 
     /// Writes a block, and notes where it stands.
     #[inline]
-    fn placed_block(
-        &mut self,
-        block: &MotionBlock,
-        printed: Option<&PrintedCurve>,
-        findings: &Findings,
-    ) {
+    fn placed_block(&mut self, block: &MotionBlock, printed: Option<&PrintedCurve>) {
         let before = self.writer.next();
-        self.block(block, printed, findings);
+        self.block(block, printed);
         self.writer.place(before);
     }
 
     #[inline]
-    fn block(&mut self, block: &MotionBlock, printed: Option<&PrintedCurve>, findings: &Findings) {
+    fn block(&mut self, block: &MotionBlock, printed: Option<&PrintedCurve>) {
         let line = block.line;
         if self.waits.is_some_and(|first| cuts(block) || first.goes_in(block)) {
-            self.wake(line, findings);
+            self.wake(line);
         }
         match block.kind {
-            BlockKind::Position => self.position(block, findings),
+            BlockKind::Position => self.position(block),
             BlockKind::Reference => {
                 self.retract(line);
                 self.extremes.go(&self.last, &block.joints);
-                self.position(block, findings);
+                self.position(block);
             }
             BlockKind::Arc | BlockKind::Spline => self.curve(block, printed),
             BlockKind::Rapid | BlockKind::Linear => {
@@ -328,12 +327,12 @@ impl<'a> EmitStage<'a> {
         self.writer.push(block.line, event);
     }
 
-    fn command(&mut self, line: u64, command: &Command, findings: &Findings) {
+    fn command(&mut self, line: u64, command: &Command) {
         let event = match command {
             // These act on the choice of axis values alone.
             Command::From { .. } | Command::Index { .. } => return,
-            Command::Tool(tool) => return self.change(line, tool, findings),
-            Command::Head(name) => return self.swap_head(line, name, findings),
+            Command::Tool(tool) => return self.change(line, tool),
+            Command::Head(name) => return self.swap_head(line, name),
             Command::Operation(name) => return self.operation(line, name),
             Command::OperationEnd => return self.operation_end(line),
             Command::Preselect(_) if self.texts.preselects() => return,
@@ -346,7 +345,7 @@ impl<'a> EmitStage<'a> {
                 // What it does is not known.
                 self.clear = false;
                 if self.waits.is_some() {
-                    self.wake(line, findings);
+                    self.wake(line);
                 }
                 Event::Literal { text }
             }
@@ -355,10 +354,10 @@ impl<'a> EmitStage<'a> {
             }
             Command::Message(text) => Event::Comment { text },
             Command::SurfaceSpeed { speed, most, sense } => {
-                return self.surface_speed(line, (*speed, *most), *sense, findings);
+                return self.surface_speed(line, (*speed, *most), *sense);
             }
-            Command::WorkOffset(number) => return self.work_offset(line, *number, findings),
-            Command::Subprogram(number) => return self.subprogram(line, *number, findings),
+            Command::WorkOffset(number) => return self.work_offset(line, *number),
+            Command::Subprogram(number) => return self.subprogram(line, *number),
             Command::Smoothing(wanted) => {
                 self.smoothing = *wanted;
                 return self.leave(line);
@@ -366,7 +365,7 @@ impl<'a> EmitStage<'a> {
             Command::Dwell(seconds) => Event::Dwell { seconds: *seconds },
             Command::Stop => Event::Stop,
             Command::OptionalStop => Event::OptionalStop,
-            Command::Home => return self.go_home(line, findings),
+            Command::Home => return self.go_home(line),
         };
         self.writer.push(line, event);
     }

@@ -68,6 +68,7 @@ pub(crate) struct ExpandStage {
     cycles: Capabilities,
     /// Where the tool axis stays, if the control is to get planes.
     planes: Option<PlaneTracker>,
+    findings: Findings,
 }
 
 /// The moves and commands of `steps`, each with its line, chords straying by no more than `chord_tolerance` mm; and
@@ -85,8 +86,9 @@ pub fn expanded(
         keeps: None,
         cycles: Capabilities::NONE,
         planes: None,
+        findings: findings.clone(),
     };
-    let all = gathered(|out| stage.take(steps, out, &findings));
+    let all = gathered(|out| stage.take(steps, out));
     (all, findings.sorted())
 }
 
@@ -104,8 +106,9 @@ impl ExpandStage {
         chord_tolerance: f64,
         writes: Capabilities,
         ahead: Option<Arc<FilePreview>>,
+        findings: &Findings,
     ) -> Self {
-        let tangential = Tangential::new(machine);
+        let tangential = Tangential::new(machine, findings);
         let keeps = CurvePolicy::new(machine, writes);
         Self {
             planes: ahead.map(PlaneTracker::new),
@@ -119,6 +122,7 @@ impl ExpandStage {
             // An edge turns with the path.
             keeps: tangential.is_none().then_some(keeps),
             tangential,
+            findings: findings.clone(),
         }
     }
 
@@ -133,33 +137,23 @@ impl ExpandStage {
     }
 
     /// Takes a batch of steps, each with its line.
-    pub(crate) fn take(
-        &mut self,
-        steps: &[(u64, ProgramStep)],
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    pub(crate) fn take(&mut self, steps: &[(u64, ProgramStep)], out: &mut ExpandedSink<'_>) {
         let Some(mut tangential) = self.tangential.take() else {
-            return self.steps(steps, out, findings);
+            return self.steps(steps, out);
         };
         let mut batch = Vec::new();
         let mut next = |batch: &mut Vec<StreamItem<PathMove>>| {
             for item in batch.drain(..) {
-                tangential.take(item, out, findings);
+                tangential.take(item, out);
             }
         };
         let mut moves = BatchSink::new(&mut batch, &mut next);
-        self.steps(steps, &mut moves, findings);
+        self.steps(steps, &mut moves);
         moves.flush();
         self.tangential = Some(tangential);
     }
 
-    fn steps(
-        &mut self,
-        steps: &[(u64, ProgramStep)],
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    fn steps(&mut self, steps: &[(u64, ProgramStep)], out: &mut ExpandedSink<'_>) {
         for (line, step) in steps {
             let line = *line;
             let change = self.planes.as_mut().and_then(|planes| planes.change(line, step));
@@ -169,9 +163,9 @@ impl ExpandStage {
             }
             match step {
                 ProgramStep::Move(motion) => self.go(line, *motion, out),
-                ProgramStep::Arc(arc) => self.arc(line, arc, out, findings),
-                ProgramStep::Spline(spline) => self.spline(line, spline, out, findings),
-                ProgramStep::Cycle(cycle) => self.cycle(line, cycle, out, findings),
+                ProgramStep::Arc(arc) => self.arc(line, arc, out),
+                ProgramStep::Spline(spline) => self.spline(line, spline, out),
+                ProgramStep::Cycle(cycle) => self.cycle(line, cycle, out),
                 // Points are in the part frame whatever plane they lie in.
                 ProgramStep::Plane(_) | ProgramStep::EndCycle => {}
                 ProgramStep::Command(command) => self.command(line, command.clone(), out),
@@ -180,9 +174,9 @@ impl ExpandStage {
     }
 
     /// The file ends: what was kept back is handed on.
-    pub(crate) fn finish(&mut self, out: &mut ExpandedSink<'_>, findings: &Findings) {
+    pub(crate) fn finish(&mut self, out: &mut ExpandedSink<'_>) {
         if let Some(tangential) = &mut self.tangential {
-            tangential.finish(out, findings);
+            tangential.finish(out);
         }
     }
 
@@ -211,7 +205,7 @@ impl ExpandStage {
     }
 
     /// An arc. One that may stay an arc goes turn by turn.
-    fn arc(&mut self, line: u64, step: &ArcStep, out: &mut ExpandedSink<'_>, findings: &Findings) {
+    fn arc(&mut self, line: u64, step: &ArcStep, out: &mut ExpandedSink<'_>) {
         let ArcStep { arc, end, .. } = step;
         // After a hole the tool stands above the point that the arc begins on.
         let start = arc.at(0.0);
@@ -228,7 +222,7 @@ impl ExpandStage {
             || count.saturating_mul(turns as u64) > MOST_CHORDS
             || !self.keeps.as_ref().is_some_and(keeps)
         {
-            return self.chords(line, step, out, findings);
+            return self.chords(line, step, out);
         }
         for place in 1..=turns as u32 {
             let [from, to] = [place - 1, place].map(|place| f64::from(place) / turns);
@@ -240,24 +234,18 @@ impl ExpandStage {
             let tip = if to == 1.0 { end.tip } else { arc.at(1.0) };
             let end = StraightMove { tip, pace, ..*end };
             let step = ArcStep { arc, end, ..*step };
-            let moves = gathered(|out| self.chords(line, &step, out, findings));
+            let moves = gathered(|out| self.chords(line, &step, out));
             let curve = CurveMove { course: CurveShape::Arc(arc), end };
             out.push(StreamItem::Curve { line, curve: Box::new(CurveMoves { curve, moves }) });
         }
     }
 
     /// Chords, the tool axis turning evenly from start to end.
-    fn chords(
-        &mut self,
-        line: u64,
-        step: &ArcStep,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    fn chords(&mut self, line: u64, step: &ArcStep, out: &mut ExpandedSink<'_>) {
         let ArcStep { arc, end, start_axis } = step;
         let (count, chord) = arc.chords(self.chord_tolerance);
         if count > MOST_CHORDS {
-            findings.at(line, self.too_many_chords("arc", &count.to_string()));
+            self.findings.at(line, self.too_many_chords("arc", &count.to_string()));
             return;
         }
         let pace = match end.pace {
@@ -294,13 +282,7 @@ impl ExpandStage {
         .help("check its numbers, widen the tolerance, or let the CAM system write GOTOs")
     }
 
-    fn spline(
-        &mut self,
-        line: u64,
-        step: &SplineStep,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    fn spline(&mut self, line: u64, step: &SplineStep, out: &mut ExpandedSink<'_>) {
         let SplineStep { spline, end } = step;
         if self.only_said {
             let tip = spline.poles[0].0;
@@ -312,7 +294,7 @@ impl ExpandStage {
             Some(count) if count <= MOST_CHORDS => keeps(count),
             count => {
                 let count = count.map_or("countless".to_owned(), |count| count.to_string());
-                findings.at(line, self.too_many_chords("spline", &count));
+                self.findings.at(line, self.too_many_chords("spline", &count));
                 return;
             }
         };
@@ -331,20 +313,14 @@ impl ExpandStage {
     }
 
     /// Approach, pecks, dwell and retract at one point; where the control has the cycle, as a hole.
-    fn cycle(
-        &mut self,
-        line: u64,
-        step: &CycleStep,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    fn cycle(&mut self, line: u64, step: &CycleStep, out: &mut ExpandedSink<'_>) {
         let CycleStep { cycle, point } = *step;
         let native = cycle.native();
         let known = native.filter(|native| self.cycles.has(capability(native.kind)));
         if let (Some(kind), None) =
             (native.filter(|native| native.alone).map(|native| native.kind), known)
         {
-            findings.at(line, no_moves(kind));
+            self.findings.at(line, no_moves(kind));
             return;
         }
         let mut legs = Vec::new();

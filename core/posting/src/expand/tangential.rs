@@ -56,6 +56,7 @@ pub(super) struct Tangential {
     behind: VecDeque<StreamItem<PathMove>>,
     /// Corners that the tool was drawn back at.
     pub(super) rewinds: u64,
+    findings: Findings,
 }
 
 /// What is known of the moves that waited, while they are handed on.
@@ -70,7 +71,7 @@ struct Held {
 
 impl Tangential {
     /// None for a tool that turns.
-    pub(crate) fn new(machine: &Machine) -> Option<Self> {
+    pub(crate) fn new(machine: &Machine, findings: &Findings) -> Option<Self> {
         Some(Self {
             source: machine.solution.edge,
             corner: machine.solution.corner,
@@ -81,6 +82,7 @@ impl Tangential {
             has_cut: false,
             behind: VecDeque::new(),
             rewinds: 0,
+            findings: findings.clone(),
         })
     }
 
@@ -91,43 +93,32 @@ impl Tangential {
     }
 
     /// Takes an element; what is settled goes on.
-    pub(super) fn take(
-        &mut self,
-        next: StreamItem<PathMove>,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    pub(super) fn take(&mut self, next: StreamItem<PathMove>, out: &mut ExpandedSink<'_>) {
         match next {
-            StreamItem::Point(PathMove { line, motion }) => self.go(line, motion, out, findings),
-            StreamItem::Hole(hole) => self.hole(*hole, out, findings),
-            StreamItem::Command { line, command } => self.command(line, command, out, findings),
+            StreamItem::Point(PathMove { line, motion }) => self.go(line, motion, out),
+            StreamItem::Hole(hole) => self.hole(*hole, out),
+            StreamItem::Command { line, command } => self.command(line, command, out),
             StreamItem::Note { line, note } => {
-                self.leave(None, out, findings);
+                self.leave(None, out);
                 out.note(line, note);
             }
             // An edge turns with the path: it goes by its moves.
             StreamItem::Curve { curve, .. } => {
                 for next in curve.moves {
-                    self.take(next, out, findings);
+                    self.take(next, out);
                 }
             }
         }
     }
 
     /// Takes a move.
-    fn go(
-        &mut self,
-        line: u64,
-        motion: StraightMove,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    fn go(&mut self, line: u64, motion: StraightMove, out: &mut ExpandedSink<'_>) {
         if self.source == EdgeSource::Cl {
             let along = if motion.edge == Vector3::zeros() {
                 self.edge
             } else {
                 if across(motion.edge, motion.axis, 1e-3).is_none() {
-                    fault(findings, line, "the leading edge lies along the tool axis");
+                    self.fault(line, "the leading edge lies along the tool axis");
                 }
                 motion.edge
             };
@@ -142,50 +133,39 @@ impl Tangential {
         });
         match way {
             Some(way) => {
-                self.settle(Some(way), out, findings);
+                self.settle(Some(way), out);
                 self.cut = Some((line, motion, way));
             }
-            None => self.hold(StreamItem::Point(PathMove { line, motion }), out, findings),
+            None => self.hold(StreamItem::Point(PathMove { line, motion }), out),
         }
     }
 
     /// Takes a command.
-    fn command(
-        &mut self,
-        line: u64,
-        command: Command,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    fn command(&mut self, line: u64, command: Command, out: &mut ExpandedSink<'_>) {
         if !command.leaves() {
-            self.hold(StreamItem::Command { line, command }, out, findings);
+            self.hold(StreamItem::Command { line, command }, out);
             return;
         }
         let at = match command {
             Command::From { tip, axis } => Some([tip, axis]),
             _ => None,
         };
-        self.leave(at, out, findings);
+        self.leave(at, out);
         out.command(line, command);
     }
 
     /// The tool leaves the part; it stands `at` this tip with this axis after that, if that is known.
-    fn leave(
-        &mut self,
-        at: Option<[Vector3<f64>; 2]>,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
-        self.settle(None, out, findings);
+    fn leave(&mut self, at: Option<[Vector3<f64>; 2]>, out: &mut ExpandedSink<'_>) {
+        self.settle(None, out);
         self.has_cut = false;
         self.at = at;
     }
 
     /// Takes a hole. Its ways lead straight in and out, or are rapids: they have no direction.
-    fn hole(&mut self, hole: Hole<PathMove>, out: &mut ExpandedSink<'_>, findings: &Findings) {
+    fn hole(&mut self, hole: Hole<PathMove>, out: &mut ExpandedSink<'_>) {
         if self.source == EdgeSource::Cl {
             let hole = hole.remade(|part| {
-                gathered(|out| part.iter().for_each(|next| self.take(next.clone(), out, findings)))
+                gathered(|out| part.iter().for_each(|next| self.take(next.clone(), out)))
             });
             return out.push(StreamItem::Hole(Box::new(hole)));
         }
@@ -194,33 +174,23 @@ impl Tangential {
             _ => None,
         });
         self.at = last.or(self.at);
-        self.hold(StreamItem::Hole(Box::new(hole)), out, findings);
+        self.hold(StreamItem::Hole(Box::new(hole)), out);
     }
 
     /// What waits has nothing after it.
-    pub(super) fn finish(&mut self, out: &mut ExpandedSink<'_>, findings: &Findings) {
-        self.settle(None, out, findings);
+    pub(super) fn finish(&mut self, out: &mut ExpandedSink<'_>) {
+        self.settle(None, out);
     }
 
-    fn hold(
-        &mut self,
-        next: StreamItem<PathMove>,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    fn hold(&mut self, next: StreamItem<PathMove>, out: &mut ExpandedSink<'_>) {
         self.behind.push_back(next);
         if self.behind.len() >= MOST_HELD {
-            self.settle(None, out, findings);
+            self.settle(None, out);
         }
     }
 
     /// Settles what waits; the next cut goes along `go`.
-    fn settle(
-        &mut self,
-        go: Option<Vector3<f64>>,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    fn settle(&mut self, go: Option<Vector3<f64>>, out: &mut ExpandedSink<'_>) {
         let moves = |next: &StreamItem<PathMove>| {
             matches!(next, StreamItem::Point(_) | StreamItem::Hole(_))
         };
@@ -232,7 +202,7 @@ impl Tangential {
             match go.filter(|_| !moves) {
                 Some(go) if turn(come, go, motion.axis) > self.corner => {
                     self.pass(line, motion, Some(come), out);
-                    self.corner_turn((line, motion), [come, go], out, findings);
+                    self.corner_turn((line, motion), [come, go], out);
                 }
                 Some(go) => self.pass(line, motion, Some(come + go), out),
                 None => self.pass(line, motion, Some(come), out),
@@ -248,7 +218,7 @@ impl Tangential {
         // Straight from one cut into another: a corner, if it is one.
         let angle = turn(self.edge, go, motion.axis);
         if angle > self.corner {
-            self.corner_turn((line, motion), [self.edge, go], out, findings);
+            self.corner_turn((line, motion), [self.edge, go], out);
         } else if angle < STANDS {
             // The edge stands as the cut wants it, and the heading is that of the cut from its start.
             self.pass(line, motion, Some(go), out);
@@ -293,7 +263,6 @@ impl Tangential {
         (line, motion): (u64, StraightMove),
         [come, heading]: [Vector3<f64>; 2],
         out: &mut ExpandedSink<'_>,
-        findings: &Findings,
     ) {
         let away = self.rewind.and_then(|rewind| Some((rewind, motion.drawn_back(&rewind, 0.0)?)));
         let angle = turn(self.edge, heading, motion.axis);
@@ -317,8 +286,7 @@ impl Tangential {
             self.pass(line, back, Some(heading), out);
         } else {
             if self.rewind.is_some() {
-                fault(
-                    findings,
+                self.fault(
                     line,
                     "at this corner the tool must be drawn back and turned, and it cannot be: the plane of [rewind] lies below the tip, or the tool is nearly level",
                 );
@@ -338,6 +306,13 @@ impl Tangential {
                 self.pass(line, motion, Some(heading), out);
             }
         }
+    }
+
+    /// A fault of the leading edge at `line`.
+    fn fault(&self, line: u64, message: &str) {
+        let fault = Diagnostic::error("edge", message)
+            .help("[rewind] and [solution] edge say how a leading edge is turned");
+        self.findings.at(line, fault);
     }
 
     /// Hands a move on that ends with this heading.
@@ -360,15 +335,6 @@ impl Tangential {
         motion.edge = heading;
         out.push(StreamItem::Point(PathMove { line, motion }));
     }
-}
-
-/// A fault of the leading edge at `line`.
-fn fault(findings: &Findings, line: u64, message: &str) {
-    findings.at(
-        line,
-        Diagnostic::error("edge", message)
-            .help("[rewind] and [solution] edge say how a leading edge is turned"),
-    );
 }
 
 /// The part of a direction across the tool axis, of length one; none if they make an angle of a sine below `least`.

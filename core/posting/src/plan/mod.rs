@@ -33,10 +33,10 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::Format;
 
 use crate::accuracy::Placer;
-use crate::blocks::{BlockKind, BlockNote, MotionBlock};
+use crate::blocks::{BlockKind, BlockNote, BlockSink, MotionBlock};
 use crate::findings::Findings;
 use crate::program::Command;
-use crate::stream::{BatchSink, Hole, StreamItem};
+use crate::stream::{Hole, StreamItem};
 use crate::tightening::Tightening;
 use account::PlanTally;
 pub use account::{LimitShare, PlanReport, axis_name};
@@ -86,6 +86,7 @@ pub(crate) struct PlanStage<'a> {
     warned: bool,
     /// The control takes no block for shorter than this, s.
     least_block: f64,
+    findings: Findings,
 }
 
 /// What plans with one placer.
@@ -99,6 +100,7 @@ impl<'a> PlanStage<'a> {
         machine: &'a Machine,
         format: &Format,
         tightening: Option<Arc<Tightening>>,
+        findings: &Findings,
     ) -> Self {
         Self {
             base: machine,
@@ -115,6 +117,7 @@ impl<'a> PlanStage<'a> {
             refused: false,
             warned: false,
             least_block: least_block(machine, format),
+            findings: findings.clone(),
         }
     }
 
@@ -138,26 +141,25 @@ impl<'a> PlanStage<'a> {
     pub(crate) fn take(
         &mut self,
         batch: &mut Vec<StreamItem<MotionBlock>>,
-        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
-        findings: &Findings,
+        out: &mut BlockSink<'_>,
     ) {
         // Another head may have come since.
-        self.take_placer(out, findings);
+        self.take_placer(out);
         for next in batch.drain(..) {
             match next {
-                StreamItem::Point(_) | StreamItem::Curve { .. } => self.block(next, out, findings),
-                StreamItem::Hole(hole) => self.hole(hole, out, findings),
+                StreamItem::Point(_) | StreamItem::Curve { .. } => self.block(next, out),
+                StreamItem::Hole(hole) => self.hole(hole, out),
                 StreamItem::Command { ref command, .. } => {
-                    self.command(command, out, findings);
+                    self.command(command, out);
                     self.queue.push(next);
                 }
                 StreamItem::Note { note: BlockNote::Plane(_), .. } => {
-                    self.stop(out, findings);
+                    self.stop(out);
                     self.queue.push(next);
                 }
                 StreamItem::Note { note: BlockNote::Placer(placer), .. } => {
                     self.placer = Some(placer);
-                    self.take_placer(out, findings);
+                    self.take_placer(out);
                 }
             }
         }
@@ -167,35 +169,27 @@ impl<'a> PlanStage<'a> {
     }
 
     /// The program ends.
-    pub(crate) fn finish(
-        &mut self,
-        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
-        findings: &Findings,
-    ) {
-        self.stop(out, findings);
+    pub(crate) fn finish(&mut self, out: &mut BlockSink<'_>) {
+        self.stop(out);
         if let Some(warning) = self.account.slower_than_none() {
-            findings.add(warning);
+            self.findings.add(warning);
         }
     }
 
     /// Blocks are made with another placer.
-    fn take_placer(
-        &mut self,
-        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
-        findings: &Findings,
-    ) {
+    fn take_placer(&mut self, out: &mut BlockSink<'_>) {
         let known = self.run.as_ref().map(|run| Rc::as_ptr(run.line.placer()));
         if self.placer.as_ref().map(Rc::as_ptr) == known {
             return;
         }
-        self.stop(out, findings);
+        self.stop(out);
         self.run = None;
         let (Some(placer), false) = (self.placer.clone(), self.refused) else {
             return;
         };
         if !placer.solver().closed_form() {
             self.refused = true;
-            findings.add(no_closed_form(self.machine));
+            self.findings.add(no_closed_form(self.machine));
             return;
         }
         let watch = self.watch.clone();
@@ -203,7 +197,7 @@ impl<'a> PlanStage<'a> {
         let line = PlannerRun::new(self.machine, placer, tightening, watch, self.least_block);
         if !std::mem::replace(&mut self.warned, true) {
             for warning in limits::warnings(self.machine) {
-                findings.add(warning);
+                self.findings.add(warning);
             }
         }
         let accuracy = &self.machine.accuracy;
@@ -221,15 +215,10 @@ impl<'a> PlanStage<'a> {
         });
     }
 
-    fn command(
-        &mut self,
-        command: &Command,
-        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
-        findings: &Findings,
-    ) {
+    fn command(&mut self, command: &Command, out: &mut BlockSink<'_>) {
         match command {
             Command::Head(name) => {
-                self.stop(out, findings);
+                self.stop(out);
                 if let Some(head) = self.base.head(name) {
                     self.machine = &head.machine;
                     self.run = None;
@@ -237,20 +226,15 @@ impl<'a> PlanStage<'a> {
             }
             // Where the tool stands after it is not known.
             Command::Subprogram(_) => {
-                self.stop(out, findings);
+                self.stop(out);
                 self.stands = None;
             }
-            _ if stands_still(command) => self.stop(out, findings),
+            _ if stands_still(command) => self.stop(out),
             _ => {}
         }
     }
 
-    fn block(
-        &mut self,
-        next: StreamItem<MotionBlock>,
-        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
-        findings: &Findings,
-    ) {
+    fn block(&mut self, next: StreamItem<MotionBlock>, out: &mut BlockSink<'_>) {
         let Some(block) = next.block().filter(|block| !block.still) else {
             return self.queue.push(next);
         };
@@ -258,29 +242,24 @@ impl<'a> PlanStage<'a> {
         let start = self.stands.replace(end);
         let cuts = matches!(block.kind, BlockKind::Linear | BlockKind::Arc | BlockKind::Spline);
         match start.filter(|_| cuts && self.run.is_some()) {
-            Some(start) => self.plan(next, &start, &end, out, findings),
+            Some(start) => self.plan(next, &start, &end, out),
             None => {
-                self.stop(out, findings);
+                self.stop(out);
                 self.queue.push(next);
             }
         }
         if self.machine.motion.corner == CornerRule::Stop {
-            self.stop(out, findings);
+            self.stop(out);
         }
     }
 
     /// A hole may become a cycle: no feed is planned in it.
-    fn hole(
-        &mut self,
-        mut hole: Box<Hole<MotionBlock>>,
-        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
-        findings: &Findings,
-    ) {
-        self.stop(out, findings);
+    fn hole(&mut self, mut hole: Box<Hole<MotionBlock>>, out: &mut BlockSink<'_>) {
+        self.stop(out);
         let mut keeps = |next: &StreamItem<MotionBlock>| {
             if let StreamItem::Note { note: BlockNote::Placer(placer), .. } = next {
                 self.placer = Some(Rc::clone(placer));
-                self.take_placer(out, findings);
+                self.take_placer(out);
                 return false;
             }
             if let Some(block) = next.block().filter(|block| !block.still) {
@@ -299,8 +278,7 @@ impl<'a> PlanStage<'a> {
         next: StreamItem<MotionBlock>,
         start: &BlockStart,
         end: &BlockStart,
-        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
-        findings: &Findings,
+        out: &mut BlockSink<'_>,
     ) {
         let Some(run) = &mut self.run else {
             return;
@@ -358,12 +336,12 @@ impl<'a> PlanStage<'a> {
         }
         self.point = last;
         if failed {
-            self.fail(out, findings);
+            self.fail(out);
         }
     }
 
     /// The tool comes to a standstill: what waits is planned to its end.
-    fn stop(&mut self, out: &mut BatchSink<'_, StreamItem<MotionBlock>>, findings: &Findings) {
+    fn stop(&mut self, out: &mut BlockSink<'_>) {
         if let (true, Some(run)) = (self.moves, &mut self.run) {
             let (queue, account, line) = (&mut self.queue, &mut self.account, &mut run.line);
             let mut failed = false;
@@ -374,7 +352,7 @@ impl<'a> PlanStage<'a> {
             failed = failed || line.finish(queue, account, &mut |flow| out.push(flow)).is_err();
             self.moves = false;
             if failed {
-                self.fail(out, findings);
+                self.fail(out);
             }
         }
         self.queue.ready(&mut |flow| out.push(flow));
@@ -382,12 +360,12 @@ impl<'a> PlanStage<'a> {
 
     /// What waits goes on without a plan.
     #[cold]
-    fn fail(&mut self, out: &mut BatchSink<'_, StreamItem<MotionBlock>>, findings: &Findings) {
+    fn fail(&mut self, out: &mut BlockSink<'_>) {
         self.moves = false;
         if let Some(run) = &mut self.run {
             run.fit.clear();
             if let Some(fault) = run.line.give_up() {
-                findings.at(self.queue.first_line().unwrap_or_default(), fault);
+                self.findings.at(self.queue.first_line().unwrap_or_default(), fault);
             }
         }
         self.account.give_up(self.queue.give_up());

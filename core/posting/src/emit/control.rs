@@ -93,14 +93,14 @@ impl EmitStage<'_> {
             self.findings.at(line, refused(&event, "CALSUB"));
             return;
         }
-        if self.waits.is_some() {
+        if self.spindle.waits.is_some() {
             self.wake(line);
         }
         self.writer.push(line, event);
         self.clear = false;
-        self.turning = false;
-        self.coolant_due = true;
-        self.smoothed = None;
+        self.spindle.turning = false;
+        self.coolant.due = true;
+        self.smoothing.on = None;
         if !std::mem::replace(&mut self.told_subprogram, true) {
             self.findings.at(
                 line,
@@ -134,18 +134,18 @@ impl EmitStage<'_> {
     /// Retracts the tool, and cancels what would disturb a tool change, a reference or another offset.
     pub(super) fn leave(&mut self, line: u64) {
         self.retract(line);
-        if self.smoothed.take().is_some() {
+        if self.smoothing.on.take().is_some() {
             self.set_smoothing(line, None);
         }
     }
 
     /// Smoothing as it is wanted, before the tool comes near: some controls take it with no length in force alone.
     pub(super) fn smooth(&mut self, line: u64) {
-        if self.smoothed == self.smoothing {
+        if self.smoothing.on == self.smoothing.wanted {
             return;
         }
-        self.smoothed = self.smoothing;
-        self.set_smoothing(line, self.smoothing);
+        self.smoothing.on = self.smoothing.wanted;
+        self.set_smoothing(line, self.smoothing.wanted);
     }
 
     /// Smoothing on or off, by the machine file's own lines if it has any.

@@ -42,16 +42,27 @@ struct NativeCycle {
     drift: f64,
 }
 
-/// The place of the word Z of the linear axis along which the cycles of a control drill.
-pub(super) fn z_word(machine: &Machine) -> Option<usize> {
-    let order = axis_words::order(machine);
-    order.iter().position(|joint| machine.axes[*joint].name == "Z")
+/// Places of the words that cycles move.
+pub(super) struct CycleWords {
+    /// The word Z of the linear axis along which the cycles of a control drill.
+    pub z: Option<usize>,
+    /// The same, if the tool stands along it with every rotary axis at zero.
+    pub depth: Option<usize>,
+    /// Those of the other linear axes that move in cuts.
+    pub across: Vec<usize>,
 }
 
-/// Finds that axis if the tool stands along it with every rotary axis at zero.
-pub(super) fn depth_word(machine: &Machine) -> Option<usize> {
-    let joint = |place: usize| axis_words::order(machine)[place];
-    z_word(machine).filter(|place| axis_words::depth(machine) == Some(joint(*place)))
+impl CycleWords {
+    pub(super) fn new(machine: &Machine) -> Self {
+        let order = axis_words::order(machine);
+        let z = order.iter().position(|joint| machine.axes[*joint].name == "Z");
+        let along = |place: &usize| axis_words::depth(machine) == Some(order[*place]);
+        let moves = |place: &usize| {
+            let axis = &machine.axes[order[*place]];
+            !axis.joint.rotary && axis.indexed.is_none() && z != Some(*place)
+        };
+        Self { z, depth: z.filter(along), across: (0..order.len()).filter(moves).collect() }
+    }
 }
 
 impl EmitStage<'_> {
@@ -83,7 +94,7 @@ impl EmitStage<'_> {
             self.end_cycle(hole.line);
             self.elements(&hole.above);
         }
-        if self.waits.is_some() && native.is_some() {
+        if self.spindle.waits.is_some() && native.is_some() {
             self.wake(hole.line);
         }
         match native {
@@ -154,7 +165,7 @@ impl EmitStage<'_> {
     /// Two sets of words differ in those across the tool alone.
     fn across_alone(&self, words: &WordValues, level: &WordValues) -> bool {
         (0..self.writer.words())
-            .all(|place| self.across.contains(&place) || words[place] == level[place])
+            .all(|place| self.cycle_words.across.contains(&place) || words[place] == level[place])
     }
 
     /// The hole as a cycle; none if it is not the same.
@@ -162,11 +173,12 @@ impl EmitStage<'_> {
         let machine = self.machine;
         let drilling = &hole.cycle;
         // Where the control keeps the tip, and where the plane is tilted, it must have said so.
-        let (place, needs) = match (self.plane_on || self.plane.is_some(), machine.control.tcp) {
-            (true, _) => (self.z_word?, Capabilities::CYCLE_IN_PLANE),
-            (false, Tcp::Control) => (self.z_word?, Capabilities::CYCLE_TCP),
-            (false, Tcp::Post) => (self.depth_word?, Capabilities::NONE),
-        };
+        let (place, needs) =
+            match (self.plane.on || self.plane.wanted.is_some(), machine.control.tcp) {
+                (true, _) => (self.cycle_words.z?, Capabilities::CYCLE_IN_PLANE),
+                (false, Tcp::Control) => (self.cycle_words.z?, Capabilities::CYCLE_TCP),
+                (false, Tcp::Post) => (self.cycle_words.depth?, Capabilities::NONE),
+            };
         if !self.writer.knows(needs) {
             return None;
         }
@@ -204,7 +216,7 @@ impl EmitStage<'_> {
             ]
         } else {
             let any = machine.control.tcp == Tcp::Control
-                && self.plane.is_none()
+                && self.plane.wanted.is_none()
                 && self.writer.knows(Capabilities::CYCLE_ANY_AXIS);
             if !any {
                 return None;
@@ -214,7 +226,7 @@ impl EmitStage<'_> {
         };
         // The words across the tool differ from hole to hole.
         let mut stands = level.words;
-        for place in &self.across {
+        for place in &self.cycle_words.across {
             stands[*place] = 0.0;
         }
         let in_units = |way: Option<f64>| way.map(|way| way / unit);
@@ -238,8 +250,8 @@ impl EmitStage<'_> {
     /// The rotary words, and those of linear axes that stand between cuts, are the same.
     fn rotary_stand(&self, words: &WordValues, level: &WordValues) -> bool {
         (0..self.writer.words()).all(|place| {
-            self.across.contains(&place)
-                || Some(place) == self.depth_word
+            self.cycle_words.across.contains(&place)
+                || Some(place) == self.cycle_words.depth
                 || words[place] == level[place]
         })
     }

@@ -6,7 +6,9 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Capabilities, Coolant, Event, Spindle};
 
-use super::{EmitStage, FirstPosition, across, cycles, stands};
+use super::cycles::CycleWords;
+use super::state::FirstPosition;
+use super::{EmitStage, stands};
 use crate::blocks::{BlockReason, MotionBlock};
 use crate::program::{MoveFeed, ToolChange};
 
@@ -44,14 +46,14 @@ impl EmitStage<'_> {
         if std::mem::replace(&mut self.clear, true) {
             return;
         }
-        if self.compensating {
-            self.left_compensating.get_or_insert(line);
+        if self.compensation.on {
+            self.compensation.left.get_or_insert(line);
         }
         self.keep_tip(line, false);
         self.instead(line, TextPlace::Retract);
         let machine = self.machine;
         self.go(line, &machine.frame.retract, |axes, words| Event::Retract { axes, words });
-        if std::mem::take(&mut self.plane_on) {
+        if std::mem::take(&mut self.plane.on) {
             self.writer.push(line, Event::PlaneOff);
         }
         match machine.frame.leave {
@@ -71,7 +73,7 @@ impl EmitStage<'_> {
     /// there, or stop with an alarm.
     fn tell_compensation(&mut self) {
         // After another fault nothing is written, and ways are missing: it may end there.
-        if let Some(line) = self.left_compensating.take().filter(|_| !self.findings.failed()) {
+        if let Some(line) = self.compensation.left.take().filter(|_| !self.findings.failed()) {
             self.findings.at(
                 line,
                 Diagnostic::error(
@@ -178,10 +180,10 @@ impl EmitStage<'_> {
     /// The spindle and the coolant stand still while nothing is cut; what the CL file wants is on again at the next first
     /// position.
     fn rest(&mut self, line: u64) {
-        if std::mem::take(&mut self.turning) {
+        if std::mem::take(&mut self.spindle.turning) {
             self.writer.push(line, Event::Spindle(Spindle::Off));
         }
-        if self.coolant.is_some() && !std::mem::replace(&mut self.coolant_due, true) {
+        if self.coolant.commanded.is_some() && !std::mem::replace(&mut self.coolant.due, true) {
             self.writer.push(line, Event::Coolant(Coolant::Off));
         }
     }
@@ -192,7 +194,7 @@ impl EmitStage<'_> {
         }
         self.leave(line);
         self.rest(line);
-        (self.changed, self.waits) = (true, None);
+        (self.spindle.tool_changed, self.spindle.waits) = (true, None);
         if self.texts.any_tool() {
             self.say(line, TextPlace::BetweenTools);
         }
@@ -243,13 +245,11 @@ impl EmitStage<'_> {
         // Away first: a spindle that stops in the part tears.
         self.leave(line);
         self.rest(line);
-        (self.changed, self.waits) = (true, None);
+        (self.spindle.tool_changed, self.spindle.waits) = (true, None);
         self.tool = None;
         self.machine = &head.machine;
         self.words = Words::new(self.machine, self.writer.format());
-        self.z_word = cycles::z_word(self.machine);
-        self.depth_word = cycles::depth_word(self.machine);
-        self.across = across(self.machine);
+        self.cycle_words = CycleWords::new(self.machine);
         match &head.word {
             Some(word) => self.writer.push(line, Event::Word { text: word }),
             None => {
@@ -300,15 +300,18 @@ impl EmitStage<'_> {
         let turns = self.machine.axes.iter().any(|axis| axis.joint.rotary);
         self.retract(line);
         self.tell_compensation();
-        if self.changed && self.commanded.is_some() && block.pace == MoveFeed::Rapid {
+        if self.spindle.tool_changed
+            && self.spindle.commanded.is_some()
+            && block.pace == MoveFeed::Rapid
+        {
             // The tool's own speed may stand after its first position.
-            self.waits = Some(FirstPosition::of(block));
+            self.spindle.waits = Some(FirstPosition::of(block));
         } else {
             self.wake(line);
         }
         let words = &block.words[..self.writer.words()];
         // Whether they are clamped is not known.
-        self.free = 0;
+        self.clamps.free = 0;
         for joint in 0..self.machine.axes.len() {
             self.set_clamp(line, joint, false, true);
         }
@@ -322,11 +325,11 @@ impl EmitStage<'_> {
         }
         self.smooth(line);
         // In a plane the length alone is in force.
-        if self.plane.is_some() {
+        if self.plane.wanted.is_some() {
             self.keep_tip(line, false);
         }
-        if let Some(plane) = &self.plane {
-            self.plane_on = true;
+        if let Some(plane) = &self.plane.wanted {
+            self.plane.on = true;
             self.writer.push(
                 line,
                 Event::Plane {
@@ -338,7 +341,7 @@ impl EmitStage<'_> {
                 },
             );
         }
-        if !self.plane_on {
+        if !self.plane.on {
             self.keep_tip(line, true);
         }
         if block.reason != BlockReason::Above {
@@ -363,20 +366,20 @@ impl EmitStage<'_> {
     /// The words after it are those of a plane, or of none: the plane before it ends, the tool clear of the
     /// part.
     pub(super) fn set_plane(&mut self, line: u64, plane: Option<Box<TiltedPlane>>) {
-        if self.plane_on {
+        if self.plane.on {
             self.retract(line);
         }
-        self.plane = plane;
+        self.plane.wanted = plane;
     }
 
     /// Spindle and coolant on as the CL file takes them to be.
     pub(super) fn wake(&mut self, line: u64) {
-        self.waits = None;
-        if let (false, Some(spindle)) = (self.turning, self.commanded) {
+        self.spindle.waits = None;
+        if let (false, Some(spindle)) = (self.spindle.turning, self.spindle.commanded) {
             // The tool change stopped it, and the CL file takes it to be turning.
-            self.turning = true;
+            self.spindle.turning = true;
             self.writer.push(line, spindle);
-            if std::mem::take(&mut self.changed) {
+            if std::mem::take(&mut self.spindle.tool_changed) {
                 self.findings.at(
                     line,
                     Diagnostic::warning(
@@ -392,14 +395,16 @@ impl EmitStage<'_> {
 
     /// Coolant on, if it was switched off in between.
     fn flow(&mut self, line: u64) {
-        if let (true, Some(coolant)) = (std::mem::take(&mut self.coolant_due), self.coolant) {
+        if let (true, Some(coolant)) =
+            (std::mem::take(&mut self.coolant.due), self.coolant.commanded)
+        {
             self.writer.push(line, Event::Coolant(coolant));
         }
     }
 
     pub(super) fn coolant(&mut self, line: u64, coolant: Coolant) {
-        self.coolant = (coolant != Coolant::Off).then_some(coolant);
-        self.coolant_due = false;
+        self.coolant.commanded = (coolant != Coolant::Off).then_some(coolant);
+        self.coolant.due = false;
         self.writer.push(line, Event::Coolant(coolant));
     }
 
@@ -411,11 +416,11 @@ impl EmitStage<'_> {
 
     /// The spindle by `event`; `on` is what switches it on again as it turns then.
     pub(super) fn set_spindle(&mut self, line: u64, on: Option<Event<'static>>, event: Event<'_>) {
-        self.turning = on.is_some();
-        self.commanded = on;
-        self.changed = false;
+        self.spindle.turning = on.is_some();
+        self.spindle.commanded = on;
+        self.spindle.tool_changed = false;
         self.writer.push(line, event);
-        if self.waits.take().is_some() {
+        if self.spindle.waits.take().is_some() {
             self.flow(line);
         }
     }

@@ -4,17 +4,16 @@ mod control;
 mod cycles;
 mod extremes;
 mod frame;
+mod state;
 mod texts;
 mod writer;
 
 use std::rc::Rc;
 
-use nalgebra::Vector3;
 use post_machine::axis_words::{self, Words};
-use post_machine::description::{Machine, Smoothing, TextPlace};
+use post_machine::description::{Machine, TextPlace};
 use post_machine::kinematics::Joints;
-use post_machine::tilted_plane::TiltedPlane;
-use post_plugin::{Capabilities, Compensation, Coolant, DialectSession, Event, List, ToolPose};
+use post_plugin::{Capabilities, Compensation, DialectSession, Event, List, ToolPose};
 
 use crate::blocks::{BlockKind, BlockNote, BlockReason, MotionBlock};
 use crate::curve::{CurveWords, PrintedCurve};
@@ -23,8 +22,11 @@ use crate::job_facts::JobFacts;
 use crate::observer::{Observers, TextSink};
 use crate::program::Command;
 use crate::stream::StreamItem;
-use cycles::CycleInForce;
+use cycles::{CycleInForce, CycleWords};
 pub(crate) use extremes::Extremes;
+use state::{
+    ClampState, CompensationState, CoolantState, PlaneState, SmoothingState, SpindleState,
+};
 use texts::ProgramTexts;
 use writer::EventWriter;
 
@@ -38,38 +40,17 @@ pub(crate) struct EmitStage<'a> {
     extremes: Extremes,
     /// Where the axes stand after the last block.
     last: Joints,
-    /// Axes that are known to be clamped, one bit each.
-    clamped: u8,
-    /// Rotary axes that have turned in a cut since the tool came: they are left free, one bit each.
-    free: u8,
+    clamps: ClampState,
     /// Prints positions in machine coordinates.
     words: Words,
     /// The tool is retracted, and nothing is in force that a first position puts in force.
     clear: bool,
-    /// The spindle was switched on since the last tool change.
-    turning: bool,
-    /// What the CL file last said of it.
-    commanded: Option<Event<'static>>,
-    /// The tool was changed since.
-    changed: bool,
-    /// The first position that the tool has reached without a speed of its own: the spindle stands until it has one, or
-    /// goes in.
-    waits: Option<FirstPosition>,
-    /// What the CL file last said of coolant.
-    coolant: Option<Coolant>,
-    /// Coolant was switched off in between.
-    coolant_due: bool,
-    /// The tilted plane of the words.
-    plane: Option<Box<TiltedPlane>>,
-    /// Whether the control got it.
-    plane_on: bool,
+    spindle: SpindleState,
+    coolant: CoolantState,
+    plane: PlaneState,
     /// The cycle in force.
     cycle: Option<CycleInForce>,
-    /// Place of the word that cycles drill along, and the same where it is that of the axis along the tool.
-    z_word: Option<usize>,
-    depth_word: Option<usize>,
-    /// Places of the words that move the tool across it.
-    across: Vec<usize>,
+    cycle_words: CycleWords,
     /// The tool in the spindle.
     tool: Option<u32>,
     /// The work offset that the CL file names; none before it names one.
@@ -78,21 +59,14 @@ pub(crate) struct EmitStage<'a> {
     told_mount: bool,
     /// Whether it was reported that what a subprogram does is not checked.
     told_subprogram: bool,
-    /// Smoothing that is due, and that which the control has.
-    smoothing: Option<Smoothing>,
-    smoothed: Option<Smoothing>,
+    smoothing: SmoothingState,
     /// Last event of a dialect that has one for keeping the tip.
     keeps_tip: Option<bool>,
     /// The head in use, by its place among the machine's, once the CL file has named one.
     head: Option<usize>,
     /// The head that the tool was used with last came to the part with its own or the program's work offset.
     worked: bool,
-    /// Cutter compensation that begins once the tool is at the part.
-    compensation: Option<Compensation>,
-    /// Cutter compensation is on.
-    compensating: bool,
-    /// Where the tool left the part with it on: not reported yet.
-    left_compensating: Option<u64>,
+    compensation: CompensationState,
     /// Observers of the program; none if nobody looks on.
     observers: Option<Rc<Observers<'a>>>,
     findings: Findings,
@@ -116,34 +90,23 @@ impl<'a> EmitStage<'a> {
             texts: ProgramTexts::new(machine, job),
             extremes: Extremes::new(),
             last: Joints::default(),
-            clamped: 0,
-            free: 0,
             words,
             clear: false,
-            turning: false,
-            commanded: None,
-            coolant: None,
-            coolant_due: false,
-            plane: None,
-            plane_on: false,
+            clamps: ClampState::default(),
+            spindle: SpindleState::default(),
+            coolant: CoolantState::default(),
+            plane: PlaneState::default(),
             cycle: None,
-            z_word: cycles::z_word(machine),
-            depth_word: cycles::depth_word(machine),
-            across: across(machine),
-            changed: false,
-            waits: None,
+            cycle_words: CycleWords::new(machine),
             tool: None,
             offset: None,
             told_mount: false,
             told_subprogram: false,
-            smoothing: machine.smoothing.default,
-            smoothed: None,
+            smoothing: SmoothingState { wanted: machine.smoothing.default, on: None },
             keeps_tip: None,
             head: None,
             worked: false,
-            compensation: None,
-            compensating: false,
-            left_compensating: None,
+            compensation: CompensationState::default(),
             observers: None,
             findings: findings.clone(),
         };
@@ -230,7 +193,7 @@ impl<'a> EmitStage<'a> {
     #[inline]
     fn block(&mut self, block: &MotionBlock, printed: Option<&PrintedCurve>) {
         let line = block.line;
-        if self.waits.is_some_and(|first| cuts(block) || first.goes_in(block)) {
+        if self.spindle.waits.is_some_and(|first| cuts(block) || first.goes_in(block)) {
             self.wake(line);
         }
         match block.kind {
@@ -274,16 +237,17 @@ impl<'a> EmitStage<'a> {
 
     /// Cutter compensation. None begins on the way down to a first position.
     fn compensate(&mut self, line: u64, compensation: Compensation) {
-        self.compensating = compensation != Compensation::Off;
-        self.compensation = Some(compensation).filter(|it| self.clear && *it != Compensation::Off);
-        if self.compensation.is_none() {
+        self.compensation.on = compensation != Compensation::Off;
+        self.compensation.waits =
+            Some(compensation).filter(|it| self.clear && *it != Compensation::Off);
+        if self.compensation.waits.is_none() {
             self.writer.push(line, Event::Compensate(compensation));
         }
     }
 
     /// What waits of it.
     fn begin_compensation(&mut self, line: u64) {
-        if let Some(compensation) = self.compensation.take() {
+        if let Some(compensation) = self.compensation.waits.take() {
             self.writer.push(line, Event::Compensate(compensation));
         }
     }
@@ -344,7 +308,7 @@ impl<'a> EmitStage<'a> {
             Command::Literal(text) => {
                 // What it does is not known.
                 self.clear = false;
-                if self.waits.is_some() {
+                if self.spindle.waits.is_some() {
                     self.wake(line);
                 }
                 Event::Literal { text }
@@ -359,7 +323,7 @@ impl<'a> EmitStage<'a> {
             Command::WorkOffset(number) => return self.work_offset(line, *number),
             Command::Subprogram(number) => return self.subprogram(line, *number),
             Command::Smoothing(wanted) => {
-                self.smoothing = *wanted;
+                self.smoothing.wanted = *wanted;
                 return self.leave(line);
             }
             Command::Dwell(seconds) => Event::Dwell { seconds: *seconds },
@@ -396,8 +360,8 @@ impl<'a> EmitStage<'a> {
             let cuts = block.kind != BlockKind::Rapid;
             if self.last[joint] != block.joints[joint] {
                 self.set_clamp(block.line, joint, false, false);
-                self.free |= u8::from(cuts) << joint;
-            } else if cuts && self.free >> joint & 1 == 0 {
+                self.clamps.free |= u8::from(cuts) << joint;
+            } else if cuts && self.clamps.free >> joint & 1 == 0 {
                 self.set_clamp(block.line, joint, true, false);
             }
         }
@@ -412,7 +376,7 @@ impl<'a> EmitStage<'a> {
     fn set_clamp(&mut self, line: u64, joint: usize, on: bool, unknown: bool) {
         let axis = &self.machine.axes[joint];
         let bit = 1 << joint;
-        if !unknown && (self.clamped & bit != 0) == on {
+        if !unknown && (self.clamps.on & bit != 0) == on {
             return;
         }
         match &axis.clamp {
@@ -430,7 +394,7 @@ impl<'a> EmitStage<'a> {
             }
             None => return,
         }
-        self.clamped = self.clamped & !bit | if on { bit } else { 0 };
+        self.clamps.on = self.clamps.on & !bit | if on { bit } else { 0 };
     }
 }
 
@@ -448,41 +412,6 @@ fn number(elements: &mut [StreamItem<MotionBlock>], lines: &mut dyn Iterator<Ite
         }
     }
 }
-
-/// Places of the words of the linear axes that move in cuts, but for Z.
-fn across(machine: &Machine) -> Vec<usize> {
-    let depth = cycles::z_word(machine);
-    let order = axis_words::order(machine).into_iter().enumerate();
-    order
-        .filter(|(place, joint)| {
-            let axis = &machine.axes[*joint];
-            !axis.joint.rotary && axis.indexed.is_none() && depth != Some(*place)
-        })
-        .map(|(place, _)| place)
-        .collect()
-}
-
-/// Where a tool has arrived, and by which line of the CL file.
-#[derive(Clone, Copy, Debug)]
-struct FirstPosition {
-    line: u64,
-    tip: Vector3<f64>,
-    axis: Vector3<f64>,
-}
-
-impl FirstPosition {
-    fn of(block: &MotionBlock) -> Self {
-        Self { line: block.line, tip: block.tip, axis: block.axis }
-    }
-
-    /// A block of another line leads below it, along the tool: into a slot, it may be, at rapid.
-    fn goes_in(&self, block: &MotionBlock) -> bool {
-        block.line != self.line && (block.tip - self.tip).dot(&self.axis) < -LOWER
-    }
-}
-
-/// A tool that goes less far along its axis stays where it is, mm.
-const LOWER: f64 = 1e-6;
 
 /// Whether a block goes at feed, from where the tool stands.
 fn cuts(block: &MotionBlock) -> bool {

@@ -6,7 +6,7 @@ use post_grammar::{Cycle, CycleDefinition, Record};
 use post_machine::diagnostic::Short;
 use post_plugin::SpindleSense;
 
-use super::{ClInterpreter, ModalFeed, SHOWN_NAME};
+use super::{ClInterpreter, ModalFeed, SHOWN_NAME, StepSink};
 use crate::program::{CycleStep, DrillCycle, MoveFeed, ProgramStep};
 
 /// Pitch and feed a turn agree but for so much: a feed a minute is written without decimals.
@@ -25,7 +25,7 @@ impl ClInterpreter {
         drill: DrillCycle,
         feed: MoveFeed,
         point: Vector3<f64>,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         if std::mem::take(&mut self.rapid) {
             self.warn(
@@ -124,12 +124,7 @@ impl ClInterpreter {
         }
     }
 
-    pub(super) fn cycle(
-        &mut self,
-        record: &Record<'_>,
-        cycle: &Cycle,
-        emit: &mut impl FnMut(ProgramStep),
-    ) {
+    pub(super) fn cycle(&mut self, record: &Record<'_>, cycle: &Cycle, emit: &mut StepSink<'_>) {
         if matches!(cycle, Cycle::Off | Cycle::Define(_)) {
             self.cycle_lost = false;
         }

@@ -34,6 +34,9 @@ use post_machine::diagnostic::{Diagnostic, Place, Short};
 use turned::ArcAxisConvention;
 use words::SuspectRecord;
 
+/// Where the steps go that a record means.
+type StepSink<'e> = dyn FnMut(ProgramStep) + 'e;
+
 /// Turns records into steps.
 #[derive(Debug)]
 pub struct ClInterpreter {
@@ -295,7 +298,7 @@ impl ClInterpreter {
     }
 
     /// Carries out what a record says.
-    fn statement(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
+    fn statement(&mut self, record: &Record<'_>, emit: &mut StepSink<'_>) {
         if self.finished {
             self.after_fini(record);
             return;
@@ -387,7 +390,7 @@ impl ClInterpreter {
         record: &Record<'_>,
         name: &str,
         tool: Option<&str>,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         self.end_spline(record, emit);
         // Every path of NX stands by itself: its first GOTO gives the axis if it is not Z.
@@ -401,13 +404,13 @@ impl ClInterpreter {
         self.smooth(smoothing, emit);
     }
 
-    fn end_operation(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
+    fn end_operation(&mut self, record: &Record<'_>, emit: &mut StepSink<'_>) {
         self.end_spline(record, emit);
         self.path = None;
         emit(ProgramStep::Command(Command::OperationEnd));
     }
 
-    fn delay(&mut self, record: &Record<'_>, delay: &Delay, emit: &mut impl FnMut(ProgramStep)) {
+    fn delay(&mut self, record: &Record<'_>, delay: &Delay, emit: &mut StepSink<'_>) {
         match (delay, self.rpm) {
             (Delay::Seconds(seconds), _) => self.dwell(record, *seconds, emit),
             (Delay::Revolutions(turns), Some(rpm)) if rpm > 0.0 => {
@@ -422,7 +425,7 @@ impl ClInterpreter {
         }
     }
 
-    fn dwell(&mut self, record: &Record<'_>, seconds: f64, emit: &mut impl FnMut(ProgramStep)) {
+    fn dwell(&mut self, record: &Record<'_>, seconds: f64, emit: &mut StepSink<'_>) {
         if !(0.0..=LONGEST_DWELL).contains(&seconds) {
             self.fault(
                 record,

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use post_grammar::{Delta, Record};
 
-use super::{ClInterpreter, UnfinishedCurve};
+use super::{ClInterpreter, StepSink, UnfinishedCurve};
 use crate::program::limits::{MOST_COORDINATE, direction, is_near};
 use crate::program::{Command, MoveFeed, ProgramStep, StraightMove};
 
@@ -37,7 +37,7 @@ impl ClInterpreter {
         record: &Record<'_>,
         point: [f64; 3],
         axis: Option<[f64; 3]>,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         let pending = match self.pending.take() {
             Some(arc @ (UnfinishedCurve::Arc(_) | UnfinishedCurve::Turned(_))) => Some(arc),
@@ -53,8 +53,7 @@ impl ClInterpreter {
             return;
         }
         if pending.is_none() && self.cycle.is_none() {
-            self.plain_goto(record, point, axis, emit);
-            return;
+            return self.plain_goto(record, point, axis, &mut |step| emit(step));
         }
         let start_axis = self.axis;
         if !self.set_axis(record, axis) {
@@ -87,7 +86,7 @@ impl ClInterpreter {
         point: [f64; 3],
         axis: [f64; 3],
         edge: [f64; 3],
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         match direction(Vector3::from(edge)) {
             Some(edge) => {
@@ -104,12 +103,7 @@ impl ClInterpreter {
     }
 
     /// Steps on from the last point.
-    pub(super) fn godlta(
-        &mut self,
-        record: &Record<'_>,
-        delta: &Delta,
-        emit: &mut impl FnMut(ProgramStep),
-    ) {
+    pub(super) fn godlta(&mut self, record: &Record<'_>, delta: &Delta, emit: &mut StepSink<'_>) {
         let Some(tip) = self.tip else {
             self.fault(
                 record,
@@ -142,7 +136,7 @@ impl ClInterpreter {
         record: &Record<'_>,
         point: [f64; 3],
         axis: Option<[f64; 3]>,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         let Some(tip) = self.point(record, point) else {
             return;
@@ -161,7 +155,7 @@ impl ClInterpreter {
         &mut self,
         record: &Record<'_>,
         home: Option<([f64; 3], Option<[f64; 3]>)>,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         self.rapid = home.is_some();
         let Some((point, axis)) = home else {

@@ -3,14 +3,14 @@
 use post_grammar::Record;
 use post_plugin::Spindle;
 
-use super::{ClInterpreter, DefaultSpindle};
+use super::{ClInterpreter, DefaultSpindle, StepSink};
 use crate::program::{Command, ProgramStep};
 
 impl ClInterpreter {
     /// What is to be seen to before a move: the axis after an index move, the tool that the user names, a
     /// cutter without a tool, the speed that the user names.
     #[cold]
-    pub(super) fn before_move(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
+    pub(super) fn before_move(&mut self, record: &Record<'_>, emit: &mut StepSink<'_>) {
         if std::mem::take(&mut self.check_axis)
             && let (Some(turned), Some(told)) = (self.frame.turned(), self.told_axis)
             && (turned * self.axis - told).norm() > 1e-3

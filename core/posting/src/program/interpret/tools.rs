@@ -8,7 +8,7 @@ use post_grammar::{
 use post_plugin::{Compensation, Coolant, Spindle, SpindleSense};
 
 use super::cam_system::CompensatedPoints;
-use super::{ClInterpreter, CutterDescription, SHOWN_NAME};
+use super::{ClInterpreter, CutterDescription, SHOWN_NAME, StepSink};
 use crate::program::limits::{MOST_COORDINATE, MOST_TOOLS};
 use crate::program::{Command, ProgramStep, ToolChange};
 use post_machine::description::{CompensationOnCentre, ToolLength};
@@ -19,7 +19,7 @@ impl ClInterpreter {
         &mut self,
         record: &Record<'_>,
         word: &CoolantWord,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         let coolant = match word {
             CoolantWord::Off => Coolant::Off,
@@ -37,7 +37,7 @@ impl ClInterpreter {
     }
 
     /// Makes a tool ready, unless it is the one that is loaded.
-    pub(super) fn select_tool(&self, number: u32, emit: &mut impl FnMut(ProgramStep)) {
+    pub(super) fn select_tool(&self, number: u32, emit: &mut StepSink<'_>) {
         if self.loaded.map(|(loaded, ..)| loaded) != Some(number) {
             emit(ProgramStep::Command(Command::Preselect(number)));
         }
@@ -47,7 +47,7 @@ impl ClInterpreter {
         &mut self,
         record: &Record<'_>,
         spindle: SpindleWord,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         self.spindle_said = true;
         self.may_cut = self.need_not_turn();
@@ -135,12 +135,7 @@ impl ClInterpreter {
         meant
     }
 
-    pub(super) fn load(
-        &mut self,
-        record: &Record<'_>,
-        tool: &LoadTool,
-        emit: &mut impl FnMut(ProgramStep),
-    ) {
+    pub(super) fn load(&mut self, record: &Record<'_>, tool: &LoadTool, emit: &mut StepSink<'_>) {
         let register = tool.register.unwrap_or(tool.number);
         if tool.number == 0 || register == 0 {
             self.fault(
@@ -216,7 +211,7 @@ impl ClInterpreter {
     }
 
     /// Loads the tool that the user names or that belongs to the cutter, before the first record that needs one.
-    pub(super) fn load_told(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
+    pub(super) fn load_told(&mut self, record: &Record<'_>, emit: &mut StepSink<'_>) {
         let told = match self.loaded {
             None => self.reading.tool.take(),
             Some(_) => None,
@@ -233,7 +228,7 @@ impl ClInterpreter {
         &mut self,
         record: &Record<'_>,
         tool: &LoadTool,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         if self.writer.catia && tool.described {
             // LOADTL loads it.
@@ -351,12 +346,7 @@ impl ClInterpreter {
         self.cutter_length = numbers.get(length).map(|length| length * self.scale);
     }
 
-    pub(super) fn cutcom(
-        &mut self,
-        record: &Record<'_>,
-        cutcom: Cutcom,
-        emit: &mut impl FnMut(ProgramStep),
-    ) {
+    pub(super) fn cutcom(&mut self, record: &Record<'_>, cutcom: Cutcom, emit: &mut StepSink<'_>) {
         self.load_told(record, emit);
         let side = match cutcom.side {
             Some(CutterSide::Off) => {

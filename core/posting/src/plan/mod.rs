@@ -38,7 +38,6 @@ use crate::findings::Findings;
 use crate::program::Command;
 use crate::stream::{Hole, StreamItem};
 use crate::tightening::Tightening;
-use account::PlanTally;
 pub use account::{LimitShare, PlanReport, axis_name};
 pub use limits::{SampledAxes, limits};
 use line::{BlockDemand, PlannerRun};
@@ -74,7 +73,6 @@ pub(crate) struct PlanStage<'a> {
     placer: Option<Rc<Placer>>,
     run: Option<CurvePlanner<'a>>,
     queue: BlockQueue,
-    account: PlanTally,
     /// Where the axes stand; none where it is not known.
     stands: Option<BlockStart>,
     /// Where the last leg of the curve ends.
@@ -110,7 +108,6 @@ impl<'a> PlanStage<'a> {
             placer: None,
             run: None,
             queue: BlockQueue::default(),
-            account: PlanTally::default(),
             stands: None,
             point: [0.0; fit::MOST],
             moves: false,
@@ -134,7 +131,7 @@ impl<'a> PlanStage<'a> {
 
     /// What was planned so far.
     pub(crate) fn report(&self) -> PlanReport {
-        self.account.report(self.machine)
+        self.queue.account.report(self.machine)
     }
 
     /// Takes a batch, which is empty then.
@@ -164,14 +161,14 @@ impl<'a> PlanStage<'a> {
             }
         }
         if !self.moves {
-            self.queue.ready(&mut |flow| out.push(flow));
+            self.queue.ready(out);
         }
     }
 
     /// The program ends.
     pub(crate) fn finish(&mut self, out: &mut BlockSink<'_>) {
         self.stop(out);
-        if let Some(warning) = self.account.slower_than_none() {
+        if let Some(warning) = self.queue.account.slower_than_none() {
             self.findings.add(warning);
         }
     }
@@ -295,7 +292,7 @@ impl<'a> PlanStage<'a> {
         if distance(&self.point, &last) < tolerance {
             // Too short for the curve: it keeps the feed of the CL file, whatever comes before and after it.
             self.queue.push(next);
-            self.account.give_up(1);
+            self.queue.account.give_up(1);
             return;
         }
         if !self.moves {
@@ -327,9 +324,9 @@ impl<'a> PlanStage<'a> {
         self.queue.open(next, *start);
         run.line.due(due, places.len());
         let mut failed = false;
-        let (queue, account, line) = (&mut self.queue, &mut self.account, &mut run.line);
+        let (queue, line) = (&mut self.queue, &mut run.line);
         let mut take = |leg: &fit::Leg<'_>| {
-            failed = failed || line.leg(leg, queue, account, &mut |flow| out.push(flow)).is_err();
+            failed = failed || line.leg(leg, queue, out).is_err();
         };
         for point in &places {
             run.fit.push(point, &mut take);
@@ -343,19 +340,18 @@ impl<'a> PlanStage<'a> {
     /// The tool comes to a standstill: what waits is planned to its end.
     fn stop(&mut self, out: &mut BlockSink<'_>) {
         if let (true, Some(run)) = (self.moves, &mut self.run) {
-            let (queue, account, line) = (&mut self.queue, &mut self.account, &mut run.line);
+            let (queue, line) = (&mut self.queue, &mut run.line);
             let mut failed = false;
             run.fit.cut(&mut |leg| {
-                failed =
-                    failed || line.leg(leg, queue, account, &mut |flow| out.push(flow)).is_err();
+                failed = failed || line.leg(leg, queue, out).is_err();
             });
-            failed = failed || line.finish(queue, account, &mut |flow| out.push(flow)).is_err();
+            failed = failed || line.finish(queue, out).is_err();
             self.moves = false;
             if failed {
                 self.fail(out);
             }
         }
-        self.queue.ready(&mut |flow| out.push(flow));
+        self.queue.ready(out);
     }
 
     /// What waits goes on without a plan.
@@ -368,8 +364,8 @@ impl<'a> PlanStage<'a> {
                 self.findings.at(self.queue.first_line().unwrap_or_default(), fault);
             }
         }
-        self.account.give_up(self.queue.give_up());
-        self.queue.ready(&mut |flow| out.push(flow));
+        self.queue.give_up();
+        self.queue.ready(out);
     }
 }
 

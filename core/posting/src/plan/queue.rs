@@ -6,10 +6,11 @@ use nalgebra::Vector3;
 use post_machine::axis_words::WordValues;
 use post_machine::kinematics::Joints;
 
+use super::account::PlanTally;
 use super::pieces::{BlockProfile, PlanSample};
 use super::samples::{PathDerivatives, WatchedSample};
 use super::solver::SettledSample;
-use crate::blocks::MotionBlock;
+use crate::blocks::{BlockSink, MotionBlock};
 use crate::stream::StreamItem;
 
 /// Where a block begins.
@@ -60,6 +61,8 @@ pub(super) struct BlockQueue {
     marks: VecDeque<SampleMark>,
     /// The plan along the first open block, as far as it is settled.
     pub(super) profile: BlockProfile,
+    /// What was planned so far.
+    pub(super) account: PlanTally,
     /// Time from the sample before to the one settled last, s.
     pub(super) seconds: f64,
     /// Whether there is an observer.
@@ -134,33 +137,32 @@ impl BlockQueue {
     /// unknown any more. None where none waits.
     pub(super) fn first_open(
         &mut self,
-        ready: &mut dyn FnMut(StreamItem<MotionBlock>),
+        out: &mut BlockSink<'_>,
     ) -> Option<(StreamItem<MotionBlock>, BlockStart)> {
         while let Some(next) = self.waiting.pop_front() {
             match next.open {
                 Some(start) => return Some((next.flow, start)),
-                None => ready(next.flow),
+                None => out.push(next.flow),
             }
         }
         None
     }
 
     /// All that waits for nothing any more.
-    pub(super) fn ready(&mut self, ready: &mut dyn FnMut(StreamItem<MotionBlock>)) {
+    pub(super) fn ready(&mut self, out: &mut BlockSink<'_>) {
         while self.waiting.front().is_some_and(|next| next.open.is_none()) {
             if let Some(next) = self.waiting.pop_front() {
-                ready(next.flow);
+                out.push(next.flow);
             }
         }
     }
 
-    /// The blocks that wait are left as they are; gives their number.
-    pub(super) fn give_up(&mut self) -> usize {
+    /// The blocks that wait are left as they are.
+    pub(super) fn give_up(&mut self) {
         let taken = self.waiting.iter_mut().map(|next| next.open.take());
-        let count = taken.flatten().count();
+        self.account.give_up(taken.flatten().count());
         self.marks.clear();
         self.profile.clear();
-        count
     }
 
     /// Line of the CL file of the first block that waits for its feed.

@@ -100,25 +100,26 @@ impl<P: StreamPoint> Hole<P> {
 
 /// All that `fill` hands on: what an element is made of.
 pub(crate) fn gathered<T>(fill: impl FnOnce(&mut BatchSink<'_, T>)) -> Vec<T> {
-    let (mut all, mut batch) = (Vec::new(), Vec::new());
-    let mut next = |batch: &mut Vec<T>| all.append(batch);
-    let mut sink = BatchSink::new(&mut batch, &mut next);
-    fill(&mut sink);
-    sink.flush();
+    let mut all = Vec::new();
+    fill(&mut BatchSink { batch: &mut all, next: None });
     all
 }
+
+/// What takes a batch from a stage; it leaves it empty.
+type NextStage<'o, T> = dyn FnMut(&mut Vec<T>) + 'o;
 
 /// Where a stage puts what it hands on; a batch that is full goes to the next stage at once, so that one arc of a
 /// million chords needs no more memory than another.
 pub(crate) struct BatchSink<'o, T> {
     batch: &'o mut Vec<T>,
-    next: &'o mut dyn FnMut(&mut Vec<T>),
+    /// None where all is gathered that one element is made of.
+    next: Option<&'o mut NextStage<'o, T>>,
 }
 
 impl<'o, T> BatchSink<'o, T> {
     /// An outlet into `batch`, which `next` takes when it is full; it leaves the batch empty.
-    pub(crate) fn new(batch: &'o mut Vec<T>, next: &'o mut dyn FnMut(&mut Vec<T>)) -> Self {
-        Self { batch, next }
+    pub(crate) fn new(batch: &'o mut Vec<T>, next: &'o mut NextStage<'o, T>) -> Self {
+        Self { batch, next: Some(next) }
     }
 
     /// Hands on one element.
@@ -142,14 +143,19 @@ impl<'o, T> BatchSink<'o, T> {
     /// Hands on a batch as it is, after what there is; it is empty then.
     pub(crate) fn pass(&mut self, batch: &mut Vec<T>) {
         self.flush();
-        (self.next)(batch);
+        match &mut self.next {
+            Some(next) => next(batch),
+            None => self.batch.append(batch),
+        }
         batch.clear();
     }
 
     /// Hands on what there is.
     pub(crate) fn flush(&mut self) {
-        if !self.batch.is_empty() {
-            (self.next)(self.batch);
+        if let Some(next) = &mut self.next
+            && !self.batch.is_empty()
+        {
+            next(self.batch);
             self.batch.clear();
         }
     }

@@ -17,6 +17,7 @@ mod route;
 mod settle;
 mod solution;
 mod taut;
+mod tool_length;
 mod trellis;
 mod whole_pass;
 
@@ -24,7 +25,7 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 
 use nalgebra::Vector3;
-use post_machine::description::{Machine, Positions, Tcp};
+use post_machine::description::{Machine, Positions};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 use post_machine::kinematics::travel::{AT_END, passed};
@@ -34,14 +35,13 @@ use crate::accuracy::Placer;
 use crate::curve::CurveMoves;
 use crate::expand::{FixedAxis, PathMove};
 use crate::findings::Findings;
-use crate::program::limits::MOST_TOOLS;
 use crate::program::{Command, StraightMove, ToolChange};
-use crate::report::{LengthSource, ReportedTool};
-use crate::stream::{BatchSink, StreamItem, StreamPoint};
+use crate::stream::{BatchSink, Hole, StreamItem, StreamPoint};
 use lengths::LengthAxisCheck;
 use pending_element::PendingElement;
 pub(crate) use route::ChosenPoint;
 use route::{DroppedPoint, Route};
+pub use tool_length::{LengthSource, ReportedTool};
 pub(crate) use trellis::pose;
 pub use whole_pass::whole_pass;
 
@@ -186,21 +186,8 @@ impl<'a> ConfigurationStage<'a> {
         for next in batch.drain(..) {
             match next {
                 StreamItem::Point(at) => self.point(&at, out),
-                StreamItem::Curve { line, mut curve } => {
-                    let empty = CurveMoves { curve: curve.curve, moves: Vec::new() };
-                    let begins = StreamItem::Curve { line, curve: Box::new(empty) };
-                    self.arrange(WaitingItem::Between(begins), out);
-                    self.take(&mut curve.moves, out);
-                    self.arrange(WaitingItem::Ends, out);
-                }
-                StreamItem::Hole(mut hole) => {
-                    let begins = StreamItem::Hole(Box::new(hole.remade(|_| Vec::new())));
-                    self.arrange(WaitingItem::Between(begins), out);
-                    self.take(&mut hole.above, out);
-                    self.arrange(WaitingItem::Enters, out);
-                    self.take(&mut hole.into, out);
-                    self.arrange(WaitingItem::Ends, out);
-                }
+                StreamItem::Curve { line, curve } => self.curve(line, *curve, out),
+                StreamItem::Hole(hole) => self.hole(*hole, out),
                 StreamItem::Command { line, command } => {
                     let command = StreamItem::Command { line, command };
                     self.arrange(WaitingItem::Between(command), out);
@@ -211,6 +198,28 @@ impl<'a> ConfigurationStage<'a> {
                 }
             }
         }
+    }
+
+    /// The points of a curve are decided among all others.
+    #[inline(never)]
+    fn curve(&mut self, line: u64, curve: CurveMoves<PathMove>, out: &mut ConfiguredSink<'_>) {
+        let CurveMoves { curve, mut moves } = curve;
+        let begins = Box::new(CurveMoves { curve, moves: Vec::with_capacity(moves.len()) });
+        let begins = StreamItem::Curve { line, curve: begins };
+        self.arrange(WaitingItem::Between(begins), out);
+        self.take(&mut moves, out);
+        self.arrange(WaitingItem::Ends, out);
+    }
+
+    /// Those of a hole likewise.
+    #[inline(never)]
+    fn hole(&mut self, mut hole: Hole<PathMove>, out: &mut ConfiguredSink<'_>) {
+        let begins = hole.remade(|part| Vec::with_capacity(part.len()));
+        self.arrange(WaitingItem::Between(StreamItem::Hole(Box::new(begins))), out);
+        self.take(&mut hole.above, out);
+        self.arrange(WaitingItem::Enters, out);
+        self.take(&mut hole.into, out);
+        self.arrange(WaitingItem::Ends, out);
     }
 
     /// The file ends: everything is decided.
@@ -441,54 +450,6 @@ impl<'a> ConfigurationStage<'a> {
         }
     }
 
-    /// Finds the length of a tool.
-    fn measure(&mut self, tool: &ToolChange) {
-        let table = || {
-            let tools = &self.machine.tools;
-            tools.iter().find(|(number, _)| *number == tool.number).map(|(_, length)| *length)
-        };
-        let given = [
-            (self.told_length, LengthSource::Option),
-            (table(), LengthSource::MachineFile),
-            (tool.length, LengthSource::ClFile),
-        ];
-        let mut given = given.into_iter().filter_map(|(length, source)| Some((length?, source)));
-        let known = given.next();
-        self.length = known.map(|(length, _)| length);
-        self.source = known.map_or(LengthSource::Unknown, |(_, source)| source);
-        self.in_use = false;
-    }
-
-    /// The first move with a tool: which length is assumed is kept for the summary; where the axis positions depend on a
-    /// length that is not given, there is no program.
-    #[cold]
-    fn take_into_use(&mut self, line: u64) {
-        self.in_use = true;
-        let used = ReportedTool {
-            number: self.tool.as_ref().map(|tool| tool.number),
-            length_mm: self.length.unwrap_or(0.0),
-            source: self.source,
-        };
-        if let Some(finding) =
-            self.lengths.check(self.base, self.machine, (used.number, self.length))
-        {
-            self.findings.at(line, finding);
-        }
-        if self.tools.contains(&used) {
-            return;
-        }
-        if self.tools.len() >= MOST_TOOLS {
-            let fault =
-                Diagnostic::error("tool", format!("more than {MOST_TOOLS} different tools"));
-            self.findings.at(line, fault.help("is this the CL file of one program?"));
-            return;
-        }
-        if self.source == LengthSource::Unknown {
-            self.findings.at(line, unknown_length(used.number, self.length_matters()));
-        }
-        self.tools.push(used);
-    }
-
     /// Takes machine and tool length into the route.
     fn equip(&mut self, line: u64) {
         self.setting = None;
@@ -534,36 +495,6 @@ impl<'a> ConfigurationStage<'a> {
             Ok(_) => {}
             Err(fault) => self.findings.at(line, *fault),
         }
-    }
-
-    /// Does the program depend on the tool length? On a machine whose head turns, if the control does not keep the tip.
-    fn length_matters(&self) -> bool {
-        let machine = self.machine;
-        if machine.control.tcp == Tcp::Control {
-            return false;
-        }
-        let first_linear = machine.axes.iter().position(|axis| !axis.joint.rotary);
-        machine.axes.iter().skip(first_linear.unwrap_or(0)).any(|axis| axis.joint.rotary)
-    }
-}
-
-/// The length of a tool is not given; `matters` if the axis positions of the program depend on it, else travel alone is
-/// checked with it.
-fn unknown_length(number: Option<u32>, matters: bool) -> Diagnostic {
-    let tool = match number {
-        Some(number) => format!("of tool {number}"),
-        None => "of the tool".to_owned(),
-    };
-    let help = "give --tool-length, or [tools] in the machine file";
-    if matters {
-        let message = format!(
-            "no length {tool} is known, and on this machine, whose head turns, the axis positions depend on it"
-        );
-        Diagnostic::error("tool-length", message)
-            .help(format!("{help}; --tool-length 0 says that there is none"))
-    } else {
-        let message = format!("no length {tool} is known: travel was checked with 0 mm");
-        Diagnostic::warning("tool-length", message).help(help)
     }
 }
 

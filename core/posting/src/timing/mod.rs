@@ -131,16 +131,21 @@ impl<'a> TimingStage<'a> {
     /// Fills in the times of a batch.
     pub(crate) fn take(&mut self, batch: &mut [StreamItem<MotionBlock>]) {
         for next in batch {
-            match next {
-                StreamItem::Point(block) => self.block(block),
-                StreamItem::Curve { curve, .. } => self.block(&mut curve.block),
+            let block = match next {
+                StreamItem::Point(block) => block,
+                StreamItem::Curve { curve, .. } => &mut curve.block,
                 StreamItem::Hole(hole) => {
                     self.take(&mut hole.above);
                     self.take(&mut hole.into);
+                    continue;
                 }
-                StreamItem::Command { command, .. } => self.command(command),
-                StreamItem::Note { .. } => {}
-            }
+                StreamItem::Command { command, .. } => {
+                    self.command(command);
+                    continue;
+                }
+                StreamItem::Note { .. } => continue,
+            };
+            self.block(block);
         }
     }
 

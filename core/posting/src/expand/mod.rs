@@ -2,7 +2,7 @@
 //!
 //! What a dialect writes itself it declares at open ([`post_plugin::Capabilities`]). Everything leaves here as moves and
 //! commands; those of a curve or a hole that the dialect may write go on as one element, with the curve or the cycle
-//! (see [`crate::stream`]).
+//! (`stream`).
 
 mod planes;
 mod tangential;

@@ -87,13 +87,13 @@ impl ClInterpreter {
             self.fault(record, "spindle", message, "SPINDL/SMM,speed,MAXRPM,limit");
             return;
         }
-        let most = most.or(self.surface_speed.and_then(|(_, most)| most));
-        self.rpm = None;
-        self.surface_speed = Some((metres, most));
+        let most = most.or(self.spindle.surface_speed.and_then(|(_, most)| most));
+        self.spindle.rpm = None;
+        self.spindle.surface_speed = Some((metres, most));
         emit(ProgramStep::Command(Command::SurfaceSpeed {
             speed: metres,
             most,
-            sense: self.sense,
+            sense: self.spindle.sense,
         }));
     }
 

@@ -50,7 +50,7 @@ impl ClInterpreter {
                 return;
             }
         };
-        if self.cycle.is_some() {
+        if self.cycles.in_force.is_some() {
             self.fault(
                 record,
                 "arc",

@@ -48,11 +48,11 @@ impl ClInterpreter {
             }
             None => None,
         };
-        if self.cycle_lost {
+        if self.cycles.lost {
             self.lost_hole(record, point, axis);
             return;
         }
-        if pending.is_none() && self.cycle.is_none() {
+        if pending.is_none() && self.cycles.in_force.is_none() {
             return self.plain_goto(record, point, axis, &mut |step| emit(step));
         }
         let start_axis = self.axis;
@@ -73,7 +73,7 @@ impl ClInterpreter {
                 Some(circle) => self.arc(record, &circle, tip, start_axis, emit),
                 None => self.tip = Some(tip),
             }
-        } else if let Some((drill, feed)) = self.cycle
+        } else if let Some((drill, feed)) = self.cycles.in_force
             && let Some(pace) = self.resolved(record, feed)
         {
             self.drill(record, drill, pace, tip, emit);
@@ -113,7 +113,7 @@ impl ClInterpreter {
             );
             return;
         };
-        if self.cycle.is_some() {
+        if self.cycles.in_force.is_some() {
             self.fault(
                 record,
                 "godlta",
@@ -164,9 +164,9 @@ impl ClInterpreter {
             return;
         };
         // A cycle does not act at home.
-        let cycle = self.cycle.take();
+        let cycle = self.cycles.in_force.take();
         self.goto(record, point, axis, emit);
-        self.cycle = cycle;
+        self.cycles.in_force = cycle;
     }
 
     /// Takes the axis of a six-number point; false if it is not an axis.
@@ -248,7 +248,7 @@ impl ClInterpreter {
         self.tip = Some(tip);
         self.measured = true;
         self.moved = true;
-        self.cut_any = true;
+        self.tools.moved = true;
     }
 
     /// The motion to `tip` (frame of the file) with axis and edge in force.

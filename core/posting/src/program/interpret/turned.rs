@@ -175,7 +175,7 @@ impl ClInterpreter {
     ) {
         self.end_spline(record, emit);
         let set_out = self.set_out.take();
-        if self.cycle_lost {
+        if self.cycles.lost {
             return;
         }
         self.before_move(record, emit);

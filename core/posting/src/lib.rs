@@ -49,7 +49,7 @@ pub use mount_bounds::MountBounds;
 pub use observer::{Observer, TextSink};
 pub use post::{Post, PostingRequest};
 pub use shift::{PathPoint, PathShift};
-pub use stream::{Hole, StreamItem, StreamPoint};
+pub use stream::{HoleMoves, StreamItem, StreamPoint};
 pub use tightening::{TightPlace, Tightening};
 pub use timing::limits;
 

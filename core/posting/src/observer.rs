@@ -6,7 +6,7 @@ use crate::accuracy::NodeMove;
 use crate::blocks::MotionBlock;
 use crate::curve::CurveBlock;
 use crate::program::Command;
-use crate::stream::{Hole, StreamItem};
+use crate::stream::{HoleMoves, StreamItem};
 
 /// Where the text of the program goes.
 pub trait TextSink {
@@ -36,7 +36,7 @@ pub trait Observer {
     }
 
     /// A hole, as a cycle of the control or by its moves: these one by one.
-    fn hole(&mut self, hole: &Hole<MotionBlock>) {
+    fn hole(&mut self, hole: &HoleMoves<MotionBlock>) {
         self.blocks(&hole.above);
         self.blocks(&hole.into);
     }

@@ -40,7 +40,7 @@ pub enum StreamItem<P: StreamPoint> {
         curve: Box<P::Curve>,
     },
     /// A hole that the control may have a cycle for, with its moves.
-    Hole(Box<Hole<P>>),
+    Hole(Box<HoleMoves<P>>),
     /// A command between points.
     Command {
         /// Line of the CL file.
@@ -59,7 +59,7 @@ pub enum StreamItem<P: StreamPoint> {
 
 /// The moves of a cycle at one point, which the control may have a cycle for.
 #[derive(Clone, Debug)]
-pub struct Hole<P: StreamPoint> {
+pub struct HoleMoves<P: StreamPoint> {
     /// Line of the CL file.
     pub line: u64,
     /// The cycle in force.
@@ -87,14 +87,14 @@ impl<P: StreamPoint> StreamItem<P> {
     }
 }
 
-impl<P: StreamPoint> Hole<P> {
+impl<P: StreamPoint> HoleMoves<P> {
     /// The hole with other moves, made of its own: first of those above it, then of those into it.
     pub(crate) fn remade<Q: StreamPoint>(
         &self,
         mut remake: impl FnMut(&[StreamItem<P>]) -> Vec<StreamItem<Q>>,
-    ) -> Hole<Q> {
+    ) -> HoleMoves<Q> {
         let Self { line, cycle, point, axis, .. } = *self;
-        Hole { line, cycle, point, axis, above: remake(&self.above), into: remake(&self.into) }
+        HoleMoves { line, cycle, point, axis, above: remake(&self.above), into: remake(&self.into) }
     }
 }
 

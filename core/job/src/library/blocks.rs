@@ -2,7 +2,7 @@
 
 use post_machine::description::Machine;
 use post_posting::program::Command;
-use post_posting::{Hole, MotionBlock, Observer};
+use post_posting::{HoleMoves, MotionBlock, Observer};
 
 use crate::columns::{Column, Kind};
 use crate::posted::{self, PostedBlock, PostedProgram};
@@ -83,7 +83,7 @@ impl Observer for BlockArrays<'_> {
         }
     }
 
-    fn hole(&mut self, hole: &Hole<MotionBlock>) {
+    fn hole(&mut self, hole: &HoleMoves<MotionBlock>) {
         self.blocks(&hole.above);
         self.program.hole = true;
         self.blocks(&hole.into);

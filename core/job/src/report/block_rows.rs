@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use post_machine::description::{Machine, Tcp};
 use post_machine::kinematics::{Chain, Joints};
 use post_posting::program::Command;
-use post_posting::{BlockKind, BlockReason, Hole, MotionBlock, Observer};
+use post_posting::{BlockKind, BlockReason, HoleMoves, MotionBlock, Observer};
 use post_report::meta::Meta;
 
 use super::branch::{self, Branch};
@@ -321,7 +321,7 @@ impl Observer for BlockRows<'_> {
         }
     }
 
-    fn hole(&mut self, hole: &Hole<MotionBlock>) {
+    fn hole(&mut self, hole: &HoleMoves<MotionBlock>) {
         self.marks.event(self.table.rows(), "cycle", "hole".to_owned());
         self.blocks(&hole.above);
         self.program.hole = true;

@@ -30,7 +30,7 @@ use crate::findings::Findings;
 use crate::observer::Observers;
 use crate::program::{Command, MoveFeed, StraightMove};
 use crate::refusal;
-use crate::stream::{BatchSink, Hole, StreamItem, gathered};
+use crate::stream::{BatchSink, HoleMoves, StreamItem, gathered};
 pub use block::{BlockDuration, BlockKind, BlockNote, BlockReason, MotionBlock, PlannedTime};
 pub(crate) use compensating_motion::CompensatingMotion;
 pub use compensating_motion::FollowTime;
@@ -313,7 +313,7 @@ impl<'a> BlockStage<'a> {
     /// The moves of a hole as blocks; no run goes on into it or out of it.
     fn hole(
         &mut self,
-        hole: &Hole<ChosenPoint>,
+        hole: &HoleMoves<ChosenPoint>,
         placed: &mut PlacedBatch,
         out: &mut BlockSink<'_>,
     ) {

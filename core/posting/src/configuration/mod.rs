@@ -36,7 +36,7 @@ use crate::curve::CurveMoves;
 use crate::expand::{FixedAxis, PathMove};
 use crate::findings::Findings;
 use crate::program::{Command, StraightMove, ToolChange};
-use crate::stream::{BatchSink, Hole, StreamItem, StreamPoint};
+use crate::stream::{BatchSink, HoleMoves, StreamItem, StreamPoint};
 use lengths::LengthAxisCheck;
 use pending_element::PendingElement;
 pub(crate) use route::ChosenPoint;
@@ -213,7 +213,7 @@ impl<'a> ConfigurationStage<'a> {
 
     /// Those of a hole likewise.
     #[inline(never)]
-    fn hole(&mut self, mut hole: Hole<PathMove>, out: &mut ConfiguredSink<'_>) {
+    fn hole(&mut self, mut hole: HoleMoves<PathMove>, out: &mut ConfiguredSink<'_>) {
         let begins = hole.remade(|part| Vec::with_capacity(part.len()));
         self.arrange(WaitingItem::Between(StreamItem::Hole(Box::new(begins))), out);
         self.take(&mut hole.above, out);

@@ -13,14 +13,14 @@ use post_plugin::{Capabilities, Cycle, Event, Feed, ToolPose};
 use super::EmitStage;
 use crate::blocks::{BlockKind, MotionBlock};
 use crate::program::MoveFeed;
-use crate::stream::{Hole, StreamItem};
+use crate::stream::{HoleMoves, StreamItem};
 
 /// A feed that differs by less is the same.
 const SAME_FEED: f64 = 1e-6;
 
 /// The cycle in force: what [`Event::Cycle`] said, and where its points have their retract level.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct CycleInForce {
+pub(super) struct CommandedCycle {
     kind: Cycle,
     feed: Feed,
     depth: f64,
@@ -35,7 +35,7 @@ pub(super) struct CycleInForce {
 
 /// A hole as a cycle.
 struct NativeCycle {
-    cycle: CycleInForce,
+    cycle: CommandedCycle,
     /// All axis words with the tip on the point.
     words: WordValues,
     /// Distance by which it is farther off the CL path than the moves are, mm.
@@ -43,7 +43,7 @@ struct NativeCycle {
 }
 
 /// Places of the words that cycles move.
-pub(super) struct CycleWords {
+pub(super) struct CycleWordPlaces {
     /// The word Z of the linear axis along which the cycles of a control drill.
     pub z: Option<usize>,
     /// The same, if the tool stands along it with every rotary axis at zero.
@@ -52,7 +52,7 @@ pub(super) struct CycleWords {
     pub across: Vec<usize>,
 }
 
-impl CycleWords {
+impl CycleWordPlaces {
     pub(super) fn new(machine: &Machine) -> Self {
         let order = axis_words::order(machine);
         let z = order.iter().position(|joint| machine.axes[*joint].name == "Z");
@@ -75,7 +75,7 @@ impl EmitStage<'_> {
     }
 
     /// A hole, as a cycle or by its moves.
-    pub(super) fn hole(&mut self, hole: &Hole<MotionBlock>) {
+    pub(super) fn hole(&mut self, hole: &HoleMoves<MotionBlock>) {
         let native = self.native(hole);
         if native.is_none() && hole.cycle.alone {
             self.findings.at(hole.line, not_here());
@@ -125,7 +125,7 @@ impl EmitStage<'_> {
     }
 
     /// The cycle, unless it is in force, and its point.
-    fn point(&mut self, hole: &Hole<MotionBlock>, native: &NativeCycle, in_force: bool) {
+    fn point(&mut self, hole: &HoleMoves<MotionBlock>, native: &NativeCycle, in_force: bool) {
         if self.clamps()
             && let Some(block) = points(&hole.into).find(|block| block.kind == BlockKind::Linear)
         {
@@ -169,7 +169,7 @@ impl EmitStage<'_> {
     }
 
     /// The hole as a cycle; none if it is not the same.
-    fn native(&self, hole: &Hole<MotionBlock>) -> Option<NativeCycle> {
+    fn native(&self, hole: &HoleMoves<MotionBlock>) -> Option<NativeCycle> {
         let machine = self.machine;
         let drilling = &hole.cycle;
         // Where the control keeps the tip, and where the plane is tilted, it must have said so.
@@ -231,7 +231,7 @@ impl EmitStage<'_> {
         }
         let in_units = |way: Option<f64>| way.map(|way| way / unit);
         Some(NativeCycle {
-            cycle: CycleInForce {
+            cycle: CommandedCycle {
                 kind: drilling.kind,
                 feed,
                 depth,
@@ -257,7 +257,7 @@ impl EmitStage<'_> {
     }
 
     /// The words of the way into the hole go down the depth word.
-    fn upright(&self, hole: &Hole<MotionBlock>, level: &MotionBlock, place: usize) -> bool {
+    fn upright(&self, hole: &HoleMoves<MotionBlock>, level: &MotionBlock, place: usize) -> bool {
         let bottom = points(&hole.into).map(|block| block.words[place]);
         let bottom = bottom.fold(f64::INFINITY, f64::min);
         let unit = unit_length(self.machine.control.units);
@@ -275,7 +275,12 @@ impl EmitStage<'_> {
 
     /// How far the moves leave the straight way down through the level's words, in program units; none if that is more than
     /// the tolerance leaves.
-    fn drift(&self, hole: &Hole<MotionBlock>, level: &MotionBlock, place: usize) -> Option<f64> {
+    fn drift(
+        &self,
+        hole: &HoleMoves<MotionBlock>,
+        level: &MotionBlock,
+        place: usize,
+    ) -> Option<f64> {
         let unit = unit_length(self.machine.control.units);
         let (mut drift, mut deviation) = (0.0_f64, 0.0_f64);
         for block in points(&hole.into) {
@@ -292,7 +297,7 @@ impl EmitStage<'_> {
     }
 
     /// The feed of the cycle, per minute, as it is printed: that of its slowest block.
-    fn cycle_feed(&self, hole: &Hole<MotionBlock>) -> Option<Feed> {
+    fn cycle_feed(&self, hole: &HoleMoves<MotionBlock>) -> Option<Feed> {
         let unit = unit_length(self.machine.control.units);
         let mut slowest = f64::INFINITY;
         let mut asked = f64::INFINITY;

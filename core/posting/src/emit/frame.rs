@@ -6,7 +6,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Capabilities, Coolant, Event, Spindle};
 
-use super::cycles::CycleWords;
+use super::cycles::CycleWordPlaces;
 use super::state::FirstPosition;
 use super::{EmitStage, stands};
 use crate::blocks::{BlockReason, MotionBlock};
@@ -249,7 +249,7 @@ impl EmitStage<'_> {
         self.tool = None;
         self.machine = &head.machine;
         self.words = Words::new(self.machine, self.writer.format());
-        self.cycle_words = CycleWords::new(self.machine);
+        self.cycle_words = CycleWordPlaces::new(self.machine);
         match &head.word {
             Some(word) => self.writer.push(line, Event::Word { text: word }),
             None => {

@@ -22,7 +22,7 @@ use crate::job_facts::JobFacts;
 use crate::observer::{Observers, TextSink};
 use crate::program::Command;
 use crate::stream::StreamItem;
-use cycles::{CycleInForce, CycleWords};
+use cycles::{CommandedCycle, CycleWordPlaces};
 pub(crate) use extremes::Extremes;
 use state::{
     ClampState, CompensationState, CoolantState, PlaneState, SmoothingState, SpindleState,
@@ -49,8 +49,8 @@ pub(crate) struct EmitStage<'a> {
     coolant: CoolantState,
     plane: PlaneState,
     /// The cycle in force.
-    cycle: Option<CycleInForce>,
-    cycle_words: CycleWords,
+    cycle: Option<CommandedCycle>,
+    cycle_words: CycleWordPlaces,
     /// The tool in the spindle.
     tool: Option<u32>,
     /// The work offset that the CL file names; none before it names one.
@@ -97,7 +97,7 @@ impl<'a> EmitStage<'a> {
             coolant: CoolantState::default(),
             plane: PlaneState::default(),
             cycle: None,
-            cycle_words: CycleWords::new(machine),
+            cycle_words: CycleWordPlaces::new(machine),
             tool: None,
             offset: None,
             told_mount: false,

@@ -24,7 +24,7 @@ use crate::program::{
     ArcStep, Command, CycleLeg, CycleStep, DrillCycle, MoveFeed, ProgramStep, SplineStep,
     StraightMove,
 };
-use crate::stream::{BatchSink, Hole, StreamItem, StreamPoint, gathered};
+use crate::stream::{BatchSink, HoleMoves, StreamItem, StreamPoint, gathered};
 use planes::PlaneTracker;
 use tangential::Tangential;
 
@@ -339,7 +339,7 @@ impl ExpandStage {
         let above = gathered(above);
         let into = gathered(|out| self.cycle_legs(&at, rest, out));
         let StraightMove { tip: point, axis, .. } = point;
-        out.push(StreamItem::Hole(Box::new(Hole { line, cycle, point, axis, above, into })));
+        out.push(StreamItem::Hole(Box::new(HoleMoves { line, cycle, point, axis, above, into })));
     }
 
     /// Between holes the tool goes up before it goes aside, and aside before it goes down.

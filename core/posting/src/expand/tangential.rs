@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 use super::{ExpandedSink, PathMove};
 use crate::findings::Findings;
 use crate::program::{Command, MoveFeed, StraightMove};
-use crate::stream::{Hole, StreamItem, gathered};
+use crate::stream::{HoleMoves, StreamItem, gathered};
 use post_machine::description::{EdgeSource, Machine, Rewind};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::orientation::angle;
@@ -60,7 +60,7 @@ pub(super) struct Tangential {
 }
 
 /// What is known of the moves that waited, while they are handed on.
-struct Held {
+struct HeldMoves {
     /// Direction of the cut that comes after them.
     go: Option<Vector3<f64>>,
     /// The edge was turned to it.
@@ -162,7 +162,7 @@ impl Tangential {
     }
 
     /// Takes a hole. Its ways lead straight in and out, or are rapids: they have no direction.
-    fn hole(&mut self, hole: Hole<PathMove>, out: &mut ExpandedSink<'_>) {
+    fn hole(&mut self, hole: HoleMoves<PathMove>, out: &mut ExpandedSink<'_>) {
         if self.source == EdgeSource::Cl {
             let hole = hole.remade(|part| {
                 gathered(|out| part.iter().for_each(|next| self.take(next.clone(), out)))
@@ -197,7 +197,7 @@ impl Tangential {
         let moves = self.behind.iter().any(moves);
         // Where no cut came before, the edge stands as the first cut wants it from the beginning.
         self.has_cut |= self.cut.is_some();
-        let mut held = Held { go, turned: !self.has_cut, last: None };
+        let mut held = HeldMoves { go, turned: !self.has_cut, last: None };
         if let Some((line, motion, come)) = self.cut.take() {
             match go.filter(|_| !moves) {
                 Some(go) if turn(come, go, motion.axis) > self.corner => {
@@ -211,7 +211,7 @@ impl Tangential {
         for next in std::mem::take(&mut self.behind) {
             self.pass_held(next, &mut held, out);
         }
-        let Held { turned, last, .. } = held;
+        let HeldMoves { turned, last, .. } = held;
         let (false, Some(go), Some((line, motion))) = (turned, go, last) else {
             return;
         };
@@ -229,7 +229,7 @@ impl Tangential {
     fn pass_held(
         &mut self,
         next: StreamItem<PathMove>,
-        held: &mut Held,
+        held: &mut HeldMoves,
         out: &mut ExpandedSink<'_>,
     ) {
         match next {

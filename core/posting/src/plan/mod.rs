@@ -36,7 +36,7 @@ use crate::accuracy::Placer;
 use crate::blocks::{BlockKind, BlockNote, BlockSink, MotionBlock};
 use crate::findings::Findings;
 use crate::program::Command;
-use crate::stream::{Hole, StreamItem};
+use crate::stream::{HoleMoves, StreamItem};
 use crate::tightening::Tightening;
 pub use account::{LimitShare, PlanReport, axis_name};
 pub use limits::{SampledAxes, limits};
@@ -251,7 +251,7 @@ impl<'a> PlanStage<'a> {
     }
 
     /// A hole may become a cycle: no feed is planned in it.
-    fn hole(&mut self, mut hole: Box<Hole<MotionBlock>>, out: &mut BlockSink<'_>) {
+    fn hole(&mut self, mut hole: Box<HoleMoves<MotionBlock>>, out: &mut BlockSink<'_>) {
         self.stop(out);
         let mut keeps = |next: &StreamItem<MotionBlock>| {
             if let StreamItem::Note { note: BlockNote::Placer(placer), .. } = next {

@@ -43,16 +43,15 @@ impl BlockStage<'_> {
     /// The first position after the start, a tool change, or a turn of an index axis.
     pub(super) fn first(
         &mut self,
-        placer: &Placer,
         leg: &PathLeg<'_>,
         node: &PathNode,
         kind: BlockKind,
         out: &mut BlockSink<'_>,
     ) {
-        if !self.comes_from_above(placer, node) {
+        if !self.comes_from_above(leg.placer, node) {
             return self.come(leg, node, kind, out);
         }
-        let stops = self.stops_above(placer, node);
+        let stops = self.stops_above(leg.placer, node);
         let mut last: Option<&PathNode> = None;
         for stop in &stops {
             let motion = StraightMove {
@@ -64,15 +63,15 @@ impl BlockStage<'_> {
             let over = PathLeg { motion: &motion, loose: true, reason: BlockReason::Above, ..*leg };
             match last {
                 None => self.come(&over, stop, kind, out),
-                Some(last) => self.cut(placer, &over, last, stop, out),
+                Some(last) => self.cut(&over, last, stop, out),
             }
             last = Some(stop);
         }
         match last {
             Some(last) => {
                 // Into a bore it is no rapid over the part.
-                let loose = leg.loose && placer.solver().closed_form();
-                self.cut(placer, &PathLeg { loose, ..*leg }, last, node, out);
+                let loose = leg.loose && leg.placer.solver().closed_form();
+                self.cut(&PathLeg { loose, ..*leg }, last, node, out);
             }
             // It is up there already.
             None => {

@@ -48,6 +48,8 @@ const LEAST_TOGETHER: usize = 4;
 /// A straight piece of the CL path on its way to become blocks.
 #[derive(Clone, Copy, Debug)]
 struct PathLeg<'m> {
+    /// What solves its points.
+    placer: &'m Placer,
     line: u64,
     motion: &'m StraightMove,
     /// Leg off the part: the tolerance of a rapid is enough.
@@ -126,7 +128,7 @@ pub(crate) struct BlockStage<'a> {
     /// The node before that, to be filled again.
     spare: Option<Box<PathNode>>,
     /// Points that are solved together.
-    placed: Option<Box<PlacedBatch>>,
+    placed: Box<PlacedBatch>,
     /// The last move was a cut: the tool is on the part.
     on_part: bool,
     /// The control begins to keep the tip in a block that moves nothing.
@@ -172,7 +174,7 @@ impl<'a> BlockStage<'a> {
             nominal: Vec::new(),
             last: None,
             spare: None,
-            placed: None,
+            placed: Box::default(),
             on_part: false,
             tcp_still: writes.has(Capabilities::TCP_STILL),
             compensates: !tcp || writes.has(Capabilities::COMPENSATE_TCP),
@@ -229,25 +231,13 @@ impl<'a> BlockStage<'a> {
         self.gathered.first_line()
     }
 
-    /// Takes a batch.
-    pub(crate) fn take(&mut self, batch: &[StreamItem<ChosenPoint>], out: &mut BlockSink<'_>) {
-        let mut placed = self.placed.take().unwrap_or_default();
-        self.elements(batch, &mut placed, out);
-        self.placed = Some(placed);
-    }
-
-    /// Takes elements in order; none of them is solved ahead in `placed`.
-    fn elements(
-        &mut self,
-        elements: &[StreamItem<ChosenPoint>],
-        placed: &mut PlacedBatch,
-        out: &mut BlockSink<'_>,
-    ) {
+    /// Takes elements in order; none of them is solved ahead.
+    pub(crate) fn take(&mut self, elements: &[StreamItem<ChosenPoint>], out: &mut BlockSink<'_>) {
         let mut from = 0;
         while from < elements.len() {
-            let count = self.settle_ahead(&elements[from..], placed);
+            let count = self.settle_ahead(&elements[from..]);
             for (lane, next) in elements[from..from + count].iter().enumerate() {
-                self.next(next, lane, placed, out);
+                self.next(next, lane, out);
             }
             from += count;
         }
@@ -255,7 +245,7 @@ impl<'a> BlockStage<'a> {
 
     /// Solves the points at the front of a batch together, as far as one placer solves them; gives how many elements
     /// they are. Where there are few, or the next is something else, nothing is solved ahead.
-    fn settle_ahead(&self, batch: &[StreamItem<ChosenPoint>], placed: &mut PlacedBatch) -> usize {
+    fn settle_ahead(&mut self, batch: &[StreamItem<ChosenPoint>]) -> usize {
         let points = || {
             batch.iter().map_while(|next| match next {
                 StreamItem::Point(chosen) if chosen.arrives => {
@@ -266,28 +256,22 @@ impl<'a> BlockStage<'a> {
         };
         let count = points().take(PlacedBatch::MOST).count();
         match &self.placer {
-            Some(placer) if count >= LEAST_TOGETHER => placed.settle(placer, points()),
-            _ => placed.forget(),
+            Some(placer) if count >= LEAST_TOGETHER => self.placed.settle(placer, points()),
+            _ => self.placed.forget(),
         }
         count.max(1)
     }
 
     /// One element; `lane` is its place among those that were solved together.
     #[inline]
-    fn next(
-        &mut self,
-        next: &StreamItem<ChosenPoint>,
-        lane: usize,
-        placed: &mut PlacedBatch,
-        out: &mut BlockSink<'_>,
-    ) {
+    fn next(&mut self, next: &StreamItem<ChosenPoint>, lane: usize, out: &mut BlockSink<'_>) {
         match next {
-            StreamItem::Point(chosen) => self.point(chosen, lane, placed, out),
+            StreamItem::Point(chosen) => self.point(chosen, lane, out),
             StreamItem::Curve { line, curve } => {
                 self.end_run(out);
-                self.go_along(*line, curve, placed, out);
+                self.go_along(*line, curve, out);
             }
-            StreamItem::Hole(hole) => self.hole(hole, placed, out),
+            StreamItem::Hole(hole) => self.hole(hole, out),
             StreamItem::Command { line, command } => self.command(*line, command, out),
             StreamItem::Note { line, note } => {
                 self.end_run(out);
@@ -311,16 +295,11 @@ impl<'a> BlockStage<'a> {
     }
 
     /// The moves of a hole as blocks; no run goes on into it or out of it.
-    fn hole(
-        &mut self,
-        hole: &HoleMoves<ChosenPoint>,
-        placed: &mut PlacedBatch,
-        out: &mut BlockSink<'_>,
-    ) {
+    fn hole(&mut self, hole: &HoleMoves<ChosenPoint>, out: &mut BlockSink<'_>) {
         self.end_run(out);
         let made = hole.remade(|part| {
             gathered(|out| {
-                self.elements(part, placed, out);
+                self.take(part, out);
                 self.end_run(out);
             })
         });
@@ -357,18 +336,13 @@ impl<'a> BlockStage<'a> {
     }
 
     #[inline]
-    fn point(
-        &mut self,
-        chosen: &ChosenPoint,
-        lane: usize,
-        placed: &mut PlacedBatch,
-        out: &mut BlockSink<'_>,
-    ) {
-        self.enter_plane(chosen, placed, out);
+    fn point(&mut self, chosen: &ChosenPoint, lane: usize, out: &mut BlockSink<'_>) {
+        self.enter_plane(chosen, out);
         let Some(placer) = self.placer.clone() else {
             return;
         };
         let leg = PathLeg {
+            placer: &placer,
             line: chosen.line,
             motion: &chosen.motion,
             loose: chosen.motion.pace == MoveFeed::Rapid,
@@ -378,14 +352,14 @@ impl<'a> BlockStage<'a> {
             self.counts.branch_changes += u64::from(chosen.changed && leg.loose);
             self.counts.eased += u64::from(chosen.eased);
             let mut node = self.spare.take().unwrap_or_default();
-            let settled = if placed.take(lane, &mut node) {
+            let settled = if self.placed.take(lane, &mut node) {
                 Ok(())
             } else {
                 let standing = self.planes.standing(chosen);
                 placer.settle(&mut node, pose(leg.motion), 1.0, standing)
             };
             match settled {
-                Ok(()) => self.travel(&placer, &leg, node, out),
+                Ok(()) => self.travel(&leg, node, out),
                 Err(refused) => {
                     self.spare = Some(node);
                     self.findings.at(leg.line, refusal::refused(self.machine, &refused));
@@ -394,37 +368,31 @@ impl<'a> BlockStage<'a> {
         }
         if let Some(joints) = &chosen.rewind {
             self.end_run(out);
-            self.rewind(&placer, &leg, joints, out);
+            self.rewind(&leg, joints, out);
         }
     }
 
     #[inline]
-    fn travel(
-        &mut self,
-        placer: &Placer,
-        leg: &PathLeg<'_>,
-        mut node: Box<PathNode>,
-        out: &mut BlockSink<'_>,
-    ) {
+    fn travel(&mut self, leg: &PathLeg<'_>, mut node: Box<PathNode>, out: &mut BlockSink<'_>) {
         if self.compensating {
-            self.check_compensation(placer, leg.line, &node);
+            self.check_compensation(leg.placer, leg.line, &node);
         }
         if let Some(last) = &self.last {
-            self.steady(placer, last, &mut node);
+            self.steady(leg.placer, last, &mut node);
         }
         let gathers = self.gathers(leg, &node);
         if !gathers {
             self.end_run(out);
         }
         match self.last.take() {
-            None => self.first(placer, leg, &node, BlockKind::Position, out),
+            None => self.first(leg, &node, BlockKind::Position, out),
             Some(last) if self.machine.indexes && self.indexes(&last, &node) => {
                 // An index axis turns with the tool retracted, not somewhere over the part.
-                let last = self.leave_part(placer, leg.line, last, out);
-                self.first(placer, leg, &node, BlockKind::Reference, out);
+                let last = self.leave_part(leg.placer, leg.line, last, out);
+                self.first(leg, &node, BlockKind::Reference, out);
                 self.spare = Some(last);
             }
-            Some(last) => self.spare = Some(self.go(placer, leg, last, &mut node, gathers, out)),
+            Some(last) => self.spare = Some(self.go(leg, last, &mut node, gathers, out)),
         }
         self.on_part = leg.motion.pace != MoveFeed::Rapid;
         self.last = Some(node);
@@ -434,7 +402,6 @@ impl<'a> BlockStage<'a> {
     #[inline]
     fn go(
         &mut self,
-        placer: &Placer,
         leg: &PathLeg<'_>,
         mut last: Box<PathNode>,
         node: &mut PathNode,
@@ -445,25 +412,25 @@ impl<'a> BlockStage<'a> {
             // The tool leaves the part as it stands, and turns when it is away: where its axis stays, nothing turns
             // (unless the tip depends on it, as it does without a closed form).
             let joints = &last.trace.joints;
-            let stay = if placer.solver().closed_form() && self.points_alike(&last, node) {
-                placer.settled(node.target, 1.0, joints)
+            let stay = if leg.placer.solver().closed_form() && self.points_alike(&last, node) {
+                leg.placer.settled(node.target, 1.0, joints)
             } else {
-                placer.place(node.target, 1.0, joints)
+                leg.placer.place(node.target, 1.0, joints)
             };
             if let Ok(stay) = stay
                 && self.turn_between(&last, &stay) + TURN < self.turn_between(&last, node)
             {
                 let leaving = PathLeg { reason: BlockReason::Leave, ..*leg };
-                self.cut(placer, &leaving, &last, &stay, out);
+                self.cut(&leaving, &last, &stay, out);
                 *last = stay;
             }
         }
         if !self.excluded(&last, node).is_empty() {
-            self.by_stages(placer, leg, &last, node, out);
+            self.by_stages(leg, &last, node, out);
         } else if gathers {
             self.gather(leg, &last, node, out);
         } else {
-            self.cut(placer, leg, &last, node, out);
+            self.cut(leg, &last, node, out);
         }
         last
     }
@@ -498,14 +465,13 @@ impl<'a> BlockStage<'a> {
     #[inline]
     fn cut(
         &mut self,
-        placer: &Placer,
         leg: &PathLeg<'_>,
         last: &PathNode,
         node: &PathNode,
         out: &mut BlockSink<'_>,
     ) {
         let chord = leg.motion.chord;
-        let whole = NodeMove::planned(self.machine, placer, chord, leg.loose, [last, node]);
+        let whole = NodeMove::planned(self.machine, leg.placer, chord, leg.loose, [last, node]);
         if let Some(observers) = &self.observers
             && !leg.loose
         {
@@ -520,25 +486,20 @@ impl<'a> BlockStage<'a> {
                     bound
                 };
                 let nominal = self.nominal(leg, last, node);
-                self.push(placer, leg, [last, node], nominal, bound, out);
+                self.push(leg, [last, node], nominal, bound, out);
             }
-            None => self.split(placer, &[*leg], &[*last, *node], out),
+            None => self.split(&[*leg], &[*last, *node], out),
         }
     }
 
     /// Legs, one after the other, that need points or can do without some of their own.
-    fn split(
-        &mut self,
-        placer: &Placer,
-        legs: &[PathLeg<'_>],
-        nodes: &[PathNode],
-        out: &mut BlockSink<'_>,
-    ) {
+    fn split(&mut self, legs: &[PathLeg<'_>], nodes: &[PathNode], out: &mut BlockSink<'_>) {
         let Some(first) = legs.first() else {
             return;
         };
         let mut linearise = std::mem::take(&mut self.linearise);
-        let (chord, loose) = (first.motion.chord, first.loose);
+        let PathLeg { placer, loose, .. } = *first;
+        let chord = first.motion.chord;
         let planned = NodeMove::planned(self.machine, placer, chord, loose, [&nodes[0], &nodes[1]]);
         let moves = nodes.windows(2).any(|pair| self.wanted_way(&pair[0], &pair[1]) > STILL);
         let run = NodeRun {
@@ -570,7 +531,7 @@ impl<'a> BlockStage<'a> {
                         ..legs[piece.leg]
                     };
                     let ends = [&from, &piece.to];
-                    self.push(placer, &leg, ends, nominal, piece.bound, out);
+                    self.push(&leg, ends, nominal, piece.bound, out);
                     (from, at) = (piece.to, end);
                 }
                 self.nominal = due;
@@ -589,7 +550,6 @@ impl<'a> BlockStage<'a> {
     #[inline]
     fn push(
         &mut self,
-        placer: &Placer,
         leg: &PathLeg<'_>,
         [from, node]: [&PathNode; 2],
         nominal: NominalTime,
@@ -606,7 +566,7 @@ impl<'a> BlockStage<'a> {
         };
         if self.kinds.turning(&from.trace.joints, &node.trace.joints) {
             let (machine, asked) = (self.machine, block.asked());
-            let way = (placer, leg, [from, node]);
+            let way = (leg, [from, node]);
             block.follow = self.between.block(machine, way, asked, &self.findings);
         }
         out.push(StreamItem::Point(block));

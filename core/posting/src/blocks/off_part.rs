@@ -88,13 +88,14 @@ impl BlockStage<'_> {
             chord: 0.0,
         };
         let leg = PathLeg {
+            placer,
             line,
             motion: &motion,
             // In a bore it is no rapid over the part.
             loose: placer.solver().closed_form(),
             reason: BlockReason::Leave,
         };
-        self.cut(placer, &leg, &last, &away, out);
+        self.cut(&leg, &last, &away, out);
         self.on_part = false;
         Box::new(away)
     }
@@ -137,9 +138,14 @@ impl BlockStage<'_> {
             };
             match placed {
                 Ok(node) => {
-                    let leg =
-                        PathLeg { line, motion: &motion, loose: true, reason: BlockReason::Leave };
-                    self.cut(placer, &leg, &last, &node, out);
+                    let leg = PathLeg {
+                        placer,
+                        line,
+                        motion: &motion,
+                        loose: true,
+                        reason: BlockReason::Leave,
+                    };
+                    self.cut(&leg, &last, &node, out);
                     // Cut short by the end of travel, it may still be in the part: from there it must not go sideways.
                     self.on_part &= place > 0;
                     return Box::new(node);
@@ -202,13 +208,7 @@ impl BlockStage<'_> {
     }
 
     /// Draws the tool back along its axis, turns it to `joints`, and brings it back.
-    pub(super) fn rewind(
-        &mut self,
-        placer: &Placer,
-        leg: &PathLeg<'_>,
-        joints: &Joints,
-        out: &mut BlockSink<'_>,
-    ) {
+    pub(super) fn rewind(&mut self, leg: &PathLeg<'_>, joints: &Joints, out: &mut BlockSink<'_>) {
         let (Some(rewind), Some(last)) = (self.machine.rewind, self.last.take()) else {
             return;
         };
@@ -239,10 +239,10 @@ impl BlockStage<'_> {
                 reason: BlockReason::Rewind,
                 ..*leg
             };
-            match placer.settled(pose(leg.motion), 1.0, &joints) {
+            match leg.placer.settled(pose(leg.motion), 1.0, &joints) {
                 Ok(mut node) => {
                     self.on_part = false;
-                    self.go(placer, &leg, at, &mut node, false, out);
+                    self.go(&leg, at, &mut node, false, out);
                     at = Box::new(node);
                 }
                 Err(refused) => {

@@ -1,7 +1,7 @@
 //! CL points that wait for what comes after them: along one stretch of path some of them may be needless.
 
 use super::{BlockReason, BlockSink, BlockStage, PathLeg, STILL};
-use crate::accuracy::{PathNode, Placer};
+use crate::accuracy::PathNode;
 use crate::program::{MoveFeed, StraightMove};
 use post_machine::description::Axis;
 use post_machine::kinematics::Second;
@@ -103,16 +103,15 @@ impl BlockStage<'_> {
     /// Goes along legs by straight blocks, without the points that are needless, if that is wanted.
     pub(super) fn go_straight(
         &mut self,
-        placer: &Placer,
         legs: &[PathLeg<'_>],
         nodes: &[PathNode],
         out: &mut BlockSink<'_>,
     ) {
         if let (true, [_, _, ..]) = (self.machine.accuracy.reduce, legs) {
-            return self.split(placer, legs, nodes, out);
+            return self.split(legs, nodes, out);
         }
         for (leg, pair) in legs.iter().zip(nodes.windows(2)) {
-            self.cut(placer, leg, &pair[0], &pair[1], out);
+            self.cut(leg, &pair[0], &pair[1], out);
         }
     }
 
@@ -131,6 +130,7 @@ impl BlockStage<'_> {
             .legs
             .iter()
             .map(|(line, motion)| PathLeg {
+                placer: &placer,
                 line: *line,
                 motion,
                 loose: false,
@@ -138,8 +138,8 @@ impl BlockStage<'_> {
             })
             .collect();
         match self.keeps.fits() {
-            true => self.fit(&placer, &legs, &gathered.nodes, out),
-            false => self.go_straight(&placer, &legs, &gathered.nodes, out),
+            true => self.fit(&legs, &gathered.nodes, out),
+            false => self.go_straight(&legs, &gathered.nodes, out),
         }
         gathered.legs.clear();
         gathered.nodes.clear();

@@ -12,7 +12,7 @@ use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::Format;
 
 use super::{BlockNote, BlockSink, BlockStage, TURN};
-use crate::accuracy::{PathNode, PlacedBatch, Placer};
+use crate::accuracy::{PathNode, Placer};
 use crate::configuration::{ChosenPoint, pose};
 
 /// A place so near to the middle between two printed values may stand at either, in last decimals.
@@ -96,18 +96,13 @@ impl BlockStage<'_> {
     /// The plane that a point lies in, if planes are wanted: the present one, or the tool leaves the part and comes back in
     /// another.
     #[inline]
-    pub(super) fn enter_plane(
-        &mut self,
-        chosen: &ChosenPoint,
-        placed: &mut PlacedBatch,
-        out: &mut BlockSink<'_>,
-    ) {
+    pub(super) fn enter_plane(&mut self, chosen: &ChosenPoint, out: &mut BlockSink<'_>) {
         if let Some(origin) = self.planes.wanted {
             let planes = &self.planes;
             let stays = self.last.is_some()
                 && (planes.stands.as_ref()).is_some_and(|stands| planes.stays(stands, chosen));
             if !stays {
-                placed.forget();
+                self.placed.forget();
                 self.change_plane(chosen, origin, out);
             }
             if chosen.rewind.is_some() {

@@ -4,7 +4,7 @@ use super::{
     AxisTravels, BlockKind, BlockReason, BlockSink, BlockStage, FollowTime, MotionBlock,
     NominalTime, PathLeg,
 };
-use crate::accuracy::{DeviationBound, PathNode, Placer, WordFrame};
+use crate::accuracy::{DeviationBound, PathNode, WordFrame};
 use crate::configuration::pose;
 use crate::curve::{CurveWords, PrintedCurve};
 use crate::program::StraightMove;
@@ -28,7 +28,7 @@ pub(super) struct SplineBlock {
 const PLACES: u32 = 16;
 
 /// Places along a spline between its ends, mm, part frame.
-fn places(printed: &BSpline, frame: &WordFrame) -> Vec<Vector3<f64>> {
+fn places(printed: &BSpline, frame: &WordFrame<'_>) -> Vec<Vector3<f64>> {
     let mut places: Vec<Vector3<f64>> = cubics(printed)
         .flat_map(|[a, b, c, d]| {
             (1..=PLACES).map(move |place| {
@@ -47,13 +47,19 @@ impl BlockStage<'_> {
     /// Hands on the block along a spline of so many mm, with its line and the move to its end.
     pub(super) fn push_spline(
         &mut self,
-        frame: &WordFrame,
+        frame: &WordFrame<'_>,
         (line, motion): (u64, &StraightMove),
         spline: SplineBlock,
         way: f64,
         out: &mut BlockSink<'_>,
     ) {
-        let leg = PathLeg { line, motion, loose: false, reason: BlockReason::Point };
+        let leg = PathLeg {
+            placer: frame.placer,
+            line,
+            motion,
+            loose: false,
+            reason: BlockReason::Point,
+        };
         // Whatever its direction, no axis goes faster than the tool.
         let mut follow = FollowTime::default();
         for (joint, slide) in frame.slides() {
@@ -78,8 +84,7 @@ impl BlockStage<'_> {
     /// The block along a spline of the control point, if that can be.
     pub(super) fn spline_block(
         &self,
-        placer: &Placer,
-        frame: &WordFrame,
+        frame: &WordFrame<'_>,
         spline: &BSpline,
         end: &StraightMove,
     ) -> Option<SplineBlock> {
@@ -88,21 +93,22 @@ impl BlockStage<'_> {
         if self.compensating || self.in_plane() {
             return None;
         }
-        let node = placer.settled(pose(end), 1.0, &last.trace.joints).ok()?;
+        let node = frame.placer.settled(pose(end), 1.0, &last.trace.joints).ok()?;
         let wanted = spline.clone().placed(|point| frame.point(point));
         let inner = &wanted.poles[1..wanted.poles.len() - 1];
-        let mut words = last.words[..placer.count()].to_vec();
-        let mut points: Vec<Vector3<f64>> = vec![placer.printed(last)?];
+        let mut words = last.words[..frame.placer.count()].to_vec();
+        let mut points: Vec<Vector3<f64>> = vec![frame.placer.printed(last)?];
         for (point, _) in inner {
-            let (printed, mm) = placer.printed_point(*point)?;
-            words.extend_from_slice(&placer.with_point(last, printed)[..placer.count()]);
+            let (printed, mm) = frame.placer.printed_point(*point)?;
+            words
+                .extend_from_slice(&frame.placer.with_point(last, printed)[..frame.placer.count()]);
             points.push(mm);
         }
-        words.extend_from_slice(&node.words[..placer.count()]);
-        points.push(placer.printed(&node)?);
+        words.extend_from_slice(&node.words[..frame.placer.count()]);
+        points.push(frame.placer.printed(&node)?);
         let knots = wanted.knots.iter();
         let knots: Option<Vec<f64>> =
-            knots.map(|knot| placer.printed_number(knot * LAST_KNOT)).collect();
+            knots.map(|knot| frame.placer.printed_number(knot * LAST_KNOT)).collect();
         let printed = BSpline::unweighted(3, wanted.knots.clone(), points);
         let printed = over(printed, knots?)?;
         // Knot span by knot span both are cubics, whose difference lies in the hull of that of their control points.
@@ -111,7 +117,7 @@ impl BlockStage<'_> {
             .flat_map(|(printed, wanted)| [0, 1, 2, 3].map(|at| (printed[at] - wanted[at]).norm()))
             .fold(0.0, f64::max);
         let farthest = last.axis_error.max(node.axis_error);
-        let bound = self.kept_bound(placer, off, farthest, 0.0, [last, &node])?;
+        let bound = self.kept_bound(frame, off, farthest, 0.0, [last, &node])?;
         // No axis goes beyond the hulls.
         let between: Vec<Joints> = cubics(&printed)
             .flat_map(|cubic| [cubic[1], cubic[2], cubic[3]])

@@ -3,8 +3,8 @@
 //!
 //! Every stage takes a batch and hands on a batch. What a stage cannot decide yet it keeps, commands among it, so
 //! that nothing overtakes anything. A curve or a hole is one element with all its moves in it: no stage sees half of one.
-//! Neither grows with the file: a curve that would be more chords than `curve` allows goes by its moves, point by point,
-//! and a hole has no more of them than `program::limits` allows pecks.
+//! Memory does not grow by that: a curve that would be more chords than `curve` allows goes by its moves, point by point,
+//! a hole has no more of them than `program::limits` allows pecks, and a batch is full with as many moves as with points.
 
 use std::fmt::Debug;
 
@@ -25,6 +25,9 @@ pub trait StreamPoint: Clone + Debug {
 
     /// Line of the CL file.
     fn line(&self) -> u64;
+
+    /// How many moves a curve has.
+    fn moves(curve: &Self::Curve) -> usize;
 }
 
 /// One element of the stream.
@@ -85,6 +88,15 @@ impl<P: StreamPoint> StreamItem<P> {
             Self::Hole(hole) => hole.line,
         }
     }
+
+    /// How many moves it has.
+    fn moves(&self) -> usize {
+        match self {
+            Self::Curve { curve, .. } => P::moves(curve),
+            Self::Hole(hole) => hole.above.len() + hole.into.len(),
+            _ => 1,
+        }
+    }
 }
 
 impl<P: StreamPoint> HoleMoves<P> {
@@ -101,7 +113,7 @@ impl<P: StreamPoint> HoleMoves<P> {
 /// All that `fill` hands on: what an element is made of.
 pub(crate) fn gathered<T>(fill: impl FnOnce(&mut BatchSink<'_, T>)) -> Vec<T> {
     let mut all = Vec::new();
-    fill(&mut BatchSink { batch: &mut all, next: None });
+    fill(&mut BatchSink { batch: &mut all, moves: 0, next: None });
     all
 }
 
@@ -112,6 +124,8 @@ type NextStage<'o, T> = dyn FnMut(&mut Vec<T>) + 'o;
 /// million chords needs no more memory than another.
 pub(crate) struct BatchSink<'o, T> {
     batch: &'o mut Vec<T>,
+    /// Moves in the curves and holes of the batch.
+    moves: usize,
     /// None where all is gathered that one element is made of.
     next: Option<&'o mut NextStage<'o, T>>,
 }
@@ -119,7 +133,7 @@ pub(crate) struct BatchSink<'o, T> {
 impl<'o, T> BatchSink<'o, T> {
     /// An outlet into `batch`, which `next` takes when it is full; it leaves the batch empty.
     pub(crate) fn new(batch: &'o mut Vec<T>, next: &'o mut NextStage<'o, T>) -> Self {
-        Self { batch, next: Some(next) }
+        Self { batch, moves: 0, next: Some(next) }
     }
 
     /// Hands on one element.
@@ -157,11 +171,22 @@ impl<'o, T> BatchSink<'o, T> {
         {
             next(self.batch);
             self.batch.clear();
+            self.moves = 0;
         }
     }
 }
 
 impl<P: StreamPoint> BatchSink<'_, StreamItem<P>> {
+    /// Hands on a curve or a hole, or any other element: the batch is full with as many moves in its curves and holes as
+    /// with points.
+    pub(crate) fn element(&mut self, element: StreamItem<P>) {
+        self.moves += element.moves();
+        self.push(element);
+        if self.moves >= BATCH {
+            self.flush();
+        }
+    }
+
     /// Hands on a command.
     pub(crate) fn command(&mut self, line: u64, command: Command) {
         self.push(StreamItem::Command { line, command });

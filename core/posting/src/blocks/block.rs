@@ -62,6 +62,10 @@ impl StreamPoint for MotionBlock {
     fn line(&self) -> u64 {
         self.line
     }
+
+    fn moves(_: &Self::Curve) -> usize {
+        1
+    }
 }
 
 impl StreamItem<MotionBlock> {

@@ -303,7 +303,7 @@ impl<'a> BlockStage<'a> {
                 self.end_run(out);
             })
         });
-        out.push(StreamItem::Hole(Box::new(made)));
+        out.element(StreamItem::Hole(Box::new(made)));
     }
 
     fn command(&mut self, line: u64, command: &Command, out: &mut BlockSink<'_>) {

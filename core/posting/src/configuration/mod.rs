@@ -63,6 +63,10 @@ impl StreamPoint for ChosenPoint {
     fn line(&self) -> u64 {
         self.line
     }
+
+    fn moves(curve: &Self::Curve) -> usize {
+        curve.moves.len()
+    }
 }
 
 /// What is not decided yet.
@@ -302,7 +306,7 @@ impl<'a> ConfigurationStage<'a> {
             WaitingItem::Between(element) => self.pending = Some(PendingElement::new(element)),
             WaitingItem::Enters => self.pending.iter_mut().for_each(PendingElement::enter),
             WaitingItem::Ends => {
-                self.pending.take().into_iter().for_each(|it| out.push(it.element))
+                self.pending.take().into_iter().for_each(|it| out.element(it.element))
             }
             WaitingItem::Points(_) => {}
         }

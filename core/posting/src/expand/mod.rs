@@ -44,6 +44,10 @@ impl StreamPoint for PathMove {
     fn line(&self) -> u64 {
         self.line
     }
+
+    fn moves(curve: &Self::Curve) -> usize {
+        curve.moves.len()
+    }
 }
 
 /// The tool axis stays from here on until the next of these, and the control is to get a tilted plane for it, with this
@@ -236,7 +240,7 @@ impl ExpandStage {
             let step = ArcStep { arc, end, ..*step };
             let moves = gathered(|out| self.chords(line, &step, out));
             let curve = CurveMove { course: CurveShape::Arc(arc), end };
-            out.push(StreamItem::Curve { line, curve: Box::new(CurveMoves { curve, moves }) });
+            out.element(StreamItem::Curve { line, curve: Box::new(CurveMoves { curve, moves }) });
         }
     }
 
@@ -309,7 +313,7 @@ impl ExpandStage {
         }
         let curve = CurveMove { course: CurveShape::Spline(spline.clone()), end: *end };
         let moves = gathered(flat);
-        out.push(StreamItem::Curve { line, curve: Box::new(CurveMoves { curve, moves }) });
+        out.element(StreamItem::Curve { line, curve: Box::new(CurveMoves { curve, moves }) });
     }
 
     /// Approach, pecks, dwell and retract at one point; where the control has the cycle, as a hole.
@@ -339,7 +343,14 @@ impl ExpandStage {
         let above = gathered(above);
         let into = gathered(|out| self.cycle_legs(&at, rest, out));
         let StraightMove { tip: point, axis, .. } = point;
-        out.push(StreamItem::Hole(Box::new(HoleMoves { line, cycle, point, axis, above, into })));
+        out.element(StreamItem::Hole(Box::new(HoleMoves {
+            line,
+            cycle,
+            point,
+            axis,
+            above,
+            into,
+        })));
     }
 
     /// Between holes the tool goes up before it goes aside, and aside before it goes down.

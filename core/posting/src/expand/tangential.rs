@@ -167,7 +167,7 @@ impl Tangential {
             let hole = hole.remade(|part| {
                 gathered(|out| part.iter().for_each(|next| self.take(next.clone(), out)))
             });
-            return out.push(StreamItem::Hole(Box::new(hole)));
+            return out.element(StreamItem::Hole(Box::new(hole)));
         }
         let last = hole.above.iter().chain(&hole.into).rev().find_map(|next| match next {
             StreamItem::Point(at) => Some([at.motion.tip, at.motion.axis]),
@@ -251,7 +251,7 @@ impl Tangential {
                         part.iter().for_each(|next| self.pass_held(next.clone(), held, out));
                     })
                 });
-                out.push(StreamItem::Hole(Box::new(hole)));
+                out.element(StreamItem::Hole(Box::new(hole)));
             }
             next => out.push(next),
         }

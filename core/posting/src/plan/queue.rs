@@ -142,7 +142,7 @@ impl BlockQueue {
         while let Some(next) = self.waiting.pop_front() {
             match next.open {
                 Some(start) => return Some((next.flow, start)),
-                None => out.push(next.flow),
+                None => out.element(next.flow),
             }
         }
         None
@@ -152,7 +152,7 @@ impl BlockQueue {
     pub(super) fn ready(&mut self, out: &mut BlockSink<'_>) {
         while self.waiting.front().is_some_and(|next| next.open.is_none()) {
             if let Some(next) = self.waiting.pop_front() {
-                out.push(next.flow);
+                out.element(next.flow);
             }
         }
     }

@@ -140,9 +140,9 @@ impl Tangential {
         }
     }
 
-    /// Takes a command.
+    /// Takes a command. Where the CL file says where the edge points, no move waits, and no command either.
     fn command(&mut self, line: u64, command: Command, out: &mut ExpandedSink<'_>) {
-        if !command.leaves() {
+        if !command.leaves() && self.source == EdgeSource::Travel {
             self.hold(StreamItem::Command { line, command }, out);
             return;
         }

@@ -1,7 +1,7 @@
 //! The blocks of a program that is posted as rows, for the report's page and for arrays.
 
 use post_machine::description::Machine;
-use post_posting::program::{Command, HoleMark, MoveFeed};
+use post_posting::program::{Command, MoveFeed};
 use post_posting::{BlockKind, BlockReason, MotionBlock};
 
 use super::axes::{self, AxisColumn};
@@ -109,7 +109,8 @@ pub struct PostedProgram<'m> {
     pub axes: Vec<AxisColumn>,
     /// When the last block ended, s.
     pub time: f64,
-    hole: bool,
+    /// The blocks are those of a hole, from the retract level on.
+    pub hole: bool,
     /// Names of limits, in the order in which they came.
     pub limits: Vec<String>,
 }
@@ -152,8 +153,6 @@ impl<'m> PostedProgram<'m> {
     /// What is commanded between blocks.
     pub fn command(&mut self, command: &Command) {
         match command {
-            Command::Hole(HoleMark::Into { .. }) => self.hole = true,
-            Command::Hole(HoleMark::Done) => self.hole = false,
             Command::Dwell(seconds) => self.time += seconds,
             Command::Head(name) => (self.machine, _) = axes::with_head(self.base, name),
             _ => {}

@@ -1,8 +1,9 @@
 //! Curves on their way through the stages: as the CL file has them, and as they are printed.
 //!
-//! A curve that may stay one goes from `expand` to `blocks` as the moves that it would be otherwise, between two
-//! commands. So the choice of axis values sees all of its way, and what cannot be kept is made of those moves, as if
-//! it had not been tried. What `blocks` keeps is one block or several, each after a command with what was printed of it.
+//! A curve that may stay one goes from `expand` to `blocks` together with the moves that it would be otherwise
+//! ([`CurveMoves`]). So the choice of axis values sees all of its way, and what cannot be kept is made of those moves, as
+//! if it had not been tried. What `blocks` keeps is one block or several, each with what is printed of it
+//! ([`CurveBlock`]).
 
 use nalgebra::Vector3;
 use post_machine::description::{Arcs, Machine, Tcp};
@@ -10,7 +11,9 @@ use post_machine::kinematics::Joints;
 use post_motion::path::BSpline;
 use post_plugin::Capabilities;
 
+use crate::blocks::MotionBlock;
 use crate::program::{MoveFeed, PathArc, StraightMove};
+use crate::stream::{StreamItem, StreamPoint};
 
 /// A curve of the CL file that may stay one: the tool axis stands along it, and it is cut at a feed.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +22,15 @@ pub struct CurveMove {
     pub course: CurveShape,
     /// The move to its end, whose pace is that of the whole curve.
     pub end: StraightMove,
+}
+
+/// A curve that may stay one, and the moves that it would be otherwise, no more than 16,384 of them.
+#[derive(Clone, Debug)]
+pub struct CurveMoves<P: StreamPoint> {
+    /// The curve.
+    pub curve: CurveMove,
+    /// The moves, and what came between them on the way: then the curve goes by them.
+    pub moves: Vec<StreamItem<P>>,
 }
 
 /// The course of a curve.
@@ -30,7 +42,16 @@ pub enum CurveShape {
     Spline(BSpline),
 }
 
-/// What is printed of the next block, which goes along a curve.
+/// A block along a curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurveBlock {
+    /// The block.
+    pub block: MotionBlock,
+    /// What is printed of it.
+    pub printed: PrintedCurve,
+}
+
+/// What is printed of a block that goes along a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrintedCurve {
     /// Words of the block.

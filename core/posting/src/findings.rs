@@ -5,6 +5,7 @@
 //! how far.
 
 use std::cell::RefCell;
+use std::rc::Rc;
 
 use post_grammar::{Record, SyntaxFault};
 use post_machine::diagnostic::{Diagnostic, LimitExcess, Severity, SourcePlace, unreadable};
@@ -23,11 +24,11 @@ const MOST_BEYOND: u64 = 100_000;
 /// Faults of one kind without such a limit before reading stops: each may have taken a search.
 const MOST_ALIKE: u64 = 200;
 
-/// The findings of one run. Every stage may add to them.
-#[derive(Debug)]
+/// The findings of one run. Every stage has a handle, and may add to them.
+#[derive(Clone, Debug)]
 pub(crate) struct Findings {
-    file: String,
-    inner: RefCell<FindingList>,
+    file: Rc<str>,
+    inner: Rc<RefCell<FindingList>>,
 }
 
 #[derive(Debug, Default)]
@@ -117,7 +118,7 @@ pub fn without_numbers(sentence: &str) -> String {
 impl Findings {
     /// None yet, of a CL file by that name.
     pub(crate) fn new(file: &str) -> Self {
-        Self { file: file.to_owned(), inner: RefCell::default() }
+        Self { file: file.into(), inner: Rc::default() }
     }
 
     /// Name of the CL file, as in messages.
@@ -128,8 +129,8 @@ impl Findings {
     /// Keeps the text of a record as long as findings may be made for it: `settled` gives the line before which
     /// none will be.
     #[inline]
-    pub(crate) fn read(&mut self, record: &Record<'_>, settled: impl FnOnce() -> Option<u64>) {
-        let source = &mut self.inner.get_mut().source;
+    pub(crate) fn read(&self, record: &Record<'_>, settled: impl FnOnce() -> Option<u64>) {
+        let source = &mut self.inner.borrow_mut().source;
         source.keep(record.line, record.raw, settled);
     }
 

@@ -3,7 +3,6 @@
 use crate::blocks::MotionBlock;
 use crate::observer::Observer;
 use crate::program::{Command, ToolChange};
-use crate::stream::StreamItem;
 
 /// What texts of the program can speak of beside the program itself.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -50,27 +49,17 @@ impl ProgramPreview {
 }
 
 impl Observer for ProgramPreview {
-    fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
-        for next in blocks {
-            match next {
-                StreamItem::Point(block) => {
-                    self.pending = None;
-                    self.moved = true;
-                    let tip: [f64; 3] = block.tip.into();
-                    let [least, most] = self.extents.get_or_insert([tip, tip]);
-                    for axis in 0..3 {
-                        least[axis] = least[axis].min(tip[axis]);
-                        most[axis] = most[axis].max(tip[axis]);
-                    }
-                }
-                StreamItem::Command { line, command } => self.command(*line, command),
-                StreamItem::Placer(_) => {}
-            }
+    fn block(&mut self, block: &MotionBlock) {
+        self.pending = None;
+        self.moved = true;
+        let tip: [f64; 3] = block.tip.into();
+        let [least, most] = self.extents.get_or_insert([tip, tip]);
+        for axis in 0..3 {
+            least[axis] = least[axis].min(tip[axis]);
+            most[axis] = most[axis].max(tip[axis]);
         }
     }
-}
 
-impl ProgramPreview {
     fn command(&mut self, line: u64, command: &Command) {
         match command {
             Command::Tool(tool) => {

@@ -6,7 +6,7 @@
 //! | stage | takes | hands on |
 //! |---|---|---|
 //! | [`program`] | records | [`program::ProgramStep`]: what is meant, mm, part frame |
-//! | `expand` | steps | straight moves; those of a curve that may stay one between two commands |
+//! | `expand` | steps | straight moves; those of a curve or a hole that may stay one as one element |
 //! | `configuration` | moves | points with the axis values chosen for them, over whole passes |
 //! | `blocks` | points | [`MotionBlock`]: as printed, more or fewer of them, each certified |
 //! | `timing` | blocks | the same with time, feed and what limits it |
@@ -39,7 +39,9 @@ mod tightening;
 mod timing;
 mod window;
 
-pub use blocks::{BlockDuration, BlockKind, BlockReason, MotionBlock, NominalTime, PlannedTime};
+pub use blocks::{
+    BlockDuration, BlockKind, BlockNote, BlockReason, MotionBlock, NominalTime, PlannedTime,
+};
 pub use configuration::whole_pass;
 pub use findings::MOST_FAULTS;
 pub use job_facts::{JobFacts, ProgramPreview};
@@ -47,7 +49,7 @@ pub use mount_bounds::MountBounds;
 pub use observer::{Observer, TextSink};
 pub use post::{Post, PostingRequest};
 pub use shift::{PathPoint, PathShift};
-pub use stream::StreamItem;
+pub use stream::{HoleMoves, StreamItem, StreamPoint};
 pub use tightening::{TightPlace, Tightening};
 pub use timing::limits;
 

@@ -6,9 +6,9 @@ use post_machine::kinematics::{Joints, NoClosedForm};
 use post_machine::place::{MountConstraint, MountRoom};
 
 use crate::blocks::{BlockKind, BlockReason, MotionBlock};
+use crate::curve::CurveBlock;
 use crate::observer::Observer;
 use crate::program::Command;
-use crate::stream::StreamItem;
 
 /// Gathers the ends of travel that the blocks of a program come near to, by the heads that they are made with.
 pub struct MountBounds<'m> {
@@ -68,7 +68,9 @@ impl<'m> MountBounds<'m> {
             self.rooms.push((self.head, room));
         }
     }
+}
 
+impl Observer for MountBounds<'_> {
     fn block(&mut self, block: &MotionBlock) {
         let Some((_, room)) = self.rooms.get_mut(self.at) else {
             return;
@@ -89,21 +91,18 @@ impl<'m> MountBounds<'m> {
         }
         self.last = Some((block.joints, block.tip));
     }
-}
 
-impl Observer for MountBounds<'_> {
-    fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
-        for next in blocks {
-            match next {
-                StreamItem::Point(block) => self.block(block),
-                StreamItem::Command { command: Command::Head(name), .. } => self.swap(name),
-                StreamItem::Command { line, command: Command::Curve(curve) } => {
-                    if let Some((_, room)) = self.rooms.get_mut(self.at) {
-                        curve.between.iter().for_each(|joints| room.take(joints, *line));
-                    }
-                }
-                _ => {}
-            }
+    fn curve(&mut self, curve: &CurveBlock) {
+        if let Some((_, room)) = self.rooms.get_mut(self.at) {
+            let between = curve.printed.between.iter();
+            between.for_each(|joints| room.take(joints, curve.block.line));
+        }
+        self.block(&curve.block);
+    }
+
+    fn command(&mut self, _: u64, command: &Command) {
+        if let Command::Head(name) = command {
+            self.swap(name);
         }
     }
 }

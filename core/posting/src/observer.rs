@@ -3,8 +3,10 @@
 use std::cell::RefCell;
 
 use crate::accuracy::NodeMove;
-use crate::blocks::{Audience, MotionBlock};
-use crate::stream::StreamItem;
+use crate::blocks::MotionBlock;
+use crate::curve::CurveBlock;
+use crate::program::Command;
+use crate::stream::{HoleMoves, StreamItem};
 
 /// Where the text of the program goes.
 pub trait TextSink {
@@ -23,9 +25,38 @@ pub trait Observer {
         let _ = (line, cut);
     }
 
-    /// Blocks and the commands between them, in order, as they went to the dialect: a hole once it is done.
+    /// A block as it went to the dialect.
+    fn block(&mut self, block: &MotionBlock) {
+        let _ = block;
+    }
+
+    /// A block along a curve: a block as any other.
+    fn curve(&mut self, curve: &CurveBlock) {
+        self.block(&curve.block);
+    }
+
+    /// A hole, as a cycle of the control or by its moves: these one by one.
+    fn hole(&mut self, hole: &HoleMoves<MotionBlock>) {
+        self.blocks(&hole.above);
+        self.blocks(&hole.into);
+    }
+
+    /// A command between blocks, from this line of the CL file.
+    fn command(&mut self, line: u64, command: &Command) {
+        let _ = (line, command);
+    }
+
+    /// Blocks and the commands between them, in order: each goes to the method for it.
     fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
-        let _ = blocks;
+        for next in blocks {
+            match next {
+                StreamItem::Point(block) => self.block(block),
+                StreamItem::Curve { curve, .. } => self.curve(curve),
+                StreamItem::Hole(hole) => self.hole(hole),
+                StreamItem::Command { line, command } => self.command(*line, command),
+                StreamItem::Note { .. } => {}
+            }
+        }
     }
 }
 
@@ -36,8 +67,8 @@ pub(crate) struct Observers<'a> {
 }
 
 impl<'a> Observers<'a> {
-    pub(crate) fn add(&mut self, observer: &'a mut dyn Observer) {
-        self.all.get_mut().push(observer);
+    pub(crate) fn add(&self, observer: &'a mut dyn Observer) {
+        self.all.borrow_mut().push(observer);
     }
 
     pub(crate) fn blocks(&self, blocks: &[StreamItem<MotionBlock>]) {
@@ -46,19 +77,7 @@ impl<'a> Observers<'a> {
         }
     }
 
-    /// Somebody looks on.
-    pub(crate) fn any(&self) -> bool {
-        !self.all.borrow().is_empty()
-    }
-
-    /// Observers that are shown cuts; none if there are no observers.
-    pub(crate) fn audience(&self) -> Option<&dyn Audience> {
-        self.any().then_some(self)
-    }
-}
-
-impl Audience for Observers<'_> {
-    fn cut(&self, line: u64, cut: &NodeMove<'_>) {
+    pub(crate) fn cut(&self, line: u64, cut: &NodeMove<'_>) {
         for observer in self.all.borrow_mut().iter_mut() {
             observer.cut(line, cut);
         }

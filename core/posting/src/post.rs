@@ -1,6 +1,7 @@
 //! One run: records in, text and a report out.
 
 use std::ops::Range;
+use std::rc::Rc;
 use std::sync::Arc;
 
 use post_grammar::{Record, SyntaxFault};
@@ -9,8 +10,8 @@ use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Capabilities, DialectSession, ModelSession};
 
-use crate::blocks::{BlockContext, BlockStage, MotionBlock};
-use crate::configuration::{ConfigurationStage, ConfiguredItem};
+use crate::blocks::{BlockStage, MotionBlock};
+use crate::configuration::{ChosenPoint, ConfigurationStage};
 use crate::emit::EmitStage;
 use crate::expand::{ExpandStage, PathMove};
 use crate::findings::Findings;
@@ -67,13 +68,13 @@ struct PostStages<'a> {
     shift: Option<ShiftStage<'a>>,
     lines: Vec<StreamItem<PathMove>>,
     configuration: ConfigurationStage<'a>,
-    configured: Vec<StreamItem<ConfiguredItem>>,
+    configured: Vec<StreamItem<ChosenPoint>>,
     blocks: BlockStage<'a>,
     made: Vec<StreamItem<MotionBlock>>,
     plan: Option<PlanStage<'a>>,
     planned: Vec<StreamItem<MotionBlock>>,
     timing: TimingStage<'a>,
-    observers: Observers<'a>,
+    observers: Rc<Observers<'a>>,
     emit: EmitStage<'a>,
 }
 
@@ -87,7 +88,7 @@ enum StageInput<'s> {
 
 impl PostStages<'_> {
     /// Runs a batch through all stages. Nothing is left between them; what a stage cannot decide yet it keeps.
-    fn run(&mut self, work: StageInput<'_>, findings: &Findings) {
+    fn run(&mut self, work: StageInput<'_>) {
         let Self {
             expand,
             shift,
@@ -99,10 +100,9 @@ impl PostStages<'_> {
             plan,
             planned,
             timing,
-            observers,
             emit,
+            ..
         } = self;
-        let observers = &*observers;
         let last_line = match &work {
             StageInput::Take(_) => None,
             StageInput::Finish(line) => Some(*line),
@@ -111,46 +111,45 @@ impl PostStages<'_> {
         // A batch goes through the stages by calls: what a stage hands on is the input of the closure before it here, so
         // that the stages are joined from the last to the first.
         let mut to_emit = |made: &mut Vec<StreamItem<MotionBlock>>| {
-            timing.take(made, findings);
-            emit.take(made, findings, observers);
+            timing.take(made);
+            emit.take(made);
         };
         let mut planned = BatchSink::new(planned, &mut to_emit);
         let mut to_plan = |made: &mut Vec<StreamItem<MotionBlock>>| match plan {
-            Some(plan) => plan.take(made, &mut planned, findings),
+            Some(plan) => plan.take(made, &mut planned),
             None => planned.pass(made),
         };
         let mut made = BatchSink::new(made, &mut to_plan);
-        let mut to = BlockContext { out: &mut made, findings, audience: observers.audience() };
         let mut to_blocks =
-            |configured: &mut Vec<StreamItem<ConfiguredItem>>| blocks.take(configured, &mut to);
+            |configured: &mut Vec<StreamItem<ChosenPoint>>| blocks.take(configured, &mut made);
         let mut configured = BatchSink::new(configured, &mut to_blocks);
         let mut to_configuration = |lines: &mut Vec<StreamItem<PathMove>>| {
             if let Some(shift) = shift {
                 shift.take(lines);
             }
-            configuration.take(lines, &mut configured, findings);
+            configuration.take(lines, &mut configured);
         };
         let mut lines = BatchSink::new(lines, &mut to_configuration);
         match work {
-            StageInput::Take(steps) => expand.take(steps, &mut lines, findings),
-            StageInput::Finish(_) => expand.finish(&mut lines, findings),
+            StageInput::Take(steps) => expand.take(steps, &mut lines),
+            StageInput::Finish(_) => expand.finish(&mut lines),
         }
         // From the first stage to the last: what a stage still holds goes on before the next stage is finished.
         lines.flush();
         if finish {
-            configuration.finish(&mut configured, findings);
+            configuration.finish(&mut configured);
         }
         configured.flush();
         if let Some(line) = last_line {
-            blocks.finish(line, &mut to);
+            blocks.finish(line, &mut made);
         }
         made.flush();
         if let (Some(plan), true) = (plan, finish) {
-            plan.finish(&mut planned, findings);
+            plan.finish(&mut planned);
         }
         planned.flush();
         if let Some(line) = last_line {
-            emit.finish(line, findings);
+            emit.finish(line);
         }
     }
 
@@ -192,24 +191,36 @@ impl<'a> Post<'a> {
         let writes = dialect.capabilities();
         let planes = machine.control.planes && writes.has(Capabilities::PLANE);
         let ahead = job.ahead.filter(|_| planes);
+        let findings = Findings::new(&job.reading.file);
         let mut stages = PostStages {
-            expand: ExpandStage::new(machine, job.reading.chord_tolerance, writes, ahead),
+            expand: ExpandStage::new(
+                machine,
+                job.reading.chord_tolerance,
+                writes,
+                ahead,
+                &findings,
+            ),
             shift: None,
             lines: Vec::new(),
-            timing: TimingStage::new(machine, &format, writes)?,
-            configuration: ConfigurationStage::new(machine, &format, job.tool_length, writes)?,
+            timing: TimingStage::new(machine, &format, writes, &findings)?,
+            configuration: ConfigurationStage::new(
+                machine,
+                &format,
+                job.tool_length,
+                writes,
+                &findings,
+            )?,
             configured: Vec::new(),
-            blocks: BlockStage::new(machine, writes, &format, model, job.trust_model),
+            blocks: BlockStage::new(machine, writes, &format, model, job.trust_model, &findings),
             made: Vec::new(),
-            plan: job.plans.then(|| PlanStage::new(machine, &format, job.tightening)),
+            plan: job.plans.then(|| PlanStage::new(machine, &format, job.tightening, &findings)),
             planned: Vec::new(),
-            observers: Observers::default(),
-            emit: EmitStage::new(machine, &job.facts, dialect, output),
+            observers: Rc::default(),
+            emit: EmitStage::new(machine, &job.facts, dialect, output, &findings),
         };
         if job.plans {
             stages.blocks.plans();
         }
-        let findings = Findings::new(&job.reading.file);
         if machine.control.planes && !planes {
             findings.add(refusal::no_planes(machine));
         }
@@ -227,8 +238,10 @@ impl<'a> Post<'a> {
 
     /// Shows what is made to `observer` from here on.
     pub fn watch(&mut self, observer: &'a mut dyn Observer) {
-        self.stages.observers.add(observer);
-        self.stages.emit.watch();
+        let stages = &mut self.stages;
+        stages.observers.add(observer);
+        stages.blocks.watch(Rc::clone(&stages.observers));
+        stages.emit.watch(Rc::clone(&stages.observers));
     }
 
     /// Shows the planned feed to `watch`, where one is planned.
@@ -270,7 +283,7 @@ impl<'a> Post<'a> {
     }
 
     fn run(&mut self) {
-        self.stages.run(StageInput::Take(&self.steps), &self.findings);
+        self.stages.run(StageInput::Take(&self.steps));
         self.steps.clear();
     }
 
@@ -308,9 +321,8 @@ impl<'a> Post<'a> {
             self.interpreter.finish();
             self.gather();
             let end = StageInput::Finish(self.last_line);
-            self.stages.run(end, &self.findings);
+            self.stages.run(end);
         }
-        self.stages.emit.show_rest(&self.stages.observers);
         let configuration = &self.stages.configuration;
         if !self.findings.failed() && configuration.moves() == 0 {
             let file = self.findings.file();

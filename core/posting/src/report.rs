@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+pub use crate::configuration::{LengthSource, ReportedTool};
 use crate::plan::PlanReport;
 
 use post_machine::description::ControlPoint;
@@ -115,31 +116,6 @@ pub struct AxisRange {
     pub travel: Option<[f64; 2]>,
     /// Way of the axis over all blocks, mm or degrees; between the words too where the control keeps the tip.
     pub way: f64,
-}
-
-/// A tool that was used.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct ReportedTool {
-    /// Tool number; none if the CL file loads no tool.
-    pub number: Option<u32>,
-    /// The length that was assumed, mm from the gauge point to the tip.
-    pub length_mm: f64,
-    /// Source of the length.
-    pub source: LengthSource,
-}
-
-/// Source of the length of a tool.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum LengthSource {
-    /// `--tool-length`.
-    Option,
-    /// `[tools]`.
-    MachineFile,
-    /// `LOADTL/…,LENGTH`, or with `tool_length = "cl"` the cutter.
-    ClFile,
-    /// Not given: 0 was taken.
-    Unknown,
 }
 
 /// A plugin that took part.

@@ -6,8 +6,8 @@
 use nalgebra::Vector3;
 use post_plugin::Compensation;
 
-use crate::expand::PathMove;
-use crate::program::{Command, HoleMark, MoveFeed};
+use crate::expand::{FixedAxis, PathMove};
+use crate::program::{Command, MoveFeed};
 use crate::stream::StreamItem;
 
 /// A point of the path.
@@ -51,36 +51,41 @@ impl<'a> ShiftStage<'a> {
 
     /// Moves the points of a batch.
     pub fn take(&mut self, batch: &mut [StreamItem<PathMove>]) {
-        for flow in batch {
-            match flow {
-                StreamItem::Command { command, .. } => self.command(command),
-                StreamItem::Placer(_) => {}
-                StreamItem::Point(PathMove { line, motion }) => {
-                    let cuts = motion.pace != MoveFeed::Rapid;
-                    let moves = cuts && !self.hole && !self.offset;
-                    let by = self.by.next(&PathPoint {
-                        line: *line,
-                        tip: motion.tip,
-                        axis: motion.axis,
-                        cuts,
-                        begins: std::mem::take(&mut self.begins),
-                        moves,
-                    });
-                    if moves {
-                        motion.tip += no_longer(by, self.bound);
-                    }
+        for next in batch {
+            match next {
+                StreamItem::Point(at) => self.point(at),
+                StreamItem::Curve { curve, .. } => self.take(&mut curve.moves),
+                StreamItem::Hole(hole) => {
+                    self.hole = true;
+                    self.take(&mut hole.above);
+                    self.take(&mut hole.into);
+                    self.hole = false;
                 }
+                StreamItem::Command { command, .. } => {
+                    if let Command::Compensate(side) = command {
+                        self.offset = *side != Compensation::Off;
+                    }
+                    self.begins |= command.leaves();
+                }
+                StreamItem::Note { note: FixedAxis(_), .. } => self.begins = true,
             }
         }
     }
 
-    fn command(&mut self, command: &Command) {
-        match command {
-            Command::Hole(mark) => self.hole = *mark != HoleMark::Done,
-            Command::Compensate(side) => self.offset = *side != Compensation::Off,
-            _ => {}
+    fn point(&mut self, PathMove { line, motion }: &mut PathMove) {
+        let cuts = motion.pace != MoveFeed::Rapid;
+        let moves = cuts && !self.hole && !self.offset;
+        let by = self.by.next(&PathPoint {
+            line: *line,
+            tip: motion.tip,
+            axis: motion.axis,
+            cuts,
+            begins: std::mem::take(&mut self.begins),
+            moves,
+        });
+        if moves {
+            motion.tip += no_longer(by, self.bound);
         }
-        self.begins |= command.leaves();
     }
 }
 

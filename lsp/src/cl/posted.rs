@@ -5,7 +5,7 @@ use std::io::{self, Cursor, Read};
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 use post_posting::program::{DefaultSpindle, ReadingOptions};
-use post_posting::{MotionBlock, Observer, PostingRequest, StreamItem};
+use post_posting::{MotionBlock, Observer, PostingRequest};
 
 use crate::background::{Token, Worked};
 use crate::document::Snapshot;
@@ -128,31 +128,26 @@ struct Watch {
 }
 
 impl Observer for Watch {
-    fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
-        for block in blocks {
-            let StreamItem::Point(block) = block else {
-                continue;
-            };
-            let deviation = [block.deviation.tip, block.deviation.axis];
-            let full = self.lines.len() == MOST_LINES;
-            match self.lines.last_mut() {
-                Some(last) if last.line == block.line => {
-                    last.blocks += 1;
-                    last.joints = block.joints;
-                    last.deviation = [0, 1].map(|part| last.deviation[part].max(deviation[part]));
-                    last.minutes += block.time.minutes;
-                    last.limit = last.limit.or(block.time.limit);
-                }
-                _ if full => {}
-                _ => self.lines.push(PostedLine {
-                    line: block.line,
-                    blocks: 1,
-                    joints: block.joints,
-                    deviation,
-                    minutes: block.time.minutes,
-                    limit: block.time.limit,
-                }),
+    fn block(&mut self, block: &MotionBlock) {
+        let deviation = [block.deviation.tip, block.deviation.axis];
+        let full = self.lines.len() == MOST_LINES;
+        match self.lines.last_mut() {
+            Some(last) if last.line == block.line => {
+                last.blocks += 1;
+                last.joints = block.joints;
+                last.deviation = [0, 1].map(|part| last.deviation[part].max(deviation[part]));
+                last.minutes += block.time.minutes;
+                last.limit = last.limit.or(block.time.limit);
             }
+            _ if full => {}
+            _ => self.lines.push(PostedLine {
+                line: block.line,
+                blocks: 1,
+                joints: block.joints,
+                deviation,
+                minutes: block.time.minutes,
+                limit: block.time.limit,
+            }),
         }
     }
 }

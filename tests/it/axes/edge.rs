@@ -336,6 +336,29 @@ fn a_second_vector_of_the_points_is_the_edge() {
     assert_eq!(on("ac-trunnion").made(&text).text, on("ac-trunnion").made(&six.join("\n")).text);
 }
 
+/// Nothing of an edge that the CL file gives waits for the way ahead: neither do spindle, coolant and dwells.
+#[test]
+fn commands_stand_where_they_stood_whatever_leads_the_edge() {
+    let axis = lean(20.0, 90.0);
+    let tip = |x: f64| V::new(x, 0.0, 20.0);
+    let text = cl()
+        .rapid(tip(0.0) + axis * 40.0, axis)
+        .edge(tip(0.0), axis, V::x())
+        .line("COOLNT / ON")
+        .edge(tip(10.0), axis, V::x())
+        .line("DELAY / 2")
+        .edge(tip(20.0), axis, V::x())
+        .line("COOLNT / OFF")
+        .edge(tip(30.0), axis, V::x())
+        .end();
+    let expected = ["M3", "M8", "X10.0000", "G4", "X20.0000", "M9", "X30.0000"];
+    for edge in ["cl", "travel"] {
+        let made = knife().with("solution.edge", edge).made(&text);
+        let words = made.text.split_whitespace().filter(|word| expected.contains(word));
+        assert_eq!(words.collect::<Vec<_>>(), expected, "{edge}");
+    }
+}
+
 #[test]
 fn an_edge_without_direction_is_refused() {
     let axis = lean(20.0, 90.0);

@@ -1,7 +1,8 @@
 //! The blocks of a program, as arrays.
 
 use post_machine::description::Machine;
-use post_posting::{MotionBlock, Observer, StreamItem};
+use post_posting::program::Command;
+use post_posting::{HoleMoves, MotionBlock, Observer};
 
 use crate::columns::{Column, Kind};
 use crate::posted::{self, PostedBlock, PostedProgram};
@@ -69,7 +70,9 @@ impl<'m> BlockArrays<'m> {
         self.blocks.limits = self.program.limits;
         self.blocks
     }
+}
 
+impl Observer for BlockArrays<'_> {
     fn block(&mut self, block: &MotionBlock) {
         let row = self.program.block(block);
         self.blocks.rows += 1;
@@ -79,16 +82,15 @@ impl<'m> BlockArrays<'m> {
             array.values.extend(numbers.map(|number| number.unwrap_or(f64::NAN)));
         }
     }
-}
 
-impl Observer for BlockArrays<'_> {
-    fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
-        for next in blocks {
-            match next {
-                StreamItem::Point(block) => self.block(block),
-                StreamItem::Command { command, .. } => self.program.command(command),
-                StreamItem::Placer(_) => {}
-            }
-        }
+    fn hole(&mut self, hole: &HoleMoves<MotionBlock>) {
+        self.blocks(&hole.above);
+        self.program.hole = true;
+        self.blocks(&hole.into);
+        self.program.hole = false;
+    }
+
+    fn command(&mut self, _: u64, command: &Command) {
+        self.program.command(command);
     }
 }

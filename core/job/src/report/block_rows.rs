@@ -5,8 +5,8 @@ use std::io::{self, BufReader, Read, Write as _};
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Tcp};
 use post_machine::kinematics::{Chain, Joints};
-use post_posting::program::{Command, HoleMark};
-use post_posting::{BlockKind, BlockReason, MotionBlock, Observer, StreamItem};
+use post_posting::program::Command;
+use post_posting::{BlockKind, BlockReason, HoleMoves, MotionBlock, Observer};
 use post_report::meta::Meta;
 
 use super::branch::{self, Branch};
@@ -202,62 +202,6 @@ impl<'m> BlockRows<'m> {
         self.table.finish(parts)
     }
 
-    fn block(&mut self, block: &MotionBlock) {
-        let row = self.table.rows();
-        // Told against the end of the block before.
-        let from = self.program.time - self.end;
-        let posted = self.program.block(block);
-        if block.reason == BlockReason::Rewind && self.reason != BlockReason::Rewind {
-            self.marks.event(row, "rewind", "the tool is drawn back to turn");
-        }
-        self.reason = block.reason;
-        if self.branch.changes(&block.joints) {
-            self.marks.event(row, "branch", branch::CHANGED);
-        }
-        let machine = self.program.machine;
-        let accuracy = &machine.accuracy;
-        let tolerance = match block.loose {
-            true => accuracy.rapid_tolerance,
-            false => accuracy.tolerance,
-        };
-        for slot in match block.loose {
-            true => 2..3,
-            false => 0..2,
-        } {
-            let value = match slot {
-                1 => block.deviation.axis,
-                _ => block.deviation.tip,
-            };
-            let largest = &mut self.largest[slot];
-            if value > largest.value + EQUAL {
-                *largest = Largest { value, row, nc: block.nc_line };
-            }
-        }
-        let length = self.length(block);
-        let pose = [block.tip, block.axis];
-        let left = self.derived.left(machine, &self.program.axes, &block.joints, pose, length);
-        let tip = left.tip;
-        self.derived.check(row, &block.joints, length);
-        self.path(row, block, length, tip);
-        self.ends.push(block.line, tip, 0.0);
-        // Told against what a straight way takes at the feed.
-        let told = (posted.feed().unwrap_or(0.0) * 10.0).round_ties_even() / 10.0;
-        let took = match told > 0.0 {
-            true => 60.0 * (tip - self.tip).norm() / told,
-            false => 0.0,
-        };
-        let to = packed(self.program.time - self.end - took);
-        self.end += took + to;
-        self.tip = tip;
-        let times = [from, to];
-        let kept = self.table.row(&Row { posted, times, left, tolerance, tool_length: length });
-        if let (true, Some(lines)) = (kept, &mut self.lines)
-            && let Err(error) = lines.write_all(&(block.nc_line as u32).to_le_bytes())
-        {
-            self.fault.get_or_insert(fault(error));
-        }
-    }
-
     /// Length of the tool in use, mm: by how much the tip stands before the gauge point.
     fn length(&self, block: &MotionBlock) -> f64 {
         self.chain.as_ref().map_or(0.0, |chain| {
@@ -318,13 +262,78 @@ impl<'m> BlockRows<'m> {
         let bow = (middle - 0.5 * (tip + block.tip)).norm();
         (bow > self.program.machine.accuracy.tolerance / 50.0).then_some(middle)
     }
+}
 
-    fn command(&mut self, command: &Command) {
+impl Observer for BlockRows<'_> {
+    fn block(&mut self, block: &MotionBlock) {
+        let row = self.table.rows();
+        // Told against the end of the block before.
+        let from = self.program.time - self.end;
+        let posted = self.program.block(block);
+        if block.reason == BlockReason::Rewind && self.reason != BlockReason::Rewind {
+            self.marks.event(row, "rewind", "the tool is drawn back to turn");
+        }
+        self.reason = block.reason;
+        if self.branch.changes(&block.joints) {
+            self.marks.event(row, "branch", branch::CHANGED);
+        }
+        let machine = self.program.machine;
+        let accuracy = &machine.accuracy;
+        let tolerance = match block.loose {
+            true => accuracy.rapid_tolerance,
+            false => accuracy.tolerance,
+        };
+        for slot in match block.loose {
+            true => 2..3,
+            false => 0..2,
+        } {
+            let value = match slot {
+                1 => block.deviation.axis,
+                _ => block.deviation.tip,
+            };
+            let largest = &mut self.largest[slot];
+            if value > largest.value + EQUAL {
+                *largest = Largest { value, row, nc: block.nc_line };
+            }
+        }
+        let length = self.length(block);
+        let pose = [block.tip, block.axis];
+        let left = self.derived.left(machine, &self.program.axes, &block.joints, pose, length);
+        let tip = left.tip;
+        self.derived.check(row, &block.joints, length);
+        self.path(row, block, length, tip);
+        self.ends.push(block.line, tip, 0.0);
+        // Told against what a straight way takes at the feed.
+        let told = (posted.feed().unwrap_or(0.0) * 10.0).round_ties_even() / 10.0;
+        let took = match told > 0.0 {
+            true => 60.0 * (tip - self.tip).norm() / told,
+            false => 0.0,
+        };
+        let to = packed(self.program.time - self.end - took);
+        self.end += took + to;
+        self.tip = tip;
+        let times = [from, to];
+        let kept = self.table.row(&Row { posted, times, left, tolerance, tool_length: length });
+        if let (true, Some(lines)) = (kept, &mut self.lines)
+            && let Err(error) = lines.write_all(&(block.nc_line as u32).to_le_bytes())
+        {
+            self.fault.get_or_insert(fault(error));
+        }
+    }
+
+    fn hole(&mut self, hole: &HoleMoves<MotionBlock>) {
+        self.marks.event(self.table.rows(), "cycle", "hole".to_owned());
+        self.blocks(&hole.above);
+        self.program.hole = true;
+        self.blocks(&hole.into);
+        self.program.hole = false;
+    }
+
+    fn command(&mut self, _: u64, command: &Command) {
         let row = self.table.rows();
         self.program.command(command);
         let mut event = |kind, text: String| self.marks.event(row, kind, text);
         match command {
-            Command::Hole(HoleMark::Above(_)) => event("cycle", "hole".to_owned()),
             Command::Dwell(seconds) => event("dwell", format!("{seconds} s")),
             Command::Tool(tool) => {
                 let name = match tool.name.is_empty() {
@@ -343,18 +352,6 @@ impl<'m> BlockRows<'m> {
             Command::Stop => event("stop", "stop".to_owned()),
             Command::OptionalStop => event("stop", "optional stop".to_owned()),
             _ => {}
-        }
-    }
-}
-
-impl Observer for BlockRows<'_> {
-    fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
-        for next in blocks {
-            match next {
-                StreamItem::Point(block) => self.block(block),
-                StreamItem::Command { command, .. } => self.command(command),
-                StreamItem::Placer(_) => {}
-            }
         }
     }
 }

@@ -14,7 +14,9 @@ const SQUARE: f64 = 1e-9;
 /// How the words X, Y, Z and the linear axes follow from the control point while the rotary axes stand: an affine map,
 /// and of the words a rotation and a shift.
 #[derive(Clone, Debug)]
-pub(crate) struct WordFrame {
+pub(crate) struct WordFrame<'p> {
+    /// What solves its points.
+    pub placer: &'p Placer,
     /// The control point that the map is known at, mm, part frame.
     at: Vector3<f64>,
     /// Words there, mm.
@@ -27,10 +29,10 @@ pub(crate) struct WordFrame {
     slides: Vec<(usize, Vector3<f64>)>,
 }
 
-impl WordFrame {
+impl<'p> WordFrame<'p> {
     /// Where the axes stand as at `node`. None where the linear words are not X, Y and Z, where they are not square on
     /// one another and right-handed, or where they do not place the tip alone.
-    pub(crate) fn new(placer: &Placer, node: &PathNode) -> Option<Self> {
+    pub(crate) fn new(placer: &'p Placer, node: &PathNode) -> Option<Self> {
         let solver = placer.solver();
         let chain = solver.chain();
         let sliding = (0..chain.joints().len()).filter(|joint| !chain.joints()[*joint].rotary);
@@ -63,6 +65,7 @@ impl WordFrame {
         }
         let slides = sliding.into_iter().zip(rows);
         Some(Self {
+            placer,
             at: node.tip,
             words,
             slides: slides.map(|(joint, row)| (joint, turn * row)).collect(),

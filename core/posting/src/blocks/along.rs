@@ -9,13 +9,13 @@ use post_machine::kinematics::Joints;
 use post_machine::kinematics::travel::{AT_END, passed};
 
 use super::{
-    AxisTravels, BlockContext, BlockKind, BlockReason, BlockStage, FollowTime, MotionBlock,
+    AxisTravels, BlockKind, BlockReason, BlockSink, BlockStage, FollowTime, MotionBlock,
     NominalTime, PathLeg,
 };
-use crate::accuracy::{DeviationBound, PathNode, PlacedBatch, Placer, PrintedArc, WordFrame};
+use crate::accuracy::{DeviationBound, PathNode, PrintedArc, WordFrame};
 use crate::configuration::{ChosenPoint, pose};
-use crate::curve::{CurveMove, CurveShape, CurveWords, PrintedCurve};
-use crate::program::{Command, MoveFeed, PathArc, StraightMove};
+use crate::curve::{CurveBlock, CurveMove, CurveMoves, CurveShape, CurveWords, PrintedCurve};
+use crate::program::{MoveFeed, PathArc, StraightMove};
 use crate::stream::StreamItem;
 
 /// Controls take an arc whose ends differ by more in their distance from the centre for a slip: mm.
@@ -36,14 +36,6 @@ const ALMOST_WHOLE: f64 = TAU - 0.01;
 
 /// Shares of an arc that are as near to its ends are no places to cut it at.
 const AT_ITS_END: f64 = 1e-6;
-
-/// A curve that is on its way, and the moves that it would be otherwise.
-#[derive(Debug)]
-pub(super) struct PendingCurve {
-    pub(super) line: u64,
-    pub(super) curve: Box<CurveMove>,
-    pub(super) moves: Vec<ChosenPoint>,
-}
 
 /// A block along an arc.
 pub(super) struct ArcBlock {
@@ -66,52 +58,47 @@ impl ArcBlock {
     }
 }
 
-impl PendingCurve {
-    pub(super) fn new(line: u64, curve: &CurveMove) -> Self {
-        Self { line, curve: Box::new(curve.clone()), moves: Vec::new() }
-    }
-
-    /// Line of the CL file that it is from.
-    pub(super) fn line(&self) -> u64 {
-        self.line
-    }
-
-    /// One more of its moves.
-    pub(super) fn push(&mut self, next: &ChosenPoint) {
-        self.moves.push(next.clone());
-    }
-}
-
 impl BlockStage<'_> {
-    /// The curve that is on its way has come to its end, or is broken off: it is kept or made by its moves. Nothing is
-    /// solved ahead in `placed`.
+    /// Goes along a curve: it is kept, or made by its moves.
     pub(super) fn go_along(
         &mut self,
-        whole: bool,
-        placed: &mut PlacedBatch,
-        to: &mut BlockContext<'_, '_>,
+        line: u64,
+        curve: &CurveMoves<ChosenPoint>,
+        out: &mut BlockSink<'_>,
     ) {
-        let Some(following) = self.following.take() else {
-            return;
-        };
-        if whole && self.keep(&following, to) {
+        let moves = curve.moves.iter().map(|next| match next {
+            StreamItem::Point(chosen) => Some(chosen),
+            _ => None,
+        });
+        let moves: Option<Vec<&ChosenPoint>> = moves.collect();
+        if let Some(moves) = &moves
+            && self.keep(line, &curve.curve, moves, out)
+        {
             return;
         }
-        for next in &following.moves {
-            self.point(next, 0, placed, to);
+        self.take(&curve.moves, out);
+        if moves.is_none() {
+            // Something has come between.
+            self.end_run(out);
         }
     }
 
     /// Makes blocks along the curve, if that can be.
-    fn keep(&mut self, following: &PendingCurve, to: &mut BlockContext<'_, '_>) -> bool {
+    fn keep(
+        &mut self,
+        line: u64,
+        curve: &CurveMove,
+        moves: &[&ChosenPoint],
+        out: &mut BlockSink<'_>,
+    ) -> bool {
         let (Some(placer), Some(last)) = (self.placer.clone(), self.last.as_deref()) else {
             return false;
         };
-        let still = |next: &ChosenPoint| {
+        let still = |next: &&ChosenPoint| {
             let standing = self.planes.standing(next);
             next.arrives && next.rewind.is_none() && placer.stand(standing, &last.trace.joints)
         };
-        if !following.moves.iter().all(still)
+        if !moves.iter().all(still)
             || self.compensation_due
             || !self.machine.solution.exclusive.is_empty()
         {
@@ -120,30 +107,40 @@ impl BlockStage<'_> {
         let Some(frame) = WordFrame::new(&placer, last) else {
             return false;
         };
-        let curve = &following.curve;
         let lift = curve.end.axis * self.machine.control_point.along;
         match &curve.course {
             CurveShape::Arc(arc) => {
                 let wanted = arc.placed(|point| point + lift, |direction| direction);
                 let whole = StraightMove { tip: curve.end.tip + lift, ..curve.end };
-                let Some(blocks) = self.arc_blocks(&placer, &frame, (&wanted, &whole)) else {
+                let Some(blocks) = self.arc_blocks(&frame, (&wanted, &whole)) else {
                     return false;
                 };
-                self.push_arc(&placer, following.line, &whole, blocks, to);
+                self.push_arc(&frame, line, &whole, blocks, out);
+                true
             }
             CurveShape::Spline(spline) => {
                 let lifted = spline.clone().placed(|point| point + lift);
-                return self.keep_spline(&placer, &frame, following, &lifted, to);
+                let end = StraightMove { tip: lifted.poles[lifted.poles.len() - 1].0, ..curve.end };
+                let Some(block) = self.spline_block(&frame, &lifted, &end) else {
+                    return false;
+                };
+                // Its chords are shorter by less than a thousandth of what they stray.
+                let mut at = lifted.poles[0].0;
+                let chords = moves.iter().map(|next| {
+                    let from = std::mem::replace(&mut at, next.motion.tip);
+                    (at - from).norm()
+                });
+                let way = chords.sum();
+                self.push_spline(&frame, (line, &end), block, way, out);
+                true
             }
         }
-        true
     }
 
     /// The blocks along an arc, as few as may be: whole, by halves, by quadrants.
     fn arc_blocks(
         &self,
-        placer: &Placer,
-        frame: &WordFrame,
+        frame: &WordFrame<'_>,
         (arc, end): (&PathArc, &StraightMove),
     ) -> Option<Vec<ArcBlock>> {
         let normal = frame.direction(arc.axis);
@@ -157,13 +154,13 @@ impl BlockStage<'_> {
         let finer = splits.into_iter().skip_while(|split| *split != from);
         finer
             .map(|split| self.cuts(frame, (axis, sense), arc, split))
-            .find_map(|cuts| self.arc_pieces(placer, frame, (axis, sense), (arc, end), &cuts))
+            .find_map(|cuts| self.arc_pieces(frame, (axis, sense), (arc, end), &cuts))
     }
 
     /// Shares of an arc at which its blocks end, 1 the last of them.
     fn cuts(
         &self,
-        frame: &WordFrame,
+        frame: &WordFrame<'_>,
         (axis, sense): (usize, f64),
         arc: &PathArc,
         split: ArcSplit,
@@ -197,8 +194,7 @@ impl BlockStage<'_> {
     /// The pieces of an arc between such shares as blocks; none if one of them cannot be.
     fn arc_pieces(
         &self,
-        placer: &Placer,
-        frame: &WordFrame,
+        frame: &WordFrame<'_>,
         (axis, sense): (usize, f64),
         (arc, end): (&PathArc, &StraightMove),
         cuts: &[f64],
@@ -209,12 +205,12 @@ impl BlockStage<'_> {
             let before = pieces.last().map(|piece| &*piece.node).or(self.last.as_deref())?;
             let tip = if cut == 1.0 { end.tip } else { arc.at(cut) };
             let target = pose(&StraightMove { tip, ..*end });
-            let mut node = placer.settled(target, 1.0, &before.trace.joints).ok()?;
-            self.steady(placer, before, &mut node);
+            let mut node = frame.placer.settled(target, 1.0, &before.trace.joints).ok()?;
+            self.steady(frame.placer, before, &mut node);
             let wanted = arc
                 .piece(from, cut)
                 .placed(|point| frame.point(point), |direction| frame.direction(direction));
-            let piece = self.arc_block(placer, frame, (axis, sense), &wanted, [before, &node])?;
+            let piece = self.arc_block(frame, (axis, sense), &wanted, [before, &node])?;
             pieces.push(ArcBlock { share: cut - from, ..piece });
             from = cut;
         }
@@ -224,16 +220,15 @@ impl BlockStage<'_> {
     /// The block along an arc in the frame of the words, if it is within what dialect, machine and tolerance allow.
     fn arc_block(
         &self,
-        placer: &Placer,
-        frame: &WordFrame,
+        frame: &WordFrame<'_>,
         about: (usize, f64),
         wanted: &PathArc,
         ends: [&PathNode; 2],
     ) -> Option<ArcBlock> {
         let off = |printed: &PrintedArc| printed.deviation(wanted);
-        let block = self.printed_arc(placer, frame, about, wanted.centre, ends, off)?;
+        let block = self.printed_arc(frame, about, wanted.centre, ends, off)?;
         let farthest = ends[0].axis_error.max(ends[1].axis_error);
-        let bound = self.kept_bound(placer, block.off, farthest, 0.0, ends)?;
+        let bound = self.kept_bound(frame, block.off, farthest, 0.0, ends)?;
         Some(block.proven(bound))
     }
 
@@ -241,14 +236,13 @@ impl BlockStage<'_> {
     /// far it is from what is wanted `off` says.
     pub(super) fn printed_arc(
         &self,
-        placer: &Placer,
-        frame: &WordFrame,
+        frame: &WordFrame<'_>,
         about: (usize, f64),
         mut centre: Vector3<f64>,
         [from, node]: [&PathNode; 2],
         off: impl Fn(&PrintedArc) -> f64,
     ) -> Option<ArcBlock> {
-        let mut ends = [placer.printed(from)?, placer.printed(node)?];
+        let mut ends = [frame.placer.printed(from)?, frame.placer.printed(node)?];
         let (axis, sense) = about;
         // A helix may have ended beside its words: the next arc begins there, and one given by its turn turns as much as
         // words say.
@@ -260,7 +254,7 @@ impl BlockStage<'_> {
             ends[0] = start;
         }
         centre[axis] = ends[0][axis];
-        let (words, rounded) = placer.printed_point(centre)?;
+        let (words, rounded) = frame.placer.printed_point(centre)?;
         let (centre, radius) = match self.keeps.by_radius() && !by_turn {
             false => (rounded, None),
             true => {
@@ -269,7 +263,7 @@ impl BlockStage<'_> {
                 let mut length = ends[0];
                 let radii = PrintedArc::new(about, ends, centre)?.radii;
                 length[across] = radii[0].midpoint(radii[1]);
-                let (word, printed) = placer.printed_point(length)?;
+                let (word, printed) = frame.placer.printed_point(length)?;
                 let centre = PrintedArc::centre_by_radius(about, ends, printed[across])?;
                 (centre, Some(word[across]))
             }
@@ -299,7 +293,7 @@ impl BlockStage<'_> {
         normal[axis] = 1.0;
         let mut node = Box::new(*node);
         if by_turn {
-            placer.stray(&mut node, frame.joints(printed.at(1.0)));
+            frame.placer.stray(&mut node, frame.joints(printed.at(1.0)));
         }
         let words = CurveWords::Arc {
             centre: words,
@@ -322,16 +316,16 @@ impl BlockStage<'_> {
     /// already, if that is within tolerance; the tool axis is off by `farthest` at most.
     pub(super) fn kept_bound(
         &self,
-        placer: &Placer,
+        frame: &WordFrame<'_>,
         off: f64,
         farthest: f64,
         chord: f64,
         [from, node]: [&PathNode; 2],
     ) -> Option<DeviationBound> {
         let accuracy = &self.machine.accuracy;
-        let margin = placer.margin(&from.trace.joints, &node.trace.joints);
+        let margin = frame.placer.margin(&from.trace.joints, &node.trace.joints);
         let bound = DeviationBound {
-            tip: off + placer.control_point().radius * farthest + margin.tip,
+            tip: off + frame.placer.control_point().radius * farthest + margin.tip,
             axis: farthest + margin.axis,
         };
         let holds =
@@ -341,7 +335,7 @@ impl BlockStage<'_> {
 
     /// Places along an arc by which its feed is planned, none where no feed is: as many as its chords need to stay within a
     /// tenth of the tolerance.
-    fn way_of_arc(&self, frame: &WordFrame, printed: &PrintedArc) -> Vec<Vector3<f64>> {
+    fn way_of_arc(&self, frame: &WordFrame<'_>, printed: &PrintedArc) -> Vec<Vector3<f64>> {
         if !self.plans {
             return Vec::new();
         }
@@ -355,7 +349,7 @@ impl BlockStage<'_> {
     }
 
     /// Axis values where some axis turns back along an arc, in order; none where one leaves its travel.
-    fn arc_between(&self, frame: &WordFrame, printed: &PrintedArc) -> Option<Vec<Joints>> {
+    fn arc_between(&self, frame: &WordFrame<'_>, printed: &PrintedArc) -> Option<Vec<Joints>> {
         let slides = frame.slides().iter();
         let mut shares: Vec<f64> =
             slides.flat_map(|(_, slide)| printed.turns_back(*slide)).collect();
@@ -378,18 +372,19 @@ impl BlockStage<'_> {
     /// Hands on the blocks of an arc.
     fn push_arc(
         &mut self,
-        placer: &Placer,
+        frame: &WordFrame<'_>,
         line: u64,
         motion: &StraightMove,
         pieces: Vec<ArcBlock>,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         let count = pieces.len();
         for (place, piece) in pieces.into_iter().enumerate() {
             if self.compensating {
-                self.check_compensation(placer, line, &piece.node, to.findings);
+                self.check_compensation(frame.placer, line, &piece.node);
             }
             let leg = PathLeg {
+                placer: frame.placer,
                 line,
                 motion,
                 loose: false,
@@ -398,7 +393,7 @@ impl BlockStage<'_> {
                     false => BlockReason::Stage,
                 },
             };
-            let node = self.push_piece(&leg, piece, to);
+            let node = self.push_piece(&leg, piece, out);
             self.spare = self.last.replace(node);
         }
         self.on_part = true;
@@ -409,7 +404,7 @@ impl BlockStage<'_> {
         &mut self,
         leg: &PathLeg<'_>,
         piece: ArcBlock,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) -> Box<PathNode> {
         let way = libm::hypot(piece.printed.length(), piece.printed.rise());
         let nominal = NominalTime::of(leg.motion.pace, way, AxisTravels::default);
@@ -425,14 +420,23 @@ impl BlockStage<'_> {
             ..self.block(leg, &piece.node, piece.bound)
         };
         self.largest.keep(leg, piece.bound);
-        let command = Command::Curve(Box::new(piece.curve));
-        to.out.command(leg.line, command);
-        to.out.push(StreamItem::Point(block));
+        self.push_curve(block, piece.curve, out);
         piece.node
     }
 
+    /// Hands on a block along a curve.
+    pub(super) fn push_curve(
+        &self,
+        block: MotionBlock,
+        printed: PrintedCurve,
+        out: &mut BlockSink<'_>,
+    ) {
+        let (line, curve) = (block.line, Box::new(CurveBlock { block, printed }));
+        out.push(StreamItem::Curve { line, curve });
+    }
+
     /// The least time in which no axis passes its largest feed, also on a control that divides F by the way in the plane.
-    fn arc_follow(&self, frame: &WordFrame, printed: &PrintedArc) -> FollowTime {
+    fn arc_follow(&self, frame: &WordFrame<'_>, printed: &PrintedArc) -> FollowTime {
         let mut follow = FollowTime::default();
         let length = printed.length();
         let faster = libm::hypot(length, printed.rise()) / length;

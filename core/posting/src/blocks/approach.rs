@@ -7,7 +7,7 @@ use post_machine::kinematics::{Joints, Pose};
 
 use super::nominal::{AxisTravels, NominalTime};
 use super::tool_alignment::ToolAlignment;
-use super::{BlockContext, BlockKind, BlockReason, BlockStage, MotionBlock, PathLeg};
+use super::{BlockKind, BlockReason, BlockSink, BlockStage, MotionBlock, PathLeg};
 use crate::accuracy::{DeviationBound, PathNode, Placer};
 use crate::program::{MoveFeed, StraightMove};
 use crate::stream::StreamItem;
@@ -43,16 +43,15 @@ impl BlockStage<'_> {
     /// The first position after the start, a tool change, or a turn of an index axis.
     pub(super) fn first(
         &mut self,
-        placer: &Placer,
         leg: &PathLeg<'_>,
         node: &PathNode,
         kind: BlockKind,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
-        if !self.comes_from_above(placer, node) {
-            return self.come(leg, node, kind, to);
+        if !self.comes_from_above(leg.placer, node) {
+            return self.come(leg, node, kind, out);
         }
-        let stops = self.stops_above(placer, node);
+        let stops = self.stops_above(leg.placer, node);
         let mut last: Option<&PathNode> = None;
         for stop in &stops {
             let motion = StraightMove {
@@ -63,35 +62,29 @@ impl BlockStage<'_> {
             };
             let over = PathLeg { motion: &motion, loose: true, reason: BlockReason::Above, ..*leg };
             match last {
-                None => self.come(&over, stop, kind, to),
-                Some(last) => self.cut(placer, &over, last, stop, to),
+                None => self.come(&over, stop, kind, out),
+                Some(last) => self.cut(&over, last, stop, out),
             }
             last = Some(stop);
         }
         match last {
             Some(last) => {
                 // Into a bore it is no rapid over the part.
-                let loose = leg.loose && placer.solver().closed_form();
-                self.cut(placer, &PathLeg { loose, ..*leg }, last, node, to);
+                let loose = leg.loose && leg.placer.solver().closed_form();
+                self.cut(&PathLeg { loose, ..*leg }, last, node, out);
             }
             // It is up there already.
             None => {
                 let leg = PathLeg { reason: BlockReason::AtOnce, ..*leg };
-                self.come(&leg, node, kind, to);
+                self.come(&leg, node, kind, out);
             }
         }
     }
 
     /// Moves from wherever the tool stands to `node`.
-    fn come(
-        &self,
-        leg: &PathLeg<'_>,
-        node: &PathNode,
-        kind: BlockKind,
-        to: &mut BlockContext<'_, '_>,
-    ) {
+    fn come(&self, leg: &PathLeg<'_>, node: &PathNode, kind: BlockKind, out: &mut BlockSink<'_>) {
         let block = self.block(leg, node, DeviationBound::default());
-        to.out.push(StreamItem::Point(MotionBlock {
+        out.push(StreamItem::Point(MotionBlock {
             kind,
             // The way is not known: the feed is that of a millimetre.
             way: 1.0,

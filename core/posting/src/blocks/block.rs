@@ -1,14 +1,19 @@
 //! A block of the program: a motion as it will be printed, with all that later stages may need.
 
+use std::rc::Rc;
+
 use nalgebra::Vector3;
 use post_machine::axis_words::WordValues;
 use post_machine::kinematics::Joints;
+use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::Feed;
 
 use super::compensating_motion::FollowTime;
 use super::nominal::{NominalTime, STILL};
-use crate::accuracy::DeviationBound;
+use crate::accuracy::{DeviationBound, Placer};
+use crate::curve::CurveBlock;
 use crate::program::MoveFeed;
+use crate::stream::{StreamItem, StreamPoint};
 
 /// A motion of the program, from where the block before it ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +53,39 @@ pub struct MotionBlock {
     /// The line of the program that it ends on, counted from 1: zero of one that is not written, and before it is. Of a hole
     /// that the control's own cycle makes all end on that of its point. Filled in for observers.
     pub nc_line: u64,
+}
+
+impl StreamPoint for MotionBlock {
+    type Curve = CurveBlock;
+    type Note = BlockNote;
+
+    fn line(&self) -> u64 {
+        self.line
+    }
+
+    fn moves(_: &Self::Curve) -> usize {
+        1
+    }
+}
+
+impl StreamItem<MotionBlock> {
+    /// The block, along a curve or not; none of what is no block.
+    pub(crate) fn block(&self) -> Option<&MotionBlock> {
+        match self {
+            Self::Point(block) => Some(block),
+            Self::Curve { curve, .. } => Some(&curve.block),
+            _ => None,
+        }
+    }
+}
+
+/// What the stage that makes blocks says of those from there on.
+#[derive(Clone, Debug)]
+pub enum BlockNote {
+    /// What solves their points, for the stage that plans feeds.
+    Placer(Rc<Placer>),
+    /// Their words are those of this tilted plane, the tool having left the part; none: of no plane.
+    Plane(Option<Box<TiltedPlane>>),
 }
 
 /// What a planned feed leaves a block.

@@ -9,7 +9,7 @@ use post_machine::kinematics::travel::{OverTravel, over};
 use post_machine::kinematics::{Joints, MAX_AXES, TcpBlock};
 
 use super::PathLeg;
-use crate::accuracy::{PathNode, Placer};
+use crate::accuracy::PathNode;
 use crate::findings::Findings;
 use crate::refusal::{self, FINDS_A_MOUNT};
 
@@ -80,15 +80,15 @@ impl CompensatingMotion {
     pub(super) fn block(
         &mut self,
         machine: &Machine,
-        (placer, leg, [from, to]): (&Placer, &PathLeg<'_>, [&PathNode; 2]),
+        (leg, [from, to]): (&PathLeg<'_>, [&PathNode; 2]),
         asked: f64,
         findings: &Findings,
     ) -> FollowTime {
         if !self.keeps {
             return FollowTime::default();
         }
-        let along = placer.control_point().along;
-        let Some(kept) = TcpBlock::new(placer.solver(), along, &from.trace, &to.trace) else {
+        let along = leg.placer.control_point().along;
+        let Some(kept) = TcpBlock::new(leg.placer.solver(), along, &from.trace, &to.trace) else {
             return FollowTime::default();
         };
         if let Some(follow) = self.cleared(machine, &kept, [from, to], asked) {

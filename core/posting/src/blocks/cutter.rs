@@ -7,11 +7,10 @@ use post_plugin::Compensation;
 
 use super::BlockStage;
 use crate::accuracy::{PathNode, Placer};
-use crate::findings::Findings;
 
 impl BlockStage<'_> {
     /// Compensation is switched on or off.
-    pub(super) fn compensate(&mut self, line: u64, to: Compensation, findings: &Findings) {
+    pub(super) fn compensate(&mut self, line: u64, to: Compensation) {
         self.compensating = to != Compensation::Off;
         if self.compensating && !self.compensates && !self.in_plane() {
             self.compensating = false;
@@ -20,20 +19,13 @@ impl BlockStage<'_> {
                 "under tool centre point control: this dialect does not say that its control can",
                 "tcp = \"post\" writes axis positions (--tcp post); or let the CAM system write the tool centre \
                  path, with CUTCOM/OFF",
-                findings,
             );
         }
     }
 
     /// Radius compensation works in the plane of X and Y of the machine (of the part, where the control keeps
     /// the tip): a tool that does not stand upright in it would be moved sideways into the part.
-    pub(super) fn check_compensation(
-        &mut self,
-        placer: &Placer,
-        line: u64,
-        node: &PathNode,
-        findings: &Findings,
-    ) {
+    pub(super) fn check_compensation(&mut self, placer: &Placer, line: u64, node: &PathNode) {
         let machine = self.machine;
         let axis = match machine.control.tcp {
             // The tool stands upright in it.
@@ -55,16 +47,15 @@ impl BlockStage<'_> {
             line,
             &format!("with {what}: the control would offset in the wrong plane"),
             "let the CAM system write the tool centre path, with CUTCOM/OFF",
-            findings,
         );
     }
 
     /// Reported once a program.
-    fn refuse_compensation(&mut self, line: u64, why: &str, help: &str, findings: &Findings) {
+    fn refuse_compensation(&mut self, line: u64, why: &str, help: &str) {
         if std::mem::replace(&mut self.told_compensation, true) {
             return;
         }
         let message = format!("cutter radius compensation (CUTCOM) {why}");
-        findings.at(line, Diagnostic::error("compensation", message).help(help));
+        self.findings.at(line, Diagnostic::error("compensation", message).help(help));
     }
 }

@@ -10,8 +10,8 @@ use nalgebra::Vector3;
 use post_machine::description::ArcSplit;
 
 use super::along::ArcBlock;
-use super::{BlockContext, BlockStage, NominalTime, PathLeg};
-use crate::accuracy::{DeviationBound, PathNode, Placer, PrintedArc, WordFrame, arc_fit};
+use super::{BlockSink, BlockStage, NominalTime, PathLeg};
+use crate::accuracy::{DeviationBound, PathNode, PrintedArc, WordFrame, arc_fit};
 
 /// Largest bulge (tangent of a quarter of the angle) of an arc: 340°, half a turn and a quarter.
 const BULGES: [f64; 3] = [11.430_052_302_761_343, 1.000_001, 0.414_213_562_373_095_1];
@@ -30,8 +30,7 @@ enum FittedPiece {
 
 /// A run in the frame of the words.
 struct WordFrameRun<'r> {
-    placer: &'r Placer,
-    frame: WordFrame,
+    frame: WordFrame<'r>,
     legs: &'r [PathLeg<'r>],
     nodes: &'r [PathNode],
     /// Where the CL file wants the points, and where they are printed, mm.
@@ -45,10 +44,9 @@ impl BlockStage<'_> {
     /// Goes along a run by arcs and lines.
     pub(super) fn fit(
         &mut self,
-        placer: &Placer,
         legs: &[PathLeg<'_>],
         nodes: &[PathNode],
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         let mut at = 0;
         while at < legs.len() {
@@ -57,9 +55,9 @@ impl BlockStage<'_> {
                 |node: &&PathNode| !self.kinds.turning(&nodes[at].trace.joints, &node.trace.joints);
             let count = nodes[at + 1..].iter().take_while(still).count();
             let (legs, nodes) = (&legs[at..], &nodes[at..]);
-            match self.laid(placer, &legs[..count], &nodes[..=count]) {
+            match self.laid(&legs[..count], &nodes[..=count]) {
                 Some(laid) => {
-                    self.fit_laid(&laid, to);
+                    self.fit_laid(&laid, out);
                     at += count;
                 }
                 None => {
@@ -70,26 +68,21 @@ impl BlockStage<'_> {
                         0 => nodes.windows(2).take_while(turns).count(),
                         count => count,
                     };
-                    self.go_straight(placer, &legs[..count], &nodes[..=count], to);
+                    self.go_straight(&legs[..count], &nodes[..=count], out);
                     at += count;
                 }
             }
         }
     }
 
-    fn laid<'r>(
-        &self,
-        placer: &'r Placer,
-        legs: &'r [PathLeg<'r>],
-        nodes: &'r [PathNode],
-    ) -> Option<WordFrameRun<'r>> {
+    fn laid<'r>(&self, legs: &'r [PathLeg<'r>], nodes: &'r [PathNode]) -> Option<WordFrameRun<'r>> {
         let first = legs.first()?;
+        let placer = first.placer;
         let frame = WordFrame::new(placer, &nodes[0])?;
         let printed = nodes.iter().map(|node| placer.printed(node));
         let margin = placer.margin(&nodes[0].trace.joints, &nodes[0].trace.joints);
         let edge = placer.control_point().radius * self.machine.accuracy.axis_tolerance;
         Some(WordFrameRun {
-            placer,
             legs,
             nodes,
             wanted: nodes.iter().map(|node| frame.point(node.target.tip)).collect(),
@@ -99,7 +92,7 @@ impl BlockStage<'_> {
         })
     }
 
-    fn fit_laid(&mut self, laid: &WordFrameRun<'_>, to: &mut BlockContext<'_, '_>) {
+    fn fit_laid(&mut self, laid: &WordFrameRun<'_>, out: &mut BlockSink<'_>) {
         let mut at = 0;
         while at < laid.legs.len() {
             let line = farthest(at, laid.legs.len(), |end| self.line(laid, at, end));
@@ -109,7 +102,7 @@ impl BlockStage<'_> {
             });
             let Some((end, piece)) = arc.or(line) else {
                 let ends = [&laid.nodes[at], &laid.nodes[at + 1]];
-                self.cut(laid.placer, &laid.legs[at], ends[0], ends[1], to);
+                self.cut(&laid.legs[at], ends[0], ends[1], out);
                 at += 1;
                 continue;
             };
@@ -117,7 +110,7 @@ impl BlockStage<'_> {
             let leg = &laid.legs[end - 1];
             match piece {
                 FittedPiece::Arc(arc) => {
-                    self.push_piece(leg, *arc, to);
+                    self.push_piece(leg, *arc, out);
                 }
                 FittedPiece::Line(bound) => {
                     let ends = [&laid.nodes[at], &laid.nodes[end]];
@@ -126,7 +119,7 @@ impl BlockStage<'_> {
                     });
                     let due: Vec<NominalTime> = due.collect();
                     let nominal = NominalTime::between(&due, (0, 0.0), (due.len() - 1, 1.0));
-                    self.push(laid.placer, leg, ends, nominal, bound, to);
+                    self.push(leg, ends, nominal, bound, out);
                 }
             }
             at = end;
@@ -151,7 +144,7 @@ impl BlockStage<'_> {
         let nodes = &laid.nodes[at..=end];
         let farthest = nodes.iter().map(|node| node.axis_error).fold(0.0, f64::max);
         let chord = laid.legs[at].motion.chord;
-        self.kept_bound(laid.placer, off, farthest, chord, [&nodes[0], &nodes[nodes.len() - 1]])
+        self.kept_bound(&laid.frame, off, farthest, chord, [&nodes[0], &nodes[nodes.len() - 1]])
     }
 
     /// An arc over the legs from `at` to `end`, in the first plane that has one.
@@ -182,8 +175,7 @@ impl BlockStage<'_> {
             let (sense, centre) = arc_fit::by_bulge(axis, ends, least.midpoint(largest))?;
             let whole = |printed: &PrintedArc| printed.off_path(wanted, laid.tolerance);
             let ends = [&laid.nodes[at], &laid.nodes[end]];
-            let block =
-                self.printed_arc(laid.placer, &laid.frame, (axis, sense), centre, ends, whole)?;
+            let block = self.printed_arc(&laid.frame, (axis, sense), centre, ends, whole)?;
             if split == 2 && crosses(&block.printed) {
                 return None;
             }

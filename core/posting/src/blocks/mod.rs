@@ -2,7 +2,6 @@
 
 mod along;
 mod approach;
-mod audience;
 mod block;
 mod compensating_motion;
 mod cutter;
@@ -24,15 +23,15 @@ use post_plugin::{Capabilities, Format, ModelSession};
 use crate::accuracy::{
     DeviationBound, Lineariser, NodeMove, NodeRun, PathNode, PlacedBatch, Placer,
 };
-use crate::configuration::{ChosenPoint, ConfiguredItem, pose};
+use crate::configuration::{ChoiceNote, ChosenPoint, pose};
 use crate::curve::CurvePolicy;
+use crate::expand::FixedAxis;
 use crate::findings::Findings;
+use crate::observer::Observers;
 use crate::program::{Command, MoveFeed, StraightMove};
 use crate::refusal;
-use crate::stream::{BatchSink, StreamItem};
-use along::PendingCurve;
-pub(crate) use audience::Audience;
-pub use block::{BlockDuration, BlockKind, BlockReason, MotionBlock, PlannedTime};
+use crate::stream::{BatchSink, HoleMoves, StreamItem, gathered};
+pub use block::{BlockDuration, BlockKind, BlockNote, BlockReason, MotionBlock, PlannedTime};
 pub(crate) use compensating_motion::CompensatingMotion;
 pub use compensating_motion::FollowTime;
 pub use nominal::NominalTime;
@@ -49,6 +48,8 @@ const LEAST_TOGETHER: usize = 4;
 /// A straight piece of the CL path on its way to become blocks.
 #[derive(Clone, Copy, Debug)]
 struct PathLeg<'m> {
+    /// What solves its points.
+    placer: &'m Placer,
     line: u64,
     motion: &'m StraightMove,
     /// Leg off the part: the tolerance of a rapid is enough.
@@ -83,15 +84,8 @@ impl LargestDeviations {
     }
 }
 
-/// What the stage is handed, beside its batch.
-pub(crate) struct BlockContext<'s, 'o> {
-    /// Where blocks go.
-    pub out: &'s mut BatchSink<'o, StreamItem<MotionBlock>>,
-    /// Where faults go.
-    pub findings: &'s Findings,
-    /// Observers of cuts, if there are any.
-    pub audience: Option<&'s dyn Audience>,
-}
+/// Where blocks go.
+pub(crate) type BlockSink<'o> = BatchSink<'o, StreamItem<MotionBlock>>;
 
 /// Counts of this stage.
 #[derive(Clone, Copy, Debug, Default)]
@@ -127,8 +121,6 @@ pub(crate) struct BlockStage<'a> {
     keeps: CurvePolicy,
     /// Feeds are planned after this stage: curves tell their way.
     plans: bool,
-    /// A curve whose end has not come yet.
-    following: Option<PendingCurve>,
     /// What each leg of the run in hand is due.
     nominal: Vec<NominalTime>,
     /// Where the tool stands; none before the first position.
@@ -136,7 +128,7 @@ pub(crate) struct BlockStage<'a> {
     /// The node before that, to be filled again.
     spare: Option<Box<PathNode>>,
     /// Points that are solved together.
-    placed: Option<Box<PlacedBatch>>,
+    placed: Box<PlacedBatch>,
     /// The last move was a cut: the tool is on the part.
     on_part: bool,
     /// The control begins to keep the tip in a block that moves nothing.
@@ -152,6 +144,9 @@ pub(crate) struct BlockStage<'a> {
     /// The largest deviations so far.
     largest: LargestDeviations,
     counts: BlockCounts,
+    /// Observers of cuts; none if nobody looks on.
+    observers: Option<Rc<Observers<'a>>>,
+    findings: Findings,
 }
 
 impl<'a> BlockStage<'a> {
@@ -161,6 +156,7 @@ impl<'a> BlockStage<'a> {
         format: &Format,
         model: &'a mut dyn ModelSession,
         trust_model: bool,
+        findings: &Findings,
     ) -> Self {
         let tcp = machine.control.tcp == Tcp::Control;
         Self {
@@ -175,11 +171,10 @@ impl<'a> BlockStage<'a> {
             gathered: PendingRun::default(),
             keeps: CurvePolicy::new(machine, writes),
             plans: false,
-            following: None,
             nominal: Vec::new(),
             last: None,
             spare: None,
-            placed: None,
+            placed: Box::default(),
             on_part: false,
             tcp_still: writes.has(Capabilities::TCP_STILL),
             compensates: !tcp || writes.has(Capabilities::COMPENSATE_TCP),
@@ -188,7 +183,14 @@ impl<'a> BlockStage<'a> {
             told_compensation: false,
             largest: LargestDeviations::default(),
             counts: BlockCounts::default(),
+            observers: None,
+            findings: findings.clone(),
         }
+    }
+
+    /// Shows cuts from here on.
+    pub(crate) fn watch(&mut self, observers: Rc<Observers<'a>>) {
+        self.observers = Some(observers);
     }
 
     /// Feeds are planned after this stage.
@@ -197,13 +199,13 @@ impl<'a> BlockStage<'a> {
     }
 
     /// Blocks from here on are made with another placer, which goes on to whom it serves after this stage.
-    fn use_placer(&mut self, placer: Rc<Placer>, to: &mut BlockContext<'_, '_>) {
+    fn use_placer(&mut self, line: u64, placer: Rc<Placer>, out: &mut BlockSink<'_>) {
         self.placer = Some(match self.plans {
             false => placer,
             true => {
                 // Blocks may be cut after this stage, at rounded points.
                 let roomy = placer.leaving_room(self.machine.accuracy.tolerance);
-                to.out.push(StreamItem::Placer(placer));
+                out.note(line, BlockNote::Placer(placer));
                 Rc::new(roomy)
             }
         });
@@ -226,38 +228,27 @@ impl<'a> BlockStage<'a> {
 
     /// Line of the first point that waits for those after it.
     pub(crate) fn first_line(&self) -> Option<u64> {
-        let following = self.following.as_ref().map(PendingCurve::line);
-        self.gathered.first_line().or(following)
+        self.gathered.first_line()
     }
 
-    /// Takes a batch.
-    pub(crate) fn take(
-        &mut self,
-        batch: &[StreamItem<ConfiguredItem>],
-        to: &mut BlockContext<'_, '_>,
-    ) {
-        let mut placed = self.placed.take().unwrap_or_default();
+    /// Takes elements in order; none of them is solved ahead.
+    pub(crate) fn take(&mut self, elements: &[StreamItem<ChosenPoint>], out: &mut BlockSink<'_>) {
         let mut from = 0;
-        while from < batch.len() {
-            let count = self.settle_ahead(&batch[from..], &mut placed);
-            for (lane, next) in batch[from..from + count].iter().enumerate() {
-                self.next(next, lane, &mut placed, to);
+        while from < elements.len() {
+            let count = self.settle_ahead(&elements[from..]);
+            for (lane, next) in elements[from..from + count].iter().enumerate() {
+                self.next(next, lane, out);
             }
             from += count;
         }
-        self.placed = Some(placed);
     }
 
     /// Solves the points at the front of a batch together, as far as one placer solves them; gives how many elements
     /// they are. Where there are few, or the next is something else, nothing is solved ahead.
-    fn settle_ahead(
-        &self,
-        batch: &[StreamItem<ConfiguredItem>],
-        placed: &mut PlacedBatch,
-    ) -> usize {
+    fn settle_ahead(&mut self, batch: &[StreamItem<ChosenPoint>]) -> usize {
         let points = || {
             batch.iter().map_while(|next| match next {
-                StreamItem::Point(ConfiguredItem::Point(chosen)) if chosen.arrives => {
+                StreamItem::Point(chosen) if chosen.arrives => {
                     Some((pose(&chosen.motion), self.planes.standing(chosen)))
                 }
                 _ => None,
@@ -265,75 +256,69 @@ impl<'a> BlockStage<'a> {
         };
         let count = points().take(PlacedBatch::MOST).count();
         match &self.placer {
-            Some(placer) if count >= LEAST_TOGETHER && self.following.is_none() => {
-                placed.settle(placer, points())
-            }
-            _ => placed.forget(),
+            Some(placer) if count >= LEAST_TOGETHER => self.placed.settle(placer, points()),
+            _ => self.placed.forget(),
         }
         count.max(1)
     }
 
     /// One element; `lane` is its place among those that were solved together.
     #[inline]
-    fn next(
-        &mut self,
-        next: &StreamItem<ConfiguredItem>,
-        lane: usize,
-        placed: &mut PlacedBatch,
-        to: &mut BlockContext<'_, '_>,
-    ) {
-        if let Some(following) = &mut self.following {
-            match next {
-                StreamItem::Point(ConfiguredItem::Point(chosen)) => return following.push(chosen),
-                StreamItem::Command { command: Command::AlongEnd, .. } => {
-                    return self.go_along(true, placed, to);
-                }
-                // Something has come between: by its moves.
-                _ => self.go_along(false, placed, to),
-            }
-        }
+    fn next(&mut self, next: &StreamItem<ChosenPoint>, lane: usize, out: &mut BlockSink<'_>) {
         match next {
-            StreamItem::Point(ConfiguredItem::Point(chosen)) => {
-                self.point(chosen, lane, placed, to)
+            StreamItem::Point(chosen) => self.point(chosen, lane, out),
+            StreamItem::Curve { line, curve } => {
+                self.end_run(out);
+                self.go_along(*line, curve, out);
             }
-            StreamItem::Placer(placer) => {
-                self.end_run(to);
-                self.take_placer(placer, to);
+            StreamItem::Hole(hole) => self.hole(hole, out),
+            StreamItem::Command { line, command } => self.command(*line, command, out),
+            StreamItem::Note { line, note } => {
+                self.end_run(out);
+                match note {
+                    ChoiceNote::Placer(placer) => self.take_placer(*line, placer, out),
+                    ChoiceNote::FixedAxis(FixedAxis(origin)) => self.fix_axis(*line, *origin, out),
+                    // The next point is a first position again.
+                    ChoiceNote::Broken => {
+                        self.last = None;
+                        self.on_part = false;
+                    }
+                }
             }
-            StreamItem::Point(ConfiguredItem::Broken) => {
-                self.end_run(to);
-                // The next point is a first position again.
-                self.last = None;
-                self.on_part = false;
-            }
-            StreamItem::Command { line, command } => self.command(*line, command, to),
         }
     }
 
     /// The file ends: what waits is carried out.
-    pub(crate) fn finish(&mut self, line: u64, to: &mut BlockContext<'_, '_>) {
-        let mut placed = self.placed.take().unwrap_or_default();
-        placed.forget();
-        self.go_along(false, &mut placed, to);
-        self.end_run(to);
-        self.depart(line, to);
+    pub(crate) fn finish(&mut self, line: u64, out: &mut BlockSink<'_>) {
+        self.end_run(out);
+        self.depart(line, out);
     }
 
-    fn command(&mut self, line: u64, command: &Command, to: &mut BlockContext<'_, '_>) {
-        self.end_run(to);
+    /// The moves of a hole as blocks; no run goes on into it or out of it.
+    fn hole(&mut self, hole: &HoleMoves<ChosenPoint>, out: &mut BlockSink<'_>) {
+        self.end_run(out);
+        let made = hole.remade(|part| {
+            gathered(|out| {
+                self.take(part, out);
+                self.end_run(out);
+            })
+        });
+        out.element(StreamItem::Hole(Box::new(made)));
+    }
+
+    fn command(&mut self, line: u64, command: &Command, out: &mut BlockSink<'_>) {
+        self.end_run(out);
         match command {
             Command::Tool(_) | Command::Home | Command::WorkOffset(_) | Command::Smoothing(_) => {
-                self.depart(line, to)
+                self.depart(line, out)
             }
             // Where the tool stands after it is not known.
             Command::Subprogram(_) => {
                 self.last = None;
                 self.on_part = false;
             }
-            // Its place is reported where it begins.
-            Command::Still(origin) => return self.still(line, *origin, to),
             Command::Head(name) => {
-                self.depart(line, to);
+                self.depart(line, out);
                 if let Some(head) = self.base.head(name) {
                     self.machine = &head.machine;
                     self.kinds = AxisKinds::new(self.machine);
@@ -342,32 +327,22 @@ impl<'a> BlockStage<'a> {
                 }
             }
             Command::Compensate(compensation) => {
-                self.compensate(line, *compensation, to.findings);
+                self.compensate(line, *compensation);
                 self.compensation_due = true;
             }
-            Command::Along(curve) => {
-                self.following = Some(PendingCurve::new(line, curve));
-                return;
-            }
-            Command::AlongEnd => return,
             _ => {}
         }
-        to.out.command(line, command.clone());
+        out.command(line, command.clone());
     }
 
     #[inline]
-    fn point(
-        &mut self,
-        chosen: &ChosenPoint,
-        lane: usize,
-        placed: &mut PlacedBatch,
-        to: &mut BlockContext<'_, '_>,
-    ) {
-        self.enter_plane(chosen, placed, to);
+    fn point(&mut self, chosen: &ChosenPoint, lane: usize, out: &mut BlockSink<'_>) {
+        self.enter_plane(chosen, out);
         let Some(placer) = self.placer.clone() else {
             return;
         };
         let leg = PathLeg {
+            placer: &placer,
             line: chosen.line,
             motion: &chosen.motion,
             loose: chosen.motion.pace == MoveFeed::Rapid,
@@ -377,53 +352,47 @@ impl<'a> BlockStage<'a> {
             self.counts.branch_changes += u64::from(chosen.changed && leg.loose);
             self.counts.eased += u64::from(chosen.eased);
             let mut node = self.spare.take().unwrap_or_default();
-            let settled = if placed.take(lane, &mut node) {
+            let settled = if self.placed.take(lane, &mut node) {
                 Ok(())
             } else {
                 let standing = self.planes.standing(chosen);
                 placer.settle(&mut node, pose(leg.motion), 1.0, standing)
             };
             match settled {
-                Ok(()) => self.travel(&placer, &leg, node, to),
+                Ok(()) => self.travel(&leg, node, out),
                 Err(refused) => {
                     self.spare = Some(node);
-                    to.findings.at(leg.line, refusal::refused(self.machine, &refused));
+                    self.findings.at(leg.line, refusal::refused(self.machine, &refused));
                 }
             }
         }
         if let Some(joints) = &chosen.rewind {
-            self.end_run(to);
-            self.rewind(&placer, &leg, joints, to);
+            self.end_run(out);
+            self.rewind(&leg, joints, out);
         }
     }
 
     #[inline]
-    fn travel(
-        &mut self,
-        placer: &Placer,
-        leg: &PathLeg<'_>,
-        mut node: Box<PathNode>,
-        to: &mut BlockContext<'_, '_>,
-    ) {
+    fn travel(&mut self, leg: &PathLeg<'_>, mut node: Box<PathNode>, out: &mut BlockSink<'_>) {
         if self.compensating {
-            self.check_compensation(placer, leg.line, &node, to.findings);
+            self.check_compensation(leg.placer, leg.line, &node);
         }
         if let Some(last) = &self.last {
-            self.steady(placer, last, &mut node);
+            self.steady(leg.placer, last, &mut node);
         }
         let gathers = self.gathers(leg, &node);
         if !gathers {
-            self.end_run(to);
+            self.end_run(out);
         }
         match self.last.take() {
-            None => self.first(placer, leg, &node, BlockKind::Position, to),
+            None => self.first(leg, &node, BlockKind::Position, out),
             Some(last) if self.machine.indexes && self.indexes(&last, &node) => {
                 // An index axis turns with the tool retracted, not somewhere over the part.
-                let last = self.leave_part(placer, leg.line, last, to);
-                self.first(placer, leg, &node, BlockKind::Reference, to);
+                let last = self.leave_part(leg.placer, leg.line, last, out);
+                self.first(leg, &node, BlockKind::Reference, out);
                 self.spare = Some(last);
             }
-            Some(last) => self.spare = Some(self.go(placer, leg, last, &mut node, gathers, to)),
+            Some(last) => self.spare = Some(self.go(leg, last, &mut node, gathers, out)),
         }
         self.on_part = leg.motion.pace != MoveFeed::Rapid;
         self.last = Some(node);
@@ -433,36 +402,35 @@ impl<'a> BlockStage<'a> {
     #[inline]
     fn go(
         &mut self,
-        placer: &Placer,
         leg: &PathLeg<'_>,
         mut last: Box<PathNode>,
         node: &mut PathNode,
         gathers: bool,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) -> Box<PathNode> {
         if leg.loose && self.on_part {
             // The tool leaves the part as it stands, and turns when it is away: where its axis stays, nothing turns
             // (unless the tip depends on it, as it does without a closed form).
             let joints = &last.trace.joints;
-            let stay = if placer.solver().closed_form() && self.points_alike(&last, node) {
-                placer.settled(node.target, 1.0, joints)
+            let stay = if leg.placer.solver().closed_form() && self.points_alike(&last, node) {
+                leg.placer.settled(node.target, 1.0, joints)
             } else {
-                placer.place(node.target, 1.0, joints)
+                leg.placer.place(node.target, 1.0, joints)
             };
             if let Ok(stay) = stay
                 && self.turn_between(&last, &stay) + TURN < self.turn_between(&last, node)
             {
                 let leaving = PathLeg { reason: BlockReason::Leave, ..*leg };
-                self.cut(placer, &leaving, &last, &stay, to);
+                self.cut(&leaving, &last, &stay, out);
                 *last = stay;
             }
         }
         if !self.excluded(&last, node).is_empty() {
-            self.by_stages(placer, leg, &last, node, to);
+            self.by_stages(leg, &last, node, out);
         } else if gathers {
-            self.gather(leg, &last, node, to);
+            self.gather(leg, &last, node, out);
         } else {
-            self.cut(placer, leg, &last, node, to);
+            self.cut(leg, &last, node, out);
         }
         last
     }
@@ -497,18 +465,17 @@ impl<'a> BlockStage<'a> {
     #[inline]
     fn cut(
         &mut self,
-        placer: &Placer,
         leg: &PathLeg<'_>,
         last: &PathNode,
         node: &PathNode,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         let chord = leg.motion.chord;
-        let whole = NodeMove::planned(self.machine, placer, chord, leg.loose, [last, node]);
-        if let Some(audience) = to.audience
+        let whole = NodeMove::planned(self.machine, leg.placer, chord, leg.loose, [last, node]);
+        if let Some(observers) = &self.observers
             && !leg.loose
         {
-            audience.cut(leg.line, &whole);
+            observers.cut(leg.line, &whole);
         }
         match whole.whole() {
             Some(bound) => {
@@ -519,25 +486,20 @@ impl<'a> BlockStage<'a> {
                     bound
                 };
                 let nominal = self.nominal(leg, last, node);
-                self.push(placer, leg, [last, node], nominal, bound, to);
+                self.push(leg, [last, node], nominal, bound, out);
             }
-            None => self.split(placer, &[*leg], &[*last, *node], to),
+            None => self.split(&[*leg], &[*last, *node], out),
         }
     }
 
     /// Legs, one after the other, that need points or can do without some of their own.
-    fn split(
-        &mut self,
-        placer: &Placer,
-        legs: &[PathLeg<'_>],
-        nodes: &[PathNode],
-        to: &mut BlockContext<'_, '_>,
-    ) {
+    fn split(&mut self, legs: &[PathLeg<'_>], nodes: &[PathNode], out: &mut BlockSink<'_>) {
         let Some(first) = legs.first() else {
             return;
         };
         let mut linearise = std::mem::take(&mut self.linearise);
-        let (chord, loose) = (first.motion.chord, first.loose);
+        let PathLeg { placer, loose, .. } = *first;
+        let chord = first.motion.chord;
         let planned = NodeMove::planned(self.machine, placer, chord, loose, [&nodes[0], &nodes[1]]);
         let moves = nodes.windows(2).any(|pair| self.wanted_way(&pair[0], &pair[1]) > STILL);
         let run = NodeRun {
@@ -569,7 +531,7 @@ impl<'a> BlockStage<'a> {
                         ..legs[piece.leg]
                     };
                     let ends = [&from, &piece.to];
-                    self.push(placer, &leg, ends, nominal, piece.bound, to);
+                    self.push(&leg, ends, nominal, piece.bound, out);
                     (from, at) = (piece.to, end);
                 }
                 self.nominal = due;
@@ -578,7 +540,7 @@ impl<'a> BlockStage<'a> {
             Err((leg, stuck)) => {
                 let leg = &legs[leg];
                 let finding = refusal::stuck(self.machine, &stuck, leg.motion);
-                to.findings.at(leg.line, finding);
+                self.findings.at(leg.line, finding);
             }
         }
         self.linearise = linearise;
@@ -588,12 +550,11 @@ impl<'a> BlockStage<'a> {
     #[inline]
     fn push(
         &mut self,
-        placer: &Placer,
         leg: &PathLeg<'_>,
         [from, node]: [&PathNode; 2],
         nominal: NominalTime,
         bound: DeviationBound,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         self.largest.keep(leg, bound);
         self.compensation_due = false;
@@ -605,10 +566,10 @@ impl<'a> BlockStage<'a> {
         };
         if self.kinds.turning(&from.trace.joints, &node.trace.joints) {
             let (machine, asked) = (self.machine, block.asked());
-            let way = (placer, leg, [from, node]);
-            block.follow = self.between.block(machine, way, asked, to.findings);
+            let way = (leg, [from, node]);
+            block.follow = self.between.block(machine, way, asked, &self.findings);
         }
-        to.out.push(StreamItem::Point(block));
+        out.push(StreamItem::Point(block));
     }
 
     #[inline]

@@ -4,10 +4,9 @@ use post_machine::diagnostic::{Diagnostic, Short};
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::orientation::angle;
 
-use super::{BlockContext, BlockReason, BlockStage, PathLeg};
+use super::{BlockReason, BlockSink, BlockStage, PathLeg};
 use crate::accuracy::{PathNode, Placer};
 use crate::configuration::pose;
-use crate::findings::Findings;
 use crate::program::{MoveFeed, StraightMove};
 use crate::refusal;
 
@@ -31,9 +30,9 @@ const LEAVE: [f64; 5] = [100.0, 50.0, 25.0, 12.0, 6.0];
 
 impl BlockStage<'_> {
     /// The tool is about to be retracted: from where it stands, if it stands anywhere.
-    pub(super) fn depart(&mut self, line: u64, to: &mut BlockContext<'_, '_>) {
+    pub(super) fn depart(&mut self, line: u64, out: &mut BlockSink<'_>) {
         if let (Some(placer), Some(last)) = (self.placer.clone(), self.last.take()) {
-            self.leave_part(&placer, line, last, to);
+            self.leave_part(&placer, line, last, out);
         }
         self.on_part = false;
     }
@@ -45,20 +44,20 @@ impl BlockStage<'_> {
         placer: &Placer,
         line: u64,
         last: Box<PathNode>,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) -> Box<PathNode> {
         if let Some(distance) = self.machine.frame.leave {
-            return self.leave_along(placer, line, last, distance, to);
+            return self.leave_along(placer, line, last, distance, out);
         }
         if self.machine.frame.retract.is_empty() {
             return last;
         }
         let leaning = angle(self.in_machine(placer, &last), self.machine.tool_axis) > LEANS;
         let last = match leaning {
-            true => self.draw_back(placer, line, last, to),
+            true => self.draw_back(placer, line, last, out),
             false => last,
         };
-        self.check_retract(placer, line, &last, to.findings);
+        self.check_retract(placer, line, &last);
         last
     }
 
@@ -70,34 +69,35 @@ impl BlockStage<'_> {
         line: u64,
         last: Box<PathNode>,
         distance: f64,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) -> Box<PathNode> {
-        let Some((out, way)) = self.out_by_leave(placer, &last, distance) else {
+        let Some((away, way)) = self.out_by_leave(placer, &last, distance) else {
             if self.on_part {
-                to.findings.at(line, stays());
+                self.findings.at(line, stays());
             }
             return last;
         };
         if self.on_part && way < distance - SHORT {
-            to.findings.at(line, left_early(way, distance));
+            self.findings.at(line, left_early(way, distance));
         }
         let motion = StraightMove {
-            tip: out.target.tip,
+            tip: away.target.tip,
             axis: last.target.axis,
             edge: last.target.edge,
             pace: MoveFeed::Rapid,
             chord: 0.0,
         };
         let leg = PathLeg {
+            placer,
             line,
             motion: &motion,
             // In a bore it is no rapid over the part.
             loose: placer.solver().closed_form(),
             reason: BlockReason::Leave,
         };
-        self.cut(placer, &leg, &last, &out, to);
+        self.cut(&leg, &last, &away, out);
         self.on_part = false;
-        Box::new(out)
+        Box::new(away)
     }
 
     /// A tool that leans goes back along its own axis.
@@ -106,7 +106,7 @@ impl BlockStage<'_> {
         placer: &Placer,
         line: u64,
         last: Box<PathNode>,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) -> Box<PathNode> {
         let stands = StraightMove {
             tip: last.target.tip,
@@ -138,9 +138,14 @@ impl BlockStage<'_> {
             };
             match placed {
                 Ok(node) => {
-                    let out =
-                        PathLeg { line, motion: &motion, loose: true, reason: BlockReason::Leave };
-                    self.cut(placer, &out, &last, &node, to);
+                    let leg = PathLeg {
+                        placer,
+                        line,
+                        motion: &motion,
+                        loose: true,
+                        reason: BlockReason::Leave,
+                    };
+                    self.cut(&leg, &last, &node, out);
                     // Cut short by the end of travel, it may still be in the part: from there it must not go sideways.
                     self.on_part &= place > 0;
                     return Box::new(node);
@@ -158,13 +163,13 @@ impl BlockStage<'_> {
                 )
                 .help("retract along the tool before this line, or give [rewind] a distance"),
             };
-            to.findings.at(line, fault);
+            self.findings.at(line, fault);
         }
         last
     }
 
     /// A retract that is not proven to lead away from the part is refused.
-    fn check_retract(&self, placer: &Placer, line: u64, node: &PathNode, findings: &Findings) {
+    fn check_retract(&self, placer: &Placer, line: u64, node: &PathNode) {
         let machine = self.machine;
         let joints = &node.trace.joints;
         for (joint, position) in &machine.frame.retract {
@@ -176,7 +181,7 @@ impl BlockStage<'_> {
             let (now, then) = (axis.reading(joints[*joint]), axis.reading(*position));
             let leans = angle(self.in_machine(placer, node), machine.tool_axis).to_degrees();
             let name = &axis.name;
-            findings.at(line, match machine.frame.retract_said {
+            self.findings.at(line, match machine.frame.retract_said {
                 true if leans < 90.0 => Diagnostic::error(
                     "retract",
                     format!("{name} stands at {now:.3} mm, and [control] retract = {then:.3} mm would bring the tool down"),
@@ -203,13 +208,7 @@ impl BlockStage<'_> {
     }
 
     /// Draws the tool back along its axis, turns it to `joints`, and brings it back.
-    pub(super) fn rewind(
-        &mut self,
-        placer: &Placer,
-        leg: &PathLeg<'_>,
-        joints: &Joints,
-        to: &mut BlockContext<'_, '_>,
-    ) {
+    pub(super) fn rewind(&mut self, leg: &PathLeg<'_>, joints: &Joints, out: &mut BlockSink<'_>) {
         let (Some(rewind), Some(last)) = (self.machine.rewind, self.last.take()) else {
             return;
         };
@@ -240,14 +239,14 @@ impl BlockStage<'_> {
                 reason: BlockReason::Rewind,
                 ..*leg
             };
-            match placer.settled(pose(leg.motion), 1.0, &joints) {
+            match leg.placer.settled(pose(leg.motion), 1.0, &joints) {
                 Ok(mut node) => {
                     self.on_part = false;
-                    self.go(placer, &leg, at, &mut node, false, to);
+                    self.go(&leg, at, &mut node, false, out);
                     at = Box::new(node);
                 }
                 Err(refused) => {
-                    to.findings.at(leg.line, refusal::refused(self.machine, &refused));
+                    self.findings.at(leg.line, refusal::refused(self.machine, &refused));
                     break;
                 }
             }

@@ -1,7 +1,7 @@
 //! CL points that wait for what comes after them: along one stretch of path some of them may be needless.
 
-use super::{BlockContext, BlockReason, BlockStage, PathLeg, STILL};
-use crate::accuracy::{PathNode, Placer};
+use super::{BlockReason, BlockSink, BlockStage, PathLeg, STILL};
+use crate::accuracy::PathNode;
 use crate::program::{MoveFeed, StraightMove};
 use post_machine::description::Axis;
 use post_machine::kinematics::Second;
@@ -81,11 +81,11 @@ impl BlockStage<'_> {
         leg: &PathLeg<'_>,
         last: &PathNode,
         node: &PathNode,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         let corner = self.machine.accuracy.corner;
         if !self.gathered.joins(leg, node, corner) {
-            self.end_run(to);
+            self.end_run(out);
             self.gathered.nodes.push(*last);
         }
         self.gathered.nodes.push(*node);
@@ -94,29 +94,28 @@ impl BlockStage<'_> {
 
     /// Carries out the run that waits.
     #[inline]
-    pub(super) fn end_run(&mut self, to: &mut BlockContext<'_, '_>) {
+    pub(super) fn end_run(&mut self, out: &mut BlockSink<'_>) {
         if !self.gathered.legs.is_empty() {
-            self.carry_out_run(to);
+            self.carry_out_run(out);
         }
     }
 
     /// Goes along legs by straight blocks, without the points that are needless, if that is wanted.
     pub(super) fn go_straight(
         &mut self,
-        placer: &Placer,
         legs: &[PathLeg<'_>],
         nodes: &[PathNode],
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         if let (true, [_, _, ..]) = (self.machine.accuracy.reduce, legs) {
-            return self.split(placer, legs, nodes, to);
+            return self.split(legs, nodes, out);
         }
         for (leg, pair) in legs.iter().zip(nodes.windows(2)) {
-            self.cut(placer, leg, &pair[0], &pair[1], to);
+            self.cut(leg, &pair[0], &pair[1], out);
         }
     }
 
-    fn carry_out_run(&mut self, to: &mut BlockContext<'_, '_>) {
+    fn carry_out_run(&mut self, out: &mut BlockSink<'_>) {
         let Some(placer) = self.placer.clone() else {
             return;
         };
@@ -131,6 +130,7 @@ impl BlockStage<'_> {
             .legs
             .iter()
             .map(|(line, motion)| PathLeg {
+                placer: &placer,
                 line: *line,
                 motion,
                 loose: false,
@@ -138,8 +138,8 @@ impl BlockStage<'_> {
             })
             .collect();
         match self.keeps.fits() {
-            true => self.fit(&placer, &legs, &gathered.nodes, to),
-            false => self.go_straight(&placer, &legs, &gathered.nodes, to),
+            true => self.fit(&legs, &gathered.nodes, out),
+            false => self.go_straight(&legs, &gathered.nodes, out),
         }
         gathered.legs.clear();
         gathered.nodes.clear();

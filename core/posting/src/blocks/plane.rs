@@ -11,10 +11,9 @@ use post_machine::kinematics::orientation::angle;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::Format;
 
-use super::{BlockContext, BlockStage, TURN};
-use crate::accuracy::{PathNode, PlacedBatch, Placer};
+use super::{BlockNote, BlockSink, BlockStage, TURN};
+use crate::accuracy::{PathNode, Placer};
 use crate::configuration::{ChosenPoint, pose};
-use crate::program::Command;
 
 /// A place so near to the middle between two printed values may stand at either, in last decimals.
 const BETWEEN: f64 = 0.1;
@@ -63,56 +62,51 @@ impl ActivePlane {
 
 impl BlockStage<'_> {
     /// Another placer comes; the tool leaves a plane with the one that it is in it with.
-    pub(super) fn take_placer(&mut self, placer: &Rc<Placer>, to: &mut BlockContext<'_, '_>) {
+    pub(super) fn take_placer(&mut self, line: u64, placer: &Rc<Placer>, out: &mut BlockSink<'_>) {
         self.planes.outside = Some(Rc::clone(placer));
         if self.planes.axes.is_none() {
-            self.use_placer(Rc::clone(placer), to);
+            self.use_placer(line, Rc::clone(placer), out);
         }
         self.planes.stands = None;
     }
 
-    /// The tool axis stays from here on, or does not any more.
-    pub(super) fn still(
+    /// The tool axis stays from here on, or does not any more. It is reported where its plane begins.
+    pub(super) fn fix_axis(
         &mut self,
         line: u64,
         wanted: Option<Vector3<f64>>,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
-        self.depart(line, to);
-        self.leave_plane(line, to);
+        self.depart(line, out);
+        self.leave_plane(line, out);
         self.planes.wanted = wanted;
     }
 
     /// No plane is in force any more; the tool has left the part.
-    fn leave_plane(&mut self, line: u64, to: &mut BlockContext<'_, '_>) {
+    fn leave_plane(&mut self, line: u64, out: &mut BlockSink<'_>) {
         self.planes.stands = None;
         if let Some(outside) = self.planes.outside.clone() {
-            self.use_placer(outside, to);
+            self.use_placer(line, outside, out);
         }
         if self.planes.axes.take().is_some() {
-            to.out.command(line, Command::Plane(None));
+            out.note(line, BlockNote::Plane(None));
         }
     }
 
     /// The plane that a point lies in, if planes are wanted: the present one, or the tool leaves the part and comes back in
     /// another.
     #[inline]
-    pub(super) fn enter_plane(
-        &mut self,
-        chosen: &ChosenPoint,
-        placed: &mut PlacedBatch,
-        to: &mut BlockContext<'_, '_>,
-    ) {
+    pub(super) fn enter_plane(&mut self, chosen: &ChosenPoint, out: &mut BlockSink<'_>) {
         if let Some(origin) = self.planes.wanted {
             let planes = &self.planes;
             let stays = self.last.is_some()
                 && (planes.stands.as_ref()).is_some_and(|stands| planes.stays(stands, chosen));
             if !stays {
-                placed.forget();
-                self.change_plane(chosen, origin, to);
+                self.placed.forget();
+                self.change_plane(chosen, origin, out);
             }
             if chosen.rewind.is_some() {
-                to.findings.at(chosen.line, turns_in_plane());
+                self.findings.at(chosen.line, turns_in_plane());
             }
         }
     }
@@ -121,12 +115,12 @@ impl BlockStage<'_> {
         &mut self,
         chosen: &ChosenPoint,
         origin: Vector3<f64>,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         let line = chosen.line;
-        self.end_run(to);
-        self.depart(line, to);
-        self.leave_plane(line, to);
+        self.end_run(out);
+        self.depart(line, out);
+        self.leave_plane(line, out);
         let Some(outside) = self.planes.outside.clone() else {
             return;
         };
@@ -159,9 +153,9 @@ impl BlockStage<'_> {
         let Some(inside) = outside.in_plane(plane) else {
             return;
         };
-        self.use_placer(Rc::new(inside), to);
+        self.use_placer(line, Rc::new(inside), out);
         self.planes.axes = Some(plane.axes);
-        to.out.command(line, Command::Plane(Some(Box::new(plane))));
+        out.note(line, BlockNote::Plane(Some(Box::new(plane))));
     }
 
     /// A coordinate that is constant in the plane is turned into it with the noise of the CL file's digits: where the place of

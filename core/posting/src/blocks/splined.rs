@@ -1,16 +1,14 @@
 //! Splines of the CL file that stay splines: one block, its control points and knots printed and certified.
 
-use super::along::PendingCurve;
 use super::{
-    AxisTravels, BlockContext, BlockKind, BlockReason, BlockStage, FollowTime, MotionBlock,
+    AxisTravels, BlockKind, BlockReason, BlockSink, BlockStage, FollowTime, MotionBlock,
     NominalTime, PathLeg,
 };
-use crate::accuracy::{DeviationBound, PathNode, Placer, WordFrame};
+use crate::accuracy::{DeviationBound, PathNode, WordFrame};
 use crate::configuration::pose;
 use crate::curve::{CurveWords, PrintedCurve};
+use crate::program::StraightMove;
 use crate::program::spline::{cubics, over};
-use crate::program::{Command, StraightMove};
-use crate::stream::StreamItem;
 use nalgebra::Vector3;
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::travel::{AT_END, passed};
@@ -20,7 +18,7 @@ use post_motion::path::BSpline;
 const LAST_KNOT: f64 = 1000.0;
 
 /// A spline as it is printed.
-struct SplineBlock {
+pub(super) struct SplineBlock {
     node: Box<PathNode>,
     curve: PrintedCurve,
     bound: DeviationBound,
@@ -30,7 +28,7 @@ struct SplineBlock {
 const PLACES: u32 = 16;
 
 /// Places along a spline between its ends, mm, part frame.
-fn places(printed: &BSpline, frame: &WordFrame) -> Vec<Vector3<f64>> {
+fn places(printed: &BSpline, frame: &WordFrame<'_>) -> Vec<Vector3<f64>> {
     let mut places: Vec<Vector3<f64>> = cubics(printed)
         .flat_map(|[a, b, c, d]| {
             (1..=PLACES).map(move |place| {
@@ -46,30 +44,19 @@ fn places(printed: &BSpline, frame: &WordFrame) -> Vec<Vector3<f64>> {
 }
 
 impl BlockStage<'_> {
-    /// Makes a block along a spline of the control point, if that can be.
-    pub(super) fn keep_spline(
+    /// Hands on the block along a spline of so many mm, with its line and the move to its end.
+    pub(super) fn push_spline(
         &mut self,
-        placer: &Placer,
-        frame: &WordFrame,
-        following: &PendingCurve,
-        spline: &BSpline,
-        to: &mut BlockContext<'_, '_>,
-    ) -> bool {
-        let end = &following.curve.end;
-        let motion = StraightMove { tip: spline.poles[spline.poles.len() - 1].0, ..*end };
-        let Some(block) = self.spline_block(placer, frame, spline, &motion) else {
-            return false;
-        };
-        // Its chords are shorter by less than a thousandth of what they stray.
-        let ways = following.moves.iter().scan(spline.poles[0].0, |at, next| {
-            let way = (next.motion.tip - *at).norm();
-            *at = next.motion.tip;
-            Some(way)
-        });
-        let way: f64 = ways.sum();
+        frame: &WordFrame<'_>,
+        (line, motion): (u64, &StraightMove),
+        spline: SplineBlock,
+        way: f64,
+        out: &mut BlockSink<'_>,
+    ) {
         let leg = PathLeg {
-            line: following.line,
-            motion: &motion,
+            placer: frame.placer,
+            line,
+            motion,
             loose: false,
             reason: BlockReason::Point,
         };
@@ -81,26 +68,23 @@ impl BlockStage<'_> {
                 follow = FollowTime { minutes, joint: *joint };
             }
         }
-        let made = MotionBlock {
+        let block = MotionBlock {
             kind: BlockKind::Spline,
             way,
             nominal: NominalTime::of(motion.pace, way, AxisTravels::default),
             follow,
-            ..self.block(&leg, &block.node, block.bound)
+            ..self.block(&leg, &spline.node, spline.bound)
         };
-        self.largest.keep(&leg, block.bound);
-        let command = Command::Curve(Box::new(block.curve));
-        to.out.command(leg.line, command);
-        to.out.push(StreamItem::Point(made));
-        self.spare = self.last.replace(block.node);
+        self.largest.keep(&leg, spline.bound);
+        self.push_curve(block, spline.curve, out);
+        self.spare = self.last.replace(spline.node);
         self.on_part = true;
-        true
     }
 
-    fn spline_block(
+    /// The block along a spline of the control point, if that can be.
+    pub(super) fn spline_block(
         &self,
-        placer: &Placer,
-        frame: &WordFrame,
+        frame: &WordFrame<'_>,
         spline: &BSpline,
         end: &StraightMove,
     ) -> Option<SplineBlock> {
@@ -109,21 +93,22 @@ impl BlockStage<'_> {
         if self.compensating || self.in_plane() {
             return None;
         }
-        let node = placer.settled(pose(end), 1.0, &last.trace.joints).ok()?;
+        let node = frame.placer.settled(pose(end), 1.0, &last.trace.joints).ok()?;
         let wanted = spline.clone().placed(|point| frame.point(point));
         let inner = &wanted.poles[1..wanted.poles.len() - 1];
-        let mut words = last.words[..placer.count()].to_vec();
-        let mut points: Vec<Vector3<f64>> = vec![placer.printed(last)?];
+        let mut words = last.words[..frame.placer.count()].to_vec();
+        let mut points: Vec<Vector3<f64>> = vec![frame.placer.printed(last)?];
         for (point, _) in inner {
-            let (printed, mm) = placer.printed_point(*point)?;
-            words.extend_from_slice(&placer.with_point(last, printed)[..placer.count()]);
+            let (printed, mm) = frame.placer.printed_point(*point)?;
+            words
+                .extend_from_slice(&frame.placer.with_point(last, printed)[..frame.placer.count()]);
             points.push(mm);
         }
-        words.extend_from_slice(&node.words[..placer.count()]);
-        points.push(placer.printed(&node)?);
+        words.extend_from_slice(&node.words[..frame.placer.count()]);
+        points.push(frame.placer.printed(&node)?);
         let knots = wanted.knots.iter();
         let knots: Option<Vec<f64>> =
-            knots.map(|knot| placer.printed_number(knot * LAST_KNOT)).collect();
+            knots.map(|knot| frame.placer.printed_number(knot * LAST_KNOT)).collect();
         let printed = BSpline::unweighted(3, wanted.knots.clone(), points);
         let printed = over(printed, knots?)?;
         // Knot span by knot span both are cubics, whose difference lies in the hull of that of their control points.
@@ -132,7 +117,7 @@ impl BlockStage<'_> {
             .flat_map(|(printed, wanted)| [0, 1, 2, 3].map(|at| (printed[at] - wanted[at]).norm()))
             .fold(0.0, f64::max);
         let farthest = last.axis_error.max(node.axis_error);
-        let bound = self.kept_bound(placer, off, farthest, 0.0, [last, &node])?;
+        let bound = self.kept_bound(frame, off, farthest, 0.0, [last, &node])?;
         // No axis goes beyond the hulls.
         let between: Vec<Joints> = cubics(&printed)
             .flat_map(|cubic| [cubic[1], cubic[2], cubic[3]])

@@ -3,8 +3,8 @@
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, Pose};
 
-use super::{BlockContext, BlockReason, BlockStage, PathLeg, TURN};
-use crate::accuracy::{PathNode, Placer};
+use super::{BlockReason, BlockSink, BlockStage, PathLeg, TURN};
+use crate::accuracy::PathNode;
 use crate::refusal;
 
 /// Axis values that differ by less are the same: mm or radians.
@@ -32,25 +32,24 @@ impl BlockStage<'_> {
     /// A move with axes that exclude one another: off the part one goes after the other, a cut is refused.
     pub(super) fn by_stages(
         &mut self,
-        placer: &Placer,
         leg: &PathLeg<'_>,
         from: &PathNode,
         node: &PathNode,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
         let (first, last) = (from.trace.joints, node.trace.joints);
         let mut at = *from;
         let excluded = self.excluded(from, node);
         if !excluded.is_empty() && leg.loose && self.on_part {
             // Away from the part first, as the tool stands.
-            self.stage(placer, leg, &mut at, (node.target, 1.0), &first, to);
+            self.stage(leg, &mut at, (node.target, 1.0), &first, out);
         }
         let turned_at = at.target;
         for moving in excluded {
             if !leg.loose {
                 let names: Vec<&str> =
                     moving.iter().map(|joint| self.machine.axes[*joint].name.as_str()).collect();
-                to.findings.at(leg.line,
+                self.findings.at(leg.line,
                     Diagnostic::error(
                         "exclusive",
                         format!(
@@ -66,30 +65,29 @@ impl BlockStage<'_> {
             for joint in &moving[..moving.len() - 1] {
                 let mut joints = at.trace.joints;
                 joints[*joint] = last[*joint];
-                self.stage(placer, leg, &mut at, (turned_at, 1.0), &joints, to);
+                self.stage(leg, &mut at, (turned_at, 1.0), &joints, out);
             }
         }
-        self.cut(placer, leg, &at, node, to);
+        self.cut(leg, &at, node, out);
     }
 
     /// A stop on the way of a move that is made in stages.
     fn stage(
         &mut self,
-        placer: &Placer,
         leg: &PathLeg<'_>,
         at: &mut PathNode,
         (target, t): (Pose, f64),
         joints: &Joints,
-        to: &mut BlockContext<'_, '_>,
+        out: &mut BlockSink<'_>,
     ) {
-        let settled = placer.settled(target, t, joints);
+        let settled = leg.placer.settled(target, t, joints);
         match settled {
             Ok(node) => {
                 let leg = PathLeg { reason: BlockReason::Stage, ..*leg };
-                self.cut(placer, &leg, at, &node, to);
+                self.cut(&leg, at, &node, out);
                 *at = node;
             }
-            Err(refused) => to.findings.at(leg.line, refusal::refused(self.machine, &refused)),
+            Err(refused) => self.findings.at(leg.line, refusal::refused(self.machine, &refused)),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Which of several solutions is taken at each point, decided over whole passes.
 //!
 //! Points wait here until the choice is made, and the commands between them wait with them, in their places.
-//! A command that takes the tool off the part has everything before it decided.
+//! A command that takes the tool off the part has everything before it decided. The points of a curve or a hole are
+//! decided among all others, and put together again after that.
 
 mod backtrace;
 mod cost;
@@ -10,11 +11,13 @@ mod ease;
 mod full_turns;
 mod lengths;
 mod metric;
+mod pending_element;
 mod recovery;
 mod route;
 mod settle;
 mod solution;
 mod taut;
+mod tool_length;
 mod trellis;
 mod whole_pass;
 
@@ -22,31 +25,48 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 
 use nalgebra::Vector3;
-use post_machine::description::{Machine, Positions, Tcp};
+use post_machine::description::{Machine, Positions};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 use post_machine::kinematics::travel::{AT_END, passed};
 use post_plugin::{Capabilities, Format, Spindle};
 
-use crate::expand::PathMove;
+use crate::accuracy::Placer;
+use crate::curve::CurveMoves;
+use crate::expand::{FixedAxis, PathMove};
 use crate::findings::Findings;
-use crate::program::limits::MOST_TOOLS;
 use crate::program::{Command, StraightMove, ToolChange};
-use crate::report::{LengthSource, ReportedTool};
-use crate::stream::{BatchSink, StreamItem};
+use crate::stream::{BatchSink, HoleMoves, StreamItem, StreamPoint};
 use lengths::LengthAxisCheck;
+use pending_element::PendingElement;
 pub(crate) use route::ChosenPoint;
 use route::{DroppedPoint, Route};
+pub use tool_length::{LengthSource, ReportedTool};
 pub(crate) use trellis::pose;
 pub use whole_pass::whole_pass;
 
-/// What this stage hands on beside commands.
+/// What this stage says to the next of the elements from there on.
 #[derive(Clone, Debug)]
-pub(crate) enum ConfiguredItem {
-    /// A point with the axis values that were chosen for it.
-    Point(ChosenPoint),
+pub(crate) enum ChoiceNote {
+    /// What solves the points.
+    Placer(Rc<Placer>),
+    /// The tool axis stays, or does not any more.
+    FixedAxis(FixedAxis),
     /// The path ended in a fault; the next point begins one anew.
     Broken,
+}
+
+impl StreamPoint for ChosenPoint {
+    type Curve = CurveMoves<Self>;
+    type Note = ChoiceNote;
+
+    fn line(&self) -> u64 {
+        self.line
+    }
+
+    fn moves(curve: &Self::Curve) -> usize {
+        curve.moves.len()
+    }
 }
 
 /// What is not decided yet.
@@ -54,15 +74,19 @@ pub(crate) enum ConfiguredItem {
 enum WaitingItem {
     /// A number of points.
     Points(u64),
-    /// A command, with its line.
-    Command(u64, Command),
+    /// What stands between them: a command, a note, or a curve or a hole whose points come from here on.
+    Between(StreamItem<ChosenPoint>),
+    /// The points of the hole are those into it from here on.
+    Enters,
+    /// The curve or the hole is whole.
+    Ends,
 }
 
-/// More commands than this do not wait for a point to be decided.
+/// More than this does not wait between points for one to be decided.
 const MOST_WAITING: usize = 4096;
 
 /// What leaves this stage.
-type ConfiguredSink<'o> = BatchSink<'o, StreamItem<ConfiguredItem>>;
+type ConfiguredSink<'o> = BatchSink<'o, StreamItem<ChosenPoint>>;
 
 /// The stage that chooses axis values.
 #[derive(Debug)]
@@ -74,8 +98,10 @@ pub(crate) struct ConfigurationStage<'a> {
     /// The placer that the next stage knows of.
     setting: Option<usize>,
     waiting: VecDeque<WaitingItem>,
-    /// Commands among them.
-    commands: usize,
+    /// What stands between points among them.
+    between: usize,
+    /// The curve or hole whose points are handed on now.
+    pending: Option<PendingElement>,
     chosen: Vec<ChosenPoint>,
     /// Along which axis the control puts lengths.
     lengths: LengthAxisCheck,
@@ -95,6 +121,7 @@ pub(crate) struct ConfigurationStage<'a> {
     tool: Option<ToolChange>,
     /// Points taken.
     moves: u64,
+    findings: Findings,
 }
 
 impl<'a> ConfigurationStage<'a> {
@@ -107,6 +134,7 @@ impl<'a> ConfigurationStage<'a> {
         format: &Format,
         told_length: Option<f64>,
         writes: Capabilities,
+        findings: &Findings,
     ) -> Result<Self, Box<Diagnostic>> {
         Ok(Self {
             lengths: LengthAxisCheck::new(writes),
@@ -115,7 +143,8 @@ impl<'a> ConfigurationStage<'a> {
             route: Route::new(machine, format, told_length.unwrap_or(0.0))?,
             setting: None,
             waiting: VecDeque::new(),
-            commands: 0,
+            between: 0,
+            pending: None,
             chosen: Vec::new(),
             told_length,
             length: told_length,
@@ -128,6 +157,7 @@ impl<'a> ConfigurationStage<'a> {
             speed: None,
             tool: None,
             moves: 0,
+            findings: findings.clone(),
         })
     }
 
@@ -141,44 +171,72 @@ impl<'a> ConfigurationStage<'a> {
         &self.tools
     }
 
-    /// Line of the first point or command that is not decided.
+    /// Line of the first element that is not decided.
     pub(crate) fn first_line(&self) -> Option<u64> {
-        let mut waiting = self.waiting.iter();
-        let command = waiting.find_map(|waiting| match waiting {
-            WaitingItem::Command(line, _) => Some(*line),
-            WaitingItem::Points(_) => None,
+        let pending = self.pending.as_ref().map(|pending| pending.element.line());
+        let between = self.waiting.iter().find_map(|waiting| match waiting {
+            WaitingItem::Between(next) => Some(next.line()),
+            _ => None,
         });
-        [command, self.route.first_line()].into_iter().flatten().min()
+        [pending, between, self.route.first_line()].into_iter().flatten().min()
     }
 
-    /// Takes a batch.
+    /// Takes a batch, which is empty then.
     pub(crate) fn take(
         &mut self,
         batch: &mut Vec<StreamItem<PathMove>>,
         out: &mut ConfiguredSink<'_>,
-        findings: &Findings,
     ) {
         for next in batch.drain(..) {
             match next {
-                StreamItem::Point(at) => self.point(&at, out, findings),
-                StreamItem::Command { line, command } => self.arrange(line, command, out, findings),
-                // It is this stage that makes them.
-                StreamItem::Placer(_) => {}
+                StreamItem::Point(at) => self.point(&at, out),
+                StreamItem::Curve { line, curve } => self.curve(line, *curve, out),
+                StreamItem::Hole(hole) => self.hole(*hole, out),
+                StreamItem::Command { line, command } => {
+                    let command = StreamItem::Command { line, command };
+                    self.arrange(WaitingItem::Between(command), out);
+                }
+                StreamItem::Note { line, note } => {
+                    let note = StreamItem::Note { line, note: ChoiceNote::FixedAxis(note) };
+                    self.arrange(WaitingItem::Between(note), out);
+                }
             }
         }
     }
 
+    /// The points of a curve are decided among all others.
+    #[inline(never)]
+    fn curve(&mut self, line: u64, curve: CurveMoves<PathMove>, out: &mut ConfiguredSink<'_>) {
+        let CurveMoves { curve, mut moves } = curve;
+        let begins = Box::new(CurveMoves { curve, moves: Vec::with_capacity(moves.len()) });
+        let begins = StreamItem::Curve { line, curve: begins };
+        self.arrange(WaitingItem::Between(begins), out);
+        self.take(&mut moves, out);
+        self.arrange(WaitingItem::Ends, out);
+    }
+
+    /// Those of a hole likewise.
+    #[inline(never)]
+    fn hole(&mut self, mut hole: HoleMoves<PathMove>, out: &mut ConfiguredSink<'_>) {
+        let begins = hole.remade(|part| Vec::with_capacity(part.len()));
+        self.arrange(WaitingItem::Between(StreamItem::Hole(Box::new(begins))), out);
+        self.take(&mut hole.above, out);
+        self.arrange(WaitingItem::Enters, out);
+        self.take(&mut hole.into, out);
+        self.arrange(WaitingItem::Ends, out);
+    }
+
     /// The file ends: everything is decided.
-    pub(crate) fn finish(&mut self, out: &mut ConfiguredSink<'_>, findings: &Findings) {
-        self.settle(out, findings);
+    pub(crate) fn finish(&mut self, out: &mut ConfiguredSink<'_>) {
+        self.settle(out);
     }
 
     #[inline]
-    fn point(&mut self, at: &PathMove, out: &mut ConfiguredSink<'_>, findings: &Findings) {
+    fn point(&mut self, at: &PathMove, out: &mut ConfiguredSink<'_>) {
         self.moves += 1;
         let line = at.line;
         if !self.in_use {
-            self.take_into_use(line, findings);
+            self.take_into_use(line);
         }
         let motion = self.guided(at.motion);
         if self.waiting.is_empty()
@@ -192,15 +250,16 @@ impl<'a> ConfigurationStage<'a> {
                 Some(WaitingItem::Points(count)) => *count += 1,
                 _ => self.waiting.push_back(WaitingItem::Points(1)),
             },
-            Err(DroppedPoint::Point(fault)) => findings.at(line, *fault),
+            Err(DroppedPoint::Point(fault)) => self.findings.at(line, *fault),
             Err(DroppedPoint::Path(fault)) => {
-                findings.at(line, *fault);
-                self.drain(out, findings);
-                out.push(StreamItem::Point(ConfiguredItem::Broken));
+                self.findings.at(line, *fault);
+                self.drain(out);
+                let note = ChoiceNote::Broken;
+                self.put(StreamItem::Note { line, note }, out);
             }
         }
         if self.route.has_chosen() {
-            self.drain(out, findings);
+            self.drain(out);
         }
     }
 
@@ -215,40 +274,68 @@ impl<'a> ConfigurationStage<'a> {
         tip + axis * self.machine.control_point.along
     }
 
-    /// A command is carried out between the points that it stands between.
-    fn arrange(
-        &mut self,
-        line: u64,
-        command: Command,
-        out: &mut ConfiguredSink<'_>,
-        findings: &Findings,
-    ) {
-        if command.leaves() || self.commands >= MOST_WAITING {
-            self.settle(out, findings);
+    /// What stands between points is carried out between them.
+    fn arrange(&mut self, next: WaitingItem, out: &mut ConfiguredSink<'_>) {
+        let leaves = match &next {
+            WaitingItem::Between(StreamItem::Command { command, .. }) => command.leaves(),
+            WaitingItem::Between(StreamItem::Note { .. }) => true,
+            _ => false,
+        };
+        if leaves || self.between >= MOST_WAITING {
+            self.settle(out);
         }
         if self.waiting.is_empty() {
-            self.command(line, command, out, findings);
+            self.carry_out(next, out);
         } else {
-            self.commands += 1;
-            self.waiting.push_back(WaitingItem::Command(line, command));
+            self.between += 1;
+            self.waiting.push_back(next);
+        }
+    }
+
+    /// The turn of what stands between points has come.
+    fn carry_out(&mut self, next: WaitingItem, out: &mut ConfiguredSink<'_>) {
+        match next {
+            WaitingItem::Between(StreamItem::Command { line, command }) => {
+                self.command(line, command, out);
+            }
+            WaitingItem::Between(note @ StreamItem::Note { .. }) => {
+                // The tool is retracted before and after: nothing is turned early on its behalf.
+                self.route.leave();
+                self.put(note, out);
+            }
+            WaitingItem::Between(element) => self.pending = Some(PendingElement::new(element)),
+            WaitingItem::Enters => self.pending.iter_mut().for_each(PendingElement::enter),
+            WaitingItem::Ends => {
+                self.pending.take().into_iter().for_each(|it| out.element(it.element))
+            }
+            WaitingItem::Points(_) => {}
+        }
+    }
+
+    /// Hands on, or puts into the curve or hole that it is part of.
+    #[inline]
+    fn put(&mut self, next: StreamItem<ChosenPoint>, out: &mut ConfiguredSink<'_>) {
+        match &mut self.pending {
+            None => out.push(next),
+            Some(pending) => pending.push(next),
         }
     }
 
     /// Has everything decided, and hands it on.
-    fn settle(&mut self, out: &mut ConfiguredSink<'_>, findings: &Findings) {
+    fn settle(&mut self, out: &mut ConfiguredSink<'_>) {
         self.route.settle_all();
-        self.drain(out, findings);
+        self.drain(out);
     }
 
     /// Hands on what was decided, and the commands that stand between.
-    fn drain(&mut self, out: &mut ConfiguredSink<'_>, findings: &Findings) {
+    fn drain(&mut self, out: &mut ConfiguredSink<'_>) {
         let mut chosen = std::mem::take(&mut self.chosen);
         self.route.take_chosen(&mut chosen);
         for next in chosen.drain(..) {
             let arrives = next.arrives;
             self.hand_on(next, out);
             if arrives {
-                self.arrived(out, findings);
+                self.arrived(out);
             }
         }
         self.chosen = chosen;
@@ -259,15 +346,15 @@ impl<'a> ConfigurationStage<'a> {
     fn hand_on(&mut self, next: ChosenPoint, out: &mut ConfiguredSink<'_>) {
         if self.setting != Some(next.setting) {
             self.setting = Some(next.setting);
-            let placer = Rc::clone(self.route.placer(next.setting));
-            out.push(StreamItem::Placer(placer));
+            let note = ChoiceNote::Placer(Rc::clone(self.route.placer(next.setting)));
+            self.put(StreamItem::Note { line: next.line, note }, out);
         }
-        out.push(StreamItem::Point(ConfiguredItem::Point(next)));
+        self.put(StreamItem::Point(next), out);
     }
 
     /// One more point is decided: the commands after it follow.
     #[inline]
-    fn arrived(&mut self, out: &mut ConfiguredSink<'_>, findings: &Findings) {
+    fn arrived(&mut self, out: &mut ConfiguredSink<'_>) {
         match self.waiting.front_mut() {
             Some(WaitingItem::Points(count)) if *count > 1 => {
                 *count -= 1;
@@ -278,22 +365,15 @@ impl<'a> ConfigurationStage<'a> {
             }
             _ => {}
         }
-        while let Some(WaitingItem::Command(..)) = self.waiting.front() {
-            if let Some(WaitingItem::Command(line, command)) = self.waiting.pop_front() {
-                self.commands -= 1;
-                self.command(line, command, out, findings);
-            }
+        let between = |next: &mut WaitingItem| !matches!(next, WaitingItem::Points(_));
+        while let Some(next) = self.waiting.pop_front_if(between) {
+            self.between -= 1;
+            self.carry_out(next, out);
         }
     }
 
     /// Carries out what a command means for the choice, and hands it on.
-    fn command(
-        &mut self,
-        line: u64,
-        mut command: Command,
-        out: &mut ConfiguredSink<'_>,
-        findings: &Findings,
-    ) {
+    fn command(&mut self, line: u64, mut command: Command, out: &mut ConfiguredSink<'_>) {
         match &mut command {
             Command::From { tip, axis } => self.stand(*tip, *axis),
             Command::Tool(tool) => {
@@ -301,12 +381,12 @@ impl<'a> ConfigurationStage<'a> {
                 self.measure(tool);
                 self.tool = Some(tool.clone());
                 tool.length = self.length;
-                self.equip(line, findings);
+                self.equip(line);
             }
-            Command::Index { axis, angle } => self.index(line, *axis, *angle, findings),
+            Command::Index { axis, angle } => self.index(line, *axis, *angle),
             Command::Head(name) => {
                 let Some(head) = self.base.head(name) else {
-                    findings.at(line, no_head(self.base, name));
+                    self.findings.at(line, no_head(self.base, name));
                     return;
                 };
                 self.lengths.swap_head(name);
@@ -318,8 +398,8 @@ impl<'a> ConfigurationStage<'a> {
                     self.tool = Some(tool);
                 }
                 self.in_use = false;
-                self.equip(line, findings);
-                self.check_speed(line, findings);
+                self.equip(line);
+                self.check_speed(line);
             }
             Command::Home => self.park(&self.machine.frame.park),
             Command::WorkOffset(number) => {
@@ -331,19 +411,17 @@ impl<'a> ConfigurationStage<'a> {
                 self.speed = None;
                 match self.machine.spindle.limit(*most) {
                     Ok(limit) => *most = Some(limit),
-                    Err(finding) => findings.at(line, *finding),
+                    Err(finding) => self.findings.at(line, *finding),
                 }
             }
-            // The tool is retracted before and after: nothing is turned early on its behalf.
-            Command::Still(_) => self.route.leave(),
             Command::Spindle(Spindle::On { rpm, .. }) => {
                 self.speed = Some(*rpm);
-                self.check_speed(line, findings);
+                self.check_speed(line);
             }
             Command::Spindle(_) => self.speed = None,
             _ => {}
         }
-        out.command(line, command);
+        self.put(StreamItem::Command { line, command }, out);
     }
 
     /// The tool is retracted and axes are sent to positions of the machine: what comes after begins there.
@@ -359,10 +437,10 @@ impl<'a> ConfigurationStage<'a> {
     }
 
     /// A speed that the spindle of the head in use cannot turn at.
-    fn check_speed(&self, line: u64, findings: &Findings) {
+    fn check_speed(&self, line: u64) {
         let refused = self.speed.and_then(|rpm| self.machine.spindle.refuse(rpm));
         if let Some(finding) = refused {
-            findings.at(line, finding);
+            self.findings.at(line, finding);
         }
     }
 
@@ -376,65 +454,17 @@ impl<'a> ConfigurationStage<'a> {
         }
     }
 
-    /// Finds the length of a tool.
-    fn measure(&mut self, tool: &ToolChange) {
-        let table = || {
-            let tools = &self.machine.tools;
-            tools.iter().find(|(number, _)| *number == tool.number).map(|(_, length)| *length)
-        };
-        let given = [
-            (self.told_length, LengthSource::Option),
-            (table(), LengthSource::MachineFile),
-            (tool.length, LengthSource::ClFile),
-        ];
-        let mut given = given.into_iter().filter_map(|(length, source)| Some((length?, source)));
-        let known = given.next();
-        self.length = known.map(|(length, _)| length);
-        self.source = known.map_or(LengthSource::Unknown, |(_, source)| source);
-        self.in_use = false;
-    }
-
-    /// The first move with a tool: which length is assumed is kept for the summary; where the axis positions depend on a
-    /// length that is not given, there is no program.
-    #[cold]
-    fn take_into_use(&mut self, line: u64, findings: &Findings) {
-        self.in_use = true;
-        let used = ReportedTool {
-            number: self.tool.as_ref().map(|tool| tool.number),
-            length_mm: self.length.unwrap_or(0.0),
-            source: self.source,
-        };
-        if let Some(finding) =
-            self.lengths.check(self.base, self.machine, (used.number, self.length))
-        {
-            findings.at(line, finding);
-        }
-        if self.tools.contains(&used) {
-            return;
-        }
-        if self.tools.len() >= MOST_TOOLS {
-            let fault =
-                Diagnostic::error("tool", format!("more than {MOST_TOOLS} different tools"));
-            findings.at(line, fault.help("is this the CL file of one program?"));
-            return;
-        }
-        if self.source == LengthSource::Unknown {
-            findings.at(line, unknown_length(used.number, self.length_matters()));
-        }
-        self.tools.push(used);
-    }
-
     /// Takes machine and tool length into the route.
-    fn equip(&mut self, line: u64, findings: &Findings) {
+    fn equip(&mut self, line: u64) {
         self.setting = None;
         if let Err(fault) = self.route.equip(self.machine, self.length.unwrap_or(0.0)) {
-            findings.at(line, *fault);
+            self.findings.at(line, *fault);
         }
     }
 
     /// An index move of the program: it sets the redundant axis of that name, if there is one. (The others
     /// follow from the tool axis.)
-    fn index(&mut self, line: u64, axis: char, angle: f64, findings: &Findings) {
+    fn index(&mut self, line: u64, axis: char, angle: f64) {
         let named = |name: &str| name.len() == 1 && name.starts_with(axis);
         let Some(joint) = self.machine.axes.iter().position(|axis| named(&axis.name)) else {
             return;
@@ -464,41 +494,11 @@ impl<'a> ConfigurationStage<'a> {
                     ),
                     _ => "it is outside the travel of the axis".to_owned(),
                 };
-                findings.at(line, fault.help(help));
+                self.findings.at(line, fault.help(help));
             }
             Ok(_) => {}
-            Err(fault) => findings.at(line, *fault),
+            Err(fault) => self.findings.at(line, *fault),
         }
-    }
-
-    /// Does the program depend on the tool length? On a machine whose head turns, if the control does not keep the tip.
-    fn length_matters(&self) -> bool {
-        let machine = self.machine;
-        if machine.control.tcp == Tcp::Control {
-            return false;
-        }
-        let first_linear = machine.axes.iter().position(|axis| !axis.joint.rotary);
-        machine.axes.iter().skip(first_linear.unwrap_or(0)).any(|axis| axis.joint.rotary)
-    }
-}
-
-/// The length of a tool is not given; `matters` if the axis positions of the program depend on it, else travel alone is
-/// checked with it.
-fn unknown_length(number: Option<u32>, matters: bool) -> Diagnostic {
-    let tool = match number {
-        Some(number) => format!("of tool {number}"),
-        None => "of the tool".to_owned(),
-    };
-    let help = "give --tool-length, or [tools] in the machine file";
-    if matters {
-        let message = format!(
-            "no length {tool} is known, and on this machine, whose head turns, the axis positions depend on it"
-        );
-        Diagnostic::error("tool-length", message)
-            .help(format!("{help}; --tool-length 0 says that there is none"))
-    } else {
-        let message = format!("no length {tool} is known: travel was checked with 0 mm");
-        Diagnostic::warning("tool-length", message).help(help)
     }
 }
 

@@ -5,7 +5,6 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Capabilities, Event, SpindleSense};
 
 use super::EmitStage;
-use crate::findings::Findings;
 use crate::program::ToolChange;
 
 /// Millimetres in a foot.
@@ -13,35 +12,35 @@ const FOOT: f64 = 304.8;
 
 impl EmitStage<'_> {
     /// Another work offset, the tool retracted and nothing in force that counts from the one before.
-    pub(super) fn work_offset(&mut self, line: u64, number: u32, findings: &Findings) {
+    pub(super) fn work_offset(&mut self, line: u64, number: u32) {
         let event = Event::WorkOffset { number, name: "" };
         if !self.writer.knows(Capabilities::WORK_OFFSET) {
-            refuse(line, &event, "SET and OFSETL", findings);
+            self.findings.at(line, refused(&event, "SET and OFSETL"));
             return;
         }
         if let Some(before) = self.offset.replace(number) {
-            self.tell_other_mount(line, [before, number], findings);
+            self.tell_other_mount(line, [before, number]);
         }
         self.leave(line);
         self.writer.push(line, event);
     }
 
     /// The work offset that was measured with the head that is in.
-    pub(super) fn offset_of_head(&mut self, line: u64, number: u32, findings: &Findings) {
+    pub(super) fn offset_of_head(&mut self, line: u64, number: u32) {
         let event = Event::WorkOffset { number, name: "" };
         match self.writer.knows(Capabilities::WORK_OFFSET) {
             true => {
                 self.offset = Some(number);
                 self.writer.push(line, event);
             }
-            false => refuse(line, &event, "the offset of a head", findings),
+            false => self.findings.at(line, refused(&event, "the offset of a head")),
         }
     }
 
     /// Axis positions count from where the axes stood when the offset was measured, with the head that was in.
-    pub(super) fn tell_shared_offset(&self, line: u64, head: &str, findings: &Findings) {
+    pub(super) fn tell_shared_offset(&self, line: u64, head: &str) {
         if self.machine.control.tcp == Tcp::Post {
-            findings.at(
+            self.findings.at(
                 line,
                 Diagnostic::error(
                     "work-offset",
@@ -53,9 +52,9 @@ impl EmitStage<'_> {
     }
 
     /// Travel, and axis positions, are those of the part on its one mount.
-    fn tell_other_mount(&mut self, line: u64, [before, number]: [u32; 2], findings: &Findings) {
+    fn tell_other_mount(&mut self, line: u64, [before, number]: [u32; 2]) {
         if self.machine.holds_on_mount_alone() {
-            findings.at(
+            self.findings.at(
                 line,
                 Diagnostic::error(
                     "work-offset",
@@ -64,7 +63,7 @@ impl EmitStage<'_> {
                 .help("post the parts one by one, each with its --mount"),
             );
         } else if !std::mem::replace(&mut self.told_mount, true) {
-            findings.at(
+            self.findings.at(
                 line,
                 Diagnostic::warning(
                     "work-offset",
@@ -88,22 +87,22 @@ impl EmitStage<'_> {
     }
 
     /// A subprogram of the control; what it leaves in force is not known.
-    pub(super) fn subprogram(&mut self, line: u64, number: u32, findings: &Findings) {
+    pub(super) fn subprogram(&mut self, line: u64, number: u32) {
         let event = Event::Subprogram { number: Some(number), times: 1, name: "" };
         if !self.writer.knows(Capabilities::SUBPROGRAM) {
-            refuse(line, &event, "CALSUB", findings);
+            self.findings.at(line, refused(&event, "CALSUB"));
             return;
         }
-        if self.waits.is_some() {
-            self.wake(line, findings);
+        if self.spindle.waits.is_some() {
+            self.wake(line);
         }
         self.writer.push(line, event);
         self.clear = false;
-        self.turning = false;
-        self.coolant_due = true;
-        self.smoothed = None;
+        self.spindle.turning = false;
+        self.coolant.due = true;
+        self.smoothing.on = None;
         if !std::mem::replace(&mut self.told_subprogram, true) {
-            findings.at(
+            self.findings.at(
                 line,
                 Diagnostic::warning(
                     "subprogram",
@@ -119,7 +118,6 @@ impl EmitStage<'_> {
         line: u64,
         (speed, most): (f64, Option<f64>),
         sense: SpindleSense,
-        findings: &Findings,
     ) {
         let speed = match self.machine.control.units {
             OutputUnits::Mm => speed,
@@ -127,7 +125,7 @@ impl EmitStage<'_> {
         };
         let event = Event::SurfaceSpeed { speed, most, sense };
         if !self.writer.knows(Capabilities::SURFACE_SPEED) {
-            refuse(line, &event, "SPINDL/SMM and SPINDL/SFM", findings);
+            self.findings.at(line, refused(&event, "SPINDL/SMM and SPINDL/SFM"));
             return;
         }
         self.set_spindle(line, Some(event), event);
@@ -136,18 +134,18 @@ impl EmitStage<'_> {
     /// Retracts the tool, and cancels what would disturb a tool change, a reference or another offset.
     pub(super) fn leave(&mut self, line: u64) {
         self.retract(line);
-        if self.smoothed.take().is_some() {
+        if self.smoothing.on.take().is_some() {
             self.set_smoothing(line, None);
         }
     }
 
     /// Smoothing as it is wanted, before the tool comes near: some controls take it with no length in force alone.
     pub(super) fn smooth(&mut self, line: u64) {
-        if self.smoothed == self.smoothing {
+        if self.smoothing.on == self.smoothing.wanted {
             return;
         }
-        self.smoothed = self.smoothing;
-        self.set_smoothing(line, self.smoothing);
+        self.smoothing.on = self.smoothing.wanted;
+        self.set_smoothing(line, self.smoothing.wanted);
     }
 
     /// Smoothing on or off, by the machine file's own lines if it has any.
@@ -180,11 +178,8 @@ impl EmitStage<'_> {
 }
 
 /// The CL file asks for what the dialect has no words for.
-fn refuse(line: u64, event: &Event<'_>, words: &str, findings: &Findings) {
-    findings.at(
-        line,
-        Diagnostic::error("refused-word", event.refusal()).help(format!(
-            "[cl.words] in the machine file gives the lines of the program for {words}, --allow leaves a word out"
-        )),
-    );
+fn refused(event: &Event<'_>, words: &str) -> Diagnostic {
+    Diagnostic::error("refused-word", event.refusal()).help(format!(
+        "[cl.words] in the machine file gives the lines of the program for {words}, --allow leaves a word out"
+    ))
 }

@@ -1,9 +1,9 @@
 //! Holes: the control's own cycle in the place of the moves, where it does the same.
 //!
 //! The moves of a hole come through every stage before this one, so that travel, speed, time and certificate are those
-//! of what the cycle does; here they wait until the hole is done. They are written as a cycle if the rotary axes stand,
-//! and below the retract level nothing but the depth word moves, toward minus (or along any axis, if the control has
-//! that where it keeps the tip); else as they are.
+//! of what the cycle does. They are written as a cycle if the rotary axes stand, and below the retract level
+//! nothing but the depth word moves, toward minus (or along any axis, if the control has that where it keeps the tip);
+//! else as they are.
 
 use post_machine::axis_words::{self, WordValues, unit_length};
 use post_machine::description::{Machine, Tcp};
@@ -12,39 +12,15 @@ use post_plugin::{Capabilities, Cycle, Event, Feed, ToolPose};
 
 use super::EmitStage;
 use crate::blocks::{BlockKind, MotionBlock};
-use crate::findings::Findings;
-use crate::program::{Command, HoleCycle, HoleMark, MoveFeed};
-use crate::stream::StreamItem;
+use crate::program::MoveFeed;
+use crate::stream::{HoleMoves, StreamItem};
 
 /// A feed that differs by less is the same.
 const SAME_FEED: f64 = 1e-6;
 
-/// What of a hole has come so far.
-#[derive(Debug)]
-pub(super) struct HoleMoves {
-    line: u64,
-    drilling: HoleCycle,
-    /// The point that its heights count from, and the tool axis, part frame; none before the tool stands above it.
-    at: Option<ToolPose>,
-    /// Moves to the retract level above it.
-    above: Vec<StreamItem<MotionBlock>>,
-    /// Moves into it and back to that level.
-    into: Vec<StreamItem<MotionBlock>>,
-}
-
-impl HoleMoves {
-    /// Where the moves go that come now.
-    fn part(&mut self) -> &mut Vec<StreamItem<MotionBlock>> {
-        match self.at {
-            None => &mut self.above,
-            Some(_) => &mut self.into,
-        }
-    }
-}
-
 /// The cycle in force: what [`Event::Cycle`] said, and where its points have their retract level.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct CycleInForce {
+pub(super) struct CommandedCycle {
     kind: Cycle,
     feed: Feed,
     depth: f64,
@@ -59,56 +35,37 @@ pub(super) struct CycleInForce {
 
 /// A hole as a cycle.
 struct NativeCycle {
-    cycle: CycleInForce,
+    cycle: CommandedCycle,
     /// All axis words with the tip on the point.
     words: WordValues,
     /// Distance by which it is farther off the CL path than the moves are, mm.
     drift: f64,
 }
 
-/// The place of the word Z of the linear axis along which the cycles of a control drill.
-pub(super) fn z_word(machine: &Machine) -> Option<usize> {
-    let order = axis_words::order(machine);
-    order.iter().position(|joint| machine.axes[*joint].name == "Z")
+/// Places of the words that cycles move.
+pub(super) struct CycleWordPlaces {
+    /// The word Z of the linear axis along which the cycles of a control drill.
+    pub z: Option<usize>,
+    /// The same, if the tool stands along it with every rotary axis at zero.
+    pub depth: Option<usize>,
+    /// Those of the other linear axes that move in cuts.
+    pub across: Vec<usize>,
 }
 
-/// Finds that axis if the tool stands along it with every rotary axis at zero.
-pub(super) fn depth_word(machine: &Machine) -> Option<usize> {
-    let joint = |place: usize| axis_words::order(machine)[place];
-    z_word(machine).filter(|place| axis_words::depth(machine) == Some(joint(*place)))
+impl CycleWordPlaces {
+    pub(super) fn new(machine: &Machine) -> Self {
+        let order = axis_words::order(machine);
+        let z = order.iter().position(|joint| machine.axes[*joint].name == "Z");
+        let along = |place: &usize| axis_words::depth(machine) == Some(order[*place]);
+        let moves = |place: &usize| {
+            let axis = &machine.axes[order[*place]];
+            !axis.joint.rotary && axis.indexed.is_none() && z != Some(*place)
+        };
+        Self { z, depth: z.filter(along), across: (0..order.len()).filter(moves).collect() }
+    }
 }
 
 impl EmitStage<'_> {
-    /// Takes a mark of a hole, or what comes while one is open.
-    pub(super) fn drill(&mut self, next: &StreamItem<MotionBlock>, findings: &Findings) {
-        let (line, mark) = match (next, &mut self.hole) {
-            (StreamItem::Command { line, command: Command::Hole(mark) }, _) => (*line, mark),
-            (next, Some(hole)) => return hole.part().push(next.clone()),
-            _ => return,
-        };
-        match mark {
-            HoleMark::Above(drilling) => {
-                self.hole = Some(Box::new(HoleMoves {
-                    line,
-                    drilling: *drilling,
-                    at: None,
-                    above: Vec::new(),
-                    into: Vec::new(),
-                }));
-            }
-            HoleMark::Into { point, axis } => {
-                if let Some(hole) = &mut self.hole {
-                    hole.at = Some(ToolPose { tip: (*point).into(), axis: (*axis).into() });
-                }
-            }
-            HoleMark::Done => {
-                if let Some(hole) = self.hole.take() {
-                    self.hole_done(&hole, findings);
-                }
-            }
-        }
-    }
-
     /// The cycle in force ends.
     #[inline]
     pub(super) fn end_cycle(&mut self, line: u64) {
@@ -117,10 +74,11 @@ impl EmitStage<'_> {
         }
     }
 
-    fn hole_done(&mut self, hole: &HoleMoves, findings: &Findings) {
-        let native = self.native(hole, findings);
-        if native.is_none() && hole.drilling.alone {
-            findings.at(hole.line, not_here());
+    /// A hole, as a cycle or by its moves.
+    pub(super) fn hole(&mut self, hole: &HoleMoves<MotionBlock>) {
+        let native = self.native(hole);
+        if native.is_none() && hole.cycle.alone {
+            self.findings.at(hole.line, not_here());
             for _ in points(&hole.above).chain(points(&hole.into)) {
                 self.writer.place(self.writer.next());
             }
@@ -131,16 +89,16 @@ impl EmitStage<'_> {
             self.cycle == Some(native.cycle) && self.stays_level(&hole.above, &native.cycle.level)
         });
         if goes_on {
-            self.pass(&hole.above);
+            self.pass(points(&hole.above), 0.0);
         } else {
             self.end_cycle(hole.line);
-            self.replay(&hole.above, findings);
+            self.elements(&hole.above);
         }
-        if self.waits.is_some() && native.is_some() {
-            self.wake(hole.line, findings);
+        if self.spindle.waits.is_some() && native.is_some() {
+            self.wake(hole.line);
         }
         match native {
-            None => self.replay(&hole.into, findings),
+            None => self.elements(&hole.into),
             Some(native) => {
                 self.point(hole, &native, goes_on);
                 let made = match goes_on {
@@ -154,32 +112,20 @@ impl EmitStage<'_> {
         }
     }
 
-    /// As moves.
-    fn replay(&mut self, stream: &[StreamItem<MotionBlock>], findings: &Findings) {
-        for next in stream {
-            match next {
-                StreamItem::Point(block) => self.placed_block(block, findings),
-                StreamItem::Command { line, command } => self.command(*line, command, findings),
-                StreamItem::Placer(_) => {}
-            }
-            if self.writer.is_full() {
-                self.flush(findings);
-            }
-        }
-    }
-
     /// Blocks that the control makes itself.
-    fn pass(&mut self, stream: &[StreamItem<MotionBlock>]) {
-        for block in points(stream).filter(|block| !block.still) {
+    fn pass<'b>(&mut self, blocks: impl Iterator<Item = &'b MotionBlock>, drift: f64) {
+        for block in blocks.filter(|block| !block.still) {
+            let mut drifted = *block;
+            drifted.deviation.tip += drift;
             self.extremes.cover(&block.joints);
             self.extremes.go(&self.last, &block.joints);
-            self.extremes.mark(block, self.writer.next());
+            self.extremes.mark(&drifted, self.writer.next());
             self.last = block.joints;
         }
     }
 
     /// The cycle, unless it is in force, and its point.
-    fn point(&mut self, hole: &HoleMoves, native: &NativeCycle, in_force: bool) {
+    fn point(&mut self, hole: &HoleMoves<MotionBlock>, native: &NativeCycle, in_force: bool) {
         if self.clamps()
             && let Some(block) = points(&hole.into).find(|block| block.kind == BlockKind::Linear)
         {
@@ -202,16 +148,11 @@ impl EmitStage<'_> {
                 },
             );
         }
-        for next in &hole.into {
-            if let StreamItem::Point(block) = next {
-                let mut drifted = *block;
-                drifted.deviation.tip += native.drift;
-                self.pass(&[StreamItem::Point(drifted)]);
-            }
-        }
+        self.pass(points(&hole.into), native.drift);
         self.extremes.blocks += 1;
         let words = &native.words[..self.writer.words()];
-        self.writer.push(hole.line, Event::CyclePoint { tool: hole.at, words });
+        let tool = Some(ToolPose { tip: hole.point.into(), axis: hole.axis.into() });
+        self.writer.push(hole.line, Event::CyclePoint { tool, words });
     }
 
     /// Every block of the way to the next hole keeps to the level of the last one.
@@ -224,19 +165,20 @@ impl EmitStage<'_> {
     /// Two sets of words differ in those across the tool alone.
     fn across_alone(&self, words: &WordValues, level: &WordValues) -> bool {
         (0..self.writer.words())
-            .all(|place| self.across.contains(&place) || words[place] == level[place])
+            .all(|place| self.cycle_words.across.contains(&place) || words[place] == level[place])
     }
 
     /// The hole as a cycle; none if it is not the same.
-    fn native(&self, hole: &HoleMoves, findings: &Findings) -> Option<NativeCycle> {
+    fn native(&self, hole: &HoleMoves<MotionBlock>) -> Option<NativeCycle> {
         let machine = self.machine;
-        let (point, drilling) = (hole.at?, &hole.drilling);
+        let drilling = &hole.cycle;
         // Where the control keeps the tip, and where the plane is tilted, it must have said so.
-        let (place, needs) = match (self.plane_on || self.plane.is_some(), machine.control.tcp) {
-            (true, _) => (self.z_word?, Capabilities::CYCLE_IN_PLANE),
-            (false, Tcp::Control) => (self.z_word?, Capabilities::CYCLE_TCP),
-            (false, Tcp::Post) => (self.depth_word?, Capabilities::NONE),
-        };
+        let (place, needs) =
+            match (self.plane.on || self.plane.wanted.is_some(), machine.control.tcp) {
+                (true, _) => (self.cycle_words.z?, Capabilities::CYCLE_IN_PLANE),
+                (false, Tcp::Control) => (self.cycle_words.z?, Capabilities::CYCLE_TCP),
+                (false, Tcp::Post) => (self.cycle_words.depth?, Capabilities::NONE),
+            };
         if !self.writer.knows(needs) {
             return None;
         }
@@ -253,7 +195,7 @@ impl EmitStage<'_> {
         if !moves {
             return None;
         }
-        let feed = self.cycle_feed(hole, findings)?;
+        let feed = self.cycle_feed(hole)?;
         let unit = unit_length(machine.control.units);
         let printed = |value: f64| self.words.printed(place, value);
         let lengths = [drilling.depth, drilling.clearance, drilling.retract].map(|way| way / unit);
@@ -274,22 +216,22 @@ impl EmitStage<'_> {
             ]
         } else {
             let any = machine.control.tcp == Tcp::Control
-                && self.plane.is_none()
+                && self.plane.wanted.is_none()
                 && self.writer.knows(Capabilities::CYCLE_ANY_AXIS);
             if !any {
                 return None;
             }
-            self.words.print_tip(point.tip.into(), &mut words)?;
+            self.words.print_tip(hole.point, &mut words)?;
             [printed(lengths[0])?, printed(lengths[1])?, printed(lengths[2])?]
         };
         // The words across the tool differ from hole to hole.
         let mut stands = level.words;
-        for place in &self.across {
+        for place in &self.cycle_words.across {
             stands[*place] = 0.0;
         }
         let in_units = |way: Option<f64>| way.map(|way| way / unit);
         Some(NativeCycle {
-            cycle: CycleInForce {
+            cycle: CommandedCycle {
                 kind: drilling.kind,
                 feed,
                 depth,
@@ -308,18 +250,18 @@ impl EmitStage<'_> {
     /// The rotary words, and those of linear axes that stand between cuts, are the same.
     fn rotary_stand(&self, words: &WordValues, level: &WordValues) -> bool {
         (0..self.writer.words()).all(|place| {
-            self.across.contains(&place)
-                || Some(place) == self.depth_word
+            self.cycle_words.across.contains(&place)
+                || Some(place) == self.cycle_words.depth
                 || words[place] == level[place]
         })
     }
 
     /// The words of the way into the hole go down the depth word.
-    fn upright(&self, hole: &HoleMoves, level: &MotionBlock, place: usize) -> bool {
+    fn upright(&self, hole: &HoleMoves<MotionBlock>, level: &MotionBlock, place: usize) -> bool {
         let bottom = points(&hole.into).map(|block| block.words[place]);
         let bottom = bottom.fold(f64::INFINITY, f64::min);
         let unit = unit_length(self.machine.control.units);
-        let way = (hole.drilling.retract + hole.drilling.depth) / unit;
+        let way = (hole.cycle.retract + hole.cycle.depth) / unit;
         // A tool that leans by more than rounding comes less far down, or goes aside.
         libm::fabs(level.words[place] - bottom - way) <= 1e-6 * way + self.rounding()
     }
@@ -333,7 +275,12 @@ impl EmitStage<'_> {
 
     /// How far the moves leave the straight way down through the level's words, in program units; none if that is more than
     /// the tolerance leaves.
-    fn drift(&self, hole: &HoleMoves, level: &MotionBlock, place: usize) -> Option<f64> {
+    fn drift(
+        &self,
+        hole: &HoleMoves<MotionBlock>,
+        level: &MotionBlock,
+        place: usize,
+    ) -> Option<f64> {
         let unit = unit_length(self.machine.control.units);
         let (mut drift, mut deviation) = (0.0_f64, 0.0_f64);
         for block in points(&hole.into) {
@@ -350,7 +297,7 @@ impl EmitStage<'_> {
     }
 
     /// The feed of the cycle, per minute, as it is printed: that of its slowest block.
-    fn cycle_feed(&self, hole: &HoleMoves, findings: &Findings) -> Option<Feed> {
+    fn cycle_feed(&self, hole: &HoleMoves<MotionBlock>) -> Option<Feed> {
         let unit = unit_length(self.machine.control.units);
         let mut slowest = f64::INFINITY;
         let mut asked = f64::INFINITY;
@@ -372,14 +319,14 @@ impl EmitStage<'_> {
         if !(feed.is_finite() && feed > 0.0) {
             return None;
         }
-        if let Some(pitch) = hole.drilling.pitch {
+        if let Some(pitch) = hole.cycle.pitch {
             if slowest * (1.0 + SAME_FEED) + 1.0 / scale < asked {
-                findings.at(hole.line, thread_too_fast(asked, slowest));
+                self.findings.at(hole.line, thread_too_fast(asked, slowest));
             }
             // What F is short of, the thread is short of over its depth.
-            let short = (1.0 - feed / asked) * (hole.drilling.depth + hole.drilling.clearance);
+            let short = (1.0 - feed / asked) * (hole.cycle.depth + hole.cycle.clearance);
             if short > self.machine.accuracy.tolerance {
-                findings.at(hole.line, thread_rounded(pitch, asked, feed, short));
+                self.findings.at(hole.line, thread_rounded(pitch, asked, feed, short));
             }
         }
         Some(Feed::PerMinute(feed))
@@ -387,10 +334,7 @@ impl EmitStage<'_> {
 }
 
 fn points(stream: &[StreamItem<MotionBlock>]) -> impl Iterator<Item = &MotionBlock> {
-    stream.iter().filter_map(|next| match next {
-        StreamItem::Point(block) => Some(block),
-        _ => None,
-    })
+    stream.iter().filter_map(StreamItem::block)
 }
 
 /// A cycle that no moves can do, where the control has it in another place alone.

@@ -6,9 +6,10 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Capabilities, Coolant, Event, Spindle};
 
-use super::{EmitStage, FirstPosition, across, cycles, stands};
+use super::cycles::CycleWordPlaces;
+use super::state::FirstPosition;
+use super::{EmitStage, stands};
 use crate::blocks::{BlockReason, MotionBlock};
-use crate::findings::Findings;
 use crate::program::{MoveFeed, ToolChange};
 
 /// Full turns that an axis may stand away from its park position without a warning, degrees.
@@ -45,14 +46,14 @@ impl EmitStage<'_> {
         if std::mem::replace(&mut self.clear, true) {
             return;
         }
-        if self.compensating {
-            self.left_compensating.get_or_insert(line);
+        if self.compensation.on {
+            self.compensation.left.get_or_insert(line);
         }
         self.keep_tip(line, false);
         self.instead(line, TextPlace::Retract);
         let machine = self.machine;
         self.go(line, &machine.frame.retract, |axes, words| Event::Retract { axes, words });
-        if std::mem::take(&mut self.plane_on) {
+        if std::mem::take(&mut self.plane.on) {
             self.writer.push(line, Event::PlaneOff);
         }
         match machine.frame.leave {
@@ -70,10 +71,10 @@ impl EmitStage<'_> {
 
     /// Cutter compensation ends while the tool still cuts: on the way out the control would go aside, into what stands
     /// there, or stop with an alarm.
-    fn tell_compensation(&mut self, findings: &Findings) {
+    fn tell_compensation(&mut self) {
         // After another fault nothing is written, and ways are missing: it may end there.
-        if let Some(line) = self.left_compensating.take().filter(|_| !findings.failed()) {
-            findings.at(
+        if let Some(line) = self.compensation.left.take().filter(|_| !self.findings.failed()) {
+            self.findings.at(
                 line,
                 Diagnostic::error(
                     "compensation",
@@ -105,7 +106,7 @@ impl EmitStage<'_> {
     }
 
     /// Axes to positions of the machine, the tool retracted: the rotary ones, those across the tool, and the depth last.
-    fn park(&mut self, line: u64, positions: &[(usize, f64)], findings: &Findings) {
+    fn park(&mut self, line: u64, positions: &[(usize, f64)]) {
         for part in [AxisRole::Rotary, AxisRole::Plane, AxisRole::Depth] {
             let group: Vec<(usize, f64)> = positions
                 .iter()
@@ -118,7 +119,7 @@ impl EmitStage<'_> {
             // From there the tool is retracted again before anything turns or goes across.
             self.clear &= part != AxisRole::Depth;
             for &(joint, value) in &group {
-                self.tell_unwinding(line, joint, value, findings);
+                self.tell_unwinding(line, joint, value);
                 self.set_clamp(line, joint, false, true);
             }
             self.go(line, &group, parks);
@@ -129,7 +130,7 @@ impl EmitStage<'_> {
     }
 
     /// An axis that turns back by whole turns takes its time: the program says why.
-    fn tell_unwinding(&self, line: u64, joint: usize, value: f64, findings: &Findings) {
+    fn tell_unwinding(&self, line: u64, joint: usize, value: f64) {
         let axis = &self.machine.axes[joint];
         if !axis.joint.rotary || axis.range.is_some() {
             return;
@@ -143,7 +144,7 @@ impl EmitStage<'_> {
             true => format!(", {:.1} min at its max_feed", way / axis.max_feed.to_degrees()),
             false => String::new(),
         };
-        findings.at(
+        self.findings.at(
             line,
             Diagnostic::warning(
                 "unwinding",
@@ -158,14 +159,14 @@ impl EmitStage<'_> {
     }
 
     /// Warns of an axis that stands whole turns away from zero at the end where nothing turns it back.
-    fn tell_wound(&self, line: u64, findings: &Findings) {
+    fn tell_wound(&self, line: u64) {
         for (joint, axis) in self.machine.axes.iter().enumerate() {
             let parked = self.machine.frame.park.iter().any(|(place, _)| *place == joint);
             let stands = axis.reading(self.last[joint]);
             if !axis.joint.rotary || axis.range.is_some() || parked || libm::fabs(stands) <= TURN {
                 continue;
             }
-            findings.at(
+            self.findings.at(
                 line,
                 Diagnostic::warning(
                     "unwinding",
@@ -179,30 +180,30 @@ impl EmitStage<'_> {
     /// The spindle and the coolant stand still while nothing is cut; what the CL file wants is on again at the next first
     /// position.
     fn rest(&mut self, line: u64) {
-        if std::mem::take(&mut self.turning) {
+        if std::mem::take(&mut self.spindle.turning) {
             self.writer.push(line, Event::Spindle(Spindle::Off));
         }
-        if self.coolant.is_some() && !std::mem::replace(&mut self.coolant_due, true) {
+        if self.coolant.commanded.is_some() && !std::mem::replace(&mut self.coolant.due, true) {
             self.writer.push(line, Event::Coolant(Coolant::Off));
         }
     }
 
-    pub(super) fn change(&mut self, line: u64, tool: &ToolChange, findings: &Findings) {
+    pub(super) fn change(&mut self, line: u64, tool: &ToolChange) {
         if self.offsets(line, tool) {
             return;
         }
         self.leave(line);
         self.rest(line);
-        (self.changed, self.waits) = (true, None);
+        (self.spindle.tool_changed, self.spindle.waits) = (true, None);
         if self.texts.any_tool() {
             self.say(line, TextPlace::BetweenTools);
         }
         let machine = self.machine;
-        self.park(line, &machine.frame.change, findings);
+        self.park(line, &machine.frame.change);
         self.texts.tool(tool);
         self.writer.tool_known();
         if tool.register != tool.number && self.writer.knows(Capabilities::TOOL_TABLE) {
-            findings.at(
+            self.findings.at(
                 line,
                 Diagnostic::warning(
                     "register",
@@ -236,7 +237,7 @@ impl EmitStage<'_> {
     }
 
     /// Another head: the machine is that of the head from here on.
-    pub(super) fn swap_head(&mut self, line: u64, name: &str, findings: &Findings) {
+    pub(super) fn swap_head(&mut self, line: u64, name: &str) {
         let Some(place) = self.base.heads.iter().position(|head| head.name == name) else {
             return;
         };
@@ -244,13 +245,11 @@ impl EmitStage<'_> {
         // Away first: a spindle that stops in the part tears.
         self.leave(line);
         self.rest(line);
-        (self.changed, self.waits) = (true, None);
+        (self.spindle.tool_changed, self.spindle.waits) = (true, None);
         self.tool = None;
         self.machine = &head.machine;
         self.words = AxisWords::new(self.machine, self.writer.format());
-        self.z_word = cycles::z_word(self.machine);
-        self.depth_word = cycles::depth_word(self.machine);
-        self.across = across(self.machine);
+        self.cycle_words = CycleWordPlaces::new(self.machine);
         match &head.word {
             Some(word) => self.writer.push(line, Event::Word { text: word }),
             None => {
@@ -262,28 +261,28 @@ impl EmitStage<'_> {
         self.clear = false;
         let other = self.head.replace(place) != Some(place);
         match head.offset {
-            Some(number) => self.offset_of_head(line, number, findings),
-            None if other && self.worked => self.tell_shared_offset(line, name, findings),
+            Some(number) => self.offset_of_head(line, number),
+            None if other && self.worked => self.tell_shared_offset(line, name),
             None => {}
         }
     }
 
     /// Home: retracted, and parked.
-    pub(super) fn go_home(&mut self, line: u64, findings: &Findings) {
+    pub(super) fn go_home(&mut self, line: u64) {
         self.leave(line);
         let machine = self.machine;
-        self.park(line, &machine.frame.park, findings);
+        self.park(line, &machine.frame.park);
     }
 
-    pub(super) fn end(&mut self, line: u64, findings: &Findings) {
+    pub(super) fn end(&mut self, line: u64) {
         // The tool leaves the part first: a spindle that stops in it tears.
         self.leave(line);
         self.rest(line);
-        self.go_home(line, findings);
-        self.tell_compensation(findings);
-        self.tell_wound(line, findings);
+        self.go_home(line);
+        self.tell_compensation();
+        self.tell_wound(line);
         if let Some(warning) = self.texts.without_operations() {
-            findings.add(warning);
+            self.findings.add(warning);
         }
         self.say(line, TextPlace::Footer);
         self.writer.push(line, Event::End);
@@ -291,7 +290,7 @@ impl EmitStage<'_> {
 
     /// The first position after the start, a tool change or a retract: the rotary axes turn with the tool clear of the
     /// part, are clamped, and then it comes near.
-    pub(super) fn position(&mut self, block: &MotionBlock, findings: &Findings) {
+    pub(super) fn position(&mut self, block: &MotionBlock) {
         let line = block.line;
         self.worked = true;
         match block.reason {
@@ -300,16 +299,19 @@ impl EmitStage<'_> {
         }
         let turns = self.machine.axes.iter().any(|axis| axis.joint.rotary);
         self.retract(line);
-        self.tell_compensation(findings);
-        if self.changed && self.commanded.is_some() && block.pace == MoveFeed::Rapid {
+        self.tell_compensation();
+        if self.spindle.tool_changed
+            && self.spindle.commanded.is_some()
+            && block.pace == MoveFeed::Rapid
+        {
             // The tool's own speed may stand after its first position.
-            self.waits = Some(FirstPosition::of(block));
+            self.spindle.waits = Some(FirstPosition::of(block));
         } else {
-            self.wake(line, findings);
+            self.wake(line);
         }
         let words = &block.words[..self.writer.words()];
         // Whether they are clamped is not known.
-        self.free = 0;
+        self.clamps.free = 0;
         for joint in 0..self.machine.axes.len() {
             self.set_clamp(line, joint, false, true);
         }
@@ -323,11 +325,11 @@ impl EmitStage<'_> {
         }
         self.smooth(line);
         // In a plane the length alone is in force.
-        if self.plane.is_some() {
+        if self.plane.wanted.is_some() {
             self.keep_tip(line, false);
         }
-        if let Some(plane) = &self.plane {
-            self.plane_on = true;
+        if let Some(plane) = &self.plane.wanted {
+            self.plane.on = true;
             self.writer.push(
                 line,
                 Event::Plane {
@@ -339,7 +341,7 @@ impl EmitStage<'_> {
                 },
             );
         }
-        if !self.plane_on {
+        if !self.plane.on {
             self.keep_tip(line, true);
         }
         if block.reason != BlockReason::Above {
@@ -364,21 +366,21 @@ impl EmitStage<'_> {
     /// The words after it are those of a plane, or of none: the plane before it ends, the tool clear of the
     /// part.
     pub(super) fn set_plane(&mut self, line: u64, plane: Option<Box<TiltedPlane>>) {
-        if self.plane_on {
+        if self.plane.on {
             self.retract(line);
         }
-        self.plane = plane;
+        self.plane.wanted = plane;
     }
 
     /// Spindle and coolant on as the CL file takes them to be.
-    pub(super) fn wake(&mut self, line: u64, findings: &Findings) {
-        self.waits = None;
-        if let (false, Some(spindle)) = (self.turning, self.commanded) {
+    pub(super) fn wake(&mut self, line: u64) {
+        self.spindle.waits = None;
+        if let (false, Some(spindle)) = (self.spindle.turning, self.spindle.commanded) {
             // The tool change stopped it, and the CL file takes it to be turning.
-            self.turning = true;
+            self.spindle.turning = true;
             self.writer.push(line, spindle);
-            if std::mem::take(&mut self.changed) {
-                findings.at(
+            if std::mem::take(&mut self.spindle.tool_changed) {
+                self.findings.at(
                     line,
                     Diagnostic::warning(
                         "spindle",
@@ -393,14 +395,16 @@ impl EmitStage<'_> {
 
     /// Coolant on, if it was switched off in between.
     fn flow(&mut self, line: u64) {
-        if let (true, Some(coolant)) = (std::mem::take(&mut self.coolant_due), self.coolant) {
+        if let (true, Some(coolant)) =
+            (std::mem::take(&mut self.coolant.due), self.coolant.commanded)
+        {
             self.writer.push(line, Event::Coolant(coolant));
         }
     }
 
     pub(super) fn coolant(&mut self, line: u64, coolant: Coolant) {
-        self.coolant = (coolant != Coolant::Off).then_some(coolant);
-        self.coolant_due = false;
+        self.coolant.commanded = (coolant != Coolant::Off).then_some(coolant);
+        self.coolant.due = false;
         self.writer.push(line, Event::Coolant(coolant));
     }
 
@@ -412,11 +416,11 @@ impl EmitStage<'_> {
 
     /// The spindle by `event`; `on` is what switches it on again as it turns then.
     pub(super) fn set_spindle(&mut self, line: u64, on: Option<Event<'static>>, event: Event<'_>) {
-        self.turning = on.is_some();
-        self.commanded = on;
-        self.changed = false;
+        self.spindle.turning = on.is_some();
+        self.spindle.commanded = on;
+        self.spindle.tool_changed = false;
         self.writer.push(line, event);
-        if self.waits.take().is_some() {
+        if self.spindle.waits.take().is_some() {
             self.flow(line);
         }
     }

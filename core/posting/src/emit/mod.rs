@@ -4,25 +4,29 @@ mod control;
 mod cycles;
 mod extremes;
 mod frame;
+mod state;
 mod texts;
 mod writer;
 
-use nalgebra::Vector3;
-use post_machine::axis_words::{self, AxisWords};
-use post_machine::description::{Machine, Smoothing, TextPlace};
-use post_machine::kinematics::Joints;
-use post_machine::tilted_plane::TiltedPlane;
-use post_plugin::{Capabilities, Compensation, Coolant, DialectSession, Event, List, ToolPose};
+use std::rc::Rc;
 
-use crate::blocks::{BlockKind, BlockReason, MotionBlock};
+use post_machine::axis_words::{self, AxisWords};
+use post_machine::description::{Machine, TextPlace};
+use post_machine::kinematics::Joints;
+use post_plugin::{Capabilities, Compensation, DialectSession, Event, List, ToolPose};
+
+use crate::blocks::{BlockKind, BlockNote, BlockReason, MotionBlock};
 use crate::curve::{CurveWords, PrintedCurve};
 use crate::findings::Findings;
 use crate::job_facts::JobFacts;
 use crate::observer::{Observers, TextSink};
 use crate::program::Command;
 use crate::stream::StreamItem;
-use cycles::{CycleInForce, HoleMoves};
+use cycles::{CommandedCycle, CycleWordPlaces};
 pub(crate) use extremes::Extremes;
+use state::{
+    ClampState, CompensationState, CoolantState, PlaneState, SmoothingState, SpindleState,
+};
 use texts::ProgramTexts;
 use writer::EventWriter;
 
@@ -32,48 +36,21 @@ pub(crate) struct EmitStage<'a> {
     /// The machine with the head that it starts with.
     base: &'a Machine,
     writer: EventWriter<'a>,
-    /// What observers have not seen: a hole that is not done, and what came after it.
-    unseen: Vec<StreamItem<MotionBlock>>,
     texts: ProgramTexts<'a>,
     extremes: Extremes,
     /// Where the axes stand after the last block.
     last: Joints,
-    /// Axes that are known to be clamped, one bit each.
-    clamped: u8,
-    /// Rotary axes that have turned in a cut since the tool came: they are left free, one bit each.
-    free: u8,
+    clamps: ClampState,
     /// Prints positions in machine coordinates.
     words: AxisWords,
     /// The tool is retracted, and nothing is in force that a first position puts in force.
     clear: bool,
-    /// The spindle was switched on since the last tool change.
-    turning: bool,
-    /// What the CL file last said of it.
-    commanded: Option<Event<'static>>,
-    /// The tool was changed since.
-    changed: bool,
-    /// The first position that the tool has reached without a speed of its own: the spindle stands until it has one, or
-    /// goes in.
-    waits: Option<FirstPosition>,
-    /// What the CL file last said of coolant.
-    coolant: Option<Coolant>,
-    /// Coolant was switched off in between.
-    coolant_due: bool,
-    /// What is printed of the next block, if it goes along a curve.
-    curve: Option<Box<PrintedCurve>>,
-    /// The tilted plane of the words.
-    plane: Option<Box<TiltedPlane>>,
-    /// Whether the control got it.
-    plane_on: bool,
-    /// The hole whose moves are coming.
-    hole: Option<Box<HoleMoves>>,
+    spindle: SpindleState,
+    coolant: CoolantState,
+    plane: PlaneState,
     /// The cycle in force.
-    cycle: Option<CycleInForce>,
-    /// Place of the word that cycles drill along, and the same where it is that of the axis along the tool.
-    z_word: Option<usize>,
-    depth_word: Option<usize>,
-    /// Places of the words that move the tool across it.
-    across: Vec<usize>,
+    cycle: Option<CommandedCycle>,
+    cycle_words: CycleWordPlaces,
     /// The tool in the spindle.
     tool: Option<u32>,
     /// The work offset that the CL file names; none before it names one.
@@ -82,21 +59,17 @@ pub(crate) struct EmitStage<'a> {
     told_mount: bool,
     /// Whether it was reported that what a subprogram does is not checked.
     told_subprogram: bool,
-    /// Smoothing that is due, and that which the control has.
-    smoothing: Option<Smoothing>,
-    smoothed: Option<Smoothing>,
+    smoothing: SmoothingState,
     /// Last event of a dialect that has one for keeping the tip.
     keeps_tip: Option<bool>,
     /// The head in use, by its place among the machine's, once the CL file has named one.
     head: Option<usize>,
     /// The head that the tool was used with last came to the part with its own or the program's work offset.
     worked: bool,
-    /// Cutter compensation that begins once the tool is at the part.
-    compensation: Option<Compensation>,
-    /// Cutter compensation is on.
-    compensating: bool,
-    /// Where the tool left the part with it on: not reported yet.
-    left_compensating: Option<u64>,
+    compensation: CompensationState,
+    /// Observers of the program; none if nobody looks on.
+    observers: Option<Rc<Observers<'a>>>,
+    findings: Findings,
 }
 
 impl<'a> EmitStage<'a> {
@@ -105,6 +78,7 @@ impl<'a> EmitStage<'a> {
         job: &JobFacts,
         dialect: &'a mut dyn DialectSession,
         output: &'a mut dyn TextSink,
+        findings: &Findings,
     ) -> Self {
         let words = AxisWords::new(machine, dialect.format());
         let mut writer = EventWriter::new(dialect, output);
@@ -113,40 +87,28 @@ impl<'a> EmitStage<'a> {
             machine,
             base: machine,
             writer,
-            unseen: Vec::new(),
             texts: ProgramTexts::new(machine, job),
             extremes: Extremes::new(),
             last: Joints::default(),
-            clamped: 0,
-            free: 0,
             words,
             clear: false,
-            turning: false,
-            commanded: None,
-            coolant: None,
-            coolant_due: false,
-            curve: None,
-            plane: None,
-            plane_on: false,
-            hole: None,
+            clamps: ClampState::default(),
+            spindle: SpindleState::default(),
+            coolant: CoolantState::default(),
+            plane: PlaneState::default(),
             cycle: None,
-            z_word: cycles::z_word(machine),
-            depth_word: cycles::depth_word(machine),
-            across: across(machine),
-            changed: false,
-            waits: None,
+            cycle_words: CycleWordPlaces::new(machine),
             tool: None,
             offset: None,
             told_mount: false,
             told_subprogram: false,
-            smoothing: machine.smoothing.default,
-            smoothed: None,
+            smoothing: SmoothingState { wanted: machine.smoothing.default, on: None },
             keeps_tip: None,
             head: None,
             worked: false,
-            compensation: None,
-            compensating: false,
-            left_compensating: None,
+            compensation: CompensationState::default(),
+            observers: None,
+            findings: findings.clone(),
         };
         emit.say(0, TextPlace::Header);
         // Nothing is known of where the tool stands, nor of what is in force.
@@ -165,101 +127,83 @@ impl<'a> EmitStage<'a> {
     }
 
     /// Takes a batch, and shows observers what is written of it.
-    pub(crate) fn take(
-        &mut self,
-        batch: &mut Vec<StreamItem<MotionBlock>>,
-        findings: &Findings,
-        observers: &Observers<'_>,
-    ) {
-        for next in batch.iter() {
+    pub(crate) fn take(&mut self, batch: &mut [StreamItem<MotionBlock>]) {
+        self.elements(batch);
+        self.flush();
+        if let Some(observers) = &self.observers {
+            number(batch, &mut self.writer.take_lines());
+            observers.blocks(batch);
+        }
+    }
+
+    fn elements(&mut self, elements: &[StreamItem<MotionBlock>]) {
+        for next in elements {
             match next {
-                _ if self.hole.is_some() || next.marks_hole() => self.drill(next, findings),
                 StreamItem::Point(block) => {
                     self.end_cycle(block.line);
-                    self.placed_block(block, findings);
+                    self.placed_block(block, None);
                 }
+                StreamItem::Curve { line, curve } => {
+                    self.end_cycle(*line);
+                    self.placed_block(&curve.block, Some(&curve.printed));
+                }
+                StreamItem::Hole(hole) => self.hole(hole),
                 StreamItem::Command { line, command } => {
                     self.end_cycle(*line);
-                    self.command(*line, command, findings);
+                    self.command(*line, command);
                 }
-                StreamItem::Placer(_) => {}
+                StreamItem::Note { line, note: BlockNote::Plane(plane) } => {
+                    self.end_cycle(*line);
+                    self.set_plane(*line, plane.clone());
+                }
+                StreamItem::Note { note: BlockNote::Placer(_), .. } => {}
             }
             if self.writer.is_full() {
-                self.flush(findings);
+                self.flush();
             }
         }
-        self.flush(findings);
-        if observers.any() {
-            self.show(batch, observers);
-        }
-    }
-
-    /// Shows a batch, up to the first block that is not written yet; it may be empty then.
-    fn show(&mut self, batch: &mut Vec<StreamItem<MotionBlock>>, observers: &Observers<'_>) {
-        match self.unseen.is_empty() {
-            true => std::mem::swap(&mut self.unseen, batch),
-            false => self.unseen.append(batch),
-        }
-        let mut lines = self.writer.take_lines();
-        let open = self.unseen.iter_mut().position(|next| match next {
-            StreamItem::Point(block) => match lines.next() {
-                Some(line) => {
-                    block.nc_line = line;
-                    false
-                }
-                None => true,
-            },
-            _ => false,
-        });
-        let seen = open.unwrap_or(self.unseen.len());
-        observers.blocks(&self.unseen[..seen]);
-        self.unseen.drain(..seen);
-    }
-
-    /// Nothing more is written: shows what is left.
-    pub(crate) fn show_rest(&self, observers: &Observers<'_>) {
-        observers.blocks(&self.unseen);
     }
 
     /// The last events; `line` is the last of the CL file.
-    pub(crate) fn finish(&mut self, line: u64, findings: &Findings) {
+    pub(crate) fn finish(&mut self, line: u64) {
         self.end_cycle(line);
-        self.end(line, findings);
-        self.flush(findings);
+        self.end(line);
+        self.flush();
     }
 
-    fn flush(&mut self, findings: &Findings) {
-        self.texts.tell(findings);
-        self.writer.flush(&mut self.extremes, findings);
+    fn flush(&mut self) {
+        self.texts.tell(&self.findings);
+        self.writer.flush(&mut self.extremes, &self.findings);
     }
 
-    /// Notes from here on which line each block ends on.
-    pub(crate) fn watch(&mut self) {
+    /// Shows what is written from here on, each block with the line that it ends on.
+    pub(crate) fn watch(&mut self, observers: Rc<Observers<'a>>) {
         self.writer.watch();
+        self.observers = Some(observers);
     }
 
     /// Writes a block, and notes where it stands.
     #[inline]
-    fn placed_block(&mut self, block: &MotionBlock, findings: &Findings) {
+    fn placed_block(&mut self, block: &MotionBlock, printed: Option<&PrintedCurve>) {
         let before = self.writer.next();
-        self.block(block, findings);
+        self.block(block, printed);
         self.writer.place(before);
     }
 
     #[inline]
-    fn block(&mut self, block: &MotionBlock, findings: &Findings) {
+    fn block(&mut self, block: &MotionBlock, printed: Option<&PrintedCurve>) {
         let line = block.line;
-        if self.waits.is_some_and(|first| cuts(block) || first.goes_in(block)) {
-            self.wake(line, findings);
+        if self.spindle.waits.is_some_and(|first| cuts(block) || first.goes_in(block)) {
+            self.wake(line);
         }
         match block.kind {
-            BlockKind::Position => self.position(block, findings),
+            BlockKind::Position => self.position(block),
             BlockKind::Reference => {
                 self.retract(line);
                 self.extremes.go(&self.last, &block.joints);
-                self.position(block, findings);
+                self.position(block);
             }
-            BlockKind::Arc | BlockKind::Spline => self.curve(block),
+            BlockKind::Arc | BlockKind::Spline => self.curve(block, printed),
             BlockKind::Rapid | BlockKind::Linear => {
                 // A block without a changed word moves nothing and is not written.
                 if block.still {
@@ -293,23 +237,24 @@ impl<'a> EmitStage<'a> {
 
     /// Cutter compensation. None begins on the way down to a first position.
     fn compensate(&mut self, line: u64, compensation: Compensation) {
-        self.compensating = compensation != Compensation::Off;
-        self.compensation = Some(compensation).filter(|it| self.clear && *it != Compensation::Off);
-        if self.compensation.is_none() {
+        self.compensation.on = compensation != Compensation::Off;
+        self.compensation.waits =
+            Some(compensation).filter(|it| self.clear && *it != Compensation::Off);
+        if self.compensation.waits.is_none() {
             self.writer.push(line, Event::Compensate(compensation));
         }
     }
 
     /// What waits of it.
     fn begin_compensation(&mut self, line: u64) {
-        if let Some(compensation) = self.compensation.take() {
+        if let Some(compensation) = self.compensation.waits.take() {
             self.writer.push(line, Event::Compensate(compensation));
         }
     }
 
     /// A block along a curve.
-    fn curve(&mut self, block: &MotionBlock) {
-        let (Some(curve), Some(feed)) = (self.curve.take(), block.time.feed) else {
+    fn curve(&mut self, block: &MotionBlock, printed: Option<&PrintedCurve>) {
+        let (Some(curve), Some(feed)) = (printed, block.time.feed) else {
             return;
         };
         self.extremes.curves += 1;
@@ -346,22 +291,12 @@ impl<'a> EmitStage<'a> {
         self.writer.push(block.line, event);
     }
 
-    fn command(&mut self, line: u64, command: &Command, findings: &Findings) {
+    fn command(&mut self, line: u64, command: &Command) {
         let event = match command {
-            // These act on the choice of axis values alone, or on the blocks.
-            Command::From { .. }
-            | Command::Index { .. }
-            | Command::Along(_)
-            | Command::AlongEnd
-            | Command::Hole(_)
-            | Command::Still(_) => return,
-            Command::Plane(plane) => return self.set_plane(line, plane.clone()),
-            Command::Curve(curve) => {
-                self.curve = Some(curve.clone());
-                return;
-            }
-            Command::Tool(tool) => return self.change(line, tool, findings),
-            Command::Head(name) => return self.swap_head(line, name, findings),
+            // These act on the choice of axis values alone.
+            Command::From { .. } | Command::Index { .. } => return,
+            Command::Tool(tool) => return self.change(line, tool),
+            Command::Head(name) => return self.swap_head(line, name),
             Command::Operation(name) => return self.operation(line, name),
             Command::OperationEnd => return self.operation_end(line),
             Command::Preselect(_) if self.texts.preselects() => return,
@@ -373,8 +308,8 @@ impl<'a> EmitStage<'a> {
             Command::Literal(text) => {
                 // What it does is not known.
                 self.clear = false;
-                if self.waits.is_some() {
-                    self.wake(line, findings);
+                if self.spindle.waits.is_some() {
+                    self.wake(line);
                 }
                 Event::Literal { text }
             }
@@ -383,18 +318,18 @@ impl<'a> EmitStage<'a> {
             }
             Command::Message(text) => Event::Comment { text },
             Command::SurfaceSpeed { speed, most, sense } => {
-                return self.surface_speed(line, (*speed, *most), *sense, findings);
+                return self.surface_speed(line, (*speed, *most), *sense);
             }
-            Command::WorkOffset(number) => return self.work_offset(line, *number, findings),
-            Command::Subprogram(number) => return self.subprogram(line, *number, findings),
+            Command::WorkOffset(number) => return self.work_offset(line, *number),
+            Command::Subprogram(number) => return self.subprogram(line, *number),
             Command::Smoothing(wanted) => {
-                self.smoothing = *wanted;
+                self.smoothing.wanted = *wanted;
                 return self.leave(line);
             }
             Command::Dwell(seconds) => Event::Dwell { seconds: *seconds },
             Command::Stop => Event::Stop,
             Command::OptionalStop => Event::OptionalStop,
-            Command::Home => return self.go_home(line, findings),
+            Command::Home => return self.go_home(line),
         };
         self.writer.push(line, event);
     }
@@ -425,8 +360,8 @@ impl<'a> EmitStage<'a> {
             let cuts = block.kind != BlockKind::Rapid;
             if self.last[joint] != block.joints[joint] {
                 self.set_clamp(block.line, joint, false, false);
-                self.free |= u8::from(cuts) << joint;
-            } else if cuts && self.free >> joint & 1 == 0 {
+                self.clamps.free |= u8::from(cuts) << joint;
+            } else if cuts && self.clamps.free >> joint & 1 == 0 {
                 self.set_clamp(block.line, joint, true, false);
             }
         }
@@ -441,7 +376,7 @@ impl<'a> EmitStage<'a> {
     fn set_clamp(&mut self, line: u64, joint: usize, on: bool, unknown: bool) {
         let axis = &self.machine.axes[joint];
         let bit = 1 << joint;
-        if !unknown && (self.clamped & bit != 0) == on {
+        if !unknown && (self.clamps.on & bit != 0) == on {
             return;
         }
         match &axis.clamp {
@@ -459,44 +394,24 @@ impl<'a> EmitStage<'a> {
             }
             None => return,
         }
-        self.clamped = self.clamped & !bit | if on { bit } else { 0 };
+        self.clamps.on = self.clamps.on & !bit | if on { bit } else { 0 };
     }
 }
 
-/// Places of the words of the linear axes that move in cuts, but for Z.
-fn across(machine: &Machine) -> Vec<usize> {
-    let depth = cycles::z_word(machine);
-    let order = axis_words::order(machine).into_iter().enumerate();
-    order
-        .filter(|(place, joint)| {
-            let axis = &machine.axes[*joint];
-            !axis.joint.rotary && axis.indexed.is_none() && depth != Some(*place)
-        })
-        .map(|(place, _)| place)
-        .collect()
-}
-
-/// Where a tool has arrived, and by which line of the CL file.
-#[derive(Clone, Copy, Debug)]
-struct FirstPosition {
-    line: u64,
-    tip: Vector3<f64>,
-    axis: Vector3<f64>,
-}
-
-impl FirstPosition {
-    fn of(block: &MotionBlock) -> Self {
-        Self { line: block.line, tip: block.tip, axis: block.axis }
-    }
-
-    /// A block of another line leads below it, along the tool: into a slot, it may be, at rapid.
-    fn goes_in(&self, block: &MotionBlock) -> bool {
-        block.line != self.line && (block.tip - self.tip).dot(&self.axis) < -LOWER
+/// Fills in on which line each block ends.
+fn number(elements: &mut [StreamItem<MotionBlock>], lines: &mut dyn Iterator<Item = u64>) {
+    for next in elements {
+        match next {
+            StreamItem::Point(block) => block.nc_line = lines.next().unwrap_or(0),
+            StreamItem::Curve { curve, .. } => curve.block.nc_line = lines.next().unwrap_or(0),
+            StreamItem::Hole(hole) => {
+                number(&mut hole.above, lines);
+                number(&mut hole.into, lines);
+            }
+            StreamItem::Command { .. } | StreamItem::Note { .. } => {}
+        }
     }
 }
-
-/// A tool that goes less far along its axis stays where it is, mm.
-const LOWER: f64 = 1e-6;
 
 /// Whether a block goes at feed, from where the tool stands.
 fn cuts(block: &MotionBlock) -> bool {

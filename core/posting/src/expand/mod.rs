@@ -1,8 +1,8 @@
 //! Arcs, splines, cycles and planes become moves.
 //!
 //! What a dialect writes itself it declares at open ([`post_plugin::Capabilities`]). Everything leaves here as moves and
-//! commands; the moves of a curve that the dialect may write stand between two commands, the first of which has the
-//! curve (see [`crate::curve`]).
+//! commands; those of a curve or a hole that the dialect may write go on as one element, with the curve or the cycle
+//! (`stream`).
 
 mod planes;
 mod tangential;
@@ -15,16 +15,16 @@ use post_machine::description::{Cycles, Machine};
 use post_machine::diagnostic::{Diagnostic, Short};
 use post_plugin::{Capabilities, Cycle};
 
-use crate::curve::{CurveMove, CurvePolicy, CurveShape};
+use crate::curve::{CurveMove, CurveMoves, CurvePolicy, CurveShape};
 use crate::findings::Findings;
 use crate::preview::FilePreview;
 use crate::program::limits::MOST_CHORDS;
 use crate::program::spline::{chords, flatten};
 use crate::program::{
-    ArcStep, Command, CycleLeg, CycleStep, HoleMark, MoveFeed, ProgramStep, SplineStep,
+    ArcStep, Command, CycleLeg, CycleStep, DrillCycle, MoveFeed, ProgramStep, SplineStep,
     StraightMove,
 };
-use crate::stream::{BatchSink, StreamItem};
+use crate::stream::{BatchSink, HoleMoves, StreamItem, StreamPoint, gathered};
 use planes::PlaneTracker;
 use tangential::Tangential;
 
@@ -36,6 +36,24 @@ pub struct PathMove {
     /// The move.
     pub motion: StraightMove,
 }
+
+impl StreamPoint for PathMove {
+    type Curve = CurveMoves<Self>;
+    type Note = FixedAxis;
+
+    fn line(&self) -> u64 {
+        self.line
+    }
+
+    fn moves(curve: &Self::Curve) -> usize {
+        curve.moves.len()
+    }
+}
+
+/// The tool axis stays from here on until the next of these, and the control is to get a tilted plane for it, with this
+/// origin (mm, part frame); none: no plane. The tool has left the part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FixedAxis(pub Option<Vector3<f64>>);
 
 /// The first stage after the interpreter.
 #[derive(Debug)]
@@ -54,6 +72,7 @@ pub(crate) struct ExpandStage {
     cycles: Capabilities,
     /// Where the tool axis stays, if the control is to get planes.
     planes: Option<PlaneTracker>,
+    findings: Findings,
 }
 
 /// The moves and commands of `steps`, each with its line, chords straying by no more than `chord_tolerance` mm; and
@@ -71,13 +90,9 @@ pub fn expanded(
         keeps: None,
         cycles: Capabilities::NONE,
         planes: None,
+        findings: findings.clone(),
     };
-    let mut all = Vec::new();
-    let mut next = |batch: &mut Vec<StreamItem<PathMove>>| all.append(batch);
-    let mut batch = Vec::new();
-    let mut out = BatchSink::new(&mut batch, &mut next);
-    stage.take(steps, &mut out, &findings);
-    out.flush();
+    let all = gathered(|out| stage.take(steps, out));
     (all, findings.sorted())
 }
 
@@ -95,8 +110,9 @@ impl ExpandStage {
         chord_tolerance: f64,
         writes: Capabilities,
         ahead: Option<Arc<FilePreview>>,
+        findings: &Findings,
     ) -> Self {
-        let tangential = Tangential::new(machine);
+        let tangential = Tangential::new(machine, findings);
         let keeps = CurvePolicy::new(machine, writes);
         Self {
             planes: ahead.map(PlaneTracker::new),
@@ -110,6 +126,7 @@ impl ExpandStage {
             // An edge turns with the path.
             keeps: tangential.is_none().then_some(keeps),
             tangential,
+            findings: findings.clone(),
         }
     }
 
@@ -124,82 +141,81 @@ impl ExpandStage {
     }
 
     /// Takes a batch of steps, each with its line.
-    pub(crate) fn take(
-        &mut self,
-        steps: &[(u64, ProgramStep)],
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    pub(crate) fn take(&mut self, steps: &[(u64, ProgramStep)], out: &mut ExpandedSink<'_>) {
+        let Some(mut tangential) = self.tangential.take() else {
+            return self.steps(steps, out);
+        };
+        let mut batch = Vec::new();
+        let mut next = |batch: &mut Vec<StreamItem<PathMove>>| {
+            for item in batch.drain(..) {
+                tangential.take(item, out);
+            }
+        };
+        let mut moves = BatchSink::new(&mut batch, &mut next);
+        self.steps(steps, &mut moves);
+        moves.flush();
+        self.tangential = Some(tangential);
+    }
+
+    fn steps(&mut self, steps: &[(u64, ProgramStep)], out: &mut ExpandedSink<'_>) {
         for (line, step) in steps {
             let line = *line;
             let change = self.planes.as_mut().and_then(|planes| planes.change(line, step));
-            if let Some(still) = change {
-                self.command(line, Command::Still(still), out, findings);
+            if let Some(origin) = change {
+                self.left();
+                out.note(line, FixedAxis(origin));
             }
             match step {
-                ProgramStep::Move(motion) => self.go(line, *motion, out, findings),
-                ProgramStep::Arc(arc) => self.arc(line, arc, out, findings),
-                ProgramStep::Spline(spline) => self.spline(line, spline, out, findings),
-                ProgramStep::Cycle(cycle) => self.cycle(line, cycle, out, findings),
+                ProgramStep::Move(motion) => self.go(line, *motion, out),
+                ProgramStep::Arc(arc) => self.arc(line, arc, out),
+                ProgramStep::Spline(spline) => self.spline(line, spline, out),
+                ProgramStep::Cycle(cycle) => self.cycle(line, cycle, out),
                 // Points are in the part frame whatever plane they lie in.
                 ProgramStep::Plane(_) | ProgramStep::EndCycle => {}
-                ProgramStep::Command(command) => self.command(line, command.clone(), out, findings),
+                ProgramStep::Command(command) => self.command(line, command.clone(), out),
             }
         }
     }
 
     /// The file ends: what was kept back is handed on.
-    pub(crate) fn finish(&mut self, out: &mut ExpandedSink<'_>, findings: &Findings) {
+    pub(crate) fn finish(&mut self, out: &mut ExpandedSink<'_>) {
         if let Some(tangential) = &mut self.tangential {
-            tangential.finish(out, findings);
+            tangential.finish(out);
         }
     }
 
     /// One straight move.
     #[inline]
-    fn go(
-        &mut self,
-        line: u64,
-        motion: StraightMove,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    fn go(&mut self, line: u64, motion: StraightMove, out: &mut ExpandedSink<'_>) {
         self.tip = Some(motion.tip);
         self.only_said = false;
-        match &mut self.tangential {
-            None => out.push_with(|| StreamItem::Point(PathMove { line, motion })),
-            Some(tangential) => tangential.go(line, motion, out, findings),
-        }
+        out.push_with(|| StreamItem::Point(PathMove { line, motion }));
     }
 
-    fn command(
-        &mut self,
-        line: u64,
-        command: Command,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    fn command(&mut self, line: u64, command: Command, out: &mut ExpandedSink<'_>) {
         if let Command::From { tip, .. } = command {
             self.tip = Some(tip);
             self.only_said = true;
         } else if command.leaves() {
-            self.tip = None;
-            self.only_said = false;
+            self.left();
         }
-        match &mut self.tangential {
-            None => out.command(line, command),
-            Some(tangential) => tangential.command(line, command, out, findings),
-        }
+        out.command(line, command);
     }
 
-    /// An arc. One that may stay an arc goes turn by turn, its moves between the commands that say so.
-    fn arc(&mut self, line: u64, step: &ArcStep, out: &mut ExpandedSink<'_>, findings: &Findings) {
+    /// The tool leaves the part: where it stands is not known.
+    fn left(&mut self) {
+        self.tip = None;
+        self.only_said = false;
+    }
+
+    /// An arc. One that may stay an arc goes turn by turn.
+    fn arc(&mut self, line: u64, step: &ArcStep, out: &mut ExpandedSink<'_>) {
         let ArcStep { arc, end, .. } = step;
         // After a hole the tool stands above the point that the arc begins on.
         let start = arc.at(0.0);
         if self.only_said || self.tip.is_some_and(|tip| (tip - start).norm() > APART) {
             let to_start = StraightMove { tip: start, axis: step.start_axis, chord: 0.0, ..*end };
-            self.go(line, to_start, out, findings);
+            self.go(line, to_start, out);
         }
         let turns = libm::ceil(arc.sweep / TAU - 1e-9).max(1.0);
         let turn = arc.piece(0.0, 1.0 / turns);
@@ -210,7 +226,7 @@ impl ExpandStage {
             || count.saturating_mul(turns as u64) > MOST_CHORDS
             || !self.keeps.as_ref().is_some_and(keeps)
         {
-            return self.chords(line, step, out, findings);
+            return self.chords(line, step, out);
         }
         for place in 1..=turns as u32 {
             let [from, to] = [place - 1, place].map(|place| f64::from(place) / turns);
@@ -221,27 +237,19 @@ impl ExpandStage {
             };
             let tip = if to == 1.0 { end.tip } else { arc.at(1.0) };
             let end = StraightMove { tip, pace, ..*end };
-            let course = CurveShape::Arc(arc);
-            let curve = Box::new(CurveMove { course, end });
-            self.command(line, Command::Along(curve), out, findings);
             let step = ArcStep { arc, end, ..*step };
-            self.chords(line, &step, out, findings);
-            self.command(line, Command::AlongEnd, out, findings);
+            let moves = gathered(|out| self.chords(line, &step, out));
+            let curve = CurveMove { course: CurveShape::Arc(arc), end };
+            out.element(StreamItem::Curve { line, curve: Box::new(CurveMoves { curve, moves }) });
         }
     }
 
     /// Chords, the tool axis turning evenly from start to end.
-    fn chords(
-        &mut self,
-        line: u64,
-        step: &ArcStep,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    fn chords(&mut self, line: u64, step: &ArcStep, out: &mut ExpandedSink<'_>) {
         let ArcStep { arc, end, start_axis } = step;
         let (count, chord) = arc.chords(self.chord_tolerance);
         if count > MOST_CHORDS {
-            findings.at(line, self.too_many_chords("arc", &count.to_string()));
+            self.findings.at(line, self.too_many_chords("arc", &count.to_string()));
             return;
         }
         let pace = match end.pace {
@@ -263,7 +271,7 @@ impl ExpandStage {
                 chord,
                 ..*end
             };
-            self.go(line, motion, out, findings);
+            self.go(line, motion, out);
         }
     }
 
@@ -278,98 +286,106 @@ impl ExpandStage {
         .help("check its numbers, widen the tolerance, or let the CAM system write GOTOs")
     }
 
-    fn spline(
-        &mut self,
-        line: u64,
-        step: &SplineStep,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    fn spline(&mut self, line: u64, step: &SplineStep, out: &mut ExpandedSink<'_>) {
         let SplineStep { spline, end } = step;
         if self.only_said {
             let tip = spline.poles[0].0;
             let to_start = StraightMove { tip, chord: 0.0, ..*end };
-            self.go(line, to_start, out, findings);
+            self.go(line, to_start, out);
         }
         let keeps = |count| self.keeps.as_ref().is_some_and(|keeps| keeps.spline(end, count));
         let along = match chords(spline, self.chord_tolerance) {
             Some(count) if count <= MOST_CHORDS => keeps(count),
             count => {
                 let count = count.map_or("countless".to_owned(), |count| count.to_string());
-                findings.at(line, self.too_many_chords("spline", &count));
+                self.findings.at(line, self.too_many_chords("spline", &count));
                 return;
             }
         };
-        if along {
-            let course = CurveShape::Spline(spline.clone());
-            let curve = Box::new(CurveMove { course, end: *end });
-            self.command(line, Command::Along(curve), out, findings);
+        let tolerance = self.chord_tolerance;
+        let mut flat = |out: &mut ExpandedSink<'_>| {
+            flatten(spline, tolerance, &mut |tip, chord| {
+                self.go(line, StraightMove { tip, chord, ..*end }, out);
+            });
+        };
+        if !along {
+            return flat(out);
         }
-        flatten(spline, self.chord_tolerance, &mut |tip, chord| {
-            self.go(line, StraightMove { tip, chord, ..*end }, out, findings);
-        });
-        if along {
-            self.command(line, Command::AlongEnd, out, findings);
-        }
+        let curve = CurveMove { course: CurveShape::Spline(spline.clone()), end: *end };
+        let moves = gathered(flat);
+        out.element(StreamItem::Curve { line, curve: Box::new(CurveMoves { curve, moves }) });
     }
 
-    /// Approach, pecks, dwell and retract at one point; where the control has the cycle, marked for what writes it.
-    fn cycle(
-        &mut self,
-        line: u64,
-        step: &CycleStep,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    /// Approach, pecks, dwell and retract at one point; where the control has the cycle, as a hole.
+    fn cycle(&mut self, line: u64, step: &CycleStep, out: &mut ExpandedSink<'_>) {
         let CycleStep { cycle, point } = *step;
         let native = cycle.native();
         let known = native.filter(|native| self.cycles.has(native.kind.capability()));
         if let (Some(kind), None) =
             (native.filter(|native| native.alone).map(|native| native.kind), known)
         {
-            findings.at(line, no_moves(kind));
+            self.findings.at(line, no_moves(kind));
             return;
         }
-        let rapid = |tip| StraightMove { tip, pace: MoveFeed::Rapid, ..point };
-        if let Some(drilling) = known {
-            let mark = Command::Hole(HoleMark::Above(drilling));
-            self.command(line, mark, out, findings);
-        }
-        // Between holes the tool goes up before it goes aside, and aside before it goes down.
-        if let Some(tip) = self.tip {
-            let height = point.axis.dot(&(tip - point.tip));
-            let aside = tip - point.tip - point.axis * height;
-            if aside.norm() > 1e-6 {
-                let level = cycle.retract();
-                if height < level {
-                    let up = rapid(point.tip + aside + point.axis * level);
-                    self.go(line, up, out, findings);
-                } else if height > level {
-                    self.go(line, rapid(point.tip + point.axis * height), out, findings);
-                }
+        let mut legs = Vec::new();
+        cycle.legs(&mut |leg| legs.push(leg));
+        // The first leg ends on the retract level.
+        let (first, rest) = legs.split_at(legs.len().min(1));
+        let at = PathMove { line, motion: point };
+        let mut above = |out: &mut ExpandedSink<'_>| {
+            self.go_aside(&at, &cycle, out);
+            self.cycle_legs(&at, first, out);
+        };
+        let Some(cycle) = known else {
+            above(out);
+            return self.cycle_legs(&at, rest, out);
+        };
+        let above = gathered(above);
+        let into = gathered(|out| self.cycle_legs(&at, rest, out));
+        let StraightMove { tip: point, axis, .. } = point;
+        out.element(StreamItem::Hole(Box::new(HoleMoves {
+            line,
+            cycle,
+            point,
+            axis,
+            above,
+            into,
+        })));
+    }
+
+    /// Between holes the tool goes up before it goes aside, and aside before it goes down.
+    fn go_aside(&mut self, at: &PathMove, cycle: &DrillCycle, out: &mut ExpandedSink<'_>) {
+        let Some(tip) = self.tip else {
+            return;
+        };
+        let PathMove { line, motion: point } = *at;
+        let height = point.axis.dot(&(tip - point.tip));
+        let aside = tip - point.tip - point.axis * height;
+        if aside.norm() > 1e-6 {
+            let level = cycle.retract();
+            let rapid = |tip| StraightMove { tip, pace: MoveFeed::Rapid, ..point };
+            if height < level {
+                self.go(line, rapid(point.tip + aside + point.axis * level), out);
+            } else if height > level {
+                self.go(line, rapid(point.tip + point.axis * height), out);
             }
         }
-        let mut into =
-            known.is_some().then_some(HoleMark::Into { point: point.tip, axis: point.axis });
-        cycle.legs(&mut |leg| {
-            let at = |height: f64| point.tip + point.axis * height;
-            match leg {
-                CycleLeg::Rapid(height) => self.go(line, rapid(at(height)), out, findings),
-                CycleLeg::Feed(height) => {
-                    let motion = StraightMove { tip: at(height), ..point };
-                    self.go(line, motion, out, findings);
-                }
+    }
+
+    /// Legs of a cycle at a point.
+    fn cycle_legs(&mut self, at: &PathMove, legs: &[CycleLeg], out: &mut ExpandedSink<'_>) {
+        let PathMove { line, motion: point } = *at;
+        for leg in legs {
+            let (height, pace) = match *leg {
+                CycleLeg::Rapid(height) => (height, MoveFeed::Rapid),
+                CycleLeg::Feed(height) => (height, point.pace),
                 CycleLeg::Dwell(seconds) => {
-                    self.command(line, Command::Dwell(seconds), out, findings);
+                    self.command(line, Command::Dwell(seconds), out);
+                    continue;
                 }
-            }
-            // The first leg ends on the retract level.
-            if let Some(into) = into.take() {
-                self.command(line, Command::Hole(into), out, findings);
-            }
-        });
-        if known.is_some() {
-            self.command(line, Command::Hole(HoleMark::Done), out, findings);
+            };
+            let tip = point.tip + point.axis * height;
+            self.go(line, StraightMove { tip, pace, ..point }, out);
         }
     }
 }

@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 use super::{ExpandedSink, PathMove};
 use crate::findings::Findings;
 use crate::program::{Command, MoveFeed, StraightMove};
-use crate::stream::StreamItem;
+use crate::stream::{HoleMoves, StreamItem, gathered};
 use post_machine::description::{EdgeSource, Machine, Rewind};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::orientation::angle;
@@ -52,15 +52,26 @@ pub(super) struct Tangential {
     cut: Option<(u64, StraightMove, Vector3<f64>)>,
     /// Whether there was such a cut since the tool came.
     has_cut: bool,
-    /// What came after it: moves without a direction (rapids, straight in and out), and commands.
+    /// What came after it: moves without a direction (rapids, straight in and out), holes, and commands.
     behind: VecDeque<StreamItem<PathMove>>,
     /// Corners that the tool was drawn back at.
     pub(super) rewinds: u64,
+    findings: Findings,
+}
+
+/// What is known of the moves that waited, while they are handed on.
+struct HeldMoves {
+    /// Direction of the cut that comes after them.
+    go: Option<Vector3<f64>>,
+    /// The edge was turned to it.
+    turned: bool,
+    /// The last of them before that.
+    last: Option<(u64, StraightMove)>,
 }
 
 impl Tangential {
     /// None for a tool that turns.
-    pub(crate) fn new(machine: &Machine) -> Option<Self> {
+    pub(crate) fn new(machine: &Machine, findings: &Findings) -> Option<Self> {
         Some(Self {
             source: machine.solution.edge,
             corner: machine.solution.corner,
@@ -71,29 +82,43 @@ impl Tangential {
             has_cut: false,
             behind: VecDeque::new(),
             rewinds: 0,
+            findings: findings.clone(),
         })
     }
 
     /// Line of the first step that waits.
     pub(super) fn first_line(&self) -> Option<u64> {
-        let behind = || self.behind.front()?.line(|at| at.line);
+        let behind = || self.behind.front().map(StreamItem::line);
         self.cut.map(|(line, ..)| line).or_else(behind)
     }
 
-    /// Takes a move; what is settled goes on.
-    pub(super) fn go(
-        &mut self,
-        line: u64,
-        motion: StraightMove,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    /// Takes an element; what is settled goes on.
+    pub(super) fn take(&mut self, next: StreamItem<PathMove>, out: &mut ExpandedSink<'_>) {
+        match next {
+            StreamItem::Point(PathMove { line, motion }) => self.go(line, motion, out),
+            StreamItem::Hole(hole) => self.hole(*hole, out),
+            StreamItem::Command { line, command } => self.command(line, command, out),
+            StreamItem::Note { line, note } => {
+                self.leave(None, out);
+                out.note(line, note);
+            }
+            // An edge turns with the path: it goes by its moves.
+            StreamItem::Curve { curve, .. } => {
+                for next in curve.moves {
+                    self.take(next, out);
+                }
+            }
+        }
+    }
+
+    /// Takes a move.
+    fn go(&mut self, line: u64, motion: StraightMove, out: &mut ExpandedSink<'_>) {
         if self.source == EdgeSource::Cl {
             let along = if motion.edge == Vector3::zeros() {
                 self.edge
             } else {
                 if across(motion.edge, motion.axis, 1e-3).is_none() {
-                    fault(findings, line, "the leading edge lies along the tool axis");
+                    self.fault(line, "the leading edge lies along the tool axis");
                 }
                 motion.edge
             };
@@ -108,102 +133,127 @@ impl Tangential {
         });
         match way {
             Some(way) => {
-                self.settle(Some(way), out, findings);
+                self.settle(Some(way), out);
                 self.cut = Some((line, motion, way));
             }
-            None => self.hold(StreamItem::Point(PathMove { line, motion }), out, findings),
+            None => self.hold(StreamItem::Point(PathMove { line, motion }), out),
         }
     }
 
-    /// Takes a command.
-    pub(super) fn command(
-        &mut self,
-        line: u64,
-        command: Command,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
-        if !command.leaves() {
-            self.hold(StreamItem::Command { line, command }, out, findings);
+    /// Takes a command. Where the CL file says where the edge points, no move waits, and no command either.
+    fn command(&mut self, line: u64, command: Command, out: &mut ExpandedSink<'_>) {
+        if !command.leaves() && self.source == EdgeSource::Travel {
+            self.hold(StreamItem::Command { line, command }, out);
             return;
         }
-        self.settle(None, out, findings);
-        self.has_cut = false;
-        self.at = match command {
+        let at = match command {
             Command::From { tip, axis } => Some([tip, axis]),
             _ => None,
         };
+        self.leave(at, out);
         out.command(line, command);
     }
 
-    /// What waits has nothing after it.
-    pub(super) fn finish(&mut self, out: &mut ExpandedSink<'_>, findings: &Findings) {
-        self.settle(None, out, findings);
+    /// The tool leaves the part; it stands `at` this tip with this axis after that, if that is known.
+    fn leave(&mut self, at: Option<[Vector3<f64>; 2]>, out: &mut ExpandedSink<'_>) {
+        self.settle(None, out);
+        self.has_cut = false;
+        self.at = at;
     }
 
-    fn hold(
-        &mut self,
-        next: StreamItem<PathMove>,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
+    /// Takes a hole. Its ways lead straight in and out, or are rapids: they have no direction.
+    fn hole(&mut self, hole: HoleMoves<PathMove>, out: &mut ExpandedSink<'_>) {
+        if self.source == EdgeSource::Cl {
+            let hole = hole.remade(|part| {
+                gathered(|out| part.iter().for_each(|next| self.take(next.clone(), out)))
+            });
+            return out.element(StreamItem::Hole(Box::new(hole)));
+        }
+        let last = hole.above.iter().chain(&hole.into).rev().find_map(|next| match next {
+            StreamItem::Point(at) => Some([at.motion.tip, at.motion.axis]),
+            _ => None,
+        });
+        self.at = last.or(self.at);
+        self.hold(StreamItem::Hole(Box::new(hole)), out);
+    }
+
+    /// What waits has nothing after it.
+    pub(super) fn finish(&mut self, out: &mut ExpandedSink<'_>) {
+        self.settle(None, out);
+    }
+
+    fn hold(&mut self, next: StreamItem<PathMove>, out: &mut ExpandedSink<'_>) {
         self.behind.push_back(next);
         if self.behind.len() >= MOST_HELD {
-            self.settle(None, out, findings);
+            self.settle(None, out);
         }
     }
 
     /// Settles what waits; the next cut goes along `go`.
-    fn settle(
-        &mut self,
-        go: Option<Vector3<f64>>,
-        out: &mut ExpandedSink<'_>,
-        findings: &Findings,
-    ) {
-        let moves = self.behind.iter().any(|next| matches!(next, StreamItem::Point(_)));
+    fn settle(&mut self, go: Option<Vector3<f64>>, out: &mut ExpandedSink<'_>) {
+        let moves = |next: &StreamItem<PathMove>| {
+            matches!(next, StreamItem::Point(_) | StreamItem::Hole(_))
+        };
+        let moves = self.behind.iter().any(moves);
         // Where no cut came before, the edge stands as the first cut wants it from the beginning.
         self.has_cut |= self.cut.is_some();
-        let mut turned = !self.has_cut;
-        let mut last = None;
+        let mut held = HeldMoves { go, turned: !self.has_cut, last: None };
         if let Some((line, motion, come)) = self.cut.take() {
             match go.filter(|_| !moves) {
                 Some(go) if turn(come, go, motion.axis) > self.corner => {
                     self.pass(line, motion, Some(come), out);
-                    self.corner_turn((line, motion), [come, go], out, findings);
+                    self.corner_turn((line, motion), [come, go], out);
                 }
                 Some(go) => self.pass(line, motion, Some(come + go), out),
                 None => self.pass(line, motion, Some(come), out),
             }
         }
         for next in std::mem::take(&mut self.behind) {
-            let StreamItem::Point(PathMove { line, motion }) = next else {
-                out.push(next);
-                continue;
-            };
-            if turned {
-                self.pass(line, motion, go, out);
-                continue;
-            }
-            self.pass(line, motion, None, out);
-            last = Some((line, motion));
-            if let Some(go) = go
-                && motion.pace == MoveFeed::Rapid
-            {
-                // Off the part: turned here, before the way in.
-                self.pass(line, motion, Some(go), out);
-                turned = true;
-            }
+            self.pass_held(next, &mut held, out);
         }
+        let HeldMoves { turned, last, .. } = held;
         let (false, Some(go), Some((line, motion))) = (turned, go, last) else {
             return;
         };
         // Straight from one cut into another: a corner, if it is one.
         let angle = turn(self.edge, go, motion.axis);
         if angle > self.corner {
-            self.corner_turn((line, motion), [self.edge, go], out, findings);
+            self.corner_turn((line, motion), [self.edge, go], out);
         } else if angle < STANDS {
             // The edge stands as the cut wants it, and the heading is that of the cut from its start.
             self.pass(line, motion, Some(go), out);
+        }
+    }
+
+    /// Hands on what waited.
+    fn pass_held(
+        &mut self,
+        next: StreamItem<PathMove>,
+        held: &mut HeldMoves,
+        out: &mut ExpandedSink<'_>,
+    ) {
+        match next {
+            StreamItem::Point(PathMove { line, motion }) if held.turned => {
+                self.pass(line, motion, held.go, out);
+            }
+            StreamItem::Point(PathMove { line, motion }) => {
+                self.pass(line, motion, None, out);
+                held.last = Some((line, motion));
+                if held.go.is_some() && motion.pace == MoveFeed::Rapid {
+                    // Off the part: turned here, before the way in.
+                    self.pass(line, motion, held.go, out);
+                    held.turned = true;
+                }
+            }
+            StreamItem::Hole(hole) => {
+                let hole = hole.remade(|part| {
+                    gathered(|out| {
+                        part.iter().for_each(|next| self.pass_held(next.clone(), held, out));
+                    })
+                });
+                out.element(StreamItem::Hole(Box::new(hole)));
+            }
+            next => out.push(next),
         }
     }
 
@@ -213,7 +263,6 @@ impl Tangential {
         (line, motion): (u64, StraightMove),
         [come, heading]: [Vector3<f64>; 2],
         out: &mut ExpandedSink<'_>,
-        findings: &Findings,
     ) {
         let away = self.rewind.and_then(|rewind| Some((rewind, motion.drawn_back(&rewind, 0.0)?)));
         let angle = turn(self.edge, heading, motion.axis);
@@ -237,8 +286,7 @@ impl Tangential {
             self.pass(line, back, Some(heading), out);
         } else {
             if self.rewind.is_some() {
-                fault(
-                    findings,
+                self.fault(
                     line,
                     "at this corner the tool must be drawn back and turned, and it cannot be: the plane of [rewind] lies below the tip, or the tool is nearly level",
                 );
@@ -258,6 +306,13 @@ impl Tangential {
                 self.pass(line, motion, Some(heading), out);
             }
         }
+    }
+
+    /// A fault of the leading edge at `line`.
+    fn fault(&self, line: u64, message: &str) {
+        let fault = Diagnostic::error("edge", message)
+            .help("[rewind] and [solution] edge say how a leading edge is turned");
+        self.findings.at(line, fault);
     }
 
     /// Hands a move on that ends with this heading.
@@ -280,15 +335,6 @@ impl Tangential {
         motion.edge = heading;
         out.push(StreamItem::Point(PathMove { line, motion }));
     }
-}
-
-/// A fault of the leading edge at `line`.
-fn fault(findings: &Findings, line: u64, message: &str) {
-    findings.at(
-        line,
-        Diagnostic::error("edge", message)
-            .help("[rewind] and [solution] edge say how a leading edge is turned"),
-    );
 }
 
 /// The part of a direction across the tool axis, of length one; none if they make an angle of a sine below `least`.

@@ -12,12 +12,11 @@ use post_machine::description::{Machine, PlanSolver};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 
-use super::account::PlanTally;
 use super::corner::Corner;
 use super::cut::BlockCutter;
 use super::graded::{at_least, evenly_bent, graded};
 use super::limits::{self, PlanAxes};
-use super::pieces::{BlockProfile, CutThresholds, FeedPiece, STANDING};
+use super::pieces::{CutThresholds, FeedPiece, STANDING};
 use super::queue::{BlockQueue, BlockStart};
 use super::rest::RestToRest;
 use super::samples::{PathDerivatives, SampleBlock, Sampler, WatchedSample};
@@ -25,7 +24,7 @@ use super::solver::{SampleSolver, SettledSample};
 use super::watch::PlannedPoint;
 use super::{CORNER, SharedWatch};
 use crate::accuracy::Placer;
-use crate::blocks::{MotionBlock, PlannedTime, STILL};
+use crate::blocks::{BlockSink, MotionBlock, PlannedTime, STILL};
 use crate::stream::StreamItem;
 use crate::tightening::Tightening;
 
@@ -192,8 +191,7 @@ impl<'a> PlannerRun<'a> {
         &mut self,
         leg: &FittedLeg<'_>,
         queue: &mut BlockQueue,
-        account: &mut PlanTally,
-        out: &mut dyn FnMut(StreamItem<MotionBlock>),
+        out: &mut BlockSink<'_>,
     ) -> Result<(), Unplanned> {
         let Some(due) = self.due.front().copied() else {
             return Err(Unplanned);
@@ -228,7 +226,7 @@ impl<'a> PlannerRun<'a> {
                 let q = self.corner.allows(before, &place, self.length.min(leg.length));
                 // What servos make of a corner goes with the speed.
                 let q = q * said.share * said.share;
-                self.plan(queue, account, out)?;
+                self.plan(queue, out)?;
                 self.sampler.corner(&place, said, q);
                 queue.corner(&place);
             } else {
@@ -251,7 +249,7 @@ impl<'a> PlannerRun<'a> {
             queue.mark(self.way + sample.at, &place, last);
             at = sample.at;
             if self.sampler.is_full() {
-                self.plan(queue, account, out)?;
+                self.plan(queue, out)?;
             }
         }
         self.samples = samples;
@@ -295,14 +293,13 @@ impl<'a> PlannerRun<'a> {
     pub(super) fn finish(
         &mut self,
         queue: &mut BlockQueue,
-        account: &mut PlanTally,
-        out: &mut dyn FnMut(StreamItem<MotionBlock>),
+        out: &mut BlockSink<'_>,
     ) -> Result<(), Unplanned> {
-        self.plan(queue, account, out)?;
-        let found = self.solver.finish(&mut |step| self.feeds.settled(step, queue, account, out));
+        self.plan(queue, out)?;
+        let found = self.solver.finish(&mut |step| self.feeds.settled(step, queue, out));
         found.map_err(|fault| self.refuse(&fault))?;
         queue.profile.clear();
-        account.uncertain(self.solver.uncertain());
+        queue.account.uncertain(self.solver.uncertain());
         self.sampler.end();
         Ok(())
     }
@@ -317,17 +314,12 @@ impl<'a> PlannerRun<'a> {
     }
 
     /// Hands the samples gathered so far to the solver.
-    fn plan(
-        &mut self,
-        queue: &mut BlockQueue,
-        account: &mut PlanTally,
-        out: &mut dyn FnMut(StreamItem<MotionBlock>),
-    ) -> Result<(), Unplanned> {
+    fn plan(&mut self, queue: &mut BlockQueue, out: &mut BlockSink<'_>) -> Result<(), Unplanned> {
         let limits: Vec<&dyn Limit> = self.limits.iter().map(|limit| &**limit).collect();
         let found = match self.sampler.batch(&limits) {
             Ok(None) => return Ok(()),
             Ok(Some(batch)) => {
-                self.solver.push(batch, &mut |step| self.feeds.settled(step, queue, account, out))
+                self.solver.push(batch, &mut |step| self.feeds.settled(step, queue, out))
             }
             Err(fault) => Err(fault),
         };
@@ -362,13 +354,7 @@ struct BlockFeeds<'a> {
 }
 
 impl BlockFeeds<'_> {
-    fn settled(
-        &mut self,
-        step: SettledSample,
-        queue: &mut BlockQueue,
-        account: &mut PlanTally,
-        out: &mut dyn FnMut(StreamItem<MotionBlock>),
-    ) {
+    fn settled(&mut self, step: SettledSample, queue: &mut BlockQueue, out: &mut BlockSink<'_>) {
         let source = step.source;
         let name = self.names.get(usize::from(source.limit));
         let name = name.copied().unwrap_or(CORNER);
@@ -378,14 +364,26 @@ impl BlockFeeds<'_> {
             self.slowest = Some((step.q, name));
         }
         if queue.seconds > 0.0 {
-            account.limited(name, source.axis, queue.seconds);
+            queue.account.limited(name, source.axis, queue.seconds);
             self.watch(queue, before.as_deref(), step, name);
         }
         if !ends {
             return;
         }
-        if let Some((block, start)) = queue.first_open(&mut *out) {
-            self.block(&block, &start, &mut queue.profile, account, out);
+        match queue.first_open(out) {
+            Some((StreamItem::Point(block), start)) => {
+                let mut point = |block| out.push(StreamItem::Point(block));
+                self.block(&block, &start, queue, &mut point);
+            }
+            Some((StreamItem::Curve { line, mut curve }, start)) => {
+                let block = curve.block;
+                // A curve is not cut: it stays one block.
+                let mut whole = |block| curve.block = block;
+                self.block(&block, &start, queue, &mut whole);
+                out.push(StreamItem::Curve { line, curve });
+            }
+            Some((other, _)) => out.push(other),
+            None => {}
         }
         queue.profile.begin();
         self.slowest = None;
@@ -436,16 +434,16 @@ impl BlockFeeds<'_> {
         &mut self,
         block: &MotionBlock,
         start: &BlockStart,
-        profile: &mut BlockProfile,
-        account: &mut PlanTally,
-        out: &mut dyn FnMut(StreamItem<MotionBlock>),
+        queue: &mut BlockQueue,
+        out: &mut dyn FnMut(MotionBlock),
     ) {
+        let BlockQueue { profile, account, .. } = queue;
         let asked = block.asked() * 60.0;
         let planned = profile.seconds();
         let (from, to) = (&start.joints, &block.joints);
         if self.rest.is_passed(planned, asked, from, to) {
             account.too_slow();
-            out(StreamItem::Point(*block));
+            out(*block);
             return;
         }
         // Where the tip makes most of the way, its feed is what the block keeps.
@@ -477,7 +475,7 @@ impl BlockFeeds<'_> {
         let count = self.cutter.cut(block, start, &self.pieces, length, |piece, seconds| {
             printed += seconds;
             let planned = PlannedTime { minutes: seconds / 60.0, limit };
-            out(StreamItem::Point(MotionBlock { planned, ..piece }));
+            out(MotionBlock { planned, ..piece });
         });
         // What is written is never faster than the CL file asks for.
         account.block(count, asked, planned, printed.max(asked));

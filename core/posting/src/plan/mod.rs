@@ -27,19 +27,17 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use nalgebra::Vector3;
 use post_feed::fit::{self, PathFit};
 use post_machine::description::{CornerRule, FeedMode, InverseTime, Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Format;
 
 use crate::accuracy::Placer;
-use crate::blocks::{BlockKind, MotionBlock};
+use crate::blocks::{BlockKind, BlockNote, BlockSink, MotionBlock};
 use crate::findings::Findings;
-use crate::program::{Command, HoleMark};
-use crate::stream::{BatchSink, StreamItem};
+use crate::program::Command;
+use crate::stream::{HoleMoves, StreamItem};
 use crate::tightening::Tightening;
-use account::PlanTally;
 pub use account::{LimitShare, PlanReport, axis_name};
 pub use limits::{SampledAxes, limits};
 use line::{BlockDemand, PlannerRun};
@@ -75,22 +73,18 @@ pub(crate) struct PlanStage<'a> {
     placer: Option<Rc<Placer>>,
     run: Option<CurvePlanner<'a>>,
     queue: BlockQueue,
-    account: PlanTally,
     /// Where the axes stand; none where it is not known.
     stands: Option<BlockStart>,
     /// Where the last leg of the curve ends.
     point: fit::FitPoint,
     /// A path has begun.
     moves: bool,
-    /// The moves are those of a hole, which may become a cycle.
-    in_hole: bool,
-    /// What the next block passes on its way.
-    way: Vec<Vector3<f64>>,
     refused: bool,
     /// Whether what the machine cannot keep was reported.
     warned: bool,
     /// The control takes no block for shorter than this, s.
     least_block: f64,
+    findings: Findings,
 }
 
 /// What plans with one placer.
@@ -104,6 +98,7 @@ impl<'a> PlanStage<'a> {
         machine: &'a Machine,
         format: &Format,
         tightening: Option<Arc<Tightening>>,
+        findings: &Findings,
     ) -> Self {
         Self {
             base: machine,
@@ -113,15 +108,13 @@ impl<'a> PlanStage<'a> {
             placer: None,
             run: None,
             queue: BlockQueue::default(),
-            account: PlanTally::default(),
             stands: None,
             point: [0.0; fit::MOST],
             moves: false,
-            in_hole: false,
-            way: Vec::new(),
             refused: false,
             warned: false,
             least_block: least_block(machine, format),
+            findings: findings.clone(),
         }
     }
 
@@ -138,66 +131,62 @@ impl<'a> PlanStage<'a> {
 
     /// What was planned so far.
     pub(crate) fn report(&self) -> PlanReport {
-        self.account.report(self.machine)
+        self.queue.account.report(self.machine)
     }
 
     /// Takes a batch, which is empty then.
     pub(crate) fn take(
         &mut self,
         batch: &mut Vec<StreamItem<MotionBlock>>,
-        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
-        findings: &Findings,
+        out: &mut BlockSink<'_>,
     ) {
         // Another head may have come since.
-        self.take_placer(out, findings);
+        self.take_placer(out);
         for next in batch.drain(..) {
             match next {
-                StreamItem::Command { line, command } => {
-                    self.command(&command, out, findings);
-                    self.queue.push(StreamItem::Command { line, command });
+                StreamItem::Point(_) | StreamItem::Curve { .. } => self.block(next, out),
+                StreamItem::Hole(hole) => self.hole(hole, out),
+                StreamItem::Command { ref command, .. } => {
+                    self.command(command, out);
+                    self.queue.push(next);
                 }
-                StreamItem::Point(block) => self.block(block, out, findings),
-                StreamItem::Placer(placer) => {
+                StreamItem::Note { note: BlockNote::Plane(_), .. } => {
+                    self.stop(out);
+                    self.queue.push(next);
+                }
+                StreamItem::Note { note: BlockNote::Placer(placer), .. } => {
                     self.placer = Some(placer);
-                    self.take_placer(out, findings);
+                    self.take_placer(out);
                 }
             }
         }
         if !self.moves {
-            self.queue.ready(&mut |flow| out.push(flow));
+            self.queue.ready(out);
         }
     }
 
     /// The program ends.
-    pub(crate) fn finish(
-        &mut self,
-        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
-        findings: &Findings,
-    ) {
-        self.stop(out, findings);
-        if let Some(warning) = self.account.slower_than_none() {
-            findings.add(warning);
+    pub(crate) fn finish(&mut self, out: &mut BlockSink<'_>) {
+        self.stop(out);
+        if let Some(warning) = self.queue.account.slower_than_none() {
+            self.findings.add(warning);
         }
     }
 
     /// Blocks are made with another placer.
-    fn take_placer(
-        &mut self,
-        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
-        findings: &Findings,
-    ) {
+    fn take_placer(&mut self, out: &mut BlockSink<'_>) {
         let known = self.run.as_ref().map(|run| Rc::as_ptr(run.line.placer()));
         if self.placer.as_ref().map(Rc::as_ptr) == known {
             return;
         }
-        self.stop(out, findings);
+        self.stop(out);
         self.run = None;
         let (Some(placer), false) = (self.placer.clone(), self.refused) else {
             return;
         };
         if !placer.solver().closed_form() {
             self.refused = true;
-            findings.add(no_closed_form(self.machine));
+            self.findings.add(no_closed_form(self.machine));
             return;
         }
         let watch = self.watch.clone();
@@ -205,7 +194,7 @@ impl<'a> PlanStage<'a> {
         let line = PlannerRun::new(self.machine, placer, tightening, watch, self.least_block);
         if !std::mem::replace(&mut self.warned, true) {
             for warning in limits::warnings(self.machine) {
-                findings.add(warning);
+                self.findings.add(warning);
             }
         }
         let accuracy = &self.machine.accuracy;
@@ -223,20 +212,10 @@ impl<'a> PlanStage<'a> {
         });
     }
 
-    fn command(
-        &mut self,
-        command: &Command,
-        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
-        findings: &Findings,
-    ) {
+    fn command(&mut self, command: &Command, out: &mut BlockSink<'_>) {
         match command {
-            Command::Curve(curve) => self.way.clone_from(&curve.way),
-            Command::Hole(mark) => {
-                self.stop(out, findings);
-                self.in_hole = !matches!(mark, HoleMark::Done);
-            }
             Command::Head(name) => {
-                self.stop(out, findings);
+                self.stop(out);
                 if let Some(head) = self.base.head(name) {
                     self.machine = &head.machine;
                     self.run = None;
@@ -244,58 +223,59 @@ impl<'a> PlanStage<'a> {
             }
             // Where the tool stands after it is not known.
             Command::Subprogram(_) => {
-                self.stop(out, findings);
+                self.stop(out);
                 self.stands = None;
             }
-            _ if stands_still(command) => self.stop(out, findings),
+            _ if stands_still(command) => self.stop(out),
             _ => {}
         }
     }
 
-    fn block(
-        &mut self,
-        block: MotionBlock,
-        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
-        findings: &Findings,
-    ) {
-        if block.still {
-            self.queue.push(StreamItem::Point(block));
-            return;
-        }
-        let way = std::mem::take(&mut self.way);
-        let end = BlockStart {
-            joints: block.joints,
-            words: block.words,
-            tip: block.tip,
-            axis: block.axis,
+    fn block(&mut self, next: StreamItem<MotionBlock>, out: &mut BlockSink<'_>) {
+        let Some(block) = next.block().filter(|block| !block.still) else {
+            return self.queue.push(next);
         };
+        let end = BlockStart::after(block);
         let start = self.stands.replace(end);
         let cuts = matches!(block.kind, BlockKind::Linear | BlockKind::Arc | BlockKind::Spline);
-        let planned = start.filter(|_| cuts && !self.in_hole && self.run.is_some());
-        match planned {
-            Some(start) => self.plan(block, &start, &end, &way, out, findings),
+        match start.filter(|_| cuts && self.run.is_some()) {
+            Some(start) => self.plan(next, &start, &end, out),
             None => {
-                self.stop(out, findings);
-                self.queue.push(StreamItem::Point(block));
+                self.stop(out);
+                self.queue.push(next);
             }
         }
-        // Its memory serves the next curve.
-        self.way = way;
-        self.way.clear();
         if self.machine.motion.corner == CornerRule::Stop {
-            self.stop(out, findings);
+            self.stop(out);
         }
+    }
+
+    /// A hole may become a cycle: no feed is planned in it.
+    fn hole(&mut self, mut hole: Box<HoleMoves<MotionBlock>>, out: &mut BlockSink<'_>) {
+        self.stop(out);
+        let mut keeps = |next: &StreamItem<MotionBlock>| {
+            if let StreamItem::Note { note: BlockNote::Placer(placer), .. } = next {
+                self.placer = Some(Rc::clone(placer));
+                self.take_placer(out);
+                return false;
+            }
+            if let Some(block) = next.block().filter(|block| !block.still) {
+                self.stands = Some(BlockStart::after(block));
+            }
+            true
+        };
+        hole.above.retain(&mut keeps);
+        hole.into.retain(&mut keeps);
+        self.queue.push(StreamItem::Hole(hole));
     }
 
     /// The feed of a block is planned.
     fn plan(
         &mut self,
-        block: MotionBlock,
+        next: StreamItem<MotionBlock>,
         start: &BlockStart,
         end: &BlockStart,
-        way: &[Vector3<f64>],
-        out: &mut BatchSink<'_, StreamItem<MotionBlock>>,
-        findings: &Findings,
+        out: &mut BlockSink<'_>,
     ) {
         let Some(run) = &mut self.run else {
             return;
@@ -311,8 +291,8 @@ impl<'a> PlanStage<'a> {
         let tolerance = STANDS * self.machine.plan.smoothing;
         if distance(&self.point, &last) < tolerance {
             // Too short for the curve: it keeps the feed of the CL file, whatever comes before and after it.
-            self.queue.push(StreamItem::Point(block));
-            self.account.give_up(1);
+            self.queue.push(next);
+            self.queue.account.give_up(1);
             return;
         }
         if !self.moves {
@@ -321,67 +301,71 @@ impl<'a> PlanStage<'a> {
             run.line.begin(&start.joints);
             self.moves = true;
         }
-        let mut due = BlockDemand::of(&block, along != 0.0);
+        let Some(block) = next.block() else {
+            return;
+        };
+        let mut due = BlockDemand::of(block, along != 0.0);
         if let (Some(tightening), true) = (&self.tightening, along != 0.0) {
             // The curve goes beside the tip, whose places are known.
             due.share = tightening.least(block.line, &start.tip, &end.tip);
         }
-        self.queue.open(block, *start);
         let mut places = Vec::new();
-        for place in way {
-            let mut point = last;
-            point[..3].copy_from_slice(place.as_slice());
-            let before = places.last().unwrap_or(&self.point);
-            if distance(before, &point) > tolerance && distance(&last, &point) > tolerance {
-                places.push(point);
+        if let StreamItem::Curve { curve, .. } = &next {
+            for place in &curve.printed.way {
+                let mut point = last;
+                point[..3].copy_from_slice(place.as_slice());
+                let before = places.last().unwrap_or(&self.point);
+                if distance(before, &point) > tolerance && distance(&last, &point) > tolerance {
+                    places.push(point);
+                }
             }
         }
         places.push(last);
+        self.queue.open(next, *start);
         run.line.due(due, places.len());
         let mut failed = false;
-        let (queue, account, line) = (&mut self.queue, &mut self.account, &mut run.line);
+        let (queue, line) = (&mut self.queue, &mut run.line);
         let mut take = |leg: &fit::FittedLeg<'_>| {
-            failed = failed || line.leg(leg, queue, account, &mut |flow| out.push(flow)).is_err();
+            failed = failed || line.leg(leg, queue, out).is_err();
         };
         for point in &places {
             run.fit.push(point, &mut take);
         }
         self.point = last;
         if failed {
-            self.fail(out, findings);
+            self.fail(out);
         }
     }
 
     /// The tool comes to a standstill: what waits is planned to its end.
-    fn stop(&mut self, out: &mut BatchSink<'_, StreamItem<MotionBlock>>, findings: &Findings) {
+    fn stop(&mut self, out: &mut BlockSink<'_>) {
         if let (true, Some(run)) = (self.moves, &mut self.run) {
-            let (queue, account, line) = (&mut self.queue, &mut self.account, &mut run.line);
+            let (queue, line) = (&mut self.queue, &mut run.line);
             let mut failed = false;
             run.fit.cut(&mut |leg| {
-                failed =
-                    failed || line.leg(leg, queue, account, &mut |flow| out.push(flow)).is_err();
+                failed = failed || line.leg(leg, queue, out).is_err();
             });
-            failed = failed || line.finish(queue, account, &mut |flow| out.push(flow)).is_err();
+            failed = failed || line.finish(queue, out).is_err();
             self.moves = false;
             if failed {
-                self.fail(out, findings);
+                self.fail(out);
             }
         }
-        self.queue.ready(&mut |flow| out.push(flow));
+        self.queue.ready(out);
     }
 
     /// What waits goes on without a plan.
     #[cold]
-    fn fail(&mut self, out: &mut BatchSink<'_, StreamItem<MotionBlock>>, findings: &Findings) {
+    fn fail(&mut self, out: &mut BlockSink<'_>) {
         self.moves = false;
         if let Some(run) = &mut self.run {
             run.fit.clear();
             if let Some(fault) = run.line.give_up() {
-                findings.at(self.queue.first_line().unwrap_or_default(), fault);
+                self.findings.at(self.queue.first_line().unwrap_or_default(), fault);
             }
         }
-        self.account.give_up(self.queue.give_up());
-        self.queue.ready(&mut |flow| out.push(flow));
+        self.queue.give_up();
+        self.queue.ready(out);
     }
 }
 
@@ -423,7 +407,6 @@ fn stands_still(command: &Command) -> bool {
                 | Command::Dwell(_)
                 | Command::Stop
                 | Command::OptionalStop
-                | Command::Plane(_)
         )
 }
 

@@ -6,10 +6,11 @@ use nalgebra::Vector3;
 use post_machine::axis_words::WordValues;
 use post_machine::kinematics::Joints;
 
+use super::account::PlanTally;
 use super::pieces::{BlockProfile, PlanSample};
 use super::samples::{PathDerivatives, WatchedSample};
 use super::solver::SettledSample;
-use crate::blocks::MotionBlock;
+use crate::blocks::{BlockSink, MotionBlock};
 use crate::stream::StreamItem;
 
 /// Where a block begins.
@@ -21,6 +22,14 @@ pub(super) struct BlockStart {
     pub tip: Vector3<f64>,
     /// The tool axis, unit vector, part frame.
     pub axis: Vector3<f64>,
+}
+
+impl BlockStart {
+    /// Where a block ends.
+    pub(super) fn after(block: &MotionBlock) -> Self {
+        let MotionBlock { joints, words, tip, axis, .. } = *block;
+        Self { joints, words, tip, axis }
+    }
 }
 
 /// One that waits.
@@ -52,6 +61,8 @@ pub(super) struct BlockQueue {
     marks: VecDeque<SampleMark>,
     /// The plan along the first open block, as far as it is settled.
     pub(super) profile: BlockProfile,
+    /// What was planned so far.
+    pub(super) account: PlanTally,
     /// Time from the sample before to the one settled last, s.
     pub(super) seconds: f64,
     /// Whether there is an observer.
@@ -67,9 +78,9 @@ impl BlockQueue {
         self.waiting.push_back(QueueItem { flow, open: None });
     }
 
-    /// A block whose feed is planned.
-    pub(super) fn open(&mut self, block: MotionBlock, start: BlockStart) {
-        self.waiting.push_back(QueueItem { flow: StreamItem::Point(block), open: Some(start) });
+    /// A block whose feed is planned, along a curve or not.
+    pub(super) fn open(&mut self, block: StreamItem<MotionBlock>, start: BlockStart) {
+        self.waiting.push_back(QueueItem { flow: block, open: Some(start) });
     }
 
     /// The solver was handed a sample.
@@ -126,45 +137,41 @@ impl BlockQueue {
     /// unknown any more. None where none waits.
     pub(super) fn first_open(
         &mut self,
-        ready: &mut dyn FnMut(StreamItem<MotionBlock>),
-    ) -> Option<(MotionBlock, BlockStart)> {
+        out: &mut BlockSink<'_>,
+    ) -> Option<(StreamItem<MotionBlock>, BlockStart)> {
         while let Some(next) = self.waiting.pop_front() {
-            match (next.flow, next.open) {
-                (StreamItem::Point(block), Some(start)) => return Some((block, start)),
-                (flow, _) => ready(flow),
+            match next.open {
+                Some(start) => return Some((next.flow, start)),
+                None => out.element(next.flow),
             }
         }
         None
     }
 
     /// All that waits for nothing any more.
-    pub(super) fn ready(&mut self, ready: &mut dyn FnMut(StreamItem<MotionBlock>)) {
+    pub(super) fn ready(&mut self, out: &mut BlockSink<'_>) {
         while self.waiting.front().is_some_and(|next| next.open.is_none()) {
             if let Some(next) = self.waiting.pop_front() {
-                ready(next.flow);
+                out.element(next.flow);
             }
         }
     }
 
-    /// The blocks that wait are left as they are; gives their number.
-    pub(super) fn give_up(&mut self) -> usize {
+    /// The blocks that wait are left as they are.
+    pub(super) fn give_up(&mut self) {
         let taken = self.waiting.iter_mut().map(|next| next.open.take());
-        let count = taken.flatten().count();
+        self.account.give_up(taken.flatten().count());
         self.marks.clear();
         self.profile.clear();
-        count
     }
 
     /// Line of the CL file of the first block that waits for its feed.
     pub(super) fn open_line(&self) -> Option<u64> {
-        self.waiting.iter().find_map(|next| match &next.flow {
-            StreamItem::Point(block) if next.open.is_some() => Some(block.line),
-            _ => None,
-        })
+        self.waiting.iter().find(|next| next.open.is_some()).map(|next| next.flow.line())
     }
 
     /// Line of the CL file of the first that waits.
     pub(super) fn first_line(&self) -> Option<u64> {
-        self.waiting.front()?.flow.line(|block| block.line)
+        self.waiting.front().map(|next| next.flow.line())
     }
 }

@@ -13,7 +13,7 @@ pub use arc::PathArc;
 pub use cycle::{CycleLeg, DrillCycle, HoleCycle};
 pub use interpret::{ClInterpreter, DefaultSpindle, ReadingOptions};
 pub use step::{
-    ArcStep, Command, CycleStep, HoleMark, MoveFeed, PlaneStep, ProgramStep, SplineStep,
-    StraightMove, ToolChange,
+    ArcStep, Command, CycleStep, MoveFeed, PlaneStep, ProgramStep, SplineStep, StraightMove,
+    ToolChange,
 };
 pub use word_census::UnknownWordPolicy;

@@ -3,12 +3,10 @@
 
 use nalgebra::Vector3;
 use post_machine::description::{Retract, Rewind, Smoothing};
-use post_machine::tilted_plane::TiltedPlane;
 use post_motion::path::BSpline;
 use post_plugin::{Compensation, Coolant, Spindle, SpindleSense};
 
-use super::{DrillCycle, HoleCycle, PathArc};
-use crate::curve::{CurveMove, PrintedCurve};
+use super::{DrillCycle, PathArc};
 
 /// One step of the program, with every modal word settled. Curves and cycles keep their shape: whether they are
 /// written as such or as moves is for dialect and machine to say.
@@ -30,7 +28,7 @@ pub enum ProgramStep {
     Command(Command),
 }
 
-/// What is said between the motions.
+/// What the CL file asks of the control between the motions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// The tool stands here, and has not moved (`FROM`).
@@ -93,35 +91,6 @@ pub enum Command {
     OptionalStop,
     /// The tool is retracted and the axes are parked.
     Home,
-    /// The moves up to the next [`Command::AlongEnd`] go along this curve.
-    Along(Box<CurveMove>),
-    /// The curve ends.
-    AlongEnd,
-    /// What is printed of the next block, which goes along a curve.
-    Curve(Box<PrintedCurve>),
-    /// The tool axis stays from here on until the next of these, and the control is to get a tilted plane for it,
-    /// with this origin (mm, part frame); none: no plane.
-    Still(Option<Vector3<f64>>),
-    /// The words after it are those of this tilted plane, the tool having left the part; none: of no plane.
-    Plane(Option<Box<TiltedPlane>>),
-    /// The moves from here on are those of a hole, which the control may have a cycle for.
-    Hole(HoleMark),
-}
-
-/// Where the moves of a hole stand.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum HoleMark {
-    /// Moves to the retract level above the hole follow.
-    Above(HoleCycle),
-    /// The tool stands there: those into the hole and back to that level follow.
-    Into {
-        /// The point that the heights count from, mm, part frame.
-        point: Vector3<f64>,
-        /// The tool axis, unit vector, part frame.
-        axis: Vector3<f64>,
-    },
-    /// The hole is done.
-    Done,
 }
 
 impl Command {
@@ -137,7 +106,6 @@ impl Command {
                 | Self::WorkOffset(_)
                 | Self::Subprogram(_)
                 | Self::Smoothing(_)
-                | Self::Still(_)
         )
     }
 }

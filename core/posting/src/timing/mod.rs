@@ -34,6 +34,7 @@ pub(crate) struct TimingStage<'a> {
     last: Joints,
     statistics: Durations,
     low: LowFeeds,
+    findings: Findings,
 }
 
 /// Sums of times, minutes.
@@ -68,6 +69,7 @@ impl<'a> TimingStage<'a> {
         machine: &'a Machine,
         format: &Format,
         writes: Capabilities,
+        findings: &Findings,
     ) -> Result<Self, Box<Diagnostic>> {
         let feeds = FeedWriter::new(machine, format, writes).ok_or_else(|| {
             Diagnostic::error(
@@ -90,6 +92,7 @@ impl<'a> TimingStage<'a> {
             last: Joints::default(),
             statistics: Durations::default(),
             low: LowFeeds::default(),
+            findings: findings.clone(),
         })
     }
 
@@ -126,13 +129,23 @@ impl<'a> TimingStage<'a> {
     }
 
     /// Fills in the times of a batch.
-    pub(crate) fn take(&mut self, batch: &mut [StreamItem<MotionBlock>], findings: &Findings) {
+    pub(crate) fn take(&mut self, batch: &mut [StreamItem<MotionBlock>]) {
         for next in batch {
-            match next {
-                StreamItem::Point(block) => self.block(block, findings),
-                StreamItem::Command { command, .. } => self.command(command),
-                StreamItem::Placer(_) => {}
-            }
+            let block = match next {
+                StreamItem::Point(block) => block,
+                StreamItem::Curve { curve, .. } => &mut curve.block,
+                StreamItem::Hole(hole) => {
+                    self.take(&mut hole.above);
+                    self.take(&mut hole.into);
+                    continue;
+                }
+                StreamItem::Command { command, .. } => {
+                    self.command(command);
+                    continue;
+                }
+                StreamItem::Note { .. } => continue,
+            };
+            self.block(block);
         }
     }
 
@@ -154,14 +167,14 @@ impl<'a> TimingStage<'a> {
     }
 
     #[inline]
-    fn block(&mut self, block: &mut MotionBlock, findings: &Findings) {
+    fn block(&mut self, block: &mut MotionBlock) {
         if block.still {
             return;
         }
         match block.kind {
             BlockKind::Position | BlockKind::Reference => self.approach(block),
-            BlockKind::Rapid => self.rapid(block, findings),
-            BlockKind::Linear | BlockKind::Arc | BlockKind::Spline => self.cut(block, findings),
+            BlockKind::Rapid => self.rapid(block),
+            BlockKind::Linear | BlockKind::Arc | BlockKind::Spline => self.cut(block),
         }
         self.last = block.joints;
         self.rapids.stand(block.tip);
@@ -184,18 +197,18 @@ impl<'a> TimingStage<'a> {
 
     /// A rapid takes what its slowest axis needs; where its axes would go too fast, or each for itself, it is written
     /// as a feed move, if the machine file says so.
-    fn rapid(&mut self, block: &mut MotionBlock, findings: &Findings) {
+    fn rapid(&mut self, block: &mut MotionBlock) {
         let (least, ..) = self.least(block);
         block.time.minutes = least;
         if self.rapids.is_fed(&self.last, block, least) {
             let written = self.feeds.write(block, &self.last, least);
-            self.put(block, written, least, findings);
+            self.put(block, written, least);
         }
         self.statistics.other += block.time.minutes;
     }
 
     #[inline]
-    fn cut(&mut self, block: &mut MotionBlock, findings: &Findings) {
+    fn cut(&mut self, block: &mut MotionBlock) {
         let (least, limit, needed) = self.least(block);
         block.time.limit =
             limit.filter(|_| least > block.asked() * (1.0 + 1e-9)).map(|limit| limit.name(block));
@@ -204,7 +217,7 @@ impl<'a> TimingStage<'a> {
             block.time.limit = Some("most_inverse_time");
             self.statistics.capped += 1;
         }
-        self.put(block, written, needed, findings);
+        self.put(block, written, needed);
         self.statistics.limited += u64::from(block.time.limit.is_some());
         // Drawn back at a feed, the tool is off the part.
         match block.loose {
@@ -215,20 +228,14 @@ impl<'a> TimingStage<'a> {
 
     /// Puts a feed into a block that must take `least` minutes.
     #[inline]
-    fn put(
-        &mut self,
-        block: &mut MotionBlock,
-        written: WrittenFeed,
-        least: f64,
-        findings: &Findings,
-    ) {
+    fn put(&mut self, block: &mut MotionBlock, written: WrittenFeed, least: f64) {
         block.time.minutes = written.minutes;
         block.time.feed = Some(written.feed);
         let Some(asked) = written.raised_from else {
             return;
         };
         if written.minutes < least * (1.0 - 1e-9) {
-            findings.at(block.line, too_fast(asked, &written));
+            self.findings.at(block.line, too_fast(asked, &written));
         } else {
             self.note_raised(block.line, &written);
         }

@@ -9,7 +9,7 @@ use post_machine::description::{Setting, Source, load};
 use post_machine::kinematics::Joints;
 use post_plugin::{Capabilities, Feed};
 use post_posting::program::{DefaultSpindle, ReadingOptions};
-use post_posting::{BlockKind, MotionBlock, Observer, PostingRequest, StreamItem};
+use post_posting::{BlockKind, MotionBlock, Observer, PostingRequest};
 use post_testkit::{Rng, randomised, repository, shared};
 use post_testmachines::frechet::keeps_within;
 use post_testruns::posted::{Asked, AskedArc, Bench, Recorder, Run, Samples, watched};
@@ -28,13 +28,9 @@ pub(super) const ALL: Capabilities = Capabilities::ARC_XY
 struct Printed(Vec<MotionBlock>);
 
 impl Observer for Printed {
-    fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
-        for next in blocks {
-            if let StreamItem::Point(block) = next
-                && !block.still
-            {
-                self.0.push(*block);
-            }
+    fn block(&mut self, block: &MotionBlock) {
+        if !block.still {
+            self.0.push(*block);
         }
     }
 }

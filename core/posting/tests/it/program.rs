@@ -134,7 +134,7 @@ fn step(step: &StreamItem<PathMove>) -> String {
             return format!("{pace} {}", placed(motion.tip, motion.axis));
         }
         StreamItem::Command { command, .. } => command,
-        StreamItem::Placer(_) => return String::new(),
+        other => return format!("{other:?}"),
     };
     match command {
         Command::From { tip, axis } => format!("from {}", placed(*tip, *axis)),

@@ -4,7 +4,7 @@ use post_grammar::{Argument, Record, SpindleUnit};
 use post_machine::description::Smoothing;
 use post_machine::diagnostic::Short;
 
-use super::ClInterpreter;
+use super::{ClInterpreter, StepSink};
 use crate::program::{Command, ProgramStep};
 
 /// Numbers that a file gives a work offset which may be meant as G codes: the first offset is G54.
@@ -17,7 +17,7 @@ impl ClInterpreter {
         record: &Record<'_>,
         number: u32,
         set: bool,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         let word = record.statement.word();
         let value = Argument::Number(number.into());
@@ -49,12 +49,7 @@ impl ClInterpreter {
     }
 
     /// A subprogram of the control by its number.
-    pub(super) fn subprogram(
-        &mut self,
-        record: &Record<'_>,
-        number: u32,
-        emit: &mut impl FnMut(ProgramStep),
-    ) {
+    pub(super) fn subprogram(&mut self, record: &Record<'_>, number: u32, emit: &mut StepSink<'_>) {
         let word = record.statement.word();
         let arguments = [Argument::Number(number.into())];
         if self.by_rule(record, word, &arguments, emit) || self.left_out(word, record) {
@@ -79,7 +74,7 @@ impl ClInterpreter {
         &mut self,
         record: &Record<'_>,
         (speed, unit, most): (f64, SpindleUnit, Option<f64>),
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         let metres = match unit {
             SpindleUnit::SurfaceInch => speed * 0.3048,
@@ -92,18 +87,18 @@ impl ClInterpreter {
             self.fault(record, "spindle", message, "SPINDL/SMM,speed,MAXRPM,limit");
             return;
         }
-        let most = most.or(self.surface_speed.and_then(|(_, most)| most));
-        self.rpm = None;
-        self.surface_speed = Some((metres, most));
+        let most = most.or(self.spindle.surface_speed.and_then(|(_, most)| most));
+        self.spindle.rpm = None;
+        self.spindle.surface_speed = Some((metres, most));
         emit(ProgramStep::Command(Command::SurfaceSpeed {
             speed: metres,
             most,
-            sense: self.sense,
+            sense: self.spindle.sense,
         }));
     }
 
     /// Other tolerances of the control from here on; none: it keeps the path as it does by default.
-    pub(super) fn smooth(&mut self, wanted: Option<Smoothing>, emit: &mut impl FnMut(ProgramStep)) {
+    pub(super) fn smooth(&mut self, wanted: Option<Smoothing>, emit: &mut StepSink<'_>) {
         if wanted == self.smoothing {
             return;
         }

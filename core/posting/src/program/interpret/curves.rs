@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use post_grammar::{CircleRecord, Record, Sense, Statement};
 
-use super::{ClInterpreter, UnfinishedCurve};
+use super::{ClInterpreter, StepSink, UnfinishedCurve};
 use crate::program::arc::ArcAmbiguity;
 use crate::program::limits::{MOST_SPLINE_NUMBERS, direction};
 use crate::program::spline::nx_spline;
@@ -20,7 +20,7 @@ impl ClInterpreter {
         circle: &CircleRecord,
         end: Vector3<f64>,
         start_axis: Vector3<f64>,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         let Some(start) = self.tip else {
             self.fault(
@@ -50,7 +50,7 @@ impl ClInterpreter {
                 return;
             }
         };
-        if self.cycle.is_some() {
+        if self.cycles.in_force.is_some() {
             self.fault(
                 record,
                 "arc",
@@ -150,7 +150,7 @@ impl ClInterpreter {
         }
     }
 
-    pub(super) fn begin_spline(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
+    pub(super) fn begin_spline(&mut self, record: &Record<'_>, emit: &mut StepSink<'_>) {
         self.end_spline(record, emit);
         match self.tip {
             Some(tip) => {
@@ -198,7 +198,7 @@ impl ClInterpreter {
         }
     }
 
-    pub(super) fn end_spline(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
+    pub(super) fn end_spline(&mut self, record: &Record<'_>, emit: &mut StepSink<'_>) {
         if !matches!(self.pending, Some(UnfinishedCurve::Spline { .. })) {
             return;
         }

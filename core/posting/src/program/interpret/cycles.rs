@@ -6,7 +6,7 @@ use post_grammar::{Cycle, CycleDefinition, Record};
 use post_machine::diagnostic::Short;
 use post_plugin::SpindleSense;
 
-use super::{ClInterpreter, ModalFeed, SHOWN_NAME};
+use super::{ClInterpreter, ModalFeed, SHOWN_NAME, StepSink};
 use crate::program::{CycleStep, DrillCycle, MoveFeed, ProgramStep};
 
 /// Pitch and feed a turn agree but for so much: a feed a minute is written without decimals.
@@ -25,7 +25,7 @@ impl ClInterpreter {
         drill: DrillCycle,
         feed: MoveFeed,
         point: Vector3<f64>,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         if std::mem::take(&mut self.rapid) {
             self.warn(
@@ -65,7 +65,8 @@ impl ClInterpreter {
         drill: DrillCycle,
         feed: MoveFeed,
     ) -> Option<(DrillCycle, MoveFeed)> {
-        let (MoveFeed::PerMinute(feed), Some(rpm)) = (feed, self.rpm.filter(|rpm| *rpm > 0.0))
+        let (MoveFeed::PerMinute(feed), Some(rpm)) =
+            (feed, self.spindle.rpm.filter(|rpm| *rpm > 0.0))
         else {
             self.fault(
                 record,
@@ -92,7 +93,7 @@ impl ClInterpreter {
             );
             return None;
         }
-        let left = self.sense == SpindleSense::CounterClockwise;
+        let left = self.spindle.sense == SpindleSense::CounterClockwise;
         if pitch < 0.0 && !left {
             self.fault(
                 record,
@@ -124,22 +125,17 @@ impl ClInterpreter {
         }
     }
 
-    pub(super) fn cycle(
-        &mut self,
-        record: &Record<'_>,
-        cycle: &Cycle,
-        emit: &mut impl FnMut(ProgramStep),
-    ) {
+    pub(super) fn cycle(&mut self, record: &Record<'_>, cycle: &Cycle, emit: &mut StepSink<'_>) {
         if matches!(cycle, Cycle::Off | Cycle::Define(_)) {
-            self.cycle_lost = false;
+            self.cycles.lost = false;
         }
         match cycle {
             Cycle::Off => {
-                if self.cycle.take().is_some() {
+                if self.cycles.in_force.take().is_some() {
                     emit(ProgramStep::EndCycle);
                 }
             }
-            Cycle::On => self.cycle = self.last_cycle,
+            Cycle::On => self.cycles.in_force = self.cycles.last,
             Cycle::Define(definition) => self.define_cycle(record, definition),
         }
     }
@@ -203,8 +199,8 @@ impl ClInterpreter {
         let drill = match drill {
             Ok(drill) => self.with_heights(record, drill, definition),
             Err(message) => {
-                self.cycle = None;
-                self.cycle_lost = true;
+                self.cycles.in_force = None;
+                self.cycles.lost = true;
                 self.fault(record, "cycle", message, "let the CAM system write it as moves");
                 return;
             }
@@ -226,8 +222,8 @@ impl ClInterpreter {
             );
         }
         let Some(feed) = feed.filter(|feed| *feed != ModalFeed::Pace(MoveFeed::Rapid)) else {
-            self.cycle = None;
-            self.cycle_lost = true;
+            self.cycles.in_force = None;
+            self.cycles.lost = true;
             self.fault(
                 record,
                 "no-feed",
@@ -236,8 +232,8 @@ impl ClInterpreter {
             );
             return;
         };
-        self.cycle = Some((drill, feed));
-        self.last_cycle = self.cycle;
+        self.cycles.in_force = Some((drill, feed));
+        self.cycles.last = self.cycles.in_force;
         self.measured = true;
     }
 }

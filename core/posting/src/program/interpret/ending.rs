@@ -3,12 +3,11 @@
 use post_grammar::{Record, Statement, WordUsage, parse_record};
 use post_machine::diagnostic::Diagnostic;
 
-use super::ClInterpreter;
-use crate::program::ProgramStep;
+use super::{ClInterpreter, StepSink};
 
 impl ClInterpreter {
     /// Ends the file; records after it are left out.
-    pub(super) fn fini(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
+    pub(super) fn fini(&mut self, record: &Record<'_>, emit: &mut StepSink<'_>) {
         self.end_spline(record, emit);
         self.finished = true;
         self.count("FINI", record, WordUsage::Used);

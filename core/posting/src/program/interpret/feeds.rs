@@ -11,16 +11,16 @@ impl ClInterpreter {
     /// A feed word as the spindle turns now.
     #[inline]
     pub(super) fn resolved(&mut self, record: &Record<'_>, feed: ModalFeed) -> Option<MoveFeed> {
-        if !self.may_cut {
+        if !self.spindle.may_cut {
             self.cut_standing(record);
         }
-        match (feed, self.rpm) {
+        match (feed, self.spindle.rpm) {
             (ModalFeed::Pace(pace), _) => Some(pace),
             (ModalFeed::PerRevolution(feed), Some(rpm)) if rpm > 0.0 => {
                 self.in_range(record, (feed * rpm, FEEDS, "mm/min")).map(MoveFeed::PerMinute)
             }
             (ModalFeed::PerRevolution(_), _) => {
-                let (message, help) = match self.surface_speed {
+                let (message, help) = match self.spindle.surface_speed {
                     Some(_) => (
                         "a feed per revolution at a constant cutting speed: how many revolutions a minute that is nobody knows here",
                         "let the CAM system write the feed a minute (MMPM, IPM), or the speed in revolutions (RPM)",

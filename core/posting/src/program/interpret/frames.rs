@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use post_grammar::{Record, Rotate, Units};
 
-use super::ClInterpreter;
+use super::{ClInterpreter, StepSink};
 use crate::program::limits::direction;
 use crate::program::{Command, PlaneStep, ProgramStep};
 
@@ -47,12 +47,7 @@ impl ClInterpreter {
     }
 
     /// Turns the part about an index axis: a new frame begins.
-    pub(super) fn rotate(
-        &mut self,
-        record: &Record<'_>,
-        rotate: &Rotate,
-        emit: &mut impl FnMut(ProgramStep),
-    ) {
+    pub(super) fn rotate(&mut self, record: &Record<'_>, rotate: &Rotate, emit: &mut StepSink<'_>) {
         if self.frame.sits_turned() {
             self.fault(
                 record,

@@ -7,6 +7,7 @@ mod cycles;
 mod ending;
 mod feeds;
 mod frames;
+mod modal;
 mod moves;
 mod readiness;
 mod reading;
@@ -17,7 +18,7 @@ pub(crate) mod words;
 use nalgebra::Vector3;
 use post_grammar::text::{as_remark, excerpt};
 use post_grammar::{
-    ArcMove, CircleRecord, CoolantWord, CutterSide, Delay, Record, Statement, Units, WordUsage,
+    ArcMove, CircleRecord, CoolantWord, Delay, Record, Statement, Units, WordUsage,
 };
 use post_machine::description::{Print, Smoothing};
 use post_plugin::{Coolant, SpindleSense};
@@ -27,12 +28,16 @@ pub use reading::{DefaultSpindle, ReadingOptions};
 use super::frame::ClFrame;
 use super::limits::{LONGEST_DWELL, MOST_WORDS, direction};
 use super::word_census::WordCensus;
-use super::{Command, DrillCycle, MoveFeed, ProgramStep};
+use super::{Command, MoveFeed, ProgramStep};
 use cam_system::CamSystem;
 use frames::millimetres;
+use modal::{FileCompensation, FileCycles, FileSpindle, FileTools};
 use post_machine::diagnostic::{Diagnostic, Short, SourcePlace};
 use turned::ArcAxisConvention;
 use words::SuspectRecord;
+
+/// Where the steps go that a record means.
+type StepSink<'e> = dyn FnMut(ProgramStep) + 'e;
 
 /// Turns records into steps.
 #[derive(Debug)]
@@ -60,16 +65,10 @@ pub struct ClInterpreter {
     feed: Option<ModalFeed>,
     frame: ClFrame,
     pending: Option<UnfinishedCurve>,
-    cycle: Option<(DrillCycle, ModalFeed)>,
-    last_cycle: Option<(DrillCycle, ModalFeed)>,
-    rpm: Option<f64>,
-    /// The constant cutting speed, m/min, and the revolutions a minute that it must not exceed.
-    surface_speed: Option<(f64, Option<f64>)>,
-    sense: SpindleSense,
-    /// The spindle turns, need not turn, or that it does not was said.
-    may_cut: bool,
-    /// The file said what the spindle does since the tool came.
-    spindle_said: bool,
+    cycles: FileCycles,
+    tools: FileTools,
+    spindle: FileSpindle,
+    compensation: FileCompensation,
     /// Something is to be seen to before the next move.
     due: bool,
     coolant: Coolant,
@@ -77,11 +76,6 @@ pub struct ClInterpreter {
     offset: Option<u32>,
     /// Tolerance by which the control may leave the path.
     smoothing: Option<Smoothing>,
-    side: Option<CutterSide>,
-    /// Number, register and length (as written) of the tool in the spindle.
-    loaded: Option<(u32, u32, Option<f64>)>,
-    /// A further cutter was described, and no tool was loaded for it.
-    cutter_changed: bool,
     /// Some number was read that the units gave its meaning.
     measured: bool,
     /// Some move was read.
@@ -89,41 +83,19 @@ pub struct ClInterpreter {
     /// Records after a move that may carry a path, and are not known here: none may be left out where a further
     /// move follows.
     suspects: Vec<SuspectRecord>,
-    /// Some move was read since the last tool was loaded.
-    cut_any: bool,
-    /// The cutters described so far, in the order of the numbers of their tools, and the tool that is to be loaded for the
-    /// last; for files whose tools are numbered here.
-    cutters: Vec<CutterDescription>,
-    /// The file loads tools itself.
-    file_loads: bool,
-    cutter_due: Option<u32>,
-    /// The cutter described last.
-    described: Option<CutterDescription>,
-    /// Cutter compensation is in force, and its register.
-    compensated: bool,
-    register: Option<u32>,
     /// What the file has shown of who wrote it.
     writer: CamSystem,
-    /// Whether it was reported what becomes of `CUTCOM` on points of the tool's centre.
-    told_on_centre: bool,
     /// `INDIRV`, unit vector, frame of the file.
     set_out: Option<Vector3<f64>>,
     /// Normal of the plane that `AUTOPS` or `PSIS` names, unit vector, frame of the file.
     part_surface: Option<Vector3<f64>>,
     arc_axes: ArcAxisConvention,
-    tool_name: String,
-    diameter: Option<f64>,
-    /// A cycle was refused: the points that it acts at are no moves.
-    cycle_lost: bool,
     /// The operation that is open (NX), its paths must be ended.
     path: Option<String>,
     /// Some operation was begun (NX).
     paths: bool,
     /// Whether the file is of a system that ends every file with FINI.
     wants_fini: bool,
-    /// Diameter and corner radius of the cutter described since the last tool was loaded, mm.
-    cutter: [Option<f64>; 2],
-    cutter_length: Option<f64>,
     finished: bool,
     findings: Vec<Diagnostic>,
     census: WordCensus,
@@ -180,43 +152,30 @@ impl ClInterpreter {
             feed: None,
             frame,
             pending: None,
-            cycle: None,
-            last_cycle: None,
-            rpm: None,
-            surface_speed: None,
-            sense: SpindleSense::Clockwise,
-            may_cut,
-            spindle_said: false,
+            cycles: FileCycles::default(),
+            tools: FileTools::default(),
+            spindle: FileSpindle {
+                rpm: None,
+                surface_speed: None,
+                sense: SpindleSense::Clockwise,
+                may_cut,
+                said: false,
+            },
+            compensation: FileCompensation::default(),
             due: true,
             coolant: Coolant::Flood,
             offset: None,
             smoothing,
-            side: None,
-            loaded: None,
-            cutter_changed: false,
             measured: false,
             moved: false,
             suspects: Vec::new(),
-            cut_any: false,
-            cutters: Vec::new(),
-            file_loads: false,
-            cutter_due: None,
-            described: None,
-            compensated: false,
-            register: None,
             writer: CamSystem::default(),
-            told_on_centre: false,
             set_out: None,
             part_surface: None,
             arc_axes: ArcAxisConvention::default(),
-            tool_name: String::new(),
-            diameter: None,
-            cycle_lost: false,
             path: None,
             paths: false,
             wants_fini: false,
-            cutter: [None; 2],
-            cutter_length: None,
             finished: false,
             findings: Vec::new(),
             census: WordCensus::default(),
@@ -244,8 +203,8 @@ impl ClInterpreter {
     pub fn record(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
         if let Statement::Goto { point, axis } = &record.statement
             && self.pending.is_none()
-            && self.cycle.is_none()
-            && !self.cycle_lost
+            && self.cycles.in_force.is_none()
+            && !self.cycles.lost
             && !self.finished
         {
             self.plain_goto(record, *point, *axis, emit);
@@ -295,7 +254,7 @@ impl ClInterpreter {
     }
 
     /// Carries out what a record says.
-    fn statement(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
+    fn statement(&mut self, record: &Record<'_>, emit: &mut StepSink<'_>) {
         if self.finished {
             self.after_fini(record);
             return;
@@ -363,7 +322,7 @@ impl ClInterpreter {
                 emit(ProgramStep::Command(Command::Comment(as_remark(text.clone()))));
             }
             Statement::Insert(text) => self.insert(record, text, emit),
-            Statement::ToolName(name) => self.tool_name = as_remark(name.clone()),
+            Statement::ToolName(name) => self.tools.name = as_remark(name.clone()),
             Statement::Csys(_) => self.ignore(record),
             Statement::Remark(text) => {
                 self.writer.remark(text);
@@ -387,12 +346,12 @@ impl ClInterpreter {
         record: &Record<'_>,
         name: &str,
         tool: Option<&str>,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         self.end_spline(record, emit);
         // Every path of NX stands by itself: its first GOTO gives the axis if it is not Z.
         self.axis = Vector3::z();
-        self.tool_name = as_remark(tool.unwrap_or_default().to_owned());
+        self.tools.name = as_remark(tool.unwrap_or_default().to_owned());
         let name = as_remark(name.to_owned());
         self.path = Some(excerpt(&name, SHOWN_NAME).into_owned());
         self.paths = true;
@@ -401,14 +360,14 @@ impl ClInterpreter {
         self.smooth(smoothing, emit);
     }
 
-    fn end_operation(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
+    fn end_operation(&mut self, record: &Record<'_>, emit: &mut StepSink<'_>) {
         self.end_spline(record, emit);
         self.path = None;
         emit(ProgramStep::Command(Command::OperationEnd));
     }
 
-    fn delay(&mut self, record: &Record<'_>, delay: &Delay, emit: &mut impl FnMut(ProgramStep)) {
-        match (delay, self.rpm) {
+    fn delay(&mut self, record: &Record<'_>, delay: &Delay, emit: &mut StepSink<'_>) {
+        match (delay, self.spindle.rpm) {
             (Delay::Seconds(seconds), _) => self.dwell(record, *seconds, emit),
             (Delay::Revolutions(turns), Some(rpm)) if rpm > 0.0 => {
                 self.dwell(record, turns * 60.0 / rpm, emit);
@@ -422,7 +381,7 @@ impl ClInterpreter {
         }
     }
 
-    fn dwell(&mut self, record: &Record<'_>, seconds: f64, emit: &mut impl FnMut(ProgramStep)) {
+    fn dwell(&mut self, record: &Record<'_>, seconds: f64, emit: &mut StepSink<'_>) {
         if !(0.0..=LONGEST_DWELL).contains(&seconds) {
             self.fault(
                 record,

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use post_grammar::{Delta, Record};
 
-use super::{ClInterpreter, UnfinishedCurve};
+use super::{ClInterpreter, StepSink, UnfinishedCurve};
 use crate::program::limits::{MOST_COORDINATE, direction, is_near};
 use crate::program::{Command, MoveFeed, ProgramStep, StraightMove};
 
@@ -37,7 +37,7 @@ impl ClInterpreter {
         record: &Record<'_>,
         point: [f64; 3],
         axis: Option<[f64; 3]>,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         let pending = match self.pending.take() {
             Some(arc @ (UnfinishedCurve::Arc(_) | UnfinishedCurve::Turned(_))) => Some(arc),
@@ -48,13 +48,12 @@ impl ClInterpreter {
             }
             None => None,
         };
-        if self.cycle_lost {
+        if self.cycles.lost {
             self.lost_hole(record, point, axis);
             return;
         }
-        if pending.is_none() && self.cycle.is_none() {
-            self.plain_goto(record, point, axis, emit);
-            return;
+        if pending.is_none() && self.cycles.in_force.is_none() {
+            return self.plain_goto(record, point, axis, &mut |step| emit(step));
         }
         let start_axis = self.axis;
         if !self.set_axis(record, axis) {
@@ -74,7 +73,7 @@ impl ClInterpreter {
                 Some(circle) => self.arc(record, &circle, tip, start_axis, emit),
                 None => self.tip = Some(tip),
             }
-        } else if let Some((drill, feed)) = self.cycle
+        } else if let Some((drill, feed)) = self.cycles.in_force
             && let Some(pace) = self.resolved(record, feed)
         {
             self.drill(record, drill, pace, tip, emit);
@@ -87,7 +86,7 @@ impl ClInterpreter {
         point: [f64; 3],
         axis: [f64; 3],
         edge: [f64; 3],
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         match direction(Vector3::from(edge)) {
             Some(edge) => {
@@ -104,12 +103,7 @@ impl ClInterpreter {
     }
 
     /// Steps on from the last point.
-    pub(super) fn godlta(
-        &mut self,
-        record: &Record<'_>,
-        delta: &Delta,
-        emit: &mut impl FnMut(ProgramStep),
-    ) {
+    pub(super) fn godlta(&mut self, record: &Record<'_>, delta: &Delta, emit: &mut StepSink<'_>) {
         let Some(tip) = self.tip else {
             self.fault(
                 record,
@@ -119,7 +113,7 @@ impl ClInterpreter {
             );
             return;
         };
-        if self.cycle.is_some() {
+        if self.cycles.in_force.is_some() {
             self.fault(
                 record,
                 "godlta",
@@ -142,7 +136,7 @@ impl ClInterpreter {
         record: &Record<'_>,
         point: [f64; 3],
         axis: Option<[f64; 3]>,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         let Some(tip) = self.point(record, point) else {
             return;
@@ -161,7 +155,7 @@ impl ClInterpreter {
         &mut self,
         record: &Record<'_>,
         home: Option<([f64; 3], Option<[f64; 3]>)>,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         self.rapid = home.is_some();
         let Some((point, axis)) = home else {
@@ -170,9 +164,9 @@ impl ClInterpreter {
             return;
         };
         // A cycle does not act at home.
-        let cycle = self.cycle.take();
+        let cycle = self.cycles.in_force.take();
         self.goto(record, point, axis, emit);
-        self.cycle = cycle;
+        self.cycles.in_force = cycle;
     }
 
     /// Takes the axis of a six-number point; false if it is not an axis.
@@ -254,7 +248,7 @@ impl ClInterpreter {
         self.tip = Some(tip);
         self.measured = true;
         self.moved = true;
-        self.cut_any = true;
+        self.tools.moved = true;
     }
 
     /// The motion to `tip` (frame of the file) with axis and edge in force.

@@ -3,14 +3,14 @@
 use post_grammar::Record;
 use post_plugin::Spindle;
 
-use super::{ClInterpreter, DefaultSpindle};
+use super::{ClInterpreter, DefaultSpindle, StepSink};
 use crate::program::{Command, ProgramStep};
 
 impl ClInterpreter {
     /// What is to be seen to before a move: the axis after an index move, the tool that the user names, a
     /// cutter without a tool, the speed that the user names.
     #[cold]
-    pub(super) fn before_move(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
+    pub(super) fn before_move(&mut self, record: &Record<'_>, emit: &mut StepSink<'_>) {
         if std::mem::take(&mut self.check_axis)
             && let (Some(turned), Some(told)) = (self.frame.turned(), self.told_axis)
             && (turned * self.axis - told).norm() > 1e-3
@@ -34,14 +34,17 @@ impl ClInterpreter {
             );
         }
         self.load_told(record, emit);
-        if std::mem::take(&mut self.cutter_changed) {
+        if std::mem::take(&mut self.tools.cutter_changed) {
             self.refuse_cutter(record);
         }
-        if let (false, Some(rpm)) = (self.spindle_said, self.reading.spindle.speed()) {
-            self.spindle_said = true;
-            self.may_cut = true;
-            self.rpm = Some(rpm);
-            emit(ProgramStep::Command(Command::Spindle(Spindle::On { rpm, sense: self.sense })));
+        if let (false, Some(rpm)) = (self.spindle.said, self.reading.spindle.speed()) {
+            self.spindle.said = true;
+            self.spindle.may_cut = true;
+            self.spindle.rpm = Some(rpm);
+            emit(ProgramStep::Command(Command::Spindle(Spindle::On {
+                rpm,
+                sense: self.spindle.sense,
+            })));
         }
         self.due = false;
     }
@@ -52,8 +55,8 @@ impl ClInterpreter {
             self.allow("CUTTER", "is cut with the tool before", record);
             return;
         }
-        let (message, help) = match self.loaded {
-            Some((number, ..)) if self.file_loads => (
+        let (message, help) = match self.tools.loaded {
+            Some((number, ..)) if self.tools.file_loads => (
                 format!("another cutter is described (CUTTER, TLDATA), and tool {number} is still in the spindle: this would be cut with it"),
                 "the CAM system must load it as another tool (LOADTL); --allow CUTTER cuts on with the one before",
             ),
@@ -69,8 +72,8 @@ impl ClInterpreter {
     #[cold]
     pub(super) fn cut_standing(&mut self, record: &Record<'_>) {
         // Said once, until the spindle is spoken of again.
-        self.may_cut = true;
-        let (message, help) = if self.spindle_said {
+        self.spindle.may_cut = true;
+        let (message, help) = if self.spindle.said {
             (
                 "the tool cuts, and the file has switched the spindle off",
                 "the CAM system should write SPINDL before this line; --spindle off cuts with a spindle that stands",

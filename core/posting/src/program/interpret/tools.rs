@@ -8,7 +8,7 @@ use post_grammar::{
 use post_plugin::{Compensation, Coolant, Spindle, SpindleSense};
 
 use super::cam_system::CompensatedPoints;
-use super::{ClInterpreter, CutterDescription, SHOWN_NAME};
+use super::{ClInterpreter, CutterDescription, SHOWN_NAME, StepSink};
 use crate::program::limits::{MOST_COORDINATE, MOST_TOOLS};
 use crate::program::{Command, ProgramStep, ToolChange};
 use post_machine::description::{CompensationOnCentre, ToolLength};
@@ -19,7 +19,7 @@ impl ClInterpreter {
         &mut self,
         record: &Record<'_>,
         word: &CoolantWord,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         let coolant = match word {
             CoolantWord::Off => Coolant::Off,
@@ -37,8 +37,8 @@ impl ClInterpreter {
     }
 
     /// Makes a tool ready, unless it is the one that is loaded.
-    pub(super) fn select_tool(&self, number: u32, emit: &mut impl FnMut(ProgramStep)) {
-        if self.loaded.map(|(loaded, ..)| loaded) != Some(number) {
+    pub(super) fn select_tool(&self, number: u32, emit: &mut StepSink<'_>) {
+        if self.tools.loaded.map(|(loaded, ..)| loaded) != Some(number) {
             emit(ProgramStep::Command(Command::Preselect(number)));
         }
     }
@@ -47,46 +47,47 @@ impl ClInterpreter {
         &mut self,
         record: &Record<'_>,
         spindle: SpindleWord,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
-        self.spindle_said = true;
-        self.may_cut = self.need_not_turn();
+        self.spindle.said = true;
+        self.spindle.may_cut = self.need_not_turn();
         let step = match self.spindle_meant(record, spindle) {
             SpindleWord::Off => Spindle::Off,
             SpindleWord::Orient => Spindle::Orient,
             SpindleWord::On { speed, unit, sense, most } => {
                 if let Some(sense) = sense {
-                    self.sense = match sense {
+                    self.spindle.sense = match sense {
                         Sense::Clockwise => SpindleSense::Clockwise,
                         Sense::CounterClockwise => SpindleSense::CounterClockwise,
                     };
                 }
                 let kept = match speed {
                     Some(speed) => Some((speed, unit)).filter(|_| unit != SpindleUnit::Rpm),
-                    None => {
-                        self.surface_speed.map(|(speed, _)| (speed, SpindleUnit::SurfaceMetric))
-                    }
+                    None => self
+                        .spindle
+                        .surface_speed
+                        .map(|(speed, _)| (speed, SpindleUnit::SurfaceMetric)),
                 };
                 if let Some((speed, unit)) = kept.filter(|_| self.reading.surface_speed) {
-                    self.may_cut = true;
+                    self.spindle.may_cut = true;
                     self.surface_speed(record, (speed, unit, most), emit);
                     return;
                 }
-                self.surface_speed = None;
+                self.spindle.surface_speed = None;
                 if let Some(speed) = speed {
                     let per_minute = match unit {
                         SpindleUnit::Rpm => None,
                         SpindleUnit::SurfaceMetric => Some(speed * 1000.0),
                         SpindleUnit::SurfaceInch => Some(speed * 304.8),
                     };
-                    self.rpm = match (per_minute, self.diameter) {
+                    self.spindle.rpm = match (per_minute, self.tools.diameter) {
                         (None, _) => Some(speed),
                         (Some(surface), Some(diameter)) if diameter > 0.0 => {
                             let rpm = surface / (std::f64::consts::PI * diameter);
                             Some(most.map_or(rpm, |most| rpm.min(most)))
                         }
                         _ => {
-                            self.may_cut = true;
+                            self.spindle.may_cut = true;
                             self.fault(
                                 record,
                                 "spindle",
@@ -98,10 +99,11 @@ impl ClInterpreter {
                     };
                 }
                 // Whatever is wrong with it, that it does not turn is not said too.
-                self.may_cut = true;
+                self.spindle.may_cut = true;
                 // CAM systems write 0 where no speed was given.
-                self.rpm = self.rpm.filter(|rpm| *rpm > 0.0).or(self.reading.spindle.speed());
-                let Some(rpm) = self.rpm else {
+                self.spindle.rpm =
+                    self.spindle.rpm.filter(|rpm| *rpm > 0.0).or(self.reading.spindle.speed());
+                let Some(rpm) = self.spindle.rpm else {
                     self.fault(
                         record,
                         "spindle",
@@ -110,7 +112,7 @@ impl ClInterpreter {
                     );
                     return;
                 };
-                Spindle::On { rpm, sense: self.sense }
+                Spindle::On { rpm, sense: self.spindle.sense }
             }
         };
         emit(ProgramStep::Command(Command::Spindle(step)));
@@ -135,12 +137,7 @@ impl ClInterpreter {
         meant
     }
 
-    pub(super) fn load(
-        &mut self,
-        record: &Record<'_>,
-        tool: &LoadTool,
-        emit: &mut impl FnMut(ProgramStep),
-    ) {
+    pub(super) fn load(&mut self, record: &Record<'_>, tool: &LoadTool, emit: &mut StepSink<'_>) {
         let register = tool.register.unwrap_or(tool.number);
         if tool.number == 0 || register == 0 {
             self.fault(
@@ -153,7 +150,7 @@ impl ClInterpreter {
             return;
         }
         let cutter = match self.reading.tool_length {
-            ToolLength::Cl => self.cutter_length,
+            ToolLength::Cl => self.tools.cutter_length,
             ToolLength::Assembly => None,
         };
         let mut length = tool.length.map(|length| length * self.scale).or(cutter);
@@ -170,11 +167,11 @@ impl ClInterpreter {
         }
         // NX repeats LOAD in every operation; the same tool stays in the spindle.
         let loaded = Some((tool.number, register, tool.length));
-        if self.loaded == loaded {
+        if self.tools.loaded == loaded {
             return;
         }
-        self.loaded = loaded;
-        if self.cycle.is_some() {
+        self.tools.loaded = loaded;
+        if self.cycles.in_force.is_some() {
             self.warn(
                 record,
                 "cycle",
@@ -185,14 +182,14 @@ impl ClInterpreter {
             );
         }
         self.measured |= tool.length.is_some();
-        self.register = None;
-        self.cutter_changed = false;
-        self.cutter_due = None;
-        self.cut_any = false;
-        self.spindle_said = false;
+        self.compensation.register = None;
+        self.tools.cutter_changed = false;
+        self.tools.due = None;
+        self.tools.moved = false;
+        self.spindle.said = false;
         self.due = true;
-        if self.compensated {
-            self.compensated = false;
+        if self.compensation.on {
+            self.compensation.on = false;
             emit(ProgramStep::Command(Command::Compensate(Compensation::Off)));
             self.warn(
                 record,
@@ -202,7 +199,7 @@ impl ClInterpreter {
             );
         }
         // The cutter of a tool before says nothing of this one.
-        let cutter = std::mem::take(&mut self.cutter);
+        let cutter = std::mem::take(&mut self.tools.cutter);
         // The tool comes from the changer: no arc begins where the last one stood.
         self.tip = None;
         emit(ProgramStep::Command(Command::Tool(ToolChange {
@@ -211,20 +208,20 @@ impl ClInterpreter {
             length,
             diameter: cutter[0],
             corner_radius: cutter[1],
-            name: self.tool_name.clone(),
+            name: self.tools.name.clone(),
         })));
     }
 
     /// Loads the tool that the user names or that belongs to the cutter, before the first record that needs one.
-    pub(super) fn load_told(&mut self, record: &Record<'_>, emit: &mut impl FnMut(ProgramStep)) {
-        let told = match self.loaded {
+    pub(super) fn load_told(&mut self, record: &Record<'_>, emit: &mut StepSink<'_>) {
+        let told = match self.tools.loaded {
             None => self.reading.tool.take(),
             Some(_) => None,
         };
-        if let Some(number) = told.or(self.cutter_due) {
+        if let Some(number) = told.or(self.tools.due) {
             let tool = LoadTool { number, ..LoadTool::default() };
             self.load(record, &tool, emit);
-            self.cutter_due = None;
+            self.tools.due = None;
         }
     }
 
@@ -233,7 +230,7 @@ impl ClInterpreter {
         &mut self,
         record: &Record<'_>,
         tool: &LoadTool,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         if self.writer.catia && tool.described {
             // LOADTL loads it.
@@ -242,7 +239,7 @@ impl ClInterpreter {
         }
         let (tool, radius_register) = self.by_position(tool);
         let tool = &tool;
-        self.file_loads = true;
+        self.tools.file_loads = true;
         if self.reading.tool_from_cutter {
             self.fault(
                 record,
@@ -275,7 +272,7 @@ impl ClInterpreter {
             self.warn(record, "tool", message);
         }
         self.load(record, tool, emit);
-        self.register = radius_register.or(self.register);
+        self.compensation.register = radius_register.or(self.compensation.register);
     }
 
     /// The tool change with the numbers that its writer has by position, and the register of the cutter's radius.
@@ -288,7 +285,7 @@ impl ClInterpreter {
             self.writer.autodesk = true;
             read.register = some(register);
             // That of the tool's body is no length from the gauge line.
-            self.cutter_length = Some(body * self.scale);
+            self.tools.cutter_length = Some(body * self.scale);
             read.rest.clear();
             return (read, None);
         }
@@ -314,9 +311,9 @@ impl ClInterpreter {
             return;
         }
         let cutter =
-            CutterDescription { length, numbers: numbers.to_vec(), name: self.tool_name.clone() };
+            CutterDescription { length, numbers: numbers.to_vec(), name: self.tools.name.clone() };
         // Files that load their tools describe the cutter just before or after that.
-        let other = self.described.as_ref().is_some_and(|before| {
+        let other = self.tools.described.as_ref().is_some_and(|before| {
             if before.length == length {
                 before.numbers != cutter.numbers
             } else {
@@ -324,13 +321,13 @@ impl ClInterpreter {
             }
         });
         if self.reading.tool_from_cutter {
-            let known = self.cutters.iter().position(|known| *known == cutter);
-            let place = known.unwrap_or(self.cutters.len());
+            let known = self.tools.cutters.iter().position(|known| *known == cutter);
+            let place = known.unwrap_or(self.tools.cutters.len());
             if known.is_none() {
-                self.cutters.push(cutter.clone());
+                self.tools.cutters.push(cutter.clone());
             }
-            if self.cutters.len() > MOST_TOOLS {
-                self.cutters.pop();
+            if self.tools.cutters.len() > MOST_TOOLS {
+                self.tools.cutters.pop();
                 self.fault(
                     record,
                     "tool",
@@ -339,36 +336,31 @@ impl ClInterpreter {
                 );
                 return;
             }
-            self.cutter_due = u32::try_from(place + 1).ok();
+            self.tools.due = u32::try_from(place + 1).ok();
         } else {
-            self.cutter_changed |= other && self.cut_any;
+            self.tools.cutter_changed |= other && self.tools.moved;
         }
         self.due = true;
-        self.described = Some(cutter);
-        self.diameter = numbers.first().map(|diameter| diameter * self.scale);
+        self.tools.described = Some(cutter);
+        self.tools.diameter = numbers.first().map(|diameter| diameter * self.scale);
         let size = |place: usize| numbers.get(place).map(|size| size * self.scale);
-        self.cutter = [size(0), size(1)];
-        self.cutter_length = numbers.get(length).map(|length| length * self.scale);
+        self.tools.cutter = [size(0), size(1)];
+        self.tools.cutter_length = numbers.get(length).map(|length| length * self.scale);
     }
 
-    pub(super) fn cutcom(
-        &mut self,
-        record: &Record<'_>,
-        cutcom: Cutcom,
-        emit: &mut impl FnMut(ProgramStep),
-    ) {
+    pub(super) fn cutcom(&mut self, record: &Record<'_>, cutcom: Cutcom, emit: &mut StepSink<'_>) {
         self.load_told(record, emit);
         let side = match cutcom.side {
             Some(CutterSide::Off) => {
-                self.compensated = false;
+                self.compensation.on = false;
                 emit(ProgramStep::Command(Command::Compensate(Compensation::Off)));
                 return;
             }
             Some(side) => {
-                self.side = Some(side);
+                self.compensation.side = Some(side);
                 Some(side)
             }
-            None => self.side,
+            None => self.compensation.side,
         };
         if let Some(plane @ (0 | 1)) = cutcom.plane {
             let place = self.place(record);
@@ -385,10 +377,10 @@ impl ClInterpreter {
             );
             return;
         }
-        self.register = cutcom.register.or(self.register);
-        let tool = self.loaded.map(|(number, ..)| number);
-        let register = self.register.or(tool).unwrap_or(1);
-        self.compensated |= matches!(side, Some(CutterSide::Left | CutterSide::Right));
+        self.compensation.register = cutcom.register.or(self.compensation.register);
+        let tool = self.tools.loaded.map(|(number, ..)| number);
+        let register = self.compensation.register.or(tool).unwrap_or(1);
+        self.compensation.on |= matches!(side, Some(CutterSide::Left | CutterSide::Right));
         if side.is_some() {
             self.check_on_centre(record, register);
         }
@@ -413,8 +405,10 @@ impl ClInterpreter {
             CompensatedPoints::Presumed(why) if option != CompensationOnCentre::Contour => {
                 (why, true)
             }
-            CompensatedPoints::Contour if self.writer.autodesk && !self.told_on_centre => {
-                self.told_on_centre = true;
+            CompensatedPoints::Contour
+                if self.writer.autodesk && !self.compensation.told_on_centre =>
+            {
+                self.compensation.told_on_centre = true;
                 let message = format!(
                     "CUTCOM in a file of Autodesk's, which does not say what its points are: with compensation \"in control\" they are the contour, \
                      with \"wear\" the tool's centre, and register {register} must hold the wear alone"
@@ -424,7 +418,7 @@ impl ClInterpreter {
             }
             CompensatedPoints::Presumed(_) | CompensatedPoints::Contour => return,
         };
-        if std::mem::replace(&mut self.told_on_centre, true) {
+        if std::mem::replace(&mut self.compensation.told_on_centre, true) {
             return;
         }
         let place = self.place(record);

@@ -7,9 +7,8 @@ use nalgebra::Vector3;
 use post_grammar::{AlongArc, ArcMove, CircleRecord, Record, Sense};
 use post_machine::diagnostic::Short;
 
-use super::ClInterpreter;
 use super::curves::ARC_MISMATCH;
-use crate::program::ProgramStep;
+use super::{ClInterpreter, StepSink};
 use crate::program::limits::direction;
 
 /// Ends nearer than this are one point: mm.
@@ -172,11 +171,11 @@ impl ClInterpreter {
         &mut self,
         record: &Record<'_>,
         along: &AlongArc,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         self.end_spline(record, emit);
         let set_out = self.set_out.take();
-        if self.cycle_lost {
+        if self.cycles.lost {
             return;
         }
         self.before_move(record, emit);

@@ -5,7 +5,7 @@ use post_grammar::{Argument, Record, UnknownPath, WordUsage};
 use post_machine::description::Insert;
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
 
-use super::{ClInterpreter, SHOWN_NAME, record_place};
+use super::{ClInterpreter, SHOWN_NAME, StepSink, record_place};
 use crate::program::{Command, ProgramStep, UnknownWordPolicy};
 
 /// A record that may carry a path.
@@ -25,7 +25,7 @@ impl ClInterpreter {
         word: &str,
         arguments: &[Argument],
         directive: bool,
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) {
         self.writer.word(word);
         self.wants_fini |= directive || self.writer.is_camworks();
@@ -108,7 +108,7 @@ impl ClInterpreter {
         record: &Record<'_>,
         word: &str,
         arguments: &[Argument],
-        emit: &mut impl FnMut(ProgramStep),
+        emit: &mut StepSink<'_>,
     ) -> bool {
         let fitting =
             self.reading.rules.iter().filter_map(|rule| Some((rule.fits(word, arguments)?, rule)));
@@ -133,12 +133,7 @@ impl ClInterpreter {
     }
 
     /// A line of the user's own.
-    pub(super) fn insert(
-        &mut self,
-        record: &Record<'_>,
-        text: &str,
-        emit: &mut impl FnMut(ProgramStep),
-    ) {
+    pub(super) fn insert(&mut self, record: &Record<'_>, text: &str, emit: &mut StepSink<'_>) {
         // Tabs are blanks, here as in all of a CL file.
         let text = text.replace('\t', " ");
         let shown = escaped(&excerpt(&text, SHOWN_NAME), &[]).into_owned();

@@ -1,7 +1,7 @@
 //! The order of the path: tip and path can be gone along together, never back, and each block stays within what is
 //! certified for it. The truth is the Fréchet distance, found in the free-space diagram.
 
-use post_posting::{BlockKind, MotionBlock, Observer, PostingRequest, StreamItem};
+use post_posting::{BlockKind, MotionBlock, Observer, PostingRequest};
 use post_testmachines::frechet::{frechet, keeps_within};
 use post_testruns::posted::{Recorder, watched};
 
@@ -15,12 +15,8 @@ const PIECES: usize = 24;
 struct Seen(Vec<MotionBlock>);
 
 impl Observer for Seen {
-    fn blocks(&mut self, blocks: &[StreamItem<MotionBlock>]) {
-        for block in blocks {
-            if let StreamItem::Point(block) = block {
-                self.0.push(*block);
-            }
-        }
+    fn block(&mut self, block: &MotionBlock) {
+        self.0.push(*block);
     }
 }
 

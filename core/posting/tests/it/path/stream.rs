@@ -97,7 +97,7 @@ fn commands_stand_where_they_stood() {
         .filter_map(|next| match next {
             StreamItem::Point(block) => Some((block.line, true)),
             StreamItem::Command { line, .. } => Some((*line, false)),
-            StreamItem::Placer(_) => None,
+            _ => None,
         })
         .collect();
     let lines: Vec<(u64, bool)> = lines.into_iter().filter(|(line, _)| *line > 4).collect();

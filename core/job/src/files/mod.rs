@@ -36,7 +36,7 @@ pub use cl_input::ClInput;
 pub use cl_source::{ClSource, HeldText};
 pub use file_fault::FileFault;
 pub use json_rows::JsonRows;
-pub use outcome::Texts;
+pub use outcome::TextOutcomes;
 pub use own_folder::OwnFolder;
 pub use path_arg::PathArg;
 pub use plan_view::PlanView;

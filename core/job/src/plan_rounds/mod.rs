@@ -24,7 +24,7 @@ use super::one_program::OneProgram;
 use super::rounds::Rounds;
 use crate::failure::Failure;
 use crate::files::ClSource;
-use excess::{Excess, Off, Settling};
+use excess::{ContourExcess, Excess, Settling};
 pub use text::text;
 
 /// A servo has settled after so many times the inverse of its bandwidth, all but what its slowest pole remembers, and that
@@ -61,7 +61,7 @@ pub struct Round {
 
 /// What planning in rounds has done.
 #[derive(Clone, Debug, Serialize)]
-pub struct Found {
+pub struct PlanRoundsSummary {
     /// The limit of the contour error, mm.
     pub limit_mm: f64,
     /// The program at the feeds of the CL file.
@@ -74,7 +74,7 @@ pub struct Found {
     pub kept: bool,
 }
 
-impl Found {
+impl PlanRoundsSummary {
     /// That of the program that is written.
     pub fn written(&self) -> &Round {
         &self.rounds[self.chosen]
@@ -90,14 +90,19 @@ pub fn plan(
     most: u32,
     ahead: Option<&ProgramPreview>,
     source: &mut ClSource,
-) -> Result<(Option<Arc<Tightening>>, Found), Failure> {
+) -> Result<(Option<Arc<Tightening>>, PlanRoundsSummary), Failure> {
     let allowed = allowed(program.machine).map_err(|fault| *fault)?;
     let limit = allowed.0;
     let mut tried = Rounds::new(program, ahead, source);
     let (unplanned, _) = self::round(&mut tried, allowed, None)?;
     let mut tightening = Arc::new(Tightening::default());
-    let mut found =
-        Found { limit_mm: limit, unplanned, rounds: Vec::new(), chosen: 0, kept: false };
+    let mut found = PlanRoundsSummary {
+        limit_mm: limit,
+        unplanned,
+        rounds: Vec::new(),
+        chosen: 0,
+        kept: false,
+    };
     let mut best = None;
     for round in 0..most.max(1) as usize {
         let (outcome, excess) = self::round(&mut tried, allowed, Some(Arc::clone(&tightening)))?;
@@ -122,7 +127,7 @@ pub fn plan(
 }
 
 /// Says so if the program that is written does not keep the limit.
-pub fn warning(found: &Found) -> Option<Diagnostic> {
+pub fn warning(found: &PlanRoundsSummary) -> Option<Diagnostic> {
     if found.kept {
         return None;
     }
@@ -181,8 +186,11 @@ fn round(
             _ if !sample.counts() => excess.rests(point.time),
             Some(asked) => {
                 let tip = point.actual.tip - asked.error;
-                let off =
-                    Off { error: point.distance, nc_line: point.at.line, cl_line: asked.at.line };
+                let off = ContourExcess {
+                    error: point.distance,
+                    nc_line: point.at.line,
+                    cl_line: asked.at.line,
+                };
                 match sample.at.cuts {
                     true => excess.take(point.time, &tip, off),
                     false => excess.take_beside_rapid(off),

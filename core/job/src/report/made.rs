@@ -15,7 +15,7 @@ use crate::predict::Prediction;
 use crate::session::Session;
 
 /// What is known of a program that is made.
-pub struct Made<'a> {
+pub struct PostPage<'a> {
     /// The run.
     pub session: &'a Session,
     /// The machine with its settings.
@@ -38,7 +38,7 @@ pub struct Made<'a> {
     pub facts: Vec<[String; 2]>,
 }
 
-impl Made<'_> {
+impl PostPage<'_> {
     /// Writes its report to `page`.
     ///
     /// # Errors

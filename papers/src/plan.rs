@@ -10,7 +10,7 @@ use post_cli::arguments::flag_values::{
 };
 use post_cli::terminal::print_beside;
 use post_job::failure::Failure;
-use post_job::files::{AtomicFile, OwnFolder, PathArg, Role, json};
+use post_job::files::{AtomicFile, FolderMark, OwnFolder, PathArg, Role, json};
 use post_job::machine_files;
 use post_job::plan::pictures;
 use post_job::session::Session;
@@ -157,7 +157,7 @@ const PLAN: Role = Role { what: "plan", remedy: "name another file with -o" };
 const PICTURES: Role = Role { what: "plan", remedy: "name another folder with --pictures" };
 
 /// The file by which a folder of pictures is known, and how it begins.
-const MARK: (&str, &str) = ("plan.json", "{\n  \"curve\": ");
+const MARK: FolderMark<'_> = FolderMark { name: "plan.json", begins: "{\n  \"curve\": " };
 
 /// Plans as the arguments say.
 pub fn run(session: &Session, arguments: &PlanArguments) -> Result<(), Failure> {
@@ -213,7 +213,7 @@ pub fn run(session: &Session, arguments: &PlanArguments) -> Result<(), Failure> 
     let taken = texts.iter().any(AtomicFile::is_standard);
     if let Some(folder) = &folder {
         let mut files = planned.rooms.files(&planned.note);
-        files.push((MARK.0, text));
+        files.push((MARK.name, text));
         folder.add(&files, &mut texts)?;
         AtomicFile::finish(session, texts)?;
         folder.tidy(&files)?;

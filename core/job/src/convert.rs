@@ -20,7 +20,7 @@ use super::nc_program::{NcControl, ProgramFile};
 use super::nc_to_cl::{self, Tools};
 use super::posting_pass::PostingExtras;
 use super::read_back::{self, ReadingSetup, VerifiedProgram, VerifyReference};
-use super::report::{self, PostPage};
+use super::report::{self, PageTexts, PostPage};
 use super::text::{clock, number};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg, Role};
@@ -81,8 +81,7 @@ pub fn convert(session: &Session, request: &ConvertRequest) -> Result<Converted,
     let (program, cl_file) = files.split_at_mut(1);
     let mut findings = Vec::new();
     let mut source = conversion.write_cl(cl_file.first_mut(), &mut findings)?;
-    let texts = (&mut program[0], page);
-    let (mut converted, page) = conversion.make(&mut source, texts, findings)?;
+    let (mut converted, page) = conversion.make(&mut source, &mut program[0], page, findings)?;
     files.extend(page);
     converted.printed = files.iter().any(AtomicFile::is_standard);
     AtomicFile::finish(session, files)?;
@@ -167,7 +166,8 @@ impl<'a> Conversion<'a> {
     fn make(
         &self,
         source: &mut ClSource,
-        (program, mut page): (&mut AtomicFile, Option<AtomicFile>),
+        program: &mut AtomicFile,
+        mut page: Option<AtomicFile>,
         mut findings: Vec<Diagnostic>,
     ) -> Result<(Converted, Option<AtomicFile>), Failure> {
         let Self { session, request, machine, .. } = self;
@@ -194,8 +194,8 @@ impl<'a> Conversion<'a> {
         let made = Converted { names, machines, report, held, facts, findings, printed: false };
         if let (Some(page), Some(rows)) = (&mut page, rows) {
             let (named, mut text) = (program.name().to_owned(), program.reread()?);
-            let texts = (source, named.as_str(), &mut text as _);
-            self.page(&made).write((rows, None), texts, request.report.most(), page)?;
+            let texts = PageTexts { source, name: &named, text: &mut text };
+            self.page(&made).write(rows, None, texts, request.report.most(), page)?;
         }
         Ok((made, page))
     }

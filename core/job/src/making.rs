@@ -24,7 +24,7 @@ use crate::plugin_finder;
 use crate::posting_pass::PostingExtras;
 use crate::predict::{self, PredictReference, Predicted, Prediction, PredictionSetup, Sample};
 use crate::read_back::{self, ReadingSetup, VerifiedProgram};
-use crate::report::{self, BlockRows, ClWindow, PostPage, PredictedParts};
+use crate::report::{self, BlockRows, ClWindow, PageTexts, PostPage, PredictedParts};
 use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings};
 use crate::summary::{self, SummaryJson};
@@ -92,6 +92,14 @@ pub trait ProgramSink: TextSink {
     /// # Errors
     /// It cannot be read.
     fn reread(&mut self) -> Result<Box<dyn Reread + '_>, Failure>;
+}
+
+/// The text of a program that is read again.
+pub struct ProgramInput<R> {
+    /// The program, as messages call it.
+    pub name: String,
+    /// All of it, from its beginning.
+    pub text: R,
 }
 
 /// A text that can be gone back in.
@@ -248,7 +256,8 @@ impl<'a> ProgramMaker<'a> {
     /// All that is wrong with it, the findings among it, or a file that cannot be read or written.
     pub fn make(
         &self,
-        (part, ready): (&ProgramPart, PreparedProgram<'_>),
+        part: &ProgramPart,
+        ready: PreparedProgram<'_>,
         source: &mut ClSource,
         text: &mut dyn ProgramSink,
         wanted: ProgramRequest<'_, '_, '_>,
@@ -267,8 +276,8 @@ impl<'a> ProgramMaker<'a> {
         let beside = PostingExtras { watch, observer, ..PostingExtras::default() };
         let mut outcome = self.write(ready, source, text, beside, findings)?;
         if verify {
-            let name = text.name();
-            let held = self.read_back(part, outcome.moved, source, (name, text.reread()?))?;
+            let program = ProgramInput { name: text.name(), text: text.reread()? };
+            let held = self.read_back(part, outcome.moved, source, program)?;
             if held.is_wrong() {
                 findings.extend(held.findings);
                 return Err(std::mem::take(findings).into());
@@ -280,17 +289,16 @@ impl<'a> ProgramMaker<'a> {
             if let Some(rows) = &mut rows {
                 heard = PredictedParts::of(&part.machine, rows)?;
             }
-            let name = text.name();
-            let told = (&mut *source, heard.as_mut());
-            let predicted = self.predict(part, None, told, (name, text.reread()?))?;
+            let program = ProgramInput { name: text.name(), text: text.reread()? };
+            let predicted = self.predict(part, None, source, heard.as_mut(), program)?;
             findings.extend(predicted.findings);
             outcome.prediction = Some(predicted.found);
         }
         if let (Some((file, most)), Some(rows)) = (page, rows) {
             let input = self.page(part, &outcome, findings);
             let name = text.name();
-            let texts = (source, name.as_str(), &mut text.reread()? as &mut dyn Read);
-            input.write((rows, heard), texts, most, file)?;
+            let texts = PageTexts { source, name: &name, text: &mut text.reread()? };
+            input.write(rows, heard, texts, most, file)?;
         }
         Ok(outcome)
     }
@@ -362,7 +370,7 @@ impl<'a> ProgramMaker<'a> {
         BlockRows::new(&part.machine, cl, predicted)
     }
 
-    /// Reads the program `name` back and holds it against the CL file; `moved` if its points were moved for the servos.
+    /// Reads a program back and holds it against the CL file; `moved` if its points were moved for the servos.
     ///
     /// # Errors
     /// A file that cannot be read.
@@ -371,7 +379,7 @@ impl<'a> ProgramMaker<'a> {
         part: &ProgramPart,
         moved: bool,
         source: &mut ClSource,
-        (name, text): (String, impl Read + Seek),
+        program: ProgramInput<impl Read + Seek>,
     ) -> Result<VerifiedProgram, Failure> {
         // What was moved on purpose is off the CL file by that.
         let accuracy = &part.machine.accuracy;
@@ -393,10 +401,11 @@ impl<'a> ProgramMaker<'a> {
             own: true,
             lines: part.lines.clone(),
         };
+        let ProgramInput { name, text } = program;
         read_back::verify(&reading, source, &name, text, &mut |_: &BlockReport| {})
     }
 
-    /// Predicts what the program `name` does; `period` between set-points, s, over the machine file's.
+    /// Predicts what a program does, for the page too if `heard` is given; `period` between set-points, s, over the machine file's.
     ///
     /// # Errors
     /// A file that cannot be read, or a machine that cannot be used.
@@ -404,8 +413,9 @@ impl<'a> ProgramMaker<'a> {
         &self,
         part: &ProgramPart,
         period: Option<f64>,
-        (source, mut heard): (&mut ClSource, Option<&mut PredictedParts>),
-        (name, text): (String, impl Read + Seek),
+        source: &mut ClSource,
+        mut heard: Option<&mut PredictedParts>,
+        program: ProgramInput<impl Read + Seek>,
     ) -> Result<Predicted, Failure> {
         let asked = PredictionSetup {
             session: self.session,
@@ -417,18 +427,14 @@ impl<'a> ProgramMaker<'a> {
             period,
             lines: part.lines.clone(),
         };
-        predict::predict(
-            &asked,
-            PredictReference::Cl(source),
-            &name,
-            text,
-            &mut |sample: &Sample| {
-                if let Some(heard) = &mut heard {
-                    heard.take(sample);
-                }
-                Ok(())
-            },
-        )
+        let ProgramInput { name, text } = program;
+        let against = PredictReference::Cl(source);
+        predict::predict(&asked, against, &name, text, &mut |sample: &Sample| {
+            if let Some(heard) = &mut heard {
+                heard.take(sample);
+            }
+            Ok(())
+        })
     }
 }
 

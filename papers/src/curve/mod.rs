@@ -132,8 +132,7 @@ impl CurveJob {
         Ok(match &self.file.path {
             GivenPath::Splines(splines) => CurvePath::new(machine, tool_length, splines)?,
             GivenPath::Points(points, axes) => {
-                let points = (points.as_slice(), axes.as_deref());
-                CurvePath::through(machine, tool_length, points, &self.name)?
+                CurvePath::through(machine, tool_length, points, axes.as_deref(), &self.name)?
             }
         })
     }

@@ -127,7 +127,8 @@ impl<'m> CurvePath<'m> {
     pub fn through(
         machine: &'m Machine,
         length: f64,
-        (points, axes): (&[[f64; 3]], Option<&[[f64; 3]]>),
+        points: &[[f64; 3]],
+        axes: Option<&[[f64; 3]]>,
         file: &str,
     ) -> Result<Self, Box<Diagnostic>> {
         let plane = points.iter().all(|point| point[2] == points[0][2]);

@@ -23,7 +23,7 @@ use post_posting::report::PostingReport;
 use post_cli::arguments::JobArguments;
 use post_cli::terminal::print;
 use post_job::failure::Failure;
-use post_job::files::{AtomicFile, OwnFolder, PathArg, Role};
+use post_job::files::{AtomicFile, FolderMark, OwnFolder, PathArg, Role};
 use post_job::session::Session;
 use post_job::{DryRun, plugin_finder, say_what_is_left};
 use sweep::Swept;
@@ -131,7 +131,7 @@ pub fn run(session: &Session, arguments: &StudyArguments) -> Result<(), Failure>
     say_what_is_left(session, job, &machine, &dry_run.finder);
     let folder = folder(arguments, &job.input);
     let names = [&study_csv::NAMES[..], &pictures::NAMES[..]].concat();
-    let mark = ("moves.csv", study_csv::BEGIN);
+    let mark = FolderMark { name: "moves.csv", begins: study_csv::BEGIN };
     let own = OwnFolder::open(session, &folder, STUDY, mark, &names).map_err(|fault| *fault)?;
     let (names, mut models) = models(&dry_run, &machine)?;
     let (surveyed, findings) = survey(&dry_run, &machine, &names, &mut models)?;

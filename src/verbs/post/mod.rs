@@ -163,7 +163,7 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
         let (outcome, pictures) = shown::show(&part.machine, &part.target, map, draws, |watch| {
             let (verify, predict) = (arguments.verify, arguments.predict.is_some());
             let wanted = ProgramRequest { verify, predict, watch, observer: None, page };
-            maker.make((part, ready), source, text, wanted, &mut findings)
+            maker.make(part, ready, source, text, wanted, &mut findings)
         })?;
         drawn.extend(pictures);
         outcomes.push(outcome);

@@ -20,7 +20,7 @@ use super::outcome::{FAILED, JobOutcome, REFUSED, WRITTEN};
 use super::travel;
 use crate::failure::Failure;
 use crate::files::{ClSource, HeldText};
-use crate::making::{ProgramMaker, ProgramPart};
+use crate::making::{ProgramInput, ProgramMaker, ProgramPart};
 use crate::plugin_finder;
 use crate::posting_pass::PostingExtras;
 use crate::session::Session;
@@ -186,7 +186,7 @@ impl OneJob<'_> {
         self.tell(&made.report, &text, &mut outcome);
         let name = plugin_finder::cl_name(&part.target);
         if options.verify {
-            let program = (name.clone(), self.reread(&text));
+            let program = ProgramInput { name: name.clone(), text: self.reread(&text) };
             let held = maker.read_back(part, made.moved, &mut source, program)?;
             outcome.tell(&columns::verified(), &held.found);
             let wrong = held.is_wrong();
@@ -198,8 +198,8 @@ impl OneJob<'_> {
             }
         }
         if options.predict {
-            let program = (name, self.reread(&text));
-            let predicted = maker.predict(part, None, (&mut source, None), program)?;
+            let program = ProgramInput { name, text: self.reread(&text) };
+            let predicted = maker.predict(part, None, &mut source, None, program)?;
             outcome.tell(&columns::predicted(), &predicted.found);
             findings.extend(predicted.findings);
         }

@@ -37,7 +37,7 @@ pub use cl_source::{ClSource, HeldText};
 pub use file_fault::FileFault;
 pub use json_rows::JsonRows;
 pub use outcome::TextOutcomes;
-pub use own_folder::OwnFolder;
+pub use own_folder::{FolderMark, OwnFolder};
 pub use path_arg::PathArg;
 pub use plan_view::PlanView;
 pub use read_files::ReadFiles;

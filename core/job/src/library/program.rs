@@ -10,7 +10,9 @@ use super::blocks::BlockArrays;
 use super::{Blocks, MachineSelection, NamedOption, Refusal, StopSignal, quietly};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
-use crate::making::{self, ProgramMaker, ProgramPart, ProgramRequest, ProgramSink, Reread};
+use crate::making::{
+    self, ProgramInput, ProgramMaker, ProgramPart, ProgramRequest, ProgramSink, Reread,
+};
 use crate::plugin_finder;
 use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings, ReadingSettings, tell};
@@ -154,7 +156,7 @@ impl MadeProgram {
             let mut findings = Vec::new();
             let ready = maker.prepare(&part, &mut source, false)?;
             let outcome =
-                maker.make((&part, ready), &mut source, &mut text, wanted, &mut findings)?;
+                maker.make(&part, ready, &mut source, &mut text, wanted, &mut findings)?;
             for file in &mut files {
                 file.write_bytes(&text.bytes)?;
             }
@@ -208,8 +210,8 @@ impl MadeProgram {
         let held = quietly(stop, |session| {
             let maker = self.request.maker(session)?;
             let mut source = ClSource::new(session, &self.request.job.input, true)?;
-            let text = (self.name(), Cursor::new(&self.text));
-            let held = maker.read_back(&self.part, self.moved, &mut source, text)?;
+            let program = ProgramInput { name: self.name(), text: Cursor::new(&self.text) };
+            let held = maker.read_back(&self.part, self.moved, &mut source, program)?;
             match held.is_wrong() {
                 true => Err(held.findings.into()),
                 false => Ok((files::json(&held.found), held.findings)),
@@ -233,8 +235,8 @@ impl MadeProgram {
         let predicted = quietly(stop, |session| {
             let maker = self.request.maker(session)?;
             let mut source = ClSource::new(session, &self.request.job.input, true)?;
-            let text = (self.name(), Cursor::new(&self.text));
-            let predicted = maker.predict(&self.part, period, (&mut source, None), text)?;
+            let program = ProgramInput { name: self.name(), text: Cursor::new(&self.text) };
+            let predicted = maker.predict(&self.part, period, &mut source, None, program)?;
             Ok((files::json(&predicted.found), predicted.findings))
         });
         let ((json, found), mut findings) = predicted?;
@@ -261,7 +263,7 @@ impl MadeProgram {
             let wanted = ProgramRequest { verify, predict, page, ..ProgramRequest::default() };
             let ready = maker.prepare(&part, &mut source, false)?;
             let (mut text, mut findings) = (text(&part), Vec::new());
-            maker.make((&part, ready), &mut source, &mut text, wanted, &mut findings)?;
+            maker.make(&part, ready, &mut source, &mut text, wanted, &mut findings)?;
             Ok(AtomicFile::finish(session, files)?)
         });
         written.map(|_| ())

@@ -10,11 +10,11 @@ use super::interval::{Interval, Intervals};
 use super::keep::PlanLimits;
 use super::pictures::PlanRooms;
 use super::tally::{LimitFound, Tally};
-use crate::files;
+use crate::files::{self, FolderMark};
 use crate::text::number;
 
 /// The file that tells in numbers what the pictures show, and how it begins.
-pub const MARK: (&str, &str) = ("plan.json", "{\n  \"program\": ");
+pub const MARK: FolderMark<'_> = FolderMark { name: "plan.json", begins: "{\n  \"program\": " };
 
 /// Parts of an interval that are drawn one by one, at least and at most.
 const PARTS: [f64; 2] = [2.0, 2048.0];
@@ -125,7 +125,7 @@ impl<'a> PlanTrace<'a> {
         };
         let note = format!("{program} on {machine}, planned cuts: {} s", number(seconds, 3));
         let mut files = self.rooms.files(&note);
-        files.push((MARK.0, files::json(&found)));
+        files.push((MARK.name, files::json(&found)));
         files
     }
 }

@@ -92,12 +92,11 @@ pub fn plan(
     source: &mut ClSource,
 ) -> Result<(Option<Arc<Tightening>>, PlanRoundsSummary), Failure> {
     let allowed = allowed(program.machine).map_err(|fault| *fault)?;
-    let limit = allowed.0;
     let mut tried = Rounds::new(program, ahead, source);
     let (unplanned, _) = self::round(&mut tried, allowed, None)?;
     let mut tightening = Arc::new(Tightening::default());
     let mut found = PlanRoundsSummary {
-        limit_mm: limit,
+        limit_mm: allowed.limit,
         unplanned,
         rounds: Vec::new(),
         chosen: 0,
@@ -116,7 +115,7 @@ pub fn plan(
             best = Some(Arc::clone(&tightening));
         }
         let places = excess.finish();
-        found.kept = outcome.contour_mm <= limit;
+        found.kept = outcome.contour_mm <= allowed.limit;
         if found.kept || places.is_empty() {
             // Either good, or as gentle as it gets where it is not.
             break;
@@ -145,8 +144,17 @@ pub fn warning(found: &PlanRoundsSummary) -> Option<Diagnostic> {
     Some(Diagnostic::warning("plan-rounds", message).help(help))
 }
 
-/// The limit, mm, and how fast the servos settle.
-fn allowed(machine: &Machine) -> Result<(f64, Settling), Box<Diagnostic>> {
+/// The contour error that is allowed, and the servos that have to keep it.
+#[derive(Clone, Copy)]
+struct ContourAllowance {
+    /// mm.
+    limit: f64,
+    /// How fast the servos settle.
+    settling: Settling,
+}
+
+/// What the machine file allows.
+fn allowed(machine: &Machine) -> Result<ContourAllowance, Box<Diagnostic>> {
     let Some(limit) = machine.plan.contour_error else {
         let message = "the machine file does not say which contour error is to be kept";
         return Err(Diagnostic::error("plan-rounds", message)
@@ -166,20 +174,20 @@ fn allowed(machine: &Machine) -> Result<(f64, Settling), Box<Diagnostic>> {
     };
     let settling =
         Settling { stretch: (SETTLED / band).min(LONGEST), memory: (SETTLED / pole).min(LONGEST) };
-    Ok((limit, settling))
+    Ok(ContourAllowance { limit, settling })
 }
 
 /// One round with a plan that is so tightened; none: without a plan.
 fn round(
     rounds: &mut Rounds<'_, '_>,
-    (limit, settling): (f64, Settling),
+    allowed: ContourAllowance,
     tightening: Option<Arc<Tightening>>,
 ) -> Result<(Round, Excess), Failure> {
     let known = tightening.clone().unwrap_or_default();
     let tightened = tightening.as_ref().map_or(0, |it| it.places());
     let program = OneProgram { plans: tightening.is_some(), tightening, ..rounds.program.clone() };
     let text = rounds.make(program, None)?;
-    let mut excess = Excess::new(limit, settling, known);
+    let mut excess = Excess::new(allowed.limit, allowed.settling, known);
     let found = rounds.predict(text, &mut |sample| {
         let point = &sample.point;
         match &point.asked {

@@ -14,7 +14,7 @@ use super::{Prediction, Sample, set_points_csv};
 use crate::JobMachine;
 use crate::columns::CsvTable;
 use crate::failure::Failure;
-use crate::files::{self, AtomicFile, ClSource, OwnFolder, PathArg, Role};
+use crate::files::{self, AtomicFile, ClSource, FolderMark, OwnFolder, PathArg, Role};
 use crate::nc_program::{self, ProgramFile};
 use crate::report::{ClWindow, ExtraColumns, MotionRows, PredictedLines};
 use crate::result_files::ResultFiles;
@@ -27,7 +27,7 @@ const SET_POINTS: Role =
 const PICTURES: Role = Role { what: "prediction", remedy: "name another folder with --pictures" };
 
 /// The file by which a folder of pictures is known, and how it begins.
-const MARK: (&str, &str) = ("prediction.json", "{\n  \"program\": ");
+const MARK: FolderMark<'_> = FolderMark { name: "prediction.json", begins: "{\n  \"program\": " };
 
 /// A log that is laid over a prediction.
 #[derive(Clone, Debug)]
@@ -135,7 +135,7 @@ pub fn predict_program(
     if let Some(file) = &mut texts.summary {
         file.write_bytes(json.as_bytes())?;
     }
-    if let (Some(page), Some(rows)) = (&mut texts.page, rows) {
+    if let (Some(page), Some((rows, lines))) = (&mut texts.page, rows) {
         let told = PredictPage {
             session,
             machine: &machine,
@@ -144,14 +144,14 @@ pub fn predict_program(
             program: &request.program,
             against: request.against.as_ref(),
         };
-        told.write(rows, (source.as_mut(), &program), request.report.most(), page)?;
+        told.write(rows, lines, source.as_mut(), &program, request.report.most(), page)?;
     }
     let mut texts = texts.all();
     let printed = texts.iter().any(AtomicFile::is_standard);
     if let (Some(folder), Some(rooms)) = (&folder, &rooms) {
         let mut files = rooms.files(&found);
         files.extend(picture);
-        files.push((MARK.0, json));
+        files.push((MARK.name, json));
         folder.add(&files, &mut texts)?;
         AtomicFile::finish(session, texts)?;
         folder.tidy(&files)?;

@@ -121,7 +121,7 @@ pub fn predict<R: Read + Seek>(
     let run = control.run(name, BufReader::new(input)).map_err(|fault| *fault)?;
     let (machine, period) = (&control.counted, asked.period());
     let stages = Stages::new(machine, period, path)?;
-    let mut stream = SetPointStream::new((name, run), machine, period, stages);
+    let mut stream = SetPointStream::new(name, run, machine, period, stages);
     let mut progress = asked.session.progress(Some(length));
     progress.record(|| position.get());
     while stream.step(watch)? {

@@ -47,7 +47,8 @@ pub struct SetPointStream<'a, R> {
 impl<'a, R: Read + Seek> SetPointStream<'a, R> {
     /// At the beginning of the program `name`, with set-points every `period` seconds.
     pub fn new(
-        (name, run): (&'a str, ProgramRun<Interpreter<R>>),
+        name: &'a str,
+        run: ProgramRun<Interpreter<R>>,
         machine: &'a Machine,
         period: f64,
         stages: Stages<'a>,

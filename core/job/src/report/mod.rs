@@ -28,7 +28,7 @@ pub use block_rows::BlockRows;
 pub use cl_window::ClWindow;
 pub use findings::warnings;
 pub use machine::machine;
-pub use made::PostPage;
+pub use made::{PageTexts, PostPage};
 pub use motion_rows::{ExtraColumns, LineFacts, MotionRows};
 pub use old_path::OldPath;
 pub use parts::{Parts, excludes};

@@ -117,7 +117,7 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
     if let (Some(page), Some(rows)) = (&mut texts.page, rows) {
         let names = [&request.program, &job.input];
         let told = VerifyPage { session, machine: &machine, held: &held, names, tolerances };
-        told.write(rows, (&mut source, &program), request.report.most(), page)?;
+        told.write(rows, &mut source, &program, request.report.most(), page)?;
     }
     let texts = texts.all();
     let printed = texts.iter().any(AtomicFile::is_standard);

@@ -44,7 +44,8 @@ impl VerifyPage<'_> {
     pub fn write(
         &self,
         rows: MotionRows<'_>,
-        (source, program): (&mut ClSource, &ProgramFile),
+        source: &mut ClSource,
+        program: &ProgramFile,
         most: u64,
         page: &mut AtomicFile,
     ) -> Result<(), Failure> {

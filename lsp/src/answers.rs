@@ -9,39 +9,44 @@ use gen_lsp_types::{
 };
 use serde_json::{Map, Value, json};
 
-use super::document::{Document, Kind, Snapshot};
+use super::document::{Document, FileKind, Snapshot};
 use super::machine::library::Library;
 use super::machine::parameters::{self, Member};
 use super::machine::{completion, fixes, hints, hover, lenses};
-use super::positions::Lines;
-use super::tiers::Shown;
+use super::positions::LineStarts;
+use super::tiers::ShownMachine;
 use super::{cl, findings, nc, uri};
 
 /// What is offered.
 pub fn completion(document: &Document, at: Position, library: &Library) -> Vec<CompletionItem> {
     let of = &document.now;
     match document.kind() {
-        Some(Kind::Machine) => completion::items(of, of.lines.byte(&of.text, at), library),
+        Some(FileKind::Machine) => completion::items(of, of.lines.byte(&of.text, at), library),
         _ => Vec::new(),
     }
 }
 
 /// What is said of a place.
-pub fn hover(document: &Document, at: Position, library: &Library, shown: &Shown) -> Option<Hover> {
+pub fn hover(
+    document: &Document,
+    at: Position,
+    library: &Library,
+    shown: &ShownMachine,
+) -> Option<Hover> {
     let of = &document.now;
     let byte = of.lines.byte(&of.text, at);
     let line = of.lines.line_of(byte);
     let machine = shown.machine.as_deref();
     let (text, range) = match document.kind()? {
-        Kind::Machine => {
+        FileKind::Machine => {
             let (text, span) = hover::text(of, byte, library)?;
             (text, Some(of.lines.range(&of.text, span)))
         }
-        Kind::Cl => {
+        FileKind::Cl => {
             let posted = document.slow.posted();
             (cl::hover::text(of, line, posted.as_deref(), machine)?, None)
         }
-        Kind::Nc => {
+        FileKind::Nc => {
             let program = document.slow.program();
             let map = document.path().and_then(|path| document.map.of(&path));
             let column = byte - of.lines.span(&of.text, line).start;
@@ -62,7 +67,7 @@ pub fn hover(document: &Document, at: Position, library: &Library, shown: &Shown
 pub fn hints(document: &Document, part: LspRange, library: &Library) -> Vec<InlayHint> {
     let of = &document.now;
     match document.kind() {
-        Some(Kind::Machine) => {
+        Some(FileKind::Machine) => {
             let start = of.lines.byte(&of.text, part.start);
             let end = of.lines.byte(&of.text, part.end);
             hints::hints(of, &(start..end), library)
@@ -76,11 +81,11 @@ pub fn definition(document: &Document, at: Position, library: &Library) -> Vec<L
     let of = &document.now;
     let byte = of.lines.byte(&of.text, at);
     match document.kind() {
-        Some(Kind::Machine) => match parameters::at(&of.text, byte) {
+        Some(FileKind::Machine) => match parameters::at(&of.text, byte) {
             Some(name) => places(of, &name.name, library, Some(true)),
             None => parent(of, byte, library).into_iter().collect(),
         },
-        Some(Kind::Nc) => came_from(document, of.lines.line_of(byte)).into_iter().collect(),
+        Some(FileKind::Nc) => came_from(document, of.lines.line_of(byte)).into_iter().collect(),
         _ => Vec::new(),
     }
 }
@@ -116,7 +121,7 @@ pub fn references(
     let of = &document.now;
     let byte = of.lines.byte(&of.text, at);
     match document.kind() {
-        Some(Kind::Machine) => parameters::at(&of.text, byte).map_or_else(Vec::new, |name| {
+        Some(FileKind::Machine) => parameters::at(&of.text, byte).map_or_else(Vec::new, |name| {
             let which = if definitions { None } else { Some(false) };
             places(of, &name.name, library, which)
         }),
@@ -132,7 +137,7 @@ fn places(of: &Snapshot, name: &str, library: &Library, defines: Option<bool>) -
             continue;
         };
         let text = &member.source.text;
-        let lines = Lines::of(text);
+        let lines = LineStarts::of(text);
         for one in parameters::occurrences(text) {
             if one.name == name && defines.is_none_or(|defines| defines == one.defines) {
                 places.push(Location { uri: uri.clone(), range: lines.range(text, one.span) });
@@ -153,7 +158,7 @@ fn named(member: &Member, of: &Snapshot) -> Option<Uri> {
 /// What would be renamed.
 pub fn prepare_rename(document: &Document, at: Position) -> Option<PrepareRenamePlaceholder> {
     let of = &document.now;
-    if document.kind()? != Kind::Machine {
+    if document.kind()? != FileKind::Machine {
         return None;
     }
     let name = parameters::at(&of.text, of.lines.byte(&of.text, at))?;
@@ -174,7 +179,7 @@ pub fn rename(
     library: &Library,
 ) -> Result<Value, String> {
     let of = &document.now;
-    let name = (document.kind() == Some(Kind::Machine))
+    let name = (document.kind() == Some(FileKind::Machine))
         .then(|| parameters::at(&of.text, of.lines.byte(&of.text, at)))
         .flatten()
         .ok_or("no parameter stands here")?
@@ -192,7 +197,7 @@ pub fn rename(
         if all.iter().any(|one| one.defines && one.name == new) {
             return Err(format!("{} has a parameter {new} already", member.source.name));
         }
-        let lines = Lines::of(text);
+        let lines = LineStarts::of(text);
         let edits: Vec<TextEdit> = all
             .into_iter()
             .filter(|one| one.name == name)
@@ -215,7 +220,7 @@ pub fn rename(
 /// What a click puts right in a part of the text.
 pub fn actions(document: &Document, part: LspRange, library: &Library) -> Vec<CodeActionResponse> {
     let of = &document.now;
-    if document.kind() != Some(Kind::Machine) {
+    if document.kind() != Some(FileKind::Machine) {
         return Vec::new();
     }
     let start = of.lines.byte(&of.text, part.start);
@@ -244,7 +249,7 @@ pub fn actions(document: &Document, part: LspRange, library: &Library) -> Vec<Co
 pub fn lenses(document: &Document) -> Vec<CodeLens> {
     match document.kind() {
         // What is no file cannot be checked.
-        Some(Kind::Machine) if document.path().is_some() => lenses::lenses(&document.now),
+        Some(FileKind::Machine) if document.path().is_some() => lenses::lenses(&document.now),
         _ => Vec::new(),
     }
 }

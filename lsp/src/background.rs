@@ -11,7 +11,7 @@ use post_machine::diagnostic::Diagnostic;
 
 use super::cl::Posted;
 use super::document::Snapshot;
-use super::nc::Program;
+use super::nc::InterpretedProgram;
 
 /// How long a text rests before slow work on it begins: a key is pressed more often.
 const REST: Duration = Duration::from_millis(250);
@@ -76,7 +76,7 @@ impl Token {
 
 /// What slow work has found out about a text.
 #[derive(Default)]
-pub struct Known {
+pub struct TextFacts {
     /// The version of the text that it is about.
     version: Option<i32>,
     /// What is told of it at once.
@@ -84,7 +84,7 @@ pub struct Known {
     /// What posting a CL file said of each of its lines.
     posted: Option<Arc<Posted>>,
     /// What reading a program back said of each of its lines.
-    program: Option<Arc<Program>>,
+    program: Option<Arc<InterpretedProgram>>,
     /// The work on it.
     token: Token,
 }
@@ -92,12 +92,12 @@ pub struct Known {
 /// What is known of a text beside the text itself. What is sent about one version is sent while this is locked, so that
 /// nothing old follows what is new.
 #[derive(Default)]
-pub struct Slow {
-    known: Mutex<Known>,
+pub struct BackgroundFacts {
+    known: Mutex<TextFacts>,
 }
 
-impl Slow {
-    fn lock(&self) -> MutexGuard<'_, Known> {
+impl BackgroundFacts {
+    fn lock(&self) -> MutexGuard<'_, TextFacts> {
         // What is in it is whole whatever a thread died of.
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -106,7 +106,7 @@ impl Slow {
     pub fn begin(&self, version: i32) -> Token {
         let mut known = self.lock();
         known.token.give_up();
-        *known = Known { version: Some(version), ..Known::default() };
+        *known = TextFacts { version: Some(version), ..TextFacts::default() };
         known.token.clone()
     }
 
@@ -122,7 +122,7 @@ impl Slow {
     }
 
     /// What reading back said, if that is done.
-    pub fn program(&self) -> Option<Arc<Program>> {
+    pub fn program(&self) -> Option<Arc<InterpretedProgram>> {
         self.lock().program.clone()
     }
 
@@ -141,7 +141,7 @@ impl Slow {
         of: &Snapshot,
         token: &Token,
         found: Vec<LspDiagnostic>,
-        keep: Keep,
+        keep: WorkProduct,
         to: &Outlet,
     ) {
         let mut known = self.lock();
@@ -149,9 +149,9 @@ impl Slow {
             return;
         }
         match keep {
-            Keep::Nothing => {}
-            Keep::Posted(posted) => known.posted = Some(Arc::new(posted)),
-            Keep::Program(program) => known.program = Some(Arc::new(program)),
+            WorkProduct::Nothing => {}
+            WorkProduct::Posted(posted) => known.posted = Some(Arc::new(posted)),
+            WorkProduct::Program(program) => known.program = Some(Arc::new(program)),
         }
         let mut all = known.fast.clone();
         all.extend(found);
@@ -161,16 +161,16 @@ impl Slow {
 
 /// What slow work on a machine comes to: what it found out, and what is told beside it; or why it cannot be done. None if
 /// it was given up.
-pub type Worked<T> = Option<Result<(T, Vec<Diagnostic>), Vec<Diagnostic>>>;
+pub type WorkResult<T> = Option<Result<(T, Vec<Diagnostic>), Vec<Diagnostic>>>;
 
 /// What is kept of slow work.
-pub enum Keep {
+pub enum WorkProduct {
     /// Nothing.
     Nothing,
     /// What posting said of each line.
     Posted(Posted),
     /// What reading back said of each line.
-    Program(Program),
+    Program(InterpretedProgram),
 }
 
 /// Where messages to the editor go.

@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use gen_lsp_types::{TextDocumentContentChangeEvent, Uri};
 
-use super::background::Slow;
-use super::nc::map::Beside;
-use super::positions::Lines;
+use super::background::BackgroundFacts;
+use super::nc::map::MapCache;
+use super::positions::LineStarts;
 use super::{cl, machine, nc, uri};
 
 /// What a file is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum FileKind {
     /// A machine file.
     Machine,
     /// A cutter-location file.
@@ -33,7 +33,7 @@ pub struct Snapshot {
     /// The text.
     pub text: String,
     /// Its lines.
-    pub lines: Lines,
+    pub lines: LineStarts,
 }
 
 /// A text that is open.
@@ -43,9 +43,9 @@ pub struct Document {
     /// The language that the editor takes it for.
     language: String,
     /// What is known of it, and what is being found out.
-    pub slow: Arc<Slow>,
+    pub slow: Arc<BackgroundFacts>,
     /// Of a program the map beside it.
-    pub map: Arc<Beside>,
+    pub map: Arc<MapCache>,
 }
 
 /// Languages whose headers end like Heidenhain's programs.
@@ -58,7 +58,7 @@ impl Document {
             Some(path) => path.display().to_string(),
             None => uri.0.clone(),
         };
-        let lines = Lines::of(&text);
+        let lines = LineStarts::of(&text);
         Self {
             now: Arc::new(Snapshot { uri, name, version, text, lines }),
             language,
@@ -81,7 +81,7 @@ impl Document {
                 }
                 TextDocumentContentChangeEvent::TextDocumentContentChangeWholeDocument(whole) => {
                     text = whole.text;
-                    lines = Lines::of(&text);
+                    lines = LineStarts::of(&text);
                 }
             }
         }
@@ -101,22 +101,22 @@ impl Document {
 
     /// What it is, by the language that the editor takes it for, by its ending, and of TOML by what it says: there are
     /// other TOML files. None for what is none of ours.
-    pub fn kind(&self) -> Option<Kind> {
+    pub fn kind(&self) -> Option<FileKind> {
         let ending = self.path().and_then(|path| {
             let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
             Some(ending)
         });
         let ending = ending.as_deref().unwrap_or_default();
         match self.language.as_str() {
-            "post-machine" => Some(Kind::Machine),
-            "post-cl" => Some(Kind::Cl),
-            "post-nc" => Some(Kind::Nc),
+            "post-machine" => Some(FileKind::Machine),
+            "post-cl" => Some(FileKind::Cl),
+            "post-nc" => Some(FileKind::Nc),
             _ if ending == "toml" || self.language == "toml" => {
-                machine::is_machine(&self.now.text).then_some(Kind::Machine)
+                machine::is_machine(&self.now.text).then_some(FileKind::Machine)
             }
             language if OF_C.contains(&language) => None,
-            _ if cl::ENDINGS.contains(&ending) => Some(Kind::Cl),
-            _ if nc::ENDINGS.contains(&ending) => Some(Kind::Nc),
+            _ if cl::ENDINGS.contains(&ending) => Some(FileKind::Cl),
+            _ if nc::ENDINGS.contains(&ending) => Some(FileKind::Nc),
             _ => None,
         }
     }

@@ -6,11 +6,11 @@ use gen_lsp_types::{Position, Range as LspRange};
 
 /// Where the lines of a text begin.
 #[derive(Clone, Debug)]
-pub struct Lines {
+pub struct LineStarts {
     starts: Vec<usize>,
 }
 
-impl Lines {
+impl LineStarts {
     /// Of a text. A line ends at LF, CR LF or CR, as in CL files.
     pub fn of(text: &str) -> Self {
         let mut starts = vec![0];
@@ -127,7 +127,7 @@ mod tests {
             (state >> 33) as usize % below
         };
         let mut text = String::new();
-        let mut lines = Lines::of(&text);
+        let mut lines = LineStarts::of(&text);
         for _ in 0..5000 {
             let mut border = |text: &str| {
                 let mut at = random(text.len() + 1);
@@ -147,10 +147,10 @@ mod tests {
             let piece = PIECES[random(PIECES.len())];
             text.replace_range(old.clone(), piece);
             lines.edit(&text, &old, piece.len());
-            assert_eq!(lines.starts, Lines::of(&text).starts, "{text:?}");
+            assert_eq!(lines.starts, LineStarts::of(&text).starts, "{text:?}");
             if text.len() > 60 {
                 text.clear();
-                lines = Lines::of(&text);
+                lines = LineStarts::of(&text);
             }
         }
     }
@@ -159,7 +159,7 @@ mod tests {
     fn columns_are_utf_16() {
         // One unit, two, one.
         let text = "ä𝄞z\r\nb\rc\n";
-        let lines = Lines::of(text);
+        let lines = LineStarts::of(text);
         assert_eq!(lines.count(), 4);
         for (at, line, column) in [(0, 0, 0), (2, 0, 1), (6, 0, 3), (7, 0, 4), (9, 1, 0)] {
             let position = Position::new(line, column);

@@ -20,9 +20,9 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use super::background::{Outlet, Token};
-use super::document::{Document, Kind, Snapshot};
+use super::document::{Document, FileKind, Snapshot};
 use super::machine::library::Library;
-use super::tiers::{self, Shown};
+use super::tiers::{self, ShownMachine};
 use super::{Options, announced, answers, cl, commands, uri};
 use post_job::session::Session;
 
@@ -39,7 +39,7 @@ pub fn run(session: &Session, connection: &Connection, options: Options) -> Resu
     connection.initialize_finish(id, about).map_err(|fault| fault.to_string())?;
     let sender = connection.sender.clone();
     let outlet = Outlet::new(move |message| drop(sender.send(message)));
-    let started = Shown { machine: options.machine, tool_length: options.tool_length };
+    let started = ShownMachine { machine: options.machine, tool_length: options.tool_length };
     let mut server = Server {
         shown: started.clone(),
         started,
@@ -79,9 +79,9 @@ struct Pending {
 
 struct Server {
     /// As the command line says.
-    started: Shown,
+    started: ShownMachine,
     /// As the editor's settings say over that.
-    shown: Shown,
+    shown: ShownMachine,
     library: Library,
     documents: BTreeMap<String, Document>,
     pending: Vec<Pending>,
@@ -89,19 +89,19 @@ struct Server {
 }
 
 /// Why a question has no answer.
-struct Refused {
+struct RequestError {
     code: ErrorCode,
     message: String,
 }
 
-impl Refused {
+impl RequestError {
     fn params(message: impl ToString) -> Self {
         Self { code: ErrorCode::InvalidParams, message: message.to_string() }
     }
 }
 
-fn params<P: DeserializeOwned>(value: Value) -> Result<P, Refused> {
-    serde_json::from_value(value).map_err(Refused::params)
+fn params<P: DeserializeOwned>(value: Value) -> Result<P, RequestError> {
+    serde_json::from_value(value).map_err(RequestError::params)
 }
 
 impl Server {
@@ -127,7 +127,7 @@ impl Server {
         // A fault of the program must not take the editor's server away; the question is told.
         let answered = catch_unwind(AssertUnwindSafe(|| self.answer(&id, &method, params)));
         let answered = answered.unwrap_or_else(|_| {
-            Err(Refused {
+            Err(RequestError {
                 code: ErrorCode::InternalError,
                 message: format!("{method} failed, which is a fault of post"),
             })
@@ -136,7 +136,7 @@ impl Server {
             Ok(Some(result)) => self.outlet.send(Response::new_ok(id, result)),
             // It is answered later.
             Ok(None) => {}
-            Err(Refused { code, message }) => {
+            Err(RequestError { code, message }) => {
                 self.outlet.send(Response::new_err(id, code as i32, message));
             }
         }
@@ -148,7 +148,7 @@ impl Server {
         id: &RequestId,
         method: &str,
         value: Value,
-    ) -> Result<Option<Value>, Refused> {
+    ) -> Result<Option<Value>, RequestError> {
         let library = &self.library;
         let answer = match method {
             "textDocument/completion" => {
@@ -189,7 +189,7 @@ impl Server {
                 let place = asked.text_document_position_params;
                 let document = self.document(&place.text_document.uri)?;
                 answers::rename(document, place.position, &asked.new_name, library)
-                    .map_err(Refused::params)?
+                    .map_err(RequestError::params)?
             }
             "textDocument/codeAction" => {
                 let asked: CodeActionParams = params(value)?;
@@ -214,7 +214,7 @@ impl Server {
             }
             "workspace/executeCommand" => return self.execute(id, params(value)?),
             other => {
-                return Err(Refused {
+                return Err(RequestError {
                     code: ErrorCode::MethodNotFound,
                     message: format!("{other} is not known"),
                 });
@@ -223,9 +223,9 @@ impl Server {
         Ok(Some(answer))
     }
 
-    fn document(&self, uri: &Uri) -> Result<&Document, Refused> {
+    fn document(&self, uri: &Uri) -> Result<&Document, RequestError> {
         let document = self.documents.get(&uri.0);
-        document.ok_or_else(|| Refused::params(format!("{} is not open", uri.0)))
+        document.ok_or_else(|| RequestError::params(format!("{} is not open", uri.0)))
     }
 
     /// What needs the whole of a CL file.
@@ -234,9 +234,9 @@ impl Server {
         id: &RequestId,
         uri: &Uri,
         work: impl FnOnce(&Snapshot, &Token) -> Option<Value> + Send + 'static,
-    ) -> Result<Option<Value>, Refused> {
+    ) -> Result<Option<Value>, RequestError> {
         let document = self.document(uri)?;
-        if document.kind() != Some(Kind::Cl) {
+        if document.kind() != Some(FileKind::Cl) {
             return Ok(Some(json!([])));
         }
         let of = Arc::clone(&document.now);
@@ -280,19 +280,20 @@ impl Server {
         &mut self,
         id: &RequestId,
         asked: ExecuteCommandParams,
-    ) -> Result<Option<Value>, Refused> {
+    ) -> Result<Option<Value>, RequestError> {
         if !commands::NAMES.contains(&asked.command.as_str()) {
-            return Err(Refused::params(format!("no command {}", asked.command)));
+            return Err(RequestError::params(format!("no command {}", asked.command)));
         }
         let arguments = asked.arguments.unwrap_or_default();
         let named = arguments.first().and_then(|uri| uri.as_str());
         let uri = Uri(named.unwrap_or_default().to_owned());
         let document = self.document(&uri)?;
-        let Some(path) = document.path().filter(|_| document.kind() == Some(Kind::Machine)) else {
-            return Err(Refused::params(format!("{} is no machine file", uri.0)));
+        let Some(path) = document.path().filter(|_| document.kind() == Some(FileKind::Machine))
+        else {
+            return Err(RequestError::params(format!("{} is no machine file", uri.0)));
         };
         if fs::read_to_string(&path).ok().as_ref() != Some(&document.now.text) {
-            return Err(Refused::params(
+            return Err(RequestError::params(
                 "the file is not saved: post check reads it from the disk",
             ));
         }
@@ -339,9 +340,9 @@ impl Server {
             "textDocument/didSave" => {
                 let saved: DidSaveTextDocumentParams = params(value).ok()?;
                 let document = self.documents.get(&saved.text_document.uri.0)?;
-                if document.kind() == Some(Kind::Machine) {
+                if document.kind() == Some(FileKind::Machine) {
                     // It may be the machine that the others are shown on.
-                    self.again(|kind| kind != Kind::Machine);
+                    self.again(|kind| kind != FileKind::Machine);
                 }
             }
             "textDocument/didClose" => {
@@ -356,7 +357,7 @@ impl Server {
             "workspace/didChangeConfiguration" => {
                 let changed: DidChangeConfigurationParams = params(value).ok()?;
                 self.settings(&json!(changed.settings));
-                self.again(|kind| kind != Kind::Machine);
+                self.again(|kind| kind != FileKind::Machine);
             }
             "$/cancelRequest" => {
                 let id: RequestId = serde_json::from_value(value.get("id")?.clone()).ok()?;
@@ -373,7 +374,7 @@ impl Server {
         let Some(document) = self.documents.get(&uri.0) else {
             return;
         };
-        let is_machine = document.kind() == Some(Kind::Machine);
+        let is_machine = document.kind() == Some(FileKind::Machine);
         if is_machine && let Some(path) = document.path() {
             self.library.open.insert(path, Arc::clone(&document.now));
         }
@@ -381,7 +382,7 @@ impl Server {
         if is_machine {
             // Others may extend it.
             for (other, document) in &self.documents {
-                if *other != uri.0 && document.kind() == Some(Kind::Machine) {
+                if *other != uri.0 && document.kind() == Some(FileKind::Machine) {
                     tiers::begin(document, &self.library, &self.shown, &self.outlet);
                 }
             }
@@ -389,7 +390,7 @@ impl Server {
     }
 
     /// What is said of the texts of some kinds is found out again.
-    fn again(&self, of: impl Fn(Kind) -> bool) {
+    fn again(&self, of: impl Fn(FileKind) -> bool) {
         for document in self.documents.values() {
             if document.kind().is_some_and(&of) {
                 tiers::begin(document, &self.library, &self.shown, &self.outlet);

@@ -6,15 +6,15 @@ use std::thread;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
-use super::background::{Keep, Outlet, Slow, Token};
-use super::document::{Document, Kind, Snapshot};
+use super::background::{BackgroundFacts, Outlet, Token, WorkProduct};
+use super::document::{Document, FileKind, Snapshot};
 use super::machine::library::Library;
 use super::{cl, findings, machine, nc};
 use post_job::machine_files;
 
 /// The machine that CL files and programs are shown on.
 #[derive(Clone, Debug, Default)]
-pub struct Shown {
+pub struct ShownMachine {
     /// Its name or file.
     pub machine: Option<String>,
     /// Length of every tool, mm.
@@ -24,21 +24,21 @@ pub struct Shown {
 /// A text and all that work on it needs.
 struct Work {
     of: Arc<Snapshot>,
-    slow: Arc<Slow>,
+    slow: Arc<BackgroundFacts>,
     token: Token,
     library: Library,
-    shown: Shown,
+    shown: ShownMachine,
     to: Outlet,
 }
 
 /// Finds out about a text: tells at once what takes no time, and begins the rest. Work on what it was is given up.
-pub fn begin(document: &Document, library: &Library, shown: &Shown, to: &Outlet) {
+pub fn begin(document: &Document, library: &Library, shown: &ShownMachine, to: &Outlet) {
     let of = Arc::clone(&document.now);
     let token = document.slow.begin(of.version);
     let Some(kind) = document.kind() else {
         return;
     };
-    if kind == Kind::Machine {
+    if kind == FileKind::Machine {
         let found = machine::findings(&of, library);
         document.slow.fast(&of, findings::told(&found, &of), to);
     }
@@ -51,14 +51,14 @@ pub fn begin(document: &Document, library: &Library, shown: &Shown, to: &Outlet)
         to: to.clone(),
     };
     thread::spawn(move || match kind {
-        Kind::Machine => work.derive(),
-        Kind::Cl => work.post(),
-        Kind::Nc => work.read_back(),
+        FileKind::Machine => work.derive(),
+        FileKind::Cl => work.post(),
+        FileKind::Nc => work.read_back(),
     });
 }
 
 impl Work {
-    fn tell(&self, found: &[Diagnostic], keep: Keep) {
+    fn tell(&self, found: &[Diagnostic], keep: WorkProduct) {
         let told = findings::told(found, &self.of);
         self.slow.later(&self.of, &self.token, told, keep, &self.to);
     }
@@ -67,7 +67,7 @@ impl Work {
         if self.token.rested() {
             let found = machine::derived(&self.of, &self.library);
             if !found.is_empty() {
-                self.tell(&found, Keep::Nothing);
+                self.tell(&found, WorkProduct::Nothing);
             }
         }
     }
@@ -95,18 +95,18 @@ impl Work {
         }
         let machine = match self.machine() {
             None => return,
-            Some(Err(faults)) => return self.tell(&faults, Keep::Nothing),
+            Some(Err(faults)) => return self.tell(&faults, WorkProduct::Nothing),
             Some(Ok(machine)) => machine,
         };
         let length = self.shown.tool_length;
         match cl::post(&self.of, machine, length, &self.library, &self.token) {
             None => {}
-            Some(Err(faults)) => self.tell(&faults, Keep::Nothing),
+            Some(Err(faults)) => self.tell(&faults, WorkProduct::Nothing),
             Some(Ok((posted, found))) => {
                 // Lines that cannot be read were told.
                 let more: Vec<Diagnostic> =
                     found.into_iter().filter(|finding| !read.contains(finding)).collect();
-                self.tell(&more, Keep::Posted(posted));
+                self.tell(&more, WorkProduct::Posted(posted));
             }
         }
     }
@@ -117,14 +117,14 @@ impl Work {
         }
         let machine = match self.machine() {
             None => return,
-            Some(Err(faults)) => return self.tell(&faults, Keep::Nothing),
+            Some(Err(faults)) => return self.tell(&faults, WorkProduct::Nothing),
             Some(Ok(machine)) => machine,
         };
         let length = self.shown.tool_length;
         match nc::read(&self.of, machine, length, &self.library, &self.token) {
             None => {}
-            Some(Err(faults)) => self.tell(&faults, Keep::Nothing),
-            Some(Ok((program, found))) => self.tell(&found, Keep::Program(program)),
+            Some(Err(faults)) => self.tell(&faults, WorkProduct::Nothing),
+            Some(Ok((program, found))) => self.tell(&found, WorkProduct::Program(program)),
         }
     }
 }

@@ -26,22 +26,22 @@ use study::StudyArguments;
 Exit codes: 0 done; 1 refused, the messages say why; 2 the command line is wrong.",
     max_term_width = 100
 )]
-struct CommandLine {
+struct PapersCommandLine {
     #[command(subcommand)]
-    verb: Verb,
+    verb: PapersVerb,
 }
 
 #[derive(Debug, Subcommand)]
-enum Verb {
+enum PapersVerb {
     Study(Box<StudyArguments>),
     Plan(Box<PlanArguments>),
 }
 
 fn main() {
     run_to_end(|session| {
-        match CommandLine::try_parse().map_err(CommandFault::Usage)?.verb {
-            Verb::Study(arguments) => study::run(session, &arguments)?,
-            Verb::Plan(arguments) => plan::run(session, &arguments)?,
+        match PapersCommandLine::try_parse().map_err(CommandFault::Usage)?.verb {
+            PapersVerb::Study(arguments) => study::run(session, &arguments)?,
+            PapersVerb::Plan(arguments) => plan::run(session, &arguments)?,
         }
         Ok(())
     })

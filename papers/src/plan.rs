@@ -10,12 +10,12 @@ use post_cli::arguments::flag_values::{
 };
 use post_cli::terminal::print_beside;
 use post_job::failure::Failure;
-use post_job::files::{AtomicFile, OwnFolder, PathArg, Role, json};
+use post_job::files::{AtomicFile, FolderMark, OwnFolder, PathArg, Role, json};
 use post_job::machine_files;
 use post_job::plan::pictures;
 use post_job::session::Session;
 
-use crate::curve::{self, Asked, Curve, Over, Solver};
+use crate::curve::{self, CurveJob, CurveOverrides, SolverChoice, SolverRequest};
 
 /// Plans the fastest feed along a curve that keeps the limits of machine, servos and control.
 ///
@@ -51,8 +51,8 @@ pub struct PlanArguments {
     curve: PathArg,
 
     /// What plans.
-    #[arg(long, value_parser = word::<SolverWord, Solver>(), value_name = "SOLVER", default_value = "reach")]
-    solver: Solver,
+    #[arg(long, value_parser = word::<SolverWord, SolverChoice>(), value_name = "SOLVER", default_value = "reach")]
+    solver: SolverChoice,
 
     /// So many samples of the path, evenly between each knot and the next; limits are kept between them too. 20000 if not
     /// said, 2000 for jerk.
@@ -134,7 +134,7 @@ enum SolverWord {
     Jerk,
 }
 
-impl From<SolverWord> for Solver {
+impl From<SolverWord> for SolverChoice {
     fn from(word: SolverWord) -> Self {
         match word {
             SolverWord::Reach => Self::Reach,
@@ -157,7 +157,7 @@ const PLAN: Role = Role { what: "plan", remedy: "name another file with -o" };
 const PICTURES: Role = Role { what: "plan", remedy: "name another folder with --pictures" };
 
 /// The file by which a folder of pictures is known, and how it begins.
-const MARK: (&str, &str) = ("plan.json", "{\n  \"curve\": ");
+const MARK: FolderMark<'_> = FolderMark { name: "plan.json", begins: "{\n  \"curve\": " };
 
 /// Plans as the arguments say.
 pub fn run(session: &Session, arguments: &PlanArguments) -> Result<(), Failure> {
@@ -176,21 +176,21 @@ pub fn run(session: &Session, arguments: &PlanArguments) -> Result<(), Failure> 
         }
         None => None,
     };
-    let (curve, findings) = Curve::read(session, &arguments.curve, machine)?;
+    let (curve, findings) = CurveJob::read(session, &arguments.curve, machine)?;
     let targets: Vec<(Role, &PathArg)> =
         arguments.output.iter().map(|target| (PLAN, target)).collect();
     let mut texts = AtomicFile::create(session, &targets)?;
     let samples = match arguments.solver {
-        Solver::Reach | Solver::Interior => 20_000,
-        Solver::Jerk => 2000,
+        SolverChoice::Reach | SolverChoice::Interior => 20_000,
+        SolverChoice::Jerk => 2000,
     };
-    let asked = Asked {
+    let asked = SolverRequest {
         solver: arguments.solver,
         samples: arguments.samples.unwrap_or(samples) as usize,
         start_feed: arguments.start_feed / 60.0,
         end_feed: arguments.end_feed / 60.0,
     };
-    let over = Over {
+    let over = CurveOverrides {
         feed: arguments.feed.map(|feed| feed / 60.0),
         chord_error: arguments.chord_error,
         contour_error: arguments.contour_error,
@@ -213,7 +213,7 @@ pub fn run(session: &Session, arguments: &PlanArguments) -> Result<(), Failure> 
     let taken = texts.iter().any(AtomicFile::is_standard);
     if let Some(folder) = &folder {
         let mut files = planned.rooms.files(&planned.note);
-        files.push((MARK.0, text));
+        files.push((MARK.name, text));
         folder.add(&files, &mut texts)?;
         AtomicFile::finish(session, texts)?;
         folder.tidy(&files)?;

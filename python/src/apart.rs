@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use post_job::library::{Refused, Stop};
+use post_job::library::{Refusal, StopSignal};
 use post_machine::diagnostic::Diagnostic;
 use pyo3::prelude::*;
 
@@ -15,12 +15,12 @@ use crate::refusal;
 const BETWEEN: Duration = Duration::from_millis(50);
 
 /// When Python was asked last whether to go on, and what it said against it.
-struct Asking {
+struct InterruptCheck {
     last: Instant,
     raised: Option<PyErr>,
 }
 
-impl Asking {
+impl InterruptCheck {
     fn is_stopped(&mut self) -> bool {
         if self.raised.is_none() && self.last.elapsed() >= BETWEEN {
             self.last = Instant::now();
@@ -30,19 +30,19 @@ impl Asking {
     }
 }
 
-fn locked(asking: &Mutex<Asking>) -> std::sync::MutexGuard<'_, Asking> {
+fn locked(asking: &Mutex<InterruptCheck>) -> std::sync::MutexGuard<'_, InterruptCheck> {
     asking.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Does `job` while other threads run Python. Ctrl-C ends it at the next piece of its CL file that is read.
 pub fn apart<T: Send>(
     py: Python<'_>,
-    job: impl FnOnce(&Stop) -> Result<T, Refused> + Send,
+    job: impl FnOnce(&StopSignal) -> Result<T, Refusal> + Send,
 ) -> PyResult<T> {
     let (done, raised) = py.detach(|| {
-        let asking = Arc::new(Mutex::new(Asking { last: Instant::now(), raised: None }));
+        let asking = Arc::new(Mutex::new(InterruptCheck { last: Instant::now(), raised: None }));
         let asked = Arc::clone(&asking);
-        let stop: Stop = Arc::new(move || locked(&asked).is_stopped());
+        let stop: StopSignal = Arc::new(move || locked(&asked).is_stopped());
         let done = catch_unwind(AssertUnwindSafe(|| job(&stop)));
         (done, locked(&asking).raised.take())
     });

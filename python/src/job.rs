@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1};
-use post_job::library::{Found, KINDS, Kind, MadeProgram, REASONS, ReportTold};
+use post_job::library::{ColumnKind, KINDS, MadeProgram, ProgramFindings, REASONS, ReportOptions};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -64,7 +64,7 @@ impl Job {
         predict: bool,
         most_megabytes: u64,
     ) -> PyResult<()> {
-        let told = ReportTold { verify, predict, most_megabytes };
+        let told = ReportOptions { verify, predict, most_megabytes };
         apart(py, |stop| self.made.report(stop, &page, told))
     }
 
@@ -82,11 +82,11 @@ impl Job {
             let (name, values) = (&array.name, &array.values);
             let whole = values.iter().map(|value| *value as i64);
             match (array.kind, array.width) {
-                (Kind::Count, _) => all.set_item(name, PyArray1::from_iter(py, whole)),
-                (Kind::Choice, _) => {
+                (ColumnKind::Count, _) => all.set_item(name, PyArray1::from_iter(py, whole)),
+                (ColumnKind::Choice, _) => {
                     all.set_item(name, PyArray1::from_iter(py, whole.map(|place| place as u8)))
                 }
-                (Kind::Flag, _) => {
+                (ColumnKind::Flag, _) => {
                     all.set_item(name, PyArray1::from_iter(py, whole.map(|flag| flag != 0)))
                 }
                 (_, None) => all.set_item(name, PyArray1::from_slice(py, values)),
@@ -101,6 +101,6 @@ impl Job {
     }
 }
 
-fn given(found: Found) -> (String, Vec<DiagnosticFields>) {
+fn given(found: ProgramFindings) -> (String, Vec<DiagnosticFields>) {
     (found.json, told(&found.findings))
 }

@@ -8,7 +8,7 @@ use numpy::{
     PyUntypedArrayMethods,
 };
 use post_job::library::{
-    Deviations, LoadedMachine, MachineSettings, MachineTold, Solutions, Wanted,
+    Deviations, LoadedMachine, MachineSelection, MachineSettings, Solutions, ToolPoses,
 };
 use post_machine::description::Setting;
 use pyo3::prelude::*;
@@ -27,7 +27,7 @@ pub struct Machine {
 type OutputRows<'py> = Bound<'py, PyArray2<f64>>;
 
 /// Numbers of solutions of many points, and how many solutions each has.
-type Counted<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<i64>>);
+type SolutionRows<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<i64>>);
 
 /// Numbers of many points, in one piece.
 type InputRows<'py> = PyReadonlyArray2<'py, f64>;
@@ -60,7 +60,7 @@ impl Machine {
             plugins,
             ..Default::default()
         };
-        let told = MachineTold { name, over };
+        let told = MachineSelection { name, over };
         let loaded = apart(py, |stop| LoadedMachine::load(stop, told))?;
         Ok(Self { loaded })
     }
@@ -116,9 +116,9 @@ impl Machine {
         edge: Option<InputRows<'py>>,
         near: PyReadonlyArray1<'py, f64>,
         within_travel: bool,
-    ) -> PyResult<Counted<'py>> {
+    ) -> PyResult<SolutionRows<'py>> {
         let points = tip.shape()[0];
-        let wanted = Wanted {
+        let wanted = ToolPoses {
             tip: tip.as_slice()?,
             axis: axis.as_slice()?,
             edge: edge.as_ref().map(|edge| edge.as_slice()).transpose()?,
@@ -141,7 +141,7 @@ impl Machine {
         cut: PyReadonlyArray1<'py, bool>,
     ) -> PyResult<OutputRows<'py>> {
         let points = tip.shape()[0];
-        let wanted = Wanted {
+        let wanted = ToolPoses {
             tip: tip.as_slice()?,
             axis: axis.as_slice()?,
             edge: edge.as_ref().map(|edge| edge.as_slice()).transpose()?,

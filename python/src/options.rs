@@ -1,6 +1,6 @@
 //! Options as Python passes them: values by name.
 
-use post_job::library::{OptionTold, Value};
+use post_job::library::{NamedOption, SettingValue};
 use pyo3::prelude::*;
 
 /// A value of an option.
@@ -13,7 +13,7 @@ pub enum OptionInput {
     List(Vec<String>),
 }
 
-impl From<OptionInput> for Value {
+impl From<OptionInput> for SettingValue {
     fn from(given: OptionInput) -> Self {
         match given {
             OptionInput::Yes(yes) => Self::Yes(yes),
@@ -26,6 +26,6 @@ impl From<OptionInput> for Value {
 }
 
 /// Options for a job.
-pub fn told(options: Vec<(String, OptionInput)>) -> Vec<OptionTold> {
+pub fn told(options: Vec<(String, OptionInput)>) -> Vec<NamedOption> {
     options.into_iter().map(|(name, given)| (name, given.into())).collect()
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 
 use numpy::{IntoPyArray, PyArray1};
-use post_job::library::{Refused, Stop, StudyJobs, StudyPart, Values};
+use post_job::library::{Refusal, StopSignal, StudyJobs, StudyPart, StudyValues};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
@@ -13,13 +13,13 @@ use crate::apart::apart;
 use crate::options;
 
 /// Whether to go on is asked of Python no oftener than a user would see.
-struct Looks {
+struct ProgressCallback {
     told: Option<Py<PyAny>>,
     /// What stopped the work.
     fault: Option<PyErr>,
 }
 
-impl Looks {
+impl ProgressCallback {
     /// Hears signals and tells how far the work has come; false ends it.
     fn look(&mut self, done: usize, refused: usize) -> bool {
         Python::attach(|py| {
@@ -53,7 +53,7 @@ impl Study {
     fn with<T: Send>(
         &self,
         py: Python<'_>,
-        job: impl FnOnce(&Stop, &mut StudyJobs) -> Result<T, Refused> + Send,
+        job: impl FnOnce(&StopSignal, &mut StudyJobs) -> Result<T, Refusal> + Send,
     ) -> PyResult<T> {
         apart(py, |stop| {
             // What a job that panicked left undone is done again.
@@ -107,7 +107,7 @@ impl Study {
         threads: Option<NonZeroUsize>,
         told: Option<Py<PyAny>>,
     ) -> PyResult<()> {
-        let mut looks = Looks { told, fault: None };
+        let mut looks = ProgressCallback { told, fault: None };
         let done = self
             .with(py, |_, jobs| jobs.run(threads, &mut |done, refused| looks.look(done, refused)));
         looks.heard()?;
@@ -130,8 +130,8 @@ impl Study {
         let table = self.with(py, |_, jobs| Ok(jobs.table()))?;
         let columns = table.columns.into_iter().map(|column| {
             let values = match column.values {
-                Values::Numbers(numbers) => floats(py, numbers.into_iter()),
-                Values::Counts(counts) => {
+                StudyValues::Numbers(numbers) => floats(py, numbers.into_iter()),
+                StudyValues::Counts(counts) => {
                     match counts.iter().copied().collect::<Option<Vec<i64>>>() {
                         Some(counts) => counts.into_pyarray(py).into_any(),
                         None => {
@@ -140,7 +140,7 @@ impl Study {
                         }
                     }
                 }
-                Values::Texts(texts) => texts.into_pyobject(py)?,
+                StudyValues::Texts(texts) => texts.into_pyobject(py)?,
             };
             Ok((column.name, values.unbind()))
         });
@@ -174,7 +174,7 @@ pub fn run_part(
     machines: &str,
     threads: Option<NonZeroUsize>,
 ) -> PyResult<Vec<String>> {
-    let mut looks = Looks { told: None, fault: None };
+    let mut looks = ProgressCallback { told: None, fault: None };
     let options = options::told(options);
     let outcomes = apart(py, |stop| {
         let part = StudyPart::new(stop, lines, &options, files, machines)?;

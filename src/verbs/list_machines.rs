@@ -9,7 +9,7 @@ use post_machine::description::Machine;
 use post_cli::terminal;
 use post_job as job;
 use post_job::failure::Failure;
-use post_job::machine_files::{self, Listed};
+use post_job::machine_files::{self, ListedMachine};
 use post_job::session::Session;
 use post_job::text_table::TextTable;
 
@@ -45,7 +45,7 @@ pub fn run(session: &Session, arguments: &MachinesArguments) -> Result<(), Failu
 }
 
 /// Name, axes, dialect, file and class.
-fn row(listed: Listed) -> [String; 5] {
+fn row(listed: ListedMachine) -> [String; 5] {
     let from = job::origin(listed.path.as_deref());
     match listed.machine {
         Ok(machine) => [

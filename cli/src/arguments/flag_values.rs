@@ -8,7 +8,7 @@ use post_machine::description::Setting;
 use post_posting::program::DefaultSpindle;
 
 use post_job::files::PathArg;
-use post_job::settings::values::{self, Value};
+use post_job::settings::values::{self, SettingValue};
 
 /// Reads one of the words `W`, and takes it for what it means.
 pub fn word<W, T>() -> impl TypedValueParser<Value = T>
@@ -35,7 +35,7 @@ macro_rules! of_text {
         $(
             #[doc = concat!("As [`values::", stringify!($name), "`].")]
             pub fn $name(text: &str) -> Result<$type, String> {
-                values::$name(&Value::from(text))
+                values::$name(&SettingValue::from(text))
             }
         )*
     };

@@ -6,13 +6,13 @@ use clap::builder::{PathBufValueParser, PossibleValuesParser, ValueParser};
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 
-use post_job::settings::{About, Form, Row, Table, Value};
+use post_job::settings::{About, SettingForm, SettingRow, SettingValue, SettingsGroup};
 
 /// A group of settings as the command line says them.
 #[derive(Clone, Debug)]
 pub struct Flags<S>(pub S);
 
-impl<S: Table> Args for Flags<S> {
+impl<S: SettingsGroup> Args for Flags<S> {
     fn augment_args(command: Command) -> Command {
         S::ROWS.iter().fold(command, |command, row| command.arg(flag(row)))
     }
@@ -22,7 +22,7 @@ impl<S: Table> Args for Flags<S> {
     }
 }
 
-impl<S: Table> FromArgMatches for Flags<S> {
+impl<S: SettingsGroup> FromArgMatches for Flags<S> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         let mut flags = Self(S::default());
         flags.update_from_arg_matches(matches)?;
@@ -41,13 +41,13 @@ impl<S: Table> FromArgMatches for Flags<S> {
 }
 
 /// The flag of a row.
-fn flag<S: Table>(row: &'static Row<S>) -> Arg {
+fn flag<S: SettingsGroup>(row: &'static SettingRow<S>) -> Arg {
     let about = &row.about;
     let text = about.text();
     let help = text.strip_suffix('.').unwrap_or(&text).to_owned();
     let mut flag = Arg::new(about.name).long(about.flag()).help(help).help_heading(about.heading);
     flag = match about.form {
-        Form::Flag => return requiring(flag.action(ArgAction::SetTrue), about),
+        SettingForm::Flag => return requiring(flag.action(ArgAction::SetTrue), about),
         _ => flag.value_name(about.value).value_parser(parser(row)),
     };
     if let Some(default) = about.default {
@@ -63,42 +63,42 @@ fn requiring(flag: Arg, about: &About) -> Arg {
 }
 
 /// What refuses values of a row that are none.
-fn parser<S: Table>(row: &'static Row<S>) -> ValueParser {
+fn parser<S: SettingsGroup>(row: &'static SettingRow<S>) -> ValueParser {
     match row.about.form {
-        Form::Words(words) => PossibleValuesParser::new(words()).into(),
-        Form::Whole { least, most } => match (i64::try_from(least), i64::try_from(most)) {
+        SettingForm::Words(words) => PossibleValuesParser::new(words()).into(),
+        SettingForm::Whole { least, most } => match (i64::try_from(least), i64::try_from(most)) {
             (Ok(least), Ok(most)) => clap::value_parser!(i64).range(least..=most).into(),
             // As clap says it of a number without a largest.
             _ => clap::value_parser!(u64).range(least..).into(),
         },
-        Form::Path => PathBufValueParser::new().into(),
-        Form::Flag | Form::Text => ValueParser::new(move |text: &str| {
-            let put = (row.put)(&mut S::default(), &Value::from(text));
+        SettingForm::Path => PathBufValueParser::new().into(),
+        SettingForm::Flag | SettingForm::Text => ValueParser::new(move |text: &str| {
+            let put = (row.put)(&mut S::default(), &SettingValue::from(text));
             put.map(|()| text.to_owned())
         }),
     }
 }
 
 /// The values that the command line has for a row.
-fn told(about: &About, matches: &ArgMatches) -> Vec<Value> {
+fn told(about: &About, matches: &ArgMatches) -> Vec<SettingValue> {
     let name = about.name;
     match about.form {
-        Form::Flag => vec![Value::Yes(matches.get_flag(name))],
-        Form::Text | Form::Words(_) => {
+        SettingForm::Flag => vec![SettingValue::Yes(matches.get_flag(name))],
+        SettingForm::Text | SettingForm::Words(_) => {
             let texts = matches.get_many::<String>(name).into_iter().flatten();
-            texts.map(|text| Value::from(text.as_str())).collect()
+            texts.map(|text| SettingValue::from(text.as_str())).collect()
         }
-        Form::Whole { most, .. } if i64::try_from(most).is_ok() => {
+        SettingForm::Whole { most, .. } if i64::try_from(most).is_ok() => {
             let numbers = matches.get_many::<i64>(name).into_iter().flatten();
-            numbers.map(|number| Value::Whole(*number)).collect()
+            numbers.map(|number| SettingValue::Whole(*number)).collect()
         }
-        Form::Whole { .. } => {
+        SettingForm::Whole { .. } => {
             let numbers = matches.get_many::<u64>(name).into_iter().flatten();
-            numbers.map(|number| Value::Text(number.to_string())).collect()
+            numbers.map(|number| SettingValue::Text(number.to_string())).collect()
         }
-        Form::Path => {
+        SettingForm::Path => {
             let paths = matches.get_many::<PathBuf>(name).into_iter().flatten();
-            paths.map(|path| Value::Path(path.clone())).collect()
+            paths.map(|path| SettingValue::Path(path.clone())).collect()
         }
     }
 }

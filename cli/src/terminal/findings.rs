@@ -6,13 +6,13 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use post_grammar::text::escaped;
 use post_machine::diagnostic::{Diagnostic, Severity, SourcePlace};
 
-use post_job::files::Texts;
+use post_job::files::TextOutcomes;
 
 /// Findings of one severity that are told; of the others how many there are.
 const MOST_TOLD: usize = 120;
 
 /// Writes findings to standard error, warnings first, and how many errors there were.
-pub fn findings(findings: &[Diagnostic], texts: &Texts) {
+pub fn findings(findings: &[Diagnostic], texts: &TextOutcomes) {
     let mut stderr = std::io::stderr().lock();
     let renderer = if stderr.is_terminal() { Renderer::styled() } else { Renderer::plain() };
     let of = |severity| findings.iter().filter(move |finding| finding.severity == severity);

@@ -14,7 +14,7 @@ pub use progress::JobsProgress;
 
 use crate::failure::CommandFault;
 use post_job::failure::Failure;
-use post_job::files::{FileFault, Texts, standard};
+use post_job::files::{FileFault, TextOutcomes, standard};
 use post_job::session::{Bar, Face, Session};
 
 /// Lines of text in which names and texts from files, plugins and the command line cannot switch the terminal: what it
@@ -27,7 +27,7 @@ fn printable(text: &str) -> Cow<'_, str> {
 pub struct Terminal;
 
 impl Face for Terminal {
-    fn findings(&self, findings: &[Diagnostic], texts: &Texts) {
+    fn findings(&self, findings: &[Diagnostic], texts: &TextOutcomes) {
         findings::findings(findings, texts);
     }
 

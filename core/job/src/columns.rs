@@ -12,7 +12,7 @@ use crate::files::{AtomicFile, FileFault};
 
 /// What the values of a column are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ColumnKind {
     /// Numbers in the unit of the column.
     Number,
     /// How often, a line, or a place in a list.
@@ -28,7 +28,7 @@ pub enum Kind {
 /// A value of a row.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum Value {
+pub enum CellValue {
     /// In the unit of the column.
     Number(f64),
     /// A count, a place or a flag.
@@ -37,7 +37,7 @@ pub enum Value {
     Text(Cow<'static, str>),
 }
 
-impl Value {
+impl CellValue {
     /// The value as a number, where it is one.
     #[inline]
     pub fn number(&self) -> Option<f64> {
@@ -49,7 +49,7 @@ impl Value {
     }
 }
 
-impl<'de> Deserialize<'de> for Value {
+impl<'de> Deserialize<'de> for CellValue {
     /// Numbers are read by the standard library, to the last bit.
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         let raw = Box::<RawValue>::deserialize(from)?;
@@ -66,21 +66,21 @@ impl<'de> Deserialize<'de> for Value {
 }
 
 /// What can stand in a column.
-pub trait Cell {
+pub trait IntoCell {
     /// What the column is by it.
-    const KIND: Kind;
+    const KIND: ColumnKind;
 
     /// The value; none where the row has none.
-    fn value(self) -> Option<Value>;
+    fn value(self) -> Option<CellValue>;
 }
 
 macro_rules! cells {
     ($($type:ty: $kind:ident = |$cell:ident| $value:expr;)*) => {$(
-        impl Cell for $type {
-            const KIND: Kind = Kind::$kind;
+        impl IntoCell for $type {
+            const KIND: ColumnKind = ColumnKind::$kind;
 
             #[inline]
-            fn value(self) -> Option<Value> {
+            fn value(self) -> Option<CellValue> {
                 let $cell = self;
                 Some($value)
             }
@@ -89,27 +89,27 @@ macro_rules! cells {
 }
 
 cells! {
-    f64: Number = |number| Value::Number(number);
-    i64: Count = |count| Value::Count(count);
-    u64: Count = |count| Value::Count(i64::try_from(count).unwrap_or(i64::MAX));
-    u32: Count = |count| Value::Count(count.into());
-    u8: Choice = |place| Value::Count(place.into());
-    bool: Flag = |flag| Value::Count(flag.into());
-    &'static str: Text = |word| Value::Text(word.into());
-    String: Text = |text| Value::Text(text.into());
+    f64: Number = |number| CellValue::Number(number);
+    i64: Count = |count| CellValue::Count(count);
+    u64: Count = |count| CellValue::Count(i64::try_from(count).unwrap_or(i64::MAX));
+    u32: Count = |count| CellValue::Count(count.into());
+    u8: Choice = |place| CellValue::Count(place.into());
+    bool: Flag = |flag| CellValue::Count(flag.into());
+    &'static str: Text = |word| CellValue::Text(word.into());
+    String: Text = |text| CellValue::Text(text.into());
 }
 
-impl<C: Cell> Cell for Option<C> {
-    const KIND: Kind = C::KIND;
+impl<C: IntoCell> IntoCell for Option<C> {
+    const KIND: ColumnKind = C::KIND;
 
     #[inline]
-    fn value(self) -> Option<Value> {
+    fn value(self) -> Option<CellValue> {
         self.and_then(C::value)
     }
 }
 
 /// Reads a column's value, the first or a further one, off a row.
-type Reader<R> = Box<dyn Fn(&R, usize) -> Option<Value>>;
+type ColumnReader<R> = Box<dyn Fn(&R, usize) -> Option<CellValue>>;
 
 /// A column of a table whose rows are `R`.
 pub struct Column<R> {
@@ -124,15 +124,15 @@ pub struct Column<R> {
     /// What the page tells it against (`post_report::meta::ColumnMeta::from`).
     pub from: Option<&'static str>,
     /// What its values are.
-    pub kind: Kind,
+    pub kind: ColumnKind,
     /// How many values a row has in it, where it has a list of them.
     pub width: Option<usize>,
-    value: Reader<R>,
+    value: ColumnReader<R>,
 }
 
 impl<R> Column<R> {
     /// A column with one value a row.
-    pub fn new<C: Cell>(
+    pub fn new<C: IntoCell>(
         name: impl Into<Cow<'static, str>>,
         unit: &'static str,
         decimals: u8,
@@ -142,7 +142,7 @@ impl<R> Column<R> {
     }
 
     /// A column with a list of `width` values a row, which `value` is asked for by their places.
-    pub fn wide<C: Cell>(
+    pub fn wide<C: IntoCell>(
         name: impl Into<Cow<'static, str>>,
         width: usize,
         value: impl Fn(&R, usize) -> C + 'static,
@@ -171,7 +171,7 @@ impl<R> Column<R> {
 
     /// What it is of a row; none where the row has no such value.
     #[inline]
-    pub fn of(&self, row: &R, place: usize) -> Option<Value> {
+    pub fn of(&self, row: &R, place: usize) -> Option<CellValue> {
         (self.value)(row, place)
     }
 }
@@ -207,10 +207,10 @@ impl<'f, R> CsvTable<'f, R> {
                 text.push(',');
             }
             match column.of(row, 0) {
-                Some(Value::Number(number)) => fixed(text, number, column.decimals),
+                Some(CellValue::Number(number)) => fixed(text, number, column.decimals),
                 // Writing to a String cannot fail.
-                Some(Value::Count(count)) => drop(write!(text, "{count}")),
-                Some(Value::Text(word)) => text.push_str(&word),
+                Some(CellValue::Count(count)) => drop(write!(text, "{count}")),
+                Some(CellValue::Text(word)) => text.push_str(&word),
                 None => {}
             }
         }

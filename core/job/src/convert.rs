@@ -15,12 +15,12 @@ use post_readback::interpret::{Interpreter, Limits};
 use post_readback::verify::{BlockReport, CutPath};
 
 use super::JobMachine;
-use super::making::{Part, ProgramMaker};
+use super::making::{ProgramMaker, ProgramPart};
 use super::nc_program::{NcControl, ProgramFile};
 use super::nc_to_cl::{self, Tools};
-use super::posting_pass::Beside;
-use super::read_back::{self, Against, Held, Reading};
-use super::report::{self, Made};
+use super::posting_pass::PostingExtras;
+use super::read_back::{self, ReadingSetup, VerifiedProgram, VerifyReference};
+use super::report::{self, PageTexts, PostPage};
 use super::text::{clock, number};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg, Role};
@@ -58,7 +58,7 @@ pub struct Converted {
     /// What posting came to.
     pub report: PostingReport,
     /// What the new program does, held against the first.
-    pub held: Held,
+    pub held: VerifiedProgram,
     /// What the path consists of.
     pub facts: CourseFacts,
     /// What the user should know.
@@ -81,8 +81,7 @@ pub fn convert(session: &Session, request: &ConvertRequest) -> Result<Converted,
     let (program, cl_file) = files.split_at_mut(1);
     let mut findings = Vec::new();
     let mut source = conversion.write_cl(cl_file.first_mut(), &mut findings)?;
-    let texts = (&mut program[0], page);
-    let (mut converted, page) = conversion.make(&mut source, texts, findings)?;
+    let (mut converted, page) = conversion.make(&mut source, &mut program[0], page, findings)?;
     files.extend(page);
     converted.printed = files.iter().any(AtomicFile::is_standard);
     AtomicFile::finish(session, files)?;
@@ -167,21 +166,23 @@ impl<'a> Conversion<'a> {
     fn make(
         &self,
         source: &mut ClSource,
-        (program, mut page): (&mut AtomicFile, Option<AtomicFile>),
+        program: &mut AtomicFile,
+        mut page: Option<AtomicFile>,
         mut findings: Vec<Diagnostic>,
     ) -> Result<(Converted, Option<AtomicFile>), Failure> {
         let Self { session, request, machine, .. } = self;
         let making = MakingSettings::default();
         let mut maker = ProgramMaker::new(session, &request.to, &making, self.finder.clone());
         maker.look_ahead_where_needed(machine, source)?;
-        let part = Part { lines: None, target: request.output.clone(), machine: machine.clone() };
+        let part =
+            ProgramPart { lines: None, target: request.output.clone(), machine: machine.clone() };
         let ready = maker.prepare(&part, source, false)?;
         let mut rows = match &page {
             Some(_) => Some(maker.rows(&part, source, false)?),
             None => None,
         };
         let observer = rows.as_mut().map(|rows| rows as _);
-        let beside = Beside { observer, ..Beside::default() };
+        let beside = PostingExtras { observer, ..PostingExtras::default() };
         let report = maker.write(ready, source, program, beside, &mut findings)?.report;
         let (held, facts) = self.hold(source, program)?;
         findings.extend(held.findings.iter().cloned());
@@ -193,8 +194,8 @@ impl<'a> Conversion<'a> {
         let made = Converted { names, machines, report, held, facts, findings, printed: false };
         if let (Some(page), Some(rows)) = (&mut page, rows) {
             let (named, mut text) = (program.name().to_owned(), program.reread()?);
-            let texts = (source, named.as_str(), &mut text as _);
-            self.page(&made).write((rows, None), texts, request.report.most(), page)?;
+            let texts = PageTexts { source, name: &named, text: &mut text };
+            self.page(&made).write(rows, None, texts, request.report.most(), page)?;
         }
         Ok((made, page))
     }
@@ -205,7 +206,7 @@ impl<'a> Conversion<'a> {
         &self,
         source: &mut ClSource,
         program: &mut AtomicFile,
-    ) -> Result<(Held, CourseFacts), Failure> {
+    ) -> Result<(VerifiedProgram, CourseFacts), Failure> {
         let (name, machine) = (&self.program.name, &self.machine);
         let chords = self.chords();
         let finer = Chords { tip: chords.tip * FINER, axis: chords.axis * FINER, ..chords };
@@ -213,13 +214,13 @@ impl<'a> Conversion<'a> {
         let (facts, _) = CourseFacts::of(&mut read);
         let mut again = ClCourse::new(ClSettings::of(machine, name), source.open()?.bytes);
         let (cut_path, _) = CutPath::of(&mut again, machine.control_point.along);
-        let against = Against {
+        let against = VerifyReference {
             course: ProgramCourse::new(self.run()?, finer),
             name: name.clone(),
             tools: read.tools().to_vec(),
             cut_path: Some(cut_path),
         };
-        let reading = Reading {
+        let reading = ReadingSetup {
             session: self.session,
             arguments: &self.request.to,
             machine,
@@ -241,9 +242,9 @@ impl<'a> Conversion<'a> {
     }
 
     /// What a page is told of the new program.
-    fn page<'p>(&'p self, made: &'p Converted) -> Made<'p> {
+    fn page<'p>(&'p self, made: &'p Converted) -> PostPage<'p> {
         let ConvertRequest { to: JobSettings { input, .. }, output, .. } = self.request;
-        Made {
+        PostPage {
             session: self.session,
             machine: &self.machine,
             cl: format!("{} as CL file", report::name_of(input)),

@@ -213,7 +213,7 @@ fn read_bounded(path: &Path) -> io::Result<Vec<u8>> {
 }
 
 /// A machine that a bare name finds.
-pub struct Listed {
+pub struct ListedMachine {
     /// The name.
     pub name: String,
     /// Its file; none if it is built in.
@@ -226,10 +226,10 @@ pub struct Listed {
 ///
 /// # Errors
 /// A folder that is not there.
-pub fn list(session: &Session, named: &[PathBuf]) -> Result<Vec<Listed>, Failure> {
+pub fn list(session: &Session, named: &[PathBuf]) -> Result<Vec<ListedMachine>, Failure> {
     let listed = names(&folders(named)?).into_iter().map(|(name, path)| {
         let machine = load(session, &name, named, &[]);
-        Listed { name, path, machine }
+        ListedMachine { name, path, machine }
     });
     Ok(listed.collect())
 }

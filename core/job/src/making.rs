@@ -14,20 +14,20 @@ use post_readback::interpret::Limits;
 use post_readback::verify::{BlockReport, Verification};
 
 use crate::JobMachine;
-use crate::compensate::{self, Compensation, Moved};
+use crate::compensate::{self, ServoCompensation, ShiftedPath};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
 use crate::one_program::OneProgram;
 use crate::plan_rounds;
 use crate::plan_worth;
 use crate::plugin_finder;
-use crate::posting_pass::Beside;
-use crate::predict::{self, Against, Asked, Predicted, Prediction, Sample};
-use crate::read_back::{self, Held, Reading};
-use crate::report::{self, BlockRows, ClWindow, Made, PredictedParts};
+use crate::posting_pass::PostingExtras;
+use crate::predict::{self, PredictReference, Predicted, Prediction, PredictionSetup, Sample};
+use crate::read_back::{self, ReadingSetup, VerifiedProgram};
+use crate::report::{self, BlockRows, ClWindow, PageTexts, PostPage, PredictedParts};
 use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings};
-use crate::summary::{self, Told};
+use crate::summary::{self, SummaryJson};
 
 /// What a job sets over the machine file so that its program is numbered so.
 fn number_setting(
@@ -73,7 +73,7 @@ pub fn target(
 
 /// One program of a run.
 #[derive(Clone, Debug)]
-pub struct Part {
+pub struct ProgramPart {
     /// Lines of the CL file that it is made of; none: all.
     pub lines: Option<Range<u64>>,
     /// Where it goes.
@@ -83,7 +83,7 @@ pub struct Part {
 }
 
 /// The text of a program in the making, that can be read again.
-pub trait ProgramText: TextSink {
+pub trait ProgramSink: TextSink {
     /// What messages call it.
     fn name(&self) -> String;
 
@@ -94,12 +94,20 @@ pub trait ProgramText: TextSink {
     fn reread(&mut self) -> Result<Box<dyn Reread + '_>, Failure>;
 }
 
+/// The text of a program that is read again.
+pub struct ProgramInput<R> {
+    /// The program, as messages call it.
+    pub name: String,
+    /// All of it, from its beginning.
+    pub text: R,
+}
+
 /// A text that can be gone back in.
 pub trait Reread: Read + Seek {}
 
 impl<T: Read + Seek> Reread for T {}
 
-impl ProgramText for AtomicFile {
+impl ProgramSink for AtomicFile {
     fn name(&self) -> String {
         Self::name(self).to_owned()
     }
@@ -111,7 +119,7 @@ impl ProgramText for AtomicFile {
 
 /// What is wanted of a program beside its text.
 #[derive(Default)]
-pub struct Wanted<'w, 'o, 'p> {
+pub struct ProgramRequest<'w, 'o, 'p> {
     /// It is read back and held against the CL file.
     pub verify: bool,
     /// What it does is predicted.
@@ -131,9 +139,9 @@ pub struct ProgramOutcome {
     /// Its points were moved for the servos.
     pub moved: bool,
     /// What planning in rounds has done.
-    pub plan_rounds: Option<plan_rounds::Found>,
+    pub plan_rounds: Option<plan_rounds::PlanRoundsSummary>,
     /// What moving points for the servos has done.
-    pub compensation: Option<compensate::Found>,
+    pub compensation: Option<compensate::CompensationSummary>,
     /// What reading it back found.
     pub verification: Option<Verification>,
     /// What is predicted of it.
@@ -142,8 +150,8 @@ pub struct ProgramOutcome {
 
 impl ProgramOutcome {
     /// What its summary tells.
-    pub fn told(&self) -> Told<'_> {
-        Told {
+    pub fn told(&self) -> SummaryJson<'_> {
+        SummaryJson {
             report: &self.report,
             verification: self.verification.as_ref(),
             prediction: self.prediction.as_ref(),
@@ -224,10 +232,10 @@ impl<'a> ProgramMaker<'a> {
     /// The machine file does not allow it, or the program cannot be made.
     pub fn prepare<'p>(
         &'p self,
-        part: &'p Part,
+        part: &'p ProgramPart,
         source: &mut ClSource,
         shown: bool,
-    ) -> Result<Ready<'p>, Failure> {
+    ) -> Result<PreparedProgram<'p>, Failure> {
         let program = OneProgram {
             session: self.session,
             arguments: self.job,
@@ -239,7 +247,7 @@ impl<'a> ProgramMaker<'a> {
             plans: self.making.plan,
             tightening: None,
         };
-        Ready::new(program, self.making, self.ahead.as_ref(), source, shown)
+        PreparedProgram::new(program, self.making, self.ahead.as_ref(), source, shown)
     }
 
     /// Writes a program, and finds out what else is wanted of it; what the user should know goes to `findings`.
@@ -248,13 +256,14 @@ impl<'a> ProgramMaker<'a> {
     /// All that is wrong with it, the findings among it, or a file that cannot be read or written.
     pub fn make(
         &self,
-        (part, ready): (&Part, Ready<'_>),
+        part: &ProgramPart,
+        ready: PreparedProgram<'_>,
         source: &mut ClSource,
-        text: &mut dyn ProgramText,
-        wanted: Wanted<'_, '_, '_>,
+        text: &mut dyn ProgramSink,
+        wanted: ProgramRequest<'_, '_, '_>,
         findings: &mut Vec<Diagnostic>,
     ) -> Result<ProgramOutcome, Failure> {
-        let Wanted { verify, predict, watch, observer, page } = wanted;
+        let ProgramRequest { verify, predict, watch, observer, page } = wanted;
         let mut rows = match &page {
             Some(_) => Some(self.rows(part, source, predict)?),
             None => None,
@@ -264,11 +273,11 @@ impl<'a> ProgramMaker<'a> {
             (None, Some(observer)) => Some(observer),
             (None, None) => None,
         };
-        let beside = Beside { watch, observer, ..Beside::default() };
+        let beside = PostingExtras { watch, observer, ..PostingExtras::default() };
         let mut outcome = self.write(ready, source, text, beside, findings)?;
         if verify {
-            let name = text.name();
-            let held = self.read_back(part, outcome.moved, source, (name, text.reread()?))?;
+            let program = ProgramInput { name: text.name(), text: text.reread()? };
+            let held = self.read_back(part, outcome.moved, source, program)?;
             if held.is_wrong() {
                 findings.extend(held.findings);
                 return Err(std::mem::take(findings).into());
@@ -280,17 +289,16 @@ impl<'a> ProgramMaker<'a> {
             if let Some(rows) = &mut rows {
                 heard = PredictedParts::of(&part.machine, rows)?;
             }
-            let name = text.name();
-            let told = (&mut *source, heard.as_mut());
-            let predicted = self.predict(part, None, told, (name, text.reread()?))?;
+            let program = ProgramInput { name: text.name(), text: text.reread()? };
+            let predicted = self.predict(part, None, source, heard.as_mut(), program)?;
             findings.extend(predicted.findings);
             outcome.prediction = Some(predicted.found);
         }
         if let (Some((file, most)), Some(rows)) = (page, rows) {
             let input = self.page(part, &outcome, findings);
             let name = text.name();
-            let texts = (source, name.as_str(), &mut text.reread()? as &mut dyn Read);
-            input.write((rows, heard), texts, most, file)?;
+            let texts = PageTexts { source, name: &name, text: &mut text.reread()? };
+            input.write(rows, heard, texts, most, file)?;
         }
         Ok(outcome)
     }
@@ -301,10 +309,10 @@ impl<'a> ProgramMaker<'a> {
     /// All that is wrong with it, the findings among it, or a file that cannot be read or written.
     pub fn write(
         &self,
-        ready: Ready<'_>,
+        ready: PreparedProgram<'_>,
         source: &mut ClSource,
         text: &mut dyn TextSink,
-        beside: Beside<'_, '_, '_>,
+        beside: PostingExtras<'_, '_, '_>,
         findings: &mut Vec<Diagnostic>,
     ) -> Result<ProgramOutcome, Failure> {
         findings.extend(ready.warning());
@@ -327,11 +335,11 @@ impl<'a> ProgramMaker<'a> {
     /// What a page is told of a program.
     fn page<'p>(
         &'p self,
-        part: &'p Part,
+        part: &'p ProgramPart,
         outcome: &'p ProgramOutcome,
         findings: &'p [Diagnostic],
-    ) -> Made<'p> {
-        Made {
+    ) -> PostPage<'p> {
+        PostPage {
             session: self.session,
             machine: &part.machine,
             cl: report::name_of(&self.job.input),
@@ -354,7 +362,7 @@ impl<'a> ProgramMaker<'a> {
     /// The CL file cannot be read, or there is no place for them.
     pub fn rows<'p>(
         &self,
-        part: &'p Part,
+        part: &'p ProgramPart,
         source: &ClSource,
         predicted: bool,
     ) -> Result<BlockRows<'p>, Failure> {
@@ -362,22 +370,22 @@ impl<'a> ProgramMaker<'a> {
         BlockRows::new(&part.machine, cl, predicted)
     }
 
-    /// Reads the program `name` back and holds it against the CL file; `moved` if its points were moved for the servos.
+    /// Reads a program back and holds it against the CL file; `moved` if its points were moved for the servos.
     ///
     /// # Errors
     /// A file that cannot be read.
     pub fn read_back(
         &self,
-        part: &Part,
+        part: &ProgramPart,
         moved: bool,
         source: &mut ClSource,
-        (name, text): (String, impl Read + Seek),
-    ) -> Result<Held, Failure> {
+        program: ProgramInput<impl Read + Seek>,
+    ) -> Result<VerifiedProgram, Failure> {
         // What was moved on purpose is off the CL file by that.
         let accuracy = &part.machine.accuracy;
         let bound = accuracy.servo_compensation.filter(|_| moved);
         let moved = bound.map(|bound| accuracy.tolerance + bound);
-        let reading = Reading {
+        let reading = ReadingSetup {
             session: self.session,
             arguments: self.job,
             machine: &part.machine,
@@ -393,21 +401,23 @@ impl<'a> ProgramMaker<'a> {
             own: true,
             lines: part.lines.clone(),
         };
+        let ProgramInput { name, text } = program;
         read_back::verify(&reading, source, &name, text, &mut |_: &BlockReport| {})
     }
 
-    /// Predicts what the program `name` does; `period` between set-points, s, over the machine file's.
+    /// Predicts what a program does, for the page too if `heard` is given; `period` between set-points, s, over the machine file's.
     ///
     /// # Errors
     /// A file that cannot be read, or a machine that cannot be used.
     pub fn predict(
         &self,
-        part: &Part,
+        part: &ProgramPart,
         period: Option<f64>,
-        (source, mut heard): (&mut ClSource, Option<&mut PredictedParts>),
-        (name, text): (String, impl Read + Seek),
+        source: &mut ClSource,
+        mut heard: Option<&mut PredictedParts>,
+        program: ProgramInput<impl Read + Seek>,
     ) -> Result<Predicted, Failure> {
-        let asked = Asked {
+        let asked = PredictionSetup {
             session: self.session,
             arguments: self.job,
             machine: &part.machine,
@@ -417,7 +427,9 @@ impl<'a> ProgramMaker<'a> {
             period,
             lines: part.lines.clone(),
         };
-        predict::predict(&asked, Against::Cl(source), &name, text, &mut |sample: &Sample| {
+        let ProgramInput { name, text } = program;
+        let against = PredictReference::Cl(source);
+        predict::predict(&asked, against, &name, text, &mut |sample: &Sample| {
             if let Some(heard) = &mut heard {
                 heard.take(sample);
             }
@@ -427,15 +439,15 @@ impl<'a> ProgramMaker<'a> {
 }
 
 /// A program that is ready to be written: its feed planned in rounds, its points moved, where that is asked for.
-pub struct Ready<'a> {
+pub struct PreparedProgram<'a> {
     program: OneProgram<'a>,
-    plan_rounds: Option<plan_rounds::Found>,
+    plan_rounds: Option<plan_rounds::PlanRoundsSummary>,
     /// Its plan is left out, and why.
     unplanned: Option<Diagnostic>,
-    compensation: Option<Compensation>,
+    compensation: Option<ServoCompensation>,
 }
 
-impl<'a> Ready<'a> {
+impl<'a> PreparedProgram<'a> {
     /// Does what comes before. Where the plan itself is `shown`, it is written whatever it gains.
     ///
     /// # Errors
@@ -479,7 +491,9 @@ impl<'a> Ready<'a> {
     }
 
     /// What planning in rounds and moving points have done.
-    pub fn found(self) -> (Option<plan_rounds::Found>, Option<compensate::Found>) {
+    pub fn found(
+        self,
+    ) -> (Option<plan_rounds::PlanRoundsSummary>, Option<compensate::CompensationSummary>) {
         let compensation = self.compensation.map(|moved| moved.found);
         (self.plan_rounds, compensation)
     }
@@ -493,7 +507,7 @@ impl<'a> Ready<'a> {
         ahead: Option<&ProgramPreview>,
         source: &mut ClSource,
         file: &mut dyn TextSink,
-        beside: Beside<'_, '_, '_>,
+        beside: PostingExtras<'_, '_, '_>,
     ) -> Result<(Option<PostingReport>, Vec<Diagnostic>), Failure> {
         let program = self.program.clone();
         let compensation = self.compensation.as_ref();
@@ -502,8 +516,8 @@ impl<'a> Ready<'a> {
             return program.write(ahead, source, file, beside);
         };
         let program = OneProgram { machine, ..program };
-        let mut moved = Moved::new(moves);
-        let beside = Beside { shift: Some(&mut moved), ..beside };
+        let mut moved = ShiftedPath::new(moves);
+        let beside = PostingExtras { shift: Some(&mut moved), ..beside };
         program.write(ahead, source, file, beside)
     }
 }

@@ -31,7 +31,7 @@ pub struct NcControl {
     /// The machine as the control's programs count: where lengths are in the work offset, from the tip of the tool.
     pub counted: Machine,
     /// What its dialect tells of them.
-    pub spoken: Spoken,
+    pub spoken: DialectVocabulary,
     /// Its words.
     pub lexicon: Lexicon,
     /// What stands in its tables.
@@ -41,7 +41,12 @@ pub struct NcControl {
 
 impl NcControl {
     /// That of a machine, with `offsets` in its tables; `limits` say how far a program may go.
-    pub fn of(machine: &Machine, spoken: Spoken, offsets: Offsets, limits: Limits) -> Self {
+    pub fn of(
+        machine: &Machine,
+        spoken: DialectVocabulary,
+        offsets: Offsets,
+        limits: Limits,
+    ) -> Self {
         let mut counted = machine.clone();
         let first = offsets.tools.first().map(|(_, length)| *length);
         if spoken.writes.lengths() == Lengths::WorkOffset
@@ -130,7 +135,7 @@ pub fn unknown_words(name: &str, report: &ReadReport) -> impl Iterator<Item = Di
 
 /// What a dialect tells of the programs that its control reads.
 #[derive(Debug)]
-pub struct Spoken {
+pub struct DialectVocabulary {
     /// The words.
     pub words: Vec<VocabularyWord>,
     /// The language that they belong to.
@@ -143,7 +148,7 @@ pub struct Spoken {
     pub feed_decimals: u8,
 }
 
-impl Spoken {
+impl DialectVocabulary {
     /// A joint may pass its largest feed in a rapid under tool centre point control.
     pub fn rapids_pass(&self) -> bool {
         self.writes.has(Capabilities::TCP_RAPIDS_PASS)
@@ -162,7 +167,7 @@ fn fed_rapids(machine: &Machine, passes: bool) -> Option<bool> {
 }
 
 /// What the dialect of a machine tells.
-pub fn spoken(finder: &Finder, machine: &Machine) -> Result<Spoken, Failure> {
+pub fn spoken(finder: &Finder, machine: &Machine) -> Result<DialectVocabulary, Failure> {
     let (mut dialect, _) = plugin_finder::dialect(finder, machine, "READ", None)?;
     let words = dialect.vocabulary().map_err(|fault| Diagnostic::error("plugin", fault))?;
     if words.is_empty() {
@@ -173,7 +178,7 @@ pub fn spoken(finder: &Finder, machine: &Machine) -> Result<Spoken, Failure> {
         let help = "a dialect of your own tells it by `vocabulary` (docs/src/plugin-author)";
         return Err(Diagnostic::error("vocabulary", message).help(help).into());
     }
-    Ok(Spoken {
+    Ok(DialectVocabulary {
         words,
         language: dialect.format().language,
         writes: dialect.capabilities(),

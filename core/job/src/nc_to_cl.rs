@@ -15,7 +15,7 @@ const BUFFER: usize = 1 << 16;
 
 /// What came of it.
 #[derive(Debug, Default)]
-pub struct Written {
+pub struct ConversionFindings {
     /// Blocks that are refused, and what no CL file can ask for: there is a fault in it, and the text is worth nothing.
     pub faults: Vec<Diagnostic>,
     /// What was not carried over, and what was taken for granted.
@@ -42,9 +42,9 @@ pub fn write<P: BlockRunner>(
     chord: f64,
     tools: Tools,
     sink: &mut dyn FnMut(&[u8]) -> Result<(), FileFault>,
-) -> Result<Written, FileFault> {
+) -> Result<ConversionFindings, FileFault> {
     let mut writer = ClWriter::new(chord);
-    let mut written = Written::default();
+    let mut written = ConversionFindings::default();
     let mut text = String::with_capacity(2 * BUFFER);
     let mut smooths = false;
     writer.begin(part, &mut text);

@@ -10,7 +10,7 @@ use post_posting::report::PostingReport;
 use post_posting::{JobFacts, PostingRequest, ProgramPreview, TextSink, Tightening};
 
 use super::plugin_finder;
-use super::posting_pass::{self, Beside, OpenedPlugins, PostingPass, ProgramHead};
+use super::posting_pass::{self, OpenedPlugins, PostingExtras, PostingPass, ProgramHead};
 use crate::failure::Failure;
 use crate::files::{ClSource, PathArg};
 use crate::session::Session;
@@ -47,7 +47,7 @@ impl OneProgram<'_> {
         ahead: Option<&ProgramPreview>,
         source: &mut ClSource,
         file: &mut dyn TextSink,
-        beside: Beside<'_, '_, '_>,
+        beside: PostingExtras<'_, '_, '_>,
     ) -> Result<(Option<PostingReport>, Vec<Diagnostic>), Failure> {
         let Self {
             session,

@@ -20,7 +20,7 @@ const ROUNDED: f64 = 1e-5;
 
 /// What is predicted of a program.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Outcome {
+struct PredictedFigures {
     /// How long it takes, s.
     cycle: f64,
     /// Off the path of the CL file in cuts, the tip (mm) and the tool axis (degrees): at most, and what 99 % and 95 % of the
@@ -28,7 +28,7 @@ struct Outcome {
     off: [f64; 8],
 }
 
-impl Outcome {
+impl PredictedFigures {
     /// It takes less time, and is nowhere worse.
     fn beats(&self, other: &Self) -> bool {
         let no_larger = |one: f64, other: f64| one <= other * (1.0 + SAME) + ROUNDED;
@@ -72,7 +72,7 @@ fn outcome(
     plans: bool,
     ahead: Option<&ProgramPreview>,
     source: &mut ClSource,
-) -> Result<Option<Outcome>, Failure> {
+) -> Result<Option<PredictedFigures>, Failure> {
     let mut rounds = Rounds::new(program, ahead, source);
     let text = match rounds.make(OneProgram { plans, ..program.clone() }, None) {
         Ok(text) => text,
@@ -83,7 +83,7 @@ fn outcome(
         return Ok(None);
     };
     let (tip, axis) = (&found.contour.tip_mm, &found.contour.axis_deg);
-    Ok(Some(Outcome {
+    Ok(Some(PredictedFigures {
         cycle: found.time.cycle_s,
         off: [tip.largest, tip.p99, tip.p95, tip.rms, axis.largest, axis.p99, axis.p95, axis.rms],
     }))

@@ -61,7 +61,7 @@ impl OpenedPlugins {
 
 /// Who takes part while a program is written.
 #[derive(Default)]
-pub struct Beside<'s, 'w, 'o> {
+pub struct PostingExtras<'s, 'w, 'o> {
     /// Moves the points of its path.
     pub shift: Option<&'s mut dyn PathShift>,
     /// Sees its plan.
@@ -92,7 +92,7 @@ impl PostingPass<'_> {
         session: &Session,
         input: ClInput,
         sink: &mut dyn TextSink,
-        beside: Beside<'_, '_, '_>,
+        beside: PostingExtras<'_, '_, '_>,
     ) -> Result<(Option<PostingReport>, Vec<Diagnostic>), Failure> {
         let Self { machine, request, dialect, model } = self;
         let post = Post::new(machine, request, dialect, model, sink);
@@ -123,7 +123,7 @@ impl PostingPass<'_> {
     ) -> Result<(Option<PostingReport>, Vec<Diagnostic>), Failure> {
         let Self { machine, request, dialect, model } = self;
         let machine = &machine.without_text();
-        let beside = Beside { observer, ..Beside::default() };
+        let beside = PostingExtras { observer, ..PostingExtras::default() };
         let pass = PostingPass { machine, request, dialect, model };
         pass.write(session, input, &mut NullSink, beside)
     }

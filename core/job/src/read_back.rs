@@ -14,7 +14,7 @@ use post_readback::interpret::Limits;
 use post_readback::verify::{BlockReport, CutPath, Fault, Verification, Verifier, VerifyRules};
 use post_readback::{BlockEffect, Offsets};
 
-use super::nc_program::{self, NcControl, Spoken};
+use super::nc_program::{self, DialectVocabulary, NcControl};
 use super::plugin_finder;
 use crate::failure::Failure;
 use crate::files::Watched;
@@ -23,7 +23,7 @@ use crate::session::Session;
 use crate::settings::{JobSettings, Msys};
 
 /// What a program is read with.
-pub struct Reading<'a> {
+pub struct ReadingSetup<'a> {
     /// The run.
     pub session: &'a Session,
     /// What the job is.
@@ -53,7 +53,7 @@ pub struct Reading<'a> {
 }
 
 /// What came of it.
-pub struct Held {
+pub struct VerifiedProgram {
     /// What was found.
     pub found: Verification,
     /// Of all that is wrong a message: faults at lines of the program, what could not be read of either side; and what was
@@ -63,7 +63,7 @@ pub struct Held {
     pub blocks: u64,
 }
 
-impl Held {
+impl VerifiedProgram {
     /// The program does not do what it should, or that is not known.
     pub fn is_wrong(&self) -> bool {
         let mut findings = self.findings.iter();
@@ -73,7 +73,7 @@ impl Held {
 
 /// The work offset that posting writes where the CL file names none: the dialect's option, as the machine file has it or as
 /// it is by default. None where lines of the machine file name one, its words of CL files may, or the operator chooses it.
-fn work_offset(finder: &Finder, machine: &Machine, spoken: &Spoken) -> Option<String> {
+fn work_offset(finder: &Finder, machine: &Machine, spoken: &DialectVocabulary) -> Option<String> {
     let offsets = spoken.words.iter().filter(|word| word.meaning == Meaning::WorkOffset);
     let offsets: Vec<&str> = offsets.map(|word| word.word.as_ref()).collect();
     let mut lines = machine.program.own_words();
@@ -143,13 +143,13 @@ fn feed_place(machine: &Machine, decimals: u8) -> f64 {
 /// # Errors
 /// A file that cannot be read, or a machine or dialect that cannot be used.
 pub fn verify<R: Read + Seek>(
-    reading: &Reading<'_>,
+    reading: &ReadingSetup<'_>,
     source: &mut ClSource,
     name: &str,
     input: R,
     watch: &mut dyn VerifyWatch,
-) -> Result<Held, Failure> {
-    let Reading { arguments, machine, .. } = reading;
+) -> Result<VerifiedProgram, Failure> {
+    let ReadingSetup { arguments, machine, .. } = reading;
     // What the tools are called and how long they are stands anywhere in the CL file.
     let first = source.open()?;
     let cl_name = first.name.clone();
@@ -158,7 +158,7 @@ pub fn verify<R: Read + Seek>(
     let (cut_path, mut findings) = CutPath::of(&mut course, machine.control_point.along);
     let tools = course.tools().to_vec();
     let course = ClCourse::new(settings, source.open()?.bytes);
-    let against = Against {
+    let against = VerifyReference {
         course: CourseWindow::new(course, reading.lines.clone()),
         name: cl_name,
         tools,
@@ -166,7 +166,7 @@ pub fn verify<R: Read + Seek>(
     };
     let held = hold(reading, against, name, input, watch)?;
     findings.extend(held.findings);
-    Ok(Held { findings, ..held })
+    Ok(VerifiedProgram { findings, ..held })
 }
 
 /// Who looks on while a program is held against a course.
@@ -190,7 +190,7 @@ impl<F: FnMut(&BlockReport)> VerifyWatch for F {
 }
 
 /// What a program is held against.
-pub struct Against<C> {
+pub struct VerifyReference<C> {
     /// The path.
     pub course: C,
     /// The file that it comes from, as messages call it.
@@ -206,14 +206,14 @@ pub struct Against<C> {
 /// # Errors
 /// A file that cannot be read, or a machine or dialect that cannot be used.
 pub fn hold<C: Course, R: Read + Seek>(
-    reading: &Reading<'_>,
-    against: Against<C>,
+    reading: &ReadingSetup<'_>,
+    against: VerifyReference<C>,
     name: &str,
     mut input: R,
     watch: &mut dyn VerifyWatch,
-) -> Result<Held, Failure> {
+) -> Result<VerifiedProgram, Failure> {
     let machine = reading.machine;
-    let Against { course, name: cl_name, tools, cut_path } = against;
+    let VerifyReference { course, name: cl_name, tools, cut_path } = against;
     let spoken = nc_program::spoken(reading.finder, machine)?;
     let offsets = match &reading.offsets {
         Some(offsets) => Offsets {
@@ -270,7 +270,7 @@ pub fn hold<C: Course, R: Read + Seek>(
         let text = text.map_or("", |(_, text)| text.as_str());
         findings.push(fault.diagnostic(name, text, &cl_name));
     }
-    Ok(Held { found, findings, blocks })
+    Ok(VerifiedProgram { found, findings, blocks })
 }
 
 /// What of the program `name` is worth a look, without being wrong.
@@ -290,7 +290,7 @@ fn noticed(name: &str, found: &Verification) -> Vec<Diagnostic> {
 }
 
 /// What a program is held to.
-fn rules(reading: &Reading<'_>, control: &NcControl, tools: &[ClTool]) -> VerifyRules {
+fn rules(reading: &ReadingSetup<'_>, control: &NcControl, tools: &[ClTool]) -> VerifyRules {
     let NcControl { counted: machine, spoken, lexicon, offsets, .. } = control;
     let length_from = lexicon.lengths();
     let [tolerance, axis_tolerance] = reading.tolerances;

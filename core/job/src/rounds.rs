@@ -6,8 +6,8 @@ use post_posting::{PathShift, ProgramPreview};
 use post_readback::interpret::Limits;
 
 use super::one_program::OneProgram;
-use super::posting_pass::Beside;
-use super::predict::{self, Against, Asked, Prediction, Sample};
+use super::posting_pass::PostingExtras;
+use super::predict::{self, PredictReference, Prediction, PredictionSetup, Sample};
 use crate::failure::Failure;
 use crate::files::{ClSource, Scratch};
 
@@ -42,7 +42,7 @@ impl<'r, 'p> Rounds<'r, 'p> {
         shift: Option<&mut dyn PathShift>,
     ) -> Result<Scratch, Failure> {
         let mut text = Scratch::new(NAME)?;
-        let beside = Beside { shift, ..Beside::default() };
+        let beside = PostingExtras { shift, ..PostingExtras::default() };
         let (report, findings): (_, Vec<Diagnostic>) =
             program.write(self.ahead, self.source, &mut text, beside)?;
         match report {
@@ -61,7 +61,7 @@ impl<'r, 'p> Rounds<'r, 'p> {
         listen: &mut dyn FnMut(&Sample),
     ) -> Result<Prediction, Failure> {
         let OneProgram { session, arguments, machine, finder, lines, .. } = self.program;
-        let asked = Asked {
+        let asked = PredictionSetup {
             session,
             arguments,
             machine,
@@ -75,7 +75,7 @@ impl<'r, 'p> Rounds<'r, 'p> {
             listen(sample);
             Ok(())
         };
-        let against = Against::Cl(self.source);
+        let against = PredictReference::Cl(self.source);
         let predicted = predict::predict(&asked, against, NAME, text.reread()?, &mut heard)?;
         Ok(predicted.found)
     }

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use post_machine::diagnostic::Diagnostic;
 
-use crate::files::{ReadFiles, Texts};
+use crate::files::{ReadFiles, TextOutcomes};
 
 /// Records, blocks or batches between two looks at the clock.
 const EVERY: u64 = 4096;
@@ -14,7 +14,7 @@ const EVERY: u64 = 4096;
 /// Whoever a run speaks to: the command prints, a library gathers, the jobs of a batch are quiet.
 pub trait Face: Send + Sync {
     /// Takes findings at once, in their order; `texts` says what the run has done to the user's files by then.
-    fn findings(&self, findings: &[Diagnostic], texts: &Texts);
+    fn findings(&self, findings: &[Diagnostic], texts: &TextOutcomes);
 
     /// Shows how far reading has come, of so many bytes if that is known; none: nobody looks.
     fn bar(&self, bytes: Option<u64>) -> Option<Box<dyn Bar>> {
@@ -43,7 +43,7 @@ pub trait Bar {
 pub struct Quiet;
 
 impl Face for Quiet {
-    fn findings(&self, _: &[Diagnostic], _: &Texts) {}
+    fn findings(&self, _: &[Diagnostic], _: &TextOutcomes) {}
 }
 
 /// A run. Clones are the same run.
@@ -52,7 +52,7 @@ pub struct Session(Arc<Run>);
 
 struct Run {
     read: Mutex<ReadFiles>,
-    texts: Mutex<Texts>,
+    texts: Mutex<TextOutcomes>,
     face: Box<dyn Face>,
 }
 
@@ -84,7 +84,7 @@ impl Session {
     }
 
     /// What it has done to the user's files.
-    pub fn texts(&self) -> MutexGuard<'_, Texts> {
+    pub fn texts(&self) -> MutexGuard<'_, TextOutcomes> {
         self.0.texts.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -105,16 +105,16 @@ impl Session {
 
     /// What reads `bytes`, and fails once the run shall end.
     pub fn stoppable(&self, bytes: impl Read + 'static) -> Box<dyn Read> {
-        Box::new(Stoppable { bytes, session: self.clone() })
+        Box::new(SessionReader { bytes, session: self.clone() })
     }
 }
 
-struct Stoppable<R> {
+struct SessionReader<R> {
     bytes: R,
     session: Session,
 }
 
-impl<R: Read> Read for Stoppable<R> {
+impl<R: Read> Read for SessionReader<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         if self.session.0.face.is_stopped() {
             return Err(io::Error::other("interrupted"));

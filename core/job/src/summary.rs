@@ -17,7 +17,7 @@ use crate::{compensate, plan_rounds};
 
 /// What the summary tells as JSON.
 #[derive(Serialize)]
-pub struct Told<'a> {
+pub struct SummaryJson<'a> {
     #[serde(flatten)]
     /// What making the program came to.
     pub report: &'a PostingReport,
@@ -29,10 +29,10 @@ pub struct Told<'a> {
     pub prediction: Option<&'a Prediction>,
     /// What moving points for the servos has done.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub servo_compensation: Option<&'a compensate::Found>,
+    pub servo_compensation: Option<&'a compensate::CompensationSummary>,
     /// What planning the feed in rounds has done.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub plan_rounds: Option<&'a plan_rounds::Found>,
+    pub plan_rounds: Option<&'a plan_rounds::PlanRoundsSummary>,
 }
 
 /// The summary of a program at `target` that was made from the CL file named `input`, and what reading it back has found,

@@ -28,7 +28,7 @@ const LONGEST_PAUSE: u32 = 64;
 
 /// Characters of a record, and what may differ.
 #[derive(Clone, Copy, Debug)]
-struct Block {
+struct ByteBlock {
     /// Characters as written, digits as `0`.
     characters: [u8; BLOCK],
     /// Largest difference (exclusive or) from the character: 9 of a digit, 0 of any other, 255 after the record.
@@ -53,8 +53,8 @@ struct NumberPlace {
 
 /// How the last `GOTO` record was laid out.
 #[derive(Clone, Debug)]
-pub(super) struct Layout {
-    blocks: [Block; LONGEST / BLOCK],
+pub(super) struct RecordLayout {
+    blocks: [ByteBlock; LONGEST / BLOCK],
     numbers: [NumberPlace; 6],
     /// Numbers, 3 or 6; the last three are the tool axis.
     count: usize,
@@ -74,11 +74,11 @@ pub(super) struct Layout {
     next_pause: u32,
 }
 
-impl Layout {
+impl RecordLayout {
     /// No layout is known yet.
     pub(super) fn new() -> Self {
         Self {
-            blocks: [Block { characters: [0; BLOCK], leeway: [0; BLOCK] }; LONGEST / BLOCK],
+            blocks: [ByteBlock { characters: [0; BLOCK], leeway: [0; BLOCK] }; LONGEST / BLOCK],
             numbers: [NumberPlace::default(); 6],
             count: 0,
             long: false,
@@ -241,7 +241,7 @@ impl Layout {
     /// Takes over the characters of a record.
     fn take_characters(&mut self, record: &[u8]) {
         for (block, text) in self.blocks.iter_mut().zip(record.chunks(BLOCK)) {
-            *block = Block { characters: [0; BLOCK], leeway: [u8::MAX; BLOCK] };
+            *block = ByteBlock { characters: [0; BLOCK], leeway: [u8::MAX; BLOCK] };
             for (place, byte) in text.iter().enumerate() {
                 let digit = byte.is_ascii_digit();
                 block.characters[place] = if digit { b'0' } else { *byte };

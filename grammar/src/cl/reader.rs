@@ -9,7 +9,7 @@
 //!   must not swallow the move after it.
 
 use super::foreign;
-use super::layout::Layout;
+use super::layout::RecordLayout;
 use super::line::{is_free_text, parse_record};
 use super::record::{Record, Statement};
 use super::scan::{self, PlainGoto};
@@ -52,7 +52,7 @@ pub struct ClReader<R> {
     /// Number of the line that begins at `start`.
     line: u64,
     /// How the records so far were laid out.
-    layout: Layout,
+    layout: RecordLayout,
     /// The last record was parted by a `$`; the next one is likely to be, too.
     parted: bool,
     /// What was taken last, blanks aside, is no line end.
@@ -82,7 +82,7 @@ impl<R: Read> ClReader<R> {
             ended: false,
             taken: 0,
             line: 1,
-            layout: Layout::new(),
+            layout: RecordLayout::new(),
             parted: false,
             unended: false,
             begun: false,

@@ -11,7 +11,7 @@ use crate::document::Snapshot;
 use crate::positions::number;
 
 /// A part of the file, lines counted from 0.
-struct Section {
+struct OutlineSection {
     name: String,
     kind: SymbolKind,
     first: usize,
@@ -19,9 +19,9 @@ struct Section {
 }
 
 /// The parts of a file; none if the work is given up.
-fn sections(of: &Snapshot, token: &Token) -> Option<Vec<Section>> {
+fn sections(of: &Snapshot, token: &Token) -> Option<Vec<OutlineSection>> {
     let mut reader = ClReader::new(of.text.as_bytes());
-    let mut sections: Vec<Section> = Vec::new();
+    let mut sections: Vec<OutlineSection> = Vec::new();
     // Operations and tools that have not ended, by their places among all.
     let mut operation: Option<usize> = None;
     let mut tool: Option<usize> = None;
@@ -40,7 +40,7 @@ fn sections(of: &Snapshot, token: &Token) -> Option<Vec<Section>> {
         let mut begin = |open: &mut Option<usize>, name: String, kind: SymbolKind| {
             end(&mut sections, open.take(), line.saturating_sub(1));
             *open = Some(sections.len());
-            sections.push(Section { name, kind, first: line, last: line });
+            sections.push(OutlineSection { name, kind, first: line, last: line });
         };
         match record.statement {
             Statement::ToolPath { name, .. } => {
@@ -76,7 +76,7 @@ fn sections(of: &Snapshot, token: &Token) -> Option<Vec<Section>> {
 }
 
 /// A section ends with a line.
-fn end(sections: &mut [Section], open: Option<usize>, last: usize) {
+fn end(sections: &mut [OutlineSection], open: Option<usize>, last: usize) {
     if let Some(section) = open.and_then(|open| sections.get_mut(open)) {
         section.last = last.max(section.first);
     }

@@ -7,7 +7,7 @@ use post_machine::kinematics::Joints;
 use post_posting::program::{DefaultSpindle, ReadingOptions};
 use post_posting::{MotionBlock, Observer, PostingRequest};
 
-use crate::background::{Token, Worked};
+use crate::background::{Token, WorkResult};
 use crate::document::Snapshot;
 use crate::machine::library::Library;
 use post_job::files::ClInput;
@@ -61,7 +61,7 @@ pub fn post(
     tool_length: Option<f64>,
     library: &Library,
     token: &Token,
-) -> Worked<Posted> {
+) -> WorkResult<Posted> {
     let finder = match plugin_finder::finder(&library.session, &library.plugins) {
         Ok(finder) => finder,
         Err(faults) => return Some(Err(faults)),
@@ -83,7 +83,7 @@ pub fn post(
     };
     let (dialect, model) = (&mut opened.dialect, &mut opened.model);
     let pass = PostingPass { machine: &machine, request, dialect, model };
-    let mut watch = Watch::default();
+    let mut watch = LineObserver::default();
     let (report, found) = match pass.run_dry(&library.session, input(of, token), Some(&mut watch)) {
         _ if token.is_given_up() => return None,
         Ok(ended) => ended,
@@ -100,18 +100,18 @@ fn input(of: &Snapshot, token: &Token) -> ClInput {
     let text = Cursor::new(of.text.clone().into_bytes());
     ClInput {
         name: of.name.clone(),
-        bytes: Box::new(Wanted { text, token: token.clone() }),
+        bytes: Box::new(StoppableText { text, token: token.clone() }),
         length: None,
     }
 }
 
 /// A text that is read as long as it is wanted.
-struct Wanted {
+struct StoppableText {
     text: Cursor<Vec<u8>>,
     token: Token,
 }
 
-impl Read for Wanted {
+impl Read for StoppableText {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         if self.token.is_given_up() {
             return Err(io::Error::other("given up"));
@@ -123,11 +123,11 @@ impl Read for Wanted {
 
 /// Looks on while blocks are made.
 #[derive(Default)]
-struct Watch {
+struct LineObserver {
     lines: Vec<PostedLine>,
 }
 
-impl Observer for Watch {
+impl Observer for LineObserver {
     fn block(&mut self, block: &MotionBlock) {
         let deviation = [block.deviation.tip, block.deviation.axis];
         let full = self.lines.len() == MOST_LINES;

@@ -3,8 +3,8 @@
 use post_machine::diagnostic::Short;
 use post_readback::{MachineState, MotionKind, SpindleState};
 
-use super::Program;
-use super::map::Map;
+use super::InterpretedProgram;
+use super::map::ProgramMap;
 use super::program::ProgramLine;
 use crate::document::Snapshot;
 use crate::readings;
@@ -15,8 +15,8 @@ pub fn text(
     of: &Snapshot,
     line: usize,
     column: usize,
-    program: Option<&Program>,
-    map: Option<&Map>,
+    program: Option<&InterpretedProgram>,
+    map: Option<&ProgramMap>,
     machine: Option<&str>,
 ) -> Option<String> {
     let span = of.lines.span(&of.text, line);
@@ -57,7 +57,7 @@ pub fn text(
 }
 
 /// What the word at a column means to the control.
-fn word(line: &str, column: usize, program: &Program) -> Option<String> {
+fn word(line: &str, column: usize, program: &InterpretedProgram) -> Option<String> {
     let end = |letter: char| !(letter.is_ascii_alphanumeric() || letter == '.' || letter == '_');
     let from = line[..column].rfind(end).map_or(0, |at| at + 1);
     let to = line[column..].find(end).map_or(line.len(), |at| column + at);
@@ -100,7 +100,7 @@ fn word(line: &str, column: usize, program: &Program) -> Option<String> {
 }
 
 /// What holds at a line.
-fn held(program: &Program, run: &ProgramLine, itself: bool) -> String {
+fn held(program: &InterpretedProgram, run: &ProgramLine, itself: bool) -> String {
     let machine = &program.machine;
     let shown = readings::text(machine, &run.joints);
     let mut text = format!("On {}: `{shown}`", machine.name);

@@ -31,7 +31,7 @@ pub struct MapLine {
 
 /// A map of a program.
 #[derive(Debug)]
-pub struct Map {
+pub struct ProgramMap {
     rows: Vec<MapLine>,
     /// The CL file beside it, by its name.
     pub cl: Option<PathBuf>,
@@ -39,28 +39,28 @@ pub struct Map {
 
 /// The map beside a program, read once.
 #[derive(Debug, Default)]
-pub struct Beside {
-    read: Mutex<Option<Kept>>,
+pub struct MapCache {
+    read: Mutex<Option<CachedMap>>,
 }
 
 /// A map as it was when it was read.
 #[derive(Debug)]
-struct Kept {
+struct CachedMap {
     path: PathBuf,
     changed: SystemTime,
     /// None while it is read, or if it is no map.
-    map: Option<Arc<Map>>,
+    map: Option<Arc<ProgramMap>>,
 }
 
-impl Beside {
-    fn lock(&self) -> MutexGuard<'_, Option<Kept>> {
+impl MapCache {
+    fn lock(&self) -> MutexGuard<'_, Option<CachedMap>> {
         // What is in it is whole whatever a thread died of.
         self.read.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The map of a program: `part.map.json` or `part.nc.map.json` of `part.nc`. One that is older than the program may
     /// speak of other lines, and is not taken. A long one is read in the background, and is not there until it is.
-    pub fn of(self: &Arc<Self>, program: &Path) -> Option<Arc<Map>> {
+    pub fn of(self: &Arc<Self>, program: &Path) -> Option<Arc<ProgramMap>> {
         let name = program.file_name()?.to_string_lossy().into_owned();
         let candidates = [
             program.with_extension("map.json"),
@@ -79,7 +79,7 @@ impl Beside {
         {
             return kept.map.clone();
         }
-        let mut now = Kept { path: path.clone(), changed, map: None };
+        let mut now = CachedMap { path: path.clone(), changed, map: None };
         let program = program.to_owned();
         if about.len() <= AT_ONCE {
             now.map = load(&path, &program).map(Arc::new);
@@ -101,7 +101,7 @@ impl Beside {
     }
 }
 
-fn load(map: &Path, program: &Path) -> Option<Map> {
+fn load(map: &Path, program: &Path) -> Option<ProgramMap> {
     let mut text = String::new();
     let file = File::open(map).ok()?;
     file.take(MOST_BYTES).read_to_string(&mut text).ok()?;
@@ -109,10 +109,10 @@ fn load(map: &Path, program: &Path) -> Option<Map> {
     rows.sort_by_key(|row| row.nc_line);
     let cl = ENDINGS.iter().map(|ending| program.with_extension(ending));
     let mut cl = cl.filter(|path| path.is_file());
-    Some(Map { rows, cl: cl.next() })
+    Some(ProgramMap { rows, cl: cl.next() })
 }
 
-impl Map {
+impl ProgramMap {
     /// Of a line, counted from 1: the last of its rows, where it ends.
     pub fn line(&self, line: u64) -> Option<&MapLine> {
         let behind = self.rows.partition_point(|row| row.nc_line <= line);

@@ -10,7 +10,7 @@ pub mod hover;
 pub mod map;
 mod program;
 
-pub use program::{Program, read};
+pub use program::{InterpretedProgram, read};
 
 /// Endings of NC programs.
 pub const ENDINGS: &[&str] =

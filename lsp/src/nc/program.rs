@@ -9,7 +9,7 @@ use post_plugin::VocabularyWord;
 use post_readback::interpret::Limits;
 use post_readback::{BlockEffect, MachineState, MotionKind, Offsets, ProgramEvent};
 
-use crate::background::{Token, Worked};
+use crate::background::{Token, WorkResult};
 use crate::document::Snapshot;
 use crate::machine::library::Library;
 use post_job::nc_program::{self, NcControl};
@@ -26,7 +26,7 @@ const MOST_BLOCKS: u64 = 100_000;
 
 /// What each line of a program does.
 #[derive(Clone, Debug)]
-pub struct Program {
+pub struct InterpretedProgram {
     /// The machine.
     pub machine: Box<Machine>,
     /// The words of its control.
@@ -50,7 +50,7 @@ pub struct ProgramLine {
     pub told: Vec<String>,
 }
 
-impl Program {
+impl InterpretedProgram {
     /// The last line up to this one, counted from 1, that was run; and whether it is that line itself.
     pub fn line(&self, line: u64) -> Option<(&ProgramLine, bool)> {
         let behind = self.lines.partition_point(|run| run.line <= line);
@@ -66,7 +66,7 @@ pub fn read(
     tool_length: Option<f64>,
     library: &Library,
     token: &Token,
-) -> Worked<Program> {
+) -> WorkResult<InterpretedProgram> {
     let finder = match plugin_finder::finder(&library.session, &library.plugins) {
         Ok(finder) => finder,
         Err(faults) => return Some(Err(faults)),
@@ -82,7 +82,7 @@ pub fn read(
         Ok(run) => run,
         Err(fault) => return Some(Err(vec![*fault])),
     };
-    let mut lines = Lines::default();
+    let mut lines = LineCollector::default();
     let mut blocks = 0_u64;
     while let Some(done) = run.block() {
         blocks += 1;
@@ -110,18 +110,19 @@ pub fn read(
     lines.reverse();
     lines.dedup_by_key(|run| run.line);
     lines.reverse();
-    let program = Program { machine: Box::new(machine), words: control.spoken.words, lines };
+    let program =
+        InterpretedProgram { machine: Box::new(machine), words: control.spoken.words, lines };
     Some(Ok((program, found)))
 }
 
 /// What is done, line by line.
 #[derive(Default)]
-struct Lines {
+struct LineCollector {
     run: Vec<ProgramLine>,
     state: Option<Arc<MachineState>>,
 }
 
-impl Lines {
+impl LineCollector {
     fn at(&mut self, line: u64) -> Option<&mut ProgramLine> {
         let last = self.run.last();
         if last.is_none_or(|last| last.line != line) {

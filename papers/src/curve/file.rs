@@ -36,7 +36,7 @@ use post_machine::diagnostic::Diagnostic;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use super::json_text::{JsonText, Raw, Written};
+use super::json_text::{JsonText, NumberText, Raw};
 use super::limits::FileLimits;
 
 /// Longest curve file, bytes.
@@ -189,8 +189,9 @@ fn splines<'a>(
         Some(raw) => json.numbers(raw, "a weight")?,
         None => Vec::new(),
     };
-    let values =
-        |written: &[Written<'_>]| -> Vec<f64> { written.iter().map(|(value, _)| *value).collect() };
+    let values = |written: &[NumberText<'_>]| -> Vec<f64> {
+        written.iter().map(|(value, _)| *value).collect()
+    };
     let splines = Splines {
         degree,
         knots: values(&knots),

@@ -3,13 +3,13 @@
 use post_job::plan::tally::LimitFound;
 use serde::Serialize;
 
-use super::rows::Row;
+use super::rows::PlanRow;
 use super::simulate::Simulated;
 use super::solve::SolverFound;
 
 /// All of it.
 #[derive(Debug, Serialize)]
-pub struct Found {
+pub struct CurveSummary {
     /// The curve file.
     pub curve: String,
     pub name: String,
@@ -34,7 +34,7 @@ pub struct Found {
     /// The names of the axes, in the order of the rows' values.
     pub axes: Vec<String>,
     /// A row at each knot of the feed splines.
-    pub rows: Vec<Row>,
+    pub rows: Vec<PlanRow>,
 }
 
 /// A feed spline: the squared speed of the path parameter `(ds/dt)²`, 1/s², as a B-spline of the parameter. The feed of

@@ -20,7 +20,7 @@ pub struct JsonText<'a> {
 pub type Raw<'a> = &'a RawValue;
 
 /// A number, and the digits that it was read from.
-pub type Written<'a> = (f64, Raw<'a>);
+pub type NumberText<'a> = (f64, Raw<'a>);
 
 impl<'a> JsonText<'a> {
     /// The whole file as one of `T`.
@@ -91,7 +91,11 @@ impl<'a> JsonText<'a> {
     ///
     /// # Errors
     /// It is none.
-    pub fn numbers(&self, raw: Raw<'a>, what: &str) -> Result<Vec<Written<'a>>, Box<Diagnostic>> {
+    pub fn numbers(
+        &self,
+        raw: Raw<'a>,
+        what: &str,
+    ) -> Result<Vec<NumberText<'a>>, Box<Diagnostic>> {
         let each = self.list(raw, "numbers")?.into_iter();
         each.map(|raw| Ok((self.number(raw, what)?, raw))).collect()
     }

@@ -18,15 +18,15 @@ const MOST: f64 = 1e12;
 const KEYS: [&str; 5] = ["tip", "chord_error_um", "contour_error_um", "interp_period_s", "servo"];
 
 /// Largest velocity, acceleration and jerk, in mm or degrees and s; none where nothing is said.
-pub type Most = [Option<f64>; 3];
+pub type DerivativeLimits = [Option<f64>; 3];
 
 /// What a curve file says of limits.
 #[derive(Clone, Debug, Default)]
 pub struct FileLimits {
     /// Of axes.
-    pub axes: Vec<(char, Most)>,
+    pub axes: Vec<(char, DerivativeLimits)>,
     /// Of the tip: feed, acceleration and jerk.
-    pub tip: Most,
+    pub tip: DerivativeLimits,
     /// mm.
     pub chord_error: Option<f64>,
     /// mm.
@@ -187,8 +187,12 @@ fn is_rotary(axis: char) -> bool {
 }
 
 /// `{ "v": …, "a": …, "j": …, "unit": … }`, in mm or degrees.
-fn most<'a>(json: &JsonText<'a>, raw: Raw<'a>, rotary: bool) -> Result<Most, Box<Diagnostic>> {
-    let mut found = Most::default();
+fn most<'a>(
+    json: &JsonText<'a>,
+    raw: Raw<'a>,
+    rotary: bool,
+) -> Result<DerivativeLimits, Box<Diagnostic>> {
+    let mut found = DerivativeLimits::default();
     let mut unit = if rotary { "rad" } else { "mm" }.to_owned();
     let entries = json.entries(raw)?;
     for (key, value) in &entries {

@@ -26,23 +26,23 @@ use post_job::failure::Failure;
 use post_job::files::{FileFault, PathArg};
 use post_job::nc_program::open_as;
 use post_job::plan::gauges::Gauges;
-use post_job::plan::keep::Keep;
+use post_job::plan::keep::PlanLimits;
 use post_job::plan::pictures::PlanRooms;
 use post_job::plan::tally::Tally;
 use post_job::plan::{drawn, rooms};
 use post_job::session::Session;
 use post_job::text::number;
-use rows::Row;
+use rows::PlanRow;
 use simulate::Timeline;
 use walk::walk;
 
-pub use found::Found;
+pub use found::CurveSummary;
 pub use rows::csv;
-pub use solve::{Asked, Solver};
+pub use solve::{SolverChoice, SolverRequest};
 pub use text::text;
 
 /// A curve, and the machine that goes along it.
-pub struct Curve {
+pub struct CurveJob {
     file: CurveFile,
     /// As the user named it.
     name: String,
@@ -51,7 +51,7 @@ pub struct Curve {
 
 /// What the command line says over the files.
 #[derive(Clone, Copy, Debug)]
-pub struct Over {
+pub struct CurveOverrides {
     /// mm/s.
     pub feed: Option<f64>,
     /// mm; infinite: no limit.
@@ -63,14 +63,14 @@ pub struct Over {
 }
 
 /// What came of planning it.
-pub struct Planned {
-    pub found: Found,
+pub struct PlannedCurve {
+    pub found: CurveSummary,
     /// What is kept for its pictures, and the line below their titles.
     pub rooms: PlanRooms,
     pub note: String,
 }
 
-impl Curve {
+impl CurveJob {
     /// Reads a curve file; `machine` is the one that was named, else the limits of the file make one.
     ///
     /// # Errors
@@ -116,7 +116,7 @@ impl Curve {
     }
 
     /// The machine with what is said over it: by the curve file, and over that by `over`.
-    fn limited(&self, over: &Over) -> Machine {
+    fn limited(&self, over: &CurveOverrides) -> Machine {
         let (mut machine, limits) = (self.machine.clone(), &self.file.limits);
         let lay = |said: Option<f64>, limit: &mut Option<f64>| {
             *limit = said.or(*limit).filter(|error| error.is_finite());
@@ -132,16 +132,20 @@ impl Curve {
         Ok(match &self.file.path {
             GivenPath::Splines(splines) => CurvePath::new(machine, tool_length, splines)?,
             GivenPath::Points(points, axes) => {
-                let points = (points.as_slice(), axes.as_deref());
-                CurvePath::through(machine, tool_length, points, &self.name)?
+                CurvePath::through(machine, tool_length, points, axes.as_deref(), &self.name)?
             }
         })
     }
 
     /// What a plan keeps.
-    fn keep(&self, path: &CurvePath<'_>, solver: Solver, over: &Over) -> Result<Keep, Failure> {
+    fn keep(
+        &self,
+        path: &CurvePath<'_>,
+        solver: SolverChoice,
+        over: &CurveOverrides,
+    ) -> Result<PlanLimits, Failure> {
         let machine = path.machine;
-        let mut keep = Keep::new(machine, &path.axes);
+        let mut keep = PlanLimits::new(machine, &path.axes);
         if keep.servos.is_none() && machine.plan.contour_error.is_some() {
             let message = format!(
                 "{}: a contour error is to be kept, and not every axis that leads the tip has a servo",
@@ -152,7 +156,7 @@ impl Curve {
         }
         keep.feed = over.feed.or(self.file.limits.tip[0]).unwrap_or(f64::INFINITY);
         keep.block_rate = 1.0 / machine.motion.block_time;
-        if solver == Solver::Jerk && !keep.has_jerk() {
+        if solver == SolverChoice::Jerk && !keep.has_jerk() {
             let message = format!("{}: --solver jerk, and no jerk is limited", self.name);
             let help =
                 "j in the limits of the curve file, or max_jerk of the machine's axes, limits it";
@@ -167,16 +171,16 @@ impl Curve {
     /// Which limit cannot be kept, and where; axes that cannot follow.
     pub fn plan(
         &self,
-        asked: Asked,
-        over: Over,
+        asked: SolverRequest,
+        over: CurveOverrides,
         tool_length: f64,
         simulated: bool,
-    ) -> Result<Planned, Failure> {
+    ) -> Result<PlannedCurve, Failure> {
         let machine = &self.limited(&over);
         let mut path = self.path(machine, tool_length)?;
         let keep = self.keep(&path, asked.solver, &over)?;
         let mut plans = solve::plan(&mut path, keep.feed, asked, &self.name)?;
-        let jerk = asked.solver == Solver::Jerk;
+        let jerk = asked.solver == SolverChoice::Jerk;
         let gauges = Gauges::new(machine, &path.axes, true, &keep, jerk);
         let refused = |(at, why): (f64, path::NoStation)| path.refused(&self.name, at, &why);
         let mut first = Tally::new(&gauges);
@@ -199,7 +203,7 @@ impl Curve {
             rooms.take(&drawn(point));
             if step.knot {
                 let limit = active.map(|place| gauges.all[place].name.as_str());
-                rows.push(Row::new(machine, &path.axes, point, limit));
+                rows.push(PlanRow::new(machine, &path.axes, point, limit));
             }
         })
         .map_err(refused)?;
@@ -208,7 +212,7 @@ impl Curve {
             false => None,
         };
         let stops = plans.stretches.iter().skip(1).map(|stretch| stretch.parameters[0]);
-        let found = Found {
+        let found = CurveSummary {
             curve: self.name.clone(),
             name: self.file.name.clone(),
             machine: machine.name.clone(),
@@ -227,7 +231,7 @@ impl Curve {
         };
         let note =
             format!("{} on {}, {} s", self.file.name, machine.name, number(found.seconds, 3));
-        Ok(Planned { found, rooms, note })
+        Ok(PlannedCurve { found, rooms, note })
     }
 }
 

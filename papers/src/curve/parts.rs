@@ -11,12 +11,12 @@ const SMOOTH: f64 = 1e-6;
 
 /// A part of splines: its first control point, and how many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Part {
+pub struct SplinePart {
     first: usize,
     count: usize,
 }
 
-impl Part {
+impl SplinePart {
     pub fn curve<const D: usize>(self, splines: &Splines, points: &[[f64; D]]) -> BSpline<D> {
         let mut curve = self.unweighted(splines, points);
         for ((_, weight), told) in
@@ -35,9 +35,9 @@ impl Part {
 }
 
 /// The parts between knots at which first or second derivatives of the tip jump, or the tool axis may.
-pub fn smooth_parts(splines: &Splines) -> Vec<Part> {
+pub fn smooth_parts(splines: &Splines) -> Vec<SplinePart> {
     let (degree, count) = (splines.degree, splines.tip.len());
-    let mut parts = vec![Part { first: 0, count }];
+    let mut parts = vec![SplinePart { first: 0, count }];
     let mut at = degree + 1;
     while at < count {
         let times =
@@ -46,9 +46,9 @@ pub fn smooth_parts(splines: &Splines) -> Vec<Part> {
         if degree < times + 2 {
             let last = parts.len() - 1;
             let whole = parts[last];
-            let before = Part { first: whole.first, count: at - whole.first };
+            let before = SplinePart { first: whole.first, count: at - whole.first };
             let first = at + times - degree - 1;
-            let after = Part { first, count: count - first };
+            let after = SplinePart { first, count: count - first };
             if jumps(splines, before, after) {
                 parts[last] = before;
                 parts.push(after);
@@ -60,7 +60,7 @@ pub fn smooth_parts(splines: &Splines) -> Vec<Part> {
 }
 
 /// Whether derivatives differ where one part meets the next.
-fn jumps(splines: &Splines, before: Part, after: Part) -> bool {
+fn jumps(splines: &Splines, before: SplinePart, after: SplinePart) -> bool {
     let differ = |left: [Vector3<f64>; ORDERS], right: [Vector3<f64>; ORDERS]| {
         // What is rounding of a line's second derivative is no jump.
         let rounding = 1e-9 * left[1].norm();

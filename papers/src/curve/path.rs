@@ -16,7 +16,7 @@ use post_motion::path::BSpline;
 use post_posting::plan::SampledAxes;
 
 use super::file::{Pointing, Splines};
-use super::parts::{Part, smooth_parts};
+use super::parts::{SplinePart, smooth_parts};
 use super::track::{self, SmoothPiece, Track};
 
 /// A path on a machine: stretches whose first and second derivatives are continuous; between two of them it stops.
@@ -31,11 +31,11 @@ pub struct CurvePath<'m> {
     turning: RotaryAxes,
     /// Places in the chain of the axes that are planned, in the order of their words.
     pub axes: Vec<usize>,
-    pub stretches: Vec<Stretch>,
+    pub stretches: Vec<CurveStretch>,
 }
 
 /// A stretch between two stops.
-pub struct Stretch {
+pub struct CurveStretch {
     pub tip: Track<3>,
     /// The ends of the blocks that a control would have: knots, or the points that the file gives.
     blocks: Vec<f64>,
@@ -44,7 +44,7 @@ pub struct Stretch {
     guides: Vec<(f64, Joints)>,
 }
 
-impl Stretch {
+impl CurveStretch {
     /// Length of the block at a parameter.
     fn block(&self, parameter: f64) -> f64 {
         let last = self.blocks.len() - 1;
@@ -127,7 +127,8 @@ impl<'m> CurvePath<'m> {
     pub fn through(
         machine: &'m Machine,
         length: f64,
-        (points, axes): (&[[f64; 3]], Option<&[[f64; 3]]>),
+        points: &[[f64; 3]],
+        axes: Option<&[[f64; 3]]>,
         file: &str,
     ) -> Result<Self, Box<Diagnostic>> {
         let plane = points.iter().all(|point| point[2] == points[0][2]);
@@ -158,7 +159,7 @@ impl<'m> CurvePath<'m> {
         for SmoothPiece { tip, rotary, points } in pieces {
             let rotary = path.rotary.iter().copied().zip(rotary);
             let curves = rotary.map(|(place, pieces)| (place, Track::Pieces(pieces)));
-            path.stretches.push(Stretch {
+            path.stretches.push(CurveStretch {
                 tip: Track::Pieces(tip),
                 blocks: points,
                 pointing: CurvePointing::Rotary(curves.collect()),
@@ -169,7 +170,11 @@ impl<'m> CurvePath<'m> {
     }
 
     /// The control points of `part`.
-    fn stretch(&self, splines: &Splines, part: Part) -> Result<Stretch, Box<Diagnostic>> {
+    fn stretch(
+        &self,
+        splines: &Splines,
+        part: SplinePart,
+    ) -> Result<CurveStretch, Box<Diagnostic>> {
         let pointing = match &splines.pointing {
             Pointing::Fixed => CurvePointing::Fixed,
             Pointing::Second(points) => CurvePointing::Second(part.curve(splines, points)),
@@ -193,7 +198,7 @@ impl<'m> CurvePath<'m> {
             }
         };
         let tip = Track::Spline(part.curve(splines, &splines.tip));
-        Ok(Stretch { blocks: tip.breaks(), tip, pointing, guides: Vec::new() })
+        Ok(CurveStretch { blocks: tip.breaks(), tip, pointing, guides: Vec::new() })
     }
 
     /// Finds the rotary angles along a stretch at these parameters, each near the last.
@@ -253,7 +258,12 @@ impl<'m> CurvePath<'m> {
         choice.joints.map_err(NoStation::Over)
     }
 
-    fn near(&self, stretch: &Stretch, parameter: f64, last: &Joints) -> Result<Station, NoStation> {
+    fn near(
+        &self,
+        stretch: &CurveStretch,
+        parameter: f64,
+        last: &Joints,
+    ) -> Result<Station, NoStation> {
         let tip = stretch.tip.derivatives(parameter);
         let vectors = tip.map(Vector3::from);
         let mut course = JointDerivatives::default();

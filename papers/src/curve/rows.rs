@@ -10,7 +10,7 @@ use post_job::plan::gauges::PlanPoint;
 
 /// A row, mm, degrees and s; errors in µm.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct PlanRow {
     pub parameter: f64,
     pub way_mm: f64,
     pub time_s: f64,
@@ -29,7 +29,7 @@ pub struct Row {
     pub limit: Option<String>,
 }
 
-impl Row {
+impl PlanRow {
     pub fn new(machine: &Machine, axes: &[usize], point: &PlanPoint, limit: Option<&str>) -> Self {
         let shown = |values: &[f64]| -> Vec<f64> {
             let each = axes.iter().zip(values);
@@ -56,7 +56,7 @@ impl Row {
 }
 
 /// The rows as CSV, the axes by their names.
-pub fn csv(axes: &[String], rows: &[Row]) -> String {
+pub fn csv(axes: &[String], rows: &[PlanRow]) -> String {
     let mut text = "parameter,way_mm,time_s,tip_x,tip_y,tip_z,feed_mm_min".to_owned();
     for what in ["", "_velocity", "_acceleration", "_jerk"] {
         for axis in axes {

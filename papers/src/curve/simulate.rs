@@ -48,11 +48,11 @@ pub struct Simulated {
 /// The walk, kept for the simulation.
 #[derive(Default)]
 pub struct Timeline {
-    nodes: Vec<Node>,
+    nodes: Vec<TimeNode>,
 }
 
 #[derive(Clone, Copy)]
-struct Node {
+struct TimeNode {
     stretch: usize,
     parameter: f64,
     time: f64,
@@ -65,7 +65,7 @@ struct Node {
 impl Timeline {
     /// Takes the next step.
     pub fn take(&mut self, step: &Step<'_>) {
-        self.nodes.push(Node {
+        self.nodes.push(TimeNode {
             stretch: step.stretch,
             parameter: step.point.parameter,
             time: step.point.time,

@@ -17,7 +17,7 @@ const LEAST_STEPS: usize = 8;
 /// What plans.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Solver {
+pub enum SolverChoice {
     /// Reachability analysis.
     Reach,
     /// The paper's linear program, by an interior point.
@@ -28,8 +28,8 @@ pub enum Solver {
 
 /// How finely, and with which feeds at the ends, mm/s.
 #[derive(Clone, Copy, Debug)]
-pub struct Asked {
-    pub solver: Solver,
+pub struct SolverRequest {
+    pub solver: SolverChoice,
     /// About so many samples.
     pub samples: usize,
     pub start_feed: f64,
@@ -45,7 +45,7 @@ pub struct StretchPlan {
 /// What a solver came to.
 #[derive(Clone, Debug, Serialize)]
 pub struct SolverFound {
-    pub solver: Solver,
+    pub solver: SolverChoice,
     /// `Σ f²` over the samples, mm²/s².
     pub sum_of_squared_feeds: f64,
     pub seconds: f64,
@@ -91,7 +91,7 @@ impl Answer {
 
 /// The sums over the stretches, as they grow.
 struct Sums {
-    solver: Solver,
+    solver: SolverChoice,
     objective: f64,
     bound: Option<f64>,
     seconds: f64,
@@ -101,7 +101,7 @@ struct Sums {
 
 impl Sums {
     /// Of no stretch yet.
-    fn of(solver: Solver) -> Self {
+    fn of(solver: SolverChoice) -> Self {
         Self {
             solver,
             objective: 0.0,
@@ -113,8 +113,8 @@ impl Sums {
     }
 
     /// Adds a stretch.
-    fn add(&mut self, answer: &Answer, stretch: &Stretch<'_>) {
-        let Stretch { problem, weights, fast, .. } = stretch;
+    fn add(&mut self, answer: &Answer, stretch: &StretchProblem<'_>) {
+        let StretchProblem { problem, weights, fast, .. } = stretch;
         let objective: f64 = answer.q.iter().zip(weights).map(|(q, weight)| q * weight).sum();
         self.objective += objective;
         self.seconds += answer.seconds;
@@ -145,19 +145,19 @@ impl Sums {
 }
 
 /// A stretch as a problem, and the plan of reachability analysis.
-struct Stretch<'a> {
+struct StretchProblem<'a> {
     parameters: &'a [f64],
-    told: Told<'a>,
+    told: NoPlanContext<'a>,
     problem: Problem,
     /// Of the squared speeds in `Σ f²`.
     weights: Vec<f64>,
     fast: Vec<f64>,
 }
 
-impl<'a> Stretch<'a> {
+impl<'a> StretchProblem<'a> {
     fn new(
         parameters: &'a [f64],
-        told: Told<'a>,
+        told: NoPlanContext<'a>,
         ends: EndSpeeds,
     ) -> Result<Self, Box<Diagnostic>> {
         let mut problem = Problem::default();
@@ -169,11 +169,11 @@ impl<'a> Stretch<'a> {
     }
 
     /// Its plan by one solver.
-    fn answer(&self, solver: Solver) -> Result<Answer, Box<Diagnostic>> {
+    fn answer(&self, solver: SolverChoice) -> Result<Answer, Box<Diagnostic>> {
         let Self { parameters, told, problem, weights, fast } = self;
         Ok(match solver {
-            Solver::Reach => Answer::of(problem, fast.clone()),
-            Solver::Interior => {
+            SolverChoice::Reach => Answer::of(problem, fast.clone()),
+            SolverChoice::Interior => {
                 let best = linear_program::solve(problem, weights);
                 let best = best.map_err(|fault| told.infeasible(&fault))?;
                 Answer {
@@ -182,7 +182,7 @@ impl<'a> Stretch<'a> {
                     ..Answer::of(problem, best.q)
                 }
             }
-            Solver::Jerk => {
+            SolverChoice::Jerk => {
                 let settings = jerk::JerkSettings::default();
                 let plan = jerk::solve(told.samples, told.limits, problem, settings);
                 let plan = plan.map_err(|fault| told.infeasible(&fault))?;
@@ -205,7 +205,7 @@ impl<'a> Stretch<'a> {
 pub fn plan(
     path: &mut CurvePath<'_>,
     feed: f64,
-    asked: Asked,
+    asked: SolverRequest,
     file: &str,
 ) -> Result<Plans, Box<Diagnostic>> {
     let owned = post_posting::plan::limits(path.machine, &path.machine.plan);
@@ -215,10 +215,10 @@ pub fn plan(
     let last = path.stretches.len() - 1;
     let mut plans =
         Plans { stretches: Vec::new(), solvers: Vec::new(), monotone: true, samples: 0 };
-    let solvers: &[Solver] = match asked.solver {
-        Solver::Reach => &[Solver::Reach],
-        Solver::Jerk => &[Solver::Jerk, Solver::Reach],
-        Solver::Interior => &[Solver::Interior, Solver::Reach],
+    let solvers: &[SolverChoice] = match asked.solver {
+        SolverChoice::Reach => &[SolverChoice::Reach],
+        SolverChoice::Jerk => &[SolverChoice::Jerk, SolverChoice::Reach],
+        SolverChoice::Interior => &[SolverChoice::Interior, SolverChoice::Reach],
     };
     let mut sums: Vec<Sums> = solvers.iter().copied().map(Sums::of).collect();
     let mut way = 0.0;
@@ -228,9 +228,9 @@ pub fn plan(
         guided.map_err(|(at, why)| path.refused(file, at, &why).boxed())?;
         let samples = path.samples(index, &parameters, feed);
         let samples = samples.map_err(|(at, why)| path.refused(file, at, &why).boxed())?;
-        let told = Told { path, index, samples: &samples, limits: &limits, way, file };
+        let told = NoPlanContext { path, index, samples: &samples, limits: &limits, way, file };
         let ends = end_speeds(asked, &samples, [index == 0, index == last]);
-        let stretch = Stretch::new(&parameters, told, ends)?;
+        let stretch = StretchProblem::new(&parameters, told, ends)?;
         plans.monotone &= stretch.problem.rows.iter().all(|row| row.here * row.next <= 0.0);
         let mut spline = None;
         for sum in &mut sums {
@@ -250,7 +250,7 @@ pub fn plan(
 }
 
 /// Squared speeds of the parameter at both ends of a stretch: at rest but for the ends of the path, where feeds are given.
-fn end_speeds(asked: Asked, samples: &Samples, [first, last]: [bool; 2]) -> EndSpeeds {
+fn end_speeds(asked: SolverRequest, samples: &Samples, [first, last]: [bool; 2]) -> EndSpeeds {
     let speed = |feed: f64, sample: usize| {
         let speed = feed / samples.stretch(sample);
         if feed > 0.0 { speed * speed } else { 0.0 }
@@ -286,7 +286,7 @@ fn length(samples: &Samples, last: usize) -> f64 {
 }
 
 /// What is needed to tell why there is no plan.
-struct Told<'a> {
+struct NoPlanContext<'a> {
     path: &'a CurvePath<'a>,
     index: usize,
     samples: &'a Samples,
@@ -296,7 +296,7 @@ struct Told<'a> {
     file: &'a str,
 }
 
-impl Told<'_> {
+impl NoPlanContext<'_> {
     fn infeasible(&self, fault: &Infeasible) -> Box<Diagnostic> {
         let Some(sample) = fault.sample() else {
             let message = format!("{}: {fault}", self.file);

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::found::Found;
+use super::found::CurveSummary;
 use super::simulate::Simulated;
-use super::solve::{Solver, SolverFound};
+use super::solve::{SolverChoice, SolverFound};
 use post_job::text::number;
 use post_job::text_table::{NamedValues, TextTable, or_dash};
 
@@ -15,7 +15,7 @@ const SAME: f64 = 1e-6;
 const NAME: usize = 14;
 
 /// The tables of a plan.
-pub fn text(found: &Found) -> String {
+pub fn text(found: &CurveSummary) -> String {
     let mut rows = NamedValues::default();
     rows.row("curve", format_args!("{} ({})", found.name, found.curve));
     rows.row("machine", format_args!("{}: {}", found.machine, found.axes.join(", ")));
@@ -57,7 +57,7 @@ pub fn text(found: &Found) -> String {
     text
 }
 
-fn limits(text: &mut String, found: &Found) {
+fn limits(text: &mut String, found: &CurveSummary) {
     let heads = ["limit", "most", "largest", "share", "at mm", "active: way", "time"];
     let mut table = TextTable::headed(1, heads);
     let mut unreached = [1.0, 1.0];
@@ -102,7 +102,7 @@ fn decimals(size: f64) -> u8 {
     }
 }
 
-fn solvers(text: &mut String, found: &Found) {
+fn solvers(text: &mut String, found: &CurveSummary) {
     let heads =
         ["solver", "Σ f², mm²/s²", "seconds", "proven gap", "iterations", "feeds differ by"];
     let mut table = TextTable::headed(1, heads);
@@ -114,7 +114,7 @@ fn solvers(text: &mut String, found: &Found) {
             or_dash(solver.proven_gap.map(|gap| format!("{gap:.1e}"))),
             or_dash(solver.iterations),
             or_dash(
-                (solver.solver != Solver::Reach)
+                (solver.solver != SolverChoice::Reach)
                     .then(|| format!("{:.1e}", solver.largest_difference)),
             ),
         ]);
@@ -141,7 +141,7 @@ fn judged(monotone: bool, first: &SolverFound, fast: &SolverFound) -> String {
         sign(longer),
         number(libm::fabs(longer), 5)
     );
-    if first.solver == Solver::Jerk {
+    if first.solver == SolverChoice::Jerk {
         return format!("{than}, which keeps no jerk: a lower bound");
     }
     match (monotone, first.largest_difference <= SAME) {
@@ -161,11 +161,11 @@ fn sign(value: f64) -> &'static str {
     if value < 0.0 { "-" } else { "+" }
 }
 
-fn name(solver: Solver) -> &'static str {
+fn name(solver: SolverChoice) -> &'static str {
     match solver {
-        Solver::Reach => "reach",
-        Solver::Interior => "interior",
-        Solver::Jerk => "jerk",
+        SolverChoice::Reach => "reach",
+        SolverChoice::Interior => "interior",
+        SolverChoice::Jerk => "jerk",
     }
 }
 

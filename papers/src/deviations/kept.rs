@@ -17,7 +17,7 @@ use post_posting::accuracy::{
 
 /// A move with all that it needs.
 #[derive(Clone, Debug)]
-pub struct Kept {
+pub struct KeptMove {
     /// Its number among the cuts of the file, counted from 0.
     pub number: usize,
     placer: Placer,
@@ -29,7 +29,7 @@ pub struct Kept {
 
 /// The deviation over a piece of a move.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stretch {
+pub struct DeviationPiece {
     /// Shares of the move and deviation there, mm, part frame.
     pub samples: Vec<(f64, Vector3<f64>)>,
 }
@@ -39,7 +39,7 @@ pub struct Stretch {
 pub struct Keeper {
     wanted: Range<usize>,
     /// The moves, in order.
-    pub kept: Vec<Kept>,
+    pub kept: Vec<KeptMove>,
     /// The largest deviation of every move, mm.
     pub peaks: Vec<f64>,
 }
@@ -56,7 +56,7 @@ impl Observer for Keeper {
         let number = self.peaks.len();
         self.peaks.push(peak(|t| strays(cut, t).norm()).size);
         if self.wanted.contains(&number) {
-            self.kept.push(Kept {
+            self.kept.push(KeptMove {
                 number,
                 placer: cut.placer.clone(),
                 from: *cut.from,
@@ -68,7 +68,7 @@ impl Observer for Keeper {
     }
 }
 
-impl Kept {
+impl KeptMove {
     fn cut(&self) -> NodeMove<'_> {
         NodeMove {
             placer: &self.placer,
@@ -118,8 +118,8 @@ impl Kept {
     }
 
     /// The deviation with nothing done about it, in `pieces` even pieces.
-    pub fn raw(&self, pieces: u32) -> Stretch {
-        Stretch::of(&self.cut(), [0.0, 1.0], pieces)
+    pub fn raw(&self, pieces: u32) -> DeviationPiece {
+        DeviationPiece::of(&self.cut(), [0.0, 1.0], pieces)
     }
 
     /// The deviation of each piece after a placement, in `pieces` even pieces each.
@@ -132,7 +132,7 @@ impl Kept {
         placement: Placement,
         model: &mut dyn ModelSession,
         pieces: u32,
-    ) -> Result<Vec<Stretch>, LineariseError> {
+    ) -> Result<Vec<DeviationPiece>, LineariseError> {
         let accuracy = placing(&machine.accuracy, placement);
         self.split(Lineariser::new(&accuracy, false), model, pieces)
     }
@@ -142,19 +142,19 @@ impl Kept {
         mut linearise: Lineariser,
         model: &mut dyn ModelSession,
         pieces: u32,
-    ) -> Result<Vec<Stretch>, LineariseError> {
+    ) -> Result<Vec<DeviationPiece>, LineariseError> {
         let cut = self.cut();
         split(&cut, &[self.from, self.to], &mut linearise, model)?;
         let mut stretches = Vec::new();
         each(&cut, linearise.pieces(), |block, _| {
             let ends = [block.from.t, block.to.t];
-            stretches.push(Stretch::of(block, ends, pieces));
+            stretches.push(DeviationPiece::of(block, ends, pieces));
         });
         Ok(stretches)
     }
 }
 
-impl Stretch {
+impl DeviationPiece {
     /// A block between two shares of its move.
     fn of(block: &NodeMove<'_>, [from, to]: [f64; 2], pieces: u32) -> Self {
         let samples = (0..=pieces).map(|step| {

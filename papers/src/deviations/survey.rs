@@ -12,7 +12,7 @@ use post_posting::accuracy::{Lineariser, NodeMove};
 
 /// One move.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Row {
+pub struct MoveRow {
     /// Line of the CL file.
     pub line: u64,
     /// Way of the control point along its chord, mm.
@@ -25,9 +25,9 @@ pub struct Row {
     pub edge: Option<f64>,
     /// Largest deviation of the tool axis, radians, likewise.
     pub axis: f64,
-    /// What each model makes of it, in the order of [`Survey::new`].
+    /// What each model makes of it, in the order of [`CutSurvey::new`].
     pub models: Box<[Modelled]>,
-    /// After each placement, in the order of [`Survey::PLACEMENTS`]; none where it cannot be done.
+    /// After each placement, in the order of [`CutSurvey::PLACEMENTS`]; none where it cannot be done.
     pub placed: Box<[Option<Placed>]>,
 }
 
@@ -45,7 +45,7 @@ pub struct Modelled {
 }
 
 /// Looks at every cut of a file.
-pub struct Survey<'a> {
+pub struct CutSurvey<'a> {
     /// The machine's own model, which placements ask.
     own: &'a mut dyn ModelSession,
     models: Vec<&'a mut dyn ModelSession>,
@@ -55,7 +55,7 @@ pub struct Survey<'a> {
     /// Tool axis with all axes at zero, and radius of the cutting edge, mm.
     tool: (Vector3<f64>, f64),
     /// One row a move, in order.
-    pub rows: Vec<Row>,
+    pub rows: Vec<MoveRow>,
     /// Largest deviation of every piece after each placement, mm.
     pub pieces: [Vec<f64>; 3],
     /// Largest deviation of every piece after compensation with each model, mm.
@@ -64,7 +64,7 @@ pub struct Survey<'a> {
     pub fault: Option<String>,
 }
 
-impl<'a> Survey<'a> {
+impl<'a> CutSurvey<'a> {
     /// The placements that are compared, without leaving out CL points.
     pub const PLACEMENTS: [Placement; 3] = [Placement::Bisect, Placement::Even, Placement::Fewest];
 
@@ -113,7 +113,7 @@ impl<'a> Survey<'a> {
     }
 }
 
-impl Observer for Survey<'_> {
+impl Observer for CutSurvey<'_> {
     fn cut(&mut self, line: u64, cut: &NodeMove<'_>) {
         let (first, last) = (&cut.from.trace.joints, &cut.to.trace.joints);
         let turns = self.rotary.iter().map(|joint| last[*joint] - first[*joint]);
@@ -139,7 +139,7 @@ impl Observer for Survey<'_> {
             .zip(&mut self.pieces)
             .map(|(linearise, pieces)| place(cut, linearise, own, pieces).ok())
             .collect();
-        self.rows.push(Row {
+        self.rows.push(MoveRow {
             line,
             length: (cut.to.target.tip - cut.from.target.tip).norm(),
             turn,

@@ -12,7 +12,7 @@ mod sweep_values;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use crate::deviations::{Distribution, Keeper, Kept, Row, Survey};
+use crate::deviations::{CutSurvey, Distribution, Keeper, KeptMove, MoveRow};
 use clap::Args;
 use post_host::OpenedModel;
 use post_machine::description::{Machine, Method, Setting};
@@ -23,7 +23,7 @@ use post_posting::report::PostingReport;
 use post_cli::arguments::JobArguments;
 use post_cli::terminal::print;
 use post_job::failure::Failure;
-use post_job::files::{AtomicFile, OwnFolder, PathArg, Role};
+use post_job::files::{AtomicFile, FolderMark, OwnFolder, PathArg, Role};
 use post_job::session::Session;
 use post_job::{DryRun, plugin_finder, say_what_is_left};
 use sweep::Swept;
@@ -72,27 +72,27 @@ pub struct StudyArguments {
 }
 
 /// All that was found out.
-pub struct Study {
+pub struct DeviationStudy {
     pub file: String,
     pub machine: Machine,
     pub exact: bool,
-    /// Names of the models, in the order of [`Row::models`].
+    /// Names of the models, in the order of [`MoveRow::models`].
     pub models: Vec<String>,
-    pub rows: Vec<Row>,
+    pub rows: Vec<MoveRow>,
     /// Largest deviation of every piece after each placement, mm.
     pub pieces: [Vec<f64>; 3],
     /// Deviations, mm: of the moves, what each model leaves, after compensation with each, after each placement.
-    pub spreads: Vec<Spread>,
+    pub spreads: Vec<NamedDistribution>,
     /// The whole program by each way.
-    pub programs: Vec<Program>,
+    pub programs: Vec<PostedVariant>,
     /// Which of the rows is looked at.
     pub focus: usize,
     /// It and its neighbours.
-    pub kept: Vec<Kept>,
+    pub kept: Vec<KeptMove>,
     pub sweep: Option<(String, Vec<Swept>)>,
 }
 
-impl Study {
+impl DeviationStudy {
     /// The CL file without its folder, for titles.
     pub fn part(&self) -> String {
         let name = Path::new(&self.file).file_name().unwrap_or_default();
@@ -101,7 +101,7 @@ impl Study {
 }
 
 /// How deviations are spread.
-pub struct Spread {
+pub struct NamedDistribution {
     pub name: String,
     pub distribution: Distribution,
     /// Points put in; none where the question does not arise.
@@ -109,7 +109,7 @@ pub struct Spread {
 }
 
 /// What came of posting the whole file in one way.
-pub struct Program {
+pub struct PostedVariant {
     pub name: String,
     pub reduce: bool,
     /// Why it cannot be done, if it cannot.
@@ -131,14 +131,14 @@ pub fn run(session: &Session, arguments: &StudyArguments) -> Result<(), Failure>
     say_what_is_left(session, job, &machine, &dry_run.finder);
     let folder = folder(arguments, &job.input);
     let names = [&study_csv::NAMES[..], &pictures::NAMES[..]].concat();
-    let mark = ("moves.csv", study_csv::BEGIN);
+    let mark = FolderMark { name: "moves.csv", begins: study_csv::BEGIN };
     let own = OwnFolder::open(session, &folder, STUDY, mark, &names).map_err(|fault| *fault)?;
     let (names, mut models) = models(&dry_run, &machine)?;
     let (surveyed, findings) = survey(&dry_run, &machine, &names, &mut models)?;
     let Surveyed { rows, pieces, spreads } = surveyed;
     let focus = focus(arguments, &rows)?;
     let around = focus.saturating_sub(AROUND)..(focus + AROUND + 1).min(rows.len());
-    let study = Study {
+    let study = DeviationStudy {
         kept: keep(&dry_run, &machine, around)?,
         programs: programs(&dry_run, &names)?,
         sweep: match &arguments.sweep {
@@ -209,9 +209,9 @@ fn models(dry_run: &DryRun<'_>, machine: &Machine) -> Result<(Vec<String>, Model
 
 /// What a look at every move gives.
 struct Surveyed {
-    rows: Vec<Row>,
+    rows: Vec<MoveRow>,
     pieces: [Vec<f64>; 3],
-    spreads: Vec<Spread>,
+    spreads: Vec<NamedDistribution>,
 }
 
 /// Looks at every move.
@@ -223,7 +223,7 @@ fn survey(
 ) -> Result<(Surveyed, Vec<Diagnostic>), Failure> {
     let sessions = models.opened.iter_mut();
     let sessions = sessions.map(|model| model as &mut dyn ModelSession);
-    let mut survey = Survey::new(machine, &mut models.own, sessions.collect());
+    let mut survey = CutSurvey::new(machine, &mut models.own, sessions.collect());
     let (_, findings) = dry_run.pass(machine, Some(&mut survey))?;
     if let Some(fault) = survey.fault {
         return Err(Diagnostic::error("model", fault).into());
@@ -235,9 +235,13 @@ fn survey(
     let rows = survey.rows;
     let mut spreads = Vec::new();
     let mut spread = |name: String, mut values: Vec<f64>, points: Option<u64>| {
-        spreads.push(Spread { name, distribution: Distribution::of(&mut values), points });
+        spreads.push(NamedDistribution {
+            name,
+            distribution: Distribution::of(&mut values),
+            points,
+        });
     };
-    let of_rows = |value: &dyn Fn(&Row) -> f64| rows.iter().map(value).collect::<Vec<f64>>();
+    let of_rows = |value: &dyn Fn(&MoveRow) -> f64| rows.iter().map(value).collect::<Vec<f64>>();
     spread("uncompensated".to_owned(), of_rows(&|row| row.raw.size), None);
     for (index, name) in names.iter().enumerate() {
         let left = of_rows(&|row| row.models[index].residual);
@@ -248,7 +252,8 @@ fn survey(
         let points = placed.map(|placed| u64::from(placed.points)).sum();
         spread(format!("compensated, {name}"), pieces, Some(points));
     }
-    for ((index, placement), pieces) in Survey::PLACEMENTS.iter().enumerate().zip(&survey.pieces) {
+    for ((index, placement), pieces) in CutSurvey::PLACEMENTS.iter().enumerate().zip(&survey.pieces)
+    {
         let placed = rows.iter().filter_map(|row| row.placed[index]);
         let points = placed.map(|placed| u64::from(placed.points)).sum();
         let name = placement.name().to_owned();
@@ -258,7 +263,7 @@ fn survey(
 }
 
 /// Which move is looked at.
-fn focus(arguments: &StudyArguments, rows: &[Row]) -> Result<usize, Failure> {
+fn focus(arguments: &StudyArguments, rows: &[MoveRow]) -> Result<usize, Failure> {
     if let Some(number) = arguments.number {
         let focus = number as usize - 1;
         return if focus < rows.len() {
@@ -282,14 +287,14 @@ fn keep(
     dry_run: &DryRun<'_>,
     machine: &Machine,
     wanted: Range<usize>,
-) -> Result<Vec<Kept>, Failure> {
+) -> Result<Vec<KeptMove>, Failure> {
     let mut keeper = Keeper::new(wanted);
     dry_run.pass(machine, Some(&mut keeper))?;
     Ok(keeper.kept)
 }
 
 /// Posts the whole file by each placement, with and without leaving out CL points, and compensated with each model.
-fn programs(dry_run: &DryRun<'_>, models: &[String]) -> Result<Vec<Program>, Failure> {
+fn programs(dry_run: &DryRun<'_>, models: &[String]) -> Result<Vec<PostedVariant>, Failure> {
     let mut programs = Vec::new();
     let mut post = |name: String, reduce: bool, settings: &[Setting]| {
         let machine = self::machine(dry_run, settings)?;
@@ -301,10 +306,10 @@ fn programs(dry_run: &DryRun<'_>, models: &[String]) -> Result<Vec<Program>, Fai
                 .next()
                 .map_or_else(|| "refused".to_owned(), |finding| finding.message)),
         };
-        programs.push(Program { name, reduce, report });
+        programs.push(PostedVariant { name, reduce, report });
         Ok::<(), Failure>(())
     };
-    for placement in Survey::PLACEMENTS {
+    for placement in CutSurvey::PLACEMENTS {
         for reduce in [false, true] {
             let settings = [
                 Setting::Method(Method::Linearise),
@@ -322,4 +327,4 @@ fn programs(dry_run: &DryRun<'_>, models: &[String]) -> Result<Vec<Program>, Fai
 }
 
 /// A file of the study: its name and its text.
-pub type File = (&'static str, String);
+pub type NamedText = (&'static str, String);

@@ -1,11 +1,11 @@
 //! Pictures of the move that is looked at and of its neighbours.
 
-use crate::deviations::{Kept, Rim, Stretch};
+use crate::deviations::{DeviationPiece, KeptMove, Rim};
 use post_machine::description::Machine;
 use post_plugin::{ModelSession, length};
 
 use super::notation::{FINE, HUGE, MICRO, digits, focus, sampled, tolerance};
-use super::{Models, Study};
+use super::{DeviationStudy, Models};
 use post_job::files::chart::{Chart, DASHED, GREY, LOOKS, Marker, Series};
 
 /// More points than this would run into one another.
@@ -26,7 +26,7 @@ pub struct Fit {
 }
 
 /// The curves of all models that can answer.
-pub fn fits(kept: &Kept, study: &Study, models: &mut Models) -> Vec<Fit> {
+pub fn fits(kept: &KeptMove, study: &DeviationStudy, models: &mut Models) -> Vec<Fit> {
     let row = &study.rows[study.focus];
     let opened = models.opened.iter_mut().zip(&study.models);
     let mut fits = Vec::new();
@@ -50,7 +50,7 @@ pub fn fits(kept: &Kept, study: &Study, models: &mut Models) -> Vec<Fit> {
 }
 
 /// Deviation along one move and the curves that the models fit (parabolic fig. 5; harmonic fig. 3.2).
-pub fn along(study: &Study, kept: &Kept, fits: &[Fit]) -> Chart {
+pub fn along(study: &DeviationStudy, kept: &KeptMove, fits: &[Fit]) -> Chart {
     let mut series = vec![Series::line("deviation", sampled(|t| kept.deviation(t).norm()), GREY)];
     series.extend(tolerance(study, [0.0, 1.0], kept.peak().size * MICRO));
     for (fit, look) in fits.iter().zip(&LOOKS[1..]) {
@@ -69,7 +69,7 @@ pub fn along(study: &Study, kept: &Kept, fits: &[Fit]) -> Chart {
 }
 
 /// What is left of one move when each model's curve is taken away (harmonic fig. 3.3b).
-pub fn left(study: &Study, kept: &Kept, fits: &[Fit]) -> Chart {
+pub fn left(study: &DeviationStudy, kept: &KeptMove, fits: &[Fit]) -> Chart {
     let peak = kept.peak().size * MICRO;
     let series = fits.iter().zip(&LOOKS[1..]).map(|(fit, look)| {
         let most = fit.left.iter().map(|point| point[1]).fold(0.0, f64::max);
@@ -87,12 +87,12 @@ pub fn left(study: &Study, kept: &Kept, fits: &[Fit]) -> Chart {
 }
 
 /// Consecutive moves before and after points were put in (parabolic figs. 4 and 10a).
-pub fn neighbours(study: &Study, models: &mut Models) -> Chart {
+pub fn neighbours(study: &DeviationStudy, models: &mut Models) -> Chart {
     let placement = study.machine.accuracy.placement;
     let (mut before, mut after, mut points) = (Vec::new(), Vec::new(), Vec::new());
     for kept in &study.kept {
         let number = kept.number as f64 + 0.5;
-        let place = |stretch: &Stretch| -> Vec<[f64; 2]> {
+        let place = |stretch: &DeviationPiece| -> Vec<[f64; 2]> {
             let samples = stretch.samples.iter();
             samples.map(|(t, strays)| [number + t, strays.norm() * MICRO]).collect()
         };
@@ -129,7 +129,7 @@ pub fn neighbours(study: &Study, models: &mut Models) -> Chart {
 }
 
 /// What the tool's turn adds at a cutting edge, against its radius and the rotary move (parabolic fig. 7, eq. 10).
-pub fn edge(study: &Study, kept: &Kept) -> Option<Chart> {
+pub fn edge(study: &DeviationStudy, kept: &KeptMove) -> Option<Chart> {
     let machine: &Machine = &study.machine;
     let [from, to] = kept.joints();
     let rotary = |joint: usize| machine.axes.get(joint).is_some_and(|axis| axis.joint.rotary);

@@ -1,6 +1,6 @@
 //! What pictures and tables of a study tell alike: units, digits, which move is looked at.
 
-use super::Study;
+use super::DeviationStudy;
 use post_job::files::chart::{LIMIT, Series};
 
 /// Micrometres in a mm.
@@ -23,7 +23,7 @@ pub fn sampled(length: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
 }
 
 /// Which move is looked at.
-pub fn focus(study: &Study) -> String {
+pub fn focus(study: &DeviationStudy) -> String {
     let row = &study.rows[study.focus];
     format!(
         "move {}, CL line {}: {:.3} mm, {:.4}° of rotary axes",
@@ -35,7 +35,7 @@ pub fn focus(study: &Study) -> String {
 }
 
 /// A line at the tolerance from `from` to `to`, if it does not dwarf the rest.
-pub fn tolerance(study: &Study, [from, to]: [f64; 2], largest: f64) -> Option<Series> {
+pub fn tolerance(study: &DeviationStudy, [from, to]: [f64; 2], largest: f64) -> Option<Series> {
     let tolerance = study.machine.accuracy.tolerance * MICRO;
     (tolerance < 3.0 * largest).then(|| {
         Series::line(

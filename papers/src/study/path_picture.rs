@@ -1,10 +1,10 @@
 //! The path of the tool as it should be, as it is, and compensated (harmonic figs. 3.3a and 4.1).
 
-use crate::deviations::Kept;
+use crate::deviations::KeptMove;
 use post_plugin::ModelSession;
 
 use super::notation::{FINE, focus};
-use super::{Models, Study};
+use super::{DeviationStudy, Models};
 use post_job::files::chart::{Chart, GREY, LOOKS, Marker, Series};
 
 /// Moves to each side of the one that is looked at.
@@ -14,14 +14,14 @@ const SIDE: usize = 1;
 const SHARE: f64 = 0.12;
 
 /// The three paths in the plane of the move's chord and its largest deviation; none if there is no such plane.
-pub fn chart(study: &Study, middle: &Kept, models: &mut Models) -> Option<Chart> {
+pub fn chart(study: &DeviationStudy, middle: &KeptMove, models: &mut Models) -> Option<Chart> {
     let peak = middle.peak();
     let origin = middle.target(0.0);
     let along = (middle.target(1.0) - origin).try_normalize(1e-9)?;
     let strays = middle.deviation(peak.at);
     let aside = (strays - along * along.dot(&strays)).try_normalize(1e-9)?;
-    let near = |kept: &&Kept| kept.number.abs_diff(study.focus) <= SIDE;
-    let moves: Vec<&Kept> = study.kept.iter().filter(near).collect();
+    let near = |kept: &&KeptMove| kept.number.abs_diff(study.focus) <= SIDE;
+    let moves: Vec<&KeptMove> = study.kept.iter().filter(near).collect();
     let way: f64 = moves.iter().map(|kept| kept.length()).sum();
     let times = round(SHARE * way / peak.size);
     let name = study.models.first()?;

@@ -1,10 +1,10 @@
 //! The pictures of a study. Which figure of which paper each follows is in its docstring: parabolic is Sha et al.
 //! 2022, harmonic is Li 2024.
 
-use crate::deviations::{Survey, histogram};
+use crate::deviations::{CutSurvey, histogram};
 
 use super::notation::{HUGE, MICRO, count_of_moves, focus, sampled, tolerance};
-use super::{File, Models, Study, move_pictures, path_picture};
+use super::{DeviationStudy, Models, NamedText, move_pictures, path_picture};
 use post_job::files::chart::{Chart, DASHED, Draw, GREY, LOOKS, Series};
 
 /// More moves than this are drawn as the largest of every few.
@@ -29,7 +29,7 @@ pub const NAMES: [&str; 9] = [
 ];
 
 /// All pictures that there is something to show in.
-pub fn files(study: &Study, models: &mut Models) -> Vec<File> {
+pub fn files(study: &DeviationStudy, models: &mut Models) -> Vec<NamedText> {
     let mut files = vec![
         ("before-after.svg", before_after(study).svg()),
         ("histogram.svg", spread(study).svg()),
@@ -55,7 +55,7 @@ pub fn files(study: &Study, models: &mut Models) -> Vec<File> {
 }
 
 /// The largest deviation of every move, before and after (parabolic figs. 9 and 10b; harmonic fig. 3.3b).
-fn before_after(study: &Study) -> Chart {
+fn before_after(study: &DeviationStudy) -> Chart {
     let rows = &study.rows;
     let every = rows.len().div_ceil(MOST_MOVES).max(1);
     let largest = |value: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
@@ -73,7 +73,7 @@ fn before_after(study: &Study) -> Chart {
     let ends = [1.0, rows.len() as f64];
     series.extend(tolerance(study, ends, most * MICRO));
     let mut looks = [LOOKS[1], LOOKS[2], LOOKS[0], LOOKS[4], LOOKS[5]].into_iter();
-    for (index, placement) in Survey::PLACEMENTS.iter().enumerate() {
+    for (index, placement) in CutSurvey::PLACEMENTS.iter().enumerate() {
         let peak = |row: usize| rows[row].placed[index].map_or(0.0, |placed| placed.peak);
         if let Some(look) = looks.next() {
             let name = format!("after {}", placement.name());
@@ -104,8 +104,8 @@ fn before_after(study: &Study) -> Chart {
 }
 
 /// How the deviations of moves and of pieces are spread.
-fn spread(study: &Study) -> Chart {
-    let index = Survey::PLACEMENTS
+fn spread(study: &DeviationStudy) -> Chart {
+    let index = CutSurvey::PLACEMENTS
         .iter()
         .position(|placement| *placement == study.machine.accuracy.placement)
         .unwrap_or(0);
@@ -154,7 +154,7 @@ fn spread(study: &Study) -> Chart {
 }
 
 /// The largest deviation over a swept number (parabolic fig. 8a).
-fn swept(study: &Study) -> Chart {
+fn swept(study: &DeviationStudy) -> Chart {
     let (name, swept) = match &study.sweep {
         Some((name, swept)) => (name.as_str(), swept.as_slice()),
         None => ("", [].as_slice()),
@@ -181,7 +181,7 @@ fn swept(study: &Study) -> Chart {
 }
 
 /// Deviation along one move for values of a swept number (parabolic fig. 8b).
-fn swept_curves(study: &Study) -> Chart {
+fn swept_curves(study: &DeviationStudy) -> Chart {
     let (name, swept) = match &study.sweep {
         Some((name, swept)) => (name.as_str(), swept.as_slice()),
         None => ("", [].as_slice()),

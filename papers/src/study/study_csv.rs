@@ -3,10 +3,10 @@
 
 use std::fmt::Write as _;
 
-use crate::deviations::{Placed, Row, Survey};
+use crate::deviations::{CutSurvey, MoveRow, Placed};
 
 use super::notation::MICRO;
-use super::{File, Study};
+use super::{DeviationStudy, NamedText};
 
 /// The files that there can be.
 pub const NAMES: [&str; 4] = ["moves.csv", "summary.csv", "blocks.csv", "sweep.csv"];
@@ -15,7 +15,7 @@ pub const NAMES: [&str; 4] = ["moves.csv", "summary.csv", "blocks.csv", "sweep.c
 pub const BEGIN: &str = "move,cl_line,length_mm,turn_deg,peak_um,peak_at,edge_um,axis_deg";
 
 /// All tables.
-pub fn files(study: &Study) -> Vec<File> {
+pub fn files(study: &DeviationStudy) -> Vec<NamedText> {
     let mut files = vec![
         ("moves.csv", moves(study)),
         ("summary.csv", summary(study)),
@@ -28,7 +28,7 @@ pub fn files(study: &Study) -> Vec<File> {
 }
 
 /// Every move.
-fn moves(study: &Study) -> String {
+fn moves(study: &DeviationStudy) -> String {
     let mut text = BEGIN.to_owned();
     for name in &study.models {
         for column in
@@ -37,7 +37,7 @@ fn moves(study: &Study) -> String {
             let _ = write!(text, ",{name}_{column}");
         }
     }
-    for placement in Survey::PLACEMENTS {
+    for placement in CutSurvey::PLACEMENTS {
         let name = placement.name();
         let _ = write!(text, ",{name}_points,{name}_certified_um,{name}_peak_um");
     }
@@ -48,7 +48,7 @@ fn moves(study: &Study) -> String {
     text
 }
 
-fn one_move(text: &mut String, number: usize, row: &Row) {
+fn one_move(text: &mut String, number: usize, row: &MoveRow) {
     let _ = write!(
         text,
         "{number},{},{:.6},{:.6},{:.6},{:.6},{},{:.9}",
@@ -100,7 +100,7 @@ fn or_empty(placed: Option<Placed>, write: impl Fn(Placed) -> String, fields: us
 }
 
 /// Distributions.
-fn summary(study: &Study) -> String {
+fn summary(study: &DeviationStudy) -> String {
     let mut text =
         "what,count,mean_um,deviation_um,p50_um,p90_um,p95_um,p99_um,max_um,points_put_in\n"
             .to_owned();
@@ -124,7 +124,7 @@ fn summary(study: &Study) -> String {
 }
 
 /// The whole program by each way.
-fn blocks(study: &Study) -> String {
+fn blocks(study: &DeviationStudy) -> String {
     let mut text =
         "way,reduce,blocks,points_put_in,points_dropped,certified_um,overruled,refused\n"
             .to_owned();
@@ -146,7 +146,7 @@ fn blocks(study: &Study) -> String {
     text
 }
 
-fn sweep(study: &Study) -> Option<String> {
+fn sweep(study: &DeviationStudy) -> Option<String> {
     let (name, swept) = study.sweep.as_ref()?;
     let mut text = format!("{name},mean_um,deviation_um,max_um,move_um\n");
     for step in swept {

@@ -3,11 +3,11 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use crate::deviations::{Row, Survey};
+use crate::deviations::{CutSurvey, MoveRow};
 use post_machine::description::Tcp;
 
 use super::notation::{MICRO, count_of_moves, digits};
-use super::{File, Study};
+use super::{DeviationStudy, NamedText};
 
 /// Moves that are printed.
 const MOST: usize = 10;
@@ -16,7 +16,7 @@ const MOST: usize = 10;
 const LEAST: f64 = 1e-3;
 
 /// The text.
-pub fn text(study: &Study, folder: &Path, files: &[File]) -> String {
+pub fn text(study: &DeviationStudy, folder: &Path, files: &[NamedText]) -> String {
     let mut text = String::new();
     head(&mut text, study);
     spreads(&mut text, study);
@@ -29,7 +29,7 @@ pub fn text(study: &Study, folder: &Path, files: &[File]) -> String {
     text
 }
 
-fn head(text: &mut String, study: &Study) {
+fn head(text: &mut String, study: &DeviationStudy) {
     let machine = &study.machine;
     let _ = writeln!(
         text,
@@ -55,7 +55,7 @@ fn head(text: &mut String, study: &Study) {
     }
 }
 
-fn spreads(text: &mut String, study: &Study) {
+fn spreads(text: &mut String, study: &DeviationStudy) {
     let _ = writeln!(
         text,
         "\n{:<24} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}",
@@ -94,7 +94,7 @@ fn spreads(text: &mut String, study: &Study) {
 }
 
 /// How well the models' curves explain the deviation.
-fn fits(text: &mut String, study: &Study) {
+fn fits(text: &mut String, study: &DeviationStudy) {
     let _ = writeln!(
         text,
         "\n{:<24} {:>12} {:>12} {:>12} {:>16}",
@@ -133,7 +133,7 @@ fn percent(part: f64, whole: f64) -> String {
 }
 
 /// The moves that stray farthest, and the one that is looked at.
-fn moves(text: &mut String, study: &Study) {
+fn moves(text: &mut String, study: &DeviationStudy) {
     let mut order: Vec<usize> = (0..study.rows.len()).collect();
     order.sort_by(|a, b| {
         let size = |index: &usize| study.rows[*index].raw.size;
@@ -152,7 +152,7 @@ fn moves(text: &mut String, study: &Study) {
         let _ = write!(text, " | {name:>9.9} {:>7}", "left");
     }
     text.push_str(" |");
-    for placement in Survey::PLACEMENTS {
+    for placement in CutSurvey::PLACEMENTS {
         let _ = write!(text, " {:>12}", placement.name());
     }
     text.push('\n');
@@ -162,7 +162,7 @@ fn moves(text: &mut String, study: &Study) {
     text.push_str("  for each model its peak and what it leaves, µm; for each placement points put in and largest deviation, µm\n");
 }
 
-fn one_move(text: &mut String, number: usize, row: &Row) {
+fn one_move(text: &mut String, number: usize, row: &MoveRow) {
     let _ = write!(
         text,
         "{number:>6} {:>7} {:>9.3} {:>9.4} {:>9.3} {:>6.3}",
@@ -185,7 +185,7 @@ fn one_move(text: &mut String, number: usize, row: &Row) {
     text.push('\n');
 }
 
-fn programs(text: &mut String, study: &Study) {
+fn programs(text: &mut String, study: &DeviationStudy) {
     let _ = writeln!(
         text,
         "\n{:<24} {:>7} {:>9} {:>9} {:>9} {:>13}",
@@ -208,7 +208,7 @@ fn programs(text: &mut String, study: &Study) {
     }
 }
 
-fn sweep(text: &mut String, study: &Study) {
+fn sweep(text: &mut String, study: &DeviationStudy) {
     let Some((name, swept)) = &study.sweep else {
         return;
     };

@@ -1,6 +1,6 @@
 //! `--sweep`: the same file on the same machine, one number of it changed step by step.
 
-use crate::deviations::{Distribution, Keeper, Kept};
+use crate::deviations::{Distribution, Keeper, KeptMove};
 use post_machine::description::Setting;
 use post_machine::diagnostic::Diagnostic;
 
@@ -14,7 +14,7 @@ pub struct Swept {
     /// Over all moves, mm.
     pub distribution: Distribution,
     /// The move that is looked at.
-    pub kept: Option<Kept>,
+    pub kept: Option<KeptMove>,
 }
 
 /// Goes over the file once for each value, and keeps move `number`.

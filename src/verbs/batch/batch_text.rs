@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use post_job::batch::{FAILED, REFUSED, Table, Values, WRITTEN};
+use post_job::batch::{FAILED, REFUSED, StudyTable, StudyValues, WRITTEN};
 use post_job::files::PathArg;
 use post_job::text::clock;
 
@@ -10,7 +10,7 @@ use post_job::text::clock;
 const MOST_CODES: usize = 6;
 
 /// How many jobs there were, what became of them, and the fastest.
-pub fn text(table: &Table, known: usize, output: &PathArg) -> String {
+pub fn text(table: &StudyTable, known: usize, output: &PathArg) -> String {
     let count =
         |state: &str| (0..table.rows).filter(|row| cell(table, "state", *row) == state).count();
     let mut text = format!("{} jobs: {} written", table.rows, count(WRITTEN));
@@ -52,7 +52,7 @@ pub fn text(table: &Table, known: usize, output: &PathArg) -> String {
 }
 
 /// File, machine and parameters of a row: what stands before its state.
-fn job(table: &Table, row: usize) -> String {
+fn job(table: &StudyTable, row: usize) -> String {
     let columns = table.columns.iter().skip(1);
     let columns = columns.take_while(|column| column.name != "state");
     let told = columns.filter_map(|column| {
@@ -67,12 +67,12 @@ fn job(table: &Table, row: usize) -> String {
     told.collect::<Vec<_>>().join(", ")
 }
 
-fn cell(table: &Table, name: &str, row: usize) -> String {
-    table.column(name).map(|values: &Values| values.text(row)).unwrap_or_default()
+fn cell(table: &StudyTable, name: &str, row: usize) -> String {
+    table.column(name).map(|values: &StudyValues| values.text(row)).unwrap_or_default()
 }
 
 /// The codes of the rows in a state, each with how often.
-fn codes(table: &Table, state: &str) -> String {
+fn codes(table: &StudyTable, state: &str) -> String {
     let mut counts: Vec<(String, usize)> = Vec::new();
     for row in 0..table.rows {
         if cell(table, "state", row) != state {

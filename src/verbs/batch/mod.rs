@@ -12,7 +12,9 @@ use post_machine::diagnostic::Diagnostic;
 use post_cli::arguments::Flags;
 use post_cli::arguments::flag_values::file;
 use post_cli::terminal::{self, JobsProgress};
-use post_job::batch::{self, Grid, JobLine, Journal, Map, Shard, Study, Table, Written};
+use post_job::batch::{
+    self, Grid, JobLine, JobStudy, Journal, MapAxes, Shard, StudyTable, ValueText,
+};
 use post_job::failure::Failure;
 use post_job::files::{self, AtomicFile, FileFault, PathArg, Role};
 use post_job::session::Session;
@@ -55,7 +57,7 @@ pub struct BatchArguments {
 
     /// Values of a parameter of the machine (`Lm=200,250`) or of any key (`accuracy.placement=bisect,fewest`). Repeatable.
     #[arg(long, value_name = "NAME=VALUES", value_parser = set, help_heading = "Grid")]
-    set: Vec<(String, Vec<Written>)>,
+    set: Vec<(String, Vec<ValueText>)>,
 
     /// Where the part origin sits, all axes at zero, machine frame, mm; each coordinate may be a range. Repeatable.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = mounts, help_heading = "Grid")]
@@ -63,23 +65,23 @@ pub struct BatchArguments {
 
     /// How the part is turned about its Z, degrees.
     #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = listed, help_heading = "Grid")]
-    turn: Option<Listed>,
+    turn: Option<FlagValues>,
 
     /// Length of every tool from the gauge point to the tip, mm.
     #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = listed, help_heading = "Grid")]
-    tool_length: Option<Listed>,
+    tool_length: Option<FlagValues>,
 
     /// Largest deviation of the tip in a cut, mm.
     #[arg(long, value_name = "MM", value_parser = listed, help_heading = "Grid")]
-    tolerance: Option<Listed>,
+    tolerance: Option<FlagValues>,
 
     /// Who keeps the tip on its path: control (RTCP, TCP, TCPM), post.
     #[arg(long, value_name = "WHO", value_parser = listed, help_heading = "Grid")]
-    tcp: Option<Listed>,
+    tcp: Option<FlagValues>,
 
     /// Dialects other than the machine file's.
     #[arg(long, value_name = "NAMES", value_parser = listed, help_heading = "Grid")]
-    dialect: Option<Listed>,
+    dialect: Option<FlagValues>,
 
     #[command(flatten)]
     reading: Flags<ReadingSettings>,
@@ -130,13 +132,13 @@ pub struct BatchArguments {
 
 /// Values of a flag.
 #[derive(Clone, Debug)]
-struct Listed(Vec<Written>);
+struct FlagValues(Vec<ValueText>);
 
-fn listed(text: &str) -> Result<Listed, String> {
-    batch::values(text).map(Listed)
+fn listed(text: &str) -> Result<FlagValues, String> {
+    batch::values(text).map(FlagValues)
 }
 
-fn set(text: &str) -> Result<(String, Vec<Written>), String> {
+fn set(text: &str) -> Result<(String, Vec<ValueText>), String> {
     let Some((name, values)) = text.split_once('=') else {
         return Err("NAME=VALUE,VALUE,… is meant".to_owned());
     };
@@ -145,7 +147,7 @@ fn set(text: &str) -> Result<(String, Vec<Written>), String> {
 
 /// Mounts of one flag.
 #[derive(Clone, Debug)]
-struct Mounts(Vec<[Written; 3]>);
+struct Mounts(Vec<[ValueText; 3]>);
 
 /// Each coordinate with every other.
 fn mounts(text: &str) -> Result<Mounts, String> {
@@ -173,7 +175,7 @@ pub fn run(session: &Session, arguments: &BatchArguments) -> Result<(), Failure>
     let reading = arguments.reading.0.clone();
     let options = StudySettings { reading, ..arguments.study.0.clone() };
     let jobs = jobs(session, arguments)?;
-    let (study, inputs) = Study::new(session, jobs, options)?;
+    let (study, inputs) = JobStudy::new(session, jobs, options)?;
     let map = map(arguments, &study)?;
     for job in &study.jobs {
         session.read_files().note("the CL file", job.file.as_ref());
@@ -193,7 +195,7 @@ pub fn run(session: &Session, arguments: &BatchArguments) -> Result<(), Failure>
             Ok(())
         })?;
     progress.finish();
-    let table = Table::new(&study, &numbers, &outcomes.unwrap_or_default());
+    let table = StudyTable::new(&study, &numbers, &outcomes.unwrap_or_default());
     texts[0].write_bytes(&table.bytes(&ending).unwrap_or_default())?;
     if let (Some(map), Some(file)) = (&map, texts.get_mut(1)) {
         file.write_bytes(map.draw(&table).as_bytes())?;
@@ -237,7 +239,7 @@ fn jobs(session: &Session, arguments: &BatchArguments) -> Result<Vec<JobLine>, F
         session.read_files().note("the list of jobs", file);
         seeds.extend(JobLine::read(&file.display().to_string(), &text)?);
     }
-    let values = |flag: &Option<Listed>| -> Vec<Vec<Written>> {
+    let values = |flag: &Option<FlagValues>| -> Vec<Vec<ValueText>> {
         let listed = flag.iter().flat_map(|listed| listed.0.clone());
         listed.map(|value| vec![value]).collect()
     };
@@ -292,7 +294,7 @@ fn journal(session: &Session, arguments: &BatchArguments) -> Result<Option<Journ
 }
 
 /// The map that is asked for, of columns that there are.
-fn map(arguments: &BatchArguments, study: &Study) -> Result<Option<Map>, Failure> {
+fn map(arguments: &BatchArguments, study: &JobStudy) -> Result<Option<MapAxes>, Failure> {
     let (Some(_), Some(x), Some(y)) = (&arguments.svg, &arguments.x, &arguments.y) else {
         return Ok(None);
     };
@@ -305,7 +307,7 @@ fn map(arguments: &BatchArguments, study: &Study) -> Result<Option<Map>, Failure
                 .into());
         }
     }
-    Ok(Some(Map {
+    Ok(Some(MapAxes {
         x: x.clone(),
         y: y.clone(),
         value: arguments.value.clone(),

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use post_readback::diff::{Difference, OperationDifference};
 
-use post_job::diff::{Along, Bin};
+use post_job::diff::{Bin, PathComparison};
 use post_job::files::PlanView;
 use post_job::files::chart::{Chart, DASHED, GREY, LOOKS, Series};
 use post_job::files::svg::{self, label};
@@ -20,7 +20,7 @@ const ROOM: f64 = 14.0;
 const RING: f64 = 8.0;
 
 /// The picture.
-pub fn draw(names: [&str; 2], found: &Difference, along: &Along) -> String {
+pub fn draw(names: [&str; 2], found: &Difference, along: &PathComparison) -> String {
     let charts = charts(along);
     let charts: Vec<(f64, String)> =
         charts.iter().map(|chart| (chart.height(), chart.svg())).collect();
@@ -50,7 +50,7 @@ pub fn draw(names: [&str; 2], found: &Difference, along: &Along) -> String {
 }
 
 /// Both paths in the plane of two axes in which they are largest.
-fn paths(picture: &mut String, found: &Difference, along: &Along) {
+fn paths(picture: &mut String, found: &Difference, along: &PathComparison) {
     let pieces = along.paths.iter().flat_map(|path| &path.pieces);
     let points = pieces.filter(|(cut, _)| *cut).flat_map(|(_, points)| points);
     let view = PlanView::of(points, [LEFT, TOP], SIZE, ROOM);
@@ -116,7 +116,7 @@ fn marks(operation: &OperationDifference) -> Vec<(String, [f64; 3])> {
 }
 
 /// What is drawn along the way.
-fn charts(along: &Along) -> Vec<Chart> {
+fn charts(along: &PathComparison) -> Vec<Chart> {
     let line = |value: &dyn Fn(&Bin) -> f64| -> Vec<[f64; 2]> {
         let bins = along.bins.iter().enumerate();
         bins.map(|(place, bin)| [(place as f64 + 0.5) * along.width, value(bin)]).collect()

@@ -8,7 +8,7 @@ use clap::Args;
 use post_cli::arguments::flag_values::file;
 use post_cli::arguments::{Flags, ProgramArguments, flag_values};
 use post_cli::terminal;
-use post_job::diff::{self, Compared, DiffRequest, DiffTolerances};
+use post_job::diff::{self, DiffRequest, DiffResult, DiffTolerances};
 use post_job::failure::Failure;
 use post_job::files::{self, AtomicFile, PathArg, Role};
 use post_job::session::Session;
@@ -89,7 +89,7 @@ pub struct DiffArguments {
 pub fn run(session: &Session, arguments: &DiffArguments) -> Result<(), Failure> {
     let request = arguments.request();
     let compared = diff::compare(session, &request)?;
-    let Compared { sides, rules, found, along, findings } = &compared;
+    let DiffResult { sides, rules, found, along, findings } = &compared;
     let names = sides.each_ref().map(|side| side.program.name.as_str());
     let machines = sides.each_ref().map(|side| side.control.machine.name.as_str());
     let picture = diff_picture::draw(names, found, along);

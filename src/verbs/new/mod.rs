@@ -59,7 +59,7 @@ pub struct NewArguments {
 
     /// Travel of an axis, mm or degrees: X=-300:300.
     #[arg(long, value_name = "AXIS=LEAST:MOST", allow_hyphen_values = true, value_parser = travel)]
-    travel: Vec<Given<[f64; 2]>>,
+    travel: Vec<AxisSetting<[f64; 2]>>,
 
     /// A rotary axis that turns without end.
     #[arg(long, value_name = "AXIS")]
@@ -71,11 +71,11 @@ pub struct NewArguments {
 
     /// Largest feed of an axis, mm/min or deg/min: C=7200.
     #[arg(long, value_name = "AXIS=FEED", value_parser = feed)]
-    max_feed: Vec<Given<f64>>,
+    max_feed: Vec<AxisSetting<f64>>,
 
     /// A point of a rotary axis' line, machine frame, all axes at zero, mm: A=0,0.012,50.
     #[arg(long, value_name = "AXIS=X,Y,Z", value_parser = point)]
-    point: Vec<Given<[f64; 3]>>,
+    point: Vec<AxisSetting<[f64; 3]>>,
 
     /// Height of the gauge line over the table's face with all axes at zero, mm. [default: 500]
     #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = finite)]
@@ -101,7 +101,7 @@ pub struct NewArguments {
 
 /// A value for one axis.
 #[derive(Clone, Debug)]
-pub struct Given<T> {
+pub struct AxisSetting<T> {
     /// Address of the axis.
     pub axis: String,
     /// Its value.
@@ -117,11 +117,11 @@ pub struct Choices {
     pub dialect: String,
     pub tcp: Tcp,
     pub units: OutputUnits,
-    pub travel: Vec<Given<[f64; 2]>>,
+    pub travel: Vec<AxisSetting<[f64; 2]>>,
     pub cyclic: Vec<String>,
     pub reversed: Vec<String>,
-    pub max_feed: Vec<Given<f64>>,
-    pub point: Vec<Given<[f64; 3]>>,
+    pub max_feed: Vec<AxisSetting<f64>>,
+    pub point: Vec<AxisSetting<[f64; 3]>>,
     /// mm; see [`NewArguments`].
     pub gauge: f64,
     pub pivot: f64,
@@ -229,8 +229,8 @@ fn choices(arguments: &NewArguments, path: &Path) -> Result<Choices, Failure> {
 
 /// Flags that nothing in the file of the class stands on.
 fn useless_flags(arguments: &NewArguments, class: Class) -> Vec<Diagnostic> {
-    type Has = fn(Class) -> bool;
-    let flags: [(&str, bool, Has, &str, Option<&str>); 3] = [
+    type FlagTest = fn(Class) -> bool;
+    let flags: [(&str, bool, FlagTest, &str, Option<&str>); 3] = [
         (
             "--pivot",
             arguments.pivot.is_some(),
@@ -313,9 +313,9 @@ fn split(text: &str) -> Result<(String, &str), String> {
     }
 }
 
-fn travel(text: &str) -> Result<Given<[f64; 2]>, String> {
+fn travel(text: &str) -> Result<AxisSetting<[f64; 2]>, String> {
     let (axis, value) = split(text)?;
-    Ok(Given { axis, value: range(value)? })
+    Ok(AxisSetting { axis, value: range(value)? })
 }
 
 /// `-300:300`.
@@ -338,14 +338,14 @@ pub fn dialect(text: &str) -> Result<String, String> {
     Ok(text.to_ascii_lowercase())
 }
 
-fn feed(text: &str) -> Result<Given<f64>, String> {
+fn feed(text: &str) -> Result<AxisSetting<f64>, String> {
     let (axis, value) = split(text)?;
-    Ok(Given { axis, value: flag_values::positive(value.trim())? })
+    Ok(AxisSetting { axis, value: flag_values::positive(value.trim())? })
 }
 
-fn point(text: &str) -> Result<Given<[f64; 3]>, String> {
+fn point(text: &str) -> Result<AxisSetting<[f64; 3]>, String> {
     let (axis, value) = split(text)?;
-    Ok(Given { axis, value: flag_values::point(value)? })
+    Ok(AxisSetting { axis, value: flag_values::point(value)? })
 }
 
 impl Class {

@@ -7,7 +7,7 @@ use post_machine::description::Tcp;
 use post_machine::diagnostic::Diagnostic;
 
 use super::template::Class;
-use super::{Choices, Given, NewArguments, dialect, range};
+use super::{AxisSetting, Choices, NewArguments, dialect, range};
 use crate::flag_words::TcpWord;
 use post_cli::arguments::flag_values::finite;
 use post_cli::terminal::tell;
@@ -67,7 +67,7 @@ pub fn ask(arguments: &NewArguments, choices: &mut Choices) -> Result<(), Failur
             length("tilting axis over the table's face (below is negative), mm", choices.tilt)?;
     }
     for axis in choices.class.axes() {
-        let said = |given: &Given<[f64; 2]>| given.axis == axis;
+        let said = |given: &AxisSetting<[f64; 2]>| given.axis == axis;
         if choices.travel.iter().any(said) || choices.cyclic.iter().any(|name| name == axis) {
             continue;
         }
@@ -85,7 +85,7 @@ pub fn ask(arguments: &NewArguments, choices: &mut Choices) -> Result<(), Failur
             travel => range(travel).map(Some),
         })?;
         match travel.flatten() {
-            Some(value) => choices.travel.push(Given { axis: axis.to_owned(), value }),
+            Some(value) => choices.travel.push(AxisSetting { axis: axis.to_owned(), value }),
             None if rotary => choices.cyclic.push(axis.to_owned()),
             None => {}
         }

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use clap::ValueEnum;
 use post_machine::description::OutputUnits;
 
-use super::{Choices, Given};
+use super::{AxisSetting, Choices};
 
 /// How the rotary axes stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -380,6 +380,6 @@ fn feed(choices: &Choices, axis: &str, usual: f64) -> f64 {
 }
 
 /// The last that was given.
-fn given<T: Copy>(all: &[Given<T>], axis: &str) -> Option<T> {
+fn given<T: Copy>(all: &[AxisSetting<T>], axis: &str) -> Option<T> {
     all.iter().rev().find(|given| given.axis == axis).map(|given| given.value)
 }

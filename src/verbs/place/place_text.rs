@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use post_posting::report::AxisRange;
 
 use super::PlaceArguments;
-use post_job::place::{Found, Least, Trial, mount_text};
+use post_job::place::{Least, MountSearchResult, Trial, mount_text};
 use post_job::text::{clock, number};
 use post_job::text_table::{NamedValues, TextTable};
 
@@ -23,7 +23,7 @@ const OWN: [(&str, bool); 7] = [
 ];
 
 /// The text.
-pub fn text(arguments: &PlaceArguments, found: &Found) -> String {
+pub fn text(arguments: &PlaceArguments, found: &MountSearchResult) -> String {
     let mut rows = NamedValues::default();
     let best = &found.best;
     rows.row("file", format_args!("{}, {} moves", found.file, best.report.moves));
@@ -53,7 +53,7 @@ pub fn text(arguments: &PlaceArguments, found: &Found) -> String {
 }
 
 /// `--mount X,Y,Z --turn DEG`; without a turn only where nobody has spoken of one.
-fn seat_text(arguments: &PlaceArguments, found: &Found, trial: &Trial) -> String {
+fn seat_text(arguments: &PlaceArguments, found: &MountSearchResult, trial: &Trial) -> String {
     let mount = format!("--mount {}", mount_text(&trial.seat.mount));
     let turn = trial.seat.turn;
     if turn == 0.0 && found.machine.turn == 0.0 && arguments.job.settings().over.turn.is_none() {
@@ -70,7 +70,7 @@ fn cost(arguments: &PlaceArguments, trial: &Trial) -> String {
     }
 }
 
-fn why(arguments: &PlaceArguments, found: &Found) -> String {
+fn why(arguments: &PlaceArguments, found: &MountSearchResult) -> String {
     let stays = found.present.as_ref().map(|present| present.seat) == Some(found.best.seat);
     let fits = match (stays, &found.present) {
         (true, _) => "where the part sits now nothing leaves its travel, and",

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use post_posting::report::AxisRange;
 
 use post_job::files::svg::{self, label};
-use post_job::place::{Found, mount_text};
+use post_job::place::{MountSearchResult, mount_text};
 use post_job::text::number;
 
 const WIDTH: f64 = 760.0;
@@ -19,7 +19,7 @@ const THICK: f64 = 20.0;
 const SEEN: f64 = 1.5;
 
 /// The picture.
-pub fn draw(found: &Found) -> String {
+pub fn draw(found: &MountSearchResult) -> String {
     let best = &found.best;
     let axes = best.report.axes.iter().filter(|axis| axis.min <= axis.max);
     let axes: Vec<&AxisRange> = axes.collect();
@@ -48,7 +48,7 @@ pub fn draw(found: &Found) -> String {
 }
 
 /// mm or degrees.
-fn unit(found: &Found, axis: &AxisRange) -> &'static str {
+fn unit(found: &MountSearchResult, axis: &AxisRange) -> &'static str {
     match found.machine.with_axis(&axis.name) {
         Some((_, known)) if known.joint.rotary => "°",
         _ => " mm",

@@ -9,7 +9,7 @@ use clap::{Args, Subcommand};
 use post_host::Plugin;
 
 use list::ListArguments;
-use new::NewArguments;
+use new::NewPluginArguments;
 use post_job::failure::Failure;
 use post_job::session::Session;
 use show::ShowArguments;
@@ -25,7 +25,7 @@ pub struct PluginArguments {
 #[derive(Debug, Subcommand)]
 enum PluginCommand {
     List(ListArguments),
-    New(NewArguments),
+    New(NewPluginArguments),
     Show(ShowArguments),
     Test(TestArguments),
 }

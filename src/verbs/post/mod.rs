@@ -14,11 +14,11 @@ use post_cli::arguments::{Flags, JobArguments};
 use post_cli::terminal;
 use post_job::failure::Failure;
 use post_job::files::{self, AtomicFile, ClSource, PathArg, Role};
-use post_job::making::{self, Part, ProgramMaker, ProgramOutcome, Wanted};
+use post_job::making::{self, ProgramMaker, ProgramOutcome, ProgramPart, ProgramRequest};
 use post_job::predict::Prediction;
 use post_job::session::Session;
 use post_job::settings::{MakingSettings, ReportSettings};
-use post_job::summary::{self, Told};
+use post_job::summary::{self, SummaryJson};
 use post_job::{compensate, plan_rounds, plugin_finder, predict};
 use shown::ShownArguments;
 
@@ -93,7 +93,7 @@ impl PostArguments {
 }
 
 /// The files of a run, opened before the work begins: a program without its summary would be half a result.
-struct Texts {
+struct OutputFiles {
     programs: Vec<AtomicFile>,
     maps: Vec<AtomicFile>,
     pages: Vec<AtomicFile>,
@@ -102,11 +102,11 @@ struct Texts {
     prediction: Option<AtomicFile>,
 }
 
-impl Texts {
+impl OutputFiles {
     fn create(
         session: &Session,
         arguments: &PostArguments,
-        parts: &[Part],
+        parts: &[ProgramPart],
         maps: &[PathArg],
     ) -> Result<Self, Failure> {
         let pages = parts::each(&arguments.report.0.report, arguments.split, parts.len());
@@ -150,7 +150,7 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
     let parts = the_parts(&maker, arguments, machine)?;
     let places = arguments.shown.places(arguments.split, parts.len());
     let folders = places.folders(session)?;
-    let mut texts = Texts::create(session, arguments, &parts, &places.maps)?;
+    let mut texts = OutputFiles::create(session, arguments, &parts, &places.maps)?;
     let mut outcomes = Vec::new();
     let mut findings = Vec::new();
     let mut drawn = Vec::new();
@@ -162,8 +162,8 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
         let (map, source) = (maps.next(), &mut source);
         let (outcome, pictures) = shown::show(&part.machine, &part.target, map, draws, |watch| {
             let (verify, predict) = (arguments.verify, arguments.predict.is_some());
-            let wanted = Wanted { verify, predict, watch, observer: None, page };
-            maker.make((part, ready), source, text, wanted, &mut findings)
+            let wanted = ProgramRequest { verify, predict, watch, observer: None, page };
+            maker.make(part, ready, source, text, wanted, &mut findings)
         })?;
         drawn.extend(pictures);
         outcomes.push(outcome);
@@ -191,12 +191,12 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
 fn write_besides(
     arguments: &PostArguments,
     maker: &ProgramMaker<'_>,
-    parts: &[Part],
+    parts: &[ProgramPart],
     outcomes: &[ProgramOutcome],
-    texts: &mut Texts,
+    texts: &mut OutputFiles,
 ) -> Result<(), Failure> {
     if let Some(file) = &mut texts.summary {
-        let told: Vec<Told<'_>> = outcomes.iter().map(ProgramOutcome::told).collect();
+        let told: Vec<SummaryJson<'_>> = outcomes.iter().map(ProgramOutcome::told).collect();
         let json = match (arguments.split, told.as_slice()) {
             (None, [told]) => files::json(told),
             (_, told) => files::json(&told),
@@ -225,7 +225,12 @@ fn write_besides(
 }
 
 /// Prints the summary of each program; to standard error if standard output is taken.
-fn print(maker: &ProgramMaker<'_>, parts: &[Part], outcomes: &[ProgramOutcome], taken: bool) {
+fn print(
+    maker: &ProgramMaker<'_>,
+    parts: &[ProgramPart],
+    outcomes: &[ProgramOutcome],
+    taken: bool,
+) {
     let name = maker.job.input.path();
     let name = name.map_or("standard input".to_owned(), |path| path.display().to_string());
     for (part, outcome) in parts.iter().zip(outcomes) {
@@ -250,11 +255,11 @@ fn the_parts(
     maker: &ProgramMaker<'_>,
     arguments: &PostArguments,
     machine: Machine,
-) -> Result<Vec<Part>, Failure> {
+) -> Result<Vec<ProgramPart>, Failure> {
     let ProgramMaker { session, job, finder, ahead, .. } = maker;
     let target = making::target(job, arguments.output.as_ref(), &machine, finder)?;
     let (Some(split), Some(ahead)) = (arguments.split, ahead) else {
-        return Ok(vec![Part { lines: None, target, machine }]);
+        return Ok(vec![ProgramPart { lines: None, target, machine }]);
     };
     if target == PathArg::Standard {
         return Err(Diagnostic::error(
@@ -273,7 +278,7 @@ fn the_parts(
         .enumerate()
         .map(|(index, lines)| {
             let number = number.map(|first| first + index as i64);
-            Ok(Part {
+            Ok(ProgramPart {
                 lines: Some(lines),
                 target: parts::target(&target, index + 1, count),
                 machine: making::numbered(session, job, number)?,

@@ -12,7 +12,7 @@ use post_job::files::PathArg;
 use post_job::text::{clock, number};
 
 /// A table of the sheet.
-struct Section {
+struct SheetTable {
     title: String,
     head: Vec<&'static str>,
     rows: Vec<Vec<String>>,
@@ -49,7 +49,7 @@ fn the_machine(
     machine: &Machine,
     ahead: &ProgramPreview,
     programs: &[(&PathArg, &PostingReport)],
-) -> Section {
+) -> SheetTable {
     let mut rows = Vec::new();
     let mut row = |name: &str, value: String| rows.push(vec![name.to_owned(), value]);
     row("Machine", machine.name.clone());
@@ -113,10 +113,10 @@ fn the_machine(
             row("Plugin", format!("{} {}{origin}", plugin.name, plugin.version));
         }
     }
-    Section { title: "Machine and part".to_owned(), head: vec!["", ""], rows }
+    SheetTable { title: "Machine and part".to_owned(), head: vec!["", ""], rows }
 }
 
-fn the_programs(programs: &[(&PathArg, &PostingReport)]) -> Section {
+fn the_programs(programs: &[(&PathArg, &PostingReport)]) -> SheetTable {
     let rows = programs.iter().map(|(target, report)| {
         let name = target.path().and_then(|path| path.file_name());
         let tools: Vec<String> =
@@ -129,7 +129,7 @@ fn the_programs(programs: &[(&PathArg, &PostingReport)]) -> Section {
             clock(report.cutting_time_s),
         ]
     });
-    Section {
+    SheetTable {
         title: "Programs".to_owned(),
         head: vec!["File", "Lines", "Tools", "Time", "Cutting"],
         rows: rows.collect(),
@@ -139,7 +139,7 @@ fn the_programs(programs: &[(&PathArg, &PostingReport)]) -> Section {
 /// What stands in the registers where the control must not put a length along an axis that the tool does not lie along.
 const NO_LENGTH: &str = "0, not the length below: the work offset was measured with the tool in it";
 
-fn the_tools(ahead: &ProgramPreview, programs: &[(&PathArg, &PostingReport)]) -> Section {
+fn the_tools(ahead: &ProgramPreview, programs: &[(&PathArg, &PostingReport)]) -> SheetTable {
     let size = |value: Option<f64>| value.map_or("?".to_owned(), |value| number(value, 3));
     let used = |tool: &ToolChange| {
         let tools = programs.iter().flat_map(|(_, report)| &report.tools);
@@ -159,14 +159,14 @@ fn the_tools(ahead: &ProgramPreview, programs: &[(&PathArg, &PostingReport)]) ->
             size(tool.corner_radius),
         ]
     });
-    Section {
+    SheetTable {
         title: "Tools".to_owned(),
         head: vec!["T", "Length register", "Name", "Length, mm", "Diameter, mm", "Corner, mm"],
         rows: rows.collect(),
     }
 }
 
-fn the_axes(programs: &[(&PathArg, &PostingReport)]) -> Section {
+fn the_axes(programs: &[(&PathArg, &PostingReport)]) -> SheetTable {
     let mut rows: Vec<(String, f64, f64, Option<[f64; 2]>)> = Vec::new();
     for axis in programs.iter().flat_map(|(_, report)| &report.axes) {
         if axis.min > axis.max {
@@ -184,14 +184,14 @@ fn the_axes(programs: &[(&PathArg, &PostingReport)]) -> Section {
         };
         vec![name, format!("{} to {}", number(min, 3), number(max, 3)), travel]
     });
-    Section {
+    SheetTable {
         title: "Axes, in machine coordinates".to_owned(),
         head: vec!["Axis", "Used", "Travel"],
         rows: rows.collect(),
     }
 }
 
-fn the_options(machine: &Machine) -> Section {
+fn the_options(machine: &Machine) -> SheetTable {
     let rows = machine.control.options.iter().map(|option| {
         let value = match &option.value {
             OptionValue::Flag(flag) => flag.to_string(),
@@ -201,7 +201,7 @@ fn the_options(machine: &Machine) -> Section {
         };
         vec![option.key.clone(), value]
     });
-    Section {
+    SheetTable {
         title: format!("What the machine file says of its control ({})", machine.control.dialect),
         head: vec!["Option", "Value"],
         rows: rows.collect(),
@@ -209,7 +209,7 @@ fn the_options(machine: &Machine) -> Section {
 }
 
 /// Pipes would end a cell.
-fn as_markdown(title: &str, sections: &[Section]) -> String {
+fn as_markdown(title: &str, sections: &[SheetTable]) -> String {
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let plain = |text: &str| text.replace('|', "\\|").replace('<', "&lt;");
     let mut text = format!("# {}\n", plain(title));
@@ -225,7 +225,7 @@ fn as_markdown(title: &str, sections: &[Section]) -> String {
     text
 }
 
-fn as_html(title: &str, sections: &[Section]) -> String {
+fn as_html(title: &str, sections: &[SheetTable]) -> String {
     let row = |cells: &mut dyn Iterator<Item = &str>, kind: &str| {
         let cells: String =
             cells.map(|cell| format!("<{kind}>{}</{kind}>", escaped(cell))).collect();

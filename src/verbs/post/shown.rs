@@ -10,7 +10,7 @@ use post_job::failure::Failure;
 use post_job::files::{AtomicFile, FileFault, JsonRows, OwnFolder, PathArg, Role};
 use post_job::plan::map::{LimitMap, MapRow};
 use post_job::plan::pictures;
-use post_job::plan::posted::{Along, Limited, MARK};
+use post_job::plan::posted::{MARK, PlanReference, PlanTrace};
 use post_job::session::Session;
 
 const PICTURES: Role = Role { what: "plan", remedy: "name another folder with --plan-pictures" };
@@ -41,7 +41,7 @@ pub struct Places {
 }
 
 /// The files of a folder of pictures.
-pub type Drawn = Vec<(&'static str, String)>;
+pub type PictureFolder = Vec<(&'static str, String)>;
 
 impl ShownArguments {
     /// For so many programs.
@@ -77,14 +77,16 @@ pub fn show<T>(
     map: Option<&mut AtomicFile>,
     draws: bool,
     write: impl FnOnce(Option<&mut dyn PlanWatch>) -> Result<T, Failure>,
-) -> Result<(T, Option<Drawn>), Failure> {
+) -> Result<(T, Option<PictureFolder>), Failure> {
     if map.is_none() && !draws {
         return Ok((write(None)?, None));
     }
-    let limited = Limited::new(machine);
+    let limited = PlanReference::new(machine);
     let gauges = limited.gauges();
-    let mut shown =
-        Shown { map: map.map(MapFile::new), along: draws.then(|| Along::new(&limited, &gauges)) };
+    let mut shown = PlanOutputs {
+        map: map.map(MapFile::new),
+        along: draws.then(|| PlanTrace::new(&limited, &gauges)),
+    };
     let given = write(Some(&mut shown))?;
     if let Some(map) = shown.map {
         map.finish()?;
@@ -95,12 +97,12 @@ pub fn show<T>(
 }
 
 /// Who looks on.
-struct Shown<'a> {
+struct PlanOutputs<'a> {
     map: Option<MapFile<'a>>,
-    along: Option<Along<'a>>,
+    along: Option<PlanTrace<'a>>,
 }
 
-impl PlanWatch for Shown<'_> {
+impl PlanWatch for PlanOutputs<'_> {
     fn planned(&mut self, point: &PlannedPoint<'_>) {
         if let Some(map) = &mut self.map {
             map.take(point);
@@ -115,11 +117,11 @@ impl PlanWatch for Shown<'_> {
 struct MapFile<'f> {
     map: LimitMap,
     file: &'f mut AtomicFile,
-    rows: Rows,
+    rows: MapEncoding,
 }
 
 /// How it is written.
-enum Rows {
+enum MapEncoding {
     Json(JsonRows),
     /// So far without a fault, or the first.
     Csv(Result<(), FileFault>),
@@ -128,8 +130,8 @@ enum Rows {
 impl<'f> MapFile<'f> {
     fn new(file: &'f mut AtomicFile) -> Self {
         let rows = match file.name().to_ascii_lowercase().ends_with(".csv") {
-            true => Rows::Csv(file.write_bytes(MapRow::HEAD.as_bytes())),
-            false => Rows::Json(JsonRows::default()),
+            true => MapEncoding::Csv(file.write_bytes(MapRow::HEAD.as_bytes())),
+            false => MapEncoding::Json(JsonRows::default()),
         };
         Self { map: LimitMap::default(), file, rows }
     }
@@ -146,13 +148,13 @@ impl<'f> MapFile<'f> {
             rows.row(&row, file);
         }
         match rows {
-            Rows::Json(rows) => rows.end(file),
-            Rows::Csv(written) => written,
+            MapEncoding::Json(rows) => rows.end(file),
+            MapEncoding::Csv(written) => written,
         }
     }
 }
 
-impl Rows {
+impl MapEncoding {
     fn row(&mut self, row: &MapRow, file: &mut AtomicFile) {
         match self {
             Self::Json(rows) => rows.row(row, file),

@@ -3,7 +3,7 @@
 use post_machine::description::{Axis, Machine};
 use post_readback::interpret::ReadReport;
 
-use post_job::read::Survey;
+use post_job::read::ProgramSurvey;
 use post_job::text::{clock, number};
 use post_job::text_table::{NamedValues, TextTable};
 
@@ -11,7 +11,12 @@ use post_job::text_table::{NamedValues, TextTable};
 const LISTED: usize = 40;
 
 /// What was read, as lines.
-pub fn text(machine: &Machine, survey: &Survey<'_>, report: &ReadReport, refused: usize) -> String {
+pub fn text(
+    machine: &Machine,
+    survey: &ProgramSurvey<'_>,
+    report: &ReadReport,
+    refused: usize,
+) -> String {
     let mut rows = NamedValues::default();
     rows.row("machine", format_args!("{} ({})", machine.name, machine.control.dialect));
     if report.header > 0 {
@@ -58,7 +63,7 @@ pub fn text(machine: &Machine, survey: &Survey<'_>, report: &ReadReport, refused
     text
 }
 
-fn axes(machine: &Machine, survey: &Survey<'_>, text: &mut String) {
+fn axes(machine: &Machine, survey: &ProgramSurvey<'_>, text: &mut String) {
     if survey.axes.is_empty() {
         return;
     }
@@ -89,7 +94,7 @@ fn axes(machine: &Machine, survey: &Survey<'_>, text: &mut String) {
     table.below(text);
 }
 
-fn tools(survey: &Survey<'_>, text: &mut String) {
+fn tools(survey: &ProgramSurvey<'_>, text: &mut String) {
     if survey.tools.is_empty() {
         return;
     }

@@ -3,12 +3,17 @@
 use post_machine::description::Machine;
 use post_readback::verify::WorstDeviation;
 
-use post_job::read_back::Held;
+use post_job::read_back::VerifiedProgram;
 use post_job::text::{clock, number};
 use post_job::text_table::NamedValues;
 
 /// The table of a verification of the program called `name`.
-pub fn text(held: &Held, machine: &Machine, name: &str, tolerances: [Option<f64>; 2]) -> String {
+pub fn text(
+    held: &VerifiedProgram,
+    machine: &Machine,
+    name: &str,
+    tolerances: [Option<f64>; 2],
+) -> String {
     let found = &held.found;
     let mut rows = NamedValues::default();
     rows.row("program", format_args!("{name}, {} blocks", held.blocks));

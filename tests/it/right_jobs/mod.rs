@@ -11,7 +11,9 @@ use std::fs;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use post_job::library::{LoadedMachine, MachineSettings, MachineTold, OptionTold, Stop, Value};
+use post_job::library::{
+    LoadedMachine, MachineSelection, MachineSettings, NamedOption, SettingValue, StopSignal,
+};
 use post_machine::description::Setting;
 use post_testkit::Rng;
 
@@ -63,7 +65,7 @@ struct RightJob {
     machine: &'static str,
     set: Vec<(String, String)>,
     length: f64,
-    options: Vec<OptionTold>,
+    options: Vec<NamedOption>,
     cl: Cl,
 }
 
@@ -110,7 +112,7 @@ impl RightJob {
         let mut options = Vec::new();
         if random.pick(2) == 0 {
             let dialect = &DIALECTS[random.pick(DIALECTS.len())];
-            options.push(("dialect".to_owned(), Value::Text(dialect.clone())));
+            options.push(("dialect".to_owned(), SettingValue::Text(dialect.clone())));
         }
         match random.pick(3) {
             0 => options.push(("tcp".to_owned(), "control".into())),
@@ -138,7 +140,7 @@ impl RightJob {
         let path = folder.join("job.cls");
         fs::write(&path, &self.cl.text).unwrap();
         let set = self.set.iter();
-        let told = MachineTold {
+        let told = MachineSelection {
             name: self.machine.to_owned(),
             over: MachineSettings {
                 set: set.map(|(key, value)| Setting::Written(format!("{key}={value}"))).collect(),
@@ -154,7 +156,7 @@ impl RightJob {
                 .find(|finding| finding.severity == post_machine::diagnostic::Severity::Error);
             error.map_or(String::new(), |error| format!("{}: {}", error.code, error.message))
         };
-        let stop: Stop = Arc::new(|| false);
+        let stop: StopSignal = Arc::new(|| false);
         let machine = match LoadedMachine::load(&stop, told) {
             Ok(machine) => machine,
             Err(findings) => return Outcome::Refused(refused(findings)),

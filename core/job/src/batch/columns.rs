@@ -10,35 +10,35 @@ use super::inputs::Inputs;
 use super::job_line::JobLine;
 use super::travel::{self, TravelLeft};
 use crate::axes::{self, AxisColumn};
-use crate::columns::{Column, Kind};
+use crate::columns::{Column, ColumnKind};
 use crate::predict::Prediction;
 use crate::settings::StudySettings;
 
 /// A column: its name, what its values are, and where they come from.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Head {
+pub struct ColumnSource {
     /// Its name in the table.
     pub name: String,
     /// What its values are.
-    pub kind: Kind,
+    pub kind: ColumnKind,
     /// The parameter of the job that it shows; none: what came of the job.
     pub parameter: Option<String>,
 }
 
 /// Of the job itself.
-pub const OF_JOB: [(&str, Kind); 3] =
-    [("job", Kind::Count), ("file", Kind::Text), ("machine", Kind::Text)];
+pub const OF_JOB: [(&str, ColumnKind); 3] =
+    [("job", ColumnKind::Count), ("file", ColumnKind::Text), ("machine", ColumnKind::Text)];
 
-const STATE: &[(&str, Kind)] = &[
-    ("state", Kind::Text),
-    ("codes", Kind::Text),
-    ("message", Kind::Text),
-    ("line", Kind::Count),
-    ("warnings", Kind::Text),
+const STATE: &[(&str, ColumnKind)] = &[
+    ("state", ColumnKind::Text),
+    ("codes", ColumnKind::Text),
+    ("message", ColumnKind::Text),
+    ("line", ColumnKind::Count),
+    ("warnings", ColumnKind::Text),
 ];
 
 /// A program that was written.
-pub struct Written<'a> {
+pub struct WrittenProgram<'a> {
     pub report: &'a PostingReport,
     /// Its text: how many bytes, and their hash.
     pub bytes: u64,
@@ -48,11 +48,13 @@ pub struct Written<'a> {
 }
 
 /// Of a program that is written.
-pub fn program<'a>() -> Vec<Column<Written<'a>>> {
-    type C<'a> = Column<Written<'a>>;
-    let left = |row: &Written<'a>, kind: usize| row.left[kind].as_ref().map(|left| left.least);
-    let axis =
-        |row: &Written<'a>, kind: usize| row.left[kind].as_ref().map(|left| left.axis.to_owned());
+pub fn program<'a>() -> Vec<Column<WrittenProgram<'a>>> {
+    type C<'a> = Column<WrittenProgram<'a>>;
+    let left =
+        |row: &WrittenProgram<'a>, kind: usize| row.left[kind].as_ref().map(|left| left.least);
+    let axis = |row: &WrittenProgram<'a>, kind: usize| {
+        row.left[kind].as_ref().map(|left| left.axis.to_owned())
+    };
     vec![
         C::new("cycle_time_s", "s", 0, |row| row.report.time_s),
         C::new("cutting_time_s", "s", 0, |row| row.report.cutting_time_s),
@@ -77,8 +79,8 @@ pub fn program<'a>() -> Vec<Column<Written<'a>>> {
 }
 
 /// Of its text.
-pub fn text<'a>() -> Vec<Column<Written<'a>>> {
-    type C<'a> = Column<Written<'a>>;
+pub fn text<'a>() -> Vec<Column<WrittenProgram<'a>>> {
+    type C<'a> = Column<WrittenProgram<'a>>;
     vec![
         C::new("nc_lines", "", 0, |row| row.report.nc_lines),
         C::new("nc_bytes", "", 0, |row| row.bytes),
@@ -107,8 +109,8 @@ pub fn predicted() -> Vec<Column<Prediction>> {
     ]
 }
 
-fn heads<R>(columns: Vec<Column<R>>) -> impl Iterator<Item = Head> {
-    columns.into_iter().map(|column| Head {
+fn heads<R>(columns: Vec<Column<R>>) -> impl Iterator<Item = ColumnSource> {
+    columns.into_iter().map(|column| ColumnSource {
         name: column.name.into_owned(),
         kind: column.kind,
         parameter: None,
@@ -116,13 +118,13 @@ fn heads<R>(columns: Vec<Column<R>>) -> impl Iterator<Item = Head> {
 }
 
 /// The columns of a study.
-pub fn columns(jobs: &[JobLine], options: &StudySettings, inputs: &Inputs) -> Vec<Head> {
-    let head = |(name, kind): &(&str, Kind)| Head {
+pub fn columns(jobs: &[JobLine], options: &StudySettings, inputs: &Inputs) -> Vec<ColumnSource> {
+    let head = |(name, kind): &(&str, ColumnKind)| ColumnSource {
         name: (*name).to_owned(),
         kind: *kind,
         parameter: None,
     };
-    let mut after: Vec<Head> = STATE.iter().map(head).chain(heads(program())).collect();
+    let mut after: Vec<ColumnSource> = STATE.iter().map(head).chain(heads(program())).collect();
     after.extend(of_axes(jobs, inputs));
     if options.verify {
         after.extend(heads(verified()));
@@ -131,35 +133,35 @@ pub fn columns(jobs: &[JobLine], options: &StudySettings, inputs: &Inputs) -> Ve
         after.extend(heads(predicted()));
     }
     after.extend(heads(text()));
-    after.push(head(&("key", Kind::Text)));
+    after.push(head(&("key", ColumnKind::Text)));
     if options.timings {
-        after.push(head(&("compute_time_s", Kind::Number)));
+        after.push(head(&("compute_time_s", ColumnKind::Number)));
     }
-    let mut columns: Vec<Head> = OF_JOB.iter().map(head).collect();
+    let mut columns: Vec<ColumnSource> = OF_JOB.iter().map(head).collect();
     for (parameter, kind) in parameters(jobs) {
         let mut name = parameter.clone();
         // A parameter of the machine may be called as a column is.
         while columns.iter().chain(&after).any(|other| other.name == name) {
             name = format!("parameters.{name}");
         }
-        columns.push(Head { name, kind, parameter: Some(parameter) });
+        columns.push(ColumnSource { name, kind, parameter: Some(parameter) });
     }
     columns.extend(after);
     columns
 }
 
 /// What the jobs say, in the order in which they do: numbers where every value is one.
-fn parameters(jobs: &[JobLine]) -> Vec<(String, Kind)> {
-    let mut kinds: BTreeMap<String, Kind> = BTreeMap::new();
+fn parameters(jobs: &[JobLine]) -> Vec<(String, ColumnKind)> {
+    let mut kinds: BTreeMap<String, ColumnKind> = BTreeMap::new();
     let mut order = Vec::new();
     for job in jobs {
         for (name, value) in job.parameters() {
             let kind = match value.0.parse::<f64>() {
-                Ok(number) if number.is_finite() => Kind::Number,
-                _ => Kind::Text,
+                Ok(number) if number.is_finite() => ColumnKind::Number,
+                _ => ColumnKind::Text,
             };
             match kinds.get_mut(&name) {
-                Some(Kind::Text) => {}
+                Some(ColumnKind::Text) => {}
                 Some(known) => *known = kind,
                 None => {
                     order.push(name.clone());
@@ -168,12 +170,12 @@ fn parameters(jobs: &[JobLine]) -> Vec<(String, Kind)> {
             }
         }
     }
-    let kind = |name: &String| kinds.get(name).copied().unwrap_or(Kind::Text);
+    let kind = |name: &String| kinds.get(name).copied().unwrap_or(ColumnKind::Text);
     order.into_iter().map(|name| (name.clone(), kind(&name))).collect()
 }
 
 /// Of every axis that a machine of the study has: with the settings of the first job that it can be loaded with.
-fn of_axes(jobs: &[JobLine], inputs: &Inputs) -> Vec<Head> {
+fn of_axes(jobs: &[JobLine], inputs: &Inputs) -> Vec<ColumnSource> {
     let mut loaded: Vec<&str> = Vec::new();
     let mut known: Vec<AxisColumn> = Vec::new();
     for job in jobs {
@@ -192,11 +194,11 @@ fn of_axes(jobs: &[JobLine], inputs: &Inputs) -> Vec<Head> {
             }
         }
     }
-    let mut heads: Vec<Head> = Vec::new();
+    let mut heads: Vec<ColumnSource> = Vec::new();
     for name in known.iter().flat_map(|axis| travel::columns(&axis.name, axis.rotary)) {
         // A slide and a table may have one name on two machines: their shares are in one column.
         if heads.iter().all(|head| head.name != name) {
-            heads.push(Head { name, kind: Kind::Number, parameter: None });
+            heads.push(ColumnSource { name, kind: ColumnKind::Number, parameter: None });
         }
     }
     heads

@@ -2,8 +2,8 @@
 
 use post_machine::diagnostic::Diagnostic;
 
-use super::job_line::{JobLine, Written};
-use crate::settings::values::{Value, finite};
+use super::job_line::{JobLine, ValueText};
+use crate::settings::values::{SettingValue, finite};
 
 /// More jobs than this are a slip.
 /// More are a slip.
@@ -18,9 +18,9 @@ pub struct Grid {
     /// Machines, as `--machine` names them.
     pub machines: Vec<String>,
     /// Keys of the machine file, each with its values.
-    pub set: Vec<(String, Vec<Written>)>,
+    pub set: Vec<(String, Vec<ValueText>)>,
     /// Values of settings that jobs may have, by name: in the order of [`JobLine::rows`].
-    pub settings: Vec<(&'static str, Vec<Vec<Written>>)>,
+    pub settings: Vec<(&'static str, Vec<Vec<ValueText>>)>,
 }
 
 impl Grid {
@@ -103,7 +103,7 @@ fn multiplied<T>(
 ///
 /// # Errors
 /// A value is empty, or a range that goes nowhere.
-pub fn values(text: &str) -> Result<Vec<Written>, String> {
+pub fn values(text: &str) -> Result<Vec<ValueText>, String> {
     let mut values = Vec::new();
     for part in parts(text) {
         let part = part.trim();
@@ -112,7 +112,7 @@ pub fn values(text: &str) -> Result<Vec<Written>, String> {
         }
         match range(part)? {
             Some(numbers) => values.extend(numbers),
-            None => values.push(Written(part.to_owned())),
+            None => values.push(ValueText(part.to_owned())),
         }
     }
     Ok(values)
@@ -141,9 +141,9 @@ fn parts(text: &str) -> Vec<&str> {
 }
 
 /// The numbers of `FROM:TO:STEP`, both ends among them if the steps meet the last; none if it is no range.
-fn range(text: &str) -> Result<Option<Vec<Written>>, String> {
+fn range(text: &str) -> Result<Option<Vec<ValueText>>, String> {
     let ends: Vec<&str> = text.split(':').collect();
-    let numbers = ends.iter().map(|end| finite(&Value::from(end.trim())));
+    let numbers = ends.iter().map(|end| finite(&SettingValue::from(end.trim())));
     let Ok(numbers) = numbers.collect::<Result<Vec<f64>, _>>() else {
         return Ok(None);
     };
@@ -169,7 +169,7 @@ fn range(text: &str) -> Result<Option<Vec<Written>>, String> {
             _ => text,
         }
     };
-    let numbers = (0..=steps as u32).map(|index| Written(number(index)));
+    let numbers = (0..=steps as u32).map(|index| ValueText(number(index)));
     Ok(Some(numbers.collect()))
 }
 

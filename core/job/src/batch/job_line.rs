@@ -12,16 +12,18 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::RawValue;
 
 use crate::files::PathArg;
-use crate::settings::{About, JobSettings, MachineSettings, ReadingSettings, Table as _, Value};
+use crate::settings::{
+    About, JobSettings, MachineSettings, ReadingSettings, SettingValue, SettingsGroup as _,
+};
 
 /// How a setting is put where it belongs.
-type Put = fn(&mut MachineSettings, &Value) -> Result<(), String>;
+type SettingSetter = fn(&mut MachineSettings, &SettingValue) -> Result<(), String>;
 
 /// A value as it is written: a number keeps its digits, wherever the job is sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Written(pub String);
+pub struct ValueText(pub String);
 
-impl<'de> Deserialize<'de> for Written {
+impl<'de> Deserialize<'de> for ValueText {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         let raw = Box::<RawValue>::deserialize(from)?;
         let raw = raw.get();
@@ -37,7 +39,7 @@ impl<'de> Deserialize<'de> for Written {
     }
 }
 
-impl Serialize for Written {
+impl Serialize for ValueText {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         to.serialize_str(&self.0)
     }
@@ -51,9 +53,9 @@ pub struct JobLine {
     /// The machine, as `--machine` names it.
     pub machine: Option<String>,
     /// Parameters and keys of the machine file, as `--set` has them.
-    pub set: BTreeMap<String, Written>,
+    pub set: BTreeMap<String, ValueText>,
     /// Settings of [`JobLine::rows`], by their places there: one value, or a list where the row has several columns.
-    pub settings: BTreeMap<usize, Vec<Written>>,
+    pub settings: BTreeMap<usize, Vec<ValueText>>,
 }
 
 impl Serialize for JobLine {
@@ -79,13 +81,13 @@ impl Serialize for JobLine {
 
 impl<'de> Deserialize<'de> for JobLine {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        from.deserialize_map(Lines)
+        from.deserialize_map(JobLineVisitor)
     }
 }
 
-struct Lines;
+struct JobLineVisitor;
 
-impl<'de> Visitor<'de> for Lines {
+impl<'de> Visitor<'de> for JobLineVisitor {
     type Value = JobLine;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -114,8 +116,8 @@ impl<'de> Visitor<'de> for Lines {
                     };
                     let told = match JobLine::rows().nth(row).map(|(about, _)| about.columns.len())
                     {
-                        Some(3) => map.next_value::<Option<[Written; 3]>>()?.map(Vec::from),
-                        _ => map.next_value::<Option<Written>>()?.map(|value| vec![value]),
+                        Some(3) => map.next_value::<Option<[ValueText; 3]>>()?.map(Vec::from),
+                        _ => map.next_value::<Option<ValueText>>()?.map(|value| vec![value]),
                     };
                     line.settings.extend(told.map(|told| (row, told)));
                 }
@@ -131,7 +133,7 @@ impl<'de> Visitor<'de> for Lines {
 
 impl JobLine {
     /// The settings that each job may have.
-    pub fn rows() -> impl Iterator<Item = (&'static About, Put)> {
+    pub fn rows() -> impl Iterator<Item = (&'static About, SettingSetter)> {
         let rows = MachineSettings::ROWS.iter().map(|row| (&row.about, row.put));
         rows.filter(|(about, _)| !about.columns.is_empty())
     }
@@ -187,10 +189,10 @@ impl JobLine {
         for (row, (about, put)) in Self::rows().enumerate() {
             let value = match self.settings.get(&row).map(Vec::as_slice) {
                 None => continue,
-                Some([value]) => Value::from(value.0.as_str()),
-                Some(values) => {
-                    Value::List(values.iter().map(|value| Value::from(value.0.as_str())).collect())
-                }
+                Some([value]) => SettingValue::from(value.0.as_str()),
+                Some(values) => SettingValue::List(
+                    values.iter().map(|value| SettingValue::from(value.0.as_str())).collect(),
+                ),
             };
             put(&mut over, &value).map_err(|fault| format!("{}: {fault}", about.name))?;
         }
@@ -203,9 +205,9 @@ impl JobLine {
     }
 
     /// What the job says besides file and machine: names of columns, and values.
-    pub fn parameters(&self) -> Vec<(String, &Written)> {
+    pub fn parameters(&self) -> Vec<(String, &ValueText)> {
         let set = self.set.iter();
-        let mut told: Vec<(String, &Written)> =
+        let mut told: Vec<(String, &ValueText)> =
             set.map(|(key, value)| (key.clone(), value)).collect();
         for (row, (about, _)) in Self::rows().enumerate() {
             let values = self.settings.get(&row).into_iter().flatten();

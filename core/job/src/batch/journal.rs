@@ -6,14 +6,14 @@ use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use super::outcome::{FAILED, Outcome};
+use super::outcome::{FAILED, JobOutcome};
 use crate::files::FileFault;
 
 /// Outcomes by their keys, on the disk as soon as they are there.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
-    known: BTreeMap<String, Outcome>,
+    known: BTreeMap<String, JobOutcome>,
     /// Opened at the first line that is added.
     file: Mutex<Option<File>>,
 }
@@ -34,7 +34,7 @@ impl Journal {
                 // A whole line that is no outcome shows a file of another kind, unless outcomes stand in it too.
                 let mut other = false;
                 while lines.read_until(b'\n', &mut line).map_err(fault)? > 0 {
-                    match serde_json::from_slice::<Outcome>(&line) {
+                    match serde_json::from_slice::<JobOutcome>(&line) {
                         Ok(outcome) if outcome.key.is_some() => {
                             known.extend(outcome.key.clone().map(|key| (key, outcome)));
                         }
@@ -57,7 +57,7 @@ impl Journal {
     }
 
     /// What came of the job with that key.
-    pub fn known(&self, key: &str) -> Option<Outcome> {
+    pub fn known(&self, key: &str) -> Option<JobOutcome> {
         self.known.get(key).cloned()
     }
 
@@ -65,7 +65,7 @@ impl Journal {
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn add(&self, outcome: &Outcome) -> Result<(), FileFault> {
+    pub fn add(&self, outcome: &JobOutcome) -> Result<(), FileFault> {
         if outcome.key.is_none() || outcome.state() == FAILED {
             return Ok(());
         }

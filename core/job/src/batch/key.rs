@@ -3,7 +3,7 @@
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
-use super::Study;
+use super::JobStudy;
 use super::inputs::{ClText, MachineTexts};
 use super::job_line::JobLine;
 use crate::plugin_finder;
@@ -18,7 +18,7 @@ const FORMAT: &str = "post batch 1";
 /// # Errors
 /// A plugin cannot be opened.
 pub fn key(
-    study: &Study,
+    study: &JobStudy,
     job: &JobLine,
     cl: &ClText,
     texts: &MachineTexts,

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::outcome::WRITTEN;
-use super::table::{Table, Values};
+use super::table::{StudyTable, StudyValues};
 use crate::files::svg::{self, label, line, upright};
 use crate::text::number;
 
@@ -24,7 +24,7 @@ const CELL: [[f64; 2]; 2] = [[8.0, 64.0], [8.0, 30.0]];
 const GREYS: [f64; 2] = [246.0, 130.0];
 
 /// What is drawn over what: names of columns.
-pub struct Map {
+pub struct MapAxes {
     /// What goes across.
     pub x: String,
     /// What goes up.
@@ -37,23 +37,23 @@ pub struct Map {
 
 /// One cell: written with a value, or refused.
 #[derive(Clone, Copy, PartialEq)]
-enum Cell {
+enum MapCell {
     Empty,
     Refused,
     Value(f64),
 }
 
 /// The map of one file on one machine.
-struct Panel {
+struct MapPanel {
     file: String,
     machine: String,
     /// Row by row, from the least of what goes up.
-    cells: Vec<Cell>,
+    cells: Vec<MapCell>,
 }
 
-impl Map {
+impl MapAxes {
     /// The picture. Of several rows in one cell the best value is drawn.
-    pub fn draw(&self, table: &Table) -> String {
+    pub fn draw(&self, table: &StudyTable) -> String {
         let (xs, ys) = (places(table, &self.x), places(table, &self.y));
         let panels = self.panels(table, [&xs, &ys]);
         let cell: [f64; 2] = std::array::from_fn(|side| {
@@ -68,7 +68,7 @@ impl Map {
         let values = panels.iter().flat_map(|panel| &panel.cells);
         let values: Vec<f64> = values
             .filter_map(|cell| match cell {
-                Cell::Value(value) => Some(*value),
+                MapCell::Value(value) => Some(*value),
                 _ => None,
             })
             .collect();
@@ -98,7 +98,7 @@ impl Map {
                 name.unwrap_or_default().to_string_lossy().into_owned()
             };
             let name = short(&panel.file);
-            let alone = |other: &Panel| other.file == panel.file || short(&other.file) != name;
+            let alone = |other: &MapPanel| other.file == panel.file || short(&other.file) != name;
             let file = match panels.iter().all(alone) {
                 true => &name,
                 false => &panel.file,
@@ -116,21 +116,21 @@ impl Map {
         svg
     }
 
-    fn panels(&self, table: &Table, [xs, ys]: [&[String]; 2]) -> Vec<Panel> {
+    fn panels(&self, table: &StudyTable, [xs, ys]: [&[String]; 2]) -> Vec<MapPanel> {
         let text = |name: &str, row: usize| {
             let column = table.column(name);
             column.map(|values| values.text(row)).unwrap_or_default()
         };
-        let mut panels: Vec<Panel> = Vec::new();
+        let mut panels: Vec<MapPanel> = Vec::new();
         for row in 0..table.rows {
             let [file, machine] = ["file", "machine"].map(|column| text(column, row));
-            let named = |panel: &Panel| [&panel.file, &panel.machine] == [&file, &machine];
+            let named = |panel: &MapPanel| [&panel.file, &panel.machine] == [&file, &machine];
             let place = panels.iter().position(named);
             let place = place.unwrap_or_else(|| {
-                panels.push(Panel {
+                panels.push(MapPanel {
                     file: file.clone(),
                     machine: machine.clone(),
-                    cells: vec![Cell::Empty; xs.len() * ys.len()],
+                    cells: vec![MapCell::Empty; xs.len() * ys.len()],
                 });
                 panels.len() - 1
             });
@@ -145,11 +145,13 @@ impl Map {
             let value = table.column(&self.value).and_then(|all| all.number(row));
             let value = value.filter(|_| text("state", row) == WRITTEN);
             *cell = match (*cell, value) {
-                (Cell::Value(known), Some(value)) if self.most => Cell::Value(known.max(value)),
-                (Cell::Value(known), Some(value)) => Cell::Value(known.min(value)),
-                (_, Some(value)) => Cell::Value(value),
-                (Cell::Value(known), None) => Cell::Value(known),
-                (_, None) => Cell::Refused,
+                (MapCell::Value(known), Some(value)) if self.most => {
+                    MapCell::Value(known.max(value))
+                }
+                (MapCell::Value(known), Some(value)) => MapCell::Value(known.min(value)),
+                (_, Some(value)) => MapCell::Value(value),
+                (MapCell::Value(known), None) => MapCell::Value(known),
+                (_, None) => MapCell::Refused,
             };
         }
         panels
@@ -157,12 +159,12 @@ impl Map {
 }
 
 /// The values of a column, each once, as they are told: numbers by size, texts as they come.
-fn places(table: &Table, name: &str) -> Vec<String> {
+fn places(table: &StudyTable, name: &str) -> Vec<String> {
     let Some(values) = table.column(name) else {
         return Vec::new();
     };
     let mut rows: Vec<usize> = (0..table.rows).collect();
-    if !matches!(values, Values::Texts(_)) {
+    if !matches!(values, StudyValues::Texts(_)) {
         let order = |row: usize| values.number(row).unwrap_or(f64::INFINITY);
         rows.sort_by(|one, other| order(*one).total_cmp(&order(*other)));
     }
@@ -178,7 +180,7 @@ fn places(table: &Table, name: &str) -> Vec<String> {
 
 fn draw_cells(
     svg: &mut String,
-    panel: &Panel,
+    panel: &MapPanel,
     [corner, cell]: [[f64; 2]; 2],
     across: usize,
     [least, most, best]: [f64; 3],
@@ -189,8 +191,8 @@ fn draw_cells(
         // What goes up does so in the picture.
         let y = corner[1] + (rows - 1 - index / across) as f64 * cell[1];
         match *value {
-            Cell::Empty => {}
-            Cell::Refused => {
+            MapCell::Empty => {}
+            MapCell::Refused => {
                 rect(svg, [x, y], cell, "#ffffff", 0.5);
                 let room = 0.25;
                 let (left, right) = (x + room * cell[0], x + (1.0 - room) * cell[0]);
@@ -198,7 +200,7 @@ fn draw_cells(
                 line(svg, [left, top], [right, bottom], "#808080", 1.0);
                 line(svg, [left, bottom], [right, top], "#808080", 1.0);
             }
-            Cell::Value(value) => {
+            MapCell::Value(value) => {
                 let share = match most > least {
                     true => (value - least) / (most - least),
                     false => 0.0,

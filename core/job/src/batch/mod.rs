@@ -5,10 +5,10 @@
 //! | [`JobLine`] | what a job is made of, as a line of JSON |
 //! | [`Grid`] | values of flags, laid over jobs: every one with every other |
 //! | [`Inputs`] | texts of CL files and machines, read once, and handed on to other computers by content |
-//! | [`Study`] | the jobs, what is asked of each, and the columns of the results |
-//! | [`Outcome`] | what came of one job: values by the names of the columns |
+//! | [`JobStudy`] | the jobs, what is asked of each, and the columns of the results |
+//! | [`JobOutcome`] | what came of one job: values by the names of the columns |
 //! | [`Journal`] | outcomes by content, so that what was done is not done again |
-//! | [`Table`] | rows as columns; [`Table::bytes`] is a file of it |
+//! | [`StudyTable`] | rows as columns; [`StudyTable::bytes`] is a file of it |
 //!
 //! A job that is refused is a row. So is one that panics. The results hold no clock and no order of threads: the same jobs
 //! give the same bytes, however many work on them, wherever.
@@ -29,11 +29,11 @@ mod workers;
 
 pub use grid::{Grid, MOST_JOBS, values};
 pub use inputs::Inputs;
-pub use job_line::{JobLine, Written};
+pub use job_line::{JobLine, ValueText};
 pub use journal::Journal;
-pub use map_picture::Map;
+pub use map_picture::MapAxes;
 pub use one_job::{known, told};
-pub use outcome::{FAILED, Outcome, REFUSED, WRITTEN};
-pub use study::{Shard, Study};
-pub use table::{Column, Table, Values};
-pub use workers::{Done, Stop, run};
+pub use outcome::{FAILED, JobOutcome, REFUSED, WRITTEN};
+pub use study::{JobStudy, Shard};
+pub use table::{StudyColumn, StudyTable, StudyValues};
+pub use workers::{Cancelled, Done, run};

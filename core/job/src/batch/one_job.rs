@@ -10,27 +10,27 @@ use post_machine::diagnostic::{Diagnostic, Severity};
 use post_posting::TextSink;
 use post_posting::report::PostingReport;
 
-use super::Study;
-use super::columns::{self, Written};
+use super::JobStudy;
+use super::columns::{self, WrittenProgram};
 use super::inputs::{ClText, Inputs};
 use super::job_line::JobLine;
 use super::journal::Journal;
 use super::key;
-use super::outcome::{FAILED, Outcome, REFUSED, WRITTEN};
+use super::outcome::{FAILED, JobOutcome, REFUSED, WRITTEN};
 use super::travel;
 use crate::failure::Failure;
 use crate::files::{ClSource, HeldText};
-use crate::making::{Part, ProgramMaker};
+use crate::making::{ProgramInput, ProgramMaker, ProgramPart};
 use crate::plugin_finder;
-use crate::posting_pass::Beside;
+use crate::posting_pass::PostingExtras;
 use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings};
 use crate::unused_options;
 
 /// What came of a job, and whether the journal knew it.
-pub struct Did {
+pub struct JobResult {
     /// Its row.
-    pub outcome: Outcome,
+    pub outcome: JobOutcome,
     /// The journal knew it.
     pub known: bool,
 }
@@ -38,12 +38,12 @@ pub struct Did {
 /// Does a job, whatever comes; none if it was given up.
 pub fn run(
     session: &Session,
-    study: &Study,
+    study: &JobStudy,
     job: &JobLine,
     inputs: &Inputs,
     journal: Option<&Journal>,
     stop: &Arc<AtomicBool>,
-) -> Option<Did> {
+) -> Option<JobResult> {
     // What a job had in its hands is dropped with it: nothing of it is seen again.
     let did =
         catch_unwind(AssertUnwindSafe(|| attempt(session, study, job, inputs, journal, stop)));
@@ -54,40 +54,40 @@ pub fn run(
 }
 
 /// A row of whatever came of a job.
-pub fn told(did: std::thread::Result<Result<Did, Failure>>) -> Did {
-    let new = |outcome| Did { outcome, known: false };
+pub fn told(did: std::thread::Result<Result<JobResult, Failure>>) -> JobResult {
+    let new = |outcome| JobResult { outcome, known: false };
     match did {
         Ok(Ok(did)) => did,
-        Ok(Err(Failure::Refused(findings))) => new(Outcome::not_written(REFUSED, &findings)),
+        Ok(Err(Failure::Refused(findings))) => new(JobOutcome::not_written(REFUSED, &findings)),
         Ok(Err(failure)) => {
             let state = match &failure {
                 Failure::File(fault) if !fault.is_of_input() => FAILED,
                 _ => REFUSED,
             };
-            new(Outcome::not_written(state, &failure.findings()))
+            new(JobOutcome::not_written(state, &failure.findings()))
         }
         Err(panic) => {
             let told = panic.downcast_ref::<String>().map(String::as_str);
             let told = told.or_else(|| panic.downcast_ref::<&str>().copied());
             let message = format!("post itself failed: {}", told.unwrap_or("it does not say why"));
             let finding = Diagnostic::error("panic", message);
-            new(Outcome::not_written(FAILED, &[finding]))
+            new(JobOutcome::not_written(FAILED, &[finding]))
         }
     }
 }
 
 /// A job with all that it reads.
-struct Prepared {
+struct PreparedJob {
     arguments: JobSettings,
     machine: Machine,
     cl: Arc<ClText>,
     key: Option<String>,
 }
 
-impl Prepared {
+impl PreparedJob {
     fn new(
         session: &Session,
-        study: &Study,
+        study: &JobStudy,
         job: &JobLine,
         inputs: &Inputs,
     ) -> Result<Self, Failure> {
@@ -110,37 +110,38 @@ impl Prepared {
 /// What the journal knows of a job.
 pub fn known(
     session: &Session,
-    study: &Study,
+    study: &JobStudy,
     job: &JobLine,
     inputs: &Inputs,
     journal: &Journal,
-) -> Option<Outcome> {
+) -> Option<JobOutcome> {
     // What is wrong with the job is found again when it is done.
-    let prepared = catch_unwind(AssertUnwindSafe(|| Prepared::new(session, study, job, inputs)));
+    let prepared = catch_unwind(AssertUnwindSafe(|| PreparedJob::new(session, study, job, inputs)));
     journal.known(prepared.ok()?.ok()?.key.as_ref()?)
 }
 
 /// Does a job, or takes from the journal what came of it before.
 fn attempt(
     session: &Session,
-    study: &Study,
+    study: &JobStudy,
     job: &JobLine,
     inputs: &Inputs,
     journal: Option<&Journal>,
     stop: &Arc<AtomicBool>,
-) -> Result<Did, Failure> {
-    let Prepared { arguments, machine, cl, key } = Prepared::new(session, study, job, inputs)?;
+) -> Result<JobResult, Failure> {
+    let PreparedJob { arguments, machine, cl, key } =
+        PreparedJob::new(session, study, job, inputs)?;
     let known = journal.zip(key.as_ref()).and_then(|(journal, key)| journal.known(key));
     if let Some(outcome) = known {
-        return Ok(Did { outcome, known: true });
+        return Ok(JobResult { outcome, known: true });
     }
     let begun = std::time::Instant::now();
     let target = arguments.input.map(|path| path.with_extension("nc"));
-    let part = Part { lines: None, target, machine };
+    let part = ProgramPart { lines: None, target, machine };
     let one = OneJob { session, study, arguments: &arguments, part, cl: &cl, stop };
     let mut outcome = match one.make() {
         Ok(outcome) => outcome,
-        Err(Failure::Refused(findings)) => Outcome::not_written(REFUSED, &findings),
+        Err(Failure::Refused(findings)) => JobOutcome::not_written(REFUSED, &findings),
         Err(failure) => return Err(failure),
     };
     outcome.key = key;
@@ -148,22 +149,22 @@ fn attempt(
         outcome.text("key", key);
     }
     outcome.number("compute_time_s", begun.elapsed().as_secs_f64());
-    Ok(Did { outcome, known: false })
+    Ok(JobResult { outcome, known: false })
 }
 
 /// A job whose machine is loaded.
 struct OneJob<'a> {
     session: &'a Session,
-    study: &'a Study,
+    study: &'a JobStudy,
     arguments: &'a JobSettings,
-    part: Part,
+    part: ProgramPart,
     cl: &'a ClText,
     stop: &'a Arc<AtomicBool>,
 }
 
 impl OneJob<'_> {
     /// Posts, and reads back and predicts where that is asked for.
-    fn make(&self) -> Result<Outcome, Failure> {
+    fn make(&self) -> Result<JobOutcome, Failure> {
         let options = &self.study.options;
         let part = &self.part;
         let making = MakingSettings {
@@ -176,29 +177,29 @@ impl OneJob<'_> {
         let mut source = self.source();
         let mut findings = unused_options::found(&part.machine, &maker.finder);
         maker.look_ahead_where_needed(&part.machine, &mut source)?;
-        let mut text = ProgramText::new(options.verify || options.predict);
+        let mut text = HashedText::new(options.verify || options.predict);
         // Results are compared: a plan that is asked for is made, whatever it gains.
         let ready = maker.prepare(part, &mut source, true)?;
-        let beside = Beside::default();
+        let beside = PostingExtras::default();
         let made = maker.write(ready, &mut source, &mut text, beside, &mut findings)?;
-        let mut outcome = Outcome::default();
+        let mut outcome = JobOutcome::default();
         self.tell(&made.report, &text, &mut outcome);
         let name = plugin_finder::cl_name(&part.target);
         if options.verify {
-            let program = (name.clone(), self.reread(&text));
+            let program = ProgramInput { name: name.clone(), text: self.reread(&text) };
             let held = maker.read_back(part, made.moved, &mut source, program)?;
             outcome.tell(&columns::verified(), &held.found);
             let wrong = held.is_wrong();
             findings.extend(held.findings);
             if wrong {
-                let mut refused = Outcome::not_written(REFUSED, &findings);
+                let mut refused = JobOutcome::not_written(REFUSED, &findings);
                 refused.values.append(&mut outcome.values);
                 return Ok(refused);
             }
         }
         if options.predict {
-            let program = (name, self.reread(&text));
-            let predicted = maker.predict(part, None, (&mut source, None), program)?;
+            let program = ProgramInput { name, text: self.reread(&text) };
+            let predicted = maker.predict(part, None, &mut source, None, program)?;
             outcome.tell(&columns::predicted(), &predicted.found);
             findings.extend(predicted.findings);
         }
@@ -214,16 +215,16 @@ impl OneJob<'_> {
         ClSource::of_held(self.session, &self.arguments.input, text)
     }
 
-    fn reread<'t>(&self, text: &'t ProgramText) -> Stoppable<'t> {
-        Stoppable {
+    fn reread<'t>(&self, text: &'t HashedText) -> CancellableText<'t> {
+        CancellableText {
             text: Cursor::new(text.kept.as_deref().unwrap_or_default()),
             stop: Arc::clone(self.stop),
         }
     }
 
     /// What the program came to.
-    fn tell(&self, report: &PostingReport, text: &ProgramText, outcome: &mut Outcome) {
-        let written = Written {
+    fn tell(&self, report: &PostingReport, text: &HashedText, outcome: &mut JobOutcome) {
+        let written = WrittenProgram {
             report,
             bytes: text.bytes,
             hash: text.hasher.finalize().to_hex().to_string(),
@@ -235,19 +236,19 @@ impl OneJob<'_> {
 }
 
 /// Takes the text of a program: its length and its hash, and if it is read back the text itself.
-struct ProgramText {
+struct HashedText {
     bytes: u64,
     hasher: blake3::Hasher,
     kept: Option<Vec<u8>>,
 }
 
-impl ProgramText {
+impl HashedText {
     fn new(keeps: bool) -> Self {
         Self { bytes: 0, hasher: blake3::Hasher::new(), kept: keeps.then(Vec::new) }
     }
 }
 
-impl TextSink for ProgramText {
+impl TextSink for HashedText {
     fn write(&mut self, text: &[u8]) -> Result<(), String> {
         self.bytes += text.len() as u64;
         self.hasher.update(text);
@@ -259,12 +260,12 @@ impl TextSink for ProgramText {
 }
 
 /// A program that is read back until that is given up.
-struct Stoppable<'t> {
+struct CancellableText<'t> {
     text: Cursor<&'t [u8]>,
     stop: Arc<AtomicBool>,
 }
 
-impl Read for Stoppable<'_> {
+impl Read for CancellableText<'_> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(io::Error::other("given up"));
@@ -273,7 +274,7 @@ impl Read for Stoppable<'_> {
     }
 }
 
-impl Seek for Stoppable<'_> {
+impl Seek for CancellableText<'_> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.text.seek(to)
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use post_machine::diagnostic::{Diagnostic, Severity};
 use serde::{Deserialize, Serialize};
 
-use crate::columns::{Column, Value};
+use crate::columns::{CellValue, Column};
 
 /// The program is good.
 pub const WRITTEN: &str = "written";
@@ -16,32 +16,32 @@ pub const FAILED: &str = "failed";
 
 /// What came of one job: values by the names of their columns. What has no value is not in it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Outcome {
+pub struct JobOutcome {
     /// Hash of all that it depends on; none if it was not got that far.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub key: Option<String>,
     /// Values by their columns.
-    pub values: BTreeMap<String, Value>,
+    pub values: BTreeMap<String, CellValue>,
 }
 
-impl Outcome {
+impl JobOutcome {
     /// A number that is one.
     pub fn number(&mut self, column: impl Into<String>, value: f64) {
         if value.is_finite() {
             // Adding zero turns -0 into 0.
-            self.values.insert(column.into(), Value::Number(value + 0.0));
+            self.values.insert(column.into(), CellValue::Number(value + 0.0));
         }
     }
 
     /// Notes how many there are.
     pub fn count(&mut self, column: &str, value: u64) {
         let value = i64::try_from(value).unwrap_or(i64::MAX);
-        self.values.insert(column.to_owned(), Value::Count(value));
+        self.values.insert(column.to_owned(), CellValue::Count(value));
     }
 
     /// Notes a text.
     pub fn text(&mut self, column: &str, value: impl Into<String>) {
-        self.values.insert(column.to_owned(), Value::Text(value.into().into()));
+        self.values.insert(column.to_owned(), CellValue::Text(value.into().into()));
     }
 
     /// What these columns are of `row`.
@@ -49,7 +49,7 @@ impl Outcome {
         for column in columns {
             let name = column.name.clone().into_owned();
             match column.of(row, 0) {
-                Some(Value::Number(number)) => self.number(name, number),
+                Some(CellValue::Number(number)) => self.number(name, number),
                 Some(value) => drop(self.values.insert(name, value)),
                 None => {}
             }
@@ -95,7 +95,7 @@ impl Outcome {
     /// `written`, `refused` or `failed`.
     pub fn state(&self) -> &str {
         match self.values.get("state") {
-            Some(Value::Text(state)) => state,
+            Some(CellValue::Text(state)) => state,
             _ => FAILED,
         }
     }

@@ -3,7 +3,7 @@
 use post_host::Finder;
 use post_machine::diagnostic::Diagnostic;
 
-use super::columns::{self, Head};
+use super::columns::{self, ColumnSource};
 use super::inputs::Inputs;
 use super::job_line::JobLine;
 use crate::failure::Failure;
@@ -42,7 +42,7 @@ impl Shard {
 
 /// Jobs, what is asked of them, and the columns of their results.
 #[derive(Debug)]
-pub struct Study {
+pub struct JobStudy {
     /// The jobs, in their order.
     pub jobs: Vec<JobLine>,
     /// What is asked of each.
@@ -50,10 +50,10 @@ pub struct Study {
     /// Their plugins.
     pub finder: Finder,
     /// The columns of their results.
-    pub columns: Vec<Head>,
+    pub columns: Vec<ColumnSource>,
 }
 
-impl Study {
+impl JobStudy {
     /// Of these jobs, with the texts that they read.
     ///
     /// # Errors

@@ -1,32 +1,32 @@
 //! Rows as columns, and files of them.
 
-use super::Study;
+use super::JobStudy;
 use super::columns::OF_JOB;
-use super::outcome::Outcome;
-use crate::columns::{Kind, Value};
+use super::outcome::JobOutcome;
+use crate::columns::{CellValue, ColumnKind};
 use crate::files::parquet;
 
 /// The results of a study, a row a job.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Table {
+pub struct StudyTable {
     /// How many rows it has.
     pub rows: usize,
     /// Its columns, in their order.
-    pub columns: Vec<Column>,
+    pub columns: Vec<StudyColumn>,
 }
 
 /// One column.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Column {
+pub struct StudyColumn {
     /// Its name, which carries the unit.
     pub name: String,
     /// A value for each row.
-    pub values: Values,
+    pub values: StudyValues,
 }
 
 /// The values of a column; none where a row has none.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Values {
+pub enum StudyValues {
     /// In the unit of the column's name.
     Numbers(Vec<Option<f64>>),
     /// How often, or a place.
@@ -35,32 +35,32 @@ pub enum Values {
     Texts(Vec<Option<String>>),
 }
 
-impl Values {
-    fn of(kind: Kind, values: impl Iterator<Item = Option<Value>>) -> Self {
+impl StudyValues {
+    fn of(kind: ColumnKind, values: impl Iterator<Item = Option<CellValue>>) -> Self {
         match kind {
-            Kind::Number => Self::Numbers(
+            ColumnKind::Number => Self::Numbers(
                 values
                     .map(|value| match value? {
-                        Value::Number(number) => Some(number),
-                        Value::Count(count) => Some(count as f64),
-                        Value::Text(text) => text.parse().ok().map(|number: f64| number + 0.0),
+                        CellValue::Number(number) => Some(number),
+                        CellValue::Count(count) => Some(count as f64),
+                        CellValue::Text(text) => text.parse().ok().map(|number: f64| number + 0.0),
                     })
                     .collect(),
             ),
-            Kind::Count | Kind::Choice | Kind::Flag => Self::Counts(
+            ColumnKind::Count | ColumnKind::Choice | ColumnKind::Flag => Self::Counts(
                 values
                     .map(|value| match value? {
-                        Value::Count(count) => Some(count),
+                        CellValue::Count(count) => Some(count),
                         _ => None,
                     })
                     .collect(),
             ),
-            Kind::Text => Self::Texts(
+            ColumnKind::Text => Self::Texts(
                 values
                     .map(|value| match value? {
-                        Value::Text(text) => Some(text.into_owned()),
-                        Value::Number(number) => Some(format!("{number:?}")),
-                        Value::Count(count) => Some(count.to_string()),
+                        CellValue::Text(text) => Some(text.into_owned()),
+                        CellValue::Number(number) => Some(format!("{number:?}")),
+                        CellValue::Count(count) => Some(count.to_string()),
                     })
                     .collect(),
             ),
@@ -95,14 +95,14 @@ impl Values {
     }
 }
 
-impl Table {
+impl StudyTable {
     /// Of what came of the jobs with these numbers.
-    pub fn new(study: &Study, numbers: &[usize], outcomes: &[Outcome]) -> Self {
+    pub fn new(study: &JobStudy, numbers: &[usize], outcomes: &[JobOutcome]) -> Self {
         let columns = study.columns.iter().map(|head| {
             let rows = numbers.iter().zip(outcomes);
             let values = rows.map(|(number, outcome)| {
                 let job = &study.jobs[*number];
-                let text = |text: &str| Some(Value::Text(text.to_owned().into()));
+                let text = |text: &str| Some(CellValue::Text(text.to_owned().into()));
                 if let Some(parameter) = &head.parameter {
                     let told = job.parameters().into_iter();
                     let mut told = told.filter(|(name, _)| name == parameter);
@@ -110,19 +110,19 @@ impl Table {
                 }
                 let of_job = OF_JOB.iter().position(|(name, _)| head.name == *name);
                 match of_job {
-                    Some(0) => i64::try_from(*number).ok().map(Value::Count),
+                    Some(0) => i64::try_from(*number).ok().map(CellValue::Count),
                     Some(1) => text(&job.file),
                     Some(_) => text(job.machine.as_deref().unwrap_or_default()),
                     None => outcome.values.get(&head.name).cloned(),
                 }
             });
-            Column { name: head.name.clone(), values: Values::of(head.kind, values) }
+            StudyColumn { name: head.name.clone(), values: StudyValues::of(head.kind, values) }
         });
         Self { rows: numbers.len(), columns: columns.collect() }
     }
 
     /// The column of that name.
-    pub fn column(&self, name: &str) -> Option<&Values> {
+    pub fn column(&self, name: &str) -> Option<&StudyValues> {
         let mut columns = self.columns.iter();
         let column = columns.find(|column| column.name == name)?;
         Some(&column.values)
@@ -140,12 +140,12 @@ impl Table {
     }
 
     fn parquet(&self) -> Vec<u8> {
-        let columns = self.columns.iter().map(|column| parquet::Column {
+        let columns = self.columns.iter().map(|column| parquet::ParquetColumn {
             name: &column.name,
             values: match &column.values {
-                Values::Numbers(numbers) => parquet::Values::Numbers(numbers),
-                Values::Counts(counts) => parquet::Values::Integers(counts),
-                Values::Texts(texts) => parquet::Values::Texts(texts),
+                StudyValues::Numbers(numbers) => parquet::ParquetValues::Numbers(numbers),
+                StudyValues::Counts(counts) => parquet::ParquetValues::Integers(counts),
+                StudyValues::Texts(texts) => parquet::ParquetValues::Texts(texts),
             },
         });
         parquet::bytes(self.rows, &columns.collect::<Vec<_>>())

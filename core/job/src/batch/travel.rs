@@ -3,7 +3,7 @@
 use post_machine::description::Machine;
 use post_posting::report::PostingReport;
 
-use super::outcome::Outcome;
+use super::outcome::JobOutcome;
 
 /// Columns of an axis: its least and largest value, and which share of its travel lies between them.
 pub fn columns(name: &str, rotary: bool) -> [String; 3] {
@@ -27,7 +27,7 @@ pub struct TravelLeft<'a> {
 pub fn tell<'a>(
     machine: &Machine,
     report: &'a PostingReport,
-    outcome: &mut Outcome,
+    outcome: &mut JobOutcome,
 ) -> [Option<TravelLeft<'a>>; 2] {
     let mut nearest: [Option<TravelLeft<'_>>; 2] = [None, None];
     for used in &report.axes {

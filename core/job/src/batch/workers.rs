@@ -9,11 +9,11 @@ use std::time::Duration;
 
 use post_machine::diagnostic::Diagnostic;
 
-use super::Study;
+use super::JobStudy;
 use super::inputs::Inputs;
 use super::journal::Journal;
-use super::one_job::{self, Did};
-use super::outcome::Outcome;
+use super::one_job::{self, JobResult};
+use super::outcome::JobOutcome;
 use crate::failure::Failure;
 use crate::session::Session;
 
@@ -24,7 +24,7 @@ const STACK: usize = 8 << 20;
 const LOOK: Duration = Duration::from_millis(50);
 
 /// The work is given up.
-pub struct Stop;
+pub struct Cancelled;
 
 /// How far the work has come.
 #[derive(Clone, Copy, Debug, Default)]
@@ -43,24 +43,24 @@ pub struct Done {
 /// # Errors
 /// The journal cannot be written, or no thread be started.
 pub fn run(
-    study: &Study,
+    study: &JobStudy,
     inputs: &Inputs,
     numbers: &[usize],
     threads: Option<NonZeroUsize>,
     journal: Option<&Journal>,
-    look: &mut dyn FnMut(Done) -> Result<(), Stop>,
-) -> Result<Option<Vec<Outcome>>, Failure> {
+    look: &mut dyn FnMut(Done) -> Result<(), Cancelled>,
+) -> Result<Option<Vec<JobOutcome>>, Failure> {
     let threads = threads
         .or_else(|| thread::available_parallelism().ok())
         .map_or(1, NonZeroUsize::get)
         .min(numbers.len());
     let next = AtomicUsize::new(0);
     let stop = Arc::new(AtomicBool::new(false));
-    let mut outcomes: Vec<Option<Outcome>> = vec![None; numbers.len()];
+    let mut outcomes: Vec<Option<JobOutcome>> = vec![None; numbers.len()];
     let mut done = Done::default();
     let mut fault = None;
     thread::scope(|scope| {
-        let (send, receive) = mpsc::channel::<(usize, Did)>();
+        let (send, receive) = mpsc::channel::<(usize, JobResult)>();
         for _ in 0..threads {
             let send = send.clone();
             let (next, stop) = (&next, &stop);

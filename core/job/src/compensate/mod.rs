@@ -26,8 +26,8 @@ use super::one_program::OneProgram;
 use super::rounds::Rounds;
 use crate::failure::Failure;
 use crate::files::{ClSource, Scratch};
-use path::{Errors, Recorded};
-pub use path::{Moved, Moves};
+use path::{Errors, PathRecorder};
+pub use path::{PointShifts, ShiftedPath};
 pub use text::text;
 
 /// Runs at most.
@@ -45,7 +45,7 @@ const ELSEWHERE: f64 = 0.1;
 
 /// How far the tool is off the CL path in cuts, the servos in between.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Stray {
+pub struct CutDeviation {
     /// At most, mm.
     pub largest_mm: f64,
     /// Line of the program.
@@ -60,13 +60,13 @@ pub struct Stray {
 
 /// What compensation has done.
 #[derive(Clone, Debug, Serialize)]
-pub struct Found {
+pub struct CompensationSummary {
     /// By how much a point may be moved, mm.
     pub bound_mm: f64,
     /// The program as it was.
-    pub before: Stray,
+    pub before: CutDeviation,
     /// The program that is written.
-    pub after: Stray,
+    pub after: CutDeviation,
     /// Programs that were tried.
     pub runs: u32,
     /// Points of the path.
@@ -80,13 +80,13 @@ pub struct Found {
 }
 
 /// How a program is compensated.
-pub struct Compensation {
+pub struct ServoCompensation {
     /// The machine that it is posted for: what takes points out of the path is switched off.
     pub machine: Machine,
     /// By how much its points are moved; none: it is written as it was.
-    pub moves: Option<Moves>,
+    pub moves: Option<PointShifts>,
     /// What it does.
-    pub found: Found,
+    pub found: CompensationSummary,
 }
 
 /// Finds by how much the points of a program are moved.
@@ -97,21 +97,21 @@ pub fn compensate(
     program: &OneProgram<'_>,
     ahead: Option<&ProgramPreview>,
     source: &mut ClSource,
-) -> Result<Compensation, Failure> {
+) -> Result<ServoCompensation, Failure> {
     let bound = allowed(program.machine).map_err(|fault| *fault)?;
     let mut machine = program.machine.clone();
     // Moved points lie on no arc any more, and those that are left out cannot be moved.
     machine.control.arcs.keep = false;
     machine.control.arcs.fit = false;
     machine.accuracy.reduce = false;
-    let mut path = Recorded::default();
+    let mut path = PathRecorder::default();
     let mut rounds = Rounds::new(program, ahead, source);
     let plain = OneProgram { machine: &machine, ..program.clone() };
     rounds.make(plain.clone(), Some(&mut path))?;
     let text = rounds.make(program.clone(), None)?;
     let mut errors = Errors::of(&path);
     let before = stray(&mut rounds, text, &path, &mut errors)?;
-    let mut moves: Moves = vec![[0.0; 3]; path.len()];
+    let mut moves: PointShifts = vec![[0.0; 3]; path.len()];
     let (mut after, mut last, mut kept) = (before, before, false);
     let mut gains = vec![1.0; path.len()];
     let mut runs = 0;
@@ -119,7 +119,7 @@ pub fn compensate(
         runs += 1;
         let mut next = moves.clone();
         path.step(&mut next, &errors, &gains, bound);
-        let text = rounds.make(plain.clone(), Some(&mut Moved::new(&next)))?;
+        let text = rounds.make(plain.clone(), Some(&mut ShiftedPath::new(&next)))?;
         let mut left = Errors::of(&path);
         let found = stray(&mut rounds, text, &path, &mut left)?;
         if found.rms_mm == last.rms_mm {
@@ -147,7 +147,7 @@ pub fn compensate(
         let [x, y, z] = by.map(f64::from);
         (x * x + y * y + z * z).sqrt()
     });
-    let found = Found {
+    let found = CompensationSummary {
         bound_mm: bound,
         before,
         after,
@@ -157,7 +157,7 @@ pub fn compensate(
         largest_move_mm: sizes.fold(0.0, f64::max),
         kept,
     };
-    Ok(Compensation { machine, moves: kept.then_some(moves), found })
+    Ok(ServoCompensation { machine, moves: kept.then_some(moves), found })
 }
 
 /// By how much points may be moved, mm.
@@ -181,9 +181,9 @@ fn allowed(machine: &Machine) -> Result<f64, Box<Diagnostic>> {
 fn stray(
     rounds: &mut Rounds<'_, '_>,
     text: Scratch,
-    path: &Recorded,
+    path: &PathRecorder,
     errors: &mut Errors,
-) -> Result<Stray, Failure> {
+) -> Result<CutDeviation, Failure> {
     let off = 2.0 * rounds.program.machine.accuracy.tolerance;
     let found = rounds.predict(text, &mut |sample| {
         if let Some(asked) = &sample.point.asked {
@@ -193,7 +193,7 @@ fn stray(
     })?;
     let tip = found.contour.tip_mm;
     let following = found.contour.parts.iter().find(|part| part.part == "following");
-    Ok(Stray {
+    Ok(CutDeviation {
         largest_mm: tip.largest,
         nc_line: tip.nc_line,
         cl_line: tip.cl_line,

@@ -12,11 +12,11 @@ const LEAST_GAIN: f32 = 0.1;
 
 /// Records the points of a path, and moves none.
 #[derive(Default)]
-pub struct Recorded {
+pub struct PathRecorder {
     points: Vec<PathPoint>,
 }
 
-impl PathShift for Recorded {
+impl PathShift for PathRecorder {
     fn next(&mut self, point: &PathPoint) -> Vector3<f64> {
         self.points.push(*point);
         Vector3::zeros()
@@ -24,21 +24,21 @@ impl PathShift for Recorded {
 }
 
 /// By how much each point of a path is moved, mm.
-pub type Moves = Vec<[f32; 3]>;
+pub type PointShifts = Vec<[f32; 3]>;
 
 /// Moves the points of a path.
-pub struct Moved<'m> {
+pub struct ShiftedPath<'m> {
     moves: std::slice::Iter<'m, [f32; 3]>,
 }
 
-impl<'m> Moved<'m> {
+impl<'m> ShiftedPath<'m> {
     /// From the first point on.
-    pub fn new(moves: &'m Moves) -> Self {
+    pub fn new(moves: &'m PointShifts) -> Self {
         Self { moves: moves.iter() }
     }
 }
 
-impl PathShift for Moved<'_> {
+impl PathShift for ShiftedPath<'_> {
     fn next(&mut self, _: &PathPoint) -> Vector3<f64> {
         let by = self.moves.next().copied().unwrap_or_default();
         Vector3::from(by.map(f64::from))
@@ -55,7 +55,7 @@ const BESIDE: usize = 2;
 
 /// How far the tool is off beside a point of a path.
 #[derive(Clone, Copy, Default)]
-struct Beside {
+struct PointErrors {
     /// Sum of the errors, mm, of their squares, and of the weights that they count with.
     sum: [f32; 3],
     squares: f32,
@@ -67,19 +67,25 @@ struct Beside {
 /// How far the tool is off beside the points of a path.
 #[derive(Clone)]
 pub struct Errors {
-    points: Vec<Beside>,
+    points: Vec<PointErrors>,
     /// The end of the leg that the tool was on last.
     cursor: usize,
 }
 
 impl Errors {
-    pub fn of(path: &Recorded) -> Self {
-        Self { points: vec![Beside::default(); path.points.len()], cursor: 0 }
+    pub fn of(path: &PathRecorder) -> Self {
+        Self { points: vec![PointErrors::default(); path.points.len()], cursor: 0 }
     }
 
     /// Where the CL path asks for `asked` the tool is off by `error`. The points stand no more than `off` mm beside that
     /// path.
-    pub fn take(&mut self, path: &Recorded, asked: &Vector3<f64>, off: f64, error: &Vector3<f64>) {
+    pub fn take(
+        &mut self,
+        path: &PathRecorder,
+        asked: &Vector3<f64>,
+        off: f64,
+        error: &Vector3<f64>,
+    ) {
         let Some((number, share)) = path.leg_at(asked, self.cursor, off) else {
             return;
         };
@@ -98,12 +104,12 @@ impl Errors {
 
     /// The mean at a point, if the tool has been there.
     fn at(&self, place: usize) -> Option<[f32; 3]> {
-        let Beside { sum, weight, .. } = self.points[place];
+        let PointErrors { sum, weight, .. } = self.points[place];
         (weight > 0.05).then(|| sum.map(|sum| sum / weight))
     }
 
     /// The largest error beside a point that is moved, mm.
-    pub fn largest_at(&self, moves: &Moves) -> f64 {
+    pub fn largest_at(&self, moves: &PointShifts) -> f64 {
         let beside = self.points.iter().zip(moves);
         let moved = beside.filter(|(_, by)| **by != [0.0; 3]);
         moved.fold(0.0, |most, (beside, _)| most.max(f64::from(beside.largest)))
@@ -112,7 +118,7 @@ impl Errors {
     /// Holds the points back beside which these errors are worse than the `last`, by half; and entirely where one is
     /// larger than `most` mm. Whether there are any that were not held back before.
     pub fn damp(&self, last: &Self, most: f64, gains: &mut [f32]) -> bool {
-        let square = |beside: &Beside| beside.squares / beside.weight.max(f32::MIN_POSITIVE);
+        let square = |beside: &PointErrors| beside.squares / beside.weight.max(f32::MIN_POSITIVE);
         let mut damped = false;
         let mut held = vec![1.0_f32; gains.len()];
         for (place, (now, last)) in self.points.iter().zip(&last.points).enumerate() {
@@ -134,7 +140,7 @@ impl Errors {
     }
 }
 
-impl Recorded {
+impl PathRecorder {
     pub fn len(&self) -> usize {
         self.points.len()
     }
@@ -175,7 +181,7 @@ impl Recorded {
 
     /// Moves points further by minus the errors beside them, each by its share of `gains`, none by more than `bound` mm in
     /// all.
-    pub fn step(&self, moves: &mut Moves, errors: &Errors, gains: &[f32], bound: f64) {
+    pub fn step(&self, moves: &mut PointShifts, errors: &Errors, gains: &[f32], bound: f64) {
         let mut start = 0;
         while start < self.points.len() {
             let end = self.end_of_cut(start);
@@ -198,7 +204,7 @@ impl Recorded {
     /// Moves the points of a cut; it begins at the point before its first, which stands.
     fn step_cut(
         &self,
-        moves: &mut Moves,
+        moves: &mut PointShifts,
         errors: &Errors,
         cut: std::ops::Range<usize>,
         gains: &[f32],

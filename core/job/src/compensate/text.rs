@@ -1,11 +1,11 @@
 //! What compensation has done, for people.
 
-use super::{Found, Stray};
+use super::{CompensationSummary, CutDeviation};
 use crate::text::number;
 use crate::text_table::NamedValues;
 
 /// As a table.
-pub fn text(found: &Found) -> String {
+pub fn text(found: &CompensationSummary) -> String {
     let mut rows = NamedValues::default();
     rows.row("servo", said(found));
     rows.row("  before", stray(&found.before));
@@ -13,7 +13,7 @@ pub fn text(found: &Found) -> String {
     rows.lines(16)
 }
 
-fn said(found: &Found) -> String {
+fn said(found: &CompensationSummary) -> String {
     let bound = number(found.bound_mm, 6);
     if !found.kept {
         return format!(
@@ -31,7 +31,7 @@ fn said(found: &Found) -> String {
     )
 }
 
-fn stray(stray: &Stray) -> String {
+fn stray(stray: &CutDeviation) -> String {
     let cl_line = match stray.cl_line {
         Some(line) => format!(", CL line {line}"),
         None => String::new(),

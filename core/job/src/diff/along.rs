@@ -9,7 +9,7 @@ const MOST_POINTS: usize = 40_000;
 const MOST_BINS: usize = 1200;
 
 /// Both paths, and how they differ along the way.
-pub struct Along {
+pub struct PathComparison {
     /// The old path and the new one.
     pub paths: [Path; 2],
     /// Along the way of the old one.
@@ -43,7 +43,7 @@ pub struct Bin {
     pub feeds: [f64; 2],
 }
 
-impl Along {
+impl PathComparison {
     /// Of nothing yet; points nearer than `apart`, mm, are left out.
     pub fn new(apart: f64) -> Self {
         let path = || Path { pieces: Vec::new(), points: 0, apart, last: None };

@@ -13,7 +13,7 @@ use crate::session::Session;
 use crate::settings::ProgramSettings;
 use page::DiffPage;
 
-pub use along::{Along, Bin, Path};
+pub use along::{Bin, Path, PathComparison};
 
 /// Differences that count for none.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +48,7 @@ pub struct Side {
 }
 
 /// What came of it.
-pub struct Compared {
+pub struct DiffResult {
     /// The old program and the new one.
     pub sides: [Side; 2],
     /// What counts as a difference.
@@ -56,7 +56,7 @@ pub struct Compared {
     /// What is different.
     pub found: Difference,
     /// Both paths, and how they differ along the way.
-    pub along: Along,
+    pub along: PathComparison,
     /// What the user should know.
     pub findings: Vec<Diagnostic>,
 }
@@ -65,7 +65,7 @@ pub struct Compared {
 ///
 /// # Errors
 /// A block that is refused, or a file or a machine that cannot be used.
-pub fn compare(session: &Session, request: &DiffRequest) -> Result<Compared, Failure> {
+pub fn compare(session: &Session, request: &DiffRequest) -> Result<DiffResult, Failure> {
     let [old, new] = &request.settings;
     let [old, new] = [NcControl::new(session, old)?, NcControl::new(session, new)?];
     let [first, second] = &request.programs;
@@ -74,7 +74,7 @@ pub fn compare(session: &Session, request: &DiffRequest) -> Result<Compared, Fai
         Side { program: ProgramFile::open(session, second)?, control: new },
     ];
     let rules = rules(request, sides.each_ref().map(|side| &side.control));
-    let mut along = Along::new(rules.tip);
+    let mut along = PathComparison::new(rules.tip);
     let opened = |new: bool| {
         let side = &sides[usize::from(new)];
         side.control.program_with_rapids(&side.program)
@@ -87,10 +87,10 @@ pub fn compare(session: &Session, request: &DiffRequest) -> Result<Compared, Fai
         return Err(refused.into());
     }
     let findings = unknown(&found.unknown).into_iter().collect();
-    Ok(Compared { sides, rules, found, along, findings })
+    Ok(DiffResult { sides, rules, found, along, findings })
 }
 
-impl Compared {
+impl DiffResult {
     /// Writes what was compared to `file` as a page, of so many bytes at most.
     ///
     /// # Errors

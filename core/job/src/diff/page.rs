@@ -3,10 +3,10 @@
 
 use post_report::meta::{Maximum, Names, TolerancesMeta, VerdictMeta};
 
-use super::{Compared, Side};
+use super::{DiffResult, Side};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, PathArg};
-use crate::report::{self, Besides, MotionRows, OldPath, Parts};
+use crate::report::{self, ExtraColumns, MotionRows, OldPath, Parts};
 use crate::session::Session;
 use crate::text::{clock, number};
 
@@ -15,7 +15,7 @@ pub struct DiffPage<'a> {
     /// The run.
     pub session: &'a Session,
     /// What was compared.
-    pub compared: &'a Compared,
+    pub compared: &'a DiffResult,
     /// The old program and the new one.
     pub names: [&'a PathArg; 2],
 }
@@ -26,7 +26,7 @@ impl DiffPage<'_> {
     /// # Errors
     /// A program cannot be read again, or the page not be written.
     pub fn write(&self, most: u64, page: &mut AtomicFile) -> Result<(), Failure> {
-        let Compared { sides, rules, .. } = self.compared;
+        let DiffResult { sides, rules, .. } = self.compared;
         let machine = &sides[1].control.machine;
         let [old_name, new_name] = self.names.map(report::name_of);
         let title = format!("{new_name} against {old_name}");
@@ -43,7 +43,7 @@ impl DiffPage<'_> {
         meta.maxima = self.maxima();
         meta.facts = self.facts();
         let mut parts = Parts::of(self.session, machine, &mut meta)?;
-        let besides = Besides { other: true, ..Besides::default() };
+        let besides = ExtraColumns { other: true, ..ExtraColumns::default() };
         let run = |place: usize| -> Result<_, Failure> {
             let Side { control, program } = &sides[place];
             let run = control.run(&program.name, program.text()?);

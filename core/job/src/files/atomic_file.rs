@@ -9,8 +9,8 @@ use std::time::Duration;
 use post_posting::TextSink;
 
 use super::file_id::folder;
-use super::naming::{self, Unnamed};
-use super::outcome::Became;
+use super::naming::{self, NamingFault};
+use super::outcome::TextOutcome;
 use super::target::{Place, Role, Target, refuse_losses};
 use super::temporary::Temporary;
 use super::{FileFault, PathArg, rights, standard};
@@ -34,7 +34,7 @@ impl AtomicFile {
             .map(|(role, named)| Target::find(*role, named))
             .collect::<Result<_, _>>()?;
         for target in targets.iter().filter(|target| target.replaces) {
-            session.texts().note(&target.name, Became::Kept);
+            session.texts().note(&target.name, TextOutcome::Kept);
         }
         refuse_losses(session, &targets.iter().collect::<Vec<_>>())?;
         targets.into_iter().map(Self::begin).collect()
@@ -181,13 +181,13 @@ fn name_all(
         Err(unnamed) => unnamed.stuck.iter().map(|(index, _)| *index).collect(),
     };
     for index in stuck {
-        session.texts().note(&names[index], Became::Written);
+        session.texts().note(&names[index], TextOutcome::Written);
     }
     for folder in &folders {
         // A new name is safe once its folder is on the disk.
         let _ = folder.sync_all();
     }
-    named.map_err(|Unnamed { index, error, stuck }| FileFault::Named {
+    named.map_err(|NamingFault { index, error, stuck }| FileFault::Named {
         name: names[index].clone(),
         error,
         stuck: stuck.into_iter().map(|(index, old)| (names[index].clone(), old)).collect(),
@@ -214,8 +214,8 @@ fn deliver(
     let mut begun = false;
     let copied = open(path).and_then(|mut to| copy(&mut file, &mut to, &mut begun));
     let became = match copied {
-        Ok(()) => Some(Became::Written),
-        Err(_) if begun => Some(Became::Begun),
+        Ok(()) => Some(TextOutcome::Written),
+        Err(_) if begun => Some(TextOutcome::Begun),
         Err(_) => None,
     };
     if let Some(became) = became {

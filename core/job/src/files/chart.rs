@@ -10,7 +10,7 @@ use super::scale::Scale;
 use super::svg::{self, label, upright};
 pub use envelope::Envelope;
 pub use panels::{Panel, Panels};
-use plot::{Area, HEIGHT, LEFT, ROW, TOP, WIDTH, columns_of, legend, titles, width};
+use plot::{HEIGHT, LEFT, PlotArea, ROW, TOP, WIDTH, columns_of, legend, titles, width};
 
 /// A chart.
 pub struct Chart {
@@ -39,7 +39,7 @@ pub struct Series {
 /// How values are drawn.
 pub enum Draw {
     /// A line through points, with some markers on it.
-    Line(Vec<[f64; 2]>, Look),
+    Line(Vec<[f64; 2]>, LineStyle),
     /// A marker at every point.
     Dots(Vec<[f64; 2]>, Marker),
     /// Bars from zero: left, right and height of each, and a grey.
@@ -50,7 +50,7 @@ pub enum Draw {
 
 /// How a line looks.
 #[derive(Clone, Copy)]
-pub struct Look {
+pub struct LineStyle {
     grey: &'static str,
     width: f64,
     dash: &'static str,
@@ -68,12 +68,17 @@ pub enum Marker {
     Cross,
 }
 
-const fn look(grey: &'static str, width: f64, dash: &'static str, marker: Option<Marker>) -> Look {
-    Look { grey, width, dash, marker }
+const fn look(
+    grey: &'static str,
+    width: f64,
+    dash: &'static str,
+    marker: Option<Marker>,
+) -> LineStyle {
+    LineStyle { grey, width, dash, marker }
 }
 
 /// Looks that can be told apart, the plainest first.
-pub const LOOKS: [Look; 8] = [
+pub const LOOKS: [LineStyle; 8] = [
     look("#000000", 1.8, "", None),
     look("#000000", 1.4, "9 4", Some(Marker::Circle)),
     look("#000000", 1.6, "2 3", Some(Marker::Square)),
@@ -85,20 +90,20 @@ pub const LOOKS: [Look; 8] = [
 ];
 
 /// A limit.
-pub const LIMIT: Look = look("#000000", 0.9, "14 4", None);
+pub const LIMIT: LineStyle = look("#000000", 0.9, "14 4", None);
 
 /// What something is compared with.
-pub const GREY: Look = look("#8c8c8c", 2.4, "", None);
+pub const GREY: LineStyle = look("#8c8c8c", 2.4, "", None);
 
 /// Dots that no other line has.
-pub const DOTTED: Look = look("#000000", 1.6, "2 3", None);
+pub const DOTTED: LineStyle = look("#000000", 1.6, "2 3", None);
 
 /// Its plain dashes.
-pub const DASHED: Look = look("#000000", 1.4, "9 4", None);
+pub const DASHED: LineStyle = look("#000000", 1.4, "9 4", None);
 
 impl Series {
     /// Points joined by a line.
-    pub fn line(name: impl Into<String>, points: Vec<[f64; 2]>, look: Look) -> Self {
+    pub fn line(name: impl Into<String>, points: Vec<[f64; 2]>, look: LineStyle) -> Self {
         Self { name: name.into(), draw: Draw::Line(points, look) }
     }
 
@@ -146,7 +151,7 @@ impl Chart {
         let y = if self.logarithmic { Scale::decades(ups) } else { Scale::new(ups, 8.0, true) };
         let mut svg = svg::open(WIDTH, self.height());
         titles(&mut svg, &self.title, &self.note);
-        let area = Area { top: TOP, height: HEIGHT };
+        let area = PlotArea { top: TOP, height: HEIGHT };
         area.plot(&mut svg, [&x, &y], &self.series, true);
         let middle = LEFT + width() / 2.0;
         label(&mut svg, [middle, TOP + HEIGHT + 38.0], "middle", &self.x);

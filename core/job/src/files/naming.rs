@@ -11,7 +11,7 @@ use super::temporary::{Temporary, builder, live};
 
 /// Why not all texts have their names.
 #[derive(Debug)]
-pub struct Unnamed {
+pub struct NamingFault {
     /// Which one could not be given its name.
     pub index: usize,
     /// What the system says.
@@ -21,7 +21,7 @@ pub struct Unnamed {
 }
 
 /// A text that has its name.
-struct Named {
+struct NamedFile {
     target: PathBuf,
     /// The file that stood there before, under a name of its own that is deleted at the end.
     old: Option<TempPath>,
@@ -29,9 +29,9 @@ struct Named {
 
 /// Gives all texts their names in turn. If one of them cannot have it, what the others replaced is put back. A signal
 /// waits until all is done; what a machine does that is switched off in the middle, nobody can say.
-pub fn name_all(texts: &mut [(Temporary, PathBuf)]) -> Result<(), Unnamed> {
+pub fn name_all(texts: &mut [(Temporary, PathBuf)]) -> Result<(), NamingFault> {
     let mut signals = live();
-    let mut named: Vec<Named> = Vec::new();
+    let mut named: Vec<NamedFile> = Vec::new();
     let count = texts.len();
     for (index, (text, target)) in texts.iter_mut().enumerate() {
         let last = index + 1 == count;
@@ -39,10 +39,10 @@ pub fn name_all(texts: &mut [(Temporary, PathBuf)]) -> Result<(), Unnamed> {
             .and_then(|()| if last { Ok(None) } else { second_name(target) })
             .and_then(|old| text.persist(&mut signals, target).map(|()| old));
         match done {
-            Ok(old) => named.push(Named { target: target.clone(), old }),
+            Ok(old) => named.push(NamedFile { target: target.clone(), old }),
             Err(error) => {
                 let stuck = put_back(named);
-                return Err(Unnamed { index, error, stuck });
+                return Err(NamingFault { index, error, stuck });
             }
         }
     }
@@ -50,8 +50,8 @@ pub fn name_all(texts: &mut [(Temporary, PathBuf)]) -> Result<(), Unnamed> {
 }
 
 /// Two names that were free can turn out to be one, where small and capital letters are the same.
-fn refuse_named(named: &[Named], target: &Path) -> io::Result<()> {
-    let same = |other: &Named| match (FileId::of(&other.target), FileId::of(target)) {
+fn refuse_named(named: &[NamedFile], target: &Path) -> io::Result<()> {
+    let same = |other: &NamedFile| match (FileId::of(&other.target), FileId::of(target)) {
         (Ok(other), Ok(target)) => other == target,
         _ => false,
     };
@@ -78,9 +78,9 @@ fn second_name(target: &Path) -> io::Result<Option<TempPath>> {
 }
 
 /// Puts back what was replaced, the last first; what cannot be put back.
-fn put_back(named: Vec<Named>) -> Vec<(usize, Option<PathBuf>)> {
+fn put_back(named: Vec<NamedFile>) -> Vec<(usize, Option<PathBuf>)> {
     let mut stuck = Vec::new();
-    for (index, Named { target, old }) in named.into_iter().enumerate().rev() {
+    for (index, NamedFile { target, old }) in named.into_iter().enumerate().rev() {
         match old {
             None => {
                 if fs::remove_file(&target).is_err() {

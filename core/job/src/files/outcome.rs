@@ -4,7 +4,7 @@ use std::io;
 
 /// What became of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Became {
+pub enum TextOutcome {
     /// Nothing, and the file that was there before is as it was.
     Kept,
     /// A part of it has gone to a pipe or a device and cannot be taken back.
@@ -15,17 +15,17 @@ pub enum Became {
 
 /// Texts of a run, and what was printed for people.
 #[derive(Default)]
-pub struct Texts {
+pub struct TextOutcomes {
     /// By their names.
-    became: Vec<(String, Became)>,
+    became: Vec<(String, TextOutcome)>,
     printed: bool,
     /// Why a result could not be printed: the first fault of the run.
     pub unprinted: Option<io::Error>,
 }
 
-impl Texts {
+impl TextOutcomes {
     /// Notes what became of the text that is called `name`.
-    pub fn note(&mut self, name: &str, became: Became) {
+    pub fn note(&mut self, name: &str, became: TextOutcome) {
         match self.became.iter_mut().find(|(known, _)| known == name) {
             Some((_, old)) => *old = became,
             None => self.became.push((name.to_owned(), became)),
@@ -43,8 +43,8 @@ impl Texts {
     }
 }
 
-fn say(texts: &[(String, Became)]) -> String {
-    let named = |wanted: Became| -> Option<(String, usize)> {
+fn say(texts: &[(String, TextOutcome)]) -> String {
+    let named = |wanted: TextOutcome| -> Option<(String, usize)> {
         let names = texts.iter().filter(|(_, became)| *became == wanted);
         let names: Vec<&str> = names.map(|(name, _)| name.as_str()).collect();
         let (last, others) = names.split_last()?;
@@ -55,16 +55,16 @@ fn say(texts: &[(String, Became)]) -> String {
         Some((list, names.len()))
     };
     let mut parts = Vec::new();
-    if let Some((names, count)) = named(Became::Written) {
+    if let Some((names, count)) = named(TextOutcome::Written) {
         parts.push(format!("{names} {} written", plural(count, "is", "are")));
     }
-    if let Some((names, _)) = named(Became::Begun) {
+    if let Some((names, _)) = named(TextOutcome::Begun) {
         parts.push(format!("a part went to {names}"));
     }
     if parts.is_empty() {
         parts.push("nothing was written".to_owned());
     }
-    if let Some((names, count)) = named(Became::Kept) {
+    if let Some((names, count)) = named(TextOutcome::Kept) {
         let was = plural(count, "is as it was", "are as they were");
         parts.push(format!("{names} {was}"));
     }
@@ -83,13 +83,13 @@ mod tests {
     fn the_sentence_is_true() {
         let text = |name: &str, became| (name.to_owned(), became);
         assert_eq!(say(&[]), "nothing was written");
-        let kept = [text("a.nc", Became::Kept)];
+        let kept = [text("a.nc", TextOutcome::Kept)];
         assert_eq!(say(&kept), "nothing was written; a.nc is as it was");
         let all = [
-            text("a.nc", Became::Kept),
-            text("b.json", Became::Kept),
-            text("pipe", Became::Begun),
-            text("c.nc", Became::Written),
+            text("a.nc", TextOutcome::Kept),
+            text("b.json", TextOutcome::Kept),
+            text("pipe", TextOutcome::Begun),
+            text("c.nc", TextOutcome::Written),
         ];
         assert_eq!(
             say(&all),

@@ -9,6 +9,15 @@ use post_machine::diagnostic::Diagnostic;
 use super::{AtomicFile, FileFault, PathArg, Role};
 use crate::session::Session;
 
+/// The file by which a folder is known to be an earlier run's.
+#[derive(Clone, Copy, Debug)]
+pub struct FolderMark<'a> {
+    /// Its name.
+    pub name: &'static str,
+    /// How it begins.
+    pub begins: &'a str,
+}
+
 /// A folder whose files have known names: of what an earlier run left there nothing stays that would be taken for the
 /// result of this one, and nothing is overwritten that is not of such a run.
 pub struct OwnFolder<'a> {
@@ -20,8 +29,7 @@ pub struct OwnFolder<'a> {
 }
 
 impl<'a> OwnFolder<'a> {
-    /// The folder, which need not be there yet. Files of `names` in it are an earlier run's if the one called `mark.0`
-    /// begins with `mark.1`.
+    /// The folder, which need not be there yet. Files of `names` in it are an earlier run's if `mark` is among them.
     ///
     /// # Errors
     /// It is no folder, or files in it have those names and are of no such run.
@@ -29,19 +37,19 @@ impl<'a> OwnFolder<'a> {
         session: &'a Session,
         folder: &'a PathArg,
         role: Role,
-        mark: (&'static str, &str),
+        mark: FolderMark<'_>,
         names: &[&'static str],
     ) -> Result<Self, Box<Diagnostic>> {
         let mut names = names.to_vec();
-        if !names.contains(&mark.0) {
-            names.push(mark.0);
+        if !names.contains(&mark.name) {
+            names.push(mark.name);
         }
         let own = Self { session, folder, role, names };
         own.refuse_strangers(mark)?;
         Ok(own)
     }
 
-    fn refuse_strangers(&self, (mark, begins): (&str, &str)) -> Result<(), Box<Diagnostic>> {
+    fn refuse_strangers(&self, mark: FolderMark<'_>) -> Result<(), Box<Diagnostic>> {
         let refuse = |message: String| {
             let finding = Diagnostic::error("output", message);
             Err(finding.help(self.role.remedy).boxed())
@@ -53,9 +61,10 @@ impl<'a> OwnFolder<'a> {
             return refuse(format!("{} is no folder", named.display()));
         }
         let mut begin = Vec::new();
-        let file = fs::File::open(place.join(mark));
-        let read = file.and_then(|file| file.take(begins.len() as u64).read_to_end(&mut begin));
-        if read.is_ok() && begin == begins.as_bytes() {
+        let file = fs::File::open(place.join(mark.name));
+        let read =
+            file.and_then(|file| file.take(mark.begins.len() as u64).read_to_end(&mut begin));
+        if read.is_ok() && begin == mark.begins.as_bytes() {
             return Ok(());
         }
         let mut names = self.names.iter();

@@ -13,15 +13,15 @@ const GROUP: usize = 1 << 16;
 const MAGIC: &[u8] = b"PAR1";
 
 /// A column.
-pub struct Column<'a> {
+pub struct ParquetColumn<'a> {
     /// Its name.
     pub name: &'a str,
     /// Its values.
-    pub values: Values<'a>,
+    pub values: ParquetValues<'a>,
 }
 
 /// The values of a column; none where a row has none.
-pub enum Values<'a> {
+pub enum ParquetValues<'a> {
     /// DOUBLE.
     Numbers(&'a [Option<f64>]),
     /// INT64.
@@ -43,7 +43,7 @@ mod word {
     pub const DATA_PAGE: i32 = 0;
 }
 
-impl Values<'_> {
+impl ParquetValues<'_> {
     fn word(&self) -> i32 {
         match self {
             Self::Numbers(_) => word::DOUBLE,
@@ -93,7 +93,7 @@ fn length(bytes: usize) -> u32 {
 }
 
 /// The file of a table with so many rows.
-pub fn bytes(rows: usize, columns: &[Column<'_>]) -> Vec<u8> {
+pub fn bytes(rows: usize, columns: &[ParquetColumn<'_>]) -> Vec<u8> {
     let mut file = MAGIC.to_vec();
     let mut groups = Vec::new();
     for begin in (0..rows).step_by(GROUP) {
@@ -139,7 +139,7 @@ fn page_header(bytes: usize, rows: usize) -> Vec<u8> {
     head.bytes
 }
 
-fn footer(rows: usize, columns: &[Column<'_>], groups: &[(usize, Vec<Chunk>)]) -> Vec<u8> {
+fn footer(rows: usize, columns: &[ParquetColumn<'_>], groups: &[(usize, Vec<Chunk>)]) -> Vec<u8> {
     let mut footer = Thrift::default();
     footer.structure(|file| {
         file.int32(1, 1);
@@ -153,7 +153,7 @@ fn footer(rows: usize, columns: &[Column<'_>], groups: &[(usize, Vec<Chunk>)]) -
                 element.int32(1, column.values.word());
                 element.int32(3, word::OPTIONAL);
                 element.text(4, column.name);
-                if let Values::Texts(_) = column.values {
+                if let ParquetValues::Texts(_) = column.values {
                     element.int32(6, word::UTF8);
                     element.field(10, Thrift::STRUCT);
                     element.structure(|logical| {
@@ -173,7 +173,7 @@ fn footer(rows: usize, columns: &[Column<'_>], groups: &[(usize, Vec<Chunk>)]) -
     footer.bytes
 }
 
-fn row_group(group: &mut Thrift, rows: usize, columns: &[Column<'_>], chunks: &[Chunk]) {
+fn row_group(group: &mut Thrift, rows: usize, columns: &[ParquetColumn<'_>], chunks: &[Chunk]) {
     group.list(1, Thrift::STRUCT, columns.len());
     for (column, chunk) in columns.iter().zip(chunks) {
         group.structure(|told| {
@@ -278,13 +278,13 @@ mod tests {
 
     #[test]
     fn a_page_is_its_levels_and_then_its_values() {
-        let values = Values::Integers(&[Some(1), None, Some(-2)]);
+        let values = ParquetValues::Integers(&[Some(1), None, Some(-2)]);
         let mut wanted = vec![2, 0, 0, 0, 0b11, 0b101];
         wanted.extend(1_i64.to_le_bytes());
         wanted.extend((-2_i64).to_le_bytes());
         assert_eq!(values.page(0..3), wanted);
         let texts = [Some("é".to_owned())];
-        let text = Values::Texts(&texts).page(0..1);
+        let text = ParquetValues::Texts(&texts).page(0..1);
         assert_eq!(text, [2, 0, 0, 0, 3, 1, 2, 0, 0, 0, 0xC3, 0xA9]);
     }
 
@@ -304,7 +304,7 @@ mod tests {
     #[test]
     fn a_file_is_marked_at_both_ends_and_tells_where_its_footer_is() {
         let rows: Vec<Option<f64>> = (0..GROUP + 1).map(|row| Some(row as f64)).collect();
-        let column = Column { name: "x", values: Values::Numbers(&rows) };
+        let column = ParquetColumn { name: "x", values: ParquetValues::Numbers(&rows) };
         let file = bytes(rows.len(), &[column]);
         assert!(file.starts_with(MAGIC) && file.ends_with(MAGIC));
         let end = file.len() - 8;

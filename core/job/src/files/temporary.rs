@@ -15,10 +15,10 @@ use tempfile::{Builder, NamedTempFile};
 static LIVE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 /// The paths, locked: a signal waits until it is let go.
-pub type Live = MutexGuard<'static, BTreeSet<PathBuf>>;
+pub type LivePaths = MutexGuard<'static, BTreeSet<PathBuf>>;
 
 /// Keeps signals waiting.
-pub fn live() -> Live {
+pub fn live() -> LivePaths {
     // A set of paths is whole whatever a thread died of.
     LIVE.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -74,7 +74,7 @@ impl Temporary {
     }
 
     /// Gives it its name, in the place of whatever has it. The guard keeps signals waiting.
-    pub fn persist(&mut self, live: &mut Live, target: &Path) -> io::Result<()> {
+    pub fn persist(&mut self, live: &mut LivePaths, target: &Path) -> io::Result<()> {
         let file = self.file.take().ok_or(io::ErrorKind::NotFound)?;
         live.remove(file.path());
         // The error holds the file, which is deleted with it; its name would only puzzle.

@@ -4,7 +4,7 @@ use post_machine::description::Machine;
 use post_posting::program::Command;
 use post_posting::{HoleMoves, MotionBlock, Observer};
 
-use crate::columns::{Column, Kind};
+use crate::columns::{Column, ColumnKind};
 use crate::posted::{self, PostedBlock, PostedProgram};
 
 pub use crate::posted::{KINDS, REASONS};
@@ -32,7 +32,7 @@ pub struct Array {
     /// How many values a block has, where it has a list of them.
     pub width: Option<usize>,
     /// What its values are.
-    pub kind: Kind,
+    pub kind: ColumnKind,
     /// Those of all blocks, one behind the other; no number where a block has none.
     pub values: Vec<f64>,
 }

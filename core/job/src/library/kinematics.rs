@@ -9,7 +9,7 @@ use post_machine::kinematics::orientation::angle;
 use post_machine::kinematics::travel::{AT_END, passed};
 use post_machine::kinematics::{Joints, Pose, Solver};
 
-use super::Refused;
+use super::Refusal;
 
 /// What is known of an axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +28,7 @@ pub struct AxisFacts {
 
 /// Points that the tool shall come to, three numbers each.
 #[derive(Clone, Copy, Debug)]
-pub struct Wanted<'a> {
+pub struct ToolPoses<'a> {
     /// Tips, mm, part frame.
     pub tip: &'a [f64],
     /// Tool axes, part frame, of any length but zero.
@@ -59,7 +59,7 @@ pub struct Deviations {
 
 /// The chain of a machine, with a tool in it.
 #[derive(Clone, Debug)]
-pub struct Kinematics {
+pub struct MachineKinematics {
     machine: Machine,
     solver: Solver,
     /// Of each axis the units of the chain (mm, radians) in one of the control's (mm, degrees), and what the control shows
@@ -67,12 +67,12 @@ pub struct Kinematics {
     scales: Vec<[f64; 2]>,
 }
 
-impl Wanted<'_> {
+impl ToolPoses<'_> {
     /// Every point, tool axis and edge of unit length.
     ///
     /// # Errors
     /// The first that is none, or has numbers that are none.
-    pub(super) fn poses(&self, needs_edge: bool) -> Result<Vec<Pose>, Refused> {
+    pub(super) fn poses(&self, needs_edge: bool) -> Result<Vec<Pose>, Refusal> {
         let mut poses = Vec::with_capacity(self.tip.len() / 3);
         let mut edges = self.edge.map(|edges| edges.chunks_exact(3));
         if needs_edge && edges.is_none() {
@@ -108,12 +108,12 @@ impl Wanted<'_> {
     }
 }
 
-impl Kinematics {
+impl MachineKinematics {
     /// Of a machine with a tool of `length` mm in it, its indexed axes where they start.
     ///
     /// # Errors
     /// What its chain lacks.
-    pub fn new(machine: &Machine, length: f64) -> Result<Self, Refused> {
+    pub fn new(machine: &Machine, length: f64) -> Result<Self, Refusal> {
         let solver = machine.solver(length);
         let solver = solver.map_err(|lack| vec![machine.unsolvable(&lack)])?;
         let axes = machine.axes.iter();
@@ -173,7 +173,7 @@ impl Kinematics {
     }
 
     /// Where tip and tool axis stand (mm and unit vectors, part frame, three numbers a point) for axis values `q`
-    /// ([`Kinematics::count`] numbers a point).
+    /// ([`MachineKinematics::count`] numbers a point).
     pub fn forward(&self, q: &[f64], tip: &mut [f64], axis: &mut [f64]) {
         let chain = self.solver.chain();
         let points = q.chunks_exact(self.count());
@@ -194,10 +194,10 @@ impl Kinematics {
     /// A point that is none.
     pub fn inverse(
         &self,
-        wanted: &Wanted<'_>,
+        wanted: &ToolPoses<'_>,
         near: &[f64],
         within_travel: bool,
-    ) -> Result<Solutions, Refused> {
+    ) -> Result<Solutions, Refusal> {
         let near = self.joints(near);
         let tolerance = self.machine.accuracy.axis_tolerance;
         let poses = wanted.poses(self.has_edge())?;

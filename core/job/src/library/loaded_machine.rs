@@ -7,7 +7,7 @@ use post_plugin::DialectSession as _;
 use post_posting::program::{MoveFeed, StraightMove};
 use post_posting::whole_pass;
 
-use super::{Kinematics, MadeProgram, OptionTold, Refused, Stop, Wanted, quietly};
+use super::{MachineKinematics, MadeProgram, NamedOption, Refusal, StopSignal, ToolPoses, quietly};
 use crate::session::Session;
 use crate::settings::MachineSettings;
 use crate::{machine_files, plugin_finder};
@@ -17,7 +17,7 @@ const EXACT: u8 = 9;
 
 /// Which machine, and what is set over its file.
 #[derive(Clone, Debug, Default)]
-pub struct MachineTold {
+pub struct MachineSelection {
     /// A TOML file, or the name of one in a machine folder or built in.
     pub name: String,
     /// What is set.
@@ -27,9 +27,9 @@ pub struct MachineTold {
 /// A machine that is loaded, a tool in it.
 #[derive(Debug)]
 pub struct LoadedMachine {
-    told: MachineTold,
+    told: MachineSelection,
     machine: Machine,
-    kinematics: Kinematics,
+    kinematics: MachineKinematics,
 }
 
 impl LoadedMachine {
@@ -37,17 +37,17 @@ impl LoadedMachine {
     ///
     /// # Errors
     /// There is none of that name, its file is refused, or its chain cannot be solved.
-    pub fn load(stop: &Stop, told: MachineTold) -> Result<Self, Refused> {
+    pub fn load(stop: &StopSignal, told: MachineSelection) -> Result<Self, Refusal> {
         let load = |session: &Session| {
             machine_files::load(session, &told.name, &told.over.machines, &told.over.settings())
         };
         let (machine, _) = quietly(stop, load)?;
-        let kinematics = Kinematics::new(&machine, told.over.tool_length.unwrap_or(0.0))?;
+        let kinematics = MachineKinematics::new(&machine, told.over.tool_length.unwrap_or(0.0))?;
         Ok(Self { told, machine, kinematics })
     }
 
     /// What it was loaded by.
-    pub fn told(&self) -> &MachineTold {
+    pub fn told(&self) -> &MachineSelection {
         &self.told
     }
 
@@ -57,7 +57,7 @@ impl LoadedMachine {
     }
 
     /// Where its tool goes, and how its axes get there.
-    pub fn kinematics(&self) -> &Kinematics {
+    pub fn kinematics(&self) -> &MachineKinematics {
         &self.kinematics
     }
 
@@ -68,12 +68,12 @@ impl LoadedMachine {
     /// Why it is refused.
     pub fn post(
         &self,
-        stop: &Stop,
+        stop: &StopSignal,
         input: &Path,
         output: Option<&Path>,
-        options: &[OptionTold],
+        options: &[NamedOption],
         keep_blocks: bool,
-    ) -> Result<MadeProgram, Refused> {
+    ) -> Result<MadeProgram, Refusal> {
         MadeProgram::post(stop, &self.told, input, output, options, keep_blocks)
     }
 
@@ -84,10 +84,10 @@ impl LoadedMachine {
     /// A point that is none or cannot be reached, or where a cut cannot go on.
     pub fn route(
         &self,
-        stop: &Stop,
-        wanted: &Wanted<'_>,
+        stop: &StopSignal,
+        wanted: &ToolPoses<'_>,
         cut: &[bool],
-    ) -> Result<Vec<f64>, Refused> {
+    ) -> Result<Vec<f64>, Refusal> {
         let poses = wanted.poses(self.kinematics.has_edge())?;
         let path: Vec<StraightMove> = poses
             .iter()

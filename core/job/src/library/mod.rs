@@ -15,34 +15,34 @@ use std::sync::{Arc, Mutex, PoisonError};
 use post_machine::diagnostic::Diagnostic;
 
 use crate::failure::Failure;
-use crate::files::Texts;
+use crate::files::TextOutcomes;
 use crate::session::{Face, Session};
 
-pub use crate::columns::Kind;
-pub use crate::settings::{MachineSettings, Value};
+pub use crate::columns::ColumnKind;
+pub use crate::settings::{MachineSettings, SettingValue};
 pub use blocks::{Array, Blocks, KINDS, REASONS, block_arrays};
-pub use kinematics::{AxisFacts, Deviations, Kinematics, Solutions, Wanted};
-pub use loaded_machine::{LoadedMachine, MachineTold};
-pub use program::{Found, MadeProgram, ReportTold};
-pub use study::{Column, Progressed, StudyJobs, StudyPart, StudyTable, Values};
+pub use kinematics::{AxisFacts, Deviations, MachineKinematics, Solutions, ToolPoses};
+pub use loaded_machine::{LoadedMachine, MachineSelection};
+pub use program::{MadeProgram, ProgramFindings, ReportOptions};
+pub use study::{Progressed, StudyColumn, StudyJobs, StudyPart, StudyTable, StudyValues};
 
 /// An option of the command, with underscores for its hyphens, and its value.
-pub type OptionTold = (String, Value);
+pub type NamedOption = (String, SettingValue);
 
 /// Why a job was not done: findings, an error among them.
-pub type Refused = Vec<Diagnostic>;
+pub type Refusal = Vec<Diagnostic>;
 
 /// Says that a job shall end; it is asked as its CL file is read.
-pub type Stop = Arc<dyn Fn() -> bool + Send + Sync>;
+pub type StopSignal = Arc<dyn Fn() -> bool + Send + Sync>;
 
 /// A face that keeps findings for whoever called.
-struct Gathering {
-    stop: Stop,
+struct FindingsCollector {
+    stop: StopSignal,
     found: Arc<Mutex<Vec<Diagnostic>>>,
 }
 
-impl Face for Gathering {
-    fn findings(&self, findings: &[Diagnostic], _: &Texts) {
+impl Face for FindingsCollector {
+    fn findings(&self, findings: &[Diagnostic], _: &TextOutcomes) {
         // A list is whole whatever a thread died of.
         let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
         found.extend_from_slice(findings);
@@ -55,11 +55,12 @@ impl Face for Gathering {
 
 /// Does a job in a session of its own: what it finds on the way comes back with what it gives.
 fn quietly<T>(
-    stop: &Stop,
+    stop: &StopSignal,
     job: impl FnOnce(&Session) -> Result<T, Failure>,
-) -> Result<(T, Vec<Diagnostic>), Refused> {
+) -> Result<(T, Vec<Diagnostic>), Refusal> {
     let found = Arc::default();
-    let done = job(&Session::new(Gathering { stop: Arc::clone(stop), found: Arc::clone(&found) }));
+    let done =
+        job(&Session::new(FindingsCollector { stop: Arc::clone(stop), found: Arc::clone(&found) }));
     let mut findings = std::mem::take(&mut *found.lock().unwrap_or_else(PoisonError::into_inner));
     match done {
         Ok(given) => Ok((given, findings)),
@@ -71,11 +72,11 @@ fn quietly<T>(
 }
 
 /// What a failure says, where nobody prints it.
-fn refused(failure: Failure) -> Refused {
+fn refused(failure: Failure) -> Refusal {
     failure.findings()
 }
 
 /// An argument that cannot be used.
-fn option(message: String) -> Refused {
+fn option(message: String) -> Refusal {
     vec![Diagnostic::error("option", message)]
 }

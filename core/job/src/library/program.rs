@@ -7,10 +7,12 @@ use post_machine::diagnostic::Diagnostic;
 use post_posting::{Observer, TextSink};
 
 use super::blocks::BlockArrays;
-use super::{Blocks, MachineTold, OptionTold, Refused, Stop, quietly};
+use super::{Blocks, MachineSelection, NamedOption, Refusal, StopSignal, quietly};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
-use crate::making::{self, Part, ProgramMaker, ProgramText, Reread, Wanted};
+use crate::making::{
+    self, ProgramInput, ProgramMaker, ProgramPart, ProgramRequest, ProgramSink, Reread,
+};
 use crate::plugin_finder;
 use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings, ReadingSettings, tell};
@@ -44,7 +46,7 @@ impl TextSink for Text {
     }
 }
 
-impl ProgramText for Text {
+impl ProgramSink for Text {
     fn name(&self) -> String {
         self.name.clone()
     }
@@ -58,7 +60,7 @@ impl ProgramText for Text {
 #[derive(Debug)]
 pub struct MadeProgram {
     request: Request,
-    part: Part,
+    part: ProgramPart,
     text: Vec<u8>,
     summary: String,
     findings: Vec<Diagnostic>,
@@ -68,7 +70,7 @@ pub struct MadeProgram {
 
 /// What reading back or predicting a program has found.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct ProgramFindings {
     /// As JSON, the bytes that the command writes.
     pub json: String,
     /// Warnings.
@@ -77,7 +79,7 @@ pub struct Found {
 
 /// What a report shall tell besides.
 #[derive(Clone, Copy, Debug)]
-pub struct ReportTold {
+pub struct ReportOptions {
     /// What reading the program back finds.
     pub verify: bool,
     /// What is predicted of it.
@@ -88,10 +90,10 @@ pub struct ReportTold {
 
 impl Request {
     fn new(
-        machine: &MachineTold,
+        machine: &MachineSelection,
         input: &Path,
         output: Option<&Path>,
-        options: &[OptionTold],
+        options: &[NamedOption],
     ) -> Result<Self, Failure> {
         let mut reading = ReadingSettings::default();
         let mut over = machine.over.clone();
@@ -105,12 +107,12 @@ impl Request {
     fn open<'a>(
         &'a self,
         session: &'a Session,
-    ) -> Result<(ProgramMaker<'a>, Part, ClSource), Failure> {
+    ) -> Result<(ProgramMaker<'a>, ProgramPart, ClSource), Failure> {
         let (mut maker, machine) = ProgramMaker::open(session, &self.job, &self.making)?;
         let mut source = ClSource::new(session, &self.job.input, true)?;
         maker.look_ahead_where_needed(&machine, &mut source)?;
         let target = making::target(&self.job, self.output.as_ref(), &machine, &maker.finder)?;
-        Ok((maker, Part { lines: None, target, machine }, source))
+        Ok((maker, ProgramPart { lines: None, target, machine }, source))
     }
 
     /// What a program that is made is asked with.
@@ -121,7 +123,7 @@ impl Request {
 }
 
 /// A text for a program in the making.
-fn text(part: &Part) -> Text {
+fn text(part: &ProgramPart) -> Text {
     let path = part.target.path();
     let name = path.map(|path| path.display().to_string()).unwrap_or_default();
     Text { name, bytes: Vec::new() }
@@ -134,13 +136,13 @@ impl MadeProgram {
     /// # Errors
     /// Why it is refused.
     pub(super) fn post(
-        stop: &Stop,
-        machine: &MachineTold,
+        stop: &StopSignal,
+        machine: &MachineSelection,
         input: &Path,
         output: Option<&Path>,
-        options: &[OptionTold],
+        options: &[NamedOption],
         keep_blocks: bool,
-    ) -> Result<Self, Refused> {
+    ) -> Result<Self, Refusal> {
         let made = quietly(stop, |session| {
             let request = Request::new(machine, input, output, options)?;
             let (maker, part, mut source) = request.open(session)?;
@@ -149,12 +151,12 @@ impl MadeProgram {
             let mut files = AtomicFile::create(session, &targets)?;
             let mut columns = keep_blocks.then(|| BlockArrays::new(&part.machine));
             let observer = columns.as_mut().map(|columns| columns as &mut dyn Observer);
-            let wanted = Wanted { observer, ..Wanted::default() };
+            let wanted = ProgramRequest { observer, ..ProgramRequest::default() };
             let mut text = text(&part);
             let mut findings = Vec::new();
             let ready = maker.prepare(&part, &mut source, false)?;
             let outcome =
-                maker.make((&part, ready), &mut source, &mut text, wanted, &mut findings)?;
+                maker.make(&part, ready, &mut source, &mut text, wanted, &mut findings)?;
             for file in &mut files {
                 file.write_bytes(&text.bytes)?;
             }
@@ -204,12 +206,12 @@ impl MadeProgram {
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn verify(&self, stop: &Stop) -> Result<Found, Refused> {
+    pub fn verify(&self, stop: &StopSignal) -> Result<ProgramFindings, Refusal> {
         let held = quietly(stop, |session| {
             let maker = self.request.maker(session)?;
             let mut source = ClSource::new(session, &self.request.job.input, true)?;
-            let text = (self.name(), Cursor::new(&self.text));
-            let held = maker.read_back(&self.part, self.moved, &mut source, text)?;
+            let program = ProgramInput { name: self.name(), text: Cursor::new(&self.text) };
+            let held = maker.read_back(&self.part, self.moved, &mut source, program)?;
             match held.is_wrong() {
                 true => Err(held.findings.into()),
                 false => Ok((files::json(&held.found), held.findings)),
@@ -217,7 +219,7 @@ impl MadeProgram {
         });
         let ((json, found), mut findings) = held?;
         findings.extend(found);
-        Ok(Found { json, findings })
+        Ok(ProgramFindings { json, findings })
     }
 
     /// Predicts what it does on its machine, as `post predict` with the CL file does; `period` between set-points, s, over
@@ -225,34 +227,43 @@ impl MadeProgram {
     ///
     /// # Errors
     /// The machine cannot be predicted.
-    pub fn predict(&self, stop: &Stop, period: Option<f64>) -> Result<Found, Refused> {
+    pub fn predict(
+        &self,
+        stop: &StopSignal,
+        period: Option<f64>,
+    ) -> Result<ProgramFindings, Refusal> {
         let predicted = quietly(stop, |session| {
             let maker = self.request.maker(session)?;
             let mut source = ClSource::new(session, &self.request.job.input, true)?;
-            let text = (self.name(), Cursor::new(&self.text));
-            let predicted = maker.predict(&self.part, period, (&mut source, None), text)?;
+            let program = ProgramInput { name: self.name(), text: Cursor::new(&self.text) };
+            let predicted = maker.predict(&self.part, period, &mut source, None, program)?;
             Ok((files::json(&predicted.found), predicted.findings))
         });
         let ((json, found), mut findings) = predicted?;
         findings.extend(found);
-        Ok(Found { json, findings })
+        Ok(ProgramFindings { json, findings })
     }
 
     /// Writes a page to look at, the bytes that `--report` writes. The program is made once more for it.
     ///
     /// # Errors
     /// The page cannot be written, or what it shall tell is refused.
-    pub fn report(&self, stop: &Stop, page: &Path, told: ReportTold) -> Result<(), Refused> {
+    pub fn report(
+        &self,
+        stop: &StopSignal,
+        page: &Path,
+        told: ReportOptions,
+    ) -> Result<(), Refusal> {
         let written = quietly(stop, |session| {
             let (maker, part, mut source) = self.request.open(session)?;
             let mut files = AtomicFile::create(session, &[(Role::REPORT, &file(page))])?;
             let most = told.most_megabytes.saturating_mul(1_000_000);
-            let ReportTold { verify, predict, .. } = told;
+            let ReportOptions { verify, predict, .. } = told;
             let page = files.first_mut().map(|file| (file, most));
-            let wanted = Wanted { verify, predict, page, ..Wanted::default() };
+            let wanted = ProgramRequest { verify, predict, page, ..ProgramRequest::default() };
             let ready = maker.prepare(&part, &mut source, false)?;
             let (mut text, mut findings) = (text(&part), Vec::new());
-            maker.make((&part, ready), &mut source, &mut text, wanted, &mut findings)?;
+            maker.make(&part, ready, &mut source, &mut text, wanted, &mut findings)?;
             Ok(AtomicFile::finish(session, files)?)
         });
         written.map(|_| ())

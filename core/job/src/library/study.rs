@@ -3,14 +3,14 @@
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use super::{OptionTold, Refused, Stop, quietly, refused};
-use crate::batch::{self, Inputs, JobLine, Journal, Outcome, Study};
+use super::{NamedOption, Refusal, StopSignal, quietly, refused};
+use crate::batch::{self, Inputs, JobLine, JobOutcome, JobStudy, Journal};
 use crate::files::{self, PathArg, Role};
 use crate::session::Session;
 use crate::settings::{ReadingSettings, StudySettings, tell};
 use post_machine::diagnostic::Diagnostic;
 
-pub use crate::batch::{Column, Table as StudyTable, Values};
+pub use crate::batch::{StudyColumn, StudyTable, StudyValues};
 
 /// Jobs that are done, and of them those that are not written; whoever is told answers whether to go on.
 pub type Progressed<'p> = &'p mut dyn FnMut(usize, usize) -> bool;
@@ -18,7 +18,7 @@ pub type Progressed<'p> = &'p mut dyn FnMut(usize, usize) -> bool;
 const RESULTS: Role = Role { what: "table of results", remedy: "name another file" };
 
 /// What is asked of every job, by the names of `post batch`.
-fn settings(options: &[OptionTold]) -> Result<StudySettings, Box<Diagnostic>> {
+fn settings(options: &[NamedOption]) -> Result<StudySettings, Box<Diagnostic>> {
     let mut reading = ReadingSettings::default();
     let mut settings = StudySettings::default();
     tell(options, &mut [&mut reading, &mut settings])?;
@@ -28,10 +28,10 @@ fn settings(options: &[OptionTold]) -> Result<StudySettings, Box<Diagnostic>> {
 /// The jobs of a study, and what came of those that are done.
 #[derive(Debug)]
 pub struct StudyJobs {
-    study: Study,
+    study: JobStudy,
     inputs: Inputs,
     journal: Option<Journal>,
-    outcomes: Vec<Option<Outcome>>,
+    outcomes: Vec<Option<JobOutcome>>,
 }
 
 impl StudyJobs {
@@ -41,14 +41,14 @@ impl StudyJobs {
     /// # Errors
     /// A line that is no job, an option that is none, or a journal that cannot be read.
     pub fn new(
-        stop: &Stop,
+        stop: &StopSignal,
         lines: &str,
-        options: &[OptionTold],
+        options: &[NamedOption],
         journal: Option<&Path>,
-    ) -> Result<Self, Refused> {
+    ) -> Result<Self, Refusal> {
         let jobs = JobLine::read("the jobs", lines)?;
         let options = settings(options).map_err(|fault| vec![*fault])?;
-        let ((study, inputs), _) = quietly(stop, |session| Study::new(session, jobs, options))?;
+        let ((study, inputs), _) = quietly(stop, |session| JobStudy::new(session, jobs, options))?;
         let journal = journal
             .map(|path| Journal::open(path, true))
             .transpose()
@@ -93,14 +93,14 @@ impl StudyJobs {
         &mut self,
         threads: Option<NonZeroUsize>,
         progressed: Progressed<'_>,
-    ) -> Result<bool, Refused> {
+    ) -> Result<bool, Refusal> {
         let open = self.open();
         let journal = self.journal.as_ref();
         let outcomes =
             batch::run(&self.study, &self.inputs, &open, threads, journal, &mut |done| {
                 match progressed(done.jobs, done.refused) {
                     true => Ok(()),
-                    false => Err(batch::Stop),
+                    false => Err(batch::Cancelled),
                 }
             });
         let Some(outcomes) = outcomes.map_err(refused)? else {
@@ -116,10 +116,10 @@ impl StudyJobs {
     ///
     /// # Errors
     /// That is no outcome, or the journal cannot be written.
-    pub fn take(&mut self, numbers: &[usize], outcomes: &[String]) -> Result<usize, Refused> {
+    pub fn take(&mut self, numbers: &[usize], outcomes: &[String]) -> Result<usize, Refusal> {
         let mut not_written = 0;
         for (number, text) in numbers.iter().zip(outcomes) {
-            let outcome: Outcome = serde_json::from_str(text)
+            let outcome: JobOutcome = serde_json::from_str(text)
                 .map_err(|error| super::option(format!("no outcome of a job: {error}")))?;
             not_written += usize::from(outcome.state() != batch::WRITTEN);
             self.keep(*number, outcome)?;
@@ -131,11 +131,11 @@ impl StudyJobs {
     ///
     /// # Errors
     /// The journal cannot be written.
-    pub fn lost(&mut self, number: usize, code: &str, message: &str) -> Result<(), Refused> {
-        self.keep(number, Outcome::lost(code, message))
+    pub fn lost(&mut self, number: usize, code: &str, message: &str) -> Result<(), Refusal> {
+        self.keep(number, JobOutcome::lost(code, message))
     }
 
-    fn keep(&mut self, number: usize, outcome: Outcome) -> Result<(), Refused> {
+    fn keep(&mut self, number: usize, outcome: JobOutcome) -> Result<(), Refusal> {
         if let Some(journal) = &self.journal {
             journal.add(&outcome).map_err(|fault| refused(fault.into()))?;
         }
@@ -148,7 +148,7 @@ impl StudyJobs {
     /// The rows of the jobs that are done.
     pub fn table(&self) -> StudyTable {
         let outcomes = self.outcomes.iter().enumerate();
-        let (numbers, outcomes): (Vec<usize>, Vec<Outcome>) =
+        let (numbers, outcomes): (Vec<usize>, Vec<JobOutcome>) =
             outcomes.filter_map(|(number, outcome)| Some((number, outcome.clone()?))).unzip();
         StudyTable::new(&self.study, &numbers, &outcomes)
     }
@@ -157,7 +157,7 @@ impl StudyJobs {
     ///
     /// # Errors
     /// Another ending, or it cannot be written.
-    pub fn write(&self, stop: &Stop, path: &Path) -> Result<(), Refused> {
+    pub fn write(&self, stop: &StopSignal, path: &Path) -> Result<(), Refusal> {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         let Some(bytes) = self.table().bytes(&ending) else {
             let message = format!(
@@ -175,7 +175,7 @@ impl StudyJobs {
 
 /// Some jobs of a study, on a computer that has none of its files.
 pub struct StudyPart {
-    study: Study,
+    study: JobStudy,
     inputs: Inputs,
 }
 
@@ -186,16 +186,16 @@ impl StudyPart {
     /// # Errors
     /// What of them is none.
     pub fn new(
-        stop: &Stop,
+        stop: &StopSignal,
         lines: &str,
-        options: &[OptionTold],
+        options: &[NamedOption],
         files: Vec<(String, Vec<u8>)>,
         machines: &str,
-    ) -> Result<Self, Refused> {
+    ) -> Result<Self, Refusal> {
         let jobs = JobLine::read("the jobs", lines)?;
         let options = settings(options).map_err(|fault| vec![*fault])?;
         Ok(Self {
-            study: quietly(stop, |session| Study::part(session, jobs, options))?.0,
+            study: quietly(stop, |session| JobStudy::part(session, jobs, options))?.0,
             inputs: Inputs::handed_over(files.into_iter(), machines).map_err(super::option)?,
         })
     }
@@ -208,12 +208,12 @@ impl StudyPart {
         &self,
         threads: Option<NonZeroUsize>,
         progressed: Progressed<'_>,
-    ) -> Result<Option<Vec<String>>, Refused> {
+    ) -> Result<Option<Vec<String>>, Refusal> {
         let numbers = self.study.numbers(None);
         let (study, inputs) = (&self.study, &self.inputs);
         let mut look = |done: batch::Done| match progressed(done.jobs, done.refused) {
             true => Ok(()),
-            false => Err(batch::Stop),
+            false => Err(batch::Cancelled),
         };
         let outcomes = batch::run(study, inputs, &numbers, threads, None, &mut look);
         let outcomes = outcomes.map_err(refused)?;

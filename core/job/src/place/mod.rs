@@ -9,8 +9,8 @@ use crate::settings::JobSettings;
 use search::Search;
 use trial::Trials;
 
-pub use search::{Found, mount_text};
-pub use trial::{Seat, Trial};
+pub use search::{MountSearchResult, mount_text};
+pub use trial::{PartMount, Trial};
 
 /// What is to be small, once every axis stays inside travel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,7 +43,7 @@ pub fn place(
     session: &Session,
     job: &JobSettings,
     request: &PlaceRequest,
-) -> Result<Found, Failure> {
+) -> Result<MountSearchResult, Failure> {
     let mut trials = Trials::new(session, job, request)?;
     super::say_what_is_left(session, job, &trials.machine()?, trials.finder());
     Search::new(request, &mut trials)?.run()

@@ -7,7 +7,7 @@ use post_machine::place::{
     HalfSpace, MountCost, descend, most_room, nearest, rounded, shuffled, spread,
 };
 
-use super::trial::{Bound, Seat, Trial, Trials, bodies};
+use super::trial::{PartMount, TravelBound, Trial, Trials, bodies};
 use super::{Least, PlaceRequest};
 use crate::failure::Failure;
 
@@ -30,7 +30,7 @@ const WORTH: f64 = 1e-3;
 const ROUNDING: f64 = 2e-3;
 
 /// What was found.
-pub struct Found {
+pub struct MountSearchResult {
     /// The CL file, as the user named it.
     pub file: String,
     /// The machine, the part where the command line has it.
@@ -48,7 +48,7 @@ pub struct Found {
 }
 
 /// Why a turn has no seat.
-enum Nothing {
+enum NoMount {
     /// No mount leaves the margin.
     Short(Diagnostic),
     /// With its linear travel opened the machine cannot make it either: no mount helps.
@@ -59,7 +59,7 @@ enum Nothing {
     Refused(Vec<Diagnostic>),
 }
 
-impl Nothing {
+impl NoMount {
     /// With the axes turned otherwise it might fit.
     fn may_be_the_route(&self) -> bool {
         match self {
@@ -75,7 +75,7 @@ pub struct Search<'s, 'a> {
     trials: &'s mut Trials<'a>,
     request: &'a PlaceRequest,
     machine: Machine,
-    present: Seat,
+    present: PartMount,
 }
 
 impl<'s, 'a> Search<'s, 'a> {
@@ -83,7 +83,7 @@ impl<'s, 'a> Search<'s, 'a> {
     pub fn new(request: &'a PlaceRequest, trials: &'s mut Trials<'a>) -> Result<Self, Failure> {
         let machine = trials.machine()?;
         Ok(Self {
-            present: Seat {
+            present: PartMount {
                 mount: machine.mount,
                 turn: libm::rint(machine.turn.to_degrees() * 1e9) / 1e9,
             },
@@ -103,7 +103,7 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 
     /// Finds the seat.
-    pub fn run(mut self) -> Result<Found, Failure> {
+    pub fn run(mut self) -> Result<MountSearchResult, Failure> {
         let present = self.trials.post(self.present)?;
         let here = self.seat_at(self.present.turn, present.as_ref().ok())?;
         let (mut best, nothing) = match here {
@@ -113,7 +113,7 @@ impl<'s, 'a> Search<'s, 'a> {
         if let Some(step) = self.request.search_turn {
             best = self.turned(best, step)?;
         }
-        let Some(Seated { mut trial, bounds, evenly }) = best else {
+        let Some(BoundedMount { mut trial, bounds, evenly }) = best else {
             return Err(self.refuse(nothing, present.err()));
         };
         // A straight shift of all axes takes no longer, and turns nothing.
@@ -127,7 +127,7 @@ impl<'s, 'a> Search<'s, 'a> {
         {
             trial = present.clone();
         }
-        Ok(Found {
+        Ok(MountSearchResult {
             file: self.trials.file().to_owned(),
             machine: self.machine,
             best: trial,
@@ -143,7 +143,7 @@ impl<'s, 'a> Search<'s, 'a> {
         &mut self,
         turn: f64,
         known: Option<&Trial>,
-    ) -> Result<Result<Seated, Nothing>, Failure> {
+    ) -> Result<Result<BoundedMount, NoMount>, Failure> {
         let mut nothing = None;
         for prefer in self.routes() {
             let found = self.on_route(turn, prefer, known)?;
@@ -159,7 +159,7 @@ impl<'s, 'a> Search<'s, 'a> {
                 break;
             }
         }
-        Ok(Err(nothing.unwrap_or(Nothing::Refused(Vec::new()))))
+        Ok(Err(nothing.unwrap_or(NoMount::Refused(Vec::new()))))
     }
 
     /// The routes that are tried: as the machine file says, then with each axis rather on one side of zero.
@@ -180,31 +180,34 @@ impl<'s, 'a> Search<'s, 'a> {
         turn: f64,
         prefer: Option<(usize, Side)>,
         known: Option<&Trial>,
-    ) -> Result<Result<Seated, Nothing>, Failure> {
+    ) -> Result<Result<BoundedMount, NoMount>, Failure> {
         let wished = self.present.mount;
-        let mut seat = Seat { mount: wished, turn };
+        let mut seat = PartMount { mount: wished, turn };
         let mut bounds = Vec::new();
         let mut refused = Vec::new();
         for _ in 0..ROUNDS {
             let opened = self.trials.opened(&seat, prefer)?;
             bounds.extend(opened.bounds);
             bounds = shuffled(bounds);
-            let seated =
-                |trial: Trial, bounds: Vec<Bound>| Seated { trial, bounds, evenly: opened.evenly };
+            let seated = |trial: Trial, bounds: Vec<TravelBound>| BoundedMount {
+                trial,
+                bounds,
+                evenly: opened.evenly,
+            };
             if let Some(known) = known
                 && self.holds(known)
             {
                 return Ok(Ok(seated(known.clone(), bounds)));
             }
             if !opened.bound {
-                return Ok(Err(Nothing::Unbound));
+                return Ok(Err(NoMount::Unbound));
             }
             if out_of_travel(&opened.faults) {
-                return Ok(Err(Nothing::Anywhere(opened.faults)));
+                return Ok(Err(NoMount::Anywhere(opened.faults)));
             }
             let bodies = bodies(&bounds);
             let Some(point) = nearest(&bodies, &wished, self.margin() + ROUNDING) else {
-                return Ok(Err(Nothing::Short(self.short(&bounds, turn))));
+                return Ok(Err(NoMount::Short(self.short(&bounds, turn))));
             };
             seat.mount = rounded(&bodies, &point, self.margin()).unwrap_or(tidy(&point));
             match self.trials.post(seat)? {
@@ -216,11 +219,15 @@ impl<'s, 'a> Search<'s, 'a> {
                 break;
             }
         }
-        Ok(Err(Nothing::Refused(refused)))
+        Ok(Err(NoMount::Refused(refused)))
     }
 
     /// The cheapest of all turns, `step` degrees apart, and then more closely about it.
-    fn turned(&mut self, here: Option<Seated>, step: f64) -> Result<Option<Seated>, Failure> {
+    fn turned(
+        &mut self,
+        here: Option<BoundedMount>,
+        step: f64,
+    ) -> Result<Option<BoundedMount>, Failure> {
         let mut best = here;
         let count = libm::ceil(360.0 / step - 1e-9) as i32;
         // Those next to the present turn come first: of equals the least turned is taken.
@@ -245,7 +252,7 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(best)
     }
 
-    fn better(&mut self, best: &mut Option<Seated>, turn: f64) -> Result<(), Failure> {
+    fn better(&mut self, best: &mut Option<BoundedMount>, turn: f64) -> Result<(), Failure> {
         if self.trials.left() < A_LOOK {
             return Ok(());
         }
@@ -261,7 +268,7 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// Moves a seat to where the program costs less: by steps from where it is, and from the best of the places that lie
     /// all over the room. Each way alone may end where only another one leads on.
-    fn settle(&mut self, trial: &mut Trial, bounds: &[Bound]) -> Result<(), Failure> {
+    fn settle(&mut self, trial: &mut Trial, bounds: &[TravelBound]) -> Result<(), Failure> {
         let bodies = bodies(bounds);
         let start = MountCost { mount: trial.seat.mount, cost: trial.cost };
         let places = spread(&bodies, &start.mount, self.margin() + ROUNDING, PLACES);
@@ -299,7 +306,7 @@ impl<'s, 'a> Search<'s, 'a> {
         if !inside || self.trials.left() == 0 {
             return Ok(None);
         }
-        let seat = Seat { mount: tidy(&mount), turn: least.seat.turn };
+        let seat = PartMount { mount: tidy(&mount), turn: least.seat.turn };
         let trial = match self.trials.post(seat)? {
             Ok(trial) if self.holds(&trial) => trial,
             _ => return Ok(None),
@@ -312,16 +319,16 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 
     /// Travel is short: by how much, of which axes, at which lines.
-    fn short(&self, bounds: &[Bound], turn: f64) -> Diagnostic {
+    fn short(&self, bounds: &[TravelBound], turn: f64) -> Diagnostic {
         let name = &self.machine.name;
         let bodies = bodies(bounds);
         let Some(tight) = most_room(&bodies, &self.present.mount) else {
             return Diagnostic::error("place", format!("{name} has no mount for this part"));
         };
-        let mut ends: Vec<&Bound> = Vec::new();
+        let mut ends: Vec<&TravelBound> = Vec::new();
         for index in tight.between {
             let bound = &bounds[index];
-            let same = |other: &&Bound| {
+            let same = |other: &&TravelBound| {
                 other.axis == bound.axis && other.end.side.largest == bound.end.side.largest
             };
             if ends.len() < 4 && !ends.iter().any(same) {
@@ -376,10 +383,10 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 
     /// Nothing fits.
-    fn refuse(&self, nothing: Option<Nothing>, present: Option<Vec<Diagnostic>>) -> Failure {
+    fn refuse(&self, nothing: Option<NoMount>, present: Option<Vec<Diagnostic>>) -> Failure {
         match nothing {
-            Some(Nothing::Short(finding)) => finding.into(),
-            Some(Nothing::Anywhere(mut findings)) => {
+            Some(NoMount::Short(finding)) => finding.into(),
+            Some(NoMount::Anywhere(mut findings)) => {
                 let name = &self.machine.name;
                 let message = format!(
                     "no mount helps: {name} cannot point the tool as the file asks, wherever the part sits"
@@ -392,7 +399,7 @@ impl<'s, 'a> Search<'s, 'a> {
                 }));
                 findings.into()
             }
-            Some(Nothing::Unbound) => {
+            Some(NoMount::Unbound) => {
                 let mut findings = present.unwrap_or_default();
                 let message = format!(
                     "no mount is searched for {}: its rotary axes place the tip too, so that none follows from travel",
@@ -404,7 +411,7 @@ impl<'s, 'a> Search<'s, 'a> {
                 );
                 findings.into()
             }
-            Some(Nothing::Refused(findings)) if !findings.is_empty() => findings.into(),
+            Some(NoMount::Refused(findings)) if !findings.is_empty() => findings.into(),
             _ => {
                 let mut findings = present.unwrap_or_default();
                 let message = format!(
@@ -422,9 +429,9 @@ impl<'s, 'a> Search<'s, 'a> {
 }
 
 /// A seat, and what bounds it.
-struct Seated {
+struct BoundedMount {
     trial: Trial,
-    bounds: Vec<Bound>,
+    bounds: Vec<TravelBound>,
     evenly: bool,
 }
 

@@ -17,7 +17,7 @@ use crate::settings::JobSettings;
 
 /// Where a part sits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seat {
+pub struct PartMount {
     /// Its origin with all axes at zero, machine frame, mm.
     pub mount: Vector3<f64>,
     /// How it is turned about its Z, degrees.
@@ -28,7 +28,7 @@ pub struct Seat {
 #[derive(Clone, Debug)]
 pub struct Trial {
     /// Where it sits.
-    pub seat: Seat,
+    pub seat: PartMount,
     /// What posting it there comes to.
     pub report: PostingReport,
     /// Warnings.
@@ -41,7 +41,7 @@ pub struct Trial {
 
 /// An end of travel that bounds the mount.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Bound {
+pub struct TravelBound {
     /// Name of the axis.
     pub axis: String,
     /// The end of its travel.
@@ -49,9 +49,9 @@ pub struct Bound {
 }
 
 /// What posting with linear travel opened says.
-pub struct Opened {
+pub struct OpenTravelResult {
     /// Ends of travel that bound the mount.
-    pub bounds: Vec<Bound>,
+    pub bounds: Vec<TravelBound>,
     /// Errors that no mount helps.
     pub faults: Vec<Diagnostic>,
     /// The linear axes bound the mount at all.
@@ -105,13 +105,13 @@ impl<'a> Trials<'a> {
     }
 
     /// The machine with the part there.
-    fn machine_at(&self, seat: &Seat) -> Result<Machine, Failure> {
+    fn machine_at(&self, seat: &PartMount) -> Result<Machine, Failure> {
         let settings = [Setting::Mount(seat.mount.into()), Setting::Turn(seat.turn)];
         self.dry_run.machine(&settings)
     }
 
     /// Posts the file with the part there; the findings if it cannot be.
-    pub fn post(&mut self, seat: Seat) -> Result<Result<Trial, Vec<Diagnostic>>, Failure> {
+    pub fn post(&mut self, seat: PartMount) -> Result<Result<Trial, Vec<Diagnostic>>, Failure> {
         self.runs += 1;
         let machine = self.machine_at(&seat)?;
         let (report, findings) = match self.dry_run.pass(&machine, None) {
@@ -139,9 +139,9 @@ impl<'a> Trials<'a> {
     /// rotary axis should rather stand.
     pub fn opened(
         &mut self,
-        seat: &Seat,
+        seat: &PartMount,
         prefer: Option<(usize, Side)>,
-    ) -> Result<Opened, Failure> {
+    ) -> Result<OpenTravelResult, Failure> {
         self.runs += 1;
         let machine = self.machine_at(seat)?;
         let mut wide = opened(&machine);
@@ -154,8 +154,8 @@ impl<'a> Trials<'a> {
             Err(Failure::Refused(findings)) => findings,
             Err(failure) => return Err(failure),
         };
-        let bounds = watch.ends().map(|(axis, end)| Bound { axis: axis.to_owned(), end });
-        Ok(Opened {
+        let bounds = watch.ends().map(|(axis, end)| TravelBound { axis: axis.to_owned(), end });
+        Ok(OpenTravelResult {
             bounds: bounds.collect(),
             faults: faults
                 .into_iter()
@@ -180,6 +180,6 @@ fn follows_the_part(machine: &Machine, axis: &Axis) -> bool {
 }
 
 /// The half-spaces of bounds.
-pub fn bodies(bounds: &[Bound]) -> Vec<HalfSpace> {
+pub fn bodies(bounds: &[TravelBound]) -> Vec<HalfSpace> {
     bounds.iter().map(|bound| bound.end.body).collect()
 }

@@ -4,7 +4,7 @@
 use post_machine::description::{LimitsActOn, Machine};
 use post_machine::kinematics::{JointDerivatives, ORDERS};
 
-use super::keep::Keep;
+use super::keep::PlanLimits;
 
 /// What is limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,7 +96,7 @@ pub struct PlanPoint {
 
 /// The limits, and what is needed to measure them.
 pub struct Gauges<'a> {
-    keep: &'a Keep,
+    keep: &'a PlanLimits,
     axes: Vec<usize>,
     /// By axis: where the control limits the programmed coordinates, the one that stands for the axis.
     programmed: Vec<Option<usize>>,
@@ -109,7 +109,13 @@ pub struct Gauges<'a> {
 impl<'a> Gauges<'a> {
     /// Those of the axes of `machine` at the places `axes`, for which `keep` was made; `turns`: rotary axes point the tool;
     /// `jerk`: the solver keeps jerk too.
-    pub fn new(machine: &Machine, axes: &[usize], turns: bool, keep: &'a Keep, jerk: bool) -> Self {
+    pub fn new(
+        machine: &Machine,
+        axes: &[usize],
+        turns: bool,
+        keep: &'a PlanLimits,
+        jerk: bool,
+    ) -> Self {
         let programmed = axes.iter().map(|place| {
             let axis = &machine.axes[*place];
             let coordinate = ["X", "Y", "Z"].iter().position(|name| axis.name == *name);

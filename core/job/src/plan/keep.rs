@@ -8,7 +8,7 @@ use post_machine::servo;
 const STEPS: usize = 4096;
 
 /// What a feed is planned under, mm, rad and s; infinite where there is no limit.
-pub struct Keep {
+pub struct PlanLimits {
     /// Of the tip against the part.
     pub feed: f64,
     /// By axis, in the order in which they are told.
@@ -30,15 +30,15 @@ pub struct Keep {
     /// Blocks in a second.
     pub block_rate: f64,
     /// What the servos do; none where an axis that leads the tip has none.
-    pub servos: Option<Deviation>,
+    pub servos: Option<ServoDeviation>,
 }
 
-impl Keep {
+impl PlanLimits {
     /// The limits of `machine` for its axes at the places `axes`. Feeds and blocks are those of the job: none. Where nothing
     /// is known of the servos there is no contour error either.
     pub fn new(machine: &Machine, axes: &[usize]) -> Self {
         let of = |limit: &dyn Fn(usize) -> f64| axes.iter().map(|place| limit(*place)).collect();
-        let servos = Deviation::new(machine, axes);
+        let servos = ServoDeviation::new(machine, axes);
         let none = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
         Self {
             feed: f64::INFINITY,
@@ -62,7 +62,7 @@ impl Keep {
 }
 
 /// What the servos of the axes make of a path.
-pub struct Deviation {
+pub struct ServoDeviation {
     /// The formula goes up to here, rad/s.
     highest: f64,
     /// The answers of the axes at even steps of the frequency's logarithm up to the highest.
@@ -87,7 +87,7 @@ impl DriveResponse for AxisResponse {
     }
 }
 
-impl Deviation {
+impl ServoDeviation {
     /// Of `axes`; none where no axis has a servo, or where, of straight axes alone, one has none.
     fn new(machine: &Machine, axes: &[usize]) -> Option<Self> {
         let servos = axes.iter().map(|place| {

@@ -11,12 +11,12 @@ pub mod tally;
 use post_machine::description::Machine;
 
 use gauges::PlanPoint;
-use keep::Keep;
-use pictures::{DrawnAxis, DrawnLimits, DrawnPoint, PlanRooms};
+use keep::PlanLimits;
+use pictures::{DrawnLimits, DrawnPoint, PlanRooms, PlannedAxis};
 
 /// Room for the pictures of a plan of these axes, with what it keeps.
-pub fn rooms(machine: &Machine, axes: &[usize], keep: &Keep) -> PlanRooms {
-    let axes = axes.iter().enumerate().map(|(axis, place)| DrawnAxis {
+pub fn rooms(machine: &Machine, axes: &[usize], keep: &PlanLimits) -> PlanRooms {
+    let axes = axes.iter().enumerate().map(|(axis, place)| PlannedAxis {
         name: machine.axes[*place].name.clone(),
         rotary: machine.axes[*place].joint.rotary,
         limits: [keep.velocity[axis], keep.acceleration[axis], keep.jerk[axis]],

@@ -22,7 +22,7 @@ const ORDERS: usize = 3;
 
 /// An axis that is drawn.
 #[derive(Clone, Debug)]
-pub struct DrawnAxis {
+pub struct PlannedAxis {
     /// `X`, as its words are called.
     pub name: String,
     /// Values are rad, not mm.
@@ -63,7 +63,7 @@ pub struct DrawnPoint<'a> {
 
 /// What is kept of a path for its pictures.
 pub struct PlanRooms {
-    axes: Vec<DrawnAxis>,
+    axes: Vec<PlannedAxis>,
     limits: DrawnLimits,
     /// Feed, chord error, contour error.
     along: Envelope,
@@ -74,7 +74,7 @@ pub struct PlanRooms {
 
 impl PlanRooms {
     /// No point yet.
-    pub fn new(axes: Vec<DrawnAxis>, limits: DrawnLimits) -> Self {
+    pub fn new(axes: Vec<PlannedAxis>, limits: DrawnLimits) -> Self {
         Self {
             along: Envelope::new(3, WIDTH),
             motion: Envelope::new(ORDERS * axes.len().max(1), WIDTH),

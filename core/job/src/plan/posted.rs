@@ -7,32 +7,32 @@ use serde::Serialize;
 
 use super::gauges::Gauges;
 use super::interval::{Interval, Intervals};
-use super::keep::Keep;
+use super::keep::PlanLimits;
 use super::pictures::PlanRooms;
 use super::tally::{LimitFound, Tally};
-use crate::files;
+use crate::files::{self, FolderMark};
 use crate::text::number;
 
 /// The file that tells in numbers what the pictures show, and how it begins.
-pub const MARK: (&str, &str) = ("plan.json", "{\n  \"program\": ");
+pub const MARK: FolderMark<'_> = FolderMark { name: "plan.json", begins: "{\n  \"program\": " };
 
 /// Parts of an interval that are drawn one by one, at least and at most.
 const PARTS: [f64; 2] = [2.0, 2048.0];
 
 /// What a plan on a machine is held against.
-pub struct Limited<'m> {
+pub struct PlanReference<'m> {
     machine: &'m Machine,
     /// Places in the chain of the axes that are drawn.
     axes: Vec<usize>,
-    keep: Keep,
+    keep: PlanLimits,
 }
 
-impl<'m> Limited<'m> {
+impl<'m> PlanReference<'m> {
     /// The limits of a machine.
     pub fn new(machine: &'m Machine) -> Self {
         let mut axes = axis_words::order(machine);
         axes.retain(|place| machine.axes[*place].indexed.is_none());
-        let keep = Keep::new(machine, &axes);
+        let keep = PlanLimits::new(machine, &axes);
         Self { machine, axes, keep }
     }
 
@@ -45,8 +45,8 @@ impl<'m> Limited<'m> {
 }
 
 /// A plan as it is gone along.
-pub struct Along<'a> {
-    limited: &'a Limited<'a>,
+pub struct PlanTrace<'a> {
+    limited: &'a PlanReference<'a>,
     gauges: &'a Gauges<'a>,
     intervals: Intervals,
     rooms: PlanRooms,
@@ -59,7 +59,7 @@ pub struct Along<'a> {
 
 /// What the pictures show, in numbers.
 #[derive(Debug, Serialize)]
-struct Found<'f> {
+struct PlanSummary<'f> {
     program: &'f str,
     machine: &'f str,
     /// Way of the tip in planned cuts.
@@ -69,9 +69,9 @@ struct Found<'f> {
     limits: Vec<LimitFound>,
 }
 
-impl<'a> Along<'a> {
+impl<'a> PlanTrace<'a> {
     /// Nothing so far.
-    pub fn new(limited: &'a Limited<'a>, gauges: &'a Gauges<'a>) -> Self {
+    pub fn new(limited: &'a PlanReference<'a>, gauges: &'a Gauges<'a>) -> Self {
         Self {
             limited,
             gauges,
@@ -113,7 +113,7 @@ impl<'a> Along<'a> {
     pub fn files(&self, program: &str) -> Vec<(&'static str, String)> {
         let machine = &self.limited.machine.name;
         let seconds = self.tally.time();
-        let found = Found {
+        let found = PlanSummary {
             program,
             machine,
             length_mm: self.way,
@@ -125,7 +125,7 @@ impl<'a> Along<'a> {
         };
         let note = format!("{program} on {machine}, planned cuts: {} s", number(seconds, 3));
         let mut files = self.rooms.files(&note);
-        files.push((MARK.0, files::json(&found)));
+        files.push((MARK.name, files::json(&found)));
         files
     }
 }

@@ -35,14 +35,14 @@ pub struct LimitFound {
 /// How much of each limit a walk uses.
 pub struct Tally<'a> {
     gauges: &'a Gauges<'a>,
-    found: Vec<Largest>,
+    found: Vec<PlanPeak>,
     way: f64,
     time: f64,
     last: Option<usize>,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Largest {
+struct PlanPeak {
     value: f64,
     parameter: f64,
     at: f64,
@@ -55,7 +55,7 @@ impl<'a> Tally<'a> {
     pub fn new(gauges: &'a Gauges<'a>) -> Self {
         Self {
             gauges,
-            found: vec![Largest::default(); gauges.all.len()],
+            found: vec![PlanPeak::default(); gauges.all.len()],
             way: 0.0,
             time: 0.0,
             last: None,
@@ -115,7 +115,7 @@ impl<'a> Tally<'a> {
         each.map(|(gauge, largest)| self.limit(gauge, largest)).collect()
     }
 
-    fn limit(&self, gauge: &Gauge, largest: &Largest) -> LimitFound {
+    fn limit(&self, gauge: &Gauge, largest: &PlanPeak) -> LimitFound {
         let limited = gauge.limit.is_finite();
         LimitFound {
             limit: gauge.name.clone(),

@@ -17,7 +17,7 @@ const LEAST: f64 = 0.02;
 
 /// A stretch of the path in one line of the CL file.
 #[derive(Clone, Copy, Debug)]
-struct Cell {
+struct PathCell {
     line: u64,
     tips: [Vector3<f64>; 2],
     times: [f64; 2],
@@ -27,7 +27,7 @@ struct Cell {
 
 /// An instant at which the tool was too far off.
 #[derive(Clone, Copy, Debug)]
-struct Hot {
+struct ExcessInstant {
     time: f64,
     /// What the limit is to be multiplied with.
     share: f64,
@@ -44,7 +44,7 @@ pub struct Settling {
 
 /// The tool off the commanded path.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Off {
+pub struct ContourExcess {
     /// mm.
     pub error: f64,
     /// Line of the program.
@@ -62,11 +62,11 @@ pub struct Excess {
     /// When the tool was last seen at rapid, or standing: what it is off by until it has settled is left of that.
     entered: f64,
     /// At most, what rapids do apart.
-    pub largest: Off,
+    pub largest: ContourExcess,
     /// What rapids before or behind a cut do, at most.
-    pub beside_rapid: Off,
-    cells: VecDeque<Cell>,
-    hot: VecDeque<Hot>,
+    pub beside_rapid: ContourExcess,
+    cells: VecDeque<PathCell>,
+    hot: VecDeque<ExcessInstant>,
     places: Vec<TightPlace>,
     /// Set-points in cuts at which the tool is too far off.
     pub over: u64,
@@ -80,8 +80,8 @@ impl Excess {
             settling,
             tightening,
             entered: f64::NEG_INFINITY,
-            largest: Off::default(),
-            beside_rapid: Off::default(),
+            largest: ContourExcess::default(),
+            beside_rapid: ContourExcess::default(),
             cells: VecDeque::new(),
             hot: VecDeque::new(),
             places: Vec::new(),
@@ -95,15 +95,15 @@ impl Excess {
     }
 
     /// At a place of a cut the tool is off by what a rapid before or behind it does.
-    pub fn take_beside_rapid(&mut self, off: Off) {
+    pub fn take_beside_rapid(&mut self, off: ContourExcess) {
         if off.error > self.beside_rapid.error {
             self.beside_rapid = off;
         }
     }
 
     /// At `time` (s) the tool is nearest to `tip` (mm, part frame) of the path that the CL file asks for.
-    pub fn take(&mut self, time: f64, tip: &Vector3<f64>, off: Off) {
-        let Off { error, cl_line: line, .. } = off;
+    pub fn take(&mut self, time: f64, tip: &Vector3<f64>, off: ContourExcess) {
+        let ContourExcess { error, cl_line: line, .. } = off;
         if time < self.entered + self.settling.memory {
             return self.take_beside_rapid(off);
         }
@@ -117,7 +117,7 @@ impl Excess {
             }
             last => {
                 let step = last.map_or(0.0, |last| (tip - last.tips[1]).norm());
-                self.cells.push_back(Cell {
+                self.cells.push_back(PathCell {
                     line,
                     tips: [*tip; 2],
                     times: [time; 2],
@@ -129,7 +129,7 @@ impl Excess {
         if error > self.limit {
             self.over += 1;
             let share = (1.0 - MARGIN) * self.limit / error;
-            self.hot.push_back(Hot { time, share });
+            self.hot.push_back(ExcessInstant { time, share });
         }
         self.settle(time);
     }
@@ -199,7 +199,7 @@ mod tests {
         for step in 0..=1000 {
             let time = 1e-3 * f64::from(step);
             let x = 10.0 * time;
-            let off = Off {
+            let off = ContourExcess {
                 error: if (500..520).contains(&step) { 0.02 } else { 0.01 },
                 nc_line: 0,
                 cl_line: 1 + x as u64,

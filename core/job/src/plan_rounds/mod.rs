@@ -24,7 +24,7 @@ use super::one_program::OneProgram;
 use super::rounds::Rounds;
 use crate::failure::Failure;
 use crate::files::ClSource;
-use excess::{Excess, Off, Settling};
+use excess::{ContourExcess, Excess, Settling};
 pub use text::text;
 
 /// A servo has settled after so many times the inverse of its bandwidth, all but what its slowest pole remembers, and that
@@ -61,7 +61,7 @@ pub struct Round {
 
 /// What planning in rounds has done.
 #[derive(Clone, Debug, Serialize)]
-pub struct Found {
+pub struct PlanRoundsSummary {
     /// The limit of the contour error, mm.
     pub limit_mm: f64,
     /// The program at the feeds of the CL file.
@@ -74,7 +74,7 @@ pub struct Found {
     pub kept: bool,
 }
 
-impl Found {
+impl PlanRoundsSummary {
     /// That of the program that is written.
     pub fn written(&self) -> &Round {
         &self.rounds[self.chosen]
@@ -90,14 +90,18 @@ pub fn plan(
     most: u32,
     ahead: Option<&ProgramPreview>,
     source: &mut ClSource,
-) -> Result<(Option<Arc<Tightening>>, Found), Failure> {
+) -> Result<(Option<Arc<Tightening>>, PlanRoundsSummary), Failure> {
     let allowed = allowed(program.machine).map_err(|fault| *fault)?;
-    let limit = allowed.0;
     let mut tried = Rounds::new(program, ahead, source);
     let (unplanned, _) = self::round(&mut tried, allowed, None)?;
     let mut tightening = Arc::new(Tightening::default());
-    let mut found =
-        Found { limit_mm: limit, unplanned, rounds: Vec::new(), chosen: 0, kept: false };
+    let mut found = PlanRoundsSummary {
+        limit_mm: allowed.limit,
+        unplanned,
+        rounds: Vec::new(),
+        chosen: 0,
+        kept: false,
+    };
     let mut best = None;
     for round in 0..most.max(1) as usize {
         let (outcome, excess) = self::round(&mut tried, allowed, Some(Arc::clone(&tightening)))?;
@@ -111,7 +115,7 @@ pub fn plan(
             best = Some(Arc::clone(&tightening));
         }
         let places = excess.finish();
-        found.kept = outcome.contour_mm <= limit;
+        found.kept = outcome.contour_mm <= allowed.limit;
         if found.kept || places.is_empty() {
             // Either good, or as gentle as it gets where it is not.
             break;
@@ -122,7 +126,7 @@ pub fn plan(
 }
 
 /// Says so if the program that is written does not keep the limit.
-pub fn warning(found: &Found) -> Option<Diagnostic> {
+pub fn warning(found: &PlanRoundsSummary) -> Option<Diagnostic> {
     if found.kept {
         return None;
     }
@@ -140,8 +144,17 @@ pub fn warning(found: &Found) -> Option<Diagnostic> {
     Some(Diagnostic::warning("plan-rounds", message).help(help))
 }
 
-/// The limit, mm, and how fast the servos settle.
-fn allowed(machine: &Machine) -> Result<(f64, Settling), Box<Diagnostic>> {
+/// The contour error that is allowed, and the servos that have to keep it.
+#[derive(Clone, Copy)]
+struct ContourAllowance {
+    /// mm.
+    limit: f64,
+    /// How fast the servos settle.
+    settling: Settling,
+}
+
+/// What the machine file allows.
+fn allowed(machine: &Machine) -> Result<ContourAllowance, Box<Diagnostic>> {
     let Some(limit) = machine.plan.contour_error else {
         let message = "the machine file does not say which contour error is to be kept";
         return Err(Diagnostic::error("plan-rounds", message)
@@ -161,28 +174,31 @@ fn allowed(machine: &Machine) -> Result<(f64, Settling), Box<Diagnostic>> {
     };
     let settling =
         Settling { stretch: (SETTLED / band).min(LONGEST), memory: (SETTLED / pole).min(LONGEST) };
-    Ok((limit, settling))
+    Ok(ContourAllowance { limit, settling })
 }
 
 /// One round with a plan that is so tightened; none: without a plan.
 fn round(
     rounds: &mut Rounds<'_, '_>,
-    (limit, settling): (f64, Settling),
+    allowed: ContourAllowance,
     tightening: Option<Arc<Tightening>>,
 ) -> Result<(Round, Excess), Failure> {
     let known = tightening.clone().unwrap_or_default();
     let tightened = tightening.as_ref().map_or(0, |it| it.places());
     let program = OneProgram { plans: tightening.is_some(), tightening, ..rounds.program.clone() };
     let text = rounds.make(program, None)?;
-    let mut excess = Excess::new(limit, settling, known);
+    let mut excess = Excess::new(allowed.limit, allowed.settling, known);
     let found = rounds.predict(text, &mut |sample| {
         let point = &sample.point;
         match &point.asked {
             _ if !sample.counts() => excess.rests(point.time),
             Some(asked) => {
                 let tip = point.actual.tip - asked.error;
-                let off =
-                    Off { error: point.distance, nc_line: point.at.line, cl_line: asked.at.line };
+                let off = ContourExcess {
+                    error: point.distance,
+                    nc_line: point.at.line,
+                    cl_line: asked.at.line,
+                };
                 match sample.at.cuts {
                     true => excess.take(point.time, &tip, off),
                     false => excess.take_beside_rapid(off),

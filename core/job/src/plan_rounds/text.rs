@@ -2,12 +2,12 @@
 
 use std::fmt::Write as _;
 
-use super::{Found, Round};
+use super::{PlanRoundsSummary, Round};
 use crate::text::number;
 use crate::text_table::NamedValues;
 
 /// As a table.
-pub fn text(found: &Found) -> String {
+pub fn text(found: &PlanRoundsSummary) -> String {
     let mut rows = NamedValues::default();
     let said = if found.kept { "kept" } else { "exceeded" };
     let limit = found.limit_mm;

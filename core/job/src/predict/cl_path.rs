@@ -6,7 +6,7 @@ use post_readback::MOST_FAULTS;
 use post_readback::course::cl::{ClCourse, ClTool};
 use post_readback::course::{Course, CourseWindow, Legs};
 
-use super::Asked;
+use super::PredictionSetup;
 use crate::failure::Failure;
 use crate::files::ClSource;
 use crate::read_back;
@@ -15,7 +15,7 @@ use crate::read_back;
 ///
 /// # Errors
 /// The file cannot be read, or something in it cannot be understood.
-pub fn tools(asked: &Asked<'_>, source: &mut ClSource) -> Result<Vec<ClTool>, Failure> {
+pub fn tools(asked: &PredictionSetup<'_>, source: &mut ClSource) -> Result<Vec<ClTool>, Failure> {
     let input = source.open()?;
     let settings = read_back::course_settings(asked.arguments, asked.machine, &input.name);
     let mut course = ClCourse::new(settings, input.bytes);
@@ -40,7 +40,7 @@ pub fn tools(asked: &Asked<'_>, source: &mut ClSource) -> Result<Vec<ClTool>, Fa
 /// # Errors
 /// The file cannot be read.
 pub fn open<'f>(
-    asked: &Asked<'_>,
+    asked: &PredictionSetup<'_>,
     source: &mut ClSource,
     faults: &'f mut Vec<Diagnostic>,
 ) -> Result<(Box<dyn ReferencePath + 'f>, String), Failure> {

@@ -6,7 +6,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_motion::contour::{self, ContourPeak, ContourReport};
 use post_motion::limits::AxisLimits;
 
-use super::prediction::{AxisFound, ContourFound, Extreme, Part, Spread};
+use super::prediction::{AxisFound, ContourFound, ErrorPart, Extreme, Spread};
 
 /// Of each axis the largest values.
 pub fn axes(machine: &Machine, report: &ContourReport) -> Vec<AxisFound> {
@@ -36,7 +36,7 @@ pub fn axes(machine: &Machine, report: &ContourReport) -> Vec<AxisFound> {
 
 /// How far the tool is off its path.
 pub fn contour(report: &ContourReport, against_a_path: bool) -> ContourFound {
-    let part = |part: &'static str, found: &contour::ValueSpread| Part {
+    let part = |part: &'static str, found: &contour::ValueSpread| ErrorPart {
         part,
         tip_mm: spread(found, 1.0),
     };

@@ -18,6 +18,6 @@ mod times;
 
 pub use prediction::Prediction;
 pub use program::{MeasuredRequest, PredictRequest, PredictedProgram, predict_program};
-pub use run::{Against, Asked, PredictWatch, Predicted, predict};
+pub use run::{PredictReference, PredictWatch, Predicted, PredictionSetup, predict};
 pub use sample::Sample;
 pub use text::text;

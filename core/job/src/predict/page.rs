@@ -35,8 +35,10 @@ impl PredictPage<'_> {
     /// A text cannot be read again, or the report not be written.
     pub fn write(
         &self,
-        (mut rows, lines): (MotionRows<'_>, PredictedLines),
-        (source, program): (Option<&mut ClSource>, &ProgramFile),
+        mut rows: MotionRows<'_>,
+        lines: PredictedLines,
+        source: Option<&mut ClSource>,
+        program: &ProgramFile,
         most: u64,
         page: &mut AtomicFile,
     ) -> Result<(), Failure> {

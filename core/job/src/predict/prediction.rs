@@ -157,7 +157,7 @@ pub struct ContourFound {
     /// The tool axis, degrees.
     pub axis_deg: Spread,
     /// What the tip's error is made of, mm.
-    pub parts: Vec<Part>,
+    pub parts: Vec<ErrorPart>,
     /// How far a place of the commanded path is left beside the way where the tool goes from one leg of a corner to the
     /// other, mm: from the path to the tool this is the distance, the contour error is that from the tool to the path.
     pub left_out_mm: Extreme,
@@ -165,7 +165,7 @@ pub struct ContourFound {
 
 /// One part of the contour error.
 #[derive(Clone, Debug, Serialize)]
-pub struct Part {
+pub struct ErrorPart {
     /// `following`: the axes are not where they are commanded; `interpolation`: set-points are met, and not what lies
     /// between them, or the control leaves the path at corners; `program`: the program is not the CL file.
     pub part: &'static str,

@@ -8,15 +8,15 @@ use post_readback::interpret::Limits;
 
 use super::measured::{self, Log, LogForm, LogZeros, MeasuredPoint, Overlay};
 use super::page::PredictPage;
-use super::pictures::{self, MeasuredRoom, Rooms};
-use super::run::{Against, Asked, PredictWatch, Predicted, predict};
+use super::pictures::{self, MeasuredRoom, PredictRooms};
+use super::run::{PredictReference, PredictWatch, Predicted, PredictionSetup, predict};
 use super::{Prediction, Sample, set_points_csv};
 use crate::JobMachine;
 use crate::columns::CsvTable;
 use crate::failure::Failure;
-use crate::files::{self, AtomicFile, ClSource, OwnFolder, PathArg, Role};
+use crate::files::{self, AtomicFile, ClSource, FolderMark, OwnFolder, PathArg, Role};
 use crate::nc_program::{self, ProgramFile};
-use crate::report::{Besides, ClWindow, MotionRows, PredictedLines};
+use crate::report::{ClWindow, ExtraColumns, MotionRows, PredictedLines};
 use crate::result_files::ResultFiles;
 use crate::session::Session;
 use crate::settings::{JobSettings, ReportSettings};
@@ -27,7 +27,7 @@ const SET_POINTS: Role =
 const PICTURES: Role = Role { what: "prediction", remedy: "name another folder with --pictures" };
 
 /// The file by which a folder of pictures is known, and how it begins.
-const MARK: (&str, &str) = ("prediction.json", "{\n  \"program\": ");
+const MARK: FolderMark<'_> = FolderMark { name: "prediction.json", begins: "{\n  \"program\": " };
 
 /// A log that is laid over a prediction.
 #[derive(Clone, Debug)]
@@ -95,7 +95,7 @@ pub fn predict_program(
         Some(file) => Some(nc_program::offsets(session, file, &machine)?),
         None => None,
     };
-    let asked = Asked {
+    let asked = PredictionSetup {
         session,
         arguments: &request.job,
         machine: &machine,
@@ -116,26 +116,26 @@ pub fn predict_program(
         None => None,
     };
     let csv = texts.table.as_mut();
-    let mut watch = Watch {
+    let mut watch = SetPointOutputs {
         overlay: overlay.as_mut(),
         rows: match &texts.page {
             Some(_) => Some(rows(&asked, source.as_ref())?),
             None => None,
         },
-        rooms: folder.as_ref().map(|_| Rooms::new(&machine, asked.period())),
+        rooms: folder.as_ref().map(|_| PredictRooms::new(&machine, asked.period())),
         csv: csv.map(|file| CsvTable::new(set_points_csv::columns(&machine), file)),
     };
-    let against = source.as_mut().map_or(Against::Nothing, Against::Cl);
+    let against = source.as_mut().map_or(PredictReference::Nothing, PredictReference::Cl);
     let predicted = predict(&asked, against, &program.name, program.text()?, &mut watch)?;
-    let Watch { rooms, rows, csv, .. } = watch;
+    let SetPointOutputs { rooms, rows, csv, .. } = watch;
     csv.map_or(Ok(()), CsvTable::finish)?;
     let laid = request.laid_over(&machine, overlay.as_ref(), predicted)?;
-    let Laid { found, findings, picture } = laid;
+    let PredictionWithLog { found, findings, picture } = laid;
     let json = files::json(&found);
     if let Some(file) = &mut texts.summary {
         file.write_bytes(json.as_bytes())?;
     }
-    if let (Some(page), Some(rows)) = (&mut texts.page, rows) {
+    if let (Some(page), Some((rows, lines))) = (&mut texts.page, rows) {
         let told = PredictPage {
             session,
             machine: &machine,
@@ -144,14 +144,14 @@ pub fn predict_program(
             program: &request.program,
             against: request.against.as_ref(),
         };
-        told.write(rows, (source.as_mut(), &program), request.report.most(), page)?;
+        told.write(rows, lines, source.as_mut(), &program, request.report.most(), page)?;
     }
     let mut texts = texts.all();
     let printed = texts.iter().any(AtomicFile::is_standard);
     if let (Some(folder), Some(rooms)) = (&folder, &rooms) {
         let mut files = rooms.files(&found);
         files.extend(picture);
-        files.push((MARK.0, json));
+        files.push((MARK.name, json));
         folder.add(&files, &mut texts)?;
         AtomicFile::finish(session, texts)?;
         folder.tidy(&files)?;
@@ -163,22 +163,22 @@ pub fn predict_program(
 
 /// What the page hears of a program.
 fn rows<'m>(
-    asked: &Asked<'m>,
+    asked: &PredictionSetup<'m>,
     source: Option<&ClSource>,
 ) -> Result<(MotionRows<'m>, PredictedLines), Failure> {
     let machine = asked.machine;
     let cl = source.map(|source| ClWindow::of(asked.arguments, machine, source));
-    let besides = Besides { predicted: true, ..Besides::default() };
+    let besides = ExtraColumns { predicted: true, ..ExtraColumns::default() };
     let rows = MotionRows::new(machine, cl.transpose()?, besides)?;
     Ok((rows, PredictedLines::new(machine, asked.period())?))
 }
 
 /// A prediction with the log that was laid over it, if there is one.
-struct Laid {
+struct PredictionWithLog {
     found: Prediction,
     findings: Vec<Diagnostic>,
     /// The picture of the log: name and text.
-    picture: Option<pictures::File>,
+    picture: Option<pictures::PredictionFile>,
 }
 
 impl PredictRequest {
@@ -211,7 +211,7 @@ impl PredictRequest {
         machine: &Machine,
         overlay: Option<&Overlay>,
         predicted: Predicted,
-    ) -> Result<Laid, Failure> {
+    ) -> Result<PredictionWithLog, Failure> {
         let Predicted { mut found, mut findings, chains } = predicted;
         let mut picture = None;
         if let (Some(overlay), Some(measured)) = (overlay, &self.measured) {
@@ -222,7 +222,7 @@ impl PredictRequest {
             found.measured = Some(laid);
             found.fitted = measured::fitted(machine, overlay.log(), &measured.fit)?;
         }
-        Ok(Laid { found, findings, picture })
+        Ok(PredictionWithLog { found, findings, picture })
     }
 }
 
@@ -243,14 +243,14 @@ impl MeasuredRequest {
 }
 
 /// What is made of set-points as they come.
-struct Watch<'a, 'm, 'f> {
+struct SetPointOutputs<'a, 'm, 'f> {
     overlay: Option<&'a mut Overlay>,
-    rooms: Option<Rooms>,
+    rooms: Option<PredictRooms>,
     rows: Option<(MotionRows<'m>, PredictedLines)>,
     csv: Option<CsvTable<'f, Sample>>,
 }
 
-impl PredictWatch for Watch<'_, '_, '_> {
+impl PredictWatch for SetPointOutputs<'_, '_, '_> {
     fn done(&mut self, done: &BlockEffect) {
         if let Some((rows, _)) = &mut self.rows {
             rows.take(done);

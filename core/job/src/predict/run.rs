@@ -25,7 +25,7 @@ use crate::session::Session;
 use crate::settings::JobSettings;
 
 /// What a program is predicted with.
-pub struct Asked<'a> {
+pub struct PredictionSetup<'a> {
     /// The run.
     pub session: &'a Session,
     /// What the job is.
@@ -44,7 +44,7 @@ pub struct Asked<'a> {
     pub lines: Option<Range<u64>>,
 }
 
-impl Asked<'_> {
+impl PredictionSetup<'_> {
     /// Time between set-points, s.
     pub fn period(&self) -> f64 {
         self.period.unwrap_or(self.machine.motion.period)
@@ -52,7 +52,7 @@ impl Asked<'_> {
 }
 
 /// What the tool is held against, besides the path that is commanded.
-pub enum Against<'a> {
+pub enum PredictReference<'a> {
     /// Nothing.
     Nothing,
     /// The path of a CL file.
@@ -92,8 +92,8 @@ pub struct Predicted {
 /// # Errors
 /// The machine cannot be used, a block of the program or the CL file cannot be read, or whoever listens fails.
 pub fn predict<R: Read + Seek>(
-    asked: &Asked<'_>,
-    against: Against<'_>,
+    asked: &PredictionSetup<'_>,
+    against: PredictReference<'_>,
     name: &str,
     input: R,
     watch: &mut dyn PredictWatch,
@@ -103,8 +103,8 @@ pub fn predict<R: Read + Seek>(
     // The file was read once before: what is wrong with it is known.
     let mut faults = Vec::new();
     let path = match against {
-        Against::Nothing => None,
-        Against::Cl(source) => {
+        PredictReference::Nothing => None,
+        PredictReference::Cl(source) => {
             tools = cl_path::tools(asked, source)?;
             Some(cl_path::open(asked, source, &mut faults)?)
         }
@@ -121,7 +121,7 @@ pub fn predict<R: Read + Seek>(
     let run = control.run(name, BufReader::new(input)).map_err(|fault| *fault)?;
     let (machine, period) = (&control.counted, asked.period());
     let stages = Stages::new(machine, period, path)?;
-    let mut stream = SetPointStream::new((name, run), machine, period, stages);
+    let mut stream = SetPointStream::new(name, run, machine, period, stages);
     let mut progress = asked.session.progress(Some(length));
     progress.record(|| position.get());
     while stream.step(watch)? {

@@ -34,7 +34,7 @@ pub struct SetPointStream<'a, R> {
     machine: &'a Machine,
     /// Time between set-points, s.
     period: f64,
-    reading: Reading<R>,
+    reading: TaskReader<R>,
     planner: Planner,
     stages: Stages<'a>,
     /// The batch in work; none before the first move.
@@ -47,7 +47,8 @@ pub struct SetPointStream<'a, R> {
 impl<'a, R: Read + Seek> SetPointStream<'a, R> {
     /// At the beginning of the program `name`, with set-points every `period` seconds.
     pub fn new(
-        (name, run): (&'a str, ProgramRun<Interpreter<R>>),
+        name: &'a str,
+        run: ProgramRun<Interpreter<R>>,
         machine: &'a Machine,
         period: f64,
         stages: Stages<'a>,
@@ -56,7 +57,7 @@ impl<'a, R: Read + Seek> SetPointStream<'a, R> {
             name,
             machine,
             period,
-            reading: Reading {
+            reading: TaskReader {
                 run,
                 tasks: ProgramTasks::new(machine),
                 planned: Vec::new(),
@@ -178,14 +179,14 @@ fn other_part(name: &str, found: &Prediction) -> Option<Diagnostic> {
 }
 
 /// A program on the way to tasks.
-struct Reading<R> {
+struct TaskReader<R> {
     run: ProgramRun<Interpreter<R>>,
     tasks: ProgramTasks,
     planned: Vec<ProgramTask>,
     ended: bool,
 }
 
-impl<R: Read + Seek> Reading<R> {
+impl<R: Read + Seek> TaskReader<R> {
     /// Runs blocks until there is a task, or the program ends.
     fn more(&mut self, watch: &mut dyn PredictWatch, name: &str) {
         while self.planned.is_empty() && !self.ended {

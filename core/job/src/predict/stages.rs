@@ -17,13 +17,13 @@ use super::feeds::FeedTally;
 use super::found;
 use super::prediction::Prediction;
 use super::sample::Sample;
-use super::times::{Kind, TimeTally};
+use super::times::{TaskKind, TimeTally};
 use crate::failure::Failure;
 
 /// What the program says of a task that is not done yet.
 #[derive(Clone, Copy, Default)]
-struct Ahead {
-    kind: Kind,
+struct PendingTask {
+    kind: TaskKind,
     /// Feed of the tip, mm/min.
     feed: f64,
     /// Its row in the table of operations.
@@ -37,7 +37,7 @@ pub struct Stages<'r> {
     against: Option<String>,
     period: f64,
     /// Tasks that are planned or carried out, and the number of the first of them.
-    ahead: VecDeque<Ahead>,
+    ahead: VecDeque<PendingTask>,
     first: u64,
     /// Tasks before this one have their time.
     timed: u64,
@@ -102,18 +102,18 @@ impl<'r> Stages<'r> {
             let tool = state.and_then(|state| state.tool);
             self.operation = self.times.operation(tool, operation);
         }
-        self.ahead.push_back(Ahead {
+        self.ahead.push_back(PendingTask {
             kind: match (&planned.task, planned.rapid) {
-                (Task::Wait { why, .. }, _) => Kind::Wait(*why),
-                (Task::Move(_), true) => Kind::Rapid,
-                (Task::Move(_), false) => Kind::Cut,
+                (Task::Wait { why, .. }, _) => TaskKind::Wait(*why),
+                (Task::Move(_), true) => TaskKind::Rapid,
+                (Task::Move(_), false) => TaskKind::Cut,
             },
             feed: planned.feed,
             operation: self.operation,
         });
     }
 
-    fn about(&self, task: u64) -> Ahead {
+    fn about(&self, task: u64) -> PendingTask {
         let place = task.saturating_sub(self.first) as usize;
         self.ahead.get(place).copied().unwrap_or_default()
     }

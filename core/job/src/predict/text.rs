@@ -86,8 +86,8 @@ fn contour(rows: &mut NamedValues, found: &Prediction) {
         }
     };
     let contour = &found.contour;
-    let tip = Shown { unit: "µm", scale: 1e3, decimals: 2 };
-    let axis = Shown { unit: "°", scale: 1.0, decimals: 5 };
+    let tip = ErrorUnit { unit: "µm", scale: 1e3, decimals: 2 };
+    let axis = ErrorUnit { unit: "°", scale: 1.0, decimals: 5 };
     let most = tip.largest(&contour.tip_mm);
     rows.row("contour error", format_args!("{most}{against}"));
     tip.spread(rows, &contour.tip_mm);
@@ -109,14 +109,14 @@ fn contour(rows: &mut NamedValues, found: &Prediction) {
 }
 
 /// How errors are shown.
-struct Shown {
+struct ErrorUnit {
     unit: &'static str,
     /// From the unit of the JSON.
     scale: f64,
     decimals: u8,
 }
 
-impl Shown {
+impl ErrorUnit {
     fn number(&self, value: f64) -> String {
         number(value * self.scale, self.decimals)
     }

@@ -11,7 +11,7 @@ const MOST_OPERATIONS: usize = 1000;
 
 /// Kinds of tasks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum TaskKind {
     /// A move at feed.
     Cut,
     /// A rapid.
@@ -20,13 +20,13 @@ pub enum Kind {
     Wait(WaitReason),
 }
 
-impl Default for Kind {
+impl Default for TaskKind {
     fn default() -> Self {
         Self::Wait(WaitReason::Dwell)
     }
 }
 
-impl Kind {
+impl TaskKind {
     fn name(self) -> &'static str {
         match self {
             Self::Cut => "cut",
@@ -40,7 +40,7 @@ impl Kind {
 #[derive(Clone, Debug, Default)]
 pub struct TimeTally {
     times: Times,
-    limits: Vec<(Kind, TimeLimit, LimitTime)>,
+    limits: Vec<(TaskKind, TimeLimit, LimitTime)>,
 }
 
 impl TimeTally {
@@ -64,32 +64,32 @@ impl TimeTally {
     }
 
     /// A task is done; `operation` is the row of what it belongs to.
-    pub fn take(&mut self, machine: &Machine, time: &TaskTime, kind: Kind, operation: usize) {
+    pub fn take(&mut self, machine: &Machine, time: &TaskTime, kind: TaskKind, operation: usize) {
         let times = &mut self.times;
         times.cycle_s = times.cycle_s.max(time.begins + time.seconds);
         match kind {
-            Kind::Cut => {
+            TaskKind::Cut => {
                 times.cutting_s += time.seconds;
                 times.cutting_at_feed_s += time.asked;
             }
-            Kind::Rapid => times.rapid_s += time.seconds,
-            Kind::Wait(_) => times.waiting_s += time.seconds,
+            TaskKind::Rapid => times.rapid_s += time.seconds,
+            TaskKind::Wait(_) => times.waiting_s += time.seconds,
         }
         if let Some(row) = times.operations.get_mut(operation) {
             row.seconds += time.seconds;
-            if kind == Kind::Cut {
+            if kind == TaskKind::Cut {
                 row.cutting_s += time.seconds;
             }
         }
         let now = match kind {
-            Kind::Wait(_) => TimeLimit::Wait,
+            TaskKind::Wait(_) => TimeLimit::Wait,
             _ => time.limit,
         };
         let known =
             self.limits.iter().position(|(known, limit, _)| (*known, *limit) == (kind, now));
         let place = known.unwrap_or_else(|| {
             let (called, axis) = match kind {
-                Kind::Wait(why) => (reason(why), None),
+                TaskKind::Wait(why) => (reason(why), None),
                 _ => name(machine, now),
             };
             let row = LimitTime {

@@ -19,7 +19,7 @@ use crate::session::Session;
 use beyond_travel::BeyondTravel;
 use motions_csv::MotionsCsv;
 
-pub use survey::{Survey, ToolUse};
+pub use survey::{ProgramSurvey, ToolUse};
 
 /// Of the machine's tolerance so much is used by chords of curves that no record of a CL file has.
 const CHORDS: f64 = 0.1;
@@ -40,7 +40,7 @@ pub struct ReadRequest {
 /// What came of it.
 pub struct ReadProgram<'m> {
     /// What the program did.
-    pub survey: Survey<'m>,
+    pub survey: ProgramSurvey<'m>,
     /// What was read.
     pub report: ReadReport,
     /// What is wrong with it.
@@ -68,7 +68,7 @@ pub fn read<'m>(
     let mut files = AtomicFile::create(session, &targets)?;
     let (tables, cl_files) = files.split_at_mut(usize::from(csv.is_some()));
     let mut table = tables.first_mut().map(|file| MotionsCsv::new(&control.machine, file));
-    let mut survey = Survey::new(&control.machine);
+    let mut survey = ProgramSurvey::new(&control.machine);
     let mut beyond = BeyondTravel::default();
     while let Some(done) = run.block() {
         for what in done {

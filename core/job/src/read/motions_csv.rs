@@ -13,15 +13,15 @@ use crate::columns::{Column, CsvTable};
 use crate::files::{AtomicFile, FileFault};
 
 /// A motion, and where its axes stand behind it.
-struct Row {
+struct MotionReadings {
     motion: Motion,
     /// By columns, as the control shows them.
     readings: Vec<Option<f64>>,
 }
 
 /// The columns of the table.
-fn columns(axes: &[AxisColumn]) -> Vec<Column<Row>> {
-    type C = Column<Row>;
+fn columns(axes: &[AxisColumn]) -> Vec<Column<MotionReadings>> {
+    type C = Column<MotionReadings>;
     let mut columns = vec![
         C::new("line", "", 0, |row| row.motion.line),
         C::new("block", "", 0, |row| row.motion.number),
@@ -75,7 +75,7 @@ pub struct MotionsCsv<'a, 'f> {
     /// The machine with the head that it has now.
     machine: &'a Machine,
     axes: Vec<AxisColumn>,
-    table: CsvTable<'f, Row>,
+    table: CsvTable<'f, MotionReadings>,
 }
 
 impl<'a, 'f> MotionsCsv<'a, 'f> {
@@ -91,7 +91,7 @@ impl<'a, 'f> MotionsCsv<'a, 'f> {
             BlockEffect::Motion(motion) => {
                 let readings = axes::readings(self.machine, &motion.to.joints);
                 let readings = axes::in_columns(&self.axes, self.machine, &readings);
-                self.table.row(&Row { motion: motion.clone(), readings })
+                self.table.row(&MotionReadings { motion: motion.clone(), readings })
             }
             BlockEffect::Event { event: ProgramEvent::Head(name), .. } => {
                 (self.machine, _) = axes::with_head(self.base, name);

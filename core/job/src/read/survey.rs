@@ -5,7 +5,7 @@ use post_machine::kinematics::MAX_AXES;
 use post_readback::{BlockEffect, Motion, MotionKind, ProgramEvent};
 
 /// What a program did.
-pub struct Survey<'a> {
+pub struct ProgramSurvey<'a> {
     base: &'a Machine,
     /// The machine with the head that it has now.
     machine: &'a Machine,
@@ -41,7 +41,7 @@ pub struct ToolUse {
     pub minutes: f64,
 }
 
-impl<'a> Survey<'a> {
+impl<'a> ProgramSurvey<'a> {
     /// Of nothing yet.
     pub fn new(machine: &'a Machine) -> Self {
         Self {

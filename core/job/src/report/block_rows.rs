@@ -12,7 +12,7 @@ use post_report::meta::Meta;
 use super::branch::{self, Branch};
 use super::cl_points::Points;
 use super::cl_window::ClWindow;
-use super::derived::{Derived, Left};
+use super::derived::{Derived, PackedValues};
 use super::marks::Marks;
 use super::page_table::PageTable;
 use super::parts::{Parts, fault};
@@ -28,18 +28,18 @@ const EQUAL: f64 = 1e-9;
 
 /// The largest of something and its row.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Largest {
+pub struct PeakRow {
     value: f64,
     row: u64,
     nc: u64,
 }
 
 /// A row of the page.
-struct Row {
+struct BlockRow {
     posted: PostedBlock,
     /// When the block begins and ends, as they are packed.
     times: [f64; 2],
-    left: Left,
+    left: PackedValues,
     /// Of the tip, mm.
     tolerance: f64,
     /// By how much the tip stands before the gauge point, mm.
@@ -47,8 +47,8 @@ struct Row {
 }
 
 /// The columns of the page.
-fn columns(machine: &Machine, axes: &[AxisColumn], derived: &Derived<'_>) -> Vec<Column<Row>> {
-    type C = Column<Row>;
+fn columns(machine: &Machine, axes: &[AxisColumn], derived: &Derived<'_>) -> Vec<Column<BlockRow>> {
+    type C = Column<BlockRow>;
     let accuracy = &machine.accuracy;
     let [tip, turn] = [accuracy.tolerance, accuracy.axis_tolerance.to_degrees()].map(decimals);
     let [tips, turns] = [tip, turn].map(power);
@@ -60,7 +60,7 @@ fn columns(machine: &Machine, axes: &[AxisColumn], derived: &Derived<'_>) -> Vec
         C::new("kind", "", 0, |row| row.posted.kind),
         C::new("reason", "", 0, |row| row.posted.reason()),
     ];
-    columns.extend(derived.columns(axes, |row: &Row| &row.left));
+    columns.extend(derived.columns(axes, |row: &BlockRow| &row.left));
     columns.extend([
         C::new("deviation", "mm", tip, move |row| up(row.posted.block.deviation.tip, tips)),
         C::new("axis_deviation", "deg", turn, move |row| {
@@ -79,14 +79,14 @@ fn columns(machine: &Machine, axes: &[AxisColumn], derived: &Derived<'_>) -> Vec
 pub struct BlockRows<'m> {
     base: &'m Machine,
     program: PostedProgram<'m>,
-    table: PageTable<Row>,
+    table: PageTable<BlockRow>,
     /// End of the last block, s, and its tip, as the page will have them.
     end: f64,
     tip: Vector3<f64>,
     reason: BlockReason,
     marks: Marks,
     /// Tip and axis in cuts, tip in rapids.
-    largest: [Largest; 3],
+    largest: [PeakRow; 3],
     fault: Option<Failure>,
     path: PathRows,
     cl: ClWindow,
@@ -151,7 +151,7 @@ impl<'m> BlockRows<'m> {
             tip: Vector3::zeros(),
             reason: BlockReason::Point,
             marks: Marks::default(),
-            largest: [Largest::default(); 3],
+            largest: [PeakRow::default(); 3],
             fault: None,
             path: PathRows::new(machine)?,
             derived,
@@ -293,7 +293,7 @@ impl Observer for BlockRows<'_> {
             };
             let largest = &mut self.largest[slot];
             if value > largest.value + EQUAL {
-                *largest = Largest { value, row, nc: block.nc_line };
+                *largest = PeakRow { value, row, nc: block.nc_line };
             }
         }
         let length = self.length(block);
@@ -313,7 +313,8 @@ impl Observer for BlockRows<'_> {
         self.end += took + to;
         self.tip = tip;
         let times = [from, to];
-        let kept = self.table.row(&Row { posted, times, left, tolerance, tool_length: length });
+        let kept =
+            self.table.row(&BlockRow { posted, times, left, tolerance, tool_length: length });
         if let (true, Some(lines)) = (kept, &mut self.lines)
             && let Err(error) = lines.write_all(&(block.nc_line as u32).to_le_bytes())
         {

@@ -19,7 +19,7 @@ use crate::files::Scratch;
 const AHEAD: usize = 64;
 
 /// A point of the path, as it is packed.
-pub struct Row {
+pub struct ClPointRow {
     /// Its line.
     pub line: u64,
     /// Where it is, mm.
@@ -32,18 +32,18 @@ pub struct Row {
 ///
 /// # Errors
 /// There is no place for it.
-pub fn table(machine: &Machine, told: bool) -> Result<PageTable<Row>, Failure> {
+pub fn table(machine: &Machine, told: bool) -> Result<PageTable<ClPointRow>, Failure> {
     // A tenth of the decimals of the bounds: the path is looked at.
     let decimals = decimals(machine.accuracy.tolerance) - 1;
-    let mut columns = vec![Column::new("line", "", 0, |row: &Row| row.line)];
+    let mut columns = vec![Column::new("line", "", 0, |row: &ClPointRow| row.line)];
     for (place, name) in ["x", "y", "z"].into_iter().enumerate() {
-        let column = Column::new(name, "mm", decimals, move |row: &Row| row.at[place]);
+        let column = Column::new(name, "mm", decimals, move |row: &ClPointRow| row.at[place]);
         columns.push(match told {
             true => column.from("blocks"),
             false => column,
         });
     }
-    columns.push(Column::new("rapid", "", 0, |row: &Row| row.rapid));
+    columns.push(Column::new("rapid", "", 0, |row: &ClPointRow| row.rapid));
     PageTable::new("cl", columns)
 }
 
@@ -74,19 +74,19 @@ impl Points {
         }
     }
 
-    fn read(self) -> Result<Kept<impl Read>, Failure> {
+    fn read(self) -> Result<PointReader<impl Read>, Failure> {
         if let Some(fault) = self.fault {
             return Err(fault);
         }
         let mut kept = self.kept.reread()?;
         io::Seek::rewind(&mut kept).map_err(fault)?;
-        Ok(Kept(BufReader::new(kept)))
+        Ok(PointReader(BufReader::new(kept)))
     }
 }
 
-struct Kept<R>(R);
+struct PointReader<R>(R);
 
-impl<R: Read> Kept<R> {
+impl<R: Read> PointReader<R> {
     fn next(&mut self) -> Option<[f64; 5]> {
         let mut bytes = [0; 40];
         self.0.read_exact(&mut bytes).ok()?;
@@ -119,13 +119,13 @@ pub fn pack(
         }
         let tip = near.front().map_or([0.0; 3], |block| [block[1], block[2], block[3]]);
         let at = Vector3::new(x - tip[0], y - tip[1], z - tip[2]);
-        table.row(&Row { line: line as u64, at, rapid });
+        table.row(&ClPointRow { line: line as u64, at, rapid });
     }
     table.finish(parts)
 }
 
 /// Goes on to the last of the next blocks that come from a line, if it has one near.
-fn walk(line: f64, near: &mut VecDeque<[f64; 5]>, blocks: &mut Kept<impl Read>) {
+fn walk(line: f64, near: &mut VecDeque<[f64; 5]>, blocks: &mut PointReader<impl Read>) {
     let mut fill = |near: &mut VecDeque<[f64; 5]>, count: usize| {
         while near.len() < count {
             match blocks.next() {

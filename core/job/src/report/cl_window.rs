@@ -9,7 +9,7 @@ use post_motion::path::{arc_chords, piece_ends};
 use post_readback::course::cl::{ClCourse, ClSettings};
 use post_readback::course::{Course, CourseItem, CoursePiece, Curve};
 
-use super::cl_points::{self, Points, Row};
+use super::cl_points::{self, ClPointRow, Points};
 use super::parts::Parts;
 use super::segments::Segments;
 use crate::failure::Failure;
@@ -157,7 +157,7 @@ impl ClWindow {
     fn piece(&mut self, piece: &CoursePiece) {
         let (along, chords) = (self.along, self.chords(piece));
         let tips = piece_ends(chords, piece.to.tip, |t| piece.at(t, along).tip);
-        let row = |row: Row| self.points.push(row.line, row.at, row.rapid);
+        let row = |row: ClPointRow| self.points.push(row.line, row.at, row.rapid);
         self.segments.go(piece.line, piece.kind, piece.from.tip, tips, row);
     }
 

@@ -25,7 +25,7 @@ const FLAT: f64 = 1e-3;
 
 /// Which columns follow from which.
 #[derive(Clone, Copy, PartialEq)]
-enum Way {
+enum Derivation {
     /// Tip and tool axis from the axes.
     FromAxes,
     /// The tool axis from the rotary axes, the linear axes from these and the tip.
@@ -38,7 +38,7 @@ enum Way {
 pub struct Derived<'m> {
     machine: &'m Machine,
     chain: Option<Chain>,
-    way: Way,
+    way: Derivation,
     checks: Vec<PoseCheck>,
     /// Rows to the next check.
     next: u64,
@@ -46,7 +46,7 @@ pub struct Derived<'m> {
 
 /// Values of a row as they are packed.
 #[derive(Clone, Debug)]
-pub struct Left {
+pub struct PackedValues {
     /// Those of the axes, by columns, as the control shows them.
     pub axes: Vec<Option<f64>>,
     /// Tip and tool axis.
@@ -66,9 +66,9 @@ impl<'m> Derived<'m> {
         let solver = solver.filter(|_| machine.heads.is_empty());
         let linear = machine.axes.iter().filter(|axis| !axis.joint.rotary);
         let way = match (&solver, machine.control.tcp) {
-            (None, _) => Way::Nothing,
-            (_, Tcp::Control) if linear.count() == 3 => Way::FromTip,
-            _ => Way::FromAxes,
+            (None, _) => Derivation::Nothing,
+            (_, Tcp::Control) if linear.count() == 3 => Derivation::FromTip,
+            _ => Derivation::FromAxes,
         };
         Self {
             machine,
@@ -83,7 +83,7 @@ impl<'m> Derived<'m> {
     pub fn columns<R: 'static>(
         &self,
         axes: &[AxisColumn],
-        left: fn(&R) -> &Left,
+        left: fn(&R) -> &PackedValues,
     ) -> Vec<Column<R>> {
         let axes = axes.iter().enumerate().map(|(place, axis)| {
             let (unit, decimals) = match axis.rotary {
@@ -93,21 +93,21 @@ impl<'m> Derived<'m> {
             let value = move |row: &R| left(row).axes[place];
             let column = Column::new(format!("q.{}", axis.name), unit, decimals, value);
             match (self.way, axis.rotary) {
-                (Way::FromTip, false) => column.from("tips"),
+                (Derivation::FromTip, false) => column.from("tips"),
                 _ => column,
             }
         });
         let tip = ["tip.x", "tip.y", "tip.z"].into_iter().enumerate().map(|(place, name)| {
             let column = Column::new(name, "mm", 4, move |row| left(row).pose[0][place]);
             match self.way {
-                Way::FromAxes => column.from("chain"),
+                Derivation::FromAxes => column.from("chain"),
                 _ => column,
             }
         });
         let axis = ["axis.i", "axis.j", "axis.k"].into_iter().enumerate().map(|(place, name)| {
             let column = Column::new(name, "", 6, move |row| left(row).pose[1][place]);
             match self.way {
-                Way::Nothing => column,
+                Derivation::Nothing => column,
                 _ => column.from("chain"),
             }
         });
@@ -122,9 +122,9 @@ impl<'m> Derived<'m> {
         joints: &Joints,
         [tip, axis]: [Vector3<f64>; 2],
         length: f64,
-    ) -> Left {
+    ) -> PackedValues {
         let mut readings = axes::readings(machine, joints);
-        let whole = Left {
+        let whole = PackedValues {
             axes: axes::in_columns(columns, machine, &readings),
             pose: [tip, axis],
             tip: tip.map(|value| rounded(value, 1e4)),
@@ -136,10 +136,10 @@ impl<'m> Derived<'m> {
         let length = rounded(length, 1e4);
         let pose = chain.forward(&packed);
         match self.way {
-            Way::FromAxes => {
+            Derivation::FromAxes => {
                 let from = pose.tip - pose.axis * length;
                 let left = tip - from;
-                Left {
+                PackedValues {
                     pose: [left, axis - pose.axis],
                     tip: from + left.map(|value| rounded(value, 1e4)),
                     ..whole
@@ -156,14 +156,14 @@ impl<'m> Derived<'m> {
                     }
                 }
                 let axes = axes::in_columns(columns, machine, &readings);
-                Left { axes, pose: [tip, axis - pose.axis], ..whole }
+                PackedValues { axes, pose: [tip, axis - pose.axis], ..whole }
             }
         }
     }
 
     /// Where the page has the tip halfway between two rows, if all follows from the axes.
     pub fn middle(&self, from: &Joints, to: &Joints, length: f64) -> Option<Vector3<f64>> {
-        let chain = self.chain.as_ref().filter(|_| self.way == Way::FromAxes)?;
+        let chain = self.chain.as_ref().filter(|_| self.way == Derivation::FromAxes)?;
         let mut half = self.packed(from);
         for (value, to) in half.iter_mut().zip(self.packed(to)) {
             *value = 0.5 * (*value + to);

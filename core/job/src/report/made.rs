@@ -15,7 +15,7 @@ use crate::predict::Prediction;
 use crate::session::Session;
 
 /// What is known of a program that is made.
-pub struct Made<'a> {
+pub struct PostPage<'a> {
     /// The run.
     pub session: &'a Session,
     /// The machine with its settings.
@@ -38,18 +38,30 @@ pub struct Made<'a> {
     pub facts: Vec<[String; 2]>,
 }
 
-impl Made<'_> {
+/// The texts that a page shows beside its rows.
+pub struct PageTexts<'t> {
+    /// The CL file.
+    pub source: &'t mut ClSource,
+    /// The program, as messages call it.
+    pub name: &'t str,
+    /// The program, from its beginning.
+    pub text: &'t mut dyn Read,
+}
+
+impl PostPage<'_> {
     /// Writes its report to `page`.
     ///
     /// # Errors
     /// A text cannot be read again, or the report not be written.
     pub fn write(
         &self,
-        (rows, predicted): (BlockRows<'_>, Option<PredictedParts>),
-        (source, name, text): (&mut ClSource, &str, &mut dyn Read),
+        rows: BlockRows<'_>,
+        predicted: Option<PredictedParts>,
+        texts: PageTexts<'_>,
         most: u64,
         page: &mut AtomicFile,
     ) -> Result<(), Failure> {
+        let PageTexts { source, name, text } = texts;
         let names = Names {
             nc: Some(super::name_of(self.program)),
             cl: Some(self.cl.clone()),

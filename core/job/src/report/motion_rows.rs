@@ -13,7 +13,7 @@ use super::block_rows::{decimals, packed};
 use super::branch::{self, Branch};
 use super::cl_points::Points;
 use super::cl_window::ClWindow;
-use super::derived::{Derived, Left};
+use super::derived::{Derived, PackedValues};
 use super::marks::Marks;
 use super::old_path::OldPath;
 use super::page_table::PageTable;
@@ -30,7 +30,7 @@ const MOST_PLACES: f64 = 512.0;
 
 /// What is known of a line of the program besides what it does.
 #[derive(Clone, Debug, Default)]
-pub struct Heard {
+pub struct LineFacts {
     /// Line of the CL file; zero where there is none.
     pub cl: u64,
     /// Of the tip, mm, and of the tool axis, degrees.
@@ -47,7 +47,7 @@ pub struct Heard {
 
 /// What rows tell besides.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Besides {
+pub struct ExtraColumns {
     /// The program is held against a CL file.
     pub deviations: bool,
     /// It is predicted.
@@ -57,19 +57,19 @@ pub struct Besides {
 }
 
 /// A row of the page.
-struct Row {
+struct MotionRow {
     /// Line of the program.
     nc: u64,
     /// When the motion begins and ends, s; as they are packed, once what is known of its line is.
     times: [f64; 2],
     /// Among the kinds of posted blocks.
     kind: u8,
-    left: Left,
+    left: PackedValues,
     /// Feed of the tip, mm/min.
     feed: f64,
     /// By how much the tip stands before the gauge point, mm.
     tool_length: f64,
-    heard: Heard,
+    heard: LineFacts,
     /// A place in the names of limits, or -1.
     limit: i64,
     /// Of the tip, mm.
@@ -83,9 +83,9 @@ fn columns(
     machine: &Machine,
     axes: &[AxisColumn],
     derived: &Derived<'_>,
-    besides: Besides,
-) -> Vec<Column<Row>> {
-    type C = Column<Row>;
+    besides: ExtraColumns,
+) -> Vec<Column<MotionRow>> {
+    type C = Column<MotionRow>;
     let accuracy = &machine.accuracy;
     let [tip, turn] = [accuracy.tolerance, accuracy.axis_tolerance.to_degrees()].map(decimals);
     let mut columns = vec![
@@ -94,7 +94,7 @@ fn columns(
         C::new("t1", "s", 4, |row| row.times[1]),
         C::new("kind", "", 0, |row| row.kind),
     ];
-    columns.extend(derived.columns(axes, |row: &Row| &row.left));
+    columns.extend(derived.columns(axes, |row: &MotionRow| &row.left));
     columns.extend([
         C::new("feed", "mm/min", 1, |row| row.feed),
         C::new("tool_length", "mm", 4, |row| row.tool_length),
@@ -109,7 +109,7 @@ fn columns(
         ]);
     }
     if besides.predicted {
-        columns.extend(predicted_rows::columns(machine, |row: &Row| &row.heard));
+        columns.extend(predicted_rows::columns(machine, |row: &MotionRow| &row.heard));
     }
     if besides.other {
         columns.push(C::new("nc2", "", 0, |row| row.other));
@@ -118,8 +118,8 @@ fn columns(
 }
 
 /// A row that waits for what is known of its line.
-struct Waiting {
-    row: Row,
+struct PendingRow {
+    row: MotionRow,
     rapid: bool,
     /// The tip at the end.
     tip: Vector3<f64>,
@@ -137,7 +137,7 @@ pub struct MotionRows<'m> {
     axes: Vec<AxisColumn>,
     /// Somebody tells of lines: rows wait for that.
     told_of: bool,
-    table: PageTable<Row>,
+    table: PageTable<MotionRow>,
     path: PathRows,
     derived: Derived<'m>,
     /// End of the row before, s.
@@ -150,7 +150,7 @@ pub struct MotionRows<'m> {
     ends: Points,
     /// Line of the CL file of the row before.
     last_cl: u64,
-    waiting: VecDeque<Waiting>,
+    waiting: VecDeque<PendingRow>,
     came: u64,
     time: f64,
     operation: String,
@@ -171,7 +171,7 @@ impl<'m> MotionRows<'m> {
     pub fn new(
         machine: &'m Machine,
         cl: Option<ClWindow>,
-        besides: Besides,
+        besides: ExtraColumns,
     ) -> Result<Self, Failure> {
         let axes = axes::of_all_heads(machine);
         let derived = Derived::new(machine);
@@ -255,7 +255,7 @@ impl<'m> MotionRows<'m> {
     }
 
     /// All that is done on `line` gets what was heard of it; what came before, and nobody told of, stays as it is.
-    pub fn hear(&mut self, line: u64, heard: &Heard) {
+    pub fn hear(&mut self, line: u64, heard: &LineFacts) {
         let Some(place) = self.waiting.iter().position(|waiting| waiting.row.nc == line) else {
             return;
         };
@@ -303,15 +303,15 @@ impl<'m> MotionRows<'m> {
             .then(|| self.derived.middle(&motion.from.joints, joints, length));
         let accuracy = &self.machine.accuracy;
         let rapid = motion.kind == MotionKind::Rapid;
-        self.waiting.push_back(Waiting {
-            row: Row {
+        self.waiting.push_back(PendingRow {
+            row: MotionRow {
                 nc: motion.line,
                 times: [from, self.time],
                 kind,
                 left,
                 feed: motion.feed,
                 tool_length: length,
-                heard: Heard::default(),
+                heard: LineFacts::default(),
                 limit: -1,
                 tolerance: if rapid { accuracy.rapid_tolerance } else { accuracy.tolerance },
                 other: 0,
@@ -375,8 +375,9 @@ impl<'m> MotionRows<'m> {
     }
 
     /// Packs the first row that waits.
-    fn write(&mut self, heard: Option<&Heard>) {
-        let Some(Waiting { mut row, rapid, tip, places, middle }) = self.waiting.pop_front() else {
+    fn write(&mut self, heard: Option<&LineFacts>) {
+        let Some(PendingRow { mut row, rapid, tip, places, middle }) = self.waiting.pop_front()
+        else {
             return;
         };
         if let Some(heard) = heard {

@@ -9,7 +9,7 @@ use post_motion::path::piece_ends;
 use post_readback::interpret::Interpreter;
 use post_readback::{BlockEffect, ProgramRun};
 
-use super::cl_points::{self, Row};
+use super::cl_points::{self, ClPointRow};
 use super::page_table::PageTable;
 use super::parts::Parts;
 use super::segments::Segments;
@@ -33,7 +33,7 @@ const APART: f64 = 10.0;
 /// Reads the old program as far as it is asked for.
 pub struct OldPath {
     run: ProgramRun<Interpreter<File>>,
-    table: PageTable<Row>,
+    table: PageTable<ClPointRow>,
     segments: Segments,
     /// Segments that stand behind the place that was found last.
     behind: usize,
@@ -118,7 +118,7 @@ impl OldPath {
                 false => motion.pieces(CHORD, 1.0).min(MOST_CHORDS),
             };
             let tips = piece_ends(chords, motion.to.pose.tip, |t| motion.at(t).tip);
-            let row = |row: Row| _ = self.table.row(&row);
+            let row = |row: ClPointRow| _ = self.table.row(&row);
             self.segments.go(motion.line, motion.kind, motion.from.pose.tip, tips, row);
         }
         self.done = done;

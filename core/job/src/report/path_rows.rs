@@ -11,7 +11,7 @@ use crate::columns::Column;
 use crate::failure::Failure;
 
 /// A place of the path.
-struct Row {
+struct PathRow {
     /// The row of its block.
     block: u64,
     /// Where it is, and how far off the CL path, as they are packed, mm.
@@ -23,7 +23,7 @@ struct Row {
 
 /// Packs the places of the path.
 pub struct PathRows {
-    table: PageTable<Row>,
+    table: PageTable<PathRow>,
     /// The end of the last block, as packed.
     last: Option<Vector3<f64>>,
 }
@@ -37,14 +37,14 @@ impl PathRows {
         // A tenth of the decimals of the bounds: vectors are looked at.
         let off = decimals(machine.accuracy.tolerance) - 1;
         let columns = vec![
-            Column::new("row", "", 0, |row: &Row| row.block),
-            Column::new("x", "mm", 4, |row: &Row| row.left.x).from("tip"),
-            Column::new("y", "mm", 4, |row: &Row| row.left.y).from("tip"),
-            Column::new("z", "mm", 4, |row: &Row| row.left.z).from("tip"),
-            Column::new("d.x", "mm", off, |row: &Row| row.off.x).from("tip"),
-            Column::new("d.y", "mm", off, |row: &Row| row.off.y).from("tip"),
-            Column::new("d.z", "mm", off, |row: &Row| row.off.z).from("tip"),
-            Column::new("held", "", 0, |row: &Row| row.held),
+            Column::new("row", "", 0, |row: &PathRow| row.block),
+            Column::new("x", "mm", 4, |row: &PathRow| row.left.x).from("tip"),
+            Column::new("y", "mm", 4, |row: &PathRow| row.left.y).from("tip"),
+            Column::new("z", "mm", 4, |row: &PathRow| row.left.z).from("tip"),
+            Column::new("d.x", "mm", off, |row: &PathRow| row.off.x).from("tip"),
+            Column::new("d.y", "mm", off, |row: &PathRow| row.off.y).from("tip"),
+            Column::new("d.z", "mm", off, |row: &PathRow| row.off.z).from("tip"),
+            Column::new("held", "", 0, |row: &PathRow| row.held),
         ];
         Ok(Self { table: PageTable::new("path", columns)?, last: None })
     }
@@ -74,7 +74,7 @@ impl PathRows {
                 true => off - bow(known + left.map(packed), from, step),
                 false => off,
             });
-            self.table.row(&Row { block: row, left, off, held });
+            self.table.row(&PathRow { block: row, left, off, held });
         }
     }
 

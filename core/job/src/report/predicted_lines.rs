@@ -4,7 +4,7 @@ use post_machine::description::Machine;
 use post_machine::kinematics::{Joints, MAX_AXES};
 
 use super::block_rows::decimals;
-use super::motion_rows::Heard;
+use super::motion_rows::LineFacts;
 use super::page_table::PageTable;
 use super::parts::Parts;
 use crate::columns::Column;
@@ -25,7 +25,7 @@ pub struct PredictedLines {
     period: f64,
     /// The line that is carried out, and what was seen of it.
     line: u64,
-    heard: Heard,
+    heard: LineFacts,
     /// Commanded axis values and velocities of the set-point before.
     last: Option<(Joints, Option<Joints>)>,
 }
@@ -46,20 +46,20 @@ impl PredictedLines {
             table: PageTable::new("series", columns)?,
             period,
             line: 0,
-            heard: Heard::default(),
+            heard: LineFacts::default(),
             last: None,
         })
     }
 
     /// The next set-point; where it is the first of a line, what is known of the line before.
-    pub fn take(&mut self, sample: &Sample) -> Option<(u64, Heard)> {
+    pub fn take(&mut self, sample: &Sample) -> Option<(u64, LineFacts)> {
         let point = &sample.point;
         let time = point.time;
         let cl = sample.cl_line().unwrap_or(0);
         self.table.row(sample);
         let mut before = None;
         if sample.at.line != self.line {
-            let heard = Heard { cl, times: Some([time, time]), ..Heard::default() };
+            let heard = LineFacts { cl, times: Some([time, time]), ..LineFacts::default() };
             before = self.line(sample.at.line, heard);
         }
         if let Some([_, to]) = &mut self.heard.times {
@@ -88,14 +88,14 @@ impl PredictedLines {
     ///
     /// # Errors
     /// It could not be kept.
-    pub fn finish(mut self, parts: &mut Parts) -> Result<Option<(u64, Heard)>, Failure> {
-        let last = self.line(0, Heard::default());
+    pub fn finish(mut self, parts: &mut Parts) -> Result<Option<(u64, LineFacts)>, Failure> {
+        let last = self.line(0, LineFacts::default());
         self.table.finish(parts)?;
         Ok(last)
     }
 
     /// Another line is carried out: what is known of the one before.
-    fn line(&mut self, line: u64, heard: Heard) -> Option<(u64, Heard)> {
+    fn line(&mut self, line: u64, heard: LineFacts) -> Option<(u64, LineFacts)> {
         let before = std::mem::replace(&mut self.line, line);
         let known = std::mem::replace(&mut self.heard, heard);
         (before > 0).then_some((before, known))

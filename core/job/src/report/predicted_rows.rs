@@ -6,7 +6,7 @@ use std::io::{self, Read};
 use post_machine::description::Machine;
 
 use super::block_rows::{decimals, packed};
-use super::motion_rows::Heard;
+use super::motion_rows::LineFacts;
 use super::page_table::PageTable;
 use super::parts::{Parts, fault};
 use crate::columns::Column;
@@ -17,7 +17,7 @@ const AHEAD: usize = 4096;
 
 /// The largest contour error of a row, and the largest velocity and acceleration of each axis; `heard` is what is known of
 /// the row.
-pub fn columns<R: 'static>(machine: &Machine, heard: fn(&R) -> &Heard) -> Vec<Column<R>> {
+pub fn columns<R: 'static>(machine: &Machine, heard: fn(&R) -> &LineFacts) -> Vec<Column<R>> {
     let error = decimals(machine.accuracy.tolerance);
     let mut columns = vec![Column::new("contour", "mm", error, move |row| heard(row).contour)];
     let letters = [("v", ["mm/s", "deg/s"]), ("a", ["mm/s²", "deg/s²"])];
@@ -32,15 +32,15 @@ pub fn columns<R: 'static>(machine: &Machine, heard: fn(&R) -> &Heard) -> Vec<Co
 }
 
 /// A row of the page.
-struct Row {
+struct PredictedRow {
     /// When it begins and ends, as they are packed, s.
     times: [f64; 2],
-    heard: Heard,
+    heard: LineFacts,
 }
 
 /// Takes what is heard of lines, and packs it for the rows that stand on them.
 pub struct PredictedRows {
-    table: PageTable<Row>,
+    table: PageTable<PredictedRow>,
     /// Lines of the rows, 32 bits each, least byte first.
     lines: Box<dyn Read>,
     /// Those that were read and wait.
@@ -58,10 +58,10 @@ impl PredictedRows {
     /// There is no place for them.
     pub fn new(machine: &Machine, lines: Box<dyn Read>) -> Result<Self, Failure> {
         let mut all = vec![
-            Column::new("t0", "s", 4, |row: &Row| row.times[0]).from("t1"),
-            Column::new("t1", "s", 4, |row: &Row| row.times[1]),
+            Column::new("t0", "s", 4, |row: &PredictedRow| row.times[0]).from("t1"),
+            Column::new("t1", "s", 4, |row: &PredictedRow| row.times[1]),
         ];
-        all.extend(columns(machine, |row: &Row| &row.heard));
+        all.extend(columns(machine, |row: &PredictedRow| &row.heard));
         Ok(Self {
             table: PageTable::new("predicted", all)?,
             lines,
@@ -78,7 +78,7 @@ impl PredictedRows {
     /// It could not be kept.
     pub fn finish(mut self, parts: &mut Parts) -> Result<(), Failure> {
         while self.read() || !self.waiting.is_empty() {
-            self.write(&Heard::default());
+            self.write(&LineFacts::default());
         }
         match self.fault {
             Some(fault) => Err(fault),
@@ -103,16 +103,16 @@ impl PredictedRows {
     }
 
     /// Packs the first row that waits.
-    fn write(&mut self, heard: &Heard) {
+    fn write(&mut self, heard: &LineFacts) {
         self.waiting.pop_front();
         let [from, to] = heard.times.unwrap_or([self.end; 2]);
         let times = [packed(from) - packed(self.end), to];
         self.end = to;
-        self.table.row(&Row { times, heard: heard.clone() });
+        self.table.row(&PredictedRow { times, heard: heard.clone() });
     }
 
     /// All rows of `line` get what was heard of it; those before it that nobody told of stay as they are.
-    pub fn hear(&mut self, line: u64, mut heard: Heard) {
+    pub fn hear(&mut self, line: u64, mut heard: LineFacts) {
         let place = loop {
             let place = self.waiting.iter().position(|row| *row == line);
             if place.is_some() || self.waiting.len() >= AHEAD || !self.read() {
@@ -120,7 +120,7 @@ impl PredictedRows {
             }
         };
         for _ in 0..place.unwrap_or(0) {
-            self.write(&Heard::default());
+            self.write(&LineFacts::default());
         }
         while place.is_some() {
             if self.waiting.is_empty() && !self.read() {

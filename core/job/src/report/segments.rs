@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use post_motion::path::nearest_share;
 use post_readback::MotionKind;
 
-use super::cl_points::Row;
+use super::cl_points::ClPointRow;
 
 /// Ends that are farther apart than this do not meet, mm.
 const APART: f64 = 1e-6;
@@ -45,15 +45,15 @@ impl Segments {
         kind: MotionKind,
         mut from: Vector3<f64>,
         tips: impl Iterator<Item = Vector3<f64>>,
-        mut row: impl FnMut(Row),
+        mut row: impl FnMut(ClPointRow),
     ) {
         if self.at.is_none_or(|at| (at - from).norm() > APART) {
-            row(Row { line, at: from, rapid: 2.0 });
+            row(ClPointRow { line, at: from, rapid: 2.0 });
         }
         let rapid = if kind == MotionKind::Rapid { 1.0 } else { 0.0 };
         for to in tips {
             self.known.push_back(Segment { line, from, to });
-            row(Row { line, at: to, rapid });
+            row(ClPointRow { line, at: to, rapid });
             from = to;
         }
         self.at = Some(from);

@@ -11,5 +11,5 @@ pub use groups::{
     JobSettings, MachineSettings, MakingSettings, Msys, ProgramSettings, ReadingSettings,
     ReportSettings, StudySettings,
 };
-pub use table::{About, Group, Row, Table, tell};
-pub use values::{Form, Reader, Value};
+pub use table::{About, AnySettingsGroup, SettingRow, SettingsGroup, tell};
+pub use values::{SettingForm, SettingReader, SettingValue};

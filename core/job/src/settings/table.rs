@@ -2,7 +2,7 @@
 
 use post_machine::diagnostic::{Diagnostic, nearest};
 
-use super::values::{Form, Value};
+use super::values::{SettingForm, SettingValue};
 
 /// What a setting is, whoever sets it.
 #[derive(Clone, Copy, Debug)]
@@ -14,7 +14,7 @@ pub struct About {
     /// What its value is called, `MM`; a flag has none.
     pub value: &'static str,
     /// What values it can have.
-    pub form: Form,
+    pub form: SettingForm,
     /// It may be said again, and each value counts.
     pub many: bool,
     /// The heading that the flag stands under.
@@ -37,7 +37,7 @@ impl About {
         name: "",
         doc: &[],
         value: "",
-        form: Form::Flag,
+        form: SettingForm::Flag,
         many: false,
         heading: None,
         default: None,
@@ -61,15 +61,15 @@ impl About {
     /// The flag with its value, as messages have it.
     fn shown(&self) -> String {
         match self.form {
-            Form::Flag => format!("--{}", self.flag()),
+            SettingForm::Flag => format!("--{}", self.flag()),
             _ => format!("--{} <{}>", self.flag(), self.value),
         }
     }
 
     /// What is wrong with a value.
-    fn fault(&self, value: &Value, why: &str) -> Diagnostic {
+    fn fault(&self, value: &SettingValue, why: &str) -> Diagnostic {
         let told = format!("invalid value '{value}' for '{}'", self.shown());
-        let Form::Words(words) = self.form else {
+        let SettingForm::Words(words) = self.form else {
             return Diagnostic::error("option", format!("{told}: {why}"));
         };
         let words = words();
@@ -83,42 +83,42 @@ impl About {
 }
 
 /// A setting of the group `S`.
-pub struct Row<S> {
+pub struct SettingRow<S> {
     /// What it is.
     pub about: About,
     /// Sets it; an error says why the value is none.
-    pub put: fn(&mut S, &Value) -> Result<(), String>,
+    pub put: fn(&mut S, &SettingValue) -> Result<(), String>,
 }
 
 /// A group of settings.
-pub trait Table: Default + 'static {
+pub trait SettingsGroup: Default + 'static {
     /// Its rows, in the order of its fields.
-    const ROWS: &'static [Row<Self>];
+    const ROWS: &'static [SettingRow<Self>];
 
     /// The row of that name.
-    fn row(name: &str) -> Option<&'static Row<Self>> {
+    fn row(name: &str) -> Option<&'static SettingRow<Self>> {
         Self::ROWS.iter().find(|row| row.about.name == name)
     }
 }
 
 /// A group of settings, whichever it is.
-pub trait Group {
+pub trait AnySettingsGroup {
     /// What its settings are.
     fn about(&self) -> Vec<&'static About>;
 
     /// Sets the one of that name; none if it is of another group.
-    fn put(&mut self, name: &str, value: &Value) -> Option<Result<(), String>>;
+    fn put(&mut self, name: &str, value: &SettingValue) -> Option<Result<(), String>>;
 }
 
-impl<S: Table> Group for S {
+impl<S: SettingsGroup> AnySettingsGroup for S {
     fn about(&self) -> Vec<&'static About> {
         Self::ROWS.iter().map(|row| &row.about).collect()
     }
 
-    fn put(&mut self, name: &str, value: &Value) -> Option<Result<(), String>> {
+    fn put(&mut self, name: &str, value: &SettingValue) -> Option<Result<(), String>> {
         let row = Self::row(name)?;
         Some(match value {
-            Value::List(values) if row.about.many => {
+            SettingValue::List(values) if row.about.many => {
                 values.iter().try_for_each(|value| (row.put)(self, value))
             }
             value => (row.put)(self, value),
@@ -131,8 +131,8 @@ impl<S: Table> Group for S {
 /// # Errors
 /// A name that no group has, a value that is none, or settings that do not go together.
 pub fn tell(
-    told: &[(String, Value)],
-    groups: &mut [&mut dyn Group],
+    told: &[(String, SettingValue)],
+    groups: &mut [&mut dyn AnySettingsGroup],
 ) -> Result<(), Box<Diagnostic>> {
     let known: Vec<&About> = groups.iter().flat_map(|group| group.about()).collect();
     let has = |name: &str| told.iter().any(|(told, _)| told == name);
@@ -179,7 +179,7 @@ macro_rules! settings {
     (@type one $type:ty) => { Option<$type> };
     (@type many $type:ty) => { Vec<$type> };
     (@type given $type:ty) => { $type };
-    (@form flag) => { $crate::settings::Form::Flag };
+    (@form flag) => { $crate::settings::SettingForm::Flag };
     (@form $kind:ident $reader:expr) => { $reader.form };
     (@many many) => { true };
     (@many $kind:ident) => { false };
@@ -189,7 +189,7 @@ macro_rules! settings {
     (@put given $field:expr, $value:ident, $reader:expr) => {{ $field = ($reader.read)($value)?; }};
     (@default given $reader:expr, $($text:expr)?) => {
         // The text stands in the table, and its reader beside it.
-        ($reader.read)(&$crate::settings::Value::Text(($($text)?)())).unwrap_or_default()
+        ($reader.read)(&$crate::settings::SettingValue::Text(($($text)?)())).unwrap_or_default()
     };
     (@default $kind:ident $($reader:expr, $($text:expr)?)?) => { Default::default() };
     (
@@ -217,9 +217,9 @@ macro_rules! settings {
             }
         }
 
-        impl $crate::settings::Table for $group {
-            const ROWS: &'static [$crate::settings::Row<Self>] = &[$(
-                $crate::settings::Row {
+        impl $crate::settings::SettingsGroup for $group {
+            const ROWS: &'static [$crate::settings::SettingRow<Self>] = &[$(
+                $crate::settings::SettingRow {
                     about: $crate::settings::About {
                         name: stringify!($field),
                         doc: &[$($doc),+],

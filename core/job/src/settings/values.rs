@@ -12,7 +12,7 @@ use crate::files::PathArg;
 
 /// A value as a user, a file or another program tells it.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Value {
+pub enum SettingValue {
     /// True or not.
     Yes(bool),
     /// A whole number.
@@ -27,13 +27,13 @@ pub enum Value {
     List(Vec<Self>),
 }
 
-impl From<&str> for Value {
+impl From<&str> for SettingValue {
     fn from(text: &str) -> Self {
         Self::Text(text.to_owned())
     }
 }
 
-impl fmt::Display for Value {
+impl fmt::Display for SettingValue {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Yes(yes) => write!(f, "{yes}"),
@@ -49,7 +49,7 @@ impl fmt::Display for Value {
     }
 }
 
-impl Value {
+impl SettingValue {
     /// Whether it says yes.
     ///
     /// # Errors
@@ -64,7 +64,7 @@ impl Value {
 
 /// What values there are of a setting.
 #[derive(Clone, Copy, Debug)]
-pub enum Form {
+pub enum SettingForm {
     /// It is told or not.
     Flag,
     /// Texts, some of which are refused.
@@ -83,17 +83,17 @@ pub enum Form {
 }
 
 /// What values there are, and how one is read; an error says why it is none.
-pub struct Reader<T> {
+pub struct SettingReader<T> {
     /// What values there are.
-    pub form: Form,
+    pub form: SettingForm,
     /// Reads one; an error says why it is none.
-    pub read: fn(&Value) -> Result<T, String>,
+    pub read: fn(&SettingValue) -> Result<T, String>,
 }
 
-impl<T> Reader<T> {
+impl<T> SettingReader<T> {
     /// Of texts and numbers.
-    pub const fn text(read: fn(&Value) -> Result<T, String>) -> Self {
-        Self { form: Form::Text, read }
+    pub const fn text(read: fn(&SettingValue) -> Result<T, String>) -> Self {
+        Self { form: SettingForm::Text, read }
     }
 }
 
@@ -101,8 +101,8 @@ impl<T> Reader<T> {
 macro_rules! words {
     ($(#[doc = $doc:literal])* $name:ident: $type:ty { $($word:literal => $meaning:expr),* }) => {
         $(#[doc = $doc])*
-        pub const $name: Reader<$type> = Reader {
-            form: Form::Words(|| vec![$($word),*]),
+        pub const $name: SettingReader<$type> = SettingReader {
+            form: SettingForm::Words(|| vec![$($word),*]),
             read: |value| match value.to_string().as_str() {
                 $($word => Ok($meaning),)*
                 other => Err(not_one_of(other, &[$($word),*])),
@@ -133,68 +133,74 @@ words!(#[doc = "Who keeps the tip on its path."]
     TCP: Tcp { "control" => Tcp::Control, "post" => Tcp::Post });
 
 /// Number of a tool.
-pub const TOOL: Reader<u32> = whole32(1, u32::MAX, |value| whole(value, 1, u32::MAX.into()));
+pub const TOOL: SettingReader<u32> = whole32(1, u32::MAX, |value| whole(value, 1, u32::MAX.into()));
 
 /// Number of a program.
-pub const PROGRAM_NUMBER: Reader<u32> =
+pub const PROGRAM_NUMBER: SettingReader<u32> =
     whole32(0, u32::MAX, |value| whole(value, 0, u32::MAX.into()));
 
 /// How often a program is planned again.
-pub const ROUNDS: Reader<u32> = whole32(1, 100, |value| whole(value, 1, 100));
+pub const ROUNDS: SettingReader<u32> = whole32(1, 100, |value| whole(value, 1, 100));
 
 /// How many of something, at least one.
-pub const COUNT: Reader<u64> = Reader {
-    form: Form::Whole { least: 1, most: u64::MAX },
+pub const COUNT: SettingReader<u64> = SettingReader {
+    form: SettingForm::Whole { least: 1, most: u64::MAX },
     read: |value| whole(value, 1, u64::MAX),
 };
 
 /// A setting of the machine file, `NAME=VALUE`; what it means is the loader's business.
-pub const SETTING: Reader<Setting> = Reader::text(|value| Ok(Setting::Written(value.to_string())));
+pub const SETTING: SettingReader<Setting> =
+    SettingReader::text(|value| Ok(Setting::Written(value.to_string())));
 
 /// Any text.
-pub const NAME: Reader<String> = Reader::text(|value| Ok(value.to_string()));
+pub const NAME: SettingReader<String> = SettingReader::text(|value| Ok(value.to_string()));
 
 /// A word of CL files, in capitals.
-pub const CL_WORD: Reader<String> = Reader::text(cl_word);
+pub const CL_WORD: SettingReader<String> = SettingReader::text(cl_word);
 
 /// Revolutions a minute, or `off`.
-pub const SPINDLE: Reader<DefaultSpindle> = Reader::text(spindle);
+pub const SPINDLE: SettingReader<DefaultSpindle> = SettingReader::text(spindle);
 
 /// A feed, mm/min.
-pub const FEED: Reader<f64> = Reader::text(feed);
+pub const FEED: SettingReader<f64> = SettingReader::text(feed);
 
 /// A length of a tool, mm.
-pub const LENGTH: Reader<f64> = Reader::text(length);
+pub const LENGTH: SettingReader<f64> = SettingReader::text(length);
 
 /// An angle, degrees.
-pub const ANGLE: Reader<f64> = Reader::text(finite);
+pub const ANGLE: SettingReader<f64> = SettingReader::text(finite);
 
 /// A tolerance, above zero.
-pub const TOLERANCE: Reader<f64> = Reader::text(positive);
+pub const TOLERANCE: SettingReader<f64> = SettingReader::text(positive);
 
 /// Three coordinates, mm.
-pub const POINT: Reader<[f64; 3]> = Reader::text(point);
+pub const POINT: SettingReader<[f64; 3]> = SettingReader::text(point);
 
 /// A file, `-` for the standard streams.
-pub const FILE: Reader<PathArg> =
-    Reader { form: Form::Path, read: |value| Ok(PathArg::from(path(value))) };
+pub const FILE: SettingReader<PathArg> =
+    SettingReader { form: SettingForm::Path, read: |value| Ok(PathArg::from(path(value))) };
 
 /// A folder.
-pub const FOLDER: Reader<PathBuf> = Reader { form: Form::Path, read: |value| Ok(path(value)) };
+pub const FOLDER: SettingReader<PathBuf> =
+    SettingReader { form: SettingForm::Path, read: |value| Ok(path(value)) };
 
-const fn whole32(least: u32, most: u32, read: fn(&Value) -> Result<u32, String>) -> Reader<u32> {
-    Reader { form: Form::Whole { least: least as u64, most: most as u64 }, read }
+const fn whole32(
+    least: u32,
+    most: u32,
+    read: fn(&SettingValue) -> Result<u32, String>,
+) -> SettingReader<u32> {
+    SettingReader { form: SettingForm::Whole { least: least as u64, most: most as u64 }, read }
 }
 
-fn path(value: &Value) -> PathBuf {
+fn path(value: &SettingValue) -> PathBuf {
     match value {
-        Value::Path(path) => path.clone(),
+        SettingValue::Path(path) => path.clone(),
         other => other.to_string().into(),
     }
 }
 
 /// A whole number from `least` to `most`.
-fn whole<N: TryFrom<u64>>(value: &Value, least: u64, most: u64) -> Result<N, String> {
+fn whole<N: TryFrom<u64>>(value: &SettingValue, least: u64, most: u64) -> Result<N, String> {
     let text = value.to_string();
     let beyond = || format!("{text} is not in {least}..={most}");
     match text.parse::<i128>() {
@@ -209,7 +215,7 @@ fn whole<N: TryFrom<u64>>(value: &Value, least: u64, most: u64) -> Result<N, Str
 }
 
 /// A word of CL files, in capitals.
-fn cl_word(value: &Value) -> Result<String, String> {
+fn cl_word(value: &SettingValue) -> Result<String, String> {
     let text = value.to_string();
     let sign = |byte: u8| byte.is_ascii_alphanumeric() || b"_-.".contains(&byte);
     if text.starts_with(|first: char| first.is_ascii_alphabetic()) && text.bytes().all(sign) {
@@ -220,7 +226,7 @@ fn cl_word(value: &Value) -> Result<String, String> {
 }
 
 /// Revolutions a minute, or `off`.
-pub fn spindle(value: &Value) -> Result<DefaultSpindle, String> {
+pub fn spindle(value: &SettingValue) -> Result<DefaultSpindle, String> {
     if value.to_string().eq_ignore_ascii_case("off") {
         return Ok(DefaultSpindle::Still);
     }
@@ -231,12 +237,12 @@ pub fn spindle(value: &Value) -> Result<DefaultSpindle, String> {
 }
 
 /// Three coordinates: `X,Y,Z`, or a list.
-pub fn point(value: &Value) -> Result<[f64; 3], String> {
+pub fn point(value: &SettingValue) -> Result<[f64; 3], String> {
     let numbers: Vec<f64> = match value {
-        Value::List(values) => values.iter().map(finite).collect::<Result<_, _>>()?,
+        SettingValue::List(values) => values.iter().map(finite).collect::<Result<_, _>>()?,
         other => {
             let text = other.to_string();
-            let numbers = text.split(',').map(|number| finite(&Value::from(number.trim())));
+            let numbers = text.split(',').map(|number| finite(&SettingValue::from(number.trim())));
             numbers.collect::<Result<_, _>>()?
         }
     };
@@ -246,11 +252,11 @@ pub fn point(value: &Value) -> Result<[f64; 3], String> {
 }
 
 /// A number that is neither infinite nor no number.
-pub fn finite(value: &Value) -> Result<f64, String> {
+pub fn finite(value: &SettingValue) -> Result<f64, String> {
     let number = match value {
-        Value::Number(number) => Some(*number),
-        Value::Whole(number) => Some(*number as f64),
-        Value::Text(text) => text.parse().ok(),
+        SettingValue::Number(number) => Some(*number),
+        SettingValue::Whole(number) => Some(*number as f64),
+        SettingValue::Text(text) => text.parse().ok(),
         _ => None,
     };
     match number {
@@ -260,7 +266,7 @@ pub fn finite(value: &Value) -> Result<f64, String> {
 }
 
 /// A number from zero up.
-pub fn not_negative(value: &Value) -> Result<f64, String> {
+pub fn not_negative(value: &SettingValue) -> Result<f64, String> {
     match finite(value)? {
         number if number >= 0.0 => Ok(number),
         number => Err(format!("{number} is below zero")),
@@ -268,7 +274,7 @@ pub fn not_negative(value: &Value) -> Result<f64, String> {
 }
 
 /// A feed, mm/min.
-pub fn feed(value: &Value) -> Result<f64, String> {
+pub fn feed(value: &SettingValue) -> Result<f64, String> {
     let feed = positive(value)?;
     let [least, most] = limits::FEEDS;
     if (least..=most).contains(&feed) {
@@ -279,7 +285,7 @@ pub fn feed(value: &Value) -> Result<f64, String> {
 }
 
 /// A length from zero up, mm.
-pub fn length(value: &Value) -> Result<f64, String> {
+pub fn length(value: &SettingValue) -> Result<f64, String> {
     match not_negative(value)? {
         length if length <= limits::MOST_COORDINATE => Ok(length),
         length => Err(format!(
@@ -290,7 +296,7 @@ pub fn length(value: &Value) -> Result<f64, String> {
 }
 
 /// A time between two set-points, s: no control is faster, and none so slow.
-pub fn period(value: &Value) -> Result<f64, String> {
+pub fn period(value: &SettingValue) -> Result<f64, String> {
     match finite(value)? {
         number if (1e-5..=1.0).contains(&number) => Ok(number),
         number => Err(format!(
@@ -300,7 +306,7 @@ pub fn period(value: &Value) -> Result<f64, String> {
 }
 
 /// A number above zero.
-pub fn positive(value: &Value) -> Result<f64, String> {
+pub fn positive(value: &SettingValue) -> Result<f64, String> {
     match finite(value)? {
         number if number > 0.0 => Ok(number),
         number => Err(format!("{number} is not above zero")),

@@ -9,8 +9,8 @@ use post_readback::verify::BlockReport;
 
 use super::JobMachine;
 use super::nc_program::{self, ProgramFile};
-use super::read_back::{self, Held, Reading, VerifyWatch};
-use super::report::{Besides, ClWindow, MotionRows};
+use super::read_back::{self, ReadingSetup, VerifiedProgram, VerifyWatch};
+use super::report::{ClWindow, ExtraColumns, MotionRows};
 use super::result_files::ResultFiles;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
@@ -56,7 +56,7 @@ pub struct Verified {
     /// The machine with its settings.
     pub machine: Machine,
     /// What was found, and what is wrong.
-    pub held: Held,
+    pub held: VerifiedProgram,
     /// Largest deviations that are other than the machine file's: mm, radians.
     pub tolerances: [Option<f64>; 2],
     /// A text went to standard output.
@@ -79,7 +79,7 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
     let mut source = ClSource::new(session, &job.input, true)?;
     let map = request.map.as_ref().map(|map| (MAP, map));
     let mut texts = ResultFiles::create(session, map, request.summary.as_ref(), &request.report)?;
-    let reading = Reading {
+    let reading = ReadingSetup {
         session,
         arguments: job,
         machine: &machine,
@@ -97,16 +97,16 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
     let rows = match &texts.page {
         Some(_) => {
             let cl = ClWindow::of(job, &machine, &source)?;
-            let besides = Besides { deviations: true, ..Besides::default() };
+            let besides = ExtraColumns { deviations: true, ..ExtraColumns::default() };
             Some(MotionRows::new(&machine, Some(cl), besides)?)
         }
         None => None,
     };
     let map = texts.table.as_mut().map(|file| (JsonRows::default(), file));
-    let mut watch = Watch { map, rows };
+    let mut watch = VerifyOutputs { map, rows };
     let name = &program.name;
     let held = read_back::verify(&reading, &mut source, name, program.text()?, &mut watch)?;
-    let Watch { map, rows } = watch;
+    let VerifyOutputs { map, rows } = watch;
     if let Some((map, file)) = map {
         map.end(file)?;
     }
@@ -117,7 +117,7 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
     if let (Some(page), Some(rows)) = (&mut texts.page, rows) {
         let names = [&request.program, &job.input];
         let told = VerifyPage { session, machine: &machine, held: &held, names, tolerances };
-        told.write(rows, (&mut source, &program), request.report.most(), page)?;
+        told.write(rows, &mut source, &program, request.report.most(), page)?;
     }
     let texts = texts.all();
     let printed = texts.iter().any(AtomicFile::is_standard);
@@ -126,12 +126,12 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
 }
 
 /// What is made of the lines of the program while it is held against the CL file.
-struct Watch<'m, 'f> {
+struct VerifyOutputs<'m, 'f> {
     map: Option<(JsonRows, &'f mut AtomicFile)>,
     rows: Option<MotionRows<'m>>,
 }
 
-impl VerifyWatch for Watch<'_, '_> {
+impl VerifyWatch for VerifyOutputs<'_, '_> {
     fn done(&mut self, done: &BlockEffect) {
         if let Some(rows) = &mut self.rows {
             rows.take(done);

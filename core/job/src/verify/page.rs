@@ -7,18 +7,18 @@ use post_report::meta::{Maximum, Names, VerdictMeta};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
 use crate::nc_program::ProgramFile;
-use crate::read_back::Held;
-use crate::report::{self, Heard, MotionRows, Parts};
+use crate::read_back::VerifiedProgram;
+use crate::report::{self, LineFacts, MotionRows, Parts};
 use crate::session::Session;
 use crate::text::clock;
 
 /// What was found of a line.
-pub fn heard(row: &BlockReport) -> Heard {
-    Heard {
+pub fn heard(row: &BlockReport) -> LineFacts {
+    LineFacts {
         cl: row.cl_line.unwrap_or(0),
         deviation: [row.tip_deviation_mm, row.axis_deviation_deg],
         limit: row.limited_by.clone(),
-        ..Heard::default()
+        ..LineFacts::default()
     }
 }
 
@@ -29,7 +29,7 @@ pub struct VerifyPage<'a> {
     /// The machine with its settings.
     pub machine: &'a Machine,
     /// What was found.
-    pub held: &'a Held,
+    pub held: &'a VerifiedProgram,
     /// The program and the CL file.
     pub names: [&'a PathArg; 2],
     /// Over the machine's: mm, radians.
@@ -44,7 +44,8 @@ impl VerifyPage<'_> {
     pub fn write(
         &self,
         rows: MotionRows<'_>,
-        (source, program): (&mut ClSource, &ProgramFile),
+        source: &mut ClSource,
+        program: &ProgramFile,
         most: u64,
         page: &mut AtomicFile,
     ) -> Result<(), Failure> {

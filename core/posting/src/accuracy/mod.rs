@@ -26,6 +26,7 @@ pub use deviation::{MoveTolerances, NodeMove};
 pub use linearise::{LinearPiece, LineariseError, Lineariser};
 pub use node::{PathNode, PlacementError, Placer};
 pub use placed_batch::PlacedBatch;
-pub(crate) use printed_arc::PrintedArc;
+pub(crate) use printed_arc::{ArcDirection, PrintedArc};
 pub use run::NodeRun;
+pub(crate) use run::RunPosition;
 pub(crate) use word_frame::WordFrame;

@@ -23,6 +23,15 @@ const LEANS: f64 = 1e-2;
 /// An arc by its radius has its centre no nearer to the middle of its chord, in radii: there a radius says little of it.
 const WELL_KNOWN: f64 = 0.15;
 
+/// Which way an arc turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ArcDirection {
+    /// Which of X, Y, Z it turns about.
+    pub axis: usize,
+    /// 1.0: counter-clockwise seen against that axis; -1.0: clockwise.
+    pub sense: f64,
+}
+
 /// An arc about an axis of the words.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PrintedArc {
@@ -67,10 +76,11 @@ impl PrintedArc {
     /// Lays an arc from `start` to `end` about `centre`; ends that are one in the plane are a whole turn apart. None
     /// where an end lies on the centre.
     pub(crate) fn new(
-        (axis, sense): (usize, f64),
+        direction: ArcDirection,
         [start, end]: [Vector3<f64>; 2],
         centre: Vector3<f64>,
     ) -> Option<Self> {
+        let ArcDirection { axis, sense } = direction;
         let arms = [start, end].map(|end| in_plane(axis, end - centre));
         let radii = arms.map(|arm| arm.norm());
         if radii[0] < 1e-6 || radii[1] < 1e-6 {
@@ -106,10 +116,11 @@ impl PrintedArc {
     /// The centre of the arc of less than half a turn that has this radius. None where the ends are too far apart for it,
     /// or so far that the radius says little of the centre.
     pub(crate) fn centre_by_radius(
-        (axis, sense): (usize, f64),
+        direction: ArcDirection,
         [start, end]: [Vector3<f64>; 2],
         radius: f64,
     ) -> Option<Vector3<f64>> {
+        let ArcDirection { axis, sense } = direction;
         let chord = in_plane(axis, end - start);
         let length = chord.norm();
         let depth = libm::sqrt((radius * radius - length * length / 4.0).max(0.0));

@@ -29,7 +29,7 @@ pub struct NodeRun<'a> {
 
 /// A place on a run: a share of a leg.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct RunPosition {
+pub(crate) struct RunPosition {
     /// Which leg.
     pub leg: usize,
     /// Share of it, 0 to 1.

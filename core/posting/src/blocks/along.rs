@@ -12,7 +12,7 @@ use super::{
     AxisTravels, BlockKind, BlockReason, BlockSink, BlockStage, FollowTime, MotionBlock,
     NominalTime, PathLeg,
 };
-use crate::accuracy::{DeviationBound, PathNode, PrintedArc, WordFrame};
+use crate::accuracy::{ArcDirection, DeviationBound, PathNode, PrintedArc, WordFrame};
 use crate::configuration::{ChosenPoint, pose};
 use crate::curve::{CurveBlock, CurveMove, CurveMoves, CurveShape, CurveWords, PrintedCurve};
 use crate::program::{MoveFeed, PathArc, StraightMove};
@@ -112,7 +112,7 @@ impl BlockStage<'_> {
             CurveShape::Arc(arc) => {
                 let wanted = arc.placed(|point| point + lift, |direction| direction);
                 let whole = StraightMove { tip: curve.end.tip + lift, ..curve.end };
-                let Some(blocks) = self.arc_blocks(&frame, (&wanted, &whole)) else {
+                let Some(blocks) = self.arc_blocks(&frame, &wanted, &whole) else {
                     return false;
                 };
                 self.push_arc(&frame, line, &whole, blocks, out);
@@ -141,11 +141,12 @@ impl BlockStage<'_> {
     fn arc_blocks(
         &self,
         frame: &WordFrame<'_>,
-        (arc, end): (&PathArc, &StraightMove),
+        arc: &PathArc,
+        end: &StraightMove,
     ) -> Option<Vec<ArcBlock>> {
         let normal = frame.direction(arc.axis);
         let axis = normal.iamax();
-        let sense = libm::copysign(1.0, normal[axis]);
+        let direction = ArcDirection { axis, sense: libm::copysign(1.0, normal[axis]) };
         if self.compensating && axis != 2 {
             return None;
         }
@@ -153,15 +154,15 @@ impl BlockStage<'_> {
         let splits = [ArcSplit::Full, ArcSplit::Half, ArcSplit::Quadrant];
         let finer = splits.into_iter().skip_while(|split| *split != from);
         finer
-            .map(|split| self.cuts(frame, (axis, sense), arc, split))
-            .find_map(|cuts| self.arc_pieces(frame, (axis, sense), (arc, end), &cuts))
+            .map(|split| self.cuts(frame, direction, arc, split))
+            .find_map(|cuts| self.arc_pieces(frame, direction, arc, end, &cuts))
     }
 
     /// Shares of an arc at which its blocks end, 1 the last of them.
     fn cuts(
         &self,
         frame: &WordFrame<'_>,
-        (axis, sense): (usize, f64),
+        direction: ArcDirection,
         arc: &PathArc,
         split: ArcSplit,
     ) -> Vec<f64> {
@@ -179,6 +180,7 @@ impl BlockStage<'_> {
             let count = libm::ceil(arc.sweep / most - AT_ITS_END).max(1.0);
             return (1..=count as u32).map(|piece| f64::from(piece) / count).collect();
         }
+        let ArcDirection { axis, sense } = direction;
         let radial = frame.direction(arc.radial);
         let (x, y) = (radial[(axis + 1) % 3], radial[(axis + 2) % 3]);
         let from = sense * libm::atan2(y, x);
@@ -195,8 +197,9 @@ impl BlockStage<'_> {
     fn arc_pieces(
         &self,
         frame: &WordFrame<'_>,
-        (axis, sense): (usize, f64),
-        (arc, end): (&PathArc, &StraightMove),
+        direction: ArcDirection,
+        arc: &PathArc,
+        end: &StraightMove,
         cuts: &[f64],
     ) -> Option<Vec<ArcBlock>> {
         let mut pieces: Vec<ArcBlock> = Vec::with_capacity(cuts.len());
@@ -210,7 +213,7 @@ impl BlockStage<'_> {
             let wanted = arc
                 .piece(from, cut)
                 .placed(|point| frame.point(point), |direction| frame.direction(direction));
-            let piece = self.arc_block(frame, (axis, sense), &wanted, [before, &node])?;
+            let piece = self.arc_block(frame, direction, &wanted, [before, &node])?;
             pieces.push(ArcBlock { share: cut - from, ..piece });
             from = cut;
         }
@@ -221,12 +224,12 @@ impl BlockStage<'_> {
     fn arc_block(
         &self,
         frame: &WordFrame<'_>,
-        about: (usize, f64),
+        direction: ArcDirection,
         wanted: &PathArc,
         ends: [&PathNode; 2],
     ) -> Option<ArcBlock> {
         let off = |printed: &PrintedArc| printed.deviation(wanted);
-        let block = self.printed_arc(frame, about, wanted.centre, ends, off)?;
+        let block = self.printed_arc(frame, direction, wanted.centre, ends, off)?;
         let farthest = ends[0].axis_error.max(ends[1].axis_error);
         let bound = self.kept_bound(frame, block.off, farthest, 0.0, ends)?;
         Some(block.proven(bound))
@@ -237,13 +240,13 @@ impl BlockStage<'_> {
     pub(super) fn printed_arc(
         &self,
         frame: &WordFrame<'_>,
-        about: (usize, f64),
+        direction: ArcDirection,
         mut centre: Vector3<f64>,
         [from, node]: [&PathNode; 2],
         off: impl Fn(&PrintedArc) -> f64,
     ) -> Option<ArcBlock> {
         let mut ends = [frame.placer.printed(from)?, frame.placer.printed(node)?];
-        let (axis, sense) = about;
+        let ArcDirection { axis, sense } = direction;
         // A helix may have ended beside its words: the next arc begins there, and one given by its turn turns as much as
         // words say.
         let stands = frame.point(from.tip);
@@ -261,14 +264,14 @@ impl BlockStage<'_> {
                 // The length of a word is printed with the decimals of that word.
                 let across = (axis + 1) % 3;
                 let mut length = ends[0];
-                let radii = PrintedArc::new(about, ends, centre)?.radii;
+                let radii = PrintedArc::new(direction, ends, centre)?.radii;
                 length[across] = radii[0].midpoint(radii[1]);
                 let (word, printed) = frame.placer.printed_point(length)?;
-                let centre = PrintedArc::centre_by_radius(about, ends, printed[across])?;
+                let centre = PrintedArc::centre_by_radius(direction, ends, printed[across])?;
                 (centre, Some(word[across]))
             }
         };
-        let mut printed = PrintedArc::new(about, ends, centre)?;
+        let mut printed = PrintedArc::new(direction, ends, centre)?;
         // What the words say it differs by, the control sees.
         let mismatch = printed.mismatch();
         if by_turn {

@@ -11,7 +11,9 @@ use post_machine::description::ArcSplit;
 
 use super::along::ArcBlock;
 use super::{BlockSink, BlockStage, NominalTime, PathLeg};
-use crate::accuracy::{DeviationBound, PathNode, PrintedArc, WordFrame, arc_fit};
+use crate::accuracy::{
+    ArcDirection, DeviationBound, PathNode, PrintedArc, RunPosition, WordFrame, arc_fit,
+};
 
 /// Largest bulge (tangent of a quarter of the angle) of an arc: 340°, half a turn and a quarter.
 const BULGES: [f64; 3] = [11.430_052_302_761_343, 1.000_001, 0.414_213_562_373_095_1];
@@ -118,7 +120,11 @@ impl BlockStage<'_> {
                         self.nominal(&laid.legs[leg], &laid.nodes[leg], &laid.nodes[leg + 1])
                     });
                     let due: Vec<NominalTime> = due.collect();
-                    let nominal = NominalTime::between(&due, (0, 0.0), (due.len() - 1, 1.0));
+                    let nominal = NominalTime::between(
+                        &due,
+                        RunPosition { leg: 0, t: 0.0 },
+                        RunPosition { leg: due.len() - 1, t: 1.0 },
+                    );
                     self.push(leg, ends, nominal, bound, out);
                 }
             }
@@ -175,7 +181,8 @@ impl BlockStage<'_> {
             let (sense, centre) = arc_fit::by_bulge(axis, ends, least.midpoint(largest))?;
             let whole = |printed: &PrintedArc| printed.off_path(wanted, laid.tolerance);
             let ends = [&laid.nodes[at], &laid.nodes[end]];
-            let block = self.printed_arc(&laid.frame, (axis, sense), centre, ends, whole)?;
+            let direction = ArcDirection { axis, sense };
+            let block = self.printed_arc(&laid.frame, direction, centre, ends, whole)?;
             if split == 2 && crosses(&block.printed) {
                 return None;
             }

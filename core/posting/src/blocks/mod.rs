@@ -21,7 +21,7 @@ use post_machine::description::{Machine, Tcp};
 use post_plugin::{Capabilities, Format, ModelSession};
 
 use crate::accuracy::{
-    DeviationBound, Lineariser, NodeMove, NodeRun, PathNode, PlacedBatch, Placer,
+    DeviationBound, Lineariser, NodeMove, NodeRun, PathNode, PlacedBatch, Placer, RunPosition,
 };
 use crate::configuration::{ChoiceNote, ChosenPoint, pose};
 use crate::curve::CurvePolicy;
@@ -519,12 +519,12 @@ impl<'a> BlockStage<'a> {
                     due.push(self.nominal(leg, &pair[0], &pair[1]));
                 }
                 let mut from = nodes[0];
-                let (mut at, mut kept) = ((0, 0.0), 0);
+                let (mut at, mut kept) = (RunPosition { leg: 0, t: 0.0 }, 0);
                 for piece in linearise.pieces() {
                     let on_point = piece.to.t == 1.0;
                     kept += usize::from(on_point);
                     self.counts.points_added += u64::from(!on_point);
-                    let end = (piece.leg, piece.to.t);
+                    let end = RunPosition { leg: piece.leg, t: piece.to.t };
                     let nominal = NominalTime::between(&due, at, end);
                     let leg = PathLeg {
                         reason: if on_point { legs[piece.leg].reason } else { BlockReason::PutIn },

@@ -4,7 +4,7 @@ use post_machine::description::Machine;
 use post_machine::kinematics::{Joints, MAX_AXES};
 
 use super::{BlockStage, PathLeg};
-use crate::accuracy::PathNode;
+use crate::accuracy::{PathNode, RunPosition};
 use crate::program::MoveFeed;
 
 /// A tip that moves by no more than this stands still but for the rounding of the words, mm.
@@ -29,18 +29,15 @@ impl NominalTime {
         Self { minutes: self.minutes * share, ..self }
     }
 
-    /// What is due between two places of a run, each a leg and a share of it; `legs` has that of each leg.
-    pub(super) fn between(
-        legs: &[Self],
-        (first, from): (usize, f64),
-        (last, to): (usize, f64),
-    ) -> Self {
+    /// What is due between two places of a run; `legs` has that of each leg.
+    pub(super) fn between(legs: &[Self], from: RunPosition, to: RunPosition) -> Self {
+        let (first, last) = (from.leg, to.leg);
         if first == last {
-            return legs[first].share(to - from);
+            return legs[first].share(to.t - from.t);
         }
         let whole: f64 = legs[first + 1..last].iter().map(|leg| leg.minutes).sum();
         Self {
-            minutes: legs[first].minutes * (1.0 - from) + whole + legs[last].minutes * to,
+            minutes: legs[first].minutes * (1.0 - from.t) + whole + legs[last].minutes * to.t,
             moves: true,
         }
     }

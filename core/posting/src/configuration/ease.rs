@@ -6,7 +6,7 @@ use super::cycle_time::PathClock;
 use super::route::Route;
 use super::settle::SAME;
 use super::taut::{TubePoint, taut};
-use super::trellis::{self, ArrivalKind, CutChecker, HELD, Trellis, TrellisState, pose};
+use super::trellis::{self, ArrivalKind, CutChecker, CutEnd, HELD, Trellis, TrellisState, pose};
 use post_machine::kinematics::Joints;
 
 /// Shares of the room close to a pole that are tried under the rule `cycle-time`; with none, points on the pole alone are
@@ -142,8 +142,8 @@ impl Route<'_> {
             let through = judge.pieces(
                 &self.settings[at.setting].1,
                 &at.motion,
-                (&pose(&before.motion), &from),
-                (&pose(&at.motion), &to),
+                CutEnd { pose: &pose(&before.motion), joints: &from },
+                CutEnd { pose: &pose(&at.motion), joints: &to },
                 &mut pieces,
             );
             if !through && layer >= run.start && layer <= run.end {
@@ -228,8 +228,8 @@ impl Route<'_> {
             judge.passes(
                 &self.settings[at.setting].1,
                 &at.motion,
-                (&pose(&before.motion), &from),
-                (&pose(&at.motion), &to),
+                CutEnd { pose: &pose(&before.motion), joints: &from },
+                CutEnd { pose: &pose(&at.motion), joints: &to },
             )
         });
         judge.strict = false;

@@ -15,11 +15,11 @@ use crate::accuracy::{Lineariser, NodeMove, Placer};
 use crate::program::{MoveFeed, StraightMove};
 use post_machine::description::{Machine, Positions};
 use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::{Joints, Pose, Unreachable};
+use post_machine::kinematics::{Joints, Unreachable};
 
 use super::backtrace::Backtrace;
 use super::solution::SolutionSummary;
-use super::trellis::{CutChecker, Trellis};
+use super::trellis::{CutChecker, CutEnd, Trellis};
 
 /// A point of the path with the axis values that were chosen for it.
 #[derive(Clone, Debug)]
@@ -102,11 +102,10 @@ impl CutChecker for CutTrial<'_> {
         &mut self,
         placer: &Placer,
         motion: &StraightMove,
-        (from_pose, from): (&Pose, &Joints),
-        (to_pose, to): (&Pose, &Joints),
+        from: CutEnd<'_>,
+        to: CutEnd<'_>,
     ) -> bool {
-        let node = |pose: &Pose, joints: &Joints, t: f64| placer.settled(*pose, t, joints).ok();
-        let (Some(from), Some(to)) = (node(from_pose, from, 0.0), node(to_pose, to, 1.0)) else {
+        let (Some(from), Some(to)) = (from.node(placer, 0.0), to.node(placer, 1.0)) else {
             return false;
         };
         let loose = motion.pace == MoveFeed::Rapid;
@@ -129,13 +128,12 @@ impl CutTrial<'_> {
         &mut self,
         placer: &Placer,
         motion: &StraightMove,
-        (from_pose, from): (&Pose, &Joints),
-        (to_pose, to): (&Pose, &Joints),
+        from: CutEnd<'_>,
+        to: CutEnd<'_>,
         pieces: &mut Vec<(f64, Joints)>,
     ) -> bool {
         pieces.clear();
-        let node = |pose: &Pose, joints: &Joints, t: f64| placer.settled(*pose, t, joints).ok();
-        let (Some(from), Some(to)) = (node(from_pose, from, 0.0), node(to_pose, to, 1.0)) else {
+        let (Some(from), Some(to)) = (from.node(placer, 0.0), to.node(placer, 1.0)) else {
             return false;
         };
         let planned = NodeMove::planned(self.machine, placer, motion.chord, false, [&from, &to]);

@@ -6,7 +6,7 @@ use super::cost::PathCost;
 use super::cycle_time::{DriveLimits, PathClock};
 use super::metric::TravelMeasure;
 use super::solution::{AxisSolution, ChoiceAxes, SolutionSummary};
-use crate::accuracy::Placer;
+use crate::accuracy::{PathNode, Placer};
 use crate::program::{MoveFeed, StraightMove};
 use post_machine::description::{Machine, Pole, SHARE_AT_POLES};
 use post_machine::kinematics::orientation::{Branches, angle};
@@ -104,14 +104,38 @@ impl TransitionRange {
     }
 }
 
+/// An end of a cut.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CutEnd<'a> {
+    /// Where the tool is to be.
+    pub pose: &'a Pose,
+    /// Where the axes stand.
+    pub joints: &'a Joints,
+}
+
+impl CutEnd<'_> {
+    /// It as a node at share `t` of the cut; none if it cannot be placed there.
+    pub(super) fn node(&self, placer: &Placer, t: f64) -> Option<PathNode> {
+        placer.settled(*self.pose, t, self.joints).ok()
+    }
+}
+
+/// How a state of a layer is come to.
+#[derive(Clone, Copy)]
+struct Arrival {
+    /// The state before; none: from nowhere.
+    from: Option<usize>,
+    kind: ArrivalKind,
+}
+
 /// A cut from one of two states to another: does the machine come through, within tolerance?
 pub(crate) trait CutChecker {
     fn passes(
         &mut self,
         placer: &Placer,
         motion: &StraightMove,
-        from: (&Pose, &Joints),
-        to: (&Pose, &Joints),
+        from: CutEnd<'_>,
+        to: CutEnd<'_>,
     ) -> bool;
 }
 
@@ -387,11 +411,18 @@ impl Trellis {
         let first = self.states.len();
         for quarter in [0.0, 1.0, -1.0, 2.0] {
             if kind == ArrivalKind::First {
-                self.hold_from(placer, target, (None, kind), near, quarter, first);
+                self.hold_from(placer, target, Arrival { from: None, kind }, near, quarter, first);
             }
             for index in before.clone() {
                 if self.states[index].cost.is_way() {
-                    self.hold_from(placer, target, (Some(index), kind), near, quarter, first);
+                    self.hold_from(
+                        placer,
+                        target,
+                        Arrival { from: Some(index), kind },
+                        near,
+                        quarter,
+                        first,
+                    );
                 }
             }
             if self.states.len() > first {
@@ -404,11 +435,12 @@ impl Trellis {
         &mut self,
         placer: &Placer,
         target: &Pose,
-        (from, kind): (Option<usize>, ArrivalKind),
+        arrival: Arrival,
         near: &Joints,
         quarter: f64,
         first: usize,
     ) {
+        let Arrival { from, kind } = arrival;
         let before = from.map(|index| self.states[index]);
         let mut last = before.map_or(*near, |state| state.joints);
         if let Some(pole) = placer.solver().pole_joint() {
@@ -544,10 +576,15 @@ impl Trellis {
                 // Of the turns that the axes can reach, the nearest that they do reach.
                 let mut tried: Vec<Joints> = carried.into_iter().collect();
                 self.axes.other_turns(stand, &state.joints, &mut |joints| tried.push(*joints));
-                let from = (&from_pose, &state.joints);
+                let from = CutEnd { pose: &from_pose, joints: &state.joints };
                 let found = tried.into_iter().find_map(|mut joints| {
                     (self.axes.stand_still(&state.joints, &mut joints)
-                        && judge.passes(placer, motion, from, (&target, &joints)))
+                        && judge.passes(
+                            placer,
+                            motion,
+                            from,
+                            CutEnd { pose: &target, joints: &joints },
+                        ))
                     .then_some(joints)
                 });
                 if let Some(joints) = found {

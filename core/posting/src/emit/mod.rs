@@ -25,7 +25,7 @@ use crate::stream::StreamItem;
 use cycles::{CommandedCycle, CycleWordPlaces};
 pub(crate) use extremes::Extremes;
 use state::{
-    ClampState, CompensationState, CoolantState, PlaneState, SmoothingState, SpindleState,
+    ClampState, CompensationState, CoolantState, PlaneState, ProgramSpindle, SmoothingState,
 };
 use texts::ProgramTexts;
 use writer::EventWriter;
@@ -45,7 +45,7 @@ pub(crate) struct EmitStage<'a> {
     words: AxisWords,
     /// The tool is retracted, and nothing is in force that a first position puts in force.
     clear: bool,
-    spindle: SpindleState,
+    spindle: ProgramSpindle,
     coolant: CoolantState,
     plane: PlaneState,
     /// The cycle in force.
@@ -93,7 +93,7 @@ impl<'a> EmitStage<'a> {
             words,
             clear: false,
             clamps: ClampState::default(),
-            spindle: SpindleState::default(),
+            spindle: ProgramSpindle::default(),
             coolant: CoolantState::default(),
             plane: PlaneState::default(),
             cycle: None,

@@ -9,7 +9,7 @@ use crate::blocks::MotionBlock;
 
 /// The spindle.
 #[derive(Default)]
-pub(super) struct SpindleState {
+pub(super) struct ProgramSpindle {
     /// It was switched on since the last tool change.
     pub turning: bool,
     /// What the CL file last said of it.

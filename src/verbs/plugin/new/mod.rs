@@ -13,7 +13,7 @@ use post_cli::terminal::print;
 use post_job::failure::Failure;
 use post_job::plugin_finder::built_in;
 use post_job::session::Session;
-use starter::{File, Form};
+use starter::{StarterFile, StarterLanguage};
 
 /// Longest name: it stands in file names, in a symbol and in machine files.
 const LONGEST: usize = 40;
@@ -33,7 +33,7 @@ const CRATES: [&str; 3] = ["iso", "kit", "plugin"];
 
 Exit codes: 0 the folder is written; 1 refused, the messages say why; 2 the command line is wrong."
 )]
-pub struct NewArguments {
+pub struct NewPluginArguments {
     /// Name of the dialect, with a folder in front if it shall not stand here: writes the folder NAME.
     #[arg(value_name = "NAME")]
     name: PathBuf,
@@ -52,13 +52,13 @@ pub struct NewArguments {
 }
 
 /// Does as the arguments say.
-pub fn run(session: &Session, arguments: &NewArguments) -> Result<(), Failure> {
+pub fn run(session: &Session, arguments: &NewPluginArguments) -> Result<(), Failure> {
     let folder = &arguments.name;
     let name = name(folder)?;
     let form = match (arguments.rust, arguments.iso) {
-        (true, _) => Form::Rust,
-        (_, true) => Form::Iso,
-        _ => Form::C,
+        (true, _) => StarterLanguage::Rust,
+        (_, true) => StarterLanguage::Iso,
+        _ => StarterLanguage::C,
     };
     let files = starter::files(form, name);
     if let Err(error) = fs::create_dir(folder) {
@@ -131,7 +131,7 @@ fn no_folder(folder: &Path, error: &io::Error) -> Diagnostic {
     }
 }
 
-fn write(folder: &Path, files: &[File]) -> Result<(), (PathBuf, io::Error)> {
+fn write(folder: &Path, files: &[StarterFile]) -> Result<(), (PathBuf, io::Error)> {
     for file in files {
         let path = folder.join(&file.path);
         write_file(&path, &file.text).map_err(|error| (path, error))?;

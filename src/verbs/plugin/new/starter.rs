@@ -14,7 +14,7 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// What a dialect is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
+pub enum StarterLanguage {
     /// Rust, on the contract alone.
     Rust,
     /// Rust, a table of the G-code family.
@@ -25,23 +25,23 @@ pub enum Form {
 
 /// A file of the folder.
 #[derive(Debug)]
-pub struct File {
+pub struct StarterFile {
     /// Where it stands in the folder.
     pub path: String,
     /// All of it.
     pub text: String,
 }
 
-fn file(path: &str, text: impl Into<String>) -> File {
-    File { path: path.to_owned(), text: text.into() }
+fn file(path: &str, text: impl Into<String>) -> StarterFile {
+    StarterFile { path: path.to_owned(), text: text.into() }
 }
 
 /// What builds the library, tests it and posts the sample, in the folder.
-pub fn commands(form: Form, name: &str) -> [String; 3] {
+pub fn commands(form: StarterLanguage, name: &str) -> [String; 3] {
     let library = format!("{DLL_PREFIX}post_{name}{DLL_SUFFIX}");
     let (build, folder) = match form {
-        Form::Rust | Form::Iso => ("cargo build --release", "target/release"),
-        Form::C => ("make", "."),
+        StarterLanguage::Rust | StarterLanguage::Iso => ("cargo build --release", "target/release"),
+        StarterLanguage::C => ("make", "."),
     };
     [
         build.to_owned(),
@@ -51,7 +51,7 @@ pub fn commands(form: Form, name: &str) -> [String; 3] {
 }
 
 /// All files of the folder.
-pub fn files(form: Form, name: &str) -> Vec<File> {
+pub fn files(form: StarterLanguage, name: &str) -> Vec<StarterFile> {
     let named = |text: &str| text.replace("NAME", name);
     let mut files = vec![
         file("README.md", read_me(form, name)),
@@ -59,7 +59,7 @@ pub fn files(form: Form, name: &str) -> Vec<File> {
         file("sample.cls", include_str!("templates/sample.cls")),
         file(".gitignore", "/target\n*.so\n*.dylib\n*.dll\nsample.nc\n"),
     ];
-    if form == Form::C {
+    if form == StarterLanguage::C {
         let source = examples::MINIMAL_C.replace("minimal", name);
         files.extend([
             file("dialect.c", source.replace(&format!("{name}.c"), "dialect.c")),
@@ -69,7 +69,7 @@ pub fn files(form: Form, name: &str) -> Vec<File> {
         return files;
     }
     let (example, exported) = match form {
-        Form::Iso => (examples::GCODE, "gcode"),
+        StarterLanguage::Iso => (examples::GCODE, "gcode"),
         _ => (examples::TINY, "tiny"),
     };
     let source = example
@@ -90,15 +90,15 @@ pub fn files(form: Form, name: &str) -> Vec<File> {
 const KIT: &str = "post-kit";
 
 /// The crates that a dialect of this form depends on.
-fn used(form: Form) -> &'static [&'static str] {
+fn used(form: StarterLanguage) -> &'static [&'static str] {
     match form {
-        Form::Rust => &["post-plugin"],
-        Form::Iso => &["post-iso", "post-plugin"],
-        Form::C => &[],
+        StarterLanguage::Rust => &["post-plugin"],
+        StarterLanguage::Iso => &["post-iso", "post-plugin"],
+        StarterLanguage::C => &[],
     }
 }
 
-fn manifest(form: Form, name: &str) -> String {
+fn manifest(form: StarterLanguage, name: &str) -> String {
     let line = |krate: &str| match SOURCES {
         [] => format!("{krate} = \"{VERSION}\""),
         _ => format!("{krate} = {{ path = \"vendor/{krate}\" }}"),
@@ -111,7 +111,7 @@ fn manifest(form: Form, name: &str) -> String {
 }
 
 /// A crate beside the dialect.
-fn vendor(krate: &str, sources: &[(&str, &str)], files: &mut Vec<File>) {
+fn vendor(krate: &str, sources: &[(&str, &str)], files: &mut Vec<StarterFile>) {
     let mut manifest = format!(
         "[package]\nname = \"{krate}\"\nversion = \"{VERSION}\"\nedition = \"2024\"\nrust-version = \"{}\"\n\
          license = \"{}\"\n",
@@ -134,15 +134,15 @@ fn vendor(krate: &str, sources: &[(&str, &str)], files: &mut Vec<File>) {
     files.extend(sources.map(|(path, text)| file(&format!("{folder}/{path}"), *text)));
 }
 
-fn read_me(form: Form, name: &str) -> String {
+fn read_me(form: StarterLanguage, name: &str) -> String {
     let [build, test, post] = commands(form, name);
     let own: &[[&str; 2]] = match form {
-        Form::C => &[
+        StarterLanguage::C => &[
             ["`dialect.c`", "the dialect"],
             ["`post_plugin.h`", "the contract, with all events and what they carry"],
             ["`Makefile`", "builds the library; `make test` tries it"],
         ],
-        Form::Rust | Form::Iso => &[
+        StarterLanguage::Rust | StarterLanguage::Iso => &[
             ["`src/lib.rs`", "the dialect"],
             ["`tests/job.rs`", "a test of what it writes: `cargo test`"],
             [

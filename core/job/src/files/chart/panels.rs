@@ -1,7 +1,7 @@
 //! Several plots over one axis.
 
 use super::Series;
-use super::plot::{Area, LEFT, ROW, TOP, WIDTH, columns_of, legend, titles, width};
+use super::plot::{LEFT, PlotArea, ROW, TOP, WIDTH, columns_of, legend, titles, width};
 use crate::files::scale::Scale;
 use crate::files::svg::{self, label, upright};
 
@@ -65,7 +65,7 @@ impl Panels {
                 true => Scale::decades(ups),
                 false => Scale::new(ups, (panel.height / 40.0).max(2.0), true),
             };
-            let area = Area { top, height: panel.height };
+            let area = PlotArea { top, height: panel.height };
             area.plot(&mut svg, [&x, &y], &panel.series, last);
             upright(&mut svg, [18.0, top + panel.height / 2.0], &panel.y);
             top += panel.height + GAP;

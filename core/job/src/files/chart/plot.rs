@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Draw, Look, Marker, Series};
+use super::{Draw, LineStyle, Marker, Series};
 use crate::files::scale::Scale;
 use crate::files::svg::{label, line};
 
@@ -52,12 +52,12 @@ pub(super) fn legend(svg: &mut String, named: &[&Series], bottom: f64) {
 }
 
 /// Where a plot stands in its picture, px.
-pub(super) struct Area {
+pub(super) struct PlotArea {
     pub top: f64,
     pub height: f64,
 }
 
-impl Area {
+impl PlotArea {
     /// Frame, ticks and curves; what goes across is numbered if it is said.
     pub fn plot(&self, svg: &mut String, [x, y]: [&Scale; 2], series: &[Series], numbered: bool) {
         self.axes(svg, x, y, numbered);
@@ -131,7 +131,7 @@ fn draw(svg: &mut String, what: &Draw, index: usize, place: impl Fn([f64; 2]) ->
     }
 }
 
-fn polyline(svg: &mut String, places: &[[f64; 2]], look: &Look) {
+fn polyline(svg: &mut String, places: &[[f64; 2]], look: &LineStyle) {
     let mut points = String::new();
     for [x, y] in places {
         let _ = write!(points, "{x:.2},{y:.2} ");

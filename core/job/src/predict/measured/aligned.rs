@@ -7,8 +7,8 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES};
 use post_motion::measured::{Alignment, AlignmentFault, AxisTrack, align};
 
-use super::columns::{Columns, Content};
-use super::log::Which;
+use super::columns::{Columns, LogContent};
+use super::log::LoggedPosition;
 use super::overlay::{MOVES, Overlay};
 use super::units::UNITS;
 use crate::failure::Failure;
@@ -26,8 +26,8 @@ const SAME_RATIO: f64 = 0.03;
 /// By what was commanded, where the log has it, else by where an axis was.
 pub(super) fn aligned(overlay: &Overlay, machine: &Machine) -> Result<Alignment, Failure> {
     let log = &overlay.log;
-    let commanded = log.axes(Which::Commanded);
-    let actual = log.axes(Which::Actual).into_iter();
+    let commanded = log.axes(LoggedPosition::Commanded);
+    let actual = log.axes(LoggedPosition::Actual).into_iter();
     let only_actual: Vec<usize> = actual.filter(|axis| !commanded.contains(axis)).collect();
     let axes = [&commanded[..], &only_actual].concat();
     let predicted = match commanded.is_empty() {
@@ -136,7 +136,7 @@ fn ranges(track: &AxisTrack) -> Joints {
 /// The unit by which the ranges of an axis would be the same.
 fn units(machine: &Machine, columns: &Columns, [wanted, logged]: [Joints; 2]) -> Option<String> {
     columns.read.iter().find_map(|column| {
-        let (Content::Commanded(place) | Content::Actual(place)) = column.content else {
+        let (LogContent::Commanded(place) | LogContent::Actual(place)) = column.content else {
             return None;
         };
         let ratio = wanted[place] / logged[place];

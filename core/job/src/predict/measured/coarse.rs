@@ -6,7 +6,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::MAX_AXES;
 use post_motion::measured::DifferenceSum;
 
-use super::log::{Log, Which};
+use super::log::{Log, LoggedPosition};
 use crate::text::number;
 
 /// So many set-points are put between two rows at most.
@@ -40,7 +40,7 @@ pub(super) fn doubt(
     for place in axis_words::order(machine) {
         let axis = &machine.axes[place];
         let most = between[place].most.abs() / axis.unit();
-        if log.has[Which::Commanded as usize][place] && most > MATTERS {
+        if log.has[LoggedPosition::Commanded as usize][place] && most > MATTERS {
             let most = number(most, 4);
             axes.push(format!("{} {most} {}", axis.name, axis.unit_name()));
         }

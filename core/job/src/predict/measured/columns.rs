@@ -3,14 +3,14 @@
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
-use super::units::{self, Kind, LogUnits, Unit};
+use super::units::{self, LogUnits, QuantityKind, Unit};
 
 /// So many columns are told by name.
 const MOST_TOLD: usize = 40;
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Content {
+pub enum LogContent {
     /// The time.
     Time,
     /// Where an axis, by its place in the chain, was commanded.
@@ -19,15 +19,15 @@ pub enum Content {
     Actual(usize),
 }
 
-impl Content {
+impl LogContent {
     /// What its unit is of.
-    fn kind(self, machine: &Machine) -> Kind {
+    fn kind(self, machine: &Machine) -> QuantityKind {
         match self {
-            Self::Time => Kind::Time,
+            Self::Time => QuantityKind::Time,
             Self::Commanded(place) | Self::Actual(place) => {
                 match machine.axes[place].joint.rotary {
-                    true => Kind::Angle,
-                    false => Kind::Length,
+                    true => QuantityKind::Angle,
+                    false => QuantityKind::Length,
                 }
             }
         }
@@ -67,13 +67,13 @@ pub fn column_names(text: &str) -> Result<ColumnNames, String> {
 
 /// A column that is read.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Column {
+pub struct LogColumn {
     /// Its place, counted from 0.
     pub place: usize,
     /// Its name in the head, else its number from 1.
     pub name: String,
     /// What it holds.
-    pub content: Content,
+    pub content: LogContent,
     /// What it counts in.
     pub unit: Unit,
 }
@@ -82,14 +82,14 @@ pub struct Column {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
     /// Those that are read.
-    pub read: Vec<Column>,
+    pub read: Vec<LogColumn>,
     /// Names of those that are not, where they have names.
     pub unread: Vec<String>,
 }
 
 /// What is known of a log's columns.
 #[derive(Clone, Copy, Debug)]
-pub struct Head<'a> {
+pub struct LogHead<'a> {
     /// Their names, as many as there are columns; empty if they have none.
     pub names: &'a [String],
     /// A row of units below the names; empty if there is none.
@@ -98,7 +98,7 @@ pub struct Head<'a> {
     pub count: usize,
 }
 
-impl Head<'_> {
+impl LogHead<'_> {
     fn name(&self, place: usize) -> String {
         let number = || (place + 1).to_string();
         self.names.get(place).cloned().unwrap_or_else(number)
@@ -115,7 +115,7 @@ impl Columns {
         machine: &Machine,
         names: Option<&ColumnNames>,
         units: LogUnits,
-        head: Head<'_>,
+        head: LogHead<'_>,
         even: bool,
     ) -> Result<Self, Box<Diagnostic>> {
         let asks = |message: String| asks_for_columns(message, machine, head);
@@ -127,12 +127,12 @@ impl Columns {
             None => known(machine, head.names),
         };
         if even {
-            if names.is_some() && contents.iter().any(|(_, content)| *content == Content::Time) {
+            if names.is_some() && contents.iter().any(|(_, content)| *content == LogContent::Time) {
                 let message = "--columns names the time, and --log-period says that rows lie at even distances in time";
                 let help = "keep one of both";
                 return Err(Diagnostic::error("log-columns", message).help(help).boxed());
             }
-            contents.retain(|(_, content)| *content != Content::Time);
+            contents.retain(|(_, content)| *content != LogContent::Time);
         }
         for (index, (place, content)) in contents.iter().enumerate() {
             let mut others = contents[..index].iter();
@@ -145,7 +145,7 @@ impl Columns {
                 )));
             }
         }
-        let is_time = |(_, content): &(usize, Content)| *content == Content::Time;
+        let is_time = |(_, content): &(usize, LogContent)| *content == LogContent::Time;
         if contents.iter().all(is_time) {
             return Err(asks(
                 "no column of the log is known to hold an axis of the machine".to_owned(),
@@ -161,14 +161,14 @@ impl Columns {
             return Err(asks);
         }
         let read = contents.iter().map(|(place, content)| {
-            Ok(Column {
+            Ok(LogColumn {
                 place: *place,
                 name: head.name(*place),
                 content: *content,
                 unit: unit(machine, *content, *place, units, head)?,
             })
         });
-        let read: Vec<Column> = read.collect::<Result<_, Box<Diagnostic>>>()?;
+        let read: Vec<LogColumn> = read.collect::<Result<_, Box<Diagnostic>>>()?;
         let names = head.names.iter().enumerate();
         let unread = names.filter(|(place, _)| read.iter().all(|column| column.place != *place));
         Ok(Self { unread: unread.map(|(_, name)| name.clone()).collect(), read })
@@ -179,8 +179,8 @@ impl Columns {
 fn told(
     machine: &Machine,
     names: &ColumnNames,
-    head: Head<'_>,
-) -> Result<Vec<(usize, Content)>, Box<Diagnostic>> {
+    head: LogHead<'_>,
+) -> Result<Vec<(usize, LogContent)>, Box<Diagnostic>> {
     let mut contents = Vec::new();
     for (what, column) in &names.0 {
         let Some(content) = content(machine, what) else {
@@ -222,23 +222,23 @@ fn told(
 }
 
 /// `t`, `X` for the commanded position of X, `X'` for the actual one.
-fn content(machine: &Machine, what: &str) -> Option<Content> {
+fn content(machine: &Machine, what: &str) -> Option<LogContent> {
     if matches!(what, "t" | "time") {
-        return Some(Content::Time);
+        return Some(LogContent::Time);
     }
     let place = |name: &str| {
         let mut axes = machine.axes.iter();
         axes.position(|axis| axis.name.eq_ignore_ascii_case(name))
     };
     match what.strip_suffix('\'') {
-        Some(name) => place(name).map(Content::Actual),
-        None => place(what).map(Content::Commanded),
+        Some(name) => place(name).map(LogContent::Actual),
+        None => place(what).map(LogContent::Commanded),
     }
 }
 
 /// Of the names in a log's head those that are known: `time`, `t_ms`, `X`, `x_cmd`, `commanded_X`, `X'`, `X_actual`, with
 /// or without a unit in brackets behind them.
-fn known(machine: &Machine, names: &[String]) -> Vec<(usize, Content)> {
+fn known(machine: &Machine, names: &[String]) -> Vec<(usize, LogContent)> {
     const COMMANDED: [&str; 5] = ["cmd", "command", "commanded", "set", "setpoint"];
     const ACTUAL: [&str; 4] = ["act", "actual", "fb", "feedback"];
     let mut contents = Vec::new();
@@ -246,7 +246,7 @@ fn known(machine: &Machine, names: &[String]) -> Vec<(usize, Content)> {
         let (name, _) = split_unit(name);
         let name = name.to_ascii_lowercase();
         if matches!(name.as_str(), "t" | "time" | "timestamp") || unit_of_time(&name).is_some() {
-            contents.push((column, Content::Time));
+            contents.push((column, LogContent::Time));
             continue;
         }
         if let Some(content) = content(machine, &name) {
@@ -259,11 +259,11 @@ fn known(machine: &Machine, names: &[String]) -> Vec<(usize, Content)> {
         };
         for (axis, which) in [(one, other), (other, one)] {
             match content(machine, axis) {
-                Some(Content::Commanded(place)) if COMMANDED.contains(&which) => {
-                    contents.push((column, Content::Commanded(place)));
+                Some(LogContent::Commanded(place)) if COMMANDED.contains(&which) => {
+                    contents.push((column, LogContent::Commanded(place)));
                 }
-                Some(Content::Commanded(place)) if ACTUAL.contains(&which) => {
-                    contents.push((column, Content::Actual(place)));
+                Some(LogContent::Commanded(place)) if ACTUAL.contains(&which) => {
+                    contents.push((column, LogContent::Actual(place)));
                 }
                 _ => {}
             }
@@ -283,17 +283,17 @@ fn split_unit(name: &str) -> (&str, Option<&str>) {
 /// Of `t_ms`, `time_s`: what the name says that it counts in.
 fn unit_of_time(name: &str) -> Option<Unit> {
     let (time, unit) = name.split_once('_')?;
-    let unit = units::named(unit).filter(|unit| unit.kind == Kind::Time);
+    let unit = units::named(unit).filter(|unit| unit.kind == QuantityKind::Time);
     unit.filter(|_| matches!(time, "t" | "time"))
 }
 
 /// What a column counts in: as the command line says, else as the head does.
 fn unit(
     machine: &Machine,
-    content: Content,
+    content: LogContent,
     place: usize,
     units: LogUnits,
-    head: Head<'_>,
+    head: LogHead<'_>,
 ) -> Result<Unit, Box<Diagnostic>> {
     let kind = content.kind(machine);
     if let Some(unit) = units.of(kind) {
@@ -319,7 +319,7 @@ fn unit(
     })
 }
 
-fn asks_for_columns(message: String, machine: &Machine, head: Head<'_>) -> Box<Diagnostic> {
+fn asks_for_columns(message: String, machine: &Machine, head: LogHead<'_>) -> Box<Diagnostic> {
     let axis = machine.axes.first().map_or("X", |axis| axis.name.as_str());
     let mut help = format!(
         "--columns \"t=COLUMN,{axis}=COLUMN,{axis}'=COLUMN\": time, {axis} commanded and {axis} actual, by name or by number from 1"

@@ -10,11 +10,11 @@ use post_motion::servo::Servos;
 use super::coarse;
 use super::logged_path::{BATCH, LoggedPath, MeasuredPoint};
 use super::overlay::{MOVES, Overlay, UNKNOWN};
-use super::report::{AxisLaid, ContourLaid, Left};
+use super::report::{AxisLaid, ContourLaid, RemainingDifference};
 use crate::failure::Failure;
 
 /// What is compared, and what has come of it so far.
-pub(super) struct Compared<'a> {
+pub(super) struct LogComparison<'a> {
     overlay: &'a Overlay,
     alignment: &'a Alignment,
     servos: Servos,
@@ -34,7 +34,7 @@ pub(super) struct Compared<'a> {
     contours: [DifferenceSum; 3],
 }
 
-impl<'a> Compared<'a> {
+impl<'a> LogComparison<'a> {
     pub fn new(
         overlay: &'a Overlay,
         machine: &Machine,
@@ -43,7 +43,7 @@ impl<'a> Compared<'a> {
         let log = &overlay.log;
         let (track, axes) = match log.commanded.joints.is_empty() {
             false => (&log.commanded, log.both()),
-            true => (&log.actual, log.axes(super::log::Which::Actual)),
+            true => (&log.actual, log.axes(super::log::LoggedPosition::Actual)),
         };
         let steps = coarse::steps(machine, log);
         let period = track.period / steps as f64;
@@ -202,7 +202,7 @@ impl<'a> Compared<'a> {
             .map(|place| {
                 let axis = &machine.axes[place];
                 let [commanded, actual, measured, predicted, following] =
-                    self.sums[place].map(|sum| Left::of(&sum, axis.unit()));
+                    self.sums[place].map(|sum| RemainingDifference::of(&sum, axis.unit()));
                 AxisLaid {
                     name: axis.name.clone(),
                     unit: axis.unit_name(),
@@ -214,7 +214,7 @@ impl<'a> Compared<'a> {
                     following_predicted: predicted,
                     following,
                     between_rows: between
-                        .and_then(|between| Left::of(&between[place], axis.unit())),
+                        .and_then(|between| RemainingDifference::of(&between[place], axis.unit())),
                 }
             })
             .collect()
@@ -222,7 +222,8 @@ impl<'a> Compared<'a> {
 
     /// What is left of the contour error.
     pub fn contour(&self) -> Option<ContourLaid> {
-        let [measured, predicted, difference] = self.contours.map(|sum| Left::of(&sum, 1.0));
+        let [measured, predicted, difference] =
+            self.contours.map(|sum| RemainingDifference::of(&sum, 1.0));
         Some(ContourLaid { measured: measured?, predicted: predicted?, difference: difference? })
     }
 }

@@ -8,7 +8,7 @@ use post_motion::measured::AxisTrack;
 
 use super::clock::Clock;
 use super::columns::{ColumnNames, Columns};
-use super::rows::Rows;
+use super::rows::LogReader;
 use super::units::LogUnits;
 use crate::failure::Failure;
 use crate::files::FileFault;
@@ -59,7 +59,7 @@ impl Log {
         name: &str,
         input: impl Read,
     ) -> Result<Self, Failure> {
-        let mut rows = Rows::new(machine, form, name);
+        let mut rows = LogReader::new(machine, form, name);
         let mut input = BufReader::new(input);
         let mut bytes = Vec::new();
         loop {
@@ -87,7 +87,7 @@ impl Log {
     }
 
     /// Places of the axes whose commanded position it has, or the actual one.
-    pub fn axes(&self, which: Which) -> Vec<usize> {
+    pub fn axes(&self, which: LoggedPosition) -> Vec<usize> {
         let has = &self.has[which as usize];
         (0..MAX_AXES).filter(|place| has[*place]).collect()
     }
@@ -101,7 +101,7 @@ impl Log {
 
 /// One of the two positions of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Which {
+pub enum LoggedPosition {
     /// Where it was commanded.
     Commanded,
     /// Where it was.

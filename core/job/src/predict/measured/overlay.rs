@@ -15,8 +15,8 @@ use post_motion::measured::AxisTrack;
 
 use super::aligned;
 use super::coarse;
-use super::compare::Compared;
-use super::log::{Log, Which};
+use super::compare::LogComparison;
+use super::log::{Log, LoggedPosition};
 use super::logged_path::MeasuredPoint;
 use super::report::{ColumnRead, MeasuredFound};
 use crate::failure::Failure;
@@ -96,7 +96,7 @@ impl Overlay {
         if let Some(between) = &between {
             coarse::doubt(machine, log, between, findings);
         }
-        let mut compared = Compared::new(self, machine, &alignment)?;
+        let mut compared = LogComparison::new(self, machine, &alignment)?;
         compared.run(chains, listen);
         let columns = log.columns.read.iter().map(|column| ColumnRead {
             column: column.name.clone(),
@@ -129,7 +129,7 @@ impl Overlay {
 
     /// From the first commanded motion to the last: in the log, and as predicted.
     fn motion(&self) -> Option<[f64; 2]> {
-        let axes = self.log.axes(Which::Commanded);
+        let axes = self.log.axes(LoggedPosition::Commanded);
         let logged = aligned::moving(&self.log.commanded, &axes, false)?;
         Some([logged, aligned::moving(&self.commanded, &axes, true)?])
     }

@@ -75,18 +75,18 @@ pub struct AxisLaid {
     /// What the log counts more than the prediction; it is taken off.
     pub zero: f64,
     /// Commanded position: predicted minus logged, at the same time.
-    pub commanded: Option<Left>,
+    pub commanded: Option<RemainingDifference>,
     /// Actual position: predicted minus logged, at the same time.
-    pub actual: Option<Left>,
+    pub actual: Option<RemainingDifference>,
     /// Commanded minus actual position, as logged; of a log without commanded positions those of the prediction are taken.
-    pub following_measured: Option<Left>,
+    pub following_measured: Option<RemainingDifference>,
     /// The same, as the servo of the machine file follows the commanded positions of the log.
-    pub following_predicted: Option<Left>,
+    pub following_predicted: Option<RemainingDifference>,
     /// The latter minus the former: what the servo's description is wrong by, whatever was commanded.
-    pub following: Option<Left>,
+    pub following: Option<RemainingDifference>,
     /// Commanded position between rows that are further apart than set-points of the control: about how far the cubic lies
     /// beside it that is put there. None if the rows are no further apart.
-    pub between_rows: Option<Left>,
+    pub between_rows: Option<RemainingDifference>,
 }
 
 /// The contour error of the log, in cuts, and what the servos make of its commanded positions (of a log without, of the
@@ -94,16 +94,16 @@ pub struct AxisLaid {
 #[derive(Clone, Debug, Serialize)]
 pub struct ContourLaid {
     /// As measured.
-    pub measured: Left,
+    pub measured: RemainingDifference,
     /// As predicted from the commanded positions of the log.
-    pub predicted: Left,
+    pub predicted: RemainingDifference,
     /// Predicted minus measured.
-    pub difference: Left,
+    pub difference: RemainingDifference,
 }
 
 /// A difference over time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Left {
+pub struct RemainingDifference {
     /// The one of the largest size, with its sign.
     pub most: f64,
     /// When that was.
@@ -114,7 +114,7 @@ pub struct Left {
     pub mean: f64,
 }
 
-impl Left {
+impl RemainingDifference {
     /// In another unit; none of none.
     pub fn of(difference: &DifferenceSum, unit: f64) -> Option<Self> {
         (difference.count > 0).then(|| Self {

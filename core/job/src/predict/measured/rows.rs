@@ -8,7 +8,7 @@ use post_machine::kinematics::{Joints, MAX_AXES};
 use post_motion::measured::AxisTrack;
 
 use super::clock::Clock;
-use super::columns::{Column, Columns, Content, Head};
+use super::columns::{Columns, LogColumn, LogContent, LogHead};
 use super::log::{Log, LogForm};
 use super::table::{Separator, decimals};
 use super::units;
@@ -30,7 +30,7 @@ struct HeadLine {
 }
 
 /// How the rows look.
-struct Form {
+struct LogRowForm {
     separator: Separator,
     columns: Columns,
     /// Columns of the first row, and its line.
@@ -39,7 +39,7 @@ struct Form {
 }
 
 /// A log that is being read.
-pub(super) struct Rows<'a> {
+pub(super) struct LogReader<'a> {
     machine: &'a Machine,
     asked: &'a LogForm,
     name: &'a str,
@@ -47,7 +47,7 @@ pub(super) struct Rows<'a> {
     pub line: u64,
     /// The last two lines before the first row: names, or names and units.
     head: Vec<HeadLine>,
-    form: Option<Form>,
+    form: Option<LogRowForm>,
     times: Vec<f64>,
     /// Most digits behind the decimal sign of a time; none if there is an exponent.
     decimals: Option<i32>,
@@ -58,7 +58,7 @@ pub(super) struct Rows<'a> {
     turns: u64,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> LogReader<'a> {
     pub fn new(machine: &'a Machine, asked: &'a LogForm, name: &'a str) -> Self {
         Self {
             machine,
@@ -132,13 +132,13 @@ impl<'a> Rows<'a> {
             let field = fields[column.place];
             let number = self.number(form.separator, column, field, text)?;
             let (which, place) = match column.content {
-                Content::Time => {
+                LogContent::Time => {
                     time = Some(number);
                     behind = decimals(field).and_then(|digits| Some(digits.max(behind?)));
                     continue;
                 }
-                Content::Commanded(place) => (0, place),
-                Content::Actual(place) => (1, place),
+                LogContent::Commanded(place) => (0, place),
+                LogContent::Actual(place) => (1, place),
             };
             let axis = &self.machine.axes[place];
             let mut value = number - axis.zero;
@@ -182,7 +182,7 @@ impl<'a> Rows<'a> {
     fn number(
         &self,
         separator: Separator,
-        column: &Column,
+        column: &LogColumn,
         field: &str,
         text: &str,
     ) -> Result<f64, Box<Diagnostic>> {
@@ -213,9 +213,9 @@ impl<'a> Rows<'a> {
         let mut has = [[false; MAX_AXES]; 2];
         for column in self.form.iter().flat_map(|form| &form.columns.read) {
             match column.content {
-                Content::Time => {}
-                Content::Commanded(place) => has[0][place] = true,
-                Content::Actual(place) => has[1][place] = true,
+                LogContent::Time => {}
+                LogContent::Commanded(place) => has[0][place] = true,
+                LogContent::Actual(place) => has[1][place] = true,
             }
         }
         has
@@ -246,7 +246,7 @@ impl<'a> Rows<'a> {
         }
         let count = fields.len();
         let columns = self.columns(count, text)?;
-        self.form = Some(Form { separator, columns, count, first: self.line });
+        self.form = Some(LogRowForm { separator, columns, count, first: self.line });
         Ok(true)
     }
 
@@ -269,7 +269,7 @@ impl<'a> Rows<'a> {
             .flatten()
             .map(|unit| unit.trim_matches(['[', ']', '-']).to_owned())
             .collect();
-        let head = Head { names: named.map_or(&[], |names| &names.names), units: &bare, count };
+        let head = LogHead { names: named.map_or(&[], |names| &names.names), units: &bare, count };
         let asked = self.asked;
         let even = asked.period.is_some();
         let found = Columns::find(self.machine, asked.columns.as_ref(), asked.units, head, even);
@@ -306,7 +306,7 @@ impl<'a> Rows<'a> {
             let help = "a log is a table: a line of names, then rows of numbers";
             return Err(self.fault(message, "").help(help).boxed());
         };
-        let unit = |column: &&Column| column.content == Content::Time;
+        let unit = |column: &&LogColumn| column.content == LogContent::Time;
         let time_unit = form.columns.read.iter().find(unit).map_or(1.0, |column| column.unit.size);
         let resolution =
             self.decimals.map_or(0.0, |digits| libm::exp10(-f64::from(digits)) * time_unit);

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::fitting::{AxisFitted, rounded, short};
-use super::report::{AxisLaid, Left, MeasuredFound};
+use super::report::{AxisLaid, MeasuredFound, RemainingDifference};
 use post_machine::diagnostic::Short;
 
 use crate::text::{clock, number};
@@ -13,7 +13,7 @@ use crate::text_table::{NamedValues, TextTable, or_dash};
 pub fn text(found: &MeasuredFound) -> String {
     let mut text = head(found).lines(16);
     positions(&mut text, &found.axes);
-    let unit = |axis: &AxisLaid| Shown::of_axis(axis.unit);
+    let unit = |axis: &AxisLaid| LogErrorUnit::of_axis(axis.unit);
     let following = found.axes.iter().filter_map(|axis| {
         let errors = [axis.following_measured, axis.following_predicted, axis.following];
         let [measured, predicted, left] = errors;
@@ -22,7 +22,7 @@ pub fn text(found: &MeasuredFound) -> String {
     errors(&mut text, "following error", following.collect());
     if let Some(contour) = &found.contour {
         let rows = [contour.measured, contour.predicted, contour.difference];
-        let row = ("tip in cuts".to_owned(), Shown::of_axis("mm"), rows);
+        let row = ("tip in cuts".to_owned(), LogErrorUnit::of_axis("mm"), rows);
         errors(&mut text, "contour error", vec![row]);
     }
     text
@@ -118,7 +118,7 @@ fn positions(text: &mut String, axes: &[AxisLaid]) {
     for axis in axes {
         for (what, left) in [("commanded", axis.commanded), ("actual", axis.actual)] {
             let Some(left) = left else { continue };
-            let shown = Shown::of_position(axis.unit);
+            let shown = LogErrorUnit::of_position(axis.unit);
             let [most, at, rms, mean] = shown.cells(&left);
             let name = format!("{} {what}", axis.name);
             table.row([name, shown.unit.to_owned(), most, at, rms, mean]);
@@ -128,7 +128,11 @@ fn positions(text: &mut String, axes: &[AxisLaid]) {
 }
 
 /// What was measured, what is predicted for it, and what is left.
-fn errors(text: &mut String, what: &str, rows: Vec<(String, Shown, [Left; 3])>) {
+fn errors(
+    text: &mut String,
+    what: &str,
+    rows: Vec<(String, LogErrorUnit, [RemainingDifference; 3])>,
+) {
     if rows.is_empty() {
         return;
     }
@@ -159,14 +163,14 @@ fn errors(text: &mut String, what: &str, rows: Vec<(String, Shown, [Left; 3])>) 
 
 /// How errors are shown.
 #[derive(Clone, Copy)]
-struct Shown {
+struct LogErrorUnit {
     unit: &'static str,
     /// From the unit of the JSON.
     scale: f64,
     decimals: u8,
 }
 
-impl Shown {
+impl LogErrorUnit {
     /// An error of an axis whose unit in the JSON is this.
     fn of_axis(unit: &str) -> Self {
         Self { unit: if unit == "deg" { "0.001°" } else { "µm" }, scale: 1e3, decimals: 2 }
@@ -177,7 +181,7 @@ impl Shown {
         Self { unit, scale: 1.0, decimals: 4 }
     }
 
-    fn cells(&self, left: &Left) -> [String; 4] {
+    fn cells(&self, left: &RemainingDifference) -> [String; 4] {
         let size = |value: f64| number(value * self.scale, self.decimals);
         [size(left.most), number(left.most_at_s, 3), size(left.rms), size(left.mean)]
     }
@@ -187,7 +191,7 @@ impl Shown {
 pub fn fitted_text(fitted: &[AxisFitted]) -> String {
     let mut text = String::new();
     for axis in fitted {
-        let shown = Shown::of_axis(axis.unit);
+        let shown = LogErrorUnit::of_axis(axis.unit);
         let error = |value: f64| format!("{} {}", number(value * shown.scale, 3), shown.unit);
         let _ = writeln!(
             text,

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 /// What a unit is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum QuantityKind {
     /// The time, s.
     Time,
     /// Linear axes, mm.
@@ -13,7 +13,7 @@ pub enum Kind {
     Angle,
 }
 
-impl Kind {
+impl QuantityKind {
     /// `a unit of time`.
     pub fn spoken(self) -> &'static str {
         match self {
@@ -39,30 +39,30 @@ pub struct Unit {
     /// As it is told.
     pub name: &'static str,
     /// What it is of.
-    pub kind: Kind,
+    pub kind: QuantityKind,
     /// How much it is, in s, mm or radians.
     pub size: f64,
 }
 
-const fn unit(name: &'static str, kind: Kind, size: f64) -> Unit {
+const fn unit(name: &'static str, kind: QuantityKind, size: f64) -> Unit {
     Unit { name, kind, size }
 }
 
-const SECOND: Unit = unit("s", Kind::Time, 1.0);
-const MILLIMETRE: Unit = unit("mm", Kind::Length, 1.0);
-const DEGREE: Unit = unit("deg", Kind::Angle, PI / 180.0);
+const SECOND: Unit = unit("s", QuantityKind::Time, 1.0);
+const MILLIMETRE: Unit = unit("mm", QuantityKind::Length, 1.0);
+const DEGREE: Unit = unit("deg", QuantityKind::Angle, PI / 180.0);
 
 /// All, as they are told.
 pub const UNITS: [Unit; 9] = [
     SECOND,
-    unit("ms", Kind::Time, 1e-3),
-    unit("us", Kind::Time, 1e-6),
+    unit("ms", QuantityKind::Time, 1e-3),
+    unit("us", QuantityKind::Time, 1e-6),
     MILLIMETRE,
-    unit("um", Kind::Length, 1e-3),
-    unit("m", Kind::Length, 1e3),
-    unit("inch", Kind::Length, 25.4),
+    unit("um", QuantityKind::Length, 1e-3),
+    unit("m", QuantityKind::Length, 1e3),
+    unit("inch", QuantityKind::Length, 25.4),
     DEGREE,
-    unit("rad", Kind::Angle, 1.0),
+    unit("rad", QuantityKind::Angle, 1.0),
 ];
 
 /// Other names of them. The micro sign and the Greek letter are two characters.
@@ -92,7 +92,7 @@ pub struct LogUnits([Option<Unit>; 3]);
 
 impl LogUnits {
     /// That of a kind.
-    pub fn of(&self, kind: Kind) -> Option<Unit> {
+    pub fn of(&self, kind: QuantityKind) -> Option<Unit> {
         self.0[kind as usize]
     }
 }

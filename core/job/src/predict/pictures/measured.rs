@@ -4,8 +4,8 @@
 use post_machine::axis_words;
 use post_machine::description::Machine;
 
-use super::{File, MICRO, file_name};
-use crate::files::chart::{DASHED, Draw, Envelope, GREY, Look, Panel, Panels, Series};
+use super::{MICRO, PredictionFile, file_name};
+use crate::files::chart::{DASHED, Draw, Envelope, GREY, LineStyle, Panel, Panels, Series};
 use crate::predict::Prediction;
 use crate::predict::measured::{MeasuredFound, MeasuredPoint};
 use crate::text::number;
@@ -18,7 +18,7 @@ const CURVES: usize = 3;
 
 /// What is kept of a log for its picture.
 pub struct MeasuredRoom {
-    axes: Vec<Drawn>,
+    axes: Vec<LoggedAxis>,
     /// Time from row to row, s.
     period: f64,
     /// Channels of the axes, then of the contour error.
@@ -26,7 +26,7 @@ pub struct MeasuredRoom {
 }
 
 /// An axis that may be in a log.
-struct Drawn {
+struct LoggedAxis {
     place: usize,
     name: String,
     rotary: bool,
@@ -35,12 +35,12 @@ struct Drawn {
 impl MeasuredRoom {
     /// For rows every `period` seconds.
     pub fn new(machine: &Machine, period: f64) -> Self {
-        let axes = axis_words::order(machine).into_iter().map(|place| Drawn {
+        let axes = axis_words::order(machine).into_iter().map(|place| LoggedAxis {
             place,
             name: machine.axes[place].name.clone(),
             rotary: machine.axes[place].joint.rotary,
         });
-        let axes: Vec<Drawn> = axes.collect();
+        let axes: Vec<LoggedAxis> = axes.collect();
         Self { period, errors: Envelope::new(CURVES * (axes.len() + 1), period), axes }
     }
 
@@ -58,7 +58,7 @@ impl MeasuredRoom {
     }
 
     /// The picture; none where nothing is known both ways.
-    pub fn file(&self, found: &Prediction, laid: &MeasuredFound) -> Option<File> {
+    pub fn file(&self, found: &Prediction, laid: &MeasuredFound) -> Option<PredictionFile> {
         let mut panels = Vec::new();
         for (place, axis) in self.axes.iter().enumerate() {
             let (unit, scale) = match axis.rotary {
@@ -105,7 +105,7 @@ impl MeasuredRoom {
             draw: Draw::Bands(runs, grey),
         };
         // The grey of what was measured is seen between the dashes of what is predicted.
-        let lines = |curve: usize, name: &str, look: Look| {
+        let lines = |curve: usize, name: &str, look: LineStyle| {
             let lines = runs(curve).into_iter().map(middle);
             let lines = lines.map(|line| Series::line(name, line, look));
             lines.collect::<Vec<Series>>()

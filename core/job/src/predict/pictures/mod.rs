@@ -33,11 +33,11 @@ pub const MICRO: f64 = 1e3;
 const LOWEST: f64 = 1.0;
 
 /// A file of a prediction: its name and its text.
-pub type File = (&'static str, String);
+pub type PredictionFile = (&'static str, String);
 
 /// What is kept of the set-points for the pictures.
-pub struct Rooms {
-    axes: Vec<DrawnAxis>,
+pub struct PredictRooms {
+    axes: Vec<ServoAxis>,
     period: f64,
     /// Errors of the axes over time: a channel each in cuts, and one each at rapid.
     lags: Envelope,
@@ -50,14 +50,14 @@ pub struct Rooms {
 }
 
 /// An axis whose servo is described.
-struct DrawnAxis {
+struct ServoAxis {
     /// Its place in the chain.
     place: usize,
     name: String,
     rotary: bool,
 }
 
-impl DrawnAxis {
+impl ServoAxis {
     /// From the core's unit to that of the picture.
     fn unit(&self) -> f64 {
         match self.rotary {
@@ -72,14 +72,14 @@ impl DrawnAxis {
     }
 }
 
-impl Rooms {
+impl PredictRooms {
     /// Of nothing yet; set-points come every `period` seconds.
     pub fn new(machine: &Machine, period: f64) -> Self {
         let axes =
             axis_words::order(machine).into_iter().map(|place| (place, &machine.axes[place]));
-        let axes: Vec<DrawnAxis> = axes
+        let axes: Vec<ServoAxis> = axes
             .filter(|(_, axis)| axis.servo.is_some())
-            .map(|(place, axis)| DrawnAxis {
+            .map(|(place, axis)| ServoAxis {
                 place,
                 name: axis.name.clone(),
                 rotary: axis.joint.rotary,
@@ -98,7 +98,7 @@ impl Rooms {
 
     /// Takes the next set-point.
     pub fn take(&mut self, sample: &Sample) {
-        let lag = |axis: &DrawnAxis| {
+        let lag = |axis: &ServoAxis| {
             let point = &sample.point;
             point.commanded_joints[axis.place] - point.actual_joints[axis.place]
         };
@@ -126,7 +126,7 @@ impl Rooms {
     }
 
     /// All pictures that there is something to show in.
-    pub fn files(&self, found: &Prediction) -> Vec<File> {
+    pub fn files(&self, found: &Prediction) -> Vec<PredictionFile> {
         let note = format!(
             "{} on {}, set-points every {} ms",
             file_name(&found.program),

@@ -104,8 +104,16 @@ fn profiles_keep_their_limits_and_end_where_and_as_they_should() {
                 false => 0.0,
             };
         }
+        // Without jerk limits the peak is a root, rounded by up to two units of its last place; a ramp covers `v/a` more
+        // for each unit of velocity that it reaches more. With them the ramps are made to fit.
+        let rounding = match up.jerk == f64::INFINITY && down.jerk == f64::INFINITY {
+            true => {
+                2.0 * f64::EPSILON * top * top * (1.0 / up.acceleration + 1.0 / down.acceleration)
+            }
+            false => 0.0,
+        };
         assert!(
-            libm::fabs(covered - length) <= 1e-8 * length + 1e-12,
+            libm::fabs(covered - length) <= 1e-8 * length + 1e-12 + rounding,
             "{covered} {length} {profile:?}"
         );
         assert!(libm::fabs(velocity - to) <= 1e-7 * top, "{velocity} {to}");

@@ -3,7 +3,7 @@
 use post_feed::jerk::{self, Batch, Law, Passed, Settings, Stream};
 use post_feed::limits::{AxisAcceleration, AxisJerk, AxisVelocity, Collocation, Limit};
 use post_feed::{EndSpeeds, Infeasible, Problem, Samples};
-use post_testkit::{Rng, randomised};
+use post_testkit::{Rng, randomised, seeded};
 
 use crate::support::random::{self, Limits, part};
 
@@ -267,7 +267,7 @@ fn an_l_with_jerk_limits_is_the_s_curves_of_its_sides() {
 /// A random polygon: short sides, low corners, stops among them, and a start and an end in motion.
 #[test]
 fn polygons_with_jerk_limits_keep_them_in_windows_of_any_size() {
-    let mut random = Rng::new(3);
+    let mut random = seeded(3);
     let drives = Pair::new();
     let limits = drives.all();
     let mut batches = Vec::new();

@@ -5,7 +5,7 @@ use post_machine::description::Machine;
 use post_motion::path::{Curve, Interpolation};
 use post_motion::trajectory::TimeLimit;
 use post_motion::{CornerMode, MovePace, Task, WaitReason};
-use post_testkit::{Rng, randomised};
+use post_testkit::{randomised, seeded};
 
 use super::build::{Program, run, trunnion};
 
@@ -64,7 +64,7 @@ fn corners_are_blended_within_their_tolerance() {
 
 #[test]
 fn where_a_standstill_is_asked_for_the_end_is_reached() {
-    let mut rng = Rng::new(32);
+    let mut rng = seeded(32);
     for jerk in ["", ", max_jerk = 30000"] {
         let machine = trunnion(
             &format!("max_feed = 30000, max_accel = 2000{jerk}"),

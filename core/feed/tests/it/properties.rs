@@ -5,7 +5,7 @@ use post_feed::limits::{AxisJerk, Collocation, Limit};
 use post_feed::problem::{EndSpeeds, LimitRow};
 use post_feed::reach::{self, Stream};
 use post_feed::{Infeasible, Problem, linear_program, profile};
-use post_testkit::{Rng, randomised, seeded};
+use post_testkit::{Rng, randomised};
 
 use crate::support::oracle::{self, Unsolved};
 use crate::support::random::{Limits, samples};
@@ -179,7 +179,7 @@ fn too_few_samples_between_two_stops_are_named() {
 /// Cut at a sample that it passes evenly, at the speed it has there, the halves take about as long as the whole.
 #[test]
 fn plans_with_jerk_limits_begin_and_end_at_given_speeds() {
-    let mut random = seeded(11);
+    let mut random = Rng::new(11);
     let samples = samples(&mut random, 2, 401, 40.0);
     let limits = Limits::new(&mut random, 2, Collocation::Throughout);
     let jerk = AxisJerk { limits: vec![2e4; 2] };

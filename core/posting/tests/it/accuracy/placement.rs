@@ -3,11 +3,11 @@
 use super::*;
 
 /// A move cut up by `fewest` has no more blocks than cut up by `bisect`, and by `even` no more than its peak asks for
-/// where that falls with the square of the length. Halves are up to twice as many as asked for, and balanced pieces may
-/// bow by twice the tolerance: a root of two fewer, so that of many no more than three in four are left.
+/// where that falls with the square of the length: of these examples. It is as few as are found, each as long as it can be
+/// behind the one before, and nothing bounds them.
 #[test]
 fn fewest_needs_no_more_blocks_than_bisect() {
-    let (rounds, mut rng) = randomised(150, 43);
+    let (rounds, mut rng) = (0..rounds(150_usize), Rng::new(43));
     let mut sums = [0usize; 3];
     let mut exact = [0usize; 2];
     for round in rounds {
@@ -43,7 +43,6 @@ fn fewest_needs_no_more_blocks_than_bisect() {
         }
         let [bisect, even, fewest] = counts;
         assert!(fewest <= bisect, "round {round}: {counts:?}, peak {peak}");
-        assert!(bisect < 16 || fewest * 10 <= bisect * 8, "round {round}: {counts:?}, peak {peak}");
         let asked = libm::sqrt(peak / 0.0005);
         if (asked - libm::rint(asked)).abs() > 0.05 && asked > 1.0 {
             let asked = (libm::ceil(asked) as usize).max(2);
@@ -52,6 +51,7 @@ fn fewest_needs_no_more_blocks_than_bisect() {
         }
     }
     println!("bisect, even, fewest: {sums:?}; even more than asked, as asked: {exact:?}");
+    assert!(sums[2] * 10 < sums[0] * 8, "{sums:?}");
 }
 
 /// A head that swings evenly bows the same everywhere: blocks are as long as the theory of balanced pieces says.

@@ -199,8 +199,9 @@ fn to_keep_the_path_is_never_slower_than_to_stop_and_to_leave_it_no_slower_than_
     println!("without jerk limits {:?}, with {:?}", worst[0], worst[1]);
     let [[path, blend], [jerky_path, jerky_blend]] = worst;
     assert!(path <= 1e-9, "{path}");
-    // A curve leaves less of the accelerations along the way than a kink does, and a ramp may go over it.
-    assert!(blend <= 1e-3, "{blend}");
+    // A curve leaves less of the accelerations along the way than a kink does, and a ramp may go over it. A quarter goes lost
+    // at most: with three quarters of them everywhere a way takes √(4/3) times as long.
+    assert!(blend <= 0.155, "{blend}");
     // With jerk limits a ramp over several blocks has the least acceleration and jerk of them all: nothing is proven. Of
     // 9,000 such programs none is slower by keeping the path; by leaving it one in a thousand is by a twelfth.
     assert!(jerky_path <= 1e-3, "{jerky_path}");

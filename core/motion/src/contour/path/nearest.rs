@@ -74,7 +74,12 @@ impl Path {
         if foot.distance > following {
             // No contour error is larger than the following error.
             let here = self.place_of(commanded.0);
-            let other = self.descend(&actual.tip, here);
+            let mut other = self.descend(&actual.tip, here);
+            // Where the path turns back the descent may end on another piece, farther away than where it began.
+            let distance = (self.point(here) - actual.tip).norm();
+            if distance < other.distance {
+                other = Foot { distance, ..here };
+            }
             if other.distance < foot.distance {
                 foot = self.least(&actual.tip, other, SearchReach::all(REACH * following));
             }

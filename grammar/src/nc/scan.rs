@@ -140,7 +140,8 @@ fn named(name: &'static str, number: NcNumber) -> NcItem {
 #[inline(always)]
 fn value(text: &[u8], at: usize) -> Option<(NcNumber, usize)> {
     // A `+` says nothing; what follows it has no sign.
-    let plus = usize::from(text.get(at) == Some(&b'+') && text.get(at + 1) != Some(&b'-'));
+    let signed = matches!(text.get(at + 1), Some(b'+' | b'-'));
+    let plus = usize::from(text.get(at) == Some(&b'+') && !signed);
     let found = decimal(text, at + plus)?;
     let number = NcNumber { value: found.value, point: found.point };
     Some((number, found.end))

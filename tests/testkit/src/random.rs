@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 use std::ops::{Add, Div, Mul, Range};
+use std::sync::OnceLock;
 use std::time::UNIX_EPOCH;
 
 use nalgebra::Vector3;
@@ -30,10 +31,17 @@ where
     (N::from(0)..rounds(count), seeded(own))
 }
 
-/// The numbers of a test's `own` seed and of `POST_SEED`; 0, as if it is not set, are those of every day. Where the test
-/// fails, the runner shows beside it how to repeat it.
+/// The seed of a run: `POST_SEED`, or one that is drawn anew, the same for all tests of a process.
+fn run_seed() -> u64 {
+    static DRAWN: OnceLock<u64> = OnceLock::new();
+    let now = || UNIX_EPOCH.elapsed().map_or(0, |now| u64::from(now.subsec_nanos()));
+    number("POST_SEED").unwrap_or_else(|| *DRAWN.get_or_init(now))
+}
+
+/// The numbers of a test's `own` seed and of that of the run. Where the test fails, the runner shows beside it how to
+/// repeat it.
 pub fn seeded(own: u64) -> Rng {
-    let seed: u64 = number("POST_SEED").unwrap_or(0);
+    let seed = run_seed();
     let rounds = std::env::var("POST_ROUNDS").map(|rounds| format!(" POST_ROUNDS={rounds}"));
     let rounds = rounds.unwrap_or_default();
     println!("random numbers of seed {own}; again with POST_SEED={seed}{rounds}");
@@ -51,11 +59,10 @@ pub fn all_drawn() -> bool {
     rounds(3) >= 3
 }
 
-/// The cases that a test takes of many slow ones: all where `POST_ROUNDS` is set, else a third, drawn anew in each run or
-/// as `POST_SEED` says.
+/// The cases that a test takes of many slow ones: all where `POST_ROUNDS` is set, else a third, drawn by the seed of the
+/// run.
 pub fn drawn<T>(mut cases: Vec<T>, own: u64) -> Vec<T> {
-    let now = || UNIX_EPOCH.elapsed().map_or(0, |now| u64::from(now.subsec_nanos()));
-    let seed = number("POST_SEED").unwrap_or_else(now);
+    let seed = run_seed();
     println!("a third of the cases: the same with POST_SEED={seed}, all with POST_ROUNDS=1");
     let mut rng = Rng(own.wrapping_add(seed));
     let taken = usize::from(rounds(cases.len() as u16));

@@ -20,6 +20,9 @@ const GRID: [usize; MAX_AXES + 1] = [1, 37, 37, 19, 9, 5, 4, 3, 3];
 /// Times that the step is halved around the largest.
 const HALVINGS: usize = 30;
 
+/// Steps of each axis at most, of all sizes.
+const MOST_STEPS: usize = 1000;
+
 /// Two machine files compared.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
@@ -226,7 +229,13 @@ fn worst(
         }
     }
     let mut share = 0.5 / (steps - 1).max(1) as f64;
-    for _ in 0..HALVINGS {
+    let mut halved = 0;
+    // Along a ridge that lies across the axes one step of each does not get far: only where none leads up they are halved.
+    for _ in 0..MOST_STEPS {
+        if halved == HALVINGS {
+            break;
+        }
+        let before = largest;
         for place in &rotary {
             let [least, most] = span(machine, *place);
             for sense in [-1.0, 1.0] {
@@ -241,7 +250,10 @@ fn worst(
                 }
             }
         }
-        share *= 0.5;
+        if largest == before {
+            share *= 0.5;
+            halved += 1;
+        }
     }
     best
 }

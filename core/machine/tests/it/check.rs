@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3, Vector3};
 use post_machine::check::{Check, compare};
 use post_machine::description::{Machine, Source, load};
-use post_testkit::{Rng, randomised};
+use post_testkit::{Rng, randomised, rounds};
 use post_testmachines::{Reference, angle};
 
 /// Tool length, mm.
@@ -75,9 +75,11 @@ fn zero(reference: &Reference) -> Vec<f64> {
     zero
 }
 
+/// Of these examples: the search goes along one axis at a time, and may stop short on a ridge that lies across them, by some
+/// hundred-thousandths of the deviation.
 #[test]
 fn no_setting_of_the_axes_is_worse_than_the_one_told() {
-    let (rounds, mut rng) = randomised(3, 3);
+    let (rounds, mut rng) = (0..rounds(3), Rng::new(3));
     for (chain, _) in CHAINS {
         for _ in rounds.clone() {
             let drawn = machine(chain, &mut rng, 0.0, 0.0);

@@ -74,7 +74,14 @@ fn axes_that_go_by_their_derivatives_lead_the_tip_along_its_path() {
             if whole > 1e-9 { libm::log2(whole / half) } else { 4.0 }
         });
         assert!(orders.iter().any(|order| *order > 3.5), "{orders:?} of {:?}", case.course.joints);
-        worst = worst.max(miss(1e-3));
+        // Rotary axes turn by no more than 0.02 in each order, two of them, so that the fourth derivative of the tip is at
+        // most 0.6 of what the linear axes do in the orders before: (4 + 6 + 4)·0.04. Where these hardly span the space
+        // that is a lot; else it is nothing beside levers of some 1000 mm.
+        let linear = case.machine.reference.linear();
+        let order = |joints: &Joints| linear.iter().map(|place| joints[*place].abs()).sum::<f64>();
+        let size = case.course.joints[1..].iter().map(order).fold(0.0, f64::max);
+        let left_out = 1e-12 / 24.0 * size;
+        worst = worst.max(miss(1e-3) - left_out);
     }
     assert!(worst < 1e-9, "{worst}");
 }

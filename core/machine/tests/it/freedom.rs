@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use post_machine::kinematics::POLE;
 use post_machine::kinematics::{Freedom, Joints, Pose, Second, Solver, Unreachable};
-use post_testkit::{Rng, at_least, randomised};
+use post_testkit::{Rng, at_least, randomised, rounds};
 use post_testmachines::{Kind, Random, SIZE, across, angle, nearest, turned};
 
 /// The largest difference between two sets of values: mm, and radians as an arm of a metre.

@@ -139,5 +139,9 @@ fn no_sample_exceeds_what_is_said() {
         loose += u32::from(!close);
     }
     println!("{looked} blocks, {cheap} with a cheap bound, {singular} singular, {loose} loose");
-    assert!(cheap > at_least(300) && looked - cheap > at_least(300) && loose < looked / 50);
+    assert!(cheap > at_least(300) && looked - cheap > at_least(300));
+    // One in eighty is, of 14,000: by chance (Bernstein) no more than that many in a billion runs.
+    let expected = f64::from(looked) / 80.0;
+    let most = expected + 7.0 + libm::sqrt(48.0 + 42.0 * expected);
+    assert!(f64::from(loose) < most, "{loose} of {looked}");
 }

@@ -64,8 +64,10 @@ impl TaskAccounts {
         spent[place].1 += beyond;
     }
 
-    /// The first task that is open ends at `time`, and the next one begins.
+    /// The first task that is open ends at `time`, and the next one begins. It ends when it begins where it is over
+    /// before the middle of the time in which the one before overlaps it.
     pub fn border(&mut self, time: f64) {
+        let time = self.open.front().map_or(time, |open| time.max(open.begins));
         self.close(time);
         while self.open.front().is_some_and(|open| open.empty) {
             self.close(time);

@@ -98,7 +98,12 @@ impl TimeLaw {
 
     pub fn push_piece(&mut self, piece: LawPiece) -> u64 {
         self.pieces.push_back(piece);
-        self.first_piece + self.pieces.len() as u64 - 1
+        self.pieces_end() - 1
+    }
+
+    /// The number of the piece that is pushed next.
+    pub fn pieces_end(&self) -> u64 {
+        self.first_piece + self.pieces.len() as u64
     }
 
     pub fn piece(&self, number: u64) -> &LawPiece {

@@ -8,10 +8,11 @@
 //! largest one; so does a ramp down that ends as late as it can. Where a hill is too short to get from one knot's
 //! velocity to the other's, the higher one is lowered: backwards, then forwards. Where blocks are very unlike, the
 //! least acceleration and jerk of them all are too little for most: such a hill is split where that makes it shorter in
-//! time.
+//! time, at one place or at all where blocks are unlike.
 //!
 //! Knots closer together than an acceleration takes to rise (`a/j`, or `√(v/j)` where that is less) are worth little,
-//! as what lies between could hardly be used: if their velocities are alike it is run through at the least of them.
+//! as what lies between could hardly be used: if their velocities are alike it is run through at the least of them,
+//! where that takes no longer than this either.
 //!
 //! At a knot the acceleration is zero. A plan is carried out up to such a place; what was planned after it, down to the
 //! standstill at its end, is kept and carried out in its turn where a new plan, which sees more, cannot go on from

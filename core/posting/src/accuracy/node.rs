@@ -103,6 +103,8 @@ pub struct Placer {
     branch: Cell<usize>,
     axis_tolerance: f64,
     control_point: ControlPoint,
+    /// Rotary joints that stand still in cuts.
+    indexed: Vec<usize>,
     tip_rounding: f64,
     axis_rounding: f64,
     /// What is left of the tolerance of the tip in cuts, mm.
@@ -174,6 +176,10 @@ impl Placer {
             axis_tolerance: machine.accuracy.axis_tolerance,
             reserve: 0.0,
             control_point: machine.control_point,
+            indexed: (0..machine.axes.len())
+                .filter(|joint| machine.axes[*joint].joint.rotary)
+                .filter(|joint| machine.axes[*joint].indexed.is_some())
+                .collect(),
         }
     }
 
@@ -254,24 +260,50 @@ impl Placer {
     /// The node of `target` with the pole joint where `even` has it and the others as near to the wanted axis as
     /// they come, on the turns of `even`; none where the chain has no pole.
     pub fn place_evenly(&self, target: Pose, t: f64, even: &Joints) -> Option<PathNode> {
-        let pole = self.solver.pole_joint()?;
+        self.solver.pole_joint()?;
         let mut joints = *even;
         self.solver.follow(&target, &mut joints);
-        for (joint, axis) in self.solver.chain().joints().iter().enumerate() {
-            if axis.rotary && joint != pole {
-                let turns = libm::rint((even[joint] - joints[joint]) / TAU);
-                joints[joint] += TAU * turns;
-            }
-        }
-        let inside = self
-            .turning
-            .limits
-            .iter()
-            .all(|limit| passed(Some(limit.travel), joints[limit.joint], 0.0).is_none());
-        if !inside {
+        self.unwind(even, &mut joints);
+        if !self.turns_inside(&joints) {
             return None;
         }
         self.settled(target, t, &joints).ok()
+    }
+
+    /// Leaves indexed joints where they stand at both `ends`: what a tool axis that is rounded asks of them is nothing that
+    /// they may turn by. Where the pole joint is one, the others keep the tool axis as well as they can.
+    fn stand_still(&self, target: &Pose, ends: [&Joints; 2], joints: &mut Joints) {
+        for &joint in &self.indexed {
+            let stand = ends[0][joint];
+            if stand != ends[1][joint] || joints[joint] == stand {
+                continue;
+            }
+            joints[joint] = stand;
+            if self.solver.pole_joint() == Some(joint) {
+                let mut following = *joints;
+                self.solver.follow(target, &mut following);
+                self.unwind(joints, &mut following);
+                if self.turns_inside(&following) {
+                    *joints = following;
+                }
+            }
+        }
+    }
+
+    /// No rotary joint is beyond its travel.
+    fn turns_inside(&self, joints: &Joints) -> bool {
+        let mut limits = self.turning.limits.iter();
+        limits.all(|limit| passed(Some(limit.travel), joints[limit.joint], 0.0).is_none())
+    }
+
+    /// Puts the joints that turn beside the pole joint on the turns of `near`.
+    fn unwind(&self, near: &Joints, joints: &mut Joints) {
+        let pole = self.solver.pole_joint();
+        for (joint, axis) in self.solver.chain().joints().iter().enumerate() {
+            if axis.rotary && pole != Some(joint) {
+                joints[joint] += TAU * libm::rint((near[joint] - joints[joint]) / TAU);
+            }
+        }
     }
 
     /// The node of a `target` between two sets of axis values: the solution that makes the way from one to the
@@ -293,7 +325,10 @@ impl Placer {
         let branches =
             solver.orient(&target, self.axis_tolerance).map_err(PlacementError::Unreachable)?;
         match self.turning.between(solver, &branches, first, last) {
-            Ok(joints) => self.settled(target, t, &joints),
+            Ok(mut joints) => {
+                self.stand_still(&target, [first, last], &mut joints);
+                self.settled(target, t, &joints)
+            }
             Err(over) => Err(PlacementError::OverTravel { over, tried: branches.count() }),
         }
     }

@@ -31,6 +31,9 @@ use crate::tightening::Tightening;
 /// Samples after the first of a leg next to a stop or corner, where jerk is planned.
 const LEAST_FOR_JERK: usize = 4;
 
+/// From stop to stop the tool goes faster at one sample between them at least.
+const LEAST: usize = 2;
+
 /// No samples are closer for the sake of accelerations, mm.
 const FINEST: f64 = 0.01;
 
@@ -269,6 +272,8 @@ impl<'a> PlannerRun<'a> {
         }
         if self.jerk && (leg.begins || leg.ends) {
             at_least(LEAST_FOR_JERK, first, samples);
+        } else if leg.begins && leg.ends {
+            at_least(LEAST, first, samples);
         }
     }
 

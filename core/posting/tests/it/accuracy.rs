@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 use nalgebra::Vector3;
 use post_machine::kinematics::Joints;
 use post_plugin::Feed;
-use post_testkit::{Rng, at_least, randomised};
+use post_testkit::{Rng, at_least, randomised, rounds};
 use post_testmachines::{across, angle, between, slerp};
 use post_testruns::posted::{Bench, Run};
 use post_testruns::walk::{Shape, Stop, Walk, blocks, from_program, leaned, stop, text, wanted};

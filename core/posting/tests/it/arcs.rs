@@ -10,7 +10,7 @@ use post_machine::kinematics::Joints;
 use post_plugin::{Capabilities, Feed};
 use post_posting::program::{DefaultSpindle, ReadingOptions};
 use post_posting::{BlockKind, MotionBlock, Observer, PostingRequest};
-use post_testkit::{Rng, randomised, repository, shared};
+use post_testkit::{Rng, randomised, repository, rounds, shared};
 use post_testmachines::frechet::keeps_within;
 use post_testruns::posted::{Asked, AskedArc, Bench, Recorder, Run, Samples, watched};
 
@@ -378,7 +378,8 @@ fn printed_arcs_are_as_near_as_certified() {
         "{kept} of {all} kept, {whole} in one block; bounds at most {:.2} times too large",
         1.0 / tightest
     );
-    assert!(kept * 10 > all * 9, "{kept} of {all}");
+    // Of 800 there were 94 in 100. Of 134 these are 126, give or take 2.7: no less than 80 in 100 are six times that.
+    assert!(kept * 10 > all * 8, "{kept} of {all}");
 }
 
 /// Blocks of the real files with arcs, as chords and as arcs, on machines that make them.
@@ -605,10 +606,11 @@ fn fewest(path: &[V], tolerance: f64) -> usize {
     least[path.len() - 1]
 }
 
-/// No choice of pieces has fewer, but in rare cases one fewer.
+/// No choice of pieces has fewer, but in rare cases one fewer: of these examples. Pieces are found one after the other, and
+/// part of a piece that fits need not fit by itself, so that nothing bounds how many fewer there may be.
 #[test]
 fn no_choice_of_pieces_has_fewer() {
-    let (rounds, mut rng) = randomised(30, 32);
+    let (rounds, mut rng) = (0..rounds(30_usize), Rng::new(32));
     let (mut ours, mut theirs, mut more) = (0, 0, 0);
     let all = rounds.end;
     for round in rounds {
@@ -678,7 +680,7 @@ fn spline_at(knots: &[f64], points: &[V], u: f64) -> V {
 /// the file as certified.
 #[test]
 fn splines_stay_splines() {
-    let mut rng = post_testkit::Rng::new(5);
+    let mut rng = post_testkit::seeded(5);
     let text = machine(&mut rng, CHAINS[0], "post", "mm", "");
     let bench = Bench::new(&text, 3, LENGTH);
     let knots = [0.0, 0.0, 0.0, 0.0, 0.123_456_7, 0.4, 0.4, 0.777_777_7, 1.0, 1.0, 1.0, 1.0];

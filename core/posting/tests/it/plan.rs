@@ -210,6 +210,22 @@ fn a_plan_leaves_the_path_as_it_is_and_makes_no_block_faster() {
     assert!(pieces > at_least(100), "{pieces}");
 }
 
+/// A cut between two rapids, too short for samples of its own: it is planned from rest to rest, `T = 2 sqrt(s / a)`.
+#[test]
+fn a_short_cut_between_rapids_is_planned() {
+    let bench = Bench::new(&machine("post", ""), 3, LENGTH);
+    for length in [0.01, 0.1, 0.5] {
+        let stops = [(0.0, true), (length, false), (50.0, true)];
+        let points = stops.map(|(x, rapid)| point(V::new(x, 0.0, 0.0), V::z(), rapid));
+        let found = run(&bench, &cl(&points, 6000.0), true);
+        let plan = found.report.as_ref().unwrap().plan.as_ref().unwrap();
+        let wanted = 2.0 * libm::sqrt(length / 500.0);
+        println!("{length} mm: {} s, by hand {wanted} s", plan.planned_s);
+        assert_eq!(plan.blocks_unplanned, 0, "{}", found.told());
+        assert!((plan.planned_s / wanted - 1.0).abs() < 0.05, "{} {wanted}", plan.planned_s);
+    }
+}
+
 /// CL points that lie closer together than they are exact: no plan of them is written that is slower than none.
 #[test]
 fn points_a_micron_apart_keep_their_feed() {

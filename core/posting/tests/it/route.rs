@@ -12,6 +12,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Rotation3, Unit, Vector3};
 use post_machine::description::{Side, SolutionCriterion};
+use post_machine::diagnostic::Severity;
 use post_machine::kinematics::{Joints, Pose, Solver};
 use post_plugin::Feed;
 use post_testkit::{Rng, at_least, randomised, repository};

@@ -12,7 +12,7 @@ use post_readback::{
     BSpline, BlockEffect, BlockRunner, Coolants, Corners, Interpolation, MachineState, Motion,
     MotionKind, ProgramEvent, SpindleState, Stance,
 };
-use post_testkit::{Rng, randomised};
+use post_testkit::{randomised, seeded};
 use post_testmachines::Random;
 
 type V = Vector3<f64>;
@@ -328,7 +328,7 @@ fn a_swing_of_the_table_at_feed_is_cut_into_chords_of_its_own_speed() {
     assert!((minutes - swing.minutes).abs() < 1e-12);
     // Farther out the part passes faster.
     assert!(pieces[pieces.len() - 1].feed > pieces[0].feed);
-    let mut rng = Rng::new(5);
+    let mut rng = seeded(5);
     for _ in 0..100 {
         let t = rng.range(0.0, 1.0);
         let near = pieces

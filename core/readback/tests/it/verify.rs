@@ -14,7 +14,7 @@ use post_readback::{
     BlockEffect, Coolants, Corners, CycleCall, CycleKind, Interpolation, MachineState, Motion,
     MotionKind, ProgramEvent, SpindleState, Stance,
 };
-use post_testkit::Rng;
+use post_testkit::seeded;
 use post_testmachines::frechet::frechet;
 
 type V = Vector3<f64>;
@@ -670,7 +670,7 @@ fn limits_of_the_axes_are_told_and_feeds_compared() {
 /// distance told is the Fréchet distance.
 #[test]
 fn strays_are_those_of_the_frechet_distance() {
-    let mut random = Rng::new(13);
+    let mut random = seeded(13);
     let (mut off, mut on) = (0, 0);
     for _ in 0..3000 {
         let count = 2 + random.pick(5);

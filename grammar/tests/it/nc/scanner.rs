@@ -82,6 +82,16 @@ fn words_and_numbers_as_parsed() {
 }
 
 #[test]
+fn a_second_sign_is_none_of_a_number() {
+    for line in ["X++5", "G1 X++.5 Y1", "X+-5", "X-+5", "X--5", "X=++5"] {
+        assert_as_parsed(line, &hash());
+        assert_as_parsed(line, &names());
+        assert!(parse_block(line, &hash()).is_err(), "{line}");
+    }
+    assert_as_parsed("12 L X++5", &conversational());
+}
+
+#[test]
 fn conversational_motions_as_parsed() {
     let (rounds, mut rng) = randomised(256, 2);
     for _ in rounds {

@@ -82,7 +82,12 @@ impl CommandedPath {
         if foot.distance > following {
             // No contour error is larger than the following error.
             let here = self.place_of(commanded.number);
-            let other = self.descend(&actual.tip, here);
+            let mut other = self.descend(&actual.tip, here);
+            // Where the path turns back the descent may end on another piece, farther away than where it began.
+            let distance = (self.point(here) - actual.tip).norm();
+            if distance < other.distance {
+                other = Foot { distance, ..here };
+            }
             if other.distance < foot.distance {
                 foot = self.least(&actual.tip, other, SearchReach::all(REACH * following));
             }

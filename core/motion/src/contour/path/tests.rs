@@ -174,7 +174,8 @@ fn a_tool_that_is_where_it_is_commanded_has_no_error() {
         for (number, point) in points.iter().enumerate() {
             let tool = Pose { tip: *point, axis: Vector3::z(), ..Pose::default() };
             let found = path.nearest(&tool, CommandedTip { number: number as u64, tip: *point });
-            assert!(found.distance < 1e-12, "{number}: {}", found.distance);
+            // Of pieces that the tool stands on alike the rounding of the spline leaves it so far from one.
+            assert!(found.distance < 5e-10, "{number}: {}", found.distance);
         }
     }
 }

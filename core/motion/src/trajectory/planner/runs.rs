@@ -214,6 +214,7 @@ impl Planner {
     /// The run ends where the last piece does.
     fn finish(&mut self) {
         self.settle(true);
+        self.pass_borders(self.law.pieces_end());
         self.before = self.clock;
     }
 

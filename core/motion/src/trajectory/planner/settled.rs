@@ -43,6 +43,7 @@ impl Planner {
                 false => (piece.second, 2.0 * shares[1]),
             },
         };
+        self.pass_borders(part.block);
         self.accounts.spend(task, phase.seconds, share * whole, reason);
         if let Some(border) = piece.border.filter(|_| self.bordered < Some(part.block)) {
             let place = border * piece.length;
@@ -60,5 +61,17 @@ impl Planner {
             phase,
         });
         self.clock += phase.seconds;
+    }
+
+    /// Tasks end where pieces before `end` have a border that no phase has come to: so short that rounding leaves no time for
+    /// it.
+    pub(super) fn pass_borders(&mut self, end: u64) {
+        let last = self.law.sections.back().map_or(0, |section| section.piece);
+        for number in last..end {
+            if self.bordered < Some(number) && self.law.piece(number).border.is_some() {
+                self.accounts.border(self.clock);
+                self.bordered = Some(number);
+            }
+        }
     }
 }

@@ -24,6 +24,12 @@ impl SmoothPlan {
             self.lay(ahead, knot, middle);
             return self.lay(ahead, middle, next);
         }
+        if let Some(knots) = self.split_everywhere(ahead, [&knot, &next], profile.seconds()) {
+            for pair in knots.windows(2) {
+                self.lay(ahead, pair[0], pair[1]);
+            }
+            return;
+        }
         let why = |corner: bool| match corner {
             true => VelocityLimit::Corner,
             false => VelocityLimit::Change,
@@ -56,12 +62,7 @@ impl SmoothPlan {
         next: &EnvelopeKnot,
         seconds: f64,
     ) -> Option<(EnvelopeKnot, EnvelopeKnot)> {
-        let unlike = |place: usize| {
-            let [last, next] = [&ahead.blocks[place - 1], &ahead.blocks[place]];
-            let ratio = |one: f64, other: f64| (one / other).max(other / one);
-            ratio(last.acceleration, next.acceleration).max(ratio(last.jerk, next.jerk))
-        };
-        let places = (knot.place + 1..next.place).map(|place| (place, unlike(place)));
+        let places = (knot.place + 1..next.place).map(|place| (place, unlike(ahead, place)));
         let (place, unlike) = places.max_by(|one, other| one.1.total_cmp(&other.1))?;
         if unlike < UNLIKE {
             return None;
@@ -83,4 +84,52 @@ impl SmoothPlan {
             || first.profile(middle.velocity).seconds() + middle.profile(next.velocity).seconds();
         (possible && both() < seconds * (1.0 - SAME)).then_some((first, middle))
     }
+
+    /// A hill between two knots cut wherever its blocks are unlike, if that takes less than `seconds`: where several
+    /// of them are slow to speed up, one cut leaves such a block on either side.
+    fn split_everywhere(
+        &self,
+        ahead: &VelocityEnvelope,
+        [knot, next]: [&EnvelopeKnot; 2],
+        seconds: f64,
+    ) -> Option<Vec<EnvelopeKnot>> {
+        let mut knots = vec![*knot];
+        for place in (knot.place + 1..next.place).filter(|place| unlike(ahead, *place) >= UNLIKE) {
+            let velocity = ahead.squares[place].sqrt();
+            knots.push(EnvelopeKnot { place, velocity, ..EnvelopeKnot::default() });
+        }
+        if knots.len() < 3 {
+            return None;
+        }
+        knots.push(*next);
+        let count = knots.len();
+        for index in (0..count - 1).rev() {
+            let next = knots[index + 1];
+            let mut own = self.up_to(ahead, knots[index], next.place);
+            if index > 0 {
+                own.velocity = own.velocity.min(own.ramp.reach(next.velocity, own.length));
+            }
+            knots[index] = own;
+        }
+        for index in 1..count - 1 {
+            let last = knots[index - 1];
+            let reached = last.ramp.reach(last.velocity, last.length);
+            knots[index].velocity = knots[index].velocity.min(reached);
+        }
+        let mut together = 0.0;
+        for pair in knots.windows(2) {
+            if !pair[0].covers(pair[1].velocity) {
+                return None;
+            }
+            together += pair[0].profile(pair[1].velocity).seconds();
+        }
+        (together < seconds * (1.0 - SAME)).then_some(knots)
+    }
+}
+
+/// The larger ratio of accelerations and of jerks of the block at `place` and the one before.
+fn unlike(ahead: &VelocityEnvelope, place: usize) -> f64 {
+    let [last, next] = [&ahead.blocks[place - 1], &ahead.blocks[place]];
+    let ratio = |one: f64, other: f64| (one / other).max(other / one);
+    ratio(last.acceleration, next.acceleration).max(ratio(last.jerk, next.jerk))
 }

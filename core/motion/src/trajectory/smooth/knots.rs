@@ -1,12 +1,16 @@
 //! Knots: where the envelope meets a bound of the velocity.
 
 use super::{SAME, SmoothPlan};
+use crate::trajectory::block::LookAheadBlock;
 use crate::trajectory::envelope::VelocityEnvelope;
 use crate::trajectory::profile::{Ramp, VelocityProfile};
 
 /// Knots are brought to one velocity where its square is no less than this of the largest one's: a slow corner must not
 /// hold up what is near it.
 const ALIKE: f64 = 0.5;
+
+/// Changes of a velocity below this share of it are rounding.
+const ROUNDING: f64 = 1e-13;
 
 /// A place of the envelope where a bound is met, and what follows on it.
 #[derive(Clone, Copy, Debug)]
@@ -42,9 +46,33 @@ impl EnvelopeKnot {
         VelocityProfile::new(self.length, ends, self.top, self.ramp, self.ramp)
     }
 
-    /// The next knot's velocity can be come to, up or down.
+    /// The next knot's velocity can be come to, up or down; what rounding leaves of a change is none.
     pub fn covers(&self, velocity: f64) -> bool {
-        self.ramp.length(self.velocity, velocity) <= self.length
+        libm::fabs(velocity - self.velocity) <= ROUNDING * velocity
+            || self.ramp.length(self.velocity, velocity) <= self.length * (1.0 + SAME)
+    }
+}
+
+/// Blocks between near knots: how long an acceleration takes to rise on them, against how long they last.
+#[derive(Clone, Copy, Debug, Default)]
+struct KnotGap {
+    /// Sum of `l·j/a` over the blocks, their lengths `l`.
+    accelerating: f64,
+    /// Sum of `l·√j`.
+    rising: f64,
+}
+
+impl KnotGap {
+    fn add(&mut self, block: &LookAheadBlock) {
+        self.accelerating += block.length * block.jerk / block.acceleration;
+        self.rising += block.length * block.jerk.sqrt();
+    }
+
+    /// All of them, run through at the velocity `v` whose `square` this is, last no longer than an acceleration takes to
+    /// rise: `Σ l/v` is no more than `a/j` and `√(v/j)`. From `v` on a hill over them would be higher by `v/16` at most.
+    fn is_short(&self, square: f64) -> bool {
+        let velocity = square.sqrt();
+        self.accelerating <= velocity && self.rising <= velocity * velocity.sqrt()
     }
 }
 
@@ -68,25 +96,23 @@ impl SmoothPlan {
                 continue;
             }
             let begins = place;
-            let block = &ahead.blocks[begins];
-            let rise = block.acceleration / block.jerk;
-            let mut left = rise.min((self.velocities[begins] / block.jerk).sqrt());
+            let mut gap = KnotGap::default();
             let (mut last, mut least) = (begins, ahead.squares[begins]);
             let mut most = least;
             while place + 1 < count {
-                let ends = [place, place + 1].map(|place| ahead.squares[place].sqrt());
-                left -= 2.0 * ahead.blocks[place].length / (ends[0] + ends[1]);
-                if left < 0.0 {
+                gap.add(&ahead.blocks[place]);
+                if !gap.is_short(least) {
                     break;
                 }
                 place += 1;
                 if self.is_knot(ahead, place) {
                     let square = ahead.squares[place];
                     most = most.max(square);
-                    if least.min(square) < ALIKE * most {
+                    let lowered = least.min(square);
+                    if lowered < ALIKE * most || !gap.is_short(lowered) {
                         break;
                     }
-                    (last, least) = (place, least.min(square));
+                    (last, least) = (place, lowered);
                 }
             }
             if last > begins {

@@ -197,10 +197,37 @@ fn to_keep_the_path_is_never_slower_than_to_stop_and_to_leave_it_no_slower_than_
         }
     }
     println!("without jerk limits {:?}, with {:?}", worst[0], worst[1]);
-    let [[path, blend], jerk] = worst;
+    let [[path, blend], [jerky_path, jerky_blend]] = worst;
     assert!(path <= 1e-9, "{path}");
-    // A curve leaves less of the accelerations along the way than a kink does, and a ramp may go over it.
-    assert!(blend <= 1e-3, "{blend}");
-    // With jerk limits a ramp over several blocks has the least acceleration and jerk of them all.
-    assert!(jerk.iter().all(|slower| *slower <= 0.15), "{jerk:?}");
+    // A curve leaves less of the accelerations along the way than a kink does, and a ramp may go over it. A quarter goes lost
+    // at most: with three quarters of them everywhere a way takes √(4/3) times as long.
+    assert!(blend <= 0.155, "{blend}");
+    // With jerk limits a ramp over several blocks has the least acceleration and jerk of them all: nothing is proven. Of
+    // 9,000 such programs none is slower by keeping the path; by leaving it one in a thousand is by a twelfth.
+    assert!(jerky_path <= 1e-3, "{jerky_path}");
+    assert!(jerky_blend <= 0.15, "{jerky_blend}");
+}
+
+/// Between corners that hardly any speed is left at, the way is not crept along at theirs.
+#[test]
+fn short_ways_between_slow_corners_are_no_slower_than_from_stop_to_stop() {
+    let linear = "max_feed = 6000, max_accel = 1000, max_jerk = 10000, max_jump = 0.01";
+    let machine = trunnion(linear, "max_feed = 7200, max_accel = 600", "");
+    let mut program = Program::new(&machine, [0.0; 3]);
+    for step in 0..20 {
+        // Two moves straight on, then one corner.
+        let way = [[0.5, 0.0], [0.0, 0.5]][step / 2 % 2];
+        let tip = program.here.pose.tip;
+        let to = program.stance([tip.x + way[0], tip.y + way[1], tip.z], &program.here.joints);
+        program.go(Interpolation::Axes, to, MovePace::Minutes(1e-4), CornerMode::Stop);
+    }
+    let [stop, path] = [CornerMode::Stop, CornerMode::Path].map(|corner| {
+        for task in &mut program.tasks {
+            if let Task::Move(task) = task {
+                task.corner = corner;
+            }
+        }
+        seconds(&machine, &program)
+    });
+    assert!(path < stop, "{path} s, from stop to stop {stop} s");
 }

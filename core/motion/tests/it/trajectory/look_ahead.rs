@@ -3,7 +3,7 @@
 use post_machine::description::Machine;
 use post_motion::path::{Curve, Interpolation};
 use post_motion::{CornerMode, MovePace};
-use post_testkit::{Rng, randomised};
+use post_testkit::{randomised, seeded};
 
 use super::build::{Program, run, trunnion};
 
@@ -87,7 +87,7 @@ fn a_line_in_thousands_of_blocks_takes_hardly_longer_than_in_one() {
 
 #[test]
 fn looking_further_ahead_is_never_slower_and_not_at_all_stands_still() {
-    let mut rng = Rng::new(12);
+    let mut rng = seeded(12);
     for jerk in ["", ", max_jerk = 40000"] {
         let linear = format!("max_feed = 12000, max_accel = 1000{jerk}");
         let blocks: Vec<[f64; 2]> =

@@ -1,5 +1,6 @@
 //! Programs of no sense: everything is carried out, nothing jumps.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -69,7 +70,18 @@ fn step(rng: &mut Rng, program: &mut Program, count: usize) {
 
 #[test]
 fn whatever_is_asked_for_nothing_jumps_and_all_of_it_is_done() {
-    let (rounds, mut rng) = randomised(60u16, 41);
+    let (rounds, rng) = randomised(60u16, 41);
+    carried_out(rounds, rng);
+}
+
+/// In the ninth a task is over before the middle of the time in which the one before overlaps it: it takes no time, not less.
+#[test]
+fn a_task_that_is_over_within_an_overlap_takes_no_time() {
+    let numbers = 640_415_199_u64.wrapping_mul(0xD1B5_4A32_D192_ED03);
+    carried_out(0..9, Rng::new(numbers.wrapping_add(41)));
+}
+
+fn carried_out(rounds: Range<u16>, mut rng: Rng) {
     for round in rounds {
         let mut axis = || {
             let speed = format!("max_feed = {:?},", 60.0 * rng.order(1.0, 3.0));

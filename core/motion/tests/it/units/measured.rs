@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
 use post_machine::kinematics::{Joints, MAX_AXES};
-use post_testkit::Rng;
+use post_testkit::{Rng, seeded};
 
 use post_motion::measured::{Alignment, AlignmentFault, AxisTrack, DifferenceSum, align};
 
@@ -263,7 +263,7 @@ fn rows_that_are_elsewhere_move_nothing() {
 /// another one is named, and then one of the two is right.
 #[test]
 fn random_shifts_are_found_or_said_to_be_one_of_several() {
-    let mut even = Rng::new(2026);
+    let mut even = seeded(2026);
     let mut rivals = 0;
     for round in 0..30 {
         let mut between = |from: f64, to: f64| even.range(from, to);
@@ -296,7 +296,7 @@ fn random_shifts_are_found_or_said_to_be_one_of_several() {
         let noise = libm::exp10(between(-4.0, -2.0));
         let lead = between(0.0, 0.2 * seconds);
         let predicted = track(0.0, 0.001, seconds, motion);
-        let mut errors = Rng::new(round);
+        let mut errors = Rng::new(even.next());
         let log = track(shift - lead, period, seconds + lead, |time| {
             let mut joints = motion(time - shift);
             joints[0] += zeros[0];

@@ -20,6 +20,28 @@ fn minutes(model: &Model, from: &[f64], block: &Asked) -> f64 {
     }
 }
 
+/// The largest share that any axis has of its largest feed (`most`, mm or radians a minute, by place) in a block of so
+/// many minutes. Where the control keeps the tip, an axis is faster in the midst of a block than from end to end.
+fn share(model: &Model, [from, to]: [&[f64]; 2], minutes: f64, most: &[f64]) -> f64 {
+    let pieces = if model.tcp { 100 } else { 1 };
+    let position = |piece: u32| {
+        let t = f64::from(piece) / f64::from(pieces);
+        let words = from.iter().zip(to).map(|(from, to)| from * (1.0 - t) + to * t);
+        model.positions(&words.collect::<Vec<f64>>())
+    };
+    let mut share = 0.0f64;
+    let mut start = position(0);
+    for piece in 1..=pieces {
+        let end = position(piece);
+        for ((start, end), most) in start.iter().zip(&end).zip(most) {
+            let speed = (end - start).abs() * f64::from(pieces) / minutes;
+            share = share.max(speed / most);
+        }
+        start = end;
+    }
+    share
+}
+
 /// Every cut takes the time that its feed asks for, or longer where an axis would be too fast. Gives the largest
 /// share that any axis has of its largest feed, as the control understands the printed words.
 fn fastest(tcp: bool) -> f64 {
@@ -53,14 +75,15 @@ fn fastest(tcp: bool) -> f64 {
                         if let Some(last) = last
                             && block.kind == "Linear"
                         {
-                            let (from, to) =
-                                (model.positions(&last.words), model.positions(&block.words));
                             let minutes = minutes(&model, &last.words, block);
-                            for (place, most) in most.iter().enumerate() {
-                                let share = (to[place] - from[place]).abs() / minutes / most;
-                                slowest = slowest.max(share);
-                                fastest = fastest.max(share);
-                            }
+                            let share = share(&model, [&last.words, &block.words], minutes, &most);
+                            fastest = fastest.max(share);
+                            // A feed a minute is printed with one decimal, rounded down.
+                            let coarse = match block.feed {
+                                Some(Feed::PerMinute(feed)) => (feed + 0.1) / feed,
+                                _ => 1.0,
+                            };
+                            slowest = slowest.max(share * coarse);
                             time += minutes;
                         }
                         last = Some(block);

@@ -37,7 +37,7 @@ fn observers_see_the_blocks_that_the_dialect_is_asked_for() {
     for kind in ["trunnion", "head", "nutating"] {
         for tcp in [false, true] {
             let model = model(kind, tcp, WIDE, &[]);
-            let points = walk(&mut Rng::new(61), 300, 4.0);
+            let points = walk(&mut seeded(61), 300, 1.5);
             let text = cl(&points, 800.0);
             let (mut first, mut second) = (Seen::default(), Seen::default());
             let run = watched(

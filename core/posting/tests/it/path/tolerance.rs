@@ -164,7 +164,8 @@ fn every_block_of_random_paths_is_within_tolerance() {
                 worst.blocks += one.blocks;
             }
             println!("{kind}, tcp {tcp}: {worst:?}");
-            assert!(worst.rapid > 0.1 || tcp, "rapids are cut as finely as cuts");
+            // A cut may be 0.005 mm off, a rapid 0.5 mm.
+            assert!(worst.rapid > 0.005 || tcp, "rapids are cut as finely as cuts");
         }
     }
 }
@@ -179,11 +180,14 @@ fn a_held_axis_leaves_a_four_axis_machine() {
             let points: Vec<Point> = walk(&mut seeded(55), 60, 1.0)
                 .into_iter()
                 .map(|old| {
-                    point(
-                        old.tip,
-                        frame * Vector3::new(0.0, old.axis.y, old.axis.z).normalize(),
-                        old.rapid,
-                    )
+                    let mut lean = libm::atan2(old.axis.y, old.axis.z);
+                    // Between cuts the axis is where the file asks for it. The seven decimals of a tool axis say so to half a
+                    // thousandth of a degree from 5e-8/8.7e-6 = 0.006 off the pole on.
+                    if old.rapid && lean.abs() < 0.02 {
+                        lean = 0.02;
+                    }
+                    let (sine, cosine) = libm::sincos(lean);
+                    point(old.tip, frame * Vector3::new(0.0, sine, cosine), old.rapid)
                 })
                 .collect();
             let worst = check(&format!("held {held}, {tcp}"), &model, &points);

@@ -85,7 +85,7 @@ impl CommandedPath {
             let mut other = self.descend(&actual.tip, here);
             // Where the path turns back the descent may end on another piece, farther away than where it began.
             let distance = (self.point(here) - actual.tip).norm();
-            if distance < other.distance {
+            if distance + SAME < other.distance {
                 other = Foot { distance, ..here };
             }
             if other.distance < foot.distance {

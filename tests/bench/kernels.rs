@@ -66,9 +66,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         });
         let tips: Vec<Vector3<f64>> = poses.iter().map(|pose| pose.tip).collect();
         let (mut at, mut forward) = (AxisBatch::default(), Traces::default());
+        let mut lanes = [[0.0; LANES]; 3];
         let together = nanoseconds(|| {
             for tips in tips.chunks(LANES) {
-                black_box(solver.place_all(tips, &mut at));
+                for (coordinate, lanes) in lanes.iter_mut().enumerate() {
+                    for (lane, tip) in lanes.iter_mut().zip(tips) {
+                        *lane = tip[coordinate];
+                    }
+                }
+                black_box(solver.place_all(&lanes, tips.len(), &mut at));
                 solver.chain().trace_all(&at, tips.len(), &mut forward);
                 black_box(&forward);
             }

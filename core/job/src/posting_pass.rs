@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use post_grammar::{ClReader, ReadError};
+use post_grammar::{ClReader, GotoRun, ReadError};
 use post_host::{Finder, OpenedDialect, OpenedModel};
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
@@ -213,7 +213,14 @@ pub fn file_preview(
 fn read(session: &Session, input: ClInput, post: &mut Post<'_>) -> Result<(), FileFault> {
     let mut progress = session.progress(input.length);
     let mut reader = ClReader::new(input.bytes);
+    let mut run = GotoRun::default();
     while !post.gave_up() {
+        let text = reader.next_gotos(&mut run);
+        if !text.is_empty() {
+            post.gotos(&run, text);
+            progress.some_records(run.points().len() as u64, || reader.bytes_read());
+            continue;
+        }
         match reader.next_record() {
             Ok(Some(record)) => post.record(&record),
             Ok(None) => {

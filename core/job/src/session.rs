@@ -133,9 +133,16 @@ impl Progress {
     /// Counts one more record; `position` bytes of the input are read.
     #[inline]
     pub fn record(&mut self, position: impl FnOnce() -> u64) {
-        self.records += 1;
+        self.some_records(1, position);
+    }
+
+    /// Counts so many more.
+    #[inline]
+    pub fn some_records(&mut self, count: u64, position: impl FnOnce() -> u64) {
+        let before = self.records / EVERY;
+        self.records += count;
         if let Some(bar) = &self.bar
-            && self.records.is_multiple_of(EVERY)
+            && self.records / EVERY > before
         {
             bar.set(position());
         }

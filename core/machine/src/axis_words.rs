@@ -1,7 +1,9 @@
 //! From axis values to the words of the program and back: work offset, units, decimals, order.
 
 mod coordinates;
+mod lanes;
 
+pub use lanes::WordLanes;
 use nalgebra::Vector3;
 use post_plugin::Format;
 

@@ -7,7 +7,7 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use post_grammar::{Record, SyntaxFault};
+use post_grammar::{GotoRun, Record, SyntaxFault};
 use post_machine::diagnostic::{Diagnostic, LimitExcess, Severity, SourcePlace, unreadable};
 
 use crate::source_buffer::SourceBuffer;
@@ -132,6 +132,16 @@ impl Findings {
     pub(crate) fn read(&self, record: &Record<'_>, settled: impl FnOnce() -> Option<u64>) {
         let source = &mut self.inner.borrow_mut().source;
         source.keep(record.line, record.raw, settled);
+    }
+
+    /// [`Findings::read`] of the records of a run, whose text this is.
+    pub(crate) fn read_run(
+        &self,
+        run: &GotoRun,
+        text: &[u8],
+        settled: impl FnOnce() -> Option<u64>,
+    ) {
+        self.inner.borrow_mut().source.keep_run(run, text, settled);
     }
 
     /// The text of a line of the CL file; empty if no finding was to be made for it any more.

@@ -32,6 +32,7 @@ pub mod preview;
 pub mod program;
 mod refusal;
 pub mod report;
+mod run_stages;
 mod shift;
 mod source_buffer;
 mod stream;

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use post_grammar::{Record, SyntaxFault};
+use post_grammar::{GotoRun, Record, SyntaxFault};
 use post_machine::axis_words;
 use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
@@ -22,6 +22,7 @@ use crate::preview::FilePreview;
 use crate::program::{ClInterpreter, ProgramStep, ReadingOptions};
 use crate::refusal;
 use crate::report::{AxisRange, PostingReport, ReportedDeviation};
+use crate::run_stages::RunBuffers;
 use crate::shift::{PathShift, ShiftStage};
 use crate::stream::{BATCH, BatchSink, StreamItem};
 use crate::tightening::Tightening;
@@ -45,6 +46,9 @@ pub struct PostingRequest {
     pub plans: bool,
     /// Where that plan may use less than the limit of the contour error.
     pub tightening: Option<Arc<Tightening>>,
+    /// Most points that go through the stages together: what is written does not depend on it. As many as are worth it,
+    /// if nothing is said.
+    pub longest_run: Option<usize>,
     /// Lines of the CL file that become the program, if not all: those before them set the state that it begins in.
     pub lines: Option<Range<u64>>,
 }
@@ -63,19 +67,20 @@ pub struct Post<'a> {
 }
 
 /// The stages after the interpreter, and the batches between them.
-struct PostStages<'a> {
-    expand: ExpandStage,
-    shift: Option<ShiftStage<'a>>,
+pub(crate) struct PostStages<'a> {
+    pub(crate) expand: ExpandStage,
+    pub(crate) shift: Option<ShiftStage<'a>>,
     lines: Vec<StreamItem<PathMove>>,
-    configuration: ConfigurationStage<'a>,
+    pub(crate) configuration: ConfigurationStage<'a>,
     configured: Vec<StreamItem<ChosenPoint>>,
-    blocks: BlockStage<'a>,
+    pub(crate) blocks: BlockStage<'a>,
     made: Vec<StreamItem<MotionBlock>>,
-    plan: Option<PlanStage<'a>>,
+    pub(crate) plan: Option<PlanStage<'a>>,
     planned: Vec<StreamItem<MotionBlock>>,
-    timing: TimingStage<'a>,
-    observers: Rc<Observers<'a>>,
-    emit: EmitStage<'a>,
+    pub(crate) timing: TimingStage<'a>,
+    pub(crate) observers: Rc<Observers<'a>>,
+    pub(crate) emit: EmitStage<'a>,
+    pub(crate) runs: RunBuffers,
 }
 
 /// What the stages are to do.
@@ -153,6 +158,11 @@ impl PostStages<'_> {
         }
     }
 
+    /// Runs steps through all stages, one by one.
+    pub(crate) fn take_alone(&mut self, steps: &[(u64, ProgramStep)]) {
+        self.run(StageInput::Take(steps));
+    }
+
     /// Line of the CL file before which no finding will be made any more.
     fn settled_line(&self) -> Option<u64> {
         let kept = [
@@ -217,6 +227,7 @@ impl<'a> Post<'a> {
             planned: Vec::new(),
             observers: Rc::default(),
             emit: EmitStage::new(machine, &job.facts, dialect, output, &findings),
+            runs: RunBuffers::new(job.longest_run.unwrap_or(usize::MAX)),
         };
         if job.plans {
             stages.blocks.plans();
@@ -263,9 +274,16 @@ impl<'a> Post<'a> {
     pub fn record(&mut self, record: &Record<'_>) {
         self.records += 1;
         self.last_line = record.line;
-        let (stages, steps) = (&self.stages, &mut self.steps);
+        let (stages, steps) = (&self.stages, &self.steps);
         let waiting = steps.first().map(|(line, _)| *line);
         self.findings.read(record, || [waiting, stages.settled_line()].into_iter().flatten().min());
+        self.interpret(record);
+    }
+
+    /// Takes a record whose text is kept.
+    #[inline]
+    fn interpret(&mut self, record: &Record<'_>) {
+        let steps = &mut self.steps;
         match &mut self.window {
             None => self.interpreter.record(record, &mut |step| steps.push((record.line, step))),
             Some(window) => self.interpreter.record(record, &mut |step| {
@@ -282,8 +300,35 @@ impl<'a> Post<'a> {
         }
     }
 
+    /// Takes the records of a run, whose text this is: [`Self::record`] of each, until it is given up.
+    pub fn gotos(&mut self, run: &GotoRun, text: &[u8]) {
+        let (stages, steps) = (&self.stages, &self.steps);
+        let waiting = steps.first().map(|(line, _)| *line);
+        let settled = || [waiting, stages.settled_line()].into_iter().flatten().min();
+        self.findings.read_run(run, text, settled);
+        let mut pace = self.interpreter.plain_pace().filter(|_| self.window.is_none());
+        for (place, values) in run.points().iter().enumerate() {
+            self.records += 1;
+            self.last_line = run.line(place);
+            let plain = |pace| self.interpreter.plain_move(values, run.has_axis(), pace);
+            match pace.and_then(plain) {
+                Some(motion) => self.steps.push((self.last_line, ProgramStep::Move(motion))),
+                None => {
+                    self.interpret(&run.record(place, text));
+                    pace = self.interpreter.plain_pace().filter(|_| self.window.is_none());
+                }
+            }
+            if self.steps.len() >= BATCH {
+                self.run();
+            }
+            if self.gave_up() {
+                return;
+            }
+        }
+    }
+
     fn run(&mut self) {
-        self.stages.run(StageInput::Take(&self.steps));
+        self.stages.take_steps(&self.steps, &self.findings);
         self.steps.clear();
     }
 

@@ -1,5 +1,7 @@
 //! Text of the last records, for messages: a fault may be found when the record that it belongs to is long read.
 
+use post_grammar::GotoRun;
+
 /// Text of the records whose moves are not settled yet.
 #[derive(Debug, Default)]
 pub(crate) struct SourceBuffer {
@@ -20,6 +22,31 @@ impl SourceBuffer {
         }
         self.lines.push((line, self.text.len()));
         self.text.extend_from_slice(raw);
+    }
+
+    /// Keeps the records of a run whose text this is.
+    pub(crate) fn keep_run(
+        &mut self,
+        run: &GotoRun,
+        text: &[u8],
+        settled: impl FnOnce() -> Option<u64>,
+    ) {
+        let count = run.points().len();
+        if self.lines.len() % RUN + count > RUN {
+            self.forget(settled().unwrap_or(run.line(0)));
+        }
+        if run.is_by_lines() {
+            let (start, stride) = (self.text.len(), run.stride());
+            let lines = (0..count).map(|place| (run.line(place), start + place * stride));
+            self.lines.extend(lines);
+            self.text.extend_from_slice(text);
+            return;
+        }
+        for place in 0..count {
+            let record = run.record(place, text);
+            self.lines.push((record.line, self.text.len()));
+            self.text.extend_from_slice(record.raw);
+        }
     }
 
     fn forget(&mut self, before: u64) {

@@ -5,7 +5,6 @@
 //! aside, is then taken without a search, a loop over digits, or a branch that depends on a number: bit for bit
 //! what the scanner gives.
 
-use super::record::Statement;
 use crate::decimal::{POWERS, eight_digits};
 
 /// Most bytes of a record that has a layout, with its line ends.
@@ -102,9 +101,15 @@ impl RecordLayout {
         self.lines as u64
     }
 
-    /// The record that begins at `start`, if it is laid out so; what is at `end` and after it is not read yet.
+    /// Six numbers are given, the last three being the tool axis.
+    pub(super) fn has_axis(&self) -> bool {
+        self.count == 6
+    }
+
+    /// Numbers of the record that begins at `start`, if it is laid out so; what is at `end` and after it is not read yet.
+    /// Zeros stand for a tool axis that is not given.
     #[inline(always)]
-    pub(super) fn goto(&mut self, buffer: &[u8], start: usize, end: usize) -> Option<Statement> {
+    pub(super) fn goto(&mut self, buffer: &[u8], start: usize, end: usize) -> Option<[f64; 6]> {
         if self.length == 0 || start + self.length > end {
             return None;
         }
@@ -119,9 +124,7 @@ impl RecordLayout {
         } else {
             self.values::<false>(window, &mut values);
         }
-        let [x, y, z, i, j, k] = values;
-        let axis = (self.count == 6).then_some([i, j, k]);
-        Some(Statement::Goto { point: [x, y, z], axis })
+        Some(values)
     }
 
     /// Whether the record is laid out so. Without a branch a byte: the compiler makes vectors of it.
@@ -168,6 +171,13 @@ impl RecordLayout {
             end += 1 + to - from;
         }
         end
+    }
+
+    /// Where the record ends that [`RecordLayout::join`] has joined.
+    pub(super) fn joined_length(&self) -> usize {
+        let pieces = &self.pieces[..self.lines];
+        let all: usize = pieces.iter().map(|(from, to)| 1 + to - from).sum();
+        all.saturating_sub(1)
     }
 
     /// Looks for the layout of the record that begins at `start`; true if it has one.

@@ -1,6 +1,7 @@
 //! Cutter-location files: chunks of a file to logical lines, lines to typed records.
 
 pub(crate) mod foreign;
+mod goto_run;
 mod layout;
 pub(crate) mod line;
 mod reader;
@@ -9,6 +10,7 @@ pub(crate) mod scan;
 mod statements;
 mod vocabulary;
 
+pub use goto_run::GotoRun;
 pub use line::parse_record;
 pub use reader::ClReader;
 pub use record::*;

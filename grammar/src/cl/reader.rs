@@ -9,9 +9,10 @@
 //!   must not swallow the move after it.
 
 use super::foreign;
+use super::goto_run::{GotoRun, goto_statement};
 use super::layout::RecordLayout;
 use super::line::{is_free_text, parse_record};
-use super::record::{Record, Statement};
+use super::record::Record;
 use super::scan::{self, PlainGoto};
 use crate::fault::{ReadError, SyntaxFault};
 use crate::text::excerpt;
@@ -104,16 +105,16 @@ impl<R: Read> ClReader<R> {
     ///
     /// After a [`ReadError::Syntax`] the next call goes on with the next line.
     pub fn next_record(&mut self) -> Result<Option<Record<'_>>, ReadError> {
-        if let Some(statement) = self.laid_out() {
-            return Ok(Some(self.take_laid_out(statement)));
+        if let Some(values) = self.laid_out() {
+            return Ok(Some(self.take_laid_out(values)));
         }
         if !self.begun {
             self.begin()?;
         }
         if self.layout.learn(&self.buffer, self.start, self.end)
-            && let Some(statement) = self.laid_out()
+            && let Some(values) = self.laid_out()
         {
-            return Ok(Some(self.take_laid_out(statement)));
+            return Ok(Some(self.take_laid_out(values)));
         }
         if !self.parted
             && let Some((plain, next)) = self.plain()
@@ -170,19 +171,45 @@ impl<R: Read> ClReader<R> {
         Err(fault.help(help).into())
     }
 
-    /// The `GOTO` that begins here, if it is laid out as those before.
+    /// Takes the `GOTO` records that follow as far as they are laid out as those before, into `run`; gives their text.
+    /// There may be none: [`Self::next_record`] goes on then.
+    pub fn next_gotos(&mut self, run: &mut GotoRun) -> &[u8] {
+        let start = self.start;
+        let mut count = 0;
+        while count < GotoRun::MOST
+            && let Some(values) = self.laid_out()
+        {
+            run.values[count] = values;
+            if self.layout.lines() > 1 {
+                self.layout.join(&mut self.buffer[self.start..]);
+            }
+            self.start += self.layout.length();
+            count += 1;
+        }
+        run.count = count;
+        run.line = self.line;
+        run.lines = self.layout.lines();
+        run.has_axis = self.layout.has_axis();
+        run.stride = self.layout.length();
+        run.length = self.layout.joined_length();
+        self.line += count as u64 * run.lines;
+        &self.buffer[start..self.start]
+    }
+
+    /// Numbers of the `GOTO` that begins here, if it is laid out as those before.
     #[inline(always)]
-    fn laid_out(&mut self) -> Option<Statement> {
+    fn laid_out(&mut self) -> Option<[f64; 6]> {
         self.layout.goto(&self.buffer, self.start, self.end)
     }
 
     /// Consumes the `GOTO` that begins here, laid out as those before.
     #[inline(always)]
-    fn take_laid_out(&mut self, statement: Statement) -> Record<'_> {
+    fn take_laid_out(&mut self, values: [f64; 6]) -> Record<'_> {
         let (start, line) = (self.start, self.line);
         let end = start + self.layout.join(&mut self.buffer[start..]);
         self.start += self.layout.length();
         self.line += self.layout.lines();
+        let statement = goto_statement(&values, self.layout.has_axis());
         Record { line, raw: &self.buffer[start..end], statement }
     }
 

@@ -1,6 +1,6 @@
 //! Logical lines: ends, continuations, comments, chunks, faults between good records.
 
-use post_grammar::{ClReader, ReadError, Record, Statement};
+use post_grammar::{ClReader, GotoRun, ReadError, Record, Statement};
 use post_testkit::{Rng, randomised};
 use std::io::{self, Cursor, Read};
 
@@ -26,9 +26,19 @@ fn told(record: &Record<'_>) -> String {
 
 /// Every record and fault, as text that tells them apart.
 fn all(input: impl Read) -> Vec<String> {
+    all_by(input, false)
+}
+
+/// Every record and fault; `runs` if records of one layout are to be taken together.
+fn all_by(input: impl Read, runs: bool) -> Vec<String> {
     let mut reader = ClReader::new(input);
+    let mut run = GotoRun::default();
     let mut found = Vec::new();
     loop {
+        if runs {
+            let text = reader.next_gotos(&mut run);
+            found.extend((0..run.points().len()).map(|place| told(&run.record(place, text))));
+        }
         match reader.next_record() {
             Ok(None) => return found,
             Ok(Some(record)) => found.push(told(&record)),
@@ -265,9 +275,10 @@ fn records_of_one_layout_are_read_as_each_by_itself() {
         let expected = all(alone);
         let shown = String::from_utf8_lossy(&bytes);
         assert_eq!(all(bytes.as_slice()), expected, "{shown:?}");
+        assert_eq!(all_by(bytes.as_slice(), true), expected, "{shown:?}");
         let sizes = rng.some([1, 6], |rng| 1 + rng.pick(300));
         let trickle = Trickle { bytes: &bytes, sizes: sizes.into_iter().cycle() };
-        assert_eq!(all(trickle), expected, "{shown:?}");
+        assert_eq!(all_by(trickle, rng.pick(2) == 0), expected, "{shown:?}");
     }
 }
 

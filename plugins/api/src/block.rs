@@ -77,7 +77,6 @@ impl Block {
     }
 
     /// Writes the number after `front`, the address with its blank, if that is short enough.
-    #[inline]
     fn number_behind(
         &mut self,
         front: Option<Front>,
@@ -352,23 +351,39 @@ impl AxisState {
         self.behind = close;
     }
 
+    #[inline(always)]
     fn write(&mut self, block: &mut Block, value: f64, style: NumberStyle) {
-        if self.last.set(value) {
-            match &mut self.modulo {
-                None => block.number_behind(self.front, &self.name, value, self.decimals, style),
-                Some(modulo) => {
-                    let far = modulo.at.replace(value).map_or(0.0, |at| value - at);
-                    let way = match far.abs() {
-                        ..SHORTER | 360.0.. => 0,
-                        _ if far > 0.0 => 1,
-                        _ => 2,
-                    };
-                    let place = within_turn(value, self.decimals);
-                    block.number_behind(None, &modulo.ways[way], place, self.decimals, style);
-                }
-            }
-            block.words.push_str(self.behind);
+        if !self.last.set(value) {
+            return;
         }
+        let written = match self.front {
+            Some(front) if self.modulo.is_none() && self.behind.is_empty() => {
+                style.look().append(&mut block.words, front, value, self.decimals)
+            }
+            _ => false,
+        };
+        if !written {
+            self.write_unusual(block, value, style);
+        }
+    }
+
+    /// A word that says more than letter and number, or a number that is beyond the usual way.
+    #[inline(never)]
+    fn write_unusual(&mut self, block: &mut Block, value: f64, style: NumberStyle) {
+        match &mut self.modulo {
+            None => block.number_behind(self.front, &self.name, value, self.decimals, style),
+            Some(modulo) => {
+                let far = modulo.at.replace(value).map_or(0.0, |at| value - at);
+                let way = match far.abs() {
+                    ..SHORTER | 360.0.. => 0,
+                    _ if far > 0.0 => 1,
+                    _ => 2,
+                };
+                let place = within_turn(value, self.decimals);
+                block.number_behind(None, &modulo.ways[way], place, self.decimals, style);
+            }
+        }
+        block.words.push_str(self.behind);
     }
 }
 

@@ -52,6 +52,12 @@ impl Front {
     #[inline]
     pub(crate) const fn blank(text: &str) -> Option<Front> {
         let text = text.as_bytes();
+        // Nearly every address is one letter.
+        if let [letter] = *text
+            && letter.is_ascii()
+        {
+            return Some(Front { bytes: b' ' as u64 | (letter as u64) << 8, len: 2 });
+        }
         if text.len() > 7 || !text.is_ascii() {
             return None;
         }

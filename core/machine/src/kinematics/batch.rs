@@ -12,6 +12,27 @@ pub const LANES: usize = 64;
 /// A number of each point.
 pub type Lanes = [f64; LANES];
 
+/// A vector of each point, part by part.
+pub type VectorLanes = [Lanes; 3];
+
+/// A number of each point, that of the point before them in front.
+pub type Column = [f64; LANES + 1];
+
+/// A vector of each point, part by part, that of the point before them in front.
+pub type VectorColumn = [Column; 3];
+
+/// The vector of a lane.
+#[inline(always)]
+pub fn vector<const N: usize>(of: &[[f64; N]; 3], lane: usize) -> Vector3<f64> {
+    Vector3::new(of[0][lane], of[1][lane], of[2][lane])
+}
+
+/// Puts the vector of a lane.
+#[inline(always)]
+pub fn set_vector<const N: usize>(of: &mut [[f64; N]; 3], lane: usize, vector: Vector3<f64>) {
+    (of[0][lane], of[1][lane], of[2][lane]) = (vector.x, vector.y, vector.z);
+}
+
 /// Where the axes of a batch of points stand, by joint; what is not a rotary joint has the sine 0 and the cosine 1.
 #[derive(Clone, Debug)]
 pub struct AxisBatch {
@@ -27,13 +48,13 @@ pub struct AxisBatch {
 #[derive(Clone, Debug)]
 pub struct Traces {
     /// Tips, mm, part frame.
-    pub tip: [Vector3<f64>; LANES],
+    pub tip: VectorLanes,
     /// Tool axes, part frame.
-    pub axis: [Vector3<f64>; LANES],
+    pub axis: VectorLanes,
     /// By rotary joint, how the tip moves with it, mm a radian, before that joint has turned.
-    pub tip_rates: [[Vector3<f64>; LANES]; MAX_AXES],
+    pub tip_rates: [VectorLanes; MAX_AXES],
     /// By rotary joint, the tool axis before that joint has turned.
-    pub axes: [[Vector3<f64>; LANES]; MAX_AXES],
+    pub axes: [VectorLanes; MAX_AXES],
 }
 
 impl Default for AxisBatch {
@@ -48,7 +69,7 @@ impl Default for AxisBatch {
 
 impl Default for Traces {
     fn default() -> Self {
-        const ZERO: [Vector3<f64>; LANES] = [Vector3::new(0.0, 0.0, 0.0); LANES];
+        const ZERO: VectorLanes = [[0.0; LANES]; 3];
         Self { tip: ZERO, axis: ZERO, tip_rates: [ZERO; MAX_AXES], axes: [ZERO; MAX_AXES] }
     }
 }
@@ -69,28 +90,35 @@ impl Chain {
     /// [`Chain::trace`] of the first `count` points of `at`; the leading edge of a tool that has one is left out.
     pub fn trace_all(&self, at: &AxisBatch, count: usize, out: &mut Traces) {
         let count = count.min(LANES);
-        out.tip[..count].fill(self.tip());
-        out.axis[..count].fill(self.axis());
+        let Traces { tip, axis, tip_rates, axes } = out;
+        for part in 0..3 {
+            tip[part][..count].fill(self.tip()[part]);
+            axis[part][..count].fill(self.axis()[part]);
+        }
         for (index, joint) in self.joints().iter().enumerate().rev() {
-            let k = joint.direction;
+            let (k, point) = (joint.direction, joint.point);
             if !joint.rotary {
-                for (tip, value) in out.tip[..count].iter_mut().zip(&at.joints[index]) {
-                    *tip += k * *value;
+                for lane in 0..count {
+                    set_vector(tip, lane, vector(tip, lane) + k * at.joints[index][lane]);
                 }
                 continue;
             }
             let (sines, cosines) = (&at.sines[index], &at.cosines[index]);
-            let (rates, axes) = (&mut out.tip_rates[index], &mut out.axes[index]);
+            let (rates, axes) = (&mut tip_rates[index], &mut axes[index]);
             for lane in 0..count {
-                let arm = out.tip[lane] - joint.point;
-                rates[lane] = k.cross(&arm);
-                axes[lane] = out.axis[lane];
-                out.tip[lane] = joint.point + turn(arm, k, sines[lane], cosines[lane]);
-                out.axis[lane] = turn(out.axis[lane], k, sines[lane], cosines[lane]);
+                let arm = vector(tip, lane) - point;
+                set_vector(rates, lane, k.cross(&arm));
+                set_vector(tip, lane, point + turn(arm, k, sines[lane], cosines[lane]));
+            }
+            for lane in 0..count {
+                let before = vector(axis, lane);
+                set_vector(axes, lane, before);
+                set_vector(axis, lane, turn(before, k, sines[lane], cosines[lane]));
             }
         }
-        for tip in &mut out.tip[..count] {
-            *tip -= self.mount();
+        let mount = self.mount();
+        for lane in 0..count {
+            set_vector(tip, lane, vector(tip, lane) - mount);
         }
     }
 }

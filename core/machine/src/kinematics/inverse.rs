@@ -3,13 +3,13 @@
 
 use nalgebra::Vector3;
 
-use super::batch::AxisBatch;
+use super::batch::{AxisBatch, LANES, Lanes, VectorLanes};
 use super::chain::{Chain, Joints, MAX_AXES, Pose, Turns};
 use super::derivatives::{self, JointDerivatives, ORDERS};
 use super::fault::{NoClosedForm, POLE, Unreachable};
 use super::linear::{Linear, Second};
 use super::numeric;
-use super::orientation::{Branches, Orientation, RotarySet, angle};
+use super::orientation::{Branches, LatitudeLanes, Orientation, RotarySet, angle};
 use super::turning_axis;
 
 /// How far a returned solution may miss the pose when it is put through the forward product: mm per metre
@@ -156,6 +156,12 @@ impl Solver {
         }
     }
 
+    /// The three linear joints that place the tip alone, in the order of the chain.
+    #[inline]
+    pub fn sliding(&self) -> Option<[usize; 3]> {
+        self.linear().map(|linear| linear.joints)
+    }
+
     /// The rotary angles of a branch.
     #[inline]
     pub fn angles(&self, branches: &Branches, index: usize) -> RotarySet {
@@ -266,14 +272,39 @@ impl Solver {
         turning_axis::follow(&self.chain, rotary, axis, course)
     }
 
-    /// [`Solver::place`] of a batch: puts the linear axes of `at` where the tips stand on `tips` (mm, part frame; at
-    /// most [`super::batch::LANES`]), the rotary ones being where its sines and cosines have them. False, and nothing
-    /// done, where the chain asks for more than that: its points are left to [`Solver::place`].
-    pub fn place_all(&self, tips: &[Vector3<f64>], at: &mut AxisBatch) -> bool {
+    /// [`Solver::place`] of a batch: puts the linear axes of `at` where the tips stand on the first `count` of `tips`
+    /// (mm, part frame), the rotary ones being where its sines and cosines have them. False, and nothing done, where the
+    /// chain asks for more than that: its points are left to [`Solver::place`].
+    pub fn place_all(&self, tips: &VectorLanes, count: usize, at: &mut AxisBatch) -> bool {
         match &self.form {
-            SolutionMethod::Closed { linear, .. } => linear.place_batch(&self.chain, tips, at),
+            SolutionMethod::Closed { linear, .. } => {
+                linear.place_batch(&self.chain, tips, count, at)
+            }
             SolutionMethod::Numeric { .. } => false,
         }
+    }
+
+    /// The rotary angles of a branch that point the tool along the first `count` of `axes` (unit vectors, part frame),
+    /// into `at`, and how far each is from the poles. False where an angle is free, the branches meet or the machine
+    /// does not reach, or where not two axes alone point the tool, nor it stands as it is wanted: these points are left to
+    /// [`Solver::orient`].
+    pub fn angles_all(
+        &self,
+        axes: [&Lanes; 3],
+        branch: usize,
+        count: usize,
+        at: &mut AxisBatch,
+        latitudes: &mut LatitudeLanes,
+    ) -> bool {
+        let SolutionMethod::Closed { orientation, idle: 0, .. } = &self.form else {
+            return false;
+        };
+        for (index, joint) in self.chain.joints().iter().enumerate() {
+            if joint.rotary {
+                at.joints[index][..count.min(LANES)].fill(self.held[index]);
+            }
+        }
+        orientation.angles_all(axes, branch, count, at, latitudes)
     }
 
     /// Values of the joints that stand still, mm or radians.

@@ -8,6 +8,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::batch::{Column, LANES, Lanes, VectorColumn, vector};
 use super::chain::{Chain, Joints, MAX_AXES, Trace, Turns, turn};
 use super::inverse::Solver;
 use super::linear::{FLAT, Linear, longest_row};
@@ -137,6 +138,50 @@ impl<'a> TcpBlock<'a> {
             pass(index, &mut slope, &mut behind);
         }
         self.linear.reach * (front + behind)
+    }
+
+    /// [`TcpBlock::quick`] of the first `count` blocks of a run, whose point is the tip: `joints` (mm, radians), `rates` of
+    /// the tip by rotary joint and `tips` (mm, part frame) are those of their ends. False, and nothing done, where that
+    /// is infinite.
+    pub fn quick_all(
+        solver: &Solver,
+        joints: &[Column; MAX_AXES],
+        rates: &[VectorColumn; MAX_AXES],
+        tips: &VectorColumn,
+        count: usize,
+        bends: &mut Lanes,
+    ) -> bool {
+        let Some(linear) = solver.linear().filter(|linear| linear.inverse.is_some()) else {
+            return false;
+        };
+        let count = count.min(LANES);
+        let pass = |index: usize, slopes: &mut Lanes, bends: &mut Lanes| {
+            let (joints, rates) = (&joints[index], &rates[index]);
+            for lane in 0..count {
+                let w = (joints[lane + 1] - joints[lane]).abs();
+                let first = vector(rates, lane).norm_squared();
+                let last = vector(rates, lane + 1).norm_squared();
+                // A joint that stands adds zeros.
+                let radius = if first > last { first } else { last }.sqrt() + bends[lane] / 8.0;
+                bends[lane] += w * (w * radius + 2.0 * slopes[lane]);
+                slopes[lane] += w * radius;
+            }
+        };
+        let [mut slopes, mut front, mut behind] = [[0.0; LANES]; 3];
+        for (lane, slope) in slopes[..count].iter_mut().enumerate() {
+            *slope = (vector(tips, lane + 1) - vector(tips, lane)).norm();
+        }
+        for index in 0..linear.first {
+            pass(index, &mut slopes, &mut front);
+        }
+        slopes = [0.0; LANES];
+        for index in (linear.last + 1..solver.chain().joints().len()).rev() {
+            pass(index, &mut slopes, &mut behind);
+        }
+        for lane in 0..count {
+            bends[lane] = linear.reach * (front[lane] + behind[lane]);
+        }
+        true
     }
 
     /// Looks into the block: the range and way of each linear axis to `STRAY`, the least time that `slowness`

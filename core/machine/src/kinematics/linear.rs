@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::batch::{AxisBatch, LANES};
+use super::batch::{AxisBatch, LANES, VectorLanes, set_vector, vector};
 use super::chain::{Chain, Joints, MAX_AXES, Turns, turn};
 use super::derivatives::LinearShare;
 use super::fault::{NoClosedForm, Unreachable};
@@ -185,44 +185,48 @@ impl Linear {
         })
     }
 
-    /// [`Linear::place`] of a batch: the linear axes of `at` for `tips`. False, and nothing done, where the linear
-    /// axes do not stand side by side, or there are more than three.
+    /// [`Linear::place`] of a batch: the linear axes of `at` for the first `count` of `tips`. False, and nothing done,
+    /// where the linear axes do not stand side by side, or there are more than three.
     pub(super) fn place_batch(
         &self,
         chain: &Chain,
-        tips: &[Vector3<f64>],
+        tips: &VectorLanes,
+        count: usize,
         at: &mut AxisBatch,
     ) -> bool {
         let Some(inverse) = self.inverse.filter(|_| !self.more) else {
             return false;
         };
         let axes = chain.joints();
-        let count = tips.len().min(LANES);
-        let mut targets = [Vector3::zeros(); LANES];
-        let mut ends = [chain.tip(); LANES];
-        for (target, tip) in targets.iter_mut().zip(tips) {
-            *target = tip + chain.mount();
+        let count = count.min(LANES);
+        let [mut targets, mut ends] = [[[0.0; LANES]; 3]; 2];
+        let (mount, tip) = (chain.mount(), chain.tip());
+        for lane in 0..count {
+            set_vector(&mut targets, lane, vector(tips, lane) + mount);
+            set_vector(&mut ends, lane, tip);
         }
         for (index, joint) in axes[..self.first].iter().enumerate() {
-            let turns = at.sines[index].iter().zip(&at.cosines[index]);
-            for (target, (sine, cosine)) in targets[..count].iter_mut().zip(turns) {
-                let arm = *target - joint.point;
-                *target = joint.point + turn(arm, joint.direction, -sine, *cosine);
+            let (k, point) = (joint.direction, joint.point);
+            let (sines, cosines) = (&at.sines[index], &at.cosines[index]);
+            for lane in 0..count {
+                let arm = vector(&targets, lane) - point;
+                set_vector(&mut targets, lane, point + turn(arm, k, -sines[lane], cosines[lane]));
             }
         }
         for index in (self.last + 1..axes.len()).rev() {
-            let joint = &axes[index];
-            let turns = at.sines[index].iter().zip(&at.cosines[index]);
-            for (end, (sine, cosine)) in ends[..count].iter_mut().zip(turns) {
-                let arm = *end - joint.point;
-                *end = joint.point + turn(arm, joint.direction, *sine, *cosine);
+            let (k, point) = (axes[index].direction, axes[index].point);
+            let (sines, cosines) = (&at.sines[index], &at.cosines[index]);
+            for lane in 0..count {
+                let arm = vector(&ends, lane) - point;
+                set_vector(&mut ends, lane, point + turn(arm, k, sines[lane], cosines[lane]));
             }
         }
-        for (lane, (target, end)) in targets.iter().zip(&ends).take(count).enumerate() {
-            let values = inverse * (target - end);
-            for (value, joint) in values.iter().zip(self.joints) {
-                at.joints[joint][lane] = *value;
-            }
+        for lane in 0..count {
+            let values = inverse * (vector(&targets, lane) - vector(&ends, lane));
+            set_vector(&mut targets, lane, values);
+        }
+        for (values, joint) in targets.iter().zip(self.joints) {
+            at.joints[joint][..count].copy_from_slice(&values[..count]);
         }
         true
     }

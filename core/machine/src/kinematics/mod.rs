@@ -8,6 +8,7 @@ mod derivatives;
 mod fault;
 pub mod inverse;
 mod kept_tip;
+pub mod lane_math;
 mod linear;
 mod numeric;
 pub mod orientation;

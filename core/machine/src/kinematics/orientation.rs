@@ -9,8 +9,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::batch::{AxisBatch, LANES, Lanes};
 use super::chain::{Chain, Joints, Pose, Turns, square, turn};
 use super::fault::{NoClosedForm, POLE, Unreachable};
+use super::lane_math::atan2_all;
 
 /// The one or two ways to point the tool along one axis. Their angles are worked out when asked for: where
 /// solutions are far apart, the nearer one is all that is wanted.
@@ -57,6 +59,33 @@ impl RotarySet {
             }
         }
     }
+}
+
+/// How far the tool axes of many points are from the poles: see [`Branches::latitude`].
+#[derive(Clone, Debug)]
+pub struct LatitudeLanes {
+    /// Sines of the angles from the first of two free axes.
+    pub sines: Lanes,
+    /// Cosines of the angles.
+    pub cosines: Lanes,
+}
+
+impl Default for LatitudeLanes {
+    fn default() -> Self {
+        Self { sines: [0.0; LANES], cosines: [0.0; LANES] }
+    }
+}
+
+/// A wanted axis as the two turns share it out: see the head of this file.
+#[derive(Clone, Copy, Debug)]
+struct SharedTurn {
+    /// Coordinate along k1 of the wanted axis, and what is across k1 of it.
+    cosine: f64,
+    across: Vector3<f64>,
+    sine_squared: f64,
+    /// The vector between the two turns along `towards`, and the square of its part along `aside`.
+    x: f64,
+    square: f64,
 }
 
 /// The rotary axes that are solved for.
@@ -259,6 +288,30 @@ impl Orientation {
         }
     }
 
+    /// See [`super::Solver::angles_all`].
+    pub(super) fn angles_all(
+        &self,
+        axes: [&Lanes; 3],
+        branch: usize,
+        count: usize,
+        at: &mut AxisBatch,
+        latitudes: &mut LatitudeLanes,
+    ) -> bool {
+        match self {
+            Self::Two(two) => two.angles_all(axes, branch, count, at, latitudes),
+            // Nothing turns: the axis of the tool is wanted, to the bit.
+            Self::Fixed { axis } => {
+                let count = count.min(LANES);
+                let wanted = axes.map(|part| &part[..count]);
+                let same = |part: usize| wanted[part].iter().all(|value| *value == axis[part]);
+                latitudes.sines[..count].fill(Branches::ONE.sine);
+                latitudes.cosines[..count].fill(Branches::ONE.u.x);
+                same(0) && same(1) && same(2)
+            }
+            Self::One { .. } => false,
+        }
+    }
+
     /// The free joint nearest to the tool.
     pub(super) fn last(&self) -> usize {
         match self {
@@ -350,22 +403,79 @@ impl Two {
         }
     }
 
-    #[inline]
-    fn orient(&self, pose: &Pose, tolerance: f64) -> Result<Branches, Unreachable> {
-        let (u, ahead) = self.wanted(pose);
+    /// Shares the way to the wanted axis out between the two turns.
+    #[inline(always)]
+    fn shared(&self, u: Vector3<f64>) -> SharedTurn {
         // z = k1·cosine + towards·x ± aside·y keeps k1·z = k1·u and |z| = 1; x follows from
         // k2·z = k2·a. Beside a pole cosines say little: the sine is taken from the part of u across
         // k1, and 1 - |cosine| from the sine.
-        let mut cosine = self.k1.dot(&u);
+        let cosine = self.k1.dot(&u);
         let across = u - self.k1 * cosine;
         let sine_squared = across.norm_squared();
         let rest = sine_squared / (1.0 + cosine.abs());
-        let mut x = if cosine >= 0.0 {
+        let x = if cosine >= 0.0 {
             (self.cone - self.dot) + self.dot * rest
         } else {
             (self.cone + self.dot) - self.dot * rest
         } * self.per_sine;
-        let square = sine_squared - x * x;
+        SharedTurn { cosine, across, sine_squared, x, square: sine_squared - x * x }
+    }
+
+    /// See [`super::Solver::angles_all`].
+    fn angles_all(
+        &self,
+        axes: [&Lanes; 3],
+        branch: usize,
+        count: usize,
+        at: &mut AxisBatch,
+        latitudes: &mut LatitudeLanes,
+    ) -> bool {
+        if self.third.is_some() {
+            return false;
+        }
+        let count = count.min(LANES);
+        let [mut first_sines, mut first_cosines, mut sines, mut cosines] = [[0.0; LANES]; 4];
+        let mut least_square = f64::INFINITY;
+        let mut least_sine = f64::INFINITY;
+        for lane in 0..count {
+            let axis = Vector3::new(axes[0][lane], axes[1][lane], axes[2][lane]);
+            let u = self.before.as_ref().map_or(axis, |before| before * axis);
+            let shared = self.shared(u);
+            let SharedTurn { cosine, across, sine_squared, x, square } = shared;
+            least_square = if square < least_square { square } else { least_square };
+            least_sine = if sine_squared < least_sine { sine_squared } else { least_sine };
+            let y = if square > 0.0 { square } else { 0.0 }.sqrt();
+            let y = if branch == 0 { y } else { -y };
+            let u = Vector3::new(cosine, self.towards.dot(&across), self.aside.dot(&across));
+            let [first, second] = self.sines(u, x, y);
+            (first_sines[lane], first_cosines[lane]) = first;
+            (sines[lane], cosines[lane]) = second;
+            latitudes.sines[lane] = sine_squared.sqrt();
+            latitudes.cosines[lane] = cosine;
+        }
+        if !(least_square > 0.0 && least_sine >= POLE * POLE) {
+            return false;
+        }
+        let [first, second] = self.joints;
+        atan2_all(&first_sines, &first_cosines, count, &mut at.joints[first]);
+        atan2_all(&sines, &cosines, count, &mut at.joints[second]);
+        true
+    }
+
+    /// Sines and cosines of the two turns, not of unit length: `u` is the wanted axis, and `x` and `y` are those of the
+    /// vector between the turns.
+    #[inline(always)]
+    fn sines(&self, u: Vector3<f64>, x: f64, y: f64) -> [(f64, f64); 2] {
+        let z = Vector3::new(u.x, x, y);
+        // k2 takes a, which lies along `across`, into z; k1 takes z into u, seen along k1.
+        let second = (self.ahead.dot(&z), self.across.dot(&z));
+        [(x * u.z - y * u.y, x * u.y + y * u.z), second]
+    }
+
+    #[inline]
+    fn orient(&self, pose: &Pose, tolerance: f64) -> Result<Branches, Unreachable> {
+        let (u, ahead) = self.wanted(pose);
+        let SharedTurn { mut cosine, across, sine_squared, mut x, square } = self.shared(u);
         // A tangent solution may come out a rounding error below zero.
         if square < -POLE * POLE {
             let (miss, latitude) = self.miss(u);
@@ -394,9 +504,7 @@ impl Two {
         let [first, second] = self.joints;
         let Branches { u, x, y, .. } = branches;
         let y = if index == 0 { *y } else { -y };
-        let z = Vector3::new(u.x, *x, y);
-        // k2 takes a, which lies along `across`, into z; k1 takes z into u, seen along k1.
-        let (sine, cosine) = (self.ahead.dot(&z), self.across.dot(&z));
+        let [(first_sine, first_cosine), (sine, cosine)] = self.sines(*u, *x, y);
         let turn = libm::atan2(sine, cosine);
         set.joints[second] = turn;
         if branches.pole && self.third.is_some() {
@@ -405,7 +513,6 @@ impl Two {
         } else if branches.pole {
             set.free |= 1 << first;
         } else {
-            let (first_sine, first_cosine) = (x * u.z - y * u.y, x * u.y + y * u.z);
             set.joints[first] = libm::atan2(first_sine, first_cosine);
             if self.third.is_none() {
                 // Of vectors whose lengths are known: the turns need no further sines and cosines.

@@ -1,7 +1,8 @@
 //! Many points at once: the bits of one after the other.
 
-use post_machine::kinematics::batch::{AxisBatch, LANES, Traces};
-use post_machine::kinematics::{Solver, Trace};
+use post_machine::kinematics::batch::{AxisBatch, LANES, Traces, set_vector, vector};
+use post_machine::kinematics::orientation::LatitudeLanes;
+use post_machine::kinematics::{Pose, Solver, Trace};
 use post_testkit::{at_least, randomised};
 use post_testmachines::{Kind, Random};
 
@@ -23,6 +24,10 @@ fn a_batch_is_placed_and_traced_with_the_bits_of_its_points() {
         let chain = solver.chain();
         let count = 1 + rng.pick(LANES);
         let tips: Vec<_> = (0..count).map(|_| rng.point(300.0)).collect();
+        let mut columns = [[0.0; LANES]; 3];
+        for (lane, tip) in tips.iter().enumerate() {
+            set_vector(&mut columns, lane, *tip);
+        }
         let mut singles: Vec<Trace> = Vec::new();
         for lane in 0..count {
             let mut trace = Trace { joints: machine.values(&mut rng), ..Trace::default() };
@@ -33,7 +38,7 @@ fn a_batch_is_placed_and_traced_with_the_bits_of_its_points() {
             }
             singles.push(trace);
         }
-        if solver.place_all(&tips, &mut at) {
+        if solver.place_all(&columns, count, &mut at) {
             placed += count;
             for (trace, tip) in singles.iter_mut().zip(&tips) {
                 let turns = trace.turns;
@@ -48,14 +53,68 @@ fn a_batch_is_placed_and_traced_with_the_bits_of_its_points() {
             for (index, joint) in chain.joints().iter().enumerate() {
                 assert_eq!(at.joints[index][lane].to_bits(), trace.joints[index].to_bits());
                 if joint.rotary {
-                    assert_eq!(out.tip_rates[index][lane], trace.tip_rates[index]);
-                    assert_eq!(out.axes[index][lane], trace.axes[index]);
+                    assert_eq!(vector(&out.tip_rates[index], lane), trace.tip_rates[index]);
+                    assert_eq!(vector(&out.axes[index], lane), trace.axes[index]);
                 }
             }
-            assert_eq!(out.tip[lane], trace.pose.tip);
-            assert_eq!(out.axis[lane], trace.pose.axis);
+            assert_eq!(vector(&out.tip, lane), trace.pose.tip);
+            assert_eq!(vector(&out.axis, lane), trace.pose.axis);
         }
     }
     println!("{placed} points placed, {left} left to the single point");
     assert!(placed > at_least(1_000) && left > at_least(500));
+}
+
+/// Rotary angles of a batch are those of its points, bit by bit, wherever the batch says that it has them.
+#[test]
+fn a_batch_is_turned_with_the_bits_of_its_points() {
+    let (rounds, mut rng) = randomised(400, 64);
+    let (mut at, mut latitudes) = (AxisBatch::default(), LatitudeLanes::default());
+    let (mut turned, mut left) = (0, 0);
+    for round in rounds {
+        let mut kinds = vec![Kind::Linear; 3];
+        kinds.extend([Kind::Free; 2]);
+        kinds.extend(vec![Kind::Held; round as usize % 2]);
+        let machine = Random::of(&mut rng, &kinds);
+        let chain = machine.reference.chain();
+        let Ok(solver) = Solver::new(chain, &machine.free, machine.held) else {
+            continue;
+        };
+        let count = 1 + rng.pick(LANES);
+        // Directions that the machine reaches, all close together or from all over.
+        let near = machine.values(&mut rng);
+        let mut axes = [[0.0; LANES]; 3];
+        for lane in 0..count {
+            let mut values = if round % 4 == 0 { machine.values(&mut rng) } else { near };
+            for joint in &machine.free {
+                values[*joint] += rng.range(-0.1, 0.1);
+            }
+            set_vector(&mut axes, lane, solver.chain().forward(&values).axis);
+        }
+        for branch in 0..2 {
+            let columns = [&axes[0], &axes[1], &axes[2]];
+            if !solver.angles_all(columns, branch, count, &mut at, &mut latitudes) {
+                left += count;
+                continue;
+            }
+            turned += count;
+            for lane in 0..count {
+                let pose = Pose { axis: vector(&axes, lane), ..Pose::default() };
+                let branches = solver.orient(&pose, 0.0).expect("reached");
+                assert_eq!(branches.count(), 2);
+                let (sine, cosine) = branches.latitude();
+                assert_eq!(latitudes.sines[lane].to_bits(), sine.to_bits());
+                assert_eq!(latitudes.cosines[lane].to_bits(), cosine.to_bits());
+                let set = solver.angles(&branches, branch);
+                assert_eq!(set.free, 0);
+                for (index, joint) in solver.chain().joints().iter().enumerate() {
+                    if joint.rotary {
+                        assert_eq!(at.joints[index][lane].to_bits(), set.joints[index].to_bits());
+                    }
+                }
+            }
+        }
+    }
+    println!("{turned} points turned, {left} left to the single point");
+    assert!(turned > at_least(1_000));
 }

@@ -46,14 +46,25 @@ pub fn quick(chain: &Chain, from: &Trace, to: &Trace, sweep: f64) -> DerivativeB
         if angle == 0.0 {
             continue;
         }
-        let (first, last) = (from.tip_rates[index], to.tip_rates[index]);
-        let radius = larger(first.norm_squared(), last.norm_squared()).sqrt() + tip / 8.0;
-        let slope = (last - first).norm() + tip / 2.0;
-        tip += angle * (angle * radius + 2.0 * slope);
-        turns += angle;
+        pass(angle, (from.tip_rates[index], to.tip_rates[index]), &mut tip, &mut turns);
     }
     // A unit vector that turns at a rate of `turns` at most bends by its square at most.
     DerivativeBound { tip, axis: turns * turns + sweep * sweep, turn: turns * turns, lead: 0.0 }
+}
+
+/// Takes [`quick`] beyond a rotary joint that turns by `angle`, the tip's rates with it being `first` and `last` at the
+/// ends; with an angle of zero nothing changes.
+#[inline(always)]
+pub(super) fn pass(
+    angle: f64,
+    (first, last): (Vector3<f64>, Vector3<f64>),
+    tip: &mut f64,
+    turns: &mut f64,
+) {
+    let radius = larger(first.norm_squared(), last.norm_squared()).sqrt() + *tip / 8.0;
+    let slope = (last - first).norm() + *tip / 2.0;
+    *tip += angle * (angle * radius + 2.0 * slope);
+    *turns += angle;
 }
 
 /// A bound that tends to the true second derivative as the block grows short.
@@ -256,7 +267,13 @@ pub fn deviation(ends: f64, bend: f64) -> f64 {
 #[inline]
 pub fn chord_angle(length: f64) -> f64 {
     if length < 0.1 {
-        return length + length * length * length * (1.0 / 23.0);
+        return short(length);
     }
     2.0 * libm::asin((length / 2.0).min(1.0))
+}
+
+/// [`chord_angle`] of a length below a tenth.
+#[inline(always)]
+pub(super) fn short(length: f64) -> f64 {
+    length + length * length * length * (1.0 / 23.0)
 }

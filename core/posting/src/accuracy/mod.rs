@@ -9,6 +9,7 @@ pub(crate) mod arc_fit;
 mod bisect;
 mod bound;
 pub mod certificate;
+mod columns;
 mod compensate;
 mod deviation;
 mod even;
@@ -22,6 +23,7 @@ mod run;
 mod word_frame;
 
 pub use bound::DeviationBound;
+pub(crate) use columns::RunColumns;
 pub use deviation::{MoveTolerances, NodeMove};
 pub use linearise::{LinearPiece, LineariseError, Lineariser};
 pub use node::{PathNode, PlacementError, Placer};

@@ -58,7 +58,7 @@ impl PathNode {
 }
 
 /// A control that shows an axis over one turn takes the shorter way: no block turns it by more, radians.
-const LONGEST: f64 = 2.9;
+pub(super) const LONGEST: f64 = 2.9;
 
 /// Sum of all that the chain is long, its linear axes at zero, mm.
 fn reach(machine: &Machine, solver: &Solver) -> f64 {
@@ -96,9 +96,9 @@ pub struct Placer {
     turning: RotaryAxes,
     pub(super) linear: Vec<RotaryTravel>,
     /// Joints that the control shows over one turn.
-    shown: Vec<usize>,
+    pub(super) shown: Vec<usize>,
     /// How far the chain reaches beside its linear axes, mm.
-    reach: f64,
+    pub(super) reach: f64,
     /// The branch of the last point: most likely that of the next.
     branch: Cell<usize>,
     axis_tolerance: f64,
@@ -196,7 +196,7 @@ impl Placer {
 
     /// What is left of the tolerance of the tip in cuts, mm.
     #[inline]
-    pub(super) fn reserve(&self) -> f64 {
+    pub(crate) fn reserve(&self) -> f64 {
         self.reserve
     }
 
@@ -470,7 +470,6 @@ impl Placer {
     /// largest angle where that is over a radian, for an angle is rounded before it turns anything.
     #[inline]
     pub fn margin(&self, from: &Joints, to: &Joints) -> DeviationBound {
-        const ULPS: f64 = 64.0 * f64::EPSILON;
         let (mut reach, mut angle) = (self.reach, 1.0);
         for (index, joint) in self.solver.chain().joints().iter().enumerate() {
             let value = larger(libm::fabs(from[index]), libm::fabs(to[index]));
@@ -480,6 +479,13 @@ impl Placer {
                 reach += value;
             }
         }
+        Self::margin_of(reach, angle)
+    }
+
+    /// [`Placer::margin`] of a chain that reaches so far, mm, its largest angle being `angle` (radians; one at least).
+    #[inline(always)]
+    pub(super) fn margin_of(reach: f64, angle: f64) -> DeviationBound {
+        const ULPS: f64 = 64.0 * f64::EPSILON;
         DeviationBound { tip: ULPS * angle * reach, axis: ULPS * angle }
     }
 

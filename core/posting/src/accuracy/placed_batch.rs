@@ -2,7 +2,8 @@
 //! next step, so that their latencies overlap.
 
 use nalgebra::Vector3;
-use post_machine::kinematics::batch::{AxisBatch, LANES, Traces};
+use post_machine::kinematics::batch::{AxisBatch, LANES, Traces, VectorLanes, set_vector, vector};
+use post_machine::kinematics::lane_math::sincos_all;
 use post_machine::kinematics::travel::{AT_END, over};
 use post_machine::kinematics::{Joints, Pose, Turns};
 
@@ -14,7 +15,7 @@ pub struct PlacedBatch {
     at: AxisBatch,
     traces: Traces,
     /// Where the linear axes bring the points.
-    wanted: [Vector3<f64>; LANES],
+    wanted: VectorLanes,
     /// The nodes, boxed so that they change hands without being copied.
     #[expect(clippy::vec_box, reason = "a node changes hands by its box; it is large")]
     nodes: Vec<Box<PathNode>>,
@@ -27,7 +28,7 @@ impl Default for PlacedBatch {
         Self {
             at: AxisBatch::default(),
             traces: Traces::default(),
-            wanted: [Vector3::zeros(); LANES],
+            wanted: [[0.0; LANES]; 3],
             nodes: (0..LANES).map(|_| Box::default()).collect(),
             settled: [false; LANES],
         }
@@ -76,7 +77,7 @@ impl PlacedBatch {
             placer.words.print_rotary(joints, &mut node.words);
             let printed = placer.words.print_tip(target.tip, &mut node.words);
             kept = printed.is_some();
-            self.wanted[lane] = printed.unwrap_or(target.tip);
+            set_vector(&mut self.wanted, lane, printed.unwrap_or(target.tip));
             for (index, joint) in chain.joints().iter().enumerate() {
                 if joint.rotary {
                     self.at.joints[index][lane] = joints[index];
@@ -85,14 +86,12 @@ impl PlacedBatch {
         }
         for (index, joint) in chain.joints().iter().enumerate() {
             if joint.rotary {
-                for lane in 0..count {
-                    let (sine, cosine) = libm::sincos(self.at.joints[index][lane]);
-                    self.at.sines[index][lane] = sine;
-                    self.at.cosines[index][lane] = cosine;
-                }
+                let angles = &self.at.joints[index];
+                let (sines, cosines) = (&mut self.at.sines[index], &mut self.at.cosines[index]);
+                sincos_all(angles, count, sines, cosines);
             }
         }
-        if !solver.place_all(&self.wanted[..count], &mut self.at) {
+        if !solver.place_all(&self.wanted, count, &mut self.at) {
             return;
         }
         for lane in 0..count {
@@ -129,14 +128,14 @@ impl PlacedBatch {
             let trace = &mut node.trace;
             trace.turns = Turns::of_lane(&self.at, lane);
             trace.pose = Pose {
-                tip: self.traces.tip[lane],
-                axis: self.traces.axis[lane],
+                tip: vector(&self.traces.tip, lane),
+                axis: vector(&self.traces.axis, lane),
                 edge: Vector3::zeros(),
             };
             for (index, joint) in chain.joints().iter().enumerate() {
                 if joint.rotary {
-                    trace.tip_rates[index] = self.traces.tip_rates[index][lane];
-                    trace.axes[index] = self.traces.axes[index][lane];
+                    trace.tip_rates[index] = vector(&self.traces.tip_rates[index], lane);
+                    trace.axes[index] = vector(&self.traces.axes[index], lane);
                 }
             }
             node.tip = trace.pose.tip;

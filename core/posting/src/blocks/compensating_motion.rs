@@ -9,7 +9,7 @@ use post_machine::kinematics::travel::{OverTravel, over};
 use post_machine::kinematics::{Joints, MAX_AXES, TcpBlock};
 
 use super::PathLeg;
-use crate::accuracy::PathNode;
+use crate::accuracy::{PathNode, Placer};
 use crate::findings::Findings;
 use crate::refusal::{self, FINDS_A_MOUNT};
 
@@ -91,7 +91,8 @@ impl CompensatingMotion {
         let Some(kept) = TcpBlock::new(leg.placer.solver(), along, &from.trace, &to.trace) else {
             return FollowTime::default();
         };
-        if let Some(follow) = self.cleared(machine, &kept, [from, to], asked) {
+        let ends = [&from.trace.joints, &to.trace.joints];
+        if let Some(follow) = self.cleared(machine, leg.placer, kept.quick(), ends, asked) {
             return follow;
         }
         self.look_into(machine, &kept, (leg, [from, to]), asked, findings)
@@ -100,20 +101,20 @@ impl CompensatingMotion {
     /// The least time, if the cheap bound says all that there is to know: inside travel, in time, and nothing of
     /// range or way goes unseen.
     #[inline]
-    fn cleared(
+    pub(super) fn cleared(
         &self,
         machine: &Machine,
-        kept: &TcpBlock<'_>,
-        [from, to]: [&PathNode; 2],
+        placer: &Placer,
+        bend: f64,
+        [from, to]: [&Joints; 2],
         asked: f64,
     ) -> Option<FollowTime> {
-        let bend = kept.quick();
         // A curve strays from its chord by an eighth of what its second derivative can be, its slope from the
         // chord's by half of it, and a curve that turns back goes a quarter of it more at most.
         let (strays, faster) = (bend / 8.0, bend / 2.0);
         let mut follow = FollowTime::default();
-        for joint in kept.sliding() {
-            let (first, last) = (from.trace.joints[joint], to.trace.joints[joint]);
+        for joint in placer.solver().sliding()? {
+            let (first, last) = (from[joint], to[joint]);
             let chord = (last - first).abs();
             let (low, high) = if first < last { (first, last) } else { (last, first) };
             let goes_on = chord >= faster;

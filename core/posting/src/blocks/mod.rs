@@ -3,6 +3,7 @@
 mod along;
 mod approach;
 mod block;
+mod columns;
 mod compensating_motion;
 mod cutter;
 mod fitted;

@@ -37,6 +37,11 @@ impl ActivePlane {
         Self { format: format.clone(), outside: None, wanted: None, stands: None, axes: None }
     }
 
+    /// No plane is in force, and none is wanted.
+    pub(super) fn are_off(&self) -> bool {
+        self.wanted.is_none() && self.stands.is_none() && self.axes.is_none()
+    }
+
     /// The rotary values of a point: in a plane those of the plane. What the choice held or turned early close to a pole
     /// does not count there, for the tool stands upright on the plane.
     #[inline]

@@ -5,6 +5,7 @@
 //! decided among all others, and put together again after that.
 
 mod backtrace;
+mod columns;
 mod cost;
 mod cycle_time;
 mod ease;

@@ -173,6 +173,28 @@ impl ChoiceAxes {
         from_least && from_most
     }
 
+    /// [`ChoiceAxes::far`] of many points, their least sine and the ends of their cosines being these; none of which is in
+    /// doubt.
+    pub(super) fn all_far(
+        &self,
+        sine: f64,
+        [least_cosine, most_cosine]: [f64; 2],
+        way: f64,
+    ) -> bool {
+        let Some([least, most]) = self.cosines else {
+            return true;
+        };
+        let from_least = if least > AT_POLE { sine > way } else { most_cosine < least - way };
+        let from_most = if most < -AT_POLE { sine > way } else { least_cosine > most + way };
+        from_least && from_most
+    }
+
+    /// Full turns and travel alone tell a solution from others: no axis has positions, or a side that counts.
+    pub(super) fn turns_freely(&self) -> bool {
+        self.indexed.is_empty()
+            && self.turning.iter().all(|axis| axis.positions.is_none() && axis.require.is_none())
+    }
+
     /// Keeps what fails least of two solutions: a length, which mount and tool may mend, before an angle.
     fn keep_least(&self, kept: &mut Option<OverTravel>, over: OverTravel) {
         let by = |over: &OverTravel| {

@@ -323,7 +323,9 @@ impl Trellis {
         let ways = self.ways(&target, ArrivalKind::Cut);
         let branches = solver.orient(&target, self.axes.axis_tolerance).ok()?;
         let latitude = branches.latitude();
-        if branches.count() == 1 || self.eased(latitude.0) || ways.meet(&self.axes, latitude) {
+        // Of axes that have two solutions elsewhere: the edge of their reach, or a pole.
+        let edge = branches.count() == 1 && solver.pole_joint().is_some();
+        if edge || self.eased(latitude.0) || ways.meet(&self.axes, latitude) {
             return None;
         }
         let at = (&branches, state.branch);

@@ -2,6 +2,7 @@
 
 use post_machine::kinematics::{Joints, MAX_AXES};
 
+use crate::accuracy::DeviationBound;
 use crate::blocks::MotionBlock;
 use crate::report::ReportedDeviation;
 
@@ -50,9 +51,15 @@ impl Extremes {
         if block.loose {
             self.keep(RAPID, block.deviation.tip, block.line, index);
         } else {
-            self.keep(TIP, block.deviation.tip, block.line, index);
-            self.keep(AXIS, block.deviation.axis, block.line, index);
+            self.mark_cut(block.deviation, block.line, index);
         }
+    }
+
+    /// [`Extremes::mark`] of a cut with this deviation.
+    #[inline]
+    pub(super) fn mark_cut(&mut self, deviation: DeviationBound, line: u64, index: usize) {
+        self.keep(TIP, deviation.tip, line, index);
+        self.keep(AXIS, deviation.axis, line, index);
     }
 
     #[inline]

@@ -1,5 +1,6 @@
 //! Blocks and commands become the events of the dialect: what is in force, tool changes, approach, clamps.
 
+mod columns;
 mod control;
 mod cycles;
 mod extremes;

@@ -56,6 +56,11 @@ impl<'a> EventWriter<'a> {
         self.places.get_or_insert_default();
     }
 
+    /// Somebody notes where the blocks stand.
+    pub(super) fn notes_places(&self) -> bool {
+        self.places.is_some()
+    }
+
     /// A block stands where the last event does, if there are more than `before`.
     #[inline]
     pub(super) fn place(&mut self, before: usize) {

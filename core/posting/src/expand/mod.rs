@@ -140,6 +140,17 @@ impl ExpandStage {
         self.tangential.as_ref().map_or(0, |edge| edge.rewinds)
     }
 
+    /// Straight moves leave the stage as they are.
+    pub(crate) fn passes_moves(&self) -> bool {
+        self.tangential.is_none() && self.planes.is_none()
+    }
+
+    /// Straight moves have left the stage by another way, the last to `tip`.
+    pub(crate) fn passed(&mut self, tip: Vector3<f64>) {
+        self.tip = Some(tip);
+        self.only_said = false;
+    }
+
     /// Takes a batch of steps, each with its line.
     pub(crate) fn take(&mut self, steps: &[(u64, ProgramStep)], out: &mut ExpandedSink<'_>) {
         let Some(mut tangential) = self.tangential.take() else {

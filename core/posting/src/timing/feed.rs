@@ -46,6 +46,22 @@ pub(super) struct WrittenFeed {
     pub capped: bool,
 }
 
+/// A way that a feed is written for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FedWay {
+    /// Way of the tip, mm.
+    pub tip: f64,
+    /// The feed that the CL file asks for, mm/min, where the tip moves at one.
+    pub feed: Option<f64>,
+    /// The time that it leaves it, minutes, and that which it asks for.
+    pub minutes: f64,
+    pub asked: f64,
+    /// Some rotary axis turns.
+    pub turning: bool,
+    /// Along an arc or a spline.
+    pub curved: bool,
+}
+
 impl FeedWriter {
     /// Feeds of `machine` as a dialect's `format` prints them, which `writes` says the control counts. `None` if the machine asks for inverse time
     /// and the dialect has none.
@@ -90,6 +106,12 @@ impl FeedWriter {
         })
     }
 
+    /// Some rotary axis turns.
+    #[inline]
+    pub(super) fn turning(&self, from: &Joints, to: &Joints) -> bool {
+        self.kinds.turning(from, to)
+    }
+
     /// The least feed a minute that is printed.
     pub(super) fn least(&self) -> f64 {
         self.feed.per_scale
@@ -98,15 +120,34 @@ impl FeedWriter {
     /// The feed of a block from `from` that must take `least` minutes; it is never faster than the CL file asks for.
     #[inline]
     pub(super) fn write(&self, block: &MotionBlock, from: &Joints, least: f64) -> WrittenFeed {
-        let turning = self.kinds.turning(from, &block.joints);
         let tip = block.way;
-        let asked = match block.pace {
-            MoveFeed::PerMinute(feed) if block.nominal.moves => {
-                block.nominal.minutes.max(tip / feed)
-            }
-            _ => block.nominal.minutes,
+        let feed = match block.pace {
+            MoveFeed::PerMinute(feed) if block.nominal.moves => Some(feed),
+            _ => None,
         };
-        let minutes = asked.max(least).max(1e-9);
+        let minutes = block.nominal.minutes;
+        let way = FedWay {
+            tip,
+            feed,
+            minutes: feed.map_or(minutes, |feed| minutes.max(tip / feed)),
+            asked: block.asked(),
+            turning: self.kinds.turning(from, &block.joints),
+            curved: matches!(block.kind, BlockKind::Arc | BlockKind::Spline),
+        };
+        self.write_way(&way, least, || self.measured(from, &block.joints, tip))
+    }
+
+    /// [`FeedWriter::write`] of a way; `measured` gives the length that the control will divide by F where that is not the
+    /// way of the tip.
+    #[inline]
+    pub(super) fn write_way(
+        &self,
+        way: &FedWay,
+        least: f64,
+        measured: impl FnOnce() -> f64,
+    ) -> WrittenFeed {
+        let (tip, turning) = (way.tip, way.turning);
+        let minutes = way.minutes.max(least).max(1e-9);
         if self.inverse_time
             && (turning || self.tcp == Tcp::Control)
             && let Some(printed) = self.inverse
@@ -117,13 +158,12 @@ impl FeedWriter {
         let plain = match self.tcp {
             Tcp::Control => tip > SAME && (self.tcp_length == TcpFeedLength::Tip || !turning),
             Tcp::Post => !turning && self.square,
-        } || matches!(block.kind, BlockKind::Arc | BlockKind::Spline);
-        let length = if plain { tip / self.unit } else { self.measured(from, &block.joints, tip) };
-        if let MoveFeed::PerMinute(feed) = block.pace
-            && block.nominal.moves
+        } || way.curved;
+        let length = if plain { tip / self.unit } else { measured() };
+        if let Some(feed) = way.feed
             && tip > STILL
             && (plain || (length * self.unit - tip).abs() <= SAME * tip)
-            && least <= block.asked() * (1.0 + SAME)
+            && least <= way.asked * (1.0 + SAME)
         {
             // The feed of the CL file can stand as it is.
             return self.per_minute(feed / self.unit, length);
@@ -172,7 +212,7 @@ impl FeedWriter {
 
     /// The length that the control will divide by F, in the units of the program or degrees. A control that keeps the
     /// tip counts turns in degrees, where it counts them at all.
-    fn measured(&self, from: &Joints, to: &Joints, tip: f64) -> f64 {
+    pub(super) fn measured(&self, from: &Joints, to: &Joints, tip: f64) -> f64 {
         let travels = self.kinds.travels(from, to);
         let tip = tip / self.unit;
         let linear = travels.linear / self.unit;

@@ -4,6 +4,7 @@
 //! machine may be passed in it; the time is then written as the control understands it, and what counts is what the
 //! control makes of the printed numbers.
 
+mod columns;
 mod feed;
 pub mod limits;
 mod rapids;
@@ -17,6 +18,7 @@ use crate::blocks::{BlockKind, MotionBlock};
 use crate::findings::Findings;
 use crate::program::{Command, MoveFeed};
 use crate::stream::StreamItem;
+pub(crate) use columns::TimedRun;
 use feed::{FeedWriter, WrittenFeed};
 use limits::BlockTimeLimit;
 use rapids::Rapids;
@@ -29,6 +31,8 @@ pub(crate) struct TimingStage<'a> {
     writes: Capabilities,
     feeds: FeedWriter,
     limits: Vec<Box<dyn BlockTimeLimit>>,
+    /// Minutes that each axis needs for one mm or radian at its largest feed.
+    slowness: Joints,
     rapids: Rapids,
     /// Where the axes stand.
     last: Joints,
@@ -88,6 +92,7 @@ impl<'a> TimingStage<'a> {
             writes,
             feeds,
             limits: limits::of(machine),
+            slowness: machine.slowness(),
             rapids: Rapids::new(machine, writes),
             last: Joints::default(),
             statistics: Durations::default(),
@@ -160,6 +165,7 @@ impl<'a> TimingStage<'a> {
                     self.feeds = feeds;
                 }
                 self.limits = limits::of(&head.machine);
+                self.slowness = head.machine.slowness();
                 self.rapids.set(&head.machine);
             }
             _ => {}

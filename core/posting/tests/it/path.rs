@@ -4,6 +4,7 @@
 mod curves;
 mod faults;
 mod feeds;
+mod runs;
 mod stream;
 mod tolerance;
 mod words;

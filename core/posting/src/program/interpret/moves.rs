@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use post_grammar::{Delta, Record};
 
-use super::{ClInterpreter, StepSink, UnfinishedCurve};
+use super::{ClInterpreter, ModalFeed, StepSink, UnfinishedCurve};
 use crate::program::limits::{MOST_COORDINATE, direction, is_near};
 use crate::program::{Command, MoveFeed, ProgramStep, StraightMove};
 
@@ -30,6 +30,43 @@ impl ClInterpreter {
             self.arrive(tip);
             emit(ProgramStep::Move(self.motion(tip, pace)));
         }
+    }
+
+    /// The pace of moves by plain `GOTO`s, where nothing but the modal words of moves is to be settled: no curve or cycle
+    /// is open, and nothing is due before the next move.
+    pub(crate) fn plain_pace(&self) -> Option<MoveFeed> {
+        let plain = self.pending.is_none()
+            && self.cycles.in_force.is_none()
+            && !self.cycles.lost
+            && !self.finished
+            && !self.due
+            && !self.rapid
+            && !self.rapid_feed
+            && self.spindle.may_cut;
+        match self.feed {
+            Some(ModalFeed::Pace(pace)) if plain => Some(pace),
+            _ => None,
+        }
+    }
+
+    /// The move of a plain `GOTO` at [`Self::plain_pace`]; none, and nothing taken, if something is wrong with it.
+    #[inline]
+    pub(crate) fn plain_move(
+        &mut self,
+        values: &[f64; 6],
+        has_axis: bool,
+        pace: MoveFeed,
+    ) -> Option<StraightMove> {
+        let [x, y, z, i, j, k] = *values;
+        let point = Vector3::new(x, y, z) * self.scale;
+        if !is_near(point) {
+            return None;
+        }
+        if has_axis {
+            self.axis = unit_axis(Vector3::new(i, j, k))?;
+        }
+        self.arrive(point);
+        Some(self.motion(point, pace))
     }
 
     pub(super) fn goto(
@@ -176,10 +213,8 @@ impl ClInterpreter {
             return true;
         };
         let axis = Vector3::from(axis);
-        let square = axis.norm_squared();
-        // Of any length but one whose square is lost.
-        if !(1e-12..1e18).contains(&square) {
-            let message = match square < 1e-12 {
+        let Some(unit) = unit_axis(axis) else {
+            let message = match axis.norm_squared() < 1e-12 {
                 true => "the tool axis is null",
                 false => "the tool axis has no length that a direction could have",
             };
@@ -190,8 +225,8 @@ impl ClInterpreter {
                 "i, j, k are a direction, from the tip to the holder",
             );
             return false;
-        }
-        self.axis = axis * (1.0 / square.sqrt());
+        };
+        self.axis = unit;
         true
     }
 
@@ -262,4 +297,11 @@ impl ClInterpreter {
         };
         StraightMove { tip, axis, edge, pace, chord: 0.0 }
     }
+}
+
+/// The direction of a tool axis, of any length but one whose square is lost.
+#[inline]
+fn unit_axis(axis: Vector3<f64>) -> Option<Vector3<f64>> {
+    let square = axis.norm_squared();
+    (1e-12..1e18).contains(&square).then(|| axis * (1.0 / square.sqrt()))
 }

@@ -6,6 +6,9 @@ use post_machine::kinematics::{Joints, MAX_AXES};
 use super::BlockTimeLimit;
 use crate::blocks::MotionBlock;
 
+/// Name of the limit.
+pub(in crate::timing) const NAME: &str = "max_feed";
+
 /// Largest feeds of the axes.
 #[derive(Debug)]
 pub(super) struct MaxFeed {
@@ -21,19 +24,29 @@ impl MaxFeed {
 
 impl BlockTimeLimit for MaxFeed {
     fn name(&self, _: &MotionBlock) -> &'static str {
-        "max_feed"
+        NAME
     }
 
     fn least_minutes(&self, from: &Joints, block: &MotionBlock) -> f64 {
-        let to = &block.joints;
         // Between the words too, where the control keeps the tip.
-        let mut least = block.follow.minutes;
-        for index in 0..MAX_AXES {
-            let minutes = (to[index] - from[index]).abs() * self.slowness[index];
-            if minutes > least {
-                least = minutes;
-            }
-        }
-        least
+        least_minutes(&self.slowness, block.follow.minutes, from, &block.joints)
     }
+}
+
+/// The least time of a block from one place to another, at least `follow` minutes.
+#[inline]
+pub(in crate::timing) fn least_minutes(
+    slowness: &Joints,
+    follow: f64,
+    from: &Joints,
+    to: &Joints,
+) -> f64 {
+    let mut least = follow;
+    for index in 0..MAX_AXES {
+        let minutes = (to[index] - from[index]).abs() * slowness[index];
+        if minutes > least {
+            least = minutes;
+        }
+    }
+    least
 }

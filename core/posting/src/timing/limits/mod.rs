@@ -1,6 +1,6 @@
 //! What keeps a block from being faster: each limit a file of its own, and a line in [`of`].
 
-mod max_feed;
+pub(super) mod max_feed;
 mod planned;
 
 use post_machine::description::Machine;

@@ -1,0 +1,80 @@
+//! Words of many points: those of [`AxisWords`] point by point, a step of all points before the next.
+
+use super::{AxisWords, Word};
+use crate::description::Tcp;
+use crate::kinematics::MAX_AXES;
+use crate::kinematics::batch::{AxisBatch, LANES, Lanes, VectorLanes};
+
+/// Values of the words of many blocks, by their places.
+pub type WordLanes = [Lanes; MAX_AXES];
+
+impl AxisWords {
+    /// [`AxisWords::print_rotary`] of the first `count` points of a batch. False, and nothing done, where words lie
+    /// within one turn.
+    pub fn print_rotary_all(
+        &self,
+        at: &mut AxisBatch,
+        count: usize,
+        values: &mut WordLanes,
+    ) -> bool {
+        if self.rotary.iter().any(|word| word.turn_from.is_some()) {
+            return false;
+        }
+        for word in &self.rotary {
+            let (joints, values) = (&mut at.joints[word.joint], &mut values[word.place]);
+            let word = *word;
+            for lane in 0..count.min(LANES) {
+                let value = word.printed((joints[lane] + word.reading) * word.per_unit);
+                joints[lane] = value * word.unit - word.reading;
+                values[lane] = value;
+            }
+        }
+        true
+    }
+
+    /// [`AxisWords::print_tip`] of the first `count` of `tips` (mm, part frame), which are put on the printed numbers; false,
+    /// and nothing done, where the words are axis positions. None in a tilted plane, and where a coordinate has not one
+    /// word.
+    pub fn print_tip_all(
+        &self,
+        tips: &mut VectorLanes,
+        count: usize,
+        values: &mut WordLanes,
+    ) -> Option<bool> {
+        if self.plane.is_some() || !self.one_each() {
+            return None;
+        }
+        if self.tcp == Tcp::Post {
+            return Some(false);
+        }
+        for word in &self.linear {
+            let (tips, values) = (&mut tips[word.coordinate], &mut values[word.place]);
+            print(word, tips, count, values, 0.0);
+        }
+        Some(true)
+    }
+
+    /// Each coordinate has one linear word.
+    fn one_each(&self) -> bool {
+        let places = self.linear.iter().fold(0, |places, word| places | 1 << word.coordinate);
+        self.linear.len() == 3 && places == 0b111
+    }
+
+    /// [`AxisWords::print_linear`] of the first `count` points of a batch.
+    pub fn print_linear_all(&self, at: &mut AxisBatch, count: usize, values: &mut WordLanes) {
+        for word in &self.linear {
+            let (joints, values) = (&mut at.joints[word.joint], &mut values[word.place]);
+            print(word, joints, count, values, self.zero[word.joint]);
+        }
+    }
+}
+
+/// Puts lengths, counted from `zero` (mm), on printed numbers.
+fn print(word: &Word, lengths: &mut Lanes, count: usize, values: &mut Lanes, zero: f64) {
+    let word = *word;
+    for lane in 0..count.min(LANES) {
+        let value = word.printed((lengths[lane] - zero) * word.per_unit);
+        values[lane] = value;
+        lengths[lane] = value * word.unit + zero;
+    }
+}

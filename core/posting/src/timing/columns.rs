@@ -1,0 +1,77 @@
+//! Times and feeds of a run of cuts.
+
+use post_machine::kinematics::batch::{LANES, vector};
+use post_plugin::Feed;
+
+use super::TimingStage;
+use super::feed::FedWay;
+use super::limits::max_feed;
+use crate::accuracy::RunColumns;
+
+/// Times and feeds of the blocks of a run.
+#[derive(Debug)]
+pub(crate) struct TimedRun {
+    /// Feeds as written.
+    pub feeds: [Feed; LANES],
+    /// Times as the control takes them, minutes.
+    minutes: [f64; LANES],
+    /// The block is slowed down; because the control takes no larger F by time.
+    limited: [bool; LANES],
+    capped: [bool; LANES],
+}
+
+impl Default for TimedRun {
+    fn default() -> Self {
+        Self {
+            feeds: [Feed::PerMinute(0.0); LANES],
+            minutes: [0.0; LANES],
+            limited: [false; LANES],
+            capped: [false; LANES],
+        }
+    }
+}
+
+impl TimingStage<'_> {
+    /// Times the blocks of a run, which ends before one whose feed is below the least that is printed. Nothing is
+    /// changed yet.
+    pub(crate) fn times(&self, run: &mut RunColumns, timed: &mut TimedRun) {
+        let mut from = self.last;
+        for lane in 0..run.count {
+            let to = run.joints_at(lane);
+            let least = max_feed::least_minutes(&self.slowness, run.follow[lane], &from, &to);
+            let tip = run.way[lane];
+            let asked = tip / run.feed;
+            let way = FedWay {
+                tip,
+                feed: Some(run.feed),
+                minutes: asked,
+                asked,
+                turning: self.feeds.turning(&from, &to),
+                curved: false,
+            };
+            let measured = || self.feeds.measured(&from, &to, tip);
+            let written = self.feeds.write_way(&way, least, measured);
+            if written.raised_from.is_some() {
+                run.count = lane;
+                return;
+            }
+            timed.feeds[lane] = written.feed;
+            timed.minutes[lane] = written.minutes;
+            timed.capped[lane] = written.capped;
+            timed.limited[lane] = written.capped || least > 0.0 && least > asked * (1.0 + 1e-9);
+            from = to;
+        }
+    }
+
+    /// The blocks of the run are handed on.
+    pub(crate) fn take_run(&mut self, run: &RunColumns, timed: &TimedRun) {
+        for lane in 0..run.count {
+            self.statistics.capped += u64::from(timed.capped[lane]);
+            self.statistics.limited += u64::from(timed.limited[lane]);
+            self.statistics.cutting += timed.minutes[lane];
+        }
+        self.last = run.joints_at(run.count - 1);
+        let axis = vector(&run.reached_axis, run.count);
+        self.rapids.stand(vector(&run.reached_tip, run.count) - axis * 0.0);
+    }
+}

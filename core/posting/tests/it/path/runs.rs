@@ -1,0 +1,70 @@
+//! Runs of cuts go through the stages as columns: what is written, and all that is said of it, is what single points
+//! make, bit by bit.
+
+use std::fmt::Write;
+
+use super::*;
+
+/// A path that wanders, now in small steps and now in large ones, over poles and out of travel, with words between.
+fn wander(rng: &mut Rng) -> String {
+    let mut text = "UNITS/MM\nLOADTL/1\nSPINDL/1000\nFEDRAT/MMPM,800\n".to_owned();
+    let mut tip = rng.point(40.0);
+    let (mut lean, mut around) = (rng.range(0.0, 0.8), rng.range(-3.0, 3.0));
+    let (mut step, mut turn) = (0.4, 0.01);
+    for _ in 0..rng.pick(400) {
+        match rng.pick(80) {
+            0 => text += "RAPID\n",
+            1 => writeln!(text, "FEDRAT/MMPM,{:.1}", rng.order(-2.0, 4.3)).unwrap(),
+            2 => step = *rng.choose(&[0.0, 0.001, 0.1, 0.4, 0.4, 3.0]),
+            3 => turn = *rng.choose(&[0.0, 1e-6, 0.003, 0.01, 0.01, 0.1]),
+            4 => text += "COOLNT/FLOOD\n",
+            5 => text += "DELAY/1\n",
+            6 => lean = rng.range(-0.02, 0.02),
+            7 => writeln!(text, "FEDRAT/{:.3},INVERS", rng.range(1.0, 50.0)).unwrap(),
+            _ => {}
+        }
+        tip += rng.direction() * step;
+        lean += rng.range(-1.0, 1.0) * turn;
+        around += rng.range(-0.5, 1.0) * turn;
+        let ((i, k), (b, a)) = (libm::sincos(lean), libm::sincos(around));
+        let (x, y, z) = (tip.x, tip.y, tip.z);
+        let (j, i) = (i * b, i * a);
+        writeln!(text, "GOTO/{x:.4},{y:.4},{z:.4},{i:.6},{j:.6},{k:.6}").unwrap();
+    }
+    text + "FINI\n"
+}
+
+#[test]
+fn a_run_is_written_as_its_points_would_be() {
+    let (rounds, mut rng) = randomised(60, 71);
+    let mut good = 0;
+    for round in rounds {
+        let kind = *rng.choose(&["trunnion", "head", "nutating"]);
+        let tilt = *rng.choose(&[[-120.0, 120.0], [-120.0, 120.0], [-20.0, 200.0]]);
+        let settings: &[&str] = match round % 6 {
+            0 => &["control.feed=\"per-minute\""],
+            1 => &["control.units=\"inch\""],
+            2 => &["axis.X.travel=[-60, 60]"],
+            3 => &["accuracy.reduce=true"],
+            _ => &[],
+        };
+        let model = model(kind, rng.pick(2) == 0, tilt, settings);
+        let text = wander(&mut rng);
+        let told = |longest_run| {
+            let job = PostingRequest {
+                tool_length: Some(model.length),
+                longest_run,
+                ..PostingRequest::default()
+            };
+            let Run { asked, report, findings } = post(&model.machine, 4, &text, job, &mut Samples);
+            (report.is_some(), format!("{asked:?}\n{report:?}\n{findings:?}"))
+        };
+        let (is_good, expected) = told(Some(0));
+        good += u32::from(is_good);
+        for longest in [None, Some(1), Some(7)] {
+            let (_, told) = told(longest);
+            assert!(told == expected, "{kind}, runs of {longest:?}:\n{text}");
+        }
+    }
+    assert!(good > 0);
+}

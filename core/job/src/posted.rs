@@ -7,10 +7,10 @@ use post_posting::{BlockKind, BlockReason, MotionBlock};
 use super::axes::{self, AxisColumn};
 use super::columns::Column;
 
-/// What [`PostedBlock::kind`] counts.
+/// What `PostedBlock::kind` counts.
 pub const KINDS: [&str; 7] = ["position", "reference", "rapid", "linear", "arc", "spline", "hole"];
 
-/// What [`PostedBlock::reason`] counts.
+/// What `PostedBlock::reason` counts.
 pub const REASONS: [&str; 9] =
     ["point", "eased", "put_in", "leave", "stage", "rewind", "feed", "above", "at_once"];
 

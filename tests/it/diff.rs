@@ -222,3 +222,10 @@ fn standard_input_is_one_of_them() {
     );
     assert_eq!(run.code, 0, "{}{}", run.err, run.out);
 }
+
+#[test]
+fn standard_input_is_not_both_of_them() {
+    let run = run(command().args(["diff", "-m", "vmc", "-", "-"]), b"");
+    assert_eq!((run.code, run.out.as_str()), (1, ""), "{}", run.err);
+    assert!(run.err.contains("the two programs cannot both be standard input"), "{}", run.err);
+}

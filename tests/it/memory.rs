@@ -20,9 +20,15 @@ fn wave(folder: &Path, points: u64) -> PathBuf {
 
 /// Peak of the resident memory of a run on the machine of the test, kB.
 fn peak(arguments: &[&OsStr]) -> u64 {
+    peak_on(&["-m", "ac-trunnion", "--tcp", "control"], arguments)
+}
+
+/// The same on the machine that `machine` says.
+fn peak_on(machine: &[&str], arguments: &[&OsStr]) -> u64 {
     let mut child = common::command()
         .args(arguments)
-        .args(["-q", "-m", "ac-trunnion", "--tcp", "control"])
+        .arg("-q")
+        .args(machine)
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
@@ -54,6 +60,31 @@ fn memory_does_not_grow_with_the_file() {
         "{small} kB for 100,000 points, {large} kB for 300,000"
     );
     assert!(large < 64 * 1024, "{large} kB");
+}
+
+/// Holes of a thousand pecks each, beside one another.
+fn deep_holes(folder: &Path, holes: u32) -> PathBuf {
+    let path = folder.join("holes.cls");
+    let mut text = String::from(
+        "PARTNO/HOLES\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,8000,CLW\nRAPID\nGOTO/0,0,40,0,0,1\n\
+         CYCLE/DEEP,DEPTH,10,STEP,0.01,CLEAR,2,MMPM,300\n",
+    );
+    for hole in 0..holes {
+        text += &format!("GOTO/{},{},20\n", 5 * (hole % 20), 3 * (hole / 20));
+    }
+    fs::write(&path, text + "CYCLE/OFF\nRAPID\nGOTO/0,0,60\nFINI\n").unwrap();
+    path
+}
+
+/// A knife waits for the direction that it will go in: for so many moves, not for so many holes.
+#[test]
+fn memory_does_not_grow_with_the_holes_of_a_knife() {
+    let folder = tempfile::tempdir().unwrap();
+    let knife = ["-m", "ultrasonic-knife", "--tool-length", "50"];
+    let [small, large] =
+        [60, 240].map(|holes| peak_on(&knife, &[deep_holes(folder.path(), holes).as_os_str()]));
+    assert!(large < small + small / 10 + 2048, "{small} kB for 60 holes, {large} kB for 240");
+    assert!(large < 32 * 1024, "{large} kB");
 }
 
 #[test]

@@ -196,13 +196,14 @@ pub fn offsets(session: &Session, source: &PathArg, machine: &Machine) -> Result
     Ok(Offsets::parse(&text, &name, machine)?)
 }
 
-/// Refuses a program and a CL file that are both standard input.
+/// Refuses two inputs, called `what` together, that are both standard input.
 pub fn not_both_standard(
+    what: &str,
     program: &PathArg,
     against: Option<&PathArg>,
 ) -> Result<(), Box<Diagnostic>> {
     if program.path().is_none() && against.is_some_and(|file| file.path().is_none()) {
-        let message = "program and CL file cannot both be standard input";
+        let message = format!("{what} cannot both be standard input");
         return Err(Diagnostic::error("input", message).help("name one of them").boxed());
     }
     Ok(())

@@ -89,8 +89,8 @@ impl<P: StreamPoint> StreamItem<P> {
         }
     }
 
-    /// How many moves it has.
-    fn moves(&self) -> usize {
+    /// How many moves it has; a command and a note count as one.
+    pub(crate) fn moves(&self) -> usize {
         match self {
             Self::Curve { curve, .. } => P::moves(curve),
             Self::Hole(hole) => hole.above.len() + hole.into.len(),
@@ -120,8 +120,9 @@ pub(crate) fn gathered<T>(fill: impl FnOnce(&mut BatchSink<'_, T>)) -> Vec<T> {
 /// What takes a batch from a stage; it leaves it empty.
 type NextStage<'o, T> = dyn FnMut(&mut Vec<T>) + 'o;
 
-/// Where a stage puts what it hands on; a batch that is full goes to the next stage at once, so that one arc of a
-/// million chords needs no more memory than another.
+/// Where a stage puts what it hands on; a batch that is full goes to the next stage at once. A curve or a hole that stays
+/// one is in memory with all its moves, of which it has no more than `curve` and `program::limits` allow; an arc of more
+/// goes on move by move, however many chords it has.
 pub(crate) struct BatchSink<'o, T> {
     batch: &'o mut Vec<T>,
     /// Moves in the curves and holes of the batch.

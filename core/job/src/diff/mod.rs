@@ -6,7 +6,7 @@ mod page;
 use post_machine::diagnostic::Diagnostic;
 use post_readback::diff::{self, DiffRules, Difference, UnreadBlocks};
 
-use super::nc_program::{NcControl, ProgramFile};
+use super::nc_program::{self, NcControl, ProgramFile};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, PathArg};
 use crate::session::Session;
@@ -66,9 +66,10 @@ pub struct DiffResult {
 /// # Errors
 /// A block that is refused, or a file or a machine that cannot be used.
 pub fn compare(session: &Session, request: &DiffRequest) -> Result<DiffResult, Failure> {
+    let [first, second] = &request.programs;
+    nc_program::not_both_standard("the two programs", first, Some(second))?;
     let [old, new] = &request.settings;
     let [old, new] = [NcControl::new(session, old)?, NcControl::new(session, new)?];
-    let [first, second] = &request.programs;
     let sides = [
         Side { program: ProgramFile::open(session, first)?, control: old },
         Side { program: ProgramFile::open(session, second)?, control: new },

@@ -185,7 +185,7 @@ impl PredictRequest {
     /// Refuses two inputs that are both standard input.
     fn refuse_one_stream_for_two(&self) -> Result<(), Failure> {
         let (program, against) = (&self.program, self.against.as_ref());
-        nc_program::not_both_standard(program, against)?;
+        nc_program::not_both_standard("program and CL file", program, against)?;
         let mut others = [Some(program), against].into_iter().flatten();
         let log = self.measured.as_ref().map(|measured| &measured.log);
         if log.is_some_and(|log| log.path().is_none()) && others.any(|file| file.path().is_none()) {

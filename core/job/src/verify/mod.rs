@@ -70,7 +70,7 @@ pub struct Verified {
 pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Failure> {
     let job = &request.job;
     let JobMachine { machine, finder } = JobMachine::load(session, job, &[])?;
-    nc_program::not_both_standard(&request.program, Some(&job.input))?;
+    nc_program::not_both_standard("program and CL file", &request.program, Some(&job.input))?;
     let program = ProgramFile::open(session, &request.program)?;
     let offsets = match &request.offsets {
         Some(file) => Some(nc_program::offsets(session, file, &machine)?),

@@ -34,7 +34,7 @@ const LEANS: f64 = 1e-6;
 /// A turn on the spot by more than this goes by the side, radians.
 const HALF: f64 = 2.0;
 
-/// Steps without a direction are not held longer than this.
+/// So many moves and commands without a direction are held at most, those of the last hole beside them.
 const MOST_HELD: usize = 1024;
 
 /// Gives every move its edge; holds moves back until the next direction of travel is known.
@@ -54,6 +54,8 @@ pub(super) struct Tangential {
     has_cut: bool,
     /// What came after it: moves without a direction (rapids, straight in and out), holes, and commands.
     behind: VecDeque<StreamItem<PathMove>>,
+    /// How many moves and commands wait: a hole is as many as it has moves.
+    held: usize,
     /// Corners that the tool was drawn back at.
     pub(super) rewinds: u64,
     findings: Findings,
@@ -81,6 +83,7 @@ impl Tangential {
             cut: None,
             has_cut: false,
             behind: VecDeque::new(),
+            held: 0,
             rewinds: 0,
             findings: findings.clone(),
         })
@@ -183,8 +186,9 @@ impl Tangential {
     }
 
     fn hold(&mut self, next: StreamItem<PathMove>, out: &mut ExpandedSink<'_>) {
+        self.held += next.moves();
         self.behind.push_back(next);
-        if self.behind.len() >= MOST_HELD {
+        if self.held >= MOST_HELD {
             self.settle(None, out);
         }
     }
@@ -208,6 +212,7 @@ impl Tangential {
                 None => self.pass(line, motion, Some(come), out),
             }
         }
+        self.held = 0;
         for next in std::mem::take(&mut self.behind) {
             self.pass_held(next, &mut held, out);
         }

@@ -216,24 +216,8 @@ impl ClModal {
             Statement::CutcomOnCentre(_) => Ok(()),
             // Lines of the user's own: they move nothing that is known here.
             Statement::Insert(_) | Statement::Csys(_) => Ok(()),
-            Statement::Spindle(_)
-            | Statement::Coolant(_)
-            | Statement::LoadTool(_)
-            | Statement::SelectTool(_)
-            | Statement::ToolData { .. }
-            | Statement::Cutter(_)
-            | Statement::WorkOffset { .. }
-            | Statement::Subprogram(_)
-            | Statement::Cutcom(_)
-            | Statement::Delay(_)
-            | Statement::Stop
-            | Statement::OptionalStop
-            | Statement::Head(_)
-            | Statement::ToolPath { .. }
-            | Statement::Print(_)
-            | Statement::PartName(_)
-            | Statement::ToolName(_)
-            | Statement::Remark(_) => self.function(record, out),
+            // What it means for functions and operator: a match without `_` has all statements.
+            _ => self.function(record, out),
         }
     }
 
@@ -282,8 +266,38 @@ impl ClModal {
                 self.strange.catia |=
                     text.trim() == "*CATIA0" || text.trim().starts_with("CATIA APT VERSION");
             }
-            // A tool that is loaded already, a subprogram that does nothing; all others `record` does itself.
-            _ => {}
+            // A tool that is loaded already, and a subprogram that does nothing.
+            Statement::SelectTool(_) | Statement::Subprogram(_) => {}
+            // `record` has done these itself.
+            Statement::Goto { .. }
+            | Statement::GotoEdge { .. }
+            | Statement::Godlta(_)
+            | Statement::From { .. }
+            | Statement::Gohome(_)
+            | Statement::Rapid
+            | Statement::Feed(_)
+            | Statement::Units(_)
+            | Statement::Multax(_)
+            | Statement::Msys { .. }
+            | Statement::Mcs { .. }
+            | Statement::SetOut(_)
+            | Statement::PartSurface(_)
+            | Statement::AlongArc(_)
+            | Statement::Milling
+            | Statement::Circle(_)
+            | Statement::ArcMove(_)
+            | Statement::Nurbs
+            | Statement::Knot(_)
+            | Statement::Control { .. }
+            | Statement::Cycle(_)
+            | Statement::Rotate(_)
+            | Statement::ToolAxis(_)
+            | Statement::EndOfPath
+            | Statement::Fini
+            | Statement::Other { .. }
+            | Statement::CutcomOnCentre(_)
+            | Statement::Insert(_)
+            | Statement::Csys(_) => {}
         }
         Ok(())
     }

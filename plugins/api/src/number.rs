@@ -99,7 +99,7 @@ impl NumberForm {
         let sign = if negative { b'-' } else { b'+' };
         let places = usize::from(decimals);
         if let Some(short) = ShortDecimal::new(count, places) {
-            self.append_short(out, front, (signed, sign), short);
+            self.append_short(out, front, signed, sign, short);
             return true;
         }
         if count >= 100_000_000 || places > 7 {
@@ -146,7 +146,8 @@ impl NumberForm {
         self,
         out: &mut String,
         front: Front,
-        (signed, sign): (usize, u8),
+        signed: usize,
+        sign: u8,
         short: ShortDecimal,
     ) {
         let dropped = if self.trim { short.zeros() } else { 0 };

@@ -1,5 +1,6 @@
 //! Instructions of the command a point, a block and a start, which do not drift as times do.
-//! `cargo bench --bench ledger` writes them into `tests/bench/ledger.txt` and prints what has changed.
+//! `cargo build --release && cargo run --example ledger` writes them into `tests/bench/ledger.txt` and prints what has
+//! changed; `-- --print` writes nothing, and the command may be named after that.
 //!
 //! Those of a point are the difference between two files, over their points, as callgrind counts them; without valgrind
 //! nothing is counted, and that is said. The committed ledger is one of the same build on Linux, x86-64: another
@@ -13,8 +14,11 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Points of the smaller file; the larger has twice as many.
 const POINTS: u64 = 20_000;
@@ -115,19 +119,22 @@ const CASES: [Case; 14] = [
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut arguments = std::env::args_os().skip(1).peekable();
+    let keeps = arguments.next_if(|word| word == "--print").is_none();
+    let command = arguments.next().map_or_else(|| root.join("target/release/post"), PathBuf::from);
     if Command::new("valgrind").arg("--version").stdout(Stdio::null()).status().is_err() {
         say("skipped: valgrind is not installed, and no instructions are counted");
         return Ok(());
     }
-    let ledger = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bench/ledger.txt");
+    let ledger = root.join("tests/bench/ledger.txt");
     let before = fs::read_to_string(&ledger).unwrap_or_default();
-    let folder = tempfile::tempdir()?;
     let mut after = String::new();
-    for case in CASES {
-        let (count, unit) = case.count(folder.path())?;
-        writeln!(after, "{:<36} {count:>9} {unit}", case.name)?;
+    for (case, Count { instructions: count, unit }) in CASES.iter().zip(counts(&command)?) {
+        let name = case.name;
+        writeln!(after, "{name:<36} {count:>9} {unit}")?;
         let known = before.lines().find_map(|line| {
-            line.strip_prefix(case.name)?.split_whitespace().next()?.parse::<u64>().ok()
+            line.strip_prefix(name)?.split_whitespace().next()?.parse::<u64>().ok()
         });
         let change = known.map_or_else(
             || "new".to_owned(),
@@ -136,42 +143,79 @@ fn main() -> Result<(), Box<dyn Error>> {
                 format!("{known:>9} before, {share:+.1} %")
             },
         );
-        say(&format!("{:<36} {count:>9} {unit:<11} {change}", case.name));
+        say(&format!("{name:<36} {count:>9} {unit:<11} {change}"));
     }
-    fs::write(ledger, after)?;
+    if keeps {
+        fs::write(ledger, after)?;
+    }
     Ok(())
+}
+
+/// What was counted.
+#[derive(Clone, Copy, Debug)]
+struct Count {
+    instructions: u64,
+    /// What they are spent on, as "a point".
+    unit: &'static str,
+}
+
+/// Counts each case, as many side by side as there are processors, which changes no count.
+fn counts(post: &Path) -> Result<Vec<Count>, Box<dyn Error>> {
+    let next = AtomicUsize::new(0);
+    let counts = Mutex::new(vec![None; CASES.len()]);
+    let work = || -> Result<(), String> {
+        while let number = next.fetch_add(1, Ordering::Relaxed)
+            && let Some(case) = CASES.get(number)
+        {
+            let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+            let count = case.count(post, folder.path());
+            let count = count.map_err(|error| format!("{}: {error}", case.name))?;
+            counts.lock().map_err(|error| error.to_string())?[number] = Some(count);
+        }
+        Ok(())
+    };
+    let workers = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    std::thread::scope(|scope| -> Result<(), Box<dyn Error>> {
+        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
+        for worker in workers {
+            worker.join().map_err(|_| "a thread of the ledger has failed")??;
+        }
+        Ok(())
+    })?;
+    Ok(counts.into_inner()?.into_iter().flatten().collect())
 }
 
 impl Case {
     /// Instructions, and of what.
-    fn count(self, folder: &Path) -> Result<(u64, &'static str), Box<dyn Error>> {
+    fn count(self, post: &Path, folder: &Path) -> Result<Count, Box<dyn Error>> {
         let (points, unit) = match self.job {
             Job::Start | Job::Version => {
-                return Ok((self.instructions(folder, 2)?, "a start"));
+                let instructions = self.instructions(post, folder, 2)?;
+                return Ok(Count { instructions, unit: "a start" });
             }
             Job::Post => (POINTS, "a point"),
             Job::Read | Job::Verify => (POINTS, "a block"),
             Job::Predict => (FEW_POINTS, "a block"),
         };
-        let [fewer, more] = [points, 2 * points].map(|points| self.instructions(folder, points));
-        Ok(((more? - fewer?) / points, unit))
+        let [fewer, more] =
+            [points, 2 * points].map(|points| self.instructions(post, folder, points));
+        Ok(Count { instructions: (more? - fewer?) / points, unit })
     }
 
     /// All instructions of the job on a file of so many points.
-    fn instructions(self, folder: &Path, points: u64) -> Result<u64, Box<dyn Error>> {
+    fn instructions(self, post: &Path, folder: &Path, points: u64) -> Result<u64, Box<dyn Error>> {
         let cl = folder.join(format!("{:?}-{points}.cls", self.form));
         if !cl.exists() {
             self.form.write(&cl, points)?;
         }
         let program = folder.join("program.nc");
-        let post = env!("CARGO_BIN_EXE_post");
         if matches!(self.job, Job::Read | Job::Verify | Job::Predict) {
             let mut posting = Command::new(post);
             self.posting(&mut posting, &cl, &program);
             succeed(&mut posting)?;
         }
         let mut counted = Command::new("valgrind");
-        counted.args(["--tool=callgrind", "--callgrind-out-file=/dev/null", post]);
+        counted.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(post);
         match self.job {
             Job::Post | Job::Start => self.posting(&mut counted, &cl, &program),
             Job::Read => {

@@ -78,7 +78,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let ledger = fs::read_to_string(root.join("tests/bench/ledger.txt"))?;
     write!(
         tables,
-        "Instructions, which do not drift as times do (`cargo bench --bench ledger`):\n\n```text\n{ledger}```\n"
+        "Instructions, which do not drift as times do (`cargo run --example ledger`):\n\n```text\n{ledger}```\n"
     )?;
     let page = fs::read_to_string(root.join(PAGE))?;
     let (Some((before, _)), Some((_, after))) = (page.split_once(FIRST), page.split_once(LAST))

@@ -558,6 +558,8 @@ typedef struct {
 #define POST_WRITES_TCP_RAPIDS_PASS 0x0000100000000000u
 /* Length and radius are those of an edge of the tool, which D names: D1 is the first. */
 #define POST_WRITES_TOOL_EDGES 0x0000200000000000u
+/* Cuts. */
+#define POST_WRITES_CUTS 0x0000400000000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */
@@ -823,6 +825,14 @@ typedef struct {
  * what the control must cancel is cancelled around them. */
 #define POST_EVENT_INSTEAD 42u
 /* texts[0], text: One or more lines, each ended by a line feed but the last. */
+/* Cuts one behind the other, under CUTS: what a Linear of each would be, and the same text. Where the tool
+ * stands is not told. */
+#define POST_EVENT_CUTS 43u
+/* 2 numbers: Kind of all their feeds, and the first of them. */
+#define POST_CUTS_FEED 0u
+/* how many there are, and behind it as many: The feeds of all cuts, then the first axis word of all of them,
+ * then the second, and so on. */
+#define POST_CUTS_COLUMNS 2u
 POST_ASSERT(sizeof(PostText) == 16 && POST_ALIGN(PostText) == 8, "PostText");
 POST_ASSERT(offsetof(PostText, ptr) == 0, "PostText.ptr");
 POST_ASSERT(offsetof(PostText, len) == 8, "PostText.len");

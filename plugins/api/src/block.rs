@@ -2,8 +2,12 @@
 //!
 //! Nothing here is needed to write a dialect; it saves an author the usual hundred lines.
 
+mod cut_lines;
+
 use crate::number::{Front, NumberForm};
 use crate::{AxisWord, Setup, fixed, quantise};
+
+pub use cut_lines::CutLine;
 
 /// How numbers look.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -99,6 +103,16 @@ impl Block {
         if self.words.is_empty() {
             return;
         }
+        self.begin(out);
+        // Every word has its blank in front; the first needs none.
+        out.push_str(&self.words[1..]);
+        out.push('\n');
+        self.words.clear();
+    }
+
+    /// Appends the number of a line.
+    #[inline]
+    fn begin(&mut self, out: &mut String) {
         if self.step != 0 {
             out.push_str(self.prefix);
             fixed(out, self.number.into(), 0);
@@ -108,10 +122,6 @@ impl Block {
                 self.number = self.step;
             }
         }
-        // Every word has its blank in front; the first needs none.
-        out.push_str(&self.words[1..]);
-        out.push('\n');
-        self.words.clear();
     }
 
     /// A block of one word, or of several given as one.
@@ -172,6 +182,8 @@ struct AxisState {
     /// Text after the number.
     behind: &'static str,
     last: Modal<f64>,
+    /// Units of the last decimal in the words of a run of cuts.
+    counts: Vec<u32>,
 }
 
 /// A word of a control that knows the places of one turn alone.
@@ -220,6 +232,7 @@ impl Axes {
             modulo: None,
             behind: "",
             last: Modal::default(),
+            counts: Vec::new(),
         });
         Axes { axes: axes.collect(), style }
     }

@@ -141,6 +141,8 @@ capabilities! {
     44 TCP_RAPIDS_PASS;
     /// Length and radius are those of an edge of the tool, which D names: D1 is the first.
     45 TOOL_EDGES;
+    /// `Cuts`.
+    46 CUTS;
 }
 
 impl Capabilities {
@@ -219,6 +221,7 @@ impl Event<'_> {
             Event::Subprogram { .. } => Capabilities::SUBPROGRAM,
             Event::Probe { .. } => Capabilities::PROBE,
             Event::Instead { .. } => Capabilities::INSTEAD,
+            Event::Cuts { .. } => Capabilities::CUTS,
             _ => Capabilities::NONE,
         }
     }

@@ -4,6 +4,7 @@
 //! header and the host's checks follow from it.
 
 use crate::command::{Compensation, Coolant, Cycle, Feed, Spindle, SpindleSense};
+use crate::cuts::{Columns, CutRun};
 use crate::field::{Field, FieldReader, FieldShape, List, NotKnown, Promise, ToolPose};
 use crate::flat::Flat;
 use crate::setup::Units;
@@ -477,6 +478,14 @@ events! { <'a>
         /// One or more lines, each ended by a line feed but the last.
         text: &'a str,
     };
+    /// Cuts one behind the other, under `CUTS`: what a `Linear` of each would be, and the same text. Where the tool
+    /// stands is not told.
+    43 CUTS "a run of cuts" Cuts {
+        /// Kind of all their feeds, and the first of them.
+        feed: Feed,
+        /// The feeds of all cuts, then the first axis word of all of them, then the second, and so on.
+        columns: Columns<'a>,
+    };
     }
 }
 
@@ -518,6 +527,7 @@ impl<'a> Event<'a> {
         self.promised(promise)?;
         match *self {
             Event::Dwell { seconds } if seconds < 0.0 => Err(format!("its number is {seconds}")),
+            Event::Cuts { feed, columns } => CutRun::new(feed, columns, promise.words)?.check(),
             _ => Ok(()),
         }
     }
@@ -532,6 +542,7 @@ impl<'a> Event<'a> {
                 | Event::Park { .. }
                 | Event::Rapid { .. }
                 | Event::Linear { .. }
+                | Event::Cuts { .. }
                 | Event::Arc { .. }
                 | Event::Spline { .. }
                 | Event::CyclePoint { .. }

@@ -62,7 +62,7 @@ impl<'a> FieldReader<'a> {
     }
 
     #[inline]
-    fn list(&mut self) -> Result<&'a [f64], NotKnown> {
+    pub(crate) fn list(&mut self) -> Result<&'a [f64], NotKnown> {
         let count = whole(self.next().unwrap_or(0.0)).ok_or(NotKnown)?;
         let (list, rest) = self.numbers.split_at_checked(count as usize).ok_or(NotKnown)?;
         self.numbers = rest;
@@ -100,7 +100,7 @@ pub(crate) trait Field<'a>: Copy {
 }
 
 #[inline]
-fn finite(numbers: &[f64], what: &str) -> Result<(), String> {
+pub(crate) fn finite(numbers: &[f64], what: &str) -> Result<(), String> {
     // Without a branch: the compiler makes vectors of it.
     if numbers.iter().fold(true, |all, number| all & number.is_finite()) {
         return Ok(());

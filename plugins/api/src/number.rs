@@ -48,6 +48,12 @@ pub(crate) struct Front {
 impl Front {
     pub(crate) const NONE: Front = Front { bytes: 0, len: 0 };
 
+    /// Without its first byte, the blank.
+    #[inline]
+    pub(crate) const fn bare(self) -> Front {
+        Front { bytes: self.bytes >> 8, len: self.len.saturating_sub(1) }
+    }
+
     /// A blank and `text`, all ASCII; none if they are longer.
     #[inline]
     pub(crate) const fn blank(text: &str) -> Option<Front> {
@@ -150,17 +156,35 @@ impl NumberForm {
         sign: u8,
         short: ShortDecimal,
     ) {
-        let dropped = if self.trim { short.zeros() } else { 0 };
-        let bare = usize::from(dropped == short.places && !self.point);
-        let length = front.len + signed + short.digits + 1 + short.places - dropped - bare;
-        out.reserve(length + 16);
-        // SAFETY: what is appended is ASCII. There is room for `length` bytes and sixteen more after the old end;
-        // front, sign and digits before the point come first, then point and decimals, of which `length` leaves out
-        // no more than all. So each write begins no later than at its end, and has eight bytes at most.
+        out.reserve(SHORT_WORD);
+        // SAFETY: what is appended is ASCII, and there is room for it.
         unsafe {
             let bytes = out.as_mut_vec();
             let start = bytes.len();
-            let mut to = bytes.as_mut_ptr().add(start);
+            let length = self.put_short(bytes.as_mut_ptr().add(start), front, signed, sign, short);
+            bytes.set_len(start + length);
+        }
+    }
+
+    /// Writes a word at `to`; its length.
+    ///
+    /// # Safety
+    /// There must be room for [`SHORT_WORD`] bytes.
+    #[inline(always)]
+    pub(crate) unsafe fn put_short(
+        self,
+        mut to: *mut u8,
+        front: Front,
+        signed: usize,
+        sign: u8,
+        short: ShortDecimal,
+    ) -> usize {
+        let dropped = if self.trim { short.zeros() } else { 0 };
+        let bare = usize::from(dropped == short.places && !self.point);
+        // SAFETY: front, sign and digits before the point come first, eight, one and three bytes at most, then point
+        // and decimals, of which the length leaves out no more than all. So each write begins no later than at its end,
+        // and has eight bytes at most.
+        unsafe {
             to.cast::<u64>().write_unaligned(front.bytes.to_le());
             to = to.add(front.len);
             to.write(sign);
@@ -168,8 +192,8 @@ impl NumberForm {
             to.cast::<u32>().write_unaligned(short.whole.to_le());
             to = to.add(short.digits);
             to.cast::<u64>().write_unaligned(short.fraction.to_le());
-            bytes.set_len(start + length);
         }
+        front.len + signed + short.digits + 1 + short.places - dropped - bare
     }
 
     /// Numbers of more than eight digits.
@@ -211,9 +235,36 @@ impl NumberForm {
     }
 }
 
+/// Room that a word takes with a number below 1,000, and what is written past its end.
+pub(crate) const SHORT_WORD: usize = 32;
+
+/// Counts units of the last decimal in numbers of a program that [`ShortDecimal`] has; false if it has not all of them.
+pub(crate) fn short_counts(values: &[f64], decimals: u8, counts: &mut Vec<u32>) -> bool {
+    // No rounding brings less to 1,000.
+    const BELOW: f64 = 999.9;
+    // As in `count`: what is printed is no farther from a whole number of units.
+    const EXACT: f64 = 1e-3;
+    counts.clear();
+    if !matches!(decimals, 3 | 4) {
+        return false;
+    }
+    let power = POWERS_F[usize::from(decimals)];
+    if !values.iter().fold(true, |all, value| all & (value.abs() < BELOW)) {
+        return false;
+    }
+    let units = |value: f64| -> i32 {
+        // SAFETY: it is not negative, below 10^7 and not NaN, as was just asked of every value.
+        unsafe { (value.abs() * power + 0.5).to_int_unchecked() }
+    };
+    counts.extend(values.iter().map(|value| units(*value) as u32));
+    values.iter().fold(true, |all, value| {
+        all & ((value.abs() * power - f64::from(units(*value))).abs() < EXACT)
+    })
+}
+
 /// The text of a number below 1,000 with three or four decimals, which nearly every word of a program is.
 #[derive(Clone, Copy, Debug)]
-struct ShortDecimal {
+pub(crate) struct ShortDecimal {
     /// Digits before the point, the first in the lowest byte; what is above them is overwritten.
     whole: u32,
     /// How many these are, 1 to 3.
@@ -227,7 +278,7 @@ struct ShortDecimal {
 impl ShortDecimal {
     /// None if the number is larger, or has other decimals.
     #[inline(always)]
-    fn new(count: u64, places: usize) -> Option<Self> {
+    pub(crate) fn new(count: u64, places: usize) -> Option<Self> {
         let (rest, last) = (count / 1000, THREE_DIGITS[(count % 1000) as usize] & 0x00ff_ffff);
         let (whole, decimals) = match places {
             3 => (rest, u64::from(last)),

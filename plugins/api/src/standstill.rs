@@ -26,7 +26,7 @@ impl Standstill {
     #[inline]
     pub fn before(&mut self, event: &Event<'_>) -> [bool; 2] {
         let due = match event {
-            Event::Linear { .. } | Event::Arc { .. } | Event::Spline { .. } => {
+            Event::Linear { .. } | Event::Cuts { .. } | Event::Arc { .. } | Event::Spline { .. } => {
                 self.cut = true;
                 true
             }

@@ -17,6 +17,8 @@ struct Grbl {
 }
 
 impl Control for Grbl {
+    const LEAVES_CUTS: bool = true;
+
     const TABLE: &'static Table = &Table {
         options: OPTIONS,
         language: Language::Rs274,

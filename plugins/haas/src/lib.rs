@@ -11,6 +11,8 @@ use post_plugin::{Cycle, Meaning, OptionSpec, Setup, export_dialect};
 struct Haas;
 
 impl Control for Haas {
+    const LEAVES_CUTS: bool = true;
+
     const TABLE: &'static Table = &Table {
         options: OPTIONS,
         title: Some(("O", 5)),

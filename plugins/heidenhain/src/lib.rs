@@ -14,9 +14,9 @@ mod tool;
 mod words;
 
 use post_plugin::{
-    Axes, AxisNames, Block, Capabilities, Coolant, Dialect, Drilling, Event, Format, Language,
-    Meaning, Modal, NumberStyle, OptionSpec, PlaneAngles, Setup, SpindleSense, Standstill, Units,
-    VocabularyWord, export_dialect,
+    Axes, AxisNames, Block, Capabilities, Coolant, CutRun, Dialect, Drilling, Event, Format,
+    Language, Meaning, Modal, NumberStyle, OptionSpec, PlaneAngles, Setup, SpindleSense,
+    Standstill, Units, VocabularyWord, export_dialect,
 };
 
 use crate::cycles::CycleParameters;
@@ -241,6 +241,10 @@ impl Dialect for Heidenhain {
     }
 
     fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
+        if let Event::Cuts { feed, columns } = *event {
+            let run = CutRun::new(feed, columns, self.axes.decimals().len())?;
+            return self.cuts(&run, out);
+        }
         if let Event::Instead { text } = *event {
             self.instead = Some(text.to_owned());
             return Ok(());

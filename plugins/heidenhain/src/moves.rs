@@ -1,6 +1,6 @@
 //! Straight moves, the way to the part and away from it.
 
-use post_plugin::{Feed, Group, NumberStyle, ToolPose};
+use post_plugin::{CutLine, CutRun, Dialect as _, Feed, Group, NumberStyle, ToolPose};
 
 use crate::Heidenhain;
 
@@ -104,6 +104,33 @@ impl Heidenhain {
         }
         self.finish_move(feed, length || turned, out)?;
         self.stand(words);
+        Ok(())
+    }
+
+    /// Runs of cuts are worth more than cuts one by one.
+    pub(crate) fn takes_runs(&self) -> bool {
+        !self.vectors && !self.inch
+    }
+
+    /// Cuts one by one, until nothing but words and feeds is left to be written.
+    pub(crate) fn cuts(&mut self, run: &CutRun<'_>, out: &mut String) -> Result<(), String> {
+        let straight = self.axes.takes_cuts(run) && self.takes_runs();
+        let minute = matches!(run.kind(), Feed::PerMinute(_));
+        let mut words = Vec::new();
+        for place in 0..run.len() {
+            let carries_on = self.radius.is(self.compensation) && self.vector.is_none();
+            // The first may have to switch on what a stop has switched off, or to call the tool.
+            if straight && minute && carries_on && place > 0 {
+                let style = NumberStyle::default();
+                let line =
+                    CutLine { head: "L", decimals: self.feed_decimals, style, every_feed: false };
+                self.axes.write_cuts(run, place, &line, &mut self.block, &mut self.feed, out);
+                self.at.clear();
+                self.at.extend(run.columns().filter_map(|column| column.last()));
+                return Ok(());
+            }
+            self.write(&run.linear(place, &mut words), out)?;
+        }
         Ok(())
     }
 

@@ -20,6 +20,7 @@ impl Heidenhain {
             | C::LENGTH_ALONG_DEPTH
             | C::INSTEAD
             | commands
+            | some(self.takes_runs(), C::CUTS)
             | some(self.rotary, C::PLANE)
             | some(self.linear.is_some(), arcs)
             | some(cycles, drills | others)

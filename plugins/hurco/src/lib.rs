@@ -13,6 +13,8 @@ struct Hurco {
 }
 
 impl Control for Hurco {
+    const LEAVES_CUTS: bool = true;
+
     const TABLE: &'static Table = &Table {
         options: OPTIONS,
         extension: "fnc",

@@ -5,8 +5,8 @@ mod opening;
 mod spindle;
 
 use post_plugin::{
-    Capabilities, Compensation, Event, Format, Meaning, Modal, NumberStyle, Spindle, Standstill,
-    Units,
+    Capabilities, Compensation, CutRun, Event, Format, Meaning, Modal, NumberStyle, Spindle,
+    Standstill, Units,
 };
 
 use approach::leaning;
@@ -211,6 +211,20 @@ impl Engine {
         if std::mem::take(&mut self.cancel_due) {
             self.motion.line(&self.cancel, out);
         }
+    }
+
+    /// Runs of cuts are worth more than cuts one by one.
+    pub(crate) fn takes_runs(&self) -> bool {
+        self.vector.is_none() && self.style.is_plain()
+    }
+
+    /// Of the cuts of `run` nothing but words and feeds is to be written.
+    pub(crate) fn carries_on(&self, run: &CutRun<'_>) -> bool {
+        self.takes_runs()
+            && !self.cancel_due
+            && !self.follows_vector
+            && !self.tapped
+            && self.motion.carries_on(run.kind())
     }
 
     /// Writes any event but the program's start.

@@ -17,7 +17,9 @@ mod table;
 mod vocabulary;
 pub mod words;
 
-use post_plugin::{Capabilities, Dialect, Event, Format, OptionSpec, Setup, VocabularyWord};
+use post_plugin::{
+    Capabilities, CutRun, Dialect, Event, Format, OptionSpec, Setup, VocabularyWord,
+};
 
 pub use engine::Engine;
 pub use motion::{ArcWords, FeedDecimals, MotionWriter};
@@ -69,6 +71,10 @@ pub trait Control: Sized + Send + 'static {
         Ok(false)
     }
 
+    /// [`Control::write`] leaves every cut to the engine and keeps nothing of it, so that runs of cuts go straight
+    /// there.
+    const LEAVES_CUTS: bool = false;
+
     /// What it writes beyond what table and options say.
     fn capabilities(&self) -> Capabilities {
         Capabilities::NONE
@@ -108,6 +114,21 @@ impl<C: Control> Iso<C> {
             return Ok(());
         }
         engine.write(event, out)
+    }
+
+    /// Cuts one by one, until nothing but words and feeds is left to be written.
+    fn write_cuts(&mut self, run: &CutRun<'_>, out: &mut String) -> Result<(), String> {
+        let straight = self.engine.motion.axes.takes_cuts(run);
+        let mut words = Vec::new();
+        for place in 0..run.len() {
+            // The first may have to switch on what a stop has switched off.
+            if straight && place > 0 && self.engine.carries_on(run) {
+                self.engine.motion.carry_on(run, place, out);
+                return Ok(());
+            }
+            self.write(&run.linear(place, &mut words), out)?;
+        }
+        Ok(())
     }
 
     /// Lines of the user's own, and the event that they stand for: what it writes is dropped, what it puts in force is
@@ -150,7 +171,11 @@ impl<C: Control> Dialect for Iso<C> {
     }
 
     fn capabilities(&self) -> Capabilities {
-        self.engine.capabilities() | self.control.capabilities()
+        let writes = self.engine.capabilities() | self.control.capabilities();
+        match C::LEAVES_CUTS && self.engine.takes_runs() {
+            true => writes | Capabilities::CUTS,
+            false => writes,
+        }
     }
 
     fn vocabulary(&self) -> Vec<VocabularyWord> {
@@ -159,6 +184,12 @@ impl<C: Control> Dialect for Iso<C> {
 
     #[inline]
     fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
+        if let Event::Cuts { feed, columns } = *event
+            && C::LEAVES_CUTS
+        {
+            let run = CutRun::new(feed, columns, self.engine.motion.words())?;
+            return self.write_cuts(&run, out);
+        }
         let start = out.len();
         if let Event::Instead { text } = *event {
             self.instead = Some(text.to_owned());

@@ -3,6 +3,8 @@
 //! Rapids, cuts, the three feed modes, compensation, arcs and the way a tool comes to the part. A word that is in force
 //! is not written again, and a move that changes no word is not written at all.
 
+mod runs;
+
 use post_plugin::{
     Axes, Block, Compensation, Feed, Format, Group, Modal, NumberStyle, Setup, quantise,
 };

@@ -47,6 +47,7 @@ pub const ORDER: &[(&str, &str)] = &[
     ("Subprogram", "away, no plane"),
     ("Probe", "at the part, not in a cycle"),
     ("Instead", "in front of the event that it stands for"),
+    ("Cuts", "at the part, not in a cycle"),
 ];
 
 /// Follows a program, and says where it breaks the promised order.
@@ -109,6 +110,7 @@ impl EventOrder {
             Event::Retract { .. } => unless(self.retracted, "twice without a move between"),
             Event::Rapid { .. }
             | Event::Linear { .. }
+            | Event::Cuts { .. }
             | Event::Arc { .. }
             | Event::Spline { .. }
             | Event::Surface { .. }

@@ -16,6 +16,8 @@ struct LinuxCnc {
 }
 
 impl Control for LinuxCnc {
+    const LEAVES_CUTS: bool = true;
+
     const TABLE: &'static Table = &Table {
         options: OPTIONS,
         language: Language::Rs274,

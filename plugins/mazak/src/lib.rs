@@ -11,6 +11,8 @@ use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};
 struct Mazak;
 
 impl Control for Mazak {
+    const LEAVES_CUTS: bool = true;
+
     const TABLE: &'static Table = &Table {
         options: OPTIONS,
         extension: "EIA",

@@ -11,6 +11,8 @@ use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};
 struct Mitsubishi;
 
 impl Control for Mitsubishi {
+    const LEAVES_CUTS: bool = true;
+
     const TABLE: &'static Table = &Table {
         options: OPTIONS,
         title: Some(("O", 4)),

@@ -16,6 +16,8 @@ struct Okuma {
 }
 
 impl Control for Okuma {
+    const LEAVES_CUTS: bool = true;
+
     const TABLE: &'static Table = &Table {
         options: OPTIONS,
         extension: "MIN",

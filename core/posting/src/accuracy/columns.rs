@@ -335,6 +335,11 @@ impl RunColumns {
         std::array::from_fn(|joint| self.joints[joint][lane + 1])
     }
 
+    /// Axis values at the start of a block, as printed.
+    pub(crate) fn joints_before(&self, lane: usize) -> Joints {
+        std::array::from_fn(|joint| self.joints[joint][lane])
+    }
+
     /// Words of a block.
     pub(crate) fn words_at(&self, lane: usize) -> [f64; MAX_AXES] {
         std::array::from_fn(|place| self.words[place][lane + 1])

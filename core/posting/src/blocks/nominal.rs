@@ -1,6 +1,7 @@
 //! The nominal time of a move: what the CL file asks for, whatever the axes can do.
 
 use post_machine::description::Machine;
+use post_machine::kinematics::batch::{Column, LANES};
 use post_machine::kinematics::{Joints, MAX_AXES};
 
 use super::{BlockStage, PathLeg};
@@ -129,6 +130,21 @@ impl AxisKinds {
     #[inline]
     pub(crate) fn turning(&self, from: &Joints, to: &Joints) -> bool {
         (0..MAX_AXES).any(|index| self.rotary[index] && from[index] != to[index])
+    }
+
+    /// [`AxisKinds::turning`] from each of `count` places to the next.
+    pub(crate) fn turning_all(
+        &self,
+        joints: &[Column; MAX_AXES],
+        count: usize,
+        turns: &mut [bool; LANES],
+    ) {
+        for (column, _) in joints.iter().zip(&self.rotary).filter(|(_, rotary)| **rotary) {
+            let pairs = column[..count].iter().zip(&column[1..=count]);
+            for (turns, (from, to)) in turns.iter_mut().zip(pairs) {
+                *turns |= from != to;
+            }
+        }
     }
 
     pub(crate) fn travels(&self, from: &Joints, to: &Joints) -> AxisTravels {

@@ -2,7 +2,7 @@
 
 use post_machine::kinematics::{Joints, MAX_AXES};
 
-use crate::accuracy::DeviationBound;
+use crate::accuracy::{DeviationBound, RunColumns};
 use crate::blocks::MotionBlock;
 use crate::report::ReportedDeviation;
 
@@ -60,6 +60,57 @@ impl Extremes {
     pub(super) fn mark_cut(&mut self, deviation: DeviationBound, line: u64, index: usize) {
         self.keep(TIP, deviation.tip, line, index);
         self.keep(AXIS, deviation.axis, line, index);
+    }
+
+    /// [`Extremes::mark_cut`] of all blocks of a run: which of them is the worst from here on, by tip and by tool axis.
+    /// Their events are told by [`Extremes::marked`].
+    pub(super) fn mark_cuts(&mut self, run: &RunColumns) -> [Option<usize>; 2] {
+        let columns = [(TIP, &run.tip_bound), (AXIS, &run.axis_bound)];
+        columns.map(|(slot, bounds)| {
+            let bounds = &bounds[..run.count];
+            let before = self.deviations[slot].value;
+            // Nearly always none of them is.
+            if !bounds.iter().fold(false, |some, bound| some | (bound + 0.0 > before)) {
+                return None;
+            }
+            let own = self.marks[slot].take();
+            for (lane, bound) in bounds.iter().enumerate() {
+                self.keep(slot, bound + 0.0, run.lines[lane], lane);
+            }
+            let marked = self.marks[slot].take();
+            self.marks[slot] = own.filter(|_| marked.is_none());
+            marked
+        })
+    }
+
+    /// The block at a lane, which is one of those that [`Extremes::mark_cuts`] has named, is the last of the event
+    /// `index`.
+    pub(super) fn marked(&mut self, worst: [Option<usize>; 2], lane: usize, index: usize) {
+        for (slot, worst) in [TIP, AXIS].into_iter().zip(worst) {
+            if worst == Some(lane) {
+                self.marks[slot] = Some(index);
+            }
+        }
+    }
+
+    /// [`Extremes::reach`] and [`Extremes::go`] of all blocks of a run that begins at `last`.
+    pub(super) fn reach_all(&mut self, last: &Joints, run: &RunColumns) {
+        self.blocks += run.count as u64;
+        for joint in 0..MAX_AXES {
+            let column = &run.joints[joint][1..=run.count];
+            let (mut least, mut most) = (self.least[joint], self.most[joint]);
+            for value in column {
+                least = if *value < least { *value } else { least };
+                most = if *value > most { *value } else { most };
+            }
+            (self.least[joint], self.most[joint]) = (least, most);
+            let (mut travel, mut from) = (self.travel[joint], last[joint]);
+            for to in column {
+                travel += (to - from).abs();
+                from = *to;
+            }
+            self.travel[joint] = travel;
+        }
     }
 
     #[inline]

@@ -68,6 +68,8 @@ pub(crate) struct EmitStage<'a> {
     /// The head that the tool was used with last came to the part with its own or the program's work offset.
     worked: bool,
     compensation: CompensationState,
+    /// Columns of a run of cuts on their way to an event.
+    cuts: Vec<f64>,
     /// Observers of the program; none if nobody looks on.
     observers: Option<Rc<Observers<'a>>>,
     findings: Findings,
@@ -108,6 +110,7 @@ impl<'a> EmitStage<'a> {
             head: None,
             worked: false,
             compensation: CompensationState::default(),
+            cuts: Vec::new(),
             observers: None,
             findings: findings.clone(),
         };

@@ -35,10 +35,15 @@ impl TimingStage<'_> {
     /// Times the blocks of a run, which ends before one whose feed is below the least that is printed. Nothing is
     /// changed yet.
     pub(crate) fn times(&self, run: &mut RunColumns, timed: &mut TimedRun) {
-        let mut from = self.last;
+        for (column, last) in run.joints.iter_mut().zip(&self.last) {
+            column[0] = *last;
+        }
+        let mut leasts = run.follow;
+        let mut turns = [false; LANES];
+        max_feed::least_minutes_all(&self.slowness, &run.joints, run.count, &mut leasts);
+        self.feeds.turning_all(&run.joints, run.count, &mut turns);
+        let mut ends = run.count;
         for lane in 0..run.count {
-            let to = run.joints_at(lane);
-            let least = max_feed::least_minutes(&self.slowness, run.follow[lane], &from, &to);
             let tip = run.way[lane];
             let asked = tip / run.feed;
             let way = FedWay {
@@ -46,21 +51,23 @@ impl TimingStage<'_> {
                 feed: Some(run.feed),
                 minutes: asked,
                 asked,
-                turning: self.feeds.turning(&from, &to),
+                turning: turns[lane],
                 curved: false,
             };
-            let measured = || self.feeds.measured(&from, &to, tip);
+            let least = leasts[lane];
+            let measured =
+                || self.feeds.measured(&run.joints_before(lane), &run.joints_at(lane), tip);
             let written = self.feeds.write_way(&way, least, measured);
             if written.raised_from.is_some() {
-                run.count = lane;
-                return;
+                ends = lane;
+                break;
             }
             timed.feeds[lane] = written.feed;
             timed.minutes[lane] = written.minutes;
             timed.capped[lane] = written.capped;
             timed.limited[lane] = written.capped || least > 0.0 && least > asked * (1.0 + 1e-9);
-            from = to;
         }
+        run.count = ends;
     }
 
     /// The blocks of the run are handed on.

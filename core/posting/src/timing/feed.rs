@@ -3,7 +3,8 @@
 use nalgebra::Matrix3;
 use post_machine::axis_words::unit_length;
 use post_machine::description::{FeedLength, FeedMode, InverseTime, Machine, Tcp, TcpFeedLength};
-use post_machine::kinematics::Joints;
+use post_machine::kinematics::batch::{Column, LANES};
+use post_machine::kinematics::{Joints, MAX_AXES};
 use post_plugin::{Capabilities, Feed, Format};
 
 use crate::blocks::{AxisKinds, BlockKind, MotionBlock, STILL};
@@ -106,10 +107,14 @@ impl FeedWriter {
         })
     }
 
-    /// Some rotary axis turns.
-    #[inline]
-    pub(super) fn turning(&self, from: &Joints, to: &Joints) -> bool {
-        self.kinds.turning(from, to)
+    /// Whether some rotary axis turns from each of `count` places to the next.
+    pub(super) fn turning_all(
+        &self,
+        joints: &[Column; MAX_AXES],
+        count: usize,
+        turns: &mut [bool; LANES],
+    ) {
+        self.kinds.turning_all(joints, count, turns);
     }
 
     /// The least feed a minute that is printed.

@@ -13,6 +13,7 @@ use super::declared::declared;
 use super::options::options_of;
 use super::pen::{BEGIN, Pen, rounded};
 use super::print::{edges, moves};
+use super::runs::runs;
 use super::sessions::{after_a_refusal, two_at_once, two_threads};
 use super::texts::remarks;
 use crate::{at, cut, rapid, turn, turning};
@@ -36,6 +37,7 @@ const CASES: &[(&str, CaseRun)] = &[
     ("commands", commands),
     ("remarks", remarks),
     ("declared", declared),
+    ("runs of cuts", runs),
     ("axis names", axis_names),
     ("unknown event", unknown_event),
     ("every event", every_event),

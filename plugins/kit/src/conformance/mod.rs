@@ -19,6 +19,7 @@ mod model;
 mod options;
 mod pen;
 mod print;
+mod runs;
 mod sessions;
 mod shapes;
 pub(crate) mod texts;

@@ -5,12 +5,13 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use post_plugin::export::Exported;
 use post_plugin::{
-    AxisNames, CAPABILITIES, Capabilities, Cycle, Dialect, Event, Format, Linked, Meaning,
+    AxisNames, CAPABILITIES, Capabilities, CutRun, Cycle, Dialect, Event, Format, Linked, Meaning,
     OptionSpec, PlaneAngles, Setup, VocabularyWord, ascii, remark,
 };
 
 /// What is wrong, and a part of the sentence that says so.
 pub const FAULTS: &[(&str, &str)] = &[
+    ("drops the last cut of a run", "runs of cuts: a run of cuts, 1 of them"),
     ("one sense", "declared: an arc in X Y: the other sense makes no difference"),
     ("one sense", "declared: a full circle: the other sense makes no difference"),
     (
@@ -131,6 +132,14 @@ impl Dialect for Boastful {
     }
 
     fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
+        if let Event::Cuts { feed, columns } = *event {
+            // The program of the kit has five axis words.
+            let run = CutRun::new(feed, columns, 5)?;
+            let mut words = Vec::new();
+            let left_out = usize::from(self.fault == "drops the last cut of a run");
+            return (0..run.len() - left_out)
+                .try_for_each(|place| self.write(&run.linear(place, &mut words), out));
+        }
         let instead = self.instead.take();
         if let Event::ToolChange { register, .. } = *event {
             let forgets = self.fault == "forgets the tool" && instead.is_some();

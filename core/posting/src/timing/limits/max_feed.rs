@@ -1,6 +1,7 @@
 //! `max_feed`: no axis goes faster than its largest feed.
 
 use post_machine::description::Machine;
+use post_machine::kinematics::batch::{Column, Lanes};
 use post_machine::kinematics::{Joints, MAX_AXES};
 
 use super::BlockTimeLimit;
@@ -30,6 +31,22 @@ impl BlockTimeLimit for MaxFeed {
     fn least_minutes(&self, from: &Joints, block: &MotionBlock) -> f64 {
         // Between the words too, where the control keeps the tip.
         least_minutes(&self.slowness, block.follow.minutes, from, &block.joints)
+    }
+}
+
+/// [`least_minutes`] of `count` blocks; `least` holds the times that each must take anyway.
+pub(in crate::timing) fn least_minutes_all(
+    slowness: &Joints,
+    joints: &[Column; MAX_AXES],
+    count: usize,
+    least: &mut Lanes,
+) {
+    for (column, slowness) in joints.iter().zip(slowness) {
+        let pairs = column[..count].iter().zip(&column[1..=count]);
+        for (least, (from, to)) in least.iter_mut().zip(pairs) {
+            let minutes = (to - from).abs() * slowness;
+            *least = if minutes > *least { minutes } else { *least };
+        }
     }
 }
 

@@ -4,8 +4,6 @@ mod codes;
 mod flag_words;
 mod verbs;
 
-use clap::Parser as _;
-
 use post_cli::failure::CommandFault;
 use verbs::CommandLine;
 
@@ -13,8 +11,8 @@ use verbs::CommandLine;
 pub fn run() -> ! {
     post_cli::run_to_end(|session| match verbs::moved() {
         Some(fault) => Err(CommandFault::Usage(fault)),
-        None => CommandLine::try_parse()
-            .map_err(|fault| CommandFault::Usage(verbs::misspelt().unwrap_or(fault)))
+        None => CommandLine::read(&std::env::args_os().collect::<Vec<_>>())
+            .map_err(|fault| CommandFault::Usage(verbs::misspelt(&fault).unwrap_or(fault)))
             .and_then(|line| line.run(session)),
     })
 }
@@ -26,6 +24,6 @@ pub mod internals {
 
     /// The whole command line.
     pub fn command_line() -> clap::Command {
-        super::CommandLine::command()
+        super::verbs::AllVerbs::command()
     }
 }

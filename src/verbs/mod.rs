@@ -7,6 +7,7 @@ mod complete;
 mod convert;
 mod diff;
 mod explain;
+mod late;
 mod list_machines;
 mod list_words;
 mod lsp;
@@ -21,6 +22,7 @@ mod read;
 mod verify;
 mod view;
 
+use std::ffi::OsString;
 use std::path::Path;
 
 use clap::error::ErrorKind;
@@ -33,6 +35,7 @@ use complete::CompletionsArguments;
 use convert::ConvertArguments;
 use diff::DiffArguments;
 use explain::ExplainArguments;
+use late::Late;
 use list_machines::MachinesArguments;
 use list_words::WordsArguments;
 use lsp::LspArguments;
@@ -85,11 +88,11 @@ Exit codes: 0 the program is written; 1 refused, the messages say why, and what 
 from standard output went away before its end.",
     max_term_width = 100
 )]
-pub struct CommandLine {
+pub struct CommandLine<const LATE: bool = true> {
     #[command(flatten)]
     post: Nameless,
     #[command(subcommand)]
-    verb: Option<Verb>,
+    verb: Option<Verb<LATE>>,
 }
 
 /// The arguments of the verb that has no name; none where there is a verb, whose arguments are others.
@@ -121,52 +124,66 @@ impl FromArgMatches for Nameless {
 }
 
 #[derive(Debug, Subcommand)]
-enum Verb {
-    Words(WordsArguments),
-    Machines(MachinesArguments),
-    Schema(SchemaArguments),
-    Batch(Box<BatchArguments>),
-    Check(CheckArguments),
-    Convert(Box<ConvertArguments>),
-    Diff(Box<DiffArguments>),
-    New(NewArguments),
-    Place(Box<PlaceArguments>),
-    Predict(Box<PredictArguments>),
-    Verify(Box<VerifyArguments>),
-    Plugin(PluginArguments),
-    Read(Box<ReadArguments>),
-    View(ViewArguments),
-    Lsp(LspArguments),
-    Explain(ExplainArguments),
-    Completions(CompletionsArguments),
-    Man(ManArguments),
+enum Verb<const LATE: bool> {
+    Words(Late<WordsArguments, LATE>),
+    Machines(Late<MachinesArguments, LATE>),
+    Schema(Late<SchemaArguments, LATE>),
+    Batch(Late<Box<BatchArguments>, LATE>),
+    Check(Late<CheckArguments, LATE>),
+    Convert(Late<Box<ConvertArguments>, LATE>),
+    Diff(Late<Box<DiffArguments>, LATE>),
+    New(Late<NewArguments, LATE>),
+    Place(Late<Box<PlaceArguments>, LATE>),
+    Predict(Late<Box<PredictArguments>, LATE>),
+    Verify(Late<Box<VerifyArguments>, LATE>),
+    Plugin(Late<PluginArguments, LATE>),
+    Read(Late<Box<ReadArguments>, LATE>),
+    View(Late<ViewArguments, LATE>),
+    Lsp(Late<LspArguments, LATE>),
+    Explain(Late<ExplainArguments, LATE>),
+    Completions(Late<CompletionsArguments, LATE>),
+    Man(Late<ManArguments, LATE>),
 }
 
+/// The command line with all its verbs made.
+pub type AllVerbs = CommandLine<false>;
+
 impl CommandLine {
+    /// What `words` say, the name of the command first. A fault is told as the command line with all verbs tells it.
+    ///
+    /// # Errors
+    /// A wrong command line; help and version, which are no faults.
+    pub fn read(words: &[OsString]) -> Result<Self, clap::Error> {
+        Self::try_parse_from(words).map_err(|fault| match fault.kind() {
+            ErrorKind::DisplayVersion => fault,
+            _ => AllVerbs::try_parse_from(words).err().unwrap_or(fault),
+        })
+    }
+
     /// Does what the command line says.
     pub fn run(self, session: &Session) -> Result<(), CommandFault> {
         let done = match self.verb {
             None => self.post.0.map_or(Ok(()), |post| post::run(session, &post)),
-            Some(Verb::Words(arguments)) => list_words::run(session, &arguments),
-            Some(Verb::Machines(arguments)) => list_machines::run(session, &arguments),
-            Some(Verb::Schema(arguments)) => print_schema::run(session, &arguments),
-            Some(Verb::Batch(arguments)) => batch::run(session, &arguments),
-            Some(Verb::Check(arguments)) => check::run(session, &arguments),
-            Some(Verb::Convert(arguments)) => convert::run(session, &arguments),
-            Some(Verb::Diff(arguments)) => diff::run(session, &arguments),
-            Some(Verb::New(arguments)) => new::run(session, &arguments),
-            Some(Verb::Place(arguments)) => place::run(session, &arguments),
-            Some(Verb::Predict(arguments)) => predict::run(session, &arguments),
-            Some(Verb::Verify(arguments)) => verify::run(session, &arguments),
-            Some(Verb::Plugin(arguments)) => plugin::run(session, &arguments),
-            Some(Verb::Read(arguments)) => read::run(session, &arguments),
-            Some(Verb::View(arguments)) => return view(session, &arguments),
-            Some(Verb::Explain(arguments)) => return explain::run(session, &arguments),
-            Some(Verb::Lsp(arguments)) => lsp::run(session, arguments),
-            Some(Verb::Completions(arguments)) => {
-                complete::run(session, &arguments, Self::command())
+            Some(Verb::Words(Late(arguments))) => list_words::run(session, &arguments),
+            Some(Verb::Machines(Late(arguments))) => list_machines::run(session, &arguments),
+            Some(Verb::Schema(Late(arguments))) => print_schema::run(session, &arguments),
+            Some(Verb::Batch(Late(arguments))) => batch::run(session, &arguments),
+            Some(Verb::Check(Late(arguments))) => check::run(session, &arguments),
+            Some(Verb::Convert(Late(arguments))) => convert::run(session, &arguments),
+            Some(Verb::Diff(Late(arguments))) => diff::run(session, &arguments),
+            Some(Verb::New(Late(arguments))) => new::run(session, &arguments),
+            Some(Verb::Place(Late(arguments))) => place::run(session, &arguments),
+            Some(Verb::Predict(Late(arguments))) => predict::run(session, &arguments),
+            Some(Verb::Verify(Late(arguments))) => verify::run(session, &arguments),
+            Some(Verb::Plugin(Late(arguments))) => plugin::run(session, &arguments),
+            Some(Verb::Read(Late(arguments))) => read::run(session, &arguments),
+            Some(Verb::View(Late(arguments))) => return view(session, &arguments),
+            Some(Verb::Explain(Late(arguments))) => return explain::run(session, &arguments),
+            Some(Verb::Lsp(Late(arguments))) => lsp::run(session, arguments),
+            Some(Verb::Completions(Late(arguments))) => {
+                complete::run(session, &arguments, AllVerbs::command())
             }
-            Some(Verb::Man(arguments)) => man::run(session, &arguments, Self::command()),
+            Some(Verb::Man(Late(arguments))) => man::run(session, &arguments, AllVerbs::command()),
         };
         Ok(done?)
     }
@@ -175,7 +192,7 @@ impl CommandLine {
 /// Runs another command line with a report, and opens that.
 fn view(session: &Session, arguments: &ViewArguments) -> Result<(), CommandFault> {
     let view = View::new(arguments)?;
-    let done = CommandLine::try_parse_from(&view.line)
+    let done = CommandLine::read(&view.line)
         .map_err(CommandFault::Usage)
         .and_then(|line| line.run(session));
     // A program that is not as it should be is worth a look too.
@@ -188,16 +205,19 @@ pub fn moved() -> Option<clap::Error> {
     let first = std::env::args_os().nth(1)?;
     let verb = ["study", "plan"].into_iter().find(|verb| first == *verb)?;
     let message = format!("`post {verb}` is `papers {verb}` now");
-    let fault = || CommandLine::command().error(ErrorKind::InvalidSubcommand, message);
+    let fault = || AllVerbs::command().error(ErrorKind::InvalidSubcommand, message);
     (!Path::new(verb).exists()).then(fault)
 }
 
 /// What is wrong with a command line that begins with a misspelt verb: clap takes it for a CL file, and complains of what
 /// follows.
-pub fn misspelt() -> Option<clap::Error> {
+pub fn misspelt(fault: &clap::Error) -> Option<clap::Error> {
     let first = std::env::args_os().nth(1)?;
     let first = first.to_str()?;
-    let mut command = CommandLine::command();
+    if fault.kind() == ErrorKind::DisplayVersion && first.starts_with('-') {
+        return None;
+    }
+    let mut command = AllVerbs::command();
     let verbs: Vec<String> =
         command.get_subcommands().map(|verb| verb.get_name().to_owned()).collect();
     if verbs.iter().any(|verb| verb == first) || Path::new(first).exists() {

@@ -44,6 +44,10 @@ enum Job {
     Read,
     Verify,
     Predict,
+    /// Posting, with a page beside the program.
+    Report,
+    /// Eight dry runs at most, for the mount.
+    Place,
     /// Posting of two points, as a whole.
     Start,
     /// Nothing but its version, as a whole.
@@ -64,9 +68,14 @@ const AC_CONTROL: &[&str] = &["-m", "ac-trunnion", "--set", "control.tcp=control
 const HEAD_POST: &[&str] = &["-m", "head-head", "--set", "control.tcp=post"];
 const HEAD_CONTROL: &[&str] = &["-m", "head-head", "--set", "control.tcp=control"];
 const DMU: &[&str] = &["-m", "dmu50"];
+const AC_ARCS: &[&str] =
+    &["-m", "ac-trunnion", "--set", "control.tcp=post", "--set", "control.arcs.fit=true"];
+/// Its rapids are searched for from many places.
+const ARM: &[&str] =
+    &["-m", concat!(env!("CARGO_MANIFEST_DIR"), "/tests/chains/six-axis-arm.toml")];
 const VMC: &[&str] = &["-m", "vmc"];
 
-const CASES: [Case; 14] = [
+const CASES: [Case; 18] = [
     Case { name: "post ac-trunnion, tcp = post", job: Job::Post, form: Form::Nx, flags: AC_POST },
     Case {
         name: "post ac-trunnion, tcp = control",
@@ -89,6 +98,9 @@ const CASES: [Case; 14] = [
         flags: AC_POST,
     },
     Case { name: "post vmc, three axes", job: Job::Post, form: Form::Point, flags: VMC },
+    Case { name: "post ac-trunnion, arcs fitted", job: Job::Post, form: Form::Nx, flags: AC_ARCS },
+    Case { name: "post ac-trunnion, report", job: Job::Report, form: Form::Nx, flags: AC_POST },
+    Case { name: "place ac-trunnion, eight runs", job: Job::Place, form: Form::Nx, flags: AC_POST },
     Case { name: "read ac-trunnion, tcp = post", job: Job::Read, form: Form::Nx, flags: AC_POST },
     Case {
         name: "verify ac-trunnion, tcp = post",
@@ -114,6 +126,7 @@ const CASES: [Case; 14] = [
         form: Form::Nx,
         flags: AC_CONTROL,
     },
+    Case { name: "start of a job, six-axis arm", job: Job::Start, form: Form::Nx, flags: ARM },
     Case { name: "start of a job", job: Job::Start, form: Form::Nx, flags: AC_POST },
     Case { name: "start, --version", job: Job::Version, form: Form::Nx, flags: &[] },
 ];
@@ -193,7 +206,7 @@ impl Case {
                 let instructions = self.instructions(post, folder, 2)?;
                 return Ok(Count { instructions, unit: "a start" });
             }
-            Job::Post => (POINTS, "a point"),
+            Job::Post | Job::Report | Job::Place => (POINTS, "a point"),
             Job::Read | Job::Verify => (POINTS, "a block"),
             Job::Predict => (FEW_POINTS, "a block"),
         };
@@ -218,6 +231,13 @@ impl Case {
         counted.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(post);
         match self.job {
             Job::Post | Job::Start => self.posting(&mut counted, &cl, &program),
+            Job::Report => {
+                self.posting(&mut counted, &cl, &program);
+                counted.arg("--report").arg(folder.join("report.html"));
+            }
+            Job::Place => {
+                counted.arg("place").arg(&cl).args(self.flags).args(["--runs", "8"]);
+            }
             Job::Read => {
                 counted.arg("read").arg(&program).args(self.flags);
             }
@@ -231,7 +251,7 @@ impl Case {
                 counted.arg("--version");
             }
         }
-        if matches!(self.job, Job::Read | Job::Verify | Job::Predict) {
+        if matches!(self.job, Job::Read | Job::Verify | Job::Predict | Job::Place) {
             counted.args(["--tool-length", "100"]);
         }
         let told = succeed(&mut counted)?;

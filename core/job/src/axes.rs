@@ -48,11 +48,15 @@ pub fn readings(machine: &Machine, joints: &Joints) -> Joints {
 
 /// Values of the axes of a machine, by columns; none for an axis that it has not.
 pub fn in_columns(columns: &[AxisColumn], machine: &Machine, values: &Joints) -> Vec<Option<f64>> {
-    let value = |column: &AxisColumn| {
+    let value = |(place, column): (usize, &AxisColumn)| {
+        // Without heads the columns stand as the axes do.
+        if machine.axes.get(place).is_some_and(|axis| axis.name == column.name) {
+            return Some(values[place]);
+        }
         let mut axes = machine.axes.iter().zip(values);
         axes.find(|(axis, _)| axis.name == column.name).map(|(_, value)| *value)
     };
-    columns.iter().map(value).collect()
+    columns.iter().enumerate().map(value).collect()
 }
 
 /// The machine with the head of that name, and its number from 1; without one the machine itself, and 0.

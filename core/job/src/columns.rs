@@ -109,7 +109,22 @@ impl<C: IntoCell> IntoCell for Option<C> {
 }
 
 /// Reads a column's value, the first or a further one, off a row.
-type ColumnReader<R> = Box<dyn Fn(&R, usize) -> Option<CellValue>>;
+trait ReadCell<R> {
+    fn cell(&self, row: &R, place: usize) -> Option<CellValue>;
+
+    /// The value of a column of numbers: no cell is made of it. None where it is none.
+    fn number(&self, row: &R, place: usize) -> Option<f64>;
+}
+
+impl<R, C: IntoCell, F: Fn(&R, usize) -> C> ReadCell<R> for F {
+    fn cell(&self, row: &R, place: usize) -> Option<CellValue> {
+        self(row, place).value()
+    }
+
+    fn number(&self, row: &R, place: usize) -> Option<f64> {
+        self(row, place).value().and_then(|cell| cell.number())
+    }
+}
 
 /// A column of a table whose rows are `R`.
 pub struct Column<R> {
@@ -127,7 +142,7 @@ pub struct Column<R> {
     pub kind: ColumnKind,
     /// How many values a row has in it, where it has a list of them.
     pub width: Option<usize>,
-    value: ColumnReader<R>,
+    value: Box<dyn ReadCell<R>>,
 }
 
 impl<R> Column<R> {
@@ -155,7 +170,7 @@ impl<R> Column<R> {
             from: None,
             kind: C::KIND,
             width: Some(width),
-            value: Box::new(move |row, place| value(row, place).value()),
+            value: Box::new(value),
         }
     }
 
@@ -172,7 +187,13 @@ impl<R> Column<R> {
     /// What it is of a row; none where the row has no such value.
     #[inline]
     pub fn of(&self, row: &R, place: usize) -> Option<CellValue> {
-        (self.value)(row, place)
+        self.value.cell(row, place)
+    }
+
+    /// The first value of a row as a number; none where it is none.
+    #[inline]
+    pub fn number(&self, row: &R) -> Option<f64> {
+        self.value.number(row, 0)
     }
 }
 

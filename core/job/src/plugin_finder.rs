@@ -4,8 +4,8 @@ use std::env::consts::DLL_SUFFIX;
 use std::path::{Path, PathBuf};
 
 use post_host::{
-    Finder, GivenValue, OpenedDialect, OpenedModel, Plugin, PluginFault, ProgramAhead,
-    ProgramSetup, ProgramTool, ProgramWord, Reason,
+    Finder, GivenValue, LinkedPlugin, OpenedDialect, OpenedModel, Plugin, PluginFault,
+    ProgramAhead, ProgramSetup, ProgramTool, ProgramWord, Reason,
 };
 use post_machine::axis_words;
 use post_machine::description::{GivenOption, Machine, OptionValue, OutputUnits, Tcp};
@@ -29,13 +29,8 @@ pub fn finder(session: &Session, named: &[PathBuf]) -> Result<Finder, Vec<Diagno
     if !folders.is_empty() && session.owns_output() {
         standard::keep_apart();
     }
-    let linked = post_stock::plugins()
-        .iter()
-        .copied()
-        .map(Plugin::linked)
-        .collect::<Result<_, _>>()
-        .map_err(|fault| vec![diagnostic(&fault, &[], None)])?;
-    Ok(Finder { folders, linked })
+    let linked = post_stock::plugins().iter().copied().map(LinkedPlugin::from);
+    Ok(Finder { folders, linked: linked.collect() })
 }
 
 /// The plugin that is called so, or the library at this path.

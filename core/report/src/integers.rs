@@ -39,38 +39,57 @@ fn step(values: &[i64], first: i64) -> i64 {
 }
 
 fn planes(values: &[i64], form: u8, head: &[u8], out: &mut Vec<u8>) {
-    let order = best_order(values);
-    out.push(form | order);
-    let mark = out.len();
-    out.push(0);
-    let mut all = 0;
-    differences(values, order, |difference| all |= fold(difference));
+    let (order, all) = best_order(values);
     let planes = (8 - all.leading_zeros() / 8) as usize;
-    out[mark] = planes as u8;
+    out.push(form | order);
+    out.push(planes as u8);
     out.extend_from_slice(head);
     let start = out.len();
     let rows = values.len();
     out.resize(start + planes * rows, 0);
     let places = &mut out[start..];
-    match planes {
-        0 => {}
-        1 => {
-            let mut row = 0;
-            differences(values, order, |difference| {
-                places[row] = fold(difference) as u8;
-                row += 1;
-            });
+    let mut last = LastStep::default();
+    let mut folded = [0u64; BLOCK];
+    for (block, begin) in values.chunks(BLOCK).zip((0..).step_by(BLOCK)) {
+        last.fold(block, order, &mut folded);
+        for plane in 0..planes {
+            let row = plane * rows + begin;
+            for (place, folded) in places[row..row + block.len()].iter_mut().zip(&folded) {
+                *place = (folded >> (8 * plane)) as u8;
+            }
         }
-        _ => {
-            let mut row = 0;
-            differences(values, order, |difference| {
-                let mut folded = fold(difference);
-                for plane in 0..planes {
-                    places[plane * rows + row] = folded as u8;
-                    folded >>= 8;
+    }
+}
+
+/// Values whose differences are laid together: few enough for the innermost store.
+const BLOCK: usize = 256;
+
+/// The value before a block and its difference from the one before that.
+#[derive(Default)]
+struct LastStep {
+    value: i64,
+    step: i64,
+}
+
+impl LastStep {
+    /// Folds the differences of a block.
+    fn fold(&mut self, block: &[i64], order: u8, folded: &mut [u64; BLOCK]) {
+        let places = folded.iter_mut().zip(block);
+        match order {
+            0 => places.for_each(|(folded, value)| *folded = fold(*value)),
+            1 => {
+                for (folded, value) in places {
+                    *folded = fold(value.wrapping_sub(self.value));
+                    self.value = *value;
                 }
-                row += 1;
-            });
+            }
+            _ => {
+                for (folded, value) in places {
+                    let step = value.wrapping_sub(self.value);
+                    *folded = fold(step.wrapping_sub(self.step));
+                    (self.value, self.step) = (*value, step);
+                }
+            }
         }
     }
 }
@@ -81,40 +100,24 @@ fn fold(value: i64) -> u64 {
     ((value << 1) ^ (value >> 63)) as u64
 }
 
-#[inline]
-fn differences(values: &[i64], order: u8, mut take: impl FnMut(i64)) {
-    let (mut last, mut slope) = (0i64, 0i64);
-    for value in values {
-        match order {
-            0 => take(*value),
-            1 => {
-                take(value.wrapping_sub(last));
-                last = *value;
-            }
-            _ => {
-                let step = value.wrapping_sub(last);
-                take(step.wrapping_sub(slope));
-                (last, slope) = (*value, step);
-            }
-        }
-    }
-}
-
-/// The order whose differences have the fewest digits.
-fn best_order(values: &[i64]) -> u8 {
+/// The order whose differences have the fewest digits, and all bits that one of these has, folded.
+fn best_order(values: &[i64]) -> (u8, u64) {
     let mut digits = [0u64; 3];
+    let mut all = [0u64; 3];
     let (mut last, mut slope) = (0i64, 0i64);
-    let bits = |value: i64| u64::from(64 - fold(value).leading_zeros());
     for value in values {
         let step = value.wrapping_sub(last);
-        digits[0] += bits(*value);
-        digits[1] += bits(step);
-        digits[2] += bits(step.wrapping_sub(slope));
+        let folded = [fold(*value), fold(step), fold(step.wrapping_sub(slope))];
+        for order in 0..3 {
+            // Of a number that is not zero this is one instruction; none reaches the last bit.
+            digits[order] += u64::from(63 - (folded[order] << 1 | 1).leading_zeros());
+            all[order] |= folded[order];
+        }
         (last, slope) = (*value, step);
     }
     // Of equal ones the lowest: `min_by_key` takes the first.
-    let order = (0..3usize).min_by_key(|order| digits[*order]);
-    order.unwrap_or(0) as u8
+    let order = (0..3usize).min_by_key(|order| digits[*order]).unwrap_or(0);
+    (order as u8, all[order])
 }
 
 /// The column of `rows` rows that stands at `at`, which moves past it; none if the bytes end before.
@@ -134,11 +137,14 @@ pub fn decode(bytes: &[u8], rows: usize, at: &mut usize) -> Option<Vec<i64>> {
     }
     let places = bytes.get(*at..*at + planes * rows)?;
     *at += planes * rows;
+    let mut folded = vec![0u64; rows];
+    for (plane, places) in places.chunks_exact(rows.max(1)).enumerate().take(8) {
+        for (folded, place) in folded.iter_mut().zip(places) {
+            *folded |= u64::from(*place) << (8 * plane);
+        }
+    }
     let (mut last, mut slope) = (0i64, 0i64);
-    let values = (0..rows).map(|row| {
-        let folded = (0..planes)
-            .rev()
-            .fold(0u64, |folded, plane| folded << 8 | u64::from(places[plane * rows + row]));
+    let values = folded.into_iter().map(|folded| {
         let difference = (folded >> 1) as i64 ^ -((folded & 1) as i64);
         let multiple = match order & !STEPS {
             0 => difference,

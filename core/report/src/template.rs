@@ -52,7 +52,7 @@ pub fn encode(text: &[u8]) -> Option<Vec<u8>> {
     if text.contains(&0) {
         return None;
     }
-    let count = text.split_inclusive(|byte| *byte == b'\n').count();
+    let count = lines_of(text).count();
     let most = count / SHARE + 16;
     // Looked up and never gone over: no order comes of it.
     let mut places: HashMap<Vec<u8>, usize> = HashMap::new();
@@ -62,11 +62,24 @@ pub fn encode(text: &[u8]) -> Option<Vec<u8>> {
     let mut columns: Vec<NumberColumn> = Vec::new();
     let mut lines: Vec<i64> = Vec::with_capacity(count);
     let mut template = Vec::new();
-    let mut numbers = Vec::new();
-    for line in text.split_inclusive(|byte| *byte == b'\n') {
+    let mut numbers: Vec<FixedNumber> = Vec::new();
+    let mut before = LineLayout::default();
+    for line in lines_of(text) {
+        numbers.clear();
+        // Most lines differ from the one before in digits alone.
+        if before.is_of(line)
+            && before.numbers(line, &mut numbers)
+            && let Some(last) = lines.last().copied()
+        {
+            for (number, slot) in numbers.iter().zip(&templates[last as usize].1) {
+                columns[*slot as usize].numbers.push(*number);
+            }
+            lines.push(last);
+            continue;
+        }
         template.clear();
         numbers.clear();
-        take_apart(line, &mut template, &mut numbers);
+        take_apart(line, &mut template, &mut numbers, &mut before);
         // Lines of one kind mostly come together.
         let known = match lines.last() {
             Some(last) if templates[*last as usize].0 == template => Some(*last as usize),
@@ -108,61 +121,143 @@ pub fn encode(text: &[u8]) -> Option<Vec<u8>> {
     Some(out)
 }
 
-/// A line as its template and its numbers.
-fn take_apart(line: &[u8], template: &mut Vec<u8>, numbers: &mut Vec<FixedNumber>) {
+/// The lines of a text, each with its line feed, the last perhaps without.
+pub fn lines_of(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let mut rest = text;
+    std::iter::from_fn(move || {
+        let end = memchr::memchr(b'\n', rest).map_or(rest.len(), |at| at + 1);
+        let line;
+        (line, rest) = rest.split_at(end);
+        (!line.is_empty()).then_some(line)
+    })
+}
+
+/// Where the numbers of a line stand.
+#[derive(Default)]
+struct LineLayout {
+    /// The line, zeros for its digits.
+    marks: Vec<u8>,
+    /// Of each number where its first digit stands, how many there are ahead of the point, and decimals.
+    places: Vec<NumberPlace>,
+}
+
+struct NumberPlace {
+    digit: usize,
+    whole: usize,
+    decimals: usize,
+    minus: bool,
+}
+
+/// The byte, or a zero for any digit.
+fn mark(byte: u8) -> u8 {
+    if byte.is_ascii_digit() { b'0' } else { byte }
+}
+
+impl LineLayout {
+    /// A line has this layout: its digits stand at the same places, and all else is the same.
+    fn is_of(&self, line: &[u8]) -> bool {
+        let differ = |all: u8, (byte, known): (&u8, &u8)| all | (mark(*byte) ^ known);
+        line.len() == self.marks.len() && line.iter().zip(&self.marks).fold(0, differ) == 0
+    }
+
+    /// Adds the numbers of a line of this layout; false if one of them is not written as usual.
+    fn numbers(&self, line: &[u8], numbers: &mut Vec<FixedNumber>) -> bool {
+        let value = |digits: &[u8], value: i64| {
+            digits.iter().fold(value, |value, digit| 10 * value + i64::from(digit - b'0'))
+        };
+        for place in &self.places {
+            let point = place.digit + place.whole;
+            let mut digits = value(&line[place.digit..point], 0);
+            if place.decimals > 0 {
+                digits = value(&line[point + 1..point + 1 + place.decimals], digits);
+            }
+            let needless = place.whole > 1 && line[place.digit] == b'0';
+            if needless || place.minus && digits == 0 {
+                return false;
+            }
+            let digits = if place.minus { -digits } else { digits };
+            numbers.push(FixedNumber { digits, decimals: place.decimals as u8 });
+        }
+        true
+    }
+
+    /// Becomes that of a line, its numbers not yet told.
+    fn begin(&mut self, line: &[u8]) {
+        self.places.clear();
+        self.marks.clear();
+        self.marks.extend(line.iter().map(|byte| mark(*byte)));
+    }
+}
+
+/// A line as its template, its numbers and where they stand.
+fn take_apart(
+    line: &[u8],
+    template: &mut Vec<u8>,
+    numbers: &mut Vec<FixedNumber>,
+    layout: &mut LineLayout,
+) {
+    layout.begin(line);
     let mut at = 0;
+    // Where what was not taken over yet begins.
+    let mut rest = 0;
     while at < line.len() {
-        let byte = line[at];
-        let begins = byte.is_ascii_digit()
-            || byte == b'-' && line.get(at + 1).is_some_and(u8::is_ascii_digit);
+        let begins = line[at].is_ascii_digit()
+            || line[at] == b'-' && line.get(at + 1).is_some_and(u8::is_ascii_digit);
         if !begins {
-            template.push(byte);
             at += 1;
             continue;
         }
-        let end = end_of_number(line, at);
-        match number(&line[at..end]) {
-            Some(number) => {
-                numbers.push(number);
-                template.push(0);
-            }
-            None => template.extend_from_slice(&line[at..end]),
+        let (number, end) = number(line, at);
+        if let Some(number) = number {
+            template.extend_from_slice(&line[rest..at]);
+            template.push(0);
+            numbers.push(number);
+            rest = end;
+            let minus = line[at] == b'-';
+            let digit = at + usize::from(minus);
+            let decimals = usize::from(number.decimals);
+            let whole = end - digit - decimals - usize::from(decimals > 0);
+            layout.places.push(NumberPlace { digit, whole, decimals, minus });
+        } else {
+            // As it is written it is a part of the template: another line may not have the same digits there.
+            layout.marks.clear();
         }
         at = end;
     }
+    template.extend_from_slice(&line[rest..]);
 }
 
-/// Where the run of digits with at most one point ends that begins at `at`.
-fn end_of_number(line: &[u8], at: usize) -> usize {
-    let digits = |from: usize| {
-        let rest = line[from..].iter();
-        from + rest.take_while(|byte| byte.is_ascii_digit()).count()
+/// What is written in the run of digits with at most one point that begins at `at`, if it is written as usual; and where
+/// it ends.
+fn number(line: &[u8], at: usize) -> (Option<FixedNumber>, usize) {
+    let minus = line[at] == b'-';
+    let begin = at + usize::from(minus);
+    // Too many digits are told from their number: the value may run over.
+    let run = |value: &mut i64, from: usize| {
+        let mut at = from;
+        while let Some(digit) = line.get(at).map(|byte| byte.wrapping_sub(b'0'))
+            && digit < 10
+        {
+            *value = value.wrapping_mul(10).wrapping_add(i64::from(digit));
+            at += 1;
+        }
+        at
     };
-    let whole = digits(at + usize::from(line[at] == b'-'));
-    match line.get(whole) {
-        Some(b'.') if line.get(whole + 1).is_some_and(u8::is_ascii_digit) => digits(whole + 1),
-        _ => whole,
+    let mut value = 0;
+    let whole = run(&mut value, begin);
+    let mut end = whole;
+    let mut decimals = 0;
+    if line.get(whole) == Some(&b'.') && line.get(whole + 1).is_some_and(u8::is_ascii_digit) {
+        end = run(&mut value, whole + 1);
+        decimals = end - whole - 1;
     }
-}
-
-/// What is written, if it is written as usual.
-fn number(text: &[u8]) -> Option<FixedNumber> {
-    let (minus, unsigned) = match text {
-        [b'-', rest @ ..] => (true, rest),
-        rest => (false, rest),
-    };
-    let mut parts = unsigned.split(|byte| *byte == b'.');
-    let (whole, behind) = (parts.next()?, parts.next().unwrap_or_default());
-    let needless = whole.len() > 1 && whole[0] == b'0';
-    if needless || whole.len() + behind.len() > MOST_DIGITS {
-        return None;
+    let needless = whole - begin > 1 && line[begin] == b'0';
+    let many = whole - begin + decimals > MOST_DIGITS;
+    if needless || many || minus && value == 0 {
+        return (None, end);
     }
-    let digits = whole.iter().chain(behind);
-    let value = digits.fold(0i64, |value, digit| value * 10 + i64::from(digit - b'0'));
-    if minus && value == 0 {
-        return None;
-    }
-    Some(FixedNumber { digits: if minus { -value } else { value }, decimals: behind.len() as u8 })
+    let digits = if minus { -value } else { value };
+    (Some(FixedNumber { digits, decimals: decimals as u8 }), end)
 }
 
 /// The columns of the numbers of a template.
@@ -225,12 +320,18 @@ impl NumberColumn {
             () => MIXED + most,
         };
         out.push(form);
-        let scaled = self.numbers.iter().map(|number| {
-            let more = u32::from(most - number.decimals);
-            let value = number.digits.checked_mul(10i64.checked_pow(more)?)?;
-            (value.unsigned_abs() < 1 << 50).then_some(value)
-        });
-        let scaled: Vec<i64> = scaled.collect::<Option<_>>()?;
+        let mut powers = [1i64; MOST_DECIMALS as usize + 1];
+        for place in 1..powers.len() {
+            powers[place] = 10 * powers[place - 1];
+        }
+        let mut scaled = Vec::with_capacity(self.numbers.len());
+        for number in &self.numbers {
+            let value = number.digits.checked_mul(powers[usize::from(most - number.decimals)])?;
+            if value.unsigned_abs() >= 1 << 50 {
+                return None;
+            }
+            scaled.push(value);
+        }
         integers::encode(&scaled, out);
         if form >= MIXED {
             let each: Vec<i64> = decimals().map(i64::from).collect();
@@ -252,11 +353,14 @@ pub fn decode(bytes: &[u8], lines: usize) -> Option<Vec<u8>> {
         at += length;
     }
     let columns = word(bytes, &mut at)?;
-    let mut slots = Vec::with_capacity(count);
+    // Of each template what stands ahead of its numbers, and its numbers: their columns and what stands behind.
+    let mut forms = Vec::with_capacity(count);
     for template in &templates {
-        let numbers = template.iter().filter(|byte| **byte == 0).count();
-        let places: Option<Vec<usize>> = (0..numbers).map(|_| word(bytes, &mut at)).collect();
-        slots.push(places?);
+        let mut pieces = template.split(|byte| *byte == 0);
+        let ahead = pieces.next()?;
+        let numbers: Option<Vec<(usize, &[u8])>> =
+            pieces.map(|piece| Some((word(bytes, &mut at)?, piece))).collect();
+        forms.push((ahead, numbers?));
     }
     let order = integers::decode(bytes, lines, &mut at)?;
     let mut read = Vec::with_capacity(columns);
@@ -274,17 +378,15 @@ pub fn decode(bytes: &[u8], lines: usize) -> Option<Vec<u8>> {
     let mut text = Vec::new();
     for place in order {
         let place = usize::try_from(place).ok()?;
-        let mut places = slots.get(place)?.iter();
-        for byte in *templates.get(place)? {
-            if *byte != 0 {
-                text.push(*byte);
-                continue;
-            }
-            let (form, digits, each, row) = read.get_mut(*places.next()?)?;
+        let (ahead, numbers) = forms.get(place)?;
+        text.extend_from_slice(ahead);
+        for (column, behind) in numbers {
+            let (form, digits, each, row) = read.get_mut(*column)?;
             let digit = *digits.get(*row)?;
             let own = each.get(*row).and_then(|own| u8::try_from(*own).ok());
             *row += 1;
             write(&mut text, digit, *form, own);
+            text.extend_from_slice(behind);
         }
     }
     (at == bytes.len()).then_some(text)
@@ -292,32 +394,47 @@ pub fn decode(bytes: &[u8], lines: usize) -> Option<Vec<u8>> {
 
 /// Writes a number as its column says.
 fn write(text: &mut Vec<u8>, digits: i64, form: u8, own: Option<u8>) {
+    const LONGEST: usize = 56;
     let most = usize::from(form % TRIMMED);
-    // The digits, the last first, and zeros up to one ahead of the point.
-    let mut all = [b'0'; 40];
-    let mut count = 0;
+    // Decimals stand at the end, zeros ahead of them up to the one ahead of the point.
+    let mut all = [b'0'; LONGEST];
+    let point = LONGEST - most - 1;
     let mut rest = digits.unsigned_abs();
-    while rest > 0 || count <= most {
-        all[count] = b'0' + (rest % 10) as u8;
+    let mut place = LONGEST;
+    let mut next = || {
+        let digit = b'0' + (rest % 10) as u8;
         rest /= 10;
-        count += 1;
-    }
-    let unwanted = match (own, form / TRIMMED) {
-        (Some(own), _) => most - usize::from(own).min(most),
-        (None, 1) => {
-            let zeros = all[..most].iter().take_while(|digit| **digit == b'0');
-            zeros.count()
-        }
-        _ => 0,
+        (digit, rest)
     };
+    while place > point + 1 {
+        place -= 1;
+        (all[place], _) = next();
+    }
+    all[point] = b'.';
+    let mut begin = point;
+    loop {
+        begin -= 1;
+        let (digit, rest) = next();
+        all[begin] = digit;
+        if rest == 0 {
+            break;
+        }
+    }
     if digits < 0 {
-        text.push(b'-');
+        begin -= 1;
+        all[begin] = b'-';
     }
-    text.extend(all[most..count].iter().rev());
-    if unwanted < most {
-        text.push(b'.');
-        text.extend(all[unwanted..most].iter().rev());
-    }
+    let end = match (own, form / TRIMMED) {
+        (Some(own), _) => point + 1 + usize::from(own).min(most),
+        (None, 1) => {
+            let zeros = all[point + 1..].iter().rev().take_while(|digit| **digit == b'0');
+            LONGEST - zeros.count()
+        }
+        _ => LONGEST,
+    };
+    // Without decimals without a point.
+    let end = if end == point + 1 { point } else { end };
+    text.extend_from_slice(&all[begin..end]);
 }
 
 fn word(bytes: &[u8], at: &mut usize) -> Option<usize> {
@@ -373,6 +490,64 @@ mod tests {
         assert!(back("X1.500\nX2.000\n").is_some());
         assert!(back("X1.5\nX2\nX2.25\n").is_some());
         assert!(back("X1.5\nX2.00\nX2.250\n").is_some());
+    }
+
+    /// A number as the format has it, piece by piece.
+    fn plainly(text: &str) -> (Option<FixedNumber>, usize) {
+        let run = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
+        let minus = usize::from(text.starts_with('-'));
+        let whole = run(&text[minus..]);
+        let behind = text[minus + whole..].strip_prefix('.').map_or(0, run);
+        let end = minus + whole + behind + usize::from(behind > 0);
+        let digits = text[minus..end].replace('.', "");
+        let needless = whole > 1 && digits.starts_with('0');
+        if needless || digits.len() > MOST_DIGITS {
+            return (None, end);
+        }
+        let value: i64 = digits.parse().unwrap();
+        let number =
+            FixedNumber { digits: if minus == 1 { -value } else { value }, decimals: behind as u8 };
+        (Some(number).filter(|_| minus == 0 || value != 0), end)
+    }
+
+    #[test]
+    fn a_number_is_what_the_format_says() {
+        let mut seed = 1u64;
+        let mut drawn = |most: u64| {
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 33) % most
+        };
+        let mut usual = 0;
+        for _ in 0..20_000 {
+            let count = 1 + drawn(22);
+            let digits = (0..count).map(|_| b"0012345678900..-"[drawn(16) as usize] as char);
+            let text: String = digits.collect();
+            let text = format!("{}{}{text} ", ["", "-"][drawn(2) as usize], drawn(10));
+            let (found, end) = number(text.as_bytes(), 0);
+            assert_eq!((found, end), plainly(&text), "{text}");
+            usual += usize::from(found.is_some());
+        }
+        assert!(usual > 5_000, "{usual}");
+    }
+
+    #[test]
+    fn lines_of_one_layout_come_back_whatever_their_digits() {
+        let mut seed = 5u64;
+        let mut digit = || {
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            // Zeros are what numbers are not written with as usual.
+            [0, 0, 0, 1, 2, 5, 9][(seed >> 33) as usize % 7]
+        };
+        let mut text = String::new();
+        for _ in 0..2000 {
+            let [a, b, c, d, e, f, g] = std::array::from_fn(|_| digit());
+            text.push_str(&format!("N{a} X{b}{c}.{d}0 Y-{e}.{f} Z-{g}{a} T.{b}\n"));
+        }
+        assert!(back(&text).is_some());
     }
 
     #[test]

@@ -47,7 +47,7 @@ impl<W: Write> TextWriter<W> {
     /// # Errors
     /// What is packed cannot be written.
     pub fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        for line in bytes.split_inclusive(|byte| *byte == b'\n') {
+        for line in template::lines_of(bytes) {
             self.chunk.extend_from_slice(line);
             if line.ends_with(b"\n") {
                 self.in_chunk += 1;

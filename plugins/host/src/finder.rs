@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::described::is_name;
 use crate::plugin::{file_name, name_of};
-use crate::{Plugin, PluginFault, Reason};
+use crate::{LinkedPlugin, Plugin, PluginFault, Reason};
 
 /// Where plugins are looked for.
 #[derive(Clone, Debug, Default)]
@@ -14,8 +14,8 @@ pub struct Finder {
     /// Folders that the user named, in order; the first that has the file wins, and wins over what is
     /// linked in. No other folder is ever looked into.
     pub folders: Vec<PathBuf>,
-    /// The plugins that are part of this program.
-    pub linked: Vec<Plugin>,
+    /// The plugins that are part of this program, each judged when it is found.
+    pub linked: Vec<LinkedPlugin>,
 }
 
 /// A plugin that could be found.
@@ -54,21 +54,26 @@ impl Finder {
                 }
             }
         }
-        let linked = self.linked.iter().find(|plugin| plugin.name() == wanted);
-        linked.cloned().ok_or_else(|| {
-            let linked = self.linked.iter().map(|plugin| plugin.name().to_owned());
-            let mut known: Vec<String> = linked.collect();
-            for (name, _) in self.folders.iter().flat_map(|folder| names(folder)).flatten() {
-                if !known.contains(&name) {
-                    known.push(name);
-                }
+        if let Some(linked) = self.linked.iter().find(|plugin| plugin.name() == wanted) {
+            return linked.plugin();
+        }
+        Err(self.not_found(name, tried))
+    }
+
+    /// The fault of a name that no plugin has.
+    fn not_found(&self, name: &str, tried: Vec<PathBuf>) -> PluginFault {
+        let linked = self.linked.iter().map(|plugin| plugin.name().to_owned());
+        let mut known: Vec<String> = linked.collect();
+        for (name, _) in self.folders.iter().flat_map(|folder| names(folder)).flatten() {
+            if !known.contains(&name) {
+                known.push(name);
             }
-            PluginFault {
-                plugin: name.to_owned(),
-                path: None,
-                reason: Reason::NotFound { tried, known },
-            }
-        })
+        }
+        PluginFault {
+            plugin: name.to_owned(),
+            path: None,
+            reason: Reason::NotFound { tried, known },
+        }
     }
 
     /// A folder holds what should be the library of the plugin `name`; nothing of it is opened.

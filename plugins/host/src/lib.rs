@@ -14,6 +14,7 @@ mod float_mode;
 mod judge;
 mod leave;
 mod library_file;
+mod linked_plugin;
 mod model;
 mod options;
 mod plugin;
@@ -27,6 +28,7 @@ pub use dialect::{OpenedDialect, ProgramAhead, ProgramSetup, ProgramTool, Progra
 pub use fault::{OptionFault, PluginFault, Reason};
 pub use finder::{Finder, ListedPlugin};
 pub use leave::{ExitWatch, leave, leave_at_once, watch_for_exit};
+pub use linked_plugin::LinkedPlugin;
 pub use model::OpenedModel;
 pub use options::{GivenValue, check_options, default_of, takes};
 pub use plugin::{Plugin, PluginKind};

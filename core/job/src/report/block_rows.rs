@@ -89,6 +89,8 @@ pub struct BlockRows<'m> {
     largest: [PeakRow; 3],
     fault: Option<Failure>,
     path: PathRows,
+    /// Places of the path of a block, and how far each is off the path of the CL file: room that is used again.
+    places: Vec<(Vector3<f64>, Option<Vector3<f64>>)>,
     cl: ClWindow,
     derived: Derived<'m>,
     branch: Branch,
@@ -154,6 +156,7 @@ impl<'m> BlockRows<'m> {
             largest: [PeakRow::default(); 3],
             fault: None,
             path: PathRows::new(machine)?,
+            places: Vec::new(),
             derived,
             branch: Branch::new(machine),
             ends: Points::new()?,
@@ -213,7 +216,8 @@ impl<'m> BlockRows<'m> {
     /// Where the tip goes in a block, for the table of the path.
     fn path(&mut self, row: u64, block: &MotionBlock, length: f64, end: Vector3<f64>) {
         let last = self.last.replace((block.line, block.joints, block.tip));
-        let mut places = Vec::new();
+        let mut places = std::mem::take(&mut self.places);
+        places.clear();
         self.cl.advance(block.line);
         if let Some((line, joints, tip)) = last {
             self.cl.forget(line.min(block.line));
@@ -239,6 +243,7 @@ impl<'m> BlockRows<'m> {
         let middle =
             middle.and_then(|(_, from, _)| self.derived.middle(&from, &block.joints, length));
         self.path.block(row, end, middle, &places);
+        self.places = places;
     }
 
     /// Where the tip stands in the middle of a block, where that is not the middle of a straight line.
@@ -269,7 +274,7 @@ impl Observer for BlockRows<'_> {
         let row = self.table.rows();
         // Told against the end of the block before.
         let from = self.program.time - self.end;
-        let posted = self.program.block(block);
+        let mut posted = self.program.block(block);
         if block.reason == BlockReason::Rewind && self.reason != BlockReason::Rewind {
             self.marks.event(row, "rewind", "the tool is drawn back to turn");
         }
@@ -298,7 +303,9 @@ impl Observer for BlockRows<'_> {
         }
         let length = self.length(block);
         let pose = [block.tip, block.axis];
-        let left = self.derived.left(machine, &self.program.axes, &block.joints, pose, length);
+        let shown = std::mem::take(&mut posted.readings);
+        let columns = &self.program.axes;
+        let left = self.derived.left(machine, columns, shown, &block.joints, pose, length);
         let tip = left.tip;
         self.derived.check(row, &block.joints, length);
         self.path(row, block, length, tip);

@@ -114,18 +114,19 @@ impl<'m> Derived<'m> {
         axes.chain(tip).chain(axis).collect()
     }
 
-    /// What is left of a row to pack. `machine` is that with the head in use, whose axes stand in these columns.
+    /// What is left of a row to pack. `machine` is that with the head in use, whose axes stand in these columns, and the
+    /// control shows them as `shown`.
     pub fn left(
         &self,
         machine: &Machine,
         columns: &[AxisColumn],
+        shown: Vec<Option<f64>>,
         joints: &Joints,
         [tip, axis]: [Vector3<f64>; 2],
         length: f64,
     ) -> PackedValues {
-        let mut readings = axes::readings(machine, joints);
         let whole = PackedValues {
-            axes: axes::in_columns(columns, machine, &readings),
+            axes: shown,
             pose: [tip, axis],
             tip: tip.map(|value| rounded(value, 1e4)),
         };
@@ -146,6 +147,7 @@ impl<'m> Derived<'m> {
                 }
             }
             _ => {
+                let mut readings = axes::readings(machine, joints);
                 if let Some(linear) = self.linear(chain, &packed, whole.tip, length) {
                     for (reading, (axis, value)) in
                         readings.iter_mut().zip(self.machine.axes.iter().zip(linear))

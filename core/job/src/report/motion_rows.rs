@@ -296,7 +296,9 @@ impl<'m> MotionRows<'m> {
         let pose = motion.to.pose;
         let joints = &motion.to.joints;
         let pose = [pose.tip, pose.axis];
-        let left = self.derived.left(self.machine, &self.axes, joints, pose, length);
+        let shown = axes::readings(self.machine, joints);
+        let shown = axes::in_columns(&self.axes, self.machine, &shown);
+        let left = self.derived.left(self.machine, &self.axes, shown, joints, pose, length);
         self.derived.check(self.came, joints, length);
         let places = self.on_the_way(motion);
         let middle = (self.came > 0 && places.len() == 1)

@@ -43,9 +43,7 @@ impl<R> PageTable<R> {
     /// Takes the next row; false if it cannot be kept.
     pub fn row(&mut self, row: &R) -> bool {
         self.values.clear();
-        let values = self.columns.iter().map(|column| column.of(row, 0));
-        self.values
-            .extend(values.map(|value| value.and_then(|value| value.number()).unwrap_or(0.0)));
+        self.values.extend(self.columns.iter().map(|column| column.number(row).unwrap_or(0.0)));
         let kept = self.packed.row(&self.values);
         let is_kept = kept.is_ok();
         if let Err(error) = kept {

@@ -91,6 +91,9 @@ fn with_heads(
         Ok(heads) => heads,
         Err(found) => return Err([faults, found].concat()),
     };
+    if heads.is_empty() {
+        return read(table, sources, faults, evaluated);
+    }
     let mut machine = read(table.clone(), sources, faults, evaluated)?;
     for head in heads {
         let mut layered = table.clone();

@@ -217,7 +217,10 @@ impl MachineSources {
                 }));
                 (table, _) = DeTable::parse_recoverable(&readable.text);
             }
-            let layer = moved_table(table.into_inner(), start);
+            let layer = match start {
+                0 => table.into_inner(),
+                _ => moved_table(table.into_inner(), start),
+            };
             self.check_texts(&layer, &mut errors);
             let is_setting = index >= self.files;
             if is_setting && let Err(error) = check_parameters(&layer, &merged) {

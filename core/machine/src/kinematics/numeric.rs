@@ -4,7 +4,7 @@
 //! Residual: the tip (mm) and the tool axis, whose error in radians counts as an arm of [`ARM`] mm. Where the
 //! chain has more axes than the pose needs, each step is the shortest that there is.
 
-use nalgebra::{SMatrix, SVector, Vector3};
+use nalgebra::{SVector, Vector3};
 
 use super::chain::{Chain, Joints, MAX_AXES, Pose, turn};
 
@@ -29,39 +29,61 @@ pub(super) fn solve(
     start: &Joints,
     left: &mut usize,
 ) -> (Joints, f64) {
+    let sized = if chain.edge().is_some() { sized::<9> } else { sized::<6> };
+    sized(chain, free, pose, start, left)
+}
+
+/// [`solve`] with `R` rows of the residual. A step costs as the cube of the number of joints: each number of them has a
+/// step of its own.
+fn sized<const R: usize>(
+    chain: &Chain,
+    free: &[usize],
+    pose: &Pose,
+    start: &Joints,
+    left: &mut usize,
+) -> (Joints, f64) {
+    let stepping = match free.len() {
+        3 => stepping::<3, R>,
+        4 => stepping::<4, R>,
+        5 => stepping::<5, R>,
+        6 => stepping::<6, R>,
+        7 => stepping::<7, R>,
+        _ => stepping::<MAX_AXES, R>,
+    };
+    stepping(chain, free, pose, start, left)
+}
+
+/// [`solve`] with `R` rows of the residual and at most `N` free joints.
+fn stepping<const N: usize, const R: usize>(
+    chain: &Chain,
+    free: &[usize],
+    pose: &Pose,
+    start: &Joints,
+    left: &mut usize,
+) -> (Joints, f64) {
     let mut joints = *start;
-    let (mut residual, mut jacobian) = linearised(chain, free, pose, &joints);
+    let stand = Stand::<R>::of(chain, pose, &joints);
+    let mut size = stand.size();
+    let mut equations = NormalEquations::<N>::of(&stand.jacobian(chain, free), &stand.residual);
     let mut damping = 1e-6;
     while *left > 0 {
-        let size = residual.norm();
         if size < SOLVED {
             break;
         }
         *left -= 1;
-        // Square in the joints, whose number never exceeds eight; unused rows are the identity.
-        let mut normal: SMatrix<f64, MAX_AXES, MAX_AXES> = jacobian.transpose() * jacobian;
-        let scale = normal.diagonal().max();
-        for index in 0..MAX_AXES {
-            normal[(index, index)] += if index < free.len() {
-                // Each joint by its own measure: a radian moves the tip by far more than a millimetre does.
-                damping * normal[(index, index)].max(1e-9 * scale)
-            } else {
-                1.0
-            };
-        }
-        let Some(factor) = normal.cholesky() else {
+        let Some(step) = equations.step(free.len(), damping) else {
             break;
         };
-        let step = factor.solve(&(jacobian.transpose() * residual));
         let mut next = joints;
-        for (index, joint) in free.iter().enumerate() {
-            next[*joint] -= step[index];
+        for (joint, step) in free.iter().zip(step) {
+            next[*joint] -= step;
         }
-        let (next_residual, next_jacobian) = linearised(chain, free, pose, &next);
-        if next_residual.norm() < size {
-            joints = next;
-            residual = next_residual;
-            jacobian = next_jacobian;
+        // What changes with the joints is asked for where it is gone on from.
+        let there = Stand::<R>::of(chain, pose, &next);
+        let next_size = there.size();
+        if next_size < size {
+            (joints, size) = (next, next_size);
+            equations = NormalEquations::of(&there.jacobian(chain, free), &there.residual);
             damping = (damping * 0.1).max(1e-15);
         } else {
             damping *= 10.0;
@@ -70,7 +92,7 @@ pub(super) fn solve(
             }
         }
     }
-    (joints, residual.norm())
+    (joints, size)
 }
 
 /// What moves with the free joints, at one setting of them.
@@ -89,13 +111,14 @@ const NOTHING: f64 = 1e-7;
 
 /// Counts the ways in which tip and tool move, the free joints standing at `joints`.
 pub(super) fn ways(chain: &Chain, free: &[usize], joints: &Joints) -> Ways {
-    let (_, jacobian) = linearised(chain, free, &Pose::default(), joints);
+    let stand = Stand::<9>::of(chain, &Pose::default(), joints);
+    let jacobian: [[f64; MAX_AXES]; 9] = stand.jacobian(chain, free);
     let rank = |from: usize, rows: usize| {
         let column = |place: usize| {
-            let mut column = Rows::zeros();
-            let part = jacobian.column(place);
-            column.rows_mut(from, rows).copy_from(&part.rows(from, rows));
-            column
+            Rows::from_fn(|row, _| match (from..from + rows).contains(&row) {
+                true => jacobian[row][place],
+                false => 0.0,
+            })
         };
         rank((0..free.len()).map(column).collect())
     };
@@ -169,68 +192,162 @@ pub(super) fn approach(chain: &Chain, linear: &[usize], tip: Vector3<f64>, joint
     }
 }
 
-/// Residual at `joints`, and how it changes with each free joint.
-///
-/// One way along the chain, from the workpiece to the tool, takes the frame of each joint to the part: a joint turns
-/// all that lies behind it about its line as it stands there.
-fn linearised(
-    chain: &Chain,
-    free: &[usize],
-    pose: &Pose,
-    joints: &Joints,
-) -> (Rows, SMatrix<f64, 9, MAX_AXES>) {
-    let mut frame = [Vector3::x(), Vector3::y(), Vector3::z()];
-    let mut origin = -chain.mount();
-    let out = |frame: &[Vector3<f64>; 3], v: Vector3<f64>| {
-        frame[0] * v.x + frame[1] * v.y + frame[2] * v.z
-    };
-    // Of each joint a point of its line and its direction, part frame.
-    let mut lines = [(Vector3::zeros(), Vector3::zeros()); MAX_AXES];
-    for ((joint, line), value) in chain.joints().iter().zip(&mut lines).zip(joints) {
-        let k = out(&frame, joint.direction);
-        if !joint.rotary {
-            *line = (origin, k);
-            origin += k * *value;
-            continue;
+/// Where tool and joints stand at one setting of the joints, part frame, and `R` rows of the residual: tip, tool axis and, of
+/// nine, the leading edge.
+struct Stand<const R: usize> {
+    residual: [f64; R],
+    tip: Vector3<f64>,
+    axis: Vector3<f64>,
+    edge: Option<Vector3<f64>>,
+    /// Of each joint a point of its line and its direction.
+    lines: [(Vector3<f64>, Vector3<f64>); MAX_AXES],
+}
+
+impl<const R: usize> Stand<R> {
+    /// One way along the chain, from the workpiece to the tool, takes the frame of each joint to the part: a joint turns
+    /// all that lies behind it about its line as it stands there.
+    fn of(chain: &Chain, pose: &Pose, joints: &Joints) -> Self {
+        let mut frame = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let mut origin = -chain.mount();
+        let out = |frame: &[Vector3<f64>; 3], v: Vector3<f64>| {
+            frame[0] * v.x + frame[1] * v.y + frame[2] * v.z
+        };
+        let mut lines = [(Vector3::zeros(), Vector3::zeros()); MAX_AXES];
+        for ((joint, line), value) in chain.joints().iter().zip(&mut lines).zip(joints) {
+            let k = out(&frame, joint.direction);
+            if !joint.rotary {
+                *line = (origin, k);
+                origin += k * *value;
+                continue;
+            }
+            let point = origin + out(&frame, joint.point);
+            *line = (point, k);
+            let (sine, cosine) = libm::sincos(*value);
+            for column in &mut frame {
+                *column = turn(*column, k, sine, cosine);
+            }
+            origin = point + turn(origin - point, k, sine, cosine);
         }
-        let point = origin + out(&frame, joint.point);
-        *line = (point, k);
-        let (sine, cosine) = libm::sincos(*value);
-        for column in &mut frame {
-            *column = turn(*column, k, sine, cosine);
+        let tip = origin + out(&frame, chain.tip());
+        let axis = out(&frame, chain.axis());
+        let edge = chain.edge().map(|edge| out(&frame, edge));
+        let mut residual = [0.0; R];
+        put(&mut residual, 0, tip - pose.tip);
+        put(&mut residual, 3, (axis - pose.axis) * ARM);
+        if let Some(edge) = edge {
+            put(&mut residual, 6, (edge - pose.edge_across()) * ARM);
         }
-        origin = point + turn(origin - point, k, sine, cosine);
+        Self { residual, tip, axis, edge, lines }
     }
-    let reached = Pose {
-        tip: origin + out(&frame, chain.tip()),
-        axis: out(&frame, chain.axis()),
-        edge: chain.edge().map_or_else(Vector3::zeros, |edge| out(&frame, edge)),
-    };
-    let edged = chain.edge().is_some();
-    let mut residual = Rows::zeros();
-    let mut jacobian = SMatrix::<f64, 9, MAX_AXES>::zeros();
-    let tip = reached.tip - pose.tip;
-    let axis = (reached.axis - pose.axis) * ARM;
-    residual.fixed_rows_mut::<3>(0).copy_from(&tip);
-    residual.fixed_rows_mut::<3>(3).copy_from(&axis);
-    if edged {
-        let edge = (reached.edge - pose.edge_across()) * ARM;
-        residual.fixed_rows_mut::<3>(6).copy_from(&edge);
-    }
-    for (column, index) in free.iter().enumerate() {
-        let (point, k) = lines[*index];
-        if !chain.joints()[*index].rotary {
-            jacobian.fixed_view_mut::<3, 1>(0, column).copy_from(&k);
-            continue;
+
+    /// How the residual changes with each joint of `free`, a column each; those behind them are zero.
+    fn jacobian<const N: usize>(&self, chain: &Chain, free: &[usize]) -> [[f64; N]; R] {
+        let mut jacobian = [[0.0; N]; R];
+        for (column, index) in free.iter().enumerate() {
+            let mut put = |row: usize, change: Vector3<f64>| {
+                for (row, value) in jacobian[row..].iter_mut().zip(&change) {
+                    row[column] = *value;
+                }
+            };
+            let (point, k) = self.lines[*index];
+            if !chain.joints()[*index].rotary {
+                put(0, k);
+                continue;
+            }
+            put(0, k.cross(&(self.tip - point)));
+            put(3, k.cross(&self.axis) * ARM);
+            if let Some(edge) = self.edge {
+                put(6, k.cross(&edge) * ARM);
+            }
         }
-        let tip = k.cross(&(reached.tip - point));
-        let axis = k.cross(&reached.axis) * ARM;
-        jacobian.fixed_view_mut::<3, 1>(0, column).copy_from(&tip);
-        jacobian.fixed_view_mut::<3, 1>(3, column).copy_from(&axis);
-        if edged {
-            let edge = k.cross(&reached.edge) * ARM;
-            jacobian.fixed_view_mut::<3, 1>(6, column).copy_from(&edge);
+        jacobian
+    }
+
+    /// By how much the pose is missed, mm, the axis on its arm.
+    fn size(&self) -> f64 {
+        Rows::from_fn(|row, _| self.residual.get(row).copied().unwrap_or_default()).norm()
+    }
+}
+
+/// The normal equations of a residual: the matrix by columns, what stands on the right, and the largest of the diagonal.
+struct NormalEquations<const N: usize> {
+    matrix: [[f64; N]; N],
+    right: [f64; N],
+    scale: f64,
+}
+
+impl<const N: usize> NormalEquations<N> {
+    fn of<const R: usize>(jacobian: &[[f64; N]; R], residual: &[f64; R]) -> Self {
+        let mut matrix = [[0.0; N]; N];
+        let mut right = [0.0; N];
+        for (row, residual) in jacobian.iter().zip(residual) {
+            for (column, by) in matrix.iter_mut().zip(row) {
+                for (sum, value) in column.iter_mut().zip(row) {
+                    *sum += value * by;
+                }
+            }
+            for (sum, value) in right.iter_mut().zip(row) {
+                *sum += value * residual;
+            }
+        }
+        let scale = (0..N).map(|index| matrix[index][index]).fold(0.0, f64::max);
+        Self { matrix, right, scale }
+    }
+
+    /// The damped step of the first `free` joints that takes the residual away, by Cholesky's factors. None where there
+    /// are none.
+    fn step(&self, free: usize, damping: f64) -> Option<[f64; N]> {
+        let (mut normal, mut step, scale) = (self.matrix, self.right, self.scale);
+        for (index, column) in normal.iter_mut().enumerate() {
+            let diagonal = &mut column[index];
+            *diagonal += if index < free {
+                // Each joint by its own measure: a radian moves the tip by far more than a millimetre does.
+                damping * diagonal.max(1e-9 * scale)
+            } else {
+                1.0
+            };
+        }
+        factor(&mut normal)?;
+        for index in 0..N {
+            step[index] /= normal[index][index];
+            for row in index + 1..N {
+                step[row] -= step[index] * normal[index][row];
+            }
+        }
+        for index in (0..N).rev() {
+            let known = (index + 1..N).fold(0.0, |sum, row| sum + normal[index][row] * step[row]);
+            step[index] = (step[index] - known) / normal[index][index];
+        }
+        Some(step)
+    }
+}
+
+/// Puts the factor of a symmetric matrix in the place of its lower half, column by column; none where it is not positive
+/// definite.
+fn factor<const N: usize>(matrix: &mut [[f64; N]; N]) -> Option<()> {
+    for index in 0..N {
+        let (known, rest) = matrix.split_at_mut(index);
+        let column = rest.first_mut()?;
+        for other in known {
+            let by = other[index];
+            for row in index..N {
+                column[row] -= by * other[row];
+            }
+        }
+        if column[index].is_nan() || column[index] <= 0.0 {
+            return None;
+        }
+        let root = column[index].sqrt();
+        column[index] = root;
+        for value in &mut column[index + 1..] {
+            *value /= root;
         }
     }
-    (residual, jacobian)
+    Some(())
+}
+
+fn put(rows: &mut [f64], row: usize, vector: Vector3<f64>) {
+    for (place, value) in rows[row..].iter_mut().zip(&vector) {
+        *place = *value;
+    }
 }

@@ -11,7 +11,7 @@ use std::fs;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 
-use post_host::{Finder, OpenedDialect, Plugin, PluginFault, Reason};
+use post_host::{Finder, LinkedPlugin, OpenedDialect, Plugin, PluginFault, Reason};
 use post_plugin::{
     Batch, Deviation, DialectSession, Event, Meaning, ModelSession, Tolerance, VocabularyWord,
     WriteFault,
@@ -286,10 +286,8 @@ fn a_library_for_another_processor_is_refused_by_its_name() {
 fn what_stands_in_a_named_folder_is_never_passed_over() {
     let folder = tempfile::tempdir().unwrap();
     let linked = post_stock::plugin("fanuc").unwrap();
-    let finder = |place: &Path| Finder {
-        folders: vec![place.to_owned()],
-        linked: vec![Plugin::linked(linked).unwrap()],
-    };
+    let finder =
+        |place: &Path| Finder { folders: vec![place.to_owned()], linked: vec![linked.into()] };
     let place = |name: &str| {
         let place = folder.path().join(name);
         fs::create_dir(&place).unwrap();
@@ -332,7 +330,7 @@ fn all_plugins_are_listed_without_being_opened() {
     let linked = ["fanuc", "sampled"].map(|name| post_stock::plugin(name).unwrap());
     let finder = Finder {
         folders: vec![folder.path().to_owned()],
-        linked: linked.map(|linked| Plugin::linked(linked).unwrap()).to_vec(),
+        linked: linked.map(LinkedPlugin::from).to_vec(),
     };
     let listed = finder.list().unwrap();
     let rows: Vec<(&str, bool, bool)> =

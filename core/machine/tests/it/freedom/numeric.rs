@@ -1,5 +1,8 @@
 //! Chains without a closed form.
 
+use nalgebra::{SMatrix, SVector};
+use post_machine::kinematics::chain::{Chain, MAX_AXES, turn};
+
 use super::*;
 
 /// Chains that have no closed form: linear joints, rotary joints, with a leading edge.
@@ -211,4 +214,139 @@ fn a_numeric_chain_refuses_what_it_cannot_reach() {
             }
         }
     }
+}
+
+/// Residual and its change with each free joint, in matrices of the library.
+fn linearised(
+    chain: &Chain,
+    free: &[usize],
+    pose: &Pose,
+    joints: &Joints,
+) -> (SVector<f64, 9>, SMatrix<f64, 9, MAX_AXES>) {
+    let mut frame = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let mut origin = -chain.mount();
+    let out = |frame: &[Vector3<f64>; 3], v: Vector3<f64>| {
+        frame[0] * v.x + frame[1] * v.y + frame[2] * v.z
+    };
+    let mut lines = [(Vector3::zeros(), Vector3::zeros()); MAX_AXES];
+    for ((joint, line), value) in chain.joints().iter().zip(&mut lines).zip(joints) {
+        let k = out(&frame, joint.direction);
+        if !joint.rotary {
+            *line = (origin, k);
+            origin += k * *value;
+            continue;
+        }
+        let point = origin + out(&frame, joint.point);
+        *line = (point, k);
+        let (sine, cosine) = libm::sincos(*value);
+        frame = frame.map(|column| turn(column, k, sine, cosine));
+        origin = point + turn(origin - point, k, sine, cosine);
+    }
+    let (tip, axis) = (origin + out(&frame, chain.tip()), out(&frame, chain.axis()));
+    let edge = chain.edge().map(|edge| out(&frame, edge));
+    let mut residual = SVector::<f64, 9>::zeros();
+    let mut jacobian = SMatrix::<f64, 9, MAX_AXES>::zeros();
+    residual.fixed_rows_mut::<3>(0).copy_from(&(tip - pose.tip));
+    residual.fixed_rows_mut::<3>(3).copy_from(&((axis - pose.axis) * 300.0));
+    if let Some(edge) = edge {
+        residual.fixed_rows_mut::<3>(6).copy_from(&((edge - pose.edge_across()) * 300.0));
+    }
+    for (column, index) in free.iter().enumerate() {
+        let (point, k) = lines[*index];
+        if !chain.joints()[*index].rotary {
+            jacobian.fixed_view_mut::<3, 1>(0, column).copy_from(&k);
+            continue;
+        }
+        jacobian.fixed_view_mut::<3, 1>(0, column).copy_from(&k.cross(&(tip - point)));
+        jacobian.fixed_view_mut::<3, 1>(3, column).copy_from(&(k.cross(&axis) * 300.0));
+        if let Some(edge) = edge {
+            jacobian.fixed_view_mut::<3, 1>(6, column).copy_from(&(k.cross(&edge) * 300.0));
+        }
+    }
+    (residual, jacobian)
+}
+
+/// Levenberg's steps in matrices of eight columns: where they end, and how many they were.
+fn plainly(chain: &Chain, free: &[usize], pose: &Pose, start: &Joints) -> (Joints, usize) {
+    let mut joints = *start;
+    let (mut residual, mut jacobian) = linearised(chain, free, pose, &joints);
+    let mut damping = 1e-6;
+    for steps in 0..60 {
+        let size = residual.norm();
+        if size < 1e-10 {
+            return (joints, steps);
+        }
+        let mut normal = jacobian.transpose() * jacobian;
+        let scale = normal.diagonal().max();
+        for index in 0..MAX_AXES {
+            normal[(index, index)] += match index < free.len() {
+                true => damping * normal[(index, index)].max(1e-9 * scale),
+                false => 1.0,
+            };
+        }
+        let Some(factor) = normal.cholesky() else {
+            return (joints, steps + 1);
+        };
+        let step = factor.solve(&(jacobian.transpose() * residual));
+        let mut next = joints;
+        for (index, joint) in free.iter().enumerate() {
+            next[*joint] -= step[index];
+        }
+        let there = linearised(chain, free, pose, &next);
+        if there.0.norm() < size {
+            joints = next;
+            (residual, jacobian) = there;
+            damping = (damping * 0.1).max(1e-15);
+        } else {
+            damping *= 10.0;
+            if damping > 1e6 {
+                return (joints, steps + 1);
+            }
+        }
+    }
+    (joints, 60)
+}
+
+/// The steps that are cut to the number of the joints end at the same bits, after as many steps.
+#[test]
+fn steps_are_those_of_whole_matrices() {
+    let (rounds, mut rng) = randomised(400, 23);
+    let (mut reached, mut tried) = (0, 0);
+    for (linear, rotary, edged) in NUMERIC {
+        let mut kinds = vec![Kind::Linear; linear];
+        kinds.extend(vec![Kind::Free; rotary]);
+        for _ in rounds.clone() {
+            let machine = Random::of(&mut rng, &kinds);
+            let reference = &machine.reference;
+            let leading = edged.then(|| across(&mut rng, reference.axis));
+            let chain = reference.chain().with_edge(leading);
+            let solver = Solver::new(chain.clone(), &machine.free, machine.held).unwrap();
+            let q = machine.values(&mut rng);
+            let (tip, axis) = reference.forward(&q);
+            let edge = leading.map_or_else(Vector3::zeros, |edge| reference.taken(&q, edge));
+            let pose = Pose { tip, axis, edge };
+            let free: Vec<usize> = (0..chain.joints().len())
+                .filter(|joint| !chain.joints()[*joint].rotary || machine.free.contains(joint))
+                .collect();
+            let mut start = machine.held;
+            for joint in &free {
+                let wide = if chain.joints()[*joint].rotary { 3.0 } else { 300.0 };
+                start[*joint] = rng.range(-wide, wide);
+            }
+            let (wanted, steps) = plainly(&chain, &free, &pose, &start);
+            let mut left = 60;
+            tried += 1;
+            if let Ok(found) = solver.search_within(&pose, &start, 1e-9, &mut left) {
+                reached += 1;
+                assert_eq!(
+                    found.map(f64::to_bits),
+                    wanted.map(f64::to_bits),
+                    "{found:?} {wanted:?}"
+                );
+            }
+            assert_eq!(60 - left, steps);
+        }
+    }
+    println!("of {tried} searches {reached} came to their pose");
+    assert!(reached * 4 > tried, "{reached} of {tried}");
 }

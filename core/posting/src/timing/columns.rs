@@ -40,10 +40,11 @@ impl TimingStage<'_> {
             let to = run.joints_at(lane);
             let least = max_feed::least_minutes(&self.slowness, run.follow[lane], &from, &to);
             let tip = run.way[lane];
-            let asked = tip / run.feed;
+            let feed = run.feeds[lane];
+            let asked = tip / feed;
             let way = FedWay {
                 tip,
-                feed: Some(run.feed),
+                feed: Some(feed),
                 minutes: asked,
                 asked,
                 turning: self.feeds.turning(&from, &to),

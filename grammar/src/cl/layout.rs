@@ -68,11 +68,7 @@ impl NumberPlace {
 
     /// [`NumberPlace::size`] in many records.
     #[inline(always)]
-    fn sizes<'b, const LONG: bool>(
-        &self,
-        windows: impl Iterator<Item = &'b [u8; WINDOW]>,
-        sizes: &mut [f64],
-    ) {
+    fn sizes<const LONG: bool>(&self, windows: &[&[u8; WINDOW]], sizes: &mut [f64]) {
         let number = *self;
         for (size, window) in sizes.iter_mut().zip(windows) {
             *size = number.size::<LONG>(window);
@@ -172,16 +168,28 @@ impl RecordLayout {
         end: usize,
         columns: &mut [[f64; MOST]; 6],
     ) -> usize {
-        let most = (end - start).checked_div(self.length).unwrap_or(0).min(MOST);
-        let windows = || (0..most).map_while(|place| window(buffer, start + place * self.length));
-        let count = windows().take_while(|window| self.is_of(window)).count();
+        let Some(first) = window(buffer, start).filter(|_| self.length > 0) else {
+            return 0;
+        };
+        let mut windows = [first; MOST];
+        let (mut count, mut at) = (0, start);
+        while count < MOST
+            && at + self.length <= end
+            && let Some(window) = window(buffer, at)
+            && self.is_of(window)
+        {
+            windows[count] = window;
+            count += 1;
+            at += self.length;
+        }
+        let windows = &windows[..count];
         self.hits = self.hits.saturating_add(count as u32);
         for (number, column) in self.numbers[..self.count].iter().zip(&mut *columns) {
             let column = &mut column[..count];
             if self.long {
-                number.sizes::<true>(windows(), column);
+                number.sizes::<true>(windows, column);
             } else {
-                number.sizes::<false>(windows(), column);
+                number.sizes::<false>(windows, column);
             }
             for value in column {
                 *value = number.value(*value);

@@ -218,7 +218,7 @@ fn read(session: &Session, input: ClInput, post: &mut Post<'_>) -> Result<(), Fi
         let text = reader.next_gotos(&mut run);
         if !text.is_empty() {
             post.gotos(&run, text);
-            progress.some_records(run.points().len() as u64, || reader.bytes_read());
+            progress.some_records(run.count() as u64, || reader.bytes_read());
             continue;
         }
         match reader.next_record() {

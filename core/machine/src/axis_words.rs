@@ -189,7 +189,7 @@ impl AxisWords {
             joints[word.joint] = value * word.unit - word.reading;
             values[word.place] = match word.turn_from {
                 None => value,
-                Some(from) => word.printed(value - 360.0 * libm::floor((value - from) / 360.0)),
+                Some(from) => word.within_turn(value, from),
             };
         }
     }
@@ -295,13 +295,23 @@ impl AxisWords {
     }
 }
 
+/// Added and taken away, it rounds to an integer, ties to even, for all that a machine can reach; the functions of the
+/// library cost a call each.
+const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
+
 impl Word {
+    /// A printed angle as the control shows it over one turn that begins at `from`, degrees.
+    #[inline(always)]
+    fn within_turn(&self, value: f64, from: f64) -> f64 {
+        let turns = (value - from) / 360.0;
+        let nearest = turns + ROUND - ROUND;
+        let whole = if nearest > turns { nearest - 1.0 } else { nearest };
+        self.printed(value - 360.0 * whole)
+    }
+
     /// The number nearest to `value` that has its decimals, never -0.
-    #[inline]
+    #[inline(always)]
     fn printed(&self, value: f64) -> f64 {
-        // Adding and taking away 1.5·2^52 rounds to an integer, ties to even, for all that a machine can
-        // reach; the functions of the library cost a call each.
-        const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
         (value * self.scale + ROUND - ROUND) * self.per_scale + 0.0
     }
 }

@@ -10,6 +10,7 @@ use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Capabilities, DialectSession, ModelSession};
 
+use crate::accuracy::RunColumns;
 use crate::blocks::{BlockStage, MotionBlock};
 use crate::configuration::{ChosenPoint, ConfigurationStage};
 use crate::emit::EmitStage;
@@ -19,7 +20,7 @@ use crate::job_facts::JobFacts;
 use crate::observer::{Observer, Observers, TextSink};
 use crate::plan::{PlanStage, PlanWatch};
 use crate::preview::FilePreview;
-use crate::program::{ClInterpreter, ProgramStep, ReadingOptions};
+use crate::program::{ClInterpreter, MoveFeed, ProgramStep, ReadingOptions};
 use crate::refusal;
 use crate::report::{AxisRange, PostingReport, ReportedDeviation};
 use crate::run_stages::RunBuffers;
@@ -306,16 +307,17 @@ impl<'a> Post<'a> {
         let waiting = steps.first().map(|(line, _)| *line);
         let settled = || [waiting, stages.settled_line()].into_iter().flatten().min();
         self.findings.read_run(run, text, settled);
-        let mut pace = self.interpreter.plain_pace().filter(|_| self.window.is_none());
-        for (place, values) in run.points().iter().enumerate() {
+        let mut pace = self.plain_pace();
+        let taken = pace.map_or(0, |pace| self.take_columns(run, pace));
+        for place in taken..run.count() {
             self.records += 1;
             self.last_line = run.line(place);
-            let plain = |pace| self.interpreter.plain_move(values, run.has_axis(), pace);
+            let plain = |pace| self.interpreter.plain_move(&run.point(place), run.has_axis(), pace);
             match pace.and_then(plain) {
                 Some(motion) => self.steps.push((self.last_line, ProgramStep::Move(motion))),
                 None => {
                     self.interpret(&run.record(place, text));
-                    pace = self.interpreter.plain_pace().filter(|_| self.window.is_none());
+                    pace = self.plain_pace();
                 }
             }
             if self.steps.len() >= BATCH {
@@ -325,6 +327,39 @@ impl<'a> Post<'a> {
                 return;
             }
         }
+    }
+
+    /// The pace of plain `GOTO`s whose moves need not be looked at one by one.
+    fn plain_pace(&self) -> Option<MoveFeed> {
+        self.interpreter.plain_pace().filter(|_| self.window.is_none())
+    }
+
+    /// Takes the first records of a run straight into the columns of the stages; gives how many.
+    fn take_columns(&mut self, run: &GotoRun, pace: MoveFeed) -> usize {
+        let MoveFeed::PerMinute(feed) = pace else {
+            return 0;
+        };
+        // What waits goes before it, and few steps are better off among others.
+        let waits = !self.steps.is_empty();
+        let few = waits && run.count() < GotoRun::MOST;
+        if few || !self.stages.takes_columns(run.count(), &self.findings) {
+            return 0;
+        }
+        if waits {
+            self.run();
+        }
+        let (stages, interpreter) = (&mut self.stages, &mut self.interpreter);
+        let fill = |columns: &mut RunColumns| {
+            interpreter.plain_columns(run, &mut columns.tip, &mut columns.axis)
+        };
+        let taken = stages.take_gotos(run, feed, &self.findings, fill);
+        if let Some(last) = taken.checked_sub(1) {
+            // The interpreter stands at the end of what was taken.
+            interpreter.plain_move(&run.point(last), run.has_axis(), pace);
+            self.records += taken as u64;
+            self.last_line = run.line(last);
+        }
+        taken
     }
 
     fn run(&mut self) {

@@ -2,7 +2,8 @@
 //! and then they go one by one. Nothing is changed before the last stage has said how far the run goes.
 
 use nalgebra::Vector3;
-use post_machine::kinematics::batch::{set_vector, vector};
+use post_grammar::GotoRun;
+use post_machine::kinematics::batch::{LANES, set_vector, vector};
 
 use crate::accuracy::RunColumns;
 use crate::findings::Findings;
@@ -13,7 +14,11 @@ use crate::timing::TimedRun;
 /// Fewer points are not worth columns.
 const LEAST: usize = 16;
 
-/// After a doubt so many steps go one by one, at most, before another run is tried.
+/// After a run that was not worth it so many steps go one by one before another is tried; after each further one twice as
+/// many.
+const SHORTEST_PAUSE: usize = 2;
+
+/// The most of them.
 const LONGEST_PAUSE: usize = 256;
 
 /// What is kept from run to run.
@@ -35,7 +40,7 @@ impl RunBuffers {
         Self {
             columns: Box::default(),
             timed: Box::default(),
-            pause: LEAST,
+            pause: SHORTEST_PAUSE,
             paused: 0,
             most: most.min(RunColumns::MOST),
         }
@@ -55,16 +60,9 @@ fn plain_feed(step: &ProgramStep) -> Option<(f64, &StraightMove)> {
     }
 }
 
-/// Number of steps at the front that are cuts at one feed, up to `most`.
+/// Number of steps at the front that are plain cuts, up to `most`.
 fn length(steps: &[(u64, ProgramStep)], most: usize) -> usize {
-    let Some((_, first)) = steps.first() else {
-        return 0;
-    };
-    let Some((feed, _)) = plain_feed(first) else {
-        return 0;
-    };
-    let same = |step: &&(u64, ProgramStep)| plain_feed(&step.1).is_some_and(|(it, _)| it == feed);
-    steps.iter().take(most).take_while(same).count()
+    steps.iter().take(most).take_while(|(_, step)| plain_feed(step).is_some()).count()
 }
 
 impl PostStages<'_> {
@@ -113,41 +111,79 @@ impl PostStages<'_> {
         alone.min(steps.len())
     }
 
+    /// So many plain cuts may go as columns.
+    pub(crate) fn takes_columns(&self, count: usize, findings: &Findings) -> bool {
+        let runs = &self.runs;
+        runs.paused == 0
+            && count.min(runs.most) >= LEAST.min(runs.most).max(1)
+            && self.passes_runs()
+            && self.emit.takes_runs()
+            && !findings.failed()
+    }
+
     /// Takes the steps at the front as columns: how many; none on any doubt.
     fn take_run(&mut self, steps: &[(u64, ProgramStep)], findings: &Findings) -> usize {
-        let runs = &mut self.runs;
-        let count = length(steps, runs.most);
-        let ready = runs.paused == 0
-            && count >= LEAST.min(runs.most).max(1)
-            && self.emit.takes_runs()
-            && !findings.failed();
-        if !ready {
+        let count = length(steps, self.runs.most);
+        if !self.takes_columns(count, findings) {
             return 0;
         }
-        let (run, timed) = (&mut *runs.columns, &mut *runs.timed);
+        let run = &mut *self.runs.columns;
         run.count = count;
         for (lane, (line, step)) in steps[..count].iter().enumerate() {
             if let Some((feed, motion)) = plain_feed(step) {
-                run.feed = feed;
+                run.feeds[lane] = feed;
                 run.lines[lane] = *line;
                 set_vector(&mut run.tip, lane + 1, motion.tip);
                 set_vector(&mut run.axis, lane + 1, motion.axis);
             }
         }
+        self.take_filled()
+    }
+
+    /// Takes the first records of a run as columns: how many; none on any doubt. `fill` puts wanted tips and tool axes into
+    /// the columns; false, if it cannot.
+    pub(crate) fn take_gotos(
+        &mut self,
+        gotos: &GotoRun,
+        feed: f64,
+        findings: &Findings,
+        fill: impl FnOnce(&mut RunColumns) -> bool,
+    ) -> usize {
+        if !self.takes_columns(gotos.count(), findings) {
+            return 0;
+        }
+        let run = &mut *self.runs.columns;
+        if !fill(run) {
+            return 0;
+        }
+        run.count = gotos.count().min(self.runs.most);
+        run.feeds = [feed; LANES];
+        for (lane, line) in run.lines.iter_mut().enumerate() {
+            *line = gotos.line(lane);
+        }
+        self.take_filled()
+    }
+
+    /// Takes the points that the columns were filled with: how many; none on any doubt.
+    fn take_filled(&mut self) -> usize {
+        let runs = &mut self.runs;
+        let (run, timed) = (&mut *runs.columns, &mut *runs.timed);
+        let count = run.count;
         let certain = self.configuration.carries_on(run) && self.blocks.certifies(run);
         if certain {
             self.timing.times(run, timed);
         }
-        if !certain || run.count == 0 || !self.configuration.carry_on(run) {
+        let taken = certain && run.count > 0 && self.configuration.carry_on(run);
+        if taken && (run.count == count || run.count >= LEAST) {
+            runs.pause = SHORTEST_PAUSE;
+            // What has ended the run goes by itself.
+            runs.paused = usize::from(run.count < count);
+        } else {
             runs.paused = runs.pause.min(count);
             runs.pause = (2 * runs.pause).min(LONGEST_PAUSE);
-            return 0;
         }
-        if run.count == count {
-            runs.pause = LEAST;
-        } else {
-            // What has ended the run goes by itself.
-            runs.paused = 1;
+        if !taken {
+            return 0;
         }
         self.expand.passed(vector(&run.tip, run.count));
         self.blocks.certify(run);

@@ -6,22 +6,41 @@ use post_grammar::GotoRun;
 #[derive(Debug, Default)]
 pub(crate) struct SourceBuffer {
     text: Vec<u8>,
-    /// Line and where its text begins.
-    lines: Vec<(u64, usize)>,
+    pieces: Vec<TextPiece>,
+    /// Records that were kept since some were forgotten.
+    kept: usize,
+}
+
+/// Records whose text is kept in one piece.
+#[derive(Clone, Copy, Debug)]
+struct TextPiece {
+    /// Line of the first, and lines of the file from one to the next.
+    line: u64,
+    lines: u64,
+    count: usize,
+    /// Where the text of the first begins, and bytes from one to the next.
+    start: usize,
+    stride: usize,
+    /// Bytes of each.
+    length: usize,
 }
 
 /// Records are forgotten in runs of this length.
 const RUN: usize = 1024;
 
+impl TextPiece {
+    fn last_line(&self) -> u64 {
+        self.line + (self.count as u64 - 1) * self.lines
+    }
+}
+
 impl SourceBuffer {
     /// Keeps a record; `settled` gives the line before which no fault will be found any more.
     #[inline]
     pub(crate) fn keep(&mut self, line: u64, raw: &[u8], settled: impl FnOnce() -> Option<u64>) {
-        if self.lines.len().is_multiple_of(RUN) && !self.lines.is_empty() {
-            self.forget(settled().unwrap_or(line));
-        }
-        self.lines.push((line, self.text.len()));
-        self.text.extend_from_slice(raw);
+        let (start, length) = (self.text.len(), raw.len());
+        let piece = TextPiece { line, lines: 1, count: 1, start, stride: length, length };
+        self.keep_piece(piece, raw, settled);
     }
 
     /// Keeps the records of a run whose text this is.
@@ -31,46 +50,65 @@ impl SourceBuffer {
         text: &[u8],
         settled: impl FnOnce() -> Option<u64>,
     ) {
-        let count = run.points().len();
-        if self.lines.len() % RUN + count > RUN {
-            self.forget(settled().unwrap_or(run.line(0)));
-        }
-        if run.is_by_lines() {
-            let (start, stride) = (self.text.len(), run.stride());
-            let lines = (0..count).map(|place| (run.line(place), start + place * stride));
-            self.lines.extend(lines);
-            self.text.extend_from_slice(text);
+        if run.count() == 0 {
             return;
         }
-        for place in 0..count {
-            let record = run.record(place, text);
-            self.lines.push((record.line, self.text.len()));
-            self.text.extend_from_slice(record.raw);
+        let piece = TextPiece {
+            line: run.line(0),
+            lines: run.lines(),
+            count: run.count(),
+            start: self.text.len(),
+            stride: run.stride(),
+            length: run.length(),
+        };
+        self.keep_piece(piece, text, settled);
+    }
+
+    #[inline]
+    fn keep_piece(
+        &mut self,
+        mut piece: TextPiece,
+        text: &[u8],
+        settled: impl FnOnce() -> Option<u64>,
+    ) {
+        if self.kept >= RUN {
+            self.forget(settled().unwrap_or(piece.line));
+            piece.start = self.text.len();
         }
+        self.kept += piece.count;
+        self.pieces.push(piece);
+        self.text.extend_from_slice(text);
     }
 
     fn forget(&mut self, before: u64) {
-        let count = self.lines.partition_point(|(line, _)| *line < before);
-        let from = self.lines.get(count).map_or(self.text.len(), |(_, start)| *start);
-        self.lines.drain(..count);
+        let count = self.pieces.partition_point(|piece| piece.last_line() < before);
+        let from = self.pieces.get(count).map_or(self.text.len(), |piece| piece.start);
+        self.pieces.drain(..count);
         self.text.drain(..from);
-        for (_, start) in &mut self.lines {
-            *start -= from;
+        for piece in &mut self.pieces {
+            piece.start -= from;
         }
+        self.kept = 0;
     }
 
     /// The text of the record on `line`.
     pub(crate) fn text(&self, line: u64) -> Option<String> {
-        let place = self.lines.binary_search_by_key(&line, |(line, _)| *line).ok()?;
-        let start = self.lines[place].1;
-        let end = self.lines.get(place + 1).map_or(self.text.len(), |(_, next)| *next);
-        Some(String::from_utf8_lossy(&self.text[start..end]).trim_end().to_owned())
+        let after = self.pieces.partition_point(|piece| piece.line <= line);
+        let piece = self.pieces[..after].last()?;
+        let away = line - piece.line;
+        if !away.is_multiple_of(piece.lines) || line > piece.last_line() {
+            return None;
+        }
+        let start = piece.start + (away / piece.lines) as usize * piece.stride;
+        let text = &self.text[start..start + piece.length];
+        Some(String::from_utf8_lossy(text).trim_end().to_owned())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use post_grammar::ClReader;
 
     #[test]
     fn what_is_not_settled_is_remembered() {
@@ -81,6 +119,38 @@ mod tests {
         assert_eq!(source.text(4999).as_deref(), Some("GOTO/4999"));
         assert_eq!(source.text(4600).as_deref(), Some("GOTO/4600"));
         assert_eq!(source.text(17), None);
-        assert!(source.lines.len() <= 2 * RUN);
+        assert!(source.pieces.len() <= 2 * RUN);
+    }
+
+    #[test]
+    fn the_records_of_a_run_are_remembered_one_by_one() {
+        let plain = "GOTO/1.00,2.00,3.00\n";
+        let parted = "GOTO / 1.00, 2.00, 3.00,  $\n0.00, 0.00, 1.00\n";
+        for (form, lines) in [(plain, 1), (parted, 2)] {
+            let file = form.repeat(100);
+            let mut reader = ClReader::new(file.as_bytes());
+            let (mut source, mut run) = (SourceBuffer::default(), GotoRun::default());
+            let (mut expected, mut in_runs) = (Vec::new(), 0);
+            loop {
+                let text = reader.next_gotos(&mut run);
+                source.keep_run(&run, text, || None);
+                in_runs += run.count();
+                for place in 0..run.count() {
+                    let record = run.record(place, text);
+                    expected.push((record.line, record.text().trim_end().to_owned()));
+                }
+                let Some(record) = reader.next_record().unwrap() else {
+                    break;
+                };
+                source.keep(record.line, record.raw, || None);
+                expected.push((record.line, record.text().trim_end().to_owned()));
+            }
+            assert_eq!(expected.len(), 100);
+            assert!(in_runs > 50);
+            for (line, text) in expected {
+                assert_eq!(source.text(line).as_deref(), Some(text.as_str()));
+                assert!(lines == 1 || source.text(line + 1).is_none());
+            }
+        }
     }
 }

@@ -8,7 +8,8 @@ pub struct GotoRun {
     pub(super) count: usize,
     pub(super) line: u64,
     pub(super) lines: u64,
-    pub(super) values: [[f64; 6]; GotoRun::MOST],
+    /// Numbers of the points, column by column.
+    pub(super) values: [[f64; GotoRun::MOST]; 6],
     pub(super) has_axis: bool,
     pub(super) stride: usize,
     pub(super) length: usize,
@@ -20,7 +21,7 @@ impl Default for GotoRun {
             count: 0,
             line: 0,
             lines: 1,
-            values: [[0.0; 6]; Self::MOST],
+            values: [[0.0; Self::MOST]; 6],
             has_axis: false,
             stride: 0,
             length: 0,
@@ -32,10 +33,23 @@ impl GotoRun {
     /// Most records of a run.
     pub const MOST: usize = 64;
 
-    /// Points, each with the tool axis, or zeros if none is given; in the file's units.
+    /// Number of records.
     #[inline]
-    pub fn points(&self) -> &[[f64; 6]] {
-        &self.values[..self.count]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Coordinates and tool axes of the points (zeros if none is given), a column each, in the file's units. What stands after
+    /// the last record is of no meaning.
+    #[inline]
+    pub fn columns(&self) -> &[[f64; Self::MOST]; 6] {
+        &self.values
+    }
+
+    /// A point with its tool axis, or zeros if none is given, by its place; in the file's units.
+    #[inline]
+    pub fn point(&self, place: usize) -> [f64; 6] {
+        self.values.map(|column| column[place])
     }
 
     /// Every record gives a tool axis; else none does.
@@ -50,9 +64,14 @@ impl GotoRun {
         self.line + place as u64 * self.lines
     }
 
-    /// Every record takes one line of the file.
-    pub fn is_by_lines(&self) -> bool {
-        self.lines == 1
+    /// Lines of the file that every record takes.
+    pub fn lines(&self) -> u64 {
+        self.lines
+    }
+
+    /// Bytes of every record in the text of the run.
+    pub fn length(&self) -> usize {
+        self.length
     }
 
     /// Bytes from one record to the next in the text of the run.
@@ -66,7 +85,7 @@ impl GotoRun {
         Record {
             line: self.line(place),
             raw: &text[from..from + self.length],
-            statement: goto_statement(&self.values[place], self.has_axis),
+            statement: goto_statement(&self.point(place), self.has_axis),
         }
     }
 }

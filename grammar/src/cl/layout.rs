@@ -50,6 +50,38 @@ struct NumberPlace {
     power: f64,
 }
 
+impl NumberPlace {
+    /// The digits of the number in a record, as one whole number; `LONG` if there may be more than eight.
+    #[inline(always)]
+    fn size<const LONG: bool>(&self, window: &[u8; WINDOW]) -> f64 {
+        let before = usize::from(self.before);
+        let low = (eight_bytes(window, before + 9) & self.low[0])
+            | (eight_bytes(window, before + 8) & self.low[1]);
+        let mut digits = eight_digits(low);
+        if LONG {
+            let high = (eight_bytes(window, before + 1) & self.high[0])
+                | (eight_bytes(window, before) & self.high[1]);
+            digits += 100_000_000 * eight_digits(high);
+        }
+        digits as i64 as f64
+    }
+
+    /// [`NumberPlace::size`] in many records.
+    #[inline(always)]
+    fn sizes<const LONG: bool>(&self, windows: &[&[u8; WINDOW]], sizes: &mut [f64]) {
+        let number = *self;
+        for (size, window) in sizes.iter_mut().zip(windows) {
+            *size = number.size::<LONG>(window);
+        }
+    }
+
+    /// The number that has these digits.
+    #[inline(always)]
+    fn value(&self, size: f64) -> f64 {
+        f64::from_bits((size / self.power).to_bits() | self.sign)
+    }
+}
+
 /// How the last `GOTO` record was laid out.
 #[derive(Clone, Debug)]
 pub(super) struct RecordLayout {
@@ -127,6 +159,48 @@ impl RecordLayout {
         Some(values)
     }
 
+    /// Takes the records from `start` on that are laid out so, up to `end` and as many as the columns hold: a column each
+    /// number, zeros for a tool axis that is not given. Gives how many.
+    pub(super) fn gotos<const MOST: usize>(
+        &mut self,
+        buffer: &[u8],
+        start: usize,
+        end: usize,
+        columns: &mut [[f64; MOST]; 6],
+    ) -> usize {
+        let Some(first) = window(buffer, start).filter(|_| self.length > 0) else {
+            return 0;
+        };
+        let mut windows = [first; MOST];
+        let (mut count, mut at) = (0, start);
+        while count < MOST
+            && at + self.length <= end
+            && let Some(window) = window(buffer, at)
+            && self.is_of(window)
+        {
+            windows[count] = window;
+            count += 1;
+            at += self.length;
+        }
+        let windows = &windows[..count];
+        self.hits = self.hits.saturating_add(count as u32);
+        for (number, column) in self.numbers[..self.count].iter().zip(&mut *columns) {
+            let column = &mut column[..count];
+            if self.long {
+                number.sizes::<true>(windows, column);
+            } else {
+                number.sizes::<false>(windows, column);
+            }
+            for value in column {
+                *value = number.value(*value);
+            }
+        }
+        for column in &mut columns[self.count..] {
+            column[..count].fill(0.0);
+        }
+        count
+    }
+
     /// Whether the record is laid out so. Without a branch a byte: the compiler makes vectors of it.
     #[inline(always)]
     fn is_of(&self, window: &[u8; WINDOW]) -> bool {
@@ -146,17 +220,7 @@ impl RecordLayout {
     #[inline(always)]
     fn values<const LONG: bool>(&self, window: &[u8; WINDOW], values: &mut [f64; 6]) {
         for (value, number) in values.iter_mut().zip(&self.numbers[..self.count]) {
-            let before = usize::from(number.before);
-            let low = (eight_bytes(window, before + 9) & number.low[0])
-                | (eight_bytes(window, before + 8) & number.low[1]);
-            let mut digits = eight_digits(low);
-            if LONG {
-                let high = (eight_bytes(window, before + 1) & number.high[0])
-                    | (eight_bytes(window, before) & number.high[1]);
-                digits += 100_000_000 * eight_digits(high);
-            }
-            let size = digits as i64 as f64 / number.power;
-            *value = f64::from_bits(size.to_bits() | number.sign);
+            *value = number.value(number.size::<LONG>(window));
         }
     }
 

@@ -175,16 +175,13 @@ impl<R: Read> ClReader<R> {
     /// There may be none: [`Self::next_record`] goes on then.
     pub fn next_gotos(&mut self, run: &mut GotoRun) -> &[u8] {
         let start = self.start;
-        let mut count = 0;
-        while count < GotoRun::MOST
-            && let Some(values) = self.laid_out()
-        {
-            run.values[count] = values;
-            if self.layout.lines() > 1 {
-                self.layout.join(&mut self.buffer[self.start..]);
+        let count = self.layout.gotos(&self.buffer, start, self.end, &mut run.values);
+        let length = self.layout.length();
+        self.start += count * length;
+        if self.layout.lines() > 1 {
+            for place in 0..count {
+                self.layout.join(&mut self.buffer[start + place * length..]);
             }
-            self.start += self.layout.length();
-            count += 1;
         }
         run.count = count;
         run.line = self.line;

@@ -37,7 +37,7 @@ fn all_by(input: impl Read, runs: bool) -> Vec<String> {
     loop {
         if runs {
             let text = reader.next_gotos(&mut run);
-            found.extend((0..run.points().len()).map(|place| told(&run.record(place, text))));
+            found.extend((0..run.count()).map(|place| told(&run.record(place, text))));
         }
         match reader.next_record() {
             Ok(None) => return found,

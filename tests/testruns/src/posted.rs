@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use post_grammar::{ClReader, ReadError};
+use post_grammar::{ClReader, GotoRun, ReadError};
 use post_machine::description::{Machine, Source, Tcp, load};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
@@ -343,13 +343,23 @@ pub fn framed(
         }
         job.ahead = Some(Arc::new(pass.finish()));
     }
+    // What goes point by point goes record by record.
+    let alone = job.longest_run == Some(0);
     let mut post = Post::new(machine, job, &mut dialect, model, &mut output)
         .expect("machine and dialect agree");
     for observer in observers {
         post.watch(*observer);
     }
     let mut reader = ClReader::new(cl.as_bytes());
+    let mut run = GotoRun::default();
     while !post.gave_up() {
+        if !alone {
+            let text = reader.next_gotos(&mut run);
+            if !text.is_empty() {
+                post.gotos(&run, text);
+                continue;
+            }
+        }
         match reader.next_record() {
             Ok(Some(record)) => post.record(&record),
             Ok(None) => break,

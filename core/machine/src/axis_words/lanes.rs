@@ -3,33 +3,26 @@
 use super::{AxisWords, Word};
 use crate::description::Tcp;
 use crate::kinematics::MAX_AXES;
-use crate::kinematics::batch::{AxisBatch, LANES, Lanes, VectorLanes};
+use crate::kinematics::batch::{AxisBatch, Lanes, VectorLanes, groups, widely};
 
 /// Values of the words of many blocks, by their places.
 pub type WordLanes = [Lanes; MAX_AXES];
 
 impl AxisWords {
-    /// [`AxisWords::print_rotary`] of the first `count` points of a batch. False, and nothing done, where words lie
-    /// within one turn.
-    pub fn print_rotary_all(
-        &self,
-        at: &mut AxisBatch,
-        count: usize,
-        values: &mut WordLanes,
-    ) -> bool {
-        if self.rotary.iter().any(|word| word.turn_from.is_some()) {
-            return false;
-        }
-        for word in &self.rotary {
-            let (joints, values) = (&mut at.joints[word.joint], &mut values[word.place]);
-            let word = *word;
-            for lane in 0..count.min(LANES) {
-                let value = word.printed((joints[lane] + word.reading) * word.per_unit);
-                joints[lane] = value * word.unit - word.reading;
-                values[lane] = value;
-            }
-        }
-        true
+    /// [`AxisWords::print_rotary`] of the first `count` points of a batch.
+    pub fn print_rotary_all(&self, at: &mut AxisBatch, count: usize, values: &mut WordLanes) {
+        widely(
+            #[inline(always)]
+            || {
+                for word in &self.rotary {
+                    let (joints, values) = (&mut at.joints[word.joint], &mut values[word.place]);
+                    print_angles(*word, joints, count, values);
+                    if let Some(from) = word.turn_from {
+                        show_angles(*word, from, count, values);
+                    }
+                }
+            },
+        );
     }
 
     /// [`AxisWords::print_tip`] of the first `count` of `tips` (mm, part frame), which are put on the printed numbers; false,
@@ -47,10 +40,15 @@ impl AxisWords {
         if self.tcp == Tcp::Post {
             return Some(false);
         }
-        for word in &self.linear {
-            let (tips, values) = (&mut tips[word.coordinate], &mut values[word.place]);
-            print(word, tips, count, values, 0.0);
-        }
+        widely(
+            #[inline(always)]
+            || {
+                for word in &self.linear {
+                    let (tips, values) = (&mut tips[word.coordinate], &mut values[word.place]);
+                    print(*word, tips, count, values, 0.0);
+                }
+            },
+        );
         Some(true)
     }
 
@@ -62,17 +60,40 @@ impl AxisWords {
 
     /// [`AxisWords::print_linear`] of the first `count` points of a batch.
     pub fn print_linear_all(&self, at: &mut AxisBatch, count: usize, values: &mut WordLanes) {
-        for word in &self.linear {
-            let (joints, values) = (&mut at.joints[word.joint], &mut values[word.place]);
-            print(word, joints, count, values, self.zero[word.joint]);
-        }
+        widely(
+            #[inline(always)]
+            || {
+                for word in &self.linear {
+                    let (joints, values) = (&mut at.joints[word.joint], &mut values[word.place]);
+                    print(*word, joints, count, values, self.zero[word.joint]);
+                }
+            },
+        );
+    }
+}
+
+/// Puts angles on printed numbers.
+#[inline(always)]
+fn print_angles(word: Word, angles: &mut Lanes, count: usize, values: &mut Lanes) {
+    for lane in 0..groups(count) {
+        let value = word.printed((angles[lane] + word.reading) * word.per_unit);
+        angles[lane] = value * word.unit - word.reading;
+        values[lane] = value;
+    }
+}
+
+/// Puts printed angles within the turn that begins at `from`, degrees.
+#[inline(always)]
+fn show_angles(word: Word, from: f64, count: usize, values: &mut Lanes) {
+    for value in &mut values[..groups(count)] {
+        *value = word.within_turn(*value, from);
     }
 }
 
 /// Puts lengths, counted from `zero` (mm), on printed numbers.
-fn print(word: &Word, lengths: &mut Lanes, count: usize, values: &mut Lanes, zero: f64) {
-    let word = *word;
-    for lane in 0..count.min(LANES) {
+#[inline(always)]
+fn print(word: Word, lengths: &mut Lanes, count: usize, values: &mut Lanes, zero: f64) {
+    for lane in 0..groups(count) {
         let value = word.printed((lengths[lane] - zero) * word.per_unit);
         values[lane] = value;
         lengths[lane] = value * word.unit + zero;

@@ -2,9 +2,13 @@
 //! the same bits, but one step for all points before the next, so that their latencies overlap. Point by
 //! point there is nothing to do meanwhile.
 
+#[cfg(target_arch = "x86_64")]
+use fearless_simd::{Level, Simd};
 use nalgebra::Vector3;
 
-use super::chain::{Chain, MAX_AXES, Turns, turn};
+use super::chain::{
+    AxisLine, Chain, Joint, MAX_AXES, Turns, turn_about_x, turn_about_y, turn_about_z, turn_askew,
+};
 
 /// Points that are solved together.
 pub const LANES: usize = 64;
@@ -31,6 +35,120 @@ pub fn vector<const N: usize>(of: &[[f64; N]; 3], lane: usize) -> Vector3<f64> {
 #[inline(always)]
 pub fn set_vector<const N: usize>(of: &mut [[f64; N]; 3], lane: usize, vector: Vector3<f64>) {
     (of[0][lane], of[1][lane], of[2][lane]) = (vector.x, vector.y, vector.z);
+}
+
+/// Numbers that are compared together: as many least or largest ones are kept, and the least or largest of them is asked
+/// for at the end.
+const TOGETHER: usize = 8;
+
+/// Loops over lanes go to the end of such a group. What stands in lanes after the last point is worked out too, and
+/// nobody asks for it.
+const GROUP: usize = 8;
+
+/// Lanes that a loop over `count` points goes through.
+#[inline(always)]
+pub fn groups(count: usize) -> usize {
+    count.next_multiple_of(GROUP).min(LANES)
+}
+
+/// Does `work`, compiled once more for vectors of four numbers, where the processor has them. The bits are the same: no
+/// operation is put together with another. What `work` calls has to be inlined into it.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub fn widely<R>(work: impl FnOnce() -> R) -> R {
+    match Level::new().as_avx2() {
+        Some(wide) => wide.vectorize(work),
+        None => work(),
+    }
+}
+
+/// Does `work`.
+#[cfg(not(target_arch = "x86_64"))]
+#[inline(always)]
+pub fn widely<R>(work: impl FnOnce() -> R) -> R {
+    work()
+}
+
+/// The least of numbers of which each is one; infinite if there are none.
+#[inline(always)]
+pub fn least(of: &[f64]) -> f64 {
+    folded(of, f64::INFINITY, |a, b| if a < b { a } else { b })
+}
+
+/// The largest of numbers of which each is one; infinitely small if there are none.
+#[inline(always)]
+pub fn largest(of: &[f64]) -> f64 {
+    folded(of, f64::NEG_INFINITY, |a, b| if a > b { a } else { b })
+}
+
+#[inline(always)]
+fn folded(of: &[f64], first: f64, choose: impl Fn(f64, f64) -> f64) -> f64 {
+    let (groups, rest) = of.as_chunks::<TOGETHER>();
+    let mut kept = [first; TOGETHER];
+    for group in groups {
+        for place in 0..TOGETHER {
+            kept[place] = choose(kept[place], group[place]);
+        }
+    }
+    kept.iter().chain(rest).fold(first, |kept, value| choose(kept, *value))
+}
+
+/// Fills in the distances from each point of a column to the next.
+#[inline(always)]
+pub fn steps(of: &VectorColumn, count: usize, out: &mut Lanes) {
+    for (lane, step) in out[..groups(count)].iter_mut().enumerate() {
+        *step = (vector(of, lane + 1) - vector(of, lane)).norm();
+    }
+}
+
+/// Puts vectors in the place of others, lane by lane.
+#[inline(always)]
+pub(super) fn replace(
+    vectors: &mut VectorLanes,
+    count: usize,
+    with: impl Fn(Vector3<f64>, usize) -> Vector3<f64>,
+) {
+    for lane in 0..groups(count) {
+        set_vector(vectors, lane, with(vector(vectors, lane), lane));
+    }
+}
+
+/// Turns of many points.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TurnLanes<'a> {
+    pub sines: &'a Lanes,
+    pub cosines: &'a Lanes,
+    /// Forwards with 1, back with -1.
+    pub sense: f64,
+}
+
+/// Turns vectors about the unit vector `k`, as [`super::chain::turn`] does, from `point` if they begin anywhere.
+#[inline(always)]
+pub(super) fn turn_lanes(
+    vectors: &mut VectorLanes,
+    count: usize,
+    k: Vector3<f64>,
+    point: Option<Vector3<f64>>,
+    by: TurnLanes<'_>,
+) {
+    let arm = |vector: Vector3<f64>| point.map_or(vector, |point| vector - point);
+    let back = |arm: Vector3<f64>| point.map_or(arm, |point| point + arm);
+    let sine = |lane: usize| by.sense * by.sines[lane];
+    let cosine = |lane: usize| by.cosines[lane];
+    match AxisLine::of(k) {
+        AxisLine::X => replace(vectors, count, |vector, lane| {
+            back(turn_about_x(arm(vector), k.x, sine(lane), cosine(lane)))
+        }),
+        AxisLine::Y => replace(vectors, count, |vector, lane| {
+            back(turn_about_y(arm(vector), k.y, sine(lane), cosine(lane)))
+        }),
+        AxisLine::Z => replace(vectors, count, |vector, lane| {
+            back(turn_about_z(arm(vector), k.z, sine(lane), cosine(lane)))
+        }),
+        AxisLine::Askew => replace(vectors, count, |vector, lane| {
+            back(turn_askew(arm(vector), k, sine(lane), cosine(lane)))
+        }),
+    }
 }
 
 /// Where the axes of a batch of points stand, by joint; what is not a rotary joint has the sine 0 and the cosine 1.
@@ -89,36 +207,42 @@ impl Turns {
 impl Chain {
     /// [`Chain::trace`] of the first `count` points of `at`; the leading edge of a tool that has one is left out.
     pub fn trace_all(&self, at: &AxisBatch, count: usize, out: &mut Traces) {
-        let count = count.min(LANES);
+        widely(
+            #[inline(always)]
+            || self.trace_lanes(at, count, out),
+        );
+    }
+
+    #[inline(always)]
+    fn trace_lanes(&self, at: &AxisBatch, count: usize, out: &mut Traces) {
         let Traces { tip, axis, tip_rates, axes } = out;
         for part in 0..3 {
-            tip[part][..count].fill(self.tip()[part]);
-            axis[part][..count].fill(self.axis()[part]);
+            tip[part] = [self.tip()[part]; LANES];
+            axis[part] = [self.axis()[part]; LANES];
         }
         for (index, joint) in self.joints().iter().enumerate().rev() {
-            let (k, point) = (joint.direction, joint.point);
+            let k = joint.direction;
             if !joint.rotary {
-                for lane in 0..count {
-                    set_vector(tip, lane, vector(tip, lane) + k * at.joints[index][lane]);
-                }
+                let way = &at.joints[index];
+                replace(tip, count, |tip, lane| tip + k * way[lane]);
                 continue;
             }
-            let (sines, cosines) = (&at.sines[index], &at.cosines[index]);
-            let (rates, axes) = (&mut tip_rates[index], &mut axes[index]);
-            for lane in 0..count {
-                let arm = vector(tip, lane) - point;
-                set_vector(rates, lane, k.cross(&arm));
-                set_vector(tip, lane, point + turn(arm, k, sines[lane], cosines[lane]));
-            }
-            for lane in 0..count {
-                let before = vector(axis, lane);
-                set_vector(axes, lane, before);
-                set_vector(axis, lane, turn(before, k, sines[lane], cosines[lane]));
-            }
+            let by = TurnLanes { sines: &at.sines[index], cosines: &at.cosines[index], sense: 1.0 };
+            arms(joint, count, tip, &mut tip_rates[index]);
+            turn_lanes(tip, count, k, Some(joint.point), by);
+            axes[index] = *axis;
+            turn_lanes(axis, count, k, None, by);
         }
         let mount = self.mount();
-        for lane in 0..count {
-            set_vector(tip, lane, vector(tip, lane) - mount);
-        }
+        replace(tip, count, |tip, _| tip - mount);
+    }
+}
+
+/// How tips move with a rotary joint, mm a radian.
+#[inline(always)]
+fn arms(joint: &Joint, count: usize, tips: &VectorLanes, rates: &mut VectorLanes) {
+    for lane in 0..groups(count) {
+        let arm = vector(tips, lane) - joint.point;
+        set_vector(rates, lane, joint.direction.cross(&arm));
     }
 }

@@ -96,24 +96,71 @@ pub struct Chain {
 /// Most axes of most machines lie along X, Y or Z, where a sixth of the work does.
 #[inline]
 pub fn turn(vector: Vector3<f64>, k: Vector3<f64>, sine: f64, cosine: f64) -> Vector3<f64> {
-    let (x, y, z) = (vector.x, vector.y, vector.z);
-    if k.x == 0.0 && k.y == 0.0 {
-        let sine = sine * k.z;
-        return Vector3::new(x * cosine - y * sine, x * sine + y * cosine, z);
+    match AxisLine::of(k) {
+        AxisLine::Z => turn_about_z(vector, k.z, sine, cosine),
+        AxisLine::X => turn_about_x(vector, k.x, sine, cosine),
+        AxisLine::Y => turn_about_y(vector, k.y, sine, cosine),
+        AxisLine::Askew => turn_askew(vector, k, sine, cosine),
     }
-    if k.y == 0.0 && k.z == 0.0 {
-        let sine = sine * k.x;
-        return Vector3::new(x, y * cosine - z * sine, y * sine + z * cosine);
-    }
-    if k.x == 0.0 && k.z == 0.0 {
-        let sine = sine * k.y;
-        return Vector3::new(z * sine + x * cosine, y, z * cosine - x * sine);
-    }
-    turn_askew(vector, k, sine, cosine)
 }
 
-#[inline]
-fn turn_askew(vector: Vector3<f64>, k: Vector3<f64>, sine: f64, cosine: f64) -> Vector3<f64> {
+/// Which way the line of a rotary axis lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum AxisLine {
+    X,
+    Y,
+    Z,
+    Askew,
+}
+
+impl AxisLine {
+    /// The line of the unit vector `k`.
+    #[inline]
+    pub(super) fn of(k: Vector3<f64>) -> Self {
+        if k.x == 0.0 && k.y == 0.0 {
+            Self::Z
+        } else if k.y == 0.0 && k.z == 0.0 {
+            Self::X
+        } else if k.x == 0.0 && k.z == 0.0 {
+            Self::Y
+        } else {
+            Self::Askew
+        }
+    }
+}
+
+/// [`turn`] about X; `k` is 1 or -1.
+#[inline(always)]
+pub(super) fn turn_about_x(vector: Vector3<f64>, k: f64, sine: f64, cosine: f64) -> Vector3<f64> {
+    let (x, y, z) = (vector.x, vector.y, vector.z);
+    let sine = sine * k;
+    Vector3::new(x, y * cosine - z * sine, y * sine + z * cosine)
+}
+
+/// [`turn`] about Y; `k` is 1 or -1.
+#[inline(always)]
+pub(super) fn turn_about_y(vector: Vector3<f64>, k: f64, sine: f64, cosine: f64) -> Vector3<f64> {
+    let (x, y, z) = (vector.x, vector.y, vector.z);
+    let sine = sine * k;
+    Vector3::new(z * sine + x * cosine, y, z * cosine - x * sine)
+}
+
+/// [`turn`] about Z; `k` is 1 or -1.
+#[inline(always)]
+pub(super) fn turn_about_z(vector: Vector3<f64>, k: f64, sine: f64, cosine: f64) -> Vector3<f64> {
+    let (x, y, z) = (vector.x, vector.y, vector.z);
+    let sine = sine * k;
+    Vector3::new(x * cosine - y * sine, x * sine + y * cosine, z)
+}
+
+/// [`turn`] about any direction.
+#[inline(always)]
+pub(super) fn turn_askew(
+    vector: Vector3<f64>,
+    k: Vector3<f64>,
+    sine: f64,
+    cosine: f64,
+) -> Vector3<f64> {
     vector * cosine + k.cross(&vector) * sine + k * (k.dot(&vector) * (1.0 - cosine))
 }
 

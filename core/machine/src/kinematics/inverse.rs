@@ -286,12 +286,13 @@ impl Solver {
 
     /// The rotary angles of a branch that point the tool along the first `count` of `axes` (unit vectors, part frame),
     /// into `at`, and how far each is from the poles. False where an angle is free, the branches meet or the machine
-    /// does not reach, or where not two axes alone point the tool, nor it stands as it is wanted: these points are left to
-    /// [`Solver::orient`].
+    /// may miss a direction by more than `tolerance` (radians), or where more than two axes point the tool: these points are
+    /// left to [`Solver::orient`].
     pub fn angles_all(
         &self,
         axes: [&Lanes; 3],
         branch: usize,
+        tolerance: f64,
         count: usize,
         at: &mut AxisBatch,
         latitudes: &mut LatitudeLanes,
@@ -304,7 +305,7 @@ impl Solver {
                 at.joints[index][..count.min(LANES)].fill(self.held[index]);
             }
         }
-        orientation.angles_all(axes, branch, count, at, latitudes)
+        orientation.angles_all(axes, branch, tolerance, count, at, latitudes)
     }
 
     /// Values of the joints that stand still, mm or radians.

@@ -8,7 +8,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::batch::{Column, LANES, Lanes, VectorColumn, vector};
+use super::batch::{Column, LANES, Lanes, VectorColumn, groups, steps, vector, widely};
 use super::chain::{Chain, Joints, MAX_AXES, Trace, Turns, turn};
 use super::inverse::Solver;
 use super::linear::{FLAT, Linear, longest_row};
@@ -21,6 +21,26 @@ const CLOSE: f64 = 1.002;
 
 /// No piece of a block is halved that is as short as this; what is said of it holds for pieces of any length.
 const SHORTEST: f64 = 1.0 / 4096.0;
+
+/// Takes [`TcpBlock::quick`] of many blocks beyond a rotary joint.
+#[inline(always)]
+fn pass_lanes(
+    joints: &Column,
+    rates: &VectorColumn,
+    count: usize,
+    slopes: &mut Lanes,
+    bends: &mut Lanes,
+) {
+    for lane in 0..groups(count) {
+        let w = (joints[lane + 1] - joints[lane]).abs();
+        let first = vector(rates, lane).norm_squared();
+        let last = vector(rates, lane + 1).norm_squared();
+        // A joint that stands adds zeros.
+        let radius = if first > last { first } else { last }.sqrt() + bends[lane] / 8.0;
+        bends[lane] += w * (w * radius + 2.0 * slopes[lane]);
+        slopes[lane] += w * radius;
+    }
+}
 
 /// A block along which the control keeps the tip on a straight line.
 #[derive(Clone, Copy, Debug)]
@@ -154,33 +174,24 @@ impl<'a> TcpBlock<'a> {
         let Some(linear) = solver.linear().filter(|linear| linear.inverse.is_some()) else {
             return false;
         };
-        let count = count.min(LANES);
-        let pass = |index: usize, slopes: &mut Lanes, bends: &mut Lanes| {
-            let (joints, rates) = (&joints[index], &rates[index]);
-            for lane in 0..count {
-                let w = (joints[lane + 1] - joints[lane]).abs();
-                let first = vector(rates, lane).norm_squared();
-                let last = vector(rates, lane + 1).norm_squared();
-                // A joint that stands adds zeros.
-                let radius = if first > last { first } else { last }.sqrt() + bends[lane] / 8.0;
-                bends[lane] += w * (w * radius + 2.0 * slopes[lane]);
-                slopes[lane] += w * radius;
-            }
-        };
-        let [mut slopes, mut front, mut behind] = [[0.0; LANES]; 3];
-        for (lane, slope) in slopes[..count].iter_mut().enumerate() {
-            *slope = (vector(tips, lane + 1) - vector(tips, lane)).norm();
-        }
-        for index in 0..linear.first {
-            pass(index, &mut slopes, &mut front);
-        }
-        slopes = [0.0; LANES];
-        for index in (linear.last + 1..solver.chain().joints().len()).rev() {
-            pass(index, &mut slopes, &mut behind);
-        }
-        for lane in 0..count {
-            bends[lane] = linear.reach * (front[lane] + behind[lane]);
-        }
+        let joints_of = solver.chain().joints().len();
+        widely(
+            #[inline(always)]
+            || {
+                let [mut slopes, mut front, mut behind] = [[0.0; LANES]; 3];
+                steps(tips, count, &mut slopes);
+                for index in 0..linear.first {
+                    pass_lanes(&joints[index], &rates[index], count, &mut slopes, &mut front);
+                }
+                slopes = [0.0; LANES];
+                for index in (linear.last + 1..joints_of).rev() {
+                    pass_lanes(&joints[index], &rates[index], count, &mut slopes, &mut behind);
+                }
+                for lane in 0..groups(count) {
+                    bends[lane] = linear.reach * (front[lane] + behind[lane]);
+                }
+            },
+        );
         true
     }
 

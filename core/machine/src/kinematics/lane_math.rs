@@ -6,7 +6,7 @@
 
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, PI};
 
-use super::batch::{LANES, Lanes};
+use super::batch::{LANES, Lanes, groups, widely};
 
 /// Coefficients of the sine on an eighth of a turn.
 const SINE: [f64; 6] = [
@@ -63,15 +63,12 @@ const HALF_TURN_REST: f64 = 1.2246467991473532e-16;
 
 /// Fills in sines and cosines of the first `count` angles, radians.
 pub fn sincos_all(angles: &Lanes, count: usize, sines: &mut Lanes, cosines: &mut Lanes) {
-    let count = count.min(LANES);
-    let mut doubts = 0_u64;
-    for lane in 0..count {
-        let found = sincos(angles[lane]);
-        (sines[lane], cosines[lane]) = (found.sine, found.cosine);
-        doubts += u64::from(found.doubt);
-    }
+    let doubts = widely(
+        #[inline(always)]
+        || sincos_lanes(angles, groups(count), sines, cosines),
+    );
     if doubts > 0 {
-        for lane in 0..count {
+        for lane in 0..count.min(LANES) {
             if sincos(angles[lane]).doubt {
                 (sines[lane], cosines[lane]) = libm::sincos(angles[lane]);
             }
@@ -79,22 +76,43 @@ pub fn sincos_all(angles: &Lanes, count: usize, sines: &mut Lanes, cosines: &mut
     }
 }
 
+/// Fills in sines and cosines; gives the number of those that `libm` has to say.
+#[inline(always)]
+fn sincos_lanes(angles: &Lanes, count: usize, sines: &mut Lanes, cosines: &mut Lanes) -> u64 {
+    let mut doubts = 0_u64;
+    for lane in 0..count {
+        let found = sincos(angles[lane]);
+        (sines[lane], cosines[lane]) = (found.sine, found.cosine);
+        doubts += u64::from(found.doubt);
+    }
+    doubts
+}
+
 /// Fills in the angles of the first `count` directions, radians, as `libm::atan2` has them.
 pub fn atan2_all(y: &Lanes, x: &Lanes, count: usize, angles: &mut Lanes) {
-    let count = count.min(LANES);
+    let doubts = widely(
+        #[inline(always)]
+        || atan2_lanes(y, x, groups(count), angles),
+    );
+    if doubts > 0 {
+        for lane in 0..count.min(LANES) {
+            if atan2(y[lane], x[lane]).1 {
+                angles[lane] = libm::atan2(y[lane], x[lane]);
+            }
+        }
+    }
+}
+
+/// Fills in angles; gives the number of those that `libm` has to say.
+#[inline(always)]
+fn atan2_lanes(y: &Lanes, x: &Lanes, count: usize, angles: &mut Lanes) -> u64 {
     let mut doubts = 0_u64;
     for lane in 0..count {
         let (angle, doubt) = atan2(y[lane], x[lane]);
         angles[lane] = angle;
         doubts += u64::from(doubt);
     }
-    if doubts > 0 {
-        for lane in 0..count {
-            if atan2(y[lane], x[lane]).1 {
-                angles[lane] = libm::atan2(y[lane], x[lane]);
-            }
-        }
-    }
+    doubts
 }
 
 /// Sine and cosine, and whether `libm` has to say them.

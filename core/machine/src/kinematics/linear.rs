@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::batch::{AxisBatch, LANES, VectorLanes, set_vector, vector};
+use super::batch::{AxisBatch, LANES, TurnLanes, VectorLanes, replace, turn_lanes, vector, widely};
 use super::chain::{Chain, Joints, MAX_AXES, Turns, turn};
 use super::derivatives::LinearShare;
 use super::fault::{NoClosedForm, Unreachable};
@@ -197,38 +197,46 @@ impl Linear {
         let Some(inverse) = self.inverse.filter(|_| !self.more) else {
             return false;
         };
+        widely(
+            #[inline(always)]
+            || self.place_lanes(chain, tips, count, at, inverse),
+        );
+        true
+    }
+
+    /// [`Linear::place_batch`], with the inverse of the directions of the linear axes.
+    #[inline(always)]
+    fn place_lanes(
+        &self,
+        chain: &Chain,
+        tips: &VectorLanes,
+        count: usize,
+        at: &mut AxisBatch,
+        inverse: Matrix3<f64>,
+    ) {
         let axes = chain.joints();
-        let count = count.min(LANES);
-        let [mut targets, mut ends] = [[[0.0; LANES]; 3]; 2];
         let (mount, tip) = (chain.mount(), chain.tip());
-        for lane in 0..count {
-            set_vector(&mut targets, lane, vector(tips, lane) + mount);
-            set_vector(&mut ends, lane, tip);
-        }
+        let mut targets = *tips;
+        replace(&mut targets, count, |tip, _| tip + mount);
         for (index, joint) in axes[..self.first].iter().enumerate() {
-            let (k, point) = (joint.direction, joint.point);
             let (sines, cosines) = (&at.sines[index], &at.cosines[index]);
-            for lane in 0..count {
-                let arm = vector(&targets, lane) - point;
-                set_vector(&mut targets, lane, point + turn(arm, k, -sines[lane], cosines[lane]));
-            }
+            let by = TurnLanes { sines, cosines, sense: -1.0 };
+            turn_lanes(&mut targets, count, joint.direction, Some(joint.point), by);
         }
-        for index in (self.last + 1..axes.len()).rev() {
-            let (k, point) = (axes[index].direction, axes[index].point);
-            let (sines, cosines) = (&at.sines[index], &at.cosines[index]);
-            for lane in 0..count {
-                let arm = vector(&ends, lane) - point;
-                set_vector(&mut ends, lane, point + turn(arm, k, sines[lane], cosines[lane]));
+        if self.last + 1 < axes.len() {
+            let mut ends = [[tip.x; LANES], [tip.y; LANES], [tip.z; LANES]];
+            for (index, joint) in axes.iter().enumerate().skip(self.last + 1).rev() {
+                let (sines, cosines) = (&at.sines[index], &at.cosines[index]);
+                let by = TurnLanes { sines, cosines, sense: 1.0 };
+                turn_lanes(&mut ends, count, joint.direction, Some(joint.point), by);
             }
-        }
-        for lane in 0..count {
-            let values = inverse * (vector(&targets, lane) - vector(&ends, lane));
-            set_vector(&mut targets, lane, values);
+            replace(&mut targets, count, |target, lane| inverse * (target - vector(&ends, lane)));
+        } else {
+            replace(&mut targets, count, |target, _| inverse * (target - tip));
         }
         for (values, joint) in targets.iter().zip(self.joints) {
-            at.joints[joint][..count].copy_from_slice(&values[..count]);
+            at.joints[joint] = *values;
         }
-        true
     }
 
     /// [`Linear::place`] with more than three linear axes; those that are held stand where `joints` has them.

@@ -9,7 +9,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::batch::{AxisBatch, LANES, Lanes};
+use super::batch::{AxisBatch, LANES, Lanes, groups, largest, least, widely};
 use super::chain::{Chain, Joints, Pose, Turns, square, turn};
 use super::fault::{NoClosedForm, POLE, Unreachable};
 use super::lane_math::atan2_all;
@@ -75,6 +75,10 @@ impl Default for LatitudeLanes {
         Self { sines: [0.0; LANES], cosines: [0.0; LANES] }
     }
 }
+
+/// Sines and cosines of the two turns of many points, not of unit length.
+#[derive(Default)]
+struct TwoTurns([LatitudeLanes; 2]);
 
 /// A wanted axis as the two turns share it out: see the head of this file.
 #[derive(Clone, Copy, Debug)]
@@ -293,6 +297,7 @@ impl Orientation {
         &self,
         axes: [&Lanes; 3],
         branch: usize,
+        tolerance: f64,
         count: usize,
         at: &mut AxisBatch,
         latitudes: &mut LatitudeLanes,
@@ -308,7 +313,26 @@ impl Orientation {
                 latitudes.cosines[..count].fill(Branches::ONE.u.x);
                 same(0) && same(1) && same(2)
             }
-            Self::One { .. } => false,
+            Self::One { joint, before, k, a } => {
+                let pointer = Pointer { k: *k, from: across(*k, *a), a: *a, tolerance };
+                let mut turns = LatitudeLanes::default();
+                let [x, y, z] = axes;
+                let wanted = |lane: usize| Vector3::new(x[lane], y[lane], z[lane]);
+                let reached = widely(
+                    #[inline(always)]
+                    || match before {
+                        None => pointer.turn_lanes(wanted, count, &mut turns, latitudes),
+                        Some(before) => {
+                            let wanted = |lane: usize| before * wanted(lane);
+                            pointer.turn_lanes(wanted, count, &mut turns, latitudes)
+                        }
+                    },
+                );
+                if reached {
+                    atan2_all(&turns.sines, &turns.cosines, count, &mut at.joints[*joint]);
+                }
+                reached
+            }
         }
     }
 
@@ -344,6 +368,53 @@ impl Orientation {
         if let Self::Two(two) = self {
             two.follow(pose, joints);
         }
+    }
+}
+
+/// What a single rotary axis points.
+struct Pointer {
+    /// The axis, what is pointed, and its part across the axis.
+    k: Vector3<f64>,
+    a: Vector3<f64>,
+    from: Vector3<f64>,
+    /// How far what is pointed may miss, radians.
+    tolerance: f64,
+}
+
+impl Pointer {
+    /// Fills in sines and cosines of the turns to many directions, not of unit length; false where one is free, or
+    /// perhaps missed by more than the tolerance.
+    #[inline(always)]
+    fn turn_lanes(
+        &self,
+        wanted: impl Fn(usize) -> Vector3<f64>,
+        count: usize,
+        turns: &mut LatitudeLanes,
+        latitudes: &mut LatitudeLanes,
+    ) -> bool {
+        let Self { k, a, from, tolerance } = *self;
+        // Of a unit vector as seen from the axis: what is along it, and what is across.
+        let (along, beside) = (k.dot(&a), from.norm());
+        let [mut sines_squared, mut misses] = [[0.0; LANES]; 2];
+        for lane in 0..groups(count) {
+            let u = wanted(lane);
+            let to = across(k, u);
+            turns.sines[lane] = k.dot(&from.cross(&to));
+            turns.cosines[lane] = from.dot(&to);
+            let sine_squared = k.cross(&u).norm_squared();
+            sines_squared[lane] = sine_squared;
+            let (off, up) = (sine_squared.sqrt() - beside, k.dot(&u) - along);
+            misses[lane] = off * off + up * up;
+            latitudes.sines[lane] = Branches::ONE.sine;
+            latitudes.cosines[lane] = u.x;
+        }
+        let count = count.min(LANES);
+        // An angle below a fifth is no larger than 1.01 chords; rounding is far below 1e-9.
+        let miss = 1.01 * largest(&misses[..count]).sqrt() + 1e-9;
+        let far = POLE * (1.0 + 1e-6);
+        miss <= tolerance.min(0.2)
+            && k.cross(&a).norm() >= POLE
+            && least(&sines_squared[..count]) >= far * far
     }
 }
 
@@ -433,33 +504,61 @@ impl Two {
         if self.third.is_some() {
             return false;
         }
-        let count = count.min(LANES);
-        let [mut first_sines, mut first_cosines, mut sines, mut cosines] = [[0.0; LANES]; 4];
-        let mut least_square = f64::INFINITY;
-        let mut least_sine = f64::INFINITY;
-        for lane in 0..count {
-            let axis = Vector3::new(axes[0][lane], axes[1][lane], axes[2][lane]);
-            let u = self.before.as_ref().map_or(axis, |before| before * axis);
-            let shared = self.shared(u);
+        let mut turns = TwoTurns::default();
+        let reached = widely(
+            #[inline(always)]
+            || match &self.before {
+                None => self.turn_lanes(axes, branch, count, |axis| axis, &mut turns, latitudes),
+                Some(before) => self.turn_lanes(
+                    axes,
+                    branch,
+                    count,
+                    |axis| before * axis,
+                    &mut turns,
+                    latitudes,
+                ),
+            },
+        );
+        if !reached {
+            return false;
+        }
+        for (joint, turn) in self.joints.into_iter().zip(&turns.0) {
+            atan2_all(&turn.sines, &turn.cosines, count, &mut at.joints[joint]);
+        }
+        true
+    }
+
+    /// Fills in the turns of a branch and the latitudes; false where an angle is free, the branches meet or the machine
+    /// does not reach.
+    #[inline(always)]
+    fn turn_lanes(
+        &self,
+        axes: [&Lanes; 3],
+        branch: usize,
+        count: usize,
+        before: impl Fn(Vector3<f64>) -> Vector3<f64>,
+        turns: &mut TwoTurns,
+        latitudes: &mut LatitudeLanes,
+    ) -> bool {
+        let [x, y, z] = axes;
+        let [first, second] = &mut turns.0;
+        let [mut squares, mut sines_squared] = [[0.0; LANES]; 2];
+        let side = if branch == 0 { 1.0 } else { -1.0 };
+        for lane in 0..groups(count) {
+            let shared = self.shared(before(Vector3::new(x[lane], y[lane], z[lane])));
             let SharedTurn { cosine, across, sine_squared, x, square } = shared;
-            least_square = if square < least_square { square } else { least_square };
-            least_sine = if sine_squared < least_sine { sine_squared } else { least_sine };
-            let y = if square > 0.0 { square } else { 0.0 }.sqrt();
-            let y = if branch == 0 { y } else { -y };
+            let y = if square > 0.0 { square } else { 0.0 }.sqrt() * side;
             let u = Vector3::new(cosine, self.towards.dot(&across), self.aside.dot(&across));
-            let [first, second] = self.sines(u, x, y);
-            (first_sines[lane], first_cosines[lane]) = first;
-            (sines[lane], cosines[lane]) = second;
+            let [of_first, of_second] = self.sines(u, x, y);
+            (first.sines[lane], first.cosines[lane]) = of_first;
+            (second.sines[lane], second.cosines[lane]) = of_second;
+            squares[lane] = square;
+            sines_squared[lane] = sine_squared;
             latitudes.sines[lane] = sine_squared.sqrt();
             latitudes.cosines[lane] = cosine;
         }
-        if !(least_square > 0.0 && least_sine >= POLE * POLE) {
-            return false;
-        }
-        let [first, second] = self.joints;
-        atan2_all(&first_sines, &first_cosines, count, &mut at.joints[first]);
-        atan2_all(&sines, &cosines, count, &mut at.joints[second]);
-        true
+        let count = count.min(LANES);
+        least(&squares[..count]) > 0.0 && least(&sines_squared[..count]) >= POLE * POLE
     }
 
     /// Sines and cosines of the two turns, not of unit length: `u` is the wanted axis, and `x` and `y` are those of the
@@ -584,7 +683,12 @@ pub fn angle(a: Vector3<f64>, b: Vector3<f64>) -> f64 {
 #[inline]
 fn angle_about(k: Vector3<f64>, from: Vector3<f64>, to: Vector3<f64>) -> f64 {
     // Across k first: beside a pole little is left of either, and differences of products would lose it.
-    let from = from - k * k.dot(&from);
-    let to = to - k * k.dot(&to);
+    let (from, to) = (across(k, from), across(k, to));
     libm::atan2(k.dot(&from.cross(&to)), from.dot(&to))
+}
+
+/// The part of a vector across the unit vector `k`.
+#[inline(always)]
+fn across(k: Vector3<f64>, vector: Vector3<f64>) -> Vector3<f64> {
+    vector - k * k.dot(&vector)
 }

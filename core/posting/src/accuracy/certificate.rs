@@ -250,13 +250,13 @@ fn fourth_derivatives(chain: &Chain, from: &Trace, to: &Trace) -> DerivativeBoun
 }
 
 /// The larger of two numbers. [`f64::max`] asks besides whether one of them is none, at three times the cost.
-#[inline]
+#[inline(always)]
 pub(super) fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
 /// The largest deviation that an interval can have whose ends are off by `ends`.
-#[inline]
+#[inline(always)]
 pub fn deviation(ends: f64, bend: f64) -> f64 {
     ends + bend / 8.0
 }

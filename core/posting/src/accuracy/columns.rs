@@ -7,7 +7,8 @@
 use nalgebra::Vector3;
 use post_machine::axis_words::WordLanes;
 use post_machine::kinematics::batch::{
-    AxisBatch, Column, LANES, Lanes, Traces, VectorColumn, VectorLanes, set_vector, vector,
+    AxisBatch, Column, LANES, Lanes, Traces, VectorColumn, VectorLanes, groups, largest, least,
+    set_vector, steps, vector, widely,
 };
 use post_machine::kinematics::lane_math::sincos_all;
 use post_machine::kinematics::orientation::LatitudeLanes;
@@ -25,15 +26,15 @@ const INSIDE: f64 = 0.1;
 /// Up to this difference of two unit vectors [`chord_angle`] is a formula without a branch.
 const SHORT_CHORD: f64 = 0.1;
 
-/// A run of cuts at one feed, in the columns of all stages. Each is filled in by one stage and read by those after it.
+/// A run of cuts, in the columns of all stages. Each is filled in by one stage and read by those after it.
 #[derive(Debug)]
 pub(crate) struct RunColumns {
     /// Points.
     pub count: usize,
     /// Lines of the CL file.
     pub lines: [u64; LANES],
-    /// Feed of the tip against the part, mm/min.
-    pub feed: f64,
+    /// Feeds of the tip against the part, mm/min.
+    pub feeds: Lanes,
     /// Wanted tip, mm, and tool axis, part frame.
     pub tip: VectorColumn,
     pub axis: VectorColumn,
@@ -74,7 +75,7 @@ impl Default for RunColumns {
         Self {
             count: 0,
             lines: [0; LANES],
-            feed: 0.0,
+            feeds: [0.0; LANES],
             tip: [EMPTY; 3],
             axis: [EMPTY; 3],
             latitudes: LatitudeLanes::default(),
@@ -158,9 +159,7 @@ impl RunColumns {
             return false;
         }
         let count = self.count;
-        if !placer.words.print_rotary_all(&mut self.at, count, &mut self.printed) {
-            return false;
-        }
+        placer.words.print_rotary_all(&mut self.at, count, &mut self.printed);
         for (index, joint) in chain.joints().iter().enumerate() {
             if joint.rotary {
                 let AxisBatch { joints, sines, cosines } = &mut self.at;
@@ -168,7 +167,7 @@ impl RunColumns {
             }
         }
         for part in 0..3 {
-            self.wanted[part][..count].copy_from_slice(&self.tip[part][1..=count]);
+            self.wanted[part].copy_from_slice(&self.tip[part][1..]);
         }
         let Some(kept) = placer.words.print_tip_all(&mut self.wanted, count, &mut self.printed)
         else {
@@ -190,106 +189,81 @@ impl RunColumns {
 
     /// All linear axes are well inside their travel.
     fn inside(&self, placer: &Placer) -> bool {
-        let joints = placer.solver().chain().joints().iter().enumerate();
+        let joints = placer.solver().chain().joints();
+        let mut ends = [[0.0; 2]; MAX_AXES];
+        widely(
+            #[inline(always)]
+            || {
+                for (joint, ends) in ends.iter_mut().enumerate().take(joints.len()) {
+                    let lanes = &self.at.joints[joint][..self.count];
+                    *ends = [least(lanes), largest(lanes)];
+                }
+            },
+        );
         let mut reach = placer.reach;
-        for (index, _) in joints.filter(|(_, joint)| !joint.rotary) {
-            let lanes = &self.at.joints[index][..self.count];
-            reach += lanes.iter().fold(0.0, |most, value| larger(most, value.abs()));
+        for (_, [low, high]) in joints.iter().zip(ends).filter(|(joint, _)| !joint.rotary) {
+            reach += larger(larger(0.0, high), -low);
         }
         let inside = INSIDE + 4.0 * placer.axis_rounding() * reach;
         placer.linear.iter().all(|limit| {
-            let [least, most] = limit.travel;
-            let lanes = &self.at.joints[limit.joint][..self.count];
-            let low = lanes
-                .iter()
-                .fold(f64::INFINITY, |low, value| if *value < low { *value } else { low });
-            let high = lanes.iter().fold(f64::NEG_INFINITY, |high, value| larger(high, *value));
+            let ([least, most], [low, high]) = (limit.travel, ends[limit.joint]);
             low > least + inside && high < most - inside
         })
     }
 
     /// Puts what was solved after the point before the run.
     fn take_over(&mut self, placer: &Placer) {
-        let count = self.count;
         let joints = placer.solver().chain().joints();
         for (index, joint) in joints.iter().enumerate() {
-            self.joints[index][1..=count].copy_from_slice(&self.at.joints[index][..count]);
-            self.words[index][1..=count].copy_from_slice(&self.printed[index][..count]);
+            self.joints[index][1..].copy_from_slice(&self.at.joints[index]);
+            self.words[index][1..].copy_from_slice(&self.printed[index]);
             for part in 0..3 {
                 if joint.rotary {
-                    let rates = &self.traces.tip_rates[index][part][..count];
-                    self.rates[index][part][1..=count].copy_from_slice(rates);
+                    self.rates[index][part][1..]
+                        .copy_from_slice(&self.traces.tip_rates[index][part]);
                 }
             }
         }
         for part in 0..3 {
-            let (tip, axis) = (&self.traces.tip[part], &self.traces.axis[part]);
-            self.reached_tip[part][1..=count].copy_from_slice(&tip[..count]);
-            self.reached_axis[part][1..=count].copy_from_slice(&axis[..count]);
+            self.reached_tip[part][1..].copy_from_slice(&self.traces.tip[part]);
+            self.reached_axis[part][1..].copy_from_slice(&self.traces.axis[part]);
         }
     }
 
     /// How far tip and tool axis are off by rounding: see [`PathNode::measure`].
     fn measure(&mut self, placer: &Placer) -> bool {
-        let mut chord: f64 = 0.0;
-        let mut missed: f64 = 0.0;
-        for place in 1..=self.count {
-            let off = (vector(&self.reached_axis, place) - vector(&self.axis, place)).norm();
-            chord = larger(chord, off);
-            self.axis_error[place] = short_chord_angle(off);
-            let off = (vector(&self.reached_tip, place) - vector(&self.tip, place)).norm();
-            missed = larger(missed, off);
-            self.tip_error[place] = off;
-        }
+        let count = self.count;
+        let Self { reached_axis, axis, axis_error, reached_tip, tip, tip_error, .. } = self;
+        let [mut chords, mut off] = [[0.0; LANES]; 2];
+        let [chord, missed] = widely(
+            #[inline(always)]
+            || {
+                distances(reached_axis, axis, count, &mut chords);
+                distances(reached_tip, tip, count, &mut off);
+                for lane in 0..groups(count) {
+                    axis_error[lane + 1] = short_chord_angle(chords[lane]);
+                }
+                [largest(&chords[..count]), largest(&off[..count])]
+            },
+        );
+        tip_error[1..].copy_from_slice(&off);
         chord < SHORT_CHORD && missed <= placer.tip_rounding()
     }
 
     /// Certifies the blocks: [`super::NodeMove::whole`] of each. The run ends before the first that the cheap bound does
     /// not clear.
     pub(crate) fn certify(&mut self, placer: &Placer, tolerances: MoveTolerances, keeps: bool) {
-        let count = self.count;
-        let chain = placer.solver().chain();
-        let [mut bend, mut turns, mut reach, mut far] = [[0.0; LANES]; 4];
-        reach[..count].fill(placer.reach);
-        far[..count].fill(1.0);
-        for (index, joint) in chain.joints().iter().enumerate() {
-            let joints = &self.joints[index];
-            for lane in 0..count {
-                let value = larger(joints[lane].abs(), joints[lane + 1].abs());
-                if joint.rotary {
-                    far[lane] = larger(far[lane], value);
-                } else {
-                    reach[lane] += value;
+        let mut sums = BendLanes::new(placer);
+        let [over, chord] = widely(
+            #[inline(always)]
+            || {
+                sums.pass(self, placer);
+                if keeps {
+                    sums.bend = [0.0; LANES];
                 }
-            }
-        }
-        for (index, _) in chain.joints().iter().enumerate().rev().filter(|(_, it)| it.rotary) {
-            let (joints, rates) = (&self.joints[index], &self.rates[index]);
-            for lane in 0..count {
-                // A joint that stands adds zeros.
-                let angle = (joints[lane + 1] - joints[lane]).abs();
-                let ends = (vector(rates, lane), vector(rates, lane + 1));
-                certificate::pass(angle, ends, &mut bend[lane], &mut turns[lane]);
-            }
-        }
-        let (mut over, mut chord): (f64, f64) = (0.0, 0.0);
-        for lane in 0..count {
-            let between = (vector(&self.axis, lane) - vector(&self.axis, lane + 1)).norm();
-            let sweep = short_chord_angle(between);
-            let bends = turns[lane] * turns[lane] + sweep * sweep;
-            let ends = larger(self.axis_error[lane], self.axis_error[lane + 1]);
-            let axis = certificate::deviation(ends, bends);
-            let margin = Placer::margin_of(reach[lane], far[lane]);
-            let ends = larger(self.tip_error[lane], self.tip_error[lane + 1]);
-            let tip = certificate::deviation(ends, if keeps { 0.0 } else { bend[lane] });
-            let bound = DeviationBound {
-                tip: tip + 0.0 + margin.tip,
-                axis: short_chord_angle(axis) + margin.axis,
-            };
-            (self.tip_bound[lane], self.axis_bound[lane]) = (bound.tip, bound.axis);
-            over = larger(over, larger(bound.tip - tolerances.tip, bound.axis - tolerances.axis));
-            chord = larger(chord, larger(axis, between));
-        }
+                sums.bound(self, tolerances)
+            },
+        );
         if chord >= SHORT_CHORD {
             self.count = 0;
         }
@@ -308,9 +282,18 @@ impl RunColumns {
 
     /// Fills in the ways of the tip. The run ends before a block that moves nothing, or the tip no more than `still` mm.
     pub(crate) fn measure_ways(&mut self, still: f64) {
-        for lane in 0..self.count {
-            let way = vector(&self.reached_tip, lane + 1) - vector(&self.reached_tip, lane);
-            self.way[lane] = way.norm();
+        let count = self.count;
+        let Self { reached_tip, way, words, .. } = self;
+        let shortest = widely(
+            #[inline(always)]
+            || {
+                steps(reached_tip, count, way);
+                least(&way[..count])
+            },
+        );
+        let changes = |word: &Column| (0..count).all(|lane| word[lane] != word[lane + 1]);
+        if shortest > still && words.iter().any(changes) {
+            return;
         }
         self.end_before(|run, lane| {
             // A word has changed wherever the tip moves so far: but that is what the block is judged by.
@@ -349,6 +332,141 @@ impl RunColumns {
 /// [`chord_angle`] of a length below [`SHORT_CHORD`].
 #[inline(always)]
 fn short_chord_angle(length: f64) -> f64 {
-    debug_assert!(length >= SHORT_CHORD || chord_angle(length) == certificate::short(length));
+    // What is no number is of a lane after the last.
+    let short = length < SHORT_CHORD;
+    debug_assert!(!short || chord_angle(length) == certificate::short(length));
     certificate::short(length)
+}
+
+/// What a block bends by, and how large the numbers are that say so, of each block of a run.
+struct BendLanes {
+    /// Bounds on the second derivative of the tip, mm.
+    bend: Lanes,
+    /// Angles that the rotary axes turn by, radians.
+    turns: Lanes,
+    /// Lengths that add up to the place of the tip, mm.
+    reach: Lanes,
+    /// The largest angle, radians, at least 1.
+    far: Lanes,
+}
+
+impl BendLanes {
+    fn new(placer: &Placer) -> Self {
+        Self {
+            bend: [0.0; LANES],
+            turns: [0.0; LANES],
+            reach: [placer.reach; LANES],
+            far: [1.0; LANES],
+        }
+    }
+
+    /// Takes the blocks through all joints: [`certificate::quick`].
+    #[inline(always)]
+    fn pass(&mut self, run: &RunColumns, placer: &Placer) {
+        let count = run.count;
+        let joints = placer.solver().chain().joints();
+        for (joint, values) in joints.iter().zip(&run.joints) {
+            if joint.rotary {
+                go_far(values, count, &mut self.far);
+            } else {
+                add_reach(values, count, &mut self.reach);
+            }
+        }
+        for (index, _) in joints.iter().enumerate().rev().filter(|(_, it)| it.rotary) {
+            let (values, rates) = (&run.joints[index], &run.rates[index]);
+            pass_joint(values, rates, count, &mut self.bend, &mut self.turns);
+        }
+    }
+
+    /// Fills in the bounds: [`super::NodeMove::whole`]. Gives the most by which one is over the tolerances, and the largest
+    /// difference of unit vectors that an angle was taken of.
+    #[inline(always)]
+    fn bound(&self, run: &mut RunColumns, tolerances: MoveTolerances) -> [f64; 2] {
+        let count = run.count;
+        let mut between = [0.0; LANES];
+        steps(&run.axis, count, &mut between);
+        let [mut over, mut chords] = [[0.0; LANES]; 2];
+        let ends = ErrorColumns { tip: &run.tip_error, axis: &run.axis_error };
+        let bounds = (&mut run.tip_bound, &mut run.axis_bound);
+        self.bound_lanes(count, &ends, &between, bounds, &mut chords);
+        let RunColumns { tip_bound, axis_bound, .. } = run;
+        for lane in 0..groups(count) {
+            let tip = tip_bound[lane] - tolerances.tip;
+            over[lane] = larger(tip, axis_bound[lane] - tolerances.axis);
+        }
+        [largest(&over[..count]), largest(&chords[..count])]
+    }
+
+    /// Fills in the bounds of tip and tool axis, and the differences of unit vectors that an angle was taken of.
+    #[inline(always)]
+    fn bound_lanes(
+        &self,
+        count: usize,
+        errors: &ErrorColumns<'_>,
+        between: &Lanes,
+        (tip_bounds, axis_bounds): (&mut Lanes, &mut Lanes),
+        chords: &mut Lanes,
+    ) {
+        for lane in 0..groups(count) {
+            let sweep = short_chord_angle(between[lane]);
+            let bends = self.turns[lane] * self.turns[lane] + sweep * sweep;
+            let ends = larger(errors.axis[lane], errors.axis[lane + 1]);
+            let axis = certificate::deviation(ends, bends);
+            let margin = Placer::margin_of(self.reach[lane], self.far[lane]);
+            let ends = larger(errors.tip[lane], errors.tip[lane + 1]);
+            let tip = certificate::deviation(ends, self.bend[lane]);
+            tip_bounds[lane] = tip + 0.0 + margin.tip;
+            axis_bounds[lane] = short_chord_angle(axis) + margin.axis;
+            chords[lane] = larger(axis, between[lane]);
+        }
+    }
+}
+
+/// How far the ends of blocks are off by rounding.
+struct ErrorColumns<'a> {
+    tip: &'a Column,
+    axis: &'a Column,
+}
+
+/// Angles at the ends of blocks are so large.
+#[inline(always)]
+fn go_far(angles: &Column, count: usize, far: &mut Lanes) {
+    for lane in 0..groups(count) {
+        far[lane] = larger(far[lane], larger(angles[lane].abs(), angles[lane + 1].abs()));
+    }
+}
+
+/// A linear axis adds to the reach.
+#[inline(always)]
+fn add_reach(values: &Column, count: usize, reach: &mut Lanes) {
+    for lane in 0..groups(count) {
+        reach[lane] += larger(values[lane].abs(), values[lane + 1].abs());
+    }
+}
+
+/// Takes blocks beyond a rotary joint: [`certificate::pass`].
+#[inline(always)]
+fn pass_joint(
+    angles: &Column,
+    rates: &VectorColumn,
+    count: usize,
+    bends: &mut Lanes,
+    turns: &mut Lanes,
+) {
+    for lane in 0..groups(count) {
+        // A joint that stands adds zeros.
+        let angle = (angles[lane + 1] - angles[lane]).abs();
+        let ends = (vector(rates, lane), vector(rates, lane + 1));
+        let (mut bend, mut turn) = (bends[lane], turns[lane]);
+        certificate::pass(angle, ends, &mut bend, &mut turn);
+        (bends[lane], turns[lane]) = (bend, turn);
+    }
+}
+
+/// Distances of the points of two columns, the first aside.
+#[inline(always)]
+fn distances(a: &VectorColumn, b: &VectorColumn, count: usize, out: &mut Lanes) {
+    for (lane, distance) in out[..groups(count)].iter_mut().enumerate() {
+        *distance = (vector(a, lane + 1) - vector(b, lane + 1)).norm();
+    }
 }

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use post_machine::description::Tcp;
 use post_machine::kinematics::TcpBlock;
-use post_machine::kinematics::batch::LANES;
+use post_machine::kinematics::batch::{LANES, largest, widely};
 
 use super::{BlockStage, LargestDeviations, STILL};
 use crate::accuracy::{MoveTolerances, NodeMove, Placer, RunColumns};
@@ -51,36 +51,26 @@ impl BlockStage<'_> {
         if !TcpBlock::quick_all(solver, joints, rates, &run.reached_tip, run.count, &mut bends) {
             return false;
         }
-        let mut clear = 0;
-        for (lane, bend) in bends.into_iter().enumerate().take(run.count) {
-            let [from, to] =
-                [lane, lane + 1].map(|place| std::array::from_fn(|joint| run.joints[joint][place]));
-            if self.kinds.turning(&from, &to) {
-                let asked = run.way[lane] / run.feed;
-                let Some(follow) =
-                    self.between.cleared(self.machine, placer, bend, [&from, &to], asked)
-                else {
-                    break;
-                };
-                run.follow[lane] = follow.minutes;
-            } else {
-                run.follow[lane] = 0.0;
-            }
-            clear += 1;
-        }
-        run.count = clear;
+        self.between.cleared_all(self.machine, placer, &bends, run);
         true
     }
 
     /// The largest deviations with those of a run: of a block that may be the worst the tight bound is kept.
     fn largest_of(&self, run: &mut RunColumns) -> LargestDeviations {
-        let mut largest = self.largest;
+        let mut largest_yet = self.largest;
         let (Some(placer), Some(last)) = (&self.placer, self.last.as_deref()) else {
-            return largest;
+            return largest_yet;
         };
+        let [tip, axis] = widely(
+            #[inline(always)]
+            || [largest(&run.tip_bound[..run.count]), largest(&run.axis_bound[..run.count])],
+        );
+        if tip + 0.0 <= largest_yet.cut.tip && axis <= largest_yet.cut.axis {
+            return largest_yet;
+        }
         for lane in 0..run.count {
             let bound = run.bound(lane);
-            if bound.tip + 0.0 > largest.cut.tip || bound.axis > largest.cut.axis {
+            if bound.tip + 0.0 > largest_yet.cut.tip || bound.axis > largest_yet.cut.axis {
                 let from = if lane == 0 { *last } else { run.node(placer, lane) };
                 let to = run.node(placer, lane + 1);
                 let ends = [&from, &to];
@@ -88,9 +78,9 @@ impl BlockStage<'_> {
                 let bound = whole.measured().least(bound);
                 (run.tip_bound[lane], run.axis_bound[lane]) = (bound.tip, bound.axis);
             }
-            largest.cut = largest.cut.and(run.bound(lane));
+            largest_yet.cut = largest_yet.cut.and(run.bound(lane));
         }
-        largest
+        largest_yet
     }
 
     /// The blocks of the run are handed on.

@@ -5,11 +5,12 @@
 
 use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::batch::{Column, LANES, Lanes, groups, largest, widely};
 use post_machine::kinematics::travel::{OverTravel, over};
 use post_machine::kinematics::{Joints, MAX_AXES, TcpBlock};
 
 use super::PathLeg;
-use crate::accuracy::{PathNode, Placer};
+use crate::accuracy::{PathNode, Placer, RunColumns};
 use crate::findings::Findings;
 use crate::refusal::{self, FINDS_A_MOUNT};
 
@@ -109,21 +110,11 @@ impl CompensatingMotion {
         [from, to]: [&Joints; 2],
         asked: f64,
     ) -> Option<FollowTime> {
-        // A curve strays from its chord by an eighth of what its second derivative can be, its slope from the
-        // chord's by half of it, and a curve that turns back goes a quarter of it more at most.
-        let (strays, faster) = (bend / 8.0, bend / 2.0);
         let mut follow = FollowTime::default();
         for joint in placer.solver().sliding()? {
-            let (first, last) = (from[joint], to[joint]);
-            let chord = (last - first).abs();
-            let (low, high) = if first < last { (first, last) } else { (last, first) };
-            let goes_on = chord >= faster;
-            let stays = bend <= 4.0 * UNSEEN
-                && machine.axes[joint]
-                    .travel
-                    .is_none_or(|[least, most]| low - strays >= least && high + strays <= most);
-            let minutes = (chord + faster) * self.slowness[joint];
-            if !(goes_on || stays) || minutes > asked {
+            let slide = Slide::new(machine.axes[joint].travel, self.slowness[joint]);
+            let (minutes, clear) = slide.follow(bend, from[joint], to[joint]);
+            if !clear || minutes > asked {
                 return None;
             }
             if minutes > follow.minutes {
@@ -131,6 +122,48 @@ impl CompensatingMotion {
             }
         }
         Some(follow)
+    }
+
+    /// [`CompensatingMotion::cleared`] of the blocks of a run, whose second derivatives keep to `bends`, mm: the run ends
+    /// before the first that has to be looked into. Where nothing turns nothing has to follow.
+    pub(super) fn cleared_all(
+        &self,
+        machine: &Machine,
+        placer: &Placer,
+        bends: &Lanes,
+        run: &mut RunColumns,
+    ) {
+        let Some(sliding) = placer.solver().sliding() else {
+            return run.end_before(|_, _| true);
+        };
+        let joints = placer.solver().chain().joints();
+        let [mut doubts, mut turning] = [[0.0; LANES]; 2];
+        let doubt = widely(
+            #[inline(always)]
+            || {
+                let RunColumns { count, joints: values, way, feeds, follow, .. } = run;
+                *follow = [0.0; LANES];
+                for (joint, values) in joints.iter().zip(values.iter()) {
+                    if joint.rotary {
+                        mark_turns(values, *count, &mut turning);
+                    }
+                }
+                for joint in sliding {
+                    let slide = Slide::new(machine.axes[joint].travel, self.slowness[joint]);
+                    slide.follow_all(bends, &values[joint], *count, (follow, &mut doubts));
+                }
+                for lane in 0..groups(*count) {
+                    let late = follow[lane] > way[lane] / feeds[lane];
+                    let doubt = if late { 1.0 } else { doubts[lane] };
+                    doubts[lane] = doubt * turning[lane];
+                    follow[lane] *= turning[lane];
+                }
+                largest(&doubts[..*count])
+            },
+        );
+        if doubt > 0.0 {
+            run.end_before(|_, lane| doubts[lane] > 0.0);
+        }
     }
 
     #[inline(never)]
@@ -176,6 +209,62 @@ impl CompensatingMotion {
             }
         }
         FollowTime { minutes: slides.minutes, joint: slides.slowest }
+    }
+}
+
+/// A linear axis that follows.
+#[derive(Clone, Copy)]
+struct Slide {
+    /// Travel, mm.
+    least: f64,
+    most: f64,
+    /// Minutes that it needs for one mm.
+    slowness: f64,
+}
+
+impl Slide {
+    fn new(travel: Option<[f64; 2]>, slowness: f64) -> Self {
+        let [least, most] = travel.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        Self { least, most, slowness }
+    }
+
+    /// The least time of a block from `first` to `last`, mm, whose second derivative keeps to `bend`, minutes; and whether
+    /// it stays inside travel and nothing of its range or way goes unseen.
+    #[inline(always)]
+    fn follow(self, bend: f64, first: f64, last: f64) -> (f64, bool) {
+        // A curve strays from its chord by an eighth of what its second derivative can be, its slope from the
+        // chord's by half of it, and a curve that turns back goes a quarter of it more at most.
+        let (strays, faster) = (bend / 8.0, bend / 2.0);
+        let chord = (last - first).abs();
+        let low = if first < last { first } else { last };
+        let high = if first < last { last } else { first };
+        let inside = (low - strays >= self.least) & (high + strays <= self.most);
+        let clear = (chord >= faster) | ((bend <= 4.0 * UNSEEN) & inside);
+        ((chord + faster) * self.slowness, clear)
+    }
+
+    /// [`Slide::follow`] of many blocks: keeps the longest times, and marks by 1 what is not clear.
+    #[inline(always)]
+    fn follow_all(
+        self,
+        bends: &Lanes,
+        values: &Column,
+        count: usize,
+        (times, doubts): (&mut Lanes, &mut Lanes),
+    ) {
+        for lane in 0..groups(count) {
+            let (minutes, clear) = self.follow(bends[lane], values[lane], values[lane + 1]);
+            times[lane] = if minutes > times[lane] { minutes } else { times[lane] };
+            doubts[lane] = if clear { doubts[lane] } else { 1.0 };
+        }
+    }
+}
+
+/// Marks by 1 the blocks in which a joint turns.
+#[inline(always)]
+fn mark_turns(values: &Column, count: usize, turning: &mut Lanes) {
+    for lane in 0..groups(count) {
+        turning[lane] = if values[lane] != values[lane + 1] { 1.0 } else { turning[lane] };
     }
 }
 

@@ -4,7 +4,9 @@
 use std::f64::consts::{PI, TAU};
 
 use post_machine::kinematics::Joints;
-use post_machine::kinematics::batch::{Lanes, set_vector, vector};
+use post_machine::kinematics::batch::{
+    LANES, Lanes, VectorColumn, groups, largest, least, set_vector, steps, vector, widely,
+};
 
 use super::ConfigurationStage;
 use super::route::Route;
@@ -16,13 +18,9 @@ use crate::program::{MoveFeed, StraightMove};
 const LONGEST_CHORD: f64 = 0.5;
 
 /// Least and largest of some numbers.
+#[inline(always)]
 fn ends(of: &[f64]) -> [f64; 2] {
-    let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
-    for value in of {
-        ends[0] = if *value < ends[0] { *value } else { ends[0] };
-        ends[1] = if *value > ends[1] { *value } else { ends[1] };
-    }
-    ends
+    [least(of), largest(of)]
 }
 
 impl ConfigurationStage<'_> {
@@ -37,10 +35,12 @@ impl ConfigurationStage<'_> {
         if !ready {
             return false;
         }
-        for place in 1..=run.count {
-            let (tip, axis) = (vector(&run.tip, place), vector(&run.axis, place));
-            set_vector(&mut run.tip, place, self.control_point(tip, axis));
-        }
+        // The control point is the tip: a zero is added, whose sign counts.
+        let RunColumns { tip, axis, count, .. } = run;
+        widely(
+            #[inline(always)]
+            || add_zeros(tip, axis, *count),
+        );
         self.route.carries_on(run)
     }
 
@@ -75,25 +75,39 @@ impl Trellis {
             return false;
         }
         set_vector(&mut run.axis, 0, layer.motion.axis);
-        let mut chord = 0.0;
-        for lane in 0..count {
-            let turned = (vector(&run.axis, lane) - vector(&run.axis, lane + 1)).norm();
-            chord = if turned > chord { turned } else { chord };
+        let mut chords = [0.0; LANES];
+        let mut chord = longest_step(&run.axis, count, &mut chords);
+        if chord >= LONGEST_CHORD {
+            // A point that is turned to from afar goes by itself.
+            run.end_before(|_, lane| chords[lane] >= LONGEST_CHORD);
+            chord = largest(&chords[..run.count]);
         }
-        let axes = run.axis;
-        let lanes = |part: usize| axes[part].last_chunk();
+        let count = run.count;
+        if count == 0 {
+            return false;
+        }
+        let RunColumns { axis, at, latitudes, .. } = run;
+        let lanes = |part: usize| axis[part].last_chunk();
         let (Some(i), Some(j), Some(k)) = (lanes(0), lanes(1), lanes(2)) else {
             return false;
         };
         let branch = usize::from(state.branch);
-        let turned =
-            placer.solver().angles_all([i, j, k], branch, count, &mut run.at, &mut run.latitudes);
-        if !turned || chord >= LONGEST_CHORD {
+        if !placer.solver().angles_all(
+            [i, j, k],
+            branch,
+            self.axes.axis_tolerance,
+            count,
+            at,
+            latitudes,
+        ) {
             return false;
         }
         run.arc = 1.02 * chord;
-        let [sine, _] = ends(&run.latitudes.sines[..count]);
-        let cosines = ends(&run.latitudes.cosines[..count]);
+        let latitudes = &run.latitudes;
+        let [[sine, _], cosines] = widely(
+            #[inline(always)]
+            || [ends(&latitudes.sines[..count]), ends(&latitudes.cosines[..count])],
+        );
         if self.eased(sine) || !self.axes.all_far(sine, cosines, run.arc + 2.0 * self.freedom) {
             return false;
         }
@@ -106,7 +120,10 @@ impl Trellis {
             let Some([least, most]) = axis.travel else {
                 return true;
             };
-            let [low, high] = ends(&angles[..count]);
+            let [low, high] = widely(
+                #[inline(always)]
+                || ends(&angles[..count]),
+            );
             let way = if axis.first { 0.0 } else { way };
             let last = state.joints[joint];
             low >= least
@@ -125,7 +142,7 @@ impl Trellis {
             tip: vector(&run.tip, run.count),
             axis: vector(&run.axis, run.count),
             edge: nalgebra::Vector3::zeros(),
-            pace: MoveFeed::PerMinute(run.feed),
+            pace: MoveFeed::PerMinute(run.feeds[run.count - 1]),
             chord: 0.0,
         };
         let last = run.count - 1;
@@ -156,12 +173,11 @@ impl Trellis {
 
 /// Puts angles on the turns nearest to the angle before each: see [`super::solution::ChoiceAxes::carried`].
 fn go_on(angles: &mut Lanes, count: usize, before: f64) {
-    let mut jump = (before - angles[0]).abs();
-    for lane in 1..count {
-        let step = (angles[lane - 1] - angles[lane]).abs();
-        jump = if step > jump { step } else { jump };
-    }
-    if jump <= PI {
+    let jump = widely(
+        #[inline(always)]
+        || longest_jump(angles, count),
+    );
+    if (before - angles[0]).abs() <= PI && jump <= PI {
         return;
     }
     let mut last = before;
@@ -171,5 +187,36 @@ fn go_on(angles: &mut Lanes, count: usize, before: f64) {
             *angle += TAU * f64::round(away / TAU);
         }
         last = *angle;
+    }
+}
+
+/// The largest difference of an angle from the one before.
+#[inline(always)]
+fn longest_jump(angles: &Lanes, count: usize) -> f64 {
+    let mut jumps = [0.0; LANES];
+    for lane in 1..LANES {
+        jumps[lane] = (angles[lane - 1] - angles[lane]).abs();
+    }
+    largest(&jumps[..count])
+}
+
+/// The longest step from a place to the next, and all of them.
+fn longest_step(of: &VectorColumn, count: usize, all: &mut Lanes) -> f64 {
+    widely(
+        #[inline(always)]
+        || {
+            steps(of, count, all);
+            largest(&all[..count])
+        },
+    )
+}
+
+/// Adds axes of no length to tips.
+#[inline(always)]
+fn add_zeros(tips: &mut VectorColumn, axes: &VectorColumn, count: usize) {
+    for (tips, axes) in tips.iter_mut().zip(axes) {
+        for lane in 0..groups(count) {
+            tips[lane + 1] += axes[lane + 1] * 0.0;
+        }
     }
 }

@@ -92,6 +92,12 @@ impl ClFrame {
         self.turned.as_ref()
     }
 
+    /// Points are written in the frame of the part.
+    #[inline]
+    pub(crate) fn is_of_part(&self) -> bool {
+        self.turned.is_none() && self.clamped.is_none() && (self.msys.is_none() || !self.apply_msys)
+    }
+
     /// A direction, taken to the frame of the part.
     pub(crate) fn direction_to_part(&self, direction: Vector3<f64>) -> Vector3<f64> {
         self.to_part(Vector3::zeros(), direction).1

@@ -45,10 +45,11 @@ impl TimingStage<'_> {
         let mut ends = run.count;
         for lane in 0..run.count {
             let tip = run.way[lane];
-            let asked = tip / run.feed;
+            let feed = run.feeds[lane];
+            let asked = tip / feed;
             let way = FedWay {
                 tip,
-                feed: Some(run.feed),
+                feed: Some(feed),
                 minutes: asked,
                 asked,
                 turning: turns[lane],

@@ -1,7 +1,10 @@
 //! Points become motions: axis, feed and frame in force at each.
 
 use nalgebra::Vector3;
-use post_grammar::{Delta, Record};
+use post_grammar::{Delta, GotoRun, Record};
+use post_machine::kinematics::batch::{
+    LANES, Lanes, VectorColumn, groups, largest, least, set_vector, vector, widely,
+};
 
 use super::{ClInterpreter, ModalFeed, StepSink, UnfinishedCurve};
 use crate::program::limits::{MOST_COORDINATE, direction, is_near};
@@ -67,6 +70,44 @@ impl ClInterpreter {
         }
         self.arrive(point);
         Some(self.motion(point, pace))
+    }
+
+    /// Fills in where plain `GOTO`s at [`Self::plain_pace`] lead: [`Self::plain_move`] of each, none of which is taken.
+    /// False if that is in doubt of one.
+    pub(crate) fn plain_columns(
+        &self,
+        run: &GotoRun,
+        tips: &mut VectorColumn,
+        axes: &mut VectorColumn,
+    ) -> bool {
+        let count = run.count();
+        if self.edge != Vector3::zeros() {
+            return false;
+        }
+        let [x, y, z, i, j, k] = run.columns();
+        let near = widely(
+            #[inline(always)]
+            || {
+                let far = scaled([x, y, z], self.scale, count, tips);
+                far <= MOST_COORDINATE && (!run.has_axis() || unit_axes([i, j, k], count, axes))
+            },
+        );
+        if !near {
+            return false;
+        }
+        if !run.has_axis() {
+            for (axes, part) in axes.iter_mut().zip(&self.axis) {
+                axes[1..].fill(*part);
+            }
+        }
+        if !self.frame.is_of_part() {
+            for place in 1..=count {
+                let (tip, axis) = self.frame.to_part(vector(tips, place), vector(axes, place));
+                set_vector(tips, place, tip);
+                set_vector(axes, place, axis);
+            }
+        }
+        true
     }
 
     pub(super) fn goto(
@@ -299,9 +340,49 @@ impl ClInterpreter {
     }
 }
 
+/// Scales points to mm, which are put after the first place; gives the largest coordinate, mm.
+#[inline(always)]
+fn scaled(points: [&Lanes; 3], scale: f64, count: usize, tips: &mut VectorColumn) -> f64 {
+    let larger = |a: f64, b: f64| if a > b { a } else { b };
+    let [x, y, z] = points;
+    let mut sizes = [0.0; LANES];
+    for lane in 0..groups(count) {
+        let tip = Vector3::new(x[lane], y[lane], z[lane]) * scale;
+        sizes[lane] = larger(larger(tip.x.abs(), tip.y.abs()), tip.z.abs());
+        set_vector(tips, lane + 1, tip);
+    }
+    largest(&sizes[..count])
+}
+
+/// [`unit_axis`] of each direction, put after the first place; false if one has none.
+#[inline(always)]
+fn unit_axes(directions: [&Lanes; 3], count: usize, axes: &mut VectorColumn) -> bool {
+    let [i, j, k] = directions;
+    let mut squares = [0.0; LANES];
+    for lane in 0..groups(count) {
+        let axis = Vector3::new(i[lane], j[lane], k[lane]);
+        let square = axis.norm_squared();
+        squares[lane] = square;
+        set_vector(axes, lane + 1, unit_of(axis, square));
+    }
+    is_length(least(&squares[..count])) && is_length(largest(&squares[..count]))
+}
+
+/// The square of the length of a direction is not lost.
+#[inline(always)]
+fn is_length(square: f64) -> bool {
+    (1e-12..1e18).contains(&square)
+}
+
+/// The unit vector along `axis`, the square of whose length this is.
+#[inline(always)]
+fn unit_of(axis: Vector3<f64>, square: f64) -> Vector3<f64> {
+    axis * (1.0 / square.sqrt())
+}
+
 /// The direction of a tool axis, of any length but one whose square is lost.
 #[inline]
 fn unit_axis(axis: Vector3<f64>) -> Option<Vector3<f64>> {
     let square = axis.norm_squared();
-    (1e-12..1e18).contains(&square).then(|| axis * (1.0 / square.sqrt()))
+    is_length(square).then(|| unit_of(axis, square))
 }

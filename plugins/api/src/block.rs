@@ -164,6 +164,8 @@ impl<T: PartialEq + Copy> Modal<T> {
 pub struct Axes {
     axes: Vec<AxisState>,
     style: NumberStyle,
+    /// Units of the last decimal in the words of a run of cuts, column by column.
+    counts: Vec<u32>,
 }
 
 #[derive(Clone, Debug)]
@@ -182,8 +184,6 @@ struct AxisState {
     /// Text after the number.
     behind: &'static str,
     last: Modal<f64>,
-    /// Units of the last decimal in the words of a run of cuts.
-    counts: Vec<u32>,
 }
 
 /// A word of a control that knows the places of one turn alone.
@@ -232,9 +232,8 @@ impl Axes {
             modulo: None,
             behind: "",
             last: Modal::default(),
-            counts: Vec::new(),
         });
-        Axes { axes: axes.collect(), style }
+        Axes { axes: axes.collect(), style, counts: Vec::new() }
     }
 
     /// Words of wrapped axes say that the control takes the shorter way, and the place from 0 to below 360, whatever

@@ -77,6 +77,11 @@ impl<'a> CutRun<'a> {
         self.words.chunks_exact(self.feeds.len())
     }
 
+    /// The columns one after the other.
+    pub(crate) fn words(&self) -> &'a [f64] {
+        self.words
+    }
+
     /// The cut at a place, from 0, as an event of its own; `words` is where its words are put.
     pub fn linear<'b>(&self, place: usize, words: &'b mut Vec<f64>) -> Event<'b> {
         words.clear();

@@ -54,6 +54,15 @@ impl Front {
         Front { bytes: self.bytes >> 8, len: self.len.saturating_sub(1) }
     }
 
+    /// With a byte more, ASCII; none if it is too long then.
+    #[inline]
+    pub(crate) const fn and(self, byte: u8) -> Option<Front> {
+        if self.len >= 8 {
+            return None;
+        }
+        Some(Front { bytes: self.bytes | (byte as u64) << (8 * self.len), len: self.len + 1 })
+    }
+
     /// A blank and `text`, all ASCII; none if they are longer.
     #[inline]
     pub(crate) const fn blank(text: &str) -> Option<Front> {
@@ -238,13 +247,13 @@ impl NumberForm {
 /// Room that a word takes with a number below 1,000, and what is written past its end.
 pub(crate) const SHORT_WORD: usize = 32;
 
-/// Counts units of the last decimal in numbers of a program that [`ShortDecimal`] has; false if it has not all of them.
+/// Appends to `counts` the units of the last decimal in numbers of a program that [`ShortDecimal`] has; false if it has not
+/// all of them.
 pub(crate) fn short_counts(values: &[f64], decimals: u8, counts: &mut Vec<u32>) -> bool {
     // No rounding brings less to 1,000.
     const BELOW: f64 = 999.9;
     // As in `count`: what is printed is no farther from a whole number of units.
     const EXACT: f64 = 1e-3;
-    counts.clear();
     if !matches!(decimals, 3 | 4) {
         return false;
     }

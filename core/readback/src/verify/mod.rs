@@ -173,6 +173,7 @@ pub struct Verifier<'m, C> {
     course_near: f64,
     /// Ends of the pieces of the motion at hand, its beginning first.
     places: Vec<ToolPlace>,
+    last_end: chop::LastEnd,
     spare: Vec<ShareSpan>,
     /// What the spindle was told since the tool came or since it was compared.
     turned: Vec<SpindleCommand>,
@@ -226,6 +227,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             placed: false,
             course_near: f64::INFINITY,
             places: Vec::new(),
+            last_end: chop::LastEnd::default(),
             spare: Vec::new(),
             worked: Vec::new(),
             turned: Vec::new(),
@@ -335,7 +337,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             MotionKind::Rapid => self.rapid_sag,
             _ => self.sag,
         };
-        chop::motion(motion, self.along, &sag, &mut places);
+        chop::motion(motion, self.along, &sag, &mut self.last_end, &mut places);
         if let Some(fault) = self.axes.over_travel(self.machine, motion) {
             self.axis_fault(motion, fault);
         }

@@ -39,11 +39,20 @@ enum Job {
     Post,
     Read,
     Verify,
+    /// A program against itself.
+    Diff,
     Predict,
     /// Posting of two points, as a whole.
     Start,
     /// Nothing but its version, as a whole.
     Version,
+}
+
+impl Job {
+    /// A program is posted first, and read.
+    fn reads(self) -> bool {
+        matches!(self, Self::Read | Self::Verify | Self::Diff | Self::Predict)
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +71,7 @@ const HEAD_CONTROL: &[&str] = &["-m", "head-head", "--set", "control.tcp=control
 const DMU: &[&str] = &["-m", "dmu50"];
 const VMC: &[&str] = &["-m", "vmc"];
 
-const CASES: [Case; 14] = [
+const CASES: [Case; 16] = [
     Case { name: "post ac-trunnion, tcp = post", job: Job::Post, form: Form::Nx, flags: AC_POST },
     Case {
         name: "post ac-trunnion, tcp = control",
@@ -95,6 +104,13 @@ const CASES: [Case; 14] = [
     Case {
         name: "verify ac-trunnion, tcp = control",
         job: Job::Verify,
+        form: Form::Nx,
+        flags: AC_CONTROL,
+    },
+    Case { name: "diff ac-trunnion, tcp = post", job: Job::Diff, form: Form::Nx, flags: AC_POST },
+    Case {
+        name: "diff ac-trunnion, tcp = control",
+        job: Job::Diff,
         form: Form::Nx,
         flags: AC_CONTROL,
     },
@@ -151,6 +167,7 @@ impl Case {
             }
             Job::Post => (POINTS, "a point"),
             Job::Read | Job::Verify => (POINTS, "a block"),
+            Job::Diff => (POINTS, "a pair"),
             Job::Predict => (FEW_POINTS, "a block"),
         };
         let [fewer, more] = [points, 2 * points].map(|points| self.instructions(folder, points));
@@ -165,7 +182,7 @@ impl Case {
         }
         let program = folder.join("program.nc");
         let post = env!("CARGO_BIN_EXE_post");
-        if matches!(self.job, Job::Read | Job::Verify | Job::Predict) {
+        if self.job.reads() {
             let mut posting = Command::new(post);
             self.posting(&mut posting, &cl, &program);
             succeed(&mut posting)?;
@@ -180,6 +197,9 @@ impl Case {
             Job::Verify => {
                 counted.arg("verify").arg(&program).arg("--against").arg(&cl).args(self.flags);
             }
+            Job::Diff => {
+                counted.arg("diff").args([&program, &program]).args(self.flags);
+            }
             Job::Predict => {
                 counted.arg("predict").arg(&program).args(self.flags);
             }
@@ -187,7 +207,7 @@ impl Case {
                 counted.arg("--version");
             }
         }
-        if matches!(self.job, Job::Read | Job::Verify | Job::Predict) {
+        if self.job.reads() {
             counted.args(["--tool-length", "100"]);
         }
         let told = succeed(&mut counted)?;

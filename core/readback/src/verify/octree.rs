@@ -8,6 +8,9 @@ const FINEST: f64 = 0.05;
 /// Cells that are kept; of a longer path they are made larger.
 const MOST_CELLS: usize = 400_000;
 
+/// Room for the cubes of one place beyond those.
+const SPARE: usize = 64;
+
 /// No child, no cell.
 const NONE: u32 = u32::MAX;
 
@@ -88,6 +91,11 @@ impl Octree {
     }
 
     fn cube(&mut self, place: Vector3<f64>) -> u32 {
+        let count = self.cubes.len();
+        // Twice as much room as now would be more than is ever filled.
+        if count == self.cubes.capacity() && 2 * count > MOST_CELLS {
+            self.cubes.reserve_exact((MOST_CELLS + SPARE).saturating_sub(count).max(SPARE));
+        }
         self.cubes.push(Cube { children: [NONE; 8], place });
         (self.cubes.len() - 1) as u32
     }
@@ -140,9 +148,9 @@ impl Octree {
     /// Cells of twice the edge.
     fn coarsen(&mut self) {
         self.steps.clear();
-        let old = std::mem::take(&mut self.cubes);
-        let leaves = old.iter().filter(|cube| cube.children == [NONE; 8]).map(|cube| cube.place);
-        let leaves: Vec<Vector3<f64>> = leaves.collect();
+        let leaves = self.cubes.iter().filter(|cube| cube.children == [NONE; 8]);
+        let leaves: Vec<Vector3<f64>> = leaves.map(|cube| cube.place).collect();
+        self.cubes.clear();
         self.root = NONE;
         self.cell *= 2.0;
         leaves.into_iter().for_each(|place| self.add(place));

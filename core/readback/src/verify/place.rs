@@ -208,3 +208,8 @@ fn least(offset: Vector3<f64>, way: Vector3<f64>, span: &ShareSpan) -> f64 {
     };
     (offset + way * share).norm()
 }
+
+/// Length of the straight pieces between places, mm.
+pub(super) fn way_of(places: &[ToolPlace]) -> f64 {
+    places.windows(2).map(|ends| (ends[1].point - ends[0].point).norm()).sum()
+}

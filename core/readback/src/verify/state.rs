@@ -5,7 +5,7 @@ use std::sync::Arc;
 use post_machine::axis_words::is_depth;
 use post_plugin::Lengths;
 
-use super::place::{ToolPlace, free, nearest_point};
+use super::place::{ToolPlace, free, nearest_point, way_of};
 use super::report::BlockPlace;
 use post_motion::CornerMode;
 
@@ -587,11 +587,6 @@ pub(super) fn coolant_name(coolants: Coolants) -> String {
         true => "no coolant".to_owned(),
         false => on.join(" and "),
     }
-}
-
-/// Length of the straight pieces between places, mm.
-fn way_of(places: &[ToolPlace]) -> f64 {
-    places.windows(2).map(|ends| (ends[1].point - ends[0].point).norm()).sum()
 }
 
 fn side_name(side: i8) -> &'static str {

@@ -43,6 +43,8 @@ enum Job {
     Post,
     Read,
     Verify,
+    /// A program against itself.
+    Diff,
     Predict,
     /// Posting, with a page beside the program.
     Report,
@@ -52,6 +54,13 @@ enum Job {
     Start,
     /// Nothing but its version, as a whole.
     Version,
+}
+
+impl Job {
+    /// A program is posted first, and read.
+    fn reads(self) -> bool {
+        matches!(self, Self::Read | Self::Verify | Self::Diff | Self::Predict)
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +84,7 @@ const ARM: &[&str] =
     &["-m", concat!(env!("CARGO_MANIFEST_DIR"), "/tests/chains/six-axis-arm.toml")];
 const VMC: &[&str] = &["-m", "vmc"];
 
-const CASES: [Case; 18] = [
+const CASES: &[Case] = &[
     Case { name: "post ac-trunnion, tcp = post", job: Job::Post, form: Form::Nx, flags: AC_POST },
     Case {
         name: "post ac-trunnion, tcp = control",
@@ -111,6 +120,13 @@ const CASES: [Case; 18] = [
     Case {
         name: "verify ac-trunnion, tcp = control",
         job: Job::Verify,
+        form: Form::Nx,
+        flags: AC_CONTROL,
+    },
+    Case { name: "diff ac-trunnion, tcp = post", job: Job::Diff, form: Form::Nx, flags: AC_POST },
+    Case {
+        name: "diff ac-trunnion, tcp = control",
+        job: Job::Diff,
         form: Form::Nx,
         flags: AC_CONTROL,
     },
@@ -208,6 +224,7 @@ impl Case {
             }
             Job::Post | Job::Report | Job::Place => (POINTS, "a point"),
             Job::Read | Job::Verify => (POINTS, "a block"),
+            Job::Diff => (POINTS, "a pair"),
             Job::Predict => (FEW_POINTS, "a block"),
         };
         let [fewer, more] =
@@ -222,7 +239,7 @@ impl Case {
             self.form.write(&cl, points)?;
         }
         let program = folder.join("program.nc");
-        if matches!(self.job, Job::Read | Job::Verify | Job::Predict) {
+        if self.job.reads() {
             let mut posting = Command::new(post);
             self.posting(&mut posting, &cl, &program);
             succeed(&mut posting)?;
@@ -244,6 +261,9 @@ impl Case {
             Job::Verify => {
                 counted.arg("verify").arg(&program).arg("--against").arg(&cl).args(self.flags);
             }
+            Job::Diff => {
+                counted.arg("diff").args([&program, &program]).args(self.flags);
+            }
             Job::Predict => {
                 counted.arg("predict").arg(&program).args(self.flags);
             }
@@ -251,7 +271,7 @@ impl Case {
                 counted.arg("--version");
             }
         }
-        if matches!(self.job, Job::Read | Job::Verify | Job::Predict | Job::Place) {
+        if self.job.reads() || matches!(self.job, Job::Place) {
             counted.args(["--tool-length", "100"]);
         }
         let told = succeed(&mut counted)?;

@@ -22,6 +22,9 @@ const CLOSE: f64 = 1.002;
 /// No piece of a block is halved that is as short as this; what is said of it holds for pieces of any length.
 const SHORTEST: f64 = 1.0 / 4096.0;
 
+/// Arms alone say nothing of a block on which the part turns by more, radians.
+const MOST_TURNS: f64 = 0.5;
+
 /// Takes [`TcpBlock::quick`] of many blocks beyond a rotary joint.
 #[inline(always)]
 fn pass_lanes(
@@ -76,6 +79,34 @@ pub struct LinearMotion {
     certain: f64,
     /// A time that is too short to matter, minutes.
     enough: f64,
+}
+
+/// Bounds on a point behind rotary joints, joint by joint.
+struct ArmBend {
+    /// Where the arm begins, mm.
+    place: Vector3<f64>,
+    /// Length of the arm, mm.
+    arm: f64,
+    /// First derivative, mm.
+    slope: f64,
+    /// Second derivative, mm.
+    bend: f64,
+}
+
+impl ArmBend {
+    /// Of a point that is up to `arm` from `place`, mm, and goes at `slope` at most.
+    fn at(place: Vector3<f64>, arm: f64, slope: f64) -> Self {
+        Self { place, arm, slope, bend: 0.0 }
+    }
+
+    /// Beyond a joint through `point` that turns by `w`, radians.
+    #[inline]
+    fn pass(&mut self, point: Vector3<f64>, w: f64) {
+        self.arm += (self.place - point).norm();
+        self.place = point;
+        self.bend += w * (w * self.arm + 2.0 * self.slope);
+        self.slope += w * self.arm;
+    }
 }
 
 /// The linear axes at one place of a block, and how fast they go there.
@@ -193,6 +224,43 @@ impl<'a> TcpBlock<'a> {
             },
         );
         true
+    }
+
+    /// A bound as [`TcpBlock::quick`] has, and no less than that, from the lengths of arms alone: nothing is turned for
+    /// it. `ends` are the axis values of a block, mm and radians, `tip` is where the tip stands at the last of them, mm,
+    /// part frame.
+    ///
+    /// An arm keeps its length while it turns, and the tip is never farther from where it ends than the way that the
+    /// axes make it go.
+    pub fn bend_by_arms(solver: &Solver, ends: [&Joints; 2], tip: Vector3<f64>) -> f64 {
+        let Some(linear) = solver.linear().filter(|linear| linear.inverse.is_some()) else {
+            return f64::INFINITY;
+        };
+        let chain = solver.chain();
+        let axes = chain.joints();
+        let step = |index: usize| (ends[1][index] - ends[0][index]).abs();
+        let mut behind = ArmBend::at(chain.tip(), 0.0, 0.0);
+        for index in (linear.last + 1..axes.len()).rev() {
+            behind.pass(axes[index].point, step(index));
+        }
+        let slid: f64 = (linear.first..=linear.last).map(step).sum();
+        let start = tip + chain.mount();
+        let mut still = ArmBend::at(start, 0.0, 0.0);
+        let mut turns = 0.0;
+        for (index, joint) in axes[..linear.first].iter().enumerate() {
+            still.pass(joint.point, step(index));
+            turns += step(index);
+        }
+        if turns > MOST_TURNS {
+            return f64::INFINITY;
+        }
+        // The way lengthens the arms that make it.
+        let way = (slid + behind.slope + still.slope) / (1.0 - turns);
+        let mut front = ArmBend::at(start, way, way);
+        for (index, joint) in axes[..linear.first].iter().enumerate() {
+            front.pass(joint.point, step(index));
+        }
+        linear.reach * (front.bend + behind.bend)
     }
 
     /// Looks into the block: the range and way of each linear axis to `STRAY`, the least time that `slowness`

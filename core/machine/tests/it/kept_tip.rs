@@ -64,6 +64,46 @@ impl Block {
 }
 
 #[test]
+fn arms_bound_what_traces_do_and_what_the_axes_do() {
+    let (rounds, mut rng) = randomised(3_000, 62);
+    let (mut bounded, mut close) = (0u32, 0u32);
+    for round in rounds {
+        let block = Block { along: 0.0, ..block(&mut rng) };
+        let solver = Solver::new(
+            Chain::new(
+                block.machine.reference.joints.clone(),
+                block.machine.reference.mount,
+                block.machine.reference.tip,
+                block.machine.reference.axis,
+            ),
+            &block.machine.free,
+            block.machine.held,
+        )
+        .expect("a closed form");
+        let block = Block { solver, ..block };
+        let [from, to] = block.traces();
+        let kept = TcpBlock::new(&block.solver, 0.0, &from, &to).expect("three linear axes");
+        let quick = kept.quick();
+        let arms = TcpBlock::bend_by_arms(&block.solver, [&block.from, &block.to], block.tips[1]);
+        assert!(arms >= quick * (1.0 - 1e-9) - 1e-9, "{round}: {arms} of arms, {quick}");
+        if !arms.is_finite() {
+            continue;
+        }
+        bounded += 1;
+        close += u32::from(arms <= 20.0 * quick);
+        for k in 1..64 {
+            let t = f64::from(k) / 64.0;
+            let (at, line) = (block.at(t), between(&block.from, &block.to, t));
+            for joint in kept.sliding() {
+                let bow = (at[joint] - line[joint]).abs();
+                assert!(bow <= arms / 8.0 + 1e-7, "{round}: {bow} beyond {arms}");
+            }
+        }
+    }
+    assert!(bounded > 100 && 4 * close > bounded, "{bounded} bounded, {close} close");
+}
+
+#[test]
 fn no_sample_exceeds_what_is_said() {
     let (rounds, mut rng) = randomised(3_000, 61);
     let (mut cheap, mut looked, mut singular, mut loose) = (0u32, 0u32, 0u32, 0u32);

@@ -59,7 +59,9 @@ impl AxisLimitCheck {
         match &motion.way {
             Interpolation::Axes => {}
             Interpolation::Tip(Curve::Straight) | Interpolation::TipAndAxis => {
-                if let Some(slides) = slides(motion, &Joints::default(), f64::INFINITY) {
+                if !stays_inside(machine, motion)
+                    && let Some(slides) = slides(motion, &Joints::default(), f64::INFINITY)
+                {
                     for joint in 0..machine.axes.len() {
                         if slides.least[joint] <= slides.most[joint] {
                             least[joint] = least[joint].min(slides.least[joint]);
@@ -96,7 +98,7 @@ impl AxisLimitCheck {
 
     /// An axis passes its largest feed, if the control does what the program says.
     pub fn too_fast(&self, machine: &Machine, motion: &Motion) -> Option<AxisFault> {
-        if !self.limited || motion.minutes <= 0.0 {
+        if !self.limited || motion.minutes <= 0.0 || self.is_slow(motion) {
             return None;
         }
         let (minutes, joint) = self.least_minutes(machine, motion, motion.minutes)?;
@@ -116,6 +118,19 @@ impl AxisLimitCheck {
             most * factor
         );
         Some(AxisFault { code: "max-feed", message, by: most * (factor - 1.0) })
+    }
+
+    /// Where the control keeps the tip, no axis passes its largest feed, as arms alone tell: its speed differs from that of
+    /// the whole way by half of its second derivative at most.
+    fn is_slow(&self, motion: &Motion) -> bool {
+        let (from, to) = (&motion.from.joints, &motion.to.joints);
+        let Some(bend) = bend_between_words(motion) else {
+            return false;
+        };
+        motion.state.solver.chain().joints().iter().enumerate().all(|(index, joint)| {
+            let faster = if joint.rotary { 0.0 } else { 0.5 * bend };
+            (libm::fabs(to[index] - from[index]) + faster) * self.slowness[index] <= motion.minutes
+        })
     }
 
     /// The least time in which no axis passes its largest feed, minutes, and the axis that asks for it. Where the
@@ -212,6 +227,32 @@ fn beyond_travel(axis: &Axis, value: f64, limit: f64) -> String {
         axis.reading(value),
         axis.reading(limit)
     )
+}
+
+/// A bound on the second derivatives of the linear axes where the control keeps the tip on a straight line, mm; none
+/// where it does not, or nothing is known of it. Words are rounded: the last place is in it.
+fn bend_between_words(motion: &Motion) -> Option<f64> {
+    let keeps = [Interpolation::Tip(Curve::Straight), Interpolation::TipAndAxis];
+    if !keeps.contains(&motion.way) {
+        return None;
+    }
+    let ends = [&motion.from.joints, &motion.to.joints];
+    let bend = TcpBlock::bend_by_arms(&motion.state.solver, ends, motion.to.pose.tip);
+    bend.is_finite().then_some(bend + ROUNDED)
+}
+
+/// Where the control keeps the tip, its linear axes stay inside their travel between the words, as arms alone tell.
+fn stays_inside(machine: &Machine, motion: &Motion) -> bool {
+    let Some(bend) = bend_between_words(motion) else {
+        return false;
+    };
+    // From the line between its ends an axis strays by an eighth of its second derivative.
+    let bow = bend / 8.0;
+    machine.axes.iter().enumerate().all(|(index, axis)| {
+        let [from, to] = [motion.from.joints[index], motion.to.joints[index]];
+        let inside = |value| passed(axis.travel, value, 0.0).is_none();
+        axis.joint.rotary || inside(from.min(to) - bow) && inside(from.max(to) + bow)
+    })
 }
 
 /// How the linear axes go while the control keeps the tip; none if nothing turns, or nothing is known of it. Times

@@ -1,8 +1,14 @@
 //! Ways cut into pieces so short that each may be taken for straight.
 
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use post_machine::kinematics::{Joints, Pose};
+use post_motion::path::joints_between;
+
 use super::place::{PlaceBound, ToolPlace};
 use crate::course::CoursePiece;
-use crate::{Curve, Motion};
+use crate::{Curve, Interpolation, MachineState, Motion};
 
 /// Halvings of a piece at most: what bends more than this says is no way of a machine.
 const DEEPEST: u32 = 14;
@@ -11,20 +17,27 @@ const DEEPEST: u32 = 14;
 /// chord by chance.
 const TURN: f64 = 0.12;
 
-/// Puts the places at the ends of the pieces of a way after `places`, without that of its beginning.
+/// Square of a chord between tool axes whose angle is certainly less than [`TURN`].
+const NARROW: f64 = 0.01;
+
+/// A bound that rounding alone does not reach, mm.
+const ROUNDED: f64 = 1e-9;
+
+/// Puts the places at the ends of the pieces of a way after `places`, without that of its beginning: the way begins at
+/// `start`, and ends at `end`.
 fn chop(
     at: impl Fn(f64) -> ToolPlace,
+    [mut start, end]: [ToolPlace; 2],
     first: usize,
     sag: &PlaceBound,
     places: &mut Vec<ToolPlace>,
 ) {
-    let mut start = at(0.0);
     let (mut low, count) = (0.0, first.max(1));
     for piece in 1..=count {
         let high = piece as f64 / count as f64;
-        let end = at(high);
-        halve(&at, (low, &start), (high, &end), sag, DEEPEST, places);
-        (low, start) = (high, end);
+        let next = if piece < count { at(high) } else { end };
+        halve(&at, (low, &start), (high, &next), sag, DEEPEST, places);
+        (low, start) = (high, next);
     }
 }
 
@@ -46,17 +59,103 @@ fn halve(
     halve(at, (share, &middle), to, sag, left - 1, places);
 }
 
-/// The way of a motion after its beginning.
-pub(super) fn motion(motion: &Motion, along: f64, sag: &PlaceBound, places: &mut Vec<ToolPlace>) {
+/// Where the way of the last motion ended, so that it is not worked out again as the beginning of the next.
+#[derive(Debug, Default)]
+pub(super) struct LastEnd {
+    /// What held then.
+    state: Option<Arc<MachineState>>,
+    /// The control led the axes, not the tip.
+    axes: bool,
+    /// Axis values that the place was worked out for, mm and radians.
+    joints: Joints,
+    /// Where the tip was led, mm.
+    tip: Vector3<f64>,
+    place: ToolPlace,
+}
+
+impl LastEnd {
+    /// The beginning of a way, if it is this end.
+    fn begins(&self, motion: &Motion) -> Option<ToolPlace> {
+        let state = self.state.as_ref()?;
+        let same = Arc::ptr_eq(state, &motion.state)
+            && self.axes == (motion.way == Interpolation::Axes)
+            && self.joints == motion.from.joints
+            && (self.axes || self.tip == motion.from.pose.tip);
+        same.then_some(self.place)
+    }
+
+    fn keep(&mut self, motion: &Motion, place: ToolPlace) {
+        if !self.state.as_ref().is_some_and(|state| Arc::ptr_eq(state, &motion.state)) {
+            self.state = Some(Arc::clone(&motion.state));
+        }
+        self.axes = motion.way == Interpolation::Axes;
+        self.joints = joints_between([&motion.from, &motion.to], 1.0);
+        let tips = [&motion.from, &motion.to].map(|stance| stance.pose.tip);
+        self.tip = Curve::Straight.at(tips, 1.0);
+        self.place = place;
+    }
+}
+
+/// The way of a motion after its beginning. `last` is of the motion before it.
+pub(super) fn motion(
+    motion: &Motion,
+    along: f64,
+    sag: &PlaceBound,
+    last: &mut LastEnd,
+    places: &mut Vec<ToolPlace>,
+) {
     let joints = motion.state.solver.chain().joints().iter().enumerate();
     let turns = joints.filter(|(_, joint)| joint.rotary).map(|(index, _)| {
         let [from, to] = [&motion.from, &motion.to].map(|end| end.joints[index]);
         (to - from).abs()
     });
-    match first_pieces(motion.way.curve(), turns.fold(0.0, f64::max)) {
-        None => places.push(ToolPlace::new(&motion.to.pose, along)),
-        Some(first) => chop(|t| ToolPlace::new(&motion.at(t), along), first, sag, places),
+    let Some(first) = first_pieces(motion.way.curve(), turns.fold(0.0, f64::max)) else {
+        places.push(ToolPlace::new(&motion.to.pose, along));
+        return;
+    };
+    let at = |t| ToolPlace::new(&motion.at(t), along);
+    // Neither on a curve nor along great circles do the axis values alone say where the tool points.
+    if !matches!(motion.way, Interpolation::Axes | Interpolation::Tip(Curve::Straight)) {
+        return chop(at, [at(0.0), at(1.0)], first, sag, places);
     }
+    let end = known_end(motion).map_or_else(|| at(1.0), |end| ToolPlace::new(&end, along));
+    debug_assert_eq!(end, at(1.0));
+    if turns_little(motion, along, sag) {
+        return places.push(end);
+    }
+    let start = last.begins(motion).unwrap_or_else(|| at(0.0));
+    debug_assert_eq!(start, at(0.0));
+    last.keep(motion, end);
+    chop(at, [start, end], first, sag, places);
+}
+
+/// The end of a straight way as [`Motion::at`] has it, if that is the pose which the program has led the tool to: the
+/// chain has made it of the axis values, or of them and the tip.
+fn known_end(motion: &Motion) -> Option<Pose> {
+    let (ends, to) = ([&motion.from, &motion.to], &motion.to.pose);
+    if joints_between(ends, 1.0) != motion.to.joints {
+        return None;
+    }
+    match motion.way {
+        Interpolation::Axes if motion.state.tcp || motion.state.plane.is_some() => None,
+        Interpolation::Axes => Some(*to),
+        _ => Some(Pose { tip: Curve::Straight.at(ends.map(|end| end.pose.tip), 1.0), ..*to }),
+    }
+}
+
+/// Whether the control keeps the tip on a straight way on which the tool turns by so little that the way is straight
+/// within `sag`: a direction that turns by w in all strays from its chord by w²/8 at most.
+fn turns_little(motion: &Motion, along: f64, sag: &PlaceBound) -> bool {
+    if motion.way == Interpolation::Axes || motion.to.pose.edge != Vector3::zeros() {
+        return false;
+    }
+    let joints = motion.state.solver.chain().joints().iter().enumerate();
+    let turn: f64 = joints
+        .filter(|(_, joint)| joint.rotary)
+        .map(|(index, _)| (motion.to.joints[index] - motion.from.joints[index]).abs())
+        .sum();
+    let bow = turn * turn / 8.0 + ROUNDED;
+    turn < TURN && bow <= sag.axis && bow * along.abs() + ROUNDED <= sag.point
 }
 
 /// The way of a piece of a course after its beginning.
@@ -66,11 +165,56 @@ pub(super) fn piece(
     sag: &PlaceBound,
     places: &mut Vec<ToolPlace>,
 ) {
+    match straight(piece, along, sag) {
+        Some(Straight::Stays) => return places.push(ToolPlace::new(&piece.to, along)),
+        Some(Straight::Turns) => {
+            return places.push(ToolPlace::new(&piece.at(1.0, along), along));
+        }
+        None => {}
+    }
     let (from, to) = (ToolPlace::new(&piece.from, along), ToolPlace::new(&piece.to, along));
     match first_pieces(&piece.curve, from.apart(&to).axis) {
         None => places.push(to),
-        Some(first) => chop(|t| ToolPlace::new(&piece.at(t, along), along), first, sag, places),
+        Some(first) => {
+            let at = |t| ToolPlace::new(&piece.at(t, along), along);
+            chop(at, [at(0.0), at(1.0)], first, sag, places);
+        }
     }
+}
+
+/// The point at the end of a piece of a course that [`piece`] makes one of within `sag`, if that is known without looking
+/// at the way; the tip is what is guided.
+pub(super) fn straight_end(piece: &CoursePiece, sag: &PlaceBound) -> Option<Vector3<f64>> {
+    let (from, to) = (piece.from.tip, piece.to.tip);
+    straight(piece, 0.0, sag).map(|straight| match straight {
+        Straight::Stays => to,
+        Straight::Turns => piece.curve.at([from, to], 1.0),
+    })
+}
+
+/// A piece of a course that is straight.
+enum Straight {
+    /// The tool keeps its axis.
+    Stays,
+    /// The tool turns by little.
+    Turns,
+}
+
+/// Whether a piece of a course is straight within `sag`, as far as the chord between its tool axes tells: the middle of the
+/// great circle between two unit vectors is farther from that of their chord c by 1 - √(1 - c²/4), and that is less
+/// than c²/4.
+fn straight(piece: &CoursePiece, along: f64, sag: &PlaceBound) -> Option<Straight> {
+    let zero = Vector3::zeros();
+    if piece.curve != Curve::Straight || piece.from.edge != zero || piece.to.edge != zero {
+        return None;
+    }
+    let square = (piece.from.axis - piece.to.axis).norm_squared();
+    if square == 0.0 {
+        return Some(Straight::Stays);
+    }
+    let bow = 0.25 * square + f64::EPSILON;
+    let within = bow <= sag.axis && bow * along.abs() + ROUNDED <= sag.point;
+    (square < NARROW && within).then_some(Straight::Turns)
 }
 
 /// In how many pieces a curve is looked at first on which the tool turns by so much, radians; none of what is straight.

@@ -47,22 +47,32 @@ impl CutPath {
             return;
         }
         let sag = PlaceBound::new(self.kept.cell(), 1.0);
+        if self.along == 0.0
+            && let Some(end) = chop::straight_end(piece, &sag)
+        {
+            self.add_way(piece.from.tip, end);
+            return;
+        }
         let mut places = std::mem::take(&mut self.places);
         places.clear();
         places.push(ToolPlace::new(&piece.from, self.along));
         chop::piece(piece, self.along, &sag, &mut places);
         for ends in places.windows(2) {
-            let way = ends[1].point - ends[0].point;
-            let mut gone = 0.0;
-            let length = way.norm();
-            // No cell on the way is left out but for its corners.
-            while gone < length {
-                self.kept.add(ends[0].point + way * (gone / length));
-                gone += self.kept.cell();
-            }
-            self.kept.add(ends[1].point);
+            self.add_way(ends[0].point, ends[1].point);
         }
         self.places = places;
+    }
+
+    fn add_way(&mut self, from: Vector3<f64>, to: Vector3<f64>) {
+        let way = to - from;
+        let mut gone = 0.0;
+        let length = way.norm();
+        // No cell on the way is left out but for its corners.
+        while gone < length {
+            self.kept.add(from + way * (gone / length));
+            gone += self.kept.cell();
+        }
+        self.kept.add(to);
     }
 
     /// How finely distances are known, mm: the diagonal of a cell.

@@ -28,6 +28,13 @@ struct RunningChange {
     coolants: Coolants,
 }
 
+impl RunningFunctions {
+    /// A tool was changed with something on, and that was not held against the course yet.
+    pub(super) fn changes(&self) -> bool {
+        self.change.is_some()
+    }
+}
+
 impl RunningChange {
     /// What runs and should not, each with its code.
     fn faults(

@@ -32,6 +32,7 @@ mod sweep;
 mod track;
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use post_machine::description::{Machine, Rapid};
 use post_machine::diagnostic::Diagnostic;
@@ -40,7 +41,8 @@ use post_plugin::Lengths;
 
 use crate::course::Course;
 use crate::{
-    BlockEffect, CycleKind, MOST_FAULTS, Motion, MotionKind, Offsets, ProgramEvent, SpindleState,
+    BlockEffect, CycleKind, MOST_FAULTS, MachineState, Motion, MotionKind, Offsets, ProgramEvent,
+    SpindleState,
 };
 use axes::AxisFault;
 pub(crate) use axes::AxisLimitCheck;
@@ -53,7 +55,7 @@ use place::{PlaceBound, PlaceDistance, ShareSpan, ToolPlace};
 use report::BlockPlace;
 pub use report::{BlockReport, Fault, LeftOn, Verification, WorstDeviation};
 use sweep::StrayStretch;
-use track::{CourseTrack, ElementKind};
+use track::{CourseTrack, CutState, ElementKind};
 
 /// What a program is held to.
 #[derive(Clone, Debug, PartialEq)]
@@ -173,7 +175,10 @@ pub struct Verifier<'m, C> {
     course_near: f64,
     /// Ends of the pieces of the motion at hand, its beginning first.
     places: Vec<ToolPlace>,
+    last_end: chop::LastEnd,
     spare: Vec<ShareSpan>,
+    /// Where the program could stand as the cut at hand began.
+    begun: Vec<ShareSpan>,
     /// What the spindle was told since the tool came or since it was compared.
     turned: Vec<SpindleCommand>,
     /// Whether the program has moved since the last command of the spindle.
@@ -184,6 +189,10 @@ pub struct Verifier<'m, C> {
     worked: Vec<(Option<u32>, String)>,
     detour: Detour,
     running: RunningFunctions,
+    /// What held and what was asked in the last cut that was compared, if nothing was wrong with it.
+    agreed: Option<(Arc<MachineState>, Arc<CutState>)>,
+    /// Faults that were told, those that are counted alone among them.
+    told: u64,
     /// Where the axes stand; none: nothing has moved.
     stands: Option<Joints>,
     axes: AxisLimitCheck,
@@ -226,13 +235,17 @@ impl<'m, C: Course> Verifier<'m, C> {
             placed: false,
             course_near: f64::INFINITY,
             places: Vec::new(),
+            last_end: chop::LastEnd::default(),
             spare: Vec::new(),
+            begun: Vec::new(),
             worked: Vec::new(),
             turned: Vec::new(),
             moved: false,
             smoothing: 0.0,
             detour: Detour::default(),
             running: RunningFunctions::default(),
+            agreed: None,
+            told: 0,
             stands: None,
             axes: AxisLimitCheck::new(machine),
             block: BlockReport::default(),
@@ -335,7 +348,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             MotionKind::Rapid => self.rapid_sag,
             _ => self.sag,
         };
-        chop::motion(motion, self.along, &sag, &mut places);
+        chop::motion(motion, self.along, &sag, &mut self.last_end, &mut places);
         if let Some(fault) = self.axes.over_travel(self.machine, motion) {
             self.axis_fault(motion, fault);
         }
@@ -422,6 +435,7 @@ impl<'m, C: Course> Verifier<'m, C> {
         cl_line: Option<u64>,
         by: Option<f64>,
     ) {
+        self.told += 1;
         let same = |fault: &&mut Fault| fault.code == code && fault.message == message;
         if let Some(known) = self.found.faults.iter_mut().find(same) {
             known.count += 1;

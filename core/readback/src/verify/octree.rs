@@ -8,6 +8,9 @@ const FINEST: f64 = 0.05;
 /// Cells that are kept; of a longer path they are made larger.
 const MOST_CELLS: usize = 400_000;
 
+/// Room for the cubes of one place beyond those.
+const SPARE: usize = 64;
+
 /// No child, no cell.
 const NONE: u32 = u32::MAX;
 
@@ -19,10 +22,27 @@ struct Cube {
     place: Vector3<f64>,
 }
 
+/// Steps from the whole to a cell at most that are remembered: as many halvings as an edge of 10⁶ km has.
+const DEEPEST: usize = 48;
+
+/// A cube on the way to the cell of the place that was put last.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    cube: u32,
+    middle: Vector3<f64>,
+    /// Half of its edge, mm.
+    half: f64,
+    /// Places that take the same way as far as here: from the least coordinates on, and below the most.
+    least: Vector3<f64>,
+    most: Vector3<f64>,
+}
+
 /// The places.
 #[derive(Clone, Debug)]
 pub struct Octree {
     cubes: Vec<Cube>,
+    /// The way to the place that was put last, from the whole on; empty after the whole has changed.
+    steps: Vec<Step>,
     root: u32,
     /// Middle of the whole, and half of its edge, mm.
     middle: Vector3<f64>,
@@ -36,6 +56,7 @@ impl Octree {
     pub fn new() -> Self {
         Self {
             cubes: Vec::new(),
+            steps: Vec::new(),
             root: NONE,
             middle: Vector3::zeros(),
             half: 0.0,
@@ -70,12 +91,18 @@ impl Octree {
     }
 
     fn cube(&mut self, place: Vector3<f64>) -> u32 {
+        let count = self.cubes.len();
+        // Twice as much room as now would be more than is ever filled.
+        if count == self.cubes.capacity() && 2 * count > MOST_CELLS {
+            self.cubes.reserve_exact((MOST_CELLS + SPARE).saturating_sub(count).max(SPARE));
+        }
         self.cubes.push(Cube { children: [NONE; 8], place });
         (self.cubes.len() - 1) as u32
     }
 
     /// Twice as large, towards a point.
     fn grow(&mut self, point: Vector3<f64>) {
+        self.steps.clear();
         let side = (point - self.middle).map(|way| if way < 0.0 { -1.0 } else { 1.0 });
         let old = self.root;
         self.middle += side * self.half;
@@ -87,14 +114,24 @@ impl Octree {
     }
 
     fn put(&mut self, point: Vector3<f64>) {
-        let (mut at, mut middle, mut half) = (self.root, self.middle, self.half);
-        while half > self.cell * 1.5 {
-            let side = (point - middle).map(|way| if way < 0.0 { -1.0 } else { 1.0 });
-            half *= 0.5;
-            middle += side * half;
+        // Places follow one another along a path: most take the way of the last, nearly to its end.
+        while self.steps.last().is_some_and(|step| !step.leads_to(&point)) {
+            self.steps.pop();
+        }
+        let mut step = match self.steps.last() {
+            Some(step) => *step,
+            None => {
+                let whole = Step::whole(self.root, self.middle, self.half);
+                self.steps.push(whole);
+                whole
+            }
+        };
+        while step.half > self.cell * 1.5 {
+            let at = step.cube;
+            let side = step.down(&point);
             let place = octant(side);
             let child = self.cubes[at as usize].children[place];
-            at = match child {
+            step.cube = match child {
                 NONE => {
                     let child = self.cube(point);
                     self.cubes[at as usize].children[place] = child;
@@ -102,14 +139,18 @@ impl Octree {
                 }
                 child => child,
             };
+            if self.steps.len() < DEEPEST {
+                self.steps.push(step);
+            }
         }
     }
 
     /// Cells of twice the edge.
     fn coarsen(&mut self) {
-        let old = std::mem::take(&mut self.cubes);
-        let leaves = old.iter().filter(|cube| cube.children == [NONE; 8]).map(|cube| cube.place);
-        let leaves: Vec<Vector3<f64>> = leaves.collect();
+        self.steps.clear();
+        let leaves = self.cubes.iter().filter(|cube| cube.children == [NONE; 8]);
+        let leaves: Vec<Vector3<f64>> = leaves.map(|cube| cube.place).collect();
+        self.cubes.clear();
         self.root = NONE;
         self.cell *= 2.0;
         leaves.into_iter().for_each(|place| self.add(place));
@@ -146,6 +187,36 @@ impl Octree {
     }
 }
 
+impl Step {
+    /// At the whole, where all begin.
+    fn whole(cube: u32, middle: Vector3<f64>, half: f64) -> Self {
+        let [least, most] = [f64::NEG_INFINITY, f64::INFINITY].map(Vector3::repeat);
+        Self { cube, middle, half, least, most }
+    }
+
+    /// Whether the way to `point` comes by here.
+    #[inline]
+    fn leads_to(&self, point: &Vector3<f64>) -> bool {
+        (0..3).all(|axis| point[axis] >= self.least[axis] && point[axis] < self.most[axis])
+    }
+
+    /// To the middle of the next cube towards `point`, on the side that is told.
+    #[inline]
+    fn down(&mut self, point: &Vector3<f64>) -> Vector3<f64> {
+        let side = (point - self.middle).map(|way| if way < 0.0 { -1.0 } else { 1.0 });
+        for axis in 0..3 {
+            let middle = self.middle[axis];
+            match side[axis] < 0.0 {
+                true => self.most[axis] = self.most[axis].min(middle),
+                false => self.least[axis] = self.least[axis].max(middle),
+            }
+        }
+        self.half *= 0.5;
+        self.middle += side * self.half;
+        side
+    }
+}
+
 fn octant(side: Vector3<f64>) -> usize {
     let bit = |axis: usize| usize::from(side[axis] > 0.0) << axis;
     bit(0) | bit(1) | bit(2)
@@ -173,6 +244,29 @@ mod tests {
             let truth = truth.fold(f64::INFINITY, f64::min);
             let found = path.distance(point);
             assert!((truth - found).abs() <= path.blur(), "{truth} {found}");
+        }
+    }
+
+    #[test]
+    fn cells_are_those_that_are_found_from_the_whole_for_each_place() {
+        let mut random = seeded(7);
+        let [mut path, mut plain] = [(); 2].map(|()| Octree::new());
+        let mut at = Vector3::zeros();
+        for _ in 0..3000 {
+            // Mostly near the last, on both sides of edges of cells, and now and then elsewhere.
+            let far = if random.range(0.0, 1.0) < 0.02 { 90.0 } else { 0.2 };
+            at += Vector3::from_fn(|_, _| random.range(-far, far));
+            if random.range(0.0, 1.0) < 0.3 {
+                at = at.map(|value| (value / FINEST).round() * FINEST);
+            }
+            plain.steps.clear();
+            for tree in [&mut path, &mut plain] {
+                tree.add(at);
+            }
+        }
+        assert_eq!(path.cubes.len(), plain.cubes.len());
+        for (one, other) in path.cubes.iter().zip(&plain.cubes) {
+            assert_eq!((one.children, one.place), (other.children, other.place));
         }
     }
 

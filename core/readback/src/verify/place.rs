@@ -176,21 +176,40 @@ pub(super) fn nearest(
     b: &ToolPlace,
     span: &ShareSpan,
 ) -> PlaceDistance {
-    let least = |offset: Vector3<f64>, way: Vector3<f64>| {
-        let square = way.norm_squared();
-        let share = match square < SHORT * SHORT {
-            true => span.from,
-            false => (-offset.dot(&way) / square).clamp(span.from, span.to),
-        };
-        (offset + way * share).norm()
-    };
-    let point = least(a.point - place.point, b.point - a.point);
+    let point = nearest_point(place, a, b, span);
     let mut chord = match a.axis == place.axis && b.axis == a.axis {
         true => 0.0,
-        false => least(a.axis - place.axis, b.axis - a.axis),
+        false => least(a.axis - place.axis, b.axis - a.axis, span),
     };
     if place.has_edge() && a.has_edge() {
-        chord = chord.max(least(a.edge - place.edge, b.edge - a.edge));
+        chord = chord.max(least(a.edge - place.edge, b.edge - a.edge, span));
     }
     PlaceDistance { point, axis: angle_of(chord) }
+}
+
+/// How near the points of the piece from `a` to `b` come to that of `place` on `span` of it, mm.
+#[inline]
+pub(super) fn nearest_point(
+    place: &ToolPlace,
+    a: &ToolPlace,
+    b: &ToolPlace,
+    span: &ShareSpan,
+) -> f64 {
+    least(a.point - place.point, b.point - a.point, span)
+}
+
+/// The least length of `offset + way * share` on `span`.
+#[inline]
+fn least(offset: Vector3<f64>, way: Vector3<f64>, span: &ShareSpan) -> f64 {
+    let square = way.norm_squared();
+    let share = match square < SHORT * SHORT {
+        true => span.from,
+        false => (-offset.dot(&way) / square).clamp(span.from, span.to),
+    };
+    (offset + way * share).norm()
+}
+
+/// Length of the straight pieces between places, mm.
+pub(super) fn way_of(places: &[ToolPlace]) -> f64 {
+    places.windows(2).map(|ends| (ends[1].point - ends[0].point).norm()).sum()
 }

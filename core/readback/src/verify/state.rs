@@ -5,7 +5,7 @@ use std::sync::Arc;
 use post_machine::axis_words::is_depth;
 use post_plugin::Lengths;
 
-use super::place::{ToolPlace, free};
+use super::place::{ToolPlace, free, nearest_point, way_of};
 use super::report::BlockPlace;
 use post_motion::CornerMode;
 
@@ -32,14 +32,54 @@ const SHORT: f64 = 1e-3;
 impl<C: Course> Verifier<'_, C> {
     /// Compares what holds in a cut with what the course asks for where the motion has its place.
     pub(super) fn compare(&mut self, motion: &Motion, places: &[ToolPlace]) {
+        if self.holds_as_before(motion, places) {
+            return;
+        }
         let Some(mut element) = self.element_of(places) else {
             return;
         };
+        let told = self.told;
         self.compare_with(motion, &element);
+        let states = (Arc::clone(&motion.state), Arc::clone(&element.asked));
+        self.agreed = (told == self.told).then_some(states);
         if element.feed.is_some_and(|feed| motion.feed > feed) {
             element.feed = self.feed_of(places, &element);
         }
         self.compare_feed(motion, places, &element);
+    }
+
+    /// Whether nothing is wrong, whichever element of those that it may follow a motion does follow: all of them ask for
+    /// the same, and that was compared with what holds, and the feed is as asked.
+    fn holds_as_before(&self, motion: &Motion, places: &[ToolPlace]) -> bool {
+        let Some((state, asked)) = &self.agreed else {
+            return false;
+        };
+        let Some(last) = self.reach.iter().rposition(|span| !span.is_empty()) else {
+            return false;
+        };
+        if !Arc::ptr_eq(state, &motion.state) || !self.turned.is_empty() || self.running.changes() {
+            return false;
+        }
+        let mut cuts = self.track.kept().iter().take(last + 1).filter(|element| element.is_cut());
+        let Some(first) = cuts.next() else {
+            return false;
+        };
+        let same = |other: &Element| Arc::ptr_eq(asked, &other.asked) && other.feed == first.feed;
+        if !same(first) || !cuts.all(same) {
+            return false;
+        }
+        first.feed.is_none_or(|asked| self.is_as_fast_as_asked(motion, places, asked))
+    }
+
+    /// Whether the feed is that which is asked for, mm/min, but for what is rounded in any case:
+    /// [`Verifier::compare_feed`] allows for more.
+    fn is_as_fast_as_asked(&self, motion: &Motion, places: &[ToolPlace], asked: f64) -> bool {
+        if motion.feed > asked || motion.minutes <= 0.0 {
+            return false;
+        }
+        let feed = way_of(places) / motion.minutes;
+        let place = self.rules.feed_place.max(PLACE);
+        feed <= asked * (1.0 + SHARE) + PLACE && feed >= asked * (1.0 - SHARE) - place
     }
 
     /// The feed of an element, or of another that a motion lies on as a whole, if that is larger: what is left of a
@@ -86,7 +126,7 @@ impl<C: Course> Verifier<'_, C> {
             if span.is_empty() || back {
                 continue;
             }
-            let near = super::place::nearest(&middle, &element.from, &element.to, &span).point;
+            let near = nearest_point(&middle, &element.from, &element.to, &span);
             // Of two that are as near the later: after a corner the next holds.
             if best.is_none_or(|(least, _)| near <= least + 1e-9) {
                 best = Some((near, index));
@@ -227,7 +267,7 @@ impl<C: Course> Verifier<'_, C> {
             return;
         }
         let wanted = self.rules.work_offset.as_deref();
-        let Some(name) = motion.state.work_offset.clone() else {
+        let Some(name) = &motion.state.work_offset else {
             let message = match (asked, wanted) {
                 (Some(asked), Some(_)) => format!(
                     "cuts in no work offset that the program names, and the CL file asks for work offset {asked}"
@@ -240,7 +280,6 @@ impl<C: Course> Verifier<'_, C> {
             let cl_line = Some(element.line);
             return self.fault("work-offset", message, Some(motion), cl_line, None);
         };
-        let name = &name;
         if let (None, Some(wanted)) = (asked, wanted) {
             if !name.eq_ignore_ascii_case(wanted) {
                 let message = format!(
@@ -365,7 +404,7 @@ impl<C: Course> Verifier<'_, C> {
         let Some(asked) = element.feed else {
             return;
         };
-        let way: f64 = places.windows(2).map(|ends| (ends[1].point - ends[0].point).norm()).sum();
+        let way = way_of(places);
         if way < SHORT {
             return;
         }

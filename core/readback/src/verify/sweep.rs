@@ -124,31 +124,51 @@ impl<C: Course> Verifier<'_, C> {
     /// A cut: it has a place on the course, or is a fault.
     fn cut(&mut self, motion: &Motion, places: &[ToolPlace]) {
         self.next = None;
-        let begun = self.reach.clone();
         self.set_kind("cut");
+        let mut begun = std::mem::take(&mut self.begun);
+        begun.clone_from(&self.reach);
+        if self.keeps_to_the_course(motion, places, &begun) {
+            self.found.cuts += 1;
+            self.compare(motion, places);
+        }
+        self.begun = begun;
+    }
+
+    /// Whether a cut that began where `begun` says has a place on the course, however wide; else it was dealt with.
+    fn keeps_to_the_course(
+        &mut self,
+        motion: &Motion,
+        places: &[ToolPlace],
+        begun: &[ShareSpan],
+    ) -> bool {
+        let go_back = |reach: &mut Vec<ShareSpan>| {
+            reach.clear();
+            reach.extend_from_slice(begun);
+        };
         loop {
             let swept = self.sweep(motion, places, self.factor(), true);
             match swept {
-                SweepOutcome::Through => break,
+                SweepOutcome::Through => return true,
                 SweepOutcome::Stopped(index) => {
-                    self.reach.clone_from(&begun);
+                    go_back(&mut self.reach);
                     if self.remove_obstacle(index, motion, places) {
                         if self.hole.is_some() || self.apart {
-                            return;
+                            return false;
                         }
                         continue;
                     }
                 }
-                SweepOutcome::Nowhere => self.reach.clone_from(&begun),
+                SweepOutcome::Nowhere => go_back(&mut self.reach),
             }
             if draws_back(places, &self.bound) {
-                self.reach = begun;
+                go_back(&mut self.reach);
                 self.leave_cut();
                 self.apart = true;
-                return self.set_kind("rapid");
+                self.set_kind("rapid");
+                return false;
             }
-            if !self.widen(motion, places, &begun) {
-                self.reach = begun;
+            if !self.widen(motion, places, begun) {
+                go_back(&mut self.reach);
                 self.fault(
                     "added",
                     "a motion at feed that the CL file does not ask for".to_owned(),
@@ -156,12 +176,10 @@ impl<C: Course> Verifier<'_, C> {
                     None,
                     None,
                 );
-                return;
+                return false;
             }
-            break;
+            return true;
         }
-        self.found.cuts += 1;
-        self.compare(motion, places);
     }
 
     fn factor(&self) -> f64 {

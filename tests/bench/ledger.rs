@@ -40,10 +40,21 @@ enum Job {
     Read,
     Verify,
     Predict,
+    /// The tool is held against the CL file too.
+    PredictAgainst,
+    /// Posting with planned feeds, predictions of its rounds included.
+    Plan,
     /// Posting of two points, as a whole.
     Start,
     /// Nothing but its version, as a whole.
     Version,
+}
+
+impl Job {
+    /// A program is made for it first.
+    fn reads_program(self) -> bool {
+        matches!(self, Self::Read | Self::Verify | Self::Predict | Self::PredictAgainst)
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +73,7 @@ const HEAD_CONTROL: &[&str] = &["-m", "head-head", "--set", "control.tcp=control
 const DMU: &[&str] = &["-m", "dmu50"];
 const VMC: &[&str] = &["-m", "vmc"];
 
-const CASES: [Case; 14] = [
+const CASES: [Case; 16] = [
     Case { name: "post ac-trunnion, tcp = post", job: Job::Post, form: Form::Nx, flags: AC_POST },
     Case {
         name: "post ac-trunnion, tcp = control",
@@ -110,6 +121,18 @@ const CASES: [Case; 14] = [
         form: Form::Nx,
         flags: AC_CONTROL,
     },
+    Case {
+        name: "predict against the CL file",
+        job: Job::PredictAgainst,
+        form: Form::Nx,
+        flags: AC_POST,
+    },
+    Case {
+        name: "post --plan ac-trunnion, tcp = post",
+        job: Job::Plan,
+        form: Form::Nx,
+        flags: AC_POST,
+    },
     Case { name: "start of a job", job: Job::Start, form: Form::Nx, flags: AC_POST },
     Case { name: "start, --version", job: Job::Version, form: Form::Nx, flags: &[] },
 ];
@@ -151,7 +174,8 @@ impl Case {
             }
             Job::Post => (POINTS, "a point"),
             Job::Read | Job::Verify => (POINTS, "a block"),
-            Job::Predict => (FEW_POINTS, "a block"),
+            Job::Predict | Job::PredictAgainst => (FEW_POINTS, "a block"),
+            Job::Plan => (FEW_POINTS, "a point"),
         };
         let [fewer, more] = [points, 2 * points].map(|points| self.instructions(folder, points));
         Ok(((more? - fewer?) / points, unit))
@@ -165,7 +189,7 @@ impl Case {
         }
         let program = folder.join("program.nc");
         let post = env!("CARGO_BIN_EXE_post");
-        if matches!(self.job, Job::Read | Job::Verify | Job::Predict) {
+        if self.job.reads_program() {
             let mut posting = Command::new(post);
             self.posting(&mut posting, &cl, &program);
             succeed(&mut posting)?;
@@ -174,6 +198,10 @@ impl Case {
         counted.args(["--tool=callgrind", "--callgrind-out-file=/dev/null", post]);
         match self.job {
             Job::Post | Job::Start => self.posting(&mut counted, &cl, &program),
+            Job::Plan => {
+                self.posting(&mut counted, &cl, &program);
+                counted.arg("--plan");
+            }
             Job::Read => {
                 counted.arg("read").arg(&program).args(self.flags);
             }
@@ -183,11 +211,14 @@ impl Case {
             Job::Predict => {
                 counted.arg("predict").arg(&program).args(self.flags);
             }
+            Job::PredictAgainst => {
+                counted.arg("predict").arg(&program).arg("--against").arg(&cl).args(self.flags);
+            }
             Job::Version => {
                 counted.arg("--version");
             }
         }
-        if matches!(self.job, Job::Read | Job::Verify | Job::Predict) {
+        if self.job.reads_program() {
             counted.args(["--tool-length", "100"]);
         }
         let told = succeed(&mut counted)?;

@@ -120,8 +120,8 @@ impl Chain {
             }
             let (k, point) = (joint.direction, joint.point);
             if !joint.rotary {
-                for lane in 0..count {
-                    set_vector(tip, lane, vector(tip, lane) + k * values[lane]);
+                for (lane, value) in values.iter().enumerate().take(count) {
+                    set_vector(tip, lane, vector(tip, lane) + k * *value);
                 }
                 continue;
             }

@@ -250,17 +250,17 @@ fn on_smooth([first, next]: [&MoveLimits; 2], shares: [f64; 2]) -> DerivativeBou
                 + b * b * b * next[2],
         ]
     };
-    let mut orders = [[0.0; PLACES]; 3];
+    let [mut firsts, mut seconds, mut thirds] = [[0.0; PLACES]; 3];
     for place in 0..MAX_AXES {
         let change = libm::fabs(b * next.ends[0][place] - a * first.ends[1][place]);
         let of = |found: &MoveLimits| [found.first[place], found.second[place], found.third[place]];
         let found = bounds(change, of(first), of(next));
-        [orders[0][place], orders[1][place], orders[2][place]] = found;
+        [firsts[place], seconds[place], thirds[place]] = found;
     }
     let change = (next.tip_ends[0] * b - first.tip_ends[1] * a).norm();
     let tip = bounds(change, first.tip, next.tip);
-    [orders[0][TIP], orders[1][TIP], orders[2][TIP]] = tip;
-    DerivativeBounds { orders, circle: [0.0; PLACES] }
+    [firsts[TIP], seconds[TIP], thirds[TIP]] = tip;
+    DerivativeBounds { orders: [firsts, seconds, thirds], circle: [0.0; PLACES] }
 }
 
 /// Limits along an arc of a circle that turns by `sweep` between two straight ways.

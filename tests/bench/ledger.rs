@@ -50,6 +50,10 @@ enum Job {
     Report,
     /// Eight dry runs at most, for the mount.
     Place,
+    /// The tool is held against the CL file too.
+    PredictAgainst,
+    /// Posting with planned feeds, predictions of its rounds included.
+    Plan,
     /// Posting of two points, as a whole.
     Start,
     /// Nothing but its version, as a whole.
@@ -59,7 +63,10 @@ enum Job {
 impl Job {
     /// A program is posted first, and read.
     fn reads(self) -> bool {
-        matches!(self, Self::Read | Self::Verify | Self::Diff | Self::Predict)
+        matches!(
+            self,
+            Self::Read | Self::Verify | Self::Diff | Self::Predict | Self::PredictAgainst
+        )
     }
 }
 
@@ -143,6 +150,18 @@ const CASES: &[Case] = &[
         flags: AC_CONTROL,
     },
     Case { name: "start of a job, six-axis arm", job: Job::Start, form: Form::Nx, flags: ARM },
+    Case {
+        name: "predict against the CL file",
+        job: Job::PredictAgainst,
+        form: Form::Nx,
+        flags: AC_POST,
+    },
+    Case {
+        name: "post --plan ac-trunnion, tcp = post",
+        job: Job::Plan,
+        form: Form::Nx,
+        flags: AC_POST,
+    },
     Case { name: "start of a job", job: Job::Start, form: Form::Nx, flags: AC_POST },
     Case { name: "start, --version", job: Job::Version, form: Form::Nx, flags: &[] },
 ];
@@ -225,7 +244,8 @@ impl Case {
             Job::Post | Job::Report | Job::Place => (POINTS, "a point"),
             Job::Read | Job::Verify => (POINTS, "a block"),
             Job::Diff => (POINTS, "a pair"),
-            Job::Predict => (FEW_POINTS, "a block"),
+            Job::Predict | Job::PredictAgainst => (FEW_POINTS, "a block"),
+            Job::Plan => (FEW_POINTS, "a point"),
         };
         let [fewer, more] =
             [points, 2 * points].map(|points| self.instructions(post, folder, points));
@@ -252,6 +272,10 @@ impl Case {
                 self.posting(&mut counted, &cl, &program);
                 counted.arg("--report").arg(folder.join("report.html"));
             }
+            Job::Plan => {
+                self.posting(&mut counted, &cl, &program);
+                counted.arg("--plan");
+            }
             Job::Place => {
                 counted.arg("place").arg(&cl).args(self.flags).args(["--runs", "8"]);
             }
@@ -266,6 +290,9 @@ impl Case {
             }
             Job::Predict => {
                 counted.arg("predict").arg(&program).args(self.flags);
+            }
+            Job::PredictAgainst => {
+                counted.arg("predict").arg(&program).arg("--against").arg(&cl).args(self.flags);
             }
             Job::Version => {
                 counted.arg("--version");

@@ -17,6 +17,10 @@ const ROUNDS: usize = 10;
 const WIDENING: usize = 3;
 /// And for the tolerance.
 const HOLDING: usize = 24;
+/// Shares that a length which smooths too much falls to, at least and at most.
+const RATIOS: [f64; 2] = [0.4, 0.95];
+/// The tenth root of what is less is below the least of them, 0.4^10 = 1.048576e-4.
+const LEAST_SHARE: f64 = 1.048e-4;
 /// Spans at the end of a window whose fit still lacks what comes after.
 const BLURRED: usize = OVERLAP / 2;
 
@@ -304,9 +308,19 @@ impl<const W: usize> Smoother<W> {
             let length = self.lengths[index];
             let next = if total[0] > 1.2 * allowed {
                 // Residuals grow with the sixth power, towards ends with the third.
-                let ratio = libm::pow(0.7 * allowed / total[0], 0.1).clamp(0.4, 0.95);
                 changed |= total[0] > 2.0 * allowed && index < self.active;
-                (ratio * length).max(NARROWEST * span.width).min(length)
+                let narrowest = NARROWEST * span.width;
+                // Where the root is out of its range, or no root would leave more than the narrowest, none is drawn.
+                let share = 0.7 * allowed / total[0];
+                if RATIOS[1] * length <= narrowest {
+                    narrowest.min(length)
+                } else {
+                    let ratio = match share < LEAST_SHARE {
+                        true => RATIOS[0],
+                        false => libm::pow(share, 0.1).clamp(RATIOS[0], RATIOS[1]),
+                    };
+                    (ratio * length).max(narrowest).min(length)
+                }
             } else if widen
                 && (self.settled..self.active).contains(&index)
                 && total[0] < 0.1 * allowed

@@ -15,18 +15,29 @@ impl<const K: usize> Band<K> {
     /// Factors into `L D L'` in place: `D` takes the diagonal, `L` the rest.
     pub(crate) fn factor(&mut self) {
         let size = self.rows.len();
-        for column in 0..size {
-            let pivot = self.rows[column];
-            let mut factor = pivot;
-            for k in 1..K.min(size - column) {
-                factor[k] = pivot[k] / pivot[0];
-                let row = self.rows[column + k].iter_mut();
-                for (entry, pivot) in row.zip(&pivot[k..]) {
-                    *entry -= factor[k] * pivot;
-                }
-            }
-            self.rows[column] = factor;
+        // Columns that reach as far as the band does, and those at the end: a loop of known length for most.
+        let whole = (size + 1).saturating_sub(K);
+        for column in 0..whole {
+            self.factor_column(column, K);
         }
+        for column in whole..size {
+            self.factor_column(column, size - column);
+        }
+    }
+
+    /// Takes a column that reaches over `reach` rows, its own among them, from those after it.
+    #[inline(always)]
+    fn factor_column(&mut self, column: usize, reach: usize) {
+        let rows = &mut self.rows[column..column + reach];
+        let pivot = rows[0];
+        let mut factor = pivot;
+        for k in 1..reach {
+            factor[k] = pivot[k] / pivot[0];
+            for (entry, pivot) in rows[k].iter_mut().zip(&pivot[k..]) {
+                *entry -= factor[k] * pivot;
+            }
+        }
+        rows[0] = factor;
     }
 
     /// Solves for a right side in place, after [`Band::factor`].
@@ -37,23 +48,44 @@ impl<const K: usize> Band<K> {
     /// Solves for `W` right sides at once: each waits for fewer of its own results.
     pub(crate) fn solve_each<const W: usize>(&self, sides: &mut [[f64; W]]) {
         let size = self.rows.len();
-        for column in 0..size {
-            let value = sides[column];
-            for k in 1..K.min(size - column) {
-                for (side, value) in sides[column + k].iter_mut().zip(value) {
-                    *side -= self.rows[column][k] * value;
-                }
+        let whole = (size + 1).saturating_sub(K);
+        for column in 0..whole {
+            self.forward(column, K, sides);
+        }
+        for column in whole..size {
+            self.forward(column, size - column, sides);
+        }
+        for column in (whole..size).rev() {
+            self.backward(column, size - column, sides);
+        }
+        for column in (0..whole).rev() {
+            self.backward(column, K, sides);
+        }
+    }
+
+    #[inline(always)]
+    fn forward<const W: usize>(&self, column: usize, reach: usize, sides: &mut [[f64; W]]) {
+        let row = &self.rows[column];
+        let sides = &mut sides[column..column + reach];
+        let value = sides[0];
+        for k in 1..reach {
+            for (side, value) in sides[k].iter_mut().zip(value) {
+                *side -= row[k] * value;
             }
         }
-        for column in (0..size).rev() {
-            let mut value = sides[column].map(|side| side / self.rows[column][0]);
-            for k in (1..K.min(size - column)).rev() {
-                for (value, side) in value.iter_mut().zip(sides[column + k]) {
-                    *value -= self.rows[column][k] * side;
-                }
+    }
+
+    #[inline(always)]
+    fn backward<const W: usize>(&self, column: usize, reach: usize, sides: &mut [[f64; W]]) {
+        let row = &self.rows[column];
+        let sides = &mut sides[column..column + reach];
+        let mut value = sides[0].map(|side| side / row[0]);
+        for k in (1..reach).rev() {
+            for (value, side) in value.iter_mut().zip(sides[k]) {
+                *value -= row[k] * side;
             }
-            sides[column] = value;
         }
+        sides[0] = value;
     }
 }
 

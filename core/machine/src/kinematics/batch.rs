@@ -7,8 +7,10 @@ use fearless_simd::{Level, Simd};
 use nalgebra::Vector3;
 
 use super::chain::{
-    AxisLine, Chain, Joint, MAX_AXES, Turns, turn_about_x, turn_about_y, turn_about_z, turn_askew,
+    AxisLine, Chain, Joint, Joints, MAX_AXES, Pose, Turns, turn, turn_about_x, turn_about_y,
+    turn_about_z, turn_askew,
 };
+use super::lane_math::sincos_all;
 
 /// Points that are solved together.
 pub const LANES: usize = 64;
@@ -205,6 +207,60 @@ impl Turns {
 }
 
 impl Chain {
+    /// [`Chain::forward`] of each of `joints`, put behind what `poses` holds.
+    pub fn forward_all(&self, joints: &[Joints], poses: &mut Vec<Pose>) {
+        if self.edge().is_some() {
+            poses.extend(joints.iter().map(|joints| self.forward(joints)));
+            return;
+        }
+        for batch in joints.chunks(LANES) {
+            let [tip, axis] = self.forward_lanes(batch);
+            poses.extend((0..batch.len()).map(|lane| Pose {
+                tip: vector(&tip, lane),
+                axis: vector(&axis, lane),
+                edge: Vector3::zeros(),
+            }));
+        }
+    }
+
+    /// Tips and tool axes of up to [`LANES`] points.
+    fn forward_lanes(&self, points: &[Joints]) -> [VectorLanes; 2] {
+        let count = points.len().min(LANES);
+        let mut found = [[[0.0; LANES]; 3]; 2];
+        let [tip, axis] = &mut found;
+        for part in 0..3 {
+            tip[part][..count].fill(self.tip()[part]);
+            axis[part][..count].fill(self.axis()[part]);
+        }
+        let [mut values, mut sines, mut cosines] = [[0.0; LANES]; 3];
+        for (index, joint) in self.joints().iter().enumerate().rev() {
+            for (value, point) in values.iter_mut().zip(points) {
+                *value = point[index];
+            }
+            let (k, point) = (joint.direction, joint.point);
+            if !joint.rotary {
+                for (lane, value) in values.iter().enumerate().take(count) {
+                    set_vector(tip, lane, vector(tip, lane) + k * *value);
+                }
+                continue;
+            }
+            sincos_all(&values, count, &mut sines, &mut cosines);
+            for lane in 0..count {
+                let arm = vector(tip, lane) - point;
+                set_vector(tip, lane, point + turn(arm, k, sines[lane], cosines[lane]));
+            }
+            for lane in 0..count {
+                let turned = turn(vector(axis, lane), k, sines[lane], cosines[lane]);
+                set_vector(axis, lane, turned);
+            }
+        }
+        let mount = self.mount();
+        for lane in 0..count {
+            set_vector(tip, lane, vector(tip, lane) - mount);
+        }
+        found
+    }
+
     /// [`Chain::trace`] of the first `count` points of `at`; the leading edge of a tool that has one is left out.
     pub fn trace_all(&self, at: &AxisBatch, count: usize, out: &mut Traces) {
         widely(

@@ -65,6 +65,46 @@ fn a_batch_is_placed_and_traced_with_the_bits_of_its_points() {
     assert!(placed > at_least(1_000) && left > at_least(500));
 }
 
+/// The forward products of many points are those of each, bit by bit, with a leading edge as without one, at angles close
+/// to the seams of the sine too.
+#[test]
+fn many_points_are_reached_with_the_bits_of_each() {
+    let (rounds, mut rng) = randomised(200, 65);
+    let mut edged = 0;
+    for round in rounds {
+        let mut kinds = vec![Kind::Linear; 3];
+        kinds.extend([Kind::Free; 2]);
+        kinds.extend(vec![Kind::Held; round as usize % 3]);
+        let machine = Random::of(&mut rng, &kinds);
+        let edge = (round % 4 == 0).then(|| rng.point(1.0));
+        let chain = machine.reference.chain().with_edge(edge);
+        edged += usize::from(chain.edge().is_some());
+        let points: Vec<_> = (0..rng.pick(3 * LANES))
+            .map(|lane| {
+                let mut values = machine.values(&mut rng);
+                if lane % 5 == 0 {
+                    let quarters = rng.pick(9) as f64 - 4.0;
+                    values[machine.free[0]] =
+                        quarters * std::f64::consts::FRAC_PI_4 + rng.range(-1e-5, 1e-5);
+                }
+                values
+            })
+            .collect();
+        // What stands there stays.
+        let mut poses = vec![Pose::default()];
+        chain.forward_all(&points, &mut poses);
+        assert_eq!(poses.len(), 1 + points.len());
+        assert_eq!(poses[0], Pose::default());
+        for (values, pose) in points.iter().zip(&poses[1..]) {
+            let bits = |pose: &Pose| {
+                [pose.tip, pose.axis, pose.edge].map(|of| [of.x, of.y, of.z].map(f64::to_bits))
+            };
+            assert_eq!(bits(pose), bits(&chain.forward(values)));
+        }
+    }
+    assert!(edged > at_least(20));
+}
+
 /// Rotary angles of a batch are those of its points, bit by bit, wherever the batch says that it has them.
 #[test]
 fn a_batch_is_turned_with_the_bits_of_its_points() {

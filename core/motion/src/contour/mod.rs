@@ -87,6 +87,8 @@ pub struct Contour<'r> {
     tool_axes: FivePoints,
     filled: usize,
     pending: VecDeque<PendingSetPoint>,
+    /// Where the tool is at the set-points of the batch in work.
+    poses: Vec<Pose>,
     /// Set-points that the path is ahead.
     lead: u64,
     axes: AxesPeaks,
@@ -145,7 +147,10 @@ impl<'r> Contour<'r> {
         self.lead = (LEAD / points.period).clamp(LEADS[0], LEADS[1]) as u64;
         let mut jumps = points.jumps.as_slice();
         self.report.jumps += jumps.len() as u64;
-        for (place, actual) in actual.iter().enumerate().take(points.len()) {
+        let mut poses = std::mem::take(&mut self.poses);
+        poses.clear();
+        chain.forward_all(&actual[..actual.len().min(points.len())], &mut poses);
+        for (place, (actual, pose)) in actual.iter().zip(&poses).enumerate() {
             let joints = &points.joints[place];
             let (time, at) = (points.time(place), points.at[place]);
             let jumped = jumps.partition_point(|jump| jump.time <= time);
@@ -160,11 +165,12 @@ impl<'r> Contour<'r> {
                 time,
                 joints: [*joints, *actual],
                 commanded,
-                actual: chain.forward(actual),
+                actual: *pose,
             });
             self.knot(PathSetPoint { number, at, tip: commanded.tip, axis: commanded.axis });
             self.settled(self.lead, listen);
         }
+        self.poses = poses;
     }
 
     /// Ends the program, and reports.

@@ -93,19 +93,19 @@ impl ContourReport {
             tip: point.nearest.tip,
         };
         if !point.at.cuts {
-            self.rapids.take(peak(point.distance));
+            self.rapids.take(point.distance, peak);
             return;
         }
-        self.cuts.take(peak(point.distance));
-        self.axis.take(peak(point.axis));
-        self.missed.take(peak(missed));
-        self.interpolation.take(peak(point.interpolation));
+        self.cuts.take(point.distance, peak);
+        self.axis.take(point.axis, peak);
+        self.missed.raise(missed, peak);
+        self.interpolation.take(point.interpolation, peak);
         if let Some(asked) = &point.asked {
-            self.asked.take(peak(asked.distance));
-            self.asked_axis.take(peak(asked.axis));
-            self.program.take(peak(asked.program));
+            self.asked.take(asked.distance, peak);
+            self.asked_axis.take(asked.axis, peak);
+            self.program.take(asked.program, peak);
         }
         let following = (point.commanded.tip - point.actual.tip).norm();
-        self.following.take(peak(following));
+        self.following.take(following, peak);
     }
 }

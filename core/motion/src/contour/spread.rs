@@ -28,11 +28,11 @@ pub struct ContourPeak {
 }
 
 impl ContourPeak {
-    /// Takes one that is larger than what has been.
+    /// Takes a value that is larger than what has been; `peak` says where it stands, which is not asked otherwise.
     #[inline]
-    pub(super) fn take(&mut self, other: Self) {
-        if other.value > self.value {
-            *self = other;
+    pub(super) fn raise(&mut self, value: f64, peak: impl FnOnce(f64) -> Self) {
+        if value > self.value {
+            *self = peak(value);
         }
     }
 }
@@ -60,13 +60,13 @@ impl Default for ValueSpread {
 }
 
 impl ValueSpread {
-    /// Takes one more.
+    /// Takes one more; `peak` says where it stands.
     #[inline]
-    pub(super) fn take(&mut self, value: ContourPeak) {
+    pub(super) fn take(&mut self, value: f64, peak: impl FnOnce(f64) -> ContourPeak) {
         self.count += 1;
-        self.squares += value.value * value.value;
-        self.bins[bin(value.value)] += 1;
-        self.peak.take(value);
+        self.squares += value * value;
+        self.bins[bin(value)] += 1;
+        self.peak.raise(value, peak);
     }
 
     /// Root mean square; zero of none.
@@ -117,8 +117,8 @@ mod tests {
         let mut values: Vec<f64> =
             (1..=5000).map(|n| 1e-6 * libm::pow(1.002, f64::from(n))).collect();
         for (place, value) in values.iter().enumerate() {
-            spread.take(ContourPeak {
-                value: *value,
+            spread.take(*value, |value| ContourPeak {
+                value,
                 time: place as f64,
                 ..ContourPeak::default()
             });

@@ -35,7 +35,7 @@ use post_machine::description::BlendRule;
 
 use super::kink::Kink;
 use super::profile::Ramp;
-use super::round::RoundedCorner;
+use super::round::{RoundedCorner, SmoothCorner, SmoothCorners};
 use super::side::CornerSide;
 use crate::CornerMode;
 use crate::limits::AxisLimits;
@@ -100,35 +100,35 @@ impl Junction {
         if sides[0].overlapped {
             return Self::overlap(sides, rules);
         }
-        let smooth =
-            |share: f64| RoundedCorner::smooth(sides, rules, &kink, tolerance, [wanted, share]);
-        let faster = |round: &RoundedCorner| round.passes() > rate.min(wanted) * (1.0 - SAME);
+        let smooth = SmoothCorners::new(sides, rules, &kink, tolerance, wanted);
+        let faster = |passes: f64| passes > rate.min(wanted) * (1.0 - SAME);
         if !jerk {
             let circle = match blend {
                 BlendRule::Overlap => RoundedCorner::circle(sides, rules, tolerance),
                 BlendRule::Round => None,
             };
-            let round = circle.or_else(|| smooth(1.0)).filter(faster);
-            return round.map_or(join, Self::Round);
+            let round = circle.or_else(|| smooth.of(1.0).map(|corner| smooth.rounded(corner)));
+            return round.filter(|round| faster(round.passes())).map_or(join, Self::Round);
         }
-        let whole = smooth(1.0).filter(faster);
-        if let Some(round) = whole.filter(|round| round.passes() >= AT_SPEED * wanted) {
-            return Self::Round(round);
+        let whole = smooth.of(1.0).filter(|corner| faster(corner.passes()));
+        if let Some(corner) = whole.filter(|corner| corner.passes() >= AT_SPEED * wanted) {
+            return Self::Round(smooth.rounded(corner));
         }
         // A long curve that is passed slowly takes longer than a short one, or the kink: what counts is the time.
-        let seconds = |round: &RoundedCorner| {
-            let (ratio, rate) = (kink.ratio, round.passes());
-            1.0 / round.bounds.rate + around(sides, ratio, rate, 0.5 * round.length)
+        let seconds = |corner: &SmoothCorner| {
+            1.0 / corner.rate + around(sides, kink.ratio, corner.passes(), 0.5 * corner.length)
         };
-        let shorter = SHORTER.iter().filter_map(|share| smooth(*share));
-        let rounds = whole.into_iter().chain(shorter.filter(faster));
-        let timed = rounds.map(|round| (seconds(&round), Self::Round(round)));
-        let joined = (around(sides, kink.ratio, rate.min(wanted), 0.0), join);
-        let least = |least: (f64, Self), one: (f64, Self)| match one.0 < least.0 {
-            true => one,
-            false => least,
-        };
-        timed.fold(joined, least).1
+        let shorter = SHORTER.iter().filter_map(|share| smooth.of(*share));
+        let corners = whole.into_iter().chain(shorter.filter(|corner| faster(corner.passes())));
+        let mut least = around(sides, kink.ratio, rate.min(wanted), 0.0);
+        let mut best = None;
+        for corner in corners {
+            let taken = seconds(&corner);
+            if taken < least {
+                (least, best) = (taken, Some(corner));
+            }
+        }
+        best.map_or(join, |corner| Self::Round(smooth.rounded(corner)))
     }
 
     fn overlap(sides: [CornerSide; 2], rules: &AxisLimits) -> Self {

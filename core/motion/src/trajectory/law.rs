@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use post_machine::kinematics::{Joints, Solver, Unreachable};
+use post_machine::kinematics::{Joints, Pose, Solver, Unreachable};
 
 use super::TimeLimit;
 use super::profile::Phase;
@@ -152,14 +152,14 @@ impl TimeLaw {
 
     /// Where the machine stands at `time`, which nothing that is over precedes, and in which piece; `near`: the axis
     /// values a little before.
-    pub fn at(&self, time: f64, near: &Joints) -> Result<(Stance, ProgramPlace), Unreachable> {
+    pub fn at(&self, time: f64, near: &Joints) -> Result<(LawStance, ProgramPlace), Unreachable> {
         let section = &self.sections[0];
-        let stance = self.stance(section, time, near)?;
         let at = self.piece(section.piece).at;
         let count = self.counts.front().copied().unwrap_or_default();
         let Some(second) = self.sections.get(count).filter(|next| next.begins < time) else {
-            return Ok((stance, at));
+            return Ok((self.place(section, time, near)?, at));
         };
+        let stance = self.stance(section, time, near)?;
         // The next run has begun while this one ends.
         let run = second.run;
         let second = self
@@ -170,65 +170,111 @@ impl TimeLaw {
             .unwrap_or(second);
         let last = self.piece(self.sections[count - 1].piece).entry;
         let [first, other] = [last, self.piece(second.piece).entry].map(|entry| self.task(entry));
-        let next = self.stance(second, time, &less(near, &stance, &first.to))?;
+        let next = self.stance(second, time, &less(near, &stance.joints, &first.to))?;
         let tip_led = self.adds_tips([first, other]);
-        added(&first.solver, [&stance, &next], &first.to, tip_led).map(|stance| (stance, at))
+        let joints = added(&first.solver, [&stance, &next], &first.to, tip_led)?;
+        Ok((LawStance { joints, pose: None }, at))
     }
 
     fn adds_tips(&self, moves: [&Move; 2]) -> bool {
         self.programmed && moves.iter().all(|task| task.way != Interpolation::Axes)
     }
 
+    /// Where one section has the machine, its pose with it.
     fn stance(
         &self,
         section: &LawSection,
         time: f64,
         near: &Joints,
     ) -> Result<Stance, Unreachable> {
+        let LawStance { joints, pose } = self.place(section, time, near)?;
+        let chain = self.task(self.piece(section.piece).entry).solver.chain();
+        Ok(Stance { joints, pose: pose.unwrap_or_else(|| chain.forward(&joints)) })
+    }
+
+    /// Where one section has the machine.
+    fn place(
+        &self,
+        section: &LawSection,
+        time: f64,
+        near: &Joints,
+    ) -> Result<LawStance, Unreachable> {
         let piece = self.piece(section.piece);
         let within = (time - section.begins).clamp(0.0, section.phase.seconds);
         let covered = section.from + section.phase.length(within);
         let share = (covered / piece.length).clamp(0.0, 1.0);
         let task = self.task(piece.entry);
-        let stand = |task: &Move, t: f64, near: &Joints| {
-            task.way.stance_at(&task.solver, [&task.from, &task.to], t, near)
-        };
-        match piece.span {
-            PieceSpan::Along { from, to } => stand(task, from + (to - from) * share, near),
-            PieceSpan::Corner { shares, curve } => {
-                let next = self.task(piece.entry + 1);
-                let [out, into] = curve.places(share);
-                let first = stand(task, 1.0 - shares[0] * (1.0 - out), near)?;
-                let second = stand(next, shares[1] * into, &less(near, &first, &task.to))?;
-                let tip_led = self.adds_tips([task, next]);
-                added(&task.solver, [&first, &second], &task.to, tip_led)
+        let (shares, curve) = match piece.span {
+            PieceSpan::Along { from, to } => {
+                return along(task, from + (to - from) * share, near);
             }
-        }
+            PieceSpan::Corner { shares, curve } => (shares, curve),
+        };
+        let next = self.task(piece.entry + 1);
+        let [out, into] = curve.places(share);
+        let places = [1.0 - shares[0] * (1.0 - out), shares[1] * into];
+        let joints = if self.adds_tips([task, next]) {
+            let first = stance(task, places[0], near)?;
+            let second = stance(next, places[1], &less(near, &first.joints, &task.to))?;
+            added(&task.solver, [&first, &second], &task.to, true)?
+        } else {
+            let first = joints(task, places[0], near)?;
+            let second = joints(next, places[1], &less(near, &first, &task.to))?;
+            sum([&first, &second], &task.to)
+        };
+        Ok(LawStance { joints, pose: None })
     }
 }
 
-/// The axis values without what the first of two ways that meet at `corner` has yet to go.
-fn less(joints: &Joints, first: &Stance, corner: &Stance) -> Joints {
-    std::array::from_fn(|place| joints[place] - (first.joints[place] - corner.joints[place]))
+/// Where the machine stands at a time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LawStance {
+    /// Axis values, mm and radians.
+    pub joints: Joints,
+    /// Tip and tool axis where the control leads both by vectors; else they are what the axis values make.
+    pub pose: Option<Pose>,
 }
 
-/// Where two ways lead together that meet at `corner`: what is limited is added, the tip and the rotary axes
-/// (`tip_led`) or all axes, so that velocities and accelerations add up as they were shared out.
+/// Where the machine stands at a place of a move.
+fn along(task: &Move, t: f64, near: &Joints) -> Result<LawStance, Unreachable> {
+    if task.way == Interpolation::TipAndAxis {
+        let Stance { joints, pose } = stance(task, t, near)?;
+        return Ok(LawStance { joints, pose: Some(pose) });
+    }
+    joints(task, t, near).map(|joints| LawStance { joints, pose: None })
+}
+
+fn stance(task: &Move, t: f64, near: &Joints) -> Result<Stance, Unreachable> {
+    task.way.stance_at(&task.solver, [&task.from, &task.to], t, near)
+}
+
+fn joints(task: &Move, t: f64, near: &Joints) -> Result<Joints, Unreachable> {
+    task.way.joints_at(&task.solver, [&task.from, &task.to], t, near)
+}
+
+/// The axis values without what the first of two ways that meet at `corner` has yet to go.
+fn less(joints: &Joints, first: &Joints, corner: &Stance) -> Joints {
+    std::array::from_fn(|place| joints[place] - (first[place] - corner.joints[place]))
+}
+
+/// The axis values where two ways lead together that meet at `corner`, added axis by axis.
+fn sum([first, second]: [&Joints; 2], corner: &Stance) -> Joints {
+    std::array::from_fn(|place| first[place] + (second[place] - corner.joints[place]))
+}
+
+/// The axis values where two ways lead together that meet at `corner`: what is limited is added, the tip and the rotary
+/// axes (`tip_led`) or all axes, so that velocities and accelerations add up as they were shared out.
 fn added(
     solver: &Solver,
     [first, second]: [&Stance; 2],
     corner: &Stance,
     tip_led: bool,
-) -> Result<Stance, Unreachable> {
-    let mut joints: Joints = std::array::from_fn(|place| {
-        first.joints[place] + (second.joints[place] - corner.joints[place])
-    });
-    let chain = solver.chain();
-    let turns = chain.turns(&joints);
+) -> Result<Joints, Unreachable> {
+    let mut joints = sum([&first.joints, &second.joints], corner);
     if tip_led {
+        let turns = solver.chain().turns(&joints);
         let tip = first.pose.tip + (second.pose.tip - corner.pose.tip);
         solver.place(tip, &mut joints, &turns)?;
     }
-    let pose = chain.pose(&joints, &turns);
-    Ok(Stance { joints, pose })
+    Ok(joints)
 }

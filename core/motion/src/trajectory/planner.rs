@@ -15,7 +15,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use post_machine::description::{BlendRule, Machine};
-use post_machine::kinematics::{Joints, Unreachable};
+use post_machine::kinematics::{Joints, Pose, Unreachable};
 
 use super::account::TaskAccounts;
 use super::corner::Junction;
@@ -64,6 +64,8 @@ pub struct Planner {
     finished: bool,
     /// The axis values of the last set-point.
     near: Joints,
+    /// Poses of the batch in work that are led by vectors, with the places of their set-points.
+    led: Vec<(usize, Pose)>,
 }
 
 impl Planner {
@@ -94,6 +96,7 @@ impl Planner {
             ended: false,
             finished: false,
             near: Joints::default(),
+            led: Vec::new(),
         }
     }
 
@@ -211,6 +214,23 @@ impl Planner {
         most: usize,
         times: &mut Vec<TaskTime>,
     ) -> Result<FillOutcome, Unreachable> {
+        let filled = self.fill_joints(out, most, times);
+        // All that are new at once: sines and products of many points overlap.
+        let new = out.poses.len();
+        out.solver.chain().forward_all(&out.joints[new..], &mut out.poses);
+        for (place, pose) in self.led.drain(..) {
+            out.poses[place] = pose;
+        }
+        filled
+    }
+
+    /// Likewise, without poses but those that are led.
+    fn fill_joints(
+        &mut self,
+        out: &mut SetPoints,
+        most: usize,
+        times: &mut Vec<TaskTime>,
+    ) -> Result<FillOutcome, Unreachable> {
         loop {
             let time = out.time(out.len());
             self.accounts.done(time, times);
@@ -236,8 +256,10 @@ impl Planner {
             }
             let (stance, at) = self.law.at(time, &self.near)?;
             self.near = stance.joints;
+            if let Some(pose) = stance.pose {
+                self.led.push((out.len(), pose));
+            }
             out.joints.push(stance.joints);
-            out.poses.push(stance.pose);
             out.at.push(at);
             while let Some(jump) = self.jumps.pop_front_if(|jump| jump.time <= time) {
                 out.jumps.push(jump);

@@ -2,7 +2,10 @@
 
 use post_machine::kinematics::{Joints, MAX_AXES};
 
-use super::bounds::{ARC, CURVE, MoveBounds, NORMAL};
+use super::bounds::{
+    ARC, CURVE, DerivativeBounds, MoveBounds, MoveDemand, NORMAL, PLACES, PlaceLimits, TIP,
+    largest_rate, with_tip,
+};
 use super::kink::Kink;
 use super::side::CornerSide;
 use crate::limits::{AxisLimits, MoveLimits};
@@ -51,21 +54,43 @@ pub(super) struct RoundedCorner {
     pub bounds: MoveBounds,
 }
 
-impl RoundedCorner {
+/// Corners by the smooth step between two moves.
+pub(super) struct SmoothCorners<'a> {
+    found: [&'a MoveLimits; 2],
+    limits: PlaceLimits,
+    ratio: f64,
+    /// Rate of the first move's parameter with which they would be passed, 1/s.
+    wanted: f64,
+    /// Length of the longest, over the first move's parameter: as long as it takes to be passed at that rate, or as it
+    /// may be.
+    longest: f64,
+}
+
+/// One of them, as far as it takes to compare it with others.
+#[derive(Clone, Copy)]
+pub(super) struct SmoothCorner {
+    /// Length over the first move's parameter.
+    pub length: f64,
+    /// Largest rate of its own parameter from 0 to 1, 1/s.
+    pub rate: f64,
+}
+
+impl SmoothCorner {
     /// The rate of the first move's parameter with which it is passed, 1/s.
     pub fn passes(&self) -> f64 {
-        self.bounds.rate * self.length
+        self.rate * self.length
     }
+}
 
-    /// A corner by the smooth step, as long as it takes to be passed at the rate `wanted`, or as long as it may be, or
-    /// by this share of that.
-    pub fn smooth(
-        sides: [CornerSide; 2],
+impl<'a> SmoothCorners<'a> {
+    /// Those that may stray by `tolerance`, mm.
+    pub fn new(
+        sides: [CornerSide<'a>; 2],
         rules: &AxisLimits,
         kink: &Kink,
         tolerance: Option<f64>,
-        [wanted, share]: [f64; 2],
-    ) -> Option<Self> {
+        wanted: f64,
+    ) -> Self {
         // The unit of length is that of the first move's parameter.
         let sharpest = |limits: &Joints, of_tip: f64| {
             let axes = kink.change.iter().zip(limits);
@@ -77,24 +102,55 @@ impl RoundedCorner {
         let bent = sharpest(&rules.acceleration, rules.tip_acceleration) * STEEPEST / NORMAL;
         let jerked = sharpest(&rules.jerk, rules.tip_jerk) * SHARPEST * CURVE;
         let cube = wanted * wanted * wanted;
-        let mut length = AMPLE * (bent * wanted * wanted).max((jerked * cube).sqrt());
-        length = length.min(2.0 * HALF).min(2.0 * HALF / kink.ratio);
+        let mut longest = AMPLE * (bent * wanted * wanted).max((jerked * cube).sqrt());
+        longest = longest.min(2.0 * HALF).min(2.0 * HALF / kink.ratio);
         if let Some(tolerance) = tolerance {
-            length = length.min(tolerance / (STRAY * kink.tip.norm()));
+            longest = longest.min(tolerance / (STRAY * kink.tip.norm()));
         }
-        length *= share;
+        let found = [sides[0].found, sides[1].found];
+        let limits = PlaceLimits::of(rules);
+        Self { found, limits, ratio: kink.ratio, wanted, longest }
+    }
+
+    /// The one that is this share of the longest; none where that has no length.
+    pub fn of(&self, share: f64) -> Option<SmoothCorner> {
+        let length = self.longest * share;
         if length <= 0.0 {
             return None;
         }
-        let shares = [0.5 * length, 0.5 * length * kink.ratio];
-        let found = on_smooth([sides[0].found, sides[1].found], shares);
-        Some(Self {
-            ratio: kink.ratio,
+        let found = on_smooth(self.found, self.shares(length));
+        let rate = largest_rate(&found, &self.limits, &self.demand(length));
+        Some(SmoothCorner { length, rate })
+    }
+
+    /// What it takes of the one move and of the other.
+    fn shares(&self, length: f64) -> [f64; 2] {
+        [0.5 * length, 0.5 * length * self.ratio]
+    }
+
+    fn demand(&self, length: f64) -> MoveDemand {
+        MoveDemand { seconds: length / self.wanted, share: 1.0, sweep: None }
+    }
+
+    /// All of it.
+    pub fn rounded(&self, corner: SmoothCorner) -> RoundedCorner {
+        let length = corner.length;
+        let shares = self.shares(length);
+        let found = on_smooth(self.found, shares);
+        RoundedCorner {
+            ratio: self.ratio,
             shares,
             curve: CornerCurve::Smooth,
             length,
-            bounds: MoveBounds::new(&found, rules, length / wanted, 1.0, None),
-        })
+            bounds: MoveBounds::new(&found, &self.limits, &self.demand(length)),
+        }
+    }
+}
+
+impl RoundedCorner {
+    /// The rate of the first move's parameter with which it is passed, 1/s.
+    pub fn passes(&self) -> f64 {
+        self.bounds.rate * self.length
     }
 
     /// An arc between straight ways of the tip: the one that is run through as fast as the faster one of them with
@@ -136,12 +192,14 @@ impl RoundedCorner {
         let shares = lengths.map(|length| radius * sine / cosine / length);
         let length = shares[0] * longer(sweep);
         let found = on_circle([sides[0].found, sides[1].found], shares, sweep);
+        let seconds = length * lengths[0] / speed;
+        let demand = MoveDemand { seconds, share: 1.0, sweep: Some(sweep) };
         Some(Self {
             ratio: lengths[0] / lengths[1],
             shares,
             curve: CornerCurve::Circle(sweep),
             length,
-            bounds: MoveBounds::new(&found, rules, length * lengths[0] / speed, 1.0, Some(sweep)),
+            bounds: MoveBounds::new(&found, &PlaceLimits::of(rules), &demand),
         })
     }
 }
@@ -179,7 +237,7 @@ fn longer(sweep: f64) -> f64 {
 ///
 /// With `w = 2·share` for each, `t' = w·(1 - h)` or `w·h`, of which one grows as the other falls; `q'` differs over the
 /// share from what it is at the corner by at most `q''·w/2`.
-fn on_smooth([first, next]: [&MoveLimits; 2], shares: [f64; 2]) -> MoveLimits {
+fn on_smooth([first, next]: [&MoveLimits; 2], shares: [f64; 2]) -> DerivativeBounds {
     let [a, b] = shares.map(|share| 2.0 * share);
     let bounds = |change: f64, first: [f64; 3], next: [f64; 3]| {
         let bent = a * a * first[1] + b * b * next[1];
@@ -192,34 +250,29 @@ fn on_smooth([first, next]: [&MoveLimits; 2], shares: [f64; 2]) -> MoveLimits {
                 + b * b * b * next[2],
         ]
     };
-    let mut found = MoveLimits::default();
+    let [mut firsts, mut seconds, mut thirds] = [[0.0; PLACES]; 3];
     for place in 0..MAX_AXES {
         let change = libm::fabs(b * next.ends[0][place] - a * first.ends[1][place]);
         let of = |found: &MoveLimits| [found.first[place], found.second[place], found.third[place]];
-        let [one, two, three] = bounds(change, of(first), of(next));
-        (found.first[place], found.second[place], found.third[place]) = (one, two, three);
+        let found = bounds(change, of(first), of(next));
+        [firsts[place], seconds[place], thirds[place]] = found;
     }
     let change = (next.tip_ends[0] * b - first.tip_ends[1] * a).norm();
-    found.tip = bounds(change, first.tip, next.tip);
-    found
+    let tip = bounds(change, first.tip, next.tip);
+    [firsts[TIP], seconds[TIP], thirds[TIP]] = tip;
+    DerivativeBounds { orders: [firsts, seconds, thirds], circle: [0.0; PLACES] }
 }
 
 /// Limits along an arc of a circle that turns by `sweep` between two straight ways.
-fn on_circle([first, next]: [&MoveLimits; 2], shares: [f64; 2], sweep: f64) -> MoveLimits {
+fn on_circle([first, next]: [&MoveLimits; 2], shares: [f64; 2], sweep: f64) -> DerivativeBounds {
     let (sine, cosine) = libm::sincos(sweep);
     let [out, into] = shares.map(|share| share * longer(sweep));
-    let mut found = MoveLimits::default();
-    let mut circle = [0.0; MAX_AXES];
-    for (place, circle) in circle.iter_mut().enumerate() {
+    let circle = std::array::from_fn(|place| {
         let along = first.ends[1][place] * out;
         let across = (next.ends[0][place] * into - along * cosine) / sine;
-        *circle = (along * along + across * across).sqrt();
-        found.first[place] = *circle;
-        found.second[place] = *circle * sweep;
-        found.third[place] = *circle * sweep * sweep;
-    }
-    found.circle = Some(circle);
-    let length = first.tip_ends[1].norm() * out;
-    found.tip = [length, length * sweep, length * sweep * sweep];
-    found
+        (along * along + across * across).sqrt()
+    });
+    let circle = with_tip(&circle, first.tip_ends[1].norm() * out, 0.0);
+    let orders = [circle, circle.map(|of| of * sweep), circle.map(|of| of * sweep * sweep)];
+    DerivativeBounds { orders, circle }
 }

@@ -1,12 +1,13 @@
 //! A move as the planner keeps it until its corner is known.
 
+use post_machine::description::BlendRule;
 use post_machine::kinematics::Joints;
 
 use super::Planner;
 use crate::limits::MoveLimits;
 use crate::path::{Curve, turns};
 use crate::trajectory::TimeLimit;
-use crate::trajectory::bounds::MoveBounds;
+use crate::trajectory::bounds::{DerivativeBounds, MoveBounds, MoveDemand, PlaceLimits};
 use crate::trajectory::side::CornerSide;
 use crate::{Move, ProgramPlace};
 
@@ -17,6 +18,7 @@ pub(super) struct OpenMove {
     pub number: u64,
     pub found: MoveLimits,
     pub whole: MoveBounds,
+    /// Bounds with half of the accelerations; the whole ones where no moves overlap, as nobody asks for them.
     pub half: MoveBounds,
     /// The length that its parameter from 0 to 1 has in the coordinate of the law.
     pub scale: f64,
@@ -57,9 +59,12 @@ impl Planner {
         let is_arc = matches!(task.way.curve(), Curve::Arc { .. });
         let sweep = (is_arc && standing).then(|| task.way.curve().turn());
         let feed = asked.unwrap_or(0.0);
+        let derivatives = DerivativeBounds::of(&found);
+        let limits = PlaceLimits::of(&self.limits);
         let bounds = |share: f64| {
             let seconds = feed.max(self.block_time);
-            let mut bounds = MoveBounds::new(&found, &self.limits, seconds, share, sweep);
+            let demand = MoveDemand { seconds, share, sweep };
+            let mut bounds = MoveBounds::new(&derivatives, &limits, &demand);
             if bounds.by[0] == TimeLimit::Feed && feed < seconds {
                 bounds.by[0] = TimeLimit::BlockTime;
             }
@@ -68,7 +73,10 @@ impl Planner {
         let whole = bounds(1.0);
         OpenMove {
             number: 0,
-            half: bounds(0.5),
+            half: match self.blend {
+                BlendRule::Overlap => bounds(0.5),
+                BlendRule::Round => whole,
+            },
             scale: 1.0 / whole.rate,
             whole,
             found,

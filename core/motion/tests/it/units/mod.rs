@@ -3,6 +3,7 @@
 #![allow(dead_code, unused_imports, reason = "tests do not use all of a file")]
 
 mod b_spline;
+mod bounds;
 mod fourier;
 mod limits;
 mod measured;

@@ -30,6 +30,8 @@ pub(crate) struct Extremes {
     pub travel: Joints,
     /// Where the largest deviations stand in the batch that is not written yet: index of the event.
     marks: [Option<usize>; 3],
+    /// The batch that each of them was marked in last.
+    batches: [u64; 3],
 }
 
 impl Extremes {
@@ -42,6 +44,7 @@ impl Extremes {
             most: [f64::NEG_INFINITY; MAX_AXES],
             travel: [0.0; MAX_AXES],
             marks: [None; 3],
+            batches: [0; 3],
         }
     }
 
@@ -74,11 +77,23 @@ impl Extremes {
         }
     }
 
-    /// The batch is written: `line_of` gives the line of the program that an event ends on.
-    pub(super) fn written(&mut self, line_of: impl Fn(usize) -> u64) {
-        for (deviation, mark) in self.deviations.iter_mut().zip(&mut self.marks) {
-            if let Some(index) = mark.take() {
-                deviation.block = line_of(index);
+    /// The batch goes to be written as number `batch`: its events whose lines are wanted.
+    pub(super) fn hand_over(&mut self, batch: u64) -> [Option<usize>; 3] {
+        for (last, mark) in self.batches.iter_mut().zip(&self.marks) {
+            if mark.is_some() {
+                *last = batch;
+            }
+        }
+        std::mem::take(&mut self.marks)
+    }
+
+    /// Batch number `batch` is written: `lines` of the program are those that the marked events end on.
+    pub(super) fn written(&mut self, batch: u64, lines: [Option<u64>; 3]) {
+        for (slot, line) in lines.into_iter().enumerate() {
+            // A larger one may have come since.
+            let last = self.batches[slot] == batch && self.marks[slot].is_none();
+            if let Some(line) = line.filter(|_| last) {
+                self.deviations[slot].block = line;
             }
         }
     }

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use super::*;
 
 /// A path that wanders, now in small steps and now in large ones, over poles and out of travel, with words between.
-fn wander(rng: &mut Rng) -> String {
+pub(super) fn wander(rng: &mut Rng) -> String {
     let mut text = "UNITS/MM\nLOADTL/1\nSPINDL/1000\nFEDRAT/MMPM,800\n".to_owned();
     let mut tip = rng.point(40.0);
     let (mut lean, mut around) = (rng.range(0.0, 0.8), rng.range(-3.0, 3.0));

@@ -40,6 +40,7 @@ class Options(TypedDict, total=False):
     compensate_servo: bool
     plan: bool
     plan_rounds: int | None
+    jobs: int | None
     trust_model: bool
 
 

@@ -46,6 +46,9 @@ fn flag<S: SettingsGroup>(row: &'static SettingRow<S>) -> Arg {
     let text = about.text();
     let help = text.strip_suffix('.').unwrap_or(&text).to_owned();
     let mut flag = Arg::new(about.name).long(about.flag()).help(help).help_heading(about.heading);
+    if let Some(letter) = about.short {
+        flag = flag.short(letter);
+    }
     flag = match about.form {
         SettingForm::Flag => return requiring(flag.action(ArgAction::SetTrue), about),
         _ => flag.value_name(about.value).value_parser(parser(row)),

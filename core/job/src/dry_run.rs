@@ -1,5 +1,7 @@
 //! One CL file on one machine, posted as often as it takes, its text thrown away.
 
+use std::num::NonZeroUsize;
+
 use post_host::{Finder, OpenedDialect};
 use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
@@ -77,7 +79,13 @@ impl<'a> DryRun<'a> {
             request.reading.spindle = DefaultSpindle::Still;
         }
         let mut dialect = Rounding::new(dialect, self.exact);
-        let pass = PostingPass { machine, request, dialect: &mut dialect, model: &mut model };
+        let pass = PostingPass {
+            machine,
+            request,
+            threads: NonZeroUsize::MIN,
+            dialect: &mut dialect,
+            model: &mut model,
+        };
         match pass.run_dry(self.session, input, watch)? {
             (Some(report), findings) => Ok((report, findings)),
             (None, findings) => Err(findings.into()),

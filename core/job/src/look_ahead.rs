@@ -1,5 +1,6 @@
 //! A first pass over a CL file: which tools come when, how far the tip goes, and how long it takes.
 
+use std::num::NonZeroUsize;
 use std::ops::Range;
 
 use post_host::Finder;
@@ -34,7 +35,13 @@ pub fn look_ahead(
         ..posting_pass::posting_request(arguments, &input.name)
     };
     let mut ahead = ProgramPreview::default();
-    let pass = PostingPass { machine: &plain, request, dialect: &mut dialect, model: &mut model };
+    let pass = PostingPass {
+        machine: &plain,
+        request,
+        threads: NonZeroUsize::MIN,
+        dialect: &mut dialect,
+        model: &mut model,
+    };
     let time = match pass.run_dry(session, input, Some(&mut ahead))? {
         (Some(report), _) => report.time_s,
         (None, findings) => return Err(findings.into()),

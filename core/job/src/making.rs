@@ -21,7 +21,7 @@ use crate::one_program::OneProgram;
 use crate::plan_rounds;
 use crate::plan_worth;
 use crate::plugin_finder;
-use crate::posting_pass::PostingExtras;
+use crate::posting_pass::{self, PostingExtras};
 use crate::predict::{self, PredictReference, Predicted, Prediction, PredictionSetup, Sample};
 use crate::read_back::{self, ReadingSetup, VerifiedProgram};
 use crate::report::{self, BlockRows, ClWindow, PageTexts, PostPage, PredictedParts};
@@ -245,6 +245,7 @@ impl<'a> ProgramMaker<'a> {
             lines: part.lines.clone(),
             trust_model: self.making.trust_model,
             plans: self.making.plan,
+            threads: posting_pass::threads(self.making.jobs),
             tightening: None,
         };
         PreparedProgram::new(program, self.making, self.ahead.as_ref(), source, shown)

@@ -1,5 +1,6 @@
 //! One CL file, or some of its lines, on one machine: one program.
 
+use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -35,6 +36,8 @@ pub struct OneProgram<'a> {
     pub trust_model: bool,
     /// Its feed is planned.
     pub plans: bool,
+    /// Threads that it is made on at most.
+    pub threads: NonZeroUsize,
     /// Where that plan may use less than the limit of the contour error.
     pub tightening: Option<Arc<Tightening>>,
 }
@@ -58,6 +61,7 @@ impl OneProgram<'_> {
             lines,
             trust_model,
             plans,
+            threads,
             tightening,
         } = self;
         let cl_file = &arguments.input;
@@ -92,7 +96,8 @@ impl OneProgram<'_> {
             lines,
             ..posting_pass::posting_request(arguments, &input.name)
         };
-        let pass = PostingPass { machine, request, dialect: &mut dialect, model: &mut model };
+        let (dialect, model) = (&mut dialect, &mut model);
+        let pass = PostingPass { machine, request, threads, dialect, model };
         let (mut report, findings) = pass.write(session, input, file, beside)?;
         if let Some(report) = &mut report {
             report.plugins = uses.to_vec();

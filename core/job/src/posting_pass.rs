@@ -1,7 +1,9 @@
 //! One pass of a CL file over a machine. Programs that are written, first passes, dry runs and what an editor shows are
 //! passes of this kind: plugins are opened, and posting begins, here alone.
 
+use std::num::NonZeroUsize;
 use std::sync::Arc;
+use std::thread;
 
 use post_grammar::{ClReader, GotoRun, ReadError};
 use post_host::{Finder, OpenedDialect, OpenedModel};
@@ -76,6 +78,8 @@ pub struct PostingPass<'a> {
     pub machine: &'a Machine,
     /// How the CL file is read and what is asked for.
     pub request: PostingRequest,
+    /// Threads that it is made on at most.
+    pub threads: NonZeroUsize,
     /// Writes the program.
     pub dialect: &'a mut dyn DialectSession,
     /// Foresees deviations.
@@ -94,7 +98,9 @@ impl PostingPass<'_> {
         sink: &mut dyn TextSink,
         beside: PostingExtras<'_, '_, '_>,
     ) -> Result<(Option<PostingReport>, Vec<Diagnostic>), Failure> {
-        let Self { machine, request, dialect, model } = self;
+        let Self { machine, request, threads, dialect, model } = self;
+        // Blocks are shown with the lines that they end on: whoever looks on waits for the text of each batch.
+        let beside_text = threads > NonZeroUsize::MIN && beside.observer.is_none();
         let post = Post::new(machine, request, dialect, model, sink);
         let mut post = post.map_err(|finding| *finding)?;
         if let Some(shift) = beside.shift {
@@ -106,8 +112,15 @@ impl PostingPass<'_> {
         if let Some(observer) = beside.observer {
             post.watch(observer);
         }
-        read(session, input, &mut post)?;
-        Ok(post.finish())
+        if !beside_text {
+            read(session, input, &mut post)?;
+            return Ok(post.finish());
+        }
+        thread::scope(|scope| {
+            post.write_beside(scope);
+            read(session, input, &mut post)?;
+            Ok(post.finish())
+        })
     }
 
     /// Posts `input` and throws the text away, the texts of the machine file left out: what they ask for may not be known,
@@ -121,10 +134,10 @@ impl PostingPass<'_> {
         input: ClInput,
         observer: Option<&mut dyn Observer>,
     ) -> Result<(Option<PostingReport>, Vec<Diagnostic>), Failure> {
-        let Self { machine, request, dialect, model } = self;
+        let Self { machine, request, threads, dialect, model } = self;
         let machine = &machine.without_text();
         let beside = PostingExtras { observer, ..PostingExtras::default() };
-        let pass = PostingPass { machine, request, dialect, model };
+        let pass = PostingPass { machine, request, threads, dialect, model };
         pass.write(session, input, &mut NullSink, beside)
     }
 
@@ -133,7 +146,7 @@ impl PostingPass<'_> {
     /// # Errors
     /// What machine and dialect cannot do together.
     pub fn check(self) -> Result<(), Failure> {
-        let Self { machine, request, dialect, model } = self;
+        let Self { machine, request, dialect, model, .. } = self;
         match Post::new(machine, request, dialect, model, &mut NullSink) {
             Ok(_) => Ok(()),
             Err(finding) => Err((*finding).into()),
@@ -158,7 +171,12 @@ pub fn try_opening(machine: &Machine, finder: &Finder, length: f64) -> Result<()
     };
     let request = PostingRequest { tool_length: Some(length), ..PostingRequest::default() };
     let (dialect, model) = (&mut opened.dialect, &mut opened.model);
-    PostingPass { machine, request, dialect, model }.check()
+    PostingPass { machine, request, threads: NonZeroUsize::MIN, dialect, model }.check()
+}
+
+/// Threads that a job works on at most: as many as the computer has, if nothing is `asked` for.
+pub fn threads(asked: Option<NonZeroUsize>) -> NonZeroUsize {
+    asked.or_else(|| thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN)
 }
 
 /// How the CL file that is called `file` in messages is posted.

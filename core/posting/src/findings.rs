@@ -69,6 +69,17 @@ struct FindingKind {
 }
 
 impl Repeat {
+    /// Of a finding that was found once.
+    fn first(finding: &Diagnostic) -> Self {
+        let line = finding.place.as_ref().map_or(0, |place| place.line);
+        Self {
+            kind: FindingKind::of(finding),
+            count: 1,
+            last: line,
+            extreme: finding.extreme.clone().map(|extreme| (extreme, line)),
+        }
+    }
+
     /// Number of times that it may be found.
     fn most(&self) -> u64 {
         match self.extreme {
@@ -152,9 +163,14 @@ impl Findings {
     /// A finding at a line of the CL file.
     #[cold]
     pub(crate) fn at(&self, line: u64, finding: Diagnostic) {
+        self.add(self.placed(line, finding));
+    }
+
+    /// A finding with its place at a line of the CL file.
+    pub(crate) fn placed(&self, line: u64, finding: Diagnostic) -> Diagnostic {
         let text = self.text(line);
         let place = SourcePlace::new(&self.file, line, &text, 0..text.len());
-        self.add(finding.at(Some(place)));
+        finding.at(Some(place))
     }
 
     /// A line of the CL file that cannot be read.
@@ -178,14 +194,21 @@ impl Findings {
             inner.untold += 1;
             return;
         }
-        let line = finding.place.as_ref().map_or(0, |place| place.line);
-        inner.repeats.push(Repeat {
-            kind: FindingKind::of(&finding),
-            count: 1,
-            last: line,
-            extreme: finding.extreme.clone().map(|extreme| (extreme, line)),
-        });
+        inner.repeats.push(Repeat::first(&finding));
         inner.found.push(finding);
+    }
+
+    /// Different findings so far, for [`Findings::insert`].
+    #[inline]
+    pub(crate) fn count(&self) -> usize {
+        self.inner.borrow().found.len()
+    }
+
+    /// Adds a fault as if it had been added when there were `before` findings: what hangs on the order is what it would
+    /// be then. It is unlike all others.
+    #[cold]
+    pub(crate) fn insert(&self, before: usize, fault: Diagnostic) {
+        self.inner.borrow_mut().insert(before, fault);
     }
 
     /// Something is wrong: no program comes of it, but checking goes on.
@@ -230,6 +253,26 @@ fn line_of(finding: &Diagnostic) -> u64 {
 }
 
 impl FindingList {
+    /// See [`Findings::insert`].
+    fn insert(&mut self, before: usize, fault: Diagnostic) {
+        let is_fault = |finding: &Diagnostic| finding.severity == Severity::Error;
+        if self.found[..before].iter().filter(|finding| is_fault(finding)).count() >= MOST_FAULTS {
+            return;
+        }
+        self.repeats.insert(before, Repeat::first(&fault));
+        self.found.insert(before, fault);
+        match self.faults >= MOST_FAULTS {
+            // The last of the others came as one too many.
+            true => {
+                if let Some(last) = self.found.iter().rposition(is_fault) {
+                    self.repeats.remove(last);
+                    self.found.remove(last);
+                }
+            }
+            false => self.faults += 1,
+        }
+    }
+
     /// What was found before: counted, and of a limit its largest value kept.
     fn repeated(&mut self, finding: &Diagnostic) -> bool {
         let kind = FindingKind::of(finding);

@@ -8,8 +8,9 @@ use crate::curve::CurveBlock;
 use crate::program::Command;
 use crate::stream::{HoleMoves, StreamItem};
 
-/// Where the text of the program goes.
-pub trait TextSink {
+/// Where the text of the program goes. It may be written to from another thread than that which made it, from one at a
+/// time.
+pub trait TextSink: Send {
     /// Takes text.
     ///
     /// # Errors

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
+use std::thread::Scope;
 
 use post_grammar::{GotoRun, Record, SyntaxFault};
 use post_machine::axis_words;
@@ -171,6 +172,7 @@ impl PostStages<'_> {
             self.configuration.first_line(),
             self.blocks.first_line(),
             self.plan.as_ref().and_then(PlanStage::first_line),
+            self.emit.first_line(),
         ];
         kept.into_iter().flatten().min()
     }
@@ -254,6 +256,15 @@ impl<'a> Post<'a> {
         stages.observers.add(observer);
         stages.blocks.watch(Rc::clone(&stages.observers));
         stages.emit.watch(Rc::clone(&stages.observers));
+    }
+
+    /// Has dialect and output at work on a thread of `scope` from here on, beside all before them: program, report and
+    /// findings are the same. Where no thread can be started they stay here.
+    pub fn write_beside<'s>(&mut self, scope: &'s Scope<'s, '_>)
+    where
+        'a: 's,
+    {
+        self.stages.emit.write_beside(scope);
     }
 
     /// Shows the planned feed to `watch`, where one is planned.
@@ -365,6 +376,10 @@ impl<'a> Post<'a> {
     fn run(&mut self) {
         self.stages.take_steps(&self.steps, &self.findings);
         self.steps.clear();
+        if self.findings.failed() {
+            // Whether it is given up hangs on what is wrong with the text before.
+            self.stages.emit.settle();
+        }
     }
 
     /// Takes a line that could not be read.
@@ -403,6 +418,7 @@ impl<'a> Post<'a> {
             let end = StageInput::Finish(self.last_line);
             self.stages.run(end);
         }
+        self.stages.emit.settle();
         let configuration = &self.stages.configuration;
         if !self.findings.failed() && configuration.moves() == 0 {
             let file = self.findings.file();

@@ -1,6 +1,7 @@
 //! A CL file posted on the chosen machine: where the axes come to stand, and how far the program strays, line by line.
 
 use std::io::{self, Cursor, Read};
+use std::num::NonZeroUsize;
 
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
@@ -82,7 +83,8 @@ pub fn post(
         ..PostingRequest::default()
     };
     let (dialect, model) = (&mut opened.dialect, &mut opened.model);
-    let pass = PostingPass { machine: &machine, request, dialect, model };
+    let pass =
+        PostingPass { machine: &machine, request, threads: NonZeroUsize::MIN, dialect, model };
     let mut watch = LineObserver::default();
     let (report, found) = match pass.run_dry(&library.session, input(of, token), Some(&mut watch)) {
         _ if token.is_given_up() => return None,

@@ -65,8 +65,9 @@ pub struct Format {
     pub language: Language,
 }
 
-/// An opened dialect as the core sees it: batches, whatever implements it.
-pub trait DialectSession {
+/// An opened dialect as the core sees it: batches, whatever implements it. It is called from one thread at a time, not
+/// always from that which opened it.
+pub trait DialectSession: Send {
     /// How numbers are written.
     fn format(&self) -> &Format;
 

@@ -1,6 +1,7 @@
 //! One job, from its line to its row.
 
 use std::io::{self, Cursor, Read, Seek, SeekFrom};
+use std::num::NonZeroUsize;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -170,6 +171,8 @@ impl OneJob<'_> {
         let making = MakingSettings {
             plan: options.plan,
             trust_model: options.trust_model,
+            // The jobs are side by side already.
+            jobs: Some(NonZeroUsize::MIN),
             ..MakingSettings::default()
         };
         let finder = self.study.finder.clone();

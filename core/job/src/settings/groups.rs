@@ -1,6 +1,7 @@
 //! The groups of settings: how a CL file is read, what is set over the machine file, how programs are made, what is told
 //! of them, and how programs are read back.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use post_grammar::Units;
@@ -10,8 +11,8 @@ use post_readback::interpret::Limits;
 
 use super::table::settings;
 use super::values::{
-    ANGLE, CL_WORD, COUNT, FEED, FILE, FOLDER, LENGTH, MSYS, NAME, POINT, PROGRAM_NUMBER, ROUNDS,
-    SETTING, SPINDLE, TCP, TOLERANCE, TOOL, UNITS, UNKNOWN,
+    ANGLE, CL_WORD, COUNT, FEED, FILE, FOLDER, JOBS, LENGTH, MSYS, NAME, POINT, PROGRAM_NUMBER,
+    ROUNDS, SETTING, SPINDLE, TCP, TOLERANCE, TOOL, UNITS, UNKNOWN,
 };
 use crate::files::PathArg;
 
@@ -148,6 +149,10 @@ settings! {
     /// contour_error`: more gently there, up to so many times, until the limit is kept or the rounds are used up. Tells the
     /// time of each round, and of the program without a plan. Each round posts and predicts the whole program.
     one plan_rounds: u32 = ROUNDS, "N", { requires: Some("plan") };
+
+    /// Works on so many threads at most; program and messages are the same with any number. [default: as many as there are
+    /// processors]
+    one jobs: NonZeroUsize = JOBS, "N", { short: Some('j') };
 
     /// Takes the error model's word where the certificate finds more, and only reports it. (The placement `fewest` asks
     /// no model.)

@@ -9,6 +9,8 @@ use super::values::{SettingForm, SettingValue};
 pub struct About {
     /// Its name: that of the field, of the key and of the option; the flag has hyphens.
     pub name: &'static str,
+    /// The letter that stands for it on the command line.
+    pub short: Option<char>,
     /// Lines of its doc.
     pub doc: &'static [&'static str],
     /// What its value is called, `MM`; a flag has none.
@@ -35,6 +37,7 @@ impl About {
     /// A row that says nothing.
     pub const NONE: Self = Self {
         name: "",
+        short: None,
         doc: &[],
         value: "",
         form: SettingForm::Flag,

@@ -1,6 +1,7 @@
 //! Values of settings: as they are told, and how each kind of them is read.
 
 use std::fmt;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use post_grammar::Units;
@@ -141,6 +142,15 @@ pub const PROGRAM_NUMBER: SettingReader<u32> =
 
 /// How often a program is planned again.
 pub const ROUNDS: SettingReader<u32> = whole32(1, 100, |value| whole(value, 1, 100));
+
+/// How many threads work at a time.
+pub const JOBS: SettingReader<NonZeroUsize> = SettingReader {
+    form: SettingForm::Whole { least: 1, most: u32::MAX as u64 },
+    read: |value| {
+        let count: usize = whole(value, 1, u32::MAX.into())?;
+        NonZeroUsize::new(count).ok_or_else(|| format!("{value} is not in 1..={}", u32::MAX))
+    },
+};
 
 /// How many of something, at least one.
 pub const COUNT: SettingReader<u64> = SettingReader {

@@ -30,6 +30,8 @@ pub(crate) struct Extremes {
     pub travel: Joints,
     /// Where the largest deviations stand in the batch that is not written yet: index of the event.
     marks: [Option<usize>; 3],
+    /// The batch that each of them was marked in last.
+    batches: [u64; 3],
 }
 
 impl Extremes {
@@ -42,6 +44,7 @@ impl Extremes {
             most: [f64::NEG_INFINITY; MAX_AXES],
             travel: [0.0; MAX_AXES],
             marks: [None; 3],
+            batches: [0; 3],
         }
     }
 
@@ -96,15 +99,15 @@ impl Extremes {
     /// [`Extremes::reach`] and [`Extremes::go`] of all blocks of a run that begins at `last`.
     pub(super) fn reach_all(&mut self, last: &Joints, run: &RunColumns) {
         self.blocks += run.count as u64;
-        for joint in 0..MAX_AXES {
-            let column = &run.joints[joint][1..=run.count];
+        for (joint, (column, last)) in run.joints.iter().zip(last).enumerate() {
+            let column = &column[1..=run.count];
             let (mut least, mut most) = (self.least[joint], self.most[joint]);
             for value in column {
                 least = if *value < least { *value } else { least };
                 most = if *value > most { *value } else { most };
             }
             (self.least[joint], self.most[joint]) = (least, most);
-            let (mut travel, mut from) = (self.travel[joint], last[joint]);
+            let (mut travel, mut from) = (self.travel[joint], *last);
             for to in column {
                 travel += (to - from).abs();
                 from = *to;
@@ -125,11 +128,23 @@ impl Extremes {
         }
     }
 
-    /// The batch is written: `line_of` gives the line of the program that an event ends on.
-    pub(super) fn written(&mut self, line_of: impl Fn(usize) -> u64) {
-        for (deviation, mark) in self.deviations.iter_mut().zip(&mut self.marks) {
-            if let Some(index) = mark.take() {
-                deviation.block = line_of(index);
+    /// The batch goes to be written as number `batch`: its events whose lines are wanted.
+    pub(super) fn hand_over(&mut self, batch: u64) -> [Option<usize>; 3] {
+        for (last, mark) in self.batches.iter_mut().zip(&self.marks) {
+            if mark.is_some() {
+                *last = batch;
+            }
+        }
+        std::mem::take(&mut self.marks)
+    }
+
+    /// Batch number `batch` is written: `lines` of the program are those that the marked events end on.
+    pub(super) fn written(&mut self, batch: u64, lines: [Option<u64>; 3]) {
+        for (slot, line) in lines.into_iter().enumerate() {
+            // A larger one may have come since.
+            let last = self.batches[slot] == batch && self.marks[slot].is_none();
+            if let Some(line) = line.filter(|_| last) {
+                self.deviations[slot].block = line;
             }
         }
     }

@@ -72,8 +72,12 @@ impl EmitStage<'_> {
     /// Cutter compensation ends while the tool still cuts: on the way out the control would go aside, into what stands
     /// there, or stop with an alarm.
     fn tell_compensation(&mut self) {
+        let Some(line) = self.compensation.left.take() else {
+            return;
+        };
+        self.settle();
         // After another fault nothing is written, and ways are missing: it may end there.
-        if let Some(line) = self.compensation.left.take().filter(|_| !self.findings.failed()) {
+        if !self.findings.failed() {
             self.findings.at(
                 line,
                 Diagnostic::error(

@@ -6,10 +6,13 @@ mod cycles;
 mod extremes;
 mod frame;
 mod state;
+mod text;
+mod text_thread;
 mod texts;
 mod writer;
 
 use std::rc::Rc;
+use std::thread::Scope;
 
 use post_machine::axis_words::{self, AxisWords};
 use post_machine::description::{Machine, TextPlace};
@@ -173,6 +176,25 @@ impl<'a> EmitStage<'a> {
         self.end_cycle(line);
         self.end(line);
         self.flush();
+        self.settle();
+    }
+
+    /// Writes texts on a thread of `scope` from here on, if one can be started.
+    pub(crate) fn write_beside<'s>(&mut self, scope: &'s Scope<'s, '_>)
+    where
+        'a: 's,
+    {
+        self.writer.write_beside(scope);
+    }
+
+    /// First line of the CL file whose events are no text yet, though they are handed on.
+    pub(crate) fn first_line(&self) -> Option<u64> {
+        self.writer.first_line()
+    }
+
+    /// Waits until all that was handed on is text, and all is known that is wrong with it.
+    pub(crate) fn settle(&mut self) {
+        self.writer.settle(&mut self.extremes, &self.findings);
     }
 
     fn flush(&mut self) {

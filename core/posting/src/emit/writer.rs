@@ -1,94 +1,109 @@
-//! Events on their way to the dialect, and its text on the way to the output.
+//! Events on their way to the dialect.
 
-use post_machine::diagnostic::Diagnostic;
-use post_plugin::{Batch, Capabilities, DialectSession, Event, Format};
+use std::thread::Scope;
+
+use post_plugin::{Capabilities, DialectSession, Event, Format};
 
 use super::extremes::Extremes;
+use super::text::{BatchFault, EventBatch, TextWriter};
+use super::text_thread::TextThread;
 use crate::findings::Findings;
 use crate::observer::TextSink;
 use crate::stream::BATCH;
 
 /// Hands events over in batches, and counts lines.
 pub(super) struct EventWriter<'a> {
-    dialect: &'a mut dyn DialectSession,
-    output: &'a mut dyn TextSink,
-    /// Words of a block.
-    words: usize,
-    batch: Batch,
-    text: String,
-    ends: Vec<usize>,
+    format: Format,
+    capabilities: Capabilities,
+    /// The batch in hand.
+    batch: EventBatch,
+    /// Batches so far.
+    count: u64,
+    text: TextPlaceOfWork<'a>,
+    /// Lines of the batches that have come back.
     lines: u64,
     /// The CL file has loaded a tool.
     tool_known: bool,
     /// The dialect refused an event, or the output text: no more is made.
     broken: bool,
-    /// Where the blocks stand, if an observer asks for it.
-    places: Option<BlockLines>,
 }
 
-/// Where blocks stand in the program.
-#[derive(Default)]
-struct BlockLines {
-    /// Indices of the events that the blocks of the batch end on; none for a block without one.
-    events: Vec<Option<usize>>,
-    /// Lines of the program that the blocks before them end on; zero where there is none.
-    lines: Vec<u64>,
+/// Where batches become text.
+enum TextPlaceOfWork<'a> {
+    /// Here, one after the other.
+    Here(TextWriter<'a>),
+    /// On a thread of its own.
+    Beside(TextThread<'a>),
 }
 
 impl<'a> EventWriter<'a> {
     pub(super) fn new(dialect: &'a mut dyn DialectSession, output: &'a mut dyn TextSink) -> Self {
         Self {
-            words: dialect.format().words.len(),
-            dialect,
-            output,
-            batch: Batch::default(),
-            text: String::new(),
-            ends: Vec::new(),
+            format: dialect.format().clone(),
+            capabilities: dialect.capabilities(),
+            batch: EventBatch::default(),
+            count: 0,
+            text: TextPlaceOfWork::Here(TextWriter::new(dialect, output)),
             lines: 0,
             tool_known: false,
             broken: false,
-            places: None,
+        }
+    }
+
+    /// Writes texts on a thread of `scope` from here on, if one can be started.
+    pub(super) fn write_beside<'s>(&mut self, scope: &'s Scope<'s, '_>)
+    where
+        'a: 's,
+    {
+        let Some(thread) = TextThread::start(scope) else {
+            return;
+        };
+        let text = std::mem::replace(&mut self.text, TextPlaceOfWork::Beside(thread));
+        if let (TextPlaceOfWork::Here(text), TextPlaceOfWork::Beside(thread)) =
+            (text, &mut self.text)
+        {
+            thread.begin(text);
         }
     }
 
     /// Notes from here on where the blocks stand.
     pub(super) fn watch(&mut self) {
-        self.places.get_or_insert_default();
+        self.batch.places.get_or_insert_default();
     }
 
     /// Somebody notes where the blocks stand.
     pub(super) fn notes_places(&self) -> bool {
-        self.places.is_some()
+        self.batch.places.is_some()
     }
 
     /// A block stands where the last event does, if there are more than `before`.
     #[inline]
     pub(super) fn place(&mut self, before: usize) {
-        if let Some(places) = &mut self.places {
-            let index = self.batch.len();
+        let index = self.batch.events.len();
+        if let Some(places) = &mut self.batch.places {
             places.events.push((index > before).then(|| index - 1));
         }
     }
 
     /// Hands over where the blocks stand that are written.
     pub(super) fn take_lines(&mut self) -> impl Iterator<Item = u64> {
-        self.places.iter_mut().flat_map(|places| places.lines.drain(..))
+        self.batch.places.iter_mut().flat_map(|places| places.lines.drain(..))
     }
 
     /// The dialect declared that it writes this.
     pub(super) fn knows(&self, capability: Capabilities) -> bool {
-        self.dialect.capabilities().has(capability)
+        self.capabilities.has(capability)
     }
 
     /// What the dialect prints.
     pub(super) fn format(&self) -> &Format {
-        self.dialect.format()
+        &self.format
     }
 
     /// Words of a block.
     #[inline]
     pub(super) fn words(&self) -> usize {
-        self.words
+        self.format.words.len()
     }
 
     /// Lines so far.
@@ -99,13 +114,13 @@ impl<'a> EventWriter<'a> {
     /// Index in the batch that the next event gets.
     #[inline]
     pub(super) fn next(&self) -> usize {
-        self.batch.len()
+        self.batch.events.len()
     }
 
     /// Whether it is time to flush.
     #[inline]
     pub(super) fn is_full(&self) -> bool {
-        self.batch.len() >= BATCH
+        self.batch.events.len() >= BATCH
     }
 
     /// The CL file loads a tool.
@@ -117,70 +132,96 @@ impl<'a> EventWriter<'a> {
     #[inline]
     pub(super) fn push(&mut self, line: u64, event: Event<'_>) {
         if !self.broken {
-            self.batch.push(line, event);
+            self.batch.events.push(line, event);
+        }
+    }
+
+    /// First line of the CL file whose events are no text yet.
+    pub(super) fn first_line(&self) -> Option<u64> {
+        match &self.text {
+            TextPlaceOfWork::Here(_) => None,
+            TextPlaceOfWork::Beside(thread) => thread.first_line(),
         }
     }
 
     /// Hands the batch to the dialect and its text to the output.
     pub(super) fn flush(&mut self, extremes: &mut Extremes, findings: &Findings) {
-        let Self { batch, text, ends, .. } = self;
-        if batch.is_empty() {
-            if let Some(BlockLines { events, lines }) = &mut self.places {
-                lines.extend(events.drain(..).map(|_| 0));
+        if self.batch.events.is_empty() {
+            if let Some(places) = &mut self.batch.places {
+                places.lines.extend(places.events.drain(..).map(|_| 0));
             }
             return;
         }
-        text.clear();
-        ends.clear();
-        let written = self.dialect.write_batch(batch, text, ends);
-        extremes.written(|index| {
-            let end = ends.get(index).copied().unwrap_or(text.len());
-            self.lines + newlines(&text.as_bytes()[..end])
-        });
-        if let Some(places) = &mut self.places {
-            places.written(self.lines, text.as_bytes(), ends);
-        }
-        self.lines += newlines(text.as_bytes());
-        match written {
-            Err(refused) => {
-                self.broken = true;
-                let line = batch.line(refused.index.min(batch.len() - 1));
-                let mut fault = Diagnostic::error("dialect", refused.message);
-                if !self.tool_known {
-                    fault = fault.help("the CL file loads no tool: --tool N says which it is");
-                }
-                findings.at(line, fault);
-            }
-            // Where something is wrong already no text is written, but the dialect may find more.
-            Ok(()) if findings.failed() => {}
-            Ok(()) => {
-                if let Err(message) = self.output.write(text.as_bytes()) {
+        self.count += 1;
+        let batch = &mut self.batch;
+        batch.number = self.count;
+        batch.found = findings.count();
+        batch.failed = findings.failed();
+        batch.tool_known = self.tool_known;
+        batch.marks = extremes.hand_over(self.count);
+        match &mut self.text {
+            TextPlaceOfWork::Here(text) => {
+                text.write(batch);
+                if let Some(fault) = came_back(batch, &mut self.lines, extremes) {
                     self.broken = true;
-                    findings.add(Diagnostic::error("output", message));
+                    fault.tell(findings);
                 }
             }
+            TextPlaceOfWork::Beside(thread) => {
+                thread.hand(batch);
+                // Whoever looks on wants the lines at once, and after a fault its place among the others hangs on those of
+                // the dialect.
+                let at_once = batch.places.is_some() || findings.failed();
+                self.take_back(at_once, extremes, findings);
+            }
         }
-        batch.clear();
+    }
+
+    /// Waits until all that was handed over is text.
+    pub(super) fn settle(&mut self, extremes: &mut Extremes, findings: &Findings) {
+        self.take_back(true, extremes, findings);
+    }
+
+    /// Takes back batches that are text; `all` of them, or only as many as make room for the next.
+    fn take_back(&mut self, all: bool, extremes: &mut Extremes, findings: &Findings) {
+        let Self { text: TextPlaceOfWork::Beside(thread), batch, lines, broken, .. } = self else {
+            return;
+        };
+        thread.take_back(all, &mut |written| {
+            if let Some(fault) = came_back(written, lines, extremes) {
+                *broken = true;
+                fault.tell(findings);
+            }
+            if let (Some(places), Some(written)) = (&mut batch.places, &mut written.places) {
+                places.lines.append(&mut written.lines);
+            }
+        });
+        if self.broken {
+            self.batch.events.clear();
+        }
     }
 }
 
-impl BlockLines {
-    /// The batch is written as `text`, its events up to `ends`, after `lines` lines.
-    fn written(&mut self, mut lines: u64, text: &[u8], ends: &[usize]) {
-        let mut counted = 0;
-        for event in self.events.drain(..) {
-            let line = event.map(|event| {
-                let end = ends.get(event).copied().unwrap_or(text.len());
-                // Events come in order: nothing is counted twice.
-                lines += newlines(text.get(counted..end).unwrap_or_default());
-                counted = counted.max(end);
-                lines
-            });
-            self.lines.push(line.unwrap_or(0));
-        }
-    }
+/// A batch has come back as text: what was wrong with it.
+fn came_back(
+    batch: &mut EventBatch,
+    lines: &mut u64,
+    extremes: &mut Extremes,
+) -> Option<BatchFault> {
+    extremes.written(batch.number, batch.marks_lines);
+    *lines = batch.lines_behind;
+    batch.events.clear();
+    batch.fault.take()
 }
 
-fn newlines(text: &[u8]) -> u64 {
-    memchr::memchr_iter(b'\n', text).count() as u64
+impl BatchFault {
+    /// Adds it to the findings, where it would stand had the text been written at once.
+    #[cold]
+    fn tell(self, findings: &Findings) {
+        let finding = match self.line {
+            Some(line) => findings.placed(line, self.finding),
+            None => self.finding,
+        };
+        findings.insert(self.found, finding);
+    }
 }

@@ -1,6 +1,7 @@
 //! Whole runs, from CL text to the events a dialect is asked to write, judged by nothing of the crate: the printed
 //! words are taken apart again, put through the isometries of `common` and sampled densely.
 
+mod beside;
 mod curves;
 mod faults;
 mod feeds;

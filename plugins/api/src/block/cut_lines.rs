@@ -102,8 +102,7 @@ impl Axes {
         axes.len() == run.columns().len()
             && axes.len() <= Self::MOST
             && axes.iter().zip(run.columns()).all(|(axis, column)| {
-                CutWord::of(axis, *style).is_some()
-                    && short_counts(column, axis.decimals, counts)
+                CutWord::of(axis, *style).is_some() && short_counts(column, axis.decimals, counts)
             })
     }
 

@@ -7,7 +7,7 @@ use super::*;
 
 /// A path that wanders, now in small steps and now in large ones, over poles and out of travel, with words between: of a
 /// tool that leans any way, about X alone, or not at all. Each of the words stands before `words` of 720 records.
-fn wander(rng: &mut Rng, rotary: usize, words: usize) -> String {
+pub(super) fn wander(rng: &mut Rng, rotary: usize, words: usize) -> String {
     let mut text = "UNITS/MM\nLOADTL/1\nSPINDL/1000\nFEDRAT/MMPM,800\n".to_owned();
     let mut tip = rng.point(40.0);
     let (mut lean, mut around) = (rng.range(0.0, 0.8), rng.range(-3.0, 3.0));

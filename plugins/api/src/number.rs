@@ -113,7 +113,8 @@ impl NumberForm {
         let signed = usize::from(negative | self.plus);
         let sign = if negative { b'-' } else { b'+' };
         let places = usize::from(decimals);
-        if let Some(short) = ShortDecimal::new(count, places) {
+        if let Some(short) = u32::try_from(count).ok().and_then(|it| ShortDecimal::new(it, places))
+        {
             self.append_short(out, front, signed, sign, short);
             return true;
         }
@@ -287,21 +288,18 @@ pub(crate) struct ShortDecimal {
 impl ShortDecimal {
     /// None if the number is larger, or has other decimals.
     #[inline(always)]
-    pub(crate) fn new(count: u64, places: usize) -> Option<Self> {
-        let (rest, last) = (count / 1000, THREE_DIGITS[(count % 1000) as usize] & 0x00ff_ffff);
-        let (whole, decimals) = match places {
+    pub(crate) fn new(count: u32, places: usize) -> Option<Self> {
+        let (rest, last) = (count / 1000, FRACTIONS[(count % 1000) as usize]);
+        let (whole, fraction) = match places {
             3 => (rest, u64::from(last)),
-            4 => (rest / 10, u64::from(last) << 8 | (u64::from(b'0') + rest % 10)),
+            4 => {
+                let first = u64::from(b'0') + u64::from(rest % 10);
+                (rest / 10, u64::from(last >> 8) << 16 | first << 8 | u64::from(b'.'))
+            }
             _ => return None,
         };
-        let whole = *THREE_DIGITS.get(whole as usize)?;
-        let zeros = whole >> 24;
-        Some(Self {
-            whole: (whole & 0x00ff_ffff) >> (8 * zeros),
-            digits: 3 - zeros as usize,
-            fraction: decimals << 8 | u64::from(b'.'),
-            places,
-        })
+        let whole = *WHOLES.get(whole as usize)?;
+        Some(Self { whole, digits: (whole >> 24) as usize, fraction, places })
     }
 
     /// Zeros at the end of the decimals.
@@ -313,15 +311,26 @@ impl ShortDecimal {
     }
 }
 
-/// `000` to `999`, the first digit in the lowest byte; in the highest how many zeros a number has too many there.
-static THREE_DIGITS: [u32; 1000] = {
+/// `0` to `999`, the first digit in the lowest byte; in the highest how many digits these are.
+static WHOLES: [u32; 1000] = {
+    let mut table = [0; 1000];
+    let mut number = 0;
+    while number < 1000 {
+        let digits = if number < 10 { 1 } else { 2 + (number >= 100) as u32 };
+        let text = FRACTIONS[number as usize] >> 8;
+        table[number as usize] = text >> (8 * (3 - digits)) | digits << 24;
+        number += 1;
+    }
+    table
+};
+
+/// `.000` to `.999`, the point in the lowest byte.
+static FRACTIONS: [u32; 1000] = {
     let mut table = [0; 1000];
     let mut number = 0;
     while number < 1000 {
         let digits = [number / 100, number / 10 % 10, number % 10];
-        let zeros = if number < 10 { 2 } else { (number < 100) as u32 };
-        let text = 0x0030_3030 | digits[0] | digits[1] << 8 | digits[2] << 16;
-        table[number as usize] = text | zeros << 24;
+        table[number as usize] = 0x3030_302e | digits[0] << 8 | digits[1] << 16 | digits[2] << 24;
         number += 1;
     }
     table

@@ -59,7 +59,7 @@ impl CutWord {
             return 0;
         }
         self.last = value;
-        let Some(short) = ShortDecimal::new(count.into(), self.places) else {
+        let Some(short) = ShortDecimal::new(count, self.places) else {
             return 0;
         };
         let front = self.fronts[usize::from((value < 0.0) & (count != 0))];
@@ -128,7 +128,12 @@ impl Axes {
             let (start, number) = (out.len(), block.number);
             block.begin(out);
             out.push_str(line.head);
-            if !self.write_cut(words, run, place, line.head.is_empty(), out) {
+            let bare = line.head.is_empty();
+            let written = match self.style.trim {
+                true => self.write_cut::<true>(words, run, place, bare, out),
+                false => self.write_cut::<false>(words, run, place, bare, out),
+            };
+            if !written {
                 out.truncate(start);
                 block.number = number;
                 continue;
@@ -146,7 +151,7 @@ impl Axes {
 
     /// Appends the words of a cut that have changed, the first without its blank if it is `bare`; false for none.
     #[inline(always)]
-    fn write_cut(
+    fn write_cut<const TRIM: bool>(
         &self,
         words: &mut [CutWord],
         run: &CutRun<'_>,
@@ -155,7 +160,8 @@ impl Axes {
         out: &mut String,
     ) -> bool {
         out.reserve(Self::MOST * SHORT_WORD);
-        let look = self.style.look();
+        // A number with decimals has a point anyway, and the sign is part of what stands in front.
+        let look = NumberForm { trim: TRIM, point: TRIM && self.style.point, plus: false };
         let (values, counts) = (run.words(), self.counts.as_slice());
         // SAFETY: what is appended is ASCII, and there is room for all words.
         unsafe {

@@ -1,8 +1,6 @@
 //! An NC program moved to another machine: run as its control runs it, written as a CL file, posted, and held against the
 //! path of the first.
 
-use std::fs::File;
-
 use post_host::Finder;
 use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
@@ -11,7 +9,7 @@ use post_readback::FedRapids;
 use post_readback::course::CourseFacts;
 use post_readback::course::cl::{ClCourse, ClSettings};
 use post_readback::course::program::{Chords, ProgramCourse};
-use post_readback::interpret::{Interpreter, Limits};
+use post_readback::interpret::Limits;
 use post_readback::verify::{BlockReport, CutPath};
 
 use super::JobMachine;
@@ -24,6 +22,7 @@ use super::report::{self, PageTexts, PostPage};
 use super::text::{clock, number};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg, Role};
+use crate::nc_program::RunningProgram;
 use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings, ProgramSettings, ReportSettings};
 use crate::text_table::NamedValues;
@@ -121,7 +120,7 @@ impl<'a> Conversion<'a> {
     }
 
     /// The first program, from its beginning.
-    fn run(&self) -> Result<FedRapids<Interpreter<File>>, Failure> {
+    fn run(&self) -> Result<FedRapids<RunningProgram<'static>>, Failure> {
         self.from.program_with_rapids(&self.program)
     }
 
@@ -236,7 +235,7 @@ impl<'a> Conversion<'a> {
             lines: None,
         };
         let told = program.name().to_owned();
-        let text = program.reread()?;
+        let text = Box::new(program.reread()?);
         let held = read_back::hold(&reading, against, &told, text, &mut |_: &BlockReport| {})?;
         Ok((held, facts))
     }

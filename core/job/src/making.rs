@@ -1,6 +1,5 @@
 //! Programs of a job: made, read back, predicted.
 
-use std::io::{Read, Seek};
 use std::ops::Range;
 
 use post_host::Finder;
@@ -17,6 +16,7 @@ use crate::JobMachine;
 use crate::compensate::{self, ServoCompensation, ShiftedPath};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
+use crate::nc_program::{ProgramText, Reread};
 use crate::one_program::OneProgram;
 use crate::plan_rounds;
 use crate::plan_worth;
@@ -95,17 +95,12 @@ pub trait ProgramSink: TextSink {
 }
 
 /// The text of a program that is read again.
-pub struct ProgramInput<R> {
+pub struct ProgramInput<'i> {
     /// The program, as messages call it.
     pub name: String,
     /// All of it, from its beginning.
-    pub text: R,
+    pub text: ProgramText<'i>,
 }
-
-/// A text that can be gone back in.
-pub trait Reread: Read + Seek {}
-
-impl<T: Read + Seek> Reread for T {}
 
 impl ProgramSink for AtomicFile {
     fn name(&self) -> String {
@@ -380,7 +375,7 @@ impl<'a> ProgramMaker<'a> {
         part: &ProgramPart,
         moved: bool,
         source: &mut ClSource,
-        program: ProgramInput<impl Read + Seek>,
+        program: ProgramInput<'_>,
     ) -> Result<VerifiedProgram, Failure> {
         // What was moved on purpose is off the CL file by that.
         let accuracy = &part.machine.accuracy;
@@ -416,7 +411,7 @@ impl<'a> ProgramMaker<'a> {
         period: Option<f64>,
         source: &mut ClSource,
         mut heard: Option<&mut PredictedParts>,
-        program: ProgramInput<impl Read + Seek>,
+        program: ProgramInput<'_>,
     ) -> Result<Predicted, Failure> {
         let asked = PredictionSetup {
             session: self.session,

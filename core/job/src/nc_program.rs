@@ -17,6 +17,17 @@ use crate::files::{FileFault, PathArg};
 use crate::session::Session;
 use crate::settings::ProgramSettings;
 
+/// A text that can be gone back in.
+pub trait Reread: Read + Seek {}
+
+impl<T: Read + Seek> Reread for T {}
+
+/// A text that can be gone back in, whatever it is read from.
+pub type ProgramText<'i> = Box<dyn Reread + 'i>;
+
+/// A program while it runs: what it is read from is no part of the type, so that there is one interpreter in the binary.
+pub type RunningProgram<'i> = Interpreter<ProgramText<'i>>;
+
 /// What a program is called among the files of a run.
 const WHAT: &str = "the NC program";
 
@@ -82,21 +93,21 @@ impl NcControl {
     ///
     /// # Errors
     /// The machine cannot be solved.
-    pub fn run<R: Read + Seek>(
+    pub fn run<'i>(
         &self,
         name: &str,
-        input: R,
-    ) -> Result<ProgramRun<Interpreter<R>>, Box<Diagnostic>> {
+        input: impl Read + Seek + 'i,
+    ) -> Result<ProgramRun<RunningProgram<'i>>, Box<Diagnostic>> {
         self.program(name, input).map(ProgramRun::new)
     }
 
-    fn program<R: Read + Seek>(
+    fn program<'i>(
         &self,
         name: &str,
-        input: R,
-    ) -> Result<Interpreter<R>, Box<Diagnostic>> {
+        input: impl Read + Seek + 'i,
+    ) -> Result<RunningProgram<'i>, Box<Diagnostic>> {
         let Self { counted, lexicon, offsets, limits, .. } = self;
-        Interpreter::new(counted, lexicon, offsets, *limits, name, input)
+        Interpreter::new(counted, lexicon, offsets, *limits, name, Box::new(input))
     }
 
     /// The program in `file` from its beginning, its rapids at feed told from cuts.
@@ -106,7 +117,7 @@ impl NcControl {
     pub fn program_with_rapids(
         &self,
         file: &ProgramFile,
-    ) -> Result<FedRapids<Interpreter<File>>, Failure> {
+    ) -> Result<FedRapids<RunningProgram<'static>>, Failure> {
         let program = || -> Result<_, Failure> {
             Ok(self.program(&file.name, file.text()?).map_err(|fault| *fault)?)
         };

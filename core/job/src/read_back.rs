@@ -19,6 +19,7 @@ use super::plugin_finder;
 use crate::failure::Failure;
 use crate::files::Watched;
 use crate::files::{ClSource, FileFault};
+use crate::nc_program::ProgramText;
 use crate::session::Session;
 use crate::settings::{JobSettings, Msys};
 
@@ -142,11 +143,11 @@ fn feed_place(machine: &Machine, decimals: u8) -> f64 {
 ///
 /// # Errors
 /// A file that cannot be read, or a machine or dialect that cannot be used.
-pub fn verify<R: Read + Seek>(
+pub fn verify(
     reading: &ReadingSetup<'_>,
     source: &mut ClSource,
     name: &str,
-    input: R,
+    input: ProgramText<'_>,
     watch: &mut dyn VerifyWatch,
 ) -> Result<VerifiedProgram, Failure> {
     let ReadingSetup { arguments, machine, .. } = reading;
@@ -205,11 +206,11 @@ pub struct VerifyReference<C> {
 ///
 /// # Errors
 /// A file that cannot be read, or a machine or dialect that cannot be used.
-pub fn hold<C: Course, R: Read + Seek>(
+pub fn hold<C: Course>(
     reading: &ReadingSetup<'_>,
     against: VerifyReference<C>,
     name: &str,
-    mut input: R,
+    mut input: ProgramText<'_>,
     watch: &mut dyn VerifyWatch,
 ) -> Result<VerifiedProgram, Failure> {
     let machine = reading.machine;

@@ -76,7 +76,8 @@ impl<'r, 'p> Rounds<'r, 'p> {
             Ok(())
         };
         let against = PredictReference::Cl(self.source);
-        let predicted = predict::predict(&asked, against, NAME, text.reread()?, &mut heard)?;
+        let text = Box::new(text.reread()?);
+        let predicted = predict::predict(&asked, against, NAME, text, &mut heard)?;
         Ok(predicted.found)
     }
 }

@@ -189,7 +189,7 @@ impl OneJob<'_> {
         self.tell(&made.report, &text, &mut outcome);
         let name = plugin_finder::cl_name(&part.target);
         if options.verify {
-            let program = ProgramInput { name: name.clone(), text: self.reread(&text) };
+            let program = ProgramInput { name: name.clone(), text: Box::new(self.reread(&text)) };
             let held = maker.read_back(part, made.moved, &mut source, program)?;
             outcome.tell(&columns::verified(), &held.found);
             let wrong = held.is_wrong();
@@ -201,7 +201,7 @@ impl OneJob<'_> {
             }
         }
         if options.predict {
-            let program = ProgramInput { name, text: self.reread(&text) };
+            let program = ProgramInput { name, text: Box::new(self.reread(&text)) };
             let predicted = maker.predict(part, None, &mut source, None, program)?;
             outcome.tell(&columns::predicted(), &predicted.found);
             findings.extend(predicted.findings);

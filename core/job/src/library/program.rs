@@ -10,9 +10,8 @@ use super::blocks::BlockArrays;
 use super::{Blocks, MachineSelection, NamedOption, Refusal, StopSignal, quietly};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
-use crate::making::{
-    self, ProgramInput, ProgramMaker, ProgramPart, ProgramRequest, ProgramSink, Reread,
-};
+use crate::making::{self, ProgramInput, ProgramMaker, ProgramPart, ProgramRequest, ProgramSink};
+use crate::nc_program::Reread;
 use crate::plugin_finder;
 use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings, ReadingSettings, tell};
@@ -210,7 +209,8 @@ impl MadeProgram {
         let held = quietly(stop, |session| {
             let maker = self.request.maker(session)?;
             let mut source = ClSource::new(session, &self.request.job.input, true)?;
-            let program = ProgramInput { name: self.name(), text: Cursor::new(&self.text) };
+            let program =
+                ProgramInput { name: self.name(), text: Box::new(Cursor::new(&self.text)) };
             let held = maker.read_back(&self.part, self.moved, &mut source, program)?;
             match held.is_wrong() {
                 true => Err(held.findings.into()),
@@ -235,7 +235,8 @@ impl MadeProgram {
         let predicted = quietly(stop, |session| {
             let maker = self.request.maker(session)?;
             let mut source = ClSource::new(session, &self.request.job.input, true)?;
-            let program = ProgramInput { name: self.name(), text: Cursor::new(&self.text) };
+            let program =
+                ProgramInput { name: self.name(), text: Box::new(Cursor::new(&self.text)) };
             let predicted = maker.predict(&self.part, period, &mut source, None, program)?;
             Ok((files::json(&predicted.found), predicted.findings))
         });

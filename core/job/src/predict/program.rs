@@ -126,7 +126,7 @@ pub fn predict_program(
         csv: csv.map(|file| CsvTable::new(set_points_csv::columns(&machine), file)),
     };
     let against = source.as_mut().map_or(PredictReference::Nothing, PredictReference::Cl);
-    let predicted = predict(&asked, against, &program.name, program.text()?, &mut watch)?;
+    let predicted = predict(&asked, against, &program.name, Box::new(program.text()?), &mut watch)?;
     let SetPointOutputs { rooms, rows, csv, .. } = watch;
     csv.map_or(Ok(()), CsvTable::finish)?;
     let laid = request.laid_over(&machine, overlay.as_ref(), predicted)?;

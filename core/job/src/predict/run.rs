@@ -1,6 +1,6 @@
 //! What a program is predicted with, and who looks on.
 
-use std::io::{BufReader, Read, Seek};
+use std::io::BufReader;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ use super::stages::Stages;
 use crate::failure::Failure;
 use crate::files::Watched;
 use crate::files::{ClSource, FileFault};
-use crate::nc_program::{self, NcControl};
+use crate::nc_program::{self, NcControl, ProgramText};
 use crate::read_back;
 use crate::session::Session;
 use crate::settings::JobSettings;
@@ -91,11 +91,11 @@ pub struct Predicted {
 ///
 /// # Errors
 /// The machine cannot be used, a block of the program or the CL file cannot be read, or whoever listens fails.
-pub fn predict<R: Read + Seek>(
+pub fn predict(
     asked: &PredictionSetup<'_>,
     against: PredictReference<'_>,
     name: &str,
-    input: R,
+    input: ProgramText<'_>,
     watch: &mut dyn PredictWatch,
 ) -> Result<Predicted, Failure> {
     let spoken = nc_program::spoken(asked.finder, asked.machine)?;

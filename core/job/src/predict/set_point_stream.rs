@@ -1,7 +1,6 @@
 //! The stages of a prediction, one after the other, in batches: a program becomes tasks, tasks become set-points, servos
 //! follow them, and the tool is held against its path. Memory does not grow with the program.
 
-use std::io::{Read, Seek};
 use std::sync::Arc;
 
 use post_machine::description::Machine;
@@ -9,7 +8,6 @@ use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_machine::kinematics::{Solver, Unreachable};
 use post_motion::trajectory::{FillOutcome, Planner, TaskTime};
 use post_motion::{SetPoints, Task};
-use post_readback::interpret::Interpreter;
 use post_readback::tasks::{ProgramTask, ProgramTasks};
 use post_readback::{BlockEffect, ProgramEvent, ProgramRun};
 
@@ -19,6 +17,7 @@ use super::run::{PredictWatch, Predicted};
 use super::stages::Stages;
 use crate::failure::Failure;
 use crate::nc_program;
+use crate::nc_program::RunningProgram;
 use crate::text::number;
 
 /// Set-points of a batch.
@@ -28,13 +27,13 @@ const BATCH: usize = 256;
 const OTHER_PART: f64 = 1.0;
 
 /// A program on the way to set-points, and what is made of them.
-pub struct SetPointStream<'a, R> {
+pub struct SetPointStream<'a> {
     /// The program, as messages call it.
     name: &'a str,
     machine: &'a Machine,
     /// Time between set-points, s.
     period: f64,
-    reading: TaskReader<R>,
+    reading: TaskReader<'a>,
     planner: Planner,
     stages: Stages<'a>,
     /// The batch in work; none before the first move.
@@ -44,11 +43,11 @@ pub struct SetPointStream<'a, R> {
     chains: Vec<(f64, Arc<Solver>)>,
 }
 
-impl<'a, R: Read + Seek> SetPointStream<'a, R> {
+impl<'a> SetPointStream<'a> {
     /// At the beginning of the program `name`, with set-points every `period` seconds.
     pub fn new(
         name: &'a str,
-        run: ProgramRun<Interpreter<R>>,
+        run: ProgramRun<RunningProgram<'a>>,
         machine: &'a Machine,
         period: f64,
         stages: Stages<'a>,
@@ -179,14 +178,14 @@ fn other_part(name: &str, found: &Prediction) -> Option<Diagnostic> {
 }
 
 /// A program on the way to tasks.
-struct TaskReader<R> {
-    run: ProgramRun<Interpreter<R>>,
+struct TaskReader<'a> {
+    run: ProgramRun<RunningProgram<'a>>,
     tasks: ProgramTasks,
     planned: Vec<ProgramTask>,
     ended: bool,
 }
 
-impl<R: Read + Seek> TaskReader<R> {
+impl TaskReader<'_> {
     /// Runs blocks until there is a task, or the program ends.
     fn more(&mut self, watch: &mut dyn PredictWatch, name: &str) {
         while self.planned.is_empty() && !self.ended {

@@ -4,17 +4,16 @@ mod beyond_travel;
 mod motions_csv;
 mod survey;
 
-use std::fs::File;
-
 use post_machine::diagnostic::Diagnostic;
 use post_readback::course::program::{Chords, ProgramCourse};
-use post_readback::interpret::{Interpreter, ReadReport};
+use post_readback::interpret::ReadReport;
 use post_readback::{FedRapids, MOST_FAULTS};
 
 use super::nc_program::{self, NcControl, ProgramFile};
 use super::nc_to_cl::{self, Tools};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, PathArg, Role};
+use crate::nc_program::RunningProgram;
 use crate::session::Session;
 use beyond_travel::BeyondTravel;
 use motions_csv::MotionsCsv;
@@ -106,7 +105,7 @@ fn write_cl(
     session: &Session,
     input: &PathArg,
     control: &NcControl,
-    program: FedRapids<Interpreter<File>>,
+    program: FedRapids<RunningProgram<'static>>,
     file: &mut AtomicFile,
     refused: &mut Vec<Diagnostic>,
 ) -> Result<(), Failure> {

@@ -1,12 +1,9 @@
 //! The path of the program that another one is held against: a table, the lines that belong together, and how far the new
 //! path is from the old one.
 
-use std::fs::File;
-
 use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_motion::path::piece_ends;
-use post_readback::interpret::Interpreter;
 use post_readback::{BlockEffect, ProgramRun};
 
 use super::cl_points::{self, ClPointRow};
@@ -14,6 +11,7 @@ use super::page_table::PageTable;
 use super::parts::Parts;
 use super::segments::Segments;
 use crate::failure::Failure;
+use crate::nc_program::RunningProgram;
 
 /// How far chords of a path may stray that is only looked at, mm.
 const CHORD: f64 = 0.001;
@@ -32,7 +30,7 @@ const APART: f64 = 10.0;
 
 /// Reads the old program as far as it is asked for.
 pub struct OldPath {
-    run: ProgramRun<Interpreter<File>>,
+    run: ProgramRun<RunningProgram<'static>>,
     table: PageTable<ClPointRow>,
     segments: Segments,
     /// Segments that stand behind the place that was found last.
@@ -46,7 +44,10 @@ impl OldPath {
     ///
     /// # Errors
     /// There is no place for its table.
-    pub fn new(machine: &Machine, run: ProgramRun<Interpreter<File>>) -> Result<Self, Failure> {
+    pub fn new(
+        machine: &Machine,
+        run: ProgramRun<RunningProgram<'static>>,
+    ) -> Result<Self, Failure> {
         Ok(Self {
             run,
             table: cl_points::table(machine, false)?,

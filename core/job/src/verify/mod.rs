@@ -105,7 +105,8 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
     let map = texts.table.as_mut().map(|file| (JsonRows::default(), file));
     let mut watch = VerifyOutputs { map, rows };
     let name = &program.name;
-    let held = read_back::verify(&reading, &mut source, name, program.text()?, &mut watch)?;
+    let held =
+        read_back::verify(&reading, &mut source, name, Box::new(program.text()?), &mut watch)?;
     let VerifyOutputs { map, rows } = watch;
     if let Some((map, file)) = map {
         map.end(file)?;

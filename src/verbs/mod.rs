@@ -18,6 +18,7 @@ mod post;
 mod predict;
 mod print_schema;
 mod read;
+mod tools;
 mod verify;
 mod view;
 
@@ -46,6 +47,7 @@ use post_job::session::Session;
 use predict::PredictArguments;
 use print_schema::SchemaArguments;
 use read::ReadArguments;
+use tools::ToolsArguments;
 use verify::VerifyArguments;
 use view::{View, ViewArguments};
 
@@ -74,6 +76,7 @@ use view::{View, ViewArguments};
   post verify part.nc --machine dmu50 --against part.cls --map map.json
   post diff old.nc new.nc --machine ac-trunnion
   post predict part.nc --machine ac-trunnion --pictures prediction
+  post tools tool.tbl --against part.cls
   post view part.cls --machine ac-trunnion
   post explain over-travel
   post plugin show fanuc
@@ -135,6 +138,7 @@ enum Verb {
     Verify(Box<VerifyArguments>),
     Plugin(PluginArguments),
     Read(Box<ReadArguments>),
+    Tools(ToolsArguments),
     View(ViewArguments),
     Lsp(LspArguments),
     Explain(ExplainArguments),
@@ -160,6 +164,7 @@ impl CommandLine {
             Some(Verb::Verify(arguments)) => verify::run(session, &arguments),
             Some(Verb::Plugin(arguments)) => plugin::run(session, &arguments),
             Some(Verb::Read(arguments)) => read::run(session, &arguments),
+            Some(Verb::Tools(arguments)) => return tools::run(session, &arguments),
             Some(Verb::View(arguments)) => return view(session, &arguments),
             Some(Verb::Explain(arguments)) => return explain::run(session, &arguments),
             Some(Verb::Lsp(arguments)) => lsp::run(session, arguments),

@@ -1,7 +1,13 @@
 //! Files of tools: read, checked, converted, and posted with.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
+
+use post_job::session::Session;
+use post_job::tools::{FORMATS, ReadTools, TableUnits, ToolFormat, read};
+use post_machine::description::{ToolData, ToolTable};
+use post_testkit::{Rng, randomised};
 
 use crate::common::{Run, command, run};
 
@@ -472,4 +478,91 @@ fn a_cl_file_tells_the_tools_that_it_calls_and_a_table_is_held_against_it() {
         bad.err
     );
     assert!(bad.err.contains("warning[tool-differs]"), "{}", bad.err);
+}
+
+/// A tool with sizes that every format can have.
+fn any_tool(random: &mut Rng, number: u32) -> ToolData {
+    let wear = |random: &mut Rng| *random.choose(&[0.0, -0.05, 0.02]);
+    let text = |random: &mut Rng| {
+        random.choose(&["", "END MILL 10", "DRILL #3", "A;B", "R2,5"]).to_string()
+    };
+    let size = |random: &mut Rng, most: f64| (random.range(0.1, most) * 1e3).round() / 1e3;
+    ToolData {
+        number,
+        name: text(random),
+        length: Some(size(random, 400.0)),
+        length_wear: wear(random),
+        radius: Some(size(random, 60.0)),
+        radius_wear: wear(random),
+        ..ToolData::default()
+    }
+}
+
+/// What a format wrote of tools, read again.
+fn again(folder: &Path, format: &ToolFormat, text: &str, inch: bool) -> ReadTools {
+    let file = folder.join("tools.txt");
+    fs::write(&file, text).unwrap();
+    let table = ToolTable {
+        file,
+        format: Some(format.name.to_owned()),
+        inch: Some(inch),
+        reference: 0.0,
+        columns: BTreeMap::new(),
+        place: None,
+        by_register: false,
+        tools: None,
+    };
+    read(&Session::quiet(), &table, inch).unwrap()
+}
+
+#[test]
+fn whatever_tools_are_written_are_read_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let (seeds, mut random) = randomised(60_u32, 29_003);
+    for _ in seeds {
+        let count = 1 + random.pick(12) as u32;
+        let tools: Vec<ToolData> =
+            (0..count).map(|place| any_tool(&mut random, 1 + 3 * place)).collect();
+        let inch = random.pick(2) == 1;
+        for format in FORMATS.iter().filter(|format| format.write.is_some()) {
+            let text = format.write.unwrap()(&tools, TableUnits { inch });
+            let found = again(folder.path(), format, &text, inch);
+            assert!(!found.is_wrong(), "{}: {text}\n{:?}", format.name, found.findings);
+            assert_eq!(found.tools.len(), tools.len(), "{}: {text}", format.name);
+            for (was, is) in tools.iter().zip(&found.tools) {
+                assert_eq!(was.number, is.number, "{}: {text}", format.name);
+                let close = |was: Option<f64>, is: Option<f64>| {
+                    (was.unwrap_or(0.0) - is.unwrap_or(0.0)).abs() < 5e-5
+                };
+                assert!(close(was.total_length(), is.total_length()), "{}: {text}", format.name);
+                if format.name != "machine" {
+                    assert!(close(was.diameter(), is.diameter()), "{}: {text}", format.name);
+                }
+            }
+        }
+    }
+}
+
+/// Broken texts are told, and nothing falls over them.
+#[test]
+fn no_text_ends_a_reader() {
+    let folder = tempfile::tempdir().unwrap();
+    let (seeds, mut random) = randomised(120_u32, 29_004);
+    for _ in seeds {
+        let samples = [TBL, TNC, FANUC, SIEMENS, FUSION, CSV];
+        let mut text: Vec<char> = random.choose(&samples).chars().collect();
+        for _ in 0..=random.pick(6) {
+            let at = random.pick(text.len());
+            match random.pick(3) {
+                0 => text[at] = *random.choose(&['\n', '"', '[', '9', '-', ';', 'é', '\t', '.']),
+                1 => text.truncate(at.max(1)),
+                _ => text.insert(at, *random.choose(&['(', ']', '=', '0', ' ', '\u{feff}', 'G'])),
+            }
+        }
+        let text: String = text.into_iter().collect();
+        for format in FORMATS {
+            let found = again(folder.path(), format, &text, false);
+            assert!(found.tools.iter().all(|tool| tool.number != 0));
+        }
+    }
 }

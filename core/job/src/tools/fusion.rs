@@ -29,8 +29,13 @@ pub(super) fn read(reading: &mut ToolReading<'_>) {
             return;
         }
     };
+    let (mut line, mut counted) = (1, 0);
     for tool in library.data {
-        let line = reading.line_at(tool.get().as_ptr().addr() - text.as_ptr().addr());
+        // They stand in the text in their order: lines are counted once.
+        let place = tool.get().as_ptr().addr() - text.as_ptr().addr();
+        line +=
+            text.as_bytes()[counted..place].iter().filter(|byte| **byte == b'\n').count() as u64;
+        counted = place;
         let Ok(value) = serde_json::from_str::<Value>(tool.get()) else { continue };
         if value["type"] == "holder" || !value["geometry"].is_object() {
             continue;

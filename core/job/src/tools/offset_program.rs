@@ -146,7 +146,9 @@ fn entry(
         return;
     }
     let size = number * modal.unit;
-    let tool = reading.gathered(register, line);
+    let Some(tool) = reading.gathered(register, line) else {
+        return;
+    };
     if tool.name.is_empty() {
         remark(block).clone_into(&mut tool.name);
     }

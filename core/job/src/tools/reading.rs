@@ -34,6 +34,8 @@ pub struct ToolReading<'a> {
     /// Its lines may be shown: the user named it.
     shown: bool,
     tools: Vec<ToolData>,
+    /// It has more tools than are taken, and that is told.
+    is_full: bool,
     findings: Vec<Diagnostic>,
 }
 
@@ -53,6 +55,7 @@ impl<'a> ToolReading<'a> {
             near: None,
             shown: table.place.is_none(),
             tools: Vec::new(),
+            is_full: false,
             findings: Vec::new(),
         }
     }
@@ -128,23 +131,35 @@ impl<'a> ToolReading<'a> {
 
     /// Takes a tool.
     pub fn tool(&mut self, tool: ToolData) {
-        if self.tools.len() == MOST_TOOLS {
-            let message = format!("more than {MOST_TOOLS} tools");
-            self.fault(tool.line, message, "is this a file of tools?");
-        }
-        if self.tools.len() < MOST_TOOLS {
+        if self.has_room(tool.line) {
             self.tools.push(tool);
         }
     }
 
-    /// The tool of this number that is being put together of several lines.
-    pub fn gathered(&mut self, number: u32, at: u64) -> &mut ToolData {
-        let known = self.tools.iter().position(|tool| tool.number == number);
+    /// The tool of this number that is being put together of several lines; none with a fault where there are too many.
+    pub fn gathered(&mut self, number: u32, at: u64) -> Option<&mut ToolData> {
+        // Its lines mostly stand together.
+        let known = self.tools.iter().rposition(|tool| tool.number == number);
         let place = known.unwrap_or(self.tools.len());
         if known.is_none() {
+            if !self.has_room(at) {
+                return None;
+            }
             self.tools.push(ToolData { number, line: at, ..ToolData::default() });
         }
-        &mut self.tools[place]
+        self.tools.get_mut(place)
+    }
+
+    /// One more tool is possible; else that is told, once.
+    fn has_room(&mut self, at: u64) -> bool {
+        if self.tools.len() < MOST_TOOLS {
+            return true;
+        }
+        if !std::mem::replace(&mut self.is_full, true) {
+            let message = format!("more than {MOST_TOOLS} tools");
+            self.fault(at, message, "is this a file of tools?");
+        }
+        false
     }
 
     /// How many tools were taken.

@@ -76,11 +76,15 @@ fn take(reading: &mut ToolReading<'_>, line: u64, found: &Assignment<'_>) {
     }
     let Some(number) = reading.tool_number(line, found.tool) else { return };
     if found.name == "TP2" {
-        found.value.clone_into(&mut reading.gathered(number, line).name);
+        if let Some(tool) = reading.gathered(number, line) {
+            found.value.clone_into(&mut tool.name);
+        }
         return;
     }
     let Some(value) = reading.number(line, found.name, found.value) else { return };
-    let tool = reading.gathered(number, line);
+    let Some(tool) = reading.gathered(number, line) else {
+        return;
+    };
     let size = value * unit;
     match found.name {
         // The length is geometry and base, one of which may come first.

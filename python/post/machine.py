@@ -36,7 +36,7 @@ class Options(TypedDict, total=False):
     tolerance: float | None
     tcp: Literal["control", "post"] | None
     dialect: str | None
-    tools: Path | None
+    tools: str | None
     number: int | None
     compensate_servo: bool
     plan: bool

@@ -216,6 +216,10 @@ fn broken_files_are_refused_by_their_lines() {
         let said = broken(name, &text);
         assert!(said.contains(&format!("{name}{line}")) && said.contains(message), "{said}");
     }
+    assert!(
+        broken("old.tbl", "TOOLNO POCKET LENGTH DIAMETER\n1 1 2.5 0.5\n")
+            .contains("columns below heads")
+    );
     assert!(broken("x.bin", "what is this").contains("neither its name nor its text"));
     assert!(broken("l.json", "PK\u{3}\u{4}zip").contains("packed archive"));
     assert!(broken("p.csv", "T,L\n1,2\n").contains("no column number"));
@@ -459,6 +463,9 @@ fn a_cl_file_tells_the_tools_that_it_calls_and_a_table_is_held_against_it() {
     fs::write(at("tool.tbl"), TBL).unwrap();
     let called = tools(folder.path(), &["part.cls"]);
     assert_eq!(called.code, 0, "{}", called.err);
+    fs::copy(at("part.cls"), at("part.data")).unwrap();
+    let named = tools(folder.path(), &["part.data", "--from", "cl"]);
+    assert_eq!(named.out.replace("part.data", "part.cls"), called.out, "{}", named.err);
     assert!(
         called.out.contains(
             "1     END MILL 10   10.0000    45.0000\n2     DRILL          6.0000          -"
@@ -531,8 +538,10 @@ fn whatever_tools_are_written_are_read_again() {
             assert_eq!(found.tools.len(), tools.len(), "{}: {text}", format.name);
             for (was, is) in tools.iter().zip(&found.tools) {
                 assert_eq!(was.number, is.number, "{}: {text}", format.name);
+                // Radius and wear are rounded to a millionth of an inch each, and doubled.
+                let most = 4.0 * 0.5e-6 * 25.4 + 1e-9;
                 let close = |was: Option<f64>, is: Option<f64>| {
-                    (was.unwrap_or(0.0) - is.unwrap_or(0.0)).abs() < 5e-5
+                    (was.unwrap_or(0.0) - is.unwrap_or(0.0)).abs() < most
                 };
                 assert!(close(was.total_length(), is.total_length()), "{}: {text}", format.name);
                 if format.name != "machine" {

@@ -42,7 +42,7 @@ pub struct ToolsArguments {
     #[arg(long, exclusive = true)]
     formats: bool,
 
-    /// Format of the file, if its text does not say it.
+    /// Format of the file, if its text does not say it; `cl` is a CL file.
     #[arg(long, value_name = "FORMAT")]
     from: Option<String>,
 

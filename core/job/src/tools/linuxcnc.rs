@@ -13,6 +13,9 @@ const OTHER_AXES: &str = "XYABCUVW";
 /// Angles and the orientation of turning tools.
 const TURNING: &str = "IJQ";
 
+/// What the line of heads begins with that tables of an old form have.
+const OLD_HEAD: &str = "TOOLNO";
+
 /// Its first line that says something begins with the number of a tool.
 pub(super) fn looks(text: &str) -> bool {
     let mut lines =
@@ -28,6 +31,12 @@ pub(super) fn read(reading: &mut ToolReading<'_>) {
         let (words, remark) = text.split_once(';').unwrap_or((text, ""));
         if words.trim().is_empty() {
             continue;
+        }
+        if words.trim_start().starts_with(OLD_HEAD) {
+            let message = "the table has columns below heads, as LinuxCNC had them long ago";
+            let help = "let LinuxCNC write it anew; a line is T1 P1 Z120.5 D10 ;remark";
+            reading.fault(line, message.to_owned(), help);
+            return;
         }
         if let Some(tool) = tool(reading, line, words) {
             reading.tool(ToolData { name: remark.to_owned(), ..tool });

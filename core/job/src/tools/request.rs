@@ -12,7 +12,11 @@ use crate::files::{self, PathArg, Role};
 use crate::session::Session;
 
 /// Endings of CL files, whose tools are those that they call.
-const CL_ENDINGS: [&str; 7] = ["cls", "clsf", "cl", "cldata", "apt", "aptsource", "ncl"];
+const CL_ENDINGS: [&str; 9] =
+    ["as", "clt", "cls", "clsf", "cl", "cldata", "apt", "aptsource", "ncl"];
+
+/// What `--from` calls a CL file.
+const CL: &str = "cl";
 
 const TOOLS: Role = Role { what: "file of tools", remedy: "name another file with --output" };
 
@@ -91,7 +95,11 @@ fn cl_file(request: &ToolsRequest) -> Option<&PathArg> {
     let file = request.input.as_ref()?;
     let ending = file.path().and_then(Path::extension).unwrap_or_default();
     let is_cl = CL_ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known));
-    (is_cl && request.from.is_none()).then_some(file)
+    let is_cl = match request.from.as_deref() {
+        Some(format) => format == CL,
+        None => is_cl,
+    };
+    is_cl.then_some(file)
 }
 
 fn of_cl_file(session: &Session, file: &PathArg) -> Result<ListedTools, Failure> {

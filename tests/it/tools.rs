@@ -332,6 +332,10 @@ fn a_job_takes_its_lengths_from_a_file_and_calls_no_tool_that_is_not_there() {
         "{}",
         by_machine.err
     );
+    let mut place = command();
+    place.current_dir(folder.path()).args(["place", "part.cls", "-m", "m.toml"]);
+    let placed = run(&mut place, b"");
+    assert_eq!(placed.err.matches("which is taken").count(), 1, "{}", placed.err);
     let both = post(folder.path(), "extends = \"shop/mill.toml\"\n", &["--tools", "tool.tbl"]);
     assert!(both.out.contains("120.5 mm long, by the file of tools"), "{}", both.out);
     let all = post(folder.path(), MILL, &["--tools", "tool.tbl", "--tool-length", "100"]);
@@ -518,6 +522,7 @@ fn again(folder: &Path, format: &ToolFormat, text: &str, inch: bool) -> ReadTool
         place: None,
         by_register: false,
         tools: None,
+        findings: Vec::new(),
     };
     read(&Session::quiet(), &table, inch).unwrap()
 }

@@ -21,8 +21,7 @@ pub fn say_what_is_left(
     let others = settings.iter();
     let others = others.filter(|setting| !matches!(setting, Setting::Dialect(_)));
     let others: Vec<Setting> = others.cloned().collect();
-    // What is to be said of its tools is said where they are used.
-    let Ok(machine) = machine_files::load(&Session::quiet(), machine, folders, &others) else {
+    let Ok(machine) = machine_files::load(session, machine, folders, &others) else {
         return;
     };
     let (own, options) = (&machine.control.dialect, &machine.control.options);

@@ -121,7 +121,8 @@ fn bit(session: &Session, library: &Path, named: &Path) -> io::Result<String> {
     String::from_utf8(bytes).map_err(|_| io::Error::other("it is no text"))
 }
 
-/// Puts what the file of tools has into a machine and its heads, if the machine names one.
+/// Puts what the file of tools has into a machine and its heads, if the machine names one; what is worth a look is kept
+/// there ([`ToolTable::findings`]).
 ///
 /// # Errors
 /// The file cannot be read, something is wrong with it, or it has a length that is none.
@@ -143,7 +144,10 @@ pub fn equip(session: &Session, machine: &mut Machine) -> Result<(), Failure> {
         merge(head, &filled, &mut Vec::new());
     }
     merge(machine, &filled, &mut findings);
-    session.findings(&findings);
+    // A run may load its machine more than once.
+    if let Some(table) = &mut machine.tool_table {
+        table.findings = findings;
+    }
     Ok(())
 }
 

@@ -120,6 +120,7 @@ fn of_table(session: &Session, request: &ToolsRequest) -> Result<ListedTools, Fa
         place: None,
         by_register: false,
         tools: None,
+        findings: Vec::new(),
     };
     let mut read: ReadTools = read(session, &table, request.inch)?;
     let name = table.name();

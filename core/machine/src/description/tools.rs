@@ -120,6 +120,8 @@ pub struct ToolTable {
     pub by_register: bool,
     /// Its tools; none before it is read.
     pub tools: Option<Vec<ToolData>>,
+    /// What is to be said of it, once a run; none of it is an error.
+    pub findings: Vec<Diagnostic>,
 }
 
 impl ToolTable {
@@ -248,6 +250,7 @@ impl Builder<'_> {
             place: place.filter(|_| !told),
             by_register: false,
             tools: None,
+            findings: Vec::new(),
         })
     }
 }

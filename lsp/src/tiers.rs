@@ -10,7 +10,7 @@ use super::background::{BackgroundFacts, Outlet, Token, WorkProduct};
 use super::document::{Document, FileKind, Snapshot};
 use super::machine::library::Library;
 use super::{cl, findings, machine, nc};
-use post_job::machine_files;
+use post_job::{machine_files, tools};
 
 /// The machine that CL files and programs are shown on.
 #[derive(Clone, Debug, Default)]
@@ -79,7 +79,11 @@ impl Work {
         let loaded = machine_files::source(name, &self.library.machines, &read)
             .and_then(|source| machine_files::examine(source, &self.library.machines, &[], &read))
             .map_err(post_job::failure::Failure::findings)
-            .and_then(|reading| reading.machine);
+            .and_then(|reading| reading.machine)
+            .and_then(|mut machine| {
+                let equipped = tools::equip(&self.library.session, &mut machine);
+                equipped.map(|()| machine).map_err(post_job::failure::Failure::findings)
+            });
         Some(loaded)
     }
 

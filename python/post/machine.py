@@ -36,6 +36,7 @@ class Options(TypedDict, total=False):
     tolerance: float | None
     tcp: Literal["control", "post"] | None
     dialect: str | None
+    tools: str | None
     number: int | None
     compensate_servo: bool
     plan: bool

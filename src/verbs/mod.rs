@@ -19,6 +19,7 @@ mod post;
 mod predict;
 mod print_schema;
 mod read;
+mod tools;
 mod verify;
 mod view;
 
@@ -49,6 +50,7 @@ use post_job::session::Session;
 use predict::PredictArguments;
 use print_schema::SchemaArguments;
 use read::ReadArguments;
+use tools::ToolsArguments;
 use verify::VerifyArguments;
 use view::{View, ViewArguments};
 
@@ -77,6 +79,7 @@ use view::{View, ViewArguments};
   post verify part.nc --machine dmu50 --against part.cls --map map.json
   post diff old.nc new.nc --machine ac-trunnion
   post predict part.nc --machine ac-trunnion --pictures prediction
+  post tools tool.tbl --against part.cls
   post view part.cls --machine ac-trunnion
   post explain over-travel
   post plugin show fanuc
@@ -138,6 +141,7 @@ enum Verb<const LATE: bool> {
     Verify(Late<Box<VerifyArguments>, LATE>),
     Plugin(Late<PluginArguments, LATE>),
     Read(Late<Box<ReadArguments>, LATE>),
+    Tools(Late<ToolsArguments, LATE>),
     View(Late<ViewArguments, LATE>),
     Lsp(Late<LspArguments, LATE>),
     Explain(Late<ExplainArguments, LATE>),
@@ -177,6 +181,7 @@ impl CommandLine {
             Some(Verb::Verify(Late(arguments))) => verify::run(session, &arguments),
             Some(Verb::Plugin(Late(arguments))) => plugin::run(session, &arguments),
             Some(Verb::Read(Late(arguments))) => read::run(session, &arguments),
+            Some(Verb::Tools(Late(arguments))) => return tools::run(session, &arguments),
             Some(Verb::View(Late(arguments))) => return view(session, &arguments),
             Some(Verb::Explain(Late(arguments))) => return explain::run(session, &arguments),
             Some(Verb::Lsp(Late(arguments))) => lsp::run(session, arguments),

@@ -69,6 +69,7 @@ mod strangers;
 mod summary;
 mod terminal;
 mod threads;
+mod tools;
 mod verbs;
 mod verified;
 mod vocabularies;

@@ -38,6 +38,7 @@ pub mod settings;
 pub mod summary;
 pub mod text;
 pub mod text_table;
+pub mod tools;
 pub mod unused_options;
 pub mod verify;
 

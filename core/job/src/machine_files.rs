@@ -11,6 +11,7 @@ use post_machine::diagnostic::{Diagnostic, nearest};
 
 use crate::failure::Failure;
 use crate::session::Session;
+use crate::tools;
 
 /// Names and texts of the machines built in.
 const BUILT_IN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/machines.rs"));
@@ -25,7 +26,8 @@ pub fn load(
 ) -> Result<Machine, Failure> {
     let read = |path: &Path| read(session, path);
     let source = source(name, named, &read)?;
-    let machine = examine(source, named, settings, &read)?.machine?;
+    let mut machine = examine(source, named, settings, &read)?.machine?;
+    tools::equip(session, &mut machine)?;
     let heads = machine.heads.iter().map(|head| &head.machine);
     for solid in std::iter::once(&machine).chain(heads).flat_map(|machine| &machine.solids) {
         session.read_files().note("the solid", &solid.file);

@@ -114,6 +114,14 @@ pub fn offsets(arguments: &JobSettings, machine: &Machine, tools: &[ClTool]) -> 
     if arguments.over.tool_length.is_some() {
         return offsets;
     }
+    if machine.tool_table.as_ref().is_some_and(|file| file.by_register) {
+        offsets.lengths.clone_from(&machine.tools);
+        for tool in tools {
+            let held = machine.tools.iter().find(|(register, _)| *register == tool.register);
+            offsets.tools.extend(held.map(|(_, length)| (tool.number, *length)));
+        }
+        return offsets;
+    }
     for (number, length) in &machine.tools {
         let known = tools.iter().find(|tool| tool.number == *number);
         let register = known.map_or(*number, |tool| tool.register);

@@ -175,6 +175,7 @@ fn length(tool: &ReportedTool) -> String {
     let source = match tool.source {
         LengthSource::Option => "by --tool-length",
         LengthSource::MachineFile => "by the machine file",
+        LengthSource::ToolTable => "by the file of tools",
         LengthSource::ClFile => "by the CL file",
         LengthSource::Unknown => "nobody gave it",
     };

@@ -8,14 +8,17 @@ use post_stock::plugin;
 use super::plugin_finder::built_in;
 use crate::session::Session;
 
-/// Warns of tables whose plugin is not there, and of options that a plugin of the command does not have.
+/// Warns of tables whose plugin is not there, of options that a plugin of the command does not have, and of what is to be
+/// said of the file of tools.
 pub fn warn(session: &Session, machine: &Machine, finder: &Finder) {
     session.findings(&found(machine, finder));
 }
 
 /// What is warned of.
 pub fn found(machine: &Machine, finder: &Finder) -> Vec<Diagnostic> {
-    let mut warnings = Vec::new();
+    let file = machine.tool_table.iter();
+    let mut warnings: Vec<Diagnostic> =
+        file.flat_map(|file| file.findings.iter().cloned()).collect();
     for table in &machine.unused_options {
         let is_model = table.section == "accuracy";
         match plugin(&table.plugin).filter(|plugin| plugin.is_model() == is_model) {

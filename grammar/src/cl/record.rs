@@ -409,6 +409,19 @@ pub enum Units {
     Foot,
 }
 
+impl Units {
+    /// mm in one of them.
+    pub fn millimetres(self) -> f64 {
+        match self {
+            Self::Millimetre => 1.0,
+            Self::Inch => 25.4,
+            Self::Centimetre => 10.0,
+            Self::Metre => 1000.0,
+            Self::Foot => 304.8,
+        }
+    }
+}
+
 /// `CIRCLE/`: centre and axis; it ends at the next `GOTO`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CircleRecord {

@@ -155,6 +155,7 @@ impl ConvertArguments {
             offsets: self.offsets.clone(),
             most_blocks: self.most_blocks,
             tool_length: self.tool_length,
+            tools: None,
             mount: self.from_mount,
             set: self.from_set.clone(),
             dialect: self.from_dialect.clone(),

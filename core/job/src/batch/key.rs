@@ -12,7 +12,7 @@ use crate::plugin_finder;
 const FORMAT: &str = "post batch 1";
 
 /// The key of a job. What is in it: the bytes of the CL file and its name (programs have it in their comments), the texts of
-/// the machine and of all that it extends, all settings and options, the version of `post` and the hash of its sources, names, versions and bytes of the
+/// the machine and of all that it extends, its tools where a file has them, all settings and options, the version of `post` and the hash of its sources, names, versions and bytes of the
 /// plugins.
 ///
 /// # Errors
@@ -38,6 +38,9 @@ pub fn key(
     add(crate::files::json_line(texts).as_bytes());
     let settings = JobLine { file: String::new(), machine: None, ..job.clone() };
     add(crate::files::json_line(&settings).as_bytes());
+    if let Some(file) = &machine.tool_table {
+        add(format!("{:?}", file.tools).as_bytes());
+    }
     add(study.options_text().as_bytes());
     for name in [&machine.control.dialect, &machine.accuracy.model] {
         let plugin = study.finder.find(name);

@@ -26,7 +26,7 @@ use crate::plugin_finder;
 use crate::posting_pass::PostingExtras;
 use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings};
-use crate::unused_options;
+use crate::{tools, unused_options};
 
 /// What came of a job, and whether the journal knew it.
 pub struct JobResult {
@@ -97,7 +97,8 @@ impl PreparedJob {
             .map_err(|fault| Diagnostic::error("job", fault))?;
         let cl = inputs.cl(session, &job.file)?;
         let texts = inputs.machine(&arguments.machine);
-        let machine = texts.load(&arguments.over.settings())?;
+        let mut machine = texts.load(&arguments.over.settings())?;
+        tools::equip(session, &mut machine)?;
         Ok(Self {
             // Of a plugin that cannot be opened posting tells more.
             key: key::key(study, job, &cl, &texts, &machine).ok(),

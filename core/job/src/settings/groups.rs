@@ -2,7 +2,7 @@
 //! of them, and how programs are read back.
 
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use post_grammar::Units;
 use post_machine::description::{Setting, Tcp};
@@ -76,6 +76,10 @@ settings! {
     /// Length of every tool from the gauge point to the tip, mm, over what machine and CL file say.
     one tool_length: f64 = LENGTH, "MM", { hyphens: true, columns: &["tool_length_mm"] };
 
+    /// The file that has the tools: tool table, offsets as a program, library or CSV table (`post tools --formats`); short
+    /// for --set tools.file=… Lengths are taken from it, and each tool that the CL file calls must be there.
+    one tools: PathArg = FILE, "FILE";
+
     /// Sets a parameter of the machine (`Lm=312`) or any key (`accuracy.tolerance=0.001`).
     many set: Setting = SETTING, "NAME=VALUE";
 
@@ -100,7 +104,8 @@ settings! {
 impl MachineSettings {
     /// What is set over the machine file: `set` first, then the short ones, which win.
     pub fn settings(&self) -> Vec<Setting> {
-        let mut settings = self.set.clone();
+        let mut settings = tools_setting(self.tools.as_ref());
+        settings.extend_from_slice(&self.set);
         settings.extend(self.mount.map(Setting::Mount));
         settings.extend(self.turn.map(Setting::Turn));
         settings.extend(self.tolerance.map(Setting::Tolerance));
@@ -108,6 +113,12 @@ impl MachineSettings {
         settings.extend(self.dialect.clone().map(Setting::Dialect));
         settings
     }
+}
+
+/// What is set where a file of tools is named.
+fn tools_setting(file: Option<&PathArg>) -> Vec<Setting> {
+    let path = file.map(|file| file.path().unwrap_or(Path::new("/dev/stdin")).to_owned());
+    path.map(Setting::Tools).into_iter().collect()
 }
 
 /// A CL file, how it is read, and the machine.
@@ -199,6 +210,10 @@ settings! {
     /// says.
     one tool_length: f64 = LENGTH, "MM", { hyphens: true };
 
+    /// The file that has the tools: tool table, offsets as a program, library or CSV table (`post tools --formats`); short
+    /// for --set tools.file=…
+    one tools: PathArg = FILE, "FILE";
+
     /// Where the part origin sits for this job, all axes at zero, machine frame, mm.
     one mount: [f64; 3] = POINT, "X,Y,Z", { hyphens: true };
 
@@ -219,7 +234,8 @@ settings! {
 impl ProgramSettings {
     /// What is set over the machine file: `set` first, then the short ones, which win.
     pub fn settings(&self) -> Vec<Setting> {
-        let mut settings = self.set.clone();
+        let mut settings = tools_setting(self.tools.as_ref());
+        settings.extend_from_slice(&self.set);
         settings.extend(self.mount.map(Setting::Mount));
         settings.extend(self.dialect.clone().map(Setting::Dialect));
         settings

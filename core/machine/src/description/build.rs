@@ -326,7 +326,8 @@ impl Builder<'_> {
         let length_axis = self.length_axis(file.tool.length_axis.as_ref(), &axes);
         let solution = self.solution(file, &axes);
         let rewind = file.rewind.as_ref().and_then(|rewind| self.rewind(rewind));
-        let tools = self.tools(file);
+        let tools = self.tool_lengths(&file.tools);
+        let tool_table = self.tool_table(&file.tools.keys);
         let options = self.control_options(file, &axes, &mut control_options);
         let own = self.axis_free_rules(file, &mut model_options);
         let solids = self.solids(&file.solids, &axes);
@@ -352,6 +353,7 @@ impl Builder<'_> {
             edge,
             control_point: own.control_point,
             tools,
+            tool_table,
             spindle: own.spindle,
             word_rules: own.word_rules,
             smoothing: own.smoothing,
@@ -477,7 +479,8 @@ impl Builder<'_> {
         if let Some(rewind) = &file.rewind {
             self.rewind(rewind);
         }
-        self.tools(file);
+        self.tool_lengths(&file.tools);
+        self.tool_table(&file.tools.keys);
         let accuracy = self.axis_free_rules(file, model_options).accuracy;
         let motion = self.motion(&file.motion);
         self.plan(&file.plan, &motion, accuracy.tolerance);
@@ -487,7 +490,7 @@ impl Builder<'_> {
     fn check_sizes(&mut self, file: &MachineFile) {
         let parameters = file.parameters.values().map(KeyedValue::span);
         self.check_size("[parameters]", parameters, MOST_PARAMETERS);
-        let tools = file.tools.values().map(KeyedValue::span);
+        let tools = file.tools.lengths.values().map(KeyedValue::span);
         self.check_size("[tools]", tools, MOST_ENTRIES);
         let words = file.cl.words.keys().map(Spanned::span);
         self.check_size("[cl.words]", words, MOST_ENTRIES);
@@ -581,31 +584,6 @@ impl Builder<'_> {
             );
         }
         across.try_normalize(1e-9)
-    }
-
-    fn tools(&mut self, file: &MachineFile) -> Vec<(u32, f64)> {
-        let mut tools = Vec::new();
-        for (number, length) in &file.tools {
-            match number.parse() {
-                Ok(number) => {
-                    let value = self.number(length);
-                    if value < 0.0 {
-                        let message =
-                            format!("tool {number} has the length {}, below zero", Short(value));
-                        let help = "lengths go from the gauge point to the tip";
-                        self.fault("machine-tools", length.span(), message, help);
-                    }
-                    tools.push((number, value));
-                }
-                Err(_) => self.fault(
-                    "machine-tools",
-                    length.span(),
-                    format!("[tools] has {number}, which is no tool number"),
-                    "1 = 120.5 gives tool 1 the length 120.5 mm",
-                ),
-            }
-        }
-        tools
     }
 
     /// A chain that cannot be solved is refused when the machine is loaded, not at the first cut.

@@ -15,6 +15,7 @@ use super::servo_file::ServoFile;
 use super::table::{
     Count, DeValue, EntryError, Key, KeyType, Schemas, Slip, Spanned, Value, defined, keys, words,
 };
+use super::tools::ToolsFile;
 
 /// Names of axes.
 const AXES: Bounds = Bounds::names("^[A-CEI-LPQRU-Z][0-9]*$");
@@ -73,8 +74,8 @@ keys! {
         workpiece: WorkpieceFile,
         /// The gauge point and the tool's directions.
         tool: ToolFile,
-        /// Tool lengths by tool number, mm from the gauge point to the tip.
-        tools: BTreeMap<String, KeyedNumber> = Bounds::names("^[0-9]+$"),
+        /// Lengths of tools by number, mm from the gauge point to the tip (`1 = 120.5`), and the file of tools.
+        tools: ToolsFile,
         /// The axes of the chain by their letters.
         axis: Spanned<BTreeMap<String, Spanned<AxisFile>>> = AXES,
         /// STL files of the machine's bodies, for pictures alone; mm, machine frame, every axis at zero. An axis letter

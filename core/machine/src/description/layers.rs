@@ -100,6 +100,9 @@ fn is_header(line: &str) -> bool {
 /// A file that extends another may do so over so many steps.
 const DEPTH: usize = 8;
 
+/// What a setting of one run is called in place of a file.
+pub(super) const SETTING: &str = "--set";
+
 /// All texts of a machine: the file, what it extends, and the settings, in that order.
 #[derive(Debug)]
 pub(crate) struct MachineSources {
@@ -156,7 +159,7 @@ impl MachineSources {
         }
         for setting in settings {
             all.push(Source {
-                name: "--set".to_owned(),
+                name: SETTING.to_owned(),
                 text: setting.line().map_err(|fault| vec![*fault])?,
             })?;
         }

@@ -30,6 +30,7 @@ pub(crate) mod smoothing;
 mod solids;
 mod spindle;
 pub(crate) mod table;
+mod tools;
 
 use std::f64::consts::TAU;
 
@@ -57,6 +58,7 @@ pub use setting::Setting;
 pub use smoothing::{Smoothing, SmoothingRules};
 pub use solids::Solid;
 pub use spindle::SpindleSpeeds;
+pub use tools::{TOOL_FILE_ENDINGS, ToolData, ToolTable};
 
 use crate::diagnostic::{Diagnostic, SourcePlace};
 use crate::kinematics::{Chain, Freedom, Joint, Joints, NoClosedForm, Second, Solver};
@@ -88,6 +90,8 @@ pub struct Machine {
     pub control_point: ControlPoint,
     /// Tool lengths by tool number, mm, from the gauge point to the tip.
     pub tools: Vec<(u32, f64)>,
+    /// The file that has its tools, if the machine file or the job names one.
+    pub tool_table: Option<ToolTable>,
     /// The control.
     pub control: ControlRules,
     /// How fast its spindle turns.

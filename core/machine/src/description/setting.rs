@@ -1,6 +1,9 @@
 //! Values over what a machine file says, for one run.
 
+use std::path::PathBuf;
+
 use post_grammar::text::is_unprintable;
+use serde_json::json;
 use toml::de::DeTable;
 
 use super::file::{Method, Placement, Tcp};
@@ -39,6 +42,8 @@ pub enum Setting {
     Method(Method),
     /// The error model, a plugin's name.
     Model(String),
+    /// The file of tools, as seen from the folder that the command works in.
+    Tools(PathBuf),
 }
 
 /// Keys without a table: they are set by their bare names, all other bare names are parameters.
@@ -75,6 +80,8 @@ impl Setting {
             Self::Placement(placement) => format!("accuracy.placement = {:?}", placement.name()),
             Self::Method(method) => format!("accuracy.method = {:?}", method.name()),
             Self::Model(model) => format!("accuracy.model = {model:?}"),
+            // A text of JSON is one of TOML.
+            Self::Tools(file) => format!("tools.file = {}", json!(file.to_string_lossy())),
         })
     }
 }

@@ -418,6 +418,7 @@ impl<'a> ConfigurationStage<'a> {
             Command::Spindle(Spindle::On { rpm, .. }) => {
                 self.speed = Some(*rpm);
                 self.check_speed(line);
+                self.check_tool_speed(line);
             }
             Command::Spindle(_) => self.speed = None,
             _ => {}

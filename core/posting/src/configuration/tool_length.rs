@@ -1,6 +1,6 @@
 //! How long the tools are, by whoever says it, and which were used.
 
-use post_machine::description::Tcp;
+use post_machine::description::{Tcp, ToolData, ToolTable};
 use post_machine::diagnostic::Diagnostic;
 use serde::Serialize;
 
@@ -27,6 +27,8 @@ pub enum LengthSource {
     Option,
     /// `[tools]`.
     MachineFile,
+    /// The file of tools (`--tools`, `[tools] file`).
+    ToolTable,
     /// `LOADTL/…,LENGTH`, or with `tool_length = "cl"` the cutter.
     ClFile,
     /// Not given: 0 was taken.
@@ -36,12 +38,15 @@ pub enum LengthSource {
 impl ConfigurationStage<'_> {
     /// Finds the length of a tool.
     pub(super) fn measure(&mut self, tool: &ToolChange) {
+        let listed = self.listed(tool).and_then(ToolData::total_length);
+        let by_register = self.machine.tool_table.as_ref().is_some_and(|file| file.by_register);
         let table = || {
-            let tools = &self.machine.tools;
-            tools.iter().find(|(number, _)| *number == tool.number).map(|(_, length)| *length)
+            let mut tools = self.machine.tools.iter().filter(|_| !by_register);
+            tools.find(|(number, _)| *number == tool.number).map(|(_, length)| *length)
         };
         let given = [
             (self.told_length, LengthSource::Option),
+            (listed, LengthSource::ToolTable),
             (table(), LengthSource::MachineFile),
             (tool.length, LengthSource::ClFile),
         ];
@@ -52,11 +57,17 @@ impl ConfigurationStage<'_> {
         self.in_use = false;
     }
 
+    /// What the file of tools has of a tool, if there is one.
+    fn listed(&self, tool: &ToolChange) -> Option<&ToolData> {
+        self.machine.tool_table.as_ref()?.entry(tool.number, tool.register)
+    }
+
     /// The first move with a tool: which length is assumed is kept for the summary; where the axis positions depend on a
     /// length that is not given, there is no program.
     #[cold]
     pub(super) fn take_into_use(&mut self, line: u64) {
         self.in_use = true;
+        self.check_tool_speed(line);
         let used = ReportedTool {
             number: self.tool.as_ref().map(|tool| tool.number),
             length_mm: self.length.unwrap_or(0.0),
@@ -76,10 +87,44 @@ impl ConfigurationStage<'_> {
             self.findings.at(line, fault.help("is this the CL file of one program?"));
             return;
         }
-        if self.source == LengthSource::Unknown {
+        if self.is_listed(line) && self.source == LengthSource::Unknown {
             self.findings.at(line, unknown_length(used.number, self.length_matters()));
         }
         self.tools.push(used);
+    }
+
+    /// The tool that was called is in the file of tools, or there is none; what is wrong with it is said.
+    fn is_listed(&self, line: u64) -> bool {
+        // The file is not read where nothing is posted in earnest.
+        let file = self.machine.tool_table.as_ref().filter(|file| file.tools.is_some());
+        let (Some(called), Some(file)) = (&self.tool, file) else {
+            return true;
+        };
+        let Some(listed) = self.listed(called) else {
+            let mut own = self.machine.tools.iter().filter(|_| !file.by_register);
+            let known = own.any(|(known, _)| *known == called.number);
+            if !known {
+                self.findings.at(line, not_listed(called, file));
+            }
+            return known;
+        };
+        let name = file.name();
+        if let Some(finding) = listed.other_cutter(called.number, called.diameter, &name) {
+            self.findings.at(line, finding);
+        }
+        true
+    }
+
+    /// A speed that the tool in use must not turn at.
+    pub(super) fn check_tool_speed(&self, line: u64) {
+        let (Some(rpm), Some(tool), true) = (self.speed, &self.tool, self.in_use) else {
+            return;
+        };
+        if let (Some(listed), Some(file)) = (self.listed(tool), &self.machine.tool_table)
+            && let Some(finding) = listed.refuse_speed(rpm, &file.name())
+        {
+            self.findings.at(line, finding);
+        }
     }
 
     /// Does the program depend on the tool length? On a machine whose head turns, if the control does not keep the tip.
@@ -91,6 +136,26 @@ impl ConfigurationStage<'_> {
         let first_linear = machine.axes.iter().position(|axis| !axis.joint.rotary);
         machine.axes.iter().skip(first_linear.unwrap_or(0)).any(|axis| axis.joint.rotary)
     }
+}
+
+/// The tool that is called is not in the file of tools.
+fn not_listed(called: &ToolChange, file: &ToolTable) -> Diagnostic {
+    let ToolChange { number, name, .. } = called;
+    let name = if name.is_empty() { String::new() } else { format!(" ({name})") };
+    let tools = file.tools.iter().flatten();
+    let known: Vec<String> = tools.clone().take(20).map(|tool| tool.number.to_string()).collect();
+    let more = if tools.count() > known.len() { " and more" } else { "" };
+    let has = match known.is_empty() {
+        true => "it has no tools".to_owned(),
+        false => format!("it has {}{more}", known.join(", ")),
+    };
+    let what = match file.by_register {
+        true => format!("register {} of tool {number}{name}", called.register),
+        false => format!("tool {number}{name}"),
+    };
+    let message = format!("{what} is called, and is not in {}", file.name());
+    Diagnostic::error("tool-missing", message)
+        .help(format!("{has}; measure the tool, or let the CAM system call the one that is there"))
 }
 
 /// The length of a tool is not given; `matters` if the axis positions of the program depend on it, else travel alone is

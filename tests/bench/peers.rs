@@ -201,7 +201,8 @@ impl Wave {
             "Posts of FreeCAD, which take axis positions and check nothing, beside the whole job:\n\n| post | moves | moves/s |\n|---|---|---|\n"
                 .to_owned();
         for (name, most) in FREECAD_POSTS {
-            let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bench/peers/freecad.py");
+            let script =
+                Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bench/peers/post_by_freecad.py");
             let run = Command::new("freecadcmd")
                 .arg(script)
                 .env("PEER_PROGRAM", &program)

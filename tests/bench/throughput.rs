@@ -3,19 +3,8 @@
 //! The floors read the same file, parse the six numbers of every line, and format and write five: what any program that
 //! turns such a file into another must do, by plain loops and by the fastest scalar means known to us
 //! (`common/floor.rs`). The job is reading, kinematics, certificate, feed and dialect (through the plugin boundary) on
-//! one core, its text thrown away; the command is the `post` of this build as a process, its program in a file, and it
-//! stands beside floors that write a file too. Runs alternate, and medians are compared, so that the machine's drift
-//! hits all alike.
-//!
-//! Instructions do not drift. Those of a point are the difference between two files, over their points:
-//!
-//! ```sh
-//! for n in 20000 40000; do
-//!     cargo run --release --example generate -- $n > wave-$n.cls
-//!     valgrind --tool=callgrind --callgrind-out-file=/dev/null target/release/post wave-$n.cls \
-//!         --machine ac-trunnion --set control.tcp=post --tool-length 100 --quiet --output wave.nc
-//! done
-//! ```
+//! one core, its text thrown away; the command as a process stands beside floors in `peers.rs`. Runs alternate, and
+//! medians are compared, so that the machine's drift hits all alike. Instructions do not drift: `ledger.rs`.
 
 #[path = "common/floor.rs"]
 mod floor;
@@ -31,7 +20,6 @@ use std::error::Error;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::Path;
-use std::process::Command;
 use std::time::{Duration, Instant};
 
 use post_posting::PostingRequest;
@@ -56,7 +44,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         std::env::args().skip(1).find_map(|argument| argument.parse().ok()).unwrap_or(POINTS);
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("wave.cls");
-    let program = folder.path().join("wave.nc");
     let mut file = BufWriter::new(File::create(&path)?);
     generate::write_file(&mut file, points)?;
     file.flush()?;
@@ -67,21 +54,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         fs::metadata(&path)?.len() / 1_000_000
     ));
     let mut jobs = Table::new("job, its text thrown away", points);
-    let mut commands = Table::new("command, its program in a file", points);
     for _ in 0..RUNS {
         let nowhere = Path::new(NOWHERE);
-        for (table, output) in [(&mut jobs, nowhere), (&mut commands, &program)] {
-            table.time("floor, plain", || floor::plain(&path, output))?;
-            table.time("floor, masked", || floor::masked(&path, output))?;
-        }
+        jobs.time("floor, plain", || floor::plain(&path, nowhere))?;
+        jobs.time("floor, masked", || floor::masked(&path, nowhere))?;
         for (machine, tcp) in CASES {
-            let name = format!("{machine}, {tcp}");
-            jobs.time(&name, || job(&path, machine, tcp))?;
-            commands.time(&name, || command(&path, machine, tcp, &program))?;
+            jobs.time(&format!("{machine}, {tcp}"), || job(&path, machine, tcp))?;
         }
     }
     jobs.tell();
-    commands.tell();
     Ok(())
 }
 
@@ -101,18 +82,6 @@ fn job(path: &Path, machine: &str, tcp: &str) -> Result<(), Box<dyn Error>> {
     let settings = [format!("control.tcp={tcp:?}"), "control.dialect=\"fanuc\"".to_owned()];
     let job = PostingRequest { tool_length: Some(100.0), ..PostingRequest::default() };
     job::run(path, machine, &settings, job).map(drop)
-}
-
-fn command(path: &Path, machine: &str, tcp: &str, program: &Path) -> Result<(), Box<dyn Error>> {
-    let status = Command::new(env!("CARGO_BIN_EXE_post"))
-        .arg(path)
-        .args(["--machine", machine, "--tool-length", "100", "--quiet"])
-        .args(["--set", "control.dialect=fanuc"])
-        .args(["--set", &format!("control.tcp={tcp}")])
-        .arg("--output")
-        .arg(program)
-        .status()?;
-    if status.success() { Ok(()) } else { Err(format!("post on {machine}: {status}").into()) }
 }
 
 fn say(line: &str) {

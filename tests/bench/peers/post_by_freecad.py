@@ -1,6 +1,6 @@
 """Posts the moves of a program by one of FreeCAD's posts, and prints how many and how long that took.
 
-    PEER_PROGRAM=wave.ngc PEER_POST=linuxcnc_post PEER_MOVES=20000 PEER_OUTPUT=out.ngc freecadcmd freecad.py
+    PEER_PROGRAM=wave.ngc PEER_POST=linuxcnc_post PEER_MOVES=20000 PEER_OUTPUT=out.ngc freecadcmd post_by_freecad.py
 
 A line `posted MOVES SECONDS`: seconds of the processor in the post alone, from FreeCAD's commands in memory to the
 written file. What FreeCAD takes to start and to take the moves over is not counted.

@@ -8,6 +8,8 @@ mod fourier;
 mod limits;
 mod measured;
 
+#[path = "../../../src/contour/axes.rs"]
+mod axes;
 #[path = "../../../src/servo/discrete.rs"]
 mod discrete;
 #[path = "../../../src/servo/linear.rs"]

@@ -214,24 +214,20 @@ impl Chain {
             return;
         }
         for batch in joints.chunks(LANES) {
-            let [tip, axis] = widely(
+            widely(
                 #[inline(always)]
-                || self.forward_lanes(batch),
+                || self.forward_lanes(batch, poses),
             );
-            poses.extend((0..batch.len()).map(|lane| Pose {
-                tip: vector(&tip, lane),
-                axis: vector(&axis, lane),
-                edge: Vector3::zeros(),
-            }));
         }
     }
 
-    /// Tips and tool axes of up to [`LANES`] points.
+    /// Puts the poses of up to [`LANES`] points behind those that there are.
     #[inline(always)]
-    fn forward_lanes(&self, points: &[Joints]) -> [VectorLanes; 2] {
+    fn forward_lanes(&self, points: &[Joints], poses: &mut Vec<Pose>) {
         let count = points.len().min(LANES);
-        let mut tip = [0, 1, 2].map(|part| [self.tip()[part]; LANES]);
-        let mut axis = [0, 1, 2].map(|part| [self.axis()[part]; LANES]);
+        let (tip, axis) = (self.tip(), self.axis());
+        let mut tip: VectorLanes = [[tip.x; LANES], [tip.y; LANES], [tip.z; LANES]];
+        let mut axis: VectorLanes = [[axis.x; LANES], [axis.y; LANES], [axis.z; LANES]];
         let [mut values, mut sines, mut cosines] = [[0.0; LANES]; 3];
         for (index, joint) in self.joints().iter().enumerate().rev() {
             for (value, point) in values.iter_mut().zip(points) {
@@ -254,7 +250,11 @@ impl Chain {
         }
         let mount = self.mount();
         replace(&mut tip, count, |tip, _| tip - mount);
-        [tip, axis]
+        poses.extend((0..count).map(|lane| Pose {
+            tip: vector(&tip, lane),
+            axis: vector(&axis, lane),
+            edge: Vector3::zeros(),
+        }));
     }
 
     /// [`Chain::trace`] of the first `count` points of `at`; the leading edge of a tool that has one is left out.

@@ -149,7 +149,10 @@ impl<'r> Stages<'r> {
             if way.is_some() {
                 self.feed_tally.take(feed, programmed, at.line);
             }
-            self.last = at.cuts.then(|| (pose.tip, Arc::clone(solver)));
+            match &mut self.last {
+                Some((tip, known)) if at.cuts && Arc::ptr_eq(known, solver) => *tip = pose.tip,
+                last => *last = at.cuts.then(|| (pose.tip, Arc::clone(solver))),
+            }
             self.waiting.push_back((*at, [feed, programmed]));
         }
         self.set_points += points.len() as u64;

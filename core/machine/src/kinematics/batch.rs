@@ -7,7 +7,7 @@ use fearless_simd::{Level, Simd};
 use nalgebra::Vector3;
 
 use super::chain::{
-    AxisLine, Chain, Joint, Joints, MAX_AXES, Pose, Turns, turn, turn_about_x, turn_about_y,
+    AxisLine, Chain, Joint, Joints, MAX_AXES, Pose, Turns, turn_about_x, turn_about_y,
     turn_about_z, turn_askew,
 };
 use super::lane_math::sincos_all;
@@ -214,51 +214,47 @@ impl Chain {
             return;
         }
         for batch in joints.chunks(LANES) {
-            let [tip, axis] = self.forward_lanes(batch);
-            poses.extend((0..batch.len()).map(|lane| Pose {
-                tip: vector(&tip, lane),
-                axis: vector(&axis, lane),
-                edge: Vector3::zeros(),
-            }));
+            widely(
+                #[inline(always)]
+                || self.forward_lanes(batch, poses),
+            );
         }
     }
 
-    /// Tips and tool axes of up to [`LANES`] points.
-    fn forward_lanes(&self, points: &[Joints]) -> [VectorLanes; 2] {
+    /// Puts the poses of up to [`LANES`] points behind those that there are.
+    #[inline(always)]
+    fn forward_lanes(&self, points: &[Joints], poses: &mut Vec<Pose>) {
         let count = points.len().min(LANES);
-        let mut found = [[[0.0; LANES]; 3]; 2];
-        let [tip, axis] = &mut found;
-        for part in 0..3 {
-            tip[part][..count].fill(self.tip()[part]);
-            axis[part][..count].fill(self.axis()[part]);
-        }
+        let (tip, axis) = (self.tip(), self.axis());
+        let mut tip: VectorLanes = [[tip.x; LANES], [tip.y; LANES], [tip.z; LANES]];
+        let mut axis: VectorLanes = [[axis.x; LANES], [axis.y; LANES], [axis.z; LANES]];
         let [mut values, mut sines, mut cosines] = [[0.0; LANES]; 3];
         for (index, joint) in self.joints().iter().enumerate().rev() {
             for (value, point) in values.iter_mut().zip(points) {
                 *value = point[index];
             }
-            let (k, point) = (joint.direction, joint.point);
+            let k = joint.direction;
             if !joint.rotary {
-                for (lane, value) in values.iter().enumerate().take(count) {
-                    set_vector(tip, lane, vector(tip, lane) + k * *value);
-                }
+                replace(&mut tip, count, |tip, lane| tip + k * values[lane]);
                 continue;
             }
+            // The last angle again to the end of its group: zeros there would be left to `libm`, and all others be
+            // asked for it.
+            if let Some(last) = points.get(count.wrapping_sub(1)) {
+                values[count..groups(count)].fill(last[index]);
+            }
             sincos_all(&values, count, &mut sines, &mut cosines);
-            for lane in 0..count {
-                let arm = vector(tip, lane) - point;
-                set_vector(tip, lane, point + turn(arm, k, sines[lane], cosines[lane]));
-            }
-            for lane in 0..count {
-                let turned = turn(vector(axis, lane), k, sines[lane], cosines[lane]);
-                set_vector(axis, lane, turned);
-            }
+            let by = TurnLanes { sines: &sines, cosines: &cosines, sense: 1.0 };
+            turn_lanes(&mut tip, count, k, Some(joint.point), by);
+            turn_lanes(&mut axis, count, k, None, by);
         }
         let mount = self.mount();
-        for lane in 0..count {
-            set_vector(tip, lane, vector(tip, lane) - mount);
-        }
-        found
+        replace(&mut tip, count, |tip, _| tip - mount);
+        poses.extend((0..count).map(|lane| Pose {
+            tip: vector(&tip, lane),
+            axis: vector(&axis, lane),
+            edge: Vector3::zeros(),
+        }));
     }
 
     /// [`Chain::trace`] of the first `count` points of `at`; the leading edge of a tool that has one is left out.

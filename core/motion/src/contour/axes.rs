@@ -20,10 +20,21 @@ pub struct AxisPeaks {
     pub jump: ContourPeak,
 }
 
+/// What may be a peak at a set-point, by axis.
+#[derive(Clone, Copy, Debug, Default)]
+struct PeakValues {
+    following: Joints,
+    velocity: Joints,
+    acceleration: Joints,
+    jerk: Joints,
+}
+
 /// Gathers the largest values of all axes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct AxesPeaks {
     pub peaks: [AxisPeaks; MAX_AXES],
+    /// The values of the peaks that each set-point may raise, side by side: most raise none, which is found at once.
+    highest: PeakValues,
     last: Joints,
     velocity: Joints,
     acceleration: Joints,
@@ -69,26 +80,50 @@ impl AxesPeaks {
                 self.bends[1][axis] += bend * 0.5 * before * before;
             }
         }
-        for axis in 0..axes.min(MAX_AXES) {
+        let mut found = PeakValues::default();
+        let mut raised = false;
+        let highest = &self.highest;
+        for axis in 0..MAX_AXES {
             let velocity = (commanded[axis] - self.last[axis]) * rate;
             let acceleration = (velocity - self.velocity[axis] - jumped[axis]) * rate;
             let jerk = (acceleration - self.acceleration[axis] - bent[axis]) * rate;
-            let peaks = &mut self.peaks[axis];
-            raise(&mut peaks.following, commanded[axis] - actual[axis], time, line);
-            if self.count > 0 {
-                raise(&mut peaks.velocity, velocity, time, line);
-            }
-            if self.count > 1 {
-                raise(&mut peaks.acceleration, acceleration, time, line);
-            }
-            if self.count > 2 {
-                raise(&mut peaks.jerk, jerk, time, line);
-            }
-            self.velocity[axis] = velocity;
-            self.acceleration[axis] = acceleration;
+            let following = commanded[axis] - actual[axis];
+            raised |= following.abs() > highest.following[axis];
+            raised |= velocity.abs() > highest.velocity[axis];
+            raised |= acceleration.abs() > highest.acceleration[axis];
+            raised |= jerk.abs() > highest.jerk[axis];
+            found.following[axis] = following;
+            found.velocity[axis] = velocity;
+            found.acceleration[axis] = acceleration;
+            found.jerk[axis] = jerk;
         }
+        if raised {
+            self.raise(axes, &found, time, line);
+        }
+        (self.velocity, self.acceleration) = (found.velocity, found.acceleration);
         self.last = *commanded;
         self.count = (self.count + 1).min(3);
+    }
+
+    /// Raises the peaks of `axes` axes to what has been found at a set-point.
+    fn raise(&mut self, axes: usize, found: &PeakValues, time: f64, line: u64) {
+        for axis in 0..axes.min(MAX_AXES) {
+            let peaks = &mut self.peaks[axis];
+            raise(&mut peaks.following, found.following[axis], time, line);
+            if self.count > 0 {
+                raise(&mut peaks.velocity, found.velocity[axis], time, line);
+            }
+            if self.count > 1 {
+                raise(&mut peaks.acceleration, found.acceleration[axis], time, line);
+            }
+            if self.count > 2 {
+                raise(&mut peaks.jerk, found.jerk[axis], time, line);
+            }
+            self.highest.following[axis] = peaks.following.value;
+            self.highest.velocity[axis] = peaks.velocity.value;
+            self.highest.acceleration[axis] = peaks.acceleration.value;
+            self.highest.jerk[axis] = peaks.jerk.value;
+        }
     }
 }
 
@@ -97,5 +132,43 @@ fn raise(peak: &mut ContourPeak, value: f64, time: f64, line: u64) {
     let value = value.abs();
     if value > peak.value {
         *peak = ContourPeak { value, time, line, ..ContourPeak::default() };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use post_testkit::randomised;
+
+    use super::*;
+
+    /// Peaks are those of a search that takes each set-point to raise some.
+    #[test]
+    fn no_peak_is_passed_over() {
+        let (rounds, mut rng) = randomised(100u64, 33);
+        for _ in rounds {
+            let axes = 1 + rng.pick(MAX_AXES);
+            let [mut quick, mut plain] = [AxesPeaks::default(), AxesPeaks::default()];
+            let mut joints = Joints::default();
+            for step in 0..100u32 {
+                let time = 0.01 * f64::from(step);
+                let size = rng.order(-3.0, 0.0);
+                for joint in joints.iter_mut().take(axes) {
+                    *joint += rng.range(-size, size);
+                }
+                let actual = joints.map(|joint| joint + rng.range(-size, size));
+                let jumps: Vec<_> = (0..rng.pick(8) / 6)
+                    .map(|_| VelocityJump {
+                        time: time - 0.01 * rng.range(0.0, 1.0),
+                        change: [(); MAX_AXES].map(|()| rng.range(-size, size)),
+                        bend: [(); MAX_AXES].map(|()| rng.range(-size, size)),
+                    })
+                    .collect();
+                plain.highest = PeakValues::default();
+                for peaks in [&mut quick, &mut plain] {
+                    peaks.take(axes, time, u64::from(step), 0.01, [&joints, &actual], &jumps);
+                }
+                assert_eq!(quick.peaks, plain.peaks);
+            }
+        }
     }
 }

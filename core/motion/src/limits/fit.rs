@@ -6,7 +6,7 @@
 //! coefficients are those of the polynomial through the values at the extremes of `T_6`.
 
 use nalgebra::Vector3;
-use post_machine::kinematics::{Joints, MAX_AXES, Unreachable};
+use post_machine::kinematics::{Joints, MAX_AXES, Pose, Unreachable};
 
 use super::MoveLimits;
 use crate::Move;
@@ -75,22 +75,15 @@ pub(super) fn over(
     found: &mut MoveLimits,
 ) -> Result<(), Unreachable> {
     let chain = task.solver.chain();
-    let ends = [&task.from, &task.to];
-    let mut near = task.from.joints;
-    let mut sample = |t: f64| -> Result<(Joints, [f64; 3]), Unreachable> {
-        if coordinates.is_none() && !wanted[1] {
-            near = task.way.joints_at(&task.solver, ends, t, &near)?;
-            return Ok((near, [0.0; 3]));
-        }
-        let Stance { joints, pose } = task.way.stance_at(&task.solver, ends, t, &near)?;
-        near = joints;
-        let mut values = joints;
+    let posed = coordinates.is_some() || wanted[1];
+    let values = |stance: &Stance| -> (Joints, [f64; 3]) {
+        let mut values = stance.joints;
         for (value, coordinate) in values.iter_mut().zip(coordinates.into_iter().flatten()) {
             if let Some(coordinate) = coordinate {
-                *value = pose.tip[*coordinate];
+                *value = stance.pose.tip[*coordinate];
             }
         }
-        Ok((values, pose.tip.into()))
+        (values, stance.pose.tip.into())
     };
     let turned: f64 = chain
         .joints()
@@ -100,14 +93,20 @@ pub(super) fn over(
         .map(|(place, _)| libm::fabs(task.to.joints[place] - task.from.joints[place]))
         .sum();
     let turned = turned + task.way.curve().turn();
-    let mut last = sample(0.0)?;
+    let [start] = stances(task, &[0.0], &task.from.joints, posed)?;
+    let mut near = start.joints;
+    let mut last = values(&start);
     let mut run = |from: f64, to: f64, ends: [bool; 2]| -> Result<(), Unreachable> {
         let half = 0.5 * (to - from);
         let (mut axes, mut tips): (ChebyshevSamples<MAX_AXES>, ChebyshevSamples<3>) =
             Default::default();
         (axes[0], tips[0]) = last;
-        for place in 1..=DEGREE {
-            (axes[place], tips[place]) = sample(from + half * (1.0 - COSINES[place]))?;
+        let shares: [f64; DEGREE] =
+            std::array::from_fn(|place| from + half * (1.0 - COSINES[place + 1]));
+        let stances = stances(task, &shares, &near, posed)?;
+        near = stances[DEGREE - 1].joints;
+        for (place, stance) in stances.iter().enumerate() {
+            (axes[place + 1], tips[place + 1]) = values(stance);
         }
         last = (axes[DEGREE], tips[DEGREE]);
         if wanted[0] {
@@ -142,6 +141,27 @@ pub(super) fn over(
         split(middle, to, &mut each)?;
     }
     Ok(())
+}
+
+/// Where the axes stand at each of `shares` of the way, one after the other, the first `near` those values; the tool
+/// too, where the stances are to be `posed`.
+fn stances<const N: usize>(
+    task: &Move,
+    shares: &[f64; N],
+    near: &Joints,
+    posed: bool,
+) -> Result<[Stance; N], Unreachable> {
+    let ends = [&task.from, &task.to];
+    if posed {
+        return task.way.stances_at(&task.solver, ends, shares, near);
+    }
+    let mut stances = [Stance { joints: *near, pose: Pose::default() }; N];
+    let mut near = *near;
+    for (stance, share) in stances.iter_mut().zip(shares) {
+        near = task.way.joints_at(&task.solver, ends, *share, &near)?;
+        stance.joints = near;
+    }
+    Ok(stances)
 }
 
 /// Coefficients of the Chebyshev series through `samples`; that of `T_0`, which has no derivative, is left out.

@@ -60,6 +60,36 @@ impl Interpolation {
         let pose = chain.pose(&joints, &turns);
         Ok(Stance { joints, pose })
     }
+
+    /// [`Interpolation::stance_at`] of each of `shares`, one after the other, the first `near` those axis values and the
+    /// others near those before them: where all axes go linearly their poses are found together.
+    ///
+    /// # Errors
+    /// As [`Interpolation::stance_at`].
+    pub fn stances_at<const N: usize>(
+        &self,
+        solver: &Solver,
+        ends: [&Stance; 2],
+        shares: &[f64; N],
+        near: &Joints,
+    ) -> Result<[Stance; N], Unreachable> {
+        let mut stances = [Stance { joints: *near, pose: Pose::default() }; N];
+        if matches!(self, Self::Axes) && N > 1 {
+            let joints = shares.map(|share| joints_between(ends, share));
+            let mut poses = Vec::with_capacity(N);
+            solver.chain().forward_all(&joints, &mut poses);
+            for ((stance, joints), pose) in stances.iter_mut().zip(joints).zip(poses) {
+                *stance = Stance { joints, pose };
+            }
+            return Ok(stances);
+        }
+        let mut near = *near;
+        for (stance, share) in stances.iter_mut().zip(shares) {
+            *stance = self.stance_at(solver, ends, *share, &near)?;
+            near = stance.joints;
+        }
+        Ok(stances)
+    }
 }
 
 /// The rotary axes `t` of the way between `ends`, and the linear ones such that the tip stands on `tip`.

@@ -88,7 +88,7 @@ pub(super) fn dot<const N: usize>(row: &[f64; N], vector: &[f64; N]) -> f64 {
 #[derive(Clone, Debug)]
 pub(super) struct ServoState<const N: usize> {
     /// States at rest at the command 1.
-    rest: [f64; N],
+    pub rest: [f64; N],
     pub states: [f64; N],
     pub commanded: f64,
     pub last_change: f64,

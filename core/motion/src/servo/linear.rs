@@ -64,6 +64,7 @@ impl<const N: usize> LinearServo<N> {
         &self.stand.states
     }
 
+    #[inline(always)]
     pub(super) fn run(
         &mut self,
         count: usize,
@@ -92,5 +93,66 @@ impl<const N: usize> LinearServo<N> {
         self.stand.states = states;
         (self.stand.commanded, self.stand.last_change) = (commanded, last_change);
         self.stand.table = table;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use post_machine::kinematics::batch::widely;
+    use post_testkit::{Rng, randomised};
+
+    use super::*;
+
+    fn random<const N: usize>(rng: &mut Rng) -> LinearServo<N> {
+        let half_play = if rng.pick(2) == 0 { 0.0 } else { 0.01 };
+        let mut row = || std::array::from_fn(|_| rng.range(-0.3, 0.3));
+        LinearServo {
+            transition: std::array::from_fn(|_| row()),
+            value: row(),
+            change: row(),
+            earlier: row(),
+            position: row(),
+            through: 0.25,
+            half_play,
+            stand: ServoState {
+                rest: [0.0; N],
+                states: [0.0; N],
+                commanded: 0.0,
+                last_change: 0.0,
+                table: 0.0,
+            },
+        }
+    }
+
+    fn the_same_bits<const N: usize>(rng: &mut Rng) {
+        let mut wide = random::<N>(rng);
+        let mut plain = wide.clone();
+        for _ in 0..3 {
+            let commands: Vec<f64> = (0..rng.pick(20)).map(|_| rng.range(-100.0, 100.0)).collect();
+            let [mut one, mut other] = [const { Vec::new() }; 2];
+            let command = |index: usize| commands[index];
+            widely(
+                #[inline(always)]
+                || wide.run(commands.len(), command, |_, value| one.push(value.to_bits())),
+            );
+            plain.run(commands.len(), command, |_, value| other.push(value.to_bits()));
+            assert_eq!(one, other);
+            assert_eq!(bits(wide.states()), bits(plain.states()));
+        }
+    }
+
+    fn bits(values: &[f64]) -> Vec<u64> {
+        values.iter().map(|value| value.to_bits()).collect()
+    }
+
+    /// Wide vectors change no bit of where an axis is.
+    #[test]
+    fn an_axis_is_followed_with_the_same_bits_in_wide_vectors() {
+        let (rounds, mut rng) = randomised(200u64, 31);
+        for _ in rounds {
+            the_same_bits::<4>(&mut rng);
+            the_same_bits::<8>(&mut rng);
+            the_same_bits::<12>(&mut rng);
+        }
     }
 }

@@ -23,6 +23,7 @@ mod stepped;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Short};
 use post_machine::kinematics::Joints;
+use post_machine::kinematics::batch::widely;
 use post_machine::servo::{MAX_ORDER, Servo, StateSpace};
 
 use linear::LinearServo;
@@ -185,12 +186,15 @@ impl Follower {
         command: impl Fn(usize) -> f64,
         put: impl FnMut(usize, f64),
     ) {
-        match &mut self.kernel {
-            FollowerKernel::Four(kernel) => kernel.run(count, command, put),
-            FollowerKernel::Eight(kernel) => kernel.run(count, command, put),
-            FollowerKernel::Twelve(kernel) => kernel.run(count, command, put),
-            FollowerKernel::SteppedEight(kernel) => kernel.run(count, command, put),
-        }
+        widely(
+            #[inline(always)]
+            || match &mut self.kernel {
+                FollowerKernel::Four(kernel) => kernel.run(count, command, put),
+                FollowerKernel::Eight(kernel) => kernel.run(count, command, put),
+                FollowerKernel::Twelve(kernel) => kernel.run(count, command, put),
+                FollowerKernel::SteppedEight(kernel) => kernel.run(count, command, put),
+            },
+        );
     }
 
     /// The states, as [`StateSpace`] has them, at the last set-point, before the kink of the command there has its

@@ -152,6 +152,7 @@ impl<const N: usize> SteppedServo<N> {
         &self.stand.states
     }
 
+    #[inline(always)]
     pub(super) fn run(
         &mut self,
         count: usize,

@@ -8,4 +8,4 @@ mod trajectory;
 mod units;
 
 // As the files in `units` name it.
-use post_motion::{ProgramPlace, limits};
+use post_motion::{ProgramPlace, VelocityJump, limits};

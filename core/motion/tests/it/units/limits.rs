@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use post_machine::description::{LimitsActOn, Machine, Source, load};
 use post_machine::kinematics::{Joints, MAX_AXES};
-use post_testkit::repository;
+use post_testkit::{Rng, randomised, repository};
 
 use post_motion::limits::{AxisLimits, of};
 use post_motion::path::{BSpline, Curve, Interpolation, Stance};
@@ -208,4 +208,36 @@ fn bounds_hold_along_every_way() {
     let machine = machine("ac-trunnion");
     let vectors = task(&machine, Interpolation::TipAndAxis, tips, [[20.0, -30.0], [60.0, -40.0]]);
     check("vectors", &machine, &vectors);
+}
+
+/// Stances that are asked for together are those that are asked for one after the other, bit by bit.
+#[test]
+fn stances_of_a_way_are_those_of_its_places() {
+    let machine = machine("ac-trunnion");
+    let (rounds, mut rng) = randomised(200u64, 32);
+    for _ in rounds {
+        let tip = |rng: &mut Rng| [(); 3].map(|()| rng.range(-50.0, 50.0));
+        let angle = |rng: &mut Rng| [rng.range(5.0, 40.0), rng.range(-90.0, 90.0)];
+        let tips = [tip(&mut rng), tip(&mut rng)];
+        let angles = [angle(&mut rng), angle(&mut rng)];
+        let shares = [0.0, 0.1, rng.range(0.1, 0.4), 0.5, rng.range(0.6, 0.9), 1.0];
+        for way in
+            [Interpolation::Axes, Interpolation::Tip(Curve::Straight), Interpolation::TipAndAxis]
+        {
+            let task = task(&machine, way, tips, angles);
+            let ends = [&task.from, &task.to];
+            let mut near = task.from.joints;
+            let together = task.way.stances_at(&task.solver, ends, &shares, &near).unwrap();
+            for (stance, share) in together.iter().zip(shares) {
+                let alone = task.way.stance_at(&task.solver, ends, share, &near).unwrap();
+                near = alone.joints;
+                assert_eq!(stance.joints.map(f64::to_bits), alone.joints.map(f64::to_bits));
+                for (one, other) in
+                    [(stance.pose.tip, alone.pose.tip), (stance.pose.axis, alone.pose.axis)]
+                {
+                    assert_eq!(one.map(f64::to_bits), other.map(f64::to_bits));
+                }
+            }
+        }
+    }
 }

@@ -8,11 +8,18 @@ mod fourier;
 mod limits;
 mod measured;
 
+#[path = "../../../src/contour/axes.rs"]
+mod axes;
 #[path = "../../../src/servo/discrete.rs"]
 mod discrete;
+#[path = "../../../src/servo/linear.rs"]
+mod linear;
 #[path = "../../../src/contour/path/mod.rs"]
 mod path;
 #[path = "../../../src/contour/spline.rs"]
 mod spline;
 #[path = "../../../src/contour/spread.rs"]
 mod spread;
+
+// As `linear` names it.
+use post_motion::servo::ServoOutput;

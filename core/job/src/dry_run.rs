@@ -110,13 +110,15 @@ impl Rounding {
 }
 
 impl DialectSession for Rounding {
-    /// What stands between the moves; the moves are looked at as such, whatever the dialect makes of them.
+    /// What stands between the moves; the moves are looked at as such, whatever the dialect makes of them, and cuts may come
+    /// by runs.
     fn capabilities(&self) -> Capabilities {
         const BETWEEN: Capabilities = Capabilities::WORK_OFFSET
             .and(Capabilities::OFFSETS)
             .and(Capabilities::SUBPROGRAM)
             .and(Capabilities::SURFACE_SPEED)
-            .and(Capabilities::SMOOTHING);
+            .and(Capabilities::SMOOTHING)
+            .and(Capabilities::CUTS);
         Capabilities::from_bits(self.dialect.capabilities().bits() & BETWEEN.bits())
     }
 

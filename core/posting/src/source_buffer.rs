@@ -83,12 +83,16 @@ impl SourceBuffer {
     fn forget(&mut self, before: u64) {
         let count = self.pieces.partition_point(|piece| piece.last_line() < before);
         let from = self.pieces.get(count).map_or(self.text.len(), |piece| piece.start);
+        self.kept = 0;
+        // What stays is moved: never more than what goes, so that a byte is moved once at most.
+        if from < self.text.len() - from {
+            return;
+        }
         self.pieces.drain(..count);
         self.text.drain(..from);
         for piece in &mut self.pieces {
             piece.start -= from;
         }
-        self.kept = 0;
     }
 
     /// The text of the record on `line`.

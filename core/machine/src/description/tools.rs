@@ -189,15 +189,11 @@ impl KeyType for ToolsFile {
     fn schema(named: &mut Schemas) -> Value {
         ToolFileKeys::schema(named);
         let mut schema = named.remove("ToolFileKeys").unwrap_or_default();
-        schema["additionalProperties"] = KeyedNumber::schema(named);
-        schema["propertyNames"] = json!({ "pattern": NAMES });
+        schema["patternProperties"] = json!({ "^[0-9]+$": KeyedNumber::schema(named) });
         named.insert("ToolsFile".to_owned(), schema);
         json!({ "$ref": "#/definitions/ToolsFile" })
     }
 }
-
-/// Names of `[tools]`.
-const NAMES: &str = "^([0-9]+|file|format|units|reference|columns)$";
 
 impl Builder<'_> {
     /// Lengths by number.

@@ -2,12 +2,11 @@
 //! grows. `cargo bench --bench read_back`
 //!
 //! The program is a five-axis path in axis positions, as `post` writes it for LinuxCNC. In this process: `blocks` is the
-//! reader alone, `motions` the reader and the interpreter to axis values, tip and tool axis. As commands: `read` (with its
-//! table of extents and times), `verify` against the CL file, and `diff` of the program with itself, which reads both
-//! twice. `rs274 -g` interprets the program and prints canonical functions, into nowhere; where it is not installed, that
-//! is said. Runs alternate, and medians are compared: of the time by the clock, and of the processor's time, which tells
-//! the same while the machine has other work. The peak of the memory is that of the command on a tenth of the program,
-//! and on all of it.
+//! reader alone, `motions` the reader and the interpreter to axis values, tip and tool axis; the commands beside `rs274`
+//! are in `peers.rs`. `rs274 -g` interprets the program and prints canonical functions, into nowhere; where it is not
+//! installed, that is said. Runs alternate, and medians are compared: of the time by the clock, and of the processor's
+//! time, which tells the same while the machine has other work. The peak of the memory is that of `read`, `verify` and
+//! `diff` on a tenth of the program, and on all of it.
 
 #[path = "common/job.rs"]
 #[expect(dead_code, reason = "nothing is posted in this process")]
@@ -74,9 +73,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         time("blocks", &mut || read(&whole.program, &lexicon))?;
         time("motions", &mut || interpret(&whole.program, &lexicon))?;
-        time("post read", &mut || whole.read().map(drop))?;
-        time("post verify", &mut || whole.verify().map(drop))?;
-        time("post diff", &mut || whole.diff().map(drop))?;
     }
     let medians: Vec<(&str, [f64; 2])> = rows
         .iter()

@@ -32,6 +32,24 @@ impl fmt::Display for Feed {
 }
 
 impl Feed {
+    /// The number that is written.
+    #[inline]
+    pub const fn value(self) -> f64 {
+        match self {
+            Self::PerMinute(value) | Self::InverseTime(value) | Self::PerRevolution(value) => value,
+        }
+    }
+
+    /// A feed of the same kind with another number.
+    #[inline]
+    pub const fn with(self, value: f64) -> Self {
+        match self {
+            Self::PerMinute(_) => Self::PerMinute(value),
+            Self::InverseTime(_) => Self::InverseTime(value),
+            Self::PerRevolution(_) => Self::PerRevolution(value),
+        }
+    }
+
     pub(crate) const CODES: Codes = Codes {
         name: "FEED",
         codes: &[("NONE", 0), ("PER_MINUTE", 1), ("INVERSE_TIME", 2), ("PER_REVOLUTION", 3)],
@@ -72,9 +90,8 @@ impl Field<'_> for Option<Feed> {
             Some(Feed::InverseTime(_)) if !promise.inverse_time => {
                 Err("this control has no inverse-time feed".to_owned())
             }
-            Some(
-                Feed::PerMinute(value) | Feed::InverseTime(value) | Feed::PerRevolution(value),
-            ) => {
+            Some(feed) => {
+                let value = feed.value();
                 if value.is_finite() && value > 0.0 {
                     Ok(())
                 } else {

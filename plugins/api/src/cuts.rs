@@ -82,17 +82,16 @@ impl<'a> CutRun<'a> {
         self.words
     }
 
+    /// The words of the last cut.
+    pub fn end(&self) -> impl Iterator<Item = f64> + 'a {
+        self.columns().filter_map(|column| column.last().copied())
+    }
+
     /// The cut at a place, from 0, as an event of its own; `words` is where its words are put.
     pub fn linear<'b>(&self, place: usize, words: &'b mut Vec<f64>) -> Event<'b> {
         words.clear();
         words.extend(self.columns().map(|column| column[place]));
-        let value = self.feeds[place];
-        let feed = match self.kind {
-            Feed::PerMinute(_) => Feed::PerMinute(value),
-            Feed::InverseTime(_) => Feed::InverseTime(value),
-            Feed::PerRevolution(_) => Feed::PerRevolution(value),
-        };
-        Event::linear(words, feed)
+        Event::linear(words, self.kind.with(self.feeds[place]))
     }
 
     /// Is it what the host promises to a dialect?

@@ -126,7 +126,7 @@ impl Heidenhain {
                     CutLine { head: "L", decimals: self.feed_decimals, style, every_feed: false };
                 self.axes.write_cuts(run, place, &line, &mut self.block, &mut self.feed, out);
                 self.at.clear();
-                self.at.extend(run.columns().filter_map(|column| column.last()));
+                self.at.extend(run.end());
                 return Ok(());
             }
             self.write(&run.linear(place, &mut words), out)?;

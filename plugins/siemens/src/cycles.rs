@@ -1,6 +1,6 @@
 //! Drilling cycles: modal by `MCALL`, with planes that are absolute.
 
-use post_plugin::{Cycle, Drilling, Feed, Setup, SpindleSense, Units};
+use post_plugin::{Cycle, Drilling, Setup, SpindleSense, Units};
 
 use crate::text::{call, trimmed};
 
@@ -74,9 +74,7 @@ impl CycleCalls {
                 "CYCLE83"
             }
             Cycle::Ream => {
-                let (Feed::PerMinute(feed) | Feed::InverseTime(feed) | Feed::PerRevolution(feed)) =
-                    feed;
-                more(&[dwell, feed, feed]);
+                more(&[dwell, feed.value(), feed.value()]);
                 "CYCLE85"
             }
             Cycle::Bore | Cycle::BoreFine => {

@@ -9,12 +9,6 @@ use super::EmitStage;
 use crate::accuracy::{DeviationBound, RunColumns};
 use crate::timing::TimedRun;
 
-fn value(feed: &Feed) -> f64 {
-    match *feed {
-        Feed::PerMinute(value) | Feed::InverseTime(value) | Feed::PerRevolution(value) => value,
-    }
-}
-
 impl EmitStage<'_> {
     /// Somebody looks on.
     pub(crate) fn is_watched(&self) -> bool {
@@ -54,7 +48,7 @@ impl EmitStage<'_> {
             let same = |next: &&Feed| discriminant(*next) == discriminant(&feed);
             let to = from + feeds.iter().take_while(same).count();
             self.cuts.clear();
-            self.cuts.extend(timed.feeds[from..to].iter().map(value));
+            self.cuts.extend(timed.feeds[from..to].iter().map(|feed| feed.value()));
             for column in &run.words[..words] {
                 self.cuts.extend_from_slice(&column[from + 1..=to]);
             }

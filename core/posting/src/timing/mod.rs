@@ -12,7 +12,7 @@ mod rapids;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, LimitExcess};
 use post_machine::kinematics::Joints;
-use post_plugin::{Capabilities, Feed, Format};
+use post_plugin::{Capabilities, Format};
 
 use crate::blocks::{BlockKind, MotionBlock};
 use crate::findings::Findings;
@@ -253,7 +253,7 @@ impl<'a> TimingStage<'a> {
             return;
         };
         if self.low.count == 0 || lowest < self.low.lowest {
-            self.low = LowFeeds { lowest, line, least: number(written.feed), ..self.low };
+            self.low = LowFeeds { lowest, line, least: written.feed.value(), ..self.low };
         }
         self.low.count += 1;
     }
@@ -277,12 +277,6 @@ impl<'a> TimingStage<'a> {
     }
 }
 
-fn number(feed: Feed) -> f64 {
-    match feed {
-        Feed::PerMinute(value) | Feed::InverseTime(value) | Feed::PerRevolution(value) => value,
-    }
-}
-
 /// A small number as people write it: no more than three digits after the zeros.
 fn plain(value: f64) -> String {
     let zeros = if value > 0.0 { libm::floor(-libm::log10(value)).max(0.0) } else { 0.0 };
@@ -292,7 +286,7 @@ fn plain(value: f64) -> String {
 
 /// The least feed that is printed is too fast for the axes.
 fn too_fast(asked: f64, written: &WrittenFeed) -> Diagnostic {
-    let least = number(written.feed);
+    let least = written.feed.value();
     let factor = least / asked;
     Diagnostic::error(
         "low-feed",

@@ -30,6 +30,6 @@ impl MotionWriter {
         let line = CutLine { head: "", decimals, style: FEED_STYLE, every_feed };
         self.axes.write_cuts(run, from, &line, &mut self.block, &mut self.feed, out);
         self.at.clear();
-        self.at.extend(run.columns().filter_map(|column| column.last()));
+        self.at.extend(run.end());
     }
 }

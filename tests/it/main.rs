@@ -77,6 +77,10 @@ mod words;
 mod writable;
 mod wrong_programs;
 
+#[path = "../bench/common/peak.rs"]
+#[cfg(target_os = "linux")]
+mod peak;
+
 #[path = "../bench/generate.rs"]
 #[expect(dead_code, reason = "its `main` is that of the example")]
 mod generate;

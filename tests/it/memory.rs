@@ -1,13 +1,11 @@
 //! Memory must not grow with the file. Linux alone: the peak is read from /proc while the command runs.
 
-use crate::{common, generate};
+use crate::{common, generate, peak};
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
-use std::time::Duration;
 
 /// A finishing pass of so many points.
 fn wave(folder: &Path, points: u64) -> PathBuf {
@@ -25,28 +23,7 @@ fn peak(arguments: &[&OsStr]) -> u64 {
 
 /// The same on the machine that `machine` says.
 fn peak_on(machine: &[&str], arguments: &[&OsStr]) -> u64 {
-    let mut child = common::command()
-        .args(arguments)
-        .arg("-q")
-        .args(machine)
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    let status = format!("/proc/{}/status", child.id());
-    let mut peak = 0;
-    let code = loop {
-        if let Some(code) = child.try_wait().unwrap() {
-            break code;
-        }
-        let now = fs::read_to_string(&status).unwrap_or_default();
-        let high = now.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-        let high = high.and_then(|text| text.trim().strip_suffix(" kB"));
-        peak = peak.max(high.map_or(0, |text| text.parse().unwrap()));
-        std::thread::sleep(Duration::from_millis(2));
-    };
-    assert!(code.success());
-    peak
+    peak::of(common::command().args(arguments).arg("-q").args(machine)).unwrap()
 }
 
 #[test]

@@ -51,6 +51,31 @@ fn state(browser: &mut Browser, name: &str) -> Value {
     browser.ask(&format!("P.state.{name}"))
 }
 
+/// Operations and tools stand in a list, in the order of the program, and each leads to where it begins.
+#[test]
+fn operations_and_tools_are_gone_to() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let made = made("vmc", &sample("flange.ncl"), &["--tool-length", "100"]);
+    browser.open(&made.page);
+    let steps = "[...document.querySelectorAll('.steps button')]";
+    let names = browser.ask(&format!("{steps}.map((button) => button.textContent)"));
+    let names: Vec<&str> = names.as_array().unwrap().iter().filter_map(Value::as_str).collect();
+    let tools: Vec<&&str> = names.iter().filter(|name| name.starts_with("tool ")).collect();
+    assert_eq!(tools.len(), 4, "{names:?}");
+    for place in 0..names.len() {
+        browser.ask(&format!("{steps}[{place}].click()"));
+        let row = state(&mut browser, "row");
+        let rows =
+            "P.m.meta.events.filter(({ kind }) => ['operation', 'tool', 'head'].includes(kind))";
+        assert_eq!(row, browser.ask(&format!("{rows}[{place}].row")), "{}", names[place]);
+        let marked = browser.ask("document.querySelector('.steps [aria-current]').textContent");
+        let begun = browser.ask(&format!("{rows}.findLast(({{ row }}) => row <= {row}).text"));
+        assert_eq!(marked, begun);
+    }
+}
+
 #[test]
 fn the_worst_block_is_the_summarys() {
     let Some(mut browser) = Browser::start() else {

@@ -1,4 +1,5 @@
-// The verdict: the word, the largest deviations with their places, travel, what was found, and what is left out.
+// The verdict: the word, the largest deviations with their places, travel, what was found, operations and tools to go to,
+// and what is left out.
 
 P.verdict = {
   icons: {
@@ -20,6 +21,8 @@ P.verdict.build = (view) => {
   body.append(el("div", { class: "said" }, meta.verdict.sentences.map((sentence) => el("p", {}, sentence))));
   if (meta.maxima.length) part("Largest", P.verdict.maxima(meta.maxima));
   if (meta.warnings.length) part(`Found (${meta.warnings.length})`, P.verdict.warnings(meta.warnings));
+  const steps = meta.events.filter(({ kind }) => ["operation", "tool", "head"].includes(kind));
+  if (steps.length) part(`Operations and tools (${steps.length})`, P.verdict.steps(steps));
   if (meta.axes_used.length) part("Travel used", ...meta.axes_used.map(P.verdict.travel));
   // What stands above is not said twice.
   const above = [...meta.maxima.map(({ name }) => name), ...meta.axes_used.map(({ name }) => `axis ${name}`)];
@@ -29,6 +32,27 @@ P.verdict.build = (view) => {
   const left = [...meta.parts_left_out];
   if (meta.events_left_out > 0) left.push(`${meta.events_left_out} further marks are not listed.`);
   if (left.length) part("Left out of this page", el("ul", { class: "plain" }, left.map((sentence) => el("li", {}, sentence))));
+};
+
+// Operations and tools, to be gone to; the one that the selected block belongs to is marked.
+P.verdict.most_steps = 1000;
+P.verdict.steps = (steps) => {
+  const { el, m } = P;
+  const shown = steps.slice(0, P.verdict.most_steps);
+  const buttons = shown.map(({ row, text }) => el("button", { class: "link", onclick: () => P.select(row) }, text));
+  const time = (row) => (m.timed ? el("span", { class: "quiet number" }, `${P.shown(m.start(row), "s", 1)} s`) : null);
+  const list = el("ol", { class: "steps" }, shown.map(({ row, kind }, at) => el("li", { class: kind }, buttons[at], " ", time(row))));
+  let marked;
+  const follow = () => {
+    const after = shown.findIndex(({ row }) => row > P.state.row);
+    const now = buttons[(after < 0 ? shown.length : after) - 1];
+    if (marked) marked.removeAttribute("aria-current");
+    if (now) now.setAttribute("aria-current", "step");
+    marked = now;
+  };
+  P.listen("row", follow);
+  follow();
+  return list;
 };
 
 // Links to the places of something: the line of the program, that of the CL file, else the block.

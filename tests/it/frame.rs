@@ -171,6 +171,7 @@ fn what_stands_or_falls_with_the_mount_says_so() {
         let sheet = fs::read_to_string(sheet).unwrap();
         let says = |text: &str| sheet.contains(text);
         assert!(says("Z -60.000 mm in the machine frame"), "{machine}: {sheet}");
+        assert!(says("mm, without a tool"), "{machine}: {sheet}");
         assert_eq!(says("for the part origin there alone"), alone, "{machine}: {sheet}");
         assert_eq!(says("wherever the work offset is measured"), !alone, "{machine}: {sheet}");
     }

@@ -129,13 +129,25 @@ fn a_setup_sheet_says_what_is_to_be_set_up() {
     let markdown = read("sheet.md");
     for part in [
         "# Setup: part.cls",
-        "| 2 | 2 | MILL&lt;6> | 100.000 | 6.000 |",
+        "| 2 | 2 |  | MILL&lt;6> |  | 100.000 |  | 6.000 |",
+        "| upright | 13.000 |",
+        "X 0.000, Y 0.000, Z -600.000 mm, without a tool",
         "| X | 0.000 to 20.000 |",
         "Z 13.000 to 50.000 mm",
     ] {
         assert!(markdown.contains(part), "{part}\n{markdown}");
     }
-    assert!(read("sheet.html").contains("<td>MILL&lt;6&gt;</td>"));
+    let html = read("sheet.html");
+    // Seen from a side on which the axes of the part are right-handed: from X to Y against the clock.
+    let axis = |colour: &str| {
+        let line = html.lines().find(|line| line.contains(colour)).unwrap();
+        let numbers = line.split('"').nth(1).unwrap().trim_start_matches('M').split(' ');
+        let ends: Vec<f64> = numbers.map(|number| number.parse().unwrap()).collect();
+        [ends[2] - ends[0], ends[1] - ends[3]]
+    };
+    let [[x, up_of_x], [y, up_of_y], [aside, up]] = ["#b00", "#080", "#00b"].map(axis);
+    assert!(x * up_of_y - up_of_x * y > 0.0 && up > 0.0 && aside.abs() < 0.1, "{html}");
+    assert!(html.contains("<td>MILL&lt;6&gt;</td>") && html.contains(">T1 T2</text>"), "{html}");
 
     fs::write(folder.path().join("bad.cls"), CL.replace("GOTO/20,0,14", "GOTO/20000,0,14"))
         .unwrap();

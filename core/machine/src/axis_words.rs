@@ -111,6 +111,30 @@ pub fn unit_length(units: OutputUnits) -> f64 {
     }
 }
 
+/// Where the axes stand when the tip of a solver's tool is on the part origin and every rotary axis shows zero; `rotary`
+/// has the places of the rotary axes in the chain, and what each shows where the drawing has it at zero.
+fn work_zero(solver: &Solver, rotary: impl Iterator<Item = (usize, f64)>) -> Option<Joints> {
+    let mut zero = [0.0; MAX_AXES];
+    for (joint, reading) in rotary {
+        zero[joint] = -reading;
+    }
+    let turns = solver.chain().turns(&zero);
+    solver.place(Vector3::zeros(), &mut zero, &turns).ok()?;
+    Some(zero)
+}
+
+/// The work offset of the mount: what the control shows of each linear axis, mm, where the gauge point without a tool is
+/// on the part origin and every rotary axis shows zero. None where the linear axes cannot bring it there.
+pub fn work_offset(machine: &Machine) -> Option<Vec<(&str, f64)>> {
+    let solver = machine.solver_at(0.0, &[0.0; MAX_AXES]).ok()?;
+    let rotary = machine.axes.iter().enumerate().filter(|(_, axis)| axis.joint.rotary);
+    let zero = work_zero(&solver, rotary.map(|(joint, axis)| (joint, axis.zero)))?;
+    let shown =
+        |joint: usize| (machine.axes[joint].name.as_str(), zero[joint] + machine.axes[joint].zero);
+    let linear = order(machine).into_iter().filter(|joint| !machine.axes[*joint].joint.rotary);
+    Some(linear.map(shown).collect())
+}
+
 impl AxisWords {
     /// Words of a machine as a dialect's `format` prints them.
     pub fn new(machine: &Machine, format: &Format) -> Self {
@@ -170,13 +194,7 @@ impl AxisWords {
     /// Takes the work offset from a solver: where the axes stand when the tip of its tool is on the part
     /// origin and every rotary axis at zero. None if the linear axes cannot bring it there.
     pub fn set_zero(&mut self, solver: &Solver) -> Option<()> {
-        let mut zero = [0.0; MAX_AXES];
-        for word in &self.rotary {
-            zero[word.joint] = -word.reading;
-        }
-        let turns = solver.chain().turns(&zero);
-        solver.place(Vector3::zeros(), &mut zero, &turns).ok()?;
-        self.zero = zero;
+        self.zero = work_zero(solver, self.rotary.iter().map(|word| (word.joint, word.reading)))?;
         Some(())
     }
 

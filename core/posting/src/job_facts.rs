@@ -2,6 +2,7 @@
 
 use crate::blocks::MotionBlock;
 use crate::observer::Observer;
+use crate::operation_work::OperationList;
 use crate::program::{Command, ToolChange};
 
 /// What texts of the program can speak of beside the program itself.
@@ -29,6 +30,8 @@ pub struct ProgramPreview {
     /// Lines on which the part of the file begins that a further tool works: that of its operation, if one begins
     /// between the last move before it and the change.
     pub parts: Vec<u64>,
+    /// What each operation does with each tool.
+    pub work: OperationList,
     /// Where an operation began since the last move.
     pub pending: Option<u64>,
     /// Some move was made since the last tool change.
@@ -50,6 +53,7 @@ impl ProgramPreview {
 
 impl Observer for ProgramPreview {
     fn block(&mut self, block: &MotionBlock) {
+        self.work.block(block);
         self.pending = None;
         self.moved = true;
         let tip: [f64; 3] = block.tip.into();
@@ -61,6 +65,7 @@ impl Observer for ProgramPreview {
     }
 
     fn command(&mut self, line: u64, command: &Command) {
+        self.work.command(command);
         match command {
             Command::Tool(tool) => {
                 if std::mem::take(&mut self.moved) {

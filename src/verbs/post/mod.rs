@@ -40,8 +40,8 @@ pub struct PostArguments {
     #[arg(long, value_name = "FILE", value_parser = file())]
     summary: Option<PathArg>,
 
-    /// Writes a sheet for whoever sets the machine up: tools, extents, times, options; as HTML if the file's name ends
-    /// so, else as Markdown.
+    /// Writes a sheet for whoever sets the machine up: part origin and work offset, tools, operations, extents, times,
+    /// options; as HTML with a picture if the file's name ends so, else as Markdown.
     #[arg(long, value_name = "FILE", value_parser = file())]
     setup_sheet: Option<PathArg>,
 

@@ -1,11 +1,15 @@
 //! The sheet for whoever sets the machine up: Markdown, or HTML.
 
+mod picture;
+
 use std::fmt::Write as _;
 
-use post_machine::description::{LengthAxis, Machine, OptionValue, OutputUnits};
-use post_posting::ProgramPreview;
+use nalgebra::Vector3;
+use post_machine::axis_words;
+use post_machine::description::{LengthAxis, Machine, OptionValue, OutputUnits, ToolData};
 use post_posting::program::ToolChange;
 use post_posting::report::{LengthSource, PostingReport};
+use post_posting::{OperationWork, ProgramPreview};
 use post_report::document::escaped;
 
 use post_job::files::PathArg;
@@ -33,14 +37,15 @@ pub fn text(
     let sections = [
         the_machine(machine, ahead, programs),
         the_programs(programs),
-        the_tools(ahead, programs),
+        the_tools(machine, ahead, programs),
+        the_operations(ahead),
         the_axes(programs),
         the_options(machine),
     ];
     let html = sheet.path().and_then(|path| path.extension());
     let html = html.is_some_and(|ending| ending == "html" || ending == "htm");
     match html {
-        true => as_html(&title, &sections),
+        true => as_html(&title, &sections, &picture::svg(ahead)),
         false => as_markdown(&title, &sections),
     }
 }
@@ -65,6 +70,11 @@ fn the_machine(
     let [x, y, z] =
         [machine.mount.x, machine.mount.y, machine.mount.z].map(|value| number(value, 3));
     row("Part origin, all axes at zero", format!("X {x}, Y {y}, Z {z} mm in the machine frame"));
+    if let Some(offset) = axis_words::work_offset(machine) {
+        let axes: Vec<String> =
+            offset.iter().map(|(name, value)| format!("{name} {}", number(*value, 3))).collect();
+        row("Work offset of that part origin", format!("{} mm, without a tool", axes.join(", ")));
+    }
     row(
         "The program holds",
         match machine.holds_on_mount_alone() {
@@ -139,7 +149,11 @@ fn the_programs(programs: &[(&PathArg, &PostingReport)]) -> SheetTable {
 /// What stands in the registers where the control must not put a length along an axis that the tool does not lie along.
 const NO_LENGTH: &str = "0, not the length below: the work offset was measured with the tool in it";
 
-fn the_tools(ahead: &ProgramPreview, programs: &[(&PathArg, &PostingReport)]) -> SheetTable {
+fn the_tools(
+    machine: &Machine,
+    ahead: &ProgramPreview,
+    programs: &[(&PathArg, &PostingReport)],
+) -> SheetTable {
     let size = |value: Option<f64>| value.map_or("?".to_owned(), |value| number(value, 3));
     let used = |tool: &ToolChange| {
         let tools = programs.iter().flat_map(|(_, report)| &report.tools);
@@ -150,18 +164,86 @@ fn the_tools(ahead: &ProgramPreview, programs: &[(&PathArg, &PostingReport)]) ->
             Some(used) if used.source != LengthSource::Unknown => number(used.length_mm, 3),
             _ => "?".to_owned(),
         };
+        let table = machine.tool_table.as_ref();
+        let listed = table.and_then(|table| table.entry(tool.number, tool.register));
+        let own = |text: fn(&ToolData) -> &str| listed.map_or("", text).to_owned();
+        let work: Vec<&OperationWork> =
+            ahead.work.iter().filter(|work| work.tool == Some(tool.number)).collect();
+        let radius = work.iter().find_map(|work| work.radius_register);
         vec![
             tool.number.to_string(),
             tool.register.to_string(),
-            tool.name.clone(),
+            radius.map_or(String::new(), |register| register.to_string()),
+            if tool.name.is_empty() { own(|tool| &tool.name) } else { tool.name.clone() },
+            own(|tool| &tool.holder),
             length,
-            size(tool.diameter),
-            size(tool.corner_radius),
+            listed.and_then(|tool| tool.stick_out).map_or(String::new(), |out| number(out, 3)),
+            size(tool.diameter.or_else(|| listed?.diameter())),
+            size(tool.corner_radius.or_else(|| listed?.corner_radius)),
+            lowest(&work),
+            clock(work.iter().map(|work| work.time_s).sum()),
         ]
     });
     SheetTable {
         title: "Tools".to_owned(),
-        head: vec!["T", "Length register", "Name", "Length, mm", "Diameter, mm", "Corner, mm"],
+        head: vec![
+            "T",
+            "H",
+            "D",
+            "Name",
+            "Holder",
+            "Length, mm",
+            "Stick-out, mm",
+            "Diameter, mm",
+            "Corner, mm",
+            "Lowest Z, mm",
+            "Time",
+        ],
+        rows: rows.collect(),
+    }
+}
+
+/// The lowest place of the tip in cuts, in the part frame.
+fn lowest(work: &[&OperationWork]) -> String {
+    let lowest = work.iter().filter_map(|work| work.lowest).reduce(f64::min);
+    lowest.map_or(String::new(), |lowest| number(lowest, 3))
+}
+
+/// A tool axis in words.
+fn direction(axis: &Vector3<f64>) -> String {
+    let [i, j, k] = [axis.x, axis.y, axis.z].map(|part| number(part, 6));
+    if axis.z > 1.0 - 1e-12 { "upright".to_owned() } else { format!("{i}, {j}, {k}") }
+}
+
+fn the_operations(ahead: &ProgramPreview) -> SheetTable {
+    let optional = |value: Option<u32>| value.map_or(String::new(), |value| value.to_string());
+    let rows = ahead.work.iter().zip(1..).map(|(work, place): (_, u32)| {
+        vec![
+            place.to_string(),
+            work.name.clone(),
+            optional(work.tool),
+            optional(work.radius_register),
+            optional(work.work_offset),
+            match work.turns {
+                true => "turns".to_owned(),
+                false => work.axes.iter().map(direction).collect::<Vec<_>>().join("; "),
+            },
+            lowest(&[work]),
+            clock(work.time_s),
+        ]
+    });
+    SheetTable {
+        title: "Operations".to_owned(),
+        head: vec![
+            "",
+            "Operation",
+            "T",
+            "D",
+            "Work offset (1 is G54)",
+            "Tool axis (I, J, K)",
+            "Lowest Z, mm",
+            "Time",
+        ],
         rows: rows.collect(),
     }
 }
@@ -225,7 +307,13 @@ fn as_markdown(title: &str, sections: &[SheetTable]) -> String {
     text
 }
 
-fn as_html(title: &str, sections: &[SheetTable]) -> String {
+/// How it looks, on a screen and on two pages of paper.
+const STYLE: &str = "@page { size: A4; margin: 12mm } body { font: 11pt sans-serif; max-width: 60em; margin: 1em auto; padding: 0 1em } \
+     table { border-collapse: collapse } td, th { border: 1px solid #999; padding: .2em .6em; text-align: left } \
+     tr, svg { break-inside: avoid } h2 { break-after: avoid; font-size: 1.15em; margin: 1em 0 .3em } svg { max-width: 100%; height: auto } \
+     @media print { body { font-size: 8.5pt; margin: 0; padding: 0; max-width: none } td, th { padding: .1em .4em } }";
+
+fn as_html(title: &str, sections: &[SheetTable], picture: &str) -> String {
     let row = |cells: &mut dyn Iterator<Item = &str>, kind: &str| {
         let cells: String =
             cells.map(|cell| format!("<{kind}>{}</{kind}>", escaped(cell))).collect();
@@ -233,8 +321,8 @@ fn as_html(title: &str, sections: &[SheetTable]) -> String {
     };
     let title = escaped(title);
     let mut text = format!(
-        "<!doctype html>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n<style>body {{ font-family: sans-serif }} table {{ border-collapse: collapse }} \
-         td, th {{ border: 1px solid #999; padding: .2em .6em; text-align: left }}</style>\n<h1>{title}</h1>\n"
+        "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>{title}</title>\n<style>{STYLE}</style>\n\
+         <h1>{title}</h1>\n{picture}"
     );
     for section in sections.iter().filter(|section| !section.rows.is_empty()) {
         // Writing to a String cannot fail.

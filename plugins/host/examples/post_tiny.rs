@@ -32,6 +32,7 @@ const VOCABULARY: &[VocabularyWord] = &[
     VocabularyWord::new("M8", Meaning::CoolantOn),
     VocabularyWord::new("M9", Meaning::CoolantOff),
     VocabularyWord::new("G4", Meaning::Dwell),
+    VocabularyWord::new("G4 P", Meaning::DwellMilliseconds),
     VocabularyWord::new("M0", Meaning::Stop),
     VocabularyWord::new("M1", Meaning::OptionalStop),
     VocabularyWord::new("M30", Meaning::End),

@@ -2,6 +2,7 @@
 
 mod list;
 mod new;
+mod read_back;
 mod show;
 mod test;
 

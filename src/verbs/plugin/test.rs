@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use post_host::GivenValue;
+use post_host::{GivenValue, PluginKind};
 use post_kit::conformance;
 use post_machine::diagnostic::Diagnostic;
 
-use super::title;
+use super::{read_back, title};
 use post_cli::terminal::print;
 use post_job::failure::Failure;
 use post_job::plugin_finder::{by_name_or_file, diagnostic};
@@ -21,7 +21,9 @@ use post_job::session::Session;
 /// five-axis programs, whole, in batches of every size, and with one number changed at a time: the text must show each,
 /// to the last decimal that the dialect declares. So it is with every option at its ends, with all that it declares to
 /// write (arcs, cycles, planes), with remarks of any length and language; what it does not declare or know it must
-/// refuse. A long program is written by two threads in turn, beside the same by one.
+/// refuse. A long program is written by two threads in turn, beside the same by one. At last, programs of its own are read
+/// back by its vocabulary, and must do what their CL files ask for: on three axes, in inches, with axis positions, with
+/// tool centre point control, in tilted planes.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   post plugin test target/release/libpost_mine.so
@@ -50,8 +52,11 @@ pub struct TestArguments {
 /// Does as the arguments say.
 pub fn run(session: &Session, arguments: &TestArguments) -> Result<(), Failure> {
     let plugin = by_name_or_file(session, &arguments.plugin, &arguments.plugins)?;
-    let report = conformance::test_long(&plugin, &arguments.option, arguments.events)
+    let mut report = conformance::test_long(&plugin, &arguments.option, arguments.events)
         .map_err(|fault| diagnostic(&fault, &[], None))?;
+    if plugin.kind() == PluginKind::Dialect {
+        report.cases.extend(read_back::cases(&plugin, &arguments.option));
+    }
     print(session, &format!("{}\n\n{}", title(&plugin), report.table()));
     if report.is_good() {
         let cases = report.cases.len();

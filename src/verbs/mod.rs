@@ -54,7 +54,7 @@ use tools::ToolsArguments;
 use verify::VerifyArguments;
 use view::{View, ViewArguments};
 
-/// Turns a cutter-location file (APT, CLSF, NCL) into the NC program of one machine.
+/// A post-processor for five-axis machines: turns a CL file (APT, CLSF, NCL) into the NC program of one machine.
 ///
 /// The machine is a TOML file: its kinematic chain, its control and the tolerance that the program must
 /// keep. Points are put in where the axes would stray from the path, and the deviation of every block of the

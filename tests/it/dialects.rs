@@ -34,6 +34,7 @@ pub fn samples() -> impl Iterator<Item = &'static str> {
 /// What the machine file of a control must name, since its maker's default is beyond doubt nowhere.
 pub fn named(dialect: &str) -> &'static [&'static str] {
     match dialect {
+        "brother" => &["--set", "control.brother.tcp_on=\"G43.4 H{h}\""],
         "grbl" => &["--set", "control.grbl.hal=true", "--set", "control.retract={Z=0}"],
         "hurco" => &["--set", "control.hurco.tcp_on=[\"G69\", \"M128\"]"],
         "siemens" => &["--set", "control.siemens.swivel=true"],

@@ -10,6 +10,9 @@ use crate::options::text;
 use crate::planes::INCH;
 use crate::table::{CycleCode, Rigid, Table};
 
+/// Decimals of a pitch in mm: 40 threads an inch are 0.635.
+const PITCH_DECIMALS: u8 = 4;
+
 /// The cycles of a control, and the one in force.
 #[derive(Debug)]
 pub(crate) struct CycleWords {
@@ -43,9 +46,20 @@ impl ModalCycle {
     /// The word that begins it: rigid taps may have codes of their own, to the right and to the left.
     fn word(&self, rigid: Option<Rigid>) -> &'static str {
         match (rigid, self.kind) {
-            (Some(Rigid::Codes([_, left])), Cycle::TapLeft) => left,
-            (Some(Rigid::Codes([right, _])), _) => right,
+            (
+                Some(Rigid::Codes([_, left]) | Rigid::Pitch { codes: [_, left], .. }),
+                Cycle::TapLeft,
+            ) => left,
+            (Some(Rigid::Codes([right, _]) | Rigid::Pitch { codes: [right, _], .. }), _) => right,
             _ => self.code,
+        }
+    }
+
+    /// The pitch of a thread, program units, that is cut at `rpm`.
+    fn thread_pitch(&self, rpm: f64) -> f64 {
+        match (self.pitch, self.feed) {
+            (Some(pitch), _) | (None, Feed::PerRevolution(pitch)) => pitch,
+            (None, Feed::PerMinute(feed) | Feed::InverseTime(feed)) => feed / rpm,
         }
     }
 }
@@ -224,9 +238,11 @@ impl Engine {
         }
         if first {
             self.cycle_words(&running, rigid);
-            // Spindle and axis are told the same thread.
-            let more = if taps(running.kind) { 3 } else { 0 };
-            self.motion.feed_again(running.feed, more);
+            match rigid {
+                Some(Rigid::Pitch { pitch, .. }) => self.pitch_word(pitch, &running)?,
+                // Spindle and axis are told the same thread.
+                _ => self.motion.feed_again(running.feed, if taps(running.kind) { 3 } else { 0 }),
+            }
             if let Some(Rigid::Beside(word)) = rigid {
                 self.motion.block.word(word);
             }
@@ -279,6 +295,16 @@ impl Engine {
         }
     }
 
+    /// Writes the pitch of a thread, mm in a program of either unit.
+    fn pitch_word(&mut self, address: &str, running: &ModalCycle) -> Result<(), String> {
+        let Some(Spindle::On { rpm, .. }) = self.turning else {
+            return Err("a rigid tap without a speed of the spindle".to_owned());
+        };
+        let pitch = running.thread_pitch(rpm) * if self.inch { INCH } else { 1.0 };
+        self.motion.block.number(address, pitch, PITCH_DECIMALS, self.motion.style);
+        Ok(())
+    }
+
     /// Down and up with the spindle, and rapids around it.
     fn tap_by_move(
         &mut self,
@@ -300,10 +326,7 @@ impl Engine {
         if sense != wanted {
             return Err("the spindle turns the other way than the thread".to_owned());
         }
-        let pitch = match (running.pitch, running.feed) {
-            (Some(pitch), _) | (None, Feed::PerRevolution(pitch)) => pitch,
-            (None, Feed::PerMinute(feed) | Feed::InverseTime(feed)) => feed / rpm,
-        };
+        let pitch = running.thread_pitch(rpm);
         let mut level = words.to_vec();
         for height in [top, plane] {
             level[z] = height;

@@ -233,6 +233,14 @@ pub enum Rigid {
     Beside(&'static str),
     /// Another code than that of the cycle, right-hand and left-hand.
     Codes([&'static str; 2]),
+    /// Another code than that of the cycle, right-hand and left-hand, with the pitch in mm under this address in the place
+    /// of F: `G77 I1.25`.
+    Pitch {
+        /// The codes.
+        codes: [&'static str; 2],
+        /// Address of the pitch.
+        pitch: &'static str,
+    },
     /// A move of its own down and up, with the pitch as K: `G33.1`.
     Move(&'static str),
 }

@@ -189,6 +189,14 @@ impl Engine {
                 add(right, M::CycleTap);
                 add(left, M::CycleTapLeft);
             }
+            Rigid::Pitch { codes: [right, left], pitch } => {
+                for (word, meaning) in [(right, M::CycleTap), (left, M::CycleTapLeft)] {
+                    add(word, meaning);
+                    if !word.is_empty() {
+                        add(&format!("{word} {pitch}"), meaning);
+                    }
+                }
+            }
             Rigid::Move(word) => add(word, M::ThreadAndBack),
         }
     }

@@ -3,6 +3,7 @@
 // Clippy lets test functions unwrap, but not the helpers beside them.
 #![allow(clippy::unwrap_used)]
 
+mod brother;
 mod fanuc;
 mod grbl;
 mod haas;
@@ -17,3 +18,4 @@ mod models;
 mod okuma;
 mod order;
 mod siemens;
+mod syntec;

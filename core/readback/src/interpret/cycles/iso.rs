@@ -17,6 +17,9 @@ use crate::{Curve, CycleKind, MotionKind};
 /// chip, mm: LinuxCNC's ten thousandths of an inch; of other controls it is a parameter.
 const BACK: f64 = 0.254;
 
+/// mm in an inch, for threads an inch.
+const INCH: f64 = 25.4;
+
 /// Holes that one block may ask for.
 const MOST: i64 = 100_000;
 
@@ -36,6 +39,8 @@ pub(super) struct IsoCycle {
     step: f64,
     /// P, seconds.
     dwell: f64,
+    /// The pitch of a thread, where the dialect has a letter for it.
+    pitch: Option<f64>,
 }
 
 /// A block that begins a cycle or says a further hole of it.
@@ -117,6 +122,7 @@ fn levels_said(
             bottom: f64::NAN,
             step: 0.0,
             dwell: 0.0,
+            pitch: None,
         },
         (None, Some(before)) => before,
         (None, None) => {
@@ -145,7 +151,19 @@ fn levels_said(
             control.lexicon.language() == Language::Rs274 || words.pointed & bit(b'P') != 0;
         running.dwell = if seconds { time } else { time / 1000.0 };
     }
+    running.pitch = thread_pitch(control, &running, words).or(running.pitch);
     Ok(running)
+}
+
+/// The pitch of a thread, mm, by a letter that the dialect names beside the cycle: J threads an inch, any other mm.
+fn thread_pitch(control: &ControlState, running: &IsoCycle, words: &mut BlockWords) -> Option<f64> {
+    let named =
+        |letter: &u8| control.lexicon.letter_beside(running.code, *letter) == Some(running.meaning);
+    let letter = [b'I', b'J']
+        .into_iter()
+        .find(|letter| words.present & bit(*letter) != 0 && named(letter))?;
+    let value = words.take(letter).filter(|value| *value > 0.0)?;
+    Some(if letter == b'J' { INCH / value } else { value })
 }
 
 /// Makes one hole, with the tool over it. A rigid tap turns the spindle.
@@ -212,7 +230,8 @@ fn goes_its_way(control: &ControlState, running: &IsoCycle) -> Result<(), Box<Di
 fn levels(control: &mut ControlState, running: &IsoCycle) -> Result<CycleHole, Box<Diagnostic>> {
     use Meaning as M;
     goes_its_way(control, running)?;
-    let feed = feed_a_minute(control);
+    let by_pitch = running.pitch.map(|pitch| pitch * control.modal.speed);
+    let feed = by_pitch.unwrap_or_else(|| feed_a_minute(control));
     let away = match control.modal.return_start {
         true => libm::fmax(running.start, running.clearance),
         false => running.clearance,

@@ -10,6 +10,7 @@ pub mod diff;
 mod dry_run;
 pub mod failure;
 pub mod files;
+pub mod job_file;
 pub mod library;
 mod look_ahead;
 pub mod machine_files;

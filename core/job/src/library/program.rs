@@ -98,7 +98,13 @@ impl Request {
         let mut over = machine.over.clone();
         let mut making = MakingSettings::default();
         tell(options, &mut [&mut reading, &mut over, &mut making])?;
-        let job = JobSettings { machine: machine.name.clone(), input: file(input), reading, over };
+        let job = JobSettings {
+            machine: machine.name.clone(),
+            input: file(input),
+            reading,
+            over,
+            mark: None,
+        };
         Ok(Self { job, making, output: output.map(file) })
     }
 

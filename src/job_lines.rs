@@ -12,6 +12,7 @@ use post_job::files::PathArg;
 use post_job::job_file::{
     self, JobFile, JobKeys, JobMark, JobProgram, is_job_file, job_of_program,
 };
+use post_job::old_summary::OldSummary;
 use post_job::session::Session;
 use post_job::settings::{
     About, MachineSettings, ProgramSettings, ReadingSettings, SettingValue, SettingsGroup,
@@ -94,7 +95,8 @@ pub fn lines(
     let takes = known.map_or(Takes::All, |(_, takes)| *takes);
     let mut found = job_words(words);
     // Most command lines name no job, and need not know all verbs.
-    if known.is_none() && !found.is_empty() && verbs().iter().any(|other| other == verb) {
+    let names_any = !found.is_empty() || words.iter().any(|word| is_like(word));
+    if known.is_none() && names_any && verbs().iter().any(|other| other == verb) {
         return Ok(None);
     }
     if found.len() > 1 {
@@ -105,12 +107,47 @@ pub fn lines(
         Some(found) => Some(found),
         None => job_of_head(session, words, takes)?,
     };
+    let like = match takes {
+        Takes::All => like(session, words)?,
+        _ => Vec::new(),
+    };
     let Some((named, path)) = found else {
-        return Ok(None);
+        if like.is_empty() {
+            return Ok(None);
+        }
+        let mut all = words[..1].to_vec();
+        all.extend(like);
+        all.extend_from_slice(&words[1..]);
+        return Ok(Some(vec![JobLine { words: all, plain: None }]));
     };
     let job = job_file::read(session, &path)?;
-    let words = JobWords { session, words, takes, job: &job };
+    let words = JobWords { session, words, takes, job: &job, like };
     words.lines(&named).map(Some)
+}
+
+fn is_like(word: &OsStr) -> bool {
+    word.to_string_lossy().starts_with("--like")
+}
+
+/// The flags that `--like` stands for; none without it.
+fn like(session: &Session, words: &[OsString]) -> Result<Vec<OsString>, Failure> {
+    let mut files = words.iter().enumerate().filter_map(|(index, word)| {
+        let text = word.to_str()?;
+        match text.strip_prefix("--like") {
+            Some("") => words.get(index + 1).map(PathBuf::from),
+            Some(rest) => rest.strip_prefix('=').map(PathBuf::from),
+            None => None,
+        }
+    });
+    let Some(file) = files.next() else {
+        return Ok(Vec::new());
+    };
+    let old = OldSummary::read(session, &PathArg::from(file))?;
+    let named = old.told.iter().filter_map(|(name, value)| {
+        let about = JobKeys::named(name)?;
+        Some(flags(about, &about.flag(), value))
+    });
+    Ok(named.flatten().collect())
 }
 
 /// Where the words name job files, and which.
@@ -170,6 +207,8 @@ struct JobWords<'a> {
     words: &'a [OsString],
     takes: Takes,
     job: &'a JobFile,
+    /// What an old run's summary says, before what the user says.
+    like: Vec<OsString>,
 }
 
 impl JobWords<'_> {
@@ -233,6 +272,7 @@ impl JobWords<'_> {
         let stands_for = self.argument(program, named)?;
         let mut plain = words.clone();
         plain.extend(stands_for.clone());
+        words.extend(self.like.iter().cloned());
         for (index, word) in self.words.iter().enumerate().skip(verb + 1) {
             match named {
                 Named::Argument(at) if *at == index => words.extend(stands_for.clone()),
@@ -280,16 +320,7 @@ impl JobWords<'_> {
             let Some(flag) = self.flag(setting.about) else {
                 continue;
             };
-            let values = match &setting.value {
-                SettingValue::List(values) if setting.about.many => values.as_slice(),
-                value => std::slice::from_ref(value),
-            };
-            flags.extend(values.iter().filter_map(|value| match value {
-                SettingValue::Yes(false) => None,
-                SettingValue::Yes(true) => Some(format!("--{flag}").into()),
-                SettingValue::Path(path) => Some(valued(&flag, path.as_os_str())),
-                value => Some(valued(&flag, OsStr::new(&value.to_string()))),
-            }));
+            flags.extend(self::flags(setting.about, &flag, &setting.value));
         }
         flags
     }
@@ -314,6 +345,21 @@ impl JobWords<'_> {
             Takes::ClAlone => None,
         }
     }
+}
+
+/// A setting as the command line says it: several values by several flags, but for the numbers of one point.
+fn flags(about: &About, flag: &str, value: &SettingValue) -> Vec<OsString> {
+    let values = match value {
+        SettingValue::List(values) if about.many => values.as_slice(),
+        value => std::slice::from_ref(value),
+    };
+    let words = values.iter().filter_map(|value| match value {
+        SettingValue::Yes(false) => None,
+        SettingValue::Yes(true) => Some(format!("--{flag}").into()),
+        SettingValue::Path(path) => Some(valued(flag, path.as_os_str())),
+        value => Some(valued(flag, OsStr::new(&value.to_string()))),
+    });
+    words.collect()
 }
 
 /// `--FLAG=VALUE`: a value may begin with a hyphen.

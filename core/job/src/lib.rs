@@ -18,6 +18,7 @@ pub mod machine_schema;
 pub mod making;
 pub mod nc_program;
 mod nc_to_cl;
+pub mod old_summary;
 mod one_program;
 pub mod other_dialect;
 pub mod place;

@@ -16,6 +16,7 @@ use post_job::failure::Failure;
 use post_job::files::{self, AtomicFile, ClSource, PathArg, Role};
 use post_job::job_file::{self, JobMark, SavedJob};
 use post_job::making::{self, ProgramMaker, ProgramOutcome, ProgramPart, ProgramRequest};
+use post_job::old_summary::OldSummary;
 use post_job::predict::Prediction;
 use post_job::session::Session;
 use post_job::settings::{JobSettings, MakingSettings, OutputSettings, ReportSettings};
@@ -47,6 +48,12 @@ pub struct PostArguments {
 
     #[command(flatten)]
     report: Flags<ReportSettings>,
+
+    /// Takes the settings of an old run from its summary (--summary): dialect, who keeps the tip, tolerances, error model, and
+    /// the length of --tool-length if there was one; what is said besides goes before them. Mount, turn and other keys of the
+    /// machine file stand in no summary.
+    #[arg(long, value_name = "FILE", value_parser = file())]
+    like: Option<PathArg>,
 
     /// Writes what this command line says as a job file, that every verb takes in place of machine and CL file; its name
     /// ends in `.job.toml`.
@@ -165,6 +172,10 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
     let outputs = &arguments.outputs.0;
     let saved = arguments.job_text()?;
     let (mut maker, machine) = ProgramMaker::open(session, job, &arguments.making.0)?;
+    if let Some(like) = &arguments.like {
+        let other = OldSummary::read(session, like)?.other_machine(&machine.name);
+        session.findings(&other.into_iter().collect::<Vec<_>>());
+    }
     let mut source = ClSource::new(session, &job.input, arguments.reads_twice(&machine))?;
     if arguments.looks_ahead(&machine) {
         maker.look_ahead(&machine, &mut source)?;

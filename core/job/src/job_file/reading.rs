@@ -322,11 +322,12 @@ impl JobReading<'_> {
             }
             DeValue::String(_) => self.one_line(value).map(SettingValue::Text),
             DeValue::Boolean(yes) if may_be_flag => Some(SettingValue::Yes(*yes)),
-            DeValue::Integer(_) if !is_path && !may_be_flag => {
+            DeValue::Integer(_) if matches!(about.form, SettingForm::Whole { .. }) => {
                 self.written(value).parse().ok().map(SettingValue::Whole)
             }
-            DeValue::Float(_) if !is_path && !may_be_flag => {
-                self.written(value).parse().ok().map(SettingValue::Number)
+            // With the digits that it is written with.
+            DeValue::Integer(_) | DeValue::Float(_) if matches!(about.form, SettingForm::Text) => {
+                Some(SettingValue::Text(self.written(value)))
             }
             DeValue::Array(items) if !may_be_flag => {
                 let values = items.iter().map(|item| self.value(about, item));

@@ -70,6 +70,8 @@ use view::{View, ViewArguments};
   post --machine ac-trunnion part.cls
   post --machine dmu50.toml part.ncl -o part.h --mount 0,0,120 --summary part.json
   post --machine disc-cutter --set Lm=250 disc-blade.cls -o -
+  post --machine vmc part.cls --tools tool.tbl --save-job part.job.toml
+  post part.job.toml
   post words part.cls
   post new my-mill --class table-table-ac --dialect linuxcnc
   post check my-mill.toml --svg reach.svg

@@ -150,8 +150,8 @@ fn every_verb_takes_it_in_place_of_machine_and_cl_file() {
     good(folder, &["verify", "part.job.toml", "-q"]);
     assert_eq!(fs::read(folder.join("s.json")).unwrap(), posted);
     let view = good(folder, &["view", "--no-open", "verify", "part.job.toml", "-q"]);
-    assert_contains(&view.out, &["report.html"]);
-    let page = Path::new(view.out.trim());
+    assert_contains(&view.err, &["report.html"]);
+    let page = Path::new(view.err.trim());
     fs::remove_dir_all(page.parent().unwrap()).unwrap();
 }
 

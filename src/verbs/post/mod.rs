@@ -34,6 +34,10 @@ const JOB: Role = Role { what: "job file", remedy: "name another file with --sav
 
 #[derive(Debug, Args)]
 pub struct PostArguments {
+    /// All settings that were said; before the flags, whose values are taken as they are read.
+    #[command(flatten)]
+    said: SaidSettings,
+
     #[command(flatten)]
     job: JobArguments,
 
@@ -63,10 +67,6 @@ pub struct PostArguments {
     /// No summary, warnings and errors alone.
     #[arg(short, long)]
     quiet: bool,
-
-    /// All settings that were said.
-    #[command(flatten)]
-    said: SaidSettings,
 
     /// The job file that says all of it, if one does.
     #[arg(skip)]

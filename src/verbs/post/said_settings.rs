@@ -8,7 +8,8 @@ use post_job::settings::{
     SettingValue,
 };
 
-/// Every setting that the command line says, and its value; the flags are those of other arguments.
+/// Every setting that the command line says, and its value, where a job file is asked for; the flags are those of other
+/// arguments.
 #[derive(Debug, Default)]
 pub struct SaidSettings(pub Vec<(&'static About, SettingValue)>);
 
@@ -24,6 +25,9 @@ impl Args for SaidSettings {
 
 impl FromArgMatches for SaidSettings {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        if !matches.contains_id("save_job") {
+            return Ok(Self::default());
+        }
         let mut all = said::<OutputSettings>(matches);
         all.extend(said::<ReadingSettings>(matches));
         all.extend(said::<MachineSettings>(matches));

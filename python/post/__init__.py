@@ -4,8 +4,8 @@ Lengths are in mm and angles in degrees, as the control shows them; points and t
 are float64, one row a point, axis values in the order of :attr:`Machine.axes`.
 """
 
-from post.job import Blocks, Found, Job
-from post.machine import Axis, Machine
+from post.machine import Axis, Machine, job
+from post.made import Blocks, Found, Job
 from post.refusal import Diagnostic, PostError
 from post.studies import Study, study
 
@@ -18,5 +18,6 @@ __all__ = [
     "Machine",
     "PostError",
     "Study",
+    "job",
     "study",
 ]

@@ -8,7 +8,7 @@ _Floats = NDArray[np.float64]
 _Option = bool | int | float | str | list[str]
 _Told = tuple[str, str, str, str | None, str | None, int | None, str | None]
 
-__all__ = ["Job", "Machine", "Study", "fail", "run_part"]
+__all__ = ["Job", "Machine", "Study", "fail", "job", "run_part"]
 
 def fail() -> None: ...
 
@@ -22,6 +22,13 @@ class Job:
     def predict(self, period: float | None) -> tuple[str, list[_Told]]: ...
     def report(self, page: str, verify: bool, predict: bool, most_megabytes: int) -> None: ...
     def blocks(self) -> dict[str, Any] | None: ...
+
+def job(
+    path: str,
+    writes: bool,
+    options: list[tuple[str, _Option]],
+    keep_blocks: bool,
+) -> list[Job]: ...
 
 @final
 class Machine:

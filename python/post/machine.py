@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from post import _native
-from post.job import Job
+from post.made import Job
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -209,6 +209,34 @@ class Machine:
         tips = rows("tip", tip, 3)
         axes = along("axis", axis, tips)
         return tips, axes, None if edge is None else along("edge", edge, tips)
+
+
+def job(
+    path: Path,
+    *,
+    write: bool = False,
+    blocks: bool = True,
+    **options: Unpack[Options],
+) -> list[Job]:
+    """Posts the programs of a job file as ``post part.job.toml`` does, in their order.
+
+    With ``write`` each is written where the job file says, or beside its CL file, whole or not at all; without it nothing is
+    written. Options go before what the job file says; a program that is made with some has no hash of the job in its head,
+    as that of the command.
+
+    Raises :class:`PostError` with the first program that the command would refuse.
+    """
+    name = os.fspath(path)
+    natives = _native.job(name, write, told(options), blocks)
+
+    def planning(number: int) -> Callable[[int | None], Job]:
+        def planned(rounds: int | None) -> Job:
+            more: Options = {**options, "plan": True, "plan_rounds": rounds}
+            return job(name, blocks=blocks, **more)[number]
+
+        return planned
+
+    return [Job(native, planning(number)) for number, native in enumerate(natives)]
 
 
 def rows(name: str, values: ArrayLike, width: int) -> Floats:

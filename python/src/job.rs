@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::apart::apart;
+use crate::options;
 use crate::refusal::{DiagnosticFields, told};
 
 /// A program.
@@ -99,6 +100,21 @@ impl Job {
         }
         Ok(Some(all))
     }
+}
+
+/// Posts the programs of a job file.
+#[pyfunction]
+pub fn job(
+    py: Python<'_>,
+    path: PathBuf,
+    writes: bool,
+    options: Vec<(String, options::OptionInput)>,
+    keep_blocks: bool,
+) -> PyResult<Vec<Job>> {
+    let options = options::told(options);
+    let post = |stop: &_| MadeProgram::of_job_file(stop, &path, writes, &options, keep_blocks);
+    let made = apart(py, post)?;
+    Ok(made.into_iter().map(|made| Job { made }).collect())
 }
 
 fn given(found: ProgramFindings) -> (String, Vec<DiagnosticFields>) {

@@ -15,7 +15,7 @@ mod _native {
     #[pymodule_export]
     use super::apart::fail;
     #[pymodule_export]
-    use super::job::Job;
+    use super::job::{Job, job};
     #[pymodule_export]
     use super::machine::Machine;
     #[pymodule_export]

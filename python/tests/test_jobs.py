@@ -296,3 +296,46 @@ def test_the_readme_runs(room: Path, capsys: pytest.CaptureFixture[str]) -> None
     told = capsys.readouterr().out
     assert "C deg" in told and "invalid value" in told
     assert (room / "part.html").stat().st_size > 10_000
+
+
+JOB_FILE = """
+machine = "ac-trunnion"
+tool_length = 120
+[set]
+accuracy.placement = "fewest"
+[[program]]
+cl = "blade.cls"
+output = "a.nc"
+verify = true
+[[program]]
+cl = "plate.ncl"
+output = "b.nc"
+machine = "vmc"
+"""
+
+
+def test_a_job_file_makes_the_programs_of_the_command(room: Path, command: Command) -> None:
+    for name in ("blade.cls", "plate.ncl"):
+        (room / name).write_bytes((CHECKOUT / "tests/samples" / name).read_bytes())
+    path = room / "part.job.toml"
+    path.write_text(JOB_FILE)
+    made = post.job(path)
+    assert not (room / "a.nc").exists()
+    done = command(str(path), "-q")
+    assert done.returncode == 0, done.stderr
+    written = [(room / name).read_text() for name in ("a.nc", "b.nc")]
+    assert [job.nc for job in made] == written
+    assert "JOB " in made[0].nc
+    for name in ("a.nc", "b.nc"):
+        (room / name).unlink()
+    post.job(path, write=True)
+    assert [(room / name).read_text() for name in ("a.nc", "b.nc")] == written
+    # Made in another way, it is not what the file says.
+    coarse = post.job(path, tolerance=0.02)
+    assert coarse[0].summary["tolerance_mm"] == 0.02
+    assert "JOB " not in coarse[0].nc
+    made[0].verify()
+    path.write_text(JOB_FILE.replace("tool_length", "tool_lenght"))
+    with pytest.raises(post.PostError) as refused:
+        post.job(path)
+    assert refused.value.diagnostics[0].code == "job-file"

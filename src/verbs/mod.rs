@@ -30,6 +30,7 @@ use clap::error::ErrorKind;
 use clap::{ArgMatches, Args, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use post_machine::diagnostic::nearest;
 
+use crate::job_lines::{self, JobLine};
 use batch::BatchArguments;
 use check::CheckArguments;
 use complete::CompletionsArguments;
@@ -69,6 +70,8 @@ use view::{View, ViewArguments};
   post --machine ac-trunnion part.cls
   post --machine dmu50.toml part.ncl -o part.h --mount 0,0,120 --summary part.json
   post --machine disc-cutter --set Lm=250 disc-blade.cls -o -
+  post --machine vmc part.cls --tools tool.tbl --save-job part.job.toml
+  post part.job.toml
   post words part.cls
   post new my-mill --class table-table-ac --dialect linuxcnc
   post check my-mill.toml --svg reach.svg
@@ -158,10 +161,31 @@ impl CommandLine {
     /// # Errors
     /// A wrong command line; help and version, which are no faults.
     pub fn read(words: &[OsString]) -> Result<Self, clap::Error> {
-        Self::try_parse_from(words).map_err(|fault| match fault.kind() {
+        Self::parsed(words, false).map_err(|fault| match fault.kind() {
             ErrorKind::DisplayVersion => fault,
             _ => AllVerbs::try_parse_from(words).err().unwrap_or(fault),
         })
+    }
+
+    /// What the words of a job say, and those of the user behind them, which win.
+    fn of_job(line: &JobLine) -> Result<Self, clap::Error> {
+        let mut all = Self::parsed(&line.words, true)?;
+        let Some((plain, mark)) = &line.plain else {
+            return Ok(all);
+        };
+        let plain = Self::parsed(plain, true)?;
+        let made = |line: &Self| line.post.0.as_ref().map(PostArguments::what_is_made);
+        // What is made in another way is not what the job file says.
+        if made(&all) == made(&plain) {
+            all.post.0 = all.post.0.map(|post| post.marked(mark.clone()));
+        }
+        Ok(all)
+    }
+
+    fn parsed(words: &[OsString], overriding: bool) -> Result<Self, clap::Error> {
+        let mut command = Self::command().args_override_self(overriding);
+        let matches = command.try_get_matches_from_mut(words)?;
+        Self::from_arg_matches(&matches).map_err(|fault| fault.format(&mut command))
     }
 
     /// Does what the command line says.
@@ -194,12 +218,34 @@ impl CommandLine {
     }
 }
 
+/// Runs the command line of these words, or those of the programs of the job that they name; `said` tells what is wrong
+/// with a line that is none.
+///
+/// # Errors
+/// The first that is refused.
+pub fn run(
+    session: &Session,
+    words: &[OsString],
+    said: impl Fn(clap::Error) -> clap::Error,
+) -> Result<(), CommandFault> {
+    let verbs = || {
+        let command = CommandLine::<true>::command();
+        command.get_subcommands().map(|verb| verb.get_name().to_owned()).collect::<Vec<_>>()
+    };
+    let Some(lines) = job_lines::lines(session, words, &verbs)? else {
+        let line = CommandLine::read(words).map_err(|fault| CommandFault::Usage(said(fault)))?;
+        return line.run(session);
+    };
+    for line in lines {
+        CommandLine::of_job(&line).map_err(CommandFault::Usage)?.run(session)?;
+    }
+    Ok(())
+}
+
 /// Runs another command line with a report, and opens that.
 fn view(session: &Session, arguments: &ViewArguments) -> Result<(), CommandFault> {
     let view = View::new(arguments)?;
-    let done = CommandLine::read(&view.line)
-        .map_err(CommandFault::Usage)
-        .and_then(|line| line.run(session));
+    let done = run(session, &view.line, |fault| fault);
     // A program that is not as it should be is worth a look too.
     let shown = view.show();
     done.and(Ok(shown?))

@@ -132,6 +132,10 @@ fn a_change_is_told_with_its_place_and_nothing_else() {
     assert_eq!(different(&found), [0], "{text}");
     let (_, found, text) = bench.against(&swap("M8\n", ""), &[]);
     assert_eq!(found["operations"][0]["states"][0]["what"], "coolant", "{text}");
+    let (code, ..) = bench.against(&swap("M8\n", ""), &["--ignore", "coolant"]);
+    assert_eq!(code, 0);
+    let (code, ..) = bench.against(&swap("M8\n", ""), &["--ignore", "tools"]);
+    assert_eq!(code, 1);
     let (_, found, text) = bench.against(&swap("G2 X20.000 Y-10.000 I-10.000 J0.000\n", ""), &[]);
     assert_eq!(different(&found), [0], "{text}");
     assert_eq!(found["operations"][0]["other_ways"].as_array().unwrap().len(), 1, "{text}");

@@ -26,6 +26,7 @@ mod frame;
 mod guide;
 mod guides;
 mod hole_bounds;
+mod job_file;
 mod jobs;
 mod languages;
 mod lengths;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PathBufValueParser, PossibleValuesParser, ValueParser};
 use clap::error::ErrorKind;
+use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 
 use post_job::settings::{About, SettingForm, SettingRow, SettingValue, SettingsGroup};
@@ -51,6 +52,10 @@ fn flag<S: SettingsGroup>(row: &'static SettingRow<S>) -> Arg {
     }
     flag = match about.form {
         SettingForm::Flag => return requiring(flag.action(ArgAction::SetTrue), about),
+        SettingForm::PathIfAny => {
+            let flag = flag.value_name(about.value).value_parser(parser(row));
+            flag.num_args(0..=1).require_equals(true)
+        }
         _ => flag.value_name(about.value).value_parser(parser(row)),
     };
     if let Some(default) = about.default {
@@ -74,12 +79,28 @@ fn parser<S: SettingsGroup>(row: &'static SettingRow<S>) -> ValueParser {
             // As clap says it of a number without a largest.
             _ => clap::value_parser!(u64).range(least..).into(),
         },
-        SettingForm::Path => PathBufValueParser::new().into(),
+        SettingForm::Path | SettingForm::PathIfAny => PathBufValueParser::new().into(),
         SettingForm::Flag | SettingForm::Text => ValueParser::new(move |text: &str| {
             let put = (row.put)(&mut S::default(), &SettingValue::from(text));
             put.map(|()| text.to_owned())
         }),
     }
+}
+
+/// What the command line says of a group of settings, and nothing that holds by default.
+pub fn said<S: SettingsGroup>(matches: &ArgMatches) -> Vec<(&'static About, SettingValue)> {
+    let rows = S::ROWS.iter().map(|row| &row.about);
+    let said =
+        rows.filter(|about| matches.value_source(about.name) == Some(ValueSource::CommandLine));
+    said.map(|about| {
+        let mut values = told(about, matches);
+        let value = match (about.many, values.len()) {
+            (false, 1) => values.remove(0),
+            _ => SettingValue::List(values),
+        };
+        (about, value)
+    })
+    .collect()
 }
 
 /// The values that the command line has for a row.
@@ -99,7 +120,11 @@ fn told(about: &About, matches: &ArgMatches) -> Vec<SettingValue> {
             let numbers = matches.get_many::<u64>(name).into_iter().flatten();
             numbers.map(|number| SettingValue::Text(number.to_string())).collect()
         }
-        SettingForm::Path => {
+        SettingForm::PathIfAny if matches.contains_id(name) => {
+            let path = matches.get_one::<PathBuf>(name);
+            vec![path.map_or(SettingValue::Yes(true), |path| SettingValue::Path(path.clone()))]
+        }
+        SettingForm::Path | SettingForm::PathIfAny => {
             let paths = matches.get_many::<PathBuf>(name).into_iter().flatten();
             paths.map(|path| SettingValue::Path(path.clone())).collect()
         }

@@ -8,7 +8,7 @@ mod flags;
 use clap::Args;
 
 use flag_values::file;
-pub use flags::Flags;
+pub use flags::{Flags, said};
 use post_job::files::PathArg;
 use post_job::settings::{JobSettings, MachineSettings, ProgramSettings, ReadingSettings};
 
@@ -53,6 +53,7 @@ impl JobFlags {
             input: input.clone(),
             reading: self.reading.0.clone(),
             over: self.over.0.clone(),
+            mark: None,
         }
     }
 }

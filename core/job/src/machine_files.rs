@@ -135,7 +135,7 @@ impl From<Missing> for Diagnostic {
 }
 
 /// A name with an ending or a folder is that of a file.
-fn is_file(name: &str) -> bool {
+pub fn is_file(name: &str) -> bool {
     let path = Path::new(name);
     path.extension().is_some_and(|ending| ending == "toml") || path.components().count() > 1
 }

@@ -14,6 +14,7 @@ use super::plugin_finder;
 use super::posting_pass::{self, OpenedPlugins, PostingExtras, PostingPass, ProgramHead};
 use crate::failure::Failure;
 use crate::files::{ClSource, PathArg};
+use crate::job_file::JobMark;
 use crate::session::Session;
 use crate::settings::JobSettings;
 
@@ -92,6 +93,7 @@ impl OneProgram<'_> {
                 program,
                 cl_file: plugin_finder::cl_name(cl_file),
                 ahead: ahead.cloned(),
+                remark: arguments.mark.as_ref().map(JobMark::remark),
             },
             lines,
             ..posting_pass::posting_request(arguments, &input.name)

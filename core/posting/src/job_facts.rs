@@ -14,6 +14,8 @@ pub struct JobFacts {
     pub cl_file: String,
     /// What a first pass found; none if there was none.
     pub ahead: Option<ProgramPreview>,
+    /// What the head of the program says besides.
+    pub remark: Option<String>,
 }
 
 /// What a first pass over a CL file found.

@@ -17,6 +17,7 @@ use post_job::batch::{
 };
 use post_job::failure::Failure;
 use post_job::files::{self, AtomicFile, FileFault, PathArg, Role};
+use post_job::job_file;
 use post_job::session::Session;
 use post_job::settings::{ReadingSettings, StudySettings};
 
@@ -43,7 +44,7 @@ const JOURNAL: Role = Role { what: "journal", remedy: "name another file with --
 
 Exit codes: 0 the table is written, whatever came of its jobs; 1 refused, the messages say why; 2 the command line is wrong.")]
 pub struct BatchArguments {
-    /// CL files, and lists of jobs that end in .jsonl.
+    /// CL files, lists of jobs that end in .jsonl, and job files, .job.toml: each of their programs is a job.
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
 
@@ -174,7 +175,7 @@ pub fn run(session: &Session, arguments: &BatchArguments) -> Result<(), Failure>
     let ending = ending(&arguments.output)?;
     let reading = arguments.reading.0.clone();
     let options = StudySettings { reading, ..arguments.study.0.clone() };
-    let jobs = jobs(session, arguments)?;
+    let jobs = jobs(session, arguments, &options)?;
     let (study, inputs) = JobStudy::new(session, jobs, options)?;
     let map = map(arguments, &study)?;
     for job in &study.jobs {
@@ -228,9 +229,18 @@ fn ending(output: &PathArg) -> Result<String, Failure> {
 }
 
 /// The jobs of the files and lists, the grid laid over them.
-fn jobs(session: &Session, arguments: &BatchArguments) -> Result<Vec<JobLine>, Failure> {
+fn jobs(
+    session: &Session,
+    arguments: &BatchArguments,
+    options: &StudySettings,
+) -> Result<Vec<JobLine>, Failure> {
     let mut seeds = Vec::new();
     for file in &arguments.files {
+        if job_file::is_job_file(file) {
+            let job = job_file::read(session, file)?;
+            seeds.extend(JobLine::of_job_file(&job, options)?);
+            continue;
+        }
         if file.extension().is_none_or(|ending| ending != "jsonl") {
             seeds.push(JobLine::of_file(file.to_string_lossy().into_owned()));
             continue;

@@ -185,6 +185,7 @@ impl ConvertArguments {
                 plugins: self.plugins.clone(),
                 ..MachineSettings::default()
             },
+            mark: None,
         }
     }
 }

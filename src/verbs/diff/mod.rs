@@ -3,7 +3,7 @@
 mod diff_picture;
 mod diff_text;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use post_cli::arguments::flag_values::file;
 use post_cli::arguments::{Flags, ProgramArguments, flag_values};
@@ -73,6 +73,10 @@ pub struct DiffArguments {
     #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * post_readback::diff::SAME_FEED, value_parser = flag_values::positive)]
     feed_tolerance: f64,
 
+    /// Makes no difference: `coolant`, which of them flows and whether; `tools`, their numbers, names and registers. Repeatable.
+    #[arg(long, value_name = "WHAT", value_enum)]
+    ignore: Vec<Ignored>,
+
     /// Writes all that was found as JSON, with all digits; `-` is standard output, alone there.
     #[arg(long, value_name = "FILE", value_parser = file())]
     json: Option<PathArg>,
@@ -83,6 +87,15 @@ pub struct DiffArguments {
     /// Draws both paths, how far they are apart along the way, and their feeds.
     #[arg(long, value_name = "FILE", value_parser = file())]
     svg: Option<PathArg>,
+}
+
+/// What need not be compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Ignored {
+    /// Which coolant flows, and whether.
+    Coolant,
+    /// Numbers, names and registers of tools.
+    Tools,
 }
 
 /// Does as the arguments say.
@@ -134,6 +147,8 @@ impl DiffArguments {
                 axis: self.axis_tolerance.to_radians(),
                 feed: self.feed_tolerance / 100.0,
             },
+            any_coolant: self.ignore.contains(&Ignored::Coolant),
+            any_tool: self.ignore.contains(&Ignored::Tools),
         }
     }
 

@@ -1,6 +1,7 @@
 //! The verb that has no name: one CL file on one machine becomes one program, or several.
 
 mod parts;
+mod said_settings;
 mod setup_sheet;
 mod shown;
 
@@ -8,18 +9,20 @@ use clap::Args;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Severity};
 
-use parts::Split;
 use post_cli::arguments::flag_values::file;
 use post_cli::arguments::{Flags, JobArguments};
 use post_cli::terminal;
 use post_job::failure::Failure;
 use post_job::files::{self, AtomicFile, ClSource, PathArg, Role};
+use post_job::job_file::{self, JobMark, SavedJob};
 use post_job::making::{self, ProgramMaker, ProgramOutcome, ProgramPart, ProgramRequest};
+use post_job::old_summary::OldSummary;
 use post_job::predict::Prediction;
 use post_job::session::Session;
-use post_job::settings::{MakingSettings, ReportSettings};
+use post_job::settings::{JobSettings, MakingSettings, OutputSettings, ReportSettings};
 use post_job::summary::{self, SummaryJson};
 use post_job::{compensate, plan_rounds, plugin_finder, predict};
+use said_settings::SaidSettings;
 use shown::ShownArguments;
 
 const SETUP_SHEET: Role =
@@ -27,32 +30,19 @@ const SETUP_SHEET: Role =
 
 const PREDICTION: Role = Role { what: "prediction", remedy: "name another file with --predict=" };
 
+const JOB: Role = Role { what: "job file", remedy: "name another file with --save-job" };
+
 #[derive(Debug, Args)]
 pub struct PostArguments {
+    /// All settings that were said; before the flags, whose values are taken as they are read.
+    #[command(flatten)]
+    said: SaidSettings,
+
     #[command(flatten)]
     job: JobArguments,
 
-    /// The NC program, `-` for standard output. [default: beside the CL file, with the dialect's ending]
-    #[arg(short, long, value_name = "FILE", value_parser = file())]
-    output: Option<PathArg>,
-
-    /// Writes the summary as JSON for programs to read; `-` is standard output. Of several programs a list.
-    #[arg(long, value_name = "FILE", value_parser = file())]
-    summary: Option<PathArg>,
-
-    /// Writes a sheet for whoever sets the machine up: part origin and work offset, tools, operations, extents, times,
-    /// options; as HTML with a picture if the file's name ends so, else as Markdown.
-    #[arg(long, value_name = "FILE", value_parser = file())]
-    setup_sheet: Option<PathArg>,
-
-    /// Writes a program of its own for each operation, or for each tool: part-1.nc, part-2.nc, …
-    #[arg(long, value_name = "WHERE", value_enum)]
-    split: Option<Split>,
-
-    /// Reads each program back before it takes its name, runs it as the control does and holds it against the CL file
-    /// (`post verify`): what strays from it is not written.
-    #[arg(long)]
-    verify: bool,
+    #[command(flatten)]
+    outputs: Flags<OutputSettings>,
 
     #[command(flatten)]
     making: Flags<MakingSettings>,
@@ -63,20 +53,54 @@ pub struct PostArguments {
     #[command(flatten)]
     report: Flags<ReportSettings>,
 
-    /// Predicts what each program does on the machine (`post predict`): cycle time, true feed, axes, and how far the tool
-    /// strays; with =FILE as JSON too, of several programs a list.
-    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, value_parser = file())]
-    predict: Option<Option<PathArg>>,
+    /// Takes the settings of an old run from its summary (--summary): dialect, who keeps the tip, tolerances, error model, and
+    /// the length of --tool-length if there was one; what is said besides goes before them. Mount, turn and other keys of the
+    /// machine file stand in no summary.
+    #[arg(long, value_name = "FILE", value_parser = file())]
+    like: Option<PathArg>,
+
+    /// Writes what this command line says as a job file, that every verb takes in place of machine and CL file; its name
+    /// ends in `.job.toml`.
+    #[arg(long, value_name = "FILE", value_parser = file())]
+    save_job: Option<PathArg>,
 
     /// No summary, warnings and errors alone.
     #[arg(short, long)]
     quiet: bool,
+
+    /// The job file that says all of it, if one does.
+    #[arg(skip)]
+    mark: Option<JobMark>,
 }
 
 impl PostArguments {
+    /// The same, posted from a job file.
+    pub fn marked(self, mark: JobMark) -> Self {
+        Self { mark: Some(mark), ..self }
+    }
+
+    /// What the programs depend on, as a text that is another if they may be.
+    pub fn what_is_made(&self) -> String {
+        let making = MakingSettings { jobs: None, ..self.making.0.clone() };
+        format!("{:?} {making:?} {:?}", self.job.settings(), self.outputs.0.split)
+    }
+
+    /// Text of the job file that is asked for.
+    fn job_text(&self) -> Result<Option<String>, Failure> {
+        let Some(target) = &self.save_job else {
+            return Ok(None);
+        };
+        let job = self.job.settings();
+        let said = &self.said.0;
+        let saved = SavedJob { machine: &job.machine, cl: &job.input, said };
+        Ok(Some(job_file::text(&saved, target)?))
+    }
+
     /// A first pass over the CL file is made.
     fn looks_ahead(&self, machine: &Machine) -> bool {
-        machine.program.looks_ahead || self.split.is_some() || self.setup_sheet.is_some()
+        machine.program.looks_ahead
+            || self.outputs.0.split.is_some()
+            || self.outputs.0.setup_sheet.is_some()
     }
 
     /// The CL file is read more than once.
@@ -86,9 +110,9 @@ impl PostArguments {
             || making.plan
             || self.looks_ahead(machine)
             || machine.control.planes
-            || self.verify
+            || self.outputs.0.verify
             || self.report.0.report.is_some()
-            || self.predict.is_some()
+            || self.outputs.0.predict.is_some()
     }
 }
 
@@ -100,6 +124,7 @@ struct OutputFiles {
     summary: Option<AtomicFile>,
     sheet: Option<AtomicFile>,
     prediction: Option<AtomicFile>,
+    job: Option<AtomicFile>,
 }
 
 impl OutputFiles {
@@ -109,46 +134,55 @@ impl OutputFiles {
         parts: &[ProgramPart],
         maps: &[PathArg],
     ) -> Result<Self, Failure> {
-        let pages = parts::each(&arguments.report.0.report, arguments.split, parts.len());
-        let prediction = arguments.predict.as_ref().and_then(Option::as_ref);
+        let outputs = &arguments.outputs.0;
+        let pages = parts::each(&arguments.report.0.report, outputs.split, parts.len());
+        let prediction = outputs.predict.as_ref().and_then(Option::as_ref);
         let mut targets: Vec<(Role, &PathArg)> =
             parts.iter().map(|part| (Role::PROGRAM, &part.target)).collect();
         targets.extend(maps.iter().map(|map| (shown::MAP, map)));
         targets.extend(pages.iter().map(|page| (Role::REPORT, page)));
-        targets.extend(arguments.summary.iter().map(|summary| (Role::SUMMARY, summary)));
-        targets.extend(arguments.setup_sheet.iter().map(|sheet| (SETUP_SHEET, sheet)));
+        targets.extend(outputs.summary.iter().map(|summary| (Role::SUMMARY, summary)));
+        targets.extend(outputs.setup_sheet.iter().map(|sheet| (SETUP_SHEET, sheet)));
         targets.extend(prediction.map(|target| (PREDICTION, target)));
+        targets.extend(arguments.save_job.iter().map(|target| (JOB, target)));
         let mut files = AtomicFile::create(session, &targets)?.into_iter();
         let mut take = |count| files.by_ref().take(count).collect::<Vec<_>>();
         Ok(Self {
             programs: take(parts.len()),
             maps: take(maps.len()),
             pages: take(pages.len()),
-            summary: take(arguments.summary.iter().len()).pop(),
-            sheet: take(arguments.setup_sheet.iter().len()).pop(),
+            summary: take(outputs.summary.iter().len()).pop(),
+            sheet: take(outputs.setup_sheet.iter().len()).pop(),
             prediction: take(prediction.iter().len()).pop(),
+            job: take(arguments.save_job.iter().len()).pop(),
         })
     }
 
     /// All of them, in the order in which they were opened.
     fn all(self) -> Vec<AtomicFile> {
-        let Self { programs, maps, pages, summary, sheet, prediction } = self;
-        let single = [summary, sheet, prediction].into_iter().flatten();
+        let Self { programs, maps, pages, summary, sheet, prediction, job } = self;
+        let single = [summary, sheet, prediction, job].into_iter().flatten();
         programs.into_iter().chain(maps).chain(pages).chain(single).collect()
     }
 }
 
 /// Posts as the arguments say.
 pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> {
-    let job = &arguments.job.settings();
+    let job = &JobSettings { mark: arguments.mark.clone(), ..arguments.job.settings() };
+    let outputs = &arguments.outputs.0;
+    let saved = arguments.job_text()?;
     let (mut maker, machine) = ProgramMaker::open(session, job, &arguments.making.0)?;
+    if let Some(like) = &arguments.like {
+        let other = OldSummary::read(session, like)?.other_machine(&machine.name);
+        session.findings(&other.into_iter().collect::<Vec<_>>());
+    }
     let mut source = ClSource::new(session, &job.input, arguments.reads_twice(&machine))?;
     if arguments.looks_ahead(&machine) {
         maker.look_ahead(&machine, &mut source)?;
     }
     let maker = maker;
     let parts = the_parts(&maker, arguments, machine)?;
-    let places = arguments.shown.places(arguments.split, parts.len());
+    let places = arguments.shown.places(outputs.split, parts.len());
     let folders = places.folders(session)?;
     let mut texts = OutputFiles::create(session, arguments, &parts, &places.maps)?;
     let mut outcomes = Vec::new();
@@ -161,7 +195,7 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
         let page = pages.next().map(|page| (page, arguments.report.0.most()));
         let (map, source) = (maps.next(), &mut source);
         let (outcome, pictures) = shown::show(&part.machine, &part.target, map, draws, |watch| {
-            let (verify, predict) = (arguments.verify, arguments.predict.is_some());
+            let (verify, predict) = (outputs.verify, outputs.predict.is_some());
             let wanted = ProgramRequest { verify, predict, watch, observer: None, page };
             maker.make(part, ready, source, text, wanted, &mut findings)
         })?;
@@ -169,6 +203,9 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
         outcomes.push(outcome);
     }
     write_besides(arguments, &maker, &parts, &outcomes, &mut texts)?;
+    if let (Some(text), Some(file)) = (&saved, &mut texts.job) {
+        file.write_bytes(text.as_bytes())?;
+    }
     let mut files = texts.all();
     // Standard output is for a program or for JSON, alone there.
     let taken = files.iter().any(AtomicFile::is_standard);
@@ -197,14 +234,14 @@ fn write_besides(
 ) -> Result<(), Failure> {
     if let Some(file) = &mut texts.summary {
         let told: Vec<SummaryJson<'_>> = outcomes.iter().map(ProgramOutcome::told).collect();
-        let json = match (arguments.split, told.as_slice()) {
+        let json = match (arguments.outputs.0.split, told.as_slice()) {
             (None, [told]) => files::json(told),
             (_, told) => files::json(&told),
         };
         file.write_bytes(json.as_bytes())?;
     }
     if let (Some(sheet), Some(ahead), Some(file)) =
-        (&arguments.setup_sheet, &maker.ahead, &mut texts.sheet)
+        (&arguments.outputs.0.setup_sheet, &maker.ahead, &mut texts.sheet)
     {
         let reports = outcomes.iter().map(|outcome| &outcome.report);
         let programs: Vec<_> = parts.iter().map(|part| &part.target).zip(reports).collect();
@@ -215,7 +252,7 @@ fn write_besides(
     if let Some(file) = &mut texts.prediction {
         let predictions: Vec<&Prediction> =
             outcomes.iter().filter_map(|outcome| outcome.prediction.as_ref()).collect();
-        let json = match (arguments.split, predictions.as_slice()) {
+        let json = match (arguments.outputs.0.split, predictions.as_slice()) {
             (None, [prediction]) => files::json(prediction),
             (_, predictions) => files::json(&predictions),
         };
@@ -257,8 +294,9 @@ fn the_parts(
     machine: Machine,
 ) -> Result<Vec<ProgramPart>, Failure> {
     let ProgramMaker { session, job, finder, ahead, .. } = maker;
-    let target = making::target(job, arguments.output.as_ref(), &machine, finder)?;
-    let (Some(split), Some(ahead)) = (arguments.split, ahead) else {
+    let outputs = &arguments.outputs.0;
+    let target = making::target(job, outputs.output.as_ref(), &machine, finder)?;
+    let (Some(split), Some(ahead)) = (outputs.split, ahead) else {
         return Ok(vec![ProgramPart { lines: None, target, machine }]);
     };
     if target == PathArg::Standard {

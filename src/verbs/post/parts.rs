@@ -3,21 +3,12 @@
 use std::ops::Range;
 use std::path::Path;
 
-use clap::ValueEnum;
 use post_machine::diagnostic::Diagnostic;
 use post_posting::ProgramPreview;
 
 use post_job::failure::Failure;
 use post_job::files::PathArg;
-
-/// Where a new program begins.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Split {
-    /// At each operation.
-    Operations,
-    /// At each further tool.
-    Tools,
-}
+use post_job::settings::Split;
 
 /// The lines of the CL file that each program is made of: the first begins with the file, the last ends with it.
 pub fn lines(split: Split, ahead: &ProgramPreview) -> Result<Vec<Range<u64>>, Failure> {

@@ -4,7 +4,7 @@ use clap::Args;
 use post_machine::description::Machine;
 use post_posting::plan::{PlanWatch, PlannedPoint};
 
-use super::parts::{self, Split};
+use super::parts;
 use post_cli::arguments::flag_values::file;
 use post_job::failure::Failure;
 use post_job::files::{AtomicFile, FileFault, JsonRows, OwnFolder, PathArg, Role};
@@ -12,6 +12,7 @@ use post_job::plan::map::{LimitMap, MapRow};
 use post_job::plan::pictures;
 use post_job::plan::posted::{MARK, PlanReference, PlanTrace};
 use post_job::session::Session;
+use post_job::settings::Split;
 
 const PICTURES: Role = Role { what: "plan", remedy: "name another folder with --plan-pictures" };
 

@@ -23,7 +23,8 @@ use post_job::settings::ReportSettings;
 /// the axes then are is held against the commanded path, and with --against against the path of the CL file. Axes without
 /// a servo are where they are commanded: times and feeds are predicted all the same.
 ///
-/// What `post` was told for the job must be told here too (--mount, --tool-length, …).
+/// What `post` was told for the job must be told here too (--mount, --tool-length, …), or the job file named in place of the
+/// program.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   post predict part.nc --machine ac-trunnion

@@ -23,10 +23,13 @@ use post_job::verify::{Verified, VerifyRequest, verify};
 /// own line, or where the machine file retracts, changes and parks; tool, spindle, coolant, feed, dwells and stops are
 /// those that it asks for; no axis leaves its travel or passes its largest feed.
 ///
-/// What `post` was told for the job must be told here too (--mount, --tool-length, --units, …).
+/// What `post` was told for the job must be told here too (--mount, --tool-length, --units, …), or the job file named, in
+/// place of the program, or of the machine for another one. A program that was posted from a job file beside it needs
+/// neither.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   post verify part.nc --machine dmu50 --against part.cls
+  post verify part.job.toml
   post verify part.nc -m ac-trunnion --against part.cls --tool-length 120 --map map.json
   post verify part.nc -m my-mill.toml --against part.cls --tolerance 0.01 --summary -
 

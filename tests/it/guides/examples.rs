@@ -11,7 +11,8 @@ use super::page::{Part, language, pages, parts, sources, told, update, updating,
 use crate::common::{BINARY, PACKAGE, command_as, root};
 
 /// What the folder of a page has.
-const COPIED: [&str; 4] = ["machines", "tests/samples", "tests/measured", "papers/samples"];
+const COPIED: [&str; 5] =
+    ["machines", "tests/samples", "tests/jobs", "tests/measured", "papers/samples"];
 
 /// A folder like the checkout's, of which a reader may write in any part.
 fn folder() -> TempDir {

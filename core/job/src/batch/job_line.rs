@@ -201,6 +201,7 @@ impl JobLine {
             input: PathArg::from(PathBuf::from(&self.file)),
             reading: reading.clone(),
             over,
+            mark: None,
         })
     }
 

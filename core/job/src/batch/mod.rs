@@ -16,6 +16,7 @@
 mod columns;
 mod grid;
 mod inputs;
+mod job_file_line;
 mod job_line;
 mod journal;
 mod key;

@@ -37,6 +37,10 @@ pub struct DiffRequest {
     pub other_machine: bool,
     /// Differences that count for none.
     pub tolerances: DiffTolerances,
+    /// Which coolant flows makes no difference.
+    pub any_coolant: bool,
+    /// Numbers, names and registers of tools make none.
+    pub any_tool: bool,
 }
 
 /// One of the programs.
@@ -122,6 +126,8 @@ fn rules(request: &DiffRequest, [old, new]: [&NcControl; 2]) -> DiffRules {
         apart: diff::APART.max(4.0 * tip),
         one_machine,
         one_control: one_machine && old.machine.control.dialect == new.machine.control.dialect,
+        coolants: !request.any_coolant,
+        tools: !request.any_tool,
         axes,
         rotary,
     }

@@ -10,6 +10,7 @@ use super::blocks::BlockArrays;
 use super::{Blocks, MachineSelection, NamedOption, Refusal, StopSignal, quietly};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
+use crate::job_file::{self, JobFile, JobProgram};
 use crate::making::{self, ProgramInput, ProgramMaker, ProgramPart, ProgramRequest, ProgramSink};
 use crate::nc_program::Reread;
 use crate::plugin_finder;
@@ -21,7 +22,12 @@ use crate::settings::{JobSettings, MakingSettings, ReadingSettings, tell};
 struct Request {
     job: JobSettings,
     making: MakingSettings,
+    /// Where it is, or would be, written; none: beside its CL file.
     output: Option<PathArg>,
+    /// It is written.
+    writes: bool,
+    /// It is read back before it is written.
+    verify: bool,
 }
 
 /// A file, and never a standard stream: those are not ours.
@@ -98,8 +104,34 @@ impl Request {
         let mut over = machine.over.clone();
         let mut making = MakingSettings::default();
         tell(options, &mut [&mut reading, &mut over, &mut making])?;
-        let job = JobSettings { machine: machine.name.clone(), input: file(input), reading, over };
-        Ok(Self { job, making, output: output.map(file) })
+        let job = JobSettings {
+            machine: machine.name.clone(),
+            input: file(input),
+            reading,
+            over,
+            mark: None,
+        };
+        let (writes, verify) = (output.is_some(), false);
+        Ok(Self { job, making, output: output.map(file), writes, verify })
+    }
+
+    /// A program of a job file, with `options` over what that says; it is written if `writes` says so.
+    fn of_job(
+        session: &Session,
+        file: &JobFile,
+        program: &JobProgram,
+        options: &[NamedOption],
+        writes: bool,
+    ) -> Result<Self, Failure> {
+        let mut keys = program.keys()?;
+        tell(options, &mut [&mut keys.reading, &mut keys.over, &mut keys.making])?;
+        let mark = options.is_empty().then(|| file.mark.clone());
+        let job = program.settings(&keys, mark);
+        let output = match writes {
+            true => Some(program.target(session)?),
+            false => keys.outputs.output,
+        };
+        Ok(Self { job, making: keys.making, output, writes, verify: keys.outputs.verify })
     }
 
     /// Opens what the program is made with: the program as a part of its file, and the file.
@@ -142,15 +174,47 @@ impl MadeProgram {
         options: &[NamedOption],
         keep_blocks: bool,
     ) -> Result<Self, Refusal> {
+        Self::make(stop, keep_blocks, |_| Request::new(machine, input, output, options))
+    }
+
+    /// Posts the programs of the job file `path`, with `options` over what it says. They are written where it says if
+    /// `writes` says so.
+    ///
+    /// # Errors
+    /// Why the first of them that is refused is.
+    pub fn of_job_file(
+        stop: &StopSignal,
+        path: &Path,
+        writes: bool,
+        options: &[NamedOption],
+        keep_blocks: bool,
+    ) -> Result<Vec<Self>, Refusal> {
+        let (job, _) = quietly(stop, |session| job_file::read(session, path))?;
+        let programs = job.programs.iter().map(|program| {
+            Self::make(stop, keep_blocks, |session| {
+                session.read_files().note("the job file", path);
+                Request::of_job(session, &job, program, options, writes)
+            })
+        });
+        programs.collect()
+    }
+
+    fn make(
+        stop: &StopSignal,
+        keep_blocks: bool,
+        request: impl FnOnce(&Session) -> Result<Request, Failure>,
+    ) -> Result<Self, Refusal> {
         let made = quietly(stop, |session| {
-            let request = Request::new(machine, input, output, options)?;
+            let request = request(session)?;
             let (maker, part, mut source) = request.open(session)?;
-            let targets = request.output.as_ref().map(|target| (Role::PROGRAM, target));
-            let targets: Vec<_> = targets.into_iter().collect();
+            let target = request.output.as_ref().filter(|_| request.writes);
+            let targets: Vec<_> =
+                target.map(|target| (Role::PROGRAM, target)).into_iter().collect();
             let mut files = AtomicFile::create(session, &targets)?;
             let mut columns = keep_blocks.then(|| BlockArrays::new(&part.machine));
             let observer = columns.as_mut().map(|columns| columns as &mut dyn Observer);
-            let wanted = ProgramRequest { observer, ..ProgramRequest::default() };
+            let verify = request.verify;
+            let wanted = ProgramRequest { verify, observer, ..ProgramRequest::default() };
             let mut text = text(&part);
             let mut findings = Vec::new();
             let ready = maker.prepare(&part, &mut source, false)?;

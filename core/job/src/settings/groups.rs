@@ -11,10 +11,11 @@ use post_readback::interpret::Limits;
 
 use super::table::settings;
 use super::values::{
-    ANGLE, CL_WORD, COUNT, FEED, FILE, FOLDER, JOBS, LENGTH, MSYS, NAME, POINT, PROGRAM_NUMBER,
-    ROUNDS, SETTING, SPINDLE, TCP, TOLERANCE, TOOL, UNITS, UNKNOWN,
+    ANGLE, CL_WORD, COUNT, FEED, FILE, FILE_IF_ANY, FOLDER, JOBS, LENGTH, MSYS, NAME, POINT,
+    PROGRAM_NUMBER, ROUNDS, SETTING, SPINDLE, SPLIT, TCP, TOLERANCE, TOOL, UNITS, UNKNOWN,
 };
 use crate::files::PathArg;
+use crate::job_file::JobMark;
 
 /// What becomes of points and axes in a frame of NX.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,6 +25,15 @@ pub enum Msys {
     Keep,
     /// They are taken into the frame.
     Apply,
+}
+
+/// Where one CL file becomes several programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Split {
+    /// At each operation.
+    Operations,
+    /// At each further tool.
+    Tools,
 }
 
 settings! {
@@ -132,6 +142,34 @@ pub struct JobSettings {
     pub reading: ReadingSettings,
     /// What is set over the machine file.
     pub over: MachineSettings,
+    /// The job file that says all of it, if one does.
+    pub mark: Option<JobMark>,
+}
+
+settings! {
+    /// What a run writes beside what it prints, and what it finds out of its programs.
+    OutputSettings, None;
+
+    /// The NC program, `-` for standard output. [default: beside the CL file, with the dialect's ending]
+    one output: PathArg = FILE, "FILE", { short: Some('o') };
+
+    /// Writes the summary as JSON for programs to read; `-` is standard output. Of several programs a list.
+    one summary: PathArg = FILE, "FILE";
+
+    /// Writes a sheet for whoever sets the machine up: part origin and work offset, tools, operations, extents, times,
+    /// options; as HTML with a picture if the file's name ends so, else as Markdown.
+    one setup_sheet: PathArg = FILE, "FILE";
+
+    /// Writes a program of its own for each operation, or for each tool: part-1.nc, part-2.nc, …
+    one split: Split = SPLIT, "WHERE";
+
+    /// Reads each program back before it takes its name, runs it as the control does and holds it against the CL file
+    /// (`post verify`): what strays from it is not written.
+    flag verify;
+
+    /// Predicts what each program does on the machine (`post predict`): cycle time, true feed, axes, and how far the tool
+    /// strays; with =FILE as JSON too, of several programs a list.
+    one predict: Option<PathArg> = FILE_IF_ANY, "FILE";
 }
 
 settings! {

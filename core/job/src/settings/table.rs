@@ -65,6 +65,7 @@ impl About {
     fn shown(&self) -> String {
         match self.form {
             SettingForm::Flag => format!("--{}", self.flag()),
+            SettingForm::PathIfAny => format!("--{}[=<{}>]", self.flag(), self.value),
             _ => format!("--{} <{}>", self.flag(), self.value),
         }
     }

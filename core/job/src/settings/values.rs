@@ -8,7 +8,7 @@ use post_grammar::Units;
 use post_machine::description::{Setting, Tcp};
 use post_posting::program::{DefaultSpindle, UnknownWordPolicy, limits};
 
-use super::groups::Msys;
+use super::groups::{Msys, Split};
 use crate::files::PathArg;
 
 /// A value as a user, a file or another program tells it.
@@ -81,6 +81,8 @@ pub enum SettingForm {
     },
     /// Files or folders.
     Path,
+    /// It is told, with or without a file.
+    PathIfAny,
 }
 
 /// What values there are, and how one is read; an error says why it is none.
@@ -124,6 +126,9 @@ words!(#[doc = "Units of a CL file."]
 
 words!(#[doc = "Whether points and axes are taken into the frame of MSYS."]
     MSYS: Msys { "keep" => Msys::Keep, "apply" => Msys::Apply });
+
+words!(#[doc = "Where one CL file becomes several programs."]
+    SPLIT: Split { "operations" => Split::Operations, "tools" => Split::Tools });
 
 words!(#[doc = "What becomes of words without effect."]
 UNKNOWN: UnknownWordPolicy {
@@ -189,6 +194,16 @@ pub const POINT: SettingReader<[f64; 3]> = SettingReader::text(point);
 /// A file, `-` for the standard streams.
 pub const FILE: SettingReader<PathArg> =
     SettingReader { form: SettingForm::Path, read: |value| Ok(PathArg::from(path(value))) };
+
+/// A file, or none where it is only asked for.
+pub const FILE_IF_ANY: SettingReader<Option<PathArg>> = SettingReader {
+    form: SettingForm::PathIfAny,
+    read: |value| match value {
+        SettingValue::Yes(true) => Ok(None),
+        SettingValue::Yes(false) => Err("left out, it is not asked for".to_owned()),
+        value => Ok(Some(PathArg::from(path(value)))),
+    },
+};
 
 /// A folder.
 pub const FOLDER: SettingReader<PathBuf> =

@@ -117,6 +117,9 @@ impl<'a> EmitStage<'a> {
             observers: None,
             findings: findings.clone(),
         };
+        if let Some(text) = &job.remark {
+            emit.writer.push(0, Event::Comment { text });
+        }
         emit.say(0, TextPlace::Header);
         // Nothing is known of where the tool stands, nor of what is in force.
         emit.retract(0);

@@ -43,10 +43,25 @@ pub struct DiffRules {
     pub one_machine: bool,
     /// And for one control: registers and work offsets count too.
     pub one_control: bool,
+    /// Coolants are compared.
+    pub coolants: bool,
+    /// Numbers and names of tools, and their registers, are compared.
+    pub tools: bool,
     /// Names of the axes in chain order, for one machine.
     pub axes: Vec<String>,
     /// Which axes are rotary, in chain order.
     pub rotary: Vec<bool>,
+}
+
+impl DiffRules {
+    /// Whether it counts that this, which holds while the tool moves, is another.
+    fn compares(&self, what: &str) -> bool {
+        match what {
+            "coolant" => self.coolants,
+            "tool" | "radius register" | "length register" => self.tools,
+            _ => true,
+        }
+    }
 }
 
 /// Differences below this, mm and degrees, come of the last digit that is printed.

@@ -378,7 +378,7 @@ impl<'t> OperationTally<'t> {
             let [old, new] =
                 [0, 1].map(|side| facts(steps[side], kinds[side], self.rules.one_control));
             for ((what, old), (_, new)) in old.into_iter().zip(new) {
-                if old == new {
+                if old == new || !self.rules.compares(what) {
                     continue;
                 }
                 let key = (what, old, new);
@@ -417,7 +417,7 @@ impl<'t> OperationTally<'t> {
             }
         }
         let slack = 10.0 * self.found.tip.value + self.rules.apart;
-        self.found.events = events(&old_events, &new_events, slack);
+        self.found.events = events(&old_events, &new_events, slack, self.rules.tools);
         let rules = self.rules;
         let found = &mut self.found;
         // Where one path is a last digit longer than the other, what follows stands beside what was before.
@@ -507,11 +507,19 @@ fn facts(step: &PathStep, kind: MotionKind, one_control: bool) -> Vec<(&'static 
     facts
 }
 
-/// Events without a counterpart: the longest run of pairs in order is taken out.
-fn events(old: &[StepEvent], new: &[StepEvent], slack: f64) -> Vec<EventDifference> {
+/// Events without a counterpart: the longest run of pairs in order is taken out. Which tool comes in a change counts if
+/// `numbered` says so.
+fn events(
+    old: &[StepEvent],
+    new: &[StepEvent],
+    slack: f64,
+    numbered: bool,
+) -> Vec<EventDifference> {
     let alike = |one: &StepEvent, other: &StepEvent| {
-        let tools = matches!(one.event, ProgramEvent::ToolChange { .. });
-        named(one) == named(other) && (tools || (one.at - other.at).norm() <= slack)
+        let [tools, changes] =
+            [one, other].map(|one| matches!(one.event, ProgramEvent::ToolChange { .. }));
+        let same = named(one) == named(other) || (!numbered && tools && changes);
+        same && (tools || (one.at - other.at).norm() <= slack)
     };
     // Few stand in one operation; of more than this the first are looked at.
     let (old, new) = (&old[..old.len().min(1000)], &new[..new.len().min(1000)]);

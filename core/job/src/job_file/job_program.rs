@@ -1,0 +1,76 @@
+//! A program of a job: its machine, its CL file, and what is told of it.
+
+use std::path::{Path, PathBuf};
+
+use super::{JobKeys, JobMark, JobSetting};
+use crate::failure::Failure;
+use crate::files::PathArg;
+use crate::making;
+use crate::plugin_finder;
+use crate::session::Session;
+use crate::settings::{JobSettings, SettingValue};
+
+/// One program.
+#[derive(Clone, Debug)]
+pub struct JobProgram {
+    /// The machine: a TOML file as seen from here, or a bare name.
+    pub machine: String,
+    /// The CL file, as seen from here.
+    pub cl: PathBuf,
+    /// What is told of it, a name once.
+    pub told: Vec<JobSetting>,
+}
+
+impl JobProgram {
+    /// What it tells, each in its group.
+    ///
+    /// # Errors
+    /// A value that is none.
+    pub fn keys(&self) -> Result<JobKeys, Failure> {
+        let mut keys = JobKeys::default();
+        for setting in &self.told {
+            if setting.value == SettingValue::Yes(false) {
+                continue;
+            }
+            let mut groups = keys.groups().into_iter();
+            let put = groups.find_map(|group| group.put(setting.about.name, &setting.value));
+            put.unwrap_or(Ok(())).map_err(|why| setting.fault(&why))?;
+        }
+        Ok(keys)
+    }
+
+    /// CL file, machine and how the one is posted on the other.
+    pub fn settings(&self, keys: &JobKeys, mark: Option<JobMark>) -> JobSettings {
+        JobSettings {
+            machine: self.machine.clone(),
+            input: PathArg::from(self.cl.clone()),
+            reading: keys.reading.clone(),
+            over: keys.over.clone(),
+            mark,
+        }
+    }
+
+    /// Where its program is written.
+    ///
+    /// # Errors
+    /// Its machine cannot be used, by whose dialect it is named where the file does not say.
+    pub fn target(&self, session: &Session) -> Result<PathArg, Failure> {
+        let keys = self.keys()?;
+        if let Some(output) = &keys.outputs.output {
+            return Ok(output.clone());
+        }
+        let job = self.settings(&keys, None);
+        let machine = crate::machine(session, &job, &[])?;
+        let finder = plugin_finder::finder(session, &keys.over.plugins)?;
+        making::target(&job, None, &machine, &finder)
+    }
+
+    /// It writes the program `path`, as far as names say.
+    pub fn is_named(&self, path: &Path) -> bool {
+        let output = self.told.iter().find(|setting| setting.about.name == "output");
+        match output.map(|setting| &setting.value) {
+            Some(SettingValue::Path(output)) => output.file_name() == path.file_name(),
+            _ => self.cl.file_stem() == path.file_stem(),
+        }
+    }
+}

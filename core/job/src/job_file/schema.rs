@@ -1,0 +1,56 @@
+//! The JSON Schema of job files, from the table of settings.
+
+use serde_json::{Map, Value, json};
+
+use super::JobKeys;
+use super::job_keys::BESIDE;
+use crate::settings::{About, SettingForm};
+
+/// The schema.
+pub fn schema() -> Value {
+    let mut keys: Map<String, Value> = JobKeys::about()
+        .filter(|about| about.name != "plugins")
+        .map(|about| (about.name.to_owned(), setting(about)))
+        .collect();
+    for (name, doc) in BESIDE {
+        keys.insert(name.to_owned(), json!({ "description": doc, "type": "string" }));
+    }
+    keys.remove("program");
+    let program = json!({
+        "type": "object",
+        "properties": keys.clone(),
+        "additionalProperties": false,
+    });
+    for (name, doc) in BESIDE.iter().filter(|(name, _)| *name == "program") {
+        let programs =
+            json!({ "description": doc, "type": "array", "items": program, "minItems": 1 });
+        keys.insert((*name).to_owned(), programs);
+    }
+    json!({
+        "$schema": "http://json-schema.org/draft-07/schema#",
+        "title": "Job file of post",
+        "type": "object",
+        "properties": keys,
+        "additionalProperties": false,
+    })
+}
+
+fn setting(about: &About) -> Value {
+    let kind = match about.form {
+        SettingForm::Flag => json!({ "type": "boolean" }),
+        SettingForm::Words(words) => json!({ "enum": words() }),
+        SettingForm::Whole { least, most } => {
+            json!({ "type": "integer", "minimum": least, "maximum": most })
+        }
+        SettingForm::Path => json!({ "type": "string" }),
+        SettingForm::PathIfAny => json!({ "type": ["boolean", "string"] }),
+        SettingForm::Text if about.name == "set" => json!({ "type": "object" }),
+        SettingForm::Text => json!({ "type": ["number", "string", "array"] }),
+    };
+    let mut schema = match about.many && about.name != "set" {
+        true => json!({ "anyOf": [kind, { "type": "array", "items": kind }] }),
+        false => kind,
+    };
+    schema["description"] = json!(about.text());
+    schema
+}

@@ -4,6 +4,8 @@ use std::fs;
 use std::io::Cursor;
 
 use post_machine::description::Machine;
+use post_readback::course::cl::{ClCourse, ClSettings};
+use post_readback::course::{Course, CourseItem, CutRun};
 use post_readback::interpret::{Interpreter, Limits};
 use post_readback::lexicon::Lexicon;
 use post_readback::{BlockEffect, Offsets};
@@ -164,5 +166,108 @@ fn runs_of_programs_of_others_do_what_their_blocks_do() {
         }
         let most = program.len().min(100_000);
         assert_same(&machine, &lexicon, &program[..most], &mut rng);
+    }
+}
+
+/// What a CL file asks for, item by item, numbers to their last digit; with cuts as they are told together, or without.
+fn asked(machine: &Machine, text: &[u8], together: bool, feed: Option<f64>) -> Vec<String> {
+    let settings = ClSettings { feed, unknown_left_out: true, ..ClSettings::of(machine, "p.cls") };
+    let mut course = ClCourse::new(settings, text);
+    if !together {
+        course = course.one_by_one();
+    }
+    let (mut asked, mut cuts) = (Vec::new(), CutRun::default());
+    loop {
+        if course.next_cuts(&mut cuts) {
+            assert!(together && cuts.count() > 0);
+            asked.extend((0..cuts.count()).map(|place| {
+                let piece = CourseItem::Piece(cuts.piece(place));
+                format!("{:?}", Ok::<_, ()>(Some(piece)))
+            }));
+            continue;
+        }
+        let item = course.next();
+        asked.push(format!("{item:?}"));
+        if matches!(item, Ok(None)) || asked.len() > 20_000 {
+            return asked;
+        }
+    }
+}
+
+fn assert_asked_alike(machine: &Machine, text: &[u8], feed: Option<f64>) -> bool {
+    let plain = asked(machine, text, false, feed);
+    let told = asked(machine, text, true, feed);
+    for (one, other) in plain.iter().zip(&told) {
+        assert!(one == other, "{one}\n{other}\n{}", String::from_utf8_lossy(text));
+    }
+    assert_eq!(plain.len(), told.len());
+    plain.len() > 100
+}
+
+/// Points of many forms, and words between them.
+fn cl_file(rng: &mut Rng) -> String {
+    const BETWEEN: [&str; 24] = [
+        "RAPID",
+        "FEDRAT/MMPM,500.0",
+        "FEDRAT/0.2,MMPR",
+        "FEDRAT/INVERSE,20.",
+        "FEDRAT/RAPID",
+        "SPINDL/1000,RPM,CLW",
+        "LOAD/TOOL,3",
+        "COOLNT/ON",
+        "CIRCLE/0.0,0.0,0.0,0.0,0.0,1.0,5.0",
+        "CYCLE/DRILL,RAPTO,1.0,FEDTO,-5.0,MMPM,100.0",
+        "CYCLE/OFF",
+        "ROTABL/BAXIS,30.0",
+        "MULTAX/OFF",
+        "MSYS/1.0,2.0,3.0,1.0,0.0,0.0,0.0,1.0,0.0",
+        "UNITS/INCHES",
+        "TLAXIS/0.0,0.6,0.8",
+        "GOHOME",
+        "DELAY/2.0",
+        "GODLTA/0.0,0.0,1.0",
+        "GOTO/1.0,2.0,3.0,0.0,0.0,0.0",
+        "GOTO/1.0,2.0,99999999.0,0.0,0.0,1.0",
+        "FROM/0.0,0.0,50.0",
+        "MYSTERY/1,2,3",
+        "INDIRV/1.0,0.0,0.0",
+    ];
+    let axis = rng.pick(2) == 0;
+    let mut text = "UNITS/MM\nLOAD/TOOL,1\nSPINDL/900,RPM,CLW\nFEDRAT/MMPM,300.0\n".to_owned();
+    for _ in 0..20 + rng.pick(150) {
+        if rng.pick(15) == 0 {
+            text += BETWEEN[rng.pick(BETWEEN.len())];
+        } else {
+            let [x, y, z] = rng.point(40.0).into();
+            text += &format!("GOTO/{x:.4},{y:.4},{z:.4}");
+            if axis || rng.pick(30) == 0 {
+                let [i, j, k] = rng.direction().into();
+                text += &format!(",{i:.6},{j:.6},{k:.6}");
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
+#[test]
+fn cuts_that_are_told_together_are_those_that_are_told_one_by_one() {
+    let (rounds, mut rng) = randomised(200, 283);
+    let mut turned = machine("ac-trunnion");
+    turned.turn = 0.4;
+    let machines = [machine("ac-trunnion"), turned];
+    let mut long = 0;
+    for round in rounds {
+        let text = cl_file(&mut rng);
+        let feed = (rng.pick(3) == 0).then_some(250.0);
+        long += u32::from(assert_asked_alike(&machines[round % 2], text.as_bytes(), feed));
+    }
+    assert!(long > 0);
+    let Some(folder) = shared("data/cl") else {
+        return;
+    };
+    for file in fs::read_dir(folder).unwrap() {
+        let text = fs::read(file.unwrap().path()).unwrap();
+        assert_asked_alike(&machines[0], &text[..text.len().min(200_000)], None);
     }
 }

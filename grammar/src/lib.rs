@@ -12,6 +12,7 @@ mod cl;
 mod decimal;
 mod expression;
 mod fault;
+mod layout;
 pub mod nc;
 mod template;
 pub mod text;

@@ -10,14 +10,14 @@ use post_readback::course::CourseFacts;
 use post_readback::course::cl::{ClCourse, ClSettings};
 use post_readback::course::program::{Chords, ProgramCourse};
 use post_readback::interpret::Limits;
-use post_readback::verify::{BlockReport, CutPath};
+use post_readback::verify::CutPath;
 
 use super::JobMachine;
 use super::making::{ProgramMaker, ProgramPart};
 use super::nc_program::{NcControl, ProgramFile};
 use super::nc_to_cl::{self, Tools};
 use super::posting_pass::PostingExtras;
-use super::read_back::{self, ReadingSetup, VerifiedProgram, VerifyReference};
+use super::read_back::{self, ReadingSetup, Unwatched, VerifiedProgram, VerifyReference};
 use super::report::{self, PageTexts, PostPage};
 use super::text::{clock, number};
 use crate::failure::Failure;
@@ -236,7 +236,7 @@ impl<'a> Conversion<'a> {
         };
         let told = program.name().to_owned();
         let text = Box::new(program.reread()?);
-        let held = read_back::hold(&reading, against, &told, text, &mut |_: &BlockReport| {})?;
+        let held = read_back::hold(&reading, against, &told, text, &mut Unwatched)?;
         Ok((held, facts))
     }
 

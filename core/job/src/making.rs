@@ -10,7 +10,7 @@ use post_posting::plan::PlanWatch;
 use post_posting::report::PostingReport;
 use post_posting::{Observer, ProgramPreview, TextSink};
 use post_readback::interpret::Limits;
-use post_readback::verify::{BlockReport, Verification};
+use post_readback::verify::Verification;
 
 use crate::JobMachine;
 use crate::compensate::{self, ServoCompensation, ShiftedPath};
@@ -23,7 +23,7 @@ use crate::plan_worth;
 use crate::plugin_finder;
 use crate::posting_pass::{self, PostingExtras};
 use crate::predict::{self, PredictReference, Predicted, Prediction, PredictionSetup, Sample};
-use crate::read_back::{self, ReadingSetup, VerifiedProgram};
+use crate::read_back::{self, ReadingSetup, Unwatched, VerifiedProgram};
 use crate::report::{self, BlockRows, ClWindow, PageTexts, PostPage, PredictedParts};
 use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings};
@@ -398,7 +398,7 @@ impl<'a> ProgramMaker<'a> {
             lines: part.lines.clone(),
         };
         let ProgramInput { name, text } = program;
-        read_back::verify(&reading, source, &name, text, &mut |_: &BlockReport| {})
+        read_back::verify(&reading, source, &name, text, &mut Unwatched)
     }
 
     /// Predicts what a program does, for the page too if `heard` is given; `period` between set-points, s, over the machine file's.

@@ -11,7 +11,9 @@ use post_posting::program::{DefaultSpindle, UnknownWordPolicy};
 use post_readback::course::cl::{ClCourse, ClSettings, ClTool};
 use post_readback::course::{Course, CourseWindow};
 use post_readback::interpret::Limits;
-use post_readback::verify::{BlockReport, CutPath, Fault, Verification, Verifier, VerifyRules};
+use post_readback::verify::{
+    BlockReport, CutBounds, CutPath, Fault, Verification, Verifier, VerifyRules,
+};
 use post_readback::{BlockEffect, Offsets};
 
 use super::nc_program::{self, DialectVocabulary, NcControl};
@@ -164,14 +166,16 @@ pub fn verify(
     let cl_name = first.name.clone();
     let settings = course_settings(arguments, machine, &cl_name);
     let mut course = ClCourse::new(settings.clone(), first.bytes);
-    let (cut_path, mut findings) = CutPath::of(&mut course, machine.control_point.along);
+    let along = machine.control_point.along;
+    let (bounds, mut findings) = CutBounds::of(&mut course, along);
     let tools = course.tools().to_vec();
+    let again = ClCourse::new(settings.clone(), source.open_beside()?.bytes);
     let course = ClCourse::new(settings, source.open()?.bytes);
     let against = VerifyReference {
         course: CourseWindow::new(course, reading.lines.clone()),
         name: cl_name,
         tools,
-        cut_path: Some(cut_path),
+        cut_path: Some(CutPath::when_asked(bounds, Box::new(again), along)),
     };
     let held = hold(reading, against, name, input, watch)?;
     findings.extend(held.findings);
@@ -183,6 +187,11 @@ pub trait VerifyWatch {
     /// What the program did next, before it is judged.
     fn done(&mut self, _done: &BlockEffect) {}
 
+    /// Lines are told with their deviations; else they may be told without.
+    fn wants_lines(&self) -> bool {
+        true
+    }
+
     /// A line of the program is judged; all that it did was told before.
     fn line(&mut self, line: &BlockReport);
 
@@ -190,6 +199,17 @@ pub trait VerifyWatch {
     fn runs_on(&mut self) -> bool {
         false
     }
+}
+
+/// Nobody looks on.
+pub struct Unwatched;
+
+impl VerifyWatch for Unwatched {
+    fn wants_lines(&self) -> bool {
+        false
+    }
+
+    fn line(&mut self, _line: &BlockReport) {}
 }
 
 impl<F: FnMut(&BlockReport)> VerifyWatch for F {
@@ -233,7 +253,8 @@ pub fn hold<C: Course>(
         None => offsets(reading.arguments, machine, &tools),
     };
     let control = NcControl::of(machine, spoken, offsets, reading.limits);
-    let mut verifier = Verifier::new(&control.counted, rules(reading, &control, &tools), course);
+    let rules = VerifyRules { rows: watch.wants_lines(), ..rules(reading, &control, &tools) };
+    let mut verifier = Verifier::new(&control.counted, rules, course);
     if let Some(cut_path) = cut_path {
         verifier = verifier.near(cut_path);
     }

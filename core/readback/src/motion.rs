@@ -89,6 +89,9 @@ impl Motion {
         if self.way == Interpolation::TipAndAxis || !self.turns() {
             return 1;
         }
+        if self.bends_little(chord, angle) {
+            return 1;
+        }
         let bend = self.bend();
         // The chord over the whole of a piece, looked at nowhere.
         let blind = libm::sqrt((bend.tip / (8.0 * chord)).max(bend.axis / (8.0 * angle)));
@@ -108,6 +111,21 @@ impl Motion {
             count = (wanted as u64).max(count + 1).min(blind);
         }
         count
+    }
+
+    /// Whether one piece is enough, as turns and arms alone tell, with room for what is closer to them in
+    /// [`Motion::bend`].
+    fn bends_little(&self, chord: f64, angle: f64) -> bool {
+        const ROOM: f64 = 0.9;
+        const TURN: f64 = 0.1;
+        let chain = self.state.solver.chain();
+        let turn = |place: usize| libm::fabs(self.to.joints[place] - self.from.joints[place]);
+        let axes = chain.joints().iter().enumerate().filter(|(_, axis)| axis.rotary);
+        let all: f64 = axes.map(|(place, _)| turn(place)).sum();
+        all < TURN
+            && 2.0 * all * all <= ROOM * 8.0 * angle
+            && (self.way != Interpolation::Axes
+                || chain.bend_by_arms([&self.from.joints, &self.to.joints]) <= ROOM * 8.0 * chord)
     }
 
     /// How far the motion strays at most from straight lines and great circles of `count` pieces of it, where it is looked

@@ -175,22 +175,31 @@ impl<R: Read> ClReader<R> {
     /// There may be none: [`Self::next_record`] goes on then.
     pub fn next_gotos(&mut self, run: &mut GotoRun) -> &[u8] {
         let start = self.start;
-        let count = self.layout.gotos(&self.buffer, start, self.end, &mut run.values);
-        let length = self.layout.length();
-        self.start += count * length;
-        if self.layout.lines() > 1 {
-            for place in 0..count {
-                self.layout.join(&mut self.buffer[start + place * length..]);
+        self.gotos_ahead(run);
+        if run.lines > 1 {
+            for place in 0..run.count {
+                self.layout.join(&mut self.buffer[start + place * run.stride..]);
             }
         }
-        run.count = count;
+        self.pass_gotos(run);
+        &self.buffer[start..self.start]
+    }
+
+    /// Fills in the `GOTO` records that follow as far as they are laid out as those before. None of them is taken:
+    /// [`Self::pass_gotos`] does that, or [`Self::next_record`] one by one.
+    pub fn gotos_ahead(&mut self, run: &mut GotoRun) {
+        run.count = self.layout.gotos(&self.buffer, self.start, self.end, &mut run.values);
         run.line = self.line;
         run.lines = self.layout.lines();
         run.has_axis = self.layout.has_axis();
         run.stride = self.layout.length();
         run.length = self.layout.joined_length();
-        self.line += count as u64 * run.lines;
-        &self.buffer[start..self.start]
+    }
+
+    /// Takes the records that [`Self::gotos_ahead`] has filled in.
+    pub fn pass_gotos(&mut self, run: &GotoRun) {
+        self.start += run.count * run.stride;
+        self.line += run.count as u64 * run.lines;
     }
 
     /// Numbers of the `GOTO` that begins here, if it is laid out as those before.

@@ -5,6 +5,7 @@ use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use memchr::memchr2;
 
 use super::reader::LONGEST;
+use crate::layout::WINDOW;
 
 /// Bytes asked of the input at a time: small enough that a loop over the edge of the buffer stays cheap.
 const CHUNK: usize = 64 * 1024;
@@ -73,7 +74,7 @@ impl<R: Read + Seek> ProgramLines<R> {
     pub(super) fn new(input: R) -> Self {
         Self {
             input,
-            buffer: vec![0; CHUNK],
+            buffer: vec![0; CHUNK + WINDOW],
             start: 0,
             end: 0,
             base: 0,
@@ -165,8 +166,29 @@ impl<R: Read + Seek> ProgramLines<R> {
 
     /// Goes `bytes` on, which are one line.
     pub(super) fn pass(&mut self, bytes: usize) {
+        self.pass_lines(bytes, 1);
+    }
+
+    /// Goes `bytes` on, which are so many lines.
+    pub(super) fn pass_lines(&mut self, bytes: usize, lines: u64) {
         self.start += bytes;
-        self.line += 1;
+        self.line += lines;
+    }
+
+    /// Goes `bytes` back, which are so many lines that were passed since more was read.
+    pub(super) fn step_back(&mut self, bytes: usize, lines: u64) {
+        self.start -= bytes;
+        self.line -= lines;
+    }
+
+    /// All that is held, and room behind it.
+    pub(super) fn buffer(&self) -> &[u8] {
+        &self.buffer
+    }
+
+    /// Where in the buffer begins what is read and not yet consumed, and where it ends.
+    pub(super) fn at_hand(&self) -> [usize; 2] {
+        [self.start, self.end]
     }
 
     /// The next line, which stays in place; none at the end of the file.
@@ -224,7 +246,7 @@ impl<R: Read + Seek> ProgramLines<R> {
             self.base += passed as u64;
         }
         loop {
-            match self.input.read(&mut self.buffer[self.end..]) {
+            match self.input.read(&mut self.buffer[self.end..CHUNK]) {
                 Ok(0) => self.ended = true,
                 Ok(count) => self.end += count,
                 Err(error) if error.kind() == ErrorKind::Interrupted => continue,

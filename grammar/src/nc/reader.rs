@@ -8,7 +8,9 @@ use std::io::{Read, Seek};
 
 use super::block::{NcBlock, NcFlow, NcItem, NcSyntax, Notation};
 use super::fault::Unreadable;
+use super::layout::BlockLayouts;
 use super::lines::{NcMark, PhysicalBlockLine, ProgramLines, line_end};
+use super::run::{NcRun, NcRunRule};
 use super::search::JumpCache;
 use super::{conversational, remarks, scan, words};
 use crate::fault::{ReadError, SyntaxFault};
@@ -32,6 +34,8 @@ pub struct NcReader<R> {
     /// Jumps that were looked for.
     pub(super) found: JumpCache,
     scratch: BlockText,
+    /// How blocks were laid out.
+    layouts: BlockLayouts,
     /// The head of the file was looked at.
     opened: bool,
     /// A block was read since the last `%`.
@@ -59,6 +63,7 @@ impl<R: Read + Seek> NcReader<R> {
             syntax,
             found: JumpCache::default(),
             scratch: BlockText::default(),
+            layouts: BlockLayouts::new(),
             opened: false,
             began: false,
             behind_percent: false,
@@ -151,6 +156,31 @@ impl<R: Read + Seek> NcReader<R> {
             return Ok(true);
         }
         Ok(false)
+    }
+
+    /// Takes the blocks that follow, as far as they are at hand, are laid out as others before them and keep to `rule`,
+    /// into `run`. There may be none: [`Self::next_block`] goes on then.
+    pub fn next_run(&mut self, rule: &NcRunRule, run: &mut NcRun) {
+        run.count = 0;
+        let plain = self.opened && self.began && !self.behind_percent;
+        if !plain || self.syntax.notation != Notation::Words {
+            return;
+        }
+        run.line = self.lines.line();
+        self.layouts.take(self.lines.buffer(), self.lines.at_hand(), rule, run);
+        if let Some(last) = run.count.checked_sub(1) {
+            self.lines.pass_lines(run.ends[last], run.count as u64);
+        }
+    }
+
+    /// Goes back to the block behind the first `count` of the run that was taken last: what follows is no part of it.
+    pub fn shorten(&mut self, run: &mut NcRun, count: usize) {
+        if count >= run.count {
+            return;
+        }
+        let end = |count: usize| count.checked_sub(1).map_or(0, |last| run.ends[last]);
+        self.lines.step_back(end(run.count) - end(count), (run.count - count) as u64);
+        run.count = count;
     }
 
     /// Reads a block of words and numbers; gives the length of its line. None if it is anything else, or if more of the

@@ -21,6 +21,8 @@ pub struct ProgramSurvey<'a> {
     pub waits: f64,
     /// What each axis shows least and most, by name, mm or degrees.
     pub axes: Vec<(String, [f64; 2])>,
+    /// Least and largest value of each axis that was looked at, mm or radians, by its place on the machine that it has now.
+    seen: [[f64; 2]; MAX_AXES],
     /// Least and largest coordinate of the tip at feed, mm.
     pub tip: Option<[[f64; 3]; 2]>,
     /// Tools in the order in which they come.
@@ -28,6 +30,9 @@ pub struct ProgramSurvey<'a> {
     /// Largest feed of the tip that is stated, mm/min.
     pub feed: f64,
 }
+
+/// No value was looked at.
+const UNSEEN: [[f64; 2]; MAX_AXES] = [[f64::INFINITY, f64::NEG_INFINITY]; MAX_AXES];
 
 /// What a tool did.
 pub struct ToolUse {
@@ -53,6 +58,7 @@ impl<'a> ProgramSurvey<'a> {
             minutes: [0.0; 2],
             waits: 0.0,
             axes: Vec::new(),
+            seen: UNSEEN,
             tip: None,
             tools: Vec::new(),
             feed: 0.0,
@@ -70,6 +76,7 @@ impl<'a> ProgramSurvey<'a> {
                 }
                 ProgramEvent::Dwell { time, revolutions: false } => self.waits += time,
                 ProgramEvent::Head(name) => {
+                    self.seen = UNSEEN;
                     self.machine = self.base.head(name).map_or(self.base, |head| &head.machine);
                 }
                 _ => {}
@@ -93,7 +100,14 @@ impl<'a> ProgramSurvey<'a> {
         self.in_machine += u64::from(motion.machine);
         self.kept += u64::from(motion.state.tcp);
         for (place, axis) in self.machine.axes.iter().enumerate().take(MAX_AXES) {
-            let shown = axis.reading(motion.to.joints[place]);
+            let value = motion.to.joints[place];
+            let [least, most] = &mut self.seen[place];
+            // What it shows lies between those of the values on both sides.
+            if value > *least && value < *most {
+                continue;
+            }
+            (*least, *most) = (least.min(value), most.max(value));
+            let shown = axis.reading(value);
             // Two machines may have their axes in different places.
             let known = match self.axes.get_mut(place) {
                 Some(known) if known.0 == axis.name => Some(known),

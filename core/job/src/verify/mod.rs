@@ -139,6 +139,10 @@ impl VerifyWatch for VerifyOutputs<'_, '_> {
         }
     }
 
+    fn wants_lines(&self) -> bool {
+        self.map.is_some() || self.rows.is_some()
+    }
+
     fn line(&mut self, line: &BlockReport) {
         if let Some((map, file)) = &mut self.map {
             map.row(line, file);

@@ -17,7 +17,7 @@ pub fn heard(row: &BlockReport) -> LineFacts {
     LineFacts {
         cl: row.cl_line.unwrap_or(0),
         deviation: [row.tip_deviation_mm, row.axis_deviation_deg],
-        limit: row.limited_by.clone(),
+        limit: row.limited_by.as_deref().map(str::to_owned),
         ..LineFacts::default()
     }
 }

@@ -8,6 +8,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::arm_bend::ArmBend;
 use super::batch::{Column, LANES, Lanes, VectorColumn, groups, steps, vector, widely};
 use super::chain::{Chain, Joints, MAX_AXES, Trace, Turns, turn};
 use super::inverse::Solver;
@@ -79,34 +80,6 @@ pub struct LinearMotion {
     certain: f64,
     /// A time that is too short to matter, minutes.
     enough: f64,
-}
-
-/// Bounds on a point behind rotary joints, joint by joint.
-struct ArmBend {
-    /// Where the arm begins, mm.
-    place: Vector3<f64>,
-    /// Length of the arm, mm.
-    arm: f64,
-    /// First derivative, mm.
-    slope: f64,
-    /// Second derivative, mm.
-    bend: f64,
-}
-
-impl ArmBend {
-    /// Of a point that is up to `arm` from `place`, mm, and goes at `slope` at most.
-    fn at(place: Vector3<f64>, arm: f64, slope: f64) -> Self {
-        Self { place, arm, slope, bend: 0.0 }
-    }
-
-    /// Beyond a joint through `point` that turns by `w`, radians.
-    #[inline]
-    fn pass(&mut self, point: Vector3<f64>, w: f64) {
-        self.arm += (self.place - point).norm();
-        self.place = point;
-        self.bend += w * (w * self.arm + 2.0 * self.slope);
-        self.slope += w * self.arm;
-    }
 }
 
 /// The linear axes at one place of a block, and how fast they go there.

@@ -1,6 +1,7 @@
 //! Kinematics, derived from the chain: forward by product of exponentials, inverse in closed form where there is
 //! one, and numerically else.
 
+mod arm_bend;
 pub mod batch;
 pub mod chain;
 pub mod choose;

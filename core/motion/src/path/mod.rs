@@ -11,7 +11,7 @@ use post_machine::kinematics::{Chain, Joints, Pose};
 
 pub use chords::{arc_chords, chords, nearest_share, piece_ends};
 pub use curve::Curve;
-pub use round::{GreatCircle, arm_and_height, between, on_arc};
+pub use round::{GreatCircle, arm_and_height, between, circle_ends, on_arc};
 pub use spline::BSpline;
 
 /// Where the machine stands.

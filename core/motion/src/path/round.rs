@@ -1,6 +1,8 @@
 //! Points and directions between two others, on straight lines' next of kin: arcs and great circles.
 
 use nalgebra::Vector3;
+use post_machine::kinematics::batch::{LANES, groups};
+use post_machine::kinematics::lane_math::{atan2_all, sincos_all};
 
 /// Directions nearer than this are one: the sine of their angle.
 const SAME: f64 = 1e-12;
@@ -82,9 +84,46 @@ impl GreatCircle {
     }
 }
 
+/// Fills in where the great circle from each of `axes` to the next ends, all unit vectors: [`between`] at 1, for up to
+/// [`LANES`] of them at once.
+pub fn circle_ends(axes: &[Vector3<f64>], ends: &mut Vec<Vector3<f64>>) {
+    ends.clear();
+    for axes in axes.windows(2).collect::<Vec<_>>().chunks(LANES) {
+        let count = axes.len();
+        let [mut sine, mut cosine, mut angle] = [[0.0; LANES]; 3];
+        let [mut sine_of, mut cosine_of] = [[0.0; LANES]; 2];
+        for (lane, pair) in axes.iter().enumerate() {
+            sine[lane] = pair[0].cross(&pair[1]).norm();
+            cosine[lane] = pair[0].dot(&pair[1]);
+        }
+        for lanes in [&mut sine, &mut cosine] {
+            let last = lanes[count - 1];
+            lanes[count..groups(count)].fill(last);
+        }
+        atan2_all(&sine, &cosine, count, &mut angle);
+        let last = angle[count - 1];
+        angle[count..groups(count)].fill(last);
+        sincos_all(&angle, count, &mut sine_of, &mut cosine_of);
+        ends.extend(axes.iter().enumerate().map(|(lane, pair)| {
+            let (from, to) = (pair[0], pair[1]);
+            if from == to || sine[lane] < SAME {
+                return between(from, to, 1.0);
+            }
+            let about = from.cross(&to) / sine[lane];
+            turned_by(from, about, [sine_of[lane], cosine_of[lane]])
+        }));
+    }
+}
+
 /// A vector turned about the unit vector `k`, right-handed, radians.
 fn turned_about(vector: Vector3<f64>, k: Vector3<f64>, angle: f64) -> Vector3<f64> {
     let (sine, cosine) = libm::sincos(angle);
+    turned_by(vector, k, [sine, cosine])
+}
+
+/// A vector turned about the unit vector `k` by the angle of this sine and cosine.
+#[inline]
+fn turned_by(vector: Vector3<f64>, k: Vector3<f64>, [sine, cosine]: [f64; 2]) -> Vector3<f64> {
     vector * cosine + k.cross(&vector) * sine
 }
 

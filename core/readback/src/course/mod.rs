@@ -11,6 +11,7 @@
 //! business.
 
 pub mod cl;
+mod cut_run;
 pub(crate) mod descent;
 mod facts;
 mod legs;
@@ -24,6 +25,7 @@ use post_machine::kinematics::Pose;
 use crate::{MotionKind, ProgramEvent};
 
 pub use crate::Curve;
+pub use cut_run::CutRun;
 pub use facts::{CourseFacts, CourseOperation};
 pub use legs::Legs;
 pub use window::CourseWindow;
@@ -35,6 +37,13 @@ pub trait Course {
     /// # Errors
     /// What its source says that cannot be understood, with its place.
     fn next(&mut self) -> Result<Option<CourseItem>, Box<Diagnostic>>;
+
+    /// Puts the cuts that come next into `cuts`, as far as they are told together: [`Course::next`] goes on behind them then.
+    /// False if it tells what comes next.
+    fn next_cuts(&mut self, cuts: &mut CutRun) -> bool {
+        let _ = cuts;
+        false
+    }
 }
 
 /// What a course says.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use post_machine::diagnostic::Diagnostic;
 
-use super::{Course, CourseItem, ReachedPose};
+use super::{Course, CourseItem, CutRun, ReachedPose};
 use crate::{MotionKind, ProgramEvent};
 
 /// The items of some lines of a course, with what holds there.
@@ -69,5 +69,9 @@ impl<C: Course> Course for CourseWindow<C> {
                 _ => {}
             }
         }
+    }
+
+    fn next_cuts(&mut self, cuts: &mut CutRun) -> bool {
+        self.lines.is_none() && self.course.next_cuts(cuts)
     }
 }

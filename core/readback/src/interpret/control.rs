@@ -12,6 +12,7 @@ use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::Language;
 
 use super::ReadReport;
+use super::block_words::bit;
 use super::frame::{CoordinateFrame, FrameStack};
 use super::state::{
     ArcPlane, AxisLetters, ControlState, FeedMeaning, ModalState, MotionMode, MountedHead,
@@ -56,6 +57,22 @@ impl AxisLetters {
             }
         }
         axes
+    }
+
+    /// Words with X, Y and Z are the coordinates, as far as the machine has such axes; F is none.
+    pub fn are_cartesian(&self) -> bool {
+        let own = |row: usize| {
+            let letter = 23 + row;
+            self.mask & (1 << letter) == 0
+                || self.cartesian[row] == Some(usize::from(self.letters[letter]))
+        };
+        self.mask & bit(b'F') == 0 && (0..3).all(own)
+    }
+
+    /// Bits of the places of the axes whose letters are those of `letters`.
+    pub fn places_of(&self, letters: u32) -> u32 {
+        let letters_of = |letter: &usize| letters & self.mask & (1 << letter) != 0;
+        (0..26).filter(letters_of).fold(0, |places, letter| places | 1 << self.letters[letter])
     }
 }
 

@@ -9,7 +9,7 @@ use super::state::{AxisLetters, ControlState, OrientationMode};
 use crate::{BlockEffect, Curve, Interpolation, Motion, MotionKind, Stance};
 
 /// A tip that the axes miss by more than this is not reached, mm.
-const REACHED: f64 = 1e-6;
+pub(super) const REACHED: f64 = 1e-6;
 
 /// A vector is reached if the tool axis misses it by no more than this, radians: vectors have few decimals.
 const AIMED: f64 = 1e-4;
@@ -95,13 +95,7 @@ impl ControlState {
                 OrientationMode::Axes => STRAIGHT,
                 OrientationMode::Usual | OrientationMode::Circle => Interpolation::TipAndAxis,
             },
-            Curve::Straight
-                if self.state.tcp && self.modal.orientation == OrientationMode::Circle =>
-            {
-                Interpolation::TipAndAxis
-            }
-            Curve::Straight if self.state.tcp => STRAIGHT,
-            Curve::Straight => Interpolation::Axes,
+            Curve::Straight => self.straight_way(),
             Curve::Arc { centre, normal, sweep } => {
                 Interpolation::Tip(self.arc(&from, *centre, *normal, *sweep)?)
             }
@@ -109,6 +103,16 @@ impl ControlState {
         };
         self.moved(kind, way, from);
         Ok(())
+    }
+
+    /// How the control goes straight by words of axes.
+    #[inline]
+    pub(super) fn straight_way(&self) -> Interpolation {
+        match self.modal.orientation {
+            OrientationMode::Circle if self.state.tcp => Interpolation::TipAndAxis,
+            _ if self.state.tcp => STRAIGHT,
+            _ => Interpolation::Axes,
+        }
     }
 
     /// Remembers which axes the program has led somewhere.
@@ -415,6 +419,12 @@ impl ControlState {
     /// way.
     #[inline]
     pub fn turned(&self, place: usize, value: f64) -> f64 {
+        self.turned_from(place, value, self.at.joints[place])
+    }
+
+    /// [`ControlState::turned`] of an axis that stands at `last`.
+    #[inline]
+    pub fn turned_from(&self, place: usize, value: f64, last: f64) -> f64 {
         let axis = &self.machine.axes[place];
         if !axis.joint.rotary {
             return value;
@@ -423,7 +433,7 @@ impl ControlState {
         if !shortest {
             return value;
         }
-        shorter(value, self.at.joints[place])
+        shorter(value, last)
     }
 
     /// The letter's axis, if it is one.
@@ -436,7 +446,7 @@ impl ControlState {
 
 /// `point` with the coordinates that are said.
 #[inline]
-fn told_over(point: Vector3<f64>, said: &[Option<f64>; 3]) -> Vector3<f64> {
+pub(super) fn told_over(point: Vector3<f64>, said: &[Option<f64>; 3]) -> Vector3<f64> {
     Vector3::from_fn(|row, _| said[row].unwrap_or(point[row]))
 }
 

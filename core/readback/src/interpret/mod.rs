@@ -9,6 +9,7 @@
 //! | `compensation`, `spindle` | lengths, radii, work offsets; tools, spindle, coolant, waits |
 //! | `corners` | how the control passes from one motion to the next |
 //! | `names` | names, calls and texts among the words |
+//! | `run` | plain blocks that are run together |
 //! | `go`, `arcs`, `splines`, `machine_moves` | from words to axis values, tip and tool axis |
 //! | `feed`, `tools` | time, tool lengths |
 //! | `frame` | frames within one another |
@@ -36,6 +37,7 @@ mod machine_moves;
 mod meanings;
 mod names;
 pub(crate) mod planes;
+mod run;
 mod spindle;
 mod spindle_request;
 mod splines;
@@ -54,6 +56,7 @@ use crate::lexicon::Lexicon;
 use crate::{BlockEffect, MachineState, Offsets};
 use block_words::BlockWords;
 use flow::ProgramFlow;
+use run::MotionRun;
 use state::ControlState;
 
 /// How far a program may go.
@@ -119,6 +122,7 @@ pub struct Interpreter<R> {
     flow: ProgramFlow<R>,
     block: NcBlock,
     runner: Runner,
+    run: Box<MotionRun>,
 }
 
 impl<R: Read + Seek> Interpreter<R> {
@@ -144,7 +148,14 @@ impl<R: Read + Seek> Interpreter<R> {
             flow: ProgramFlow::new(reader, lexicon.language(), limits, file),
             block: NcBlock::default(),
             runner,
+            run: MotionRun::new(),
         })
+    }
+
+    /// Runs so many plain blocks together at most; what they do does not hang on it.
+    pub fn with_longest_run(mut self, most: usize) -> Self {
+        self.run.longest = most;
+        self
     }
 
     /// Runs the next block and puts what it did after what `done` holds; false at the end. It can be called again after
@@ -154,7 +165,14 @@ impl<R: Read + Seek> Interpreter<R> {
     /// What stands there that cannot be understood, or is not run, with its place.
     #[inline]
     pub fn next(&mut self, done: &mut Vec<BlockEffect>) -> Result<bool, Box<Diagnostic>> {
-        let Self { flow, block, runner } = self;
+        if !self.run.is_over() || self.begins_run() {
+            let control = &mut self.runner.control;
+            std::mem::swap(done, &mut control.done);
+            control.tell_next(&mut self.run);
+            std::mem::swap(done, &mut control.done);
+            return Ok(true);
+        }
+        let Self { flow, block, runner, .. } = self;
         if runner.control.ended {
             return Ok(false);
         }
@@ -174,6 +192,22 @@ impl<R: Read + Seek> Interpreter<R> {
         let ran = runner.run(block);
         std::mem::swap(done, &mut runner.control.done);
         ran.map(|()| true).map_err(|finding| flow.show(finding))
+    }
+
+    /// Whether the next blocks are run together: they wait to be told then.
+    fn begins_run(&mut self) -> bool {
+        let Self { flow, runner, run, .. } = self;
+        if runner.conversational || run.longest == 0 || runner.control.ended {
+            return false;
+        }
+        let Some(rule) = runner.control.run_rule() else {
+            return false;
+        };
+        flow.next_run(&rule, &mut run.read);
+        let count = runner.control.work_out(run);
+        flow.shorten(&mut run.read, count);
+        runner.control.begin_run(run);
+        count > 0
     }
 
     /// The line of the block that was run last, and what holds after it.

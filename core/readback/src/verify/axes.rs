@@ -55,6 +55,9 @@ impl AxisLimitCheck {
 
     /// An axis leaves its travel.
     pub fn over_travel(&self, machine: &Machine, motion: &Motion) -> Option<AxisFault> {
+        if motion.way == Interpolation::Axes {
+            return self.beyond(machine, [&motion.to.joints; 2]);
+        }
         let (mut least, mut most) = (motion.to.joints, motion.to.joints);
         match &motion.way {
             Interpolation::Axes => {}
@@ -83,6 +86,12 @@ impl AxisLimitCheck {
                 }
             }
         }
+        self.beyond(machine, [&least, &most])
+    }
+
+    /// The first axis whose least or largest value lies beyond its travel.
+    #[inline]
+    fn beyond(&self, machine: &Machine, [least, most]: [&Joints; 2]) -> Option<AxisFault> {
         for (joint, axis) in machine.axes.iter().enumerate() {
             let slack = ROUNDED * axis.unit();
             for value in [least[joint], most[joint]] {
@@ -120,11 +129,15 @@ impl AxisLimitCheck {
         Some(AxisFault { code: "max-feed", message, by: most * (factor - 1.0) })
     }
 
-    /// Where the control keeps the tip, no axis passes its largest feed, as arms alone tell: its speed differs from that of
-    /// the whole way by half of its second derivative at most.
+    /// No axis passes its largest feed: where all go linearly as their ways tell; where the control keeps the tip as arms
+    /// alone do, the speed of an axis differing from that of the whole way by half of its second derivative at most.
     fn is_slow(&self, motion: &Motion) -> bool {
         let (from, to) = (&motion.from.joints, &motion.to.joints);
-        let Some(bend) = bend_between_words(motion) else {
+        let bend = match motion.way {
+            Interpolation::Axes => Some(0.0),
+            _ => bend_between_words(motion),
+        };
+        let Some(bend) = bend else {
             return false;
         };
         motion.state.solver.chain().joints().iter().enumerate().all(|(index, joint)| {
@@ -142,20 +155,22 @@ impl AxisLimitCheck {
         motion: &Motion,
         enough: f64,
     ) -> Option<(f64, usize)> {
-        let mut slowest: Option<(f64, usize)> = None;
+        let curved = motion.way.is_curved();
+        let follows = motion.way != Interpolation::Axes && !curved;
+        let (mut most, mut at) = (0.0, None);
+        let ends = motion.from.joints.iter().zip(&motion.to.joints).zip(&self.slowness);
+        for (joint, (axis, ((from, to), slowness))) in machine.axes.iter().zip(ends).enumerate() {
+            let minutes = libm::fabs(to - from) * slowness;
+            if minutes > most && (!curved || axis.joint.rotary) {
+                (most, at) = (minutes, Some(joint));
+            }
+        }
+        let mut slowest = at.map(|joint| (most, joint));
         let mut take = |minutes: f64, joint: usize| {
             if minutes > slowest.map_or(0.0, |(most, _)| most) {
                 slowest = Some((minutes, joint));
             }
         };
-        let curved = motion.way.is_curved();
-        let follows = motion.way != Interpolation::Axes && !curved;
-        for joint in 0..machine.axes.len() {
-            let way = libm::fabs(motion.to.joints[joint] - motion.from.joints[joint]);
-            if !curved || machine.axes[joint].joint.rotary {
-                take(way * self.slowness[joint], joint);
-            }
-        }
         if follows && let Some(slides) = slides(motion, &self.slowness, enough) {
             take(slides.minutes, slides.slowest);
         }

@@ -104,29 +104,49 @@ pub(super) fn motion(
     last: &mut LastEnd,
     places: &mut Vec<ToolPlace>,
 ) {
-    let joints = motion.state.solver.chain().joints().iter().enumerate();
-    let turns = joints.filter(|(_, joint)| joint.rotary).map(|(index, _)| {
-        let [from, to] = [&motion.from, &motion.to].map(|end| end.joints[index]);
-        (to - from).abs()
-    });
-    let Some(first) = first_pieces(motion.way.curve(), turns.fold(0.0, f64::max)) else {
+    let turns = AxisTurns::of(motion);
+    if turns.most == 0.0 && !motion.way.is_curved() {
         places.push(ToolPlace::new(&motion.to.pose, along));
         return;
-    };
+    }
     let at = |t| ToolPlace::new(&motion.at(t), along);
+    let first = || first_pieces(motion.way.curve(), turns.most).unwrap_or(1);
     // Neither on a curve nor along great circles do the axis values alone say where the tool points.
     if !matches!(motion.way, Interpolation::Axes | Interpolation::Tip(Curve::Straight)) {
-        return chop(at, [at(0.0), at(1.0)], first, sag, places);
+        return chop(at, [at(0.0), at(1.0)], first(), sag, places);
     }
     let end = known_end(motion).map_or_else(|| at(1.0), |end| ToolPlace::new(&end, along));
     debug_assert_eq!(end, at(1.0));
-    if turns_little(motion, along, sag) {
+    if turns_little(motion, turns.all, along, sag) {
         return places.push(end);
     }
     let start = last.begins(motion).unwrap_or_else(|| at(0.0));
     debug_assert_eq!(start, at(0.0));
     last.keep(motion, end);
-    chop(at, [start, end], first, sag, places);
+    chop(at, [start, end], first(), sag, places);
+}
+
+/// How far the rotary axes turn on a motion, radians.
+struct AxisTurns {
+    /// That which turns farthest.
+    most: f64,
+    /// All together.
+    all: f64,
+}
+
+impl AxisTurns {
+    #[inline]
+    fn of(motion: &Motion) -> Self {
+        let mut turns = Self { most: 0.0, all: 0.0 };
+        for (index, joint) in motion.state.solver.chain().joints().iter().enumerate() {
+            if joint.rotary {
+                let turn = (motion.to.joints[index] - motion.from.joints[index]).abs();
+                turns.most = turns.most.max(turn);
+                turns.all += turn;
+            }
+        }
+        turns
+    }
 }
 
 /// The end of a straight way as [`Motion::at`] has it, if that is the pose which the program has led the tool to: the
@@ -143,19 +163,21 @@ fn known_end(motion: &Motion) -> Option<Pose> {
     }
 }
 
-/// Whether the control keeps the tip on a straight way on which the tool turns by so little that the way is straight
-/// within `sag`: a direction that turns by w in all strays from its chord by w²/8 at most.
-fn turns_little(motion: &Motion, along: f64, sag: &PlaceBound) -> bool {
-    if motion.way == Interpolation::Axes || motion.to.pose.edge != Vector3::zeros() {
+/// Whether the tool turns, by `turn` in all, by so little that the way is straight within `sag`: a direction that turns by w in all strays from
+/// its chord by w²/8 at most, and a tip that no control keeps by as much of what its arms make of it.
+#[inline]
+fn turns_little(motion: &Motion, turn: f64, along: f64, sag: &PlaceBound) -> bool {
+    if motion.to.pose.edge != Vector3::zeros() {
         return false;
     }
-    let joints = motion.state.solver.chain().joints().iter().enumerate();
-    let turn: f64 = joints
-        .filter(|(_, joint)| joint.rotary)
-        .map(|(index, _)| (motion.to.joints[index] - motion.from.joints[index]).abs())
-        .sum();
     let bow = turn * turn / 8.0 + ROUNDED;
-    turn < TURN && bow <= sag.axis && bow * along.abs() + ROUNDED <= sag.point
+    let room = sag.point - (bow * along.abs() + ROUNDED);
+    if turn >= TURN || bow > sag.axis || room < 0.0 {
+        return false;
+    }
+    let ends = [&motion.from.joints, &motion.to.joints];
+    motion.way != Interpolation::Axes
+        || motion.state.solver.chain().bend_by_arms(ends) / 8.0 <= room
 }
 
 /// The way of a piece of a course after its beginning.
@@ -165,7 +187,7 @@ pub(super) fn piece(
     sag: &PlaceBound,
     places: &mut Vec<ToolPlace>,
 ) {
-    match straight(piece, along, sag) {
+    match straight_piece(piece, along, sag) {
         Some(Straight::Stays) => return places.push(ToolPlace::new(&piece.to, along)),
         Some(Straight::Turns) => {
             return places.push(ToolPlace::new(&piece.at(1.0, along), along));
@@ -185,11 +207,32 @@ pub(super) fn piece(
 /// The point at the end of a piece of a course that [`piece`] makes one of within `sag`, if that is known without looking
 /// at the way; the tip is what is guided.
 pub(super) fn straight_end(piece: &CoursePiece, sag: &PlaceBound) -> Option<Vector3<f64>> {
-    let (from, to) = (piece.from.tip, piece.to.tip);
-    straight(piece, 0.0, sag).map(|straight| match straight {
-        Straight::Stays => to,
-        Straight::Turns => piece.curve.at([from, to], 1.0),
-    })
+    let ends = [&piece.from, &piece.to];
+    straight_piece(piece, 0.0, sag).map(|straight| straight.end(ends))
+}
+
+/// [`straight_end`] of a straight cut between two poses.
+pub(super) fn straight_cut_end(ends: [&Pose; 2], sag: &PlaceBound) -> Option<Vector3<f64>> {
+    straight(ends, 0.0, sag).map(|straight| straight.end(ends))
+}
+
+/// The place at the end of a straight cut between two poses that [`piece`] makes one piece of within `sag`, if that is known
+/// without looking at the way; `end` is where the great circle between their tool axes ends.
+#[inline]
+pub(super) fn straight_cut(
+    ends: [&Pose; 2],
+    end: Vector3<f64>,
+    along: f64,
+    sag: &PlaceBound,
+) -> Option<ToolPlace> {
+    match straight(ends, along, sag)? {
+        Straight::Stays => Some(ToolPlace::new(ends[1], along)),
+        Straight::Turns => {
+            let edge = Vector3::zeros();
+            let tip = Curve::Straight.tip(ends, end, along, 1.0);
+            Some(ToolPlace::new(&Pose { tip, axis: end, edge }, along))
+        }
+    }
 }
 
 /// A piece of a course that is straight.
@@ -200,15 +243,32 @@ enum Straight {
     Turns,
 }
 
+impl Straight {
+    /// The tip at its end.
+    fn end(&self, ends: [&Pose; 2]) -> Vector3<f64> {
+        match self {
+            Self::Stays => ends[1].tip,
+            Self::Turns => Curve::Straight.at(ends.map(|pose| pose.tip), 1.0),
+        }
+    }
+}
+
+/// [`straight`] of a piece; none where it is curved.
+fn straight_piece(piece: &CoursePiece, along: f64, sag: &PlaceBound) -> Option<Straight> {
+    let is_straight = piece.curve == Curve::Straight;
+    is_straight.then(|| straight([&piece.from, &piece.to], along, sag)).flatten()
+}
+
 /// Whether a piece of a course is straight within `sag`, as far as the chord between its tool axes tells: the middle of the
 /// great circle between two unit vectors is farther from that of their chord c by 1 - √(1 - c²/4), and that is less
 /// than c²/4.
-fn straight(piece: &CoursePiece, along: f64, sag: &PlaceBound) -> Option<Straight> {
+#[inline]
+fn straight([from, to]: [&Pose; 2], along: f64, sag: &PlaceBound) -> Option<Straight> {
     let zero = Vector3::zeros();
-    if piece.curve != Curve::Straight || piece.from.edge != zero || piece.to.edge != zero {
+    if from.edge != zero || to.edge != zero {
         return None;
     }
-    let square = (piece.from.axis - piece.to.axis).norm_squared();
+    let square = (from.axis - to.axis).norm_squared();
     if square == 0.0 {
         return Some(Straight::Stays);
     }

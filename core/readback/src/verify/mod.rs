@@ -15,6 +15,7 @@
 
 mod axes;
 mod chop;
+mod cut_bounds;
 mod cut_path;
 mod detour;
 mod fed_rapid;
@@ -24,6 +25,7 @@ mod near;
 mod next_cut;
 mod octree;
 mod place;
+mod quick;
 mod rapid;
 mod report;
 mod retract;
@@ -34,6 +36,7 @@ mod track;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use nalgebra::Vector3;
 use post_machine::description::{Machine, Rapid};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
@@ -47,11 +50,13 @@ use crate::{
 use axes::AxisFault;
 pub(crate) use axes::AxisLimitCheck;
 pub use axes::over_travel;
+pub use cut_bounds::CutBounds;
 pub use cut_path::CutPath;
 use detour::Detour;
 use hole::{DrilledHole, HoleRun};
 use left_on::RunningFunctions;
 use place::{PlaceBound, PlaceDistance, ShareSpan, ToolPlace};
+use quick::QuickStand;
 use report::BlockPlace;
 pub use report::{BlockReport, Fault, LeftOn, Verification, WorstDeviation};
 use sweep::StrayStretch;
@@ -95,6 +100,8 @@ pub struct VerifyRules {
     pub own: bool,
     /// Each line of the program is told with the solution that it ends in.
     pub solutions: bool,
+    /// Each line of the program is told with its deviations; else some are told without.
+    pub rows: bool,
     /// Most faults that are told apart; then the check is given up.
     pub most_faults: usize,
 }
@@ -120,6 +127,7 @@ impl VerifyRules {
             coolants: true,
             own: false,
             solutions: false,
+            rows: true,
             most_faults: MOST_FAULTS,
         }
     }
@@ -158,6 +166,7 @@ pub struct Verifier<'m, C> {
     track: CourseTrack<C>,
     /// Places on each element of the track where the program may stand.
     reach: Vec<ShareSpan>,
+    quick: QuickStand,
     /// The element that a rapid may come to next; all before it were passed.
     next: Option<usize>,
     /// The tool has moved at rapid since the last cut, or not cut yet.
@@ -171,8 +180,8 @@ pub struct Verifier<'m, C> {
     cut_path: CutPath,
     /// The tool has come to a point of the course.
     placed: bool,
-    /// How near the course's own rapids come to its cuts where the motion at hand has passed them, mm.
-    course_near: f64,
+    /// The course's own rapids that the motion at hand has passed: from where to where, mm.
+    passed: Vec<[Vector3<f64>; 2]>,
     /// Ends of the pieces of the motion at hand, its beginning first.
     places: Vec<ToolPlace>,
     last_end: chop::LastEnd,
@@ -225,6 +234,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             ),
             track: CourseTrack::new(course, along, sag),
             reach: Vec::new(),
+            quick: QuickStand::default(),
             next: Some(0),
             apart: true,
             stray: None,
@@ -233,7 +243,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             cycle: None,
             cut_path: CutPath::new(along),
             placed: false,
-            course_near: f64::INFINITY,
+            passed: Vec::new(),
             places: Vec::new(),
             last_end: chop::LastEnd::default(),
             spare: Vec::new(),
@@ -271,15 +281,23 @@ impl<'m, C: Course> Verifier<'m, C> {
                     self.block.nc_line = motion.line;
                     self.block.block = motion.number;
                 }
-                self.motion(motion);
+                if self.motion(motion) {
+                    return;
+                }
             }
             BlockEffect::Event { line, event } => {
+                self.settle();
                 self.runs(*line, event);
                 self.take_event(*line, event);
             }
             BlockEffect::State(_) => {}
         }
         self.drop_behind();
+        if let BlockEffect::Motion(Motion { kind: MotionKind::Feed, .. }) = done {
+            let places = std::mem::take(&mut self.places);
+            self.look_for_points(&places);
+            self.places = places;
+        }
     }
 
     fn take_event(&mut self, line: u64, event: &ProgramEvent) {
@@ -311,6 +329,7 @@ impl<'m, C: Course> Verifier<'m, C> {
     /// The program is at its end: what was found.
     pub fn finish(mut self, listen: &mut dyn FnMut(&BlockReport)) -> Verification {
         self.end_block(listen);
+        self.settle();
         if !self.found.gave_up {
             self.flush_stray();
             self.look_at_the_rest();
@@ -337,7 +356,8 @@ impl<'m, C: Course> Verifier<'m, C> {
         }
     }
 
-    fn motion(&mut self, motion: &Motion) {
+    /// Takes a motion; true if nothing of it has to be looked at further.
+    fn motion(&mut self, motion: &Motion) -> bool {
         self.moved = true;
         self.found.motions += 1;
         self.found.time_s += motion.minutes * 60.0;
@@ -353,8 +373,10 @@ impl<'m, C: Course> Verifier<'m, C> {
             self.axis_fault(motion, fault);
         }
         self.look_for_length(motion);
+        let mut goes_on = false;
         match motion.kind {
             MotionKind::Rapid => {
+                self.settle();
                 self.found.rapids += 1;
                 self.set_kind("rapid");
                 self.rapid(motion, &places);
@@ -363,7 +385,11 @@ impl<'m, C: Course> Verifier<'m, C> {
                 if let Some(fault) = self.axes.too_fast(self.machine, motion) {
                     self.axis_fault(motion, fault);
                 }
-                self.feed(motion, &places);
+                goes_on = self.goes_on(motion, &places);
+                if !goes_on {
+                    self.settle();
+                    self.feed(motion, &places);
+                }
             }
         }
         self.places = places;
@@ -371,6 +397,7 @@ impl<'m, C: Course> Verifier<'m, C> {
         if self.rules.solutions {
             self.block.solution = axes::solution(self.machine, motion);
         }
+        goes_on
     }
 
     /// A line of the program that cuts is told as a cut.

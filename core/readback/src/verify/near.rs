@@ -14,6 +14,9 @@ impl<C: Course> Verifier<'_, C> {
     /// Where the tool stands before it comes to its first point is not known, and how machines turn off the part is often
     /// their own: what comes near is told, and what touches is a fault.
     pub(super) fn look_how_near(&mut self, motion: &Motion, places: &[ToolPlace]) {
+        if self.cut_path.keeps_off(places, self.rapid_bound.point) {
+            return;
+        }
         let ends = [&places[0], &places[places.len() - 1]];
         let ends = ends.map(|end| self.cut_path.distance(end.point));
         let slack = self.rapid_bound.point + self.cut_path.blur();
@@ -54,12 +57,15 @@ impl<C: Course> Verifier<'_, C> {
         {
             under_way = Some((element.from.point, element.to.point));
         }
-        let under_way = under_way.map_or(f64::INFINITY, |(from, to)| self.dips(from, to));
-        self.course_near.min(under_way)
+        let mut near = under_way.map_or(f64::INFINITY, |(from, to)| self.dips(from, to));
+        for [from, to] in std::mem::take(&mut self.passed) {
+            near = near.min(self.dips(from, to)).min(self.cut_path.distance(to));
+        }
+        near
     }
 
     /// How near a rapid of the course comes to the cuts, if between its ends it is nearer than at both, mm.
-    pub(super) fn dips(&self, from: Vector3<f64>, to: Vector3<f64>) -> f64 {
+    fn dips(&mut self, from: Vector3<f64>, to: Vector3<f64>) -> f64 {
         let ends = [from, to].map(|end| self.cut_path.distance(end));
         let least = ends[0].min(ends[1]);
         let near = self.cut_path.least_on(from, to, 0.0);

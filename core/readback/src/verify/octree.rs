@@ -74,6 +74,21 @@ impl Octree {
         2.0 * self.cell * 3f64.sqrt()
     }
 
+    /// How finely distances are known at worst of places within a box of these edges, mm: of all grids whose cells cannot be
+    /// too many in it, that of the smallest.
+    pub fn coarsest_blur(extent: Vector3<f64>) -> f64 {
+        let mut edge = FINEST;
+        // A box takes a cell more along each axis than fit into it, and one for where the grid begins.
+        let cubes = |edge: f64| extent.iter().map(|side| side / edge + 2.0).product::<f64>();
+        let all = |edge: f64| -> f64 {
+            (0..DEEPEST as i32).map(|level| cubes(libm::ldexp(edge, level))).sum()
+        };
+        while all(edge) > MOST_CELLS as f64 {
+            edge *= 2.0;
+        }
+        edge * 3f64.sqrt()
+    }
+
     /// Adds a place.
     pub fn add(&mut self, point: Vector3<f64>) {
         if self.root == NONE {

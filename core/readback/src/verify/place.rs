@@ -45,6 +45,7 @@ const SHORT: f64 = 1e-12;
 
 impl ToolPlace {
     /// Place of the point `along` mm above the tip, towards the holder.
+    #[inline]
     pub fn new(pose: &Pose, along: f64) -> Self {
         Self { point: pose.tip + pose.axis * along, axis: pose.axis, edge: pose.edge_across() }
     }
@@ -66,6 +67,7 @@ impl ToolPlace {
         }
     }
 
+    #[inline]
     pub fn within(&self, other: &Self, bound: &PlaceBound) -> bool {
         (self.point - other.point).norm() <= bound.point
             && (self.axis - other.axis).norm() <= bound.axis
@@ -80,6 +82,7 @@ impl ToolPlace {
         }
     }
 
+    #[inline]
     pub fn has_edge(&self) -> bool {
         self.edge != Vector3::zeros()
     }

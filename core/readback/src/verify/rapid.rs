@@ -19,7 +19,7 @@ impl<C: Course> Verifier<'_, C> {
         }
         self.come_back_to_the_course(&places[0]);
         self.leave_cut();
-        self.course_near = f64::INFINITY;
+        self.passed.clear();
         let end = &places[places.len() - 1];
         // Before it passes them: points of the course where it ends.
         let asked = self.ends_on_the_course(end);
@@ -197,9 +197,7 @@ impl<C: Course> Verifier<'_, C> {
                         least = span.from;
                         let (line, place) = (element.line, element.to);
                         if matches!(element.what, ElementKind::Way) {
-                            let (from, to) = (element.from.point, element.to.point);
-                            let point = self.cut_path.distance(to);
-                            self.course_near = self.course_near.min(self.dips(from, to)).min(point);
+                            self.passed.push([element.from.point, element.to.point]);
                         }
                         self.detour.passes(Pose {
                             tip: place.point - place.axis * self.along,
@@ -220,6 +218,9 @@ impl<C: Course> Verifier<'_, C> {
 
     /// A rapid must not end where something is cut, unless the course does.
     fn look_where_it_ends(&mut self, motion: &Motion, end: &ToolPlace) {
+        if self.cut_path.is_off(end.point, self.rapid_bound.point) {
+            return;
+        }
         let near = self.cut_path.distance(end.point);
         let slack = self.rapid_bound.point + self.cut_path.blur();
         let from = ToolPlace::new(&motion.from.pose, self.along);

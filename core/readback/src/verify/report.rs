@@ -1,5 +1,7 @@
 //! What holding a program against a course has found.
 
+use std::borrow::Cow;
+
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use serde::Serialize;
 
@@ -158,5 +160,5 @@ pub struct BlockReport {
     pub axis_deviation_deg: f64,
     /// What makes it slower than the course asks.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub limited_by: Option<String>,
+    pub limited_by: Option<Cow<'static, str>>,
 }

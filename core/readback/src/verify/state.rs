@@ -1,5 +1,6 @@
 //! What holds while the tool cuts: tool, registers, spindle, coolants, feed.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use post_machine::axis_words::is_depth;
@@ -32,7 +33,9 @@ const SHORT: f64 = 1e-3;
 impl<C: Course> Verifier<'_, C> {
     /// Compares what holds in a cut with what the course asks for where the motion has its place.
     pub(super) fn compare(&mut self, motion: &Motion, places: &[ToolPlace]) {
-        if self.holds_as_before(motion, places) {
+        if let Some(asked) = self.asks_as_before(motion)
+            && self.keeps_feed(motion, places, asked)
+        {
             return;
         }
         let Some(mut element) = self.element_of(places) else {
@@ -48,27 +51,42 @@ impl<C: Course> Verifier<'_, C> {
         self.compare_feed(motion, places, &element);
     }
 
-    /// Whether nothing is wrong, whichever element of those that it may follow a motion does follow: all of them ask for
-    /// the same, and that was compared with what holds, and the feed is as asked.
-    fn holds_as_before(&self, motion: &Motion, places: &[ToolPlace]) -> bool {
-        let Some((state, asked)) = &self.agreed else {
-            return false;
-        };
-        let Some(last) = self.reach.iter().rposition(|span| !span.is_empty()) else {
-            return false;
-        };
+    /// The feed that is asked for, if one is, where nothing else is wrong, whichever element of those that it may follow a
+    /// motion does follow: all of them ask for the same, and that was compared with what holds.
+    fn asks_as_before(&self, motion: &Motion) -> Option<Option<f64>> {
+        let (state, asked) = self.agreed.as_ref()?;
+        let last = self.reach.iter().rposition(|span| !span.is_empty())?;
         if !Arc::ptr_eq(state, &motion.state) || !self.turned.is_empty() || self.running.changes() {
-            return false;
+            return None;
         }
         let mut cuts = self.track.kept().iter().take(last + 1).filter(|element| element.is_cut());
-        let Some(first) = cuts.next() else {
-            return false;
-        };
+        let first = cuts.next()?;
         let same = |other: &Element| Arc::ptr_eq(asked, &other.asked) && other.feed == first.feed;
-        if !same(first) || !cuts.all(same) {
+        (same(first) && cuts.all(same)).then_some(first.feed)
+    }
+
+    /// Whether the feed is as asked, mm/min, if one is, or something limits it, which is noted then.
+    pub(super) fn keeps_feed(
+        &mut self,
+        motion: &Motion,
+        places: &[ToolPlace],
+        asked: Option<f64>,
+    ) -> bool {
+        let Some(asked) = asked.filter(|asked| !self.is_as_fast_as_asked(motion, places, *asked))
+        else {
+            return true;
+        };
+        if motion.feed > asked {
             return false;
         }
-        first.feed.is_none_or(|asked| self.is_as_fast_as_asked(motion, places, asked))
+        match self.feed_verdict(motion, places, asked) {
+            FeedVerdict::AsAsked => true,
+            FeedVerdict::Limited(limit) => {
+                self.note_limit(limit);
+                true
+            }
+            FeedVerdict::None | FeedVerdict::Above(_) | FeedVerdict::Below(_) => false,
+        }
     }
 
     /// Whether the feed is that which is asked for, mm/min, but for what is rounded in any case:
@@ -404,18 +422,80 @@ impl<C: Course> Verifier<'_, C> {
         let Some(asked) = element.feed else {
             return;
         };
-        let way = way_of(places);
-        if way < SHORT {
-            return;
-        }
-        if motion.minutes <= 0.0 {
-            if motion.kind == MotionKind::Feed {
+        match self.feed_verdict(motion, places, asked) {
+            FeedVerdict::AsAsked => {}
+            FeedVerdict::Limited(limit) => self.note_limit(limit),
+            FeedVerdict::None => {
                 let message = "cuts without a feed".to_owned();
                 self.fault("feed", message, Some(motion), Some(element.line), None);
             }
-            return;
+            FeedVerdict::Above(feed) => {
+                let message = format!("the feed is above that of the CL file, {asked} mm/min");
+                let told = format!("{message}: {feed:.1} mm/min");
+                self.limit_fault("feed", message, told, motion, element.line, feed - asked);
+            }
+            FeedVerdict::Below(feed) => {
+                self.found.slower += 1;
+                let message = format!(
+                    "the feed is below that of the CL file, {asked} mm/min, and no axis asks for that"
+                );
+                let told = format!("{message}: {feed:.1} mm/min");
+                self.limit_fault("feed", message, told, motion, element.line, asked - feed);
+            }
+        }
+    }
+
+    /// A cut is slower than asked, and that is right.
+    fn note_limit(&mut self, limit: FeedLimit) {
+        self.found.limited += 1;
+        self.block.limited_by = Some(match limit {
+            FeedLimit::Axis(joint) => {
+                Cow::Owned(format!("max_feed of {}", self.machine.axes[joint].name))
+            }
+            FeedLimit::Time => Cow::Borrowed("the largest feed by time"),
+            FeedLimit::Plan => Cow::Borrowed("the planned feed"),
+        });
+    }
+
+    /// What is to be said of the feed of a motion where `asked` is asked for, mm/min.
+    fn feed_verdict(&self, motion: &Motion, places: &[ToolPlace], asked: f64) -> FeedVerdict {
+        let way = way_of(places);
+        if way < SHORT {
+            return FeedVerdict::AsAsked;
+        }
+        if motion.minutes <= 0.0 {
+            return match motion.kind {
+                MotionKind::Feed => FeedVerdict::None,
+                _ => FeedVerdict::AsAsked,
+            };
         }
         let feed = way / motion.minutes;
+        let rounded = self.rounded_share(motion, way);
+        if feed > asked * (1.0 + SHARE + rounded) + PLACE {
+            return FeedVerdict::Above(feed);
+        }
+        let place = self.rules.feed_place.max(PLACE);
+        if feed >= asked * (1.0 - SHARE - rounded) - place {
+            return FeedVerdict::AsAsked;
+        }
+        match self.axes.least_minutes(self.machine, motion, 0.0) {
+            // Of a slow feed the last place is much, and it is rounded down.
+            Some((minutes, joint))
+                if motion.minutes <= minutes * 1.05
+                    || feed + 2.0 * place >= 0.95 * way / minutes =>
+            {
+                FeedVerdict::Limited(FeedLimit::Axis(joint))
+            }
+            _ if motion.minutes <= self.rules.least_minutes * (1.0 + SHARE) => {
+                FeedVerdict::Limited(FeedLimit::Time)
+            }
+            _ if self.rules.planned => FeedVerdict::Limited(FeedLimit::Plan),
+            _ => FeedVerdict::Below(feed),
+        }
+    }
+
+    /// Share of the feed of a motion that goes `way` mm which rounded words make.
+    fn rounded_share(&self, motion: &Motion, way: f64) -> f64 {
         // Of a short way a rounded word is much.
         let mut rounded = ROUNDED / way;
         if motion.way == Interpolation::Axes {
@@ -436,45 +516,33 @@ impl<C: Course> Verifier<'_, C> {
                 rounded += 2.0 * self.rules.tolerance / way;
             }
         }
-        let allowed = asked * (1.0 + SHARE + rounded) + PLACE;
-        if feed > allowed {
-            let message = format!("the feed is above that of the CL file, {asked} mm/min");
-            let told = format!("{message}: {feed:.1} mm/min");
-            self.limit_fault("feed", message, told, motion, element.line, feed - asked);
-            return;
-        }
-        let place = self.rules.feed_place.max(PLACE);
-        if feed < asked * (1.0 - SHARE - rounded) - place {
-            let needed = self.axes.least_minutes(self.machine, motion, 0.0);
-            match needed {
-                // Of a slow feed the last place is much, and it is rounded down.
-                Some((minutes, joint))
-                    if motion.minutes <= minutes * 1.05
-                        || feed + 2.0 * place >= 0.95 * way / minutes =>
-                {
-                    self.found.limited += 1;
-                    let name = &self.machine.axes[joint].name;
-                    self.block.limited_by = Some(format!("max_feed of {name}"));
-                }
-                _ if motion.minutes <= self.rules.least_minutes * (1.0 + SHARE) => {
-                    self.found.limited += 1;
-                    self.block.limited_by = Some("the largest feed by time".to_owned());
-                }
-                _ if self.rules.planned => {
-                    self.found.limited += 1;
-                    self.block.limited_by = Some("the planned feed".to_owned());
-                }
-                _ => {
-                    self.found.slower += 1;
-                    let message = format!(
-                        "the feed is below that of the CL file, {asked} mm/min, and no axis asks for that"
-                    );
-                    let told = format!("{message}: {feed:.1} mm/min");
-                    self.limit_fault("feed", message, told, motion, element.line, asked - feed);
-                }
-            }
-        }
+        rounded
     }
+}
+
+/// What limits a feed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum FeedLimit {
+    /// The axis at this place of the machine.
+    Axis(usize),
+    /// The largest feed by time.
+    Time,
+    /// The plan that the feed was made by.
+    Plan,
+}
+
+/// What is to be said of a feed, mm/min.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum FeedVerdict {
+    AsAsked,
+    /// The program states none.
+    None,
+    /// Faster than asked.
+    Above(f64),
+    /// Slower than asked, and that is right.
+    Limited(FeedLimit),
+    /// Slower than asked.
+    Below(f64),
 }
 
 /// How an event is told.

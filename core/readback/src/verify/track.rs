@@ -5,11 +5,13 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
+use post_motion::path::circle_ends;
 
 use super::chop;
 use super::place::{PlaceBound, PlaceDistance, ToolPlace};
-use crate::course::{Course, CourseItem, CoursePiece};
+use crate::course::{Course, CourseItem, CoursePiece, CutRun};
 use crate::{Coolants, CycleCall, CycleKind, MOST_FAULTS, MotionKind, ProgramEvent, SpindleState};
 
 /// What a course asks to hold while the tool cuts.
@@ -93,6 +95,11 @@ pub(super) struct CourseTrack<C> {
     /// Rapids towards the next hole.
     approach: Vec<[ToolPlace; 2]>,
     places: Vec<ToolPlace>,
+    /// Cuts that were read together.
+    cuts: CutRun,
+    /// Their tool axes, and where the great circle from each to the next ends.
+    axes: Vec<Vector3<f64>>,
+    circle_ends: Vec<Vector3<f64>>,
     ended: bool,
     /// Line of the item read last.
     line: u64,
@@ -124,6 +131,9 @@ impl<C: Course> CourseTrack<C> {
             hole: None,
             approach: Vec::new(),
             places: Vec::new(),
+            cuts: CutRun::default(),
+            axes: Vec::new(),
+            circle_ends: Vec::new(),
             ended: false,
             line: 0,
             faults: Vec::new(),
@@ -157,6 +167,9 @@ impl<C: Course> CourseTrack<C> {
     }
 
     fn read(&mut self) {
+        if self.course.next_cuts(&mut self.cuts) {
+            return self.take_cuts();
+        }
         match self.course.next() {
             Ok(Some(item)) => self.take(item),
             Ok(None) => {
@@ -171,6 +184,27 @@ impl<C: Course> CourseTrack<C> {
                 }
             }
         }
+    }
+
+    /// Takes the cuts that were read together.
+    fn take_cuts(&mut self) {
+        self.end_hole();
+        self.approach.clear();
+        let cuts = std::mem::take(&mut self.cuts);
+        let mut ends = std::mem::take(&mut self.circle_ends);
+        self.axes.clear();
+        self.axes.extend(cuts.poses.iter().map(|pose| pose.axis));
+        circle_ends(&self.axes, &mut ends);
+        for (place, (poses, end)) in cuts.poses.windows(2).zip(&ends).enumerate() {
+            let poses = [&poses[0], &poses[1]];
+            self.line = cuts.line(place);
+            let from = ToolPlace::new(poses[0], self.along);
+            match chop::straight_cut(poses, *end, self.along, &self.sag) {
+                Some(to) => self.push(self.line, ElementKind::Cut, [from, to], cuts.feed),
+                None => self.pieces(&cuts.piece(place), ElementKind::Cut, from),
+            }
+        }
+        (self.cuts, self.circle_ends) = (cuts, ends);
     }
 
     fn take(&mut self, item: CourseItem) {
@@ -221,6 +255,11 @@ impl<C: Course> CourseTrack<C> {
             MotionKind::Feed => ElementKind::Cut,
             MotionKind::Thread => ElementKind::Thread,
         };
+        self.pieces(piece, what, from);
+    }
+
+    /// Takes the straight pieces of a cut, which begins at `from`.
+    fn pieces(&mut self, piece: &CoursePiece, what: ElementKind, from: ToolPlace) {
         let mut places = std::mem::take(&mut self.places);
         places.clear();
         chop::piece(piece, self.along, &self.sag, &mut places);

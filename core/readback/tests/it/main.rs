@@ -7,6 +7,7 @@
 mod course;
 mod interpret;
 mod robust;
+mod runs;
 mod tasks;
 mod units;
 mod verify;

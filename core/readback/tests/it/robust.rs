@@ -15,7 +15,7 @@ use post_testkit::{Rng, repository, rounds, seeded, shared};
 use crate::interpret::machine;
 
 /// Programs of others, a machine and a control for each.
-const PROGRAMS: [(&str, &str, &str); 7] = [
+pub const PROGRAMS: [(&str, &str, &str); 7] = [
     ("haas_umc750_dhanush_FinalToolPath.nc", "umc-750", "haas"),
     ("linuxcnc_boat-xyzac.ngc", "xyzac-trt", "linuxcnc"),
     ("linuxcnc_xyzac_switchkins_test_3.ngc", "xyzac-trt", "linuxcnc"),
@@ -73,7 +73,7 @@ const ODD: [&str; 40] = [
 const BYTES: &[u8] = b"0123456789.-+XYZABCGMFHIJKR=#[]()~;/QL %\"E";
 
 /// The words of `tests/vocabularies`.
-fn lexicon(dialect: &str) -> Lexicon {
+pub fn lexicon(dialect: &str) -> Lexicon {
     let path = repository().join(format!("tests/vocabularies/{dialect}.txt"));
     let text = fs::read_to_string(path).expect("the vocabulary is there");
     let mut words = Vec::new();
@@ -126,7 +126,7 @@ fn run(machine: &Machine, lexicon: &Lexicon, text: &[u8]) {
 }
 
 /// Some lines of a program, with bytes changed, numbers made wild and odd blocks put in.
-fn mutated(program: &[u8], random: &mut Rng) -> Vec<u8> {
+pub fn mutated(program: &[u8], random: &mut Rng) -> Vec<u8> {
     let lines: Vec<&[u8]> = program.split(|&byte| byte == b'\n').collect();
     let from = random.pick(lines.len());
     let mut text = Vec::new();

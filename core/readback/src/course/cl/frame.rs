@@ -99,6 +99,11 @@ impl Frames {
         Ok(())
     }
 
+    /// The frame of the file is that of the part.
+    pub(super) fn is_of_part(&self) -> bool {
+        self.turned.is_none() && self.msys.is_none() && self.sits.is_none()
+    }
+
     /// A point of the file, mm, in the part frame.
     pub(super) fn point(&self, mut point: Vector3<f64>) -> Vector3<f64> {
         if let Some(turned) = &self.turned {

@@ -14,6 +14,7 @@ mod frame;
 mod hole;
 mod holes;
 mod modal;
+mod run;
 mod settings;
 mod strange;
 mod tools;
@@ -22,10 +23,10 @@ mod turned;
 use std::collections::VecDeque;
 use std::io::Read;
 
-use post_grammar::{ClReader, ReadError};
+use post_grammar::{ClReader, GotoRun, ReadError};
 use post_machine::diagnostic::{Diagnostic, unreadable};
 
-use super::{Course, CourseItem};
+use super::{Course, CourseItem, CutRun};
 use modal::ClModal;
 pub use settings::ClSettings;
 pub use tools::ClTool;
@@ -37,6 +38,11 @@ pub struct ClCourse<R> {
     modal: ClModal,
     waiting: VecDeque<CourseItem>,
     ended: bool,
+    gotos: Box<GotoRun>,
+    /// Records that are read one by one: one of them cannot be told with others.
+    alone: usize,
+    /// Cuts are told together.
+    together: bool,
 }
 
 impl<R: Read> ClCourse<R> {
@@ -47,7 +53,16 @@ impl<R: Read> ClCourse<R> {
             modal: ClModal::new(settings),
             waiting: VecDeque::new(),
             ended: false,
+            gotos: Box::default(),
+            alone: 0,
+            together: true,
         }
+    }
+
+    /// Tells each cut by itself.
+    pub fn one_by_one(mut self) -> Self {
+        self.together = false;
+        self
     }
 
     /// The tools that the file has loaded so far, each number once, in order: after a first pass over it all of them.
@@ -70,6 +85,7 @@ impl<R: Read> Course for ClCourse<R> {
             if self.ended {
                 return Ok(None);
             }
+            self.alone = self.alone.saturating_sub(1);
             match self.reader.next_record() {
                 Ok(Some(record)) => self.modal.record(&record, &mut self.waiting)?,
                 Ok(None) => {
@@ -86,5 +102,22 @@ impl<R: Read> Course for ClCourse<R> {
                 }
             }
         }
+    }
+
+    fn next_cuts(&mut self, cuts: &mut CutRun) -> bool {
+        let Self { reader, modal, gotos, .. } = self;
+        if !self.together || self.alone > 0 || !self.waiting.is_empty() || self.ended {
+            return false;
+        }
+        let Some(feed) = modal.goes_on() else {
+            return false;
+        };
+        reader.gotos_ahead(gotos);
+        if !modal.cuts(gotos, feed, cuts) {
+            self.alone = gotos.count();
+            return false;
+        }
+        reader.pass_gotos(gotos);
+        true
     }
 }

@@ -1,6 +1,7 @@
 //! Records become items: what is modal is settled.
 
 use std::collections::VecDeque;
+use std::ops::Range;
 
 use nalgebra::Vector3;
 use post_grammar::{
@@ -23,7 +24,10 @@ use crate::course::{CourseItem, CoursePiece, Curve, ReachedPose};
 use crate::{Coolants, MotionKind, ProgramEvent};
 
 /// No machine reaches a coordinate beyond this: ten kilometres, mm.
-const FARTHEST: f64 = 1e7;
+pub(super) const FARTHEST: f64 = 1e7;
+
+/// Lengths of what has a direction.
+pub(super) const DIRECTIONS: Range<f64> = 1e-6..1e9;
 
 /// What a record means, or what is wrong with it.
 pub(super) type RecordResult = Result<(), Box<Diagnostic>>;
@@ -61,21 +65,21 @@ pub(super) struct ClModal {
     pub(super) measured: bool,
     pub(super) frames: Frames,
     /// Tool axis, frame of the file.
-    axis: Vector3<f64>,
+    pub(super) axis: Vector3<f64>,
     /// Leading edge, frame of the file; zero until the file gives one.
-    edge: Vector3<f64>,
+    pub(super) edge: Vector3<f64>,
     /// `TLAXIS`, part frame.
     told_axis: Option<Vector3<f64>>,
     /// An index move came since the last point.
-    indexed: bool,
+    pub(super) indexed: bool,
     /// Where the tool stands, part frame; none if nobody knows.
     pub(super) stands: Option<Pose>,
     /// It was said to stand there (`FROM`), and has not come there by the file's own points.
-    only_said: bool,
+    pub(super) only_said: bool,
     /// `RAPID`: the next point.
-    rapid: bool,
+    pub(super) rapid: bool,
     /// `FEDRAT/RAPID`: all points until the next feed.
-    rapid_feed: bool,
+    pub(super) rapid_feed: bool,
     pub(super) feed: Option<FeedWord>,
     pub(super) pending: Option<OpenCurve>,
     pub(super) cycle: Option<ActiveCycle>,
@@ -92,7 +96,7 @@ pub(super) struct ClModal {
     pub(super) surface: Option<Vector3<f64>>,
     pub(super) arc_rule: ArcTurnRule,
     pub(super) strange: StrangeWords,
-    finished: bool,
+    pub(super) finished: bool,
 }
 
 impl ClModal {
@@ -691,7 +695,7 @@ impl ClModal {
     ) -> Result<Vector3<f64>, Box<Diagnostic>> {
         let direction = Vector3::from(direction);
         let length = direction.norm();
-        match (1e-6..1e9).contains(&length) {
+        match DIRECTIONS.contains(&length) {
             true => Ok(direction / length),
             false => Err(self.fault(record, format!("{what} has no direction"))),
         }

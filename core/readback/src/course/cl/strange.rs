@@ -21,6 +21,11 @@ pub(super) struct StrangeWords {
 }
 
 impl StrangeWords {
+    /// Nothing that may be a move came since the last one.
+    pub(super) fn is_quiet(&self) -> bool {
+        self.suspect.is_none()
+    }
+
     /// A move follows: what may be a move stands between moves.
     pub(super) fn between_moves(&mut self) -> Option<Box<Diagnostic>> {
         self.suspect.take().map(|(fault, _)| fault)

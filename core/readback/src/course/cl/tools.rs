@@ -112,6 +112,13 @@ impl ClModal {
         self.load(record, &tool, out)
     }
 
+    /// Neither a tool nor the spindle waits for the next move.
+    pub(super) fn is_ready(&self) -> bool {
+        let loads = self.settings.tool.is_some() && self.tools.loaded.is_none();
+        let turns = self.settings.spindle.is_some() && !self.tools.said;
+        !loads && self.tools.due.is_none() && !turns
+    }
+
     /// A `LOADTL` of the file, which goes before what the user names.
     pub(super) fn load_read(
         &mut self,

@@ -51,6 +51,12 @@ impl CycleState {
     pub fn in_force(&self) -> bool {
         self.iso.is_some()
     }
+
+    /// No motion ends in a hole.
+    #[inline]
+    pub fn are_off(&self) -> bool {
+        self.iso.is_none() && self.modal.is_none() && !self.at_each
+    }
 }
 
 /// A block that begins a cycle (`meaning`, by its G code or by a name), or says a further hole of the one in force (no meaning): `words` are those of the block. Marks the words that it uses in

@@ -10,7 +10,8 @@ use std::io::{Read, Seek};
 
 use post_grammar::ReadError;
 use post_grammar::nc::{
-    JumpDirection, NcBlock, NcExpression, NcFlow, NcItem, NcMark, NcReader, NcTarget,
+    JumpDirection, NcBlock, NcExpression, NcFlow, NcItem, NcMark, NcReader, NcRun, NcRunRule,
+    NcTarget,
 };
 use post_machine::diagnostic::{Diagnostic, SourcePlace, unreadable};
 use post_plugin::Language;
@@ -147,6 +148,23 @@ impl<R: Read + Seek> ProgramFlow<R> {
             if self.follow(block, variables)? {
                 return Ok(true);
             }
+        }
+    }
+
+    /// Takes plain blocks that follow one another and that are read for the first time, none of which leads elsewhere.
+    pub fn next_run(&mut self, rule: &NcRunRule, run: &mut NcRun) {
+        let waits = self.pending.is_some() || !self.set.is_empty() || self.over;
+        match waits || self.reader.mark().line() <= self.furthest {
+            true => run.clear(),
+            false => self.reader.next_run(rule, run),
+        }
+    }
+
+    /// Goes back to the block behind the first `count` of a run that was just taken.
+    pub fn shorten(&mut self, run: &mut NcRun, count: usize) {
+        self.reader.shorten(run, count);
+        if let Some(last) = count.checked_sub(1) {
+            self.furthest = run.line(last);
         }
     }
 

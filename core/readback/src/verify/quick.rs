@@ -1,0 +1,175 @@
+//! Cuts that go point by point with the course: what [`super::sweep`] finds of them is certain without it.
+//!
+//! Most programs have a block for each point of the CL file, and most of these end beside it, by less than what was told
+//! already. The program then stands at the end of the element at hand and at the beginning of the next, and nowhere else:
+//! which shares of both are within the tolerance follows from its place alone, and is worked out when somebody asks. A motion
+//! goes on so if
+//! - it ends so near to the end of the next element that its deviation is no larger than those that were told,
+//! - it has left the element at hand, farther than the tolerance,
+//! - the element behind the next is farther from all of it than the tolerance,
+//! - all of them ask for the same, and nothing is wrong with what holds.
+//!
+//! Nothing of the tolerance's edge is decided here: what comes close to it is swept.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+use super::Verifier;
+use super::place::{ToolPlace, free, nearest};
+use super::track::{Element, ElementKind};
+use crate::course::Course;
+use crate::{Motion, MotionKind};
+
+/// Share of a bound that rounding alone does not reach.
+const CLEAR: f64 = 1.0 - 1e-9;
+
+/// Share of the tolerance within which an element must end so that the one behind it does not lead on:
+/// [`super::sweep::LEADS_ON`], with room.
+const LEADS_ON: f64 = 0.9 * super::sweep::LEADS_ON;
+
+/// How the program stands where it goes point by point.
+#[derive(Debug, Default)]
+pub(super) struct QuickStand {
+    /// It goes point by point, and stands at the end of the first element of the track.
+    on: bool,
+    /// Ends of the motion that led there, if it was not swept: where the program can stand is not worked out then.
+    last: Option<[ToolPlace; 2]>,
+    /// The largest deviation of the tool axis that was told, degrees, and a chord that is surely shorter.
+    told: [f64; 2],
+}
+
+impl QuickStand {
+    /// A chord between tool axes that is shorter than that of the angle which was told, degrees.
+    fn chord(&mut self, told: f64) -> f64 {
+        if self.told[0] != told {
+            self.told = [told, 2.0 * libm::sin(0.5 * told.to_radians()) * CLEAR];
+        }
+        self.told[1]
+    }
+}
+
+impl<C: Course> Verifier<'_, C> {
+    /// Takes a motion at feed that surely keeps to the course, and of which nothing is to be told; false if that is in doubt,
+    /// and nothing is done then.
+    #[inline]
+    pub(super) fn goes_on(&mut self, motion: &Motion, places: &[ToolPlace]) -> bool {
+        if !self.quick.on || motion.kind != MotionKind::Feed {
+            return false;
+        }
+        let &[from, to] = places else {
+            return false;
+        };
+        if from.has_edge() || to.has_edge() || self.track.get(2).is_none() {
+            return false;
+        }
+        let Some((state, asked)) = &self.agreed else {
+            return false;
+        };
+        let quiet = self.turned.is_empty() && !self.running.changes();
+        let kept = self.track.kept();
+        let (left, next, behind) = (&kept[0], &kept[1], &kept[2]);
+        let alike = [left, next, behind].iter().all(|element| {
+            matches!(element.what, ElementKind::Cut)
+                && Arc::ptr_eq(asked, &element.asked)
+                && element.feed == left.feed
+        });
+        if !quiet || !alike || !Arc::ptr_eq(state, &motion.state) {
+            return false;
+        }
+        let bound = self.bound.point;
+        if !passes(&left.from.point, &left.to.point, &to.point, bound)
+            || !passes(&from.point, &to.point, &behind.to.point, bound)
+        {
+            return false;
+        }
+        let feed = next.feed;
+        let next = (next.to, behind.from);
+        let most = [self.found.tip.value, self.quick.chord(self.found.axis.value)];
+        if !self.is_beside(&to, &next.0, most) || !to.within(&next.1, &self.bound) {
+            return false;
+        }
+        if !self.keeps_feed(motion, places, feed) {
+            return false;
+        }
+        self.track.pop();
+        self.quick.last = Some([from, to]);
+        self.found.cuts += 1;
+        true
+    }
+
+    /// Whether the end of a motion is so near to that of an element that nothing is told of it.
+    #[inline]
+    fn is_beside(&self, place: &ToolPlace, end: &ToolPlace, most: [f64; 2]) -> bool {
+        let off = (place.point - end.point).norm();
+        let chord = (place.axis - end.axis).norm();
+        off < most[0] * CLEAR
+            && off < self.bound.point * LEADS_ON
+            && chord < most[1]
+            && chord < self.bound.axis * CLEAR
+            && !end.has_edge()
+    }
+
+    /// Looks whether the program goes point by point from here on, behind a motion that was swept.
+    pub(super) fn look_for_points(&mut self, places: &[ToolPlace]) {
+        let &[_, to] = places else {
+            return;
+        };
+        let stands = !self.apart && self.next.is_none() && self.hole.is_none();
+        if self.rules.rows
+            || self.rules.solutions
+            || self.rules.linear_rapids
+            || !stands
+            || self.stray.is_some()
+            || self.reach.len() != 2
+            || to.has_edge()
+        {
+            return;
+        }
+        let most = [self.found.tip.value, self.quick.chord(self.found.axis.value)];
+        let kept = self.track.kept();
+        let stands = |element: &Element| free(&to, &element.from, &element.to, &self.bound);
+        self.quick.on = match (kept.front(), kept.get(1)) {
+            (Some(at), Some(next)) => {
+                self.is_beside(&to, &at.to, most)
+                    && self.reach.iter().all(|span| !span.is_empty())
+                    && self.reach == [stands(at), stands(next)]
+            }
+            _ => false,
+        };
+    }
+
+    /// Works out where on the course the program can stand, if that waits: what follows is no motion point by point.
+    #[inline]
+    pub(super) fn settle(&mut self) {
+        if self.quick.on {
+            self.quick.on = false;
+            self.stand();
+        }
+    }
+
+    fn stand(&mut self) {
+        let Some([from, to]) = self.quick.last.take() else {
+            return;
+        };
+        let bound = self.bound;
+        self.reach.clear();
+        for index in 0..2 {
+            if let Some(element) = self.track.get(index) {
+                self.reach.push(free(&to, &element.from, &element.to, &bound));
+            }
+        }
+        if let Some(at) = self.track.get(0) {
+            let top = free(&at.to, &from, &to, &bound);
+            at.near = at.near.smaller(&nearest(&at.to, &from, &to, &top));
+        }
+    }
+}
+
+/// Whether `place` is surely farther than `bound` beyond the end of the straight way from `from` to `to`, along it.
+#[inline]
+fn passes(from: &Vector3<f64>, to: &Vector3<f64>, place: &Vector3<f64>, bound: f64) -> bool {
+    let way = to - from;
+    let along = (place - to).dot(&way);
+    along > 0.0 && along * along * CLEAR > bound * bound * way.norm_squared()
+}

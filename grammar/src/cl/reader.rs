@@ -9,9 +9,10 @@
 //!   must not swallow the move after it.
 
 use super::foreign;
-use super::goto_run::{GotoRun, goto_statement};
+use super::goto_run::{GotoRun, RunForm, goto_statement};
 use super::layout::RecordLayout;
 use super::line::{is_free_text, parse_record};
+use super::piece::ClPiece;
 use super::record::Record;
 use super::scan::{self, PlainGoto};
 use crate::fault::{ReadError, SyntaxFault};
@@ -174,6 +175,28 @@ impl<R: Read> ClReader<R> {
     /// Takes the `GOTO` records that follow as far as they are laid out as those before, into `run`; gives their text.
     /// There may be none: [`Self::next_record`] goes on then.
     pub fn next_gotos(&mut self, run: &mut GotoRun) -> &[u8] {
+        let text = self.take_gotos(run);
+        &self.buffer[text]
+    }
+
+    /// What stands next: records of one layout together, into `run`; then what [`Self::next_record`] gives.
+    #[inline]
+    pub fn next_piece(&mut self, run: &mut GotoRun) -> ClPiece<'_> {
+        let text = self.take_gotos(run);
+        if !text.is_empty() {
+            return ClPiece::Gotos(&self.buffer[text]);
+        }
+        match self.next_record() {
+            Ok(Some(record)) => ClPiece::Record(record),
+            Ok(None) => ClPiece::End,
+            Err(ReadError::Syntax(fault)) => ClPiece::Unreadable(fault),
+            Err(ReadError::Io(error)) => ClPiece::Failed(error),
+        }
+    }
+
+    /// [`Self::next_gotos`], where the text stands in the buffer.
+    #[inline]
+    fn take_gotos(&mut self, run: &mut GotoRun) -> Range<usize> {
         let start = self.start;
         let count = self.layout.gotos(&self.buffer, start, self.end, &mut run.values);
         let length = self.layout.length();
@@ -183,14 +206,16 @@ impl<R: Read> ClReader<R> {
                 self.layout.join(&mut self.buffer[start + place * length..]);
             }
         }
-        run.count = count;
-        run.line = self.line;
-        run.lines = self.layout.lines();
-        run.has_axis = self.layout.has_axis();
-        run.stride = self.layout.length();
-        run.length = self.layout.joined_length();
-        self.line += count as u64 * run.lines;
-        &self.buffer[start..self.start]
+        run.form = RunForm {
+            count,
+            line: self.line,
+            lines: self.layout.lines(),
+            has_axis: self.layout.has_axis(),
+            stride: length,
+            length: self.layout.joined_length(),
+        };
+        self.line += count as u64 * run.form.lines;
+        start..self.start
     }
 
     /// Numbers of the `GOTO` that begins here, if it is laid out as those before.

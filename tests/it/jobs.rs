@@ -2,6 +2,8 @@
 //! soon.
 
 use std::fs;
+use std::io::Write as _;
+use std::process::Stdio;
 
 use crate::common::{self, CASES, command, run};
 
@@ -42,8 +44,9 @@ fn a_fault_is_told_alike_and_leaves_nothing_behind() {
     let cl = folder.path().join("part.cls");
     let mut text =
         "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/100,MMPM\n".to_owned();
-    for place in 0..4000 {
-        text += &format!("GOTO/{}.{:03},{}.5,10\n", place / 100, place % 1000, place % 50);
+    // More than is read ahead at a time.
+    for place in 0..9000 {
+        text += &format!("GOTO/{:02}.{:03},{}.5,10\n", place / 100, place % 1000, place % 50);
     }
     let good = text.clone() + "END\nFINI\n";
     for (bad, told) in [
@@ -65,6 +68,26 @@ fn a_fault_is_told_alike_and_leaves_nothing_behind() {
     fs::write(&cl, &good).unwrap();
     let path = cl.display().to_string();
     assert!(left(&["-m", "vmc", "--tool-length", "80", &path], "7").starts_with("0 2\n"));
+}
+
+/// Whoever writes into a pipe learns at once that enough is wrong: the command does not wait for more.
+#[test]
+fn a_pipe_that_stays_open_is_given_up_at_once() {
+    for jobs in ["1", "2", "7"] {
+        let mut post = command();
+        post.args(["-m", "vmc", "--tool-length", "80", "-j", jobs, "-o", "-", "-"]);
+        let streams = post.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
+        let mut child = streams.spawn().unwrap();
+        let mut stdin = child.stdin.take().unwrap();
+        for place in 0..30 {
+            writeln!(stdin, "GOTO/oops{}", "x".repeat(place)).unwrap();
+        }
+        stdin.flush().unwrap();
+        let told = child.wait_with_output().unwrap();
+        assert_eq!(told.status.code(), Some(1), "-j {jobs}");
+        assert!(String::from_utf8_lossy(&told.stderr).contains("oops"), "-j {jobs}");
+        drop(stdin);
+    }
 }
 
 #[test]

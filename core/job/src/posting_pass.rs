@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::thread;
 
-use post_grammar::{ClReader, GotoRun, ReadError};
+use post_grammar::{ClPiece, ClReader, GotoRun, ReadError};
 use post_host::{Finder, OpenedDialect, OpenedModel};
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
@@ -18,7 +18,7 @@ use post_posting::{Observer, PathShift, Post, PostingRequest, ProgramPreview, Te
 
 use super::plugin_finder;
 use crate::failure::Failure;
-use crate::files::{ClInput, ClSource, FileFault, NullSink, PathArg};
+use crate::files::{ClInput, ClPieces, ClSource, FileFault, NullSink, PathArg, ReadAhead};
 use crate::session::Session;
 use crate::settings::{JobSettings, Msys};
 
@@ -113,12 +113,15 @@ impl PostingPass<'_> {
             post.watch(observer);
         }
         if !beside_text {
-            read(session, input, &mut post)?;
+            read(session, ClPieces::new(input, None), &mut post)?;
             return Ok(post.finish());
         }
+        let ahead = ReadAhead::default();
+        let pieces = ClPieces::new(input, Some(&ahead));
+        let read_some = || ahead.read_some();
         thread::scope(|scope| {
-            post.write_beside(scope);
-            read(session, input, &mut post)?;
+            post.write_beside(scope, &read_some);
+            read(session, pieces, &mut post)?;
             Ok(post.finish())
         })
     }
@@ -227,30 +230,28 @@ pub fn file_preview(
     }
 }
 
-/// Reads a CL file to its end, or until there are so many faults that it is given up.
-fn read(session: &Session, input: ClInput, post: &mut Post<'_>) -> Result<(), FileFault> {
-    let mut progress = session.progress(input.length);
-    let mut reader = ClReader::new(input.bytes);
+/// Takes a CL file to its end, or until there are so many faults that it is given up.
+fn read(session: &Session, mut pieces: ClPieces<'_>, post: &mut Post<'_>) -> Result<(), FileFault> {
+    let mut progress = session.progress(pieces.length);
     let mut run = GotoRun::default();
     while !post.gave_up() {
-        let text = reader.next_gotos(&mut run);
-        if !text.is_empty() {
-            post.gotos(&run, text);
-            progress.some_records(run.count() as u64, || reader.bytes_read());
-            continue;
-        }
-        match reader.next_record() {
-            Ok(Some(record)) => post.record(&record),
-            Ok(None) => {
-                post.ended(!reader.ends_within_a_line());
+        let mut records = 1;
+        match pieces.next(&mut run) {
+            ClPiece::Gotos(text) => {
+                post.gotos(&run, text);
+                records = run.count() as u64;
+            }
+            ClPiece::Record(record) => post.record(&record),
+            ClPiece::Unreadable(fault) => post.unreadable(&fault),
+            ClPiece::Failed(error) => {
+                return Err(FileFault::Read { name: pieces.name, error });
+            }
+            ClPiece::End => {
+                post.ended(!pieces.ends_within_a_line());
                 break;
             }
-            Err(ReadError::Syntax(fault)) => post.unreadable(&fault),
-            Err(ReadError::Io(error)) => {
-                return Err(FileFault::Read { name: input.name, error });
-            }
         }
-        progress.record(|| reader.bytes_read());
+        progress.some_records(records, || pieces.position());
     }
     progress.finish();
     Ok(())

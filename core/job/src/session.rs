@@ -104,7 +104,7 @@ impl Session {
     }
 
     /// What reads `bytes`, and fails once the run shall end.
-    pub fn stoppable(&self, bytes: impl Read + 'static) -> Box<dyn Read> {
+    pub fn stoppable(&self, bytes: impl Read + Send + 'static) -> Box<dyn Read + Send> {
         Box::new(SessionReader { bytes, session: self.clone() })
     }
 }

@@ -45,6 +45,7 @@ pub use blocks::{
     BlockDuration, BlockKind, BlockNote, BlockReason, MotionBlock, NominalTime, PlannedTime,
 };
 pub use configuration::whole_pass;
+pub use emit::SpareWork;
 pub use findings::MOST_FAULTS;
 pub use job_facts::{JobFacts, ProgramPreview};
 pub use mount_bounds::MountBounds;

@@ -14,7 +14,7 @@ use post_plugin::{Capabilities, DialectSession, ModelSession};
 use crate::accuracy::RunColumns;
 use crate::blocks::{BlockStage, MotionBlock};
 use crate::configuration::{ChosenPoint, ConfigurationStage};
-use crate::emit::EmitStage;
+use crate::emit::{EmitStage, SpareWork};
 use crate::expand::{ExpandStage, PathMove};
 use crate::findings::Findings;
 use crate::job_facts::JobFacts;
@@ -259,12 +259,13 @@ impl<'a> Post<'a> {
     }
 
     /// Has dialect and output at work on a thread of `scope` from here on, beside all before them: program, report and
-    /// findings are the same. Where no thread can be started they stay here.
-    pub fn write_beside<'s>(&mut self, scope: &'s Scope<'s, '_>)
+    /// findings are the same. Where no thread can be started they stay here. While no text waits the thread does `spare`
+    /// work.
+    pub fn write_beside<'s>(&mut self, scope: &'s Scope<'s, '_>, spare: SpareWork<'s>)
     where
         'a: 's,
     {
-        self.stages.emit.write_beside(scope);
+        self.stages.emit.write_beside(scope, spare);
     }
 
     /// Shows the planned feed to `watch`, where one is planned.

@@ -5,27 +5,39 @@ use super::record::{Record, Statement};
 /// `GOTO` records that follow one another and are laid out alike: see [`ClReader::next_gotos`](super::ClReader::next_gotos).
 #[derive(Clone, Debug)]
 pub struct GotoRun {
-    pub(super) count: usize,
-    pub(super) line: u64,
-    pub(super) lines: u64,
+    pub(super) form: RunForm,
     /// Numbers of the points, column by column.
     pub(super) values: [[f64; GotoRun::MOST]; 6],
+}
+
+/// All of a run but its numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RunForm {
+    /// Number of records.
+    pub(super) count: usize,
+    /// Line of the file on which the first begins.
+    pub(super) line: u64,
+    /// Lines of the file that each takes.
+    pub(super) lines: u64,
+    /// Each gives a tool axis; else none does.
     pub(super) has_axis: bool,
+    /// Bytes from one to the next.
     pub(super) stride: usize,
+    /// Bytes of each.
     pub(super) length: usize,
+}
+
+impl RunForm {
+    /// Columns of numbers that the records give.
+    pub(super) fn columns(&self) -> usize {
+        if self.has_axis { 6 } else { 3 }
+    }
 }
 
 impl Default for GotoRun {
     fn default() -> Self {
-        Self {
-            count: 0,
-            line: 0,
-            lines: 1,
-            values: [[0.0; Self::MOST]; 6],
-            has_axis: false,
-            stride: 0,
-            length: 0,
-        }
+        let form = RunForm { count: 0, line: 0, lines: 1, has_axis: false, stride: 0, length: 0 };
+        Self { form, values: [[0.0; Self::MOST]; 6] }
     }
 }
 
@@ -36,7 +48,7 @@ impl GotoRun {
     /// Number of records.
     #[inline]
     pub fn count(&self) -> usize {
-        self.count
+        self.form.count
     }
 
     /// Coordinates and tool axes of the points (zeros if none is given), a column each, in the file's units. What stands after
@@ -55,37 +67,37 @@ impl GotoRun {
     /// Every record gives a tool axis; else none does.
     #[inline]
     pub fn has_axis(&self) -> bool {
-        self.has_axis
+        self.form.has_axis
     }
 
     /// Line of the file on which a record begins, by its place among the points.
     #[inline]
     pub fn line(&self, place: usize) -> u64 {
-        self.line + place as u64 * self.lines
+        self.form.line + place as u64 * self.form.lines
     }
 
     /// Lines of the file that every record takes.
     pub fn lines(&self) -> u64 {
-        self.lines
+        self.form.lines
     }
 
     /// Bytes of every record in the text of the run.
     pub fn length(&self) -> usize {
-        self.length
+        self.form.length
     }
 
     /// Bytes from one record to the next in the text of the run.
     pub fn stride(&self) -> usize {
-        self.stride
+        self.form.stride
     }
 
     /// A record of the run, by its place among the points; `text` is that of the run.
     pub fn record<'t>(&self, place: usize, text: &'t [u8]) -> Record<'t> {
-        let from = place * self.stride;
+        let from = place * self.form.stride;
         Record {
             line: self.line(place),
-            raw: &text[from..from + self.length],
-            statement: goto_statement(&self.point(place), self.has_axis),
+            raw: &text[from..from + self.form.length],
+            statement: goto_statement(&self.point(place), self.form.has_axis),
         }
     }
 }

@@ -4,6 +4,7 @@ pub(crate) mod foreign;
 mod goto_run;
 mod layout;
 pub(crate) mod line;
+mod piece;
 mod reader;
 mod record;
 pub(crate) mod scan;
@@ -12,6 +13,7 @@ mod vocabulary;
 
 pub use goto_run::GotoRun;
 pub use line::parse_record;
+pub use piece::{ClBatch, ClPiece};
 pub use reader::ClReader;
 pub use record::*;
 pub use vocabulary::{MajorWord, UnknownPath, WordUsage};

@@ -9,9 +9,10 @@
 //!   must not swallow the move after it.
 
 use super::foreign;
-use super::goto_run::{GotoRun, goto_statement};
+use super::goto_run::{GotoRun, RunForm, goto_statement};
 use super::layout::RecordLayout;
 use super::line::{is_free_text, parse_record};
+use super::piece::ClPiece;
 use super::record::Record;
 use super::scan::{self, PlainGoto};
 use crate::fault::{ReadError, SyntaxFault};
@@ -174,32 +175,57 @@ impl<R: Read> ClReader<R> {
     /// Takes the `GOTO` records that follow as far as they are laid out as those before, into `run`; gives their text.
     /// There may be none: [`Self::next_record`] goes on then.
     pub fn next_gotos(&mut self, run: &mut GotoRun) -> &[u8] {
+        let text = self.take_gotos(run);
+        &self.buffer[text]
+    }
+
+    /// What stands next: records of one layout together, into `run`; then what [`Self::next_record`] gives.
+    #[inline]
+    pub fn next_piece(&mut self, run: &mut GotoRun) -> ClPiece<'_> {
+        let text = self.take_gotos(run);
+        if !text.is_empty() {
+            return ClPiece::Gotos(&self.buffer[text]);
+        }
+        match self.next_record() {
+            Ok(Some(record)) => ClPiece::Record(record),
+            Ok(None) => ClPiece::End,
+            Err(ReadError::Syntax(fault)) => ClPiece::Unreadable(fault),
+            Err(ReadError::Io(error)) => ClPiece::Failed(error),
+        }
+    }
+
+    /// [`Self::next_gotos`], where the text stands in the buffer.
+    #[inline]
+    fn take_gotos(&mut self, run: &mut GotoRun) -> Range<usize> {
         let start = self.start;
         self.gotos_ahead(run);
-        if run.lines > 1 {
-            for place in 0..run.count {
-                self.layout.join(&mut self.buffer[start + place * run.stride..]);
+        let RunForm { count, lines, stride, .. } = run.form;
+        if lines > 1 {
+            for place in 0..count {
+                self.layout.join(&mut self.buffer[start + place * stride..]);
             }
         }
         self.pass_gotos(run);
-        &self.buffer[start..self.start]
+        start..self.start
     }
 
     /// Fills in the `GOTO` records that follow as far as they are laid out as those before. None of them is taken:
     /// [`Self::pass_gotos`] does that, or [`Self::next_record`] one by one.
     pub fn gotos_ahead(&mut self, run: &mut GotoRun) {
-        run.count = self.layout.gotos(&self.buffer, self.start, self.end, &mut run.values);
-        run.line = self.line;
-        run.lines = self.layout.lines();
-        run.has_axis = self.layout.has_axis();
-        run.stride = self.layout.length();
-        run.length = self.layout.joined_length();
+        run.form = RunForm {
+            count: self.layout.gotos(&self.buffer, self.start, self.end, &mut run.values),
+            line: self.line,
+            lines: self.layout.lines(),
+            has_axis: self.layout.has_axis(),
+            stride: self.layout.length(),
+            length: self.layout.joined_length(),
+        };
     }
 
     /// Takes the records that [`Self::gotos_ahead`] has filled in.
     pub fn pass_gotos(&mut self, run: &GotoRun) {
-        self.start += run.count * run.stride;
-        self.line += run.count as u64 * run.lines;
+        self.start += run.form.count * run.form.stride;
+        self.line += run.form.count as u64 * run.form.lines;
     }
 
     /// Numbers of the `GOTO` that begins here, if it is laid out as those before.

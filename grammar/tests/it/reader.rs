@@ -1,6 +1,6 @@
 //! Logical lines: ends, continuations, comments, chunks, faults between good records.
 
-use post_grammar::{ClReader, GotoRun, ReadError, Record, Statement};
+use post_grammar::{ClBatch, ClPiece, ClReader, GotoRun, ReadError, Record, Statement};
 use post_testkit::{Rng, randomised};
 use std::io::{self, Cursor, Read};
 
@@ -47,6 +47,34 @@ fn all_by(input: impl Read, runs: bool) -> Vec<String> {
                 found.push(format!("{fault:?}"));
             }
             Err(ReadError::Io(error)) => panic!("{error}"),
+        }
+    }
+}
+
+/// Every record and fault, read in batches before any of them is taken.
+fn all_ahead(input: impl Read) -> Vec<String> {
+    let mut reader = ClReader::new(input);
+    let (mut reads, mut takes) = (GotoRun::default(), GotoRun::default());
+    let mut found = Vec::new();
+    let mut batch = ClBatch::default();
+    loop {
+        let goes_on = batch.fill(&mut reader, &mut reads);
+        while let Some(piece) = batch.next_piece(&mut takes) {
+            match piece {
+                ClPiece::Gotos(text) => {
+                    found.extend((0..takes.count()).map(|at| told(&takes.record(at, text))));
+                }
+                ClPiece::Record(record) => found.push(told(&record)),
+                ClPiece::Unreadable(fault) => found.push(format!("{fault:?}")),
+                ClPiece::Failed(error) => panic!("{error}"),
+                ClPiece::End => assert!(!goes_on),
+            }
+        }
+        assert!(batch.is_taken());
+        assert_eq!(batch.position(), reader.bytes_read());
+        assert_eq!(batch.ends_within_a_line(), reader.ends_within_a_line());
+        if !goes_on {
+            return found;
         }
     }
 }
@@ -276,6 +304,7 @@ fn records_of_one_layout_are_read_as_each_by_itself() {
         let shown = String::from_utf8_lossy(&bytes);
         assert_eq!(all(bytes.as_slice()), expected, "{shown:?}");
         assert_eq!(all_by(bytes.as_slice(), true), expected, "{shown:?}");
+        assert_eq!(all_ahead(bytes.as_slice()), expected, "{shown:?}");
         let sizes = rng.some([1, 6], |rng| 1 + rng.pick(300));
         let trickle = Trickle { bytes: &bytes, sizes: sizes.into_iter().cycle() };
         assert_eq!(all_by(trickle, rng.pick(2) == 0), expected, "{shown:?}");

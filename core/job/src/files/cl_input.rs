@@ -12,7 +12,7 @@ pub struct ClInput {
     /// As the user named it.
     pub name: String,
     /// What it holds.
-    pub bytes: Box<dyn Read>,
+    pub bytes: Box<dyn Read + Send>,
     /// How long it is, bytes, if it is a file.
     pub length: Option<u64>,
 }
@@ -26,7 +26,7 @@ impl ClInput {
             }
             return Ok(Self {
                 name: "standard input".to_owned(),
-                bytes: Box::new(io::stdin().lock()),
+                bytes: Box::new(io::stdin()),
                 length: None,
             });
         };

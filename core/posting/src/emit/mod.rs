@@ -31,6 +31,7 @@ pub(crate) use extremes::Extremes;
 use state::{
     ClampState, CompensationState, CoolantState, PlaneState, ProgramSpindle, SmoothingState,
 };
+pub use text_thread::SpareWork;
 use texts::ProgramTexts;
 use writer::EventWriter;
 
@@ -182,12 +183,12 @@ impl<'a> EmitStage<'a> {
         self.settle();
     }
 
-    /// Writes texts on a thread of `scope` from here on, if one can be started.
-    pub(crate) fn write_beside<'s>(&mut self, scope: &'s Scope<'s, '_>)
+    /// Writes texts on a thread of `scope` from here on, if one can be started; while none waits it does `spare` work.
+    pub(crate) fn write_beside<'s>(&mut self, scope: &'s Scope<'s, '_>, spare: SpareWork<'s>)
     where
         'a: 's,
     {
-        self.writer.write_beside(scope);
+        self.writer.write_beside(scope, spare);
     }
 
     /// First line of the CL file whose events are no text yet, though they are handed on.

@@ -10,6 +10,8 @@ use crate::observer::TextSink;
 pub(super) struct EventBatch {
     /// The events.
     pub events: Batch,
+    /// How much work they are, in blocks.
+    pub work: usize,
     /// Its place among the batches, from 1.
     pub number: u64,
     /// Findings before it.

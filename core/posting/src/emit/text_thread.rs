@@ -1,18 +1,23 @@
 //! The thread on which batches of events become text, beside the stages that make them.
 //!
 //! Batches go there and come back in their order, and the thread alone has dialect and output: what is written is what
-//! would be without it. Only so many are on the way, and they come back to be filled again.
+//! would be without it. Only so many are on the way, and they come back to be filled again. While no text waits the thread
+//! does what else is asked of it.
 
 use std::any::Any;
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread::{self, Scope};
 
 use super::text::{EventBatch, TextWriter};
 
-/// Batches that go together: one alone is worth less than waking a thread.
-const TOGETHER: usize = 8;
+/// What the thread of the texts does while none waits, a little at a time; false: there was nothing to do. It is asked
+/// again after each text.
+pub type SpareWork<'s> = &'s (dyn Fn() -> bool + Sync);
+
+/// Work of the batches that go together ([`EventBatch::work`]): less is worth less than waking a thread.
+const TOGETHER: usize = 2048;
 
 /// So many times [`TOGETHER`] are on the way at most.
 const ON_THE_WAY: usize = 4;
@@ -35,8 +40,9 @@ type Done = Result<Vec<EventBatch>, Box<dyn Any + Send>>;
 pub(super) struct TextThread<'a> {
     to: Sender<Work<'a>>,
     from: Receiver<Done>,
-    /// Batches that go next.
+    /// Batches that go next, and their work.
     waiting: Vec<EventBatch>,
+    work: usize,
     /// First line of the CL file of those that are on the way, and of those that wait behind them.
     lines: VecDeque<u64>,
     /// Batches to be filled again, and what they go in.
@@ -46,7 +52,7 @@ pub(super) struct TextThread<'a> {
 
 impl<'a> TextThread<'a> {
     /// A thread of `scope`; none if no more can be started.
-    pub(super) fn start<'s>(scope: &'s Scope<'s, '_>) -> Option<Self>
+    pub(super) fn start<'s>(scope: &'s Scope<'s, '_>, spare: SpareWork<'s>) -> Option<Self>
     where
         'a: 's,
     {
@@ -54,7 +60,7 @@ impl<'a> TextThread<'a> {
         let (done, from) = channel::<Done>();
         let thread = thread::Builder::new().name("text".to_owned()).stack_size(STACK);
         let started = thread.spawn_scoped(scope, move || {
-            let written = catch_unwind(AssertUnwindSafe(|| write_all(&work, &done)));
+            let written = catch_unwind(AssertUnwindSafe(|| write_all(&work, &done, spare)));
             if let Err(payload) = written {
                 // Whoever waits for it has to know; nobody may wait any more.
                 let _ = done.send(Err(payload));
@@ -63,7 +69,8 @@ impl<'a> TextThread<'a> {
         started.ok().map(|_| Self {
             to,
             from,
-            waiting: Vec::with_capacity(TOGETHER),
+            waiting: Vec::new(),
+            work: 0,
             lines: VecDeque::new(),
             empty: Vec::new(),
             spare: Vec::new(),
@@ -85,8 +92,9 @@ impl<'a> TextThread<'a> {
     pub(super) fn hand(&mut self, batch: &mut EventBatch) {
         let mut next = self.empty.pop().unwrap_or_default();
         next.places = batch.places.is_some().then(|| next.places.take().unwrap_or_default());
+        self.work += batch.work;
         self.waiting.push(std::mem::replace(batch, next));
-        if self.waiting.len() >= TOGETHER {
+        if self.work >= TOGETHER {
             self.send_waiting();
         }
     }
@@ -115,6 +123,7 @@ impl<'a> TextThread<'a> {
             return;
         };
         self.lines.push_back(first.events.line(0));
+        self.work = 0;
         let next = self.spare.pop().unwrap_or_default();
         let batches = std::mem::replace(&mut self.waiting, next);
         self.send(Work::Write(batches));
@@ -127,9 +136,9 @@ impl<'a> TextThread<'a> {
 }
 
 /// Writes what comes until nothing more does.
-fn write_all(work: &Receiver<Work<'_>>, done: &Sender<Done>) {
+fn write_all(work: &Receiver<Work<'_>>, done: &Sender<Done>, spare: SpareWork<'_>) {
     let mut writer = None;
-    for work in work {
+    while let Some(work) = next(work, spare) {
         match work {
             Work::Begin(text) => writer = Some(text),
             Work::Write(mut batches) => {
@@ -140,6 +149,18 @@ fn write_all(work: &Receiver<Work<'_>>, done: &Sender<Done>) {
                     return;
                 }
             }
+        }
+    }
+}
+
+/// What comes next, once it is there.
+fn next<'a>(work: &Receiver<Work<'a>>, spare: SpareWork<'_>) -> Option<Work<'a>> {
+    loop {
+        match work.try_recv() {
+            Ok(work) => return Some(work),
+            Err(TryRecvError::Disconnected) => return None,
+            Err(TryRecvError::Empty) if spare() => {}
+            Err(TryRecvError::Empty) => return work.recv().ok(),
         }
     }
 }

@@ -6,7 +6,7 @@ use post_plugin::{Capabilities, DialectSession, Event, Format};
 
 use super::extremes::Extremes;
 use super::text::{BatchFault, EventBatch, TextWriter};
-use super::text_thread::TextThread;
+use super::text_thread::{SpareWork, TextThread};
 use crate::findings::Findings;
 use crate::observer::TextSink;
 use crate::stream::BATCH;
@@ -50,12 +50,12 @@ impl<'a> EventWriter<'a> {
         }
     }
 
-    /// Writes texts on a thread of `scope` from here on, if one can be started.
-    pub(super) fn write_beside<'s>(&mut self, scope: &'s Scope<'s, '_>)
+    /// Writes texts on a thread of `scope` from here on, if one can be started; while none waits it does `spare` work.
+    pub(super) fn write_beside<'s>(&mut self, scope: &'s Scope<'s, '_>, spare: SpareWork<'s>)
     where
         'a: 's,
     {
-        let Some(thread) = TextThread::start(scope) else {
+        let Some(thread) = TextThread::start(scope, spare) else {
             return;
         };
         let text = std::mem::replace(&mut self.text, TextPlaceOfWork::Beside(thread));
@@ -132,6 +132,10 @@ impl<'a> EventWriter<'a> {
     #[inline]
     pub(super) fn push(&mut self, line: u64, event: Event<'_>) {
         if !self.broken {
+            self.batch.work += match event {
+                Event::Cuts { columns, .. } => columns.0.len() / (self.words() + 1),
+                _ => 1,
+            };
             self.batch.events.push(line, event);
         }
     }
@@ -198,6 +202,7 @@ impl<'a> EventWriter<'a> {
         });
         if self.broken {
             self.batch.events.clear();
+            self.batch.work = 0;
         }
     }
 }
@@ -211,6 +216,7 @@ fn came_back(
     extremes.written(batch.number, batch.marks_lines);
     *lines = batch.lines_behind;
     batch.events.clear();
+    batch.work = 0;
     batch.fault.take()
 }
 

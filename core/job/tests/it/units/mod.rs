@@ -5,6 +5,7 @@
 mod gauges;
 mod grid;
 mod one_job;
+mod read_ahead;
 mod solids;
 
 #[path = "../../../src/report/branch.rs"]

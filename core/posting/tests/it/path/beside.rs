@@ -76,7 +76,7 @@ fn told(model: &Model, cl: &str, refusals: Refusals, beside: bool) -> (bool, Str
         let mut post =
             Post::new(&model.machine, job, &mut dialect, &mut samples, &mut output).unwrap();
         if beside {
-            post.write_beside(scope);
+            post.write_beside(scope, &|| false);
         }
         let mut reader = ClReader::new(cl.as_bytes());
         while !post.gave_up() {
@@ -148,7 +148,7 @@ fn a_panic_beside_is_a_panic() {
         let job = PostingRequest { tool_length: Some(model.length), ..PostingRequest::default() };
         let mut post =
             Post::new(&model.machine, job, &mut dialect, &mut samples, &mut output).unwrap();
-        post.write_beside(scope);
+        post.write_beside(scope, &|| false);
         let mut reader = ClReader::new("UNITS/MM\nFEDRAT/100\nGOTO/0,0,0\nFINI\n".as_bytes());
         while let Some(record) = reader.next_record().unwrap() {
             post.record(&record);

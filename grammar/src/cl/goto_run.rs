@@ -64,6 +64,12 @@ impl GotoRun {
         self.line + place as u64 * self.lines
     }
 
+    /// Line of the file on which the last record begins.
+    #[inline]
+    pub fn last_line(&self) -> u64 {
+        self.line(self.count.saturating_sub(1))
+    }
+
     /// Lines of the file that every record takes.
     pub fn lines(&self) -> u64 {
         self.lines

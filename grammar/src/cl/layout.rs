@@ -142,11 +142,8 @@ impl RecordLayout {
     /// Zeros stand for a tool axis that is not given.
     #[inline(always)]
     pub(super) fn goto(&mut self, buffer: &[u8], start: usize, end: usize) -> Option<[f64; 6]> {
-        if self.length == 0 || start + self.length > end {
-            return None;
-        }
         let window = window(buffer, start)?;
-        if !self.is_of(window) {
+        if !self.begins(buffer, start, end) {
             return None;
         }
         self.hits = self.hits.saturating_add(1);
@@ -199,6 +196,13 @@ impl RecordLayout {
             column[..count].fill(0.0);
         }
         count
+    }
+
+    /// A record that is laid out so begins at `start`; what is at `end` and after it is not read yet.
+    pub(super) fn begins(&self, buffer: &[u8], start: usize, end: usize) -> bool {
+        self.length > 0
+            && start + self.length <= end
+            && window(buffer, start).is_some_and(|window| self.is_of(window))
     }
 
     /// Whether the record is laid out so. Without a branch a byte: the compiler makes vectors of it.

@@ -85,7 +85,7 @@ impl PostArguments {
         making.compensate_servo
             || making.plan
             || self.looks_ahead(machine)
-            || machine.control.planes
+            || machine.wants_planes(true)
             || self.verify
             || self.report.0.report.is_some()
             || self.predict.is_some()

@@ -38,7 +38,9 @@ struct Setup {
 
 /// `machine` with a tool of 100 mm.
 fn on(machine: &'static str) -> Setup {
-    Setup { machine, file: None, set: Vec::new(), length: 100.0, ending: "ncl" }
+    // What reads the programs knows no plane but that of the part.
+    let set = vec![("control.planes".to_owned(), "false".to_owned())];
+    Setup { machine, file: None, set, length: 100.0, ending: "ncl" }
 }
 
 impl Setup {

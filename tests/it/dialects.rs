@@ -19,12 +19,15 @@ const JOBS: &[(&str, &str, &str, &[&str])] = &[
     // Arcs in all planes, a helix, cycles of many kinds, tools, stops.
     ("three-axis", "vmc", "flange.ncl", &[]),
     // A tool axis that stays over an operation: the control's plane where it has one.
-    ("planes", "ac-trunnion", "wedge.ncl", &["--set", "control.planes=true"]),
+    ("planes", "ac-trunnion", "wedge.ncl", PLANES),
     // The same with plain index axes.
-    ("index", "ac-trunnion", "wedge.ncl", &[]),
-    ("tcp", "ac-trunnion", "facets.apt", &["--tcp", "control"]),
-    ("no-tcp", "ac-trunnion", "facets.apt", &["--tcp", "post"]),
+    ("index", "ac-trunnion", "wedge.ncl", NO_PLANES),
+    ("tcp", "ac-trunnion", "facets.apt", &["--tcp", "control", "--set", "control.planes=false"]),
+    ("no-tcp", "ac-trunnion", "facets.apt", &["--tcp", "post", "--set", "control.planes=false"]),
 ];
+
+const PLANES: &[&str] = &["--set", "control.planes=true"];
+const NO_PLANES: &[&str] = &["--set", "control.planes=false"];
 
 /// The samples of the jobs.
 pub fn samples() -> impl Iterator<Item = &'static str> {
@@ -110,6 +113,33 @@ fn the_programs_are_those_that_were_read() {
             }
         }
     });
+}
+
+/// With nothing said there are planes where the control has cycles, arcs and compensation in them, and nowhere else.
+#[test]
+fn planes_are_the_default_where_nothing_is_lost_in_them() {
+    let mut with_planes = Vec::new();
+    for dialect in dialects() {
+        for sample_name in ["wedge.ncl", "facets.apt"] {
+            let made = |with: &[&str]| {
+                let with = [LENGTH, with, &["--verify"]].concat();
+                let made = post(&dialect, "ac-trunnion", &sample(sample_name), &with);
+                assert_eq!(made.code, 0, "{dialect} {sample_name}: {}", made.err);
+                made.out
+            };
+            let [on, off, unsaid] = [PLANES, NO_PLANES, &[]].map(made);
+            assert!(unsaid == on || unsaid == off, "{dialect} {sample_name}:\n{unsaid}");
+            if unsaid != off {
+                with_planes.push(format!("{dialect} {sample_name}"));
+            }
+        }
+    }
+    let expected = ["fanuc", "haas", "heidenhain", "siemens"]
+        .map(|dialect| ["wedge.ncl", "facets.apt"].map(|name| format!("{dialect} {name}")));
+    with_planes.sort();
+    let mut expected = expected.concat();
+    expected.sort();
+    assert_eq!(with_planes, expected);
 }
 
 /// Files of CAM systems: what a dialect refuses, by a part of its message. Nothing else may be.

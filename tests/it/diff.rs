@@ -194,7 +194,8 @@ fn two_machines_are_compared_in_what_the_part_sees() {
 
 #[test]
 fn one_part_in_every_dialect_is_one_motion() {
-    let job = ["--tcp", "control", "--dialect"];
+    // With planes the ways between operations are those of the control.
+    let job = ["--tcp", "control", "--set", "control.planes=false", "--dialect"];
     let with = |dialect| [&job[..], &[dialect]].concat();
     let bench = Bench::new("ac-trunnion", "facets.apt", &with("fanuc"));
     for dialect in ["heidenhain", "linuxcnc", "mazak", "mitsubishi", "siemens"] {

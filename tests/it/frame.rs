@@ -143,15 +143,14 @@ fn length_and_tcp_are_switched_in_the_order_of_the_control() {
     assert!(
         at(&linuxcnc, "M429") < at(&linuxcnc, "G53") && at(&linuxcnc, "G53") < at(&linuxcnc, "G49")
     );
-    let fanuc =
-        lines("xyzbc-trt", &FANUC.replace("post", "control"), &["--mount", "0,0,-60"], &tilted);
+    let control = format!("{}planes = false\n", FANUC.replace("post", "control"));
+    let fanuc = lines("xyzbc-trt", &control, &["--mount", "0,0,-60"], &tilted);
     assert!(!fanuc.iter().any(across), "{}", fanuc.join("\n"));
     let on = at(&fanuc, "G43.4 H1 X");
     assert!(fanuc[on].contains('Z') && fanuc[on + 1].ends_with("Z50.000"));
     assert!(at(&fanuc, "G53") < at(&fanuc, "G49"));
     // With nothing turned words are positions: first across, then down.
-    let upright =
-        lines("xyzbc-trt", &FANUC.replace("post", "control"), &["--mount", "0,0,-60"], UPRIGHT);
+    let upright = lines("xyzbc-trt", &control, &["--mount", "0,0,-60"], UPRIGHT);
     assert_run(&upright, &["G0 B0.000 C0.000", "X20.000 Y10.000", "G43.4 H1 Z50.000"]);
 }
 
@@ -213,7 +212,8 @@ fn positions_of_the_machine_file_are_gone_to() {
 #[test]
 fn a_head_that_leans_leaves_along_the_tool() {
     for tcp in ["post", "control"] {
-        let lines = lines("head-head", "", &["--tcp", tcp], &leaning(30.0));
+        let arguments = ["--tcp", tcp, "--set", "control.planes=false"];
+        let lines = lines("head-head", "", &arguments, &leaning(30.0));
         let up = lines.iter().rposition(|line| line.contains("G53 G0 Z")).unwrap();
         let value = |line: &str, name: char| {
             let word = line.split(' ').find(|word| word.starts_with(name));

@@ -87,7 +87,7 @@ fn holes_of_our_programs_end_where_the_cl_file_says() {
     for (machine, file, with) in [
         ("vmc", "flange.ncl", &[][..]),
         ("ac-trunnion", "wedge.ncl", &["--set", "control.planes=true"]),
-        ("ac-trunnion", "wedge.ncl", &[]),
+        ("ac-trunnion", "wedge.ncl", &["--set", "control.planes=false"]),
     ] {
         let expected = bottoms(&fs::read_to_string(sample(file)).unwrap());
         assert!(expected.len() >= 5);

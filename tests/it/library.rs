@@ -82,9 +82,11 @@ fn make(row: &Row, file: &str) -> (common::Run, Option<serde_json::Value>) {
         row.machine,
         "--tool-length",
         &length,
-        // The reader of this test knows moves.
+        // The reader of this test knows moves, and no plane but that of the part.
         "--set",
         "control.cycles=moves",
+        "--set",
+        "control.planes=false",
         "-o",
         "-",
         "--summary",

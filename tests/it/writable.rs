@@ -82,7 +82,8 @@ fn compensation_under_tcp_is_written_where_the_control_has_it() {
         ("linuxcnc", "control", Some("G41 D4")),
     ] {
         let setting = format!("control.dialect={dialect}");
-        let arguments = ["-m", "ac-trunnion", "--tcp", tcp, "--set", &setting];
+        let planes = "control.planes=false";
+        let arguments = ["-m", "ac-trunnion", "--tcp", tcp, "--set", &setting, "--set", planes];
         let run = text(&arguments, COMPENSATED);
         let Some(word) = written else {
             assert_eq!((run.code, run.out.as_str()), (1, ""), "{dialect}");

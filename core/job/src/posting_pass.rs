@@ -9,9 +9,9 @@ use post_grammar::{ClPiece, ClReader, GotoRun, ReadError};
 use post_host::{Finder, OpenedDialect, OpenedModel};
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::{Capabilities, DialectSession, ModelSession};
+use post_plugin::{DialectSession, ModelSession};
 use post_posting::plan::PlanWatch;
-use post_posting::preview::{FilePreview, PreviewPass};
+use post_posting::preview::{FilePreview, PreviewPass, wants_planes};
 use post_posting::program::ReadingOptions;
 use post_posting::report::{PluginUse, PostingReport};
 use post_posting::{Observer, PathShift, Post, PostingRequest, ProgramPreview, TextSink};
@@ -202,29 +202,48 @@ pub fn posting_request(arguments: &JobSettings, file: &str) -> PostingRequest {
     }
 }
 
-/// What a first pass over the CL file finds out where the program depends on it: `[control] planes`, and a dialect that
-/// writes them.
+/// What a first pass over the CL file finds out where the program depends on it.
 pub fn file_preview(
     arguments: &JobSettings,
     source: &mut ClSource,
     machine: &Machine,
     dialect: &impl DialectSession,
 ) -> Result<Option<Arc<FilePreview>>, Failure> {
-    if !machine.control.planes || !dialect.capabilities().has(Capabilities::PLANE) {
+    if !wants_planes(machine, dialect.capabilities()) {
         return Ok(None);
     }
     let input = source.open()?;
     let reading = posting_request(arguments, &input.name).reading;
+    Ok(Some(preview(input, machine, reading)?))
+}
+
+/// The first pass over a CL file.
+///
+/// # Errors
+/// It cannot be read. What is wrong with its records is said when its program is made.
+pub fn preview(
+    input: ClInput,
+    machine: &Machine,
+    reading: ReadingOptions,
+) -> Result<Arc<FilePreview>, FileFault> {
     let mut pass = PreviewPass::new(machine, reading);
     let mut reader = ClReader::new(input.bytes);
+    let mut run = GotoRun::default();
     loop {
+        if pass.passes_gotos() {
+            reader.skip_gotos();
+        }
+        let text = reader.next_gotos(&mut run);
+        if !text.is_empty() {
+            pass.gotos(&run, text);
+            continue;
+        }
         match reader.next_record() {
             Ok(Some(record)) => pass.record(&record),
-            Ok(None) => return Ok(Some(Arc::new(pass.finish()))),
-            // The program is not made then, and says why.
+            Ok(None) => return Ok(Arc::new(pass.finish())),
             Err(ReadError::Syntax(_)) => {}
             Err(ReadError::Io(error)) => {
-                return Err(FileFault::Read { name: input.name, error }.into());
+                return Err(FileFault::Read { name: input.name, error });
             }
         }
     }

@@ -9,7 +9,7 @@ use post_grammar::{GotoRun, Record, SyntaxFault};
 use post_machine::axis_words;
 use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::{Capabilities, DialectSession, ModelSession};
+use post_plugin::{DialectSession, ModelSession};
 
 use crate::accuracy::RunColumns;
 use crate::blocks::{BlockStage, MotionBlock};
@@ -20,7 +20,7 @@ use crate::findings::Findings;
 use crate::job_facts::JobFacts;
 use crate::observer::{Observer, Observers, TextSink};
 use crate::plan::{PlanStage, PlanWatch};
-use crate::preview::FilePreview;
+use crate::preview::{FilePreview, wants_planes};
 use crate::program::{ClInterpreter, MoveFeed, ProgramStep, ReadingOptions};
 use crate::refusal;
 use crate::report::{AxisRange, PostingReport, ReportedDeviation};
@@ -202,7 +202,7 @@ impl<'a> Post<'a> {
             return Err(fault.boxed());
         }
         let writes = dialect.capabilities();
-        let planes = machine.control.planes && writes.has(Capabilities::PLANE);
+        let planes = wants_planes(machine, writes);
         let ahead = job.ahead.filter(|_| planes);
         let findings = Findings::new(&job.reading.file);
         let mut stages = PostStages {
@@ -235,7 +235,7 @@ impl<'a> Post<'a> {
         if job.plans {
             stages.blocks.plans();
         }
-        if machine.control.planes && !planes {
+        if machine.control.planes == Some(true) && !planes {
             findings.add(refusal::no_planes(machine));
         }
         Ok(Self {
@@ -354,7 +354,7 @@ impl<'a> Post<'a> {
         // What waits goes before it, and few steps are better off among others.
         let waits = !self.steps.is_empty();
         let few = waits && run.count() < GotoRun::MOST;
-        if few || !self.stages.takes_columns(run.count(), &self.findings) {
+        if few || !self.stages.takes_columns(run.count(), run.last_line(), &self.findings) {
             return 0;
         }
         if waits {

@@ -7,8 +7,9 @@
 //! found. A part is a struct with a `step` and a `finish` of its own: [`FixedAxisFinder`] says where the tool axis stays.
 
 use nalgebra::Vector3;
-use post_grammar::Record;
+use post_grammar::{GotoRun, Record};
 use post_machine::description::Machine;
+use post_plugin::Capabilities;
 
 use crate::program::{ClInterpreter, Command, MoveFeed, ProgramStep, ReadingOptions, StraightMove};
 
@@ -34,6 +35,12 @@ pub struct FixedAxisRange {
     pub last: u64,
     /// The tool axis, unit vector from the tip to the holder, part frame.
     pub axis: Vector3<f64>,
+}
+
+/// The control is to get tilted planes: its dialect `writes` them, and they are wanted.
+pub fn wants_planes(machine: &Machine, writes: Capabilities) -> bool {
+    writes.has(Capabilities::PLANE)
+        && machine.wants_planes(writes.has(Capabilities::CYCLE_IN_PLANE))
 }
 
 /// The first pass.
@@ -63,10 +70,56 @@ impl PreviewPass {
         }
     }
 
+    /// Takes the records of a run, whose text this is: [`Self::record`] of each.
+    pub fn gotos(&mut self, run: &GotoRun, text: &[u8]) {
+        let mut place = 0;
+        while place < run.count() {
+            place = self.plain_gotos(run, place);
+            if place < run.count() {
+                self.record(&run.record(place, text));
+                place += 1;
+            }
+        }
+    }
+
+    /// Takes the records of a run from a place on, as far as they are plain cuts; gives the place after them. Those that
+    /// tell nothing new are passed over.
+    fn plain_gotos(&mut self, run: &GotoRun, from: usize) -> usize {
+        let mut place = from;
+        let Some(pace) = self.interpreter.plain_pace() else {
+            return place;
+        };
+        while place < run.count() {
+            let point = run.point(place);
+            let Some(motion) = self.interpreter.plain_move(&point, run.has_axis(), pace) else {
+                break;
+            };
+            self.still.motion(run.line(place), &motion, pace != MoveFeed::Rapid);
+            place += 1;
+            let alike = if self.still.turns { run.count() } else { same_axis(run, place) };
+            // The last of them says where the interpreter stands.
+            place = place.max(alike.saturating_sub(1));
+        }
+        place
+    }
+
+    /// Plain `GOTO`s tell nothing from here on, up to the next other record, but where the last of them leads.
+    pub fn passes_gotos(&self) -> bool {
+        self.still.turns && self.interpreter.plain_pace().is_some()
+    }
+
     /// The file has ended.
     pub fn finish(self) -> FilePreview {
         FilePreview { still: self.still.finish() }
     }
+}
+
+/// The place behind the points, from one place on, that have the tool axis of the one before it.
+fn same_axis(run: &GotoRun, from: usize) -> usize {
+    let [.., i, j, k] = run.columns();
+    let axis = |place: usize| [i[place], j[place], k[place]];
+    let alike = (from..run.count()).take_while(|place| axis(*place) == axis(from - 1));
+    from + alike.count()
 }
 
 /// Where the tool axis stays.

@@ -84,11 +84,7 @@ impl PostStages<'_> {
 
     /// No stage needs every point by itself, and nobody looks on.
     fn passes_runs(&self) -> bool {
-        self.runs.most > 0
-            && self.expand.passes_moves()
-            && self.shift.is_none()
-            && self.plan.is_none()
-            && !self.emit.is_watched()
+        self.runs.most > 0 && self.shift.is_none() && self.plan.is_none() && !self.emit.is_watched()
     }
 
     /// Number of steps at the front that go one by one.
@@ -111,10 +107,11 @@ impl PostStages<'_> {
         alone.min(steps.len())
     }
 
-    /// So many plain cuts may go as columns.
-    pub(crate) fn takes_columns(&self, count: usize, findings: &Findings) -> bool {
+    /// So many plain cuts, the last from `line`, may go as columns.
+    pub(crate) fn takes_columns(&self, count: usize, line: u64, findings: &Findings) -> bool {
         let runs = &self.runs;
         runs.paused == 0
+            && self.expand.passes_moves(line)
             && count.min(runs.most) >= LEAST.min(runs.most).max(1)
             && self.passes_runs()
             && self.emit.takes_runs()
@@ -124,7 +121,8 @@ impl PostStages<'_> {
     /// Takes the steps at the front as columns: how many; none on any doubt.
     fn take_run(&mut self, steps: &[(u64, ProgramStep)], findings: &Findings) -> usize {
         let count = length(steps, self.runs.most);
-        if !self.takes_columns(count, findings) {
+        let last_line = count.checked_sub(1).map_or(0, |last| steps[last].0);
+        if !self.takes_columns(count, last_line, findings) {
             return 0;
         }
         let run = &mut *self.runs.columns;
@@ -149,7 +147,7 @@ impl PostStages<'_> {
         findings: &Findings,
         fill: impl FnOnce(&mut RunColumns) -> bool,
     ) -> usize {
-        if !self.takes_columns(gotos.count(), findings) {
+        if !self.takes_columns(gotos.count(), gotos.last_line(), findings) {
             return 0;
         }
         let run = &mut *self.runs.columns;

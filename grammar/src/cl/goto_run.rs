@@ -76,6 +76,12 @@ impl GotoRun {
         self.form.line + place as u64 * self.form.lines
     }
 
+    /// Line of the file on which the last record begins.
+    #[inline]
+    pub fn last_line(&self) -> u64 {
+        self.line(self.form.count.saturating_sub(1))
+    }
+
     /// Lines of the file that every record takes.
     pub fn lines(&self) -> u64 {
         self.form.lines

@@ -56,11 +56,8 @@ impl RecordLayout {
     /// Zeros stand for a tool axis that is not given.
     #[inline(always)]
     pub(super) fn goto(&mut self, buffer: &[u8], start: usize, end: usize) -> Option<[f64; 6]> {
-        if self.characters.length() == 0 || start + self.characters.length() > end {
-            return None;
-        }
         let window = window(buffer, start)?;
-        if !self.characters.is_of(window) {
+        if !self.begins(buffer, start, end) {
             return None;
         }
         self.pace.hits = self.pace.hits.saturating_add(1);
@@ -113,6 +110,14 @@ impl RecordLayout {
             column[..count].fill(0.0);
         }
         count
+    }
+
+    /// A record that is laid out so begins at `start`; what is at `end` and after it is not read yet.
+    pub(super) fn begins(&self, buffer: &[u8], start: usize, end: usize) -> bool {
+        let length = self.characters.length();
+        length > 0
+            && start + length <= end
+            && window(buffer, start).is_some_and(|window| self.characters.is_of(window))
     }
 
     /// Fills in the numbers; `LONG` if one has more than eight digits.

@@ -17,7 +17,7 @@ use super::record::Record;
 use super::scan::{self, PlainGoto};
 use crate::fault::{ReadError, SyntaxFault};
 use crate::text::excerpt;
-use memchr::{memchr_iter, memchr2};
+use memchr::{memchr_iter, memchr2, memchr3};
 use std::borrow::Cow;
 use std::io::{self, ErrorKind, Read};
 use std::ops::Range;
@@ -226,6 +226,33 @@ impl<R: Read> ClReader<R> {
     pub fn pass_gotos(&mut self, run: &GotoRun) {
         self.start += run.form.count * run.form.stride;
         self.line += run.form.count as u64 * run.form.lines;
+    }
+
+    /// Passes over the `GOTO` records that follow, whose numbers nobody wants, but for the last of them that is read in whole:
+    /// that is left for [`Self::next_gotos`] or [`Self::next_record`].
+    pub fn skip_gotos(&mut self) {
+        let (mut begins, mut line) = (self.start, self.line);
+        while let Some((length, lines)) = self.goto_length(begins) {
+            (self.start, self.line) = (begins, line);
+            begins += length;
+            line += lines;
+        }
+    }
+
+    /// Bytes and lines of the `GOTO` that begins in the buffer at `from`, if it is laid out as those before or takes a line
+    /// without a `$`.
+    #[inline]
+    fn goto_length(&self, from: usize) -> Option<(usize, u64)> {
+        if self.layout.begins(&self.buffer, from, self.end) {
+            return Some((self.layout.length(), self.layout.lines()));
+        }
+        let text = &self.buffer[from..self.end];
+        let end = memchr3(b'\n', b'\r', b'$', text.strip_prefix(b"GOTO")?)? + b"GOTO".len();
+        match text[end..] {
+            [b'\n', ..] => Some((end + 1, 1)),
+            [b'\r', b'\n', ..] => Some((end + 2, 1)),
+            _ => None,
+        }
     }
 
     /// Numbers of the `GOTO` that begins here, if it is laid out as those before.

@@ -5,6 +5,8 @@ use std::num::NonZeroUsize;
 
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
+use post_plugin::DialectSession as _;
+use post_posting::preview::wants_planes;
 use post_posting::program::{DefaultSpindle, ReadingOptions};
 use post_posting::{MotionBlock, Observer, PostingRequest};
 
@@ -13,7 +15,7 @@ use crate::document::Snapshot;
 use crate::machine::library::Library;
 use post_job::files::ClInput;
 use post_job::plugin_finder;
-use post_job::posting_pass::{OpenedPlugins, PostingPass, ProgramHead};
+use post_job::posting_pass::{self, OpenedPlugins, PostingPass, ProgramHead};
 
 /// Lines of which it is kept what posting said.
 const MOST_LINES: usize = 500_000;
@@ -72,16 +74,21 @@ pub fn post(
         Ok(opened) => opened,
         Err(faults) => return Some(Err(faults)),
     };
-    let request = PostingRequest {
-        reading: ReadingOptions {
-            file: of.name.clone(),
-            // Nothing is written: how fast the spindle turns is nobody's business.
-            spindle: DefaultSpindle::Still,
-            ..ReadingOptions::default()
-        },
-        tool_length,
-        ..PostingRequest::default()
+    let reading = ReadingOptions {
+        file: of.name.clone(),
+        // Nothing is written: how fast the spindle turns is nobody's business.
+        spindle: DefaultSpindle::Still,
+        ..ReadingOptions::default()
     };
+    let ahead = match wants_planes(&machine, opened.dialect.capabilities()) {
+        true => match posting_pass::preview(input(of, token), &machine, reading.clone()) {
+            Ok(ahead) => Some(ahead),
+            // The text lies in the memory: it fails where the work is given up.
+            Err(_) => return None,
+        },
+        false => None,
+    };
+    let request = PostingRequest { reading, tool_length, ahead, ..PostingRequest::default() };
     let (dialect, model) = (&mut opened.dialect, &mut opened.model);
     let pass =
         PostingPass { machine: &machine, request, threads: NonZeroUsize::MIN, dialect, model };

@@ -109,7 +109,7 @@ impl PostArguments {
         making.compensate_servo
             || making.plan
             || self.looks_ahead(machine)
-            || machine.control.planes
+            || machine.wants_planes(true)
             || self.outputs.0.verify
             || self.report.0.report.is_some()
             || self.outputs.0.predict.is_some()

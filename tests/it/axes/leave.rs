@@ -114,7 +114,9 @@ impl Lying {
         let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
         fs::write(at("machine.toml"), self.with(line)).unwrap();
         fs::write(at("bore.ncl"), bores(self.axis)).unwrap();
-        let arguments = ["-q", "--verify", "--tool-length", "100", "-o", "-", "-m"];
+        let planes = ["--set", "control.planes=false"];
+        let arguments =
+            ["-q", "--verify", "--tool-length", "100", planes[0], planes[1], "-o", "-", "-m"];
         let mut arguments = arguments.map(str::to_owned).to_vec();
         arguments.extend([at("machine.toml"), at("bore.ncl")]);
         post(&arguments)

@@ -101,7 +101,7 @@ impl RightJob {
         };
         asks(&mut random, 3, "control.rapid", "linear");
         asks(&mut random, 6, "control.cycles", "moves");
-        asks(&mut random, 4, "control.planes", "true");
+        asks(&mut random, 4, "control.planes", "false");
         asks(&mut random, 5, "control.units", "inch");
         asks(&mut random, 6, "accuracy.reduce", "true");
         asks(&mut random, 8, "accuracy.placement", "fewest");

@@ -11,7 +11,7 @@ use post_plugin::{
     Batch, Capabilities, Curve, Cycle, Deviation, DialectSession, Event, Feed, Format,
     ModelSession, PlaneAngles, Tolerance, ToolPose, WriteFault,
 };
-use post_posting::preview::PreviewPass;
+use post_posting::preview::{FilePreview, PreviewPass, wants_planes};
 use post_posting::program::DefaultSpindle;
 use post_posting::report::PostingReport;
 use post_posting::{Observer, Post, PostingRequest, TextSink};
@@ -335,16 +335,12 @@ pub fn framed(
         job.reading.spindle = DefaultSpindle::Still;
     }
     let mut output = Nowhere;
-    if machine.control.planes {
-        let mut pass = PreviewPass::new(machine, job.reading.clone());
-        let mut reader = ClReader::new(cl.as_bytes());
-        while let Ok(Some(record)) = reader.next_record() {
-            pass.record(&record);
-        }
-        job.ahead = Some(Arc::new(pass.finish()));
-    }
     // What goes point by point goes record by record.
     let alone = job.longest_run == Some(0);
+    if wants_planes(machine, dialect.capabilities()) {
+        job.ahead =
+            Some(Arc::new(previewed(PreviewPass::new(machine, job.reading.clone()), cl, alone)));
+    }
     let mut post = Post::new(machine, job, &mut dialect, model, &mut output)
         .expect("machine and dialect agree");
     for observer in observers {
@@ -369,6 +365,28 @@ pub fn framed(
     }
     let (report, findings) = post.finish();
     Run { asked: dialect.asked, report, findings }
+}
+
+/// What a first pass over the text finds, record by record (`alone`) or as a job reads it.
+fn previewed(mut pass: PreviewPass, cl: &str, alone: bool) -> FilePreview {
+    let mut reader = ClReader::new(cl.as_bytes());
+    let mut run = GotoRun::default();
+    loop {
+        if !alone {
+            if pass.passes_gotos() {
+                reader.skip_gotos();
+            }
+            let text = reader.next_gotos(&mut run);
+            if !text.is_empty() {
+                pass.gotos(&run, text);
+                continue;
+            }
+        }
+        match reader.next_record() {
+            Ok(Some(record)) => pass.record(&record),
+            _ => return pass.finish(),
+        }
+    }
 }
 
 /// A machine, and the same once more for the isometries.

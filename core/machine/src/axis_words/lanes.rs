@@ -1,9 +1,11 @@
 //! Words of many points: those of [`AxisWords`] point by point, a step of all points before the next.
 
+use nalgebra::Vector3;
+
 use super::{AxisWords, Word};
 use crate::description::Tcp;
 use crate::kinematics::MAX_AXES;
-use crate::kinematics::batch::{AxisBatch, Lanes, VectorLanes, groups, widely};
+use crate::kinematics::batch::{AxisBatch, Column, Lanes, VectorLanes, groups, widely};
 
 /// Values of the words of many blocks, by their places.
 pub type WordLanes = [Lanes; MAX_AXES];
@@ -26,30 +28,45 @@ impl AxisWords {
     }
 
     /// [`AxisWords::print_tip`] of the first `count` of `tips` (mm, part frame), which are put on the printed numbers; false,
-    /// and nothing done, where the words are axis positions. None in a tilted plane, and where a coordinate has not one
-    /// word.
+    /// and nothing done, where the words are axis positions. None where a coordinate has not one word.
     pub fn print_tip_all(
         &self,
         tips: &mut VectorLanes,
         count: usize,
         values: &mut WordLanes,
     ) -> Option<bool> {
-        if self.plane.is_some() || !self.one_each() {
+        if !self.one_each() {
             return None;
         }
-        if self.tcp == Tcp::Post {
+        if self.plane.is_none() && self.tcp == Tcp::Post {
             return Some(false);
         }
         widely(
             #[inline(always)]
             || {
+                if let Some(plane) = &self.plane {
+                    each(tips, count, |tip| plane.into_plane(tip));
+                }
                 for word in &self.linear {
                     let (tips, values) = (&mut tips[word.coordinate], &mut values[word.place]);
                     print(*word, tips, count, values, 0.0);
                 }
+                if let Some(plane) = &self.plane {
+                    each(tips, count, |tip| plane.into_part(tip));
+                }
             },
         );
         Some(true)
+    }
+
+    /// Whether a linear word of the block of a `lane` differs from the one before it, by `most` mm at most; `words` begin
+    /// with the block before the first.
+    pub fn creeps(&self, words: &[Column; MAX_AXES], lane: usize, most: f64) -> bool {
+        self.linear.iter().any(|word| {
+            let column = &words[word.place];
+            let step = libm::fabs((column[lane + 1] - column[lane]) * word.unit);
+            step > 0.0 && step <= most
+        })
     }
 
     /// Each coordinate has one linear word.
@@ -69,6 +86,17 @@ impl AxisWords {
                 }
             },
         );
+    }
+}
+
+/// Puts each of the first `count` points on another.
+#[inline(always)]
+fn each(points: &mut VectorLanes, count: usize, other: impl Fn(Vector3<f64>) -> Vector3<f64>) {
+    for lane in 0..count {
+        let point = other(Vector3::from_fn(|part, _| points[part][lane]));
+        for (part, value) in points.iter_mut().zip(&point) {
+            part[lane] = *value;
+        }
     }
 }
 

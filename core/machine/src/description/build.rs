@@ -22,7 +22,7 @@ use super::setting::Setting;
 use super::table::KeyedValue;
 use super::{
     AccuracyRules, Arcs, Axis, ControlPoint, ControlRules, Frame, GivenOption, Head, Machine,
-    ProgramRules, SmoothingRules, SpindleSpeeds, UnusedOptions, WordRule,
+    ProgramRules, SmoothingRules, SpindleSpeeds, TIP_WORDS, UnusedOptions, WordRule, linear_names,
 };
 use crate::diagnostic::{Diagnostic, Short, SourcePlace};
 
@@ -548,9 +548,8 @@ impl Builder<'_> {
 
     /// Where the control keeps the tip, the linear words are its coordinates.
     fn check_tip_words(&mut self, axes: &[Axis], span: Range<usize>) {
-        let linear: BTreeSet<&str> =
-            axes.iter().filter(|axis| !axis.joint.rotary).map(|axis| axis.name.as_str()).collect();
-        if linear != BTreeSet::from(["X", "Y", "Z"]) {
+        let linear = linear_names(axes);
+        if linear != BTreeSet::from(TIP_WORDS) {
             let message = format!(
                 "with tcp = \"control\" the linear words are the tip's X, Y and Z, but the linear axes are called {}",
                 linear.into_iter().collect::<Vec<_>>().join(", ")

@@ -483,9 +483,10 @@ keys! {
         tool_length: ToolLength,
         /// How the holes of drilling cycles are written; native if not said.
         cycles: Cycles,
-        /// An operation whose tool axis stays is written in the control's own tilted plane, where the dialect has one;
-        /// false if not said.
-        planes: bool = Bounds::OFF,
+        /// An operation whose tool axis stays (3+2) is written in the control's own tilted plane, where the dialect has
+        /// one; if not said where the control has cycles, arcs and cutter compensation in it, and the chain two rotary
+        /// axes, which point the tool, and X, Y and Z.
+        planes: Option<bool>,
         /// What becomes of `INSERT text`; comment if not said.
         insert: Insert,
         /// What becomes of `PPRINT text`; comment if not said.

@@ -32,6 +32,7 @@ mod spindle;
 pub(crate) mod table;
 mod tools;
 
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
@@ -63,6 +64,15 @@ pub use tools::{TOOL_FILE_ENDINGS, ToolData, ToolTable};
 use crate::diagnostic::{Diagnostic, SourcePlace};
 use crate::kinematics::{Chain, Freedom, Joint, Joints, NoClosedForm, Second, Solver};
 use crate::servo::Servo;
+
+/// The linear axes whose words can be those of a tip.
+const TIP_WORDS: [&str; 3] = ["X", "Y", "Z"];
+
+/// Names of the linear axes.
+fn linear_names(axes: &[Axis]) -> BTreeSet<&str> {
+    let linear = axes.iter().filter(|axis| !axis.joint.rotary);
+    linear.map(|axis| axis.name.as_str()).collect()
+}
 
 /// A machine.
 #[derive(Clone, Debug)]
@@ -298,8 +308,9 @@ pub struct ControlRules {
     pub tool_length: ToolLength,
     /// How the holes of drilling cycles are written.
     pub cycles: Cycles,
-    /// An operation whose tool axis stays is written in a tilted plane of the control's.
-    pub planes: bool,
+    /// An operation whose tool axis stays is written in a tilted plane of the control's; none: as the chain has it
+    /// ([`Machine::wants_planes`]).
+    pub planes: Option<bool>,
     /// What becomes of `INSERT`.
     pub insert: Insert,
     /// What becomes of `PPRINT`.
@@ -409,6 +420,21 @@ impl Machine {
         }
         pointing.sort_unstable();
         pointing
+    }
+
+    /// An operation whose tool axis stays (3+2) is to be written in a tilted plane of the control's: as the machine file
+    /// says, else where nothing is lost in one (`whole`: the control has its cycles, arcs and cutter compensation there),
+    /// both rotary axes point the tool, and the words of the plane are those of three linear axes. A control computes a
+    /// plane for the axes that it has been told of, not for an index table or a head besides.
+    pub fn wants_planes(&self, whole: bool) -> bool {
+        self.control.planes.unwrap_or_else(|| {
+            let rotary = self.axes.iter().filter(|axis| axis.joint.rotary).count();
+            whole
+                && rotary == 2
+                && self.pointing().len() == 2
+                && linear_names(&self.axes) == BTreeSet::from(TIP_WORDS)
+                && self.heads.is_empty()
+        })
     }
 
     /// Minutes that each axis needs for one mm or radian at its largest feed; zero if it has none.

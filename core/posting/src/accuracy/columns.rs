@@ -187,6 +187,19 @@ impl RunColumns {
         self.measure(placer)
     }
 
+    /// Puts a point elsewhere: at `node`, the rotary axes as they stand.
+    pub(crate) fn replace(&mut self, lane: usize, node: &PathNode) {
+        for joint in 0..MAX_AXES {
+            self.joints[joint][lane + 1] = node.trace.joints[joint];
+            self.words[joint][lane + 1] = node.words[joint];
+            set_vector(&mut self.rates[joint], lane + 1, node.trace.tip_rates[joint]);
+        }
+        set_vector(&mut self.reached_tip, lane + 1, node.tip);
+        set_vector(&mut self.reached_axis, lane + 1, node.trace.pose.axis);
+        self.tip_error[lane + 1] = node.tip_error;
+        self.axis_error[lane + 1] = node.axis_error;
+    }
+
     /// All linear axes are well inside their travel.
     fn inside(&self, placer: &Placer) -> bool {
         let joints = placer.solver().chain().joints();
@@ -321,6 +334,11 @@ impl RunColumns {
     /// Axis values at the start of a block, as printed.
     pub(crate) fn joints_before(&self, lane: usize) -> Joints {
         std::array::from_fn(|joint| self.joints[joint][lane])
+    }
+
+    /// Words of the block before.
+    pub(crate) fn words_before(&self, lane: usize) -> [f64; MAX_AXES] {
+        std::array::from_fn(|place| self.words[place][lane])
     }
 
     /// Words of a block.

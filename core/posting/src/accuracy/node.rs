@@ -12,9 +12,10 @@ use post_plugin::Format;
 use post_machine::axis_words::{AxisWords, WordValues};
 use post_machine::description::{ControlPoint, Machine};
 use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::batch::Column;
 use post_machine::kinematics::choose::{RotaryAxes, RotaryTravel};
 use post_machine::kinematics::travel::{AT_END, OverTravel, over, passed};
-use post_machine::kinematics::{Joints, Pose, Solver, Trace, Unreachable};
+use post_machine::kinematics::{Joints, MAX_AXES, Pose, Solver, Trace, Unreachable};
 use post_machine::tilted_plane::TiltedPlane;
 
 /// A point of the path, solved and rounded.
@@ -435,7 +436,17 @@ impl Placer {
 
     /// The linear words of a node as a point, mm; none where they are not X, Y and Z.
     pub(crate) fn printed(&self, node: &PathNode) -> Option<Vector3<f64>> {
-        self.words.point(&node.words)
+        self.printed_words(&node.words)
+    }
+
+    /// The linear ones of words as a point, mm; none where they are not X, Y and Z.
+    pub(crate) fn printed_words(&self, words: &WordValues) -> Option<Vector3<f64>> {
+        self.words.point(words)
+    }
+
+    /// Whether a linear word of a block differs from the one before it, by `most` mm at most.
+    pub(crate) fn creeps(&self, words: &[Column; MAX_AXES], lane: usize, most: f64) -> bool {
+        self.words.creeps(words, lane, most)
     }
 
     /// The words of a node with their linear ones at the printed `point`, program units.

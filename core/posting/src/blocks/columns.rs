@@ -17,17 +17,17 @@ impl BlockStage<'_> {
             return false;
         };
         let accuracy = &self.machine.accuracy;
-        let plain = self.planes.are_off()
-            && !self.compensating
+        let plain = !self.compensating
             && !accuracy.reduce
             && !self.keeps.fits()
             && self.gathered.first_line().is_none()
             && !self.machine.indexes
             && self.machine.solution.exclusive.is_empty()
             && !self.plans;
-        if !plain || !run.begin(last) || !run.settle(placer) {
+        if !plain || !run.begin(last) || !self.stands_in_plane(run, placer) || !run.settle(placer) {
             return false;
         }
+        self.steady_run(run, placer);
         let tolerances = MoveTolerances {
             tip: accuracy.tolerance - 0.0 - placer.reserve(),
             axis: accuracy.axis_tolerance,

@@ -3,20 +3,24 @@
 use std::rc::Rc;
 
 use nalgebra::{Matrix3, Vector3};
-use post_machine::axis_words;
+use post_machine::axis_words::{self, WordValues};
 use post_machine::description::Tcp;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
+use post_machine::kinematics::batch::vector;
 use post_machine::kinematics::orientation::angle;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::Format;
 
 use super::{BlockNote, BlockSink, BlockStage, TURN};
-use crate::accuracy::{PathNode, Placer};
+use crate::accuracy::{PathNode, Placer, RunColumns};
 use crate::configuration::{ChosenPoint, pose};
 
 /// A place so near to the middle between two printed values may stand at either, in last decimals.
 const BETWEEN: f64 = 0.1;
+
+/// A step of more last decimals is none that [`BlockStage::steady`] undoes.
+const LITTLE: f64 = 1.5;
 
 /// The plane in force.
 #[derive(Debug)]
@@ -170,26 +174,48 @@ impl BlockStage<'_> {
         let Some(axes) = self.planes.axes else {
             return;
         };
-        let (Some(before), Some(printed)) = (placer.printed(last), placer.printed(node)) else {
+        let Some(shift) = steadying(placer, &axes, [&last.words, &node.words], node.off()) else {
             return;
         };
-        let step = before - printed;
-        let off = axes.transpose() * node.off();
-        let largest = placer.last_decimal() * (1.0 + BETWEEN);
-        let mut shift = Vector3::zeros();
-        for axis in 0..3 {
-            let far = libm::fabs(step[axis]);
-            let kept = libm::fabs(step[axis] + off[axis]);
-            if far > 0.0 && far <= largest && kept <= (0.5 + BETWEEN) * far {
-                shift[axis] = step[axis];
-            }
-        }
-        if shift == Vector3::zeros() {
-            return;
-        }
         let mut steadied = *node;
         if placer.resettle(&mut steadied, node.tip + axes * shift).is_ok() {
             *node = steadied;
+        }
+    }
+
+    /// Rotary values of a run are those of the plane that it lies in: [`ActivePlane::standing`] of each point. False where
+    /// the tool does not stand in the plane that is wanted.
+    pub(super) fn stands_in_plane(&self, run: &mut RunColumns, placer: &Placer) -> bool {
+        let Some(stands) = &self.planes.stands else {
+            return self.planes.are_off();
+        };
+        for (place, joint) in placer.solver().chain().joints().iter().enumerate() {
+            if joint.rotary {
+                run.at.joints[place].fill(stands[place]);
+            }
+        }
+        true
+    }
+
+    /// [`Self::steady`] of each point of a run.
+    pub(super) fn steady_run(&self, run: &mut RunColumns, placer: &Placer) {
+        let Some(axes) = self.planes.axes else {
+            return;
+        };
+        for lane in 0..run.count {
+            if !placer.creeps(&run.words, lane, LITTLE * placer.last_decimal()) {
+                continue;
+            }
+            let words = [&run.words_before(lane), &run.words_at(lane)];
+            let off = vector(&run.reached_tip, lane + 1) - vector(&run.tip, lane + 1);
+            let Some(shift) = steadying(placer, &axes, words, off) else {
+                continue;
+            };
+            let mut node = run.node(placer, lane + 1);
+            let place = node.tip + axes * shift;
+            if placer.resettle(&mut node, place).is_ok() {
+                run.replace(lane, &node);
+            }
         }
     }
 
@@ -202,6 +228,29 @@ impl BlockStage<'_> {
     pub(super) fn plane_normal(&self) -> Option<Vector3<f64>> {
         self.planes.axes.map(|axes| axes.column(2).into_owned())
     }
+}
+
+/// How a place is moved in the plane of `axes` so that coordinates stay at the printed values before it; `words` are those
+/// before and its own, `off` is how far it is off its target, mm, part frame. None if it stays where it is.
+fn steadying(
+    placer: &Placer,
+    axes: &Matrix3<f64>,
+    words: [&WordValues; 2],
+    off: Vector3<f64>,
+) -> Option<Vector3<f64>> {
+    let [before, printed] = words.map(|words| placer.printed_words(words));
+    let step = before? - printed?;
+    let off = axes.transpose() * off;
+    let largest = placer.last_decimal() * (1.0 + BETWEEN);
+    let mut shift = Vector3::zeros();
+    for axis in 0..3 {
+        let far = libm::fabs(step[axis]);
+        let kept = libm::fabs(step[axis] + off[axis]);
+        if far > 0.0 && far <= largest && kept <= (0.5 + BETWEEN) * far {
+            shift[axis] = step[axis];
+        }
+    }
+    (shift != Vector3::zeros()).then_some(shift)
 }
 
 /// A rewind in a plane: its turn would take the plane with it.

@@ -140,9 +140,10 @@ impl ExpandStage {
         self.tangential.as_ref().map_or(0, |edge| edge.rewinds)
     }
 
-    /// Straight moves leave the stage as they are.
-    pub(crate) fn passes_moves(&self) -> bool {
-        self.tangential.is_none() && self.planes.is_none()
+    /// Straight moves up to `line` leave the stage as they are.
+    pub(crate) fn passes_moves(&self, line: u64) -> bool {
+        self.tangential.is_none()
+            && self.planes.as_ref().is_none_or(|planes| planes.stays_until(line))
     }
 
     /// Straight moves have left the stage by another way, the last to `tip`.
@@ -174,6 +175,8 @@ impl ExpandStage {
             let change = self.planes.as_mut().and_then(|planes| planes.change(line, step));
             if let Some(origin) = change {
                 self.left();
+                // A curve begins where the tool stood before it left.
+                self.only_said = true;
                 out.note(line, FixedAxis(origin));
             }
             match step {

@@ -48,6 +48,16 @@ impl PlaneTracker {
         (!same).then_some(axis.map(|_| Vector3::zeros()))
     }
 
+    /// No plane begins or ends up to `line`.
+    pub(super) fn stays_until(&self, line: u64) -> bool {
+        match (self.ahead.still.get(self.next), self.axis) {
+            (None, None) => true,
+            (Some(next), None) => line < next.first,
+            (Some(present), Some(axis)) => line <= present.last && axis == present.axis,
+            (None, Some(_)) => false,
+        }
+    }
+
     fn at(&mut self, line: u64) -> Option<&FixedAxisRange> {
         let stretches = &self.ahead.still;
         while stretches.get(self.next).is_some_and(|still| still.last < line) {

@@ -206,7 +206,8 @@ fn a_plane_begins_and_ends_with_the_tool_clear_of_the_part() {
     }
 }
 
-/// Without planes the bytes are those of before; where the tool turns in a cut there is none.
+/// They are where the chain has two rotary axes, unless the machine file says otherwise; where the tool turns in a cut there
+/// is none.
 #[test]
 fn planes_are_told_where_they_are_wanted_and_possible() {
     let (_, mut rng) = randomised(1u32, 25);
@@ -216,10 +217,25 @@ fn planes_are_told_where_they_are_wanted_and_possible() {
     let upright = sides(&mut rng, &[Vector3::z()]).cl;
     let [(_, table), ..] = machines("post");
     let plain = machine("[w C' A' b Y X Z t]", TABLE, "tcp = \"post\"");
+    let off = machine("[w C' A' b Y X Z t]", TABLE, "tcp = \"post\"\nplanes = false");
+    // The control has not been told of an index table besides.
+    let index = format!(
+        "{HEAD}[axis.A]\nrotary = [1, 0, 0]\npoint = [0, 0, 0]\nindexed = 0\ncyclic = true\n"
+    );
+    let index = machine("[w A' b X Y Z C B t]", &index, "tcp = \"post\"");
     let can = |machine: &Machine| Recorder::new(machine, 3).with_planes(PlaneAngles::Zxz, 3);
+    // The control has cycles, arcs and compensation in them.
+    let whole = |machine: &Machine| {
+        let mut recorder = can(machine);
+        recorder.capabilities |= Capabilities::CYCLE_IN_PLANE;
+        recorder
+    };
     for (name, machine, recorder, cl, planes) in [
         ("wanted", &table, can(&table), &job.cl, 1),
-        ("not wanted", &plain, can(&plain), &job.cl, 0),
+        ("nothing said", &plain, whole(&plain), &job.cl, 1),
+        ("nothing said, and cycles would be lost", &plain, can(&plain), &job.cl, 0),
+        ("nothing said, and an index table", &index, whole(&index), &job.cl, 0),
+        ("not wanted", &off, whole(&off), &job.cl, 0),
         ("not there", &table, Recorder::new(&table, 3), &job.cl, 0),
         ("turned in a cut", &table, can(&table), &turning, 0),
         ("upright", &table, can(&table), &upright, 0),

@@ -3,6 +3,9 @@
 
 use std::fmt::Write;
 
+use post_plugin::PlaneAngles;
+use post_testruns::posted::{Recorder, watched};
+
 use super::*;
 
 /// A path that wanders, now in small steps and now in large ones, over poles and out of travel, with words between: of a
@@ -60,7 +63,53 @@ fn a_run_is_written_as_its_points_would_be() {
         let model = model(kind, rng.pick(2) == 0, tilt, settings);
         let words = *rng.choose(&[1, 9, 60]);
         let text = wander(&mut rng, 2, words);
-        good += u32::from(is_the_same(&model.machine, model.length, &text));
+        good += u32::from(is_the_same(&model.machine, model.length, &text, None));
+    }
+    assert!(good > 0);
+}
+
+/// Stretches on which the tool axis stays, and others: in small steps and large ones, level in a plane and not.
+fn facets(rng: &mut Rng) -> String {
+    let mut text = "UNITS/MM\nSPINDL/1000\nFEDRAT/MMPM,800\n".to_owned();
+    for tool in 1..=rng.pick(4) + 1 {
+        writeln!(text, "LOADTL/{tool}").unwrap();
+        let lean = rng.range(0.0, 0.8);
+        let around = rng.range(-3.0, 3.0);
+        let turn = *rng.choose(&[0.0, 0.0, 1e-3]);
+        let mut tip = rng.point(30.0);
+        let step = *rng.choose(&[0.0004, 0.01, 0.4, 3.0]);
+        for place in 0..rng.pick(300) {
+            let ((sine, k), (j, i)) =
+                (libm::sincos(lean + turn * place as f64), libm::sincos(around));
+            let axis = nalgebra::Vector3::new(sine * i, sine * j, k);
+            let way = rng.direction() * step;
+            tip += match rng.pick(4) {
+                0 => way,
+                _ => way - axis * axis.dot(&way),
+            };
+            match rng.pick(60) {
+                0 => text += "RAPID\n",
+                1 => text += "COOLNT/FLOOD\n",
+                _ => {}
+            }
+            let (x, y, z) = (tip.x, tip.y, tip.z);
+            writeln!(text, "GOTO/{x:.4},{y:.4},{z:.4},{:.7},{:.7},{:.7}", axis.x, axis.y, axis.z)
+                .unwrap();
+        }
+    }
+    text + "FINI\n"
+}
+
+#[test]
+fn a_run_in_a_plane_is_written_as_its_points_would_be() {
+    let (rounds, mut rng) = randomised(60, 73);
+    let mut good = 0;
+    for _ in rounds {
+        let kind = *rng.choose(&["trunnion", "head", "nutating"]);
+        let model = model(kind, rng.pick(2) == 0, [-120.0, 120.0], &["control.planes=true"]);
+        let angles = *rng.choose(&[PlaneAngles::Zxz, PlaneAngles::Xyz, PlaneAngles::Rotary]);
+        let text = facets(&mut rng);
+        good += u32::from(is_the_same(&model.machine, model.length, &text, Some(angles)));
     }
     assert!(good > 0);
 }
@@ -88,17 +137,23 @@ fn a_run_of_fewer_axes_is_written_as_its_points_would_be() {
         let machine = load(source, &[], &mut |_| Err(String::new()))
             .unwrap_or_else(|faults| panic!("{faults:#?}"));
         let words = *rng.choose(&[1, 9, 60]);
-        good += u32::from(is_the_same(&machine, 50.0, &wander(&mut rng, rotary, words)));
+        good += u32::from(is_the_same(&machine, 50.0, &wander(&mut rng, rotary, words), None));
     }
     assert!(good > 0);
 }
 
-/// Whether the text is posted, which is the same as columns and as single points.
-fn is_the_same(machine: &Machine, length: f64, text: &str) -> bool {
+/// Whether the text is posted, which is the same as columns and as single points; `planes` are those of the control.
+fn is_the_same(machine: &Machine, length: f64, text: &str, planes: Option<PlaneAngles>) -> bool {
     let told = |longest_run| {
         let job =
             PostingRequest { tool_length: Some(length), longest_run, ..PostingRequest::default() };
-        let Run { asked, report, findings } = post(machine, 4, text, job, &mut Samples);
+        let recorder = Recorder::new(machine, 4);
+        let recorder = match planes {
+            Some(angles) => recorder.with_planes(angles, 3),
+            None => recorder,
+        };
+        let done = watched(machine, recorder, text, job, &mut Samples, &mut []);
+        let Run { asked, report, findings } = done;
         (report.is_some(), format!("{asked:?}\n{report:?}\n{findings:?}"))
     };
     let (is_good, expected) = told(Some(0));

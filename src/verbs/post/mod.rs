@@ -17,7 +17,7 @@ use post_job::files::{self, AtomicFile, ClSource, PathArg, Role};
 use post_job::making::{self, ProgramMaker, ProgramOutcome, ProgramPart, ProgramRequest};
 use post_job::predict::Prediction;
 use post_job::session::Session;
-use post_job::settings::{MakingSettings, ReportSettings};
+use post_job::settings::{MakingSettings, ReportSettings, ThreadSettings};
 use post_job::summary::{self, SummaryJson};
 use post_job::{compensate, plan_rounds, plugin_finder, predict};
 use shown::ShownArguments;
@@ -56,6 +56,9 @@ pub struct PostArguments {
 
     #[command(flatten)]
     making: Flags<MakingSettings>,
+
+    #[command(flatten)]
+    threads: Flags<ThreadSettings>,
 
     #[command(flatten)]
     shown: ShownArguments,
@@ -142,6 +145,7 @@ impl OutputFiles {
 pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> {
     let job = &arguments.job.settings();
     let (mut maker, machine) = ProgramMaker::open(session, job, &arguments.making.0)?;
+    maker.threads = arguments.threads.0.most();
     let mut source = ClSource::new(session, &job.input, arguments.reads_twice(&machine))?;
     if arguments.looks_ahead(&machine) {
         maker.look_ahead(&machine, &mut source)?;

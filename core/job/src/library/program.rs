@@ -14,13 +14,14 @@ use crate::making::{self, ProgramInput, ProgramMaker, ProgramPart, ProgramReques
 use crate::nc_program::Reread;
 use crate::plugin_finder;
 use crate::session::Session;
-use crate::settings::{JobSettings, MakingSettings, ReadingSettings, tell};
+use crate::settings::{JobSettings, MakingSettings, ReadingSettings, ThreadSettings, tell};
 
 /// A program that is asked for.
 #[derive(Clone, Debug)]
 struct Request {
     job: JobSettings,
     making: MakingSettings,
+    threads: ThreadSettings,
     output: Option<PathArg>,
 }
 
@@ -97,9 +98,10 @@ impl Request {
         let mut reading = ReadingSettings::default();
         let mut over = machine.over.clone();
         let mut making = MakingSettings::default();
-        tell(options, &mut [&mut reading, &mut over, &mut making])?;
+        let mut threads = ThreadSettings::default();
+        tell(options, &mut [&mut reading, &mut over, &mut making, &mut threads])?;
         let job = JobSettings { machine: machine.name.clone(), input: file(input), reading, over };
-        Ok(Self { job, making, output: output.map(file) })
+        Ok(Self { job, making, threads, output: output.map(file) })
     }
 
     /// Opens what the program is made with: the program as a part of its file, and the file.
@@ -108,6 +110,7 @@ impl Request {
         session: &'a Session,
     ) -> Result<(ProgramMaker<'a>, ProgramPart, ClSource), Failure> {
         let (mut maker, machine) = ProgramMaker::open(session, &self.job, &self.making)?;
+        maker.threads = self.threads.most();
         let mut source = ClSource::new(session, &self.job.input, true)?;
         maker.look_ahead_where_needed(&machine, &mut source)?;
         let target = making::target(&self.job, self.output.as_ref(), &machine, &maker.finder)?;
@@ -117,7 +120,9 @@ impl Request {
     /// What a program that is made is asked with.
     fn maker<'a>(&'a self, session: &'a Session) -> Result<ProgramMaker<'a>, Failure> {
         let finder = plugin_finder::finder(session, &self.job.over.plugins)?;
-        Ok(ProgramMaker::new(session, &self.job, &self.making, finder))
+        let mut maker = ProgramMaker::new(session, &self.job, &self.making, finder);
+        maker.threads = self.threads.most();
+        Ok(maker)
     }
 }
 

@@ -9,7 +9,7 @@ pub mod values;
 
 pub use groups::{
     JobSettings, MachineSettings, MakingSettings, Msys, ProgramSettings, ReadingSettings,
-    ReportSettings, StudySettings,
+    ReportSettings, StudySettings, ThreadSettings,
 };
 pub use table::{About, AnySettingsGroup, SettingRow, SettingsGroup, tell};
 pub use values::{SettingForm, SettingReader, SettingValue};

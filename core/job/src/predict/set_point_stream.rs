@@ -50,7 +50,7 @@ impl<'a> SetPointStream<'a> {
             TrajectoryNews::Task(planned) => self.stages.ahead(planned),
             TrajectoryNews::Times(times) => self.stages.done(self.machine, times),
             TrajectoryNews::Points(points) => self.points(points, watch)?,
-            TrajectoryNews::Failed(fault) => return Err(fault.clone().into()),
+            TrajectoryNews::Failed(fault) => return Err((**fault).clone().into()),
         }
         Ok(())
     }

@@ -33,7 +33,7 @@ pub enum TrajectoryNews {
     /// Set-points are settled.
     Points(SetPoints),
     /// The axes cannot follow, and nothing follows.
-    Failed(Diagnostic),
+    Failed(Box<Diagnostic>),
 }
 
 /// What is known of a task before it is carried out.
@@ -126,13 +126,13 @@ impl<'a> Trajectory<'a> {
     }
 
     /// Makes set-points of what is planned.
-    fn fill(&mut self, news: &mut Vec<TrajectoryNews>) -> Result<FillOutcome, Diagnostic> {
+    fn fill(&mut self, news: &mut Vec<TrajectoryNews>) -> Result<FillOutcome, Box<Diagnostic>> {
         let Some(points) = &mut self.points else {
             return Ok(FillOutcome::Wants);
         };
         let filled = self.planner.fill(points, BATCH, &mut self.times);
         let line = points.at.last().map_or(0, |at| at.line);
-        let filled = filled.map_err(|fault| unreachable(fault, self.name, line))?;
+        let filled = filled.map_err(|fault| unreachable(fault, self.name, line).boxed())?;
         if !self.times.is_empty() {
             let room = self.spare_times.pop().unwrap_or_default();
             news.push(TrajectoryNews::Times(std::mem::replace(&mut self.times, room)));
@@ -144,7 +144,7 @@ impl<'a> Trajectory<'a> {
     }
 
     /// Hands further tasks to the planner, until the program ends.
-    fn read_on(&mut self, news: &mut Vec<TrajectoryNews>) -> Result<(), Diagnostic> {
+    fn read_on(&mut self, news: &mut Vec<TrajectoryNews>) -> Result<(), Box<Diagnostic>> {
         self.reading.more(self.name, self.tells_blocks.then_some(&mut *news));
         for planned in self.reading.planned.drain(..) {
             if let (None, Task::Move(first)) = (&self.points, &planned.task) {
@@ -163,7 +163,7 @@ impl<'a> Trajectory<'a> {
             };
             let leg = ContourLeg::of(&task);
             news.push(TrajectoryNews::Task(PlannedTask { leg, kind, feed, state }));
-            self.planner.push(task).map_err(|fault| unreachable(fault, self.name, line))?;
+            self.planner.push(task).map_err(|fault| unreachable(fault, self.name, line).boxed())?;
         }
         if self.reading.ended {
             self.over = self.points.is_none();

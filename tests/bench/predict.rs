@@ -31,7 +31,7 @@ use std::time::{Duration, Instant};
 
 use post_host::{Plugin, ProgramSetup, ProgramWord};
 use post_machine::description::Machine;
-use post_motion::contour::Contour;
+use post_motion::contour::{Contour, ContourLeg};
 use post_motion::servo::Servos;
 use post_motion::trajectory::{FillOutcome, Planner};
 use post_motion::{SetPoints, Task};
@@ -242,7 +242,7 @@ fn staged(path: &Path, tcp: &str) -> Result<Costs, Box<dyn Error>> {
                         points = Some(SetPoints::new(Arc::clone(&first.solver), period));
                         servos.settle(&first.from.joints);
                     }
-                    contour.ahead(&planned.task);
+                    contour.ahead(ContourLeg::of(&planned.task));
                     planner.push(planned.task).map_err(|fault| format!("{fault:?}"))?;
                 }
                 if ended {

@@ -1,6 +1,8 @@
 //! An NC program moved to another machine: run as its control runs it, written as a CL file, posted, and held against the
 //! path of the first.
 
+use std::num::NonZeroUsize;
+
 use post_host::Finder;
 use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
@@ -233,6 +235,7 @@ impl<'a> Conversion<'a> {
             any_work_offset: false,
             own: false,
             lines: None,
+            threads: NonZeroUsize::MIN,
         };
         let told = program.name().to_owned();
         let text = Box::new(program.reread()?);
@@ -253,6 +256,7 @@ impl<'a> Conversion<'a> {
             prediction: None,
             findings: &made.findings,
             job: "convert",
+            threads: NonZeroUsize::MIN,
             // The same job gives the same page wherever its files lie.
             facts: made.summary([input, output].map(report::name_of)).into_rows(),
         }

@@ -22,7 +22,7 @@ const EXACT: u8 = 9;
 
 /// A CL file and how it is looked at.
 pub struct DryRun<'a> {
-    session: &'a Session,
+    session: Session,
     arguments: &'a JobSettings,
     /// The CL file, as the user named it.
     pub name: String,
@@ -30,6 +30,8 @@ pub struct DryRun<'a> {
     pub finder: Finder,
     /// Words are not rounded.
     exact: bool,
+    /// Threads that a pass is made on at most.
+    pub threads: NonZeroUsize,
 }
 
 impl<'a> DryRun<'a> {
@@ -48,17 +50,29 @@ impl<'a> DryRun<'a> {
                 .into());
         };
         Ok(Self {
-            session,
+            session: session.clone(),
             arguments,
             name: path.display().to_string(),
             finder: plugin_finder::finder(session, &arguments.over.plugins)?,
             exact,
+            threads: NonZeroUsize::MIN,
         })
+    }
+
+    /// The same for one thread of several.
+    pub fn of_one_thread(&self) -> DryRun<'a> {
+        DryRun {
+            session: self.session.unseen(),
+            name: self.name.clone(),
+            finder: self.finder.clone(),
+            threads: NonZeroUsize::MIN,
+            ..*self
+        }
     }
 
     /// The machine of the command line with `more` set.
     pub fn machine(&self, more: &[Setting]) -> Result<Machine, Failure> {
-        super::machine(self.session, self.arguments, more)
+        super::machine(&self.session, self.arguments, more)
     }
 
     /// Posts the file, and throws the text away.
@@ -72,7 +86,7 @@ impl<'a> DryRun<'a> {
         let head = ProgramHead { name: &program, cl_file: Some(source), preview: None };
         let OpenedPlugins { dialect, mut model, .. } =
             OpenedPlugins::open(&self.finder, machine, head)?;
-        let input = ClInput::open(self.session, source)?;
+        let input = ClInput::open(&self.session, source)?;
         let mut request = posting_pass::posting_request(self.arguments, &input.name);
         if request.reading.spindle == DefaultSpindle::Unknown {
             // Nothing is written: how fast the spindle turns is nobody's business.
@@ -82,11 +96,11 @@ impl<'a> DryRun<'a> {
         let pass = PostingPass {
             machine,
             request,
-            threads: NonZeroUsize::MIN,
+            threads: self.threads,
             dialect: &mut dialect,
             model: &mut model,
         };
-        match pass.run_dry(self.session, input, watch)? {
+        match pass.run_dry(&self.session, input, watch)? {
             (Some(report), findings) => Ok((report, findings)),
             (None, findings) => Err(findings.into()),
         }

@@ -2,6 +2,8 @@
 
 mod axes;
 pub mod batch;
+mod beside;
+mod blocks_ahead;
 mod columns;
 pub mod commission_program;
 pub mod compensate;

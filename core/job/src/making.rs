@@ -1,5 +1,6 @@
 //! Programs of a job: made, read back, predicted.
 
+use std::num::NonZeroUsize;
 use std::ops::Range;
 
 use post_host::Finder;
@@ -21,12 +22,12 @@ use crate::one_program::OneProgram;
 use crate::plan_rounds;
 use crate::plan_worth;
 use crate::plugin_finder;
-use crate::posting_pass::{self, PostingExtras};
+use crate::posting_pass::PostingExtras;
 use crate::predict::{self, PredictReference, Predicted, Prediction, PredictionSetup, Sample};
 use crate::read_back::{self, ReadingSetup, Unwatched, VerifiedProgram};
 use crate::report::{self, BlockRows, ClWindow, PageTexts, PostPage, PredictedParts};
 use crate::session::Session;
-use crate::settings::{JobSettings, MakingSettings};
+use crate::settings::{JobSettings, MakingSettings, ThreadSettings};
 use crate::summary::{self, SummaryJson};
 
 /// What a job sets over the machine file so that its program is numbered so.
@@ -168,6 +169,8 @@ pub struct ProgramMaker<'a> {
     pub finder: Finder,
     /// What a first pass over the CL file has found, where that was made.
     pub ahead: Option<ProgramPreview>,
+    /// Threads that work at most.
+    pub threads: NonZeroUsize,
 }
 
 impl<'a> ProgramMaker<'a> {
@@ -192,7 +195,8 @@ impl<'a> ProgramMaker<'a> {
         making: &'a MakingSettings,
         finder: Finder,
     ) -> Self {
-        Self { session, job, making, finder, ahead: None }
+        let threads = ThreadSettings::default().most();
+        Self { session, job, making, finder, ahead: None, threads }
     }
 
     /// Makes the first pass over the CL file where texts of the machine ask for what it finds.
@@ -240,7 +244,7 @@ impl<'a> ProgramMaker<'a> {
             lines: part.lines.clone(),
             trust_model: self.making.trust_model,
             plans: self.making.plan,
-            threads: posting_pass::threads(self.making.jobs),
+            threads: self.threads,
             tightening: None,
         };
         PreparedProgram::new(program, self.making, self.ahead.as_ref(), source, shown)
@@ -337,6 +341,7 @@ impl<'a> ProgramMaker<'a> {
     ) -> PostPage<'p> {
         PostPage {
             session: self.session,
+            threads: self.threads,
             machine: &part.machine,
             cl: report::name_of(&self.job.input),
             program: &part.target,
@@ -396,6 +401,7 @@ impl<'a> ProgramMaker<'a> {
             any_work_offset: true,
             own: true,
             lines: part.lines.clone(),
+            threads: self.threads,
         };
         let ProgramInput { name, text } = program;
         read_back::verify(&reading, source, &name, text, &mut Unwatched)
@@ -422,6 +428,7 @@ impl<'a> ProgramMaker<'a> {
             limits: Limits::default(),
             period,
             lines: part.lines.clone(),
+            threads: self.threads,
         };
         let ProgramInput { name, text } = program;
         let against = PredictReference::Cl(source);

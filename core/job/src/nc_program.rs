@@ -18,9 +18,9 @@ use crate::session::Session;
 use crate::settings::ProgramSettings;
 
 /// A text that can be gone back in.
-pub trait Reread: Read + Seek {}
+pub trait Reread: Read + Seek + Send {}
 
-impl<T: Read + Seek> Reread for T {}
+impl<T: Read + Seek + Send> Reread for T {}
 
 /// A text that can be gone back in, whatever it is read from.
 pub type ProgramText<'i> = Box<dyn Reread + 'i>;
@@ -96,7 +96,7 @@ impl NcControl {
     pub fn run<'i>(
         &self,
         name: &str,
-        input: impl Read + Seek + 'i,
+        input: impl Read + Seek + Send + 'i,
     ) -> Result<ProgramRun<RunningProgram<'i>>, Box<Diagnostic>> {
         self.program(name, input).map(ProgramRun::new)
     }
@@ -104,7 +104,7 @@ impl NcControl {
     fn program<'i>(
         &self,
         name: &str,
-        input: impl Read + Seek + 'i,
+        input: impl Read + Seek + Send + 'i,
     ) -> Result<RunningProgram<'i>, Box<Diagnostic>> {
         let Self { counted, lexicon, offsets, limits, .. } = self;
         Interpreter::new(counted, lexicon, offsets, *limits, name, Box::new(input))

@@ -177,11 +177,6 @@ pub fn try_opening(machine: &Machine, finder: &Finder, length: f64) -> Result<()
     PostingPass { machine, request, threads: NonZeroUsize::MIN, dialect, model }.check()
 }
 
-/// Threads that a job works on at most: as many as the computer has, if nothing is `asked` for.
-pub fn threads(asked: Option<NonZeroUsize>) -> NonZeroUsize {
-    asked.or_else(|| thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN)
-}
-
 /// How the CL file that is called `file` in messages is posted.
 pub fn posting_request(arguments: &JobSettings, file: &str) -> PostingRequest {
     PostingRequest {

@@ -1,7 +1,9 @@
 //! A program of a machine's control held against a CL file, for whoever asks.
 
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+use std::num::NonZeroUsize;
 use std::ops::Range;
+use std::thread::{self, Scope};
 
 use post_host::Finder;
 use post_machine::description::{Machine, OutputUnits, Rapid, TextPlace};
@@ -14,14 +16,15 @@ use post_readback::interpret::Limits;
 use post_readback::verify::{
     BlockReport, CutBounds, CutPath, Fault, Verification, Verifier, VerifyRules,
 };
-use post_readback::{BlockEffect, Offsets};
+use post_readback::{BlockEffect, Offsets, ProgramRun};
 
 use super::nc_program::{self, DialectVocabulary, NcControl};
 use super::plugin_finder;
+use crate::beside::{Maker, Work};
+use crate::blocks_ahead::{CourseAhead, RunBlocks, TOGETHER};
 use crate::failure::Failure;
-use crate::files::Watched;
-use crate::files::{ClSource, FileFault};
-use crate::nc_program::ProgramText;
+use crate::files::{ClSource, FileFault, ReadPosition, Watched};
+use crate::nc_program::{ProgramText, RunningProgram};
 use crate::session::Session;
 use crate::settings::{JobSettings, Msys};
 
@@ -53,6 +56,15 @@ pub struct ReadingSetup<'a> {
     pub solutions: bool,
     /// Lines of the CL file that the program is made of; none: all.
     pub lines: Option<Range<u64>>,
+    /// Threads that it is read on at most.
+    pub threads: NonZeroUsize,
+}
+
+impl ReadingSetup<'_> {
+    /// There are `count` threads beside this one.
+    fn beside(&self, count: usize) -> bool {
+        self.threads.get() > count
+    }
 }
 
 /// What came of it.
@@ -170,16 +182,31 @@ pub fn verify(
     let (bounds, mut findings) = CutBounds::of(&mut course, along);
     let tools = course.tools().to_vec();
     let again = ClCourse::new(settings.clone(), source.open_beside()?.bytes);
-    let course = ClCourse::new(settings, source.open()?.bytes);
-    let against = VerifyReference {
-        course: CourseWindow::new(course, reading.lines.clone()),
-        name: cl_name,
-        tools,
-        cut_path: Some(CutPath::when_asked(bounds, Box::new(again), along)),
-    };
-    let held = hold(reading, against, name, input, watch)?;
+    let mut course = ClCourse::new(settings, source.open()?.bytes);
+    let held = thread::scope(|scope| {
+        // One thread has the program, if there are only two.
+        let course = CourseAhead::new(work(scope, &mut course, reading.beside(2)));
+        let against = VerifyReference {
+            course: CourseWindow::new(course, reading.lines.clone()),
+            name: cl_name,
+            tools,
+            cut_path: Some(CutPath::when_asked(bounds, Box::new(again), along)),
+        };
+        hold(reading, against, name, input, watch)
+    })?;
     findings.extend(held.findings);
     Ok(VerifiedProgram { findings, ..held })
+}
+
+/// A maker at work, on a thread of `scope` if it shall be `beside`.
+fn work<'s, M: Maker>(scope: &'s Scope<'s, '_>, maker: &'s mut M, beside: bool) -> Work<'s, M>
+where
+    M::Batch: 's,
+{
+    match beside {
+        true => Work::beside(scope, maker, TOGETHER),
+        false => Work::Here(maker),
+    }
 }
 
 /// Who looks on while a program is held against a course.
@@ -230,6 +257,35 @@ pub struct VerifyReference<C> {
     pub cut_path: Option<CutPath>,
 }
 
+/// A program that is run from its beginning.
+struct RunFromStart<'i> {
+    blocks: ProgramRun<RunningProgram<'i>>,
+    /// The byte that is read next, and how many there are.
+    position: ReadPosition,
+    length: u64,
+}
+
+impl<'i> RunFromStart<'i> {
+    /// The program as far as it was run.
+    fn into_blocks(self) -> ProgramRun<RunningProgram<'i>> {
+        self.blocks
+    }
+}
+
+/// The program `name` in `input`, from its beginning.
+fn running<'i>(
+    control: &NcControl,
+    name: &str,
+    input: &'i mut ProgramText<'_>,
+) -> Result<RunFromStart<'i>, Failure> {
+    let watched = Watched::new(input);
+    let (watched, length) =
+        watched.map_err(|error| FileFault::Read { name: name.to_owned(), error })?;
+    let position = watched.position();
+    let blocks = control.run(name, BufReader::new(watched)).map_err(|fault| *fault)?;
+    Ok(RunFromStart { blocks, position, length })
+}
+
 /// Holds the program `name` from `input` against any course.
 ///
 /// # Errors
@@ -259,33 +315,38 @@ pub fn hold<C: Course>(
         verifier = verifier.near(cut_path);
     }
     let unreadable = |error| FileFault::Read { name: name.to_owned(), error };
-    let (watched, length) = Watched::new(&mut input).map_err(unreadable)?;
-    let position = watched.position();
-    let mut run = control.run(name, BufReader::new(watched)).map_err(|fault| *fault)?;
-    let mut progress = reading.session.progress(Some(length));
-    while let Some(done) = run.block() {
-        progress.record(|| position.get());
-        for done in done {
-            watch.done(done);
-            verifier.take(done, &mut |line| watch.line(line));
+    let mut blocks = 0;
+    let mut run = running(&control, name, &mut input)?;
+    thread::scope(|scope| {
+        let mut work = work(scope, &mut run.blocks, reading.beside(1));
+        let mut progress = reading.session.progress(Some(run.length));
+        let mut batch = RunBlocks::default();
+        while !verifier.found().gave_up && work.next(&mut batch) {
+            for done in batch.iter() {
+                progress.record(|| run.position.get());
+                blocks += 1;
+                for done in done {
+                    watch.done(done);
+                    verifier.take(done, &mut |line| watch.line(line));
+                }
+                if verifier.found().gave_up {
+                    break;
+                }
+            }
         }
-        if verifier.found().gave_up {
-            break;
+        progress.finish();
+    });
+    if verifier.found().gave_up && reading.beside(1) {
+        // It was run farther than it was judged.
+        drop(run);
+        run = running(&control, name, &mut input)?;
+        while blocks > 0 && run.blocks.block().is_some() {
+            blocks -= 1;
         }
     }
-    progress.finish();
-    let mut findings = run.faults().to_vec();
-    let report = run.program().report();
-    findings.extend(report.notes.iter().cloned());
-    if let Some((line, axes)) = &report.unsaid {
-        let message = format!(
-            "the program cuts before it says where {axes} stands: where the machine has it then is not known"
-        );
-        let place = SourcePlace::new(name, *line, "", 0..0);
-        findings.push(Diagnostic::error("missing", message).at(Some(place)));
-    }
-    findings.extend(nc_program::unknown_words(name, report));
-    let blocks = report.blocks;
+    let mut run = run.into_blocks();
+    let mut findings = found_by_running(name, &run);
+    let blocks = run.program().report().blocks;
     let found = verifier.finish(&mut |line| watch.line(line));
     if found.gave_up && watch.runs_on() {
         while let Some(done) = run.block() {
@@ -301,6 +362,22 @@ pub fn hold<C: Course>(
         findings.push(fault.diagnostic(name, text, &cl_name));
     }
     Ok(VerifiedProgram { found, findings, blocks })
+}
+
+/// What cannot be read of the program `name`, and what is taken for granted of it.
+fn found_by_running(name: &str, run: &ProgramRun<RunningProgram<'_>>) -> Vec<Diagnostic> {
+    let mut findings = run.faults().to_vec();
+    let report = run.program().report();
+    findings.extend(report.notes.iter().cloned());
+    if let Some((line, axes)) = &report.unsaid {
+        let message = format!(
+            "the program cuts before it says where {axes} stands: where the machine has it then is not known"
+        );
+        let place = SourcePlace::new(name, *line, "", 0..0);
+        findings.push(Diagnostic::error("missing", message).at(Some(place)));
+    }
+    findings.extend(nc_program::unknown_words(name, report));
+    findings
 }
 
 /// What of the program `name` is worth a look, without being wrong.

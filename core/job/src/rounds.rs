@@ -60,7 +60,7 @@ impl<'r, 'p> Rounds<'r, 'p> {
         text: Scratch,
         listen: &mut dyn FnMut(&Sample),
     ) -> Result<Prediction, Failure> {
-        let OneProgram { session, arguments, machine, finder, lines, .. } = self.program;
+        let OneProgram { session, arguments, machine, finder, lines, threads, .. } = self.program;
         let asked = PredictionSetup {
             session,
             arguments,
@@ -70,6 +70,7 @@ impl<'r, 'p> Rounds<'r, 'p> {
             limits: Limits::default(),
             period: None,
             lines: lines.clone(),
+            threads: *threads,
         };
         let mut heard = |sample: &Sample| {
             listen(sample);

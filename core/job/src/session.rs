@@ -48,7 +48,11 @@ impl Face for Quiet {
 
 /// A run. Clones are the same run.
 #[derive(Clone)]
-pub struct Session(Arc<Run>);
+pub struct Session {
+    run: Arc<Run>,
+    /// How far reading has come is shown.
+    shows: bool,
+}
 
 struct Run {
     read: Mutex<ReadFiles>,
@@ -65,11 +69,14 @@ impl fmt::Debug for Session {
 impl Session {
     /// A run that has read and written nothing yet.
     pub fn new(face: impl Face + 'static) -> Self {
-        Self(Arc::new(Run {
-            read: Mutex::default(),
-            texts: Mutex::default(),
-            face: Box::new(face),
-        }))
+        let face = Box::new(face);
+        let run = Run { read: Mutex::default(), texts: Mutex::default(), face };
+        Self { run: Arc::new(run), shows: true }
+    }
+
+    /// The same run where several threads read: how far each has come is not shown.
+    pub fn unseen(&self) -> Self {
+        Self { run: Arc::clone(&self.run), shows: false }
     }
 
     /// A run that is not heard.
@@ -80,27 +87,28 @@ impl Session {
     /// The files that it reads, none of which is written to.
     pub fn read_files(&self) -> MutexGuard<'_, ReadFiles> {
         // A list is whole whatever a thread died of.
-        self.0.read.lock().unwrap_or_else(PoisonError::into_inner)
+        self.run.read.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// What it has done to the user's files.
     pub fn texts(&self) -> MutexGuard<'_, TextOutcomes> {
-        self.0.texts.lock().unwrap_or_else(PoisonError::into_inner)
+        self.run.texts.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Tells findings at once.
     pub fn findings(&self, findings: &[Diagnostic]) {
-        self.0.face.findings(findings, &self.texts());
+        self.run.face.findings(findings, &self.texts());
     }
 
     /// Shows how far reading has come, of so many bytes if that is known.
     pub fn progress(&self, bytes: Option<u64>) -> Progress {
-        Progress { bar: self.0.face.bar(bytes), records: 0 }
+        let bar = if self.shows { self.run.face.bar(bytes) } else { None };
+        Progress { bar, records: 0 }
     }
 
     /// Says that standard output is the run's own, for results alone.
     pub fn owns_output(&self) -> bool {
-        self.0.face.owns_output()
+        self.run.face.owns_output()
     }
 
     /// What reads `bytes`, and fails once the run shall end.
@@ -116,7 +124,7 @@ struct SessionReader<R> {
 
 impl<R: Read> Read for SessionReader<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        if self.session.0.face.is_stopped() {
+        if self.session.run.face.is_stopped() {
             return Err(io::Error::other("interrupted"));
         }
         self.bytes.read(into)

@@ -78,6 +78,17 @@ impl SetPoints {
         self.jumps.clear();
     }
 
+    /// Gives what there is, and goes on after it, in `room` if there is some.
+    pub fn hand_over(&mut self, room: Option<Self>) -> Self {
+        let new = || Self::new(Arc::clone(&self.solver), self.period);
+        let mut next = room.unwrap_or_else(new);
+        next.clear();
+        next.solver.clone_from(&self.solver);
+        next.period = self.period;
+        next.first = self.first + self.len() as u64;
+        std::mem::replace(self, next)
+    }
+
     /// Time of the set-point at `place` of this batch, s.
     pub fn time(&self, place: usize) -> f64 {
         (self.first + place as u64) as f64 * self.period

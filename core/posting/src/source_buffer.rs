@@ -1,12 +1,19 @@
 //! Text of the last records, for messages: a fault may be found when the record that it belongs to is long read.
 
+use std::collections::VecDeque;
+
 use post_grammar::GotoRun;
 
-/// Text of the records whose moves are not settled yet.
+/// Text of the records whose moves are not settled yet. It stays where it was put until it is forgotten.
 #[derive(Debug, Default)]
 pub(crate) struct SourceBuffer {
-    text: Vec<u8>,
-    pieces: Vec<TextPiece>,
+    /// Texts of many pieces each.
+    chunks: VecDeque<Vec<u8>>,
+    /// Chunks before the first of these.
+    gone: u64,
+    /// A chunk that is forgotten, to be filled again.
+    spare: Vec<u8>,
+    pieces: VecDeque<TextPiece>,
     /// Records that were kept since some were forgotten.
     kept: usize,
 }
@@ -18,7 +25,9 @@ struct TextPiece {
     line: u64,
     lines: u64,
     count: usize,
-    /// Where the text of the first begins, and bytes from one to the next.
+    /// Number of the chunk that has them.
+    chunk: u64,
+    /// Where in it the text of the first begins, and bytes from one to the next.
     start: usize,
     stride: usize,
     /// Bytes of each.
@@ -27,6 +36,9 @@ struct TextPiece {
 
 /// Records are forgotten in runs of this length.
 const RUN: usize = 1024;
+
+/// Bytes of a chunk, unless a piece has more.
+const CHUNK: usize = 64 * 1024;
 
 impl TextPiece {
     fn last_line(&self) -> u64 {
@@ -38,8 +50,9 @@ impl SourceBuffer {
     /// Keeps a record; `settled` gives the line before which no fault will be found any more.
     #[inline]
     pub(crate) fn keep(&mut self, line: u64, raw: &[u8], settled: impl FnOnce() -> Option<u64>) {
-        let (start, length) = (self.text.len(), raw.len());
-        let piece = TextPiece { line, lines: 1, count: 1, start, stride: length, length };
+        let length = raw.len();
+        let piece =
+            TextPiece { line, lines: 1, count: 1, chunk: 0, start: 0, stride: length, length };
         self.keep_piece(piece, raw, settled);
     }
 
@@ -57,7 +70,8 @@ impl SourceBuffer {
             line: run.line(0),
             lines: run.lines(),
             count: run.count(),
-            start: self.text.len(),
+            chunk: 0,
+            start: 0,
             stride: run.stride(),
             length: run.length(),
         };
@@ -73,38 +87,49 @@ impl SourceBuffer {
     ) {
         if self.kept >= RUN {
             self.forget(settled().unwrap_or(piece.line));
-            piece.start = self.text.len();
         }
+        let room = self.chunks.back().is_some_and(|chunk| chunk.len() + text.len() <= CHUNK);
+        if !room {
+            let mut chunk = std::mem::take(&mut self.spare);
+            chunk.clear();
+            chunk.reserve(CHUNK);
+            self.chunks.push_back(chunk);
+        }
+        let Some(chunk) = self.chunks.back_mut() else {
+            return;
+        };
+        piece.start = chunk.len();
+        chunk.extend_from_slice(text);
+        piece.chunk = self.gone + self.chunks.len() as u64 - 1;
         self.kept += piece.count;
-        self.pieces.push(piece);
-        self.text.extend_from_slice(text);
+        self.pieces.push_back(piece);
     }
 
     fn forget(&mut self, before: u64) {
         let count = self.pieces.partition_point(|piece| piece.last_line() < before);
-        let from = self.pieces.get(count).map_or(self.text.len(), |piece| piece.start);
         self.kept = 0;
-        // What stays is moved: never more than what goes, so that a byte is moved once at most.
-        if from < self.text.len() - from {
-            return;
-        }
         self.pieces.drain(..count);
-        self.text.drain(..from);
-        for piece in &mut self.pieces {
-            piece.start -= from;
+        let end = self.gone + self.chunks.len() as u64;
+        let first = self.pieces.front().map_or(end, |piece| piece.chunk);
+        while self.gone < first
+            && let Some(chunk) = self.chunks.pop_front()
+        {
+            self.spare = chunk;
+            self.gone += 1;
         }
     }
 
     /// The text of the record on `line`.
     pub(crate) fn text(&self, line: u64) -> Option<String> {
         let after = self.pieces.partition_point(|piece| piece.line <= line);
-        let piece = self.pieces[..after].last()?;
+        let piece = self.pieces.get(after.checked_sub(1)?)?;
+        let chunk = self.chunks.get((piece.chunk - self.gone) as usize)?;
         let away = line - piece.line;
         if !away.is_multiple_of(piece.lines) || line > piece.last_line() {
             return None;
         }
         let start = piece.start + (away / piece.lines) as usize * piece.stride;
-        let text = &self.text[start..start + piece.length];
+        let text = &chunk[start..start + piece.length];
         Some(String::from_utf8_lossy(text).trim_end().to_owned())
     }
 }

@@ -5,14 +5,15 @@ mod travel_picture;
 
 use clap::{Args, ValueEnum};
 
-use post_cli::arguments::JobArguments;
 use post_cli::arguments::flag_values::file;
 use post_cli::arguments::flag_values::{not_negative, positive, word};
+use post_cli::arguments::{Flags, JobArguments};
 use post_cli::terminal;
 use post_job::failure::Failure;
 use post_job::files::{self, PathArg, Role};
 use post_job::place::{Least, PlaceRequest, place};
 use post_job::session::Session;
+use post_job::settings::ThreadSettings;
 
 /// Finds where the part can sit: the mount that keeps every axis inside travel and then takes least time.
 ///
@@ -52,6 +53,9 @@ pub struct PlaceArguments {
     /// alone there.
     #[arg(long, value_name = "FILE", value_parser = file())]
     svg: Option<PathArg>,
+
+    #[command(flatten)]
+    threads: Flags<ThreadSettings>,
 }
 
 /// `--least`.
@@ -86,6 +90,7 @@ pub fn run(session: &Session, arguments: &PlaceArguments) -> Result<(), Failure>
         margin: arguments.margin,
         search_turn: arguments.search_turn,
         runs: arguments.runs,
+        threads: arguments.threads.0.most(),
     };
     let found = place(session, job, &request)?;
     let mut taken = false;

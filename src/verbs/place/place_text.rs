@@ -10,9 +10,9 @@ use post_job::place::{Least, MountSearchResult, Trial, mount_text};
 use post_job::text::{clock, number};
 use post_job::text_table::{NamedValues, TextTable};
 
-/// Flags of this verb, which posting does not take, and those that the answer takes the place of: each with whether its
-/// value may stand in a word of its own.
-const OWN: [(&str, bool); 7] = [
+/// Flags of this verb, which posting does not take, those that the answer takes the place of, and those that change nothing
+/// of the program: each with whether its value may stand in a word of its own.
+const OWN: [(&str, bool); 9] = [
     ("--least", true),
     ("--margin", true),
     ("--search-turn", false),
@@ -20,6 +20,8 @@ const OWN: [(&str, bool); 7] = [
     ("--svg", true),
     ("--mount", true),
     ("--turn", true),
+    ("--jobs", true),
+    ("-j", true),
 ];
 
 /// The text.
@@ -132,9 +134,13 @@ fn command(seat: &str, arguments: impl Iterator<Item = OsString>) -> String {
             verb = true;
             continue;
         }
-        let flag = word.split('=').next().unwrap_or_default();
+        // A value may stand behind a short flag.
+        let flag = match word.starts_with("-j") {
+            true => "-j",
+            false => word.split('=').next().unwrap_or_default(),
+        };
         match OWN.iter().find(|(own, _)| *own == flag) {
-            Some((_, value)) => skip = *value && !word.contains('='),
+            Some((_, value)) => skip = *value && word == flag,
             None => words.push(quoted(&word)),
         }
     }

@@ -19,7 +19,9 @@ use post_job::making::{self, ProgramMaker, ProgramOutcome, ProgramPart, ProgramR
 use post_job::old_summary::OldSummary;
 use post_job::predict::Prediction;
 use post_job::session::Session;
-use post_job::settings::{JobSettings, MakingSettings, OutputSettings, ReportSettings};
+use post_job::settings::{
+    JobSettings, MakingSettings, OutputSettings, ReportSettings, ThreadSettings,
+};
 use post_job::summary::{self, SummaryJson};
 use post_job::{compensate, plan_rounds, plugin_finder, predict};
 use said_settings::SaidSettings;
@@ -46,6 +48,9 @@ pub struct PostArguments {
 
     #[command(flatten)]
     making: Flags<MakingSettings>,
+
+    #[command(flatten)]
+    threads: Flags<ThreadSettings>,
 
     #[command(flatten)]
     shown: ShownArguments,
@@ -176,6 +181,7 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
         let other = OldSummary::read(session, like)?.other_machine(&machine.name);
         session.findings(&other.into_iter().collect::<Vec<_>>());
     }
+    maker.threads = arguments.threads.0.most();
     let mut source = ClSource::new(session, &job.input, arguments.reads_twice(&machine))?;
     if arguments.looks_ahead(&machine) {
         maker.look_ahead(&machine, &mut source)?;

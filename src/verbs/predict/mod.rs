@@ -14,7 +14,7 @@ use post_job::failure::Failure;
 use post_job::files::PathArg;
 use post_job::predict::{self, PredictRequest};
 use post_job::session::Session;
-use post_job::settings::ReportSettings;
+use post_job::settings::{ReportSettings, ThreadSettings};
 
 /// Predicts what an NC program does on its machine: cycle time, true feed, and how far the tool strays.
 ///
@@ -75,6 +75,9 @@ pub struct PredictArguments {
     #[command(flatten)]
     report: Flags<ReportSettings>,
 
+    #[command(flatten)]
+    threads: Flags<ThreadSettings>,
+
     /// The CL file that the program was made from: how far the tool strays from its path.
     #[arg(long, value_name = "CL-FILE", value_parser = file())]
     against: Option<PathArg>,
@@ -107,6 +110,7 @@ pub fn run(session: &Session, arguments: &PredictArguments) -> Result<(), Failur
         summary: arguments.summary.clone(),
         pictures: arguments.pictures.clone(),
         report: arguments.report.0.clone(),
+        threads: arguments.threads.0.clone(),
     };
     let predicted = predict::predict_program(session, &request)?;
     session.findings(&predicted.findings);

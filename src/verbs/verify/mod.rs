@@ -12,7 +12,7 @@ use post_cli::terminal;
 use post_job::failure::Failure;
 use post_job::files::PathArg;
 use post_job::session::Session;
-use post_job::settings::ReportSettings;
+use post_job::settings::{ReportSettings, ThreadSettings};
 use post_job::verify::{Verified, VerifyRequest, verify};
 
 /// Holds an NC program against a CL file: does the machine do what was asked?
@@ -69,6 +69,9 @@ pub struct VerifyArguments {
     #[command(flatten)]
     report: Flags<ReportSettings>,
 
+    #[command(flatten)]
+    threads: Flags<ThreadSettings>,
+
     /// The program was posted for this machine file, and is held to what posting promises of its rapids besides: rotary
     /// axes turn where the tool is retracted or on its line, and it is retracted wherever a tool is changed and at the end.
     #[arg(long)]
@@ -121,6 +124,7 @@ pub fn run(session: &Session, arguments: &VerifyArguments) -> Result<(), Failure
         map: arguments.map.clone(),
         summary: arguments.summary.clone(),
         report: arguments.report.0.clone(),
+        threads: arguments.threads.0.clone(),
     };
     let Verified { name, machine, held, tolerances, printed } = verify(session, &request)?;
     if !arguments.quiet {

@@ -172,12 +172,12 @@ impl OneJob<'_> {
         let making = MakingSettings {
             plan: options.plan,
             trust_model: options.trust_model,
-            // The jobs are side by side already.
-            jobs: Some(NonZeroUsize::MIN),
             ..MakingSettings::default()
         };
         let finder = self.study.finder.clone();
         let mut maker = ProgramMaker::new(self.session, self.arguments, &making, finder);
+        // The jobs are side by side already.
+        maker.threads = NonZeroUsize::MIN;
         let mut source = self.source();
         let mut findings = unused_options::found(&part.machine, &maker.finder);
         maker.look_ahead_where_needed(&part.machine, &mut source)?;

@@ -15,8 +15,8 @@ use super::journal::Journal;
 use super::one_job::{self, JobResult};
 use super::outcome::JobOutcome;
 use crate::failure::Failure;
-use crate::posting_pass;
 use crate::session::Session;
+use crate::settings::ThreadSettings;
 
 /// As much as the first thread of a process mostly has.
 const STACK: usize = 8 << 20;
@@ -51,7 +51,7 @@ pub fn run(
     journal: Option<&Journal>,
     look: &mut dyn FnMut(Done) -> Result<(), Cancelled>,
 ) -> Result<Option<Vec<JobOutcome>>, Failure> {
-    let threads = posting_pass::threads(threads).get().min(numbers.len());
+    let threads = ThreadSettings { jobs: threads }.most().get().min(numbers.len());
     let next = AtomicUsize::new(0);
     let stop = Arc::new(AtomicBool::new(false));
     let mut outcomes: Vec<Option<JobOutcome>> = vec![None; numbers.len()];

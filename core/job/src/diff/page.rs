@@ -6,7 +6,7 @@ use post_report::meta::{Maximum, Names, TolerancesMeta, VerdictMeta};
 use super::{DiffResult, Side};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, PathArg};
-use crate::report::{self, ExtraColumns, MotionRows, OldPath, Parts};
+use crate::report::{self, ExtraColumns, MotionRows, OldPath, PartText, Parts};
 use crate::session::Session;
 use crate::text::{clock, number};
 
@@ -57,7 +57,8 @@ impl DiffPage<'_> {
         }
         rows.finish(&mut parts, &mut meta)?;
         for (part, Side { program, .. }) in ["nc2", "nc"].into_iter().zip(sides) {
-            parts.text(part, &program.name, &mut program.text()?)?;
+            let (name, file) = (part, program.name.as_str());
+            parts.text(PartText { name, file, text: &mut program.text()? })?;
         }
         parts.write(meta, most, page)
     }

@@ -47,7 +47,7 @@ pub use scale::step as round_step;
 pub use scratch::Scratch;
 pub use target::Role;
 pub use temporary::{delete_on_signals, delete_temporary_files};
-pub use watched::Watched;
+pub use watched::{ReadPosition, Watched};
 
 /// Writes texts whole: all of them, or none. Standard output is taken if one of them went there.
 pub fn write(session: &Session, texts: &[(Role, &PathArg, &str)]) -> Result<bool, FileFault> {

@@ -15,13 +15,14 @@ use crate::making::{self, ProgramInput, ProgramMaker, ProgramPart, ProgramReques
 use crate::nc_program::Reread;
 use crate::plugin_finder;
 use crate::session::Session;
-use crate::settings::{JobSettings, MakingSettings, ReadingSettings, tell};
+use crate::settings::{JobSettings, MakingSettings, ReadingSettings, ThreadSettings, tell};
 
 /// A program that is asked for.
 #[derive(Clone, Debug)]
 struct Request {
     job: JobSettings,
     making: MakingSettings,
+    threads: ThreadSettings,
     /// Where it is, or would be, written; none: beside its CL file.
     output: Option<PathArg>,
     /// It is written.
@@ -103,7 +104,8 @@ impl Request {
         let mut reading = ReadingSettings::default();
         let mut over = machine.over.clone();
         let mut making = MakingSettings::default();
-        tell(options, &mut [&mut reading, &mut over, &mut making])?;
+        let mut threads = ThreadSettings::default();
+        tell(options, &mut [&mut reading, &mut over, &mut making, &mut threads])?;
         let job = JobSettings {
             machine: machine.name.clone(),
             input: file(input),
@@ -112,7 +114,7 @@ impl Request {
             mark: None,
         };
         let (writes, verify) = (output.is_some(), false);
-        Ok(Self { job, making, output: output.map(file), writes, verify })
+        Ok(Self { job, making, threads, output: output.map(file), writes, verify })
     }
 
     /// A program of a job file, with `options` over what that says; it is written if `writes` says so.
@@ -124,14 +126,15 @@ impl Request {
         writes: bool,
     ) -> Result<Self, Failure> {
         let mut keys = program.keys()?;
-        tell(options, &mut [&mut keys.reading, &mut keys.over, &mut keys.making])?;
+        let mut threads = ThreadSettings::default();
+        tell(options, &mut [&mut keys.reading, &mut keys.over, &mut keys.making, &mut threads])?;
         let mark = options.is_empty().then(|| file.mark.clone());
         let job = program.settings(&keys, mark);
         let output = match writes {
             true => Some(program.target(session)?),
             false => keys.outputs.output,
         };
-        Ok(Self { job, making: keys.making, output, writes, verify: keys.outputs.verify })
+        Ok(Self { job, making: keys.making, threads, output, writes, verify: keys.outputs.verify })
     }
 
     /// Opens what the program is made with: the program as a part of its file, and the file.
@@ -140,6 +143,7 @@ impl Request {
         session: &'a Session,
     ) -> Result<(ProgramMaker<'a>, ProgramPart, ClSource), Failure> {
         let (mut maker, machine) = ProgramMaker::open(session, &self.job, &self.making)?;
+        maker.threads = self.threads.most();
         let mut source = ClSource::new(session, &self.job.input, true)?;
         maker.look_ahead_where_needed(&machine, &mut source)?;
         let target = making::target(&self.job, self.output.as_ref(), &machine, &maker.finder)?;
@@ -149,7 +153,9 @@ impl Request {
     /// What a program that is made is asked with.
     fn maker<'a>(&'a self, session: &'a Session) -> Result<ProgramMaker<'a>, Failure> {
         let finder = plugin_finder::finder(session, &self.job.over.plugins)?;
-        Ok(ProgramMaker::new(session, &self.job, &self.making, finder))
+        let mut maker = ProgramMaker::new(session, &self.job, &self.making, finder);
+        maker.threads = self.threads.most();
+        Ok(maker)
     }
 }
 

@@ -3,6 +3,8 @@
 mod search;
 mod trial;
 
+use std::num::NonZeroUsize;
+
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::settings::JobSettings;
@@ -33,6 +35,8 @@ pub struct PlaceRequest {
     pub search_turn: Option<f64>,
     /// No more dry runs than this.
     pub runs: u32,
+    /// Threads that work at most.
+    pub threads: NonZeroUsize,
 }
 
 /// Finds the mount that keeps every axis of a job's machine inside travel and then costs least among those tried.

@@ -7,7 +7,7 @@ use post_machine::place::{
     HalfSpace, MountCost, descend, most_room, nearest, rounded, shuffled, spread,
 };
 
-use super::trial::{PartMount, TravelBound, Trial, Trials, bodies};
+use super::trial::{PartMount, PostedTrial, TravelBound, Trial, Trials, bodies};
 use super::{Least, PlaceRequest};
 use crate::failure::Failure;
 
@@ -273,8 +273,14 @@ impl<'s, 'a> Search<'s, 'a> {
         let start = MountCost { mount: trial.seat.mount, cost: trial.cost };
         let places = spread(&bodies, &start.mount, self.margin() + ROUNDING, PLACES);
         let mut other: Option<MountCost> = None;
-        for mount in places {
-            let cost = self.cost_at(trial, mount, &bodies)?;
+        let inside = places.into_iter().filter(|mount| self.is_inside(mount, &bodies));
+        let inside: Vec<Vector3<f64>> = inside.collect();
+        let turn = trial.seat.turn;
+        let seats: Vec<PartMount> =
+            inside.iter().map(|mount| PartMount { mount: tidy(mount), turn }).collect();
+        // None of them hangs on what another costs.
+        for (mount, posted) in inside.into_iter().zip(self.trials.post_all(&seats)) {
+            let cost = self.cost_of(trial, posted)?;
             if let Some(cost) = cost.filter(|cost| other.is_none_or(|other| *cost < other.cost)) {
                 other = Some(MountCost { mount, cost });
             }
@@ -302,12 +308,22 @@ impl<'s, 'a> Search<'s, 'a> {
         mount: Vector3<f64>,
         bodies: &[HalfSpace],
     ) -> Result<Option<f64>, Failure> {
-        let inside = bodies.iter().all(|body| body.room(&mount) >= self.margin());
-        if !inside || self.trials.left() == 0 {
+        if !self.is_inside(&mount, bodies) || self.trials.left() == 0 {
             return Ok(None);
         }
         let seat = PartMount { mount: tidy(&mount), turn: least.seat.turn };
-        let trial = match self.trials.post(seat)? {
+        let posted = self.trials.post(seat);
+        self.cost_of(least, posted)
+    }
+
+    /// Travel leaves the margin that is asked for.
+    fn is_inside(&self, mount: &Vector3<f64>, bodies: &[HalfSpace]) -> bool {
+        bodies.iter().all(|body| body.room(mount) >= self.margin())
+    }
+
+    /// What the program costs where it was posted, if the part can sit there; the least of all is kept in `least`.
+    fn cost_of(&self, least: &mut Trial, posted: PostedTrial) -> Result<Option<f64>, Failure> {
+        let trial = match posted? {
             Ok(trial) if self.holds(&trial) => trial,
             _ => return Ok(None),
         };

@@ -1,5 +1,9 @@
 //! Mounts put to the proof: the whole file posted there, its text thrown away.
 
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
 use nalgebra::Vector3;
 use post_host::Finder;
 use post_machine::description::{Axis, Machine, Setting, Side};
@@ -60,6 +64,9 @@ pub struct OpenTravelResult {
     pub evenly: bool,
 }
 
+/// What posting comes to: a trial, or the findings that refuse it.
+pub type PostedTrial = Result<Result<Trial, Vec<Diagnostic>>, Failure>;
+
 /// Dry runs, counted.
 pub struct Trials<'a> {
     dry_run: DryRun<'a>,
@@ -76,12 +83,9 @@ impl<'a> Trials<'a> {
         job: &'a JobSettings,
         request: &PlaceRequest,
     ) -> Result<Self, Failure> {
-        Ok(Self {
-            dry_run: DryRun::new(session, "place", "post", job, false)?,
-            least: request.least,
-            runs: 0,
-            most: request.runs,
-        })
+        let mut dry_run = DryRun::new(session, "place", "post", job, false)?;
+        dry_run.threads = request.threads;
+        Ok(Self { dry_run, least: request.least, runs: 0, most: request.runs })
     }
 
     /// The CL file, as the user named it.
@@ -104,35 +108,44 @@ impl<'a> Trials<'a> {
         self.dry_run.machine(&[])
     }
 
-    /// The machine with the part there.
-    fn machine_at(&self, seat: &PartMount) -> Result<Machine, Failure> {
-        let settings = [Setting::Mount(seat.mount.into()), Setting::Turn(seat.turn)];
-        self.dry_run.machine(&settings)
+    /// Posts the file with the part there; the findings if it cannot be.
+    pub fn post(&mut self, seat: PartMount) -> PostedTrial {
+        self.runs += 1;
+        posted(&self.dry_run, self.least, seat)
     }
 
-    /// Posts the file with the part there; the findings if it cannot be.
-    pub fn post(&mut self, seat: PartMount) -> Result<Result<Trial, Vec<Diagnostic>>, Failure> {
-        self.runs += 1;
-        let machine = self.machine_at(&seat)?;
-        let (report, findings) = match self.dry_run.pass(&machine, None) {
-            Ok(posted) => posted,
-            Err(Failure::Refused(findings)) => return Ok(Err(findings)),
-            Err(failure) => return Err(failure),
+    /// [`Trials::post`] of each of these, as many as may still be made: several at a time.
+    pub fn post_all(&mut self, seats: &[PartMount]) -> Vec<PostedTrial> {
+        let seats = &seats[..seats.len().min(self.left() as usize)];
+        self.runs += seats.len() as u32;
+        let (least, next) = (self.least, AtomicUsize::new(0));
+        let work = |dry_run: &DryRun<'_>| {
+            let mut done = Vec::new();
+            loop {
+                let place = next.fetch_add(1, Ordering::Relaxed);
+                let Some(seat) = seats.get(place) else {
+                    return done;
+                };
+                done.push((place, posted(dry_run, least, *seat)));
+            }
         };
-        let rotary =
-            |name: &str| machine.with_axis(name).is_some_and(|(_, axis)| axis.joint.rotary);
-        let turning = report.axes.iter().filter(|axis| rotary(&axis.name));
-        let cost = match self.least {
-            Least::Time => report.time_s,
-            Least::Rotary => turning.map(|axis| axis.way).sum(),
-        };
-        let left = report.axes.iter().filter_map(|range| {
-            let (machine, axis) = machine.with_axis(&range.name)?;
-            let [least, most] = range.travel?;
-            let left = (range.min - least).min(most - range.max);
-            follows_the_part(machine, axis).then_some(left)
+        let mut done = thread::scope(|scope| {
+            let others = self.dry_run.threads.get().min(seats.len());
+            let threads: Vec<_> = (1..others)
+                .filter_map(|_| {
+                    let dry_run = self.dry_run.of_one_thread();
+                    let thread = thread::Builder::new();
+                    thread.spawn_scoped(scope, move || work(&dry_run)).ok()
+                })
+                .collect();
+            let mut done = work(&self.dry_run.of_one_thread());
+            for thread in threads {
+                done.extend(thread.join().unwrap_or_else(|payload| resume_unwind(payload)));
+            }
+            done
         });
-        Ok(Ok(Trial { room: left.fold(f64::INFINITY, f64::min), seat, cost, findings, report }))
+        done.sort_by_key(|(place, _)| *place);
+        done.into_iter().map(|(_, posted)| posted).collect()
     }
 
     /// Posts the file with the part there on the machine with its linear travel opened; `prefer` is a side on which a
@@ -143,7 +156,7 @@ impl<'a> Trials<'a> {
         prefer: Option<(usize, Side)>,
     ) -> Result<OpenTravelResult, Failure> {
         self.runs += 1;
-        let machine = self.machine_at(seat)?;
+        let machine = machine_at(&self.dry_run, seat)?;
         let mut wide = opened(&machine);
         if let Some(prefer) = prefer {
             wide.solution.prefer = vec![prefer];
@@ -165,6 +178,35 @@ impl<'a> Trials<'a> {
             evenly: watch.goes_evenly(),
         })
     }
+}
+
+/// The machine with the part there.
+fn machine_at(dry_run: &DryRun<'_>, seat: &PartMount) -> Result<Machine, Failure> {
+    let settings = [Setting::Mount(seat.mount.into()), Setting::Turn(seat.turn)];
+    dry_run.machine(&settings)
+}
+
+/// Posts the file with the part there; the findings if it cannot be.
+fn posted(dry_run: &DryRun<'_>, least: Least, seat: PartMount) -> PostedTrial {
+    let machine = machine_at(dry_run, &seat)?;
+    let (report, findings) = match dry_run.pass(&machine, None) {
+        Ok(posted) => posted,
+        Err(Failure::Refused(findings)) => return Ok(Err(findings)),
+        Err(failure) => return Err(failure),
+    };
+    let rotary = |name: &str| machine.with_axis(name).is_some_and(|(_, axis)| axis.joint.rotary);
+    let turning = report.axes.iter().filter(|axis| rotary(&axis.name));
+    let cost = match least {
+        Least::Time => report.time_s,
+        Least::Rotary => turning.map(|axis| axis.way).sum(),
+    };
+    let left = report.axes.iter().filter_map(|range| {
+        let (machine, axis) = machine.with_axis(&range.name)?;
+        let [least, most] = range.travel?;
+        let left = (range.min - least).min(most - range.max);
+        follows_the_part(machine, axis).then_some(left)
+    });
+    Ok(Ok(Trial { room: left.fold(f64::INFINITY, f64::min), seat, cost, findings, report }))
 }
 
 /// A linear axis whose room the mount decides: one that stands between cuts, and one that waits at its end until another

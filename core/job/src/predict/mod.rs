@@ -15,6 +15,7 @@ mod set_points_csv;
 mod stages;
 mod text;
 mod times;
+mod trajectory;
 
 pub use prediction::Prediction;
 pub use program::{MeasuredRequest, PredictRequest, PredictedProgram, predict_program};

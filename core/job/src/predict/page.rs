@@ -1,5 +1,7 @@
 //! `--report`: what is predicted, as a page.
 
+use std::num::NonZeroUsize;
+
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_report::meta::{Names, VerdictMeta};
@@ -8,7 +10,7 @@ use super::Prediction;
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
 use crate::nc_program::ProgramFile;
-use crate::report::{self, MotionRows, Parts, PredictedLines};
+use crate::report::{self, MotionRows, PartText, Parts, PredictedLines};
 use crate::session::Session;
 use crate::text::clock;
 
@@ -26,6 +28,8 @@ pub struct PredictPage<'a> {
     pub program: &'a PathArg,
     /// The CL file, if there is one.
     pub against: Option<&'a PathArg>,
+    /// Threads that work at most.
+    pub threads: NonZeroUsize,
 }
 
 impl PredictPage<'_> {
@@ -61,10 +65,15 @@ impl PredictPage<'_> {
             rows.hear(line, &heard);
         }
         rows.finish(&mut parts, &mut meta)?;
-        parts.text("nc", &program.name, &mut program.text()?)?;
-        if let Some(source) = source {
-            let mut cl = source.open()?;
-            parts.text("cl", &cl.name, &mut cl.bytes)?;
+        let mut text = program.text()?;
+        let nc = PartText { name: "nc", file: &program.name, text: &mut text };
+        match source {
+            None => parts.text(nc)?,
+            Some(source) => {
+                let mut cl = source.open()?;
+                let cl = PartText { name: "cl", file: &cl.name, text: &mut cl.bytes };
+                parts.two_texts([nc, cl], self.threads)?;
+            }
         }
         parts.write(meta, most, page)
     }

@@ -19,7 +19,7 @@ use crate::nc_program::{self, ProgramFile};
 use crate::report::{ClWindow, ExtraColumns, MotionRows, PredictedLines};
 use crate::result_files::ResultFiles;
 use crate::session::Session;
-use crate::settings::{JobSettings, ReportSettings};
+use crate::settings::{JobSettings, ReportSettings, ThreadSettings};
 
 const SET_POINTS: Role =
     Role { what: "table of set-points", remedy: "name another file with --csv" };
@@ -67,6 +67,8 @@ pub struct PredictRequest {
     pub pictures: Option<PathArg>,
     /// The page.
     pub report: ReportSettings,
+    /// How many threads work.
+    pub threads: ThreadSettings,
 }
 
 /// What came of it.
@@ -104,6 +106,7 @@ pub fn predict_program(
         limits: Limits { blocks: request.most_blocks, ..Limits::default() },
         period: request.period,
         lines: None,
+        threads: request.threads.most(),
     };
     let mut overlay = match &request.measured {
         Some(measured) => Some(measured.overlay(session, &machine, asked.period())?),
@@ -143,6 +146,7 @@ pub fn predict_program(
             findings: &findings,
             program: &request.program,
             against: request.against.as_ref(),
+            threads: request.threads.most(),
         };
         told.write(rows, lines, source.as_mut(), &program, request.report.most(), page)?;
     }
@@ -255,6 +259,10 @@ impl PredictWatch for SetPointOutputs<'_, '_, '_> {
         if let Some((rows, _)) = &mut self.rows {
             rows.take(done);
         }
+    }
+
+    fn sees_blocks(&self) -> bool {
+        self.rows.is_some()
     }
 
     fn sample(&mut self, sample: &Sample) -> Result<(), Failure> {

@@ -1,8 +1,10 @@
 //! What a program is predicted with, and who looks on.
 
 use std::io::BufReader;
+use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::sync::Arc;
+use std::thread;
 
 use post_host::Finder;
 use post_machine::description::Machine;
@@ -16,13 +18,17 @@ use super::prediction::Prediction;
 use super::sample::Sample;
 use super::set_point_stream::SetPointStream;
 use super::stages::Stages;
+use super::trajectory::Trajectory;
+use crate::beside::Work;
 use crate::failure::Failure;
-use crate::files::Watched;
-use crate::files::{ClSource, FileFault};
+use crate::files::{ClSource, FileFault, Watched};
 use crate::nc_program::{self, NcControl, ProgramText};
 use crate::read_back;
 use crate::session::Session;
 use crate::settings::JobSettings;
+
+/// News of a trajectory that are handed over together: fewer are worth less than waking a thread.
+const TOGETHER: usize = 256;
 
 /// What a program is predicted with.
 pub struct PredictionSetup<'a> {
@@ -42,6 +48,8 @@ pub struct PredictionSetup<'a> {
     pub period: Option<f64>,
     /// Lines of the CL file that the program is made of; none: all.
     pub lines: Option<Range<u64>>,
+    /// Threads that it is predicted on at most.
+    pub threads: NonZeroUsize,
 }
 
 impl PredictionSetup<'_> {
@@ -61,8 +69,13 @@ pub enum PredictReference<'a> {
 
 /// Who looks on while a program is predicted.
 pub trait PredictWatch {
-    /// What the program does next, before its set-points.
+    /// What the program does next, before its set-points; told if it [sees blocks](Self::sees_blocks).
     fn done(&mut self, _done: &BlockEffect) {}
+
+    /// It wants to know what blocks do.
+    fn sees_blocks(&self) -> bool {
+        false
+    }
 
     /// The next set-point.
     ///
@@ -121,12 +134,22 @@ pub fn predict(
     let run = control.run(name, BufReader::new(input)).map_err(|fault| *fault)?;
     let (machine, period) = (&control.counted, asked.period());
     let stages = Stages::new(machine, period, path)?;
-    let mut stream = SetPointStream::new(name, run, machine, period, stages);
+    let mut stream = SetPointStream::new(name, machine, stages);
+    let mut trajectory = Trajectory::new(name, run, machine, period, watch.sees_blocks());
     let mut progress = asked.session.progress(Some(length));
-    progress.record(|| position.get());
-    while stream.step(watch)? {
-        progress.record(|| position.get());
-    }
+    let beside = asked.threads > NonZeroUsize::MIN;
+    thread::scope(|scope| {
+        let mut work = match beside {
+            true => Work::beside(scope, &mut trajectory, TOGETHER),
+            false => Work::Here(&mut trajectory),
+        };
+        let mut batch = Vec::new();
+        while work.next(&mut batch) {
+            progress.some_records(batch.len() as u64, || position.get());
+            batch.iter_mut().try_for_each(|news| stream.take(news, watch))?;
+        }
+        Ok::<(), Failure>(())
+    })?;
     progress.finish();
-    stream.finish(watch)
+    stream.finish(trajectory, watch)
 }

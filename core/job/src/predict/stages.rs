@@ -9,15 +9,15 @@ use post_machine::kinematics::{Joints, Solver};
 use post_motion::contour::{Contour, ContourPoint, ReferencePath};
 use post_motion::servo::Servos;
 use post_motion::trajectory::TaskTime;
-use post_motion::{ProgramPlace, SetPoints, Task};
+use post_motion::{ProgramPlace, SetPoints};
 use post_readback::MachineState;
-use post_readback::tasks::ProgramTask;
 
 use super::feeds::FeedTally;
 use super::found;
 use super::prediction::Prediction;
 use super::sample::Sample;
 use super::times::{TaskKind, TimeTally};
+use super::trajectory::PlannedTask;
 use crate::failure::Failure;
 
 /// What the program says of a task that is not done yet.
@@ -88,8 +88,8 @@ impl<'r> Stages<'r> {
     }
 
     /// A task is planned now.
-    pub fn ahead(&mut self, planned: &ProgramTask) {
-        self.contour.ahead(&planned.task);
+    pub fn ahead(&mut self, planned: &mut PlannedTask) {
+        self.contour.ahead(planned.leg.take());
         let same = match (&self.state, &planned.state) {
             (Some(known), Some(state)) => Arc::ptr_eq(known, state),
             (None, None) => !self.ahead.is_empty(),
@@ -103,11 +103,7 @@ impl<'r> Stages<'r> {
             self.operation = self.times.operation(tool, operation);
         }
         self.ahead.push_back(PendingTask {
-            kind: match (&planned.task, planned.rapid) {
-                (Task::Wait { why, .. }, _) => TaskKind::Wait(*why),
-                (Task::Move(_), true) => TaskKind::Rapid,
-                (Task::Move(_), false) => TaskKind::Cut,
-            },
+            kind: planned.kind,
             feed: planned.feed,
             operation: self.operation,
         });

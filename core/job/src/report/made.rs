@@ -1,6 +1,7 @@
 //! What became of a program that was made, as a page.
 
 use std::io::Read;
+use std::num::NonZeroUsize;
 
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
@@ -8,7 +9,7 @@ use post_posting::report::{PostingReport, ReportedDeviation};
 use post_readback::verify::Verification;
 use post_report::meta::{AxisUsed, Maximum, Names, VerdictMeta};
 
-use super::{BlockRows, Parts, PredictedParts};
+use super::{BlockRows, PartText, Parts, PredictedParts};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
 use crate::predict::Prediction;
@@ -36,6 +37,8 @@ pub struct PostPage<'a> {
     pub job: &'static str,
     /// What its summary tells: names and values.
     pub facts: Vec<[String; 2]>,
+    /// Threads that work at most.
+    pub threads: NonZeroUsize,
 }
 
 /// The texts that a page shows beside its rows.
@@ -45,7 +48,7 @@ pub struct PageTexts<'t> {
     /// The program, as messages call it.
     pub name: &'t str,
     /// The program, from its beginning.
-    pub text: &'t mut dyn Read,
+    pub text: &'t mut (dyn Read + Send),
 }
 
 impl PostPage<'_> {
@@ -91,9 +94,10 @@ impl PostPage<'_> {
             predicted.finish(&mut parts)?;
         }
         rows.finish(&mut parts, &mut meta)?;
-        parts.text("nc", name, text)?;
         let mut cl = source.open()?;
-        parts.text("cl", &cl.name, &mut cl.bytes)?;
+        let nc = PartText { name: "nc", file: name, text };
+        let cl = PartText { name: "cl", file: &cl.name, text: &mut cl.bytes };
+        parts.two_texts([nc, cl], self.threads)?;
         parts.write(meta, most, page)
     }
 

@@ -31,7 +31,7 @@ pub use machine::machine;
 pub use made::{PageTexts, PostPage};
 pub use motion_rows::{ExtraColumns, LineFacts, MotionRows};
 pub use old_path::OldPath;
-pub use parts::{Parts, excludes};
+pub use parts::{PartText, Parts, excludes};
 pub use predicted_lines::PredictedLines;
 pub use predicted_parts::PredictedParts;
 pub use told_by_prediction::{is_exceeded, predicted_facts, predicted_maxima};

@@ -1,7 +1,10 @@
 //! Tables and texts of a report, and the file that they become.
 
 use std::io::{self, Read};
+use std::num::NonZeroUsize;
+use std::panic::resume_unwind;
 use std::path::Path;
+use std::thread;
 
 use post_machine::description::Machine;
 use post_report::document;
@@ -32,6 +35,33 @@ const ORDER: [(&str, &str); 7] = [
     ("path", "interpolated path"),
     ("cl", "CL path"),
 ];
+
+/// A text of a report, from its start.
+pub struct PartText<'t> {
+    /// What the page calls it.
+    pub name: &'static str,
+    /// Its file, as messages call it.
+    pub file: &'t str,
+    /// What it is read from.
+    pub text: &'t mut (dyn Read + Send),
+}
+
+impl PartText<'_> {
+    fn packed(self) -> Result<(TextMeta, Scratch), Failure> {
+        let mut writer = TextWriter::new(self.name, Parts::scratch()?);
+        let mut buffer = vec![0; 1 << 16];
+        loop {
+            let length = self
+                .text
+                .read(&mut buffer)
+                .map_err(|error| FileFault::Read { name: self.file.to_owned(), error })?;
+            if length == 0 {
+                return writer.finish().map_err(fault);
+            }
+            writer.write(&buffer[..length]).map_err(fault)?;
+        }
+    }
+}
 
 /// Packed tables and texts.
 #[derive(Default)]
@@ -85,28 +115,34 @@ impl Parts {
         Ok(())
     }
 
-    /// Adds a text, read from its start.
+    /// Adds a text.
     ///
     /// # Errors
     /// It cannot be read, or not be written.
-    pub fn text(
+    pub fn text(&mut self, text: PartText<'_>) -> Result<(), Failure> {
+        self.texts.push(text.packed()?);
+        Ok(())
+    }
+
+    /// Adds two texts, packed side by side if there are `threads` for both.
+    ///
+    /// # Errors
+    /// One cannot be read, or not be written.
+    pub fn two_texts(
         &mut self,
-        name: &'static str,
-        file: &str,
-        text: &mut dyn Read,
+        texts: [PartText<'_>; 2],
+        threads: NonZeroUsize,
     ) -> Result<(), Failure> {
-        let mut writer = TextWriter::new(name, Self::scratch()?);
-        let mut buffer = vec![0; 1 << 16];
-        loop {
-            let length = text
-                .read(&mut buffer)
-                .map_err(|error| FileFault::Read { name: file.to_owned(), error })?;
-            if length == 0 {
-                break;
-            }
-            writer.write(&buffer[..length]).map_err(fault)?;
+        if threads == NonZeroUsize::MIN {
+            return texts.into_iter().try_for_each(|text| self.text(text));
         }
-        self.texts.push(writer.finish().map_err(fault)?);
+        let [first, second] = texts;
+        let [first, second] = thread::scope(|scope| {
+            let beside = scope.spawn(|| second.packed());
+            let first = first.packed();
+            [first, beside.join().unwrap_or_else(|payload| resume_unwind(payload))]
+        });
+        self.texts.extend([first?, second?]);
         Ok(())
     }
 

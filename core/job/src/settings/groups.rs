@@ -3,6 +3,7 @@
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
+use std::thread;
 
 use post_grammar::Units;
 use post_machine::description::{Setting, Tcp};
@@ -199,13 +200,25 @@ settings! {
     /// time of each round, and of the program without a plan. Each round posts and predicts the whole program.
     one plan_rounds: u32 = ROUNDS, "N", { requires: Some("plan") };
 
-    /// Works on so many threads at most; program and messages are the same with any number. [default: as many as there are
-    /// processors]
-    one jobs: NonZeroUsize = JOBS, "N", { short: Some('j') };
-
     /// Takes the error model's word where the certificate finds more, and only reports it. (The placement `fewest` asks
     /// no model.)
     flag trust_model, { heading: Some("Plugins") };
+}
+
+settings! {
+    /// How many threads work.
+    ThreadSettings, None;
+
+    /// Works on so many threads at most; what is written and told is the same with any number. [default: as many as there
+    /// are processors]
+    one jobs: NonZeroUsize = JOBS, "N", { short: Some('j') };
+}
+
+impl ThreadSettings {
+    /// Threads that work at most.
+    pub fn most(&self) -> NonZeroUsize {
+        self.jobs.or_else(|| thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN)
+    }
 }
 
 settings! {

@@ -10,7 +10,7 @@ pub mod values;
 
 pub use groups::{
     JobSettings, MachineSettings, MakingSettings, Msys, OutputSettings, ProgramSettings,
-    ReadingSettings, ReportSettings, Split, StudySettings,
+    ReadingSettings, ReportSettings, Split, StudySettings, ThreadSettings,
 };
 pub use table::{About, AnySettingsGroup, SettingRow, SettingsGroup, tell};
 pub use values::{SettingForm, SettingReader, SettingValue};

@@ -15,7 +15,7 @@ use super::result_files::ResultFiles;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
 use crate::session::Session;
-use crate::settings::{JobSettings, ReportSettings};
+use crate::settings::{JobSettings, ReportSettings, ThreadSettings};
 use page::VerifyPage;
 
 const MAP: Role = Role { what: "map", remedy: "name another file with --map" };
@@ -47,6 +47,8 @@ pub struct VerifyRequest {
     pub summary: Option<PathArg>,
     /// The page.
     pub report: ReportSettings,
+    /// How many threads work.
+    pub threads: ThreadSettings,
 }
 
 /// What came of it.
@@ -93,6 +95,7 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
         any_work_offset: request.any_work_offset,
         own: request.posted,
         lines: None,
+        threads: request.threads.most(),
     };
     let rows = match &texts.page {
         Some(_) => {
@@ -117,7 +120,9 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
     let tolerances = reading.tolerances;
     if let (Some(page), Some(rows)) = (&mut texts.page, rows) {
         let names = [&request.program, &job.input];
-        let told = VerifyPage { session, machine: &machine, held: &held, names, tolerances };
+        let threads = reading.threads;
+        let held = &held;
+        let told = VerifyPage { session, machine: &machine, held, names, tolerances, threads };
         told.write(rows, &mut source, &program, request.report.most(), page)?;
     }
     let texts = texts.all();

@@ -1,5 +1,7 @@
 //! `--report`: what was found, as a page.
 
+use std::num::NonZeroUsize;
+
 use post_machine::description::Machine;
 use post_readback::verify::{BlockReport, WorstDeviation};
 use post_report::meta::{Maximum, Names, VerdictMeta};
@@ -8,7 +10,7 @@ use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
 use crate::nc_program::ProgramFile;
 use crate::read_back::VerifiedProgram;
-use crate::report::{self, LineFacts, MotionRows, Parts};
+use crate::report::{self, LineFacts, MotionRows, PartText, Parts};
 use crate::session::Session;
 use crate::text::clock;
 
@@ -34,6 +36,8 @@ pub struct VerifyPage<'a> {
     pub names: [&'a PathArg; 2],
     /// Over the machine's: mm, radians.
     pub tolerances: [Option<f64>; 2],
+    /// Threads that work at most.
+    pub threads: NonZeroUsize,
 }
 
 impl VerifyPage<'_> {
@@ -97,9 +101,10 @@ impl VerifyPage<'_> {
         meta.excludes = report::excludes();
         let mut parts = Parts::of(self.session, self.machine, &mut meta)?;
         rows.finish(&mut parts, &mut meta)?;
-        parts.text("nc", &program.name, &mut program.text()?)?;
-        let mut cl = source.open()?;
-        parts.text("cl", &cl.name, &mut cl.bytes)?;
+        let (mut text, mut cl) = (program.text()?, source.open()?);
+        let nc = PartText { name: "nc", file: &program.name, text: &mut text };
+        let cl = PartText { name: "cl", file: &cl.name, text: &mut cl.bytes };
+        parts.two_texts([nc, cl], self.threads)?;
         parts.write(meta, most, page)
     }
 

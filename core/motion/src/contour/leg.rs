@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use post_machine::kinematics::Pose;
 
 use super::path::Knot;
-use crate::ProgramPlace;
 use crate::path::{Curve, GreatCircle};
+use crate::{MovePace, ProgramPlace, Task};
 
 /// A knot stands at least after such a turn, radians: the cubic between leaves an arc by less than a radius times the
 /// fourth power of this over 1944, 3 nm of a metre.
@@ -30,6 +30,22 @@ pub struct ContourLeg {
     pub to: Pose,
     /// How far the point of the tool that goes so stands above the tip, mm.
     pub along: f64,
+}
+
+impl ContourLeg {
+    /// The leg of a task, whose number is not known yet; none where it waits.
+    pub fn of(task: &Task) -> Option<Self> {
+        let Task::Move(go) = task else {
+            return None;
+        };
+        Some(Self {
+            at: ProgramPlace { task: 0, line: go.line, cuts: go.pace != MovePace::Rapid },
+            curve: go.way.curve().clone(),
+            from: go.from.pose,
+            to: go.to.pose,
+            along: 0.0,
+        })
+    }
 }
 
 /// A path that is asked for, handed out in order.

@@ -34,7 +34,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use post_machine::kinematics::{Joints, Pose, Solver};
 
-use crate::{MovePace, ProgramPlace, SetPoints, Task};
+use crate::{ProgramPlace, SetPoints};
 use axes::AxesPeaks;
 pub use axes::AxisPeaks;
 use course::FollowedPath;
@@ -107,19 +107,13 @@ impl<'r> Contour<'r> {
         self
     }
 
-    /// What the program asks for, all of it in order and each before its first set-point is taken: without, nothing is
-    /// known of what comes of interpolating.
-    pub fn ahead(&mut self, task: &Task) {
-        let number = self.tasks;
+    /// What the program asks for, all of it in order and each before its first set-point is taken: the [leg](ContourLeg::of)
+    /// of the next task. Without, nothing is known of what comes of interpolating.
+    pub fn ahead(&mut self, leg: Option<ContourLeg>) {
+        let task = self.tasks;
         self.tasks += 1;
-        if let Task::Move(go) = task {
-            self.programmed.push(&ContourLeg {
-                at: ProgramPlace { task: number, line: go.line, cuts: go.pace != MovePace::Rapid },
-                curve: go.way.curve().clone(),
-                from: go.from.pose,
-                to: go.to.pose,
-                along: 0.0,
-            });
+        if let Some(leg) = leg {
+            self.programmed.push(&ContourLeg { at: ProgramPlace { task, ..leg.at }, ..leg });
         }
     }
 

@@ -8,6 +8,8 @@ mod one_job;
 mod read_ahead;
 mod solids;
 
+#[path = "../../../src/beside.rs"]
+mod beside;
 #[path = "../../../src/report/branch.rs"]
 mod branch;
 #[path = "../../../src/predict/measured/clock.rs"]

@@ -26,6 +26,7 @@ mod findings;
 mod job_facts;
 mod mount_bounds;
 mod observer;
+mod part_anywhere;
 pub mod plan;
 mod post;
 pub mod preview;

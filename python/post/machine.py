@@ -37,6 +37,8 @@ class Options(TypedDict, total=False):
     tcp: Literal["control", "post"] | None
     dialect: str | None
     tools: str | None
+    reduce: bool
+    fit_arcs: bool
     number: int | None
     compensate_servo: bool
     plan: bool

@@ -98,12 +98,13 @@ def test_options_are_those_of_the_command(room: Path, command: Command) -> None:
     told = ["--machine", "dmu50", "--tool-length", "110.5", "--mount", "1,2,3.25", "--turn", "5"]
     told += ["--tolerance", "0.002", "--allow", "CUTTER", "--allow", "INSERT", "--units", "mm"]
     told += ["--spindle", "4000", "--tcp", "post", "--dialect", "fanuc", "--number", "77"]
+    told += ["--reduce", "--fit-arcs"]
     cl = str(LIBRARY / "dmu50.ncl")
     made = command(cl, *told, "-o", "out.nc", "--quiet")
     assert made.returncode == 0, made.stderr
     machine = post.Machine.load("dmu50", tool_length=110.5, mount=(1, 2, 3.25), turn=5)
     options = {"tolerance": 0.002, "allow": ["CUTTER", "INSERT"], "units": "mm", "spindle": 4000}
-    options |= {"tcp": "post", "dialect": "fanuc", "number": 77}
+    options |= {"tcp": "post", "dialect": "fanuc", "number": 77, "reduce": True, "fit_arcs": True}
     program = (room / "out.nc").read_text()
     assert "O77" in program or "O0077" in program
     assert machine.post(cl, output="out.nc", **options).nc == program

@@ -292,7 +292,7 @@ fn coolant_rests_in_a_tool_change_and_each_kind_has_its_end() {
     let through = UPRIGHT.replace("COOLNT/FLOOD", "COOLNT/THRU");
     let more = "[control.fanuc]\ncoolant_through = \"M88\"\ncoolant_through_off = \"M89\"\n";
     let lines = lines("vmc", more, &[], &through);
-    assert_run(&lines, &["G49", "M5", "M89", "T2 M6", "S2000 M3", "G53 G0 Z20.000", "M88"]);
+    assert_run(&lines, &["G49", "M5", "M89", "T2 M6", "S2000 M3", "M88"]);
     assert_run(&lines, &["G49", "M5", "M89", "M30"]);
     assert!(!lines.contains(&"M9".to_owned()));
     let more = "[control]\ndialect = \"heidenhain\"\n[control.heidenhain]\ncoolant_through = \"M88\"\ncoolant_through_off = \"M89\"\n";

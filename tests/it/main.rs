@@ -41,6 +41,7 @@ mod mutations;
 mod names;
 mod new;
 mod order;
+mod part_place;
 mod place;
 mod plan_rounds;
 mod plan_shown;

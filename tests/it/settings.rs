@@ -55,6 +55,31 @@ fn the_tolerance_is_kept_whatever_it_is() {
 }
 
 #[test]
+fn flags_are_short_for_the_keys_that_they_set() {
+    for (flag, key, sample) in [
+        ("--reduce", "accuracy.reduce=true", BLADE),
+        ("--fit-arcs", "control.arcs.fit=true", PLATE),
+    ] {
+        let job = ["-m", "ac-trunnion", "--tool-length", "100", "--tolerance", "0.1", sample];
+        let [short, long] =
+            [vec![flag], vec!["--set", key]].map(|more| posted(&[&job[..], &more].concat()));
+        assert_eq!(short, long, "{flag}");
+    }
+    let plain = posted(&["-m", "ac-trunnion", "--tool-length", "100", "--tolerance", "0.1", BLADE]);
+    let reduced = posted(&[
+        "-m",
+        "ac-trunnion",
+        "--tool-length",
+        "100",
+        "--tolerance",
+        "0.1",
+        BLADE,
+        "--reduce",
+    ]);
+    assert!(reduced.1["blocks"].as_u64() < plain.1["blocks"].as_u64(), "{}", reduced.1["blocks"]);
+}
+
+#[test]
 fn the_model_is_trusted_only_on_demand() {
     let distrusted = posted(&["-m", "disc-cutter", KNIFE]).1;
     let trusted = posted(&["-m", "disc-cutter", KNIFE, "--trust-model"]).1;

@@ -85,11 +85,11 @@ fn the_verb_tells_what_it_finds_and_where() {
     let found = verify(bad_name, &[&length[..], &["--summary", json]].concat());
     assert_eq!(found.code, 1);
     assert!(found.err.contains("error[deviation]"), "{}", found.err);
-    assert!(found.err.contains("bad.nc:19:1"), "{}", found.err);
+    assert!(found.err.contains("bad.nc:18:1"), "{}", found.err);
     assert!(found.err.contains("plate.ncl, line 20"), "{}", found.err);
     let summary: Value = serde_json::from_str(&fs::read_to_string(json).unwrap()).unwrap();
     assert_eq!(summary["faults"][0]["code"], "deviation");
-    assert_eq!(summary["faults"][0]["nc_line"], 19);
+    assert_eq!(summary["faults"][0]["nc_line"], 18);
     // Within a wider tolerance it is good.
     let wide = verify(bad_name, &[&length[..], &["--tolerance", "0.2"]].concat());
     assert_eq!(wide.code, 0, "{}", wide.err);
@@ -132,8 +132,8 @@ fn the_map_leads_from_the_program_to_the_cl_file() {
     let first = fs::read_to_string(&map).unwrap();
     let rows: Vec<Value> = serde_json::from_str(&first).unwrap();
     let row = |line: u64| rows.iter().find(|row| row["nc_line"] == line).unwrap();
-    assert_eq!((&row(20)["cl_line"], &row(20)["kind"]), (&24.into(), &"cut".into()));
-    assert_eq!((&row(42)["cl_line"], &row(42)["kind"]), (&53.into(), &"hole".into()));
+    assert_eq!((&row(19)["cl_line"], &row(19)["kind"]), (&24.into(), &"cut".into()));
+    assert_eq!((&row(40)["cl_line"], &row(40)["kind"]), (&53.into(), &"hole".into()));
     assert_eq!(verify(&program, &length).code, 0);
     assert_eq!(fs::read_to_string(&map).unwrap(), first);
 }

@@ -99,6 +99,8 @@ impl PostingPass<'_> {
         beside: PostingExtras<'_, '_, '_>,
     ) -> Result<(Option<PostingReport>, Vec<Diagnostic>), Failure> {
         let Self { machine, request, threads, dialect, model } = self;
+        let opened = machine.with_part_anywhere();
+        let machine = opened.as_ref().unwrap_or(machine);
         // Blocks are shown with the lines that they end on: whoever looks on waits for the text of each batch.
         let beside_text = threads > NonZeroUsize::MIN && beside.observer.is_none();
         let post = Post::new(machine, request, dialect, model, sink);

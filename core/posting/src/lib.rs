@@ -27,6 +27,7 @@ mod job_facts;
 mod mount_bounds;
 mod observer;
 mod operation_work;
+mod part_anywhere;
 pub mod plan;
 mod post;
 pub mod preview;

@@ -19,6 +19,7 @@ use crate::expand::{ExpandStage, PathMove};
 use crate::findings::Findings;
 use crate::job_facts::JobFacts;
 use crate::observer::{Observer, Observers, TextSink};
+use crate::part_anywhere;
 use crate::plan::{PlanStage, PlanWatch};
 use crate::preview::{FilePreview, wants_planes};
 use crate::program::{ClInterpreter, MoveFeed, ProgramStep, ReadingOptions};
@@ -431,7 +432,14 @@ impl<'a> Post<'a> {
         if let Some(warning) = self.stages.timing.low_feeds() {
             self.findings.add(warning);
         }
-        let report = (!self.findings.failed()).then(|| self.report());
+        let mut report = (!self.findings.failed()).then(|| self.report());
+        let found = report
+            .as_ref()
+            .and_then(|report| part_anywhere::judge(self.machine, &report.axes, &report.tools));
+        if let Some(found) = found {
+            self.findings.add(found);
+            report = report.filter(|_| !self.findings.failed());
+        }
         (report, self.findings.sorted())
     }
 
@@ -454,12 +462,12 @@ impl<'a> Post<'a> {
         let axes = axis_words::order(machine)
             .into_iter()
             .map(|index| {
-                let axis = &machine.axes[index];
+                let (axis, travel) = (&machine.axes[index], machine.travel_of(index));
                 AxisRange {
                     name: axis.name.clone(),
                     min: tidy(axis.reading(extremes.least[index].min(between.least(index)))),
                     max: tidy(axis.reading(extremes.most[index].max(between.most(index)))),
-                    travel: axis.travel.map(|travel| travel.map(|end| tidy(axis.reading(end)))),
+                    travel: travel.map(|travel| travel.map(|end| tidy(axis.reading(end)))),
                     way: tidy((extremes.travel[index] + between.beside(index)) / axis.unit()),
                 }
             })

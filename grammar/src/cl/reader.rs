@@ -239,18 +239,18 @@ impl<R: Read> ClReader<R> {
         }
     }
 
-    /// Bytes and lines of the `GOTO` that begins in the buffer at `from`, if it is laid out as those before or takes a line
-    /// without a `$`.
+    /// Bytes and lines of the `GOTO` that begins in the buffer at `from`, if it takes a line without a `$`, or is laid out
+    /// as those before.
     #[inline]
     fn goto_length(&self, from: usize) -> Option<(usize, u64)> {
-        if self.layout.begins(&self.buffer, from, self.end) {
-            return Some((self.layout.length(), self.layout.lines()));
-        }
         let text = &self.buffer[from..self.end];
         let end = memchr3(b'\n', b'\r', b'$', text.strip_prefix(b"GOTO")?)? + b"GOTO".len();
         match text[end..] {
             [b'\n', ..] => Some((end + 1, 1)),
             [b'\r', b'\n', ..] => Some((end + 2, 1)),
+            _ if self.layout.begins(&self.buffer, from, self.end) => {
+                Some((self.layout.length(), self.layout.lines()))
+            }
             _ => None,
         }
     }

@@ -391,3 +391,50 @@ fn a_file_that_ends_within_a_line_is_told() {
         }
     }
 }
+
+/// What is passed over are points alone, and of each row of them the last is read: with its line, and in its words.
+#[test]
+fn points_that_nobody_wants_are_passed_over() {
+    let (rounds, mut rng) = randomised(200u32, 31);
+    let mut passed = 0;
+    for _ in rounds {
+        let end = *rng.choose(&["\n", "\r\n", "\r"]);
+        let mut text = String::new();
+        for _ in 0..rng.pick(60) {
+            let [x, y] = [rng.range(-99.0, 99.0), rng.range(-9.0, 9.0)];
+            text += &match rng.pick(12) {
+                0 => "RAPID".to_owned(),
+                1 => "$$ GOTO/1,2,3".to_owned(),
+                2 => format!("GOTO/{x:.3},{y:.3},1 $$ a remark"),
+                3 | 4 => format!("GOTO / {x:.4}, {y:.4}, 5.0000, ${end}0.0, 0.0, 1.0"),
+                5 => String::new(),
+                _ => format!("GOTO/{x:.3},{y:.3},20.000,0.0,0.6,0.8"),
+            };
+            text += end;
+        }
+        let sizes = vec![rng.pick(90) + 1, rng.pick(400) + 1].into_iter().cycle();
+        let expected = all(text.as_bytes());
+        let mut reader = ClReader::new(Trickle { bytes: text.as_bytes(), sizes });
+        let mut found = Vec::new();
+        loop {
+            reader.pass_gotos();
+            match reader.next_record() {
+                Ok(None) => break,
+                Ok(Some(record)) => found.push(told(&record)),
+                Err(fault) => panic!("{fault} {text}"),
+            }
+        }
+        passed += expected.len() - found.len();
+        let is_point = |told: &String| told.contains("Goto");
+        let mut found = found.into_iter().peekable();
+        for (place, record) in expected.iter().enumerate() {
+            if found.next_if_eq(record).is_some() {
+                continue;
+            }
+            let next = expected.get(place + 1).is_some_and(is_point);
+            assert!(is_point(record) && next, "{record}\n{text}");
+        }
+        assert_eq!(found.next(), None, "{text}");
+    }
+    assert!(passed > 0);
+}

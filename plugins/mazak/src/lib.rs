@@ -33,6 +33,7 @@ impl Control for Mazak {
         vector: "G43.5",
         // P0: I J K are Euler angles.
         plane: Plane::Euler { on: "G68.2 P0", turn: "G53.1", off: "G69" },
+        cycles_in_plane: true,
         rigid: Rigid::Codes(["G84.2", "G84.3"]),
         smoothing: SMOOTHING,
         smoothing_anywhere: true,
@@ -60,7 +61,7 @@ const OPTIONS: &[OptionSpec] = iso_options![
         "Block at the start that cancels a tilted plane; empty on a control without them.",
     ),
     options::TOOL_VECTOR,
-    options::cycles_in_plane(false),
+    options::cycles_in_plane(true),
     options::tapping("floating"),
     options::BORE_SHIFT,
     options::smoothing(SMOOTHING[0]),

@@ -64,7 +64,8 @@ fn the_work_offset_is_taken_where_the_rotary_axes_read_zero() {
 #[test]
 fn travel_is_given_in_what_the_control_shows() {
     let far = cl().line("GOTO / 250, 0, 60").end();
-    let vmc = || on("vmc").with("axis.X.travel", "[-300, 300]");
+    let place = "[0, 0, 0]";
+    let vmc = || on("vmc").with("axis.X.travel", "[-300, 300]").with("workpiece.mount", place);
     vmc().made(&far);
     let said = vmc().with("axis.X.zero", "90").refused(&far);
     assert!(

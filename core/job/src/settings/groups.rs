@@ -104,6 +104,13 @@ settings! {
     /// --set control.dialect=… (`post plugin list`).
     one dialect: String = NAME, "NAME", { columns: &["dialect"] };
 
+    /// Drops CL points that the tolerance makes needless; short for --set accuracy.reduce=true.
+    flag reduce;
+
+    /// Makes the fewest arcs and lines of runs of points that stay within the tolerance, where the dialect has arcs there;
+    /// short for --set control.arcs.fit=true.
+    flag fit_arcs;
+
     /// A further folder of machine files; the environment variable POST_MACHINES adds more.
     many machines: PathBuf = FOLDER, "FOLDER";
 
@@ -122,6 +129,8 @@ impl MachineSettings {
         settings.extend(self.tolerance.map(Setting::Tolerance));
         settings.extend(self.tcp.map(Setting::Tcp));
         settings.extend(self.dialect.clone().map(Setting::Dialect));
+        settings.extend(self.reduce.then_some(Setting::Reduce(true)));
+        settings.extend(self.fit_arcs.then_some(Setting::FitArcs(true)));
         settings
     }
 }

@@ -346,6 +346,8 @@ impl Builder<'_> {
             control: self.control(file.control.get_ref(), &axes, options, own.arcs),
             axes,
             mount,
+            mount_said: file.workpiece.mount.is_some(),
+            given_travel: Vec::new(),
             turn,
             gauge,
             tool_axis,

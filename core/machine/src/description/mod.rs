@@ -83,6 +83,10 @@ pub struct Machine {
     pub axes: Vec<Axis>,
     /// Where the part origin sits with all axes at zero, mm, machine frame.
     pub mount: Vector3<f64>,
+    /// The machine file, or the job, says where the part sits.
+    pub mount_said: bool,
+    /// The travel of each axis where that of the axes themselves is opened ([`Machine::with_part_anywhere`]), else empty.
+    pub given_travel: Vec<Option<[f64; 2]>>,
     /// How the part is turned about its own Z where it sits, radians: right-handed, so counter-clockwise for who looks
     /// down on it, from the machine's X at zero to the part's. Points of the CL file are turned by it as they are read;
     /// what is called the part frame from there on stands as the machine's does.
@@ -455,6 +459,33 @@ impl Machine {
             true => Rapid::Linear,
             false => Rapid::Rapid,
         })
+    }
+
+    /// Nobody says where the part sits, and nothing turns it or the tool: any place inside the travel will do.
+    pub fn part_sits_anywhere(&self) -> bool {
+        let plain =
+            |axis: &Axis| !axis.joint.rotary && axis.second.is_none() && axis.indexed.is_none();
+        !self.mount_said && self.heads.is_empty() && self.axes.iter().all(plain)
+    }
+
+    /// The machine with its travel opened, where the part may sit anywhere: the way of the whole program is held against it
+    /// then, not each point.
+    pub fn with_part_anywhere(&self) -> Option<Self> {
+        let opens = self.part_sits_anywhere() && !self.is_opened();
+        opens.then(|| Self {
+            given_travel: self.axes.iter().map(|axis| axis.travel).collect(),
+            ..crate::place::opened(self)
+        })
+    }
+
+    /// Its travel is opened.
+    pub fn is_opened(&self) -> bool {
+        !self.given_travel.is_empty()
+    }
+
+    /// The travel of an axis as the machine file has it, by its place in the chain.
+    pub fn travel_of(&self, joint: usize) -> Option<[f64; 2]> {
+        self.given_travel.get(joint).copied().unwrap_or(self.axes[joint].travel)
     }
 
     /// The words of a program hold for a part on `mount` alone: they are axis positions, and a rotary axis carries the

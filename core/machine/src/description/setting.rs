@@ -36,6 +36,8 @@ pub enum Setting {
     Tolerance(f64),
     /// CL points that the tolerance makes needless are left out.
     Reduce(bool),
+    /// Runs of points become arcs and lines.
+    FitArcs(bool),
     /// Where points are put in.
     Placement(Placement),
     /// What is done about a move that strays.
@@ -77,6 +79,7 @@ impl Setting {
             Self::Dialect(dialect) => format!("control.dialect = {dialect:?}"),
             Self::Tolerance(tolerance) => format!("accuracy.tolerance = {tolerance:?}"),
             Self::Reduce(reduce) => format!("accuracy.reduce = {reduce}"),
+            Self::FitArcs(fit) => format!("control.arcs.fit = {fit}"),
             Self::Placement(placement) => format!("accuracy.placement = {:?}", placement.name()),
             Self::Method(method) => format!("accuracy.method = {:?}", method.name()),
             Self::Model(model) => format!("accuracy.model = {model:?}"),

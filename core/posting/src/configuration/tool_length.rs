@@ -87,7 +87,8 @@ impl ConfigurationStage<'_> {
             self.findings.at(line, fault.help("is this the CL file of one program?"));
             return;
         }
-        if self.is_listed(line) && self.source == LengthSource::Unknown {
+        let told_at_the_end = self.base.is_opened();
+        if self.is_listed(line) && self.source == LengthSource::Unknown && !told_at_the_end {
             self.findings.at(line, unknown_length(used.number, self.length_matters()));
         }
         self.tools.push(used);

@@ -187,6 +187,7 @@ impl EmitStage<'_> {
         if std::mem::take(&mut self.spindle.turning) {
             self.writer.push(line, Event::Spindle(Spindle::Off));
         }
+        self.coolant.waits = false;
         if self.coolant.commanded.is_some() && !std::mem::replace(&mut self.coolant.due, true) {
             self.writer.push(line, Event::Coolant(Coolant::Off));
         }
@@ -231,9 +232,11 @@ impl EmitStage<'_> {
                 name: &tool.name,
             },
         );
-        // A changer may leave the depth axis anywhere.
-        self.clear = false;
-        self.say(line, TextPlace::AfterToolChange);
+        // A changer leaves the depth axis where the next tool goes across; before an axis turns it is retracted again, and
+        // behind lines of the machine's own.
+        let turns = self.base.axes.iter().any(|axis| axis.joint.rotary);
+        let own = self.say(line, TextPlace::AfterToolChange);
+        self.clear &= !turns && !own;
         let next = self.texts.next_tool();
         if let Some(number) = next.filter(|_| self.texts.preselects()) {
             self.writer.push(line, Event::Preselect { number });
@@ -394,11 +397,14 @@ impl EmitStage<'_> {
                 );
             }
         }
+        // A tool that stands still comes near as it is.
+        self.spindle.tool_changed &= self.spindle.commanded.is_some();
         self.flow(line);
     }
 
     /// Coolant on, if it was switched off in between.
     fn flow(&mut self, line: u64) {
+        self.coolant.waits = false;
         if let (true, Some(coolant)) =
             (std::mem::take(&mut self.coolant.due), self.coolant.commanded)
         {
@@ -408,8 +414,13 @@ impl EmitStage<'_> {
 
     pub(super) fn coolant(&mut self, line: u64, coolant: Coolant) {
         self.coolant.commanded = (coolant != Coolant::Off).then_some(coolant);
-        self.coolant.due = false;
-        self.writer.push(line, Event::Coolant(coolant));
+        // Over the part it goes on where the CL file says so; before, once the spindle turns.
+        let away = self.clear || self.spindle.tool_changed;
+        self.coolant.waits = coolant != Coolant::Off && away && !self.spindle.turning;
+        self.coolant.due = self.coolant.waits;
+        if !self.coolant.waits {
+            self.writer.push(line, Event::Coolant(coolant));
+        }
     }
 
     pub(super) fn spindle(&mut self, line: u64, spindle: Spindle) {
@@ -424,7 +435,8 @@ impl EmitStage<'_> {
         self.spindle.commanded = on;
         self.spindle.tool_changed = false;
         self.writer.push(line, event);
-        if self.spindle.waits.take().is_some() {
+        let waited = self.spindle.waits.take().is_some();
+        if waited || (self.spindle.turning && self.coolant.waits) {
             self.flow(line);
         }
     }

@@ -26,8 +26,10 @@ pub(super) struct ProgramSpindle {
 pub(super) struct CoolantState {
     /// What the CL file last said of it.
     pub commanded: Option<Coolant>,
-    /// It was switched off in between.
+    /// It was switched off in between, or waits.
     pub due: bool,
+    /// It goes on behind the spindle, which stands still.
+    pub waits: bool,
 }
 
 /// Clamps of the axes, one bit each.

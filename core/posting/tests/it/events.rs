@@ -60,7 +60,7 @@ fn a_work_offset_comes_with_the_tool_retracted() {
     let run = posted(&vmc, Capabilities::WORK_OFFSET, &cl).good("two offsets");
     assert_eq!(
         kinds(&run),
-        "ToolChange Retract WorkOffset Spindle Position Retract WorkOffset Position Retract Spindle End"
+        "ToolChange WorkOffset Spindle Position Retract WorkOffset Position Retract Spindle End"
     );
     assert!(event(&run, "WorkOffset").contains("number: 1"));
     assert!(run.told().contains("travel was checked with the part where"), "{}", run.told());

@@ -45,12 +45,18 @@ pub(crate) struct AxisLimitCheck {
     slowness: Joints,
     /// Some axis has a largest feed.
     limited: bool,
+    /// Nobody says where the part sits.
+    anywhere: bool,
 }
 
 impl AxisLimitCheck {
     pub fn new(machine: &Machine) -> Self {
         let slowness = machine.slowness();
-        Self { slowness, limited: slowness.iter().any(|slowness| *slowness > 0.0) }
+        Self {
+            slowness,
+            limited: slowness.iter().any(|slowness| *slowness > 0.0),
+            anywhere: machine.part_sits_anywhere(),
+        }
     }
 
     /// An axis leaves its travel.
@@ -92,6 +98,9 @@ impl AxisLimitCheck {
     /// The first axis whose least or largest value lies beyond its travel.
     #[inline]
     fn beyond(&self, machine: &Machine, [least, most]: [&Joints; 2]) -> Option<AxisFault> {
+        if self.anywhere {
+            return None;
+        }
         for (joint, axis) in machine.axes.iter().enumerate() {
             let slack = ROUNDED * axis.unit();
             for value in [least[joint], most[joint]] {

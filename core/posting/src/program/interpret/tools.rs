@@ -431,11 +431,11 @@ impl ClInterpreter {
             .help(match presumed {
                 false => {
                     "let the CAM system put out the contour; or, where that register holds the tool's wear alone, \
-                     [control] compensation_on_centre = \"wear\""
+                     [control] compensation_on_centre = \"wear\" (--set control.compensation_on_centre=wear)"
                 }
                 true => {
-                    "where that register holds the tool's wear alone: [control] compensation_on_centre = \"wear\"; \
-                     where the CAM system puts out the contour: \"contour\""
+                    "where that register holds the tool's wear alone: [control] compensation_on_centre = \"wear\" \
+                     (--set control.compensation_on_centre=wear); where the CAM system puts out the contour: \"contour\""
                 }
             }),
             CompensationOnCentre::Wear => Diagnostic::warning(

@@ -8,6 +8,7 @@ use post_job::job_file::{self, JobKeys, SavedJob};
 use post_job::session::Session;
 use post_job::settings::{About, SettingForm, SettingValue};
 use post_testkit::{Rng, randomised};
+use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::common::{Run, assert_contains, names, post_in, read_json, root};
@@ -328,6 +329,29 @@ fn a_batch_takes_the_programs_of_job_files() {
     fs::write(folder.join("a.job.toml"), format!("units = \"inch\"\n{job}")).unwrap();
     refused(folder, &["batch", "a.job.toml", "-o", "a.csv"], &["units", "a.job.toml:1", "--units"]);
     good(folder, &["batch", "a.job.toml", "-o", "a.csv", "-q", "--units=inch"]);
+}
+
+#[test]
+fn the_schema_has_every_key_and_no_other() {
+    let schema = good(root(), &["schema", "--job"]).out;
+    let schema: Value = serde_json::from_str(&schema).unwrap();
+    let keys = |of: &Value| -> Vec<String> {
+        let mut keys: Vec<String> = of["properties"].as_object().unwrap().keys().cloned().collect();
+        keys.sort();
+        keys
+    };
+    let mut known: Vec<String> = JobKeys::about().map(|about| about.name.to_owned()).collect();
+    known.retain(|name| name != "plugins");
+    known.extend(["machine", "cl"].map(str::to_owned));
+    known.sort();
+    assert_eq!(keys(&schema["properties"]["program"]["items"]), known);
+    known.push("program".to_owned());
+    known.sort();
+    assert_eq!(keys(&schema), known);
+    // Every key that is in the schema is read, as the sample of the book is.
+    let sample = root().join("tests/jobs/blade.job.toml");
+    let job = job_file::read(&Session::quiet(), &sample).unwrap();
+    assert_eq!(job.programs.len(), 2);
 }
 
 /// A value of a setting as a command line says it; none of what no job file has.

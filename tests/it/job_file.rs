@@ -5,6 +5,7 @@ use std::path::Path;
 
 use post_job::files::PathArg;
 use post_job::job_file::{self, JobKeys, SavedJob};
+use post_job::plugin_finder;
 use post_job::session::Session;
 use post_job::settings::{About, SettingForm, SettingValue};
 use post_testkit::{Rng, randomised};
@@ -179,6 +180,61 @@ fn a_program_finds_the_job_that_it_was_posted_from_and_no_other() {
     // Who names the machine needs no job.
     let typed = ["-mac-trunnion", "--against=cl/blade.cls", "--tool-length=120"];
     good(folder, &[&verify[..], &typed].concat());
+}
+
+#[test]
+fn each_dialect_names_the_job_so_that_it_is_found() {
+    let folder = shop();
+    let folder = folder.path();
+    let name = format!("{}.job.toml", "a-part-with-a-very-long-name".repeat(4));
+    // Without an option that says so, GRBL has no rotary axes.
+    let dialects = plugin_finder::built_in(false).into_iter().filter(|name| *name != "grbl");
+    for dialect in dialects {
+        let option = match dialect {
+            "okuma" => "set.control.okuma.unit_system = \"1 mm\"\n",
+            _ => "",
+        };
+        let text = format!(
+            "machine = \"ac-trunnion\"\ncl = \"cl/blade.cls\"\noutput = \"a.nc\"\n\
+             tool_length = 120\ndialect = \"{dialect}\"\n{option}"
+        );
+        fs::write(folder.join(&name), text).unwrap();
+        good(folder, &[&name, "-q"]);
+        good(folder, &["verify", "a.nc", "-q"]);
+        fs::remove_file(folder.join("a.nc")).unwrap();
+    }
+}
+
+#[test]
+fn no_text_of_a_job_file_is_too_odd_to_be_refused() {
+    let (rounds, mut rng) = randomised(1500, 5);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.job.toml");
+    let sample = fs::read(root().join("tests/jobs/blade.job.toml")).unwrap();
+    let odd = [
+        "\"", "[[", "]", "=", "\n", "\r", "\u{e9}", "\u{2028}", "set", "program", "{", "-", ".",
+        "1e999",
+    ];
+    for _ in rounds {
+        let mut text = String::from_utf8(sample.clone()).unwrap();
+        for _ in 0..1 + rng.pick(4) {
+            let mut at = rng.pick(text.len());
+            while !text.is_char_boundary(at) {
+                at -= 1;
+            }
+            match rng.pick(2) {
+                0 => text.insert_str(at, odd[rng.pick(odd.len())]),
+                _ => text.truncate(at),
+            }
+            if text.is_empty() {
+                break;
+            }
+        }
+        fs::write(&path, &text).unwrap();
+        if let Err(fault) = job_file::read(&Session::quiet(), &path) {
+            assert!(!fault.findings().is_empty(), "{text}");
+        }
+    }
 }
 
 #[test]

@@ -20,11 +20,20 @@ use post_job::settings::{
 
 /// A command line of one program of a job.
 #[derive(Debug)]
-pub struct JobLine {
+pub struct ProgramWords {
     /// Its words, the name of the command first.
     pub words: Vec<OsString>,
-    /// The same without what the user says besides, and what names the job file: where programs are made.
-    pub plain: Option<(Vec<OsString>, JobMark)>,
+    /// What the job file alone says: where a program is made as it says.
+    pub plain: Option<PlainWords>,
+}
+
+/// The words of a job file, without what the user says besides.
+#[derive(Debug)]
+pub struct PlainWords {
+    /// The words, the name of the command first.
+    pub words: Vec<OsString>,
+    /// What names the job file.
+    pub mark: JobMark,
 }
 
 /// What a verb takes of a job.
@@ -70,8 +79,14 @@ const PLACES: [&str; 12] = [
     "cl",
 ];
 
+/// A job file that the words name.
+struct NamedJob {
+    place: JobPlace,
+    file: PathBuf,
+}
+
 /// Where the words name the job.
-enum Named {
+enum JobPlace {
     /// In place of the first argument, at this word.
     Argument(usize),
     /// In place of the machine: from this word, so many.
@@ -89,7 +104,7 @@ pub fn lines(
     session: &Session,
     words: &[OsString],
     verbs: &dyn Fn() -> Vec<String>,
-) -> Result<Option<Vec<JobLine>>, Failure> {
+) -> Result<Option<Vec<ProgramWords>>, Failure> {
     let verb = words.get(1).and_then(|word| word.to_str()).unwrap_or_default();
     let known = VERBS.iter().find(|(name, _)| *name == verb);
     let takes = known.map_or(Takes::All, |(_, takes)| *takes);
@@ -111,18 +126,18 @@ pub fn lines(
         Takes::All => like(session, words)?,
         _ => Vec::new(),
     };
-    let Some((named, path)) = found else {
+    let Some(NamedJob { place, file }) = found else {
         if like.is_empty() {
             return Ok(None);
         }
         let mut all = words[..1].to_vec();
         all.extend(like);
         all.extend_from_slice(&words[1..]);
-        return Ok(Some(vec![JobLine { words: all, plain: None }]));
+        return Ok(Some(vec![ProgramWords { words: all, plain: None }]));
     };
-    let job = job_file::read(session, &path)?;
+    let job = job_file::read(session, &file)?;
     let words = JobWords { session, words, takes, job: &job, like };
-    words.lines(&named).map(Some)
+    words.lines(&place).map(Some)
 }
 
 fn is_like(word: &OsStr) -> bool {
@@ -151,7 +166,7 @@ fn like(session: &Session, words: &[OsString]) -> Result<Vec<OsString>, Failure>
 }
 
 /// Where the words name job files, and which.
-fn job_words(words: &[OsString]) -> Vec<(Named, PathBuf)> {
+fn job_words(words: &[OsString]) -> Vec<NamedJob> {
     let mut found = Vec::new();
     for (index, word) in words.iter().enumerate().skip(1) {
         let before = words[index - 1].to_str().unwrap_or_default();
@@ -162,13 +177,18 @@ fn job_words(words: &[OsString]) -> Vec<(Named, PathBuf)> {
         }
         match given {
             Some(file) if is_job_file(Path::new(file)) => {
-                found.push((Named::Machine(index, 1), PathBuf::from(file)));
+                let place = JobPlace::Machine(index, 1);
+                found.push(NamedJob { place, file: PathBuf::from(file) });
             }
             _ if text.starts_with('-') || !is_job_file(Path::new(word)) => {}
             _ if ["-m", "--machine"].contains(&before) => {
-                found.push((Named::Machine(index - 1, 2), PathBuf::from(word)));
+                let place = JobPlace::Machine(index - 1, 2);
+                found.push(NamedJob { place, file: PathBuf::from(word) });
             }
-            _ => found.push((Named::Argument(index), PathBuf::from(word))),
+            _ => {
+                let place = JobPlace::Argument(index);
+                found.push(NamedJob { place, file: PathBuf::from(word) });
+            }
         }
     }
     found
@@ -179,7 +199,7 @@ fn job_of_head(
     session: &Session,
     words: &[OsString],
     takes: Takes,
-) -> Result<Option<(Named, PathBuf)>, Failure> {
+) -> Result<Option<NamedJob>, Failure> {
     let machines = ["-m", "--machine", "--from", "-h", "--help"];
     let names_one = |word: &OsString| {
         let text = word.to_string_lossy();
@@ -194,8 +214,9 @@ fn job_of_head(
         if word.as_encoded_bytes().starts_with(b"-") {
             continue;
         }
-        if let Some(job) = job_of_program(session, &PathArg::from(PathBuf::from(word)))? {
-            return Ok(Some((Named::Head(PathBuf::from(word)), job)));
+        if let Some(file) = job_of_program(session, &PathArg::from(PathBuf::from(word)))? {
+            let place = JobPlace::Head(PathBuf::from(word));
+            return Ok(Some(NamedJob { place, file }));
         }
     }
     Ok(None)
@@ -212,7 +233,7 @@ struct JobWords<'a> {
 }
 
 impl JobWords<'_> {
-    fn lines(&self, named: &Named) -> Result<Vec<JobLine>, Failure> {
+    fn lines(&self, named: &JobPlace) -> Result<Vec<ProgramWords>, Failure> {
         let programs = self.programs(named)?;
         if programs.len() > 1 {
             self.refuse_one_place(programs.len())?;
@@ -221,12 +242,14 @@ impl JobWords<'_> {
     }
 
     /// The programs that are meant.
-    fn programs(&self, named: &Named) -> Result<Vec<&JobProgram>, Failure> {
+    fn programs(&self, named: &JobPlace) -> Result<Vec<&JobProgram>, Failure> {
         let all = &self.job.programs;
         let is_named = |program: &&JobProgram| match named {
-            Named::Argument(_) => true,
-            Named::Head(path) => program.is_named(path),
-            Named::Machine(..) => self.words.iter().any(|word| program.is_named(Path::new(word))),
+            JobPlace::Argument(_) => true,
+            JobPlace::Head(path) => program.is_named(path),
+            JobPlace::Machine(..) => {
+                self.words.iter().any(|word| program.is_named(Path::new(word)))
+            }
         };
         let meant: Vec<&JobProgram> = all.iter().filter(is_named).collect();
         match (meant.as_slice(), all.as_slice()) {
@@ -265,7 +288,7 @@ impl JobWords<'_> {
         Err(Diagnostic::error("job-file", message).help(help).into())
     }
 
-    fn line(&self, program: &JobProgram, named: &Named) -> Result<JobLine, Failure> {
+    fn line(&self, program: &JobProgram, named: &JobPlace) -> Result<ProgramWords, Failure> {
         let verb = usize::from(self.takes != Takes::All);
         let mut words: Vec<OsString> = self.words[..=verb].to_vec();
         words.extend(self.flags(program));
@@ -275,19 +298,23 @@ impl JobWords<'_> {
         words.extend(self.like.iter().cloned());
         for (index, word) in self.words.iter().enumerate().skip(verb + 1) {
             match named {
-                Named::Argument(at) if *at == index => words.extend(stands_for.clone()),
-                Named::Machine(at, count) if (*at..at + count).contains(&index) => {}
+                JobPlace::Argument(at) if *at == index => words.extend(stands_for.clone()),
+                JobPlace::Machine(at, count) if (*at..at + count).contains(&index) => {}
                 _ => words.push(word.clone()),
             }
         }
-        let is_job = self.takes == Takes::All && matches!(named, Named::Argument(_));
-        let plain = is_job.then(|| (plain, self.job.mark.clone()));
-        Ok(JobLine { words, plain })
+        let is_job = self.takes == Takes::All && matches!(named, JobPlace::Argument(_));
+        let plain = is_job.then(|| PlainWords { words: plain, mark: self.job.mark.clone() });
+        Ok(ProgramWords { words, plain })
     }
 
     /// What stands in place of the job file; none where it stands for the machine.
-    fn argument(&self, program: &JobProgram, named: &Named) -> Result<Option<OsString>, Failure> {
-        if !matches!(named, Named::Argument(_)) {
+    fn argument(
+        &self,
+        program: &JobProgram,
+        named: &JobPlace,
+    ) -> Result<Option<OsString>, Failure> {
+        if !matches!(named, JobPlace::Argument(_)) {
             return Ok(None);
         }
         let path = match self.takes {

@@ -30,7 +30,7 @@ use clap::error::ErrorKind;
 use clap::{ArgMatches, Args, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use post_machine::diagnostic::nearest;
 
-use crate::job_lines::{self, JobLine};
+use crate::job_lines::{self, PlainWords, ProgramWords};
 use batch::BatchArguments;
 use check::CheckArguments;
 use complete::CompletionsArguments;
@@ -168,12 +168,12 @@ impl CommandLine {
     }
 
     /// What the words of a job say, and those of the user behind them, which win.
-    fn of_job(line: &JobLine) -> Result<Self, clap::Error> {
+    fn of_job(line: &ProgramWords) -> Result<Self, clap::Error> {
         let mut all = Self::parsed(&line.words, true)?;
-        let Some((plain, mark)) = &line.plain else {
+        let Some(PlainWords { words, mark }) = &line.plain else {
             return Ok(all);
         };
-        let plain = Self::parsed(plain, true)?;
+        let plain = Self::parsed(words, true)?;
         let made = |line: &Self| line.post.0.as_ref().map(PostArguments::what_is_made);
         // What is made in another way is not what the job file says.
         if made(&all) == made(&plain) {

@@ -5,9 +5,11 @@ use std::path::Path;
 
 use post_job::files::PathArg;
 use post_job::job_file::{self, JobKeys, SavedJob};
+use post_job::plugin_finder;
 use post_job::session::Session;
 use post_job::settings::{About, SettingForm, SettingValue};
 use post_testkit::{Rng, randomised};
+use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::common::{Run, assert_contains, names, post_in, read_json, root};
@@ -181,6 +183,61 @@ fn a_program_finds_the_job_that_it_was_posted_from_and_no_other() {
 }
 
 #[test]
+fn each_dialect_names_the_job_so_that_it_is_found() {
+    let folder = shop();
+    let folder = folder.path();
+    let name = format!("{}.job.toml", "a-part-with-a-very-long-name".repeat(4));
+    // Without an option that says so, GRBL has no rotary axes.
+    let dialects = plugin_finder::built_in(false).into_iter().filter(|name| *name != "grbl");
+    for dialect in dialects {
+        let option = match dialect {
+            "okuma" => "set.control.okuma.unit_system = \"1 mm\"\n",
+            _ => "",
+        };
+        let text = format!(
+            "machine = \"ac-trunnion\"\ncl = \"cl/blade.cls\"\noutput = \"a.nc\"\n\
+             tool_length = 120\ndialect = \"{dialect}\"\n{option}"
+        );
+        fs::write(folder.join(&name), text).unwrap();
+        good(folder, &[&name, "-q"]);
+        good(folder, &["verify", "a.nc", "-q"]);
+        fs::remove_file(folder.join("a.nc")).unwrap();
+    }
+}
+
+#[test]
+fn no_text_of_a_job_file_is_too_odd_to_be_refused() {
+    let (rounds, mut rng) = randomised(1500, 5);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.job.toml");
+    let sample = fs::read(root().join("tests/jobs/blade.job.toml")).unwrap();
+    let odd = [
+        "\"", "[[", "]", "=", "\n", "\r", "\u{e9}", "\u{2028}", "set", "program", "{", "-", ".",
+        "1e999",
+    ];
+    for _ in rounds {
+        let mut text = String::from_utf8(sample.clone()).unwrap();
+        for _ in 0..1 + rng.pick(4) {
+            let mut at = rng.pick(text.len());
+            while !text.is_char_boundary(at) {
+                at -= 1;
+            }
+            match rng.pick(2) {
+                0 => text.insert_str(at, odd[rng.pick(odd.len())]),
+                _ => text.truncate(at),
+            }
+            if text.is_empty() {
+                break;
+            }
+        }
+        fs::write(&path, &text).unwrap();
+        if let Err(fault) = job_file::read(&Session::quiet(), &path) {
+            assert!(!fault.findings().is_empty(), "{text}");
+        }
+    }
+}
+
+#[test]
 fn several_programs_are_made_in_their_order() {
     let folder = shop();
     let folder = folder.path();
@@ -328,6 +385,29 @@ fn a_batch_takes_the_programs_of_job_files() {
     fs::write(folder.join("a.job.toml"), format!("units = \"inch\"\n{job}")).unwrap();
     refused(folder, &["batch", "a.job.toml", "-o", "a.csv"], &["units", "a.job.toml:1", "--units"]);
     good(folder, &["batch", "a.job.toml", "-o", "a.csv", "-q", "--units=inch"]);
+}
+
+#[test]
+fn the_schema_has_every_key_and_no_other() {
+    let schema = good(root(), &["schema", "--job"]).out;
+    let schema: Value = serde_json::from_str(&schema).unwrap();
+    let keys = |of: &Value| -> Vec<String> {
+        let mut keys: Vec<String> = of["properties"].as_object().unwrap().keys().cloned().collect();
+        keys.sort();
+        keys
+    };
+    let mut known: Vec<String> = JobKeys::about().map(|about| about.name.to_owned()).collect();
+    known.retain(|name| name != "plugins");
+    known.extend(["machine", "cl"].map(str::to_owned));
+    known.sort();
+    assert_eq!(keys(&schema["properties"]["program"]["items"]), known);
+    known.push("program".to_owned());
+    known.sort();
+    assert_eq!(keys(&schema), known);
+    // Every key that is in the schema is read, as the sample of the book is.
+    let sample = root().join("tests/jobs/blade.job.toml");
+    let job = job_file::read(&Session::quiet(), &sample).unwrap();
+    assert_eq!(job.programs.len(), 2);
 }
 
 /// A value of a setting as a command line says it; none of what no job file has.

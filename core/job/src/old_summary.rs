@@ -47,18 +47,16 @@ impl OldSummary {
         open.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(fault)?;
         let all: Option<Value> = serde_json::from_slice(&bytes).ok();
         let first = all.as_ref().and_then(|all| all.get(0).or(Some(all)));
-        let told = first.and_then(Self::of);
-        Ok(told.map(|(machine, told)| Self { name: name.clone(), machine, told }).ok_or_else(
-            || {
-                let message = format!("{name} is no summary of a run");
-                let help = "the JSON that --summary has written is meant";
-                Diagnostic::error("like", message).help(help)
-            },
-        )?)
+        let told = first.and_then(|summary| Self::of(&name, summary));
+        Ok(told.ok_or_else(|| {
+            let message = format!("{name} is no summary of a run");
+            let help = "the JSON that --summary has written is meant";
+            Diagnostic::error("like", message).help(help)
+        })?)
     }
 
     /// The machine and the settings of a summary; none of what is no summary.
-    fn of(summary: &Value) -> Option<(String, Vec<(&'static str, SettingValue)>)> {
+    fn of(name: &str, summary: &Value) -> Option<Self> {
         let text = |key: &str| summary.get(key)?.as_str().map(str::to_owned);
         let number = |key: &str| summary.get(key)?.as_f64();
         let (machine, dialect, tcp) = (text("machine")?, text("dialect")?, text("tcp")?);
@@ -81,7 +79,7 @@ impl OldSummary {
         });
         // One length was said for all tools.
         told.extend(lengths.next().map(|length| ("tool_length", SettingValue::Number(length))));
-        Some((machine, told))
+        Some(Self { name: name.to_owned(), machine, told })
     }
 
     /// The warning that the old run was on another machine; none if it was on this one.

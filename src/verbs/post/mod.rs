@@ -64,7 +64,7 @@ pub struct PostArguments {
     #[arg(long, value_name = "FILE", value_parser = file())]
     like: Option<PathArg>,
 
-    /// Writes what this command line says as a job file, that every verb takes in place of machine and CL file; its name
+    /// Writes what this command line says as a job file, which every verb takes in place of machine and CL file; its name
     /// ends in `.job.toml`.
     #[arg(long, value_name = "FILE", value_parser = file())]
     save_job: Option<PathArg>,

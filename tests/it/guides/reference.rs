@@ -308,7 +308,7 @@ fn the_page_of_keys_is_the_schema() {
 /// The table in the Python package's manual of `Blocks`.
 #[test]
 fn the_arrays_that_python_names_are_those_of_blocks() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/python/post/job.py");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/python/post/made.py");
     let manual = fs::read_to_string(path).unwrap();
     let rule = format!("    {} {}\n", "=".repeat(23), "=".repeat(89));
     let mut table = rule.clone();

@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::job_line::{JobLine, ValueText};
 use crate::failure::Failure;
-use crate::job_file::{JobFile, JobProgram, JobSetting};
+use crate::job_file::{JobFile, JobProgram, ToldSetting};
 use crate::settings::{ReadingSettings, SettingValue, SettingsGroup as _, StudySettings};
 
 impl JobLine {
@@ -54,7 +54,7 @@ impl JobLine {
 }
 
 /// What the batch does not do as the job file says.
-fn other(setting: &JobSetting) -> Diagnostic {
+fn other(setting: &ToldSetting) -> Diagnostic {
     let name = setting.about.name;
     let message = format!("{name}: a batch does the same for all of its jobs, and this is not it");
     let help = match name {

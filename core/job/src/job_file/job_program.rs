@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{JobKeys, JobMark, JobSetting};
+use super::{JobKeys, JobMark, ToldSetting};
 use crate::failure::Failure;
 use crate::files::PathArg;
 use crate::making;
@@ -18,7 +18,7 @@ pub struct JobProgram {
     /// The CL file, as seen from here.
     pub cl: PathBuf,
     /// What is told of it, a name once.
-    pub told: Vec<JobSetting>,
+    pub told: Vec<ToldSetting>,
 }
 
 impl JobProgram {

@@ -51,12 +51,14 @@ impl JobMark {
     fn in_head(text: &str) -> Option<String> {
         let text = text.to_ascii_lowercase();
         let word = WORD.to_ascii_lowercase();
-        let marks = text.match_indices(&word).filter_map(|(at, _)| {
-            let hash = text.get(at + word.len()..at + word.len() + DIGITS)?;
-            let ends = text[at + word.len() + DIGITS..].starts_with(' ');
+        let mut marks = text.match_indices(&word).filter_map(|(at, _)| {
+            let begin = at + word.len();
+            let hash = text.get(begin..begin + DIGITS)?;
+            // A long name may stand in a remark of its own.
+            let ends = !text[begin + DIGITS..].starts_with(|next: char| next.is_alphanumeric());
             (ends && hash.bytes().all(|byte| byte.is_ascii_hexdigit())).then(|| hash.to_owned())
         });
-        marks.take(1).next()
+        marks.next()
     }
 }
 

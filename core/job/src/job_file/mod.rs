@@ -10,7 +10,7 @@ mod paths;
 mod reading;
 mod saving;
 mod schema;
-mod told;
+mod told_setting;
 
 pub use job_keys::JobKeys;
 pub use job_program::JobProgram;
@@ -18,7 +18,7 @@ pub use mark::{JobMark, job_of_program};
 pub use reading::read;
 pub use saving::{SavedJob, text};
 pub use schema::schema;
-pub use told::JobSetting;
+pub use told_setting::ToldSetting;
 
 use std::path::Path;
 

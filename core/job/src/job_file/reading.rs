@@ -12,7 +12,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::job_keys::BESIDE;
-use super::{JobFile, JobKeys, JobMark, JobProgram, JobSetting, MOST_PROGRAMS, paths};
+use super::{JobFile, JobKeys, JobMark, JobProgram, MOST_PROGRAMS, ToldSetting, paths};
 use crate::failure::Failure;
 use crate::files::FileFault;
 use crate::machine_files;
@@ -62,7 +62,7 @@ pub(super) fn text_of(session: &Session, path: &Path) -> Result<String, Failure>
 struct SaidKeys {
     machine: Option<String>,
     cl: Option<PathBuf>,
-    told: Vec<JobSetting>,
+    told: Vec<ToldSetting>,
 }
 
 impl SaidKeys {
@@ -82,8 +82,8 @@ impl SaidKeys {
                     values.extend(more);
                     known.value = SettingValue::List(values);
                 }
-                (Some(known), value) => *known = JobSetting { value, ..setting },
-                (None, value) => all.told.push(JobSetting { value, ..setting }),
+                (Some(known), value) => *known = ToldSetting { value, ..setting },
+                (None, value) => all.told.push(ToldSetting { value, ..setting }),
             }
         }
         all
@@ -266,7 +266,7 @@ impl JobReading<'_> {
         about: &'static About,
         key: Range<usize>,
         value: &Spanned<DeValue<'_>>,
-    ) -> Option<JobSetting> {
+    ) -> Option<ToldSetting> {
         if about.name == "plugins" {
             let message = "a job file names no folder of plugins".to_owned();
             let help = "opening a library runs its code: name the folder with --plugins on the command line";
@@ -281,7 +281,7 @@ impl JobReading<'_> {
             return None;
         }
         let place = self.place(value.span());
-        let setting = JobSetting { about, value: told, place };
+        let setting = ToldSetting { about, value: told, place };
         if setting.value == SettingValue::Yes(false) {
             return Some(setting);
         }
@@ -411,7 +411,7 @@ impl JobReading<'_> {
     }
 }
 
-impl JobSetting {
+impl ToldSetting {
     /// What is wrong with its value.
     pub(super) fn fault(&self, why: &str) -> Diagnostic {
         let message = format!("{}: {why}", self.about.name);

@@ -6,7 +6,7 @@ use crate::settings::{About, SettingValue};
 
 /// A setting, its value, and where the file says it.
 #[derive(Clone, Debug)]
-pub struct JobSetting {
+pub struct ToldSetting {
     /// What it is.
     pub about: &'static About,
     /// Its value; paths as seen from the folder that the command works in.

@@ -3,12 +3,14 @@
 // Clippy lets test functions unwrap, but not the helpers beside them.
 #![allow(clippy::unwrap_used)]
 
+mod fagor;
 mod fanuc;
 mod grbl;
 mod haas;
 mod heidenhain;
 mod hurco;
 mod interpreter;
+mod isg;
 mod linuxcnc;
 mod list;
 mod mazak;

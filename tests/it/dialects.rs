@@ -36,6 +36,7 @@ pub fn named(dialect: &str) -> &'static [&'static str] {
     match dialect {
         "grbl" => &["--set", "control.grbl.hal=true", "--set", "control.retract={Z=0}"],
         "hurco" => &["--set", "control.hurco.tcp_on=[\"G69\", \"M128\"]"],
+        "isg" => &["--set", "control.isg.inch_feeds=true"],
         "siemens" => &["--set", "control.siemens.swivel=true"],
         "okuma" => &[
             "--set",

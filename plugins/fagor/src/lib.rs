@@ -63,8 +63,8 @@ impl Control for Fagor {
             off: "#CS OFF\n{tcp_off}",
             angles: PlaneAngles::Xyz,
         },
-        // M7 is coolant through the tool.
-        coolant: ["M9", "M8", "", "M7", "M10"],
+        // M7 is coolant through the tool, or the builder's.
+        coolant: ["M9", "M8", "", "", ""],
         words: &[OWN],
         ..Table::ISO
     };

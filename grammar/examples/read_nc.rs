@@ -22,6 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         line_remarks: vec![";".to_owned()],
         enclosed_remarks: hash.then_some(('(', ')')),
         hash_variables: hash,
+        instructions: false,
     };
     let mut reader = NcReader::new(File::open(path)?, syntax);
     let mut block = NcBlock::default();

@@ -40,6 +40,7 @@ pub fn named(dialect: &str) -> &'static [&'static str] {
         "brother" => &["--set", "control.brother.tcp_on=\"G43.4 H{h}\""],
         "grbl" => &["--set", "control.grbl.hal=true", "--set", "control.retract={Z=0}"],
         "hurco" => &["--set", "control.hurco.tcp_on=[\"G69\", \"M128\"]"],
+        "isg" => &["--set", "control.isg.inch_feeds=true"],
         "siemens" => &["--set", "control.siemens.swivel=true"],
         "okuma" => &[
             "--set",

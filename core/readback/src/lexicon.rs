@@ -111,6 +111,11 @@ impl Lexicon {
         self.writes.has(Capabilities::TOOL_EDGES)
     }
 
+    /// D names the register of length and radius, and puts both in force.
+    pub(crate) fn names_lengths_by_d(&self) -> bool {
+        self.letter(b'D') == Some(Meaning::LengthRegister)
+    }
+
     /// A contour is compensated by the radius in a register, D.
     pub fn has_radius_registers(&self) -> bool {
         !self.writes.has(Capabilities::TOOL_TABLE)
@@ -308,5 +313,6 @@ fn syntax(words: &[VocabularyWord], language: Language) -> NcSyntax {
         line_remarks,
         enclosed_remarks: first(Meaning::RemarkOpen).zip(first(Meaning::RemarkClose)),
         hash_variables: matches!(language, Language::Macro | Language::Rs274),
+        instructions: language == Language::Instructions,
     }
 }

@@ -29,6 +29,8 @@ pub struct NcSyntax {
     pub enclosed_remarks: Option<(char, char)>,
     /// Variables are `#1`, `#<name>` (Fanuc, LinuxCNC), not names or `R1` (Siemens).
     pub hash_variables: bool,
+    /// `#` begins an instruction (`#RTCP ON`), and `%` stands in front of a program's name: Fagor, ISG.
+    pub instructions: bool,
 }
 
 /// One block (continuations joined).
@@ -85,14 +87,14 @@ pub enum NcItem {
         value: Box<NcExpression>,
     },
     /// A call with parentheses: `CYCLE81(50,0,2,-10)`, `MSG("TEXT")`; `MCALL` in front of one is a [`NcItem::Name`] of
-    /// its own.
+    /// its own. An instruction with brackets: `#CS ON [0, 0, 10, 30, 0, 0]`.
     Call {
         /// Name in capitals.
         name: String,
         /// Arguments; none where a place between commas is empty.
         arguments: Vec<Option<NcValue>>,
     },
-    /// A name alone: `TRAORI`, `MCALL`, `ROT`, `FMAX`, `R0`, `DR-`, `L`, `CC`, `TOOL CALL`, `CYCL DEF`, `PLANE SPATIAL`
+    /// A name alone: `TRAORI`, `MCALL`, `ROT`, `#RTCP ON`, `FMAX`, `R0`, `DR-`, `L`, `CC`, `TOOL CALL`, `CYCL DEF`, `PLANE SPATIAL`
     /// (conversational keywords of several words are one name, with one blank between them).
     Name(Cow<'static, str>),
     /// A number alone: the tool of `TOOL CALL 5`, the cycle of `CYCL DEF 7.1`.

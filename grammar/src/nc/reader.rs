@@ -220,7 +220,7 @@ impl<R: Read + Seek> NcReader<R> {
         let BlockText { text, code } = &self.scratch;
         let read =
             taken.and_then(|()| check_depth(code)).and_then(|()| match self.syntax.notation {
-                Notation::Words => words::parse(code, text, self.syntax.hash_variables, block),
+                Notation::Words => words::parse(code, text, &self.syntax, block),
                 Notation::Conversational => conversational::parse(code, text, block),
             });
         read.map_err(|fault| fault.fault(text, line).into())
@@ -338,7 +338,7 @@ impl BlockText {
         let Self { text, code } = self;
         check_depth(code)?;
         match syntax.notation {
-            Notation::Words => words::parse(code, text, syntax.hash_variables, block),
+            Notation::Words => words::parse(code, text, syntax, block),
             Notation::Conversational => conversational::parse(code, text, block),
         }
     }

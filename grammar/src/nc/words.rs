@@ -5,7 +5,9 @@ use pest::error::InputLocation;
 use pest::iterators::{Pair, Pairs};
 use pest_derive::Parser;
 
-use super::block::{Approach, JumpDirection, NcBlock, NcFlow, NcItem, NcNumber, NcValue, NcWord};
+use super::block::{
+    Approach, JumpDirection, NcBlock, NcFlow, NcItem, NcNumber, NcSyntax, NcValue, NcWord,
+};
 use super::expression::{NcExpression, UnaryOperator};
 use super::fault::Unreadable;
 use super::number;
@@ -19,8 +21,19 @@ struct WordsGrammar;
 type Parsed<T> = Result<T, Unreadable>;
 
 /// Reads the block `code`, in capitals and without remarks; `original` is the same as it was written.
-pub(super) fn parse(code: &str, original: &str, hash: bool, block: &mut NcBlock) -> Parsed<()> {
-    let rule = if hash { Rule::hash_block } else { Rule::name_block };
+pub(super) fn parse(
+    code: &str,
+    original: &str,
+    syntax: &NcSyntax,
+    block: &mut NcBlock,
+) -> Parsed<()> {
+    let rule = match (syntax.instructions, syntax.hash_variables) {
+        (true, _) => Rule::instruction_block,
+        (false, true) => Rule::hash_block,
+        (false, false) => Rule::name_block,
+    };
+    // The brackets of expressions are those of the first family.
+    let hash = syntax.instructions || syntax.hash_variables;
     let pairs = WordsGrammar::parse(rule, code).map_err(|error| {
         let at = match error.location {
             InputLocation::Pos(at) => at,
@@ -87,6 +100,7 @@ impl WordsBuilder<'_> {
             Rule::hash_word | Rule::word => self.word(pair)?,
             Rule::hash_named | Rule::named => self.named(pair)?,
             Rule::name => NcItem::Name(pair.as_str().to_owned().into()),
+            Rule::instruction => self.instruction(pair)?,
             Rule::call => self.call(pair)?,
             Rule::hash_assign | Rule::assign => {
                 let mut parts = pair.into_inner();
@@ -141,6 +155,36 @@ impl WordsBuilder<'_> {
             arguments.clear();
         }
         Ok(NcItem::Call { name, arguments })
+    }
+
+    /// `#RTCP ON` is a name, `#CS ON [1] [MODE 1, 0, 0, 10, 30, 0, 0]` a call: what stands in brackets ahead of the last
+    /// is a text of its own among its arguments, and so are words.
+    fn instruction(&self, pair: Pair<'_, Rule>) -> Parsed<NcItem> {
+        let mut parts = pair.into_inner();
+        let words: Vec<&str> = due(&mut parts)?.as_str().split_whitespace().collect();
+        let name = format!("#{}", words.join(" "));
+        let mut arguments = Vec::new();
+        while let Some(values) = parts.next() {
+            if parts.peek().is_some() {
+                arguments.push(Some(NcValue::Text(values.as_str().to_owned())));
+                continue;
+            }
+            for value in values.into_inner() {
+                let Some(value) = value.into_inner().next() else {
+                    arguments.push(None);
+                    continue;
+                };
+                arguments.push(Some(match value.as_rule() {
+                    Rule::text => NcValue::Text(self.text(value)),
+                    Rule::instruction_words => NcValue::Text(value.as_str().trim().to_owned()),
+                    _ => self.value(value)?,
+                }));
+            }
+        }
+        Ok(match arguments.is_empty() {
+            true => NcItem::Name(name.into()),
+            false => NcItem::Call { name, arguments },
+        })
     }
 
     /// `DEF REAL _X, _Y=5`: the name `DEF REAL`, then each variable, by name or with its first value.
@@ -317,7 +361,10 @@ impl WordsBuilder<'_> {
                 let o = if spelling.starts_with('O') { "O" } else { "" };
                 NcFlow::Label(format!("{o}{}", angled(due(&mut parts)?)))
             }
-            Rule::archive => NcFlow::Label(spelling.to_owned()),
+            Rule::archive | Rule::percent_name => NcFlow::Label(spelling.to_owned()),
+            Rule::local_subprogram => {
+                return Err(Unreadable::new("a subprogram in the file of its program is not read"));
+            }
             Rule::label => NcFlow::Label(due(&mut parts)?.as_str().to_owned()),
             Rule::o_flow => return self.o_flow(parts),
             Rule::hash_if => return self.hash_if(parts),

@@ -417,7 +417,7 @@ fn points_that_nobody_wants_are_passed_over() {
         let mut reader = ClReader::new(Trickle { bytes: text.as_bytes(), sizes });
         let mut found = Vec::new();
         loop {
-            reader.pass_gotos();
+            reader.skip_gotos();
             match reader.next_record() {
                 Ok(None) => break,
                 Ok(Some(record)) => found.push(told(&record)),

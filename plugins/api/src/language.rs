@@ -17,6 +17,8 @@ codes! {
         Names = 2 "NAMES",
         /// `L X+1 R0 FMAX`, `Q1`: Heidenhain.
         Conversational = 3 "CONVERSATIONAL",
+        /// Letters, `#RTCP ON`, `P1`: Fagor from the 8070 on, and ISG's kernel, whose instructions it shares.
+        Instructions = 4 "INSTRUCTIONS",
     }
 }
 

@@ -102,7 +102,7 @@ codes! {
         LengthOn = 40 "LENGTH_ON",
         /// Length compensation off: G49.
         LengthOff = 41 "LENGTH_OFF",
-        /// Register of the length: H.
+        /// Register of the length: H. As a letter D it puts the length in force by itself, and D0 takes it off.
         LengthRegister = 42 "LENGTH_REGISTER",
         /// Radius compensation off: G40.
         CompensationOff = 43 "COMPENSATION_OFF",
@@ -348,5 +348,9 @@ codes! {
         Arc = 192 "ARC",
         /// Feed a minute that counts along all axes together where no tip is kept: G94 of Fanuc.
         FeedPerMinuteAllAxes = 193 "FEED_PER_MINUTE_ALL_AXES",
+        /// Positions are machine coordinates from here on: `#MCS ON`.
+        MachineCoordinatesOn = 194 "MACHINE_COORDINATES_ON",
+        /// Positions are machine coordinates no more: `#MCS OFF`.
+        MachineCoordinatesOff = 195 "MACHINE_COORDINATES_OFF",
     }
 }

@@ -229,12 +229,16 @@ impl Engine {
         }
         let (style, places) = (self.motion.style, self.motion.linear_decimals(2));
         self.motion.axes.write_group(&mut self.motion.block, words, Group::Plane);
-        let block = &mut self.motion.block;
-        if running.bottom.set(bottom) {
-            block.number("Z", bottom, places, style);
+        let addresses = self.table.cycle_addresses;
+        let mut levels = [
+            (addresses.bottom, running.bottom.set(bottom), bottom),
+            (addresses.clearance, running.plane.set(plane), plane),
+        ];
+        if addresses.clearance == "Z" {
+            levels.reverse();
         }
-        if running.plane.set(plane) {
-            block.number("R", plane, places, style);
+        for (address, _, level) in levels.into_iter().filter(|(_, other, _)| *other) {
+            self.motion.block.number(address, level, places, style);
         }
         if first {
             self.cycle_words(&running, rigid);
@@ -278,18 +282,22 @@ impl Engine {
             Some(step) => Some(step),
             None => shifts(running.kind).then_some(self.cycles.shift),
         };
+        let addresses = self.table.cycle_addresses;
         if let Some(q) = q {
             // Rounded down: a step is never longer than asked for.
             let scale = (0..places).fold(1.0, |scale, _| scale * 10.0);
             let q = (q * scale + 1e-6).floor().max(1.0) / scale;
-            self.motion.block.number("Q", q, places, style);
+            self.motion.block.number(addresses.step, q, places, style);
+            if !addresses.beside_step.is_empty() {
+                self.motion.block.word(addresses.beside_step);
+            }
         }
         match running.dwell {
-            Some(seconds) => self.wait_by("P", seconds),
+            Some(seconds) => self.wait_by(addresses.dwell, seconds),
             None if matches!(rigid, Some(Rigid::Alone(_))) => {
                 // None, whatever the unit.
                 let style = NumberStyle::default();
-                self.motion.block.number("P", 0.0, 0, style);
+                self.motion.block.number(addresses.dwell, 0.0, 0, style);
             }
             None => {}
         }

@@ -327,9 +327,7 @@ impl Engine {
                 self.position(words, tool, feed, plane_first, out)?
             }
             Event::Retract { axes, words } => self.leave(axes, words, out),
-            Event::Park { axes, words } => {
-                self.motion.machine(self.table.machine, axes, words, out);
-            }
+            Event::Park { axes, words } => self.machine_positions(axes, words, out),
             Event::Dwell { seconds } => self.dwell(seconds, out),
             Event::Stop => self.stop(codes.stop[0], out),
             Event::OptionalStop => self.stop(codes.stop[1], out),
@@ -434,6 +432,19 @@ impl Engine {
         self.register.map_or(String::new(), |register| register.to_string())
     }
 
+    /// The lines that switch tool centre point control on.
+    pub(crate) fn tcp_begin(&self) -> String {
+        self.tcp_on.replace("{h}", &self.h())
+    }
+
+    /// The lines that switch it off, those of the table where neither machine file nor program needs others.
+    pub(crate) fn tcp_end(&self) -> &str {
+        match self.table.tcp {
+            Tcp::Blocks { off, .. } if self.tcp_off.is_empty() => off,
+            _ => &self.tcp_off,
+        }
+    }
+
     /// The words that put the length in force.
     pub(crate) fn length(&self) -> Result<String, String> {
         let length = &self.table.length;
@@ -446,6 +457,7 @@ impl Engine {
         };
         match self.register {
             _ if on.is_empty() => Ok(String::new()),
+            Some(register) if length.is_register() => Ok(format!("{on}{register}")),
             Some(register) => Ok(format!("{on} {}{register}", length.register)),
             None if length.by_itself => Ok(on.to_owned()),
             None => Err(
@@ -511,7 +523,7 @@ impl Engine {
     /// The depth axes to where the tool is clear of the part.
     fn go_up(&mut self, axes: u32, words: &[f64], out: &mut String) {
         if self.retract.is_empty() {
-            self.motion.machine(self.table.machine, axes, words, out);
+            self.machine_positions(axes, words, out);
             return;
         }
         self.motion.line(&self.retract, out);
@@ -519,6 +531,20 @@ impl Engine {
             self.motion.line("G90", out);
         }
         self.motion.moved_by_line();
+    }
+
+    /// Axes at rapid to positions in machine coordinates.
+    fn machine_positions(&mut self, axes: u32, words: &[f64], out: &mut String) {
+        let Table { machine, machine_off, .. } = *self.table;
+        match machine_off {
+            "" => self.motion.machine(machine, axes, words, out),
+            off if axes != 0 => {
+                self.motion.line(machine, out);
+                self.motion.machine(self.table.codes.motion[0], axes, words, out);
+                self.motion.line(off, out);
+            }
+            _ => {}
+        }
     }
 
     fn end(&mut self, out: &mut String) {

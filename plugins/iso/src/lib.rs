@@ -25,8 +25,9 @@ pub use engine::Engine;
 pub use motion::{ArcWords, FeedDecimals, MotionWriter};
 pub use splines::SplineWords;
 pub use table::{
-    CYCLES, CycleCode, Dwell, Leave, Length, MotionCodes, Offset, Plane, Rigid, SplineForm, Stops,
-    Subprogram, SurfaceSpeed, Table, Tcp, is_offset_beyond_six, offset_beyond_six, offset_of_six,
+    CYCLES, CycleAddresses, CycleCode, Dwell, Leave, Length, MotionCodes, Offset, Plane, Rigid,
+    SplineForm, Stops, Subprogram, SurfaceSpeed, Table, Tcp, is_offset_beyond_six,
+    offset_beyond_six, offset_of_six,
 };
 
 /// Refuses words that lie within one turn, where the control would not go the shorter way between them; `why` says what

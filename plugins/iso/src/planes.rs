@@ -4,7 +4,7 @@ use post_plugin::{Capabilities, PlaneAngles, Setup, quantise};
 
 use crate::engine::Engine;
 use crate::options::flag;
-use crate::table::{Plane, Table};
+use crate::table::{Plane, Table, Tcp};
 
 /// mm in an inch.
 pub(crate) const INCH: f64 = 25.4;
@@ -46,6 +46,7 @@ impl PlaneWords {
     pub(crate) fn angles(&self) -> (PlaneAngles, u8) {
         match self.words {
             Plane::Euler { .. } => (PlaneAngles::Zxz, self.decimals),
+            Plane::Turns { angles, .. } => (angles, self.decimals),
             Plane::None | Plane::Turned { .. } => (PlaneAngles::Rotary, 0),
         }
     }
@@ -75,6 +76,14 @@ impl PlaneWords {
 }
 
 impl Engine {
+    /// Refuses what must not stand in a tilted plane.
+    ///
+    /// # Errors
+    /// The sentence for the user, if a plane is in force.
+    pub fn must_leave_plane(&self, what: &str) -> Result<(), String> {
+        self.plane.must_be_off(what)
+    }
+
     /// A plane begins. The work offset is in force, the axes have been turned.
     pub(crate) fn begin_plane(
         &mut self,
@@ -101,17 +110,11 @@ impl Engine {
             Plane::Euler { on, turn, .. } => {
                 let (_, decimals) = self.plane.angles();
                 let style = self.motion.style;
+                let origin = self.printed_origin(origin)?;
                 self.motion.plane_xy();
                 self.motion.block.word(on);
                 for (place, part) in origin.into_iter().enumerate() {
-                    let part = if self.inch { part / INCH } else { part };
                     let printed = self.motion.linear_decimals(place);
-                    if (quantise(part, printed) - part).abs() > 1e-7 {
-                        return Err(format!(
-                            "the tilted plane begins at {part} along {}, and {printed} decimals are written",
-                            ["X", "Y", "Z"][place]
-                        ));
-                    }
                     let block = &mut self.motion.block;
                     block.number(["X", "Y", "Z"][place], part, printed, style);
                 }
@@ -121,11 +124,63 @@ impl Engine {
                 self.motion.block.end(out);
                 self.motion.line(turn, out);
             }
+            Plane::Turns { on, .. } => {
+                let lines = self.plane_lines(on, origin, angles)?;
+                if self.length_ahead_of_plane() {
+                    let length = self.length()?;
+                    self.motion.line(&length, out);
+                }
+                self.motion.line(&lines, out);
+            }
         }
         self.plane.on = true;
         // Its words are others from here on.
         self.motion.other_frame();
         Ok(())
+    }
+
+    /// The origin of a plane in program units, if its decimals say it.
+    fn printed_origin(&self, origin: [f64; 3]) -> Result<[f64; 3], String> {
+        let origin = origin.map(|part| if self.inch { part / INCH } else { part });
+        for (place, part) in origin.into_iter().enumerate() {
+            let printed = self.motion.linear_decimals(place);
+            if (quantise(part, printed) - part).abs() > 1e-7 {
+                return Err(format!(
+                    "the tilted plane begins at {part} along {}, and {printed} decimals are written",
+                    ["X", "Y", "Z"][place]
+                ));
+            }
+        }
+        Ok(origin)
+    }
+
+    /// The lines of [`Plane::Turns`] that begin a plane.
+    fn plane_lines(
+        &self,
+        form: &str,
+        origin: [f64; 3],
+        angles: [f64; 3],
+    ) -> Result<String, String> {
+        let mut lines = form.replace("{tcp_on}", &self.tcp_begin());
+        let mut put = |place: &str, value: f64, decimals: u8| {
+            let mut number = String::new();
+            self.motion.style.write(&mut number, value, decimals);
+            lines = lines.replace(place, &number);
+        };
+        for (place, part) in self.printed_origin(origin)?.into_iter().enumerate() {
+            put(["{x}", "{y}", "{z}"][place], part, self.motion.linear_decimals(place));
+        }
+        let (_, decimals) = self.plane.angles();
+        for (place, angle) in ["{first}", "{second}", "{third}"].into_iter().zip(angles) {
+            put(place, angle, decimals);
+        }
+        Ok(lines)
+    }
+
+    /// The length is in force ahead of the plane, since the control keeps the tip in it.
+    pub(crate) fn length_ahead_of_plane(&self) -> bool {
+        matches!(self.plane.words(), Plane::Turns { .. })
+            && matches!(self.table.tcp, Tcp::Blocks { length_first: true, .. })
     }
 
     /// The plane ends, the tool retracted.
@@ -135,6 +190,11 @@ impl Engine {
             Plane::Turned { off, .. } | Plane::Euler { off, .. } => {
                 self.motion.settle(out);
                 self.motion.line(off, out);
+            }
+            Plane::Turns { off, .. } => {
+                self.motion.settle(out);
+                let lines = off.replace("{tcp_off}", self.tcp_end());
+                self.motion.line(&lines, out);
             }
         }
         self.plane.on = false;

@@ -276,7 +276,8 @@ impl Engine {
                 words = self.length()?;
             }
         }
-        if let Some(radius) = radius.filter(|_| self.motion.is_compensating()) {
+        let named = !self.table.codes.radius.is_empty();
+        if let Some(radius) = radius.filter(|_| named && self.motion.is_compensating()) {
             if !words.is_empty() {
                 words.push(' ');
             }

@@ -1,6 +1,6 @@
 //! What differs from control to control.
 
-use post_plugin::{AxisNames, Cycle, Language, Meaning, OptionSpec, remark};
+use post_plugin::{AxisNames, Cycle, Language, Meaning, OptionSpec, PlaneAngles, remark};
 
 /// How a control of the family differs from the others. Begin with [`Table::ISO`] and say what is different.
 ///
@@ -59,8 +59,11 @@ pub struct Table {
     /// Tool centre point control is switched on at rapid: ahead of a first move at feed its word stands behind one of
     /// rapid, in a block of its own.
     pub tcp_at_rapid: bool,
-    /// In front of positions in machine coordinates, at rapid: `G53 G0`.
+    /// In front of positions in machine coordinates, at rapid: `G53 G0`. A block of its own ahead of them where
+    /// `machine_off` ends them: `#MCS ON`.
     pub machine: &'static str,
+    /// A block behind positions in machine coordinates that ends them; empty where they hold for their block alone.
+    pub machine_off: &'static str,
     /// The order in which the tool retracts and what is in force is cancelled.
     pub leave: &'static [Leave],
     /// What a stop of the program switches off, or may.
@@ -71,6 +74,8 @@ pub struct Table {
     pub change: &'static str,
     /// Cycles that the control has.
     pub cycles: &'static [CycleCode],
+    /// Addresses of the words of a cycle.
+    pub cycle_addresses: CycleAddresses,
     /// Cycles, and arcs, inside a tilted plane. Option `cycles_in_plane`.
     pub cycles_in_plane: bool,
     /// What makes tapping rigid. Option `tapping`.
@@ -149,7 +154,7 @@ pub struct Offset {
 pub struct Length {
     /// Puts it in force; empty where the control does that by itself.
     pub on: &'static str,
-    /// Address of its register.
+    /// Address of its register; empty where the number stands behind the word that puts it in force: `D1`.
     pub register: &'static str,
     /// The control knows the length without a register. Option `length_register` gives one to a program that loads
     /// no tool.
@@ -220,6 +225,21 @@ pub struct CycleCode {
     pub waits: &'static str,
 }
 
+/// Addresses of the words of a cycle, which all have values of their own but where X and Y of the holes are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CycleAddresses {
+    /// The level where the feed begins, absolute.
+    pub clearance: &'static str,
+    /// The bottom, absolute. The word of Z stands ahead of the other level.
+    pub bottom: &'static str,
+    /// A peck.
+    pub step: &'static str,
+    /// Words beside a peck: `J1`, out of the hole after each; empty where there are none.
+    pub beside_step: &'static str,
+    /// A wait at the bottom.
+    pub dwell: &'static str,
+}
+
 /// What makes tapping rigid: the spindle turns with the feed axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rigid {
@@ -258,6 +278,16 @@ pub enum Plane {
         turn: &'static str,
         /// Block that ends the plane.
         off: &'static str,
+    },
+    /// Told by lines with origin and turns, while the control keeps the tip of a tool whose axes have been turned.
+    Turns {
+        /// Lines that begin the plane: `{x}` `{y}` `{z}` are its origin, `{first}` `{second}` `{third}` the turns in
+        /// the order of `angles`, `{tcp_on}` what switches tool centre point control on.
+        on: &'static str,
+        /// Lines that end the plane; `{tcp_off}` is what switches tool centre point control off.
+        off: &'static str,
+        /// The axes of the turns.
+        angles: PlaneAngles,
     },
     /// Where the rotary words have turned the part: the work offset turns with it. There is none where a head turns.
     Turned {
@@ -334,6 +364,13 @@ pub fn is_offset_beyond_six(text: &str, word: &str, most: u32) -> bool {
     }
 }
 
+impl Length {
+    /// The word that puts it in force names the register: `D1`.
+    pub(crate) const fn is_register(&self) -> bool {
+        !self.on.is_empty() && self.register.is_empty()
+    }
+}
+
 impl CycleCode {
     /// A cycle without and with a dwell.
     pub const fn new(kind: Cycle, plain: &'static str, waits: &'static str) -> Self {
@@ -401,11 +438,19 @@ impl Table {
         tcp: Tcp::None,
         tcp_at_rapid: false,
         machine: "G53 G0",
+        machine_off: "",
         leave: &[Leave::Retract, Leave::Length],
         stops: Stops { spindle: true, coolant: true },
         dwell: Dwell::Milliseconds("P"),
         change: "M6",
         cycles: CYCLES,
+        cycle_addresses: CycleAddresses {
+            clearance: "R",
+            bottom: "Z",
+            step: "Q",
+            beside_step: "",
+            dwell: "P",
+        },
         cycles_in_plane: false,
         rigid: Rigid::Always,
         plane: Plane::None,

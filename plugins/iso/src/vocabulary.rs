@@ -123,8 +123,17 @@ impl Engine {
     fn position_words(&self, add: &mut dyn FnMut(&str, Meaning)) {
         use Meaning as M;
         let table = self.table;
-        add(first(table.machine), M::MachineCoordinates);
-        add(table.length.on, M::LengthOn);
+        match table.machine_off {
+            "" => add(first(table.machine), M::MachineCoordinates),
+            off => {
+                add(table.machine, M::MachineCoordinatesOn);
+                add(off, M::MachineCoordinatesOff);
+            }
+        }
+        match table.length.is_register() {
+            true => add(table.length.on, M::LengthRegister),
+            false => add(table.length.on, M::LengthOn),
+        }
         add(table.length.off, M::LengthOff);
         if !table.length.on.is_empty() {
             add(table.length.register, M::LengthRegister);
@@ -137,10 +146,11 @@ impl Engine {
             let Some(word) = (table.offset.word)(number) else {
                 break;
             };
-            add(first(&word), M::WorkOffset);
+            // `G159` of `G159=7`.
+            add(first(&word).split('=').next().unwrap_or(""), M::WorkOffset);
         }
         match self.plane.words() {
-            Plane::None => {}
+            Plane::None | Plane::Turns { .. } => {}
             Plane::Turned { on, off } => {
                 add(on, M::TiltedPlane);
                 add(off, M::TiltedPlaneOff);
@@ -149,6 +159,12 @@ impl Engine {
                 add(on, M::TiltedPlane);
                 add(turn, M::TiltedPlaneTurn);
                 add(off, M::TiltedPlaneOff);
+            }
+        }
+        if let Plane::Turns { on, off, .. } = self.plane.words() {
+            for (lines, meaning) in [(on, M::TiltedPlane), (off, M::TiltedPlaneOff)] {
+                let own = lines.lines().filter(|line| !line.starts_with('{'));
+                own.for_each(|line| add(line.split('[').next().unwrap_or(""), meaning));
             }
         }
         match table.splines {

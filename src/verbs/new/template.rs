@@ -326,6 +326,9 @@ fn options(choices: &Choices) -> Vec<(&'static str, &'static str)> {
             };
             vec![(units, "a parameter of the control: compare, a point does not override it")]
         }
+        "isg" if choices.units == OutputUnits::Inch => {
+            vec![("inch_feeds = true", "compare at the machine: F counts inches under G70")]
+        }
         "grbl" if choices.class.turns() => {
             vec![("hal = true", "grblHAL: GRBL 1.1 has X, Y and Z alone")]
         }

@@ -86,7 +86,7 @@ impl PostArguments {
 
     /// What the programs depend on, as a text that is another if they may be.
     pub fn what_is_made(&self) -> String {
-        let making = MakingSettings { jobs: None, ..self.making.0.clone() };
+        let making = &self.making.0;
         format!("{:?} {making:?} {:?}", self.job.settings(), self.outputs.0.split)
     }
 

@@ -360,7 +360,7 @@ impl ControlState {
         if let Some(which) = asked.reference {
             return self.reference(which, words);
         }
-        if asked.machine {
+        if asked.machine || self.modal.machine {
             return self.machine_move(words, asked.rapid);
         }
         if let Some((code, meaning)) = asked.thread {

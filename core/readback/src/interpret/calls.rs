@@ -24,7 +24,7 @@ pub(super) enum BlockTransfer {
 #[inline]
 pub(super) fn leads(block: &NcBlock, language: Language, variables: &Variables) -> bool {
     let letters = matches!(language, Language::Macro | Language::Rs274);
-    let names = language == Language::Names;
+    let names = calls_by_l(block, language);
     block.items.iter().any(|item| match item {
         NcItem::Word(word) => letters && code(word).is_some() || names && word.letter == b'L',
         NcItem::Flow(_) | NcItem::Assign { .. } => true,
@@ -32,6 +32,19 @@ pub(super) fn leads(block: &NcBlock, language: Language, variables: &Variables) 
         NcItem::Named { name, .. } => variables.knows(name),
         _ => false,
     })
+}
+
+/// Whether L with a number calls a subprogram. Beside a G code of Fagor it is a word of a cycle.
+#[inline]
+fn calls_by_l(block: &NcBlock, language: Language) -> bool {
+    match language {
+        Language::Names => true,
+        Language::Instructions => {
+            let mut items = block.items.iter();
+            !items.any(|item| matches!(item, NcItem::Word(word) if word.letter == b'G'))
+        }
+        Language::Macro | Language::Rs274 | Language::Conversational => false,
+    }
 }
 
 /// The words that lead elsewhere.
@@ -70,7 +83,7 @@ pub(super) fn take(
     language: Language,
     variables: &Variables,
 ) -> FlowResult<Option<BlockTransfer>> {
-    if language == Language::Names {
+    if calls_by_l(block, language) {
         // `L100`: a subprogram, of which only the main program's file is at hand.
         let mut items = block.items.iter();
         let called = items.find_map(|item| match item {

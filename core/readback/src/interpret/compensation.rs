@@ -63,6 +63,12 @@ impl ControlState {
             }
         } else if let Some(register) = words.present_number(b'D', self)? {
             words.used |= bit(b'D');
+            if self.lexicon.names_lengths_by_d() {
+                self.tools.by_tool = false;
+                self.tools.length_on = register != 0;
+                self.state.length_register = (register != 0).then_some(register);
+                self.length_changed()?;
+            }
             self.state.radius_register = Some(register);
             self.state_changed();
         }

@@ -383,6 +383,7 @@ impl ModalState {
             tcp_by_length: false,
             named_register: None,
             rigid_taps: false,
+            machine: false,
             tapped: false,
         }
     }

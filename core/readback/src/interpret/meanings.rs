@@ -109,6 +109,8 @@ impl ControlState {
             Meaning::SurfaceSpeedOff => self.modal.surface_speed = false,
             Meaning::RotaryShortest => self.modal.shortest = Some(true),
             Meaning::RotaryAsWritten => self.modal.shortest = Some(false),
+            Meaning::MachineCoordinatesOn => self.modal.machine = true,
+            Meaning::MachineCoordinatesOff => self.modal.machine = false,
             Meaning::InchLengths => self.modal.unit = 25.4,
             Meaning::MillimetreLengths => self.modal.unit = 1.0,
             // The tool axis under tool centre point control: how it goes between two blocks.

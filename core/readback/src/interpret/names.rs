@@ -10,6 +10,7 @@ use super::spindle_request::SpindleRequest;
 use super::state::ControlState;
 use super::{cycles, frames, planes};
 use crate::ProgramEvent;
+use crate::g_code::GCode;
 use crate::lexicon::WordMeaning;
 
 /// Takes what `gather` left.
@@ -77,6 +78,12 @@ impl ControlState {
             words.vector.get_or_insert_default()[row] = worth(self)?;
             Ok(())
         };
+        if self.lexicon.language() == Language::Instructions
+            && let Some(offset) = numbered_offset(self, name)
+        {
+            let number = worth(self)?;
+            return self.use_work_offset(&format!("{offset}={number}"));
+        }
         match self.lexicon.name(name) {
             WordMeaning::Means(Meaning::ToolAxisX) => part(0)?,
             WordMeaning::Means(Meaning::ToolAxisY) => part(1)?,
@@ -200,7 +207,7 @@ impl ControlState {
         let empty = arguments.iter().all(Option::is_none);
         let sense = if empty { self.lexicon.empty_call(name) } else { self.lexicon.name(name) };
         match (name, sense) {
-            ("MSG", _) => {
+            ("MSG" | "#MSG", _) => {
                 if let Some(Some(NcValue::Text(text))) = arguments.first() {
                     let text = text.clone();
                     self.tell(ProgramEvent::Message(text));
@@ -212,6 +219,8 @@ impl ControlState {
             (_, WordMeaning::Means(Meaning::TiltedPlaneOff)) => return planes::end(self),
             (_, WordMeaning::Means(Meaning::Smoothing)) => {
                 let tolerance = match arguments.first() {
+                    // `#HSC ON [CONTERROR 0.01]` says it by a word.
+                    Some(Some(NcValue::Text(_))) => None,
                     Some(Some(value)) => Some(
                         self.variables
                             .worth(value)
@@ -251,4 +260,11 @@ impl ControlState {
         }
         Ok(())
     }
+}
+
+/// The word of a work offset whose number stands behind it: `G159` of `G159=7`; none of any other.
+fn numbered_offset<'n>(control: &ControlState, name: &'n str) -> Option<&'n str> {
+    let code = GCode::nearest(name.strip_prefix('G')?.parse().ok()?)?;
+    let offset = control.lexicon.g(code) == WordMeaning::Means(Meaning::WorkOffset);
+    offset.then_some(name)
 }

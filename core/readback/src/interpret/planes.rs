@@ -276,12 +276,56 @@ pub(super) fn angles(control: &ControlState, joints: &Joints) -> [f64; 3] {
     })
 }
 
+/// `#CS ON [0, 0, 10, 30, 0, 0]` of ISG: origin, and turns about X, Y and Z, made about Z first, then about the Y and X
+/// that it leaves. `#CS ON [1] [MODE 1, 0, 0, 10, 30, 0, 0]` of Fagor: the turns are made about X first. Brackets of
+/// their own in front say under which number the control keeps it.
+fn coordinate_system(
+    control: &mut ControlState,
+    arguments: &[Option<NcValue>],
+) -> Result<(), Box<Diagnostic>> {
+    let words = arguments.iter().take_while(|value| matches!(value, Some(NcValue::Text(_))));
+    let (words, values) = arguments.split_at(words.count());
+    let mode = words.iter().flatten().find_map(|word| match word {
+        NcValue::Text(text) => text.strip_prefix("MODE").map(|mode| mode.trim().to_owned()),
+        _ => None,
+    });
+    let mut numbers = [0.0; 6];
+    let known = matches!(mode.as_deref(), None | Some("1")) && matches!(values.len(), 3..=6);
+    if !known {
+        return Err(control.refuse(
+            "nc-plane",
+            "#CS ON in a form that is not run: an origin and angles are, of Fagor in MODE 1",
+        ));
+    }
+    for (number, value) in numbers.iter_mut().zip(values) {
+        if let Some(value) = value {
+            let worth = control.variables.worth(value);
+            *number = worth.map_err(|finding| control.placed(*finding).boxed())?;
+        }
+    }
+    let [x, y, z, ..] = numbers;
+    let [about_x, about_y, about_z] = [numbers[3], numbers[4], numbers[5]].map(f64::to_radians);
+    let turned = match mode {
+        Some(_) => rotation([0, 1, 2], [about_x, about_y, about_z]),
+        None => rotation([2, 1, 0], [about_z, about_y, about_x]),
+    };
+    if control.frames.plane.is_some() {
+        return Err(control
+            .refuse("nc-plane", "a tilted plane begins inside of another, which must end before"));
+    }
+    let origin = Vector3::new(x, y, z) * control.modal.unit;
+    lay(control, CoordinateFrame::new(turned, origin))
+}
+
 /// `CYCLE800(_FR, _TC, _ST, _MODE, _X0, _Y0, _Z0, _A, _B, _C, _X1, _Y1, _Z1, _DIR, _FR_I, _DMODE)`.
 pub(super) fn call(
     control: &mut ControlState,
     name: &str,
     arguments: &[Option<NcValue>],
 ) -> Result<(), Box<Diagnostic>> {
+    if name == "#CS ON" {
+        return coordinate_system(control, arguments);
+    }
     if name != "CYCLE800" {
         return Err(control
             .refuse("nc-plane", format!("{name} is a form of a tilted plane that is not run")));

@@ -131,7 +131,7 @@ impl ControlState {
             _ => self.letters_dwell(words)?,
         };
         // They were times, and are nothing else in this block.
-        words.present &= !(bit(b'F') | bit(b'S') | bit(b'X') | bit(b'U'));
+        words.present &= !(bit(b'F') | bit(b'S') | bit(b'X') | bit(b'U') | bit(b'K'));
         self.tell(told);
         Ok(())
     }
@@ -142,7 +142,7 @@ impl ControlState {
         words: &mut BlockWords,
     ) -> Result<ProgramEvent, Box<Diagnostic>> {
         const G4: GCode = GCode::whole(4);
-        for letter in [b'P', b'X', b'U', b'F', b'S'] {
+        for letter in [b'P', b'X', b'U', b'F', b'S', b'K'] {
             let meaning = self.lexicon.letter_beside(G4, letter);
             let usual = matches!(letter, b'X' | b'U' | b'F').then_some(Meaning::DwellSeconds);
             let Some(meaning) = meaning.or(usual) else {

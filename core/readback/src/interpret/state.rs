@@ -165,6 +165,8 @@ pub(super) struct ModalState {
     pub named_register: Option<u32>,
     /// The taps of this cycle are rigid: M29.
     pub rigid_taps: bool,
+    /// Positions are machine coordinates until a word ends that: `#MCS ON`.
+    pub machine: bool,
     /// A rigid tap was made and no word has turned the spindle since: it stands when the cycle is over.
     pub tapped: bool,
 }

@@ -18,6 +18,7 @@ pub(super) fn words(language: Language) -> impl Iterator<Item = (&'static str, W
         Language::Rs274 => (&[SHARED, LETTERS, RS274], &[]),
         Language::Names => (&[SHARED, NAMES], REFUSED_NAMES),
         Language::Conversational => (&[SHARED, CONVERSATIONAL], &[]),
+        Language::Instructions => (&[SHARED, INSTRUCTIONS], REFUSED_INSTRUCTIONS),
     };
     let known = tables.iter().flat_map(|table| table.iter());
     let known = known.map(|(word, meaning)| (*word, WordMeaning::Means(*meaning)));
@@ -262,6 +263,50 @@ const NAMES: WordTable = &[
 ];
 
 const REFUSED_NAMES: &[&str] = &["G63"];
+
+const INSTRUCTIONS: WordTable = &[
+    ("G0", M::Rapid),
+    ("G1", M::Linear),
+    ("G2", M::ArcClockwise),
+    ("G3", M::ArcCounterClockwise),
+    ("G4", M::Dwell),
+    ("G17", M::PlaneXy),
+    ("G18", M::PlaneZx),
+    ("G19", M::PlaneYz),
+    ("G33", M::Thread),
+    ("G40", M::CompensationOff),
+    ("G41", M::CompensationLeft),
+    ("G42", M::CompensationRight),
+    ("G54", M::WorkOffset),
+    ("G55", M::WorkOffset),
+    ("G56", M::WorkOffset),
+    ("G57", M::WorkOffset),
+    ("G58", M::WorkOffset),
+    ("G59", M::WorkOffset),
+    ("G159", M::WorkOffset),
+    ("G70", M::Inch),
+    ("G71", M::Millimetre),
+    ("G74", M::ReferenceReturn),
+    ("G90", M::Absolute),
+    ("G91", M::Incremental),
+    ("G94", M::FeedPerMinute),
+    ("G95", M::FeedPerRevolution),
+    ("G96", M::SurfaceSpeed),
+    ("G97", M::SurfaceSpeedOff),
+    ("M17", M::SubprogramEnd),
+    ("M29", M::SubprogramEnd),
+    ("#MCS ON", M::MachineCoordinatesOn),
+    ("#MCS OFF", M::MachineCoordinatesOff),
+    ("#RTCP ON", M::TcpOn),
+    ("#RTCP OFF", M::TcpOff),
+    ("#CS ON", M::TiltedPlane),
+    ("#CS OFF", M::TiltedPlaneOff),
+    ("#MSG", M::Nothing),
+    ("#KIN ID", M::Nothing),
+];
+
+/// F under G93 is the time of the block in seconds, where others count blocks a minute.
+const REFUSED_INSTRUCTIONS: &[&str] = &["G93"];
 
 const CONVERSATIONAL: WordTable = &[
     ("M13", M::SpindleClockwiseCoolant),

@@ -1,6 +1,6 @@
 //! What blocks say, family by family.
 
-use super::{conversational, hash, names};
+use super::{conversational, hash, instructions, names};
 use post_grammar::nc::{
     Approach, JumpDirection, NcBlock, NcExpression, NcFlow, NcItem, NcSyntax, NcValue, parse_block,
 };
@@ -332,6 +332,41 @@ fn conversational_blocks() {
         ("m30", "M=30"),
     ] {
         assert_eq!(shown(line, &conversational()), expected, "{line}");
+    }
+}
+
+#[test]
+fn blocks_of_controls_with_instructions() {
+    for (line, expected) in [
+        ("N10 #RTCP ON", "#10 `#RTCP ON`"),
+        ("#rtcp  off", "`#RTCP OFF`"),
+        ("N20 #MCS G0 Z0.", "#20 `#MCS` G=0 Z=0p"),
+        ("#CS ON[0,0,10,,,45]", "#CS ON(0,0,10,,,45)"),
+        (
+            "#CS ON [1] [Mode 1, 0, -2.5, P1, 30, 0, 0]",
+            "#CS ON(\"[1]\",\"MODE 1\",0,-2.5p,P1,30,0,0)",
+        ),
+        ("#KIN ID [91]", "#KIN ID(91)"),
+        ("#MCS ON [EX TOOL]", "#MCS ON(\"EX TOOL\")"),
+        ("#HSC ON [PATH_DEV=0.02 TRACK_DEV=1]", "#HSC ON(\"PATH_DEV=0.02 TRACK_DEV=1\")"),
+        ("#MSG [\"Now, turn [it]\"] ; by hand", "#MSG(\"Now, turn [it]\") (by hand)"),
+        ("G159=7 X1 (there)", "G159:7 X=1 (there)"),
+        ("G1 X[P1+2.] F=P2", "G=1 X=(P1 Add 2) F=P2"),
+        ("%1000 (PART)", "Label(\"%1000\") (PART)"),
+        ("%Part_1.nc", "Label(\"%PART_1.NC\")"),
+    ] {
+        assert_eq!(shown(line, &instructions()), expected, "{line}");
+    }
+    let refused = |line: &str, syntax: &NcSyntax| parse_block(line, syntax).unwrap_err().message;
+    assert!(refused("%L POCKET", &instructions()).contains("a subprogram"));
+    // Of other families these are no blocks.
+    for line in ["#RTCP ON", "%1000"] {
+        for syntax in [hash(), names()] {
+            refused(line, &syntax);
+        }
+    }
+    for line in ["#1=5", "#X", "#CS ON [1", "#CS ON [1]]", "$IF P1 == 2"] {
+        refused(line, &instructions());
     }
 }
 

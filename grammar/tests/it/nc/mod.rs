@@ -17,7 +17,13 @@ fn hash() -> NcSyntax {
         line_remarks: vec![";".to_owned()],
         enclosed_remarks: Some(('(', ')')),
         hash_variables: true,
+        instructions: false,
     }
+}
+
+/// Fagor, ISG.
+fn instructions() -> NcSyntax {
+    NcSyntax { hash_variables: false, instructions: true, ..hash() }
 }
 
 /// Siemens.

@@ -17,7 +17,10 @@ impl Engine {
         out: &mut String,
     ) -> Result<(), String> {
         let keeps_tip = self.tcp && !self.plane.is_on();
-        let mut length = self.length()?;
+        let mut length = match self.plane.is_on() && self.length_ahead_of_plane() {
+            true => String::new(),
+            false => self.length()?,
+        };
         self.cancel_what_was(out);
         self.settings.smoothing_due(&mut self.motion, out);
         self.offset_before_position(out);
@@ -35,7 +38,8 @@ impl Engine {
             } else if length_first {
                 self.motion.line(&std::mem::take(&mut length), out);
             }
-            self.motion.line(&self.tcp_on.replace("{h}", &self.h()), out);
+            let on = self.tcp_begin();
+            self.motion.line(&on, out);
         }
         if keeps_tip && self.table.tcp_at_rapid && feed.is_some() && !length.is_empty() {
             let length = std::mem::take(&mut length);

@@ -4,12 +4,14 @@
 #![allow(clippy::unwrap_used)]
 
 mod brother;
+mod fagor;
 mod fanuc;
 mod grbl;
 mod haas;
 mod heidenhain;
 mod hurco;
 mod interpreter;
+mod isg;
 mod linuxcnc;
 mod list;
 mod mazak;

@@ -1,4 +1,4 @@
-//! G73 to G89: levels by words that stay in force, R and Z along the tool axis.
+//! G73 to G89: levels by words that stay in force, R and Z along the tool axis; of controls with instructions Z and I.
 
 use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
@@ -52,7 +52,13 @@ pub(super) fn hole(
 ) -> Result<(), Box<Diagnostic>> {
     let [first, second, axis] = control.modal.plane.coordinates();
     let letter = |row: usize| [b'X', b'Y', b'Z'][row];
-    let running = levels_said(control, code, meaning, words)?;
+    let before = words.present;
+    let running = match control.lexicon.language() {
+        Language::Instructions => named_levels(control, code, meaning, words)?,
+        _ => levels_said(control, code, meaning, words)?,
+    };
+    // They were no places, and are none of a motion.
+    let hidden = before & !words.present;
     let count = match (words.take(b'L'), words.take(b'K')) {
         (Some(count), _) | (None, Some(count)) => {
             crate::interpret::expression::whole(count, "a count of holes")
@@ -70,12 +76,12 @@ pub(super) fn hole(
             format!("{count} holes by one block: no more than {MOST} are made"),
         ));
     }
+    let own = hidden | words.present & bit(letter(axis));
     let positioned = words.present & control.axes.mask & !bit(letter(axis)) != 0;
-    if !positioned && meaning.is_none() && words.present & (bit(letter(axis)) | bit(b'R')) == 0 {
+    if !positioned && meaning.is_none() && own == 0 && words.present & bit(b'R') == 0 {
         return Ok(());
     }
     // Its own axis is no place.
-    let hidden = words.present & bit(letter(axis));
     words.present &= !bit(letter(axis));
     let incremental = control.modal.incremental;
     let made = (0..count).try_for_each(|turn| {
@@ -96,8 +102,88 @@ pub(super) fn hole(
         }
         make(control, &running, &hole)
     });
-    words.present |= hidden;
+    words.present |= own;
     made
+}
+
+/// [`levels_said`] of controls with instructions (Fagor): Z is where the feed begins and I the bottom, B a peck, of
+/// which J are made ahead of each way out, K a wait in seconds, R1 a tap without a compensating chuck. These words are
+/// taken out of the block.
+fn named_levels(
+    control: &mut ControlState,
+    code: Option<GCode>,
+    meaning: Option<Meaning>,
+    words: &mut BlockWords,
+) -> Result<IsoCycle, Box<Diagnostic>> {
+    let axis = control.modal.plane.coordinates()[2];
+    let letter = [b'X', b'Y', b'Z'][axis];
+    let code = code.unwrap_or_default();
+    if control.modal.incremental {
+        return Err(control.refuse("nc-cycle", "a cycle under G91 is not run on this control"));
+    }
+    let mut running = begun(control, code, meaning, axis)?;
+    let unit = control.modal.unit;
+    if let Some(level) = words.take(letter) {
+        running.clearance = level * unit;
+    }
+    match (words.take(b'I'), meaning) {
+        // Of G83 it is the way of one peck, and J says how many there are.
+        (Some(peck), Some(Meaning::CycleDeep)) if code == GCode::whole(83) => {
+            running.step = libm::fabs(peck) * unit;
+            let pecks = words.take(b'J').unwrap_or(1.0);
+            running.bottom = running.clearance + peck * unit * pecks;
+            let _ = words.take(b'B');
+            words.present &= !(bit(b'J') | bit(b'B'));
+        }
+        (Some(level), _) => running.bottom = level * unit,
+        (None, _) => {}
+    }
+    if let Some(time) = words.take(b'K') {
+        running.dwell = time;
+    }
+    words.present &= !(bit(letter) | bit(b'I') | bit(b'K'));
+    if running.meaning == Meaning::CycleDeep && meaning.is_some() && code != GCode::whole(83) {
+        let (peck, pecks) = (words.take(b'B'), words.take(b'J'));
+        // The first approach, the next ones, how far back, the least peck and the part of each: they change no bottom.
+        for beside in [b'C', b'D', b'H', b'L', b'R'] {
+            let _ = words.take(beside);
+        }
+        running.step = peck.unwrap_or_default() * unit;
+        if pecks.is_some_and(|pecks| pecks != 1.0) {
+            running.meaning = Meaning::CycleBreakChip;
+        }
+        words.present &= !(bit(b'B') | bit(b'J') | bit(b'C') | bit(b'D') | bit(b'H'));
+        words.present &= !(bit(b'L') | bit(b'R'));
+    }
+    if running.meaning == Meaning::CycleTap && meaning.is_some() {
+        control.modal.rigid_taps = words.take(b'R') == Some(1.0);
+        words.present &= !bit(b'R');
+    }
+    Ok(running)
+}
+
+/// The cycle that a block begins, or the one in force.
+fn begun(
+    control: &ControlState,
+    code: GCode,
+    meaning: Option<Meaning>,
+    axis: usize,
+) -> Result<IsoCycle, Box<Diagnostic>> {
+    match (meaning, control.cycles.iso) {
+        (Some(meaning), Some(before)) => Ok(IsoCycle { code, meaning, ..before }),
+        (Some(meaning), None) => Ok(IsoCycle {
+            code,
+            meaning,
+            start: control.point()[axis],
+            clearance: f64::NAN,
+            bottom: f64::NAN,
+            step: 0.0,
+            dwell: 0.0,
+            pitch: None,
+        }),
+        (None, Some(before)) => Ok(before),
+        (None, None) => Err(control.refuse("nc-cycle", "a further hole, and no cycle is in force")),
+    }
 }
 
 /// The cycle in force, with the levels, pecks and wait that the words of a block say.
@@ -111,24 +197,7 @@ fn levels_said(
     let axis = control.modal.plane.coordinates()[2];
     let letter = [b'X', b'Y', b'Z'][axis];
     let code = code.unwrap_or_default();
-    let before = control.cycles.iso;
-    let mut running = match (meaning, before) {
-        (Some(meaning), Some(before)) => IsoCycle { code, meaning, ..before },
-        (Some(meaning), None) => IsoCycle {
-            code,
-            meaning,
-            start: control.point()[axis],
-            clearance: f64::NAN,
-            bottom: f64::NAN,
-            step: 0.0,
-            dwell: 0.0,
-            pitch: None,
-        },
-        (None, Some(before)) => before,
-        (None, None) => {
-            return Err(control.refuse("nc-cycle", "a further hole, and no cycle is in force"));
-        }
-    };
+    let mut running = begun(control, code, meaning, axis)?;
     let incremental = control.modal.incremental;
     let refused = words.incremental & (bit(letter) | bit(b'R'));
     if refused != 0 {
@@ -232,6 +301,7 @@ fn levels(control: &mut ControlState, running: &IsoCycle) -> Result<CycleHole, B
     goes_its_way(control, running)?;
     let by_pitch = running.pitch.map(|pitch| pitch * control.modal.speed);
     let feed = by_pitch.unwrap_or_else(|| feed_a_minute(control));
+    let named = control.lexicon.language() == Language::Instructions;
     let away = match control.modal.return_start {
         true => libm::fmax(running.start, running.clearance),
         false => running.clearance,
@@ -241,8 +311,8 @@ fn levels(control: &mut ControlState, running: &IsoCycle) -> Result<CycleHole, B
         bottom: running.bottom,
         away,
         feed,
-        // G81 has no wait: a P beside it says nothing.
-        wait: HoleDwell::seconds(if running.code == GCode::whole(81) {
+        // G81 has no wait: a P beside it says nothing. Of Fagor's it is the cycle with a wait too.
+        wait: HoleDwell::seconds(if running.code == GCode::whole(81) && !named {
             0.0
         } else {
             running.dwell

@@ -17,6 +17,7 @@ fn run_with(language: Language, program: &str, limits: Limits) -> (Vec<f64>, Opt
         line_remarks: vec![";".to_owned()],
         enclosed_remarks: (!names && language != Language::Conversational).then_some(('(', ')')),
         hash_variables: matches!(language, Language::Macro | Language::Rs274),
+        instructions: language == Language::Instructions,
     };
     let reader = NcReader::new(Cursor::new(program.as_bytes().to_vec()), syntax);
     let mut flow = ProgramFlow::new(reader, language, limits, "test.nc");

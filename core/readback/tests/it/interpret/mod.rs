@@ -1,5 +1,6 @@
 //! Programs run by the interpreter, against chains multiplied by isometries and against what is worked out by hand.
 
+mod instructions;
 mod modes;
 mod places;
 mod splines;

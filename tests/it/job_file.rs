@@ -191,7 +191,7 @@ fn each_dialect_names_the_job_so_that_it_is_found() {
     let dialects = plugin_finder::built_in(false).into_iter().filter(|name| *name != "grbl");
     for dialect in dialects {
         let option = match dialect {
-            "okuma" => "set.control.okuma.unit_system = \"1 mm\"\n",
+            "okuma" => "set.control.okuma.unit_system = \"1 mm\"\nset.control.retract.Z = 0\n",
             _ => "",
         };
         let text = format!(

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use post_machine::description::{Machine, Source, load};
+use post_machine::description::{Machine, Setting, Source, load};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 use post_plugin::Lengths;
@@ -31,7 +31,9 @@ impl Course for Written {
 fn machine() -> Machine {
     let text = include_str!("../../../../machines/vmc.toml");
     let source = Source { name: "vmc".to_owned(), text: text.to_owned() };
-    load(source, &[], &mut |_| Err(String::new())).unwrap()
+    // Where the part sits is said: travel is checked.
+    let mount = Setting::Mount([0.0; 3]);
+    load(source, &[mount], &mut |_| Err(String::new())).unwrap()
 }
 
 fn pose(tip: V) -> Pose {

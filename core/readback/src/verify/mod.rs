@@ -19,6 +19,7 @@ mod cut_bounds;
 mod cut_path;
 mod detour;
 mod fed_rapid;
+mod feed;
 mod hole;
 mod left_on;
 mod near;

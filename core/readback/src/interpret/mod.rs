@@ -200,7 +200,7 @@ impl<R: Read + Seek> Interpreter<R> {
         if runner.conversational || run.longest == 0 || runner.control.ended {
             return false;
         }
-        let Some(rule) = runner.control.run_rule() else {
+        let Some(rule) = runner.control.run_rule(run) else {
             return false;
         };
         flow.next_run(&rule, &mut run.read);

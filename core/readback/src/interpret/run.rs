@@ -5,11 +5,13 @@
 //! that the bits are the same. What one of them might do besides moving ends the run before it, and the block goes the plain
 //! way.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 use post_grammar::nc::{NcRun, NcRunRule};
 use post_machine::kinematics::batch::{AxisBatch, Traces, VectorLanes, groups, set_vector, vector};
 use post_machine::kinematics::lane_math::sincos_all;
-use post_machine::kinematics::{MAX_AXES, Pose, Turns};
+use post_machine::kinematics::{MAX_AXES, Pose, Solver, Turns};
 use post_plugin::Meaning;
 
 use super::block_words::bit;
@@ -34,6 +36,8 @@ pub(super) struct MotionRun {
     /// Tips that the words lead to where the control keeps them, mm, part frame.
     wanted: VectorLanes,
     traces: Traces,
+    /// The last solver that does not place tips together.
+    unfit: Option<Arc<Solver>>,
 }
 
 impl MotionRun {
@@ -46,6 +50,7 @@ impl MotionRun {
             at: AxisBatch::default(),
             wanted: [[0.0; NcRun::MOST]; 3],
             traces: Traces::default(),
+            unfit: None,
         })
     }
 
@@ -58,7 +63,7 @@ impl MotionRun {
 
 impl ControlState {
     /// What blocks may say that are run together; none where the next is not to be one of them.
-    pub(super) fn run_rule(&self) -> Option<NcRunRule> {
+    pub(super) fn run_rule(&self, run: &MotionRun) -> Option<NcRunRule> {
         let modal = &self.modal;
         let straight = modal.motion == MotionMode::Linear
             && !modal.incremental
@@ -76,7 +81,9 @@ impl ControlState {
             true => self.state.tcp && self.frames.plane.is_none(),
             false => self.to_work.upright(),
         };
-        if !plain || !counted {
+        let solver = &self.state.solver;
+        let unfit = run.unfit.as_ref().is_some_and(|unfit| Arc::ptr_eq(unfit, solver));
+        if !plain || !counted || self.state.tcp && unfit {
             return None;
         }
         let feed = bit(b'F');
@@ -109,6 +116,7 @@ impl ControlState {
         let turned = self.put_axes(run, count);
         self.put_turns(run, count, turned);
         if self.state.tcp && !self.put_tips(run, count) {
+            run.unfit = Some(Arc::clone(&self.state.solver));
             return 0;
         }
         self.state.solver.chain().trace_all(&run.at, count, &mut run.traces);
@@ -192,7 +200,7 @@ impl ControlState {
             if said & XYZ != 0 {
                 let told: [Option<f64>; 3] = std::array::from_fn(|row| {
                     let value = run.read.column(23 + row)[lane];
-                    (said & (1 << (23 + row)) != 0).then(|| 0.0 + value * self.modal.unit)
+                    (said & (1 << (23 + row)) != 0).then_some(0.0 + value * self.modal.unit)
                 });
                 tip = self.to_part.out(told_over(self.to_part.inside(tip), &told));
             }
@@ -242,7 +250,7 @@ const XYZ: u32 = bit(b'X') | bit(b'Y') | bit(b'Z');
 fn reached(run: &MotionRun, count: usize) -> usize {
     let misses = |lane: &usize| {
         let off = (vector(&run.traces.tip, *lane) - vector(&run.wanted, *lane)).norm();
-        !(off <= REACHED)
+        off > REACHED
     };
     (0..count).find(misses).unwrap_or(count)
 }

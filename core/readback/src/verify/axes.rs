@@ -34,7 +34,8 @@ pub(crate) struct AxisFault {
 
 /// Where a motion takes an axis beyond its travel: which, and by how much, mm or degrees.
 pub fn over_travel(machine: &Machine, motion: &Motion) -> Option<(String, f64)> {
-    let fault = AxisLimitCheck::new(machine).over_travel(machine, motion)?;
+    let bend = bend_between_words(motion);
+    let fault = AxisLimitCheck::new(machine).over_travel(machine, motion, bend)?;
     Some((fault.message, fault.by))
 }
 
@@ -59,8 +60,13 @@ impl AxisLimitCheck {
         }
     }
 
-    /// An axis leaves its travel.
-    pub fn over_travel(&self, machine: &Machine, motion: &Motion) -> Option<AxisFault> {
+    /// An axis leaves its travel; `bend` is [`bend_between_words`] of the motion.
+    pub fn over_travel(
+        &self,
+        machine: &Machine,
+        motion: &Motion,
+        bend: Option<f64>,
+    ) -> Option<AxisFault> {
         if motion.way == Interpolation::Axes {
             return self.beyond(machine, [&motion.to.joints; 2]);
         }
@@ -68,7 +74,7 @@ impl AxisLimitCheck {
         match &motion.way {
             Interpolation::Axes => {}
             Interpolation::Tip(Curve::Straight) | Interpolation::TipAndAxis => {
-                if !stays_inside(machine, motion)
+                if !stays_inside(machine, motion, bend)
                     && let Some(slides) = slides(motion, &Joints::default(), f64::INFINITY)
                 {
                     for joint in 0..machine.axes.len() {
@@ -114,9 +120,15 @@ impl AxisLimitCheck {
         None
     }
 
-    /// An axis passes its largest feed, if the control does what the program says.
-    pub fn too_fast(&self, machine: &Machine, motion: &Motion) -> Option<AxisFault> {
-        if !self.limited || motion.minutes <= 0.0 || self.is_slow(motion) {
+    /// An axis passes its largest feed, if the control does what the program says; `bend` is [`bend_between_words`] of the
+    /// motion.
+    pub fn too_fast(
+        &self,
+        machine: &Machine,
+        motion: &Motion,
+        bend: Option<f64>,
+    ) -> Option<AxisFault> {
+        if !self.limited || motion.minutes <= 0.0 || self.is_slow(motion, bend) {
             return None;
         }
         let (minutes, joint) = self.least_minutes(machine, motion, motion.minutes)?;
@@ -140,13 +152,10 @@ impl AxisLimitCheck {
 
     /// No axis passes its largest feed: where all go linearly as their ways tell; where the control keeps the tip as arms
     /// alone do, the speed of an axis differing from that of the whole way by half of its second derivative at most.
-    fn is_slow(&self, motion: &Motion) -> bool {
+    fn is_slow(&self, motion: &Motion, bend: Option<f64>) -> bool {
         let (from, to) = (&motion.from.joints, &motion.to.joints);
-        let bend = match motion.way {
-            Interpolation::Axes => Some(0.0),
-            _ => bend_between_words(motion),
-        };
-        let Some(bend) = bend else {
+        let straight = (motion.way == Interpolation::Axes).then_some(0.0);
+        let Some(bend) = straight.or(bend) else {
             return false;
         };
         motion.state.solver.chain().joints().iter().enumerate().all(|(index, joint)| {
@@ -255,19 +264,18 @@ fn beyond_travel(axis: &Axis, value: f64, limit: f64) -> String {
 
 /// A bound on the second derivatives of the linear axes where the control keeps the tip on a straight line, mm; none
 /// where it does not, or nothing is known of it. Words are rounded: the last place is in it.
-fn bend_between_words(motion: &Motion) -> Option<f64> {
-    let keeps = [Interpolation::Tip(Curve::Straight), Interpolation::TipAndAxis];
-    if !keeps.contains(&motion.way) {
+pub(super) fn bend_between_words(motion: &Motion) -> Option<f64> {
+    let (Interpolation::Tip(Curve::Straight) | Interpolation::TipAndAxis) = motion.way else {
         return None;
-    }
+    };
     let ends = [&motion.from.joints, &motion.to.joints];
     let bend = TcpBlock::bend_by_arms(&motion.state.solver, ends, motion.to.pose.tip);
     bend.is_finite().then_some(bend + ROUNDED)
 }
 
 /// Where the control keeps the tip, its linear axes stay inside their travel between the words, as arms alone tell.
-fn stays_inside(machine: &Machine, motion: &Motion) -> bool {
-    let Some(bend) = bend_between_words(motion) else {
+fn stays_inside(machine: &Machine, motion: &Motion, bend: Option<f64>) -> bool {
+    let Some(bend) = bend else {
         return false;
     };
     // From the line between its ends an axis strays by an eighth of its second derivative.

@@ -19,6 +19,7 @@ mod cut_bounds;
 mod cut_path;
 mod detour;
 mod fed_rapid;
+mod feed;
 mod hole;
 mod left_on;
 mod near;
@@ -369,7 +370,8 @@ impl<'m, C: Course> Verifier<'m, C> {
             _ => self.sag,
         };
         chop::motion(motion, self.along, &sag, &mut self.last_end, &mut places);
-        if let Some(fault) = self.axes.over_travel(self.machine, motion) {
+        let bend = axes::bend_between_words(motion);
+        if let Some(fault) = self.axes.over_travel(self.machine, motion, bend) {
             self.axis_fault(motion, fault);
         }
         self.look_for_length(motion);
@@ -382,7 +384,7 @@ impl<'m, C: Course> Verifier<'m, C> {
                 self.rapid(motion, &places);
             }
             MotionKind::Feed | MotionKind::Thread => {
-                if let Some(fault) = self.axes.too_fast(self.machine, motion) {
+                if let Some(fault) = self.axes.too_fast(self.machine, motion, bend) {
                     self.axis_fault(motion, fault);
                 }
                 goes_on = self.goes_on(motion, &places);

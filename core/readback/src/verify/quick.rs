@@ -16,7 +16,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::Verifier;
-use super::place::{ToolPlace, free, nearest};
+use super::place::{PlaceDistance, ToolPlace, angle_of, free, nearest};
 use super::track::{Element, ElementKind};
 use crate::course::Course;
 use crate::{Motion, MotionKind};
@@ -24,9 +24,11 @@ use crate::{Motion, MotionKind};
 /// Share of a bound that rounding alone does not reach.
 const CLEAR: f64 = 1.0 - 1e-9;
 
-/// Share of the tolerance within which an element must end so that the one behind it does not lead on:
-/// [`super::sweep::LEADS_ON`], with room.
-const LEADS_ON: f64 = 0.9 * super::sweep::LEADS_ON;
+/// What rounding does to a distance as a share of the ways that it is worked out by, with room.
+const ROUNDING: f64 = 1e-14;
+
+/// Share of the tolerance within which a motion ends beside its element.
+const WELL_WITHIN: f64 = 0.2;
 
 /// How the program stands where it goes point by point.
 #[derive(Debug, Default)]
@@ -35,17 +37,34 @@ pub(super) struct QuickStand {
     on: bool,
     /// Ends of the motion that led there, if it was not swept: where the program can stand is not worked out then.
     last: Option<[ToolPlace; 2]>,
+    /// How near the program came to the end of the first element is not known to be told: the next motion may come nearer.
+    owes: bool,
     /// The largest deviation of the tool axis that was told, degrees, and a chord that is surely shorter.
     told: [f64; 2],
+    /// A chord whose angle is no larger than that which was told.
+    still: f64,
 }
 
 impl QuickStand {
     /// A chord between tool axes that is shorter than that of the angle which was told, degrees.
     fn chord(&mut self, told: f64) -> f64 {
         if self.told[0] != told {
-            self.told = [told, 2.0 * libm::sin(0.5 * told.to_radians()) * CLEAR];
+            let chord = 2.0 * libm::sin(0.5 * told.to_radians());
+            self.told = [told, chord * CLEAR - ROUNDING];
         }
         self.told[1]
+    }
+
+    /// Whether the angle of a chord is no larger than that which was told, degrees.
+    fn tells(&mut self, chord: f64, told: f64) -> bool {
+        if self.still == chord {
+            return true;
+        }
+        let tells = angle_of(chord).to_degrees() <= told;
+        if tells {
+            self.still = chord;
+        }
+        tells
     }
 }
 
@@ -83,31 +102,56 @@ impl<C: Course> Verifier<'_, C> {
         {
             return false;
         }
-        let feed = next.feed;
-        let next = (next.to, behind.from);
-        let most = [self.found.tip.value, self.quick.chord(self.found.axis.value)];
-        if !self.is_beside(&to, &next.0, most) || !to.within(&next.1, &self.bound) {
+        let Some(end) = self.beside(&to, &next.to) else {
+            return false;
+        };
+        let axes = [&left.to, &next.from, &behind.from].map(|place| place.axis);
+        let still = from.axis == to.axis && axes == [next.to.axis; 3];
+        let ways = [next.to.point - next.from.point, to.point - from.point];
+        let long = bound + ways.iter().map(|way| way.abs().sum()).sum::<f64>();
+        let tip = self.found.tip.value * CLEAR - ROUNDING * long;
+        let angle = self.found.axis.value;
+        // Where no axis turns a chord is worked out as it is in a sweep.
+        let (chord, still) = (self.quick.chord(angle), still && self.quick.tells(end[1], angle));
+        let is_told = |apart: [f64; 2]| apart[0] < tip && (still || apart[1] < chord);
+        let is_told_on = |place: &ToolPlace, ends: [&ToolPlace; 2]| {
+            let apart = apart_on(place, ends);
+            is_told(apart) && apart[1] < self.bound.axis * CLEAR
+        };
+        let mut owes = false;
+        if !is_told(end) {
+            // Beside its end it may be nearer to the way, and the end to its own.
+            if !is_told_on(&to, [&next.from, &next.to])
+                && !is_told_on(&to, [&behind.from, &behind.to])
+            {
+                return false;
+            }
+            owes = !is_told_on(&next.to, [&from, &to]);
+        }
+        if self.quick.owes && !is_told_on(&left.to, [&from, &to])
+            || !to.within(&behind.from, &self.bound)
+        {
             return false;
         }
+        let feed = next.feed;
         if !self.keeps_feed(motion, places, feed) {
             return false;
         }
         self.track.pop();
         self.quick.last = Some([from, to]);
+        self.quick.owes = owes;
         self.found.cuts += 1;
         true
     }
 
-    /// Whether the end of a motion is so near to that of an element that nothing is told of it.
+    /// How far the end of a motion is from that of an element, mm, and the chord between their tool axes; none where it is not
+    /// well within the tolerance.
     #[inline]
-    fn is_beside(&self, place: &ToolPlace, end: &ToolPlace, most: [f64; 2]) -> bool {
+    fn beside(&self, place: &ToolPlace, end: &ToolPlace) -> Option<[f64; 2]> {
         let off = (place.point - end.point).norm();
         let chord = (place.axis - end.axis).norm();
-        off < most[0] * CLEAR
-            && off < self.bound.point * LEADS_ON
-            && chord < most[1]
-            && chord < self.bound.axis * CLEAR
-            && !end.has_edge()
+        let within = off < self.bound.point * WELL_WITHIN && chord < self.bound.axis * CLEAR;
+        (within && !end.has_edge()).then_some([off, chord])
     }
 
     /// Looks whether the program goes point by point from here on, behind a motion that was swept.
@@ -126,12 +170,15 @@ impl<C: Course> Verifier<'_, C> {
         {
             return;
         }
-        let most = [self.found.tip.value, self.quick.chord(self.found.axis.value)];
         let kept = self.track.kept();
         let stands = |element: &Element| free(&to, &element.from, &element.to, &self.bound);
+        let is_told = |near: &PlaceDistance| {
+            near.point <= self.found.tip.value && near.axis.to_degrees() <= self.found.axis.value
+        };
         self.quick.on = match (kept.front(), kept.get(1)) {
             (Some(at), Some(next)) => {
-                self.is_beside(&to, &at.to, most)
+                is_told(&at.near)
+                    && self.beside(&to, &at.to).is_some()
                     && self.reach.iter().all(|span| !span.is_empty())
                     && self.reach == [stands(at), stands(next)]
             }
@@ -144,6 +191,7 @@ impl<C: Course> Verifier<'_, C> {
     pub(super) fn settle(&mut self) {
         if self.quick.on {
             self.quick.on = false;
+            self.quick.owes = false;
             self.stand();
         }
     }
@@ -164,6 +212,15 @@ impl<C: Course> Verifier<'_, C> {
             at.near = at.near.smaller(&nearest(&at.to, &from, &to, &top));
         }
     }
+}
+
+/// How far a place is from that of a straight piece where its point is nearest, mm, and the chord between their tool axes.
+fn apart_on(place: &ToolPlace, [from, to]: [&ToolPlace; 2]) -> [f64; 2] {
+    let (way, turn) = (to.point - from.point, to.axis - from.axis);
+    let (offset, axis) = (from.point - place.point, from.axis - place.axis);
+    let square = way.norm_squared();
+    let share = if square > 0.0 { (-offset.dot(&way) / square).clamp(0.0, 1.0) } else { 1.0 };
+    [(offset + way * share).norm(), (axis + turn * share).norm()]
 }
 
 /// Whether `place` is surely farther than `bound` beyond the end of the straight way from `from` to `to`, along it.

@@ -1,34 +1,30 @@
-//! What holds while the tool cuts: tool, registers, spindle, coolants, feed.
+//! What holds while the tool cuts: tool, registers, spindle, coolants.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use post_machine::axis_words::is_depth;
 use post_plugin::Lengths;
 
-use super::place::{ToolPlace, free, nearest_point, way_of};
+use super::place::{ToolPlace, free, nearest_point};
 use super::report::BlockPlace;
 use post_motion::CornerMode;
 
 use super::Verifier;
 use super::track::Element;
 use crate::course::Course;
-use crate::{Coolants, Corners, Interpolation, Motion, MotionKind, ProgramEvent, SpindleState};
+use crate::{Coolants, Corners, Motion, ProgramEvent, SpindleState};
 
 /// Share of a printed speed or feed that is rounding.
-const SHARE: f64 = 0.005;
+pub(super) const SHARE: f64 = 0.005;
 
 /// Half of the last place of a feed or speed without decimals.
 pub(super) const PLACE: f64 = 0.51;
-
-/// Rounding of the ends of a way, mm.
-const ROUNDED: f64 = 0.003;
 
 /// Times of dwells are rounded, s.
 const DWELL: f64 = 0.01;
 
 /// Ways shorter than this take no time that could be compared, mm.
-const SHORT: f64 = 1e-3;
+pub(super) const SHORT: f64 = 1e-3;
 
 impl<C: Course> Verifier<'_, C> {
     /// Compares what holds in a cut with what the course asks for where the motion has its place.
@@ -63,59 +59,6 @@ impl<C: Course> Verifier<'_, C> {
         let first = cuts.next()?;
         let same = |other: &Element| Arc::ptr_eq(asked, &other.asked) && other.feed == first.feed;
         (same(first) && cuts.all(same)).then_some(first.feed)
-    }
-
-    /// Whether the feed is as asked, mm/min, if one is, or something limits it, which is noted then.
-    pub(super) fn keeps_feed(
-        &mut self,
-        motion: &Motion,
-        places: &[ToolPlace],
-        asked: Option<f64>,
-    ) -> bool {
-        let Some(asked) = asked.filter(|asked| !self.is_as_fast_as_asked(motion, places, *asked))
-        else {
-            return true;
-        };
-        if motion.feed > asked {
-            return false;
-        }
-        match self.feed_verdict(motion, places, asked) {
-            FeedVerdict::AsAsked => true,
-            FeedVerdict::Limited(limit) => {
-                self.note_limit(limit);
-                true
-            }
-            FeedVerdict::None | FeedVerdict::Above(_) | FeedVerdict::Below(_) => false,
-        }
-    }
-
-    /// Whether the feed is that which is asked for, mm/min, but for what is rounded in any case:
-    /// [`Verifier::compare_feed`] allows for more.
-    fn is_as_fast_as_asked(&self, motion: &Motion, places: &[ToolPlace], asked: f64) -> bool {
-        if motion.feed > asked || motion.minutes <= 0.0 {
-            return false;
-        }
-        let feed = way_of(places) / motion.minutes;
-        let place = self.rules.feed_place.max(PLACE);
-        feed <= asked * (1.0 + SHARE) + PLACE && feed >= asked * (1.0 - SHARE) - place
-    }
-
-    /// The feed of an element, or of another that a motion lies on as a whole, if that is larger: what is left of a
-    /// piece at a corner is within the tolerance of the next.
-    fn feed_of(&self, places: &[ToolPlace], element: &Element) -> Option<f64> {
-        let feed = element.feed?;
-        let last = self.reach.iter().rposition(|span| !span.is_empty())?;
-        let [first, middle, end] = [0, places.len() / 2, places.len() - 1].map(|at| &places[at]);
-        let ahead = end.point - first.point;
-        let on = |other: &&Element| {
-            let free = |place: &ToolPlace| free(place, &other.from, &other.to, &self.bound);
-            let forward = ahead.dot(&(other.to.point - other.from.point)) >= 0.0;
-            let whole = [first, middle, end].iter().all(|place| !free(place).is_empty());
-            other.is_cut() && forward && whole
-        };
-        let kept = self.track.kept().iter().take(last + 1);
-        let feeds = kept.filter(on).filter_map(|other| other.feed);
-        Some(feeds.fold(feed, f64::max))
     }
 
     /// The element of the course that a motion follows: where all that it may follow ask for the same, any of them;
@@ -411,138 +354,6 @@ impl<C: Course> Verifier<'_, C> {
             self.fault("register", message, Some(motion), None, None);
         }
     }
-
-    /// Compares the feed: never faster than asked, and slower only where an axis could not go faster.
-    pub(super) fn compare_feed(
-        &mut self,
-        motion: &Motion,
-        places: &[ToolPlace],
-        element: &Element,
-    ) {
-        let Some(asked) = element.feed else {
-            return;
-        };
-        match self.feed_verdict(motion, places, asked) {
-            FeedVerdict::AsAsked => {}
-            FeedVerdict::Limited(limit) => self.note_limit(limit),
-            FeedVerdict::None => {
-                let message = "cuts without a feed".to_owned();
-                self.fault("feed", message, Some(motion), Some(element.line), None);
-            }
-            FeedVerdict::Above(feed) => {
-                let message = format!("the feed is above that of the CL file, {asked} mm/min");
-                let told = format!("{message}: {feed:.1} mm/min");
-                self.limit_fault("feed", message, told, motion, element.line, feed - asked);
-            }
-            FeedVerdict::Below(feed) => {
-                self.found.slower += 1;
-                let message = format!(
-                    "the feed is below that of the CL file, {asked} mm/min, and no axis asks for that"
-                );
-                let told = format!("{message}: {feed:.1} mm/min");
-                self.limit_fault("feed", message, told, motion, element.line, asked - feed);
-            }
-        }
-    }
-
-    /// A cut is slower than asked, and that is right.
-    fn note_limit(&mut self, limit: FeedLimit) {
-        self.found.limited += 1;
-        self.block.limited_by = Some(match limit {
-            FeedLimit::Axis(joint) => {
-                Cow::Owned(format!("max_feed of {}", self.machine.axes[joint].name))
-            }
-            FeedLimit::Time => Cow::Borrowed("the largest feed by time"),
-            FeedLimit::Plan => Cow::Borrowed("the planned feed"),
-        });
-    }
-
-    /// What is to be said of the feed of a motion where `asked` is asked for, mm/min.
-    fn feed_verdict(&self, motion: &Motion, places: &[ToolPlace], asked: f64) -> FeedVerdict {
-        let way = way_of(places);
-        if way < SHORT {
-            return FeedVerdict::AsAsked;
-        }
-        if motion.minutes <= 0.0 {
-            return match motion.kind {
-                MotionKind::Feed => FeedVerdict::None,
-                _ => FeedVerdict::AsAsked,
-            };
-        }
-        let feed = way / motion.minutes;
-        let rounded = self.rounded_share(motion, way);
-        if feed > asked * (1.0 + SHARE + rounded) + PLACE {
-            return FeedVerdict::Above(feed);
-        }
-        let place = self.rules.feed_place.max(PLACE);
-        if feed >= asked * (1.0 - SHARE - rounded) - place {
-            return FeedVerdict::AsAsked;
-        }
-        match self.axes.least_minutes(self.machine, motion, 0.0) {
-            // Of a slow feed the last place is much, and it is rounded down.
-            Some((minutes, joint))
-                if motion.minutes <= minutes * 1.05
-                    || feed + 2.0 * place >= 0.95 * way / minutes =>
-            {
-                FeedVerdict::Limited(FeedLimit::Axis(joint))
-            }
-            _ if motion.minutes <= self.rules.least_minutes * (1.0 + SHARE) => {
-                FeedVerdict::Limited(FeedLimit::Time)
-            }
-            _ if self.rules.planned => FeedVerdict::Limited(FeedLimit::Plan),
-            _ => FeedVerdict::Below(feed),
-        }
-    }
-
-    /// Share of the feed of a motion that goes `way` mm which rounded words make.
-    fn rounded_share(&self, motion: &Motion, way: f64) -> f64 {
-        // Of a short way a rounded word is much.
-        let mut rounded = ROUNDED / way;
-        if motion.way == Interpolation::Axes {
-            // What is printed is the feed along the axes, which may go a much shorter way than the tip.
-            let joints = motion.state.solver.chain().joints().iter().enumerate();
-            let square: f64 = joints
-                .filter(|(_, joint)| !joint.rotary)
-                .map(|(index, _)| motion.to.joints[index] - motion.from.joints[index])
-                .map(|way| way * way)
-                .sum();
-            // Rounded down, so that it is never above what is asked.
-            rounded += 2.0 * PLACE * motion.minutes / square.sqrt().max(1e-6);
-            // Where rotary axes turn the tip goes another way than the points that its time was counted by, within the
-            // tolerance.
-            let turned = |joint: usize| motion.to.joints[joint] != motion.from.joints[joint];
-            let chain = motion.state.solver.chain().joints();
-            if (0..chain.len()).any(|joint| chain[joint].rotary && turned(joint)) {
-                rounded += 2.0 * self.rules.tolerance / way;
-            }
-        }
-        rounded
-    }
-}
-
-/// What limits a feed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum FeedLimit {
-    /// The axis at this place of the machine.
-    Axis(usize),
-    /// The largest feed by time.
-    Time,
-    /// The plan that the feed was made by.
-    Plan,
-}
-
-/// What is to be said of a feed, mm/min.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum FeedVerdict {
-    AsAsked,
-    /// The program states none.
-    None,
-    /// Faster than asked.
-    Above(f64),
-    /// Slower than asked, and that is right.
-    Limited(FeedLimit),
-    /// Slower than asked.
-    Below(f64),
 }
 
 /// How an event is told.

@@ -29,7 +29,7 @@ pub(super) struct StrayStretch {
 }
 
 /// Share of the tolerance by which an element must be nearer to count in place of one before it.
-pub(super) const LEADS_ON: f64 = 0.25;
+const LEADS_ON: f64 = 0.25;
 
 /// A bound so wide that nothing is told apart by it.
 const WIDEST: f64 = 1e8;

@@ -6,6 +6,7 @@
 
 mod course;
 mod interpret;
+mod point_by_point;
 mod robust;
 mod runs;
 mod tasks;

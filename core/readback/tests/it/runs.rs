@@ -134,13 +134,15 @@ fn program(rng: &mut Rng, axes: &[&str]) -> String {
 
 #[test]
 fn runs_do_what_their_blocks_do() {
-    const MACHINES: [(&str, &[&str]); 6] = [
+    const MACHINES: [(&str, &[&str]); 8] = [
         ("ac-trunnion", &["X", "Y", "Z", "A", "C"]),
         ("bc-trunnion", &["X", "Y", "Z", "B", "C"]),
         ("head-head", &["X", "Y", "Z", "B", "C"]),
         ("nutating-head", &["X", "Y", "Z", "B", "C"]),
         ("umc-750", &["X", "Y", "Z", "B", "C"]),
         ("vmc", &["X", "Y", "Z"]),
+        ("quill-mill", &["X", "Y", "Z", "W"]),
+        ("boring-mill", &["X", "Y", "Z", "W", "B"]),
     ];
     let (rounds, mut rng) = randomised(40, 281);
     for _ in rounds {

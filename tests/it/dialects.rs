@@ -135,7 +135,7 @@ fn planes_are_the_default_where_nothing_is_lost_in_them() {
             }
         }
     }
-    let expected = ["fanuc", "haas", "heidenhain", "mazak", "siemens"]
+    let expected = ["fagor", "fanuc", "haas", "heidenhain", "isg", "mazak", "siemens"]
         .map(|dialect| ["wedge.ncl", "facets.apt"].map(|name| format!("{dialect} {name}")));
     with_planes.sort();
     let mut expected = expected.concat();

@@ -199,7 +199,11 @@ fn a_plugin_shows_its_options_and_what_it_writes() {
     assert!(model.out.contains("Options, [accuracy.sampled]:\n"), "{}", model.out);
     let slip = post(&["plugin", "show", "fanuk"]);
     assert_eq!((slip.code, slip.out.as_str()), (1, ""));
-    assert!(slip.err.contains("did you mean `fanuc`? there are brother, fanuc, "), "{}", slip.err);
+    assert!(
+        slip.err.contains("did you mean `fanuc`? there are brother, fagor, fanuc, "),
+        "{}",
+        slip.err
+    );
 }
 
 #[test]

@@ -83,7 +83,7 @@ const REFUSED: &[(&str, &str, &str, &str)] = &[
     ("nx_HumMan_ust_a2.cls", "ac-trunnion", "", "over-travel"),
     ("nx_HumMan_ust_a.cls", "dmu50", "", "over-travel"),
     ("nx_HumMan_ust_a.cls", "nutating-head", "", "out-of-reach"),
-    ("nx_HumMan__3_PAZ_125_N2.cls", "vmc", "--tool 1", "over-travel"),
+    ("nx_HumMan__3_PAZ_125_N2.cls", "vmc", "--tool 1 --mount 0,0,0", "over-travel"),
     ("nx_HumMan__10_KONTUR_125_N2_162.cls", "ac-trunnion", "--tool 1", "over-travel"),
     // A dialect with G43 H must know the tool.
     ("nx_HumMan_deep_drill.clsf", "vmc", "--allow DEEP", "dialect"),

@@ -1,6 +1,6 @@
 //! Programs as posts of others wrote them, and our own of ten dialects, read without a fault.
 
-use super::{conversational, hash, names, read};
+use super::{conversational, hash, instructions, names, read};
 use post_grammar::nc::{NcBlock, NcReader, NcSyntax, parse_block};
 use post_testkit::{repository, shared};
 use std::fs::{self, File};
@@ -124,7 +124,8 @@ fn program<'t>(path: &Path, text: &'t str) -> Option<(&'t str, NcSyntax)> {
         let from = begin(";").or(begin("N10 ")).or(begin("%_N_"))?;
         return Some((&body[from..], names()));
     }
-    let from = [begin("%\n"), begin("O1000"), begin("("), begin("G21")];
+    let from = [begin("%"), begin("O1000"), begin("("), begin("G21")];
     let from = from.into_iter().flatten().min()?;
-    Some((&body[from..], hash()))
+    let with_instructions = ["_fagor", "_isg"].iter().any(|name| told.contains(name));
+    Some((&body[from..], if with_instructions { instructions() } else { hash() }))
 }

@@ -64,12 +64,12 @@ fn operations_and_tools_are_gone_to() {
     let names: Vec<&str> = names.as_array().unwrap().iter().filter_map(Value::as_str).collect();
     let tools: Vec<&&str> = names.iter().filter(|name| name.starts_with("tool ")).collect();
     assert_eq!(tools.len(), 4, "{names:?}");
-    for place in 0..names.len() {
+    for (place, name) in names.iter().enumerate() {
         browser.ask(&format!("{steps}[{place}].click()"));
         let row = state(&mut browser, "row");
         let rows =
             "P.m.meta.events.filter(({ kind }) => ['operation', 'tool', 'head'].includes(kind))";
-        assert_eq!(row, browser.ask(&format!("{rows}[{place}].row")), "{}", names[place]);
+        assert_eq!(row, browser.ask(&format!("{rows}[{place}].row")), "{name}");
         let marked = browser.ask("document.querySelector('.steps [aria-current]').textContent");
         let begun = browser.ask(&format!("{rows}.findLast(({{ row }}) => row <= {row}).text"));
         assert_eq!(marked, begun);

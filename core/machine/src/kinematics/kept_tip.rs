@@ -199,8 +199,8 @@ impl<'a> TcpBlock<'a> {
         true
     }
 
-    /// A bound as [`TcpBlock::quick`] has, and no less than that, from the lengths of arms alone: nothing is turned for
-    /// it. `ends` are the axis values of a block, mm and radians, `tip` is where the tip stands at the last of them, mm,
+    /// A bound as [`TcpBlock::quick`] has, and no less than that where the axes stray by less than metres, from the lengths
+    /// of arms alone: nothing is turned for it. `ends` are the axis values of a block, mm and radians, `tip` is where the tip stands at the last of them, mm,
     /// part frame.
     ///
     /// An arm keeps its length while it turns, and the tip is never farther from where it ends than the way that the

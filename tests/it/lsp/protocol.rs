@@ -78,7 +78,7 @@ fn edits_are_counted_in_utf_16_units() {
 fn a_question_is_taken_back_or_overtaken_by_an_edit() {
     let uri = "file:///nowhere/long.cls";
     let mut client = Client::new(&[], &json!({}));
-    let text = long(400_000);
+    let text = long(2_000_000);
     client.open(uri, "plaintext", &text);
     let of = json!({ "textDocument": { "uri": uri } });
     let id = client.put("textDocument/documentSymbol", of.clone());

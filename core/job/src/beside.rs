@@ -38,8 +38,19 @@ pub enum Work<'s, M: Maker> {
 type Made<M> = Result<<M as Maker>::Batch, Box<dyn Any + Send>>;
 
 impl<'s, M: Maker> Work<'s, M> {
+    /// On a thread of `scope` that makes `most` things at a time, or where it is taken if none are said.
+    pub fn start<'e>(scope: &'s Scope<'s, 'e>, maker: &'s mut M, most: Option<usize>) -> Self
+    where
+        M::Batch: 's,
+    {
+        match most {
+            Some(most) => Self::beside(scope, maker, most),
+            None => Self::Here(maker),
+        }
+    }
+
     /// On a thread of `scope` that makes `most` things at a time; here, where none can be started.
-    pub fn beside<'e>(scope: &'s Scope<'s, 'e>, maker: &'s mut M, most: usize) -> Self
+    fn beside<'e>(scope: &'s Scope<'s, 'e>, maker: &'s mut M, most: usize) -> Self
     where
         M::Batch: 's,
     {
@@ -126,10 +137,7 @@ mod tests {
     /// What is taken of a maker, up to so many batches; and how far it has come.
     fn taken(maker: &mut Counting, beside: Option<usize>, batches: usize) -> Vec<u32> {
         thread::scope(|scope| {
-            let mut work = match beside {
-                Some(most) => Work::beside(scope, maker, most),
-                None => Work::Here(maker),
-            };
+            let mut work = Work::start(scope, maker, beside);
             let (mut taken, mut batch) = (Vec::new(), Vec::new());
             for _ in 0..batches {
                 if !work.next(&mut batch) {

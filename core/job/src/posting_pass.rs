@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::thread;
 
-use post_grammar::{ClPiece, ClReader, GotoRun, ReadError};
+use post_grammar::{ClPiece, ClReader, GotoRun};
 use post_host::{Finder, OpenedDialect, OpenedModel};
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
@@ -230,18 +230,12 @@ pub fn preview(
         if pass.passes_gotos() {
             reader.skip_gotos();
         }
-        let text = reader.next_gotos(&mut run);
-        if !text.is_empty() {
-            pass.gotos(&run, text);
-            continue;
-        }
-        match reader.next_record() {
-            Ok(Some(record)) => pass.record(&record),
-            Ok(None) => return Ok(Arc::new(pass.finish())),
-            Err(ReadError::Syntax(_)) => {}
-            Err(ReadError::Io(error)) => {
-                return Err(FileFault::Read { name: input.name, error });
-            }
+        match reader.next_piece(&mut run) {
+            ClPiece::Gotos(text) => pass.gotos(&run, text),
+            ClPiece::Record(record) => pass.record(&record),
+            ClPiece::Unreadable(_) => {}
+            ClPiece::End => return Ok(Arc::new(pass.finish())),
+            ClPiece::Failed(error) => return Err(FileFault::Read { name: input.name, error }),
         }
     }
 }

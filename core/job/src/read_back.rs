@@ -3,7 +3,7 @@
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::num::NonZeroUsize;
 use std::ops::Range;
-use std::thread::{self, Scope};
+use std::thread;
 
 use post_host::Finder;
 use post_machine::description::{Machine, OutputUnits, Rapid, TextPlace};
@@ -20,8 +20,8 @@ use post_readback::{BlockEffect, Offsets, ProgramRun};
 
 use super::nc_program::{self, DialectVocabulary, NcControl};
 use super::plugin_finder;
-use crate::beside::{Maker, Work};
-use crate::blocks_ahead::{CourseAhead, RunBlocks, TOGETHER};
+use crate::beside::Work;
+use crate::blocks_ahead::{RunBlocks, TOGETHER};
 use crate::failure::Failure;
 use crate::files::{ClSource, FileFault, ReadPosition, Watched};
 use crate::nc_program::{ProgramText, RunningProgram};
@@ -61,9 +61,9 @@ pub struct ReadingSetup<'a> {
 }
 
 impl ReadingSetup<'_> {
-    /// There are `count` threads beside this one.
-    fn beside(&self, count: usize) -> bool {
-        self.threads.get() > count
+    /// The program is run on a thread beside this one.
+    fn runs_beside(&self) -> bool {
+        self.threads > NonZeroUsize::MIN
     }
 }
 
@@ -182,31 +182,16 @@ pub fn verify(
     let (bounds, mut findings) = CutBounds::of(&mut course, along);
     let tools = course.tools().to_vec();
     let again = ClCourse::new(settings.clone(), source.open_beside()?.bytes);
-    let mut course = ClCourse::new(settings, source.open()?.bytes);
-    let held = thread::scope(|scope| {
-        // One thread has the program, if there are only two.
-        let course = CourseAhead::new(work(scope, &mut course, reading.beside(2)));
-        let against = VerifyReference {
-            course: CourseWindow::new(course, reading.lines.clone()),
-            name: cl_name,
-            tools,
-            cut_path: Some(CutPath::when_asked(bounds, Box::new(again), along)),
-        };
-        hold(reading, against, name, input, watch)
-    })?;
+    let course = ClCourse::new(settings, source.open()?.bytes);
+    let against = VerifyReference {
+        course: CourseWindow::new(course, reading.lines.clone()),
+        name: cl_name,
+        tools,
+        cut_path: Some(CutPath::when_asked(bounds, Box::new(again), along)),
+    };
+    let held = hold(reading, against, name, input, watch)?;
     findings.extend(held.findings);
     Ok(VerifiedProgram { findings, ..held })
-}
-
-/// A maker at work, on a thread of `scope` if it shall be `beside`.
-fn work<'s, M: Maker>(scope: &'s Scope<'s, '_>, maker: &'s mut M, beside: bool) -> Work<'s, M>
-where
-    M::Batch: 's,
-{
-    match beside {
-        true => Work::beside(scope, maker, TOGETHER),
-        false => Work::Here(maker),
-    }
 }
 
 /// Who looks on while a program is held against a course.
@@ -318,7 +303,8 @@ pub fn hold<C: Course>(
     let mut blocks = 0;
     let mut run = running(&control, name, &mut input)?;
     thread::scope(|scope| {
-        let mut work = work(scope, &mut run.blocks, reading.beside(1));
+        let mut work =
+            Work::start(scope, &mut run.blocks, reading.runs_beside().then_some(TOGETHER));
         let mut progress = reading.session.progress(Some(run.length));
         let mut batch = RunBlocks::default();
         while !verifier.found().gave_up && work.next(&mut batch) {
@@ -336,7 +322,7 @@ pub fn hold<C: Course>(
         }
         progress.finish();
     });
-    if verifier.found().gave_up && reading.beside(1) {
+    if verifier.found().gave_up && reading.runs_beside() {
         // It was run farther than it was judged.
         drop(run);
         run = running(&control, name, &mut input)?;

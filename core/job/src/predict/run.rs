@@ -139,10 +139,7 @@ pub fn predict(
     let mut progress = asked.session.progress(Some(length));
     let beside = asked.threads > NonZeroUsize::MIN;
     thread::scope(|scope| {
-        let mut work = match beside {
-            true => Work::beside(scope, &mut trajectory, TOGETHER),
-            false => Work::Here(&mut trajectory),
-        };
+        let mut work = Work::start(scope, &mut trajectory, beside.then_some(TOGETHER));
         let mut batch = Vec::new();
         while work.next(&mut batch) {
             progress.some_records(batch.len() as u64, || position.get());

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use post_plugin::Compensation;
 
-use crate::blocks::{BlockKind, MotionBlock};
+use crate::blocks::MotionBlock;
 use crate::program::Command;
 
 /// Operations that are told apart; what comes after them counts with the last.
@@ -60,7 +60,7 @@ impl OperationList {
         let before = self.axis.replace(block.axis);
         let work = self.last();
         work.time_s += 60.0 * block.time.minutes;
-        if !matches!(block.kind, BlockKind::Linear | BlockKind::Arc | BlockKind::Spline) {
+        if !block.kind.cuts() {
             return;
         }
         let lowest = work.lowest.get_or_insert(block.tip.z);

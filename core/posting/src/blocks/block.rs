@@ -137,6 +137,14 @@ pub enum BlockKind {
     Spline,
 }
 
+impl BlockKind {
+    /// The tool comes to the end at feed, from where it stands.
+    #[inline]
+    pub fn cuts(self) -> bool {
+        matches!(self, Self::Linear | Self::Arc | Self::Spline)
+    }
+}
+
 /// Why a block is there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockReason {

@@ -223,7 +223,7 @@ impl<'a> EmitStage<'a> {
     #[inline]
     fn block(&mut self, block: &MotionBlock, printed: Option<&PrintedCurve>) {
         let line = block.line;
-        if self.spindle.waits.is_some_and(|first| cuts(block) || first.goes_in(block)) {
+        if self.spindle.waits.is_some_and(|first| block.kind.cuts() || first.goes_in(block)) {
             self.wake(line);
         }
         match block.kind {
@@ -441,11 +441,6 @@ fn number(elements: &mut [StreamItem<MotionBlock>], lines: &mut dyn Iterator<Ite
             StreamItem::Command { .. } | StreamItem::Note { .. } => {}
         }
     }
-}
-
-/// Whether a block goes at feed, from where the tool stands.
-fn cuts(block: &MotionBlock) -> bool {
-    matches!(block.kind, BlockKind::Linear | BlockKind::Arc | BlockKind::Spline)
 }
 
 /// Where the tool stands at the end of a block.

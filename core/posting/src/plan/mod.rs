@@ -33,7 +33,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::Format;
 
 use crate::accuracy::Placer;
-use crate::blocks::{BlockKind, BlockNote, BlockSink, MotionBlock};
+use crate::blocks::{BlockNote, BlockSink, MotionBlock};
 use crate::findings::Findings;
 use crate::program::Command;
 use crate::stream::{HoleMoves, StreamItem};
@@ -237,7 +237,7 @@ impl<'a> PlanStage<'a> {
         };
         let end = BlockStart::after(block);
         let start = self.stands.replace(end);
-        let cuts = matches!(block.kind, BlockKind::Linear | BlockKind::Arc | BlockKind::Spline);
+        let cuts = block.kind.cuts();
         match start.filter(|_| cuts && self.run.is_some()) {
             Some(start) => self.plan(next, &start, &end, out),
             None => {

@@ -4,7 +4,7 @@
 
 use post_iso::{
     Control, CycleCode, Dwell, Iso, Leave, Offset, Plane, Rigid, Subprogram, Table, Tcp,
-    is_offset_beyond_six, iso_options, offset_beyond_six, options, words,
+    iso_options, options, words,
 };
 use post_plugin::{Cycle, Meaning, OptionSpec, Setup, export_dialect};
 
@@ -17,12 +17,7 @@ impl Control for Brother {
         options: OPTIONS,
         extension: "NC",
         percent: false,
-        offset: Offset {
-            known: |text| is_offset_beyond_six(text, "G54.1 P", 300),
-            range: "G54 to G59 or G54.1 P1 to P300",
-            word: |number| offset_beyond_six(number, "G54.1 P", 300),
-            ..Table::ISO.offset
-        },
+        offset: Offset::ADDITIONAL,
         relies: RELIES,
         feed_all_axes: true,
         // No stored post of this control keeps the tip: the machine file names the words.
@@ -32,8 +27,8 @@ impl Control for Brother {
         dwell: Dwell::Seconds("P", 3),
         cycles: CYCLES,
         plane: Plane::Euler { on: "G68.2", turn: "G53.1", off: "G69" },
-        rigid: Rigid::Pitch { codes: ["G77", ""], pitch: "I" },
-        subprogram: Subprogram { number: "M98 P{}", name: "", times: " L" },
+        rigid: Rigid::Codes { codes: ["G77", ""], pitch: "I" },
+        subprogram: Subprogram::M98,
         // Mist is no equipment of these machines.
         coolant: ["M9", "M8", "", "", ""],
         words: &[

@@ -4,7 +4,7 @@
 
 use post_iso::{
     Control, Iso, Offset, Plane, Rigid, SplineForm, Subprogram, SurfaceSpeed, Table, Tcp,
-    is_offset_beyond_six, iso_options, offset_beyond_six, options, words,
+    iso_options, options, words,
 };
 use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};
 
@@ -17,12 +17,7 @@ impl Control for Fanuc {
         options: OPTIONS,
         title: Some(("O", 4)),
         largest_number: 99_999_999,
-        offset: Offset {
-            known: |text| is_offset_beyond_six(text, "G54.1 P", 300),
-            range: "G54 to G59 or G54.1 P1 to P300",
-            word: |number| offset_beyond_six(number, "G54.1 P", 300),
-            ..Table::ISO.offset
-        },
+        offset: Offset::ADDITIONAL,
         relies: RELIES,
         cancel: CANCEL,
         cancel_behind_length: true,
@@ -36,7 +31,7 @@ impl Control for Fanuc {
         smoothing: SMOOTHING,
         surface: Some(SurfaceSpeed { codes: ["G96", "G97"], most: "G92 S" }),
         probe: "G31",
-        subprogram: Subprogram { number: "M98 P{}", name: "", times: " L" },
+        subprogram: Subprogram::M98,
         words: &[
             words::RETURNS,
             words::SHIFTS,

@@ -31,7 +31,7 @@ impl Control for Haas {
         smoothing: SMOOTHING,
         smoothing_anywhere: true,
         probe: "G31",
-        subprogram: Subprogram { number: "M98 P{}", name: "", times: " L" },
+        subprogram: Subprogram::M98,
         words: &[words::SHIFTS, words::STOPS, words::SUBPROGRAM_END, OWN],
         ..Table::ISO
     };

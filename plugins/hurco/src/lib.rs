@@ -27,7 +27,7 @@ impl Control for Hurco {
         leave: &[Leave::Tcp, Leave::Retract, Leave::Length],
         // P is not optional there.
         rigid: Rigid::Alone("M29"),
-        subprogram: Subprogram { number: "M98 P{}", name: "", times: " L" },
+        subprogram: Subprogram::M98,
         words: &[words::SUBPROGRAM_END, OWN],
         ..Table::ISO
     };

@@ -46,11 +46,8 @@ impl ModalCycle {
     /// The word that begins it: rigid taps may have codes of their own, to the right and to the left.
     fn word(&self, rigid: Option<Rigid>) -> &'static str {
         match (rigid, self.kind) {
-            (
-                Some(Rigid::Codes([_, left]) | Rigid::Pitch { codes: [_, left], .. }),
-                Cycle::TapLeft,
-            ) => left,
-            (Some(Rigid::Codes([right, _]) | Rigid::Pitch { codes: [right, _], .. }), _) => right,
+            (Some(Rigid::Codes { codes: [_, left], .. }), Cycle::TapLeft) => left,
+            (Some(Rigid::Codes { codes: [right, _], .. }), _) => right,
             _ => self.code,
         }
     }
@@ -243,7 +240,9 @@ impl Engine {
         if first {
             self.cycle_words(&running, rigid);
             match rigid {
-                Some(Rigid::Pitch { pitch, .. }) => self.pitch_word(pitch, &running)?,
+                Some(Rigid::Codes { pitch, .. }) if !pitch.is_empty() => {
+                    self.pitch_word(pitch, &running)?
+                }
                 // Spindle and axis are told the same thread.
                 _ => self.motion.feed_again(running.feed, if taps(running.kind) { 3 } else { 0 }),
             }

@@ -251,14 +251,11 @@ pub enum Rigid {
     Alone(&'static str),
     /// A word in the block of the cycle: `,R1`.
     Beside(&'static str),
-    /// Another code than that of the cycle, right-hand and left-hand.
-    Codes([&'static str; 2]),
-    /// Another code than that of the cycle, right-hand and left-hand, with the pitch in mm under this address in the place
-    /// of F: `G77 I1.25`.
-    Pitch {
-        /// The codes.
+    /// Other codes than those of the cycle.
+    Codes {
+        /// Right-hand, left-hand.
         codes: [&'static str; 2],
-        /// Address of the pitch.
+        /// Address of the pitch in mm, in the place of F: `G77 I1.25`; empty: F says it.
         pitch: &'static str,
     },
     /// A move of its own down and up, with the pitch as K: `G33.1`.
@@ -369,6 +366,21 @@ impl Length {
     pub(crate) const fn is_register(&self) -> bool {
         !self.on.is_empty() && self.register.is_empty()
     }
+}
+
+impl Offset {
+    /// G54 to G59, and G54.1 P1 to P300 behind them: Fanuc's additional work offsets.
+    pub const ADDITIONAL: Offset = Offset {
+        known: |text| is_offset_beyond_six(text, "G54.1 P", 300),
+        range: "G54 to G59 or G54.1 P1 to P300",
+        word: |number| offset_beyond_six(number, "G54.1 P", 300),
+        ..Table::ISO.offset
+    };
+}
+
+impl Subprogram {
+    /// By number alone, how often behind it: `M98 P1000 L2`.
+    pub const M98: Subprogram = Subprogram { number: "M98 P{}", name: "", times: " L" };
 }
 
 impl CycleCode {

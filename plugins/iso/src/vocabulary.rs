@@ -201,11 +201,7 @@ impl Engine {
             Rigid::Beside(word) => {
                 add(word.trim_end_matches(|c: char| c.is_ascii_digit()), M::Nothing)
             }
-            Rigid::Codes([right, left]) => {
-                add(right, M::CycleTap);
-                add(left, M::CycleTapLeft);
-            }
-            Rigid::Pitch { codes: [right, left], pitch } => {
+            Rigid::Codes { codes: [right, left], pitch } => {
                 for (word, meaning) in [(right, M::CycleTap), (left, M::CycleTapLeft)] {
                     add(word, meaning);
                     if !word.is_empty() {

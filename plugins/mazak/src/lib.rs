@@ -3,8 +3,7 @@
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
-    Control, Iso, Leave, Offset, Plane, Rigid, Subprogram, Table, Tcp, is_offset_beyond_six,
-    iso_options, offset_beyond_six, options, words,
+    Control, Iso, Leave, Offset, Plane, Rigid, Subprogram, Table, Tcp, iso_options, options, words,
 };
 use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};
 
@@ -18,12 +17,7 @@ impl Control for Mazak {
         extension: "EIA",
         percent: false,
         title: Some(("O", 4)),
-        offset: Offset {
-            known: |text| is_offset_beyond_six(text, "G54.1 P", 300),
-            range: "G54 to G59 or G54.1 P1 to P300",
-            word: |number| offset_beyond_six(number, "G54.1 P", 300),
-            ..Table::ISO.offset
-        },
+        offset: Offset::ADDITIONAL,
         relies: RELIES,
         feed_all_axes: true,
         cancel: CANCEL,
@@ -34,11 +28,11 @@ impl Control for Mazak {
         // P0: I J K are Euler angles.
         plane: Plane::Euler { on: "G68.2 P0", turn: "G53.1", off: "G69" },
         cycles_in_plane: true,
-        rigid: Rigid::Codes(["G84.2", "G84.3"]),
+        rigid: Rigid::Codes { codes: ["G84.2", "G84.3"], pitch: "" },
         smoothing: SMOOTHING,
         smoothing_anywhere: true,
         probe: "G31",
-        subprogram: Subprogram { number: "M98 P{}", name: "", times: " L" },
+        subprogram: Subprogram::M98,
         words: &[words::RETURNS, words::SUBPROGRAM_END, OWN],
         ..Table::ISO
     };

@@ -3,8 +3,8 @@
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
-    Control, Iso, Leave, Offset, Plane, Rigid, Subprogram, SurfaceSpeed, Table, Tcp,
-    is_offset_beyond_six, iso_options, offset_beyond_six, options, words,
+    Control, Iso, Leave, Offset, Plane, Rigid, Subprogram, SurfaceSpeed, Table, Tcp, iso_options,
+    options, words,
 };
 use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};
 
@@ -16,12 +16,7 @@ impl Control for Mitsubishi {
     const TABLE: &'static Table = &Table {
         options: OPTIONS,
         title: Some(("O", 4)),
-        offset: Offset {
-            known: |text| is_offset_beyond_six(text, "G54.1 P", 300),
-            range: "G54 to G59 or G54.1 P1 to P300",
-            word: |number| offset_beyond_six(number, "G54.1 P", 300),
-            ..Table::ISO.offset
-        },
+        offset: Offset::ADDITIONAL,
         relies: RELIES,
         feed_all_axes: true,
         cancel: CANCEL,
@@ -34,7 +29,7 @@ impl Control for Mitsubishi {
         rigid: Rigid::Beside(",R1"),
         surface: Some(SurfaceSpeed { codes: ["G96", "G97"], most: "G92 S" }),
         probe: "G31",
-        subprogram: Subprogram { number: "M98 P{}", name: "", times: " L" },
+        subprogram: Subprogram::M98,
         words: &[
             words::RETURNS,
             words::SHIFTS,

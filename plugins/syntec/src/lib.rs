@@ -4,8 +4,7 @@
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
-    Control, Iso, Offset, Plane, Rigid, Subprogram, Table, Tcp, is_offset_beyond_six, iso_options,
-    offset_beyond_six, options, words,
+    Control, Iso, Offset, Plane, Rigid, Subprogram, Table, Tcp, iso_options, options, words,
 };
 use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};
 
@@ -17,19 +16,14 @@ impl Control for Syntec {
     const TABLE: &'static Table = &Table {
         options: OPTIONS,
         title: Some(("O", 4)),
-        offset: Offset {
-            known: |text| is_offset_beyond_six(text, "G54.1 P", 300),
-            range: "G54 to G59 or G54.1 P1 to P300",
-            word: |number| offset_beyond_six(number, "G54.1 P", 300),
-            ..Table::ISO.offset
-        },
+        offset: Offset::ADDITIONAL,
         relies: RELIES,
         feed_all_axes: true,
         tcp: Tcp::Length("G43.4"),
         vector: "G43.5",
         plane: Plane::Euler { on: "G68.2", turn: "G53.1", off: "G69" },
         rigid: Rigid::Ahead("M29"),
-        subprogram: Subprogram { number: "M98 P{}", name: "", times: " L" },
+        subprogram: Subprogram::M98,
         words: &[
             words::RETURNS,
             words::SHIFTS,

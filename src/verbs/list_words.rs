@@ -14,7 +14,7 @@ use post_job::failure::Failure;
 use post_job::files::{ClInput, FileFault, PathArg};
 use post_job::session::Session;
 
-/// Prints every word of a CL file: how often, and what becomes of it; without a file every word that is known.
+/// Lists the words of a CL file, how often each occurs and what becomes of it; without a file, all known words.
 ///
 /// used: it has its effect on the program; passed on: its text goes into the program; ignored: it says
 /// nothing to a machine; refused: it changes where or whether metal is cut, and post does not know how: [cl.words] in

@@ -11,7 +11,7 @@ use post_cli::terminal;
 use post_job::failure::Failure;
 use post_job::files::FileFault;
 
-/// Does what the rest of the command line says, with a report in the folder of temporary files, and opens it.
+/// Runs the rest of the command line, writes its report to a temporary folder, and opens it.
 ///
 /// The rest is any command line of `post`, `verify`, `predict`, `diff` or `convert`. A program that it would write beside the
 /// CL file goes into the folder of temporary files too, unless -o says where. The report stays there until somebody deletes

@@ -25,15 +25,15 @@ const RESULTS: Role = Role { what: "table of results", remedy: "name another fil
 
 const JOURNAL: Role = Role { what: "journal", remedy: "name another file with --resume=" };
 
-/// Posts many CL files on many machines with many settings: a grid of jobs, and a table with a row for each.
+/// Posts many CL files on many machines with many settings: a grid of jobs, and a table with one row for each.
 ///
 /// Flags of the grid take several values, parted by commas (outside brackets), or as FROM:TO:STEP; a job is made of every
 /// value with every other. A file that ends in .jsonl is a list of jobs, a line of JSON each; the grid is laid over what a
 /// line does not say: {"file": "part.cls", "machine": "dmu50", "set": {"Lm": 200}, "mount": [0, 0, 100], "turn": 90,
 /// "tool_length": 120, "tolerance": 0.01, "tcp": "post", "dialect": "fanuc"}.
 ///
-/// A job that is refused is a row with the codes and the first message, and the study goes on. No program is written: the
-/// table has its length and its hash.
+/// A job that is refused is a row with its codes and first message; the others go on. No program is written: the table
+/// has its length and hash.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   post batch *.cls --machine dmu50 --machine ac-trunnion -o results.parquet
@@ -90,7 +90,7 @@ pub struct BatchArguments {
     #[command(flatten)]
     study: Flags<StudySettings>,
 
-    /// So many jobs at a time. [default: as many as there are processors]
+    /// Jobs at a time. [default: number of processors]
     #[arg(short, long, value_name = "N")]
     jobs: Option<NonZeroUsize>,
 
@@ -126,7 +126,7 @@ pub struct BatchArguments {
     #[arg(long, requires = "svg")]
     most: bool,
 
-    /// Says nothing but messages.
+    /// Prints messages only.
     #[arg(short, long)]
     quiet: bool,
 }

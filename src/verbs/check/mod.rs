@@ -58,7 +58,7 @@ pub struct CheckArguments {
     #[arg(long, value_name = "FILE", value_parser = file())]
     svg: Option<PathArg>,
 
-    /// Writes what is printed as JSON, with all digits; `-` is standard output, alone there.
+    /// Writes the same as JSON, with all digits; `-` is standard output.
     #[arg(long, value_name = "FILE", value_parser = file())]
     json: Option<PathArg>,
 

@@ -20,7 +20,7 @@ use post_job::settings::{
     JobSettings, MachineSettings, ProgramSettings, ReadingSettings, ReportSettings,
 };
 
-/// Moves an NC program to another machine.
+/// Converts an NC program for another machine.
 ///
 /// The program is run on the machine --from, as its control runs it. What the tool does against the part is written as a
 /// CL file, with tools, speeds, feeds of the tip, curves, cycles and remarks, and posted on the machine --to. The new
@@ -60,7 +60,7 @@ pub struct ConvertArguments {
     #[command(flatten)]
     report: Flags<ReportSettings>,
 
-    /// No summary, warnings and errors alone.
+    /// Prints no summary, only warnings and errors.
     #[arg(short, long)]
     quiet: bool,
 

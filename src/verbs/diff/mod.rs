@@ -14,7 +14,7 @@ use post_job::files::{self, AtomicFile, PathArg, Role};
 use post_job::session::Session;
 use post_job::settings::{ProgramSettings, ReportSettings};
 
-/// Compares what two NC programs make the machine do, not their texts.
+/// Compares what two NC programs make the machine do, not their text.
 ///
 /// Both are read back and their paths gone along together in the part frame, operation by operation: position of the tip,
 /// tool axis, feed, what holds (tool, spindle, coolant, compensation), waits and stops, time, and ways that one of them
@@ -77,7 +77,7 @@ pub struct DiffArguments {
     #[arg(long, value_name = "WHAT", value_enum)]
     ignore: Vec<Ignored>,
 
-    /// Writes all that was found as JSON, with all digits; `-` is standard output, alone there.
+    /// Writes the result as JSON, with all digits; `-` is standard output.
     #[arg(long, value_name = "FILE", value_parser = file())]
     json: Option<PathArg>,
 

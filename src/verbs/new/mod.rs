@@ -23,8 +23,8 @@ const MACHINE: Role = Role { what: "machine file", remedy: "give it another name
 
 /// Writes a machine file that `post check` accepts, with a remark on each value that says what to measure.
 ///
-/// With --class all else has a default or a flag; without it a few questions are asked, on a terminal or
-/// answered through a pipe.
+/// With --class, everything else has a default or a flag; without it, a few questions are asked, on the terminal or
+/// through a pipe.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   post new my-mill
@@ -33,11 +33,11 @@ const MACHINE: Role = Role { what: "machine file", remedy: "give it another name
 
 Exit codes: 0 the file is written; 1 refused, the messages say why; 2 the command line is wrong.")]
 pub struct NewArguments {
-    /// Name of the machine, with a folder in front if it shall not stand here: writes NAME.toml.
+    /// Name of the machine, with a folder if it is not to be written here: writes NAME.toml.
     #[arg(value_name = "NAME")]
     name: PathBuf,
 
-    /// How its rotary axes stand; no question is asked then.
+    /// Arrangement of the rotary axes; with it no question is asked.
     #[arg(long, value_enum, value_name = "CLASS")]
     class: Option<Class>,
 
@@ -94,7 +94,7 @@ pub struct NewArguments {
     #[arg(long, value_name = "MM", value_parser = finite)]
     tolerance: Option<f64>,
 
-    /// Replaces a file that is there.
+    /// Replaces an existing file.
     #[arg(long)]
     force: bool,
 }

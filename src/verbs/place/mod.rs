@@ -15,7 +15,7 @@ use post_job::place::{Least, PlaceRequest, place};
 use post_job::session::Session;
 use post_job::settings::ThreadSettings;
 
-/// Finds where the part can sit: the mount that keeps every axis inside travel and then takes least time.
+/// Finds where to put the part: the mount that keeps every axis inside travel, and of those the fastest.
 ///
 /// Every mount that is named was posted in a dry run with all that posting checks: travel (between the words too),
 /// rapids, retracts. The answer is printed as --mount X,Y,Z, and with --search-turn as --turn DEG, with what is left of
@@ -31,12 +31,11 @@ pub struct PlaceArguments {
     #[command(flatten)]
     job: JobArguments,
 
-    /// What is to be small, once every axis stays inside travel: the time of the program, or what its rotary axes
-    /// turn in all.
+    /// What to minimise, once every axis stays inside travel: cycle time, or the total turn of the rotary axes.
     #[arg(long, value_parser = word::<LeastWord, Least>(), default_value = "time", value_name = "WHAT")]
     least: Least,
 
-    /// Every linear axis stays this far from the ends of its travel, mm.
+    /// Distance that every linear axis keeps from the ends of its travel, mm.
     #[arg(long, value_name = "MM", default_value_t = 1.0, allow_hyphen_values = true, value_parser = not_negative)]
     margin: f64,
 
@@ -45,7 +44,7 @@ pub struct PlaceArguments {
     #[arg(long, value_name = "DEG", num_args = 0..=1, require_equals = true, default_missing_value = "15", value_parser = step)]
     search_turn: Option<f64>,
 
-    /// No more dry runs than this; three are needed.
+    /// Largest number of dry runs; at least three.
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(3..))]
     runs: u32,
 

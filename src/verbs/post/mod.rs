@@ -58,18 +58,18 @@ pub struct PostArguments {
     #[command(flatten)]
     report: Flags<ReportSettings>,
 
-    /// Takes the settings of an old run from its summary (--summary): dialect, who keeps the tip, tolerances, error model, and
-    /// the length of --tool-length if there was one; what is said besides goes before them. Mount, turn and other keys of the
-    /// machine file stand in no summary.
+    /// Takes the settings of an earlier run from its summary (--summary): dialect, TCP by control or post, tolerances,
+    /// error model, and --tool-length if it was given. Other flags override them. Mount, turn and other keys of the
+    /// machine file are not in a summary.
     #[arg(long, value_name = "FILE", value_parser = file())]
     like: Option<PathArg>,
 
-    /// Writes what this command line says as a job file, which every verb takes in place of machine and CL file; its name
-    /// ends in `.job.toml`.
+    /// Saves this command line as a job file, which every verb takes in place of machine and CL file; its name ends in
+    /// `.job.toml`.
     #[arg(long, value_name = "FILE", value_parser = file())]
     save_job: Option<PathArg>,
 
-    /// No summary, warnings and errors alone.
+    /// Prints no summary, only warnings and errors.
     #[arg(short, long)]
     quiet: bool,
 

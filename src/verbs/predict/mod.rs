@@ -23,8 +23,7 @@ use post_job::settings::{ReportSettings, ThreadSettings};
 /// the axes then are is held against the commanded path, and with --against against the path of the CL file. Axes without
 /// a servo are where they are commanded: times and feeds are predicted all the same.
 ///
-/// What `post` was told for the job must be told here too (--mount, --tool-length, …), or the job file named in place of the
-/// program.
+/// Give the same options as for `post` (--mount, --tool-length, …), or name the job file in place of the program.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   post predict part.nc --machine ac-trunnion
@@ -62,7 +61,7 @@ pub struct PredictArguments {
     #[arg(long, value_name = "FILE", value_parser = file())]
     csv: Option<PathArg>,
 
-    /// Writes what was found as JSON for programs to read; `-` is standard output.
+    /// Writes the result as JSON; `-` is standard output.
     #[arg(long, value_name = "FILE", value_parser = file())]
     summary: Option<PathArg>,
 
@@ -89,7 +88,7 @@ pub struct PredictArguments {
     #[arg(long, value_name = "N", default_value_t = Limits::default().blocks)]
     most_blocks: u64,
 
-    /// No table, messages alone.
+    /// Prints messages only, no table.
     #[arg(short, long)]
     quiet: bool,
 }

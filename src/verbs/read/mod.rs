@@ -13,7 +13,7 @@ use post_job::nc_program::NcControl;
 use post_job::read::{self, ReadRequest};
 use post_job::session::Session;
 
-/// Reads an NC program back: what it makes the machine do, block by block.
+/// Reads an NC program: what it makes the machine do, block by block.
 ///
 /// The words of the control come from its dialect, the axes from the machine file. A block that is not understood is
 /// refused by its line, never guessed; words that move nothing and that are not known are listed by name. What stands
@@ -59,7 +59,7 @@ pub struct ReadArguments {
 
     /// Writes the path of the tool against the part as a CL file: points with the tool axis, feeds of the tip, tools,
     /// speeds, curves, cycles and remarks. What the machine does for itself (ways in machine coordinates, the turn of
-    /// rotary axes on the way to an approach) is left out; `-` is standard output, alone there.
+    /// rotary axes on the way to an approach) is left out; `-` is standard output.
     #[arg(long, value_name = "FILE", value_parser = file())]
     cl: Option<PathArg>,
 }

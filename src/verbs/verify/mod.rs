@@ -15,7 +15,7 @@ use post_job::session::Session;
 use post_job::settings::{ReportSettings, ThreadSettings};
 use post_job::verify::{Verified, VerifyRequest, verify};
 
-/// Holds an NC program against a CL file: does the machine do what was asked?
+/// Verifies an NC program against a CL file: does the machine do what was asked?
 ///
 /// Each block is run as the control runs it, and the chain of the machine says where the tool goes. The program keeps to
 /// the CL file if tip and tool axis can be gone along together with its path, in order and never back, within the
@@ -23,9 +23,8 @@ use post_job::verify::{Verified, VerifyRequest, verify};
 /// own line, or where the machine file retracts, changes and parks; tool, spindle, coolant, feed, dwells and stops are
 /// those that it asks for; no axis leaves its travel or passes its largest feed.
 ///
-/// What `post` was told for the job must be told here too (--mount, --tool-length, --units, …), or the job file named, in
-/// place of the program, or of the machine for another one. A program that was posted from a job file beside it needs
-/// neither.
+/// Give the same options as for `post` (--mount, --tool-length, --units, …), or name the job file in place of the
+/// program (or of the machine, for another program). A program posted from a job file beside it needs neither.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   post verify part.nc --machine dmu50 --against part.cls
@@ -62,7 +61,7 @@ pub struct VerifyArguments {
     #[arg(long, value_name = "FILE", value_parser = file())]
     map: Option<PathArg>,
 
-    /// Writes what was found as JSON for programs to read; `-` is standard output.
+    /// Writes the result as JSON; `-` is standard output.
     #[arg(long, value_name = "FILE", value_parser = file())]
     summary: Option<PathArg>,
 
@@ -72,8 +71,8 @@ pub struct VerifyArguments {
     #[command(flatten)]
     threads: Flags<ThreadSettings>,
 
-    /// The program was posted for this machine file, and is held to what posting promises of its rapids besides: rotary
-    /// axes turn where the tool is retracted or on its line, and it is retracted wherever a tool is changed and at the end.
+    /// The program was posted for this machine file: also checks what posting promises of rapids. Rotary axes turn only
+    /// where the tool is retracted or on its own line, and it is retracted at each tool change and at the end.
     #[arg(long)]
     posted: bool,
 
@@ -91,7 +90,7 @@ pub struct VerifyArguments {
     #[arg(long, value_name = "N", default_value_t = Limits::default().blocks)]
     most_blocks: u64,
 
-    /// No table, messages alone.
+    /// Prints messages only, no table.
     #[arg(short, long)]
     quiet: bool,
 

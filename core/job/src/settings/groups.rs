@@ -41,34 +41,34 @@ settings! {
     /// How a CL file is read.
     ReadingSettings, Some("Reading");
 
-    /// Units of the CL file's numbers, whatever it says.
+    /// Units of the numbers in the CL file; overrides what the file says.
     one units: Units = UNITS, "UNITS";
 
-    /// MSYS of NX: `keep` takes points and axes as written, `apply` takes them into its frame.
+    /// What to do with MSYS of NX: `keep` takes points and tool axes as written, `apply` transforms them into its
+    /// frame.
     given msys: Msys = MSYS, "WHAT", default || "keep".to_owned();
 
-    /// What to do with words that have no effect: refuse the file for any (`error`), for those that post does not know
-    /// (`known`), leave all out and say so (`warn`), or write them as comments (`pass`). What may be a move is refused
-    /// whatever is said here.
+    /// What to do with words that have no effect: refuse the file for any of them (`error`), refuse it only for words
+    /// that post does not know (`known`), leave them out with a warning (`warn`), or write them as comments (`pass`). A
+    /// word that may be a move is always refused.
     given unknown: UnknownWordPolicy = UNKNOWN, "WHAT", default || "known".to_owned();
 
-    /// Takes upon yourself what a word would have done, and leaves it out: a word that post does not know, or that
-    /// changes where or whether metal is cut (`OFSETL`), `INSERT` (codes become remarks), `CUTTER` (several cutters are
-    /// one tool), `FINI` (the file is whole), `DEEP` and the other kinds of cycles in pecks (without any, in one go),
-    /// `MOVARC` (half turns go right-handed about their axis). What may be a move is never left out. Repeatable.
+    /// Leaves a word out at your own risk: a word that post does not know, or one that changes where or whether metal
+    /// is cut (`OFSETL`), `INSERT` (codes become comments), `CUTTER` (several cutters are one tool), `FINI` (the file
+    /// is complete), `DEEP` and the other peck cycles (a cycle without a peck goes to depth in one move), `MOVARC`
+    /// (half turns go right-handed about their axis). A word that may be a move is never left out. Repeatable.
     many allow: String = CL_WORD, "WORD";
 
-    /// Number of the tool, for a CL file that loads none.
+    /// Tool number, for a CL file that loads no tool.
     one tool: u32 = TOOL, "N";
 
     /// Numbers tools from 1 in the order of their cutters, for a CL file that describes several and loads none.
     flag tool_from_cutter, { conflicts: Some("tool") };
 
-    /// Speed that the spindle is switched on at for each tool for which the CL file does not; `off`: it stands, and
-    /// the tool cuts so.
+    /// Spindle speed for each tool that the CL file gives none, 1/min; `off` cuts with the spindle stopped.
     one spindle: DefaultSpindle = SPINDLE, "RPM";
 
-    /// Feed of the cuts for which the CL file gives none, mm/min.
+    /// Feed for cuts that the CL file gives none, mm/min.
     one feed: f64 = FEED, "MM_A_MINUTE";
 }
 
@@ -84,7 +84,7 @@ settings! {
     /// written along the machine's axes.
     one turn: f64 = ANGLE, "DEG", { hyphens: true, columns: &["turn_deg"] };
 
-    /// Length of every tool from the gauge point to the tip, mm, over what machine and CL file say.
+    /// Length of every tool from the gauge point to the tip, mm; overrides machine file and CL file.
     one tool_length: f64 = LENGTH, "MM", { hyphens: true, columns: &["tool_length_mm"] };
 
     /// The file that has the tools: tool table, offsets as a program, library or CSV table (`post tools --formats`); short
@@ -104,18 +104,18 @@ settings! {
     /// --set control.dialect=… (`post plugin list`).
     one dialect: String = NAME, "NAME", { columns: &["dialect"] };
 
-    /// Drops CL points that the tolerance makes needless; short for --set accuracy.reduce=true.
+    /// Drops CL points that the tolerance makes redundant; short for --set accuracy.reduce=true.
     flag reduce;
 
-    /// Makes the fewest arcs and lines of runs of points that stay within the tolerance, where the dialect has arcs there;
-    /// short for --set control.arcs.fit=true.
+    /// Fits the fewest arcs and lines to runs of points within the tolerance, where the dialect has arcs; short for
+    /// --set control.arcs.fit=true.
     flag fit_arcs;
 
     /// A further folder of machine files; the environment variable POST_MACHINES adds more.
     many machines: PathBuf = FOLDER, "FOLDER";
 
-    /// A folder of plugin libraries; the environment variable POST_PLUGINS adds more. Opening a library runs
-    /// its code, so no folder is looked into that is not named here.
+    /// A folder of plugin libraries; the environment variable POST_PLUGINS adds more. Opening a library runs its code,
+    /// so only folders named here are searched.
     many plugins: PathBuf = FOLDER, "FOLDER", { heading: Some("Plugins") };
 }
 
@@ -163,22 +163,22 @@ settings! {
     /// The NC program, `-` for standard output. [default: beside the CL file, with the dialect's ending]
     one output: PathArg = FILE, "FILE", { short: Some('o') };
 
-    /// Writes the summary as JSON for programs to read; `-` is standard output. Of several programs a list.
+    /// Writes the summary as JSON; `-` is standard output. Several programs give a list.
     one summary: PathArg = FILE, "FILE";
 
-    /// Writes a sheet for whoever sets the machine up: part origin and work offset, tools, operations, extents, times,
-    /// options; as HTML with a picture if the file's name ends so, else as Markdown.
+    /// Writes a setup sheet: part origin and work offset, tools, operations, extents, times, options; HTML with a
+    /// picture if the name ends in .html, else Markdown.
     one setup_sheet: PathArg = FILE, "FILE";
 
-    /// Writes a program of its own for each operation, or for each tool: part-1.nc, part-2.nc, …
+    /// Writes a separate program for each operation or each tool: part-1.nc, part-2.nc, …
     one split: Split = SPLIT, "WHERE";
 
-    /// Reads each program back before it takes its name, runs it as the control does and holds it against the CL file
-    /// (`post verify`): what strays from it is not written.
+    /// Verifies each program before it is written (`post verify`): reads it back, runs it as the control does and
+    /// compares it with the CL file. A program that deviates is not written.
     flag verify;
 
-    /// Predicts what each program does on the machine (`post predict`): cycle time, true feed, axes, and how far the tool
-    /// strays; with =FILE as JSON too, of several programs a list.
+    /// Predicts what each program does on the machine (`post predict`): cycle time, true feed, axis motion and contour
+    /// error; with =FILE as JSON too (several programs give a list).
     one predict: Option<PathArg> = FILE_IF_ANY, "FILE";
 }
 
@@ -186,7 +186,7 @@ settings! {
     /// What a program is made with, beside CL file and machine.
     MakingSettings, None;
 
-    /// The program's number (O1234); of several programs the first's. Short for --set
+    /// Program number (O1234); for several programs, that of the first. Short for --set
     /// control.DIALECT.program_number=…
     one number: u32 = PROGRAM_NUMBER, "N";
 
@@ -204,13 +204,13 @@ settings! {
     /// Blocks are cut where their feed changes. `--set plan.contour_error=0.02` sets a limit for one run.
     flag plan;
 
-    /// Plans again where the servos are predicted (`post predict`) to leave the tool farther off its path than `[plan]
-    /// contour_error`: more gently there, up to so many times, until the limit is kept or the rounds are used up. Tells the
-    /// time of each round, and of the program without a plan. Each round posts and predicts the whole program.
+    /// Plans up to N more rounds while the predicted contour error (`post predict`) exceeds `[plan] contour_error`,
+    /// slower where it does. Prints the cycle time of each round and of the program without a plan. Each round posts
+    /// and predicts the whole program.
     one plan_rounds: u32 = ROUNDS, "N", { requires: Some("plan") };
 
-    /// Takes the error model's word where the certificate finds more, and only reports it. (The placement `fewest` asks
-    /// no model.)
+    /// Accepts the error model's deviation where the certificate finds a larger one, and only reports the difference.
+    /// (The placement `fewest` asks no model.)
     flag trust_model, { heading: Some("Plugins") };
 }
 
@@ -218,8 +218,7 @@ settings! {
     /// How many threads work.
     ThreadSettings, None;
 
-    /// Works on so many threads at most; what is written and told is the same with any number. [default: as many as there
-    /// are processors]
+    /// Uses at most N threads; the output is the same for any number. [default: number of processors]
     one jobs: NonZeroUsize = JOBS, "N", { short: Some('j') };
 }
 
@@ -234,12 +233,12 @@ settings! {
     /// What a run came to, as a page to look at.
     ReportSettings, None;
 
-    /// Writes what came of it as a page to look at: one HTML file that any browser of today shows from the disk and that
-    /// loads nothing: verdict, path and machine in 3D, charts, program and CL file side by side.
+    /// Writes a report: one self-contained HTML file with the verdict, path and machine in 3D, charts, and program and
+    /// CL file side by side.
     one report: PathArg = FILE, "FILE";
 
-    /// Largest size of the report, MB: above it the texts of the programs are left out first, then further parts, and the
-    /// page says so.
+    /// Largest size of the report, MB. A larger one leaves out the texts of the programs first, then other parts, and
+    /// says so.
     given report_max: u64 = COUNT, "MB", default || "64".to_owned(), { requires: Some("report") };
 }
 
@@ -263,11 +262,11 @@ settings! {
     /// for G30 (machine coordinates).
     one offsets: PathArg = FILE, "FILE", { heading: Some("Reading") };
 
-    /// So many blocks are run once more, by loops, jumps and subprograms; more are refused.
+    /// Most blocks that loops, jumps and subprograms may repeat; a program that repeats more is refused.
     given most_blocks: u64 = COUNT, "N", default || Limits::default().blocks.to_string(), { heading: Some("Reading") };
 
-    /// Length of every tool that --offsets does not name, from the gauge point to the tip, mm, over what the machine file
-    /// says.
+    /// Length of every tool that --offsets does not name, from the gauge point to the tip, mm; overrides the machine
+    /// file.
     one tool_length: f64 = LENGTH, "MM", { hyphens: true };
 
     /// The file that has the tools: tool table, offsets as a program, library or CSV table (`post tools --formats`); short
@@ -286,8 +285,8 @@ settings! {
     /// A further folder of machine files; the environment variable POST_MACHINES adds more.
     many machines: PathBuf = FOLDER, "FOLDER";
 
-    /// A folder of plugin libraries; the environment variable POST_PLUGINS adds more. Opening a library runs
-    /// its code, so no folder is looked into that is not named here.
+    /// A folder of plugin libraries; the environment variable POST_PLUGINS adds more. Opening a library runs its code,
+    /// so only folders named here are searched.
     many plugins: PathBuf = FOLDER, "FOLDER", { heading: Some("Plugins") };
 }
 
@@ -312,22 +311,22 @@ settings! {
     /// Plans the feed of each program, as `post --plan`.
     flag plan;
 
-    /// Reads each program back and holds it against its CL file, as `post --verify`: what strays is a refused job.
+    /// Verifies each program against its CL file, as `post --verify`: a program that deviates is a refused job.
     flag verify;
 
     /// Predicts what each program does, as `post --predict`: true cycle time and contour error.
     flag predict;
 
-    /// Takes the error model's word where the certificate finds more, and only reports it.
+    /// Accepts the error model's deviation where the certificate finds a larger one, and only reports the difference.
     flag trust_model;
 
-    /// Adds a column of how long each job took to compute, s: the bytes of the results are not the same every time then.
+    /// Adds a column with the computing time of each job, s; the results then differ from run to run.
     flag timings;
 
     /// A further folder of machine files; the environment variable POST_MACHINES adds more.
     many machines: PathBuf = FOLDER, "FOLDER", { heading: Some("Machine") };
 
-    /// A folder of plugin libraries; the environment variable POST_PLUGINS adds more. Opening a library runs
-    /// its code, so no folder is looked into that is not named here.
+    /// A folder of plugin libraries; the environment variable POST_PLUGINS adds more. Opening a library runs its code,
+    /// so only folders named here are searched.
     many plugins: PathBuf = FOLDER, "FOLDER", { heading: Some("Plugins") };
 }

@@ -157,8 +157,10 @@ pub fn dialect_knowing(
             time: ahead.time_s,
         }),
     };
-    let opened = plugin.dialect(&setup).map_err(fault)?;
-    Ok((opened, used(&plugin)))
+    let mut opened = plugin.dialect(&setup).map_err(fault)?;
+    let relies_on = opened.relies_on();
+    let relies_on = relies_on.map_err(|fault| vec![Diagnostic::error("plugin", fault)])?;
+    Ok((opened, PluginUse { relies_on, ..used(&plugin) }))
 }
 
 /// The CL file's name without its folder; empty for standard input.
@@ -223,6 +225,7 @@ fn used(plugin: &Plugin) -> PluginUse {
         version: plugin.version().to_owned(),
         path: plugin.path().map(|path| path.display().to_string()),
         hash: plugin.hash().map(str::to_owned),
+        relies_on: Vec::new(),
     }
 }
 

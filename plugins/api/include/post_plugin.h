@@ -202,6 +202,9 @@ typedef struct {
     /* Calls `emit(host, POST_MEANING_..., word, len)` for each word of the control, so that programs can be read
      * back. At most once, after `format`. 0, else the reason is in `last_error`. May be null. */
     int32_t (*vocabulary)(void *ctx, void *host, PostEmitWord emit);
+    /* What its programs rely on at the control (parameters, options), one sentence a line to `out`, for the setup
+     * sheet. At most once, after `format`. 0, else the reason is in `last_error`. May be null. */
+    int32_t (*relies_on)(void *ctx, const PostSink *out);
 } PostDialect;
 
 /* The functions of an error model; none may be null. */
@@ -944,13 +947,14 @@ POST_ASSERT(offsetof(PostPlugin, loaded) == 72, "PostPlugin.loaded");
 POST_ASSERT(offsetof(PostPlugin, dialect) == 80, "PostPlugin.dialect");
 POST_ASSERT(offsetof(PostPlugin, model) == 88, "PostPlugin.model");
 POST_ASSERT(offsetof(PostPlugin, about) == 96, "PostPlugin.about");
-POST_ASSERT(sizeof(PostDialect) == 48 && POST_ALIGN(PostDialect) == 8, "PostDialect");
+POST_ASSERT(sizeof(PostDialect) == 56 && POST_ALIGN(PostDialect) == 8, "PostDialect");
 POST_ASSERT(offsetof(PostDialect, open) == 0, "PostDialect.open");
 POST_ASSERT(offsetof(PostDialect, format) == 8, "PostDialect.format");
 POST_ASSERT(offsetof(PostDialect, write) == 16, "PostDialect.write");
 POST_ASSERT(offsetof(PostDialect, last_error) == 24, "PostDialect.last_error");
 POST_ASSERT(offsetof(PostDialect, close) == 32, "PostDialect.close");
 POST_ASSERT(offsetof(PostDialect, vocabulary) == 40, "PostDialect.vocabulary");
+POST_ASSERT(offsetof(PostDialect, relies_on) == 48, "PostDialect.relies_on");
 POST_ASSERT(sizeof(PostModel) == 40 && POST_ALIGN(PostModel) == 8, "PostModel");
 POST_ASSERT(offsetof(PostModel, open) == 0, "PostModel.open");
 POST_ASSERT(offsetof(PostModel, fit) == 8, "PostModel.fit");

@@ -32,6 +32,12 @@ pub trait Dialect: Sized + Send + 'static {
         Vec::new()
     }
 
+    /// What its programs rely on at the control, one sentence each: parameters, options, what a word must do there. They
+    /// stand on the setup sheet. Asked at most once, after [`Dialect::open`].
+    fn relies_on(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Appends the lines that `event` needs to `out`, each ended by `\n`.
     /// Called once for every event, in order.
     ///

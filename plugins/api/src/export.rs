@@ -48,6 +48,12 @@ pub trait LinkedDialect: Send {
     /// The dialect panicked.
     fn vocabulary(&mut self) -> Result<Vec<VocabularyWord>, String>;
 
+    /// See [`Dialect::relies_on`].
+    ///
+    /// # Errors
+    /// The dialect panicked.
+    fn relies_on(&mut self) -> Result<Vec<String>, String>;
+
     /// Appends the text of all events to `out`, and to `ends` the length of `out` after each.
     ///
     /// # Errors
@@ -113,6 +119,10 @@ impl<D: Dialect> LinkedDialect for Context<D> {
 
     fn vocabulary(&mut self) -> Result<Vec<VocabularyWord>, String> {
         self.run(|dialect| Ok(dialect.vocabulary())).ok_or_else(|| self.error.clone())
+    }
+
+    fn relies_on(&mut self) -> Result<Vec<String>, String> {
+        self.run(|dialect| Ok(dialect.relies_on())).ok_or_else(|| self.error.clone())
     }
 
     fn write(
@@ -396,6 +406,7 @@ impl<D: Dialect> PluginFunctions<D> {
         last_error: Some(last_error::<D>),
         close: Some(close::<D>),
         vocabulary: Some(vocabulary::<D>),
+        relies_on: Some(relies_on::<D>),
     };
 }
 
@@ -511,6 +522,17 @@ unsafe extern "C" fn vocabulary<D: Dialect>(
         // SAFETY: as stated above; the word lives for the call.
         unsafe { emit(host, meaning.number(), word.as_ptr(), word.len()) };
     }
+    0
+}
+
+unsafe extern "C" fn relies_on<D: Dialect>(ctx: *mut c_void, out: *const PostSink) -> i32 {
+    // SAFETY: as stated above.
+    let context = unsafe { context::<D>(ctx) };
+    let Some(sentences) = context.run(|dialect| Ok(dialect.relies_on())) else {
+        return 1;
+    };
+    // SAFETY: as stated above.
+    unsafe { (*out).put(&sentences.join("\n")) };
     0
 }
 

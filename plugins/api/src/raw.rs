@@ -345,6 +345,10 @@ pub struct PostDialect {
     pub vocabulary: Option<
         unsafe extern "C" fn(ctx: *mut c_void, host: *mut c_void, emit: PostEmitWord) -> i32,
     >,
+    /// Hands over what its programs rely on at the control (parameters, options), one sentence a line, for the setup
+    /// sheet. Called at most once, after `format`. Returns 0, else the reason is in `last_error`. Null, or a table that
+    /// ends before it: nothing.
+    pub relies_on: Option<unsafe extern "C" fn(ctx: *mut c_void, out: *const PostSink) -> i32>,
 }
 
 /// The functions of an error model. None may be null. Contexts are used as those of a dialect.

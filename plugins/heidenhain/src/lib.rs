@@ -24,6 +24,14 @@ use crate::datum::Datum;
 use crate::frame::{program_name, stock};
 use crate::options::OPTIONS;
 
+/// What its programs rely on at the control.
+const RELIES: &[&str] = &[
+    "M91 counts from the machine's zero, as the travels of the machine file do",
+    "the length and the radius of the tool stand in the tool table; TOOL CALL puts them in force",
+    "a display of a rotary axis that is reduced below 360 asks for the option rotary_way = \"M126\"",
+    "under M128 and PLANE coordinates stay with the part: the kinematics of the table are set up",
+];
+
 const SIGNED: NumberStyle = NumberStyle { plus: true, point: false, trim: false };
 
 struct Heidenhain {
@@ -223,6 +231,10 @@ impl Dialect for Heidenhain {
             _ => (word.as_str(), Meaning::CoolantOn),
         });
         words::vocabulary(&self.tcp_on, &self.tcp_off, ends.chain(coolants))
+    }
+
+    fn relies_on(&self) -> Vec<String> {
+        RELIES.iter().map(|sentence| (*sentence).to_owned()).collect()
     }
 
     fn format(&self) -> Format {

@@ -309,6 +309,23 @@ impl LibraryDialect {
         }
     }
 
+    fn relies_on(&self) -> Result<Vec<String>, String> {
+        let Some(relies_on) = self.table.relies_on else {
+            return Ok(Vec::new());
+        };
+        let mut told = Vec::new();
+        let code = with_sink(&mut told, MOST_TEXT, |sink| {
+            // SAFETY: the context is open and the sink lives for the call.
+            self.caller.call(|| unsafe { relies_on(self.ctx, sink) })
+        })?;
+        if code != 0 {
+            return Err(self.last_error());
+        }
+        let text = String::from_utf8(told)
+            .map_err(|_| "what its programs rely on is not UTF-8".to_owned())?;
+        Ok(text.lines().map(str::to_owned).collect())
+    }
+
     fn last_error(&self) -> String {
         message(|sink| {
             if let Some(last_error) = self.table.last_error {
@@ -410,7 +427,28 @@ impl OpenedDialect {
         let judged = told.and_then(vocabulary::judge);
         judged.map_err(|message| format!("dialect `{}`: {}", self.plugin, reason_of(message)))
     }
+
+    /// What programs of this dialect rely on at the control, a sentence each.
+    ///
+    /// # Errors
+    /// A sentence: it failed to tell, or what it told is no text.
+    pub fn relies_on(&mut self) -> Result<Vec<String>, String> {
+        let told = match &mut self.access {
+            DialectAccess::Linked(dialect) => dialect.relies_on(),
+            DialectAccess::Library(library) => library.relies_on(),
+        };
+        match told {
+            Ok(sentences) => {
+                let shown = sentences.iter().map(|told| sentence(told));
+                Ok(shown.filter(|told| !told.is_empty()).take(MOST_SENTENCES).collect())
+            }
+            Err(message) => Err(format!("dialect `{}`: {}", self.plugin, reason_of(message))),
+        }
+    }
 }
+
+/// No more sentences of what programs rely on are shown.
+const MOST_SENTENCES: usize = 100;
 
 impl Drop for LibraryDialect {
     fn drop(&mut self) {

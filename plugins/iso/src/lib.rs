@@ -183,6 +183,10 @@ impl<C: Control> Dialect for Iso<C> {
         self.control.vocabulary(self.engine.vocabulary())
     }
 
+    fn relies_on(&self) -> Vec<String> {
+        self.engine.table.relies.iter().map(|sentence| (*sentence).to_owned()).collect()
+    }
+
     #[inline]
     fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
         if let Event::Cuts { feed, columns } = *event

@@ -41,6 +41,7 @@ pub fn run(session: &Session, arguments: &ShowArguments) -> Result<(), Failure> 
         text.push_str(&match plugin.dialect(&five_axes()) {
             Ok(mut opened) => {
                 let mut told = writes(&opened);
+                told.push_str(&relied_on(&mut opened)?);
                 if arguments.vocabulary {
                     told.push_str(&vocabulary(&mut opened)?);
                 }
@@ -97,6 +98,14 @@ fn writes(opened: &OpenedDialect) -> String {
         ));
     }
     text
+}
+
+/// What its programs rely on at the control.
+fn relied_on(opened: &mut OpenedDialect) -> Result<String, Failure> {
+    let sentences = opened.relies_on();
+    let sentences = sentences.map_err(|fault| Diagnostic::error("plugin", fault))?;
+    let rows: String = sentences.iter().map(|sentence| format!("  {sentence}\n")).collect();
+    Ok(if rows.is_empty() { rows } else { format!("\nIts programs rely on:\n{rows}") })
 }
 
 /// The words in the order of what they mean.

@@ -114,6 +114,12 @@ fn the_page_of_dialects_is_what_plugins_declare() {
                         let _ = writeln!(text, "| `{name}` | {} |", cell(what));
                     }
                 }
+                _ if line.starts_with("Its programs rely on") => {
+                    let _ = write!(text, "\n{line}\n\n");
+                    for row in lines.by_ref().take_while(|row| !row.is_empty()) {
+                        let _ = writeln!(text, "- {}", cell(row.trim()));
+                    }
+                }
                 _ if line.is_empty() => in_table = false,
                 _ => {
                     let _ = write!(text, "\n{}\n", cell(line));

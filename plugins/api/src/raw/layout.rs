@@ -61,7 +61,7 @@ pub const TABLES: &[Layout] = layouts! {
     PostPlugin as "PostPlugin" {
         magic abi kind size table_size layout name version describe loaded dialect model about
     }
-    PostDialect as "PostDialect" { open format write last_error close vocabulary }
+    PostDialect as "PostDialect" { open format write last_error close vocabulary relies_on }
     PostModel as "PostModel" { open fit value last_error close }
 };
 

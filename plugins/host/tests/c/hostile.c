@@ -207,6 +207,22 @@ static int32_t vocabulary(void *ctx, void *host, PostEmitWord emit) {
     return 0;
 }
 
+static int32_t relies_on(void *ctx, const PostSink *out) {
+    (void)ctx, (void)out;
+#ifdef FAULT_NO_TEXT
+    out->write(out->ctx, (const uint8_t *)"\377\376", 2);
+#elif defined FAULT_RELIES
+    return 1;
+#elif defined FAULT_MANY_SENTENCES
+    for (int i = 0; i < 1000; i++)
+        out->write(out->ctx, (const uint8_t *)"one\n", 4);
+#else
+    const char *text = "option 1\n\n\033[2Joption 2\n";
+    out->write(out->ctx, (const uint8_t *)text, strlen(text));
+#endif
+    return 0;
+}
+
 #if defined FAULT_MANY || defined FAULT_CHOICES || defined FAULT_NO_CHOICES || defined FAULT_KEY || defined FAULT_LONG \
     || defined FAULT_HELP || defined FAULT_TWICE || defined FAULT_UNALIGNED || defined FAULT_NOTHING
 static void describe(void *host, PostEmit emit) {
@@ -269,7 +285,7 @@ static void describe(void *host, PostEmit emit) {
 #define write_ NULL
 #endif
 
-static const PostDialect dialect = {open_, format, write_, last_error, close_, vocabulary};
+static const PostDialect dialect = {open_, format, write_, last_error, close_, vocabulary, relies_on};
 
 #ifndef FAULT_SYMBOL
 POST_EXPORT const PostPlugin post_plugin_hostile;

@@ -243,6 +243,14 @@ static const struct {
     {"M1", POST_MEANING_OPTIONAL_STOP},  {"M30", POST_MEANING_END},
 };
 
+/* What a program needs at the control: the setup sheet has it. */
+static int32_t relies_on(void *ctx, const PostSink *out) {
+    (void)ctx;
+    static const char sentence[] = "G53 counts from the machine's zero";
+    out->write(out->ctx, (const uint8_t *)sentence, sizeof sentence - 1);
+    return 0;
+}
+
 /* What the words mean, so that a program can be read back. */
 static int32_t vocabulary(void *ctx, void *host, PostEmitWord emit) {
     (void)ctx;
@@ -251,7 +259,7 @@ static int32_t vocabulary(void *ctx, void *host, PostEmitWord emit) {
     return 0;
 }
 
-static const PostDialect dialect = {open_, format, write_, last_error, close_, vocabulary};
+static const PostDialect dialect = {open_, format, write_, last_error, close_, vocabulary, relies_on};
 
 POST_EXPORT const PostPlugin post_plugin_minimal;
 const PostPlugin post_plugin_minimal = {

@@ -126,6 +126,7 @@ fn a_library_of_the_first_days_of_this_contract_is_taken() {
     assert_eq!(plugin.about(), "");
     let mut session = plugin.dialect(&setup(&["X"])).unwrap();
     assert_eq!(session.vocabulary(), Ok(Vec::new()));
+    assert_eq!(session.relies_on(), Ok(Vec::new()));
     assert_eq!(written(&mut session).unwrap(), "G0 X1\nG0 X1\n");
     let plugin = Plugin::open(&hostile(folder.path(), "NONE")).unwrap();
     assert_eq!(plugin.about(), "It means no good.");
@@ -144,6 +145,19 @@ fn a_vocabulary_is_bounded_and_of_known_meaning() {
         ("NO_VOCABULARY", "it gives no reason"),
     ] {
         let fault = session(folder.path(), flag).vocabulary().unwrap_err();
+        assert!(fault.starts_with("dialect `hostile`: "), "{fault}");
+        assert!(fault.contains(message), "{flag}: {fault}");
+    }
+}
+
+#[test]
+fn what_programs_rely_on_is_text_a_sentence_a_line_and_bounded() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = session(folder.path(), "GOOD").relies_on().unwrap();
+    assert_eq!(told, ["option 1", "\\u{1b}[2Joption 2"]);
+    assert_eq!(session(folder.path(), "MANY_SENTENCES").relies_on().unwrap().len(), 100);
+    for (flag, message) in [("NO_TEXT", "is not UTF-8"), ("RELIES", "it gives no reason")] {
+        let fault = session(folder.path(), flag).relies_on().unwrap_err();
         assert!(fault.starts_with("dialect `hostile`: "), "{fault}");
         assert!(fault.contains(message), "{flag}: {fault}");
     }

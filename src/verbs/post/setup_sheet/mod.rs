@@ -40,6 +40,7 @@ pub fn text(
         the_tools(machine, ahead, programs),
         the_operations(ahead),
         the_axes(programs),
+        what_holds_at_the_control(programs),
         the_options(machine),
     ];
     let html = sheet.path().and_then(|path| path.extension());
@@ -270,6 +271,17 @@ fn the_axes(programs: &[(&PathArg, &PostingReport)]) -> SheetTable {
         title: "Axes, in machine coordinates".to_owned(),
         head: vec!["Axis", "Used", "Travel"],
         rows: rows.collect(),
+    }
+}
+
+/// Parameters and options of the control that the programs rely on, as their dialect tells them.
+fn what_holds_at_the_control(programs: &[(&PathArg, &PostingReport)]) -> SheetTable {
+    let plugins = programs.first().map_or(&[][..], |(_, report)| &report.plugins);
+    let rows = plugins.iter().flat_map(|plugin| &plugin.relies_on);
+    SheetTable {
+        title: "The program relies on".to_owned(),
+        head: vec![""],
+        rows: rows.map(|sentence| vec![sentence.clone()]).collect(),
     }
 }
 

@@ -270,7 +270,7 @@ fn what_is_wrong_is_told_by_its_line() {
         ("mont = [0, 0, 1]", "no key `mont`", "did you mean `mount`?"),
         ("tool_length = \"long\"", "`long` is no number", "--tool-length"),
         ("mount = [0, 0]", "three numbers are needed", "--mount"),
-        ("verify = 1", "verify is true or false", "Reads each program back"),
+        ("verify = 1", "verify is true or false", "Verifies each program"),
         ("tcp = \"contrl\"", "`contrl` is neither control nor post", "--tcp"),
         ("plan_rounds = 3", "plan_rounds needs plan", "--plan-rounds"),
         ("tool = 3\ntool_from_cutter = true", "cannot go with tool", "--tool-from-cutter"),

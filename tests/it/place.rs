@@ -242,6 +242,22 @@ fn a_turn_of_the_part_turns_the_axes_less() {
     assert!(after < 0.75 * before, "{after} {before}");
 }
 
+/// A tap goes by its moves while mounts are tried, whatever the dialect has for it; posted it is the control's cycle. Where
+/// it is out of travel, that alone is said.
+#[test]
+fn a_file_with_a_thread_is_placed() {
+    let base = ["tests/samples/flange.ncl", "-m", "vmc", "--tool-length", "110"];
+    let low = ["--mount", "0,0,-300"];
+    let refused = post(&[&base[..], &["-o", "-"], &low].concat());
+    assert_eq!(refused.code, 1);
+    assert!(refused.err.contains("error[over-travel]"), "{}", refused.err);
+    assert!(refused.err.contains("1 error;"), "{}", refused.err);
+    let found = post(&[&["place"][..], &base, &low].concat());
+    assert_eq!(found.code, 0, "{}", found.err);
+    let (program, _) = obeyed(&printed(&found.out));
+    assert!(program.contains("G84 "), "{program}");
+}
+
 #[test]
 fn what_no_mount_helps_is_refused_and_why() {
     let refused =

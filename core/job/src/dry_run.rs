@@ -92,6 +92,7 @@ impl<'a> DryRun<'a> {
             // Nothing is written: how fast the spindle turns is nobody's business.
             request.reading.spindle = DefaultSpindle::Still;
         }
+        request.holes_as_moves = true;
         let mut dialect = Rounding::new(dialect, self.exact);
         let pass = PostingPass {
             machine,

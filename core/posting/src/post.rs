@@ -45,6 +45,9 @@ pub struct PostingRequest {
     pub ahead: Option<Arc<FilePreview>>,
     /// What texts of the program can speak of.
     pub facts: JobFacts,
+    /// Every hole goes by its moves, a thread too, which only the control's own cycle can cut: for a run of which nothing
+    /// is written.
+    pub holes_as_moves: bool,
     /// The feed is planned: `[plan]`.
     pub plans: bool,
     /// Where that plan may use less than the limit of the contour error.
@@ -206,14 +209,10 @@ impl<'a> Post<'a> {
         let planes = wants_planes(machine, writes);
         let ahead = job.ahead.filter(|_| planes);
         let findings = Findings::new(&job.reading.file);
+        let expand =
+            ExpandStage::new(machine, job.reading.chord_tolerance, writes, ahead, &findings);
         let mut stages = PostStages {
-            expand: ExpandStage::new(
-                machine,
-                job.reading.chord_tolerance,
-                writes,
-                ahead,
-                &findings,
-            ),
+            expand: if job.holes_as_moves { expand.by_moves_alone() } else { expand },
             shift: None,
             lines: Vec::new(),
             timing: TimingStage::new(machine, &format, writes, &findings)?,

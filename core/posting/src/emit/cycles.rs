@@ -78,7 +78,10 @@ impl EmitStage<'_> {
     pub(super) fn hole(&mut self, hole: &HoleMoves<MotionBlock>) {
         let native = self.native(hole);
         if native.is_none() && hole.cycle.alone {
-            self.findings.at(hole.line, not_here());
+            // Of a hole that is out of travel moves are missing: that stands for itself.
+            if !self.findings.failed() || self.drills_along().is_none() {
+                self.findings.at(hole.line, not_here());
+            }
             for _ in points(&hole.above).chain(points(&hole.into)) {
                 self.writer.place(self.writer.next());
             }
@@ -168,20 +171,23 @@ impl EmitStage<'_> {
             .all(|place| self.cycle_words.across.contains(&place) || words[place] == level[place])
     }
 
+    /// Place of the word along which the control drills here; none if it has no cycles here.
+    fn drills_along(&self) -> Option<usize> {
+        // Where the control keeps the tip, and where the plane is tilted, it must have said so.
+        let tilted = self.plane.on || self.plane.wanted.is_some();
+        let (place, needs) = match (tilted, self.machine.control.tcp) {
+            (true, _) => (self.cycle_words.z, Capabilities::CYCLE_IN_PLANE),
+            (false, Tcp::Control) => (self.cycle_words.z, Capabilities::CYCLE_TCP),
+            (false, Tcp::Post) => (self.cycle_words.depth, Capabilities::NONE),
+        };
+        place.filter(|_| self.writer.knows(needs))
+    }
+
     /// The hole as a cycle; none if it is not the same.
     fn native(&self, hole: &HoleMoves<MotionBlock>) -> Option<NativeCycle> {
         let machine = self.machine;
         let drilling = &hole.cycle;
-        // Where the control keeps the tip, and where the plane is tilted, it must have said so.
-        let (place, needs) =
-            match (self.plane.on || self.plane.wanted.is_some(), machine.control.tcp) {
-                (true, _) => (self.cycle_words.z?, Capabilities::CYCLE_IN_PLANE),
-                (false, Tcp::Control) => (self.cycle_words.z?, Capabilities::CYCLE_TCP),
-                (false, Tcp::Post) => (self.cycle_words.depth?, Capabilities::NONE),
-            };
-        if !self.writer.knows(needs) {
-            return None;
-        }
+        let place = self.drills_along()?;
         // No control waits at the bottom in these.
         let waits = drilling.dwell.is_some_and(|dwell| dwell > 0.0);
         if waits && matches!(drilling.kind, Cycle::Deep | Cycle::BreakChip | Cycle::Bore) {

@@ -70,6 +70,8 @@ pub(crate) struct ExpandStage {
     keeps: Option<CurvePolicy>,
     /// The cycles that the dialect has words for, as far as the machine file wants them.
     cycles: Capabilities,
+    /// Every hole goes by its moves, a thread too: the text is thrown away.
+    only_moves: bool,
     /// Where the tool axis stays, if the control is to get planes.
     planes: Option<PlaneTracker>,
     findings: Findings,
@@ -89,6 +91,7 @@ pub fn expanded(
         tangential: None,
         keeps: None,
         cycles: Capabilities::NONE,
+        only_moves: false,
         planes: None,
         findings: findings.clone(),
     };
@@ -120,6 +123,7 @@ impl ExpandStage {
                 Cycles::Native => writes,
                 Cycles::Moves => Capabilities::NONE,
             },
+            only_moves: false,
             chord_tolerance,
             tip: None,
             only_said: false,
@@ -128,6 +132,13 @@ impl ExpandStage {
             tangential,
             findings: findings.clone(),
         }
+    }
+
+    /// Has every hole go by its moves, those of threads too.
+    pub(crate) fn by_moves_alone(mut self) -> Self {
+        self.cycles = Capabilities::NONE;
+        self.only_moves = true;
+        self
     }
 
     /// Line of the first step that is kept back.
@@ -335,8 +346,8 @@ impl ExpandStage {
         let CycleStep { cycle, point } = *step;
         let native = cycle.native();
         let known = native.filter(|native| self.cycles.has(native.kind.capability()));
-        if let (Some(kind), None) =
-            (native.filter(|native| native.alone).map(|native| native.kind), known)
+        if let (Some(kind), None, false) =
+            (native.filter(|native| native.alone).map(|native| native.kind), known, self.only_moves)
         {
             self.findings.at(line, no_moves(kind));
             return;

@@ -115,6 +115,8 @@ fn flags_say_everything() {
     ] {
         assert!(text.contains(line), "{line} is not in:\n{text}");
     }
+    // The point of A is said: no height of it is left over that nothing uses.
+    assert!(!text.contains("tilt"), "{text}");
     let check = post_in(folder.path(), &["check", "mill.toml", "--json", "c.json"], "");
     assert_eq!(check.code, 0, "{}", check.err);
     let check = read_json(&folder.path().join("c.json"));

@@ -117,7 +117,7 @@ impl Writer<'_> {
         let mut set = Vec::new();
         if !linear.is_empty() {
             let shown = names(&linear);
-            set.push(format!("There set the work offset of this program so that {shown} show 0"));
+            set.push(format!("There set the work offset that is in force so that {shown} show 0"));
         }
         if !rotary.is_empty() {
             set.push(format!("the offset of {} is 0", names(&rotary)));

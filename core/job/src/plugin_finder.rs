@@ -77,6 +77,15 @@ pub fn text(finder: &Finder, machine: &Machine, key: &str) -> Option<String> {
     }
 }
 
+/// The work offset that a program of this machine is in where the CL file names none, by the option of its dialect: as a word,
+/// or a row of Heidenhain's preset table. None where the operator chooses it.
+pub fn work_offset(finder: &Finder, machine: &Machine) -> Option<String> {
+    match integer(finder, machine, "preset") {
+        Some(row) => (row >= 0).then(|| format!("CYCL DEF 247 Q339={row}")),
+        None => text(finder, machine, "work_offset").filter(|word| !word.is_empty()),
+    }
+}
+
 fn given_value<'m>(machine: &'m Machine, key: &str) -> Option<&'m OptionValue> {
     let mut given = machine.control.options.iter();
     given.find(|given| given.key == key).map(|given| &given.value)

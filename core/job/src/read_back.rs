@@ -95,10 +95,7 @@ fn work_offset(finder: &Finder, machine: &Machine, spoken: &DialectVocabulary) -
     if !machine.word_rules.is_empty() || lines.any(|word| offsets.contains(&word.as_str())) {
         return None;
     }
-    if let Some(row) = plugin_finder::integer(finder, machine, "preset") {
-        return (row >= 0).then(|| format!("CYCL DEF 247 Q339={row}"));
-    }
-    plugin_finder::text(finder, machine, "work_offset")
+    plugin_finder::work_offset(finder, machine)
 }
 
 /// How the CL file is meant, as posting was told.

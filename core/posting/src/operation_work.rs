@@ -1,7 +1,7 @@
 //! What each operation does with each tool: for whoever sets the machine up.
 
 use nalgebra::Vector3;
-use post_plugin::Compensation;
+use post_plugin::{Compensation, Spindle};
 
 use crate::blocks::MotionBlock;
 use crate::program::Command;
@@ -11,6 +11,9 @@ pub const MOST_OPERATIONS: usize = 1000;
 
 /// Directions of the tool that are told of an operation.
 pub const MOST_DIRECTIONS: usize = 8;
+
+/// Texts for the operator that are told of an operation.
+pub const MOST_NOTES: usize = 8;
 
 /// Tool axes that differ by less are one, as unit vectors: a millionth of a degree.
 const SAME: f64 = 2e-8;
@@ -26,6 +29,10 @@ pub struct OperationWork {
     pub radius_register: Option<u32>,
     /// Work offset, from 1; none if the CL file names none.
     pub work_offset: Option<u32>,
+    /// Speed of the spindle, 1/min, as it was commanded last; none if nothing commands one.
+    pub spindle: Option<f64>,
+    /// What the CL file tells the operator: the first [`MOST_NOTES`] that differ.
+    pub notes: Vec<String>,
     /// Lowest place of the tip in a cut, mm along Z of the part frame; none without a cut.
     pub lowest: Option<f64>,
     /// Time of its blocks, s.
@@ -82,7 +89,16 @@ impl OperationList {
             Command::Compensate(
                 Compensation::Left { register } | Compensation::Right { register },
             ) => self.last().radius_register = Some(*register),
+            Command::Spindle(Spindle::On { rpm, .. }) => self.last().spindle = Some(*rpm),
+            Command::Comment(text) | Command::Message(text) => self.note(text),
             _ => {}
+        }
+    }
+
+    fn note(&mut self, text: &str) {
+        let notes = &mut self.last().notes;
+        if notes.len() < MOST_NOTES && !notes.iter().any(|note| note == text) {
+            notes.push(text.to_owned());
         }
     }
 
@@ -103,6 +119,7 @@ impl OperationList {
                 name: last.name.clone(),
                 tool: last.tool,
                 work_offset: last.work_offset,
+                spindle: last.spindle,
                 ..OperationWork::default()
             };
             self.done.push(next);

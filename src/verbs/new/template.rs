@@ -234,13 +234,18 @@ fn parameters(line: &mut impl FnMut(&str, &str), choices: &Choices) {
         &format!("gauge = {}", choices.gauge),
         "gauge line over the table's face, all axes at zero",
     );
-    if choices.class.has_pivot() {
+    // An axis whose point is given asks for no distance.
+    let asked = |parameter: &str| {
+        let axis = choices.class.axis_at(parameter);
+        axis.is_some_and(|axis| given(&choices.point, axis).is_none())
+    };
+    if asked("pivot") {
         line(
             &format!("pivot = {}", choices.pivot),
             "swivel axis to gauge line: swing to 90° and compare with 0°",
         );
     }
-    if choices.class.has_tilt() {
+    if asked("tilt") {
         line(
             &format!("tilt  = {}", choices.tilt),
             "tilting axis over the table's face; below it is negative",

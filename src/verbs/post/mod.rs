@@ -25,6 +25,7 @@ use post_job::settings::{
 use post_job::summary::{self, SummaryJson};
 use post_job::{compensate, plan_rounds, plugin_finder, predict};
 use said_settings::SaidSettings;
+use setup_sheet::SheetJob;
 use shown::ShownArguments;
 
 const SETUP_SHEET: Role =
@@ -252,7 +253,10 @@ fn write_besides(
         let reports = outcomes.iter().map(|outcome| &outcome.report);
         let programs: Vec<_> = parts.iter().map(|part| &part.target).zip(reports).collect();
         let input = &maker.job.input;
-        let text = setup_sheet::text(sheet, &parts[0].machine, input, ahead, &programs);
+        let offset = plugin_finder::work_offset(&maker.finder, &parts[0].machine);
+        let job =
+            SheetJob { machine: &parts[0].machine, cl_file: input, work_offset: offset, ahead };
+        let text = setup_sheet::text(sheet, &job, &programs);
         file.write_bytes(text.as_bytes())?;
     }
     if let Some(file) = &mut texts.prediction {

@@ -22,23 +22,35 @@ struct SheetTable {
     rows: Vec<Vec<String>>,
 }
 
+/// What a sheet is of.
+pub struct SheetJob<'a> {
+    /// The machine, as it is set up.
+    pub machine: &'a Machine,
+    /// The CL file.
+    pub cl_file: &'a PathArg,
+    /// The work offset that the programs are in where the CL file names none; none where the operator chooses it.
+    pub work_offset: Option<String>,
+    /// What a first pass found out.
+    pub ahead: &'a ProgramPreview,
+}
+
 /// The sheet of programs that were made of one CL file.
 pub fn text(
     sheet: &PathArg,
-    machine: &Machine,
-    cl_file: &PathArg,
-    ahead: &ProgramPreview,
+    job: &SheetJob<'_>,
     programs: &[(&PathArg, &PostingReport)],
 ) -> String {
+    let SheetJob { machine, cl_file, ahead, .. } = *job;
     let title = match cl_file.path().and_then(|path| path.file_name()) {
         Some(name) => format!("Setup: {}", name.to_string_lossy()),
         None => "Setup".to_owned(),
     };
     let sections = [
-        the_machine(machine, ahead, programs),
+        the_machine(job, programs),
         the_programs(programs),
         the_tools(machine, ahead, programs),
-        the_operations(ahead),
+        the_operations(job),
+        for_the_operator(ahead),
         the_axes(programs),
         what_holds_at_the_control(programs),
         the_options(machine),
@@ -51,11 +63,8 @@ pub fn text(
     }
 }
 
-fn the_machine(
-    machine: &Machine,
-    ahead: &ProgramPreview,
-    programs: &[(&PathArg, &PostingReport)],
-) -> SheetTable {
+fn the_machine(job: &SheetJob<'_>, programs: &[(&PathArg, &PostingReport)]) -> SheetTable {
+    let SheetJob { machine, ahead, .. } = *job;
     let mut rows = Vec::new();
     let mut row = |name: &str, value: String| rows.push(vec![name.to_owned(), value]);
     row("Machine", machine.name.clone());
@@ -71,10 +80,12 @@ fn the_machine(
     let [x, y, z] =
         [machine.mount.x, machine.mount.y, machine.mount.z].map(|value| number(value, 3));
     row("Part origin, all axes at zero", format!("X {x}, Y {y}, Z {z} mm in the machine frame"));
+    let named = job.work_offset.clone();
+    row("Work offset of the program", named.unwrap_or("the one that is in force".to_owned()));
     if let Some(offset) = axis_words::work_offset(machine) {
         let axes: Vec<String> =
             offset.iter().map(|(name, value)| format!("{name} {}", number(*value, 3))).collect();
-        row("Work offset of that part origin", format!("{} mm, without a tool", axes.join(", ")));
+        row("Its values for that part origin", format!("{} mm, without a tool", axes.join(", ")));
     }
     row(
         "The program holds",
@@ -216,15 +227,20 @@ fn direction(axis: &Vector3<f64>) -> String {
     if axis.z > 1.0 - 1e-12 { "upright".to_owned() } else { format!("{i}, {j}, {k}") }
 }
 
-fn the_operations(ahead: &ProgramPreview) -> SheetTable {
+fn the_operations(job: &SheetJob<'_>) -> SheetTable {
     let optional = |value: Option<u32>| value.map_or(String::new(), |value| value.to_string());
-    let rows = ahead.work.iter().zip(1..).map(|(work, place): (_, u32)| {
+    let offset = |work: &OperationWork| match work.work_offset {
+        Some(number) => format!("number {number} (1 is G54)"),
+        None => job.work_offset.clone().unwrap_or_default(),
+    };
+    let rows = job.ahead.work.iter().zip(1..).map(|(work, place): (_, u32)| {
         vec![
             place.to_string(),
             work.name.clone(),
             optional(work.tool),
             optional(work.radius_register),
-            optional(work.work_offset),
+            offset(work),
+            work.spindle.map_or(String::new(), |rpm| number(rpm, 0)),
             match work.turns {
                 true => "turns".to_owned(),
                 false => work.axes.iter().map(direction).collect::<Vec<_>>().join("; "),
@@ -240,12 +256,26 @@ fn the_operations(ahead: &ProgramPreview) -> SheetTable {
             "Operation",
             "T",
             "D",
-            "Work offset (1 is G54)",
+            "Work offset",
+            "Spindle, 1/min",
             "Tool axis (I, J, K)",
             "Lowest Z, mm",
             "Time",
         ],
         rows: rows.collect(),
+    }
+}
+
+/// What the CL file tells the operator.
+fn for_the_operator(ahead: &ProgramPreview) -> SheetTable {
+    let of = |(work, place): (&OperationWork, u32)| {
+        let row = move |note: &String| vec![place.to_string(), note.clone()];
+        work.notes.iter().map(row).collect::<Vec<_>>()
+    };
+    SheetTable {
+        title: "For the operator".to_owned(),
+        head: vec!["Operation", "What the CL file says"],
+        rows: ahead.work.iter().zip(1..).flat_map(of).collect(),
     }
 }
 

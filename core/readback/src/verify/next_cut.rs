@@ -140,14 +140,14 @@ impl<C: Course> Verifier<'_, C> {
         self.next = None;
         self.apart = false;
         self.made = None;
-        self.miss_events(motion);
+        if let Some(first) = self.reach.iter().position(|span| !span.is_empty()) {
+            self.miss_events(Some(motion), first);
+        }
     }
 
-    /// Events in front of where a cut begins must have been met.
-    fn miss_events(&mut self, motion: &Motion) {
-        let Some(first) = self.reach.iter().position(|span| !span.is_empty()) else {
-            return;
-        };
+    /// Events in front of the element at `first`, where a cut or a hole begins with this motion, must have been met; none:
+    /// the program ends.
+    pub(super) fn miss_events(&mut self, motion: Option<&Motion>, first: usize) {
         let mut missed = Vec::new();
         for index in 0..first {
             if let Some(element) = self.track.get(index)
@@ -159,7 +159,7 @@ impl<C: Course> Verifier<'_, C> {
         }
         for (name, line) in missed {
             let message = format!("{name} is left out");
-            self.fault("event", message, Some(motion), Some(line), None);
+            self.fault("event", message, motion, Some(line), None);
         }
     }
 
@@ -318,6 +318,7 @@ impl<C: Course> Verifier<'_, C> {
             Some(next) => next,
             None => self.reach.iter().rposition(|span| !span.is_empty()).unwrap_or(0),
         };
+        self.miss_events(None, from);
         let mut lines: [Option<[u64; 2]>; 2] = [None, None];
         let mut index = from;
         // Elements that were looked at are let go: the rest may be long.

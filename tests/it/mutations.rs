@@ -198,6 +198,11 @@ impl Job {
             }
             all.append(&mut done);
         }
+        let report = program.report();
+        let relied = report.relied.iter();
+        faults.extend(relied.map(|(line, group)| (Some(*line), format!("{} not set", group.name()))));
+        let unretracted = report.unretracted.iter();
+        faults.extend(unretracted.map(|(line, axes)| (Some(*line), format!("{axes} not retracted"))));
         let found = verifier.finish(&mut |_| {});
         assert_eq!(found, quick.finish(&mut |_| {}));
         faults.extend(found.faults.into_iter().map(|fault| {
@@ -238,10 +243,12 @@ const KINDS: &[&str] = &[
     "mode",
     "offset",
     "word out",
+    "stop out",
+    "mode out",
 ];
 
-/// What no control reads as it was meant: whatever a reader makes of it, it is to be told.
-const MALFORMED: &[&str] = &["second feed", "malformed"];
+/// What no control reads as it was meant, or reads by what ran before: whatever a reader makes of it, it is to be told.
+const MALFORMED: &[&str] = &["second feed", "malformed", "mode out"];
 
 /// Words of lines that lead off the part in positions of the machine.
 const RETRACTS: &[&str] = &["G53", "G28", "G30", "SUPA", "M91", "M140", "VPSLZ", "G16 H0"];
@@ -251,6 +258,12 @@ const PECKS: &[&str] = &["G83", "G73", "Q202", "CYCLE83"];
 
 /// Words of tilted planes.
 const PLANES: &[&str] = &["G68", "PLANE", "CYCLE800"];
+
+/// Lines that stop the program or have it wait.
+const STOPS: &[&str] = &["M0", "M1", "M00", "M01", "STOP"];
+
+/// Words of modes that stand once, in the head.
+const HEAD_MODES: &[&str] = &["G21", "G20", "G71", "G710", "G90"];
 
 /// Words of dwells.
 const WAITS: &[&str] = &["G4 ", "G04 ", "CYCL DEF 9", "Q211", "G82", "G89"];
@@ -457,6 +470,24 @@ fn mutate(kind: &str, random: &mut Rng, lines: &mut Vec<String>, length: &mut f6
                 .collect();
             let line = *places.get(random.pick(places.len().max(1)))?;
             lines.remove(line);
+            Some(())
+        }
+        "stop out" => {
+            let stops = |line: &String| {
+                let mut words = line.split(' ');
+                words.next_back().is_some_and(|word| STOPS.contains(&word))
+                    || line.contains("G4 ")
+            };
+            let places: Vec<usize> = (0..lines.len()).filter(|at| stops(&lines[*at])).collect();
+            lines.remove(*places.get(random.pick(places.len().max(1)))?);
+            Some(())
+        }
+        "mode out" => {
+            let is = |word: &&str| word.split(' ').any(|word| HEAD_MODES.contains(&word));
+            let heads: Vec<usize> = (0..lines.len()).filter(|at| is(&&*lines[*at])).collect();
+            let at = *heads.get(random.pick(heads.len().max(1)))?;
+            let words = lines[at].split(' ').filter(|word| !HEAD_MODES.contains(word));
+            lines[at] = words.collect::<Vec<_>>().join(" ");
             Some(())
         }
         "wait" => change_digit_in(random, lines, "PXFUQ", WAITS),

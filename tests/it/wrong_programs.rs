@@ -359,6 +359,82 @@ FINI
     assert!(wrong.err.contains("error[rapid]"), "{}\n{}", wrong.err, dives.join("\n"));
 }
 
+/// A slot, a stop, a tool change and a tap, then a wait with the part done.
+const STOPPED: &str = "\
+TOOL PATH/A,TOOL,T1
+LOAD/TOOL,1,ADJUST,1
+SPINDL/RPM,3000,CLW
+RAPID
+GOTO/0,0,60,0,0,1
+FEDRAT/MMPM,600
+GOTO/0,0,-5
+GOTO/40,0,-5
+RAPID
+GOTO/40,0,60
+STOP
+LOAD/TOOL,2,ADJUST,2
+SPINDL/RPM,500,CLW
+RAPID
+GOTO/0,50,60
+OPSTOP
+CYCLE/TAP,RAPTO,5,FEDTO,-15,MMPM,500
+GOTO/0,50,0
+CYCLE/OFF
+DELAY/2
+RAPID
+GOTO/0,0,70
+END-OF-PATH
+FINI
+";
+
+/// The chips are to be blown out before the tap goes in, and the operator is not there any more: no cut follows a stop
+/// before a hole, nor a wait at the end.
+#[test]
+fn a_stop_before_a_hole_and_a_wait_at_the_end_are_not_left_out() {
+    let words = [
+        ("fanuc", "\nM0\n", "\nM1\n", "\nG4 P2000\n"),
+        ("siemens", " M0\n", " M1\n", " G4 F2.000\n"),
+        ("heidenhain", " M0\n", " M1\n", "CYCL DEF 9.0 DWELL TIME\n38 CYCL DEF 9.1 DWELL 2.000\n"),
+    ];
+    for (dialect, stop, optional, wait) in words {
+        let posted = Posted::new(STOPPED, dialect);
+        posted.told((stop, "\n"), "error[event]: a stop is left out");
+        posted.told((optional, "\n"), "error[event]: an optional stop is left out");
+        posted.told((wait, "\n"), "error[event]: a dwell of 2 s is left out");
+    }
+}
+
+/// Nothing is known of what ran before: modes that the program does not set, and a tool that stands in the part.
+#[test]
+fn a_program_says_what_it_stands_on() {
+    let not_set = |what: &str| format!("[nc-modes]: the program does not set {what}");
+    let cases = [
+        ("fanuc", "G21\n", "units (G21, G20)"),
+        ("fanuc", " G90", "absolute or incremental (G90, G91)"),
+        ("fanuc", "G17 ", "plane (G17, G18, G19)"),
+        ("siemens", " G710\n", "units"),
+        ("siemens", " G90", "absolute or incremental (G90, G91)"),
+    ];
+    for (dialect, word, what) in cases {
+        let posted = Posted::new(STOPPED, dialect);
+        let end = if word.ends_with('\n') { "\n" } else { "" };
+        posted.told((word, end), &format!("warning{}", not_set(what)));
+        let own = posted.verify(&posted.text.replace(word, end), &["--posted"]);
+        assert!(own.err.contains(&format!("error{}", not_set(what))), "{}", own.err);
+        assert_eq!(own.code, 1);
+    }
+    for (dialect, retract) in [("fanuc", "G53 G0 Z20.000\n"), ("haas", "G53 G0 Z20.000\n")] {
+        let posted = Posted::new(STOPPED, dialect);
+        let changed = posted.text.replacen(retract, "", 1);
+        assert_ne!(changed, posted.text);
+        let own = posted.verify(&changed, &["--posted"]);
+        let missing = "error[rapid]: Z is not retracted before the first tool change";
+        assert!(own.err.contains(missing), "{dialect}: {}", own.err);
+        let other = posted.verify(&changed, &[]);
+        assert_eq!(other.code, 0, "a program of another hand: {}", other.err);
+    }
+}
+
 /// Right ones that were refused: a plan that comes to rest at the end of a cut by ways shorter than a rounding, and a first
 /// retract that comes from where nobody knows.
 #[test]

@@ -12,7 +12,7 @@ use post_plugin::{Lengths, Meaning};
 use post_posting::program::{DefaultSpindle, UnknownWordPolicy};
 use post_readback::course::cl::{ClCourse, ClSettings, ClTool};
 use post_readback::course::{Course, CourseWindow};
-use post_readback::interpret::Limits;
+use post_readback::interpret::{Limits, ModalGroup, ReadReport};
 use post_readback::verify::{
     BlockReport, CutBounds, CutPath, Fault, Verification, Verifier, VerifyRules,
 };
@@ -292,6 +292,7 @@ pub fn hold<C: Course>(
     };
     let control = NcControl::of(machine, spoken, offsets, reading.limits);
     let rules = VerifyRules { rows: watch.wants_lines(), ..rules(reading, &control, &tools) };
+    let own = rules.own;
     let mut verifier = Verifier::new(&control.counted, rules, course);
     if let Some(cut_path) = cut_path {
         verifier = verifier.near(cut_path);
@@ -329,7 +330,9 @@ pub fn hold<C: Course>(
     }
     let mut run = run.into_blocks();
     let mut findings = found_by_running(name, &run);
-    let blocks = run.program().report().blocks;
+    let report = run.program().report();
+    findings.extend(left_to_others(name, report, &control.spoken, own));
+    let blocks = report.blocks;
     let found = verifier.finish(&mut |line| watch.line(line));
     if found.gave_up && watch.runs_on() {
         while let Some(done) = run.block() {
@@ -360,6 +363,43 @@ fn found_by_running(name: &str, run: &ProgramRun<RunningProgram<'_>>) -> Vec<Dia
         findings.push(Diagnostic::error("missing", message).at(Some(place)));
     }
     findings.extend(nc_program::unknown_words(name, report));
+    findings
+}
+
+/// What the program `name` leaves to whatever ran before it: modes that it does not set, and where the tool stands as it
+/// begins. A program of our own says all of that; others have it said elsewhere, perhaps.
+fn left_to_others(
+    name: &str,
+    report: &ReadReport,
+    spoken: &DialectVocabulary,
+    own: bool,
+) -> Vec<Diagnostic> {
+    let mut findings = Vec::new();
+    let at = |line| Some(SourcePlace::new(name, line, "", 0..0));
+    let words = |group: ModalGroup| {
+        let words = spoken.words.iter().filter(|word| ModalGroup::of(word.meaning) == Some(group));
+        let words: Vec<&str> = words.map(|word| word.word.as_ref()).collect();
+        format!("{} ({})", group.name(), words.join(", "))
+    };
+    if let Some((line, _)) = report.relied.first() {
+        let unset: Vec<String> = report.relied.iter().map(|(_, group)| words(*group)).collect();
+        let message = format!(
+            "the program does not set {}: what its words mean hangs on what ran before it",
+            unset.join(", nor ")
+        );
+        let finding = match own {
+            true => Diagnostic::error("nc-modes", message),
+            false => Diagnostic::warning("nc-modes", message),
+        };
+        let help = "set it in the first lines of the program: a reset of the control does not";
+        findings.push(finding.help(help).at(at(*line)));
+    }
+    if let (true, Some((line, axes))) = (own, &report.unretracted) {
+        let message = format!(
+            "{axes} is not retracted before the first tool change or the first way to the part: where it stands then is not known"
+        );
+        findings.push(Diagnostic::error("rapid", message).at(at(*line)));
+    }
     findings
 }
 

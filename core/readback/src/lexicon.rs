@@ -12,6 +12,7 @@ use post_grammar::nc::{NcSyntax, Notation};
 use post_plugin::{Capabilities, Language, Lengths, Meaning, VocabularyWord};
 
 use crate::g_code::GCode;
+use crate::interpret::ModalGroup;
 
 /// What a word does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +63,8 @@ pub struct Lexicon {
     path_modes: bool,
     /// A feed a minute counts along all axes together where no tip is kept.
     all_axes: bool,
+    /// Bits of the modes that the dialect has words for.
+    modes: u8,
 }
 
 impl Lexicon {
@@ -81,6 +84,11 @@ impl Lexicon {
             names: BTreeMap::new(),
             empty: BTreeMap::new(),
             choices: Vec::new(),
+            modes: match language {
+                // Its head names the units, and I the ways; the plane is that of the tool call.
+                Language::Conversational => 0,
+                _ => ModalGroup::named(words),
+            },
         };
         for (word, sense) in common::words(language) {
             lexicon.add_sense(word, sense);
@@ -129,6 +137,11 @@ impl Lexicon {
     /// A feed a minute counts along all axes together where no tip is kept, degrees as millimetres.
     pub(crate) fn counts_all_axes(&self) -> bool {
         self.all_axes
+    }
+
+    /// Bits of the modes that a program must set itself, as the dialect names them ([`ModalGroup`]).
+    pub(crate) fn modes(&self) -> u8 {
+        self.modes
     }
 
     /// G61 is one of several modes, and not just the name of the only one.

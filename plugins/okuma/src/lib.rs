@@ -111,8 +111,6 @@ const RELIES: &[&str] = &[
 const OWN: &[(&str, Meaning)] = &[
     ("%", Meaning::Nothing),
     ("$", Meaning::Nothing),
-    ("G20", Meaning::Inch),
-    ("G21", Meaning::Millimetre),
     ("G30", Meaning::OtherReferenceReturn),
     ("G31", Meaning::Probe),
     ("G9", Meaning::ExactStop),

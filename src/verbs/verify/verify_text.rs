@@ -1,6 +1,7 @@
 //! What verifying has found, for people.
 
 use post_machine::description::Machine;
+use post_machine::diagnostic::Severity;
 use post_readback::verify::WorstDeviation;
 
 use post_job::read_back::VerifiedProgram;
@@ -15,6 +16,7 @@ pub fn text(
     tolerances: [Option<f64>; 2],
 ) -> String {
     let found = &held.found;
+    let errors = held.findings.iter().filter(|finding| finding.severity == Severity::Error).count();
     let mut rows = NamedValues::default();
     rows.row("program", format_args!("{name}, {} blocks", held.blocks));
     rows.row("machine", &machine.name);
@@ -61,7 +63,7 @@ pub fn text(
     rows.row("time", clock(found.time_s));
     rows.row(
         "faults",
-        match (found.faults.len(), found.gave_up) {
+        match (errors, found.gave_up) {
             (0, _) => "none".to_owned(),
             (count, false) => count.to_string(),
             (count, true) => format!("{count} and more: given up"),

@@ -11,7 +11,7 @@ use super::block_words::{BlockWords, bit};
 use super::go::MotionTarget;
 use super::spindle_request::SpindleRequest;
 use super::state::{ControlState, FeedMeaning, MotionMode};
-use super::{cycles, frames, names, planes};
+use super::{ModalGroup, cycles, frames, names, planes};
 use crate::g_code::GCode;
 use crate::lexicon::WordMeaning;
 use crate::{Curve, MotionKind, ProgramEvent};
@@ -348,6 +348,10 @@ impl ControlState {
         words: &mut BlockWords,
         asked: &BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
+        if words.present & self.axes.mask != 0 {
+            self.relies_on(ModalGroup::Units);
+            self.relies_on(ModalGroup::Distance);
+        }
         if let Some((code, meaning)) = asked.frame {
             return frames::code(self, code, meaning, words);
         }
@@ -415,6 +419,13 @@ impl ControlState {
                 "under inverse time every block at feed says its F, and this one does not",
             ));
         }
+        self.begins();
+        if kind == MotionKind::Feed {
+            self.relies_on(ModalGroup::Feed);
+        }
+        if self.state.compensation != 0 {
+            self.relies_on(ModalGroup::Plane);
+        }
         let mut target = MotionTarget::default();
         self.put_target(words, &mut target)?;
         if self.modal.vectors {
@@ -422,6 +433,7 @@ impl ControlState {
         }
         match mode {
             MotionMode::Clockwise | MotionMode::CounterClockwise => {
+                self.relies_on(ModalGroup::Plane);
                 let path = self.arc_words(mode == MotionMode::Clockwise, words, &mut target)?;
                 self.go(kind, &path, &target)?;
             }

@@ -105,7 +105,7 @@ impl ControlState {
             heads,
             head_by_hand: None,
             axes: AxisLetters::new(machine),
-            modal: ModalState::new(lexicon.language(), machine.control.units),
+            modal: ModalState::new(lexicon, machine.control.units),
             frames: FrameStack::default(),
             work: None,
             offsets_told: false,
@@ -133,6 +133,7 @@ impl ControlState {
             shared: None,
             said: 0,
             fed: false,
+            begun: false,
             at: Stance::default(),
             turns: Turns::default(),
             ended: false,
@@ -363,9 +364,11 @@ impl ControlState {
 }
 
 impl ModalState {
-    fn new(language: Language, units: OutputUnits) -> Self {
+    fn new(lexicon: &Lexicon, units: OutputUnits) -> Self {
+        let named = lexicon.language() == Language::Names;
         Self {
-            motion: if language == Language::Names { MotionMode::Linear } else { MotionMode::None },
+            motion: if named { MotionMode::Linear } else { MotionMode::None },
+            unset: lexicon.modes(),
             plane: ArcPlane::Xy,
             incremental: false,
             centres_absolute: false,

@@ -84,6 +84,7 @@ impl ControlState {
 
     /// Whether a word sets a mode and nothing else, which it then does.
     fn sets_mode(&mut self, meaning: Meaning) -> bool {
+        self.sets_group(meaning);
         match meaning {
             Meaning::Rapid => self.motion(MotionMode::Rapid),
             Meaning::Linear => self.motion(MotionMode::Linear),

@@ -12,6 +12,7 @@
 //! | `run` | plain blocks that are run together |
 //! | `go`, `arcs`, `splines`, `machine_moves` | from words to axis values, tip and tool axis |
 //! | `feed`, `tools` | time, tool lengths |
+//! | `relied` | what the program relies on and does not say |
 //! | `frame` | frames within one another |
 //! | `flow`, `astray`, `expression`, `variables` | what leads the program elsewhere, and numbers that are worked out |
 //! | `cycles`, `planes`, `frames`, `conversational` | cycles, tilted planes, shifts; Heidenhain's blocks |
@@ -37,6 +38,7 @@ mod machine_moves;
 mod meanings;
 mod names;
 pub(crate) mod planes;
+mod relied;
 mod run;
 mod spindle;
 mod spindle_request;
@@ -56,6 +58,7 @@ use crate::lexicon::Lexicon;
 use crate::{BlockEffect, MachineState, Offsets};
 use block_words::BlockWords;
 use flow::ProgramFlow;
+pub use relied::ModalGroup;
 use run::MotionRun;
 use state::ControlState;
 
@@ -88,6 +91,11 @@ pub struct ReadReport {
     /// The line of the first motion at feed, if the program has not said before where these linear axes stand: it is
     /// taken to begin with them at zero.
     pub unsaid: Option<(u64, String)>,
+    /// Modes that the program has not set, and the lines of the first words whose meaning hangs on them.
+    pub relied: Vec<(u64, ModalGroup)>,
+    /// The line at which a tool is changed or led to the part first, if these axes, which the machine file retracts, were
+    /// led nowhere before: where they stand then is not known.
+    pub unretracted: Option<(u64, String)>,
 }
 
 /// Runs blocks one by one.

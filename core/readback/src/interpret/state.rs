@@ -62,6 +62,8 @@ pub(super) struct ControlState {
     pub said: u32,
     /// Something was fed.
     pub fed: bool,
+    /// A tool was changed, or led to the part.
+    pub begun: bool,
     /// Where the machine stands.
     pub at: Stance,
     /// Sines and cosines of its joints.
@@ -167,6 +169,8 @@ pub(super) struct ModalState {
     pub rigid_taps: bool,
     /// Positions are machine coordinates until a word ends that: `#MCS ON`.
     pub machine: bool,
+    /// Bits of the modes that the program has neither set nor relied on ([`super::ModalGroup`]).
+    pub unset: u8,
     /// A rigid tap was made and no word has turned the spindle since: it stands when the cycle is over.
     pub tapped: bool,
 }

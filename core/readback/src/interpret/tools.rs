@@ -37,6 +37,7 @@ impl ControlState {
         number: Option<u32>,
         name: Option<String>,
     ) -> Result<(), Box<Diagnostic>> {
+        self.begins();
         self.state.tool = number;
         self.tools.longer = 0.0;
         self.state_changed();

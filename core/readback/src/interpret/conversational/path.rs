@@ -102,6 +102,7 @@ fn travel(
     path: &Curve,
     target: &MotionTarget,
 ) -> Answer<()> {
+    control.begins();
     let from = control.point();
     control.go(kind, path, target)?;
     let to = control.point();

@@ -17,6 +17,7 @@ use post_grammar::nc::NcValue;
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
+use super::ModalGroup;
 use super::block_words::BlockWords;
 use super::state::{ControlState, FeedMeaning};
 use crate::g_code::GCode;
@@ -186,6 +187,8 @@ fn drill(control: &mut ControlState, hole: &CycleHole) -> Result<(), Box<Diagnos
     if control.state.compensation != 0 {
         return Err(control.refuse("nc-cycle", "a cycle under radius compensation"));
     }
+    control.relies_on(ModalGroup::Plane);
+    control.relies_on(ModalGroup::Feed);
     let axis = control.modal.plane.coordinates()[2];
     let from = control.point();
     let strokes = hole.strokes(from[axis]).map_err(|finding| control.placed(*finding).boxed())?;

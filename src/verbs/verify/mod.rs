@@ -72,7 +72,8 @@ pub struct VerifyArguments {
     threads: Flags<ThreadSettings>,
 
     /// The program was posted for this machine file: also checks what posting promises of rapids. Rotary axes turn only
-    /// where the tool is retracted or on its own line, and it is retracted at each tool change and at the end.
+    /// where the tool is retracted or on its own line, it is retracted at each tool change and at the end, and the program
+    /// sets the modes that it stands on. A program whose head names its job file is held to that by itself.
     #[arg(long)]
     posted: bool,
 

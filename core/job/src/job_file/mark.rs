@@ -93,6 +93,11 @@ pub fn job_of_program(session: &Session, program: &PathArg) -> Result<Option<Pat
     Err(Diagnostic::error("job-file", message).help(help).into())
 }
 
+/// Whether the head of a program names a job file: `post` has written it.
+pub fn is_marked(program: &PathArg) -> bool {
+    program.path().and_then(head).as_deref().and_then(JobMark::in_head).is_some()
+}
+
 /// The beginning of a program; none of what is no regular file.
 fn head(path: &Path) -> Option<String> {
     if !path.metadata().ok()?.is_file() {

@@ -13,6 +13,7 @@ use super::read_back::{self, ReadingSetup, VerifiedProgram, VerifyWatch};
 use super::report::{ClWindow, ExtraColumns, MotionRows};
 use super::result_files::ResultFiles;
 use crate::failure::Failure;
+use crate::job_file::is_marked;
 use crate::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
 use crate::session::Session;
 use crate::settings::{JobSettings, ReportSettings, ThreadSettings};
@@ -35,7 +36,7 @@ pub struct VerifyRequest {
     pub axis_tolerance: Option<f64>,
     /// The feed was planned: it may be below that of the CL file.
     pub planned: bool,
-    /// The program was posted for this machine file.
+    /// The program was posted for this machine file; it says so itself where its head names a job file.
     pub posted: bool,
     /// Which coolant flows is the program's own business.
     pub any_coolant: bool,
@@ -93,7 +94,7 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
         solutions: request.map.is_some(),
         any_coolant: request.any_coolant,
         any_work_offset: request.any_work_offset,
-        own: request.posted,
+        own: request.posted || is_marked(&request.program),
         lines: None,
         threads: request.threads.most(),
     };

@@ -80,6 +80,7 @@ fn check_summary(summary: &Value, program: &str, machine: &str) {
         "blocks",
         "nc_lines",
         "points_added",
+        "model_asked",
         "model_overruled",
         "tip_deviation_mm",
         "axis_deviation_deg",

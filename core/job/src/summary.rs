@@ -82,7 +82,12 @@ fn rows(
     rows.row("machine", format_args!("{}, the {} keeps the tip", report.machine, report.tcp));
     for (plugin, kind) in report.plugins.iter().zip(["dialect", "error model"]) {
         let PluginUse { name, version, .. } = plugin;
-        rows.row(kind, format_args!("{name} {version} ({})", origin(plugin)));
+        let asked = match (kind, report.model_asked) {
+            ("error model", 0) => ", never asked".to_owned(),
+            ("error model", count) => format!(", asked {}", counted(count, "time", "times")),
+            _ => String::new(),
+        };
+        rows.row(kind, format_args!("{name} {version} ({}){asked}", origin(plugin)));
     }
     rows.row("records read", report.records);
     rows.row("moves", report.moves);

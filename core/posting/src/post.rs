@@ -487,6 +487,7 @@ impl<'a> Post<'a> {
             nc_lines: stages.emit.lines(),
             points_added: counts.points_added,
             points_dropped: counts.points_dropped,
+            model_asked: stages.blocks.asked(),
             model_overruled: stages.blocks.overruled(),
             tip_deviation_mm: tip,
             axis_deviation_deg: ReportedDeviation { value: axis.value.to_degrees(), ..axis },

@@ -32,6 +32,8 @@ pub struct PostingReport {
     pub points_added: u64,
     /// CL points that no block ends on, because the tolerance makes them needless.
     pub points_dropped: u64,
+    /// Pieces of moves whose deviation the error model was asked for; the certificate alone settles the others.
+    pub model_asked: u64,
     /// Points put in because the certificate found more than the model promised.
     pub model_overruled: u64,
     /// Certified largest deviation of the tip in a cut, mm.

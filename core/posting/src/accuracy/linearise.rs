@@ -56,6 +56,7 @@ pub struct Lineariser {
     placement: Placement,
     pub(super) trust_model: bool,
     pub(super) overruled: u64,
+    asked: u64,
     pieces: Vec<LinearPiece>,
     /// The leg that is being cut.
     leg: usize,
@@ -95,6 +96,11 @@ impl Lineariser {
     /// How often the certificate found more than the model promised, and points went in for it.
     pub fn overruled(&self) -> u64 {
         self.overruled
+    }
+
+    /// How often the model was asked for the deviation of a piece.
+    pub fn asked(&self) -> u64 {
+        self.asked
     }
 
     /// The blocks of the last run that was split, in order.
@@ -228,6 +234,7 @@ impl Lineariser {
                 peak: DeviationBound::default(),
             });
         }
+        self.asked += 1;
         let curve = piece.fit(model).map_err(LineariseError::Model)?;
         let peak = DeviationBound {
             tip: curve.tip_peak + piece.edge_bow(bend),

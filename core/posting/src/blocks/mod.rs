@@ -222,6 +222,11 @@ impl<'a> BlockStage<'a> {
         &self.between
     }
 
+    /// How often the error model was asked.
+    pub(crate) fn asked(&self) -> u64 {
+        self.linearise.asked()
+    }
+
     /// Points that the certificate asked for over the model's head.
     pub(crate) fn overruled(&self) -> u64 {
         self.linearise.overruled()

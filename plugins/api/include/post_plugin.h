@@ -15,14 +15,17 @@
  * - An event of a kind or code that you do not know must be refused, never dropped.
  * - No C++ exception and no longjmp may leave a function.
  *
- * This header is for 64-bit machines; the assertions at its end say so if it is not one.
- * The block between the marks is written by `UPDATE_HEADER=1 cargo test -p post-plugin --test it header`.
+ * This header is for 64-bit machines; the assertions of post_plugin_tables.h say so if it is not one. That file has the
+ * meanings of words too, for the vocabulary of a dialect; it is included at the end.
+ * The blocks between the marks of both files are written by `UPDATE_HEADER=1 cargo test -p post-plugin --test it header`.
  */
 #ifndef POST_PLUGIN_H
 #define POST_PLUGIN_H
 
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #ifdef __cplusplus
 #define POST_LANGUAGE extern "C"
@@ -127,8 +130,8 @@ typedef struct {
     double time; /* seconds; NaN is not known */
 } PostSetup;
 
-/* One step of a program. What its numbers and texts are stands below at POST_EVENT_ of its kind; POST_LINEAR_FEED
- * is the place of the feed among the numbers of a POST_EVENT_LINEAR. A feed is two numbers, POST_FEED_ and its
+/* One step of a program. What its numbers and texts are stands below at POST_EVENT_ of its kind; POST_AT_LINEAR_FEED
+ * is the place of the feed among the numbers of a POST_EVENT_LINEAR: post_number() and the like read them. A feed is two numbers, POST_FEED_ and its
  * value; a tool six, tip in mm and unit vector from the tip to the spindle, both in the part frame. NaN is not
  * given. Axis words are as many as the setup has, rounded to the decimals of the format. Later versions may put
  * more numbers and texts behind those that you know. `line` is that of the CL file. */
@@ -249,11 +252,6 @@ typedef struct {
 
 #ifdef __cplusplus
 }
-#define POST_ASSERT static_assert
-#define POST_ALIGN alignof
-#else
-#define POST_ASSERT _Static_assert
-#define POST_ALIGN _Alignof
 #endif
 
 /* generated: begin */
@@ -311,160 +309,6 @@ typedef struct {
 #define POST_LANGUAGE_NAMES 2u
 #define POST_LANGUAGE_CONVERSATIONAL 3u
 #define POST_LANGUAGE_INSTRUCTIONS 4u
-#define POST_MEANING_REMARK 1u
-#define POST_MEANING_REMARK_OPEN 2u
-#define POST_MEANING_REMARK_CLOSE 3u
-#define POST_MEANING_BLOCK_NUMBER 4u
-#define POST_MEANING_NOTHING 5u
-#define POST_MEANING_MILLIMETRE 10u
-#define POST_MEANING_INCH 11u
-#define POST_MEANING_ABSOLUTE 12u
-#define POST_MEANING_INCREMENTAL 13u
-#define POST_MEANING_PLANE_XY 14u
-#define POST_MEANING_PLANE_ZX 15u
-#define POST_MEANING_PLANE_YZ 16u
-#define POST_MEANING_RAPID 20u
-#define POST_MEANING_LINEAR 21u
-#define POST_MEANING_ARC_CLOCKWISE 22u
-#define POST_MEANING_ARC_COUNTER_CLOCKWISE 23u
-#define POST_MEANING_CENTRE_X 24u
-#define POST_MEANING_CENTRE_Y 25u
-#define POST_MEANING_CENTRE_Z 26u
-#define POST_MEANING_RADIUS 27u
-#define POST_MEANING_SPLINE 28u
-#define POST_MEANING_MACHINE_COORDINATES 29u
-#define POST_MEANING_FEED 30u
-#define POST_MEANING_FEED_PER_MINUTE 31u
-#define POST_MEANING_INVERSE_TIME 32u
-#define POST_MEANING_FEED_PER_REVOLUTION 33u
-#define POST_MEANING_RAPID_BLOCK 34u
-#define POST_MEANING_LENGTH_ON 40u
-#define POST_MEANING_LENGTH_OFF 41u
-#define POST_MEANING_LENGTH_REGISTER 42u
-#define POST_MEANING_COMPENSATION_OFF 43u
-#define POST_MEANING_COMPENSATION_LEFT 44u
-#define POST_MEANING_COMPENSATION_RIGHT 45u
-#define POST_MEANING_RADIUS_REGISTER 46u
-#define POST_MEANING_TCP_ON 47u
-#define POST_MEANING_TCP_OFF 48u
-#define POST_MEANING_TILTED_PLANE 50u
-#define POST_MEANING_TILTED_PLANE_TURN 51u
-#define POST_MEANING_TILTED_PLANE_OFF 52u
-#define POST_MEANING_WORK_OFFSET 53u
-#define POST_MEANING_SMOOTHING 54u
-#define POST_MEANING_SMOOTHING_OFF 55u
-#define POST_MEANING_TOOL 60u
-#define POST_MEANING_TOOL_CHANGE 61u
-#define POST_MEANING_SPINDLE_SPEED 62u
-#define POST_MEANING_SPINDLE_CLOCKWISE 63u
-#define POST_MEANING_SPINDLE_COUNTER_CLOCKWISE 64u
-#define POST_MEANING_SPINDLE_OFF 65u
-#define POST_MEANING_SPINDLE_ORIENT 66u
-#define POST_MEANING_COOLANT_ON 67u
-#define POST_MEANING_COOLANT_OFF 68u
-#define POST_MEANING_DWELL 70u
-#define POST_MEANING_STOP 71u
-#define POST_MEANING_OPTIONAL_STOP 72u
-#define POST_MEANING_END 73u
-#define POST_MEANING_SUBPROGRAM 74u
-#define POST_MEANING_PROBE 75u
-#define POST_MEANING_CYCLE_DRILL 80u
-#define POST_MEANING_CYCLE_DEEP 81u
-#define POST_MEANING_CYCLE_BREAK_CHIP 82u
-#define POST_MEANING_CYCLE_TAP 83u
-#define POST_MEANING_CYCLE_TAP_LEFT 84u
-#define POST_MEANING_CYCLE_REAM 85u
-#define POST_MEANING_CYCLE_BORE 86u
-#define POST_MEANING_CYCLE_BORE_FINE 87u
-#define POST_MEANING_CYCLE_BORE_BACK 88u
-#define POST_MEANING_CYCLE_OFF 89u
-#define POST_MEANING_RETURN_START 90u
-#define POST_MEANING_RETURN_CLEARANCE 91u
-#define POST_MEANING_REFERENCE_RETURN 100u
-#define POST_MEANING_OTHER_REFERENCE_RETURN 101u
-#define POST_MEANING_RETRACT 102u
-#define POST_MEANING_BUILDER_COORDINATES 103u
-#define POST_MEANING_EXACT_STOP 104u
-#define POST_MEANING_THREAD 105u
-#define POST_MEANING_THREAD_AND_BACK 106u
-#define POST_MEANING_THREAD_BACK 107u
-#define POST_MEANING_LOCAL_OFFSET 110u
-#define POST_MEANING_LOCAL_OFFSET_ADDED 111u
-#define POST_MEANING_LOCAL_OFFSET_OFF 112u
-#define POST_MEANING_SET_POSITION 113u
-#define POST_MEANING_SET_POSITION_OFF 114u
-#define POST_MEANING_SET_POSITION_AGAIN 115u
-#define POST_MEANING_WORK_OFFSET_OFF 116u
-#define POST_MEANING_WORK_OFFSET_BLOCK 117u
-#define POST_MEANING_TABLE_DATA 118u
-#define POST_MEANING_TABLE_DATA_OFF 119u
-#define POST_MEANING_ROTATION 120u
-#define POST_MEANING_ROTATION_ADDED 121u
-#define POST_MEANING_ROTATION_OFF 122u
-#define POST_MEANING_SCALE 123u
-#define POST_MEANING_SCALE_OFF 124u
-#define POST_MEANING_MIRROR 125u
-#define POST_MEANING_MIRROR_OFF 126u
-#define POST_MEANING_POLAR 130u
-#define POST_MEANING_POLAR_OFF 131u
-#define POST_MEANING_FACE_TRANSFORMATION 132u
-#define POST_MEANING_FACE_TRANSFORMATION_OFF 133u
-#define POST_MEANING_CYLINDER_TRANSFORMATION 134u
-#define POST_MEANING_CENTRE_ABSOLUTE 135u
-#define POST_MEANING_CENTRE_INCREMENTAL 136u
-#define POST_MEANING_DIAMETER 137u
-#define POST_MEANING_DIAMETER_OFF 138u
-#define POST_MEANING_ROTARY_SHORTEST 139u
-#define POST_MEANING_ROTARY_AS_WRITTEN 140u
-#define POST_MEANING_TCP_VECTOR_ON 141u
-#define POST_MEANING_LENGTH_ALONG_TOOL 142u
-#define POST_MEANING_LENGTH_STATED 143u
-#define POST_MEANING_LENGTH_ADDED 144u
-#define POST_MEANING_LENGTH_NEGATIVE 145u
-#define POST_MEANING_TOOL_AXIS_X 146u
-#define POST_MEANING_TOOL_AXIS_Y 147u
-#define POST_MEANING_TOOL_AXIS_Z 148u
-#define POST_MEANING_NORMAL_X 149u
-#define POST_MEANING_NORMAL_Y 150u
-#define POST_MEANING_NORMAL_Z 151u
-#define POST_MEANING_ORIENTATION_PART 152u
-#define POST_MEANING_ORIENTATION_MACHINE 153u
-#define POST_MEANING_ORIENTATION_AXES 154u
-#define POST_MEANING_ORIENTATION_VECTOR 155u
-#define POST_MEANING_ORIENTATION_ANGLES 156u
-#define POST_MEANING_PRESELECT 160u
-#define POST_MEANING_SPINDLE_CLOCKWISE_COOLANT 161u
-#define POST_MEANING_SPINDLE_COUNTER_CLOCKWISE_COOLANT 162u
-#define POST_MEANING_SURFACE_SPEED 163u
-#define POST_MEANING_SURFACE_SPEED_OFF 164u
-#define POST_MEANING_SPEED_LIMIT 165u
-#define POST_MEANING_CLAMP 166u
-#define POST_MEANING_UNCLAMP 167u
-#define POST_MEANING_SUBPROGRAM_END 170u
-#define POST_MEANING_LOCAL_SUBPROGRAM 171u
-#define POST_MEANING_MACRO 172u
-#define POST_MEANING_MACRO_MODAL 173u
-#define POST_MEANING_MACRO_OFF 174u
-#define POST_MEANING_CYCLE_CALL 175u
-#define POST_MEANING_CYCLE_CALL_MODAL 176u
-#define POST_MEANING_CYCLE_OTHER 177u
-#define POST_MEANING_RETURN_LEVEL 178u
-#define POST_MEANING_DWELL_SECONDS 180u
-#define POST_MEANING_DWELL_MILLISECONDS 181u
-#define POST_MEANING_DWELL_TURNS 182u
-#define POST_MEANING_ARC_THROUGH 183u
-#define POST_MEANING_ARC_TANGENT 184u
-#define POST_MEANING_TURNS 185u
-#define POST_MEANING_ARC_ANGLE 186u
-#define POST_MEANING_ROTARY_FEED_LENGTH 187u
-#define POST_MEANING_ROTARY_FEED_ANGLE 188u
-#define POST_MEANING_INCH_LENGTHS 189u
-#define POST_MEANING_MILLIMETRE_LENGTHS 190u
-#define POST_MEANING_CENTRE 191u
-#define POST_MEANING_ARC 192u
-#define POST_MEANING_FEED_PER_MINUTE_ALL_AXES 193u
-#define POST_MEANING_MACHINE_COORDINATES_ON 194u
-#define POST_MEANING_MACHINE_COORDINATES_OFF 195u
 /* Arc in the plane of X and Y (G17). */
 #define POST_WRITES_ARC_XY 0x0000000000000001u
 /* Arc in the plane of Z and X (G18). */
@@ -577,77 +421,77 @@ typedef struct {
 /* Change to a tool. The tool before it was retracted, the spindle and the coolant stand still. */
 #define POST_EVENT_TOOL_CHANGE 4u
 /* Tool number. */
-#define POST_TOOL_CHANGE_NUMBER 0u
+#define POST_AT_TOOL_CHANGE_NUMBER 0u
 /* Register of the length compensation. */
-#define POST_TOOL_CHANGE_REGISTER 1u
+#define POST_AT_TOOL_CHANGE_REGISTER 1u
 /* From the gauge point to the tip, mm; none if not known. */
-#define POST_TOOL_CHANGE_LENGTH 2u
+#define POST_AT_TOOL_CHANGE_LENGTH 2u
 /* Of the cutter, mm; none if not known. */
-#define POST_TOOL_CHANGE_DIAMETER 3u
+#define POST_AT_TOOL_CHANGE_DIAMETER 3u
 /* Of the cutter's corner, mm: half the diameter for a ball; none if not known. */
-#define POST_TOOL_CHANGE_CORNER_RADIUS 4u
+#define POST_AT_TOOL_CHANGE_CORNER_RADIUS 4u
 /* texts[0], name: Its name, empty if not known. */
 /* Bring a tool to the change position without changing. */
 #define POST_EVENT_PRESELECT 5u
 /* Tool number. */
-#define POST_PRESELECT_NUMBER 0u
+#define POST_AT_PRESELECT_NUMBER 0u
 /* Spindle on, off or oriented. */
 #define POST_EVENT_SPINDLE 6u
 /* 2 numbers: POST_SPINDLE_… and revolutions a minute. */
-#define POST_SPINDLE_SPINDLE 0u
+#define POST_AT_SPINDLE_SPINDLE 0u
 /* Coolant. */
 #define POST_EVENT_COOLANT 7u
 /* POST_COOLANT_…. */
-#define POST_COOLANT_COOLANT 0u
+#define POST_AT_COOLANT_COOLANT 0u
 /* Cutter radius compensation, in force from the next move on. Under Setup::tcp it is sent under COMPENSATE_TCP
  * alone. */
 #define POST_EVENT_COMPENSATE 8u
 /* 2 numbers: POST_COMPENSATE_… and the register of the radius. */
-#define POST_COMPENSATE_COMPENSATION 0u
+#define POST_AT_COMPENSATE_COMPENSATION 0u
 /* The first position after a Event::Retract or a tool change. The tool stands clear of the part, the rotary axes
  * have been turned by Event::Turn. The dialect puts the compensation in force (length compensation, or tool
  * centre point control if Setup::tcp) in the order that its control needs, and goes to the words at rapid. */
 #define POST_EVENT_POSITION 9u
 /* 6 numbers: Where the tool stands then; none where nobody knows. */
-#define POST_POSITION_TOOL 0u
+#define POST_AT_POSITION_TOOL 0u
 /* 2 numbers: Feed of the last approach; none is rapid. */
-#define POST_POSITION_FEED 6u
+#define POST_AT_POSITION_FEED 6u
 /* The words of the plane move the tool across, that of the depth along the spindle, and nothing else: the plane
  * comes first, the depth last. Else (in a tilted plane under a head that leans; under tool centre point control
  * where the tool leans, the part is turned or the control has no block of its own that begins it; where the
  * machine file says how the tool leaves) all linear words stand in one block. It leads to a point clear of the
  * part, from which the next moves come in along the tool. */
-#define POST_POSITION_PLANE_FIRST 8u
+#define POST_AT_POSITION_PLANE_FIRST 8u
 /* how many there are, and behind it as many: All axis words, in the order of Setup::words. */
-#define POST_POSITION_WORDS 9u
+#define POST_AT_POSITION_WORDS 9u
 /* The tool leaves the part: axes go at rapid to where the machine file proves it to be clear, and what
  * Event::Position put in force (TCP, length) is cancelled, in the order that the control needs. Sent behind the
  * start too, when nothing is known of what is in force; never twice without a motion, a tool change or an
  * Event::Word between. */
 #define POST_EVENT_RETRACT 10u
 /* Which words: bit n is word n. */
-#define POST_RETRACT_AXES 0u
+#define POST_AT_RETRACT_AXES 0u
 /* how many there are, and behind it as many: Positions in machine coordinates (G53, M91, SUPA), in program
  * units; 0 for words that stay. */
-#define POST_RETRACT_WORDS 1u
+#define POST_AT_RETRACT_WORDS 1u
 /* Rapid traverse. */
 #define POST_EVENT_RAPID 11u
 /* 6 numbers: Where the tool stands at its end; none where nobody knows. */
-#define POST_RAPID_TOOL 0u
+#define POST_AT_RAPID_TOOL 0u
 /* how many there are, and behind it as many: All axis words. */
-#define POST_RAPID_WORDS 6u
+#define POST_AT_RAPID_WORDS 6u
 /* A cut: all axes move linearly in time. */
 #define POST_EVENT_LINEAR 12u
 /* 6 numbers: Where the tool stands at its end; none where nobody knows. */
-#define POST_LINEAR_TOOL 0u
+#define POST_AT_LINEAR_TOOL 0u
 /* 2 numbers: Its feed. */
-#define POST_LINEAR_FEED 6u
+#define POST_AT_LINEAR_FEED 6u
 /* how many there are, and behind it as many: All axis words. */
-#define POST_LINEAR_WORDS 8u
+#define POST_AT_LINEAR_WORDS 8u
 /* Wait. */
 #define POST_EVENT_DWELL 13u
 /* Seconds. */
-#define POST_DWELL_SECONDS 0u
+#define POST_AT_DWELL_SECONDS 0u
 /* Unconditional stop (M0). */
 #define POST_EVENT_STOP 14u
 /* Optional stop (M1). */
@@ -655,17 +499,17 @@ typedef struct {
 /* After a Event::Retract: axes go at rapid to a position of the machine (for a tool change, at the end). */
 #define POST_EVENT_PARK 16u
 /* Which words: bit n is word n. */
-#define POST_PARK_AXES 0u
+#define POST_AT_PARK_AXES 0u
 /* how many there are, and behind it as many: Positions in machine coordinates, in program units; 0 for words
  * that stay. */
-#define POST_PARK_WORDS 1u
+#define POST_AT_PARK_WORDS 1u
 /* The program ends. */
 #define POST_EVENT_END 17u
 /* The rotary axes turn at rapid to their words, the tool retracted; the linear axes stay. Comes ahead of
  * Event::Position, what clamps them between the two. */
 #define POST_EVENT_TURN 18u
 /* how many there are, and behind it as many: All axis words: of these the rotary ones count. */
-#define POST_TURN_WORDS 0u
+#define POST_AT_TURN_WORDS 0u
 /* A line of the machine builder's own (a clamp, another head), to be written letter for letter. It moves
  * nothing, and what is in force stays in force. */
 #define POST_EVENT_WORD 19u
@@ -681,90 +525,90 @@ typedef struct {
 /* Units change inside the program, under UNITS; no length is in force across it. */
 #define POST_EVENT_UNITS 23u
 /* POST_UNITS_…. */
-#define POST_UNITS_UNITS 0u
+#define POST_AT_UNITS_UNITS 0u
 /* Another work offset, under WORK_OFFSET. The tool was retracted before. */
 #define POST_EVENT_WORK_OFFSET 24u
 /* From 1: G54 is 1, G55 is 2. */
-#define POST_WORK_OFFSET_NUMBER 0u
+#define POST_AT_WORK_OFFSET_NUMBER 0u
 /* texts[0], name: As the CL file names it, empty if it does not. */
 /* Other registers for the tool in the spindle, under OFFSETS. */
 #define POST_EVENT_OFFSETS 25u
 /* Register of the length; none stays. */
-#define POST_OFFSETS_LENGTH 0u
+#define POST_AT_OFFSETS_LENGTH 0u
 /* Register of the radius; none stays. */
-#define POST_OFFSETS_RADIUS 1u
+#define POST_AT_OFFSETS_RADIUS 1u
 /* Spindle on at a constant cutting speed, under SURFACE_SPEED. */
 #define POST_EVENT_SURFACE_SPEED 26u
 /* m/min, or feet a minute in an inch program. */
-#define POST_SURFACE_SPEED_SPEED 0u
+#define POST_AT_SURFACE_SPEED_SPEED 0u
 /* Revolutions a minute that it must not exceed; none if not said. */
-#define POST_SURFACE_SPEED_MOST 1u
+#define POST_AT_SURFACE_SPEED_MOST 1u
 /* POST_SENSE_…. */
-#define POST_SURFACE_SPEED_SENSE 2u
+#define POST_AT_SURFACE_SPEED_SENSE 2u
 /* Tool centre point control on or off by itself, under TCP_SWITCH: on ahead of Event::Position, off ahead of
  * Event::Retract; else these two do it, in the order that the control needs. */
 #define POST_EVENT_TCP 27u
 /* On, else off. */
-#define POST_TCP_ON 0u
+#define POST_AT_TCP_ON 0u
 /* A tilted plane begins, under PLANE: until Event::PlaneOff linear words are in its frame, and Event::Position
  * puts the length in force, no tool centre point control. The tool was retracted before. */
 #define POST_EVENT_PLANE 28u
 /* 3 numbers: Origin of the plane's frame, mm, part frame; a number that the linear words can print. */
-#define POST_PLANE_ORIGIN 0u
+#define POST_AT_PLANE_ORIGIN 0u
 /* 3 numbers: Its first direction, unit vector, part frame: that of the machine's X as it runs against the part
  * at words, laid across z. */
-#define POST_PLANE_X 3u
+#define POST_AT_PLANE_X 3u
 /* 3 numbers: Its normal, unit vector, part frame: the tool axis. */
-#define POST_PLANE_Z 6u
+#define POST_AT_PLANE_Z 6u
 /* 3 numbers: The plane by Format::plane_angles, degrees, rounded to its decimals: x and z follow from these;
  * zero where the format has none. */
-#define POST_PLANE_ANGLES 9u
+#define POST_AT_PLANE_ANGLES 9u
 /* how many there are, and behind it as many: Where the axes stand in it: of these the rotary words count. The
  * axes have been turned there by an Event::Turn, so that a control which looks for its own solution finds the
  * tool upright already. */
-#define POST_PLANE_WORDS 12u
+#define POST_AT_PLANE_WORDS 12u
 /* The tilted plane ends. The tool was retracted before. */
 #define POST_EVENT_PLANE_OFF 29u
 /* The control may leave the path by so much, under SMOOTHING (G187, CYCLE832, CYCL DEF 32, G61.1). The tool was
  * retracted before; so it was before its end. */
 #define POST_EVENT_SMOOTHING 30u
 /* Of the tip, mm. */
-#define POST_SMOOTHING_TOLERANCE 0u
+#define POST_AT_SMOOTHING_TOLERANCE 0u
 /* Of the tool axis, degrees; none where it does not turn. */
-#define POST_SMOOTHING_AXIS_TOLERANCE 1u
+#define POST_AT_SMOOTHING_AXIS_TOLERANCE 1u
 /* The control keeps the path exactly, or as it does by default. */
 #define POST_EVENT_SMOOTHING_OFF 31u
 /* A rotary axis is clamped or let go, under CLAMP; else the machine file's own word comes as Event::Word. */
 #define POST_EVENT_CLAMP 32u
 /* Which word of the setup, from 0. */
-#define POST_CLAMP_WORD 0u
+#define POST_AT_CLAMP_WORD 0u
 /* Clamped, else let go. */
-#define POST_CLAMP_ON 1u
+#define POST_AT_CLAMP_ON 1u
 /* An arc or a helix about normal, at a feed, under ARC_…, HELIX. */
 #define POST_EVENT_ARC 33u
 /* 6 numbers: Where the tool stands at its end; none where nobody knows. */
-#define POST_ARC_TOOL 0u
+#define POST_AT_ARC_TOOL 0u
 /* 2 numbers: Its feed. */
-#define POST_ARC_FEED 6u
+#define POST_AT_ARC_FEED 6u
 /* 3 numbers: Centre in the frame and the units of the linear words. */
-#define POST_ARC_CENTRE 8u
+#define POST_AT_ARC_CENTRE 8u
 /* 3 numbers: Unit vector in that frame about which it turns. */
-#define POST_ARC_NORMAL 11u
+#define POST_AT_ARC_NORMAL 11u
 /* Degrees from start to end, counter-clockwise seen against the normal; negative: clockwise. */
-#define POST_ARC_TURN 14u
+#define POST_AT_ARC_TURN 14u
 /* The radius to be written in the place of the centre, under ARC_RADIUS: negative for an arc of more than half a
  * turn. None: the centre is written. */
-#define POST_ARC_RADIUS 15u
+#define POST_AT_ARC_RADIUS 15u
 /* how many there are, and behind it as many: All axis words at its end; a helix ends off the plane of its start. */
-#define POST_ARC_WORDS 16u
+#define POST_AT_ARC_WORDS 16u
 /* A spline at a feed, under SPLINE. */
 #define POST_EVENT_SPLINE 34u
 /* 2 numbers: Its feed. */
-#define POST_SPLINE_FEED 0u
+#define POST_AT_SPLINE_FEED 0u
 /* Degree. */
-#define POST_SPLINE_DEGREE 2u
+#define POST_AT_SPLINE_DEGREE 2u
 /* how many there are, and behind it as many: Knots. */
-#define POST_SPLINE_KNOTS 3u
+#define POST_AT_SPLINE_KNOTS 3u
 /* then weights, how many there are, and behind it as many: A weight for each control point. */
 /* then points, how many there are, and behind it as many: All axis words of the first control point, then of the
  * second, and so on. */
@@ -772,60 +616,60 @@ typedef struct {
  * in program units, along the tool axis. */
 #define POST_EVENT_CYCLE 35u
 /* POST_CYCLE_…. */
-#define POST_CYCLE_CYCLE 0u
+#define POST_AT_CYCLE_CYCLE 0u
 /* 2 numbers: Its feed. */
-#define POST_CYCLE_FEED 1u
+#define POST_AT_CYCLE_FEED 1u
 /* From the point down to the bottom. */
-#define POST_CYCLE_DEPTH 3u
+#define POST_AT_CYCLE_DEPTH 3u
 /* From the point up to where the feed begins. */
-#define POST_CYCLE_CLEARANCE 4u
+#define POST_AT_CYCLE_CLEARANCE 4u
 /* From the point up to where the tool goes on the way to the next one. */
-#define POST_CYCLE_RETRACT 5u
+#define POST_AT_CYCLE_RETRACT 5u
 /* Into the part in one go; none if it goes in one. */
-#define POST_CYCLE_STEP 6u
+#define POST_AT_CYCLE_STEP 6u
 /* At the bottom, seconds; none if it does not wait. Never of Deep, BreakChip and Bore. */
-#define POST_CYCLE_DWELL 7u
+#define POST_AT_CYCLE_DWELL 7u
 /* A thread's way a turn; none if the feed says it. */
-#define POST_CYCLE_PITCH 8u
+#define POST_AT_CYCLE_PITCH 8u
 /* A point of the cycle in force. */
 #define POST_EVENT_CYCLE_POINT 36u
 /* 6 numbers: Where the tool would stand on it; none where nobody knows. */
-#define POST_CYCLE_POINT_TOOL 0u
+#define POST_AT_CYCLE_POINT_TOOL 0u
 /* how many there are, and behind it as many: All axis words with the tip on the point. */
-#define POST_CYCLE_POINT_WORDS 6u
+#define POST_AT_CYCLE_POINT_WORDS 6u
 /* No cycle is in force any more; the tool stands at the last point's retract level. */
 #define POST_EVENT_CYCLE_OFF 37u
 /* A cut with the surface's normal, under SURFACE (LN, 3-D compensation). */
 #define POST_EVENT_SURFACE 38u
 /* 6 numbers: Where the tool stands at its end; none where nobody knows. */
-#define POST_SURFACE_TOOL 0u
+#define POST_AT_SURFACE_TOOL 0u
 /* 2 numbers: Its feed. */
-#define POST_SURFACE_FEED 6u
+#define POST_AT_SURFACE_FEED 6u
 /* 3 numbers: Unit vector out of the part, part frame. */
-#define POST_SURFACE_NORMAL 8u
+#define POST_AT_SURFACE_NORMAL 8u
 /* how many there are, and behind it as many: All axis words. */
-#define POST_SURFACE_WORDS 11u
+#define POST_AT_SURFACE_WORDS 11u
 /* Compensation of the tool's size in space, under COMPENSATE_3D. */
 #define POST_EVENT_COMPENSATE_3D 39u
 /* On, else off. */
-#define POST_COMPENSATE_3D_ON 0u
+#define POST_AT_COMPENSATE_3D_ON 0u
 /* Register of the radius. */
-#define POST_COMPENSATE_3D_REGISTER 1u
+#define POST_AT_COMPENSATE_3D_REGISTER 1u
 /* A subprogram is called, under SUBPROGRAM. Afterwards nothing is known to be in force. */
 #define POST_EVENT_SUBPROGRAM 40u
 /* Its number; none if it has a name. */
-#define POST_SUBPROGRAM_NUMBER 0u
+#define POST_AT_SUBPROGRAM_NUMBER 0u
 /* How often. */
-#define POST_SUBPROGRAM_TIMES 1u
+#define POST_AT_SUBPROGRAM_TIMES 1u
 /* texts[0], name: Its name, empty if it has a number. */
 /* A move until the probe touches, under PROBE. */
 #define POST_EVENT_PROBE 41u
 /* 6 numbers: Where the tool would stand at its end; none where nobody knows. */
-#define POST_PROBE_TOOL 0u
+#define POST_AT_PROBE_TOOL 0u
 /* 2 numbers: Its feed. */
-#define POST_PROBE_FEED 6u
+#define POST_AT_PROBE_FEED 6u
 /* how many there are, and behind it as many: All axis words of its end. */
-#define POST_PROBE_WORDS 8u
+#define POST_AT_PROBE_WORDS 8u
 /* Lines of the user's own in the place of those that the event behind this one would write, under INSTEAD. What
  * that event puts in force is in force all the same. In front of a Event::Retract they stand for the way alone:
  * what the control must cancel is cancelled around them. */
@@ -835,132 +679,104 @@ typedef struct {
  * stands is not told. */
 #define POST_EVENT_CUTS 43u
 /* 2 numbers: Kind of all their feeds, and the first of them. */
-#define POST_CUTS_FEED 0u
+#define POST_AT_CUTS_FEED 0u
 /* how many there are, and behind it as many: The feeds of all cuts, then the first axis word of all of them,
  * then the second, and so on. */
-#define POST_CUTS_COLUMNS 2u
-POST_ASSERT(sizeof(PostText) == 16 && POST_ALIGN(PostText) == 8, "PostText");
-POST_ASSERT(offsetof(PostText, ptr) == 0, "PostText.ptr");
-POST_ASSERT(offsetof(PostText, len) == 8, "PostText.len");
-POST_ASSERT(sizeof(PostSink) == 16 && POST_ALIGN(PostSink) == 8, "PostSink");
-POST_ASSERT(offsetof(PostSink, ctx) == 0, "PostSink.ctx");
-POST_ASSERT(offsetof(PostSink, write) == 8, "PostSink.write");
-POST_ASSERT(sizeof(PostValue) == 40 && POST_ALIGN(PostValue) == 8, "PostValue");
-POST_ASSERT(offsetof(PostValue, kind) == 0, "PostValue.kind");
-POST_ASSERT(offsetof(PostValue, reserved) == 4, "PostValue.reserved");
-POST_ASSERT(offsetof(PostValue, integer) == 8, "PostValue.integer");
-POST_ASSERT(offsetof(PostValue, number) == 16, "PostValue.number");
-POST_ASSERT(offsetof(PostValue, text) == 24, "PostValue.text");
-POST_ASSERT(sizeof(PostPair) == 56 && POST_ALIGN(PostPair) == 8, "PostPair");
-POST_ASSERT(offsetof(PostPair, key) == 0, "PostPair.key");
-POST_ASSERT(offsetof(PostPair, value) == 16, "PostPair.value");
-POST_ASSERT(sizeof(PostOption) == 112 && POST_ALIGN(PostOption) == 8, "PostOption");
-POST_ASSERT(offsetof(PostOption, key) == 0, "PostOption.key");
-POST_ASSERT(offsetof(PostOption, help) == 16, "PostOption.help");
-POST_ASSERT(offsetof(PostOption, kind) == 32, "PostOption.kind");
-POST_ASSERT(offsetof(PostOption, reserved) == 36, "PostOption.reserved");
-POST_ASSERT(offsetof(PostOption, min) == 40, "PostOption.min");
-POST_ASSERT(offsetof(PostOption, max) == 48, "PostOption.max");
-POST_ASSERT(offsetof(PostOption, default_value) == 56, "PostOption.default_value");
-POST_ASSERT(offsetof(PostOption, choices) == 96, "PostOption.choices");
-POST_ASSERT(offsetof(PostOption, choices_len) == 104, "PostOption.choices_len");
-POST_ASSERT(sizeof(PostAxisWord) == 48 && POST_ALIGN(PostAxisWord) == 8, "PostAxisWord");
-POST_ASSERT(offsetof(PostAxisWord, name) == 0, "PostAxisWord.name");
-POST_ASSERT(offsetof(PostAxisWord, rotary) == 16, "PostAxisWord.rotary");
-POST_ASSERT(offsetof(PostAxisWord, depth) == 20, "PostAxisWord.depth");
-POST_ASSERT(offsetof(PostAxisWord, carries_part) == 24, "PostAxisWord.carries_part");
-POST_ASSERT(offsetof(PostAxisWord, reserved) == 28, "PostAxisWord.reserved");
-POST_ASSERT(offsetof(PostAxisWord, least) == 32, "PostAxisWord.least");
-POST_ASSERT(offsetof(PostAxisWord, largest) == 40, "PostAxisWord.largest");
-POST_ASSERT(sizeof(PostTool) == 48 && POST_ALIGN(PostTool) == 8, "PostTool");
-POST_ASSERT(offsetof(PostTool, name) == 0, "PostTool.name");
-POST_ASSERT(offsetof(PostTool, number) == 16, "PostTool.number");
-POST_ASSERT(offsetof(PostTool, reserved) == 20, "PostTool.reserved");
-POST_ASSERT(offsetof(PostTool, length) == 24, "PostTool.length");
-POST_ASSERT(offsetof(PostTool, diameter) == 32, "PostTool.diameter");
-POST_ASSERT(offsetof(PostTool, corner_radius) == 40, "PostTool.corner_radius");
-POST_ASSERT(sizeof(PostEvent) == 40 && POST_ALIGN(PostEvent) == 8, "PostEvent");
-POST_ASSERT(offsetof(PostEvent, kind) == 0, "PostEvent.kind");
-POST_ASSERT(offsetof(PostEvent, texts_len) == 4, "PostEvent.texts_len");
-POST_ASSERT(offsetof(PostEvent, line) == 8, "PostEvent.line");
-POST_ASSERT(offsetof(PostEvent, numbers) == 16, "PostEvent.numbers");
-POST_ASSERT(offsetof(PostEvent, numbers_len) == 24, "PostEvent.numbers_len");
-POST_ASSERT(offsetof(PostEvent, texts) == 32, "PostEvent.texts");
-POST_ASSERT(sizeof(PostDeviation) == 48 && POST_ALIGN(PostDeviation) == 8, "PostDeviation");
-POST_ASSERT(offsetof(PostDeviation, tip) == 0, "PostDeviation.tip");
-POST_ASSERT(offsetof(PostDeviation, axis) == 24, "PostDeviation.axis");
-POST_ASSERT(sizeof(PostTolerance) == 16 && POST_ALIGN(PostTolerance) == 8, "PostTolerance");
-POST_ASSERT(offsetof(PostTolerance, tip) == 0, "PostTolerance.tip");
-POST_ASSERT(offsetof(PostTolerance, axis) == 8, "PostTolerance.axis");
-POST_ASSERT(sizeof(PostCurve) == 512 && POST_ALIGN(PostCurve) == 8, "PostCurve");
-POST_ASSERT(offsetof(PostCurve, tip_peak) == 0, "PostCurve.tip_peak");
-POST_ASSERT(offsetof(PostCurve, tip_at) == 8, "PostCurve.tip_at");
-POST_ASSERT(offsetof(PostCurve, axis_peak) == 16, "PostCurve.axis_peak");
-POST_ASSERT(offsetof(PostCurve, axis_at) == 24, "PostCurve.axis_at");
-POST_ASSERT(offsetof(PostCurve, terms) == 32, "PostCurve.terms");
-POST_ASSERT(sizeof(PostSetup) == 200 && POST_ALIGN(PostSetup) == 8, "PostSetup");
-POST_ASSERT(offsetof(PostSetup, size) == 0, "PostSetup.size");
-POST_ASSERT(offsetof(PostSetup, program) == 8, "PostSetup.program");
-POST_ASSERT(offsetof(PostSetup, machine) == 24, "PostSetup.machine");
-POST_ASSERT(offsetof(PostSetup, units) == 40, "PostSetup.units");
-POST_ASSERT(offsetof(PostSetup, tcp) == 44, "PostSetup.tcp");
-POST_ASSERT(offsetof(PostSetup, words) == 48, "PostSetup.words");
-POST_ASSERT(offsetof(PostSetup, words_len) == 56, "PostSetup.words_len");
-POST_ASSERT(offsetof(PostSetup, options) == 64, "PostSetup.options");
-POST_ASSERT(offsetof(PostSetup, options_len) == 72, "PostSetup.options_len");
-POST_ASSERT(offsetof(PostSetup, cl_file) == 80, "PostSetup.cl_file");
-POST_ASSERT(offsetof(PostSetup, tip_tolerance) == 96, "PostSetup.tip_tolerance");
-POST_ASSERT(offsetof(PostSetup, axis_tolerance) == 104, "PostSetup.axis_tolerance");
-POST_ASSERT(offsetof(PostSetup, rapid_tolerance) == 112, "PostSetup.rapid_tolerance");
-POST_ASSERT(offsetof(PostSetup, ahead) == 120, "PostSetup.ahead");
-POST_ASSERT(offsetof(PostSetup, moves) == 124, "PostSetup.moves");
-POST_ASSERT(offsetof(PostSetup, tools) == 128, "PostSetup.tools");
-POST_ASSERT(offsetof(PostSetup, tools_len) == 136, "PostSetup.tools_len");
-POST_ASSERT(offsetof(PostSetup, least) == 144, "PostSetup.least");
-POST_ASSERT(offsetof(PostSetup, largest) == 168, "PostSetup.largest");
-POST_ASSERT(offsetof(PostSetup, time) == 192, "PostSetup.time");
-POST_ASSERT(sizeof(PostFormat) == 104 && POST_ALIGN(PostFormat) == 8, "PostFormat");
-POST_ASSERT(offsetof(PostFormat, size) == 0, "PostFormat.size");
-POST_ASSERT(offsetof(PostFormat, words) == 8, "PostFormat.words");
-POST_ASSERT(offsetof(PostFormat, feed) == 40, "PostFormat.feed");
-POST_ASSERT(offsetof(PostFormat, inverse_time) == 44, "PostFormat.inverse_time");
-POST_ASSERT(offsetof(PostFormat, feed_per_revolution) == 48, "PostFormat.feed_per_revolution");
-POST_ASSERT(offsetof(PostFormat, words_len) == 52, "PostFormat.words_len");
-POST_ASSERT(offsetof(PostFormat, extension) == 56, "PostFormat.extension");
-POST_ASSERT(offsetof(PostFormat, writes) == 72, "PostFormat.writes");
-POST_ASSERT(offsetof(PostFormat, most_inverse_time) == 80, "PostFormat.most_inverse_time");
-POST_ASSERT(offsetof(PostFormat, plane_angles) == 88, "PostFormat.plane_angles");
-POST_ASSERT(offsetof(PostFormat, plane_decimals) == 92, "PostFormat.plane_decimals");
-POST_ASSERT(offsetof(PostFormat, language) == 96, "PostFormat.language");
-POST_ASSERT(offsetof(PostFormat, reserved) == 100, "PostFormat.reserved");
-POST_ASSERT(sizeof(PostPlugin) == 112 && POST_ALIGN(PostPlugin) == 8, "PostPlugin");
-POST_ASSERT(offsetof(PostPlugin, magic) == 0, "PostPlugin.magic");
-POST_ASSERT(offsetof(PostPlugin, abi) == 8, "PostPlugin.abi");
-POST_ASSERT(offsetof(PostPlugin, kind) == 12, "PostPlugin.kind");
-POST_ASSERT(offsetof(PostPlugin, size) == 16, "PostPlugin.size");
-POST_ASSERT(offsetof(PostPlugin, table_size) == 20, "PostPlugin.table_size");
-POST_ASSERT(offsetof(PostPlugin, layout) == 24, "PostPlugin.layout");
-POST_ASSERT(offsetof(PostPlugin, name) == 32, "PostPlugin.name");
-POST_ASSERT(offsetof(PostPlugin, version) == 48, "PostPlugin.version");
-POST_ASSERT(offsetof(PostPlugin, describe) == 64, "PostPlugin.describe");
-POST_ASSERT(offsetof(PostPlugin, loaded) == 72, "PostPlugin.loaded");
-POST_ASSERT(offsetof(PostPlugin, dialect) == 80, "PostPlugin.dialect");
-POST_ASSERT(offsetof(PostPlugin, model) == 88, "PostPlugin.model");
-POST_ASSERT(offsetof(PostPlugin, about) == 96, "PostPlugin.about");
-POST_ASSERT(sizeof(PostDialect) == 56 && POST_ALIGN(PostDialect) == 8, "PostDialect");
-POST_ASSERT(offsetof(PostDialect, open) == 0, "PostDialect.open");
-POST_ASSERT(offsetof(PostDialect, format) == 8, "PostDialect.format");
-POST_ASSERT(offsetof(PostDialect, write) == 16, "PostDialect.write");
-POST_ASSERT(offsetof(PostDialect, last_error) == 24, "PostDialect.last_error");
-POST_ASSERT(offsetof(PostDialect, close) == 32, "PostDialect.close");
-POST_ASSERT(offsetof(PostDialect, vocabulary) == 40, "PostDialect.vocabulary");
-POST_ASSERT(offsetof(PostDialect, relies_on) == 48, "PostDialect.relies_on");
-POST_ASSERT(sizeof(PostModel) == 40 && POST_ALIGN(PostModel) == 8, "PostModel");
-POST_ASSERT(offsetof(PostModel, open) == 0, "PostModel.open");
-POST_ASSERT(offsetof(PostModel, fit) == 8, "PostModel.fit");
-POST_ASSERT(offsetof(PostModel, value) == 16, "PostModel.value");
-POST_ASSERT(offsetof(PostModel, last_error) == 24, "PostModel.last_error");
-POST_ASSERT(offsetof(PostModel, close) == 32, "PostModel.close");
+#define POST_AT_CUTS_COLUMNS 2u
 /* generated: end */
+
+/* Helpers. None of them reads past what an event or a setup says that it has. */
+
+/* The number of an event at a place, POST_AT_…; NaN (which is not given) where the event has fewer. */
+static inline double post_number(const PostEvent *event, size_t at) {
+    return at < event->numbers_len ? event->numbers[at] : (double)NAN;
+}
+
+/* The list of an event whose count stands at a place, POST_AT_…, and in `len` how many numbers it has: null and 0 where
+ * the event has fewer than the count says. The list behind it has its count at `at + 1 + *len`. */
+static inline const double *post_list(const PostEvent *event, size_t at, size_t *len) {
+    double count = post_number(event, at);
+    *len = 0;
+    if (!(count >= 0) || count > (double)(event->numbers_len - at - 1))
+        return NULL;
+    *len = (size_t)count;
+    return event->numbers + at + 1;
+}
+
+/* The text of an event at a place; empty where the event has fewer. */
+static inline PostText post_text(const PostEvent *event, size_t at) {
+    PostText none = POST_TEXT("");
+    return at < event->texts_len ? event->texts[at] : none;
+}
+
+/* The text of a string that ends with a zero and outlives the call. */
+static inline PostText post_string(const char *string) {
+    PostText text = POST_TEXT("");
+    text.ptr = (const uint8_t *)string;
+    text.len = strlen(string);
+    return text;
+}
+
+/* The value of an option by its key; null where the plugin does not declare it. */
+static inline const PostValue *post_option(const PostPair *options, size_t len, const char *key) {
+    for (size_t i = 0; i < len; i++)
+        if (options[i].key.len == strlen(key) && memcmp(options[i].key.ptr, key, strlen(key)) == 0)
+            return &options[i].value;
+    return NULL;
+}
+
+/* What `describe` emits for an option: of a kind, with nothing else said. */
+static inline PostOption post_option_of(uint32_t kind, const char *key, const char *help) {
+    PostOption option;
+    memset(&option, 0, sizeof option);
+    option.key = post_string(key);
+    option.help = post_string(help);
+    option.kind = option.default_value.kind = kind;
+    return option;
+}
+
+/* Yes or no. */
+static inline PostOption post_flag_option(const char *key, const char *help, int value) {
+    PostOption option = post_option_of(POST_OPTION_FLAG, key, help);
+    option.default_value.integer = value != 0;
+    return option;
+}
+
+/* A whole number from `least` to `largest`, both allowed. */
+static inline PostOption post_integer_option(const char *key, const char *help, int64_t least, int64_t largest,
+                                             int64_t value) {
+    PostOption option = post_option_of(POST_OPTION_INTEGER, key, help);
+    option.min = (double)least;
+    option.max = (double)largest;
+    option.default_value.integer = value;
+    return option;
+}
+
+/* A number from `least` to `largest`, both allowed. */
+static inline PostOption post_number_option(const char *key, const char *help, double least, double largest,
+                                            double value) {
+    PostOption option = post_option_of(POST_OPTION_NUMBER, key, help);
+    option.min = least;
+    option.max = largest;
+    option.default_value.number = value;
+    return option;
+}
+
+/* One of `len` choices, which outlive the call. */
+static inline PostOption post_choice_option(const char *key, const char *help, const PostText *choices, size_t len,
+                                            const char *value) {
+    PostOption option = post_option_of(POST_OPTION_CHOICE, key, help);
+    option.choices = choices;
+    option.choices_len = len;
+    option.default_value.text = post_string(value);
+    return option;
+}
+
+/* Hands a string that ends with a zero to a sink. */
+static inline void post_put(const PostSink *sink, const char *string) {
+    sink->write(sink->ctx, (const uint8_t *)string, strlen(string));
+}
+
+#include "post_plugin_tables.h"
 
 #endif

@@ -4,7 +4,7 @@
 //! enum, no ownership: the side that made a thing frees it. Text is UTF-8 without a terminating zero and lives
 //! as long as the call that hands it over. Text of a plugin leaves it through a [`PostSink`].
 //!
-//! `include/post_plugin.h` says the same in C; `tests/it/header.rs` keeps the two together.
+//! `include/post_plugin.h` and `post_plugin_tables.h` say the same in C; `tests/it/header.rs` keeps them together.
 
 #![allow(unsafe_code)]
 
@@ -35,6 +35,8 @@ pub const KIND_MODEL: u32 = 2;
 
 /// The contract in C: `post_plugin.h`.
 pub const HEADER: &str = include_str!("../include/post_plugin.h");
+/// The meanings of words and the layout of structs in C, which [`HEADER`] includes: `post_plugin_tables.h`.
+pub const TABLES_HEADER: &str = include_str!("../include/post_plugin_tables.h");
 
 /// Most axis words that a program may have.
 pub const MAX_WORDS: usize = 32;

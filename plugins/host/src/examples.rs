@@ -1,4 +1,4 @@
-//! The smallest dialects that are of use, as the guide shows them: `post plugin new` writes them out to start from.
+//! The smallest plugins that are of use, as the guide shows them: `post plugin new` writes them out to start from.
 
 /// In Rust, on the contract alone; it exports `tiny`.
 pub const TINY: &str = include_str!("../examples/post_tiny.rs");
@@ -8,3 +8,6 @@ pub const GCODE: &str = include_str!("../examples/post_gcode.rs");
 
 /// In C; it exports `minimal`.
 pub const MINIMAL_C: &str = include_str!("../tests/c/minimal.c");
+
+/// An error model in C; it exports `bow`.
+pub const BOW_C: &str = include_str!("../tests/c/bow.c");

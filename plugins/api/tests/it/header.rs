@@ -14,11 +14,14 @@ use post_plugin::{CAPABILITIES, CODES, EVENTS, FieldShape};
 const BEGIN: &str = "/* generated: begin */\n";
 const END: &str = "/* generated: end */\n";
 
-fn header() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("include/post_plugin.h")
+/// The code whose names stand with the assertions, in a file of their own: there are many, and only a vocabulary says them.
+const MEANINGS: &str = "MEANING";
+
+fn header(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("include").join(file)
 }
 
-fn generated() -> String {
+fn numbers() -> String {
     let mut text = String::new();
     macro_rules! define {
         ($($name:ident)*) => {
@@ -31,17 +34,19 @@ fn generated() -> String {
         ABI KIND_DIALECT KIND_MODEL MAX_WORDS
         OPTION_FLAG OPTION_INTEGER OPTION_NUMBER OPTION_TEXT OPTION_CHOICE OPTION_LINES
     }
-    for codes in CODES {
-        for (name, code) in codes.codes {
-            writeln!(text, "#define POST_{}_{name} {code}u", codes.name).unwrap();
-        }
-    }
+    codes(&mut text, |name| name != MEANINGS);
     for capability in CAPABILITIES {
         comment(&mut text, capability.doc);
         let (name, bits) = (capability.name, capability.set.bits());
         writeln!(text, "#define POST_WRITES_{name} 0x{bits:016x}u").unwrap();
     }
     events(&mut text);
+    text
+}
+
+fn tables() -> String {
+    let mut text = String::new();
+    codes(&mut text, |name| name == MEANINGS);
     for layout in LAYOUTS.iter().chain(TABLES) {
         let name = layout.name;
         writeln!(
@@ -61,7 +66,15 @@ fn generated() -> String {
     text
 }
 
-/// The kinds, and where the numbers of each stand.
+fn codes(text: &mut String, wanted: fn(&str) -> bool) {
+    for codes in CODES.iter().filter(|codes| wanted(codes.name)) {
+        for (name, code) in codes.codes {
+            writeln!(text, "#define POST_{}_{name} {code}u", codes.name).unwrap();
+        }
+    }
+}
+
+/// The kinds, and where the numbers of each stand: places have names apart from those of what stands there.
 fn events(text: &mut String) {
     for event in EVENTS {
         comment(text, event.doc);
@@ -84,7 +97,7 @@ fn events(text: &mut String) {
                         _ => format!("{count} numbers: "),
                     };
                     comment(text, &format!("{count_of}{doc}"));
-                    writeln!(text, "#define POST_{name} {at}u").unwrap();
+                    writeln!(text, "#define POST_AT_{name} {at}u").unwrap();
                     numbers = Some(at + count);
                 }
                 FieldShape::List => {
@@ -92,7 +105,7 @@ fn events(text: &mut String) {
                     match numbers {
                         Some(at) => {
                             comment(text, &format!("{list}: {doc}"));
-                            writeln!(text, "#define POST_{name} {at}u").unwrap();
+                            writeln!(text, "#define POST_AT_{name} {at}u").unwrap();
                         }
                         None => comment(text, &format!("then {}, {list}: {doc}", field.name)),
                     }
@@ -133,18 +146,19 @@ fn comment(text: &mut String, doc: &str) {
 
 #[test]
 fn the_numbers_in_the_header_are_ours() {
-    let text = std::fs::read_to_string(header()).unwrap();
-    let (before, rest) = text.split_once(BEGIN).unwrap();
-    let (found, after) = rest.split_once(END).unwrap();
-    let wanted = generated();
-    if std::env::var_os("UPDATE_HEADER").is_some() {
-        std::fs::write(header(), format!("{before}{BEGIN}{wanted}{END}{after}")).unwrap();
-        return;
+    for (file, wanted) in [("post_plugin.h", numbers()), ("post_plugin_tables.h", tables())] {
+        let text = std::fs::read_to_string(header(file)).unwrap();
+        let (before, rest) = text.split_once(BEGIN).unwrap();
+        let (found, after) = rest.split_once(END).unwrap();
+        if std::env::var_os("UPDATE_HEADER").is_some() {
+            std::fs::write(header(file), format!("{before}{BEGIN}{wanted}{END}{after}")).unwrap();
+            continue;
+        }
+        assert!(
+            found == wanted,
+            "{file} is stale: run UPDATE_HEADER=1 cargo test -p post-plugin --test it header"
+        );
     }
-    assert!(
-        found == wanted,
-        "post_plugin.h is stale: run UPDATE_HEADER=1 cargo test -p post-plugin --test it header"
-    );
 }
 
 #[cfg(unix)]
@@ -155,7 +169,7 @@ fn the_c_compiler_agrees_with_the_header() {
         compiler
             .args(["-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-pedantic"])
             .args(["-x", language, &format!("-std={standard}")])
-            .arg(header());
+            .arg(header("post_plugin.h"));
         let output = compiler.output().expect("a C compiler called cc");
         let message = String::from_utf8_lossy(&output.stderr);
         // A compiler may come without its C++ half.

@@ -19,30 +19,19 @@ typedef struct {
     char error[128];
 } Context;
 
-static void put(const PostSink *sink, const char *text) {
-    sink->write(sink->ctx, (const uint8_t *)text, strlen(text));
-}
-
 static void describe(void *host, PostEmit emit) {
-    PostOption option = {0};
-    option.key = (PostText)POST_TEXT("decimals");
-    option.help = (PostText)POST_TEXT("Of all words.");
-    option.kind = POST_OPTION_INTEGER;
-    option.min = 1;
-    option.max = 6;
-    option.default_value.kind = POST_OPTION_INTEGER;
-    option.default_value.integer = 3;
-    emit(host, &option);
+    PostOption decimals = post_integer_option("decimals", "Of all words.", 1, 6, 3);
+    emit(host, &decimals);
 }
 
 static void *open_(const PostSetup *setup, const PostSink *error) {
     if (setup->tcp) {
-        put(error, "this control has no TCP");
+        post_put(error, "this control has no TCP");
         return NULL;
     }
     Context *c = calloc(1, sizeof *c);
     if (c == NULL) {
-        put(error, "out of memory");
+        post_put(error, "out of memory");
         return NULL;
     }
     c->words_len = setup->words_len;
@@ -54,7 +43,7 @@ static void *open_(const PostSetup *setup, const PostSink *error) {
             char refusal[64];
             snprintf(refusal, sizeof refusal, "axis %.*s: this control has no such axis", (int)word->name.len,
                      (const char *)word->name.ptr);
-            put(error, refusal);
+            post_put(error, refusal);
             free(c);
             return NULL;
         }
@@ -62,7 +51,7 @@ static void *open_(const PostSetup *setup, const PostSink *error) {
         c->rotary[i] = word->rotary;
         c->depth[i] = word->depth;
     }
-    c->decimals = (int)setup->options[0].value.integer;
+    c->decimals = (int)post_option(setup->options, setup->options_len, "decimals")->integer;
     return c;
 }
 
@@ -82,8 +71,14 @@ enum Group { ALL, ROTARY, PLANE, DEPTH };
 /* A block with the words of a group; none if it has no words. `feed` and `words`: where they stand among the event's
  * numbers; -1 if there is no feed. Returns its length, negative if it cannot be written. */
 static int move_(Context *c, const PostEvent *e, enum Group group, int feed, size_t words, char *line, size_t size) {
-    double code = feed < 0 ? POST_FEED_NONE : e->numbers[feed];
-    if (code > POST_FEED_PER_MINUTE) {
+    size_t count;
+    const double *word = post_list(e, words, &count);
+    if (count != c->words_len) {
+        snprintf(c->error, sizeof c->error, "kind %u has %zu words, the setup %zu", e->kind, count, c->words_len);
+        return -1;
+    }
+    double code = feed < 0 ? POST_FEED_NONE : post_number(e, (size_t)feed);
+    if (!(code <= POST_FEED_PER_MINUTE)) {
         snprintf(c->error, sizeof c->error, "it knows feeds a minute alone");
         return -1;
     }
@@ -91,15 +86,15 @@ static int move_(Context *c, const PostEvent *e, enum Group group, int feed, siz
     if (group == DEPTH)
         n += snprintf(line + n, size - n, " G43 H%d", c->length_register);
     int start = n;
-    for (size_t w = 0; w < (size_t)e->numbers[words] && n < 400; w++) {
+    for (size_t w = 0; w < count && n < 400; w++) {
         enum Group own = c->rotary[w] ? ROTARY : c->depth[w] ? DEPTH : PLANE;
         if (group == ALL || group == own)
-            n += snprintf(line + n, size - n, " %s%.*f", c->names[w], c->decimals, e->numbers[words + 1 + w]);
+            n += snprintf(line + n, size - n, " %s%.*f", c->names[w], c->decimals, word[w]);
     }
     if (n == start)
         return 0;
     if (code != POST_FEED_NONE)
-        n += snprintf(line + n, size - n, " F%.1f", e->numbers[feed + 1]);
+        n += snprintf(line + n, size - n, " F%.1f", post_number(e, (size_t)feed + 1));
     return n + snprintf(line + n, size - n, "\n");
 }
 
@@ -109,25 +104,28 @@ static int position(Context *c, const PostEvent *e, char *text, size_t size) {
         snprintf(c->error, sizeof c->error, "no tool was loaded, so its length is not known");
         return -1;
     }
-    int n = move_(c, e, PLANE, -1, POST_POSITION_WORDS, text, size);
-    int last = move_(c, e, DEPTH, POST_POSITION_FEED, POST_POSITION_WORDS, text + n, size - n);
+    int n = move_(c, e, PLANE, -1, POST_AT_POSITION_WORDS, text, size);
+    int last = move_(c, e, DEPTH, POST_AT_POSITION_FEED, POST_AT_POSITION_WORDS, text + n, size - n);
     return last < 0 ? last : n + last;
 }
 
 /* Axes to positions of the machine; `axes` and `words`: where they stand among the event's numbers. */
 static int machine(Context *c, const PostEvent *e, size_t axes, size_t words, char *text, size_t size) {
-    unsigned which = (unsigned)e->numbers[axes];
+    unsigned which = (unsigned)post_number(e, axes);
+    size_t count;
+    const double *word = post_list(e, words, &count);
     int n = snprintf(text, size, "G53 G0");
-    for (size_t w = 0; w < c->words_len; w++)
+    for (size_t w = 0; w < count && w < c->words_len; w++)
         if (which >> w & 1)
-            n += snprintf(text + n, size - n, " %s%.*f", c->names[w], c->decimals, e->numbers[words + 1 + w]);
+            n += snprintf(text + n, size - n, " %s%.*f", c->names[w], c->decimals, word[w]);
     return n + snprintf(text + n, size - n, "\n");
 }
 
 /* The text of the event in a line, between these. A remark is cut, and what is no plain letter in it becomes a question
  * mark: an operator reads it, no control. */
 static int line_of(Context *c, const PostEvent *e, const char *front, const char *behind, char *text, size_t size) {
-    size_t length = e->texts[0].len;
+    PostText own = post_text(e, 0);
+    size_t length = own.len;
     if (*front && length > 80)
         length = 80;
     if (length > 200) {
@@ -136,7 +134,7 @@ static int line_of(Context *c, const PostEvent *e, const char *front, const char
     }
     int n = snprintf(text, size, "%s", front);
     for (size_t i = 0; i < length; i++) {
-        char letter = ((const char *)e->texts[0].ptr)[i];
+        char letter = ((const char *)own.ptr)[i];
         int odd = letter < ' ' || letter > '~' || strchr("()%", letter) != NULL;
         text[n++] = (char)(*front && odd ? '?' : letter);
     }
@@ -154,19 +152,19 @@ static int text_of(Context *c, const PostEvent *e, char *text, size_t size) {
     case POST_EVENT_WORD:
         return line_of(c, e, "", "", text, size);
     case POST_EVENT_TOOL_CHANGE:
-        c->length_register = (int)e->numbers[POST_TOOL_CHANGE_REGISTER];
-        return snprintf(text, size, "T%.0f M6\n", e->numbers[POST_TOOL_CHANGE_NUMBER]);
+        c->length_register = (int)post_number(e, POST_AT_TOOL_CHANGE_REGISTER);
+        return snprintf(text, size, "T%.0f M6\n", post_number(e, POST_AT_TOOL_CHANGE_NUMBER));
     case POST_EVENT_SPINDLE: {
-        double how = e->numbers[POST_SPINDLE_SPINDLE];
+        double how = post_number(e, POST_AT_SPINDLE_SPINDLE);
         if (how == POST_SPINDLE_OFF)
             return snprintf(text, size, "M5\n");
         if (how == POST_SPINDLE_ORIENT)
             break;
         const char *sense = how == POST_SPINDLE_CLOCKWISE ? "M3" : "M4";
-        return snprintf(text, size, "S%.0f %s\n", e->numbers[POST_SPINDLE_SPINDLE + 1], sense);
+        return snprintf(text, size, "S%.0f %s\n", post_number(e, POST_AT_SPINDLE_SPINDLE + 1), sense);
     }
     case POST_EVENT_COOLANT: {
-        double kind = e->numbers[POST_COOLANT_COOLANT];
+        double kind = post_number(e, POST_AT_COOLANT_COOLANT);
         if (kind > POST_COOLANT_FLOOD)
             break;
         return snprintf(text, size, kind == POST_COOLANT_OFF ? "M9\n" : "M8\n");
@@ -174,23 +172,23 @@ static int text_of(Context *c, const PostEvent *e, char *text, size_t size) {
     case POST_EVENT_POSITION:
         return position(c, e, text, size);
     case POST_EVENT_RAPID:
-        return move_(c, e, ALL, -1, POST_RAPID_WORDS, text, size);
+        return move_(c, e, ALL, -1, POST_AT_RAPID_WORDS, text, size);
     case POST_EVENT_LINEAR:
-        return move_(c, e, ALL, POST_LINEAR_FEED, POST_LINEAR_WORDS, text, size);
+        return move_(c, e, ALL, POST_AT_LINEAR_FEED, POST_AT_LINEAR_WORDS, text, size);
     case POST_EVENT_DWELL:
-        return snprintf(text, size, "G4 P%.0f\n", e->numbers[POST_DWELL_SECONDS] * 1000);
+        return snprintf(text, size, "G4 P%.0f\n", post_number(e, POST_AT_DWELL_SECONDS) * 1000);
     case POST_EVENT_STOP:
         return snprintf(text, size, "M0\n");
     case POST_EVENT_OPTIONAL_STOP:
         return snprintf(text, size, "M1\n");
     case POST_EVENT_TURN:
-        return move_(c, e, ROTARY, -1, POST_TURN_WORDS, text, size);
+        return move_(c, e, ROTARY, -1, POST_AT_TURN_WORDS, text, size);
     case POST_EVENT_RETRACT: { /* up, and only there the length away */
-        int n = machine(c, e, POST_RETRACT_AXES, POST_RETRACT_WORDS, text, size);
+        int n = machine(c, e, POST_AT_RETRACT_AXES, POST_AT_RETRACT_WORDS, text, size);
         return n + snprintf(text + n, size - n, "G49\n");
     }
     case POST_EVENT_PARK:
-        return machine(c, e, POST_PARK_AXES, POST_PARK_WORDS, text, size);
+        return machine(c, e, POST_AT_PARK_AXES, POST_AT_PARK_WORDS, text, size);
     case POST_EVENT_END:
         return snprintf(text, size, "M30\n");
     }
@@ -215,7 +213,7 @@ static size_t write_(void *ctx, const PostEvent *events, size_t n, const PostSin
 }
 
 static void last_error(void *ctx, const PostSink *out) {
-    put(out, ((Context *)ctx)->error);
+    post_put(out, ((Context *)ctx)->error);
 }
 
 static void close_(void *ctx) {

@@ -77,6 +77,7 @@ pub(super) fn declared(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault
     trials.extend(cycles());
     trials.push(plane(angles));
     if pen.setup.tcp {
+        trials.push(vector());
         let switch = [Event::Tcp { on: false }, Event::Tcp { on: true }];
         let what = "a switch of tool centre point control";
         trials.push(CapabilityTrial::new(Capabilities::TCP_SWITCH, what, switch));
@@ -167,6 +168,17 @@ fn motion() -> Vec<CapabilityTrial> {
         .but("another end", [surface([0.0, 0.0, 1.0], DOWN)]),
     );
     trials
+}
+
+/// The direction of the tool, whatever the rotary words say.
+fn vector() -> CapabilityTrial {
+    let cut = |axis| {
+        let tool = Some(ToolPose { axis, ..UPRIGHT });
+        Event::Linear { tool, feed: SLOW, words: XY }
+    };
+    CapabilityTrial::new(Capabilities::TOOL_VECTOR, "the tool's direction", [cut([0.0, 0.6, 0.8])])
+        .but("another direction", [cut([0.6, 0.0, 0.8])])
+        .but("the other side", [cut([0.0, -0.6, 0.8])])
 }
 
 const UPRIGHT: ToolPose = ToolPose { tip: [30.0, 20.0, 30.0], axis: [0.0, 0.0, 1.0] };

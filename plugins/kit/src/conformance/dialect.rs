@@ -43,6 +43,7 @@ const CASES: &[(&str, CaseRun)] = &[
     ("every event", every_event),
     ("vocabulary", vocabulary),
     ("options", options_of),
+    ("no tool pose", no_tool_pose),
     ("after a refusal", after_a_refusal),
     ("two at once", two_at_once),
 ];
@@ -53,10 +54,18 @@ pub(super) fn test(
     options: &[(String, GivenValue)],
     most: usize,
 ) -> Result<Vec<Case>, PluginFault> {
-    let setup = five_axes(options);
+    let mut setup = five_axes(options);
+    let mut case = Case::named("program");
+    if let Err(fault) = plugin.dialect(&setup) {
+        // A control that always keeps the tip, or a dialect for nothing else.
+        setup.tcp = true;
+        if plugin.dialect(&setup).is_err() {
+            return Err(fault);
+        }
+        case.note(format!("all cases are under TCP, since it refuses to open without: {fault}"));
+    }
     let format = plugin.dialect(&setup)?.format().clone();
     let mut left_out = Vec::new();
-    let mut case = Case::named("program");
     let text = program(plugin, &setup, &format, &mut left_out, &mut case)?;
     let mut cases = vec![case];
     let Some(text) = text else {
@@ -78,9 +87,13 @@ pub(super) fn test(
     two_threads(&pen, &mut case, most)?;
     cases.push(case);
 
-    for (name, what, tcp, units) in
-        [("with TCP", "tcp", true, Units::Millimetre), ("in inches", "units", false, Units::Inch)]
-    {
+    for (name, what, tcp, units) in [
+        ("with TCP", "tcp", true, Units::Millimetre),
+        ("in inches", "units", setup.tcp, Units::Inch),
+    ] {
+        if (tcp, units) == (setup.tcp, setup.units) {
+            continue;
+        }
         let mut case = Case::named(name);
         let setup = ProgramSetup { tcp, units, ..setup.clone() };
         let other = Pen { setup: &setup, ..pen };
@@ -140,6 +153,13 @@ fn otherwise(
     }
     moves(&pen, case)?;
     commands(&pen, case)?;
+    if pen.setup.tcp != plain.setup.tcp {
+        let mut own = Case::named("");
+        no_tool_pose(&pen, case)?;
+        options_of(&pen, &mut own)?;
+        // What an option changes without it was said there.
+        case.wrong.append(&mut own.wrong);
+    }
     declared(&pen, case)
 }
 
@@ -166,6 +186,15 @@ fn axis_names(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
         case.wrong(format!(
             "an axis called X1 is written `{word}`, which is a value of X: it must refuse the axis"
         ));
+    }
+    Ok(())
+}
+
+/// Where nobody knows how the tool stands: written by the words, or refused.
+fn no_tool_pose(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
+    let moves = [turn(&[0.0; 5]), at(&[0.0; 5]), cut(&[1.0; 5], 500.0)];
+    if let Err(fault) = pen.write_unposed(&[BEGIN, &moves])? {
+        case.note(format!("where nobody knows how the tool stands: {fault}"));
     }
     Ok(())
 }

@@ -18,6 +18,7 @@ pub(crate) mod dialect;
 mod model;
 mod options;
 mod pen;
+mod pose;
 mod print;
 mod runs;
 mod sessions;

@@ -1,8 +1,11 @@
 //! Short programs, each written by a dialect that was opened for it alone.
 
 use post_host::{OpenedDialect, Plugin, PluginFault, ProgramSetup};
-use post_plugin::{Batch, DialectSession as _, Event, Feed, Format, Spindle, WriteFault, quantise};
+use post_plugin::{
+    Batch, Capabilities, DialectSession as _, Event, Feed, Format, Spindle, WriteFault, quantise,
+};
 
+use super::pose::posed;
 use crate::{TOP, at, turn, turning};
 
 /// The start, a tool and all that turns, as every program of the kit has them.
@@ -47,6 +50,11 @@ impl Pen<'_> {
         self.plugin.dialect(self.setup)
     }
 
+    /// A move has the tool's direction in the place of rotary words: a full turn of these is not in its text.
+    pub fn writes_vectors(&self) -> Result<bool, PluginFault> {
+        Ok(self.setup.tcp && self.open()?.capabilities().has(Capabilities::TOOL_VECTOR))
+    }
+
     pub fn leaves_out(&self, event: &Event<'_>) -> bool {
         self.left_out.contains(&event.name())
     }
@@ -56,11 +64,27 @@ impl Pen<'_> {
         &self,
         parts: &[&[Event<'_>]],
     ) -> Result<Result<WrittenParts, String>, PluginFault> {
+        self.write_each(parts, &|event| posed(event, self.setup.units))
+    }
+
+    /// As [`Pen::write`], where nobody knows how the tool stands.
+    pub fn write_unposed(
+        &self,
+        parts: &[&[Event<'_>]],
+    ) -> Result<Result<WrittenParts, String>, PluginFault> {
+        self.write_each(parts, &|event| event)
+    }
+
+    fn write_each<'e>(
+        &self,
+        parts: &[&[Event<'e>]],
+        told: &dyn Fn(Event<'e>) -> Event<'e>,
+    ) -> Result<Result<WrittenParts, String>, PluginFault> {
         let mut batch = Batch::default();
         let mut counts = Vec::with_capacity(parts.len());
         for part in parts {
             for event in part.iter().filter(|event| !self.leaves_out(event)) {
-                batch.push(batch.len() as u64 + 1, *event);
+                batch.push(batch.len() as u64 + 1, told(*event));
             }
             counts.push(batch.len());
         }
@@ -98,7 +122,7 @@ impl Pen<'_> {
         for chunk in events.chunks(most.min(events.len()).max(1)) {
             let mut batch = Batch::default();
             for (event, line) in chunk.iter().zip(1..) {
-                batch.push(line, *event);
+                batch.push(line, posed(*event, self.setup.units));
             }
             if let Err(fault) = session.write_batch(&batch, &mut text, &mut ends) {
                 return Ok(Err(WriteFault { index: done + fault.index, ..fault }));

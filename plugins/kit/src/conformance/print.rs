@@ -106,6 +106,10 @@ impl TriedMove {
     }
 }
 
+/// Degrees by which a rotary word is changed at least where the tool's direction stands in its place: that of a vector
+/// with six decimals.
+const DIRECTION: f64 = 0.01;
+
 /// Runs all kinds of moves, with every word and feed.
 pub(super) fn moves(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
     let format = pen.open()?.format().clone();
@@ -171,7 +175,11 @@ pub(super) fn edges(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
         let written = pen.write(&[BEGIN, &[at(&ELSEWHERE)], &cut])?;
         Ok(written.map(|written| written.part(2).to_owned()))
     };
+    let vectors = pen.writes_vectors()?;
     for (word, decimals) in format.words.iter().enumerate() {
+        if vectors && pen.setup.words[word].rotary {
+            continue;
+        }
         let (name, unit) = (&pen.setup.words[word].name, unit(*decimals));
         for edge in EDGES.into_iter().flat_map(|edge| [edge, -edge]) {
             let values = [edge - unit, edge, edge + unit].map(|value| quantise(value, *decimals));
@@ -206,7 +214,9 @@ fn word_fault(
 ) -> Result<Option<String>, PluginFault> {
     let (name, rotary) = (&pen.setup.words[word].name, pen.setup.words[word].rotary);
     let decimals = format.words[word];
-    let unit = unit(decimals);
+    let vector =
+        rotary && matches!(kind, Rapid | Cut | CutInInverseTime) && pen.writes_vectors()?;
+    let unit = if vector { unit(decimals).max(DIRECTION) } else { unit(decimals) };
     for value in if rotary { ROTARY } else { LINEAR } {
         let value = quantise(value, decimals);
         let mut base = TriedMove { kind, words: rounded(PLACE, format), feed: 500.0 };
@@ -218,6 +228,11 @@ fn word_fault(
         if rotary {
             changes.push((value + 360.0, "a turn"));
         }
+        // A whole turn leaves the direction as it is.
+        changes.retain(|(changed, _)| {
+            let turns = (changed - value) / 360.0;
+            !vector || (turns - turns.round()).abs() * 360.0 > DIRECTION / 2.0
+        });
         for before in befores(format, &base) {
             for (changed, what) in &changes {
                 let changed = quantise(*changed, decimals);

@@ -102,7 +102,8 @@ fn written(
     ];
     let mut texts = [None, None];
     for (text, cuts) in texts.iter_mut().zip([singles.as_slice(), &run]) {
-        let program = pen.write(&[BEGIN, &came, before, cuts, &goes_on, END])?;
+        // A run does not tell how the tool stands.
+        let program = pen.write_unposed(&[BEGIN, &came, before, cuts, &goes_on, END])?;
         *text = program.ok().map(|program| program.text);
     }
     Ok(texts)

@@ -4,11 +4,12 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
-use post_plugin::{Batch, DialectSession as _, Event, Feed, Format, WriteFault};
+use post_plugin::{Batch, DialectSession as _, Event, Feed, Format, Units, WriteFault};
 
 use super::Case;
 use super::dialect::UNKNOWN;
 use super::pen::{BEGIN, ELSEWHERE, Pen, rounded};
+use super::pose::posed;
 use crate::at;
 use post_host::{OpenedDialect, PluginFault};
 
@@ -21,7 +22,7 @@ pub(super) fn after_a_refusal(pen: &Pen<'_>, case: &mut Case) -> Result<(), Plug
         let mut session = pen.open()?;
         let mut batch = Batch::default();
         for event in beginning().chain(last) {
-            batch.push(1, event);
+            batch.push(1, posed(event, pen.setup.units));
         }
         let (mut out, mut ends) = (String::new(), Vec::new());
         let written = session.write_batch(&batch, &mut out, &mut ends);
@@ -130,6 +131,7 @@ fn beginning() -> impl Iterator<Item = Event<'static>> {
 /// A session that cuts on and on.
 struct CuttingSession {
     session: OpenedDialect,
+    units: Units,
     format: Format,
     begun: bool,
     start: f64,
@@ -145,6 +147,7 @@ impl CuttingSession {
         let format = session.format().clone();
         Ok(CuttingSession {
             session,
+            units: pen.setup.units,
             format,
             begun: false,
             start,
@@ -163,7 +166,7 @@ impl CuttingSession {
         let mut batch = Batch::default();
         if !self.begun {
             for event in beginning() {
-                batch.push(1, event);
+                batch.push(1, posed(event, self.units));
             }
             self.begun = true;
         }
@@ -173,7 +176,8 @@ impl CuttingSession {
             let words = [along, -along / 3.0, 50.0, along / 7.0, 0.25 * along - 90.0];
             let words = rounded(words, &self.format);
             let feed = if self.step % 37.0 < 20.0 { 900.0 } else { 400.0 };
-            batch.push(1, Event::linear(&words, Feed::PerMinute(feed)));
+            let cut = Event::linear(&words, Feed::PerMinute(feed));
+            batch.push(1, posed(cut, self.units));
         }
         self.ends.clear();
         let written = self.session.write_batch(&batch, &mut self.out, &mut self.ends);

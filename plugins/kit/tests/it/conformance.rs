@@ -81,6 +81,24 @@ fn what_a_model_may_miss_is_said_and_not_held_against_it() {
     assert!(figures(&second, "two humps").tip.left < 1e-12);
 }
 
+/// A control that always keeps the tip is tried under TCP alone, and one that writes the tool's direction too.
+#[test]
+fn dialects_under_tcp_and_with_vectors_are_driven() {
+    let report =
+        run(sloppy::plugin(), &[("fault", GivenValue::Text("lives under TCP".to_owned()))]);
+    assert!(report.is_good(), "{report}");
+    let note = "all cases are under TCP, since it refuses to open without: ";
+    assert!(report.table().contains(note), "{report}");
+    assert!(!report.cases.iter().any(|case| case.name == "with TCP"), "{report}");
+    let flag = GivenValue::Flag(true);
+    for (name, option) in
+        [("fanuc", "tool_vector"), ("siemens", "tool_vectors"), ("heidenhain", "tool_vectors")]
+    {
+        let report = run(stock(name), &[(option, flag.clone())]);
+        assert!(report.is_good(), "{name}: {report}");
+    }
+}
+
 #[test]
 fn every_fault_is_found_where_it_is() {
     for (fault, sentences) in [

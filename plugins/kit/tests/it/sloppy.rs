@@ -72,6 +72,10 @@ pub const FAULTS: &[(&str, &str)] = &[
         "a first position at a feed is refused: dialect `sloppy`, event Position: it comes at rapid",
     ),
     (
+        "declares vectors",
+        "with TCP: the tool's direction: another direction makes no difference to the text",
+    ),
+    (
         "numbered names",
         "axis names: an axis called X1 is written `X1450.000`, which is a value of X",
     ),
@@ -118,6 +122,7 @@ impl Dialect for Sloppy {
         match fault.as_str() {
             "inches ignored" => setup.units = Units::Millimetre,
             "tcp ignored" => setup.tcp = false,
+            "lives under TCP" if !setup.tcp => return Err("it keeps the tip".to_owned()),
             _ => {}
         }
         Ok(Sloppy {
@@ -129,7 +134,11 @@ impl Dialect for Sloppy {
     }
 
     fn capabilities(&self) -> Capabilities {
-        self.inner.capabilities()
+        let declared = self.inner.capabilities();
+        match self.fault.as_str() {
+            "declares vectors" => declared.and(Capabilities::TOOL_VECTOR),
+            _ => declared,
+        }
     }
 
     fn format(&self) -> Format {

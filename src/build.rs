@@ -4,9 +4,14 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
-/// The crates that a dialect outside of this checkout is built with, and where they lie.
-const CRATES: [(&str, &str); 3] =
-    [("post-plugin", "plugins/api"), ("post-iso", "plugins/iso"), ("post-kit", "plugins/kit")];
+/// The crates that a plugin outside of this checkout is built with, and the error model that one begins with; and where
+/// they lie.
+const CRATES: [(&str, &str); 4] = [
+    ("post-plugin", "plugins/api"),
+    ("post-iso", "plugins/iso"),
+    ("post-kit", "plugins/kit"),
+    ("post-parabolic", "plugins/parabolic"),
+];
 
 /// The cases of the kit stand on the host: a dialect beside them would not be built with nothing but itself.
 const LEFT_OUT: &str = "src/conformance";

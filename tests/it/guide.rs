@@ -18,11 +18,11 @@ fn in_folder(folder: &Path, arguments: &[&str]) -> Run {
     run(command().current_dir(folder).args(arguments), b"")
 }
 
-/// A dialect of this form, in a folder of its own.
-fn new(name: &str, form: &str) -> (TempDir, PathBuf) {
+/// A plugin of this form, in a folder of its own.
+fn new(name: &str, forms: &[&str]) -> (TempDir, PathBuf) {
     let parent = tempfile::tempdir().unwrap();
-    let made = in_folder(parent.path(), &["plugin", "new", name, form]);
-    assert_eq!((made.code, made.err.as_str()), (0, ""), "{form}");
+    let made = in_folder(parent.path(), &[&["plugin", "new", name], forms].concat());
+    assert_eq!((made.code, made.err.as_str()), (0, ""), "{forms:?}");
     let folder = parent.path().join(name);
     // The commands that it prints are those of the folder's own guide.
     let read_me = fs::read_to_string(folder.join("README.md")).unwrap();
@@ -65,10 +65,10 @@ fn is_good(folder: &Path, name: &str, libraries: &str) {
     }
 }
 
-fn rust(name: &str, form: &str) {
-    let (_parent, folder) = new(name, form);
+fn rust(name: &str, forms: &[&str], passed: &str) {
+    let (_parent, folder) = new(name, forms);
     let tests = tool(&folder, &[env!("CARGO"), "test", "--quiet"]);
-    assert!(tests.contains("2 passed"), "{tests}");
+    assert!(tests.contains(passed), "{tests}");
     tool(&folder, &[env!("CARGO"), "build", "--quiet"]);
     is_good(&folder, name, "target/debug");
     let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
@@ -77,25 +77,51 @@ fn rust(name: &str, form: &str) {
 
 #[test]
 fn a_dialect_in_rust_builds_as_it_stands_and_posts_the_sample() {
-    rust("mine", "--rust");
+    rust("mine", &["--rust"], "2 passed");
 }
 
 #[test]
 fn a_table_of_the_g_code_family_builds_as_it_stands_and_posts_the_sample() {
-    rust("table_1", "--iso");
+    rust("table_1", &["--iso"], "2 passed");
 }
 
 #[test]
 fn a_dialect_in_c_builds_as_it_stands_and_posts_the_sample() {
-    let (_parent, folder) = new("in_c", "--c");
+    let (_parent, folder) = new("in_c", &["--c"]);
     tool(&folder, &["make", "CFLAGS=-O2 -Wall -Wextra -Werror"]);
     is_good(&folder, "in_c", ".");
+}
+
+#[test]
+fn an_error_model_builds_as_it_stands_and_is_asked() {
+    rust("arch", &["--model", "--rust"], "1 passed");
+    let (_parent, folder) = new("arch_c", &["--model", "--c"]);
+    tool(&folder, &["make", "CFLAGS=-O2 -Wall -Wextra -Werror"]);
+    is_good(&folder, "arch_c", ".");
+    let arguments = ["--plugins", ".", "--machine", "machine.toml", "sample.cls"];
+    let asked = in_folder(&folder, &arguments).out;
+    let model = asked.lines().find(|line| line.starts_with("error model")).unwrap();
+    assert!(
+        model.contains("arch_c 1.0 (./libpost_arch_c") && model.contains("), asked "),
+        "{asked}"
+    );
+    // A slip in C: the bow is half of what it is.
+    let source = fs::read_to_string(folder.join("model.c")).unwrap();
+    let slip = source.replace("bow * 4 * t", "bow * 2 * t");
+    assert_ne!(slip, source);
+    fs::write(folder.join("model.c"), slip).unwrap();
+    tool(&folder, &["make"]);
+    let library = format!("./{DLL_PREFIX}post_arch_c{DLL_SUFFIX}");
+    let tested = in_folder(&folder, &["plugin", "test", &library]);
+    let wrong = "parabola: it says 10.0000 µm for the tip, the deviation reaches 20.0000 µm";
+    assert_eq!(tested.code, 1, "{}", tested.out);
+    assert!(tested.err.contains(wrong), "{}", tested.err);
 }
 
 /// The guide shows what `post plugin new tiny --rust` writes.
 #[test]
 fn the_guide_shows_the_folder_as_it_is_written() {
-    let (_parent, folder) = new("mine", "--rust");
+    let (_parent, folder) = new("mine", &["--rust"]);
     let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
     let dependencies = manifest.split_once("[dependencies]\n").unwrap().1;
     let line = dependencies.lines().next().unwrap();
@@ -122,8 +148,8 @@ fn a_name_that_cannot_be_is_refused_and_nothing_is_replaced() {
     for (name, message) in [
         ("fanuc", "`fanuc` is built in"),
         ("sampled", "`sampled` is built in"),
-        ("kit", "post_kit is a crate that dialects are built with"),
-        ("9axes", "`9axes` cannot be the name of a dialect"),
+        ("kit", "post_kit is a crate that plugins are built with"),
+        ("9axes", "`9axes` cannot be the name of a plugin"),
         ("Mine", "`Mine` cannot be"),
         ("mi-ne", "`mi-ne` cannot be"),
         ("mi ne", "`mi ne` cannot be"),
@@ -147,4 +173,6 @@ fn a_name_that_cannot_be_is_refused_and_nothing_is_replaced() {
     assert_eq!(file, "mine\n");
     assert_eq!(post(&["plugin", "new", "mine"]).code, 2);
     assert_eq!(post(&["plugin", "new", "mine", "--c", "--iso"]).code, 2);
+    assert_eq!(post(&["plugin", "new", "mine", "--model"]).code, 2);
+    assert_eq!(post(&["plugin", "new", "mine", "--model", "--iso"]).code, 2);
 }

@@ -1,4 +1,4 @@
-//! `post plugin new`: a folder with a dialect to start from, which builds as it stands.
+//! `post plugin new`: a folder with a dialect or an error model to start from, which builds as it stands.
 
 mod starter;
 
@@ -13,7 +13,7 @@ use post_cli::terminal::print;
 use post_job::failure::Failure;
 use post_job::plugin_finder::built_in;
 use post_job::session::Session;
-use starter::{StarterFile, StarterLanguage};
+use starter::{Starter, StarterFile, StarterLanguage};
 
 /// Longest name: it stands in file names, in a symbol and in machine files.
 const LONGEST: usize = 40;
@@ -21,7 +21,8 @@ const LONGEST: usize = 40;
 /// Crates of `post` that are called `post_…` too.
 const CRATES: [&str; 3] = ["iso", "kit", "plugin"];
 
-/// Writes a folder with a dialect that builds as it stands: source, a test, a machine and a CL file to post.
+/// Writes a folder with a dialect, or an error model, that builds as it stands: source, a test, a machine and a CL file
+/// to post.
 ///
 /// The folder carries what it is built with, so it may stand anywhere, and nothing has to be fetched.
 #[derive(Debug, Args)]
@@ -30,11 +31,12 @@ const CRATES: [&str; 3] = ["iso", "kit", "plugin"];
     after_help = "Examples:
   post plugin new mine --iso
   post plugin new work/mine --c
+  post plugin new bow --model --rust
 
 Exit codes: 0 the folder is written; 1 refused, the messages say why; 2 the command line is wrong."
 )]
 pub struct NewPluginArguments {
-    /// Name of the dialect, with a folder in front if it shall not stand here: writes the folder NAME.
+    /// Name of the plugin, with a folder in front if it shall not stand here: writes the folder NAME.
     #[arg(value_name = "NAME")]
     name: PathBuf,
 
@@ -49,18 +51,27 @@ pub struct NewPluginArguments {
     /// In C, or what else can export a constant.
     #[arg(long)]
     c: bool,
+
+    /// An error model in place of a dialect: with --rust or --c.
+    #[arg(long, conflicts_with = "iso")]
+    model: bool,
 }
 
 /// Does as the arguments say.
 pub fn run(session: &Session, arguments: &NewPluginArguments) -> Result<(), Failure> {
     let folder = &arguments.name;
     let name = name(folder)?;
-    let form = match (arguments.rust, arguments.iso) {
+    let language = match (arguments.rust, arguments.iso) {
         (true, _) => StarterLanguage::Rust,
         (_, true) => StarterLanguage::Iso,
         _ => StarterLanguage::C,
     };
-    let files = starter::files(form, name);
+    let form = Starter { language, model: arguments.model };
+    let Some(files) = starter::files(form, name) else {
+        let message = "this `post` was built without the source of an error model in Rust";
+        let help = "begin with `--model --c`, or with the model that the book shows";
+        return Err(Diagnostic::error("new", message).help(help).into());
+    };
     if let Err(error) = fs::create_dir(folder) {
         return Err(no_folder(folder, &error).into());
     }
@@ -74,14 +85,15 @@ pub fn run(session: &Session, arguments: &NewPluginArguments) -> Result<(), Fail
     print(
         session,
         &format!(
-            "{}: a dialect to start from; its README.md says what is what. In it:\n  {commands}\n",
-            folder.display()
+            "{}: {} to start from; its README.md says what is what. In it:\n  {commands}\n",
+            folder.display(),
+            form.what()
         ),
     );
     Ok(())
 }
 
-/// The name of the dialect, which becomes that of a crate, of a file, of a symbol and of a table of machine files.
+/// The name of the plugin, which becomes that of a crate, of a file, of a symbol and of a table of machine files.
 fn name(folder: &Path) -> Result<&str, Failure> {
     let refused = |message: String, help: &str| {
         let finding = Diagnostic::error("new", message);
@@ -89,13 +101,13 @@ fn name(folder: &Path) -> Result<&str, Failure> {
     };
     let shown = folder.display();
     let Some(name) = folder.file_name().and_then(|name| name.to_str()) else {
-        return refused(format!("{shown} is no name"), "name it after the control");
+        return refused(format!("{shown} is no name"), "name it after the control or the model");
     };
     let plain = |byte: u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_';
     let begins = name.starts_with(|letter: char| letter.is_ascii_lowercase());
     if !begins || !name.bytes().all(plain) || name.len() > LONGEST {
         return refused(
-            format!("`{name}` cannot be the name of a dialect"),
+            format!("`{name}` cannot be the name of a plugin"),
             &format!(
                 "it begins with a letter, has small letters, digits and _ alone, and at most {LONGEST} of them"
             ),
@@ -103,7 +115,7 @@ fn name(folder: &Path) -> Result<&str, Failure> {
     }
     if CRATES.contains(&name) {
         return refused(
-            format!("post_{name} is a crate that dialects are built with"),
+            format!("post_{name} is a crate that plugins are built with"),
             "choose another name",
         );
     }

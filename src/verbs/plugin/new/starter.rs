@@ -1,18 +1,18 @@
-//! The files of a folder with a dialect: the smallest ones that are of use, which the guide shows and the tests build.
+//! The files of a folder with a plugin: the smallest ones that are of use, which the guide shows and the tests build.
 
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 
 use post_host::examples;
 use post_plugin::raw;
 
-/// Files of each crate that a dialect is built with; none of them where the command was built from published crates.
+/// Files of each crate that a plugin is built with, and of the model that one begins with; none of them where the command was built from published crates.
 type Sources = &'static [(&'static str, &'static [(&'static str, &'static str)])];
 
 const SOURCES: Sources = include!(concat!(env!("OUT_DIR"), "/sources.rs"));
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// What a dialect is written in.
+/// What a plugin is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StarterLanguage {
     /// Rust, on the contract alone.
@@ -21,6 +21,22 @@ pub enum StarterLanguage {
     Iso,
     /// C.
     C,
+}
+
+/// What is begun with.
+#[derive(Clone, Copy, Debug)]
+pub struct Starter {
+    /// What it is written in.
+    pub language: StarterLanguage,
+    /// An error model, else a dialect.
+    pub model: bool,
+}
+
+impl Starter {
+    /// What it is, with its article.
+    pub fn what(self) -> &'static str {
+        if self.model { "an error model" } else { "a dialect" }
+    }
 }
 
 /// A file of the folder.
@@ -37,9 +53,9 @@ fn file(path: &str, text: impl Into<String>) -> StarterFile {
 }
 
 /// What builds the library, tests it and posts the sample, in the folder.
-pub fn commands(form: StarterLanguage, name: &str) -> [String; 3] {
+pub fn commands(form: Starter, name: &str) -> [String; 3] {
     let library = format!("{DLL_PREFIX}post_{name}{DLL_SUFFIX}");
-    let (build, folder) = match form {
+    let (build, folder) = match form.language {
         StarterLanguage::Rust | StarterLanguage::Iso => ("cargo build --release", "target/release"),
         StarterLanguage::C => ("make", "."),
     };
@@ -50,67 +66,113 @@ pub fn commands(form: StarterLanguage, name: &str) -> [String; 3] {
     ]
 }
 
-/// All files of the folder.
-pub fn files(form: StarterLanguage, name: &str) -> Vec<StarterFile> {
+/// All files of the folder; none where the source that they begin with is not part of this command.
+pub fn files(form: Starter, name: &str) -> Option<Vec<StarterFile>> {
     let named = |text: &str| text.replace("NAME", name);
+    let machine = match form.model {
+        true => include_str!("templates/machine_of_model.toml"),
+        false => include_str!("templates/machine.toml"),
+    };
     let mut files = vec![
         file("README.md", read_me(form, name)),
-        file("machine.toml", named(include_str!("templates/machine.toml"))),
+        file("machine.toml", named(machine)),
         file("sample.cls", include_str!("templates/sample.cls")),
         file(".gitignore", "/target\n*.so\n*.dylib\n*.dll\nsample.nc\n"),
     ];
-    if form == StarterLanguage::C {
-        let source = examples::MINIMAL_C.replace("minimal", name);
-        files.extend([
-            file("dialect.c", source.replace(&format!("{name}.c"), "dialect.c")),
-            file("post_plugin.h", raw::HEADER),
-            file("Makefile", named(include_str!("templates/Makefile"))),
-        ]);
-        return files;
-    }
-    let (example, exported) = match form {
-        StarterLanguage::Iso => (examples::GCODE, "gcode"),
-        _ => (examples::TINY, "tiny"),
+    files.extend(match form.language {
+        StarterLanguage::C => c_files(form, name),
+        StarterLanguage::Rust | StarterLanguage::Iso => rust_files(form, name)?,
+    });
+    Some(files)
+}
+
+/// The source in C, the header and what builds it.
+fn c_files(form: Starter, name: &str) -> Vec<StarterFile> {
+    let (example, old) = match form.model {
+        true => (examples::BOW_C, "bow"),
+        false => (examples::MINIMAL_C, "minimal"),
     };
+    let path = c_source(form);
     let source = example
-        .replace(&format!("export_dialect!({exported}, "), &format!("export_dialect!({name}, "));
-    files.extend([
+        .replace(&format!("post_plugin_{old}"), &format!("post_plugin_{name}"))
+        .replace(&format!("post_{old}"), &format!("post_{name}"))
+        .replace(&format!("TEXT(\"{old}\")"), &format!("TEXT(\"{name}\")"))
+        .replace(&format!("plugins/api/include {old}.c"), &format!(". {path}"));
+    let makefile = include_str!("templates/Makefile").replace("SOURCE", path);
+    vec![
+        file(path, source),
+        file("post_plugin.h", raw::HEADER),
+        file("post_plugin_tables.h", raw::TABLES_HEADER),
+        file("Makefile", makefile.replace("NAME", name)),
+    ]
+}
+
+fn c_source(form: Starter) -> &'static str {
+    if form.model { "model.c" } else { "dialect.c" }
+}
+
+/// A crate with a test, and the crates that it is built with beside it.
+fn rust_files(form: Starter, name: &str) -> Option<Vec<StarterFile>> {
+    let (example, exported) = match (form.model, form.language) {
+        (true, _) => (parabolic()?, "model!(parabolic"),
+        (_, StarterLanguage::Iso) => (examples::GCODE, "dialect!(gcode"),
+        _ => (examples::TINY, "dialect!(tiny"),
+    };
+    let kind = exported.split('(').next().unwrap_or_default();
+    let source = example.replace(&format!("{exported}, "), &format!("{kind}({name}, "));
+    let (test, text) = match form.model {
+        true => ("tests/bow.rs", include_str!("templates/bow.rs")),
+        false => ("tests/job.rs", include_str!("templates/job.rs")),
+    };
+    let mut files = vec![
         file("src/lib.rs", source),
-        file("tests/job.rs", named(include_str!("templates/job.rs"))),
+        file(test, text.replace("NAME", name)),
         file("Cargo.toml", manifest(form, name)),
-    ]);
+    ];
     for (krate, sources) in SOURCES {
-        if used(form).contains(krate) || *krate == KIT {
+        if used(form.language).contains(krate) || *krate == KIT && !form.model {
             vendor(krate, sources, &mut files);
         }
     }
-    files
+    Some(files)
 }
 
 const KIT: &str = "post-kit";
 
-/// The crates that a dialect of this form depends on.
-fn used(form: StarterLanguage) -> &'static [&'static str] {
-    match form {
+/// The error model that one in Rust begins with.
+fn parabolic() -> Option<&'static str> {
+    let (_, files) = SOURCES.iter().find(|(krate, _)| *krate == "post-parabolic")?;
+    files.iter().find(|(path, _)| *path == "src/lib.rs").map(|(_, text)| *text)
+}
+
+/// The crates that a plugin in this language depends on.
+fn used(language: StarterLanguage) -> &'static [&'static str] {
+    match language {
         StarterLanguage::Rust => &["post-plugin"],
         StarterLanguage::Iso => &["post-iso", "post-plugin"],
         StarterLanguage::C => &[],
     }
 }
 
-fn manifest(form: StarterLanguage, name: &str) -> String {
+fn manifest(form: Starter, name: &str) -> String {
     let line = |krate: &str| match SOURCES {
         [] => format!("{krate} = \"{VERSION}\""),
         _ => format!("{krate} = {{ path = \"vendor/{krate}\" }}"),
     };
-    let dependencies: Vec<String> = used(form).iter().map(|krate| line(krate)).collect();
-    include_str!("templates/Cargo.toml")
-        .replace("NAME", name)
+    let dependencies: Vec<String> = used(form.language).iter().map(|krate| line(krate)).collect();
+    let text = include_str!("templates/Cargo.toml");
+    // A model is held against numbers, and needs no bench that writes programs.
+    let (own, kit) = text.split_once("\n[dev-dependencies]\nKIT\n").unwrap_or((text, ""));
+    let text = match form.model {
+        true => format!("{own}{kit}").replace("A control of my own.", "A model of my own."),
+        false => text.to_owned(),
+    };
+    text.replace("NAME", name)
         .replace("DEPENDENCIES", &dependencies.join("\n"))
         .replace("KIT", &line(KIT))
 }
 
-/// A crate beside the dialect.
+/// A crate beside the plugin.
 fn vendor(krate: &str, sources: &[(&str, &str)], files: &mut Vec<StarterFile>) {
     let mut manifest = format!(
         "[package]\nname = \"{krate}\"\nversion = \"{VERSION}\"\nedition = \"2024\"\nrust-version = \"{}\"\n\
@@ -134,16 +196,27 @@ fn vendor(krate: &str, sources: &[(&str, &str)], files: &mut Vec<StarterFile>) {
     files.extend(sources.map(|(path, text)| file(&format!("{folder}/{path}"), *text)));
 }
 
-fn read_me(form: StarterLanguage, name: &str) -> String {
+fn read_me(form: Starter, name: &str) -> String {
     let [build, test, post] = commands(form, name);
-    let own: &[[&str; 2]] = match form {
-        StarterLanguage::C => &[
-            ["`dialect.c`", "the dialect"],
-            ["`post_plugin.h`", "the contract, with all events and what they carry"],
+    let the_plugin = if form.model { "the model" } else { "the dialect" };
+    let source = format!("`{}`", c_source(form));
+    let own: &[[&str; 2]] = match (form.language, form.model) {
+        (StarterLanguage::C, _) => &[
+            [&source, the_plugin],
+            [
+                "`post_plugin.h`",
+                "the contract, with all events and what they carry, and helpers that read them",
+            ],
+            ["`post_plugin_tables.h`", "what words of a control can mean; included by the header"],
             ["`Makefile`", "builds the library; `make test` tries it"],
         ],
-        StarterLanguage::Rust | StarterLanguage::Iso => &[
-            ["`src/lib.rs`", "the dialect"],
+        (_, true) => &[
+            ["`src/lib.rs`", the_plugin],
+            ["`tests/bow.rs`", "a test of what it finds: `cargo test`"],
+            ["`vendor/`", "the crate that it is built with, as this `post` has it"],
+        ],
+        (_, false) => &[
+            ["`src/lib.rs`", the_plugin],
             ["`tests/job.rs`", "a test of what it writes: `cargo test`"],
             [
                 "`vendor/`",
@@ -154,8 +227,11 @@ fn read_me(form: StarterLanguage, name: &str) -> String {
     };
     let rows = own.iter();
     let rows: String = rows.map(|[path, what]| format!("| {path} | {what} |\n")).collect();
-    include_str!("templates/README.md")
-        .replace("BUILD", &build)
+    let text = match form.model {
+        true => include_str!("templates/README_of_model.md"),
+        false => include_str!("templates/README.md"),
+    };
+    text.replace("BUILD", &build)
         .replace("post plugin test LIBRARY", &test)
         .replace("post --plugins FOLDER --machine machine.toml sample.cls", &post)
         .replace("SOURCES", &rows)

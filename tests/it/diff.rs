@@ -148,6 +148,45 @@ fn a_change_is_told_with_its_place_and_nothing_else() {
     assert!((cut - 10.0 * std::f64::consts::PI).abs() < 0.2, "{cut}");
 }
 
+/// With `--cuts` retracts at another height, a stop less and a wait do not drown what is cut otherwise; they are counted.
+#[test]
+fn cuts_alone_are_told_where_that_is_asked_for() {
+    let bench = Bench::new("vmc", "flange.ncl", &[]);
+    let higher = bench.program.replace("G0 Z20.000\nX", "G0 Z75.000\nX").replace("M1\n", "");
+    assert_ne!(higher, bench.program);
+    let (code, found, text) = bench.against(&higher, &[]);
+    assert_eq!((code, &found["beside_cuts"]), (1, &Value::from(0)), "{text}");
+    let (code, found, text) = bench.against(&higher, &["--cuts"]);
+    assert_eq!((code, different(&found)), (0, vec![]), "{text}");
+    let beside = found["beside_cuts"].as_u64().unwrap();
+    assert!(beside >= 2, "{text}");
+    assert!(text.contains("Both programs make the same cuts."), "{text}");
+    let told = format!("{beside} differences beside the cuts (rapids, waits, stops, tool changes)");
+    assert!(text.contains(&told), "{text}");
+    let deeper = higher.replacen("Z-4.000 I", "Z-4.300 I", 1);
+    for (changed, more) in
+        [(&deeper, beside), (&bench.program.replacen("Z-4.000 I", "Z-4.300 I", 1), 0)]
+    {
+        let (code, found, text) = bench.against(changed, &["--cuts"]);
+        assert_eq!((code, different(&found)), (1, vec![0]), "{text}");
+        let operation = &found["operations"][0];
+        let tip = operation["tip"]["value"].as_f64().unwrap();
+        assert!((tip - 0.3).abs() < 1e-3, "{tip}\n{text}");
+        for other in ["left_out", "added", "other_ways", "events"] {
+            assert_eq!(operation[other], serde_json::json!([]), "{other}\n{text}");
+        }
+        assert_eq!(found["beside_cuts"], more, "{text}");
+    }
+    // A cut that one program alone makes is told, and so is one that became a rapid.
+    let arc = "G2 X20.000 Y-10.000 I-10.000 J0.000\n";
+    for changed in
+        [higher.replacen(arc, "", 1), higher.replacen("G1 Z-2.000 F600.", "G0 Z-2.000", 1)]
+    {
+        let (code, found, text) = bench.against(&changed, &["--cuts"]);
+        assert_eq!((code, different(&found)), (1, vec![0]), "{text}");
+    }
+}
+
 #[test]
 fn an_operation_more_leaves_the_others_alone() {
     let bench = Bench::new("vmc", "flange.ncl", &[]);

@@ -67,6 +67,7 @@ pub fn text(
     text.push('\n');
     let different = found.operations.iter().filter(|operation| !operation.same);
     match (found.same, different.count()) {
+        (true, _) if rules.cuts => text.push_str("Both programs make the same cuts.\n"),
         (true, _) => text.push_str("Both programs make the machine do the same.\n"),
         (false, 0) => text.push_str("The programs have different words that are not known.\n"),
         (false, count) => {
@@ -77,6 +78,18 @@ pub fn text(
                 if count == 1 { "is" } else { "are" }
             );
         }
+    }
+    match (rules.cuts, found.beside_cuts) {
+        (true, 1) => text.push_str(
+            "1 difference beside the cuts (rapids, waits, stops, tool changes) is left out.\n",
+        ),
+        (true, count) => {
+            let _ = writeln!(
+                text,
+                "{count} differences beside the cuts (rapids, waits, stops, tool changes) are left out."
+            );
+        }
+        (false, _) => {}
     }
     text
 }
@@ -148,7 +161,7 @@ fn details(text: &mut String, operation: &OperationDifference, rules: &DiffRules
     at_most_told(&mut told, "  other way", ways);
     at_most_told(&mut told, "  left out", operation.left_out.iter().map(way));
     at_most_told(&mut told, "  added", operation.added.iter().map(way));
-    if let [Some(old), Some(new)] = operation.sides {
+    if let ([Some(old), Some(new)], false) = (operation.sides, rules.cuts) {
         let later = new.seconds - old.seconds;
         if libm::fabs(later) > 0.05 {
             let word = if later > 0.0 { "longer" } else { "shorter" };

@@ -26,8 +26,9 @@ use post_job::settings::{ProgramSettings, ReportSettings};
   post diff old.nc new.nc --machine ac-trunnion
   post diff old.nc new.h --machine ac-trunnion --machine-new dmu50 --tool-length 120
   post diff old.nc new.nc --machine vmc --json - --svg difference.svg
+  post diff old.nc new.nc --machine vmc --cuts
 
-Exit codes, as those of diff: 0 the machine does the same; 1 it does not, or a program is refused, the messages say
+Exit codes, as those of diff: 0 the machine does the same (with --cuts: cuts the same); 1 it does not, or a program is refused, the messages say
 why; 2 the command line is wrong.")]
 pub struct DiffArguments {
     /// The program as it was.
@@ -76,6 +77,11 @@ pub struct DiffArguments {
     /// Makes no difference: `coolant`, which of them flows and whether; `tools`, their numbers, names and registers. Repeatable.
     #[arg(long, value_name = "WHAT", value_enum)]
     ignore: Vec<Ignored>,
+
+    /// Tells differences of cuts alone, whatever retracts, approaches and other rapids do, waits, stops, tool changes and
+    /// time. How many others there are is said.
+    #[arg(long)]
+    cuts: bool,
 
     /// Writes the result as JSON, with all digits; `-` is standard output.
     #[arg(long, value_name = "FILE", value_parser = file())]
@@ -149,6 +155,7 @@ impl DiffArguments {
             },
             any_coolant: self.ignore.contains(&Ignored::Coolant),
             any_tool: self.ignore.contains(&Ignored::Tools),
+            cuts: self.cuts,
         }
     }
 

@@ -41,6 +41,8 @@ pub struct DiffRequest {
     pub any_coolant: bool,
     /// Numbers, names and registers of tools make none.
     pub any_tool: bool,
+    /// Differences of cuts alone are told.
+    pub cuts: bool,
 }
 
 /// One of the programs.
@@ -128,6 +130,7 @@ fn rules(request: &DiffRequest, [old, new]: [&NcControl; 2]) -> DiffRules {
         one_control: one_machine && old.machine.control.dialect == new.machine.control.dialect,
         coolants: !request.any_coolant,
         tools: !request.any_tool,
+        cuts: request.cuts,
         axes,
         rotary,
     }

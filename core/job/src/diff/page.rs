@@ -74,7 +74,13 @@ impl DiffPage<'_> {
                 format!("{} of {} operations are different.", different.count(), operations.len()),
             ),
         };
-        VerdictMeta { kind, word: word.to_owned(), sentences: vec![sentence] }
+        let mut sentences = vec![sentence];
+        if self.compared.rules.cuts {
+            let count = self.compared.found.beside_cuts;
+            sentences
+                .push(format!("Cuts alone are compared; differences of anything else: {count}."));
+        }
+        VerdictMeta { kind, word: word.to_owned(), sentences }
     }
 
     fn maxima(&self) -> Vec<Maximum> {

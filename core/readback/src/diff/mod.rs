@@ -47,6 +47,8 @@ pub struct DiffRules {
     pub coolants: bool,
     /// Numbers and names of tools, and their registers, are compared.
     pub tools: bool,
+    /// Differences of cuts alone are told: of others, and of waits, stops, tool changes and time, how many.
+    pub cuts: bool,
     /// Names of the axes in chain order, for one machine.
     pub axes: Vec<String>,
     /// Which axes are rotary, in chain order.

@@ -94,6 +94,11 @@ impl PathStep {
         self.kind == MotionKind::Rapid || self.fast
     }
 
+    /// At feed, and not as fast as a rapid.
+    pub fn cuts(&self) -> bool {
+        !self.may_be_rapid()
+    }
+
     /// Both are of one kind, or one is a rapid and the other may be.
     pub fn is_like(&self, other: &Self) -> bool {
         let rapid = |step: &Self| step.kind == MotionKind::Rapid;

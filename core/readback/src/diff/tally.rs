@@ -24,6 +24,8 @@ pub struct Difference {
     pub operations: Vec<OperationDifference>,
     /// Sums of the old program and of the new one.
     pub sides: [ProgramSums; 2],
+    /// Differences of anything but cuts that are not told, where these alone are.
+    pub beside_cuts: u64,
     /// Words of either that are not understood: what they do is not compared.
     pub unknown: [Vec<String>; 2],
 }
@@ -70,6 +72,8 @@ pub struct OperationDifference {
     pub left_out: Vec<LoneWay>,
     /// Ways of the new program alone.
     pub added: Vec<LoneWay>,
+    /// Differences of anything but cuts, where these alone are told.
+    pub beside_cuts: u64,
 }
 
 /// The largest of a kind, and where.
@@ -159,14 +163,18 @@ pub(super) struct OperationTally<'t> {
     listen: &'t mut dyn FnMut(&PathPair),
     index: usize,
     found: OperationDifference,
-    /// By what and both values, the place in `found.states`.
-    states: BTreeMap<(&'static str, String, String), usize>,
-    /// The states that were compared last, and the kinds of motion.
-    compared: Option<([*const MachineState; 2], [MotionKind; 2])>,
-    /// Those of `found.states` that hold.
+    /// The same of what is no cut, where cuts alone are told.
+    beside: OperationDifference,
+    /// By whether it is beside cuts, what and both values, the place among the states.
+    states: BTreeMap<(bool, &'static str, String, String), usize>,
+    /// The states that were compared last, the kinds of motion, and whether beside cuts.
+    compared: Option<([*const MachineState; 2], [MotionKind; 2], bool)>,
+    /// Those of the states that hold.
     hold: Vec<usize>,
     /// The stretch at hand of either side.
     open: [Option<LoneWay>; 2],
+    /// The stretch at hand of either side that is no cut, where cuts alone are told.
+    open_beside: [Option<LoneWay>; 2],
     /// Both are on different ways.
     parted: bool,
     ways: [f64; 2],
@@ -198,29 +206,32 @@ impl<'t> OperationTally<'t> {
         let named = parts[1].or(parts[0]);
         let rotary = rules.rotary.iter().enumerate();
         let rotary = rotary.filter(|(_, rotary)| **rotary && rules.one_machine);
+        let found = OperationDifference {
+            name: named.and_then(|part| part.name.clone()),
+            tool: named.and_then(|part| part.tool),
+            sides: parts.map(|part| {
+                part.map(|part| ProgramSums {
+                    lines: part.lines,
+                    motions: part.motions,
+                    ..ProgramSums::default()
+                })
+            }),
+            rotary: rotary
+                .map(|(place, _)| (rules.axes[place].clone(), WorstDifference::default()))
+                .collect(),
+            ..OperationDifference::default()
+        };
         Self {
             rules,
             listen,
             index,
-            found: OperationDifference {
-                name: named.and_then(|part| part.name.clone()),
-                tool: named.and_then(|part| part.tool),
-                sides: parts.map(|part| {
-                    part.map(|part| ProgramSums {
-                        lines: part.lines,
-                        motions: part.motions,
-                        ..ProgramSums::default()
-                    })
-                }),
-                rotary: rotary
-                    .map(|(place, _)| (rules.axes[place].clone(), WorstDifference::default()))
-                    .collect(),
-                ..OperationDifference::default()
-            },
+            beside: found.clone(),
+            found,
             states: BTreeMap::new(),
             compared: None,
             hold: Vec::new(),
             open: [None, None],
+            open_beside: [None, None],
             parted: false,
             ways: [0.0; 2],
             cuts: [0.0; 2],
@@ -243,13 +254,15 @@ impl<'t> OperationTally<'t> {
             self.go(side, steps[side], places[side].way);
         }
         let [tip, axis] = spot.apart(other);
-        self.found.tip.take(tip, self.rules.tip, lines, spot, way);
+        let beside = self.is_beside(steps);
+        let found = if beside { &mut self.beside } else { &mut self.found };
+        found.tip.take(tip, self.rules.tip, lines, spot, way);
         let angle = axis.to_degrees();
         let limit = self.rules.axis.to_degrees();
-        self.found.axis.take(angle, limit, lines, spot, way);
+        found.axis.take(angle, limit, lines, spot, way);
         let rotary = self.rules.rotary.iter().enumerate();
         let rotary = rotary.filter(|(_, rotary)| **rotary);
-        for ((_, worst), (place, _)) in self.found.rotary.iter_mut().zip(rotary) {
+        for ((_, worst), (place, _)) in found.rotary.iter_mut().zip(rotary) {
             let apart = libm::fabs(spot.joints[place] - other.joints[place]).to_degrees();
             worst.take(apart, limit, lines, spot, way);
         }
@@ -268,7 +281,7 @@ impl<'t> OperationTally<'t> {
             worst.take(apart, self.rules.feed, lines, spot, way);
         }
         if way > 0.0 && !self.parted {
-            self.compare_states(steps, lines, way);
+            self.compare_states(steps, lines, way, beside);
         }
         let feeds = [old, new].map(|step| match step.kind {
             MotionKind::Rapid => 0.0,
@@ -330,6 +343,13 @@ impl<'t> OperationTally<'t> {
         }
     }
 
+    /// Cuts alone are told, and this is none: neither cuts, or both are on different ways and not both cut.
+    fn is_beside(&self, steps: [&PathStep; 2]) -> bool {
+        let cuts = steps.map(PathStep::cuts);
+        let counts = if self.parted { cuts[0] && cuts[1] } else { cuts[0] || cuts[1] };
+        self.rules.cuts && !counts
+    }
+
     fn go(&mut self, side: usize, step: &PathStep, way: f64) {
         self.ways[side] += way;
         if step.kind != MotionKind::Rapid {
@@ -339,7 +359,11 @@ impl<'t> OperationTally<'t> {
 
     /// The stretch at hand goes on by a way of a step, from `at`.
     fn stretch(&mut self, side: usize, step: &PathStep, at: &PathPosition, way: f64) {
-        let stretch = self.open[side].get_or_insert(LoneWay {
+        let open = match self.rules.cuts && !step.cuts() {
+            true => &mut self.open_beside,
+            false => &mut self.open,
+        };
+        let stretch = open[side].get_or_insert(LoneWay {
             lines: [step.line; 2],
             mm: 0.0,
             cut_mm: 0.0,
@@ -354,6 +378,9 @@ impl<'t> OperationTally<'t> {
 
     /// The stretch at hand of a side is over. What is shorter than differences of positions are is none.
     fn close(&mut self, side: usize) {
+        if let Some(stretch) = self.open_beside[side].take() {
+            self.beside.beside_cuts += u64::from(stretch.mm > self.rules.tip);
+        }
         let Some(stretch) = self.open[side].take() else {
             return;
         };
@@ -366,14 +393,15 @@ impl<'t> OperationTally<'t> {
         }
     }
 
-    fn compare_states(&mut self, steps: [&PathStep; 2], lines: [u64; 2], way: f64) {
+    fn compare_states(&mut self, steps: [&PathStep; 2], lines: [u64; 2], way: f64, beside: bool) {
         let states = steps.map(|step| std::sync::Arc::as_ptr(&step.state));
         let kinds = match steps[0].is_like(steps[1]) {
             true => [steps[0].kind; 2],
             false => steps.map(|step| step.kind),
         };
-        if self.compared != Some((states, kinds)) {
-            self.compared = Some((states, kinds));
+        let found = if beside { &mut self.beside } else { &mut self.found };
+        if self.compared != Some((states, kinds, beside)) {
+            self.compared = Some((states, kinds, beside));
             self.hold.clear();
             let [old, new] =
                 [0, 1].map(|side| facts(steps[side], kinds[side], self.rules.one_control));
@@ -381,14 +409,14 @@ impl<'t> OperationTally<'t> {
                 if old == new || !self.rules.compares(what) {
                     continue;
                 }
-                let key = (what, old, new);
-                let count = self.found.states.len();
+                let key = (beside, what, old, new);
+                let count = found.states.len();
                 let place = match self.states.get(&key) {
                     Some(place) => *place,
                     None if count < MOST => {
-                        self.found.states.push(StateDifference {
+                        found.states.push(StateDifference {
                             what,
-                            values: [key.1.clone(), key.2.clone()],
+                            values: [key.2.clone(), key.3.clone()],
                             lines,
                             on_mm: 0.0,
                         });
@@ -401,7 +429,7 @@ impl<'t> OperationTally<'t> {
             }
         }
         for place in &self.hold {
-            self.found.states[*place].on_mm += way;
+            found.states[*place].on_mm += way;
         }
     }
 
@@ -420,16 +448,16 @@ impl<'t> OperationTally<'t> {
         self.found.events = events(&old_events, &new_events, slack, self.rules.tools);
         let rules = self.rules;
         let found = &mut self.found;
-        // Where one path is a last digit longer than the other, what follows stands beside what was before.
-        found.states.retain(|state| match state.what {
-            "motion" => state.on_mm > 1.5 * rules.apart,
-            _ => state.on_mm > rules.tip,
-        });
+        for found in [&mut *found, &mut self.beside] {
+            // Where one path is a last digit longer than the other, what follows stands beside what was before.
+            found.states.retain(|state| match state.what {
+                "motion" => state.on_mm > 1.5 * rules.apart,
+                _ => state.on_mm > rules.tip,
+            });
+        }
         if found.feed.worst.on_mm <= rules.tip {
             found.feed = WorstFeedDifference::default();
         }
-        let turned = found.rotary.iter();
-        let turned = turned.map(|(_, worst)| worst.value).fold(0.0, f64::max);
         let [old, new] = found.sides.map(|side| side.map(|side| side.seconds));
         let seconds = match (old, new) {
             (Some(old), Some(new)) => {
@@ -437,16 +465,29 @@ impl<'t> OperationTally<'t> {
             }
             _ => false,
         };
-        found.same = seconds
-            && found.tip.value <= rules.tip
-            && found.axis.value.max(turned) <= rules.axis.to_degrees()
+        if rules.cuts {
+            let events = std::mem::take(&mut found.events);
+            found.beside_cuts =
+                self.beside.apart(rules) + self.beside.beside_cuts + events.len() as u64;
+        }
+        found.same = (seconds || rules.cuts)
+            && found.apart(rules) == 0
             && found.feed.worst.value <= rules.feed
-            && found.states.is_empty()
             && found.events.is_empty()
             && found.other_ways.is_empty()
             && found.left_out.is_empty()
             && found.added.is_empty();
         self.found
+    }
+}
+
+impl OperationDifference {
+    /// How many of these differ: position, tool axis, each rotary axis, each state.
+    fn apart(&self, rules: &DiffRules) -> u64 {
+        let limit = rules.axis.to_degrees();
+        let turned = self.rotary.iter().filter(|(_, worst)| worst.value > limit).count();
+        let apart = [self.tip.value > rules.tip, self.axis.value > limit];
+        (turned + self.states.len()) as u64 + apart.map(u64::from).iter().sum::<u64>()
     }
 }
 
@@ -597,6 +638,7 @@ impl Difference {
             let moves = operation.sides.iter().flatten().any(|side| side.motions > 0);
             moves || !operation.events.is_empty()
         });
+        self.beside_cuts = self.operations.iter().map(|operation| operation.beside_cuts).sum();
         for side in 0..2 {
             let parts = self.operations.iter().filter_map(|operation| operation.sides[side]);
             let mut sum = ProgramSums::default();

@@ -43,6 +43,7 @@ P.views.settle = () => {
 
 P.views.escape = () => {
   P.charts.reset();
+  P.set({ measuring: false });
   if (P.by("views").dataset.solo) {
     delete P.by("views").dataset.solo;
     P.views.settle();
@@ -82,13 +83,13 @@ P.views.foot = () => {
   const told = { deviation: "tip", axis_deviation: "axis", contour: "contour", feed: "F" };
   const tell = () => {
     const { row, playing } = P.state;
-    const word = (name) => (m.has(name) ? `${told[name]} ${P.quantity(m.at(name, row), m.unit(name), false, m.blocks.columns.get(name).decimals)}` : null);
+    const word = (name) => (m.has(name) ? `${told[name]} ${P.quantity(m.at(name, row), m.unit(name), false, P.digits_of(m.blocks.columns.get(name)))}` : null);
     const machine = P.chain.at(row);
     const own = (name) => !machine || machine.axes.some((axis) => axis.name === name);
     const limit = m.meta.limits[m.at("limit", row)];
     const line = (text, name) => (m.lineOf(name, row) ? `${text} ${m.lineOf(name, row)}` : null);
-    const parts = [`Block ${row + 1}`, line("NC", "nc"), line("CL", "cl"), line("old NC", "nc2"), m.timed ? `${P.shown(m.end(row), "s")} s` : null,
-      ...m.axes.filter(own).map((name) => `${name} ${P.shown(m.at("q." + name, row), m.unit("q." + name), 3)}`), word("deviation"), word("axis_deviation"), word("contour"), word("feed") && word("feed") + (limit ? ` by ${limit}` : "")];
+    const parts = [`Block ${row + 1}`, line("NC", "nc"), line("CL", "cl"), line("old NC", "nc2"), m.timed ? P.clock(m.end(row), 3) : null,
+      ...m.axes.filter(own).map((name) => `${name} ${P.shown(m.at("q." + name, row), m.unit("q." + name), P.POSITION)}`), word("deviation"), word("axis_deviation"), word("contour"), word("feed") && word("feed") + (limit ? ` by ${limit}` : "")];
     const event = P.scene.marks.find((mark) => mark.row === row && !mark.quiet);
     if (event) parts.push(event.text);
     chosen.setAttribute("aria-live", playing ? "off" : "polite");
@@ -137,6 +138,7 @@ P.views.start = (report) => {
   P.views.head();
   P.views.foot();
   P.keys.build();
+  P.panes.build();
   P.views.settle();
   P.views.print();
   for (const query of ["(prefers-color-scheme: dark)", "(forced-colors: active)"]) matchMedia(query).addEventListener("change", () => P.views.repaint());

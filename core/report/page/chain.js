@@ -97,5 +97,8 @@ P.chain.values = (row, share) => {
   });
 };
 
+// The size of the tool that is in use in a block, mm; null where nobody has told it.
+P.chain.cutter = (row) => P.m.meta.events.findLast((event) => event.kind === "tool" && event.row <= row)?.cutter || null;
+
 // The length of the tool that is in use in a block, mm.
 P.chain.length = (row) => P.m.at("tool_length", row) ?? P.m.meta.tool_length;

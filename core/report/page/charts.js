@@ -6,12 +6,12 @@ P.charts = { groups: [], places: [], from: 0, to: 1, left: 88, right: 10 };
 // What can be drawn with the columns at hand.
 P.charts.find = () => {
   const { column, has, unit, axes, meta, tolerance, turn, report } = P.m;
-  const lane = (name, title, more) => (has(name) ? [{ title, unit: unit(name), get: (key) => column(key || name), ...more }] : []);
+  const lane = (name, title, more) => (has(name) ? [{ title, unit: unit(name), digits: P.digits_of(report.tables.blocks.columns.get(name)), get: (key) => column(key || name), ...more }] : []);
   // What is predicted of every set-point, over its time.
   const { series } = report.tables;
   const timed = (name, title, more) => {
     const values = (of) => series.columns.get(of).values;
-    return series ? [{ title, unit: series.columns.get(name).unit, get: () => values(name), times: () => values("t"), zero: true, ...more }] : [];
+    return series ? [{ title, unit: series.columns.get(name).unit, digits: P.digits_of(series.columns.get(name)), get: () => values(name), times: () => values("t"), zero: true, ...more }] : [];
   };
   // What the machine file allows an axis, in the unit of the column.
   const rate = (name, key, over) => {
@@ -117,13 +117,15 @@ P.charts.draw = () => {
 P.charts.along = (paint) => {
   const { width, height, left, right, from, to, room, ticks, x_of } = P.charts;
   const { grid, quiet } = P.colour;
+  const timed = P.state.by === "time";
+  const span = (to - from) * P.whole();
   for (const tick of ticks(from * P.whole(), to * P.whole(), room() / 90)) {
     const x = Math.round(x_of(tick)) + 0.5;
     if (x < left || x > width - right + 1) continue;
     P.stroke(paint, grid.css, 1, [x, 4, x, height - 22]);
-    if (x < width - 44) P.write(paint, P.short(tick), Math.max(x, left + 8), height - 11, quiet.css);
+    if (x < width - 60) P.write(paint, timed ? P.clock(tick, span < 2 ? 3 : span < 60 ? 1 : 0) : P.short(tick), Math.max(x, left + 8), height - 11, quiet.css);
   }
-  P.write(paint, P.state.by === "time" ? "s" : "block", width - 6, height - 11, quiet.css, "right");
+  P.write(paint, timed ? "time" : "block", width - 6, height - 11, quiet.css, "right");
 };
 
 // The selected place and the brush, over the charts.
@@ -150,7 +152,7 @@ P.charts.cursor = () => {
     const limit = lane.bands && m.meta.limits[lane.get(lane.bands)[state.row]];
     const { start, end } = m;
     const at = lane.times ? P.charts.sample(lane.times(), start(state.row) + (end(state.row) - start(state.row)) * state.share) : state.row;
-    const text = P.quantity(lane.get()[at], lane.unit) + (limit ? ` by ${limit}` : "");
+    const text = P.quantity(lane.get()[at], lane.unit, false, lane.digits) + (limit ? ` by ${limit}` : "");
     const wide = paint.measureText(text).width + 8;
     const to = x + wide + 8 > width - right ? x - wide - 5 : x + 5;
     paint.globalAlpha = 0.88;

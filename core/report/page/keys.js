@@ -50,6 +50,8 @@ P.keys.list = [
   { keys: ["x"], text: "worst block", run: () => P.worst() >= 0 && P.select(P.worst()) },
   { keys: ["e", "E"], text: "next event, event before", run: (key) => P.keys.event(key === "e" ? 1 : -1) },
   { keys: ["c", "C"], text: "colour by the next quantity, the one before", run: (key) => P.set({ colour: (P.state.colour + (key === "c" ? 1 : -1) + P.colour.modes.length) % P.colour.modes.length }) },
+  { keys: ["h", "H"], text: "hide or draw this operation, draw all", run: (key) => (key === "H" ? P.set({ hidden: [] }) : P.steps_hidden(P.operation_here(), !P.state.hidden.includes(P.operation_here()))) },
+  { keys: ["r", "R"], text: "measure, from or to the end of this block", run: (key) => (key === "R" ? P.measure.here() : P.keys.turn_on("measuring", [false, true])) },
   { keys: ["m"], text: "machine", run: () => P.m.meta.machine && P.keys.turn_on("machine", [true, false]) },
   { keys: ["f"], text: "part frame, machine frame", run: () => P.m.meta.machine && P.keys.turn_on("frame", ["part", "machine"]) },
   { keys: [" "], text: "play, pause", run: () => P.keys.turn_on("playing", [false, true]) },

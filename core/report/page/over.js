@@ -36,7 +36,7 @@ P.over.draw = ({ clip, matrix, bodies }) => {
   const { width, height } = camera;
   const paint = P.paint(P.path.over, camera);
   const [first, last] = state.brush || [0, Infinity];
-  const marks = scene.marks.filter((mark) => mark.row >= first && mark.row <= last);
+  const marks = scene.marks.filter((mark) => mark.row >= first && mark.row <= last && !scene.hides(mark.row));
   // Where many would cover the path, the quiet ones step back.
   const most = scene.budget.marks;
   const shown = marks.length > most ? marks.filter((mark) => !mark.quiet).slice(0, most) : marks;
@@ -45,6 +45,7 @@ P.over.draw = ({ clip, matrix, bodies }) => {
     if (x > -9 && y > -9 && x < width + 9 && y < height + 9) P.over.mark(paint, mark, x, y);
   }
   P.over.tip(paint, matrix);
+  P.measure.draw(paint, matrix);
   if (bodies && state.machine) {
     const placed = [];
     for (const { body, at, text } of P.parts.made.labels) {

@@ -1,5 +1,11 @@
 // The machine drawn from its chain: tables and heads as discs on their axis lines, slides on rails, the tool, and the
-// boxes of travel. Only lines, directions and travels are known; sizes are chosen to fit the path.
+// boxes of travel. The tool is as long as it is, and as thick where its cutter is known; solids are what they are. Of the
+// rest only lines, directions and travels are known: sizes are chosen to fit the path.
+
+// What is drawn in a colour of its own: the tool, what holds it, what carries the part. Added to the tone of a face.
+P.TOOL = 10;
+P.HOLDER = 20;
+P.TABLE = 30;
 
 P.vec = {
   add: (a, b, by = 1) => [a[0] + b[0] * by, a[1] + b[1] * by, a[2] + b[2] * by],
@@ -24,7 +30,7 @@ P.shapes = (made, hidden) => {
   };
   // A cylinder or cone from a to b, with a spoke, so that a turn is seen.
   const round = (body, tone, a, b, from, to = from, steps = 32) => {
-    if (hidden.includes(body) && tone < 1.25) return;
+    if (hidden.includes(body) && Math.floor(tone / 10) * 10 !== P.TOOL) return;
     const [u, v] = across(unit(add(b, a, -1)));
     const ring = (at, radius, step) => {
       const turn = (step * 2 * Math.PI) / steps;
@@ -56,11 +62,11 @@ P.shapes = (made, hidden) => {
       }
     }
   };
-  const bar = (body, a, b, width) => {
+  const bar = (body, a, b, width, tone = 0.75) => {
     const way = add(b, a, -1);
     if (Math.hypot(...way) < width * 0.5) return;
     const [u, v] = across(unit(way));
-    box(body, 0.75, add(a, way, 0.5), times(way, 0.5), times(u, width), times(v, width));
+    box(body, tone, add(a, way, 0.5), times(way, 0.5), times(u, width), times(v, width));
   };
   return { across, round, box, bar, face, edge };
 };
@@ -77,15 +83,18 @@ P.parts.build = (machine) => {
   const mount = P.chain.mount(machine);
   const axis = unit(machine.tool_axis);
   const down = times(axis, -1);
-  const tip = P.chain.tip(machine, meta.tool_length);
+  const length = Math.max(P.chain.length(P.state.row) || 0, 0);
+  const cutter = P.chain.cutter(P.state.row);
+  const tip = P.chain.tip(machine, length);
   const { low, high, centre } = P.scene;
   const reach = (Math.hypot(high[0] - low[0], high[1] - low[1]) / 2) * 1.15;
   const apart = Math.hypot(...add(machine.gauge, mount, -1));
   const size = P.clamp(reach, apart * 0.18, Math.max(apart * 0.5, reach)) || 50;
   const bed = P.chain.bed(machine);
+  const of = (body) => (body < bed ? P.TABLE : body === machine.axes.length ? P.HOLDER : 0);
   const label = (body, at, text) => made.labels.push({ body, at, text });
   const along = (k) => Math.abs(dot(k, axis)) > 0.7;
-  const plate = (body, at) => box(body, 1, add(at, down, size * 0.05), [size, 0, 0], [0, size * 0.85, 0], [0, 0, size * 0.05]);
+  const plate = (body, at) => box(body, 1 + of(body), add(at, down, size * 0.05), [size, 0, 0], [0, size * 0.85, 0], [0, 0, size * 0.05]);
   // The point of an axis line that is nearest.
   const foot = ({ point, direction }, near) => add(point, unit(direction), dot(add(near, point, -1), unit(direction)));
   // A slide: its carriage goes with one body, its rails stay on the other.
@@ -94,7 +103,7 @@ P.parts.build = (machine) => {
     const [u, v] = across(k);
     const [from, to] = times(travel || [-size, size], sign).sort((a, b) => a - b);
     const half = Math.min((to - from) / 2, size * 12) + size * 0.3;
-    box(carriage, 1, anchor, times(k, size * 0.3), times(u, size * 0.3), times(v, size * 0.07));
+    box(carriage, 1 + of(carriage), anchor, times(k, size * 0.3), times(u, size * 0.3), times(v, size * 0.07));
     for (const side of [-0.2, 0.2]) {
       const middle = add(add(add(anchor, k, (from + to) / 2), u, side * size), v, -size * 0.11);
       box(rail, 0.8, middle, times(k, half), times(u, size * 0.03), times(v, size * 0.03));
@@ -115,7 +124,7 @@ P.parts.build = (machine) => {
       anchor = slide(joint, add(anchor, down, size * (first ? 0.2 : 0.12)), at, at + 1, -1);
     } else if (first && along(k)) {
       const near = foot(joint, anchor);
-      round(0, 1, add(near, down, size * 0.12), near, size, size, 48);
+      round(0, 1 + of(0), add(near, down, size * 0.12), near, size, size, 48);
       round(1, 0.85, add(near, down, size * 0.3), add(near, down, size * 0.13), size * 0.6);
       label(0, add(near, across(k)[0], size * 1.08), joint.name);
       anchor = add(near, down, size * 0.24);
@@ -126,9 +135,9 @@ P.parts.build = (machine) => {
       for (const side of [-1, 1]) {
         const cheek = add(near, k, side * size * 1.25);
         const outer = add(cheek, k, side * size * 0.24);
-        round(at, 1, add(cheek, k, side * size * 0.14), cheek, size * 0.3);
-        bar(at, cheek, add(cheek, down, Math.max(0.35 * size, dot(add(anchor, cheek, -1), down) + 0.06 * size)), size * 0.09);
-        bar(at, add(anchor, k, side * size * 1.25), anchor, size * 0.09);
+        round(at, 1 + of(at), add(cheek, k, side * size * 0.14), cheek, size * 0.3);
+        bar(at, cheek, add(cheek, down, Math.max(0.35 * size, dot(add(anchor, cheek, -1), down) + 0.06 * size)), size * 0.09, 0.75 + of(at));
+        bar(at, add(anchor, k, side * size * 1.25), anchor, size * 0.09, 0.75 + of(at));
         bar(at + 1, outer, add(outer, down, size * 1.15), size * 0.1);
         bar(at + 1, add(below, k, side * size * 1.49), below, size * 0.1);
         if (side > 0) label(at, outer, joint.name);
@@ -141,17 +150,26 @@ P.parts.build = (machine) => {
 
   // The side of the tool, from the tool back to the bed.
   const last = machine.axes.length;
-  const length = Math.max(meta.tool_length, 0);
-  const thick = P.clamp(length * 0.09, size * 0.02, size * 0.16);
-  const holder = length ? machine.gauge : add(machine.gauge, axis, size * 0.3);
-  if (length) {
-    const neck = add(tip, axis, thick * 0.8);
-    round(last, 1.25, neck, holder, thick * 0.8);
-    round(last, 1.25, neck, tip, thick * 0.8, thick * 0.2);
-  } else round(last, 1.25, holder, machine.gauge, size * 0.13, size * 0.015);
+  const thick = cutter ? cutter.diameter / 2 : P.clamp(length * 0.09, size * 0.02, size * 0.16) * 0.8;
+  const holder = length ? machine.gauge : add(machine.gauge, axis, cutter ? cutter.stick_out || cutter.diameter * 4 : size * 0.3);
+  const free = cutter && cutter.stick_out && length ? Math.min(cutter.stick_out, length) : null;
+  const shank = free ? add(tip, axis, free) : holder;
+  const tool = 1.25 + P.TOOL;
+  if (cutter) {
+    // The corner in chords; a flat end is a disc.
+    const corner = cutter.corner_radius;
+    const ring = (step) => [thick - corner * (1 - Math.sin((step * Math.PI) / 12)), add(tip, axis, corner * (1 - Math.cos((step * Math.PI) / 12)))];
+    for (let step = 0; corner > 0 && step < 6; step++) round(last, tool, ring(step + 1)[1], ring(step)[1], ring(step + 1)[0], ring(step)[0]);
+    round(last, tool, add(tip, axis, corner), shank, thick);
+    if (free) round(last, 1.1 + P.HOLDER, shank, holder, Math.max(thick * 1.6, size * 0.06));
+  } else if (length) {
+    const neck = add(tip, axis, thick);
+    round(last, tool, neck, holder, thick);
+    round(last, tool, neck, tip, thick, thick * 0.25);
+  } else round(last, tool, holder, machine.gauge, size * 0.13, size * 0.015);
   anchor = add(holder, axis, size * 0.75);
-  round(last, 1, holder, add(holder, axis, size * 0.3), size * 0.13, size * 0.2);
-  round(last, 0.9, add(holder, axis, size * 0.3), anchor, size * 0.24);
+  round(last, 1 + P.HOLDER, holder, add(holder, axis, size * 0.3), size * 0.13, size * 0.2);
+  round(last, 0.9 + P.HOLDER, add(holder, axis, size * 0.3), anchor, size * 0.24);
   for (let at = last - 1; at >= bed; at--) {
     const joint = machine.axes[at];
     const k = unit(joint.direction);
@@ -178,13 +196,13 @@ P.parts.build = (machine) => {
   // Solids that the machine file names.
   let far = 0;
   if (solids) {
-    const [of, corners, body, ...place] = [...solids.columns.values()].map(({ values }) => values);
+    const [shapes, corners, body, ...place] = [...solids.columns.values()].map(({ values }) => values);
     const corner = (row) => place.map((values) => values[row]);
     for (let row = 0; row < solids.rows; row += corners[row]) {
       const [a, b, c] = [0, 1, 2].map((more) => corner(row + more));
-      if (of[row] !== machine.shapes) continue;
+      if (shapes[row] !== machine.shapes) continue;
       far = Math.max(far, ...a.map(Math.abs));
-      if (corners[row] > 2) face(body[row], 1, a, b, c);
+      if (corners[row] > 2) face(body[row], 1 + of(body[row]), a, b, c);
       else edge(body[row], a, b);
     }
   }
@@ -200,7 +218,7 @@ P.parts.build = (machine) => {
   travel(machine.axes.slice(bed), tip, 1);
   travel(machine.axes.slice(0, bed), mount, -1);
   for (const name of ["faces", "edges", "boxes"]) made[name] = new Float32Array(made[name]);
-  P.parts.made = { ...made, deep: Math.max(size * 40, far * 4), machine };
+  P.parts.made = { ...made, deep: Math.max(size * 40, far * 4), machine, length, cutter };
 };
 
 // Points that the machine takes up, for fitting the view: scene coordinates under the bodies given.

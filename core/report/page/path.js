@@ -23,12 +23,13 @@ P.path.build = (view) => {
   P.path.over = el("canvas", { class: "over", "aria-hidden": "true" });
   P.path.legend = el("div", { class: "legend" });
   P.path.notice = el("p", { class: "notice", role: "status", hidden: true });
-  P.path.stage = el("div", { class: "stage" }, P.path.canvas, P.path.over, P.path.legend, P.path.notice);
+  P.path.stage = el("div", { class: "stage" }, P.path.canvas, P.path.over, P.path.legend, P.path.notice, P.measure.build());
   view.append(bar, P.path.stage);
   if (!scene.ready) {
     P.path.say("This report holds no path.");
     return;
   }
+  bar.append(toggle("Measure", "Measure between two points of the path (r)", "measuring", true, false));
   if (machine) bar.append(toggle("Machine", "Show the machine (m)", "machine", true, false), toggle("Bed", "Machine frame: the bed stands still, the part moves (f)", "frame", "machine", "part"));
   if (machine) P.parts.build(P.chain.at(P.state.row));
   P.path.start();
@@ -37,6 +38,13 @@ P.path.build = (view) => {
   P.listen("row", P.path.choose);
   P.listen("row share brush", () => P.path.redraw(P.state.playing));
   P.listen("frame machine", P.path.fit);
+  P.listen("machine", P.path.tell);
+  P.listen("hidden", () => {
+    scene.hide();
+    P.path.repaint();
+    for (const name of ["cl", "cl_moving"]) if (scene[name] && P.path.renderer) P.path.renderer.upload(name, scene[name]);
+    P.path.comb();
+  });
   P.listen("scale", () => {
     vectors.value = scales.indexOf(P.state.scale);
     P.path.comb();
@@ -187,9 +195,12 @@ P.path.draw = (moving) => {
   cancelAnimationFrame(P.path.waiting);
   P.path.waiting = null;
   const machine = P.chain.at(P.state.row);
-  if (machine && P.parts.made.machine !== machine) {
+  const { made } = P.parts;
+  // Another head or tool than is drawn.
+  if (machine && (made.machine !== machine || made.cutter !== P.chain.cutter(P.state.row) || made.length !== Math.max(P.chain.length(P.state.row) || 0, 0))) {
     P.parts.build(machine);
     P.path.renderer.mesh();
+    P.path.tell();
   }
   const given = P.path.matrices();
   const shown = P.state.machine ? given.bodies : null;
@@ -239,8 +250,9 @@ P.path.handle = () => {
 };
 
 P.path.click = (x, y) => {
+  if (P.state.measuring) return P.measure.take(x, y);
   const row = P.scene.pick(P.path.matrices().matrix, x, y, 8);
-  if (row >= 0) P.select(row);
+  return row >= 0 && P.select(row);
 };
 
 // Says what the colours mean.
@@ -275,6 +287,11 @@ P.path.tell = () => {
   const notes = [];
   if (scene.cl) notes.push(m.meta.names.nc2 ? "thin: old program" : "thin: CL path");
   if (has((point) => path.look[point * 4 + 1] === scene.RAPID, path.count)) notes.push("dashed: rapid");
-  if (vectors && state.scale) notes.push(`vectors × ${state.scale.toLocaleString("en")}${vectors.step > 1 ? `, the largest of every ${vectors.step} points` : ""}`);
+  if (vectors && state.scale) notes.push(`vectors × ${state.scale.toLocaleString("en")}${vectors.step > 1 ? `, the largest of every ${vectors.step} points` : ""}${vectors.small ? (vectors.count ? ", none below half of the tolerance" : ": all are below half of the tolerance") : ""}`);
+  if (state.machine && P.parts.made) {
+    const { cutter, length } = P.parts.made;
+    const corner = cutter && cutter.corner_radius ? `, corner ${P.shown(cutter.corner_radius, "mm", P.POSITION)}` : "";
+    notes.push(cutter ? `tool: ⌀ ${P.shown(cutter.diameter, "mm", P.POSITION)}${corner}, ${P.position(length, "mm")} long` : "tool: diameter not known");
+  }
   P.path.legend.replaceChildren(...told, el("div", { class: "quiet" }, notes.join(" · ")));
 };

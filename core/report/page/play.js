@@ -26,23 +26,15 @@ P.play.build = () => {
   const tell = () => {
     const at = P.play.at();
     scrub.value = String(Math.round((at / (P.whole() || 1)) * 100000));
-    scrub.setAttribute("aria-valuetext", P.state.by === "time" ? P.play.clock(at) : `block ${P.state.row + 1}`);
+    scrub.setAttribute("aria-valuetext", P.state.by === "time" ? P.clock(at) : `block ${P.state.row + 1}`);
     speed.value = String(P.play.speeds.indexOf(P.state.speed));
     speed.setAttribute("aria-valuetext", `${P.state.speed} times`);
     by.value = P.state.by;
-    told.textContent = `${P.state.by === "time" ? `${P.play.clock(at)} / ${P.play.clock(m.total)}` : `${P.state.row + 1} / ${m.rows}`}  ×${P.state.speed}`;
+    told.textContent = `${P.state.by === "time" ? `${P.clock(at)} / ${P.clock(m.total)}` : `${P.state.row + 1} / ${m.rows}`}  ×${P.state.speed}`;
   };
   P.listen("row share speed by", tell);
   tell();
   return el("div", { class: "bar low" }, button, scrub, told, speed, by);
-};
-
-// Seconds as minutes and seconds.
-P.play.clock = (seconds) => {
-  const whole = Math.max(0, seconds);
-  const minutes = Math.floor(whole / 60);
-  const rest = (whole - minutes * 60).toFixed(whole < 60 ? 2 : 1);
-  return `${minutes}:${rest.padStart(whole < 60 ? 5 : 4, "0")}`;
 };
 
 // The place in the program, s or blocks, and its end.

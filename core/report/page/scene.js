@@ -73,6 +73,7 @@ P.scene.line = (count, x, y, z, rowOf, flagOf) => {
   const { centre } = P.scene;
   const pos = new Float32Array(count * 3);
   const look = new Float32Array(count * 4);
+  const flags = new Uint8Array(count);
   let along = 0;
   for (let point = 0; point < count; point++) {
     pos[point * 3] = x[point] - centre[0];
@@ -82,12 +83,27 @@ P.scene.line = (count, x, y, z, rowOf, flagOf) => {
     const flag = point === 0 ? P.scene.NONE : flagOf(row, point);
     if (flag === P.scene.RAPID) along += Math.hypot(x[point] - x[point - 1], y[point] - y[point - 1], z[point] - z[point - 1]);
     look[point * 4] = -1;
-    look[point * 4 + 1] = flag;
+    look[point * 4 + 1] = flags[point] = flag;
     look[point * 4 + 2] = row;
     look[point * 4 + 3] = along;
   }
-  return { count, pos, look };
+  return { count, pos, look, flags };
 };
+
+// Takes the blocks of hidden steps out of what is drawn, clicked at and fitted to; they stay in the texts and the charts.
+P.scene.hide = () => {
+  const { scene, m, state } = P;
+  scene.gone = null;
+  for (const at of state.hidden) {
+    const [first, last] = m.span(at);
+    (scene.gone ||= new Uint8Array(m.rows)).fill(1, first, last + 1);
+  }
+  for (const line of [scene.path, scene.cl]) {
+    for (let point = 0; line && point < line.count; point++) line.look[point * 4 + 1] = P.scene.hides(line.look[point * 4 + 2]) ? scene.NONE : line.flags[point];
+  }
+  scene.cuts = P.scene.cut_box();
+};
+P.scene.hides = (row) => Boolean(P.scene.gone && P.scene.gone[row]);
 
 // Every so many segments as one, coloured as the worst of them; a rapid is kept apart from a cut.
 P.scene.thin = (line, budget) => {
@@ -116,11 +132,15 @@ P.scene.thin = (line, budget) => {
   return { count: kept.length, pos, look };
 };
 
-// The deviation vectors as pairs: foot on the CL path, and the vector; of every group of points in cuts the largest.
+// The deviation vectors as pairs: foot on the CL path, and the vector; of every group of points in cuts the largest. One
+// below half of its tolerance is not drawn: where all is well the path stays free.
 P.scene.comb = (count, d) => {
   const { path } = P.scene;
   const step = Math.ceil(count / P.scene.most_vectors);
   const kept = [];
+  const own = P.m.column("tolerance");
+  const least = (row) => ((own ? own[row] : P.m.tolerance) || 0) / 2;
+  let small = 0;
   for (let first = 0; first < count; first += step) {
     let best = -1;
     let most = 0;
@@ -132,7 +152,8 @@ P.scene.comb = (count, d) => {
         best = point;
       }
     }
-    if (best >= 0) kept.push(best);
+    if (best >= 0 && Math.sqrt(most) < least(path.look[best * 4 + 2])) small += 1;
+    else if (best >= 0) kept.push(best);
   }
   const foot = new Float32Array(kept.length * 3);
   const vector = new Float32Array(kept.length * 3);
@@ -144,7 +165,7 @@ P.scene.comb = (count, d) => {
     }
     row[at] = path.look[point * 4 + 2];
   });
-  return { count: kept.length, foot, vector, row, step };
+  return { count: kept.length, foot, vector, row, step, small };
 };
 
 // The vectors as drawn: from the foot to its vector times the scale.
@@ -161,6 +182,7 @@ P.scene.drawn_vectors = (budget) => {
       pos[at * 6 + 3 + axis] = pos[at * 6 + axis] + vectors.vector[at * step * 3 + axis] * scale;
     }
     look[at * 4] = -1;
+    look[at * 4 + 1] = P.scene.hides(vectors.row[at * step]) ? P.scene.NONE : P.scene.CUT;
     look[at * 4 + 2] = vectors.row[at * step];
   }
   return { count, pos, look };

@@ -13,6 +13,8 @@ P.state = {
   speed: 1,
   scale: 1000, // of the deviation vectors
   chart: 0,
+  hidden: [], // places of the steps whose blocks are not drawn
+  measuring: false, // a click on the path takes a point to measure from, or to
 };
 
 P.listeners = [];
@@ -58,6 +60,21 @@ P.icon = (path) => {
 P.whole = () => (P.state.by === "time" ? P.m.total : P.m.rows);
 P.clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 P.digits = { mm: 4, deg: 4, s: 3, "mm/min": 1, "deg/min": 1 };
+// Positions, travel and ways are told as a control shows them.
+P.POSITION = 3;
+P.position = (value, unit) => P.quantity(value, unit, false, P.POSITION);
+// Digits of a column wherever its numbers are told: no more than are known.
+P.digits_of = ({ name, unit, decimals }) => (/^(q|tip)\./.test(name) ? P.POSITION : Math.min(P.digits[unit] ?? 3, decimals));
+
+// A time as one says it: 4.2 s, 2 min 04.2 s, 1 h 02 min 04.2 s. The only form that times have on the page.
+P.clock = (seconds, digits = 1) => {
+  const ticks = Math.round(Math.max(0, seconds) * 10 ** digits);
+  const minute = 60 * 10 ** digits;
+  const [hours, minutes, rest] = [Math.floor(ticks / minute / 60), Math.floor(ticks / minute) % 60, ((ticks % minute) / 10 ** digits).toFixed(digits)];
+  const two = (text, wide = 2) => String(text).padStart(wide, "0");
+  const last = `${ticks < minute ? rest : two(rest, digits ? digits + 3 : 2)} s`;
+  return [hours ? `${hours} h` : null, hours ? `${two(minutes)} min` : minutes ? `${minutes} min` : null, last].filter(Boolean).join(" ");
+};
 
 // A number with as many digits as its unit deserves; a bound below them is told as one of the last.
 P.shown = (value, unit, digits, bound) => {
@@ -132,8 +149,11 @@ P.model = (report) => {
   const axis_limits = kind && turn ? new Float32Array(rows).fill(turn) : null;
   for (let row = 0; axis_limits && row < rows; row++) if (kind[row] <= 2) axis_limits[row] = Infinity;
   const names = [...blocks.columns.keys()];
+  // Operations, tools and heads, in the order of the program: each goes on to the next of its kind, [first, last] block.
+  const steps = report.meta.events.filter(({ kind }) => ["operation", "tool", "head"].includes(kind));
+  const span = (at) => [steps[at].row, (steps.find(({ kind }, next) => next > at && kind === steps[at].kind)?.row ?? rows) - 1];
   const axes = names.filter((name) => name.startsWith("q.")).map((name) => name.slice(2));
-  return { report, meta: report.meta, rows, blocks, column, at, has, unit, rowOf, lineOf, firsts, start, end, total, rowAt, timed, axes, tolerance, turn, axis_limits };
+  return { report, meta: report.meta, rows, blocks, column, at, has, unit, rowOf, lineOf, firsts, start, end, total, rowAt, timed, axes, tolerance, turn, axis_limits, steps, span };
 };
 
 // Selects a block, and the machine stands at its end.

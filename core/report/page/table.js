@@ -11,7 +11,8 @@ P.numbers.build = (view) => {
   const text = (one, row) => {
     const value = one.at(row);
     if (words[one.name]) return words[one.name][value] || "";
-    return !one.decimals ? String(value) : P.shown(value, one.unit);
+    if (one.name === "t0" || one.name === "t1") return P.clock(value, 3);
+    return !one.decimals ? String(value) : P.shown(value, one.unit, P.digits_of(one));
   };
   const box = el("div", { class: "grid", role: "grid", tabindex: "0", "aria-label": "Blocks", "aria-rowcount": m.rows + 1, "aria-colcount": columns.length + 1 });
   box.append(el("div", { class: "row top", role: "row" }, cell("columnheader", "block"), columns.map((one) => cell("columnheader", title(one)))));

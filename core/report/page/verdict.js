@@ -21,8 +21,8 @@ P.verdict.build = (view) => {
   body.append(el("div", { class: "said" }, meta.verdict.sentences.map((sentence) => el("p", {}, sentence))));
   if (meta.maxima.length) part("Largest", P.verdict.maxima(meta.maxima));
   if (meta.warnings.length) part(`Found (${meta.warnings.length})`, P.verdict.warnings(meta.warnings));
-  const steps = meta.events.filter(({ kind }) => ["operation", "tool", "head"].includes(kind));
-  if (steps.length) part(`Operations and tools (${steps.length})`, P.verdict.steps(steps));
+  const { steps } = m;
+  if (steps.length) part(`Operations and tools (${steps.length})`, ...P.verdict.steps(steps));
   if (meta.axes_used.length) part("Travel used", ...meta.axes_used.map(P.verdict.travel));
   // What stands above is not said twice.
   const above = [...meta.maxima.map(({ name }) => name), ...meta.axes_used.map(({ name }) => `axis ${name}`)];
@@ -34,25 +34,48 @@ P.verdict.build = (view) => {
   if (left.length) part("Left out of this page", el("ul", { class: "plain" }, left.map((sentence) => el("li", {}, sentence))));
 };
 
-// Operations and tools, to be gone to; the one that the selected block belongs to is marked.
+// Operations and tools, to be gone to, shown and hidden; the one that the selected block belongs to is marked.
 P.verdict.most_steps = 1000;
 P.verdict.steps = (steps) => {
   const { el, m } = P;
   const shown = steps.slice(0, P.verdict.most_steps);
   const buttons = shown.map(({ row, text }) => el("button", { class: "link", onclick: () => P.select(row) }, text));
-  const time = (row) => (m.timed ? el("span", { class: "quiet number" }, `${P.shown(m.start(row), "s", 1)} s`) : null);
-  const list = el("ol", { class: "steps" }, shown.map(({ row, kind }, at) => el("li", { class: kind }, buttons[at], " ", time(row))));
+  const time = (row) => (m.timed ? el("span", { class: "quiet number" }, P.clock(m.start(row))) : null);
+  // Where two follow one another the first has no block.
+  const own = (at) => m.span(at)[1] >= m.span(at)[0];
+  const boxes = shown.map(({ text }, at) => (own(at) ? el("input", { type: "checkbox", "aria-label": `Draw ${text}`, title: "Draw (h)", onchange: () => P.steps_hidden(at, !boxes[at].checked) }) : el("span", { class: "no" })));
+  const list = el("ol", { class: "steps" }, shown.map(({ row, kind }, at) => el("li", { class: kind }, boxes[at], buttons[at], " ", time(row))));
+  const tick = () => boxes.forEach((box, at) => (box.checked = !P.state.hidden.includes(at)));
+  P.listen("hidden", tick);
+  tick();
   let marked;
   const follow = () => {
-    const after = shown.findIndex(({ row }) => row > P.state.row);
-    const now = buttons[(after < 0 ? shown.length : after) - 1];
+    const now = buttons[P.step_here()];
     if (marked) marked.removeAttribute("aria-current");
     if (now) now.setAttribute("aria-current", "step");
     marked = now;
   };
   P.listen("row", follow);
   follow();
-  return list;
+  return [el("div", { class: "tabs" }, P.button("All", "Draw all operations (H)", () => P.set({ hidden: [] })), P.button("This alone", "Draw the selected operation alone", P.step_alone)), list];
+};
+
+// The last step ahead of the selected block, and the operation that it belongs to, the tool where there are no operations;
+// -1 ahead of the first.
+P.step_here = () => {
+  const after = P.m.steps.findIndex(({ row }) => row > P.state.row);
+  return (after < 0 ? P.m.steps.length : after) - 1;
+};
+P.operation_here = () => {
+  const { steps } = P.m;
+  const main = steps.some(({ kind }) => kind === "operation") ? "operation" : "tool";
+  return steps.findLastIndex(({ kind, row }) => kind === main && row <= P.state.row);
+};
+P.steps_hidden = (at, hide) => at >= 0 && P.set({ hidden: [...P.state.hidden.filter((other) => other !== at), ...(hide ? [at] : [])] });
+P.step_alone = () => {
+  const { steps } = P.m;
+  const here = P.operation_here();
+  if (here >= 0) P.set({ hidden: steps.map((_, at) => at).filter((at) => at !== here && steps[at].kind === steps[here].kind) });
 };
 
 // Links to the places of something: the line of the program, that of the CL file, else the block.
@@ -98,8 +121,9 @@ P.verdict.travel = ({ name, unit, min, max, travel, way }) => {
   const { style } = bar.firstChild;
   style.left = `${share(min)}%`;
   style.width = `${Math.max(share(max) - share(min), 1)}%`;
-  const text = `${P.short(min)} … ${P.short(max)} ${P.unit(unit)}`;
-  const told = travel ? `of ${P.short(low)} … ${P.short(high)}${over ? ", exceeded" : ""}` : "endless";
-  const all = Number.isFinite(way) && way !== null ? `, ${P.short(way)} ${P.unit(unit)} in all` : "";
+  const told_as = (value) => P.shown(value, unit, P.POSITION);
+  const text = `${told_as(min)} … ${P.position(max, unit)}`;
+  const told = travel ? `of ${told_as(low)} … ${told_as(high)}${over ? ", exceeded" : ""}` : "endless";
+  const all = Number.isFinite(way) && way !== null ? `, ${P.position(way, unit)} in all` : "";
   return el("div", { class: "travel", title: `${name}: ${text}, ${told}${all}` }, el("b", {}, name), bar, el("div", { class: "ends" }, el("span", {}, text), el("span", {}, told)));
 };

@@ -40,20 +40,22 @@ colour=vec4(mix(c,uGround,vOut*0.84),1.0);
 P.webgl.BODY = `#version 300 es
 precision highp float;
 in vec3 aAt,aNormal;in vec2 aBody;
-uniform mat4 uBodies[10],uClip;uniform vec3 uBack;uniform bool uLit;
-out float vLight;
+uniform mat4 uBodies[10],uClip;uniform vec3 uBack,uPlain,uTool,uHolder,uTable;uniform bool uLit;
+out float vLight;flat out vec3 vColour;
 void main() {
 mat4 body=uBodies[int(aBody.x+0.5)];
 gl_Position=uClip*(body*vec4(aAt,1.0));
-vLight=uLit?aBody.y*(0.62+0.38*abs(dot(mat3(body)*aNormal,uBack))):1.0;
+float kind=floor(aBody.y/10.0);
+vColour=!uLit||kind<0.5?uPlain:kind<1.5?uTool:kind<2.5?uHolder:uTable;
+vLight=uLit?(aBody.y-kind*10.0)*(0.62+0.38*abs(dot(mat3(body)*aNormal,uBack))):1.0;
 }`;
 
 P.webgl.BODY_COLOUR = `#version 300 es
 precision highp float;
-in float vLight;
-uniform vec3 uPlain;uniform float uAlpha;
+in float vLight;flat in vec3 vColour;
+uniform float uAlpha;
 out vec4 colour;
-void main() { colour=vec4(min(uPlain*vLight,vec3(1.0)),uAlpha);}`;
+void main() { colour=vec4(min(vColour*vLight,vec3(1.0)),uAlpha);}`;
 
 // A renderer on a canvas, or null where WebGL2 is not to be had.
 P.webgl.start = (canvas, restored) => {
@@ -165,7 +167,7 @@ P.webgl.start = (canvas, restored) => {
   const body = (mesh_name, mode, bodies, clip, { plain, alpha, lit = false }) => {
     const { vao, count: vertices } = made.meshes[mesh_name];
     if (!vertices) return;
-    put(made.body, { uBodies: bodies.flat(), uClip: clip, uBack: P.camera.rows()[2], uLit: lit, uPlain: plain, uAlpha: alpha });
+    put(made.body, { uBodies: bodies.flat(), uClip: clip, uBack: P.camera.rows()[2], uLit: lit, uPlain: plain, uTool: P.colour.tool.rgb, uHolder: P.colour.holder.rgb, uTable: P.colour.table.rgb, uAlpha: alpha });
     gl.bindVertexArray(vao);
     gl.drawArrays(mode, 0, vertices);
     count(vertices);

@@ -145,6 +145,20 @@ pub struct EventMeta {
     pub kind: &'static str,
     /// What.
     pub text: String,
+    /// Size of the tool that comes, as far as it is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cutter: Option<CutterMeta>,
+}
+
+/// Size of a tool, mm.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct CutterMeta {
+    /// Diameter of the cutter.
+    pub diameter: f64,
+    /// Radius of its corner: half the diameter for a ball.
+    pub corner_radius: f64,
+    /// From the holder's face to the tip.
+    pub stick_out: Option<f64>,
 }
 
 /// Tolerances in force.

@@ -13,7 +13,7 @@ use super::branch::{self, Branch};
 use super::cl_points::Points;
 use super::cl_window::ClWindow;
 use super::derived::{Derived, PackedValues};
-use super::marks::Marks;
+use super::marks::{Marks, cutter};
 use super::page_table::PageTable;
 use super::parts::{Parts, fault};
 use super::path_rows::PathRows;
@@ -348,7 +348,10 @@ impl Observer for BlockRows<'_> {
                     true => String::new(),
                     false => format!(", {}", tool.name),
                 };
-                event("tool", format!("tool {}{name}", tool.number));
+                let table = self.base.tool_table.as_ref();
+                let listed = table.and_then(|table| table.entry(tool.number, tool.register));
+                let size = cutter([tool.diameter, tool.corner_radius], listed);
+                self.marks.tool(row, format!("tool {}{name}", tool.number), size);
             }
             Command::Operation(name) => event("operation", name.clone()),
             Command::Head(name) => {

@@ -1,6 +1,7 @@
 //! What is marked on the rows of a page: events, and where heads are swapped in.
 
-use post_report::meta::{EventMeta, Meta};
+use post_machine::description::ToolData;
+use post_report::meta::{CutterMeta, EventMeta, Meta};
 
 /// More events than this are counted and not listed.
 const MOST_EVENTS: usize = 5000;
@@ -16,8 +17,17 @@ pub struct Marks {
 impl Marks {
     /// Before `row` something happens.
     pub fn event(&mut self, row: u64, kind: &'static str, text: impl Into<String>) {
+        self.push(EventMeta { row, kind, text: text.into(), cutter: None });
+    }
+
+    /// Before `row` a tool comes.
+    pub fn tool(&mut self, row: u64, text: String, cutter: Option<CutterMeta>) {
+        self.push(EventMeta { row, kind: "tool", text, cutter });
+    }
+
+    fn push(&mut self, event: EventMeta) {
         match self.events.len() < MOST_EVENTS {
-            true => self.events.push(EventMeta { row, kind, text: text.into() }),
+            true => self.events.push(event),
             false => self.left_out += 1,
         }
     }
@@ -34,4 +44,17 @@ impl Marks {
         meta.events = self.events;
         meta.events_left_out = self.left_out;
     }
+}
+
+/// The size of a tool: by the CL file, `[diameter, corner radius]` in mm, else by the file of tools.
+pub fn cutter(told: [Option<f64>; 2], listed: Option<&ToolData>) -> Option<CutterMeta> {
+    let [diameter, corner] = told;
+    let own = diameter.is_some();
+    let diameter = diameter.or_else(|| listed?.diameter()).filter(|size| *size > 0.0)?;
+    let corner = if own { corner } else { listed.and_then(|tool| tool.corner_radius) };
+    Some(CutterMeta {
+        diameter,
+        corner_radius: corner.unwrap_or(0.0).clamp(0.0, diameter / 2.0),
+        stick_out: listed.and_then(|tool| tool.stick_out),
+    })
 }

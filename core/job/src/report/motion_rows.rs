@@ -14,7 +14,7 @@ use super::branch::{self, Branch};
 use super::cl_points::Points;
 use super::cl_window::ClWindow;
 use super::derived::{Derived, PackedValues};
-use super::marks::Marks;
+use super::marks::{Marks, cutter};
 use super::old_path::OldPath;
 use super::page_table::PageTable;
 use super::parts::Parts;
@@ -425,10 +425,15 @@ impl<'m> MotionRows<'m> {
     fn told(&mut self, told: &ProgramEvent) {
         match told {
             ProgramEvent::ToolChange { number, name } => {
-                if *number != self.tool || number.is_none() {
+                let told_number = *number;
+                if told_number != self.tool || number.is_none() {
                     let number = number.map_or(String::new(), |number| format!(" {number}"));
                     let name = name.as_ref().map_or(String::new(), |name| format!(" {name}"));
-                    self.marks.event(self.came, "tool", format!("tool{number}{name}"));
+                    // A memory of offsets knows registers, and which of them is the tool's is told later.
+                    let table = self.machine.tool_table.as_ref().filter(|table| !table.by_register);
+                    let listed = told_number.and_then(|told| table?.entry(told, told));
+                    let size = cutter([None, None], listed);
+                    self.marks.tool(self.came, format!("tool{number}{name}"), size);
                 }
                 self.tool = *number;
             }

@@ -508,6 +508,7 @@ impl Engine {
                 Leave::Again if cancelled => self.go_up(axes, words, out),
                 Leave::Again => {}
                 Leave::Tcp => {
+                    self.end_kept_plane(out);
                     if self.tcp_active.set(false) {
                         self.motion.line(&self.tcp_off, out);
                     }

@@ -183,6 +183,21 @@ impl Engine {
             && matches!(self.table.tcp, Tcp::Blocks { length_first: true, .. })
     }
 
+    /// A plane in which the control keeps the tip ends, unless it has: where that is switched off ahead of the retract,
+    /// machine coordinates stand outside of both.
+    pub(crate) fn end_kept_plane(&mut self, out: &mut String) {
+        let Plane::Turns { off, .. } = self.plane.words() else {
+            return;
+        };
+        if std::mem::take(&mut self.plane.on) {
+            self.motion.settle(out);
+            let lines = off.replace("{tcp_off}", self.tcp_end());
+            self.motion.line(&lines, out);
+            self.motion.other_frame();
+            self.tcp_active.set(false);
+        }
+    }
+
     /// The plane ends, the tool retracted.
     pub(crate) fn end_plane(&mut self, out: &mut String) -> Result<(), String> {
         match self.plane.words() {
@@ -191,11 +206,7 @@ impl Engine {
                 self.motion.settle(out);
                 self.motion.line(off, out);
             }
-            Plane::Turns { off, .. } => {
-                self.motion.settle(out);
-                let lines = off.replace("{tcp_off}", self.tcp_end());
-                self.motion.line(&lines, out);
-            }
+            Plane::Turns { .. } => self.end_kept_plane(out),
         }
         self.plane.on = false;
         self.motion.other_frame();

@@ -170,8 +170,8 @@ fn lines_of_their_own_stand_around_planes_and_machine_coordinates() {
     assert_eq!(
         text.unwrap(),
         "#MCS ON\nG0 Z500.000\n#MCS OFF\n(T1 BALL D10 [R5])\nT1 M6\nG54\nG0 A-30.000 C45.000\nD1\n#TRAFO ON\n\
-         #CS ON [1.000, 2.000, 3.500, -45.000, 0.000, -90.000]\nG0 A-30.125\nX12.500 Y-20.500\nZ2.000\n#MCS ON\n\
-         G0 Z500.000\n#MCS OFF\n#CS OFF\n#TRAFO OFF\nG0 A-30.000 C45.000\nX10.000 Y-20.500\nD1 Z100.000\n"
+         #CS ON [1.000, 2.000, 3.500, -45.000, 0.000, -90.000]\nG0 A-30.125\nX12.500 Y-20.500\nZ2.000\n#CS OFF\n\
+         #TRAFO OFF\n#MCS ON\nG0 Z500.000\n#MCS OFF\nG0 A-30.000 C45.000\nX10.000 Y-20.500\nD1 Z100.000\n"
     );
 }
 

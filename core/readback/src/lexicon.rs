@@ -65,6 +65,8 @@ pub struct Lexicon {
     all_axes: bool,
     /// Bits of the modes that the dialect has words for.
     modes: u8,
+    /// A cycle returns to a level that the program names.
+    return_levels: bool,
 }
 
 impl Lexicon {
@@ -78,6 +80,7 @@ impl Lexicon {
             senses: vec![WordMeaning::Unknown],
             syntax: syntax(words, language),
             all_axes: words.iter().any(|word| word.meaning == Meaning::FeedPerMinuteAllAxes),
+            return_levels: words.iter().any(|word| word.meaning == Meaning::ReturnLevel),
             path_modes: words.iter().any(|word| word.word == "G64"),
             changes_by_word: words.iter().any(|word| word.meaning == Meaning::ToolChange),
             letters: [None; 26],
@@ -142,6 +145,11 @@ impl Lexicon {
     /// Bits of the modes that a program must set itself, as the dialect names them ([`ModalGroup`]).
     pub(crate) fn modes(&self) -> u8 {
         self.modes
+    }
+
+    /// A cycle returns to a level that the program names, and not to where it began if nothing is said.
+    pub(crate) fn returns_to_levels(&self) -> bool {
+        self.return_levels
     }
 
     /// G61 is one of several modes, and not just the name of the only one.

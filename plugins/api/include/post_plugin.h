@@ -410,6 +410,9 @@ typedef struct {
 #define POST_WRITES_TOOL_EDGES 0x0000200000000000u
 /* Cuts. */
 #define POST_WRITES_CUTS 0x0000400000000000u
+/* Cycles do not wait at the bottom, or in a unit that is not known: a hole where the tool waits is made of
+ * moves. */
+#define POST_WRITES_CYCLE_NO_DWELL 0x0000800000000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */

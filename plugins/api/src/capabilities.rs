@@ -143,6 +143,8 @@ capabilities! {
     45 TOOL_EDGES;
     /// `Cuts`.
     46 CUTS;
+    /// Cycles do not wait at the bottom, or in a unit that is not known: a hole where the tool waits is made of moves.
+    47 CYCLE_NO_DWELL;
 }
 
 impl Capabilities {

@@ -8,7 +8,7 @@ use post_plugin::{
 use crate::engine::Engine;
 use crate::options::text;
 use crate::planes::INCH;
-use crate::table::{CycleCode, Rigid, Table};
+use crate::table::{CycleCode, CycleReturn, Rigid, Table};
 
 /// Decimals of a pitch in mm: 40 threads an inch are 0.635.
 const PITCH_DECIMALS: u8 = 4;
@@ -40,6 +40,8 @@ struct ModalCycle {
     bottom: Modal<f64>,
     plane: Modal<f64>,
     level: Modal<&'static str>,
+    /// Level to which it returns, where a block of its own says it.
+    top: Option<f64>,
 }
 
 impl ModalCycle {
@@ -155,6 +157,7 @@ impl Engine {
             bottom: Modal::default(),
             plane: Modal::default(),
             level: Modal::default(),
+            top: None,
         });
         Ok(())
     }
@@ -192,20 +195,12 @@ impl Engine {
             self.cycles.running = Some(running);
             return Ok(());
         }
+        self.begin_anew(&mut running, [bottom, plane, top], out);
         if running.first {
             self.announce_rigid_tap(rigid, out)?;
         }
         self.tapped |= rigid.is_some();
-        let level = match top > plane + 1e-9 {
-            true => "G98",
-            false => "G99",
-        };
-        let stands = self.motion.stands_on(z).filter(|_| running.first);
-        if let Some(stands) = stands.filter(|z| level == "G98" && (z - top).abs() > 1e-6) {
-            return Err(format!(
-                "a cycle begins at Z {stands}, to where it returns, and is to return to Z {top}"
-            ));
-        }
+        let level = self.return_code(&running, self.motion.stands_on(z), [plane, top])?;
         let first = std::mem::take(&mut running.first);
         if first {
             self.motion.plane_xy();
@@ -215,7 +210,7 @@ impl Engine {
             running.plane.forget();
             self.motion.axes.forget_some(1 << x | 1 << y);
         }
-        if running.level.set(level) {
+        if let Some(level) = level.filter(|level| running.level.set(level)) {
             self.motion.block.word(level);
         }
         if first {
@@ -249,11 +244,65 @@ impl Engine {
             if let Some(Rigid::Beside(word)) = rigid {
                 self.motion.block.word(word);
             }
+            if let CycleReturn::Level { word, .. } = self.table.cycle_return {
+                self.motion.block.word(word);
+            }
         }
         self.motion.block.end(out);
         self.motion.at_level(words, z, top);
         self.cycles.running = Some(running);
         Ok(())
+    }
+
+    /// Where the cycle returns to a level of its own, that of the next hole: with other levels the cycle ends and begins
+    /// anew, since none of them is written between holes.
+    fn begin_anew(&mut self, running: &mut ModalCycle, levels: [f64; 3], out: &mut String) {
+        let CycleReturn::Level { block, .. } = self.table.cycle_return else {
+            return;
+        };
+        let [bottom, plane, top] = levels;
+        let same = running.bottom.is(bottom) && running.plane.is(plane) && running.top == Some(top);
+        if !running.first && same {
+            return;
+        }
+        if let Some(stands) = running.top.filter(|_| !running.first) {
+            self.rise(stands, out);
+        }
+        running.first = true;
+        running.top = Some(top);
+        let (style, places) = (self.motion.style, self.motion.linear_decimals(2));
+        self.motion.block.word(block).number("Z", top, places, style).end(out);
+    }
+
+    /// At rapid to the level where the tool stands behind a cycle, which ends by that.
+    fn rise(&mut self, level: f64, out: &mut String) {
+        let (style, places) = (self.motion.style, self.motion.linear_decimals(2));
+        let block = self.motion.block.word(self.table.codes.motion[0]);
+        block.number("Z", level, places, style).end(out);
+        self.motion.forget_motion();
+    }
+
+    /// The code that says where the cycle returns to, `top` or `plane`, where such codes do.
+    fn return_code(
+        &self,
+        running: &ModalCycle,
+        stands: Option<f64>,
+        [plane, top]: [f64; 2],
+    ) -> Result<Option<&'static str>, String> {
+        if self.table.cycle_return != CycleReturn::Codes {
+            return Ok(None);
+        }
+        let level = match top > plane + 1e-9 {
+            true => "G98",
+            false => "G99",
+        };
+        let stands = stands.filter(|_| running.first);
+        if let Some(stands) = stands.filter(|z| level == "G98" && (z - top).abs() > 1e-6) {
+            return Err(format!(
+                "a cycle begins at Z {stands}, to where it returns, and is to return to Z {top}"
+            ));
+        }
+        Ok(Some(level))
     }
 
     /// Writes the block that makes the taps of a cycle rigid, where the control has one ahead of it.
@@ -355,9 +404,13 @@ impl Engine {
         let by_move = running.is_some_and(|running| {
             taps(running.kind) && matches!(self.cycles.rigid, Some(Rigid::Move(_)))
         });
-        if !by_move {
-            self.line("G80", out);
-            self.motion.forget_motion();
+        match running.and_then(|running| running.top) {
+            Some(top) => self.rise(top, out),
+            None if !by_move => {
+                self.line("G80", out);
+                self.motion.forget_motion();
+            }
+            None => {}
         }
     }
 }

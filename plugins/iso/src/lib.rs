@@ -25,8 +25,8 @@ pub use engine::Engine;
 pub use motion::{ArcWords, FeedDecimals, MotionWriter};
 pub use splines::SplineWords;
 pub use table::{
-    CYCLES, CycleAddresses, CycleCode, Dwell, Leave, Length, MotionCodes, Offset, Plane, Rigid,
-    SplineForm, Stops, Subprogram, SurfaceSpeed, Table, Tcp, is_offset_beyond_six,
+    CYCLES, CycleAddresses, CycleCode, CycleReturn, Dwell, Leave, Length, MotionCodes, Offset,
+    Plane, Rigid, SplineForm, Stops, Subprogram, SurfaceSpeed, Table, Tcp, is_offset_beyond_six,
     offset_beyond_six, offset_of_six,
 };
 

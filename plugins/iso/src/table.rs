@@ -76,6 +76,8 @@ pub struct Table {
     pub cycles: &'static [CycleCode],
     /// Addresses of the words of a cycle.
     pub cycle_addresses: CycleAddresses,
+    /// Where a cycle returns to.
+    pub cycle_return: CycleReturn,
     /// Cycles, and arcs, inside a tilted plane. Option `cycles_in_plane`.
     pub cycles_in_plane: bool,
     /// What makes tapping rigid. Option `tapping`.
@@ -238,6 +240,20 @@ pub struct CycleAddresses {
     pub beside_step: &'static str,
     /// A wait at the bottom.
     pub dwell: &'static str,
+}
+
+/// Where a cycle returns to between its holes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CycleReturn {
+    /// Where it began (G98), or where the feed begins (G99); G80 ends it.
+    Codes,
+    /// A level of its own. A rapid to it ends the cycle, since G80 stops the spindle.
+    Level {
+        /// In front of the level, in a block ahead of the cycle: `G71`.
+        block: &'static str,
+        /// Last word of the cycle's block: `M53`.
+        word: &'static str,
+    },
 }
 
 /// What makes tapping rigid: the spindle turns with the feed axis.
@@ -463,6 +479,7 @@ impl Table {
             beside_step: "",
             dwell: "P",
         },
+        cycle_return: CycleReturn::Codes,
         cycles_in_plane: false,
         rigid: Rigid::Always,
         plane: Plane::None,

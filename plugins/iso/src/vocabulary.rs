@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use post_plugin::{Cycle, Meaning, VocabularyWord};
 
 use crate::engine::Engine;
-use crate::table::{Dwell, Plane, Rigid, SplineForm, Tcp};
+use crate::table::{CycleReturn, Dwell, Plane, Rigid, SplineForm, Tcp};
 
 /// Words that all controls of the family share, where the table says nothing else of them.
 const SHARED: &[(&str, Meaning)] = &[
@@ -31,7 +31,7 @@ const SHARED: &[(&str, Meaning)] = &[
     ("M30", Meaning::End),
 ];
 
-/// Words of controls that have cycles.
+/// Words of controls whose cycles return by codes.
 const CYCLES: &[(&str, Meaning)] =
     &[("G98", Meaning::ReturnStart), ("G99", Meaning::ReturnClearance)];
 
@@ -65,7 +65,7 @@ impl Engine {
         self.mode_words(&mut add);
         self.position_words(&mut add);
         self.wait_and_cycle_words(&mut add);
-        if !table.cycles.is_empty() {
+        if !table.cycles.is_empty() && table.cycle_return == CycleReturn::Codes {
             CYCLES.iter().for_each(|(word, meaning)| add(word, *meaning));
         }
         add(table.probe, M::Probe);

@@ -131,8 +131,10 @@ impl Bench {
             match event {
                 Event::Plane { .. } => in_plane = true,
                 Event::PlaneOff => in_plane = false,
-                Event::Cycle { .. } => {
-                    in_cycle = written && (!in_plane || writes.has(Capabilities::CYCLE_IN_PLANE));
+                Event::Cycle { dwell, .. } => {
+                    let waits = dwell.is_none() || !writes.has(Capabilities::CYCLE_NO_DWELL);
+                    let stands = !in_plane || writes.has(Capabilities::CYCLE_IN_PLANE);
+                    in_cycle = written && waits && stands;
                 }
                 Event::Arc { .. } if in_plane && !writes.has(Capabilities::CYCLE_IN_PLANE) => {
                     return false;

@@ -3,11 +3,11 @@
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
-    Control, Dwell, Iso, Leave, Length, MotionCodes, Offset, Subprogram, Table, Tcp, iso_options,
-    options,
+    Control, CycleCode, CycleReturn, Dwell, Iso, Leave, Length, MotionCodes, Offset, Rigid,
+    Subprogram, Table, Tcp, iso_options, options,
 };
 use post_plugin::{
-    Capabilities, Meaning, OptionKind, OptionSpec, Setup, Units, Value, export_dialect,
+    Capabilities, Cycle, Meaning, OptionKind, OptionSpec, Setup, Units, Value, export_dialect,
 };
 
 struct Okuma {
@@ -39,7 +39,10 @@ impl Control for Okuma {
         tcp: Tcp::Blocks { on: "", off: "", length_first: false },
         machine: "G16 H0 G0",
         leave: &[Leave::Tcp, Leave::Retract, Leave::Length],
-        cycles: &[],
+        cycles: CYCLES,
+        cycle_return: CycleReturn::Level { block: "G71", word: "M53" },
+        // Without its option a control stops at these codes.
+        rigid: Rigid::Codes { codes: ["G284", "G274"], pitch: "" },
         dwell: Dwell::Seconds("F", 2),
         subprogram: Subprogram { number: "CALL O{}", name: "CALL {}", times: "" },
         end: "M2",
@@ -70,12 +73,24 @@ impl Control for Okuma {
 
     /// G16 H0 counts from a zero of the builder's own, which is the top of Z on hardly any machine.
     fn capabilities(&self) -> Capabilities {
+        // In what unit P waits, posts do not agree.
         match self.retracts {
-            true => Capabilities::NONE,
-            false => Capabilities::RETRACT_SAID,
+            true => Capabilities::CYCLE_NO_DWELL,
+            false => Capabilities::CYCLE_NO_DWELL | Capabilities::RETRACT_SAID,
         }
     }
 }
+
+/// Fine boring and boring from below go off the wall by words that posts do not agree on.
+const CYCLES: &[CycleCode] = &[
+    CycleCode::new(Cycle::Drill, "G81", ""),
+    CycleCode::new(Cycle::Deep, "G83", ""),
+    CycleCode::new(Cycle::BreakChip, "G73", ""),
+    CycleCode::new(Cycle::Tap, "G84", ""),
+    CycleCode::new(Cycle::TapLeft, "G74", ""),
+    CycleCode::new(Cycle::Ream, "G85", ""),
+    CycleCode::new(Cycle::Bore, "G86", ""),
+];
 
 /// The number of `G15 H7`.
 fn number(text: &str) -> Option<u32> {
@@ -97,6 +112,7 @@ const OPTIONS: &[OptionSpec] = iso_options![
         "Block that switches tool centre point control on, {h} for the register of the length: `G169 HL={h}`.",
     ),
     OptionSpec::lines("tcp_off", "", "Block that switches it off: `G170`."),
+    options::tapping("rigid"),
     options::smoothing(""),
     options::smoothing_off(""),
 ];
@@ -136,10 +152,12 @@ const OWN: &[(&str, Meaning)] = &[
     ("G186", Meaning::SmoothingOff),
     ("G61", Meaning::SmoothingOff),
     ("G71", Meaning::ReturnLevel),
-    ("M52", Meaning::ReturnLevel),
+    // As high as the axis goes.
+    ("M52", Meaning::Retract),
     ("M53", Meaning::ReturnLevel),
     ("M54", Meaning::ReturnClearance),
-    ("NCYL", Meaning::Nothing),
+    // Goes there and makes no hole.
+    ("NCYL", Meaning::CycleOther),
     ("G73", Meaning::CycleBreakChip),
     ("G74", Meaning::CycleTapLeft),
     ("G274", Meaning::CycleTapLeft),

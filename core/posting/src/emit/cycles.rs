@@ -190,7 +190,8 @@ impl EmitStage<'_> {
         let place = self.drills_along()?;
         // No control waits at the bottom in these.
         let waits = drilling.dwell.is_some_and(|dwell| dwell > 0.0);
-        if waits && matches!(drilling.kind, Cycle::Deep | Cycle::BreakChip | Cycle::Bore) {
+        let never = matches!(drilling.kind, Cycle::Deep | Cycle::BreakChip | Cycle::Bore);
+        if waits && (never || self.writer.knows(Capabilities::CYCLE_NO_DWELL)) {
             return None;
         }
         let level = points(&hole.above).last()?;

@@ -16,7 +16,7 @@ use super::block_words::bit;
 use super::frame::{CoordinateFrame, FrameStack};
 use super::state::{
     ArcPlane, AxisLetters, ControlState, FeedMeaning, ModalState, MotionMode, MountedHead,
-    OrientationMode,
+    OrientationMode, ReturnTo,
 };
 use crate::lexicon::Lexicon;
 use crate::{
@@ -378,7 +378,8 @@ impl ModalState {
             speed: 0.0,
             surface_speed: false,
             most_speed: None,
-            return_start: true,
+            return_to: ReturnTo::Start,
+            return_level: None,
             contour_tolerance: None,
             shortest: None,
             orientation: OrientationMode::Usual,

@@ -6,7 +6,7 @@ use post_plugin::Meaning;
 use super::block::BlockRequest;
 use super::block_words::{BlockWords, bit};
 use super::spindle_request::SpindleRequest;
-use super::state::{ArcPlane, ControlState, FeedMeaning, MotionMode, OrientationMode};
+use super::state::{ArcPlane, ControlState, FeedMeaning, MotionMode, OrientationMode, ReturnTo};
 use crate::g_code::GCode;
 
 impl ControlState {
@@ -74,11 +74,28 @@ impl ControlState {
                     "a subprogram begins or ends here in a way that is not run",
                 ));
             }
+            Meaning::ReturnLevel if code.is_some() => self.return_level(words)?,
+            Meaning::ReturnLevel => self.modal.return_to = ReturnTo::Level,
             Meaning::Spline => self.spline_word(code)?,
             _ if is_not_followed(meaning) => return Err(self.not_followed(code)),
             // Letters, remarks and what does nothing.
             _ => {}
         }
+        Ok(())
+    }
+
+    /// The level to which cycles return: Z of G71, which moves nothing.
+    fn return_level(&mut self, words: &mut BlockWords) -> Result<(), Box<Diagnostic>> {
+        let letter = [b'X', b'Y', b'Z'][self.modal.plane.coordinates()[2]];
+        let level = words.take(letter).filter(|_| !self.modal.incremental);
+        words.present &= !bit(letter);
+        self.modal.return_level =
+            Some(level.map(|level| level * self.modal.unit).ok_or_else(|| {
+                self.refuse(
+                    "nc-cycle",
+                    "a level to which cycles return, and its position is not said",
+                )
+            })?);
         Ok(())
     }
 
@@ -102,8 +119,8 @@ impl ControlState {
             }
             Meaning::InverseTime => self.feed_mode(FeedMeaning::Inverse),
             Meaning::FeedPerRevolution => self.feed_mode(FeedMeaning::PerRevolution),
-            Meaning::ReturnStart => self.modal.return_start = true,
-            Meaning::ReturnClearance => self.modal.return_start = false,
+            Meaning::ReturnStart => self.modal.return_to = ReturnTo::Start,
+            Meaning::ReturnClearance => self.modal.return_to = ReturnTo::Clearance,
             Meaning::CentreAbsolute => self.modal.centres_absolute = true,
             Meaning::CentreIncremental => self.modal.centres_absolute = false,
             Meaning::SurfaceSpeed => self.modal.surface_speed = true,

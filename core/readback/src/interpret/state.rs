@@ -153,8 +153,10 @@ pub(super) struct ModalState {
     pub surface_speed: bool,
     /// The spindle turns no faster than this, revolutions a minute: LIMS.
     pub most_speed: Option<f64>,
-    /// A cycle returns to the level where it began: G98.
-    pub return_start: bool,
+    /// Where a cycle returns to.
+    pub return_to: ReturnTo,
+    /// The level that a cycle returns to under M53: Z of G71.
+    pub return_level: Option<f64>,
     /// Rotary axes go the shorter way (M126) or as written (M127); none: as the machine file says of each axis.
     pub shortest: Option<bool>,
     /// How the tool axis goes between two vectors.
@@ -173,6 +175,18 @@ pub(super) struct ModalState {
     pub unset: u8,
     /// A rigid tap was made and no word has turned the spindle since: it stands when the cycle is over.
     pub tapped: bool,
+}
+
+/// Where a cycle returns to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum ReturnTo {
+    /// The level where it began: G98.
+    #[default]
+    Start,
+    /// The level where the feed begins: G99, M54.
+    Clearance,
+    /// A level that the program names: M53.
+    Level,
 }
 
 /// What axis words alone mean.

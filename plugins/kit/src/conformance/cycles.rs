@@ -5,7 +5,7 @@ use post_plugin::{Capabilities, Cycle, Event, Feed, Spindle, SpindleSense};
 use super::declared::{CapabilityTrial, Events};
 
 /// Those of every kind, with what must make a difference.
-pub(super) fn cycles() -> Vec<CapabilityTrial> {
+pub(super) fn cycles(declares: Capabilities) -> Vec<CapabilityTrial> {
     const KINDS: [(&str, Cycle); 9] = [
         ("a drilling cycle", Cycle::Drill),
         ("a deep drilling cycle", Cycle::Deep),
@@ -38,7 +38,7 @@ pub(super) fn cycles() -> Vec<CapabilityTrial> {
             if plain.step.is_some() {
                 trial = trial.but("another step", holes(TriedCycle { step: Some(4.0), ..plain }));
             }
-            if cycle == Cycle::Drill {
+            if cycle == Cycle::Drill && !declares.has(Capabilities::CYCLE_NO_DWELL) {
                 let dwell = TriedCycle { dwell: Some(2.0), ..plain };
                 trial = trial.but("a dwell", holes(dwell));
             }

@@ -74,7 +74,7 @@ pub(super) fn declared(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault
     let mut trials = motion();
     trials.extend(arcs());
     trials.extend(settings());
-    trials.extend(cycles());
+    trials.extend(cycles(declares));
     trials.push(plane(angles));
     if pen.setup.tcp {
         trials.push(vector());

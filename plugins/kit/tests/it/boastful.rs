@@ -122,7 +122,8 @@ impl Dialect for Boastful {
             "drops a probe" => Capabilities::PROBE,
             _ => Capabilities::TOOL_TABLE,
         };
-        let declared = CAPABILITIES.iter().filter(|spec| spec.set != left_out);
+        let left_out = [left_out, Capabilities::CYCLE_NO_DWELL];
+        let declared = CAPABILITIES.iter().filter(|spec| !left_out.contains(&spec.set));
         declared.fold(Capabilities::NONE, |all, spec| all | spec.set)
     }
 

@@ -10,7 +10,7 @@ use super::{drill, feed_a_minute};
 use crate::g_code::GCode;
 use crate::interpret::block_words::{BlockWords, bit};
 use crate::interpret::go::MotionTarget;
-use crate::interpret::state::ControlState;
+use crate::interpret::state::{ControlState, ReturnTo};
 use crate::{Curve, CycleKind, MotionKind};
 
 /// Distance above the depth that was reached to which the tool comes at rapid, and by which it is drawn back to break a
@@ -246,7 +246,8 @@ fn make(
         Meaning::CycleTapLeft => SpindleRequest::CounterClockwise,
         _ => return drill(control, hole),
     };
-    if !control.modal.rigid_taps && !matches!(running.code.parts(), (84, 2 | 3)) {
+    let by_code = matches!(running.code.parts(), (84, 2 | 3) | (274 | 284, 0));
+    if !control.modal.rigid_taps && !by_code {
         return drill(control, hole);
     }
     // The cycle turns the spindle itself, whatever was said before.
@@ -295,6 +296,28 @@ fn goes_its_way(control: &ControlState, running: &IsoCycle) -> Result<(), Box<Di
     Ok(())
 }
 
+/// The level to which the cycle returns.
+fn away(control: &ControlState, running: &IsoCycle) -> Result<f64, Box<Diagnostic>> {
+    match (control.modal.return_to, control.modal.return_level) {
+        (ReturnTo::Clearance, _) => Ok(running.clearance),
+        (ReturnTo::Start, _) if !control.lexicon.returns_to_levels() => {
+            Ok(libm::fmax(running.start, running.clearance))
+        }
+        (ReturnTo::Level, Some(level)) if level >= running.clearance => Ok(level),
+        (ReturnTo::Level, Some(level)) => Err(control.refuse(
+            "nc-cycle",
+            format!(
+                "a cycle returns to the level {level:.4}, and its feed begins at {:.4} above it",
+                running.clearance
+            ),
+        )),
+        (ReturnTo::Start | ReturnTo::Level, _) => {
+            Err(control
+                .refuse("nc-cycle", "a cycle, and no word has said to which level it returns"))
+        }
+    }
+}
+
 /// The hole that the cycle makes.
 fn levels(control: &mut ControlState, running: &IsoCycle) -> Result<CycleHole, Box<Diagnostic>> {
     use Meaning as M;
@@ -302,10 +325,7 @@ fn levels(control: &mut ControlState, running: &IsoCycle) -> Result<CycleHole, B
     let by_pitch = running.pitch.map(|pitch| pitch * control.modal.speed);
     let feed = by_pitch.unwrap_or_else(|| feed_a_minute(control));
     let named = control.lexicon.language() == Language::Instructions;
-    let away = match control.modal.return_start {
-        true => libm::fmax(running.start, running.clearance),
-        false => running.clearance,
-    };
+    let away = away(control, running)?;
     let hole = CycleHole {
         clearance: running.clearance,
         bottom: running.bottom,

@@ -3,6 +3,7 @@
 mod instructions;
 mod modes;
 mod places;
+mod return_levels;
 mod splines;
 
 use std::io::Cursor;

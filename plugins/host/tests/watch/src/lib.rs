@@ -31,7 +31,8 @@ impl Dialect for Watch {
     fn capabilities(&self) -> Capabilities {
         // It retracts wherever it is sent.
         let all = CAPABILITIES.iter().map(|spec| spec.set);
-        let all = all.filter(|set| *set != Capabilities::RETRACT_SAID);
+        let not = [Capabilities::RETRACT_SAID, Capabilities::CYCLE_NO_DWELL];
+        let all = all.filter(|set| !not.contains(set));
         all.fold(Capabilities::NONE, |all, set| all | set)
     }
 

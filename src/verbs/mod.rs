@@ -18,6 +18,7 @@ mod plugin;
 mod post;
 mod predict;
 mod print_schema;
+mod profile;
 mod read;
 mod tools;
 mod verify;
@@ -50,6 +51,7 @@ use post_cli::failure::CommandFault;
 use post_job::session::Session;
 use predict::PredictArguments;
 use print_schema::SchemaArguments;
+use profile::ProfileArguments;
 use read::ReadArguments;
 use tools::ToolsArguments;
 use verify::VerifyArguments;
@@ -73,6 +75,7 @@ use view::{View, ViewArguments};
   post --machine vmc part.cls --tools tool.tbl --save-job part.job.toml
   post part.job.toml
   post words part.cls
+  post profile umc-750
   post new my-mill --class table-table-ac --dialect linuxcnc
   post check my-mill.toml --svg reach.svg
   post convert part.h --from dmu50 --to ac-trunnion -o part.nc
@@ -133,6 +136,7 @@ impl FromArgMatches for Nameless {
 enum Verb<const LATE: bool> {
     Words(Late<WordsArguments, LATE>),
     Machines(Late<MachinesArguments, LATE>),
+    Profile(Late<ProfileArguments, LATE>),
     Schema(Late<SchemaArguments, LATE>),
     Batch(Late<Box<BatchArguments>, LATE>),
     Check(Late<CheckArguments, LATE>),
@@ -194,6 +198,7 @@ impl CommandLine {
             None => self.post.0.map_or(Ok(()), |post| post::run(session, &post)),
             Some(Verb::Words(Late(arguments))) => list_words::run(session, &arguments),
             Some(Verb::Machines(Late(arguments))) => list_machines::run(session, &arguments),
+            Some(Verb::Profile(Late(arguments))) => profile::run(session, &arguments),
             Some(Verb::Schema(Late(arguments))) => print_schema::run(session, &arguments),
             Some(Verb::Batch(Late(arguments))) => batch::run(session, &arguments),
             Some(Verb::Check(Late(arguments))) => check::run(session, &arguments),

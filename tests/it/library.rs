@@ -290,6 +290,28 @@ fn every_machine_says_where_its_numbers_come_from() {
     }
 }
 
+/// The machines of real makers say of each number where it comes from or that it is not known, and of no other.
+#[test]
+fn machines_of_real_makers_are_profiled() {
+    let makers = LIBRARY.iter().map(|row| {
+        let path = root().join(format!("machines/{}.toml", row.machine));
+        (row.machine, fs::read_to_string(path).unwrap())
+    });
+    let mut count = 0;
+    for (name, text) in makers.filter(|(_, text)| text.contains("in the style of")) {
+        count += 1;
+        let run = common::post(&["profile", name]);
+        assert_eq!((run.code, run.err.as_str()), (0, ""), "{name}");
+        for word in ["maker", "model", "control", "checked", "not known"] {
+            assert!(run.out.lines().any(|line| line.starts_with(word)), "{name}: {word}");
+        }
+        assert!(!run.out.contains("not said"), "{name}:\n{}", run.out);
+        assert!(text.contains("[profile.sources]"), "{name}");
+    }
+    let listed = post(&["profile"]).out.lines().count();
+    assert_eq!((count, listed), (7, 8));
+}
+
 /// A table of poses that LinuxCNC computed, the machine of the library that it must be, parameters, and the
 /// tool's length.
 type Poses = (&'static str, &'static str, &'static [(&'static str, f64)], f64);

@@ -6,7 +6,9 @@ use std::fs::{self, File};
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
-use post_machine::description::{self, MOST_BYTES, Machine, MachineReading, Setting, Source};
+use post_machine::description::{
+    self, MOST_BYTES, Machine, MachineReading, Setting, Source, StatedNumber,
+};
 use post_machine::diagnostic::{Diagnostic, nearest};
 
 use crate::failure::Failure;
@@ -234,6 +236,21 @@ pub fn list(session: &Session, named: &[PathBuf]) -> Result<Vec<ListedMachine>, 
         ListedMachine { name, path, machine }
     });
     Ok(listed.collect())
+}
+
+/// The numbers that the file of the machine `name` says, and those that it extends.
+///
+/// # Errors
+/// There is no such machine, or its files cannot be read.
+pub fn numbers(
+    session: &Session,
+    name: &str,
+    named: &[PathBuf],
+) -> Result<Vec<StatedNumber>, Failure> {
+    let read = |path: &Path| read(session, path);
+    let source = source(name, named, &read)?;
+    let near = near(&source.name, named)?;
+    Ok(description::stated_numbers(source, &mut |parent| extended(parent, &near, &read))?)
 }
 
 /// The text of the machine that the bare name `name` finds, as its file has it.

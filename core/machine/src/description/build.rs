@@ -22,7 +22,8 @@ use super::setting::Setting;
 use super::table::KeyedValue;
 use super::{
     AccuracyRules, Arcs, Axis, ControlPoint, ControlRules, Frame, GivenOption, Head, Machine,
-    ProgramRules, SmoothingRules, SpindleSpeeds, TIP_WORDS, UnusedOptions, WordRule, linear_names,
+    Profile, ProgramRules, SmoothingRules, SpindleSpeeds, TIP_WORDS, UnusedOptions, WordRule,
+    linear_names,
 };
 use crate::diagnostic::{Diagnostic, Short, SourcePlace};
 
@@ -365,6 +366,7 @@ impl Builder<'_> {
             rewind,
             motion,
             plan,
+            profile: Profile::of(&file.profile),
             frame: Frame::default(),
             heads: Vec::new(),
             unused_options,

@@ -9,6 +9,7 @@ use serde_json::json;
 use super::bounds::Bounds;
 use super::motion::MotionFile;
 use super::plan::PlanFile;
+use super::profile::ProfileFile;
 use super::program_file::ProgramFile;
 use super::quantity::KeyedNumber;
 use super::servo_file::ServoFile;
@@ -103,6 +104,8 @@ keys! {
         motion: MotionFile,
         /// What planned feeds keep; for `post --plan`.
         plan: PlanFile,
+        /// Of what machine the file is, and where its numbers come from.
+        profile: ProfileFile,
     }
 }
 

@@ -18,6 +18,7 @@ mod motion;
 mod numbers;
 mod options;
 mod plan;
+mod profile;
 mod program;
 mod program_file;
 mod quantity;
@@ -53,6 +54,7 @@ pub use length::LengthAxis;
 pub use limits::MOST_BYTES;
 pub use motion::{BlendRule, CornerRule, LimitsActOn, MotionRules, RapidRule};
 pub use plan::{PlanRules, PlanSolver};
+pub use profile::{NumberOrigin, Profile, StatedNumber, stated_numbers};
 pub use program::{ProgramRules, ProgramText, TextPlace};
 pub use schema::schema;
 pub use setting::Setting;
@@ -126,6 +128,8 @@ pub struct Machine {
     pub motion: MotionRules,
     /// What its planned feeds keep.
     pub plan: PlanRules,
+    /// Of what machine its file is, and where the numbers come from.
+    pub profile: Profile,
     /// Where the axes go between the passes.
     pub frame: Frame,
     /// Some axis is clamped and let go by words.

@@ -45,6 +45,8 @@ pub const LIBRARY: &[Row] = &[
     row("head-table-bc", "apt", 100.0, "over-travel"),
     row("head-table-sr", "apt", 100.0, "over-travel"),
     row("hmc-b-pallet", "cls", 120.0, "out-of-reach"),
+    row("lathe-xzc-face", "cls", 60.0, "out-of-reach"),
+    row("lathe-xzc-radial", "cls", 60.0, "out-of-reach"),
     row("linuxcnc-5axis", "cls", 100.0, "over-travel"),
     row("m800-trunnion", "cls", 100.0, "over-travel"),
     row("mill-turn", "cls", 100.0, "over-travel"),

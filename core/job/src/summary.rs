@@ -107,6 +107,7 @@ fn rows(
     let axis = certified(report.axis_deviation_deg, "°", 5);
     let tolerance = report.axis_tolerance_deg;
     rows.row("axis deviation", format_args!("{axis}, tolerance {tolerance:.4}°"));
+    rows.row_if("rapids", report.rapids_along_axes.then(|| along_axes(report.rapid_deviation_mm)));
     rows.row_if("read back", read_back.map(as_asked));
     for used in report.axes.iter().filter(|axis| axis.min <= axis.max) {
         rows.row(format_args!("axis {}", used.name), used_of(used));
@@ -298,6 +299,11 @@ fn held_by(plan: &PlanReport) -> String {
 }
 
 /// A certified maximum and its place.
+fn along_axes(off: ReportedDeviation) -> String {
+    let off = certified(off, "mm", 3);
+    format!("straight in the axes, off the straight way of the tip: {off}")
+}
+
 fn certified(deviation: ReportedDeviation, unit: &str, decimals: u8) -> String {
     let value = at_most(deviation.value, decimals);
     if deviation.line == 0 {

@@ -492,6 +492,7 @@ impl<'a> Post<'a> {
             tip_deviation_mm: tip,
             axis_deviation_deg: ReportedDeviation { value: axis.value.to_degrees(), ..axis },
             rapid_deviation_mm: rapid,
+            rapids_along_axes: counts.along_axes,
             control_point: machine.control_point,
             tolerance_mm: machine.accuracy.tolerance,
             axis_tolerance_deg: machine.accuracy.axis_tolerance.to_degrees(),

@@ -113,6 +113,21 @@ pub(crate) fn refused(machine: &Machine, refused: &PlacementError) -> Diagnostic
             ),
         )
         .help("this machine is solved numerically, from the point before: where the part sits (--mount), or a point between may help"),
+        PlacementError::Unreachable(Unreachable::Plane { miss }) => Diagnostic::error(
+            "out-of-reach",
+            format!(
+                "the two linear axes of {} bring the tip no nearer than {miss:.4} mm to this point with the tool pointing this way, {} mm is allowed",
+                machine.name,
+                Short(machine.accuracy.tolerance)
+            ),
+        )
+        .extreme(LimitExcess {
+            key: u64::MAX - 1,
+            by: miss,
+            value: format!("{miss:.4} mm off"),
+            remedy: String::new(),
+        })
+        .help("it takes a third linear axis (Y), or a tool that points to the line of the rotary axis here; is the part on that line (--mount, --msys)?"),
         PlacementError::OverTravel { over, .. } if no_position(machine, over) => {
             let axis = &machine.axes[over.joint];
             Diagnostic::error(

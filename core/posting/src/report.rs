@@ -42,6 +42,9 @@ pub struct PostingReport {
     pub axis_deviation_deg: ReportedDeviation,
     /// Certified largest deviation of the tip in a rapid, mm.
     pub rapid_deviation_mm: ReportedDeviation,
+    /// Rapids of two linear axes and a rotary one go straight in the axes, off the straight way of the tip.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub rapids_along_axes: bool,
     /// The point of the tool that deviations are those of: how far above the point of the CL file, and the radius of
     /// the cutting edge about it, mm.
     pub control_point: ControlPoint,

@@ -44,6 +44,10 @@ pub fn text(
     if found.rapid.nc_line > 0 {
         rows.row("rapid points", format_args!("passed within {}", worst(&found.rapid, "mm", 3)));
     }
+    if !found.axis_rapids.is_none() {
+        let off = worst(&found.axis_rapids, "mm", 3);
+        rows.row("rapids", format_args!("straight in the axes, off the way of the tip by {off}"));
+    }
     let mut more = Vec::new();
     for (count, what) in [
         (found.excursions, "times a cut is left and gone on with"),

@@ -241,6 +241,10 @@ fn unreachable(fault: Unreachable, name: &str, line: u64) -> Diagnostic {
             number(miss.to_degrees(), 4)
         ),
         Unreachable::Linear => "on this way the linear axes lie in a plane".to_owned(),
+        Unreachable::Plane { miss } => format!(
+            "on this way the two linear axes do not reach the tip, by {} mm",
+            number(miss, 4)
+        ),
         Unreachable::Numeric { miss } => format!(
             "on this way no axis values were found that give tip and tool axis, by {} mm",
             number(miss, 4)

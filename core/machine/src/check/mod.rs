@@ -88,6 +88,8 @@ impl Check {
             class,
             solved: if probe.closed_form() {
                 "closed form"
+            } else if probe.solver().planar() {
+                "closed form, in the plane of two linear axes; what lies off it is refused"
             } else {
                 "numerically, from the point before; each solution verified by the forward product"
             }

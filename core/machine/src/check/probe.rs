@@ -172,7 +172,7 @@ impl<'a> Probe<'a> {
         tolerance: f64,
     ) -> Result<Vec<Joints>, Unreachable> {
         let pose = Pose { tip, axis, ..Pose::default() };
-        if !solver.closed_form() {
+        if !solver.closed_form() && !solver.planar() {
             let mut left = STEPS;
             let starts = (0..STARTS).map(|number| self.start(number));
             let found = solver.inverse_from(&pose, starts, tolerance, &mut left);
@@ -339,6 +339,12 @@ impl<'a> Probe<'a> {
             let [least, most] = self.span(*place);
             let share = share + 0.07 * index as f64;
             joints[*place] = least + (most - least) * (share - libm::floor(share));
+        }
+        // On the line of the rotary axis it moves nothing.
+        let slides = self.machine.axes.iter().map(|axis| !axis.joint.rotary).enumerate();
+        for (place, _) in slides.filter(|(_, slides)| *slides && self.solver().planar()) {
+            let [least, most] = self.span(place);
+            joints[place] = least + (most - least) * share;
         }
         joints
     }

@@ -393,7 +393,7 @@ impl Machine {
                 })
                 .collect(),
         };
-        Solver::with(chain, &freedom)
+        Ok(Solver::with(chain, &freedom)?.within(self.accuracy.tolerance))
     }
 
     /// The finding that the chain cannot be solved. What its file alone says was refused when it was loaded: this is

@@ -14,6 +14,11 @@ pub enum Unreachable {
     },
     /// The linear axes span no volume at these angles.
     Linear,
+    /// Two linear axes move the tip in a plane, and the plane passes by the point.
+    Plane {
+        /// Distance, mm.
+        miss: f64,
+    },
     /// A numeric search found nothing; the nearest pose misses the tip by this.
     Numeric {
         /// mm, an error of the tool axis counted on an arm of 300 mm.

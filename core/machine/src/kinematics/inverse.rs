@@ -10,6 +10,7 @@ use super::fault::{NoClosedForm, POLE, Unreachable};
 use super::linear::{Linear, Second};
 use super::numeric;
 use super::orientation::{Branches, LatitudeLanes, Orientation, RotarySet, angle};
+use super::planar::{self, AllowedMiss, Meeting, NextSolution, Planar, PlanarSolution};
 use super::turning_axis;
 
 /// How far a returned solution may miss the pose when it is put through the forward product: mm per metre
@@ -48,6 +49,36 @@ pub struct Solver {
     /// Values of the axes that are not free (indexed), mm or radians.
     held: Joints,
     form: SolutionMethod,
+    /// How far two linear axes may miss the tip, mm.
+    tip_tolerance: f64,
+}
+
+/// How fewer than three linear axes are solved: rotary axes have to place the tip as well.
+fn few(chain: &Chain, freedom: &Freedom, quills: bool) -> Result<SolutionMethod, NoClosedForm> {
+    let Freedom { rotary, still, held, .. } = freedom;
+    let slides = |joint: &usize| !chain.joints()[*joint].rotary;
+    let moves = |joint: &usize| match slides(joint) {
+        true => !still.contains(joint),
+        false => rotary.contains(joint),
+    };
+    let free: Vec<usize> = (0..chain.joints().len()).filter(moves).collect();
+    let linear: Vec<usize> = free.iter().copied().filter(slides).collect();
+    let planar = Planar::new(chain, &linear, rotary, held).filter(|_| !quills).map(Box::new);
+    // Two axes alone are for what lies in their plane.
+    let flat = planar.is_some() && rotary.is_empty();
+    if quills || (free.len() < 3 && !flat) {
+        let (linear, rotary) = (linear.len(), rotary.len());
+        return Err(NoClosedForm::FewAxes { linear, rotary, quills });
+    }
+    let ways = SETTINGS
+        .iter()
+        .map(|share| numeric::ways(chain, &free, &numeric::spread(&free, held, *share)))
+        .map(|ways| ways.of_tip);
+    let ways = ways.max().unwrap_or(0);
+    if ways < 3 && !flat {
+        return Err(NoClosedForm::FlatTip { ways });
+    }
+    Ok(SolutionMethod::Numeric { linear, free, planar })
 }
 
 /// The way to the solution.
@@ -63,8 +94,8 @@ enum SolutionMethod {
         idle: u8,
         linear: Linear,
     },
-    /// All joints that move, and the linear ones among them.
-    Numeric { free: Vec<usize>, linear: Vec<usize> },
+    /// All joints that move, and the linear ones among them; what solves two of these without a search.
+    Numeric { free: Vec<usize>, linear: Vec<usize>, planar: Option<Box<Planar>> },
 }
 
 impl Solver {
@@ -89,39 +120,16 @@ impl Solver {
                 SolutionMethod::Closed { orientation, idle, linear }
             }
             // Rotary axes have to place the tip as well.
-            Err(NoClosedForm::FewAxes { linear: count, quills, .. }) => {
-                let rotary = freedom.rotary.len();
-                if quills || count + rotary < 3 {
-                    return Err(NoClosedForm::FewAxes { linear: count, rotary, quills });
-                }
-                let free: Vec<usize> = (0..chain.joints().len())
-                    .filter(|joint| {
-                        if chain.joints()[*joint].rotary {
-                            freedom.rotary.contains(joint)
-                        } else {
-                            !freedom.still.contains(joint)
-                        }
-                    })
-                    .collect();
-                let ways = SETTINGS
-                    .iter()
-                    .map(|share| {
-                        numeric::ways(&chain, &free, &numeric::spread(&free, &held, *share))
-                    })
-                    .map(|ways| ways.of_tip);
-                let ways = ways.max().unwrap_or(0);
-                if ways < 3 {
-                    return Err(NoClosedForm::FlatTip { ways });
-                }
-                let slides = |joint: &usize| !chain.joints()[*joint].rotary;
-                SolutionMethod::Numeric {
-                    linear: free.iter().copied().filter(slides).collect(),
-                    free,
-                }
-            }
+            Err(NoClosedForm::FewAxes { quills, .. }) => few(&chain, freedom, quills)?,
             Err(lack) => return Err(lack),
         };
-        Ok(Self { chain, held, form })
+        Ok(Self { chain, held, form, tip_tolerance: 0.0 })
+    }
+
+    /// The solver, two linear axes of which may miss a tip by `tip` mm: what they cannot reach in its plane is reached as
+    /// nearly as they come, and who asks counts what is missing.
+    pub fn within(self, tip: f64) -> Self {
+        Self { tip_tolerance: tip, ..self }
     }
 
     /// The chain that is solved.
@@ -129,7 +137,8 @@ impl Solver {
         &self.chain
     }
 
-    /// The solutions come from formulas; else from a numeric search that is verified.
+    /// Three linear axes place the tip, wherever the rotary ones stand; else rotary axes have to help, by formulas
+    /// ([`Solver::planar`]) or by a numeric search that is verified.
     pub fn closed_form(&self) -> bool {
         matches!(self.form, SolutionMethod::Closed { .. })
     }
@@ -336,6 +345,98 @@ impl Solver {
         self.search_within(pose, from, tolerance, &mut { numeric::STEPS })
     }
 
+    /// What solves two linear axes without a search.
+    fn planar_form(&self) -> Option<&Planar> {
+        match &self.form {
+            SolutionMethod::Numeric { planar, .. } => planar.as_deref(),
+            SolutionMethod::Closed { .. } => None,
+        }
+    }
+
+    /// Two linear axes move the tip in a plane, and formulas say how rotary axes turn it: not every way of the tip can be
+    /// followed.
+    pub fn planar(&self) -> bool {
+        self.planar_form().is_some()
+    }
+
+    fn allowed(&self, axis: f64) -> AllowedMiss {
+        AllowedMiss { tip: self.tip_tolerance, axis: axis.max(VERIFIED) }
+    }
+
+    fn solutions(
+        &self,
+        planar: &Planar,
+        pose: &Pose,
+        last: &Joints,
+        tolerance: f64,
+    ) -> Result<Vec<PlanarSolution>, Unreachable> {
+        planar.solutions(&self.chain, &self.held, pose, last, self.allowed(tolerance))
+    }
+
+    /// The solution over which the way from one set of axis values to another is shortest.
+    fn in_plane(
+        &self,
+        planar: &Planar,
+        pose: &Pose,
+        [first, last]: [&Joints; 2],
+        tolerance: f64,
+    ) -> Result<Joints, Unreachable> {
+        let ways = self.solutions(planar, pose, first, tolerance)?;
+        let halfway: Joints = std::array::from_fn(|joint| (first[joint] + last[joint]) / 2.0);
+        let ways = ways.iter().map(|way| planar::unwound(&self.chain, &way.joints, &halfway));
+        let turn = |joints: &Joints| {
+            let turned = |end: &Joints| planar::turned(&self.chain, joints, end);
+            turned(first) + turned(last)
+        };
+        let shortest = ways.min_by(|a, b| turn(a).total_cmp(&turn(b)));
+        shortest.ok_or(Unreachable::Linear)
+    }
+
+    /// For a chain without a closed form: the solution between two sets of axis values, over which the way from the first
+    /// to the last is shortest; of a numeric search the one next to the first.
+    ///
+    /// # Errors
+    /// By how much the nearest pose misses.
+    pub fn search_between(
+        &self,
+        pose: &Pose,
+        ends: [&Joints; 2],
+        tolerance: f64,
+    ) -> Result<Joints, Unreachable> {
+        match self.planar_form() {
+            Some(planar) => self.in_plane(planar, pose, ends, tolerance),
+            None => self.search(pose, ends[0], tolerance),
+        }
+    }
+
+    /// For a chain without a closed form: the solutions that a cut from the first pose, where it stands at `from`, can go
+    /// on to at the second, the one that turns least first; of a numeric search the one next to `from`.
+    ///
+    /// # Errors
+    /// By how much the nearest pose misses.
+    pub fn next(
+        &self,
+        poses: [&Pose; 2],
+        from: &Joints,
+        tolerance: f64,
+    ) -> Result<Vec<NextSolution>, Unreachable> {
+        match self.planar_form() {
+            Some(planar) => {
+                planar.next(&self.chain, &self.held, poses, from, self.allowed(tolerance))
+            }
+            None => {
+                let joints = self.search(poses[1], from, tolerance)?;
+                Ok(vec![NextSolution { joints, sure: true }])
+            }
+        }
+    }
+
+    /// Where on a straight way of the tip (mm, part frame) two solutions come nearest to one another, of a chain whose two
+    /// linear axes a rotary one carries; the other rotary joints stand as in `joints`.
+    pub fn meeting(&self, way: [Vector3<f64>; 2], joints: &Joints) -> Option<Meeting> {
+        self.planar_form()?.meeting(&self.chain, way, joints)
+    }
+
     /// [`Solver::search`] in no more steps than `left`, from which it takes those that it needed.
     ///
     /// # Errors
@@ -347,6 +448,9 @@ impl Solver {
         tolerance: f64,
         left: &mut usize,
     ) -> Result<Joints, Unreachable> {
+        if let Some(planar) = self.planar_form() {
+            return self.in_plane(planar, pose, [from, from], tolerance);
+        }
         let SolutionMethod::Numeric { free, .. } = &self.form else {
             return Err(Unreachable::Linear);
         };
@@ -454,6 +558,10 @@ impl Solver {
         last: &Joints,
         tolerance: f64,
     ) -> Result<Vec<Joints>, Unreachable> {
+        if let Some(planar) = self.planar_form() {
+            let ways = self.solutions(planar, pose, last, tolerance)?;
+            return Ok(ways.into_iter().map(|way| way.joints).collect());
+        }
         let SolutionMethod::Closed { idle, .. } = &self.form else {
             return self.searches(pose, last, tolerance);
         };

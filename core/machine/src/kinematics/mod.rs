@@ -1,5 +1,5 @@
 //! Kinematics, derived from the chain: forward by product of exponentials, inverse in closed form where there is
-//! one, and numerically else.
+//! one (with three linear axes, or two), and numerically else.
 
 mod arm_bend;
 pub mod batch;
@@ -13,6 +13,7 @@ pub mod lane_math;
 mod linear;
 mod numeric;
 pub mod orientation;
+mod planar;
 pub mod travel;
 mod turning_axis;
 
@@ -22,4 +23,5 @@ pub use fault::{NoClosedForm, POLE, Unreachable};
 pub use inverse::{Freedom, Solver};
 pub use kept_tip::{LinearMotion, TcpBlock};
 pub use linear::Second;
+pub use planar::{Meeting, NextSolution};
 pub use turning_axis::direction;

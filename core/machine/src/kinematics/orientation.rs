@@ -353,6 +353,15 @@ impl Orientation {
         }
     }
 
+    /// How far the tool axis goes while the first free joint turns by a radian, radians; infinite without one.
+    pub(super) fn points_by(&self, branches: &Branches) -> f64 {
+        match self {
+            Self::Fixed { .. } => f64::INFINITY,
+            Self::One { k, a, .. } => k.cross(a).norm(),
+            Self::Two(_) => branches.sine,
+        }
+    }
+
     /// Latitudes (angles from the first of two free axes) between which two branches are, radians: where they
     /// end the branches meet. None with fewer free axes.
     pub(super) fn band(&self) -> Option<[f64; 2]> {

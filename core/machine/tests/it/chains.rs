@@ -195,8 +195,8 @@ fn chains_without_an_answer_are_refused_with_the_reason() {
             "0 linear and 1 rotary axes move by themselves: they cannot place the tip",
         ),
         (
-            "[w b X Z t]",
-            vec![Line("X", &x, slide), Line("Z", &z, slide)],
+            "[w b X U t]",
+            vec![Line("X", &x, slide), Line("U", &x, slide)],
             "2 linear and 0 rotary axes move by themselves: they cannot place the tip",
         ),
         (

@@ -6,6 +6,7 @@ mod frames;
 mod linear;
 mod measured;
 mod numeric;
+mod planar;
 
 use std::f64::consts::PI;
 

@@ -18,6 +18,9 @@ const SHORTEST: f64 = 1.0 / (1u64 << 22) as f64;
 /// Points put in may use so much of the tool axis' tolerance.
 const ROOM: f64 = 0.9;
 
+/// Closer than this share of the tolerance to the centre line a rotary axis can turn on the spot.
+const CLOSE: f64 = 0.125;
+
 /// A piece whose quick bound is over by this factor is most likely over: its middle is tried first.
 const LIKELY: f64 = 3.0;
 
@@ -108,6 +111,11 @@ impl Lineariser {
             if let Some(stuck) = stuck(&piece) {
                 return Err(stuck);
             }
+            if let Some(nodes) = on_the_spot(&piece) {
+                self.stack.push(to);
+                self.stack.extend(nodes.map_err(LineariseError::Refused)?.into_iter().rev());
+                continue;
+            }
             let holds = || bound.unwrap_or_else(|| piece.certify()).axis <= piece.tolerances.axis;
             let middle = put_in(&piece, 0.5, holds).map_err(LineariseError::Refused)?;
             self.stack.push(to);
@@ -134,6 +142,26 @@ fn stuck(piece: &NodeMove<'_>) -> Option<LineariseError> {
         .filter(|joint| joints[*joint].rotary)
         .max_by(|a, b| turn(a).total_cmp(&turn(b)))?;
     Some(LineariseError::Jump { joint, from: from.trace.joints[joint], to: to.trace.joints[joint] })
+}
+
+/// A rotary axis turns by no less on the spot, radians: elsewhere points on the way serve.
+const TURNS: f64 = 1e-3;
+
+/// Where a piece passes so close by the centre line that a rotary axis turns there by whatever its ends ask for: the nodes
+/// before and after that turn.
+fn on_the_spot(piece: &NodeMove<'_>) -> Option<Result<Vec<PathNode>, PlacementError>> {
+    let (from, to, placer) = (piece.from, piece.to, piece.placer);
+    let (first, last) = (&from.trace.joints, &to.trace.joints);
+    let meeting = placer.solver().meeting([from.target.tip, to.target.tip], first)?;
+    let turn = libm::fabs(last[meeting.joint] - first[meeting.joint]);
+    if turn < TURNS || meeting.gap > CLOSE * piece.tolerances.tip || from.t == to.t {
+        return None;
+    }
+    let t = from.t * (1.0 - meeting.share) + to.t * meeting.share;
+    let target = piece.target(meeting.share);
+    let ends = [(meeting.share > 0.0, first), (meeting.share < 1.0, last)];
+    let ends = ends.into_iter().filter(|(inside, _)| *inside);
+    Some(ends.map(|(_, joints)| placer.settled(target, t, joints)).collect())
 }
 
 /// The node at a share of a piece: on the exact inverse solution, unless the axes jump there. `holds` says whether

@@ -243,6 +243,21 @@ impl Placer {
         }
     }
 
+    /// The node of `target` to which a move goes on from `last`, without a change of solution.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn place_on(&self, last: &PathNode, target: Pose) -> Result<PathNode, PlacementError> {
+        let joints = &last.trace.joints;
+        if !self.solver.planar() {
+            return self.place(target, 1.0, joints);
+        }
+        let next = self.solver.next([&last.target, &target], joints, self.axis_tolerance);
+        let next = next.map_err(PlacementError::Unreachable)?;
+        let least = next.first().map_or(joints, |next| &next.joints);
+        self.settled(target, 1.0, least)
+    }
+
     /// [`Placer::settle`] into a new node.
     ///
     /// # Errors
@@ -321,7 +336,10 @@ impl Placer {
     ) -> Result<PathNode, PlacementError> {
         let solver = &self.solver;
         if !solver.closed_form() {
-            return self.place(target, t, first);
+            let joints = solver
+                .search_between(&target, [first, last], self.axis_tolerance)
+                .map_err(PlacementError::Unreachable)?;
+            return self.settled(target, t, &joints);
         }
         let branches =
             solver.orient(&target, self.axis_tolerance).map_err(PlacementError::Unreachable)?;

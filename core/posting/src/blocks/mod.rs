@@ -101,6 +101,8 @@ pub(crate) struct BlockCounts {
     pub rewinds: u64,
     /// Points at which a rotary axis was held or turned early close to a pole.
     pub eased: u64,
+    /// Rapids went straight in the axes.
+    pub along_axes: bool,
 }
 
 /// The stage that makes blocks.
@@ -421,13 +423,14 @@ impl<'a> BlockStage<'a> {
             let stay = if leg.placer.solver().closed_form() && self.points_alike(&last, node) {
                 leg.placer.settled(node.target, 1.0, joints)
             } else {
-                leg.placer.place(node.target, 1.0, joints)
+                leg.placer.place_on(&last, node.target)
             };
             if let Ok(stay) = stay
-                && self.turn_between(&last, &stay) + TURN < self.turn_between(&last, node)
+                && self.leaves_as(leg.placer, [&last, &stay, node])
             {
                 let leaving = PathLeg { reason: BlockReason::Leave, ..*leg };
                 self.cut(&leaving, &last, &stay, out);
+                self.on_part = false;
                 *last = stay;
             }
         }
@@ -439,6 +442,15 @@ impl<'a> BlockStage<'a> {
             self.cut(leg, &last, node, out);
         }
         last
+    }
+
+    /// The tool leaves the part standing otherwise than it is to stand then: it turns less so, or stays on its side of the
+    /// centre line.
+    fn leaves_as(&self, placer: &Placer, [from, stay, to]: [&PathNode; 3]) -> bool {
+        match placer.solver().planar() {
+            true => self.turn_between(stay, to) > TURN,
+            false => self.turn_between(from, stay) + TURN < self.turn_between(from, to),
+        }
     }
 
     /// The tool axis in the machine frame, as the head holds it.
@@ -494,8 +506,19 @@ impl<'a> BlockStage<'a> {
                 let nominal = self.nominal(leg, last, node);
                 self.push(leg, [last, node], nominal, bound, out);
             }
+            None if self.goes_along_axes(leg) => {
+                self.counts.along_axes = true;
+                let nominal = self.nominal(leg, last, node);
+                self.push(leg, [last, node], nominal, whole.certify(), out);
+            }
             None => self.split(&[*leg], &[*last, *node], out),
         }
+    }
+
+    /// Off the part two linear axes and a rotary one go straight to where they are wanted: the straight way of the tip
+    /// cannot be reached in general, and on the way out of the part it is asked for all the same.
+    fn goes_along_axes(&self, leg: &PathLeg<'_>) -> bool {
+        leg.loose && !self.on_part && leg.placer.solver().planar()
     }
 
     /// Legs, one after the other, that need points or can do without some of their own.

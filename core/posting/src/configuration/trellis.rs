@@ -246,7 +246,11 @@ impl Trellis {
         let first = self.states.len();
         let ways = self.ways(&target, kind);
         if kind == ArrivalKind::Cut && !placer.solver().closed_form() {
-            self.search_on(placer, &target, before.clone().unwrap_or(0..0));
+            let range = before.clone().unwrap_or(0..0);
+            match placer.solver().planar() {
+                true => self.go_on_in_plane(placer, motion, range, judge),
+                false => self.search_on(placer, &target, range),
+            }
         }
         let found = if self.states.len() > first {
             // What other solutions there are is nothing to a cut, and costly to find out.
@@ -707,6 +711,48 @@ impl Trellis {
             self.keep(first, new);
         }
         self.searched = searched;
+    }
+
+    /// Continues each state in a cut of two linear axes, one of which may go through the centre line or a rotary axis be
+    /// turned on it.
+    fn go_on_in_plane(
+        &mut self,
+        placer: &Placer,
+        motion: &StraightMove,
+        before: std::ops::Range<usize>,
+        judge: &mut dyn CutChecker,
+    ) {
+        let first = self.states.len();
+        let Some(from_pose) = self.layers.last().map(|last| pose(&last.motion)) else {
+            return;
+        };
+        let target = pose(motion);
+        for index in before {
+            let state = self.states[index];
+            if !state.cost.is_way() {
+                continue;
+            }
+            let tolerance = self.axes.axis_tolerance;
+            let poses = [&from_pose, &target];
+            let next = placer.solver().next(poses, &state.joints, tolerance).unwrap_or_default();
+            for (side, next) in next.into_iter().enumerate() {
+                let mut joints = next.joints;
+                let from = CutEnd { pose: &from_pose, joints: &state.joints };
+                if self.axes.reaches(&joints)
+                    && self.axes.stand_still(&state.joints, &mut joints)
+                    && (next.sure
+                        || judge.passes(
+                            placer,
+                            motion,
+                            from,
+                            CutEnd { pose: &target, joints: &joints },
+                        ))
+                {
+                    let new = self.after(index, joints, side as u8);
+                    self.keep(first, new);
+                }
+            }
+        }
     }
 
     /// Keeps the cheapest states of the newest layer, if there are too many.

@@ -157,6 +157,8 @@ struct SpindleCommand {
 #[derive(Debug)]
 pub struct Verifier<'m, C> {
     machine: &'m Machine,
+    /// Two linear axes place the tip, with a rotary one.
+    planar: bool,
     rules: VerifyRules,
     /// How far the guided point stands above the tip, mm.
     along: f64,
@@ -222,6 +224,7 @@ impl<'m, C: Course> Verifier<'m, C> {
         };
         Self {
             machine,
+            planar: machine.solver(0.0).is_ok_and(|solver| solver.planar()),
             along,
             sag,
             rapid_sag: PlaceBound::new(

@@ -74,6 +74,10 @@ impl<C: Course> Verifier<'_, C> {
         let most = places.iter().map(off).fold(0.0, f64::max);
         let message = if end.to < start.from {
             "a rapid goes back on its way".to_owned()
+        } else if most > bound.point && self.planar && self.apart {
+            // Two linear axes cannot follow every straight way: away from the part they go straight to their values.
+            self.found.axis_rapids.take(most, motion.line, line);
+            return false;
         } else if most > bound.point {
             format!("a rapid strays by {most:.3} mm from the way of the CL file's")
         } else {

@@ -59,6 +59,10 @@ pub struct Verification {
     pub axis: WorstDeviation,
     /// Largest distance at which a rapid passes a point of the course, mm.
     pub rapid: WorstDeviation,
+    /// Farthest that two linear axes, which go straight to their values at rapid, take the tip from the straight way of the
+    /// course, mm.
+    #[serde(skip_serializing_if = "WorstDeviation::is_none")]
+    pub axis_rapids: WorstDeviation,
     /// Time of the motions as the program states it, s; without rapids of machines whose file names no largest feeds.
     pub time_s: f64,
     /// What is wrong, in the order of the program; what is wrong in the same way again and again is one of them.
@@ -92,6 +96,11 @@ pub struct WorstDeviation {
 }
 
 impl WorstDeviation {
+    /// Nothing was taken.
+    pub fn is_none(&self) -> bool {
+        self.nc_line == 0
+    }
+
     pub(super) fn take(&mut self, value: f64, nc_line: u64, cl_line: u64) {
         if value > self.value {
             *self = Self { value, nc_line, cl_line };

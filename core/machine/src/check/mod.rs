@@ -142,6 +142,7 @@ fn warnings(
             }
         ));
     }
+    warnings.extend(misnamed(machine));
     if let Some(volume) = volume {
         for out in &volume.origin_out {
             warnings.push(format!(
@@ -209,6 +210,34 @@ fn inverse_warnings(probe: &Probe<'_>, round_trip: &RoundTrip) -> Vec<String> {
         ));
     }
     warnings
+}
+
+/// An axis whose letter stands for less of its direction than this is called by another's.
+const LETTERED: f64 = 0.5;
+
+/// Axes whose letter says otherwise than their direction: ISO 841 has A, B, C about X, Y, Z. Arms are lettered otherwise, and
+/// of two axes about the same line one alone can have its letter.
+fn misnamed(machine: &Machine) -> Vec<String> {
+    let axes = &machine.axes;
+    let sliding = axes.iter().filter(|axis| !axis.joint.rotary).count();
+    let taken = |name: &str| axes.iter().any(|axis| axis.name == name);
+    let told = |axis: &Axis| {
+        let (letters, moves) = match axis.joint.rotary {
+            true => (["A", "B", "C"], "turns about"),
+            false => (["X", "Y", "Z"], "slides along"),
+        };
+        let own = letters.iter().position(|letter| *letter == axis.name)?;
+        let parts = axis.joint.direction.abs();
+        let along = parts.imax();
+        let (line, letter) = (["X", "Y", "Z"][along], letters[along]);
+        (parts[own] < LETTERED && !taken(letter)).then(|| {
+            format!(
+                "{} {moves} {line}, and ISO 841 calls such an axis {letter}: is its direction right, in a machine frame with Z along the spindle?",
+                axis.name
+            )
+        })
+    };
+    axes.iter().filter(|_| sliding >= 2).filter_map(told).collect()
 }
 
 /// `value` with at most `decimals` decimals, no zeros behind, never `-0`.

@@ -554,11 +554,18 @@ impl Builder<'_> {
     fn check_tip_words(&mut self, axes: &[Axis], span: Range<usize>) {
         let linear = linear_names(axes);
         if linear != BTreeSet::from(TIP_WORDS) {
-            let message = format!(
-                "with tcp = \"control\" the linear words are the tip's X, Y and Z, but the linear axes are called {}",
-                linear.into_iter().collect::<Vec<_>>().join(", ")
-            );
-            let help = "rename the axes, or use tcp = \"post\"";
+            let words = "with tcp = \"control\" the linear words are the tip's X, Y and Z";
+            let names = linear.into_iter().collect::<Vec<_>>().join(", ");
+            let (message, help) = match names.is_empty() {
+                true => (
+                    format!("{words}, and all axes of this machine turn"),
+                    "tcp = \"post\" writes the values of the joints",
+                ),
+                false => (
+                    format!("{words}, but the linear axes are called {names}"),
+                    "rename the axes, or use tcp = \"post\"",
+                ),
+            };
             self.fault("machine-tcp", span.clone(), message, help);
         }
         let held = |axis: &&Axis| !axis.joint.rotary && axis.indexed.is_some();

@@ -246,7 +246,11 @@ pub(crate) fn word(
     words: &[&'static str],
 ) -> Result<usize, EntryError> {
     let Some(name) = value.get_ref().as_str() else {
-        let slip = Slip::Kind("wanted string or table".to_owned());
+        let name = match value.get_ref() {
+            DeValue::Boolean(flag) => flag.to_string(),
+            other => other.type_str().to_owned(),
+        };
+        let slip = Slip::Word { name, known: words.to_vec() };
         return Err(EntryError { span: value.span(), slip });
     };
     words.iter().position(|word| *word == name).ok_or_else(|| EntryError {
@@ -395,7 +399,10 @@ impl<T: KeyType, const N: usize> KeyType for [T; N] {
         let DeValue::Array(items) = value.get_ref() else {
             return Err(of_another_kind(
                 value,
-                if N == 2 { "an array of length 2" } else { "an array of length 3" },
+                match N {
+                    2 => "two numbers, such as [-500, 500]",
+                    _ => "three numbers, such as [1, 0, 0] for X",
+                },
             ));
         };
         let items: Vec<T> =

@@ -5,6 +5,7 @@ mod beside;
 mod curves;
 mod faults;
 mod feeds;
+mod polar;
 mod runs;
 mod stream;
 mod tolerance;

@@ -1,4 +1,4 @@
-//! Lines of a program with places for the numbers of a CL record: `G{n+53}`, `M{n}`, `G54.1 P{n2}`.
+//! Lines of a program with places for the numbers of a CL record: `G{n+53}`, `M{n}`, `G65 P9811 Z{n:.3}`.
 
 use std::fmt;
 
@@ -7,10 +7,18 @@ use crate::expression::{Expression, parse_expression};
 /// Values from here on are no code of any control, and a slip.
 const TOO_LARGE: f64 = 1e9;
 
-/// A line of a program in which braces stand for whole numbers.
+/// Name of the program's units that one unit of the CL file is.
+const UNIT: &str = "unit";
+
+/// Most decimals of a number.
+const MOST_DECIMALS: u8 = 9;
+
+/// A line of a program in which braces stand for numbers.
 ///
 /// Between braces stands an expression of the machine file's language in which `n1`, `n2`, … are the numbers of the
-/// record in their order and `n` is the first; `{1}`, `{2}`, … alone are the same as `{n1}`, `{n2}`.
+/// record in their order and `n` is the first; `{1}`, `{2}`, … alone are the same as `{n1}`, `{n2}`. A value is a whole
+/// number from 0 up; behind a colon stand the decimals of any other, `{n:.3}` always three, `{n:3}` at most three.
+/// `unit` is how many units of the program one unit of the CL file is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Template {
     pieces: Vec<TemplatePart>,
@@ -19,7 +27,16 @@ pub struct Template {
 #[derive(Clone, Debug, PartialEq)]
 enum TemplatePart {
     Text(String),
-    Value { text: String, expression: Expression },
+    Value { text: String, expression: Expression, digits: Digits },
+}
+
+/// How a value is printed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Digits {
+    /// A whole number from 0 up.
+    Code,
+    /// So many decimals, those at the end that are zeros left out or not.
+    Decimals { count: u8, zeros: bool },
 }
 
 /// Why a record does not fill a template.
@@ -92,11 +109,32 @@ impl Template {
         places.max().map_or(0, |last| last + 1)
     }
 
-    /// The line for a record with these numbers.
+    /// The first place whose value has decimals and does not say which unit they are of: where CL file and program count
+    /// in other units, nobody knows whether it is a length.
+    pub fn without_unit(&self) -> Option<&str> {
+        self.pieces.iter().find_map(|piece| match piece {
+            TemplatePart::Value { text, expression, digits: Digits::Decimals { .. } }
+                if !expression.names().contains(&UNIT) =>
+            {
+                Some(text.as_str())
+            }
+            _ => None,
+        })
+    }
+
+    /// Its texts in their order; none stands for a value.
+    pub fn texts(&self) -> impl Iterator<Item = Option<&str>> {
+        self.pieces.iter().map(|piece| match piece {
+            TemplatePart::Text(text) => Some(text.as_str()),
+            TemplatePart::Value { .. } => None,
+        })
+    }
+
+    /// The line for a record with these numbers; `unit` units of the program are one of the CL file.
     ///
     /// # Errors
-    /// A number that is missing, and a value that is not whole or below zero.
-    pub fn fill(&self, numbers: &[f64]) -> Result<String, FillFault> {
+    /// A number that is missing, and a value that its place cannot print.
+    pub fn fill(&self, numbers: &[f64], unit: f64) -> Result<String, FillFault> {
         if self.numbers() > numbers.len() {
             return Err(FillFault::Missing { number: numbers.len() + 1 });
         }
@@ -104,19 +142,16 @@ impl Template {
         for piece in &self.pieces {
             match piece {
                 TemplatePart::Text(text) => line.push_str(text),
-                TemplatePart::Value { text, expression } => {
+                TemplatePart::Value { text, expression, digits } => {
                     let fault = |why: String| FillFault::Value { text: text.clone(), why };
+                    let named = |name: &str| match name {
+                        UNIT => Some(unit),
+                        name => numbers.get(place(name)?).copied(),
+                    };
                     let value = expression
-                        .evaluate(&|name| numbers.get(place(name)?).copied())
+                        .evaluate(&named)
                         .map_err(|lack| fault(format!("has no value: {}", lack.message)))?;
-                    let whole = libm::rint(value);
-                    if libm::fabs(value - whole) > 1e-6 {
-                        return Err(fault(format!("is {value}, and a code is a whole number")));
-                    }
-                    if !(0.0..TOO_LARGE).contains(&whole) {
-                        return Err(fault(format!("is {value}, and codes go from 0 up")));
-                    }
-                    line.push_str(&(whole as u64).to_string());
+                    line.push_str(&digits.print(value).map_err(fault)?);
                 }
             }
         }
@@ -124,25 +159,73 @@ impl Template {
     }
 }
 
+impl Digits {
+    /// What stands behind the colon: `.3` or `3`.
+    fn parse(text: &str) -> Option<Self> {
+        let text = text.trim();
+        let digits = text.strip_prefix('.').unwrap_or(text);
+        let one = digits.len() == 1 && digits.bytes().all(|byte| byte.is_ascii_digit());
+        let count = digits.parse().ok().filter(|count| one && *count <= MOST_DECIMALS)?;
+        Some(Self::Decimals { count, zeros: digits != text })
+    }
+
+    /// The value as it is printed; an error says why it is not, as the end of a sentence.
+    fn print(self, value: f64) -> Result<String, String> {
+        match self {
+            Self::Code => {
+                let whole = libm::rint(value);
+                if libm::fabs(value - whole) > 1e-6 {
+                    return Err(format!(
+                        "is {value}, and a code is a whole number; {{n:.3}} prints decimals"
+                    ));
+                }
+                if !(0.0..TOO_LARGE).contains(&whole) {
+                    return Err(format!("is {value}, and codes go from 0 up"));
+                }
+                Ok((whole as u64).to_string())
+            }
+            Self::Decimals { count, zeros } => {
+                if !(-TOO_LARGE..TOO_LARGE).contains(&value) {
+                    return Err(format!("is {value}, which no control reads"));
+                }
+                let mut text = format!("{value:.*}", usize::from(count));
+                if !zeros && text.contains('.') {
+                    text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
+                }
+                let zero = text.bytes().all(|byte| matches!(byte, b'-' | b'0' | b'.'));
+                Ok(if zero { text.trim_start_matches('-').to_owned() } else { text })
+            }
+        }
+    }
+}
+
 /// What stands between braces.
 fn value(text: &str) -> Result<TemplatePart, String> {
-    let text = text.trim();
-    let alone = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let (inner, digits) = match text.split_once(':') {
+        None => (text.trim(), Digits::Code),
+        Some((inner, decimals)) => {
+            let digits = Digits::parse(decimals).ok_or_else(|| {
+                format!("{{{text}}}: behind the colon stand decimals, .3 or 3 for at most three, 9 at most")
+            })?;
+            (inner.trim(), digits)
+        }
+    };
+    let alone = !inner.is_empty() && inner.bytes().all(|byte| byte.is_ascii_digit());
     let expression =
-        if alone { parse_expression(&format!("n{text}")) } else { parse_expression(text) }
+        if alone { parse_expression(&format!("n{inner}")) } else { parse_expression(inner) }
             .map_err(|fault| format!("{{{text}}}: {}", fault.message))?;
     let names = expression.names();
-    if names.is_empty() {
-        return Err(format!(
-            "{{{text}}} holds no number of the record: n is the first behind the slash, n2 the second"
-        ));
-    }
-    if let Some(name) = names.iter().find(|name| place(name).is_none()) {
+    if let Some(name) = names.iter().find(|name| place(name).is_none() && **name != UNIT) {
         return Err(format!(
             "{{{text}}}: {name} is no number of the record: n is the first behind the slash, n2 the second"
         ));
     }
-    Ok(TemplatePart::Value { text: text.to_owned(), expression })
+    if !names.iter().any(|name| place(name).is_some()) {
+        return Err(format!(
+            "{{{text}}} holds no number of the record: n is the first behind the slash, n2 the second"
+        ));
+    }
+    Ok(TemplatePart::Value { text: text.trim().to_owned(), expression, digits })
 }
 
 /// Which number of the record a name stands for, counted from 0: `n` and `n1` the first.

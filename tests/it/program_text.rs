@@ -186,3 +186,98 @@ fn texts_for_operations_want_operations() {
     let done = post(folder.path(), machine, &["-o", "-", "-"], CL);
     assert!(!done.err.contains("written nowhere"), "{}", done.err);
 }
+
+/// A program that ends as a subprogram does, with lines that no word of the control explains: `verify` reads it, passes
+/// what the machine file declares, and says so.
+#[test]
+fn a_program_with_lines_of_one_s_own_is_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = r#"
+[cl.words]
+TOUCH = "G65 P9811 Z{n*unit:.3}"
+[program]
+first_lines = "(FOR {{ program.name }})"
+last_lines = "(LAST)"
+end = "M99"
+tool_change = "T{{ tool.number }} M6 (S{{ tool.speed|fixed(0) }})"
+after_tool_change = ["{% if tool.number == 2 %}", "M551", "{% endif %}"]
+before_operation = "({{ operation.name }} F{{ operation.feed|fixed(0) }} {% if spindle is none %}STANDS{% endif %})"
+"#;
+    let machine = format!("extends = \"vmc\"\n{text}");
+    let cl = CL.replacen("END-OF-PATH", "TOUCH/-5.2\nEND-OF-PATH", 1);
+    fs::write(folder.path().join("part.cls"), cl).unwrap();
+    good(post(folder.path(), &machine, &["part.cls", "-o", "a.nc"], ""));
+    let program = fs::read_to_string(folder.path().join("a.nc")).unwrap();
+    assert!(program.starts_with("(FOR a)\n%\nO1000 (A)\n"), "{program}");
+    assert!(program.ends_with("\nM99\n%\n(LAST)\n") && !program.contains("M30"), "{program}");
+    for line in [
+        "(ROUGH F600 STANDS)",
+        "(FINISH F300 )",
+        "T2 M6 (S5000)\nM551\nS5000 M3",
+        "G65 P9811 Z-5.200",
+    ] {
+        assert!(program.contains(&format!("{line}\n")), "{line}\n{program}");
+    }
+    let verify = |program: &str| {
+        fs::write(folder.path().join("a.nc"), program).unwrap();
+        let verb = ["verify", "-q", "-m", "mine.toml", "--tool-length", "100"];
+        let files = ["--against", "part.cls", "a.nc"];
+        run(command().current_dir(folder.path()).args(verb).args(files), b"")
+    };
+    let read = verify(&program);
+    assert_eq!(read.code, 0, "{}", read.err);
+    assert!(read.err.contains("nc-own-line") && !read.err.contains("M551"), "{}", read.err);
+    // A macro that the machine file does not declare, and a word that no line of it has.
+    for (other, told) in [("G65 P9812 Z-5.200", "`O9812` is called"), ("M552", "M552 is not known")]
+    {
+        let own = if other.starts_with('G') { "G65 P9811 Z-5.200" } else { "M551" };
+        let read = verify(&program.replace(own, other));
+        assert!(read.err.contains(told), "{told}: {}", read.err);
+    }
+    // What a motion lacks is refused, whatever the machine file declares.
+    let wrong = program.replace("G65 P9811 Z-5.200", "G1 X500. Z-5.200");
+    assert_eq!(verify(&wrong).code, 1);
+}
+
+/// Controls of other languages end a subprogram by words of theirs; the frame of the file stays.
+#[test]
+fn the_end_of_a_program_is_the_machine_file_s_in_each_language() {
+    let folder = tempfile::tempdir().unwrap();
+    for (machine, end, last) in [
+        ("ac-trunnion-840d", "M17", " M17\n; LAST\n"),
+        ("dmu50", "LBL 0", " END PGM A MM\n; LAST\n"),
+    ] {
+        let text = format!(
+            "extends = \"{machine}\"\n[program]\nend = \"{end}\"\nlast_lines = \"; LAST\"\n"
+        );
+        fs::write(folder.path().join("part.cls"), CL).unwrap();
+        good(post(folder.path(), &text, &["part.cls", "-o", "a.nc"], ""));
+        let program = fs::read_to_string(folder.path().join("a.nc")).unwrap();
+        assert!(program.ends_with(last), "{program}");
+        assert!(program.contains(&format!(" {end}\n")), "{program}");
+        assert!(!program.contains("M30"), "{program}");
+        let verb = ["verify", "-q", "-m", "mine.toml", "--tool-length", "100"];
+        let files = ["--against", "part.cls", "a.nc"];
+        let read = run(command().current_dir(folder.path()).args(verb).args(files), b"");
+        assert_eq!(read.code, 0, "{}", read.err);
+    }
+}
+
+/// The raw part is told to the control by its dialect, or by lines of the machine file.
+#[test]
+fn the_stock_stands_in_the_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let stock = "[workpiece]\nstock = { min = [-5, -5, -10], max = [35, 5, 20.5] }\n";
+    let form = "extends = \"dmu50\"\n[control.heidenhain]\nblk_form = true\n";
+    let lines = |machine: &str| good(post(folder.path(), machine, &["-o", "-", "-"], CL));
+    let written = lines(&format!("{form}{stock}"));
+    let told =
+        " BLK FORM 0.1 Z X-5.000 Y-5.000 Z-10.000\n2 BLK FORM 0.2 X+35.000 Y+5.000 Z+20.500\n";
+    assert!(written.contains(told), "{written}");
+    let text =
+        "extends = \"vmc\"\n[program]\nheader = \"(FROM {{ program.stock.min[2]|fixed(1) }})\"\n";
+    assert!(lines(&format!("{text}{stock}")).contains("(FROM -10.0)"));
+    let flat = stock.replace("35, 5,", "35, -5,");
+    let done = post(folder.path(), &format!("{form}{flat}"), &["-o", "-", "-"], CL);
+    assert!(done.code == 1 && done.err.contains("machine-stock"), "{}", done.err);
+}

@@ -165,6 +165,46 @@ PROBE = "G65 P9811 Z{n2}"
     }
 }
 
+/// A probing line takes the numbers of its record as they are, and a file in other units is not taken for one in the
+/// program's.
+#[test]
+fn a_rule_prints_decimals_in_the_units_of_the_program() {
+    let machine =
+        "[cl.words]\nTOUCH = \"G65 P9811 Z{n*unit:.3} S{n2:1}\"\nPROBE = \"G65 P9811 Z{n:.3}\"\n";
+    let told_line = |text: &str, line: &str| {
+        let done = on(machine, &[], text);
+        told(&done, 0, &[]);
+        assert!(done.out.lines().any(|written| written.ends_with(line)), "{line}\n{}", done.out);
+    };
+    told_line(&file("TOUCH/-5.2,1"), "G65 P9811 Z-5.200 S1");
+    told_line(&file("PROBE/-5.2"), "G65 P9811 Z-5.200");
+    let inches = |line: &str| file(line).replace("UNITS/MM", "UNITS/INCH");
+    assert_ne!(inches(""), file(""));
+    let done = on(machine, &[], &inches("PROBE/-0.2"));
+    told(&done, 1, &["units of 25.4 mm", "{n:.3} in the rule for PROBE", "{n*unit:.3}"]);
+    let done = on(machine, &[], &inches("TOUCH/-0.2,1"));
+    told(&done, 1, &["{n2:1} in the rule for TOUCH"]);
+}
+
+/// One switch makes codes of the words that APT has for them; a rule of one's own goes before it.
+#[test]
+fn functions_by_their_numbers_are_codes_where_the_machine_file_says_so() {
+    let codes = "[cl]\nfunctions = true\n";
+    let ruled = "[cl]\nfunctions = true\n[cl.words]\nAUXFUN = \"M{n+100}\"\n";
+    for (machine, line, code) in [
+        (codes, "AUXFUN/88", "M88"),
+        (codes, "PREFUN/54", "G54"),
+        (codes, "PREFUN/54.1", "G54.1"),
+        (ruled, "AUXFUN/8", "M108"),
+    ] {
+        let done = on(machine, &[], &file(line));
+        told(&done, 0, &[]);
+        assert!(done.out.lines().any(|line| line.ends_with(code)), "{code}\n{}", done.out);
+    }
+    told(&on(codes, &[], &file("AUXFUN/8.5")), 1, &["is 8.5, and a code is a whole number"]);
+    told(&on("", &[], &file("AUXFUN/8")), 1, &["post does not know how"]);
+}
+
 #[test]
 fn a_rule_that_says_nothing_is_refused_with_its_line() {
     for (rule, why) in [

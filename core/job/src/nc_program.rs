@@ -135,9 +135,15 @@ pub fn given_up() -> Diagnostic {
     Diagnostic::error("nc-refused", message)
 }
 
-/// Words of the program `name` that are not known: warnings.
-pub fn unknown_words(name: &str, report: &ReadReport) -> impl Iterator<Item = Diagnostic> {
-    report.unknown.iter().take(MOST_FAULTS).map(move |(word, count, line)| {
+/// Words of the program `name` that are not known, and stand in no line of the file of its `machine`: warnings.
+pub fn unknown_words(
+    name: &str,
+    report: &ReadReport,
+    machine: &Machine,
+) -> impl Iterator<Item = Diagnostic> {
+    let declared = machine.declared_lines();
+    let unknown = report.unknown.iter().filter(move |(word, ..)| !declared.has_word(word));
+    unknown.take(MOST_FAULTS).map(move |(word, count, line)| {
         let message = format!("{word} is not known and is taken to move nothing; {count} times");
         let place = SourcePlace::new(name, *line, "", 0..0);
         Diagnostic::warning("nc-unknown", message).at(Some(place))

@@ -162,7 +162,8 @@ pub fn dialect_knowing(
                     corner_radius: tool.corner_radius,
                 })
                 .collect(),
-            extents: ahead.extents,
+            // Where the tool goes stands for a raw part that nobody has described.
+            extents: machine.stock.or(ahead.extents),
             time: ahead.time_s,
         }),
     };

@@ -329,7 +329,7 @@ pub fn hold<C: Course>(
         }
     }
     let mut run = run.into_blocks();
-    let mut findings = found_by_running(name, &run);
+    let mut findings = found_by_running(name, &run, machine);
     let report = run.program().report();
     findings.extend(left_to_others(name, report, &control.spoken, own));
     let blocks = report.blocks;
@@ -351,7 +351,11 @@ pub fn hold<C: Course>(
 }
 
 /// What cannot be read of the program `name`, and what is taken for granted of it.
-fn found_by_running(name: &str, run: &ProgramRun<RunningProgram<'_>>) -> Vec<Diagnostic> {
+fn found_by_running(
+    name: &str,
+    run: &ProgramRun<RunningProgram<'_>>,
+    machine: &Machine,
+) -> Vec<Diagnostic> {
     let mut findings = run.faults().to_vec();
     let report = run.program().report();
     findings.extend(report.notes.iter().cloned());
@@ -362,7 +366,7 @@ fn found_by_running(name: &str, run: &ProgramRun<RunningProgram<'_>>) -> Vec<Dia
         let place = SourcePlace::new(name, *line, "", 0..0);
         findings.push(Diagnostic::error("missing", message).at(Some(place)));
     }
-    findings.extend(nc_program::unknown_words(name, report));
+    findings.extend(nc_program::unknown_words(name, report, machine));
     findings
 }
 

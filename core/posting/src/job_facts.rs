@@ -1,5 +1,9 @@
 //! What is known of a job before its first record: names, and what a first pass over the CL file found.
 
+use std::ops::Range;
+
+use post_plugin::{Feed, Spindle};
+
 use crate::blocks::MotionBlock;
 use crate::observer::Observer;
 use crate::operation_work::OperationList;
@@ -23,12 +27,18 @@ pub struct JobFacts {
 pub struct ProgramPreview {
     /// Every tool change, in order.
     pub changes: Vec<ToolChange>,
+    /// Revolutions a minute that each of them first gets; none where the CL file gives none.
+    pub speeds: Vec<Option<f64>>,
+    /// Largest feed a minute of the cuts of each operation, in units of the program, in the order of their names.
+    pub feeds: Vec<Option<f64>>,
     /// Least and largest tip at the end of a block, mm, part frame; none without a move.
     pub extents: Option<[[f64; 3]; 2]>,
     /// Time without tool changes, s; none if it was not filled in.
     pub time_s: Option<f64>,
     /// Lines of the CL file on which an operation begins.
     pub operations: Vec<u64>,
+    /// The names of the operations.
+    pub names: Vec<String>,
     /// Lines on which the part of the file begins that a further tool works: that of its operation, if one begins
     /// between the last move before it and the change.
     pub parts: Vec<u64>,
@@ -51,6 +61,12 @@ impl ProgramPreview {
         }
         tools
     }
+
+    /// The names of the operations that begin on these lines of the CL file.
+    pub fn named(&self, lines: Range<u64>) -> Vec<&str> {
+        let begin = self.operations.iter().zip(&self.names);
+        begin.filter(|(line, _)| lines.contains(line)).map(|(_, name)| name.as_str()).collect()
+    }
 }
 
 impl Observer for ProgramPreview {
@@ -58,6 +74,11 @@ impl Observer for ProgramPreview {
         self.work.block(block);
         self.pending = None;
         self.moved = true;
+        if let (Some(Feed::PerMinute(feed)), Some(most)) = (block.time.feed, self.feeds.last_mut())
+            && block.kind.cuts()
+        {
+            *most = Some(most.map_or(feed, |most| most.max(feed)));
+        }
         let tip: [f64; 3] = block.tip.into();
         let [least, most] = self.extents.get_or_insert([tip, tip]);
         for axis in 0..3 {
@@ -74,8 +95,16 @@ impl Observer for ProgramPreview {
                     self.parts.push(self.pending.unwrap_or(line));
                 }
                 self.changes.push(tool.clone());
+                self.speeds.push(None);
             }
-            Command::Operation(_) => {
+            Command::Spindle(Spindle::On { rpm, .. }) => {
+                if let Some(speed) = self.speeds.last_mut() {
+                    speed.get_or_insert(*rpm);
+                }
+            }
+            Command::Operation(name) => {
+                self.feeds.push(None);
+                self.names.push(name.clone());
                 self.pending = Some(line);
                 self.operations.push(line);
             }

@@ -246,7 +246,7 @@ impl<R: Read + Seek> NcReader<R> {
         self.opened = true;
         self.lines.skip_byte_order_mark()?;
         let start = self.lines.mark();
-        let mut listing = None;
+        let (mut listing, mut remarks) = (None, false);
         let mut program: Option<NcMark> = None;
         for _ in 0..LONGEST_HEADER {
             let Some(physical) = self.lines.physical()? else {
@@ -263,12 +263,15 @@ impl<R: Read + Seek> NcReader<R> {
                 return Ok(self.lines.go_to(program)?);
             }
             if begins_program(line, self.syntax.notation) {
-                if listing != Some(true) {
+                if !listing.unwrap_or(remarks) {
                     break;
                 }
                 program = Some(self.lines.mark());
             } else if listing.is_none() {
-                listing = Some(!self.is_block(line));
+                match self.is_remark(line) {
+                    true => remarks = true,
+                    false => listing = Some(!self.is_block(line)),
+                }
             }
             self.lines.consume(&physical)?;
         }
@@ -299,6 +302,16 @@ impl<R: Read + Seek> NcReader<R> {
             self.lines.consume(&physical)?;
         }
         Ok(false)
+    }
+
+    /// Whether a line is a remark and nothing else: a block, or a line in front of the program.
+    fn is_remark(&self, line: &[u8]) -> bool {
+        let mut block = NcBlock::default();
+        let read = BlockText::default().read(line, &self.syntax, &mut block);
+        read.is_ok()
+            && block.items.is_empty()
+            && block.number.is_none()
+            && !block.remarks.is_empty()
     }
 
     /// Whether a line can be a block, and is not just words of a text.

@@ -120,7 +120,7 @@ impl Heidenhain {
 
     pub(crate) fn end(&mut self, out: &mut String) {
         self.stop(out);
-        self.block.line("M30", out);
+        self.own(&self.ending.clone(), out);
         self.frame("END", out);
     }
 

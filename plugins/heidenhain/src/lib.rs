@@ -81,6 +81,8 @@ struct Heidenhain {
     rpm: Option<f64>,
     /// What takes the place of the next event's lines.
     instead: Option<String>,
+    /// Lines that end the program.
+    ending: String,
     /// A tool call that waits for its speed.
     tool: Option<ToolCall>,
     /// A tool has been called here, or the program calls none: the control knows the axis of the tool.
@@ -190,6 +192,7 @@ impl Dialect for Heidenhain {
             at: Vec::new(),
             rpm: None,
             instead: None,
+            ending: "M30".to_owned(),
             coolant_ends: [
                 (Coolant::Mist, own("coolant_mist_off")),
                 (Coolant::Through, own("coolant_through_off")),
@@ -270,6 +273,10 @@ impl Dialect for Heidenhain {
             let written = self.put(event, out);
             self.retract = own;
             return written;
+        }
+        if let Event::End = event {
+            self.ending = lines;
+            return self.put(event, out);
         }
         if let Event::ToolChange { .. } = event {
             self.call_tool(None, out)?;

@@ -134,7 +134,7 @@ impl<C: Control> Iso<C> {
 
     /// Lines of the user's own, and the event that they stand for: what it writes is dropped, what it puts in force is
     /// in force. For a retract they stand for the way alone: what the control must cancel is cancelled around them, in
-    /// its order.
+    /// its order; for the end in the place of M30 alone.
     fn write_instead(
         &mut self,
         lines: String,
@@ -146,6 +146,10 @@ impl<C: Control> Iso<C> {
             let written = self.write_plain(event, out);
             self.engine.retract_by(own);
             return written;
+        }
+        if let Event::End = event {
+            self.engine.end_by(lines)?;
+            return self.write_plain(event, out);
         }
         self.engine.own_lines(&lines, out)?;
         let block = self.engine.motion.block.clone();

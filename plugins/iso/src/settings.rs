@@ -329,4 +329,11 @@ impl Engine {
         }
         Ok(())
     }
+
+    /// Lines of the user's own that end the program.
+    pub(crate) fn end_by(&mut self, lines: String) -> Result<(), String> {
+        lines.lines().try_for_each(|line| crate::lines::fits(self.table, line))?;
+        self.end = lines;
+        Ok(())
+    }
 }

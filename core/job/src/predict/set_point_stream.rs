@@ -85,7 +85,7 @@ impl<'a> SetPointStream<'a> {
         }
         let report = run.program().report();
         findings.extend(report.notes.iter().cloned());
-        findings.extend(nc_program::unknown_words(name, report));
+        findings.extend(nc_program::unknown_words(name, report, machine));
         found::warn(machine, &mut findings);
         let listen = &mut |sample: &_| watch.sample(sample);
         let found = stages.finish(machine, name, report.blocks, listen)?;

@@ -9,7 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::echoes;
-use super::file::{ControlFile, MachineFile, Rapid, Tcp};
+use super::file::{ControlFile, MachineFile, Rapid, StockFile, Tcp};
 use super::keys::typed;
 use super::layers::{MachineSources, Merged, Source, overlay};
 use super::limits::{
@@ -274,6 +274,7 @@ struct AxisFreeRules {
     spindle: SpindleSpeeds,
     arcs: Arcs,
     word_rules: Vec<WordRule>,
+    stock: Option<[[f64; 3]; 2]>,
     program: ProgramRules,
     smoothing: SmoothingRules,
 }
@@ -359,6 +360,7 @@ impl Builder<'_> {
             tool_table,
             spindle: own.spindle,
             word_rules: own.word_rules,
+            stock: own.stock,
             smoothing: own.smoothing,
             program: own.program,
             accuracy: own.accuracy,
@@ -460,11 +462,37 @@ impl Builder<'_> {
         let control_point = self.control_point(&file.tool.control_point);
         let spindle = self.spindle(&file.spindle);
         let arcs = self.arcs(&file.control.get_ref().arcs);
-        let word_rules = self.word_rules(&file.cl);
-        let program = self.program(&file.program);
+        let word_rules = self.word_rules(&file.cl, file.control.get_ref().units);
+        let rotary = file.axis.get_ref().iter().filter(|(_, axis)| axis.get_ref().rotary.is_some());
+        let rotary = rotary.map(|(name, _)| name.clone()).collect();
+        let mut program = self.program(&file.program, rotary);
         let smoothing = file.program.smoothing.as_ref();
         let smoothing = smoothing.map(|file| self.smoothing(file)).unwrap_or_default();
-        AxisFreeRules { accuracy, control_point, spindle, arcs, word_rules, program, smoothing }
+        let stock = file.workpiece.stock.as_ref().and_then(|stock| self.stock(stock));
+        // Dialects tell of it among what is known ahead.
+        program.looks_ahead |= stock.is_some();
+        AxisFreeRules {
+            accuracy,
+            control_point,
+            spindle,
+            arcs,
+            word_rules,
+            stock,
+            program,
+            smoothing,
+        }
+    }
+
+    /// The corners of the raw part, least first, mm.
+    fn stock(&mut self, stock: &Spanned<StockFile>) -> Option<[[f64; 3]; 2]> {
+        let corners = [&stock.get_ref().min, &stock.get_ref().max];
+        let corners: [[f64; 3]; 2] = corners.map(|corner| self.vector(corner).into());
+        let flat = (0..3).any(|axis| corners[0][axis] >= corners[1][axis]);
+        if flat {
+            let message = "the stock has no room between its corners".to_owned();
+            self.fault("machine-stock", stock.span(), message, "max is above min in X, Y and Z");
+        }
+        (!flat).then_some(corners)
     }
 
     /// What is wrong with the tables that say nothing of axes.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use post_grammar::{Argument, MajorWord, Template, WordUsage};
 
 use super::build::Builder;
-use super::file::ClFile;
+use super::file::{ClFile, OutputUnits};
 
 /// The lines that stand in the program for one word of the CL file.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,7 +13,12 @@ pub struct WordRule {
     /// The major word, and the words behind its slash that the rule is for, in capitals: `SET`, `OFSETL`.
     words: Vec<String>,
     lines: Vec<Template>,
+    /// One unit of the program, mm.
+    program_unit: f64,
 }
+
+/// The lines of `[cl] functions`: a number of a CL file stands for a function, and is no length.
+const FUNCTIONS: [(&str, &str); 2] = [("AUXFUN", "M{n}"), ("PREFUN", "G{n+0*unit:1}")];
 
 impl WordRule {
     /// The words of a record that the rule speaks of; none if it is for another record.
@@ -29,12 +34,12 @@ impl WordRule {
         fits.then_some(self.words.len())
     }
 
-    /// The lines for a record that it [fits](Self::fits).
+    /// The lines for a record that it [fits](Self::fits), of a CL file whose unit is `cl_unit` mm.
     ///
     /// # Errors
     /// Why the record has no lines, as a sentence: a number is missing or no code, or the record says more than the
     /// rule knows of.
-    pub fn lines(&self, arguments: &[Argument]) -> Result<Vec<String>, String> {
+    pub fn lines(&self, arguments: &[Argument], cl_unit: f64) -> Result<Vec<String>, String> {
         let mut numbers = Vec::new();
         for argument in &arguments[self.words.len() - 1..] {
             match argument {
@@ -53,8 +58,23 @@ impl WordRule {
                 numbers.len()
             ));
         }
-        let fill = |line: &Template| line.fill(&numbers).map_err(|fault| fault.to_string());
+        let unit = cl_unit / self.program_unit;
+        if unit != 1.0
+            && let Some(place) = self.lines.iter().find_map(Template::without_unit)
+        {
+            return Err(format!(
+                "the CL file counts in units of {cl_unit} mm, the program in units of {} mm, and {{{place}}} in the rule for {} does not say which: {{n*unit:.3}} is a length in the program's units, {{n+0*unit:.3}} is none",
+                self.program_unit,
+                self.name()
+            ));
+        }
+        let fill = |line: &Template| line.fill(&numbers, unit).map_err(|fault| fault.to_string());
         self.lines.iter().map(fill).collect()
+    }
+
+    /// Its lines, the texts of each in their order; none stands for a number of the record.
+    pub(crate) fn texts(&self) -> impl Iterator<Item = Vec<Option<&str>>> {
+        self.lines.iter().map(|line| line.texts().collect())
     }
 
     /// The rule's name as the machine file has it.
@@ -64,7 +84,11 @@ impl WordRule {
 }
 
 impl Builder<'_> {
-    pub(super) fn word_rules(&mut self, file: &ClFile) -> Vec<WordRule> {
+    pub(super) fn word_rules(&mut self, file: &ClFile, units: OutputUnits) -> Vec<WordRule> {
+        let program_unit = match units {
+            OutputUnits::Mm => 1.0,
+            OutputUnits::Inch => 25.4,
+        };
         let mut rules: Vec<WordRule> = Vec::new();
         for (key, lines) in &file.words {
             let words: Vec<String> =
@@ -103,7 +127,14 @@ impl Builder<'_> {
                     "--allow WORD leaves a word out",
                 );
             }
-            rules.push(WordRule { words, lines: templates });
+            rules.push(WordRule { words, lines: templates, program_unit });
+        }
+        for (word, line) in FUNCTIONS.into_iter().filter(|_| file.functions) {
+            let words = vec![word.to_owned()];
+            let lines = Template::parse(line).into_iter().collect();
+            if rules.iter().all(|rule| rule.words != words) {
+                rules.push(WordRule { words, lines, program_unit });
+            }
         }
         rules
     }

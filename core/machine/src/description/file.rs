@@ -118,6 +118,19 @@ keys! {
         /// How the part is turned about its Z, degrees, right-handed: counter-clockwise for who looks down on it, from the
         /// machine's X to the part's with all axes at zero; 0 if not said, and `--turn DEG` for one job.
         turn: Option<KeyedNumber>,
+        /// The raw part, a box along the axes of its frame: for texts of the program, and for dialects that tell the control
+        /// of it. Where it is not said these take where the tool goes.
+        stock: Option<Spanned<StockFile>>,
+    }
+}
+
+keys! {
+    /// The raw part: a box.
+    StockFile {
+        /// Least X, Y and Z, mm, part frame.
+        min: [KeyedNumber; 3],
+        /// Largest X, Y and Z, mm, part frame.
+        max: [KeyedNumber; 3],
     }
 }
 
@@ -158,9 +171,11 @@ keys! {
     /// Words of the CL file that this machine has lines for.
     ClFile {
         /// The line of the program, or the lines, for a word that has no meaning to post: `OFSETL = "G{n+53}"`. Between
-        /// braces n is the first number behind the slash, n2 the second. `"SET/OFSETL"` is for one form of a word
-        /// alone.
+        /// braces n is the first number behind the slash, n2 the second; `{n:.3}` has decimals. `"SET/OFSETL"` is for one
+        /// form of a word alone.
         words: BTreeMap<Spanned<String>, Spanned<OneOrMoreLines>>,
+        /// `AUXFUN/n` becomes the line M n, `PREFUN/n` the line G n, unless `words` has other lines for them.
+        functions: bool = Bounds::OFF,
     }
 }
 

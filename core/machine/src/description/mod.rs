@@ -112,6 +112,8 @@ pub struct Machine {
     pub control: ControlRules,
     /// How fast its spindle turns.
     pub spindle: SpindleSpeeds,
+    /// The raw part, least and largest corner, mm, part frame; none if the file does not say.
+    pub stock: Option<[[f64; 3]; 2]>,
     /// Lines of the program for words of the CL file.
     pub word_rules: Vec<WordRule>,
     /// Tolerances within which the control may leave the path, by operation.

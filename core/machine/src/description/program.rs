@@ -6,16 +6,24 @@ use toml::Spanned;
 
 use super::Machine;
 use super::build::Builder;
+use super::cl_words::WordRule;
 use super::program_file::{ProgramFile, TextLines};
 use super::smoothing::SmoothingRules;
 use crate::diagnostic::{Diagnostic, SourcePlace};
 use crate::program_text::{
-    Extents, Facts, OperationFacts, ProgramFacts, TemplateFault, TextTemplate, ToolFacts,
+    CompensationFacts, DeclaredLines, Extents, Facts, OperationFacts, PlaneFacts, ProgramFacts,
+    SpindleFacts, TemplateFault, TextTemplate, ToolFacts,
 };
 
 /// A place of the program that a machine file has text for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextPlace {
+    /// Before all else.
+    FirstLines,
+    /// Behind all else.
+    LastLines,
+    /// The end of the program.
+    End,
     /// After the start.
     Header,
     /// Lines before the end.
@@ -30,6 +38,18 @@ pub enum TextPlace {
     BeforeOperation,
     /// The end of an operation.
     AfterOperation,
+    /// Before the rotary axes turn.
+    BeforeTurn,
+    /// After the rotary axes have turned.
+    AfterTurn,
+    /// Before a tilted plane.
+    BeforePlane,
+    /// After a tilted plane.
+    AfterPlane,
+    /// Before tool centre point control.
+    BeforeTcp,
+    /// After tool centre point control.
+    AfterTcp,
     /// A retract.
     Retract,
     /// Smoothing on.
@@ -42,6 +62,9 @@ impl TextPlace {
     /// The key of a machine file for it.
     pub fn key(self) -> &'static str {
         match self {
+            Self::FirstLines => "first_lines",
+            Self::LastLines => "last_lines",
+            Self::End => "end",
             Self::Header => "header",
             Self::Footer => "footer",
             Self::ToolChange => "tool_change",
@@ -49,6 +72,12 @@ impl TextPlace {
             Self::BetweenTools => "between_tools",
             Self::BeforeOperation => "before_operation",
             Self::AfterOperation => "after_operation",
+            Self::BeforeTurn => "before_turn",
+            Self::AfterTurn => "after_turn",
+            Self::BeforePlane => "before_plane",
+            Self::AfterPlane => "after_plane",
+            Self::BeforeTcp => "before_tcp",
+            Self::AfterTcp => "after_tcp",
             Self::Retract => "retract",
             Self::SmoothingOn => "smoothing_on",
             Self::SmoothingOff => "smoothing_off",
@@ -57,11 +86,12 @@ impl TextPlace {
 
     /// The lines stand in the place of the dialect's.
     pub fn replaces(self) -> bool {
-        matches!(self, Self::ToolChange | Self::Retract)
+        matches!(self, Self::ToolChange | Self::Retract | Self::End)
     }
 
-    /// Facts of the kind that its templates are filled with: all that may be known is.
-    fn sample(self) -> Facts {
+    /// Facts of the kind that its templates are filled with: all that may be known is, on a machine with these `rotary`
+    /// axes.
+    fn sample(self, rotary: &[String]) -> Facts {
         let tool = ToolFacts {
             number: 1,
             register: 1,
@@ -69,7 +99,13 @@ impl TextPlace {
             length: Some(100.0),
             diameter: Some(10.0),
             corner_radius: Some(1.0),
+            speed: Some(1000.0),
         };
+        let begins = matches!(self, Self::FirstLines | Self::Header);
+        let turned = matches!(
+            self,
+            Self::BeforeTurn | Self::AfterTurn | Self::BeforePlane | Self::BeforeTcp
+        );
         let some = |whether: bool| whether.then(|| tool.clone());
         let operation = matches!(self, Self::BeforeOperation | Self::AfterOperation);
         let smooth = self == Self::SmoothingOn;
@@ -85,14 +121,30 @@ impl TextPlace {
                 tools: Some(vec![tool.clone()]),
                 extents: Some(Extents::default()),
                 time: Some(60.0),
+                stock: Some(Extents::default()),
             },
-            tool: some(self != Self::Header),
+            tool: some(!begins),
             last_tool: some(matches!(
                 self,
                 Self::ToolChange | Self::AfterToolChange | Self::BetweenTools
             )),
-            next_tool: (self != Self::Header).then_some(2),
-            operation: operation.then(|| OperationFacts { name: "ROUGH".to_owned(), number: 1 }),
+            next_tool: (!begins).then_some(2),
+            operation: operation.then(|| OperationFacts {
+                name: "ROUGH".to_owned(),
+                number: 1,
+                feed: Some(600.0),
+            }),
+            spindle: (!begins).then(|| SpindleFacts {
+                speed: Some(1000.0),
+                surface_speed: Some(100.0),
+                direction: "cw".to_owned(),
+            }),
+            coolant: (!begins).then(|| "flood".to_owned()),
+            work_offset: (!begins).then_some(1),
+            compensation: (!begins)
+                .then(|| CompensationFacts { side: "left".to_owned(), register: 1 }),
+            plane: (!begins).then(PlaneFacts::default),
+            rotary: turned.then(|| rotary.iter().map(|name| (name.clone(), 0.0)).collect()),
             tolerance: smooth.then_some(0.01),
             axis_tolerance: smooth.then_some(0.05),
             line: 1,
@@ -139,8 +191,10 @@ pub struct ProgramRules {
     pub preselect: bool,
     /// Ending of the program's file, without a dot.
     pub extension: Option<String>,
-    /// Some template speaks of what is known ahead alone: tools, extents, time, the next tool.
+    /// Some template speaks of what is known ahead alone: tools, extents, time, the next tool, speeds and feeds.
     pub looks_ahead: bool,
+    /// The names of the rotary axes.
+    rotary: Vec<String>,
 }
 
 impl ProgramRules {
@@ -149,9 +203,17 @@ impl ProgramRules {
         self.texts.iter().find(|text| text.at == at)
     }
 
+    /// Has the program end by this word of the control, in the place of the dialect's.
+    pub fn end_by(&mut self, word: &str) {
+        if let Ok(template) = TextTemplate::parse(word) {
+            self.texts.push(ProgramText { at: TextPlace::End, template, places: Vec::new() });
+        }
+    }
+
     /// The words of all lines of the user's own, facts of samples in them.
     pub fn own_words(&self) -> impl Iterator<Item = String> {
-        let lines = self.texts.iter().filter_map(|text| text.lines(&text.at.sample()).ok());
+        let lines =
+            self.texts.iter().filter_map(|text| text.lines(&text.at.sample(&self.rotary)).ok());
         let words = lines.flatten().flat_map(|line| {
             let words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
             words
@@ -161,7 +223,14 @@ impl ProgramRules {
 }
 
 /// Facts that a first pass over the CL file finds.
-const AHEAD: [&str; 4] = ["program.tools", "program.extents", "program.time", "next_tool"];
+const AHEAD: [&str; 6] = [
+    "program.tools",
+    "program.extents",
+    "program.time",
+    "next_tool",
+    "tool.speed",
+    "operation.feed",
+];
 
 impl Machine {
     /// The machine without text of its own: for a pass whose program nobody reads, and in which not all is known that a
@@ -174,16 +243,40 @@ impl Machine {
         plain.program = ProgramRules::default();
         plain
     }
+
+    /// The lines that its file has of its own: templates of `[program]`, rules of `[cl.words]`.
+    pub fn declared_lines(&self) -> DeclaredLines {
+        let mut declared = DeclaredLines::default();
+        for text in &self.program.texts {
+            match text.at {
+                TextPlace::End => declared.end(&text.template),
+                _ => declared.template(&text.template),
+            }
+        }
+        self.word_rules.iter().flat_map(WordRule::texts).for_each(|line| declared.line(line));
+        declared
+    }
 }
 
 impl Builder<'_> {
-    pub(super) fn program(&mut self, file: &ProgramFile) -> ProgramRules {
+    /// `rotary` are the names of the rotary axes.
+    pub(super) fn program(&mut self, file: &ProgramFile, rotary: Vec<String>) -> ProgramRules {
         let mut rules = ProgramRules {
             preselect: file.preselect,
             looks_ahead: file.preselect,
+            rotary,
             ..ProgramRules::default()
         };
+        self.texts(file, &mut rules);
+        self.extension(file, &mut rules);
+        rules
+    }
+
+    fn texts(&mut self, file: &ProgramFile, rules: &mut ProgramRules) {
         for (at, lines) in [
+            (TextPlace::FirstLines, &file.first_lines),
+            (TextPlace::LastLines, &file.last_lines),
+            (TextPlace::End, &file.end),
             (TextPlace::Header, &file.header),
             (TextPlace::Footer, &file.footer),
             (TextPlace::ToolChange, &file.tool_change),
@@ -191,6 +284,12 @@ impl Builder<'_> {
             (TextPlace::BetweenTools, &file.between_tools),
             (TextPlace::BeforeOperation, &file.before_operation),
             (TextPlace::AfterOperation, &file.after_operation),
+            (TextPlace::BeforeTurn, &file.before_turn),
+            (TextPlace::AfterTurn, &file.after_turn),
+            (TextPlace::BeforePlane, &file.before_plane),
+            (TextPlace::AfterPlane, &file.after_plane),
+            (TextPlace::BeforeTcp, &file.before_tcp),
+            (TextPlace::AfterTcp, &file.after_tcp),
             (TextPlace::Retract, &file.retract),
             (TextPlace::SmoothingOn, &file.smoothing_on),
             (TextPlace::SmoothingOff, &file.smoothing_off),
@@ -200,7 +299,8 @@ impl Builder<'_> {
                 lines.get_ref().0.iter().map(|(line, _)| line.as_str()).collect();
             let source = source.join("\n");
             rules.looks_ahead |= AHEAD.iter().any(|fact| source.contains(fact));
-            rules.texts.extend(self.text(at, lines, &source));
+            let text = self.text(at, lines, &source, &rules.rotary);
+            rules.texts.extend(text);
         }
         for (on, off) in [
             (TextPlace::SmoothingOn, TextPlace::SmoothingOff),
@@ -212,6 +312,9 @@ impl Builder<'_> {
                 self.faults.push(Diagnostic::error("program-text", message).at(place));
             }
         }
+    }
+
+    fn extension(&mut self, file: &ProgramFile, rules: &mut ProgramRules) {
         if let Some(extension) = &file.extension {
             let name = extension.get_ref();
             let plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
@@ -222,7 +325,6 @@ impl Builder<'_> {
             }
             rules.extension = Some(name.clone());
         }
-        rules
     }
 
     /// A template, filled once with facts of the kind that it will be filled with.
@@ -231,6 +333,7 @@ impl Builder<'_> {
         at: TextPlace,
         lines: &Spanned<TextLines>,
         source: &str,
+        rotary: &[String],
     ) -> Option<ProgramText> {
         let mut begin = 0;
         let spans: Vec<LineSpans> = lines
@@ -244,7 +347,7 @@ impl Builder<'_> {
             })
             .collect();
         let read = TextTemplate::parse(source);
-        let read = read.and_then(|template| template.lines(&at.sample()).map(|_| template));
+        let read = read.and_then(|template| template.lines(&at.sample(rotary)).map(|_| template));
         match read {
             Ok(template) => Some(ProgramText {
                 at,

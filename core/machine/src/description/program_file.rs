@@ -24,6 +24,12 @@ keys! {
     ProgramFile {
         /// By how much the control may leave the path; without it it keeps the path as it does by default.
         smoothing: Option<SmoothingFile>,
+        /// The very first lines of the file, before all that the dialect writes; they get no block numbers.
+        first_lines: Option<Spanned<TextLines>>,
+        /// The very last lines of the file, likewise.
+        last_lines: Option<Spanned<TextLines>>,
+        /// Lines in the place of those by which the dialect ends the program (M30), such as M99 or M17.
+        end: Option<Spanned<TextLines>>,
         /// Lines behind the program's start.
         header: Option<Spanned<TextLines>>,
         /// Lines before the program's end.
@@ -38,6 +44,18 @@ keys! {
         before_operation: Option<Spanned<TextLines>>,
         /// Lines at the end of an operation.
         after_operation: Option<Spanned<TextLines>>,
+        /// Lines before the rotary axes turn to a first position, the tool retracted.
+        before_turn: Option<Spanned<TextLines>>,
+        /// Lines behind that turn, the axes clamped.
+        after_turn: Option<Spanned<TextLines>>,
+        /// Lines before a tilted plane begins, the tool retracted.
+        before_plane: Option<Spanned<TextLines>>,
+        /// Lines behind the end of a tilted plane, the tool retracted.
+        after_plane: Option<Spanned<TextLines>>,
+        /// Lines before a first position that the control comes to with tool centre point control.
+        before_tcp: Option<Spanned<TextLines>>,
+        /// Lines behind the retract that ends tool centre point control.
+        after_tcp: Option<Spanned<TextLines>>,
         /// Lines in the place of those that the dialect writes to retract the tool.
         retract: Option<Spanned<TextLines>>,
         /// Lines that switch smoothing on, in the place of the dialect's.

@@ -4,8 +4,13 @@
 //! `for` over lists of the facts. There is nothing to define, to include or to repeat; what is printed is a number or a
 //! text of the facts, and what is not known is an error, never an empty place.
 
+mod declared;
 mod facts;
 mod template;
 
-pub use facts::{Extents, Facts, OperationFacts, ProgramFacts, ToolFacts};
+pub use declared::DeclaredLines;
+pub use facts::{
+    CompensationFacts, Extents, Facts, OperationFacts, PlaneFacts, ProgramFacts, SpindleFacts,
+    ToolFacts,
+};
 pub use template::{TemplateFault, TextTemplate};

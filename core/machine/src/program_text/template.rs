@@ -64,6 +64,11 @@ impl TextTemplate {
             .map_err(|error| fault(&error))
     }
 
+    /// The text that it was read from.
+    pub(super) fn source(&self) -> &str {
+        &self.source
+    }
+
     /// Its lines with these facts; those without a letter are left out.
     ///
     /// # Errors

@@ -7,6 +7,7 @@
 mod batch;
 mod chains;
 mod check;
+mod declared;
 mod derivatives;
 mod freedom;
 mod kept_tip;

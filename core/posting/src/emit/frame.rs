@@ -1,7 +1,7 @@
 //! The frame around the moves: retracts, positions of the machine, the way to a first position.
 
 use post_machine::axis_words::{self, AxisWords, WordValues};
-use post_machine::description::{Machine, TextPlace};
+use post_machine::description::{Machine, Tcp, TextPlace};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Capabilities, Coolant, Event, Spindle};
@@ -46,7 +46,7 @@ impl EmitStage<'_> {
         if std::mem::replace(&mut self.clear, true) {
             return;
         }
-        if self.compensation.on {
+        if self.compensation.commanded.is_some() {
             self.compensation.left.get_or_insert(line);
         }
         self.keep_tip(line, false);
@@ -55,6 +55,10 @@ impl EmitStage<'_> {
         self.go(line, &machine.frame.retract, |axes, words| Event::Retract { axes, words });
         if std::mem::take(&mut self.plane.on) {
             self.writer.push(line, Event::PlaneOff);
+            self.say(line, TextPlace::AfterPlane);
+        }
+        if std::mem::take(&mut self.came_with_tcp) {
+            self.say(line, TextPlace::AfterTcp);
         }
         match machine.frame.leave {
             // One after the other.
@@ -292,7 +296,9 @@ impl EmitStage<'_> {
             self.findings.add(warning);
         }
         self.say(line, TextPlace::Footer);
+        self.instead(line, TextPlace::End);
         self.writer.push(line, Event::End);
+        self.say_bare(line, TextPlace::LastLines);
     }
 
     /// The first position after the start, a tool change or a retract: the rotary axes turn with the tool clear of the
@@ -323,17 +329,20 @@ impl EmitStage<'_> {
             self.set_clamp(line, joint, false, true);
         }
         if turns {
+            self.say_turned(line, TextPlace::BeforeTurn, words);
             self.writer.push(line, Event::Turn { words });
             for joint in 0..self.machine.axes.len() {
                 if self.machine.axes[joint].joint.rotary {
                     self.set_clamp(line, joint, true, false);
                 }
             }
+            self.say_turned(line, TextPlace::AfterTurn, words);
         }
         self.smooth(line);
         // In a plane the length alone is in force.
         if self.plane.wanted.is_some() {
             self.keep_tip(line, false);
+            self.say_turned(line, TextPlace::BeforePlane, words);
         }
         if let Some(plane) = &self.plane.wanted {
             self.plane.on = true;
@@ -349,6 +358,10 @@ impl EmitStage<'_> {
             );
         }
         if !self.plane.on {
+            self.came_with_tcp = turns && self.machine.control.tcp == Tcp::Control;
+            if self.came_with_tcp {
+                self.say_turned(line, TextPlace::BeforeTcp, words);
+            }
             self.keep_tip(line, true);
         }
         if block.reason != BlockReason::Above {

@@ -67,6 +67,8 @@ pub(crate) struct EmitStage<'a> {
     smoothing: SmoothingState,
     /// Last event of a dialect that has one for keeping the tip.
     keeps_tip: Option<bool>,
+    /// The tool came near with the control keeping the tip.
+    came_with_tcp: bool,
     /// The head in use, by its place among the machine's, once the CL file has named one.
     head: Option<usize>,
     /// The head that the tool was used with last came to the part with its own or the program's work offset.
@@ -88,8 +90,7 @@ impl<'a> EmitStage<'a> {
         findings: &Findings,
     ) -> Self {
         let words = AxisWords::new(machine, dialect.format());
-        let mut writer = EventWriter::new(dialect, output);
-        writer.push(0, Event::Start);
+        let writer = EventWriter::new(dialect, output);
         let mut emit = Self {
             machine,
             base: machine,
@@ -111,6 +112,7 @@ impl<'a> EmitStage<'a> {
             told_subprogram: false,
             smoothing: SmoothingState { wanted: machine.smoothing.default, on: None },
             keeps_tip: None,
+            came_with_tcp: false,
             head: None,
             worked: false,
             compensation: CompensationState::default(),
@@ -118,6 +120,8 @@ impl<'a> EmitStage<'a> {
             observers: None,
             findings: findings.clone(),
         };
+        emit.say_bare(0, TextPlace::FirstLines);
+        emit.writer.push(0, Event::Start);
         if let Some(text) = &job.remark {
             emit.writer.push(0, Event::Comment { text });
         }
@@ -267,9 +271,9 @@ impl<'a> EmitStage<'a> {
 
     /// Cutter compensation. None begins on the way down to a first position.
     fn compensate(&mut self, line: u64, compensation: Compensation) {
-        self.compensation.on = compensation != Compensation::Off;
-        self.compensation.waits =
-            Some(compensation).filter(|it| self.clear && *it != Compensation::Off);
+        self.compensation.commanded =
+            Some(compensation).filter(|asked| *asked != Compensation::Off);
+        self.compensation.waits = self.compensation.commanded.filter(|_| self.clear);
         if self.compensation.waits.is_none() {
             self.writer.push(line, Event::Compensate(compensation));
         }

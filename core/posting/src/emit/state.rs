@@ -64,8 +64,8 @@ pub(super) struct SmoothingState {
 pub(super) struct CompensationState {
     /// It begins once the tool is at the part.
     pub waits: Option<Compensation>,
-    /// It is on.
-    pub on: bool,
+    /// That which the CL file last asked for; off is none.
+    pub commanded: Option<Compensation>,
     /// The line on which the tool left the part with it on: not reported yet.
     pub left: Option<u64>,
 }

@@ -10,6 +10,8 @@ use crate::observer::TextSink;
 pub(super) struct EventBatch {
     /// The events.
     pub events: Batch,
+    /// Lines of the user's own that no dialect sees: before the text of the events, and behind it.
+    pub bare: [String; 2],
     /// How much work they are, in blocks.
     pub work: usize,
     /// Its place among the batches, from 1.
@@ -77,7 +79,9 @@ impl<'a> TextWriter<'a> {
         let Self { text, ends, .. } = self;
         text.clear();
         ends.clear();
+        text.push_str(&batch.bare[0]);
         let written = self.dialect.write_batch(&batch.events, text, ends);
+        text.push_str(&batch.bare[1]);
         for (line, mark) in batch.marks_lines.iter_mut().zip(batch.marks) {
             *line = mark.map(|index| {
                 let end = ends.get(index).copied().unwrap_or(text.len());

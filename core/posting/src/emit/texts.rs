@@ -1,9 +1,14 @@
 //! Text of the machine file's own: what its templates are filled with, and where their lines come.
 
+use post_machine::axis_words;
 use post_machine::description::{Machine, OutputUnits, ProgramRules, Smoothing, TextPlace};
 use post_machine::diagnostic::Diagnostic;
-use post_machine::program_text::{Extents, Facts, OperationFacts, ProgramFacts, ToolFacts};
-use post_plugin::Event;
+use post_machine::program_text::{
+    CompensationFacts, Extents, Facts, OperationFacts, PlaneFacts, ProgramFacts, SpindleFacts,
+    ToolFacts,
+};
+use post_machine::tilted_plane::TiltedPlane;
+use post_plugin::{Compensation, Coolant, Event, Spindle, SpindleSense};
 
 use super::EmitStage;
 use crate::findings::Findings;
@@ -16,6 +21,10 @@ pub(super) struct ProgramTexts<'a> {
     facts: Facts,
     /// Numbers of the tools in the order of their changes, if they are known ahead.
     changes: Vec<u32>,
+    /// The speed that each first gets, likewise.
+    speeds: Vec<Option<f64>>,
+    /// Largest feed of each operation, likewise.
+    feeds: Vec<Option<f64>>,
     /// Changes so far.
     changed: usize,
     operations: u32,
@@ -41,6 +50,7 @@ impl<'a> ProgramTexts<'a> {
             tools: ahead.map(|ahead| ahead.tools().into_iter().map(tool_facts).collect()),
             extents: ahead.and_then(|ahead| ahead.extents).map(|[min, max]| Extents { min, max }),
             time: ahead.and_then(|ahead| ahead.time_s),
+            stock: machine.stock.map(|[min, max]| Extents { min, max }),
         };
         Self {
             rules: &machine.program,
@@ -48,6 +58,8 @@ impl<'a> ProgramTexts<'a> {
             changes: ahead
                 .map(|ahead| ahead.changes.iter().map(|tool| tool.number).collect())
                 .unwrap_or_default(),
+            speeds: ahead.map(|ahead| ahead.speeds.clone()).unwrap_or_default(),
+            feeds: ahead.map(|ahead| ahead.feeds.clone()).unwrap_or_default(),
             changed: 0,
             operations: 0,
             faults: Vec::new(),
@@ -81,8 +93,9 @@ impl<'a> ProgramTexts<'a> {
 
     /// A tool is about to come.
     pub(super) fn tool(&mut self, tool: &ToolChange) {
+        let speed = self.speeds.get(self.changed).copied().flatten();
         self.changed += 1;
-        self.facts.last_tool = self.facts.tool.replace(tool_facts(tool));
+        self.facts.last_tool = self.facts.tool.replace(ToolFacts { speed, ..tool_facts(tool) });
         let behind = self.changes.get(self.changed..).unwrap_or_default();
         self.facts.next_tool = behind.iter().copied().find(|next| *next != tool.number);
     }
@@ -100,8 +113,12 @@ impl<'a> ProgramTexts<'a> {
     /// An operation begins, or none is open any more.
     pub(super) fn operation(&mut self, name: Option<&str>) {
         self.operations += u32::from(name.is_some());
-        self.facts.operation =
-            name.map(|name| OperationFacts { name: name.to_owned(), number: self.operations });
+        let feed = self.feeds.get(self.operations.saturating_sub(1) as usize).copied().flatten();
+        self.facts.operation = name.map(|name| OperationFacts {
+            name: name.to_owned(),
+            number: self.operations,
+            feed,
+        });
     }
 
     /// The warning that a text for operations was written nowhere, where the program has none.
@@ -139,13 +156,83 @@ fn tool_facts(tool: &ToolChange) -> ToolFacts {
         length: tool.length,
         diameter: tool.diameter,
         corner_radius: tool.corner_radius,
+        speed: None,
     }
 }
 
+fn spindle_facts(event: &Event<'_>) -> Option<SpindleFacts> {
+    let (speed, surface_speed, sense) = match *event {
+        Event::Spindle(Spindle::On { rpm, sense }) => (Some(rpm), None, sense),
+        Event::SurfaceSpeed { speed, sense, .. } => (None, Some(speed), sense),
+        _ => return None,
+    };
+    let direction = match sense {
+        SpindleSense::Clockwise => "cw",
+        SpindleSense::CounterClockwise => "ccw",
+    };
+    Some(SpindleFacts { speed, surface_speed, direction: direction.to_owned() })
+}
+
+fn coolant_name(coolant: Coolant) -> Option<String> {
+    let name = match coolant {
+        Coolant::Off => return None,
+        Coolant::Flood => "flood",
+        Coolant::Mist => "mist",
+        Coolant::Through => "through",
+        Coolant::Air => "air",
+    };
+    Some(name.to_owned())
+}
+
+fn compensation_facts(compensation: Compensation) -> Option<CompensationFacts> {
+    let (side, register) = match compensation {
+        Compensation::Off => return None,
+        Compensation::Left { register } => ("left", register),
+        Compensation::Right { register } => ("right", register),
+    };
+    Some(CompensationFacts { side: side.to_owned(), register })
+}
+
+fn plane_facts(plane: &TiltedPlane) -> PlaneFacts {
+    PlaneFacts { angles: plane.angles, origin: plane.origin.into(), normal: plane.normal().into() }
+}
+
 impl EmitStage<'_> {
+    /// The lines that the machine file has for this place, filled with what is known here.
+    fn text(&mut self, line: u64, at: TextPlace) -> Option<Vec<String>> {
+        self.texts.rules.text(at)?;
+        let facts = &mut self.texts.facts;
+        facts.spindle = self.spindle.commanded.as_ref().and_then(spindle_facts);
+        facts.coolant = self.coolant.commanded.and_then(coolant_name);
+        facts.work_offset = self.offset;
+        facts.compensation = self.compensation.commanded.and_then(compensation_facts);
+        facts.plane = self.plane.wanted.as_deref().map(plane_facts);
+        self.texts.lines(line, at)
+    }
+
+    /// Lines behind or before a turn of the rotary axes to `words`.
+    pub(super) fn say_turned(&mut self, line: u64, at: TextPlace, words: &[f64]) {
+        if self.texts.rules.text(at).is_none() {
+            return;
+        }
+        let places = axis_words::order(self.machine).into_iter().zip(words);
+        let named = places.map(|(place, word)| (&self.machine.axes[place], *word));
+        let rotary = named.filter(|(axis, _)| axis.joint.rotary);
+        self.texts.facts.rotary =
+            Some(rotary.map(|(axis, word)| (axis.name.clone(), word)).collect());
+        self.say(line, at);
+        self.texts.facts.rotary = None;
+    }
+
+    /// Lines of the file that are no part of the program: the very first and last.
+    pub(super) fn say_bare(&mut self, line: u64, at: TextPlace) {
+        let lines = self.text(line, at).unwrap_or_default();
+        self.writer.bare_lines(&lines);
+    }
+
     /// The lines that the machine file has for this place, numbered like any other; false if it has none.
     pub(super) fn say(&mut self, line: u64, at: TextPlace) -> bool {
-        let Some(lines) = self.texts.lines(line, at) else {
+        let Some(lines) = self.text(line, at) else {
             return false;
         };
         for text in &lines {
@@ -156,7 +243,7 @@ impl EmitStage<'_> {
 
     /// The lines that stand in the place of those that the next event would write, if the machine file has any.
     pub(super) fn instead(&mut self, line: u64, at: TextPlace) {
-        let lines = self.texts.lines(line, at).unwrap_or_default();
+        let lines = self.text(line, at).unwrap_or_default();
         if !lines.is_empty() {
             let text = lines.join("\n");
             self.writer.push(line, Event::Instead { text: &text });

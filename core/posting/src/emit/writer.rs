@@ -140,6 +140,16 @@ impl<'a> EventWriter<'a> {
         }
     }
 
+    /// Writes lines of the user's own as they are: before all events, or behind those of the batch in hand.
+    pub(super) fn bare_lines(&mut self, lines: &[String]) {
+        let begins = self.count == 0 && self.batch.events.is_empty();
+        let bare = &mut self.batch.bare[usize::from(!begins)];
+        for line in lines {
+            bare.push_str(line);
+            bare.push('\n');
+        }
+    }
+
     /// First line of the CL file whose events are no text yet.
     pub(super) fn first_line(&self) -> Option<u64> {
         match &self.text {
@@ -216,6 +226,7 @@ fn came_back(
     extremes.written(batch.number, batch.marks_lines);
     *lines = batch.lines_behind;
     batch.events.clear();
+    batch.bare.iter_mut().for_each(String::clear);
     batch.work = 0;
     batch.fault.take()
 }

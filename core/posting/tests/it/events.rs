@@ -290,6 +290,43 @@ tolerance = 0.02
     assert_eq!(event(&run, "Preselect"), "Preselect { number: 5 }");
 }
 
+/// Lines around turns, planes and tool centre point control, with the facts of their place; the very first and last lines
+/// are seen by no dialect.
+#[test]
+fn texts_stand_around_turns_planes_and_tool_centre_point_control() {
+    let more = r#"
+[program]
+first_lines = "(FIRST {{ program.name }})"
+last_lines = "(LAST)"
+end = "M99"
+before_turn = "(TO B{{ rotary.B|fixed(1) }} C{{ rotary.C|fixed(1) }})"
+after_turn = "(TURNED)"
+before_plane = "(PLANE {{ plane.angles[1]|fixed(1) }})"
+after_plane = "(NO PLANE)"
+before_tcp = "(TCP {{ spindle.speed|fixed(0) }} {{ spindle.direction }} {{ coolant }})"
+after_tcp = "(NO TCP)"
+"#;
+    let dmu = machine("dmu50", more);
+    let facts = JobFacts { program: "PART".to_owned(), ..JobFacts::default() };
+    let leans = "RAPID;GOTO/0,0,50,0,0.5,0.8660254;FEDRAT/100,MMPM;GOTO/0,0,10,0,0.5,0.8660254";
+    let cl =
+        format!("LOADTL/1;SPINDL/3000,RPM,CCLW;COOLNT/MIST;{leans};GOTO/5,0,10,0,0.4,0.9165151");
+    let run = posted_as(&dmu, Capabilities::INSTEAD, &cl, facts).good("texts");
+    let told: Vec<&str> = run
+        .asked
+        .iter()
+        .filter_map(|asked| match asked.kind {
+            "Word" | "Instead" => asked.event.split('"').nth(1),
+            kind => ["Turn", "Position", "Retract", "End"].into_iter().find(|known| *known == kind),
+        })
+        .collect();
+    assert_eq!(
+        told.join("; "),
+        "Retract; Retract; (TO B30.0 C90.0); Turn; (TURNED); (TCP 3000 ccw mist); Position; \
+         Retract; (NO TCP); M99; End"
+    );
+}
+
 /// What a template asks for and nobody knows is told with its place in the machine file, and there is no program.
 #[test]
 fn a_fact_that_nobody_knows_is_an_error() {

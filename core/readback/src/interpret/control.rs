@@ -100,6 +100,7 @@ impl ControlState {
         let mut control = Self {
             file: file.to_owned(),
             lexicon: lexicon.clone(),
+            declared: machine.declared_lines(),
             offsets: offsets.clone(),
             machine: Arc::new(machine.clone()),
             heads,

@@ -124,6 +124,19 @@ impl Runner {
     }
 }
 
+/// Codes of refusals of blocks whose words are not run; all others say what a motion lacks.
+const NOT_RUN: [&str; 9] = [
+    "nc-conversational",
+    "nc-cycle",
+    "nc-expression",
+    "nc-flow",
+    "nc-machine",
+    "nc-subprogram",
+    "nc-variable",
+    "nc-word",
+    "syntax",
+];
+
 /// Runs a program block by block.
 #[derive(Debug)]
 pub struct Interpreter<R> {
@@ -167,12 +180,48 @@ impl<R: Read + Seek> Interpreter<R> {
     }
 
     /// Runs the next block and puts what it did after what `done` holds; false at the end. It can be called again after
-    /// an error, and goes on with the block after.
+    /// an error, and goes on with the block after. A block that is not run is passed where the machine file declares its
+    /// line.
     ///
     /// # Errors
     /// What stands there that cannot be understood, or is not run, with its place.
     #[inline]
     pub fn next(&mut self, done: &mut Vec<BlockEffect>) -> Result<bool, Box<Diagnostic>> {
+        match self.step(done) {
+            Err(fault) => self.pass_declared(fault, done),
+            more => more,
+        }
+    }
+
+    /// The refused block is one of the machine file's own lines: that is noted, and what follows begins where it stood. One
+    /// that ends the program, which nobody has called here, ends it.
+    #[cold]
+    fn pass_declared(
+        &mut self,
+        fault: Box<Diagnostic>,
+        done: &mut Vec<BlockEffect>,
+    ) -> Result<bool, Box<Diagnostic>> {
+        let control = &mut self.runner.control;
+        let place = fault.place.as_ref().filter(|_| NOT_RUN.contains(&fault.code));
+        let Some(place) = place.filter(|place| control.declared.has_line(&place.text)) else {
+            return Err(fault);
+        };
+        if control.declared.has_end(&place.text) {
+            std::mem::swap(done, &mut control.done);
+            control.end();
+            std::mem::swap(done, &mut control.done);
+            return Ok(true);
+        }
+        let message = format!(
+            "`{}` is a line of the machine file's own: what it does is not known, and the program is taken to go on from where it stood",
+            place.text.trim()
+        );
+        control.note(Diagnostic::warning("nc-own-line", message).at(Some(place.clone())));
+        Ok(true)
+    }
+
+    #[inline]
+    fn step(&mut self, done: &mut Vec<BlockEffect>) -> Result<bool, Box<Diagnostic>> {
         if !self.run.is_over() || self.begins_run() {
             let control = &mut self.runner.control;
             std::mem::swap(done, &mut control.done);

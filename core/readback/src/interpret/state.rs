@@ -5,6 +5,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_machine::kinematics::{Joints, Solver, Turns};
+use post_machine::program_text::DeclaredLines;
 
 use super::ReadReport;
 use super::cycles::CycleState;
@@ -26,6 +27,8 @@ pub(super) struct ControlState {
     pub file: String,
     /// Which word switches what.
     pub lexicon: Lexicon,
+    /// The lines that the machine file has of its own.
+    pub declared: DeclaredLines,
     /// What stands in the control's tables.
     pub offsets: Offsets,
     /// The machine with the head that it has now.

@@ -132,6 +132,8 @@ fn labels_programs_and_subprograms_are_found() {
 #[test]
 fn listings_around_programs_are_skipped_and_counted() {
     for (text, syntax, lines, header, trailer) in [
+        ("(OURS)\n%\nO1\nX1\nM30\n%\n", hash(), vec![3, 4, 5], 1, 0),
+        ("(OURS)\nX1\nM30\n%\nO2\nX2\n%\n", hash(), vec![1, 2, 3, 4, 5, 6], 0, 0),
         ("Listing of: me\n\n%\nO1\nX1\nM30\n%\nEnd of listing: 5\n\n", hash(), vec![4, 5, 6], 2, 2),
         ("\u{FEFF}Listing: me\n%\nX1\n", hash(), vec![3], 1, 0),
         // A program that lacks its first `%` is no listing, nor is one with a fault in its second line.

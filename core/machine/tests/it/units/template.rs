@@ -16,7 +16,11 @@ fn facts() -> Facts {
             ..ProgramFacts::default()
         },
         tool: Some(tool(7)),
-        operation: Some(OperationFacts { name: "A) M30 (\u{2028}B".to_owned(), number: 2 }),
+        operation: Some(OperationFacts {
+            name: "A) M30 (\u{2028}B".to_owned(),
+            number: 2,
+            ..OperationFacts::default()
+        }),
         ..Facts::default()
     }
 }

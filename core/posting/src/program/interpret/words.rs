@@ -115,7 +115,7 @@ impl ClInterpreter {
         let Some((_, rule)) = fitting.max_by_key(|(words, _)| *words) else {
             return false;
         };
-        match rule.lines(arguments) {
+        match rule.lines(arguments, self.scale) {
             Ok(lines) => {
                 self.load_told(record, emit);
                 for line in lines {

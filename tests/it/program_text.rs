@@ -263,6 +263,59 @@ fn the_end_of_a_program_is_the_machine_file_s_in_each_language() {
     }
 }
 
+/// Operations are programs that end as subprograms do, and one calls them in their order.
+#[test]
+fn a_program_calls_those_of_the_operations() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("part.cls"), CL).unwrap();
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    let called = ["part.cls", "-o", "a.nc", "--split", "operations", "--caller", "--verify"];
+    let numbered = [&called[..], &["--number", "100"]].concat();
+    good(post(folder.path(), "extends = \"vmc\"\n", &numbered, ""));
+    let main = read("a.nc");
+    for line in
+        ["O0100 (A)", "(ROUGH)\nM98 P101", "(FINISH)\nM98 P102", "(CHAMFER)\nM98 P103\nM5\nM9\nM30"]
+    {
+        assert!(main.contains(&format!("{line}\n")), "{line}\n{main}");
+    }
+    for (name, number) in [("a-1.nc", "O0101"), ("a-2.nc", "O0102"), ("a-3.nc", "O0103")] {
+        let program = read(name);
+        assert!(program.contains(number) && program.ends_with("\nM99\n%\n"), "{program}");
+        assert!(!program.contains("M30"), "{program}");
+    }
+    // All in one file they are one program of the control, and that does what the CL file asks for.
+    let tapes = ["a-1.nc", "a-2.nc", "a-3.nc"].map(|name| read(name).replacen("%\n", "", 1));
+    let whole = [&main, &tapes[0], &tapes[1], &tapes[2]].map(|tape| tape.trim_end_matches("%\n"));
+    fs::write(folder.path().join("all.nc"), whole.concat() + "%\n").unwrap();
+    let verb = ["verify", "-q", "-m", "mine.toml", "--tool-length", "100"];
+    let held = run(
+        command().current_dir(folder.path()).args(verb).args(["--against", "part.cls", "all.nc"]),
+        b"",
+    );
+    assert_eq!(held.code, 0, "{}", held.err);
+
+    good(post(folder.path(), "extends = \"ac-trunnion-840d\"\n", &called, ""));
+    let main = read("a.nc");
+    assert!(
+        main.contains(" a_1\n") && main.contains(" a_3\n") && main.ends_with("M30\n"),
+        "{main}"
+    );
+    assert!(read("a_2.nc").ends_with(" M17\n"));
+    // A control whose programs end otherwise, one program, and a machine file that says how.
+    for (machine, arguments, why) in [
+        ("dmu50", &called[..], "says no word that ends a program"),
+        ("vmc", &["part.cls", "-o", "a.nc", "--caller"], "--caller calls several programs"),
+    ] {
+        let done = post(folder.path(), &format!("extends = \"{machine}\"\n"), arguments, "");
+        assert!(done.code == 1 && done.err.contains(why), "{}", done.err);
+    }
+    let text = "extends = \"dmu50\"\n[program]\nend = \"; CALLED\"\n";
+    good(post(folder.path(), text, &called, ""));
+    let main = read("a.nc");
+    assert!(main.contains("CALL PGM a_1") || main.contains("CALL PGM A_1"), "{main}");
+    assert!(main.contains(" M30\n") && !read("a_1.nc").contains("M30"), "{main}");
+}
+
 /// The raw part is told to the control by its dialect, or by lines of the machine file.
 #[test]
 fn the_stock_stands_in_the_program() {

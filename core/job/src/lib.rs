@@ -4,6 +4,7 @@ mod axes;
 pub mod batch;
 mod beside;
 mod blocks_ahead;
+pub mod caller;
 mod columns;
 pub mod commission_program;
 pub mod compensate;

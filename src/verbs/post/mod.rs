@@ -9,6 +9,7 @@ use clap::Args;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Severity};
 
+use parts::Caller;
 use post_cli::arguments::flag_values::file;
 use post_cli::arguments::{Flags, JobArguments};
 use post_cli::terminal;
@@ -23,7 +24,7 @@ use post_job::settings::{
     JobSettings, MakingSettings, OutputSettings, ReportSettings, ThreadSettings,
 };
 use post_job::summary::{self, SummaryJson};
-use post_job::{compensate, plan_rounds, plugin_finder, predict};
+use post_job::{caller, compensate, plan_rounds, plugin_finder, predict};
 use said_settings::SaidSettings;
 use setup_sheet::SheetJob;
 use shown::ShownArguments;
@@ -129,6 +130,7 @@ struct OutputFiles {
     pages: Vec<AtomicFile>,
     summary: Option<AtomicFile>,
     sheet: Option<AtomicFile>,
+    caller: Option<AtomicFile>,
     prediction: Option<AtomicFile>,
     job: Option<AtomicFile>,
 }
@@ -138,6 +140,7 @@ impl OutputFiles {
         session: &Session,
         arguments: &PostArguments,
         parts: &[ProgramPart],
+        caller: Option<&Caller>,
         maps: &[PathArg],
     ) -> Result<Self, Failure> {
         let outputs = &arguments.outputs.0;
@@ -149,6 +152,7 @@ impl OutputFiles {
         targets.extend(pages.iter().map(|page| (Role::REPORT, page)));
         targets.extend(outputs.summary.iter().map(|summary| (Role::SUMMARY, summary)));
         targets.extend(outputs.setup_sheet.iter().map(|sheet| (SETUP_SHEET, sheet)));
+        targets.extend(caller.map(|caller| (Role::PROGRAM, &caller.target)));
         targets.extend(prediction.map(|target| (PREDICTION, target)));
         targets.extend(arguments.save_job.iter().map(|target| (JOB, target)));
         let mut files = AtomicFile::create(session, &targets)?.into_iter();
@@ -159,6 +163,7 @@ impl OutputFiles {
             pages: take(pages.len()),
             summary: take(outputs.summary.iter().len()).pop(),
             sheet: take(outputs.setup_sheet.iter().len()).pop(),
+            caller: take(caller.iter().len()).pop(),
             prediction: take(prediction.iter().len()).pop(),
             job: take(arguments.save_job.iter().len()).pop(),
         })
@@ -166,8 +171,8 @@ impl OutputFiles {
 
     /// All of them, in the order in which they were opened.
     fn all(self) -> Vec<AtomicFile> {
-        let Self { programs, maps, pages, summary, sheet, prediction, job } = self;
-        let single = [summary, sheet, prediction, job].into_iter().flatten();
+        let Self { programs, maps, pages, summary, sheet, caller, prediction, job } = self;
+        let single = [summary, sheet, caller, prediction, job].into_iter().flatten();
         programs.into_iter().chain(maps).chain(pages).chain(single).collect()
     }
 }
@@ -188,10 +193,10 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
         maker.look_ahead(&machine, &mut source)?;
     }
     let maker = maker;
-    let parts = the_parts(&maker, arguments, machine)?;
+    let (parts, caller) = the_parts(&maker, arguments, machine)?;
     let places = arguments.shown.places(outputs.split, parts.len());
     let folders = places.folders(session)?;
-    let mut texts = OutputFiles::create(session, arguments, &parts, &places.maps)?;
+    let mut texts = OutputFiles::create(session, arguments, &parts, caller.as_ref(), &places.maps)?;
     let mut outcomes = Vec::new();
     let mut findings = Vec::new();
     let mut drawn = Vec::new();
@@ -210,6 +215,9 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
         outcomes.push(outcome);
     }
     write_besides(arguments, &maker, &parts, &outcomes, &mut texts)?;
+    if let (Some(caller), Some(file)) = (&caller, &mut texts.caller) {
+        file.write_bytes(caller.text(&maker)?.as_bytes())?;
+    }
     if let (Some(text), Some(file)) = (&saved, &mut texts.job) {
         file.write_bytes(text.as_bytes())?;
     }
@@ -297,17 +305,22 @@ fn print(
     }
 }
 
-/// The programs of the run: one, or as many as the CL file has operations or tools.
+/// The programs of the run, one, or as many as the CL file has operations or tools; and what calls them.
 fn the_parts(
     maker: &ProgramMaker<'_>,
     arguments: &PostArguments,
     machine: Machine,
-) -> Result<Vec<ProgramPart>, Failure> {
+) -> Result<(Vec<ProgramPart>, Option<Caller>), Failure> {
     let ProgramMaker { session, job, finder, ahead, .. } = maker;
     let outputs = &arguments.outputs.0;
     let target = making::target(job, outputs.output.as_ref(), &machine, finder)?;
     let (Some(split), Some(ahead)) = (outputs.split, ahead) else {
-        return Ok(vec![ProgramPart { lines: None, target, machine }]);
+        if outputs.caller {
+            let message = "--caller calls several programs, and there is one";
+            let help = "--split operations or --split tools makes several";
+            return Err(Diagnostic::error("caller", message).help(help).into());
+        }
+        return Ok((vec![ProgramPart { lines: None, target, machine }], None));
     };
     if target == PathArg::Standard {
         return Err(Diagnostic::error(
@@ -321,16 +334,26 @@ fn the_parts(
     let count = lines.len();
     // Programs of one number would take each other's place in the control.
     let number = plugin_finder::program_number(finder, &machine);
-    lines
+    let numbers = number.map(|first| first + i64::from(outputs.caller));
+    // A name that is called has letters, digits and `_`.
+    let dash = if outputs.caller && number.is_none() { "_" } else { "-" };
+    let programs: Result<Vec<ProgramPart>, Failure> = lines
         .into_iter()
         .enumerate()
         .map(|(index, lines)| {
-            let number = number.map(|first| first + index as i64);
-            Ok(ProgramPart {
-                lines: Some(lines),
-                target: parts::target(&target, index + 1, count),
-                machine: making::numbered(session, job, number)?,
-            })
+            let number = numbers.map(|first| first + index as i64);
+            let mut machine = making::numbered(session, job, number)?;
+            if outputs.caller {
+                caller::end_as_subprogram(finder, &mut machine, number)?;
+            }
+            let target = parts::target(&target, dash, index + 1, count);
+            Ok(ProgramPart { lines: Some(lines), target, machine })
         })
-        .collect()
+        .collect();
+    let programs = programs?;
+    let caller = match outputs.caller {
+        true => Some(Caller::of(&programs, ahead, number, target, machine)),
+        false => None,
+    };
+    Ok((programs, caller))
 }

@@ -1,13 +1,16 @@
-//! `--split`: one CL file, several programs.
+//! `--split`: one CL file, several programs, and with `--caller` one that calls them.
 
 use std::ops::Range;
 use std::path::Path;
 
+use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_posting::ProgramPreview;
 
+use post_job::caller::{self, CalledProgram};
 use post_job::failure::Failure;
 use post_job::files::PathArg;
+use post_job::making::{ProgramMaker, ProgramPart};
 use post_job::settings::Split;
 
 /// The lines of the CL file that each program is made of: the first begins with the file, the last ends with it.
@@ -30,12 +33,12 @@ pub fn lines(split: Split, ahead: &ProgramPreview) -> Result<Vec<Range<u64>>, Fa
     Ok(starts.iter().zip(ends).map(|(start, end)| *start..end).collect())
 }
 
-/// The target of program `number` (from 1) of `count`: `part.nc` becomes `part-03.nc`.
-pub fn target(whole: &PathArg, number: usize, count: usize) -> PathArg {
+/// The target of program `number` (from 1) of `count`: `part.nc` becomes `part-03.nc`, with this `dash`.
+pub fn target(whole: &PathArg, dash: &str, number: usize, count: usize) -> PathArg {
     let digits = count.to_string().len();
     whole.map(|path: &Path| {
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let mut name = format!("{stem}-{number:0digits$}");
+        let mut name = format!("{stem}{dash}{number:0digits$}");
         if let Some(extension) = path.extension() {
             name.push('.');
             name.push_str(&extension.to_string_lossy());
@@ -51,7 +54,46 @@ pub fn each(named: &Option<PathArg>, split: Option<Split>, count: usize) -> Vec<
         (Some(named), None) => vec![named.clone()],
         (Some(named), Some(_)) => {
             let numbers = 1..=count;
-            numbers.map(|number| target(named, number, count)).collect()
+            numbers.map(|number| target(named, "-", number, count)).collect()
         }
+    }
+}
+
+/// The program that calls those of the parts.
+pub struct Caller {
+    /// Where it goes.
+    pub target: PathArg,
+    machine: Machine,
+    calls: Vec<CalledProgram>,
+}
+
+impl Caller {
+    /// Of these programs; `number` is that of the caller, those after it are theirs.
+    pub fn of(
+        programs: &[ProgramPart],
+        ahead: &ProgramPreview,
+        number: Option<i64>,
+        target: PathArg,
+        machine: Machine,
+    ) -> Self {
+        let calls = programs.iter().enumerate().map(|(index, part)| {
+            let number = number.map(|first| first + index as i64 + 1);
+            CalledProgram {
+                number: number.and_then(|number| u32::try_from(number).ok()),
+                name: part.target.stem().unwrap_or_default(),
+                remark: ahead.named(part.lines.clone().unwrap_or_default()).join(", "),
+            }
+        });
+        let calls = calls.collect();
+        // Lines of the machine file's own belong to what is called.
+        Self { target, machine: machine.without_text(), calls }
+    }
+
+    /// Its text.
+    ///
+    /// # Errors
+    /// The dialect has no words for it.
+    pub fn text(&self, maker: &ProgramMaker<'_>) -> Result<String, Failure> {
+        caller::text(&maker.finder, &self.machine, &maker.job.input, &self.target, &self.calls)
     }
 }

@@ -173,6 +173,9 @@ settings! {
     /// Writes a separate program for each operation or each tool: part-1.nc, part-2.nc, …
     one split: Split = SPLIT, "WHERE";
 
+    /// With `--split`: the programs end as subprograms do, and one more, by the name of all, calls them in their order.
+    flag caller;
+
     /// Verifies each program before it is written (`post verify`): reads it back, runs it as the control does and
     /// compares it with the CL file. A program that deviates is not written.
     flag verify;
